@@ -1,0 +1,55 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "jobs/cli/commands.h"
+#include "jobs/spec/problems.h"
+#include "jobs/spec/version.h"
+#include "renderer/scene/scene_data.h"
+
+namespace {
+
+constexpr const char* about =
+    "Lacuna renders light transport in occluded scenes and measures error against time.";
+constexpr const char* footer =
+    "Exit codes: 0 done, 1 other error, 2 bad job or command line, 3 scene or other asset,\n"
+    "75 interrupted (the same command goes on from the checkpoint).\n"
+    "Environment: LACUNA_SCENES, folders that scenes are looked up in (separated by ':');\n"
+    "LACUNA_DATA, the folder of jobs, references and cache (default: lacuna-data).";
+
+int run(int argc, char** argv) {
+  CLI::App app(about, "lacuna");
+  app.footer(footer);
+  app.set_version_flag("--version", "lacuna " + lacuna::version());
+  app.require_subcommand(1);
+  int code = lacuna::exit_done;
+  lacuna::add_render(app, code);
+  lacuna::add_check(app, code);
+  lacuna::add_schema(app, code);
+  lacuna::add_list(app, code);
+  lacuna::add_compare(app, code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? lacuna::exit_done : lacuna::exit_bad_job;
+  }
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const lacuna::BadJob& e) {
+    fmt::print(stderr, "lacuna: {}\n", e.what());
+    return lacuna::exit_bad_job;
+  } catch (const lacuna::SceneError& e) {
+    fmt::print(stderr, "lacuna: {}\n", e.what());
+    return lacuna::exit_asset;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "lacuna: {}\n", e.what());
+    return lacuna::exit_error;
+  }
+}

@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <CLI/CLI.hpp>
+
+#include "jobs/cli/commands.h"
+#include "jobs/cli/interrupt.h"
+#include "jobs/cli/terminal.h"
+#include "jobs/run/run_job.h"
+#include "jobs/spec/job_json.h"
+#include "jobs/spec/problems.h"
+#include "jobs/store/atomic_file.h"
+#include "renderer/scene/scene_data.h"
+
+namespace lacuna {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The folder of a job file's results: there already with this very job, or made now.
+JobFolder folder_for(const fs::path& job_file, fs::path out) {
+  const JobSpec spec = parse_job(read_file(job_file, max_job_bytes));
+  if (out.empty()) out = job_file.stem().string() + ".job";
+  out = fs::absolute(out).lexically_normal();
+  if (!out.has_filename()) out = out.parent_path();
+  if (!fs::exists(out / "job.json")) {
+    if (fs::exists(out) && !fs::is_empty(out)) {
+      throw BadJob(
+          {{"", fmt::format("--out {}: is there already and is no job's folder", out.string())}});
+    }
+    if (fs::exists(out)) fs::remove(out);
+    fs::create_directories(out.parent_path());
+    return JobFolder::create(out, spec);
+  }
+  JobFolder folder(out);
+  if (folder.read_job() != spec) {
+    throw BadJob(
+        {{"", fmt::format("{} holds another job; name another folder with --out", out.string())}});
+  }
+  return folder;
+}
+
+int render(const fs::path& what, const fs::path& out, int threads, bool quiet) {
+  // A full disk or a size limit must become an error, not the end of the process.
+  signal(SIGXFSZ, SIG_IGN);
+  const JobFolder folder = fs::is_directory(what) ? JobFolder(fs::absolute(what).lexically_normal())
+                                                  : folder_for(what, out);
+  Terminal terminal(folder.file("log.txt"), quiet);
+  const RunContext context{DataRoot::from_environment(), ScenesRoots::from_environment(), threads,
+                           interrupt_requested(), terminal};
+  const auto failed = [&](const std::exception& e, ExitCode code) {
+    terminal.error(e.what());
+    return code;
+  };
+  try {
+    if (folder.read_state().state == State::done) {
+      terminal.milestone(fmt::format("{}: done already", folder.dir().string()));
+      return exit_done;
+    }
+    if (run_job(folder, context) == Outcome::interrupted) {
+      terminal.milestone("interrupted; the same command goes on from here");
+      return exit_interrupted;
+    }
+  } catch (const BadJob& e) {
+    return failed(e, exit_bad_job);
+  } catch (const SceneError& e) {
+    return failed(e, exit_asset);
+  } catch (const std::exception& e) {
+    return failed(e, exit_error);
+  }
+  terminal.milestone(fmt::format("done: {}", folder.file("image.exr").string()));
+  return exit_done;
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, int& code) {
+  struct Options {
+    fs::path job, out;
+    int threads = -1;
+    bool quiet = false;
+  };
+  const auto o = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("render", "Render a job file, or go on with a job's folder");
+  command->add_option("JOB", o->job, "a job file (JSON), or a job's folder")
+      ->required()
+      ->check(CLI::ExistingPath);
+  command->add_option("-o,--out", o->out, "folder for the results (default: NAME.job)");
+  command->add_option("-t,--threads", o->threads, "in place of the job's own number; 0: one a core")
+      ->check(CLI::Range(0, 1024));
+  command->add_flag("-q,--quiet", o->quiet, "show warnings and errors only");
+  command->callback([o, &code] { code = render(o->job, o->out, o->threads, o->quiet); });
+}
+
+}  // namespace lacuna

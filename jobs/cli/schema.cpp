@@ -1,0 +1,20 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "jobs/cli/commands.h"
+#include "jobs/spec/job_json.h"
+
+namespace lacuna {
+
+void add_schema(CLI::App& app, int& code) {
+  const auto markdown = std::make_shared<bool>(false);
+  CLI::App* command = app.add_subcommand("schema", "Print the JSON Schema of the job file");
+  command->add_flag("--markdown", *markdown, "the settings pages for people instead");
+  command->callback([markdown, &code] {
+    fmt::print("{}", *markdown ? job_documentation() : job_schema());
+    code = exit_done;
+  });
+}
+
+}  // namespace lacuna

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <time.h>
+
+#include <algorithm>
+
+namespace lacuna {
+
+/// Seconds of a POSIX clock.
+inline double clock_seconds(clockid_t clock) {
+  timespec t{};
+  clock_gettime(clock, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Two clocks that run only while a picture is being made: wall seconds, and CPU seconds of the
+/// process divided by its threads, which hold still on a busy machine.
+class RenderClock {
+ public:
+  explicit RenderClock(int threads) : threads_(threads) {}
+
+  void start() {
+    wall_start_ = clock_seconds(CLOCK_MONOTONIC);
+    cpu_start_ = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
+    running_ = true;
+  }
+  void stop() {
+    wall_ = seconds();
+    cpu_ = cpu_seconds();
+    running_ = false;
+  }
+  double seconds() const {
+    return wall_ + (running_ ? clock_seconds(CLOCK_MONOTONIC) - wall_start_ : 0);
+  }
+  double cpu_seconds() const {
+    return cpu_ +
+           (running_ ? (clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu_start_) / threads_ : 0);
+  }
+  /// Goes on from a checkpoint's times.
+  void set(double wall, double cpu) {
+    wall_ = wall;
+    cpu_ = cpu;
+  }
+
+ private:
+  int threads_;
+  bool running_ = false;
+  double wall_ = 0, cpu_ = 0;
+  double wall_start_ = 0, cpu_start_ = 0;
+};
+
+/// Says when something that costs time may be done again: not before `interval` seconds, and so
+/// seldom that it takes at most `share` of all time.
+class Pace {
+ public:
+  Pace(double interval, double share) : interval_(interval), share_(share) { done(0); }
+
+  bool due() const { return clock_seconds(CLOCK_MONOTONIC) >= next_; }
+  /// It was done and took `cost` seconds.
+  void done(double cost) {
+    next_ = clock_seconds(CLOCK_MONOTONIC) + std::max(interval_, cost / share_);
+  }
+
+ private:
+  double interval_, share_;
+  double next_ = 0;
+};
+
+/// Adds the wall seconds of a scope to `sum`.
+class ScopedSeconds {
+ public:
+  explicit ScopedSeconds(double& sum) : sum_(sum), start_(clock_seconds(CLOCK_MONOTONIC)) {}
+  ~ScopedSeconds() { sum_ += clock_seconds(CLOCK_MONOTONIC) - start_; }
+  ScopedSeconds(const ScopedSeconds&) = delete;
+  ScopedSeconds& operator=(const ScopedSeconds&) = delete;
+
+ private:
+  double& sum_;
+  double start_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "renderer/core/bytes.h"
+#include "renderer/film/metrics.h"
+#include "renderer/path/counters.h"
+
+namespace lacuna {
+
+/// One instant of a job: how far it was, and how good.
+struct CurveRow {
+  std::uint64_t iteration = 0;
+  double seconds = 0, cpu_seconds = 0;  ///< render time; CPU divided by threads
+  Counters counters;
+  std::optional<Errors> errors;  ///< against the reference, if there is one
+  std::optional<double> est_rmse;
+  /// More than half of the measured mse is the reference's own noise: the curve no longer falls for
+  /// the method's sake.
+  bool at_floor = false;
+
+  /// The value of `metric` in this row, if it has one.
+  std::optional<double> value(ErrorMetric metric) const {
+    if (metric == ErrorMetric::est_rmse) return est_rmse;
+    return errors ? std::optional(value_of(*errors, metric)) : std::nullopt;
+  }
+};
+
+/// Error against time.
+class Curve {
+ public:
+  /// Whether render time `seconds` has reached the next instant at which a row is due: 0.1 s, then
+  /// each sqrt(2) times the one before.
+  bool due(double seconds) const;
+  /// Adds a row; a second one for the same iteration replaces the first.
+  void add(const CurveRow& row);
+  const std::vector<CurveRow>& rows() const { return rows_; }
+
+  /// curve.csv: a header and a line a row; empty where there is no value; 17 significant digits.
+  std::string csv() const;
+
+  void save(ByteWriter& out) const { out.put(rows_); }
+  void load(ByteReader& in) { rows_ = in.get_vector<CurveRow>(); }
+
+ private:
+  std::vector<CurveRow> rows_;
+};
+
+}  // namespace lacuna

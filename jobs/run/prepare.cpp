@@ -1,0 +1,87 @@
+#include "jobs/run/prepare.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "jobs/store/atomic_file.h"
+
+namespace lacuna {
+
+namespace {
+
+std::filesystem::path resolve(const RunContext& context, const std::string& what,
+                              const std::string& name, std::vector<std::string_view> extensions) {
+  try {
+    return context.scenes.resolve(name, std::move(extensions));
+  } catch (const std::invalid_argument& e) {
+    throw SceneError(fmt::format("{} \"{}\": {}", what, name, e.what()));
+  }
+}
+
+const CameraData& choose_camera(const SceneData& scene, const std::string& file,
+                                const std::string& name) {
+  if (scene.cameras.empty()) {
+    throw SceneError(fmt::format("scene \"{}\" has no perspective camera; it needs one", file));
+  }
+  if (name.empty()) return scene.cameras.front();
+  const auto found = std::find_if(scene.cameras.begin(), scene.cameras.end(),
+                                  [&](const CameraData& c) { return c.name == name; });
+  if (found != scene.cameras.end()) return *found;
+  std::vector<std::string> names;
+  for (const CameraData& c : scene.cameras) names.push_back(fmt::format("\"{}\"", c.name));
+  throw SceneError(fmt::format("scene \"{}\" has no camera \"{}\"; it has {}", file, name,
+                               fmt::join(names, ", ")));
+}
+
+SceneNeeds needs_of(const JobSpec& spec, const Integrator& integrator) {
+  SceneNeeds needs = integrator.needs();
+  if (std::find(spec.layers.begin(), spec.layers.end(), ImageLayer::albedo) != spec.layers.end()) {
+    needs.materials = true;
+  }
+  return needs;
+}
+
+std::uint64_t file_hash(const std::filesystem::path& file) {
+  const std::string bytes = read_file(file, std::size_t{1} << 32);
+  return XXH3_64bits(bytes.data(), bytes.size());
+}
+
+}  // namespace
+
+Prepared prepare(const JobSpec& spec, const RunContext& context) {
+  Prepared p;
+  p.pool = std::make_unique<ThreadPool>(context.threads >= 0 ? context.threads : spec.threads);
+  p.integrator = make_integrator(spec.integrator);
+  SceneData data = load_gltf(resolve(context, "scene", spec.scene, {".glb", ".gltf"}));
+  p.camera = std::make_unique<Camera>(choose_camera(data, spec.scene, spec.camera),
+                                      spec.resolution[0], spec.resolution[1]);
+  p.warnings = data.warnings;
+  if (data.dropped_triangles > 0) {
+    p.warnings.push_back(
+        fmt::format("{} triangles without area or with vertices that are not finite "
+                    "were left out",
+                    data.dropped_triangles));
+  }
+  p.content = fmt::format("{:016x}", data.content_hash);
+
+  const SceneNeeds needs = needs_of(spec, *p.integrator);
+  std::optional<EnvironmentImage> environment;
+  if (spec.environment && needs.emission) {
+    const auto& e = *spec.environment;
+    environment = {resolve(context, "environment", e.file, {".exr", ".hdr"}),
+                   static_cast<float>(e.scale),
+                   static_cast<float>(e.rotation * std::numbers::pi / 180)};
+    p.content += fmt::format("-{:016x}", file_hash(environment->file));
+  }
+  p.scene = std::make_unique<Scene>(std::move(data), needs, environment, *p.pool);
+  if (needs.emission && p.scene->emitters().empty()) {
+    p.warnings.emplace_back("the scene has no light: the picture is black");
+  }
+  return p;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "jobs/run/run_job.h"
+#include "renderer/integrators/integrator.h"
+
+namespace lacuna {
+
+/// Scene, camera and integrator of a job, ready to render.
+struct Prepared {
+  std::unique_ptr<ThreadPool> pool;
+  std::unique_ptr<Integrator> integrator;
+  std::unique_ptr<Scene> scene;
+  std::unique_ptr<Camera> camera;
+  std::string content;  ///< hashes of the files the picture depends on
+  std::vector<std::string> warnings;
+};
+
+/// Loads and builds what `spec` needs, and only that. Throws SceneError: no such scene or camera,
+/// an asset that cannot be used.
+Prepared prepare(const JobSpec& spec, const RunContext& context);
+
+}  // namespace lacuna

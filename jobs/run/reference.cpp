@@ -1,0 +1,110 @@
+#include "jobs/run/reference.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "jobs/run/results.h"
+#include "jobs/spec/job_json.h"
+#include "renderer/scene/image_read.h"
+#include "renderer/scene/scene_data.h"
+
+namespace lacuna {
+
+namespace {
+
+/// The integrator that a reference of `settings` is made with: converges to the same picture.
+struct PlainIntegrator {
+  IntegratorSettings operator()(const PathSettings& s) const {
+    PathSettings plain;
+    plain.max_depth = s.max_depth;
+    return plain;
+  }
+  IntegratorSettings operator()(const InspectSettings& s) const { return s; }
+};
+
+// So that no random number of a reference is one of the job's own.
+constexpr std::uint64_t reference_seed = 0x726566657265;  // below 2^53, the largest seed
+
+bool is_plain_name(const std::string& s) {
+  return !s.empty() && s.front() != '.' && s.find('/') == std::string::npos &&
+         s.find('\0') == std::string::npos;
+}
+
+}  // namespace
+
+Reference read_reference(const std::string& name, const std::filesystem::path& image,
+                         const std::array<int, 2>& resolution) {
+  const FloatImage file = read_float_image(image);
+  if (file.width != resolution[0] || file.height != resolution[1]) {
+    throw SceneError(fmt::format("reference \"{}\" has {} x {} pixels, the job {} x {}", name,
+                                 file.width, file.height, resolution[0], resolution[1]));
+  }
+  Reference r{name, {file.rgb.begin(), file.rgb.end()}, std::nullopt};
+  for (std::size_t i = 0; i < r.rgb.size(); ++i) {
+    if (std::isfinite(r.rgb[i])) continue;
+    const auto pixel = i / 3;
+    const auto width = static_cast<std::size_t>(file.width);
+    throw SceneError(fmt::format("reference \"{}\": pixel ({}, {}) is {}", name, pixel % width,
+                                 pixel / width, r.rgb[i]));
+  }
+  if (const auto rmse = file.attributes.find("lacuna:est_rmse"); rmse != file.attributes.end()) {
+    double value = 0;
+    const std::string& text = rmse->second;
+    if (std::from_chars(text.data(), text.data() + text.size(), value).ec == std::errc()) {
+      r.mse = value * value;
+    }
+  }
+  return r;
+}
+
+Reference find_reference(const JobSpec& spec, const DataRoot& data, const ScenesRoots& scenes) {
+  const std::string& name = spec.reference;
+  if (name.ends_with(".exr")) {
+    try {
+      return read_reference(name, scenes.resolve(name, {".exr"}), spec.resolution);
+    } catch (const std::invalid_argument& e) {
+      throw SceneError(fmt::format("reference \"{}\": {}", name, e.what()));
+    }
+  }
+  if (is_job_id(name)) {
+    const JobFolder folder(data.jobs() / name);
+    if (!std::filesystem::exists(folder.dir())) {
+      throw SceneError(fmt::format("reference \"{}\": there is no such job", name));
+    }
+    const State state = folder.read_state().state;
+    if (state != State::done) {
+      throw SceneError(
+          fmt::format("reference \"{}\": that job is {}, not done", name, enum_name(state)));
+    }
+    return read_reference(name, folder.file("image.exr"), spec.resolution);
+  }
+  const auto file = data.references() / name / "image.exr";
+  if (!is_plain_name(name) || !std::filesystem::is_regular_file(file)) {
+    throw SceneError(fmt::format(
+        "reference \"{}\": neither \"auto\", nor an .exr below a scenes root, nor a job's "
+        "id, nor a folder of {}",
+        name, data.references().string()));
+  }
+  return read_reference(name, file, spec.resolution);
+}
+
+ReferenceJob auto_reference(const JobSpec& spec, const DataRoot& data, const std::string& content) {
+  JobSpec r;
+  r.scene = spec.scene;
+  r.camera = spec.camera;
+  r.label = "reference";
+  r.resolution = spec.resolution;
+  r.integrator = std::visit(PlainIntegrator{}, spec.integrator);
+  r.budget.iterations = spec.reference_iterations;
+  r.environment = spec.environment;
+  r.seed = reference_seed;
+  r.threads = spec.threads;
+  r.layers = {ImageLayer::variance, ImageLayer::halves};
+  const std::string name =
+      fmt::format("auto-{}-{}-{}", picture_key(r), content, spec.reference_iterations);
+  return {r, JobFolder(data.references() / name)};
+}
+
+}  // namespace lacuna

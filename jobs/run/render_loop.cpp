@@ -1,0 +1,175 @@
+#include "jobs/run/render_loop.h"
+
+#include <fmt/format.h>
+
+#include "jobs/run/checkpoint.h"
+#include "jobs/spec/job_json.h"
+#include "jobs/store/atomic_file.h"
+#include "renderer/film/preview.h"
+
+namespace lacuna {
+
+namespace {
+
+// Shares of all time that keeping watch may cost.
+constexpr double checkpoint_share = 0.01;
+constexpr double preview_share = 0.005;
+constexpr double progress_interval = 0.5;  // seconds
+
+}  // namespace
+
+RenderLoop::RenderLoop(const RenderTask& task)
+    : task_(task),
+      budget_(task.spec.budget),
+      film_(task.spec.resolution[0], task.spec.resolution[1]),
+      frame_(task.spec.resolution[0], task.spec.resolution[1]),
+      clock_(task.pool.threads()),
+      checkpoints_(task.spec.checkpoint_seconds, checkpoint_share),
+      previews_(0, preview_share),
+      progress_(progress_interval, checkpoint_share) {}
+
+void RenderLoop::resume() {
+  const auto file = task_.folder.file("checkpoint.bin");
+  try {
+    const auto content = read_checkpoint(file, picture_key(task_.spec));
+    if (!content) return;
+    ByteReader in(*content);
+    Film film(film_.width(), film_.height());
+    film.load(in);
+    completed_ = in.get<Spent>();
+    counters_ = in.get<Counters>();
+    curve_.load(in);
+    task_.integrator.load(in);
+    film_ = std::move(film);
+    clock_.set(completed_.seconds, completed_.cpu_seconds);
+    task_.observer.milestone(fmt::format("going on from iteration {} ({:.1f} s)",
+                                         completed_.iterations, completed_.seconds));
+  } catch (const std::runtime_error& e) {
+    std::filesystem::rename(file, task_.folder.file("checkpoint.unusable"));
+    task_.observer.warning(
+        fmt::format("{}; kept as checkpoint.unusable, beginning anew", e.what()));
+    completed_ = {};
+    counters_ = {};
+    curve_ = {};
+  }
+}
+
+bool RenderLoop::run() {
+  while (!exhausted(budget_, completed_) && !would_overrun(budget_, completed_) &&
+         !target_met(budget_, curve_)) {
+    if (task_.interrupted() || !iterate()) {
+      if (!task_.interrupted()) break;  // out of time
+      write_checkpoint_now();
+      return false;
+    }
+    // An error target is looked at after each of the instants, like any other use of the error.
+    if (curve_.due(completed_.seconds)) add_row();
+    if (checkpoints_.due()) write_checkpoint_now();
+    if (progress_.due()) report_progress();
+  }
+  add_row();
+  report_progress();
+  return true;
+}
+
+bool RenderLoop::iterate() {
+  const std::function<bool()> stop = [&] {
+    return task_.interrupted() ||
+           (completed_.iterations > 0 &&
+            out_of_time(budget_, {completed_.iterations, clock_.seconds(), clock_.cpu_seconds()}));
+  };
+  std::fill(frame_.pixels.begin(), frame_.pixels.end(), Rgb(0, 0, 0));
+  clock_.start();
+  try {
+    counters_ += task_.integrator.iterate(
+        {task_.scene, task_.camera, task_.pool, task_.spec.seed, completed_.iterations, stop},
+        frame_);
+  } catch (const IterationStopped&) {
+    clock_.stop();
+    return false;
+  }
+  film_.add(completed_.iterations, frame_);
+  clock_.stop();
+  completed_ = {completed_.iterations + 1, clock_.seconds(), clock_.cpu_seconds()};
+  return true;
+}
+
+void RenderLoop::add_row() {
+  if (completed_.iterations == 0) return;
+  double cost = 0;
+  {
+    const ScopedSeconds timed(cost);
+    CurveRow row{completed_.iterations,
+                 completed_.seconds,
+                 completed_.cpu_seconds,
+                 counters_,
+                 std::nullopt,
+                 estimated_rmse(film_),
+                 false};
+    if (task_.reference != nullptr) {
+      row.errors = errors(film_.mean(), task_.reference->rgb);
+      row.at_floor = task_.reference->mse && *task_.reference->mse > row.errors->mse / 2;
+    }
+    curve_.add(row);
+    write_file_atomically(task_.folder.file("curve.csv"), curve_.csv(), false);
+  }
+  task_.phases["evaluate"] += cost;
+  if (previews_.due()) write_preview_now();
+  const auto error = curve_.rows().back().errors;
+  const auto est = curve_.rows().back().est_rmse;
+  task_.observer.milestone(fmt::format(
+      "iteration {}, {:.1f} s{}{}", completed_.iterations, completed_.seconds,
+      error ? fmt::format(", rmse {:.4g}, relmse {:.4g}", error->rmse, error->relmse) : "",
+      est ? fmt::format(", est. rmse {:.4g}", *est) : ""));
+}
+
+void RenderLoop::write_checkpoint_now() {
+  double cost = 0;
+  {
+    const ScopedSeconds timed(cost);
+    ByteWriter out;
+    film_.save(out);
+    out.put(completed_);
+    out.put(counters_);
+    curve_.save(out);
+    task_.integrator.save(out);
+    write_checkpoint(task_.folder.file("checkpoint.bin"), picture_key(task_.spec), out.bytes());
+  }
+  task_.phases["checkpoint"] += cost;
+  checkpoints_.done(cost);
+}
+
+void RenderLoop::write_preview_now() {
+  double cost = 0;
+  {
+    const ScopedSeconds timed(cost);
+    write_preview(task_.folder.file("image.png"), film_.width(), film_.height(), film_.mean());
+  }
+  task_.phases["preview"] += cost;
+  previews_.done(cost);
+}
+
+void RenderLoop::report_progress() {
+  double cost = 0;
+  {
+    const ScopedSeconds timed(cost);
+    Progress p;
+    p.iteration = static_cast<std::int64_t>(completed_.iterations);
+    p.seconds = completed_.seconds;
+    p.cpu_seconds = completed_.cpu_seconds;
+    p.share = share(budget_, completed_);
+    if (p.share > 0) p.remaining_seconds = completed_.seconds * (1 - p.share) / p.share;
+    if (!curve_.rows().empty()) {
+      const CurveRow& row = curve_.rows().back();
+      const ErrorMetric metric = row.errors ? ErrorMetric::relmse : ErrorMetric::est_rmse;
+      p.error = row.value(metric);
+      p.error_metric = enum_name(metric);
+    }
+    task_.folder.write_progress(p);
+    task_.observer.progress(p);
+  }
+  task_.phases["progress"] += cost;
+  progress_.done(cost);
+}
+
+}  // namespace lacuna

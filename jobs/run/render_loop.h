@@ -1,0 +1,73 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "jobs/run/budget.h"
+#include "jobs/run/clock.h"
+#include "jobs/run/curve.h"
+#include "jobs/run/observer.h"
+#include "jobs/run/reference.h"
+#include "jobs/spec/job_spec.h"
+#include "jobs/store/job_folder.h"
+#include "renderer/film/film.h"
+#include "renderer/integrators/integrator.h"
+
+namespace lacuna {
+
+/// The wall seconds of each phase of a job, for the report.
+using PhaseSeconds = std::map<std::string, double>;
+
+/// What the loop works on. All references outlive it.
+struct RenderTask {
+  const JobFolder& folder;
+  const JobSpec& spec;
+  const Scene& scene;
+  const Camera& camera;
+  const ThreadPool& pool;
+  Integrator& integrator;
+  const Reference* reference;                ///< may be null
+  const std::function<bool()>& interrupted;  ///< from a signal: true asks the loop to stop
+  Observer& observer;
+  PhaseSeconds& phases;
+};
+
+/// A picture in the making: iterations until the budget is spent, rows of the curve at log-spaced
+/// instants, checkpoints, progress. The render clock runs only during iterations.
+class RenderLoop {
+ public:
+  explicit RenderLoop(const RenderTask& task);
+
+  /// Goes on from the folder's checkpoint, if it has one of this picture. A damaged one is reported
+  /// to the observer, kept under another name, and the picture begins anew.
+  void resume();
+
+  /// True: the budget is spent. False: interrupted; a checkpoint was written.
+  bool run();
+
+  const Film& film() const { return film_; }
+  const Curve& curve() const { return curve_; }
+  const Counters& counters() const { return counters_; }
+  Spent spent() const { return completed_; }
+
+ private:
+  bool iterate();
+  void add_row();
+  void write_checkpoint_now();
+  void write_preview_now();
+  void report_progress();
+
+  RenderTask task_;
+  Budget budget_;
+  Film film_;
+  Image frame_;
+  Curve curve_;
+  Counters counters_;
+  RenderClock clock_;
+  Spent completed_;  // when the last finished iteration ended
+  Pace checkpoints_, previews_, progress_;
+};
+
+}  // namespace lacuna

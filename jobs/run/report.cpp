@@ -1,0 +1,117 @@
+#include "jobs/run/report.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "jobs/spec/version.h"
+
+namespace lacuna {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json optional(std::optional<double> v) { return v ? Json(*v) : Json(nullptr); }
+
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  }
+  return "unknown";
+}
+
+Json seconds(const PhaseSeconds& phases, const Spent& spent) {
+  Json j;
+  for (const auto& [name, value] : phases) j[name] = value;
+  j["render"] = spent.seconds;
+  j["render_cpu"] = spent.cpu_seconds;
+  return j;
+}
+
+Json counts(const RenderTask& task, const Spent& spent, const Counters& c) {
+  return {{"iterations", spent.iterations},
+          {"samples", c.samples},
+          {"rays", c.rays},
+          {"shadow_rays", c.shadow_rays},
+          {"negative", c.negative},
+          {"rejected", c.rejected},
+          {"refused_rays", task.scene.rays().refused_rays()}};
+}
+
+Json rates(const RenderTask& task, const Spent& spent, const Counters& c) {
+  const auto rays = static_cast<double>(c.rays + c.shadow_rays);
+  const auto per = [](double n, double t) { return t > 0 ? Json(n / t) : Json(nullptr); };
+  return {{"rays_per_second", per(rays, spent.seconds)},
+          {"rays_per_cpu_second", per(rays, spent.cpu_seconds * task.pool.threads())},
+          {"samples_per_second", per(static_cast<double>(c.samples), spent.seconds)},
+          {"rays_per_sample", per(rays, static_cast<double>(c.samples))}};
+}
+
+Json scene(const Scene& s) {
+  const SceneData& d = s.data();
+  return {{"triangles", d.triangle_count()},
+          {"dropped_triangles", d.dropped_triangles},
+          {"emitters", s.has_emitters() ? Json(s.emitters().size()) : Json("not needed")},
+          {"textures",
+           {{"in_scene", d.textures.size()},
+            {"decoded", s.textures_decoded()},
+            {"decoded_bytes", s.texture_bytes()}}},
+          {"mask_filters", s.rays().filters()},
+          {"ray_caster_bytes", s.rays().bytes()},
+          {"content_hash", fmt::format("{:016x}", d.content_hash)},
+          {"geometry_hash", fmt::format("{:016x}", d.geometry_hash)}};
+}
+
+Json errors_json(const RenderTask& task, const Curve& curve) {
+  Json j;
+  if (curve.rows().empty()) return j;
+  const CurveRow& row = curve.rows().back();
+  for (const auto& metric : EnumTable<ErrorMetric>::values) {
+    j[std::string(metric.name)] = optional(row.value(metric.value));
+  }
+  if (row.errors && row.errors->mse > 0) j["efficiency"] = 1 / (row.errors->mse * row.seconds);
+  if (task.reference != nullptr) {
+    j["reference"] = {
+        {"name", task.reference->name},
+        {"own_rmse", task.reference->mse ? Json(std::sqrt(*task.reference->mse)) : Json(nullptr)},
+        {"at_floor", row.at_floor}};
+  }
+  return j;
+}
+
+Json machine(const ThreadPool& pool) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return {{"processor", processor()},
+          {"cores", sysconf(_SC_NPROCESSORS_ONLN)},
+          {"threads", pool.threads()},
+          {"peak_memory_bytes", std::int64_t{usage.ru_maxrss} * 1024}};
+}
+
+}  // namespace
+
+std::string write_report(const ReportInput& input) {
+  const RenderTask& task = input.task;
+  const RenderLoop& loop = input.loop;
+  Json j;
+  j["version"] = version();
+  j["job"] = task.folder.id();
+  j["seconds"] = seconds(task.phases, loop.spent());
+  j["counts"] = counts(task, loop.spent(), loop.counters());
+  j["rates"] = rates(task, loop.spent(), loop.counters());
+  j["errors"] = errors_json(task, loop.curve());
+  j["scene"] = scene(task.scene);
+  // No integrator of this version asks for one.
+  j["artefacts"] = {{"built", Json::array()}, {"loaded", Json::array()}};
+  j["warnings"] = input.warnings;
+  j["machine"] = machine(task.pool);
+  return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace lacuna

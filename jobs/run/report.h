@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "jobs/run/render_loop.h"
+
+namespace lacuna {
+
+/// What a job did and what it cost, beside its picture.
+struct ReportInput {
+  const RenderTask& task;
+  const RenderLoop& loop;
+  std::vector<std::string> warnings;
+};
+
+/// report.json: seconds by phase, counts, rates, what of the scene was built and what was not
+/// needed, errors, memory, machine.
+std::string write_report(const ReportInput& input);
+
+}  // namespace lacuna

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "jobs/run/observer.h"
+#include "jobs/store/job_folder.h"
+
+namespace lacuna {
+
+/// What surrounds a job.
+struct RunContext {
+  DataRoot data;
+  ScenesRoots scenes;
+  int threads = -1;                          ///< >= 0: in place of the job's own
+  const std::function<bool()>& interrupted;  ///< true asks to stop soon, from any thread
+  Observer& observer;
+};
+
+enum class Outcome { done, interrupted };
+
+/// The folder is another process's at present.
+class FolderBusy : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Does the job of `folder`, from its checkpoint if there is one: state.json becomes `running`,
+/// then `done`, `interrupted`, or `failed` with the reason (and the exception goes on): BadJob,
+/// SceneError, std::system_error and others. A job that is done is left as it is. Throws
+/// FolderBusy.
+Outcome run_job(const JobFolder& folder, const RunContext& context);
+
+/// Loads all that the job needs and throws what run_job would, without rendering: `lacuna check`.
+/// Returns warnings.
+std::vector<std::string> check_job(const JobSpec& spec, const RunContext& context);
+
+}  // namespace lacuna

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "jobs/spec/json_document.h"
+#include "jobs/spec/json_reader.h"
+#include "jobs/spec/json_writer.h"
+
+namespace lacuna {
+
+/// Throws BadJob with what was found, if anything: the first hundred, and how many more there are.
+inline void throw_if_any(std::vector<Problem> problems) {
+  constexpr std::size_t most = 100;
+  if (problems.empty()) return;
+  if (problems.size() > most) {
+    const std::size_t more = problems.size() - most;
+    problems.resize(most);
+    problems.push_back({"", std::to_string(more) + " more problems"});
+  }
+  throw BadJob(std::move(problems));
+}
+
+/// A document that is one described struct. Throws BadJob.
+template <Described T>
+T read_document(std::string_view text, DocumentLimits limits) {
+  std::vector<Problem> problems;
+  const Json document = parse_document(text, limits, problems);
+  T settings{};
+  read_settings({document, "", problems}, settings);
+  throw_if_any(std::move(problems));
+  return settings;
+}
+
+template <Described T>
+std::string write_document(const T& settings) {
+  return document_text(ObjectWriter::value_of(settings));
+}
+
+}  // namespace lacuna

@@ -1,0 +1,120 @@
+#include <fmt/format.h>
+
+#include <string>
+
+#include "jobs/spec/job_json.h"
+#include "jobs/spec/type_tree.h"
+
+namespace lacuna {
+namespace {
+
+using Kind = Type::Kind;
+
+/// Text in a cell of a Markdown table.
+std::string cell(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '|') escaped += '\\';
+    escaped += c;
+  }
+  return escaped;
+}
+
+std::string sentence(std::string_view text) {
+  std::string s(text);
+  if (!s.empty() && s[0] >= 'a' && s[0] <= 'z') s[0] = char(s[0] - 'a' + 'A');
+  return s + '.';
+}
+
+/// What a value of this type is and may be.
+std::string type_text(const Type& type) {
+  const auto with = [](std::string_view thing, const std::string& limits) {
+    return limits.empty() ? std::string(thing) : fmt::format("{} {}", thing, limits);
+  };
+  switch (type.kind) {
+    case Kind::boolean:
+      return "true or false";
+    case Kind::integer:
+      return with("integer", range_text(type.limits));
+    case Kind::number:
+      return with("number", range_text(type.limits));
+    case Kind::string:
+      return with("string", length_text(type.limits, "characters"));
+    case Kind::array:
+      return fmt::format("list of {}, each: {}", type.array_size, type_text(type.elements.front()));
+    case Kind::list:
+      return fmt::format("{}, each: {}", with("list", length_text(type.limits, "elements")),
+                         type_text(type.elements.front()));
+    case Kind::object:
+      return "object, see below";
+    case Kind::word:
+    case Kind::choice:
+      break;
+  }
+  std::string names;
+  for (const Type::Name& n : type.names) {
+    names += fmt::format("{}`{}`", names.empty() ? "" : ", ", n.name);
+  }
+  return (type.kind == Kind::choice ? "one of these methods, see below: " : "one of ") + names;
+}
+
+std::string default_text(const Member& member) {
+  if (member.field.required) return "required";
+  if (member.type.kind == Kind::object && !member.type.optional) return "";
+  if (member.type.kind == Kind::choice && member.default_value.is_object()) {
+    return fmt::format("`{}`", member.default_value[std::string(variant_key)].dump());
+  }
+  return member.default_value.is_null() ? "none" : fmt::format("`{}`", member.default_value.dump());
+}
+
+void put_names(std::string& page, const Member& member) {
+  const Type& named = member.type.kind == Kind::list ? member.type.elements.front() : member.type;
+  if (named.kind != Kind::word) return;
+  page += fmt::format("\n`{}`:\n\n", member.name);
+  for (const Type::Name& n : named.names) page += fmt::format("- `{}`: {}\n", n.name, n.doc);
+}
+
+void put_section(std::string& page, const Type& object, const std::string& path);
+
+/// The sections of what a member holds.
+void put_parts(std::string& page, const Member& member, const std::string& path) {
+  if (member.type.kind == Kind::object) {
+    page += fmt::format("\n## {}\n\n{}\n", path, sentence(member.field.doc));
+    put_section(page, member.type, path);
+  }
+  for (std::size_t i = 0; member.type.kind == Kind::choice && i < member.type.names.size(); ++i) {
+    const Type::Name& name = member.type.names[i];
+    page += fmt::format("\n## {}: {}\n\n`{{\"type\": \"{}\"}}`. {}\n", path, name.name, name.name,
+                        sentence(name.doc));
+    put_section(page, member.type.elements[i], path);
+  }
+}
+
+/// One object: its keys in a table, what their names mean, then its parts.
+void put_section(std::string& page, const Type& object, const std::string& path) {
+  if (object.members.empty()) {
+    page += "\nIt has no settings.\n";
+    return;
+  }
+  page += "\n| key | value | default | meaning |\n| --- | --- | --- | --- |\n";
+  for (const Member& m : object.members) {
+    page += fmt::format("| `{}` | {} | {} | {} |\n", m.name, cell(type_text(m.type)),
+                        cell(default_text(m)), cell(m.field.doc));
+  }
+  for (const Member& m : object.members) put_names(page, m);
+  for (const Member& m : object.members) {
+    put_parts(page, m, path.empty() ? std::string(m.name) : fmt::format("{}.{}", path, m.name));
+  }
+}
+
+}  // namespace
+
+std::string job_documentation() {
+  std::string page =
+      "# The job file\n\n"
+      "One JSON object. Keys that are left out take their defaults; unknown keys are errors.\n";
+  put_section(page, TypeReader::type_of(JobSpec{}, Field{}), "");
+  return page;
+}
+
+}  // namespace lacuna

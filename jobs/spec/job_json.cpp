@@ -1,0 +1,59 @@
+#include "jobs/spec/job_json.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "jobs/spec/described_json.h"
+
+namespace lacuna {
+namespace {
+
+/// No problem was found at this place or below it: what the settings hold there is what the
+/// document says.
+bool is_good(const std::vector<Problem>& problems, const std::string& at) {
+  return std::none_of(problems.begin(), problems.end(), [&](const Problem& p) {
+    return p.pointer == at || p.pointer.starts_with(at + '/');
+  });
+}
+
+void check_error_target(const JobSpec& spec, std::vector<Problem>& problems) {
+  if (!spec.budget.error || spec.budget.error->metric == ErrorMetric::est_rmse) return;
+  if (!spec.reference.empty()) return;
+  if (!is_good(problems, "/budget/error") || !is_good(problems, "/reference")) return;
+  problems.push_back(
+      {"/budget/error/metric",
+       fmt::format("found \"{}\" in a job without \"reference\"; allowed: \"{}\", "
+                   "or any metric together with a reference",
+                   enum_name(spec.budget.error->metric), enum_name(ErrorMetric::est_rmse))});
+}
+
+void check_layers(const JobSpec& spec, std::vector<Problem>& problems) {
+  if (!is_good(problems, "/layers")) return;
+  for (auto it = spec.layers.begin(); it != spec.layers.end(); ++it) {
+    if (std::find(spec.layers.begin(), it, *it) == it) continue;
+    problems.push_back(
+        {fmt::format("/layers/{}", it - spec.layers.begin()),
+         fmt::format("found \"{}\" again; allowed: each layer once", enum_name(*it))});
+  }
+}
+
+bool has_limit(const Budget& b) { return b.seconds || b.cpu_seconds || b.iterations || b.error; }
+
+}  // namespace
+
+JobSpec parse_job(std::string_view json) {
+  std::vector<Problem> problems;
+  const Json document = parse_document(json, {max_job_bytes, max_json_depth}, problems);
+  JobSpec spec;
+  read_settings({document, "", problems}, spec);
+  check_error_target(spec, problems);
+  check_layers(spec, problems);
+  throw_if_any(std::move(problems));
+  if (!has_limit(spec.budget)) spec.budget.seconds = Budget::default_seconds;
+  return spec;
+}
+
+std::string write_job(const JobSpec& spec) { return write_document(spec); }
+
+}  // namespace lacuna

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "jobs/spec/job_spec.h"
+
+namespace lacuna {
+
+/// Largest job file that is looked at, in bytes, and deepest nesting of its JSON.
+inline constexpr std::size_t max_job_bytes = 1 << 20;
+inline constexpr int max_json_depth = 32;
+
+/// Parses and validates a job file. Defaults are filled in. Throws BadJob with every problem found:
+/// malformed JSON (with line and column), nesting, unknown keys (with the nearest known one),
+/// duplicate keys, wrong types, values out of range, missing keys, and what no single field can
+/// know (an error target whose metric needs a reference that is not there; duplicate layers). Does
+/// not look at any other file.
+JobSpec parse_job(std::string_view json);
+
+/// The job with every default filled in, keys in the order of the tables, two spaces of indent.
+/// parse_job(write_job(s)) == s.
+std::string write_job(const JobSpec& spec);
+
+/// JSON Schema 2020-12 of the job file, made from the settings tables.
+std::string job_schema();
+
+/// The settings pages (Markdown), made from the settings tables: every key, type, range, default,
+/// unit.
+std::string job_documentation();
+
+/// Hash of everything that decides the pixels of a picture (not its label, budget, threads,
+/// reference...): two jobs with the same value and iteration count have the same bits. Guards
+/// checkpoints.
+std::string picture_key(const JobSpec& spec);
+
+}  // namespace lacuna

@@ -1,0 +1,129 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/settings/analysis_settings.h"
+#include "analysis/settings/field.h"
+#include "renderer/settings/integrator_settings.h"
+#include "renderer/settings/output_settings.h"
+
+namespace lacuna {
+
+/// budget.error: stop when the picture is good enough.
+struct ErrorTarget {
+  ErrorMetric metric = ErrorMetric::est_rmse;
+  double target = 0;
+  bool operator==(const ErrorTarget&) const = default;
+};
+template <class V>
+void describe(V& v, ErrorTarget& s) {
+  v("metric", s.metric,
+    {.doc = "which error; all but est_rmse need a reference", .required = true});
+  v("target", s.target,
+    {.doc = "stop at or below this", .min = 0, .above_min = true, .required = true});
+}
+
+/// When to stop: the first limit reached ends the job. With no limit at all, 60 seconds.
+struct Budget {
+  static constexpr double default_seconds = 60;
+  std::optional<double> seconds;
+  std::optional<double> cpu_seconds;
+  std::optional<std::int64_t> iterations;
+  std::optional<ErrorTarget> error;
+  bool operator==(const Budget&) const = default;
+};
+template <class V>
+void describe(V& v, Budget& s) {
+  v("seconds", s.seconds,
+    {.doc = "render time, wall clock", .min = 0, .max = 1e7, .above_min = true, .unit = "s"});
+  v("cpu_seconds", s.cpu_seconds,
+    {.doc = "render time, CPU seconds divided by threads: holds still on a busy machine",
+     .min = 0,
+     .max = 1e7,
+     .above_min = true,
+     .unit = "s"});
+  v("iterations", s.iterations,
+    {.doc = "estimates of the whole image", .min = 1, .max = 4294967295.0});
+  v("error", s.error, {.doc = "stop when the picture is good enough"});
+}
+
+/// Light from all around, from an equirectangular image.
+struct EnvironmentSettings {
+  std::string file;
+  double scale = 1;
+  double rotation = 0;
+  bool operator==(const EnvironmentSettings&) const = default;
+};
+template <class V>
+void describe(V& v, EnvironmentSettings& s) {
+  v("file", s.file,
+    {.doc = "equirectangular EXR or HDR, below a scenes root; its centre lies along -z, y is up",
+     .min = 1,
+     .max = 1024,
+     .required = true});
+  v("scale", s.scale, {.doc = "multiplies its radiance", .min = 0, .max = 1e12});
+  v("rotation", s.rotation,
+    {.doc = "turns it about the y axis, counter-clockwise from above",
+     .min = -360,
+     .max = 360,
+     .unit = "degrees"});
+}
+
+/// One job: what is posted to the service and given to `lacuna render`.
+struct JobSpec {
+  std::string scene;
+  std::string camera;
+  std::string label;
+  std::array<int, 2> resolution{512, 512};
+  IntegratorSettings integrator;
+  Budget budget;
+  std::string reference;
+  int reference_iterations = 1024;
+  AnalysisSettings analysis;
+  std::optional<EnvironmentSettings> environment;
+  std::uint64_t seed = 1;
+  int threads = 0;
+  std::vector<ImageLayer> layers;
+  PixelType pixel_type = PixelType::single_float;
+  double checkpoint_seconds = 10;
+  bool operator==(const JobSpec&) const = default;
+};
+template <class V>
+void describe(V& v, JobSpec& s) {
+  v("scene", s.scene,
+    {.doc = "glTF or GLB file, below a scenes root", .min = 1, .max = 1024, .required = true});
+  v("camera", s.camera, {.doc = "name of a glTF camera; empty: the first", .max = 1024});
+  v("label", s.label, {.doc = "a few words of your own", .max = 200});
+  v("resolution", s.resolution,
+    {.doc = "width and height", .min = 1, .max = 16384, .unit = "pixels"});
+  v("integrator", s.integrator, {.doc = "the method"});
+  v("budget", s.budget,
+    {.doc = "when to stop; the first limit reached ends the job; none: 60 seconds"});
+  v("reference", s.reference,
+    {.doc = "what the error is measured against: a stored reference's name, a job id, an EXR below "
+            "a scenes root, or "
+            "\"auto\" (rendered once, as two independent halves, and kept); empty: none",
+     .max = 1024});
+  v("reference_iterations", s.reference_iterations,
+    {.doc = "iterations of an \"auto\" reference, both halves together",
+     .min = 2,
+     .max = 100000000});
+  v("analysis", s.analysis,
+    {.doc = "shape analysis of the empty space, built only where the integrator uses it"});
+  v("environment", s.environment, {.doc = "light from all around"});
+  v("seed", s.seed, {.doc = "of the random numbers", .min = 0, .max = 9007199254740991.0});
+  v("threads", s.threads, {.doc = "0: one for each core", .min = 0, .max = 1024});
+  v("layers", s.layers, {.doc = "more layers for image.exr", .max = 16});
+  v("pixel_type", s.pixel_type, {.doc = "precision of image.exr"});
+  v("checkpoint_seconds", s.checkpoint_seconds,
+    {.doc = "time between checkpoints; longer where writing one is slow",
+     .min = 0.05,
+     .max = 86400,
+     .unit = "s"});
+}
+
+}  // namespace lacuna

@@ -1,0 +1,180 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "jobs/spec/described.h"
+#include "jobs/spec/json_document.h"
+#include "jobs/spec/limits.h"
+#include "jobs/spec/problems.h"
+
+namespace lacuna {
+
+/// One value of a document, where it stands, and where its problems go.
+struct Found {
+  const Json& value;
+  std::string at;
+  std::vector<Problem>& problems;
+
+  void add_problem(std::string message) const { problems.push_back({at, std::move(message)}); }
+  /// "found string "abc"; allowed: ...".
+  void refuse(const std::string& allowed) const;
+  Found child(std::string_view key, const Json& v) const {
+    return {v, child_pointer(at, key), problems};
+  }
+};
+
+// The parts of the reader that no type changes. Each adds a problem and returns nothing, or false,
+// where the value is not what is allowed.
+std::optional<std::int64_t> read_integer(const Found& found, const Limits& limits);
+std::optional<double> read_number(const Found& found, const Limits& limits);
+std::optional<std::string> read_string(const Found& found, const Limits& length);
+bool check_object(const Found& found);
+bool check_list(const Found& found, const Limits& length);
+bool check_array(const Found& found, std::size_t size);
+void check_keys(const Found& found, const std::vector<std::string_view>& known);
+/// The index of the name that the value is.
+std::optional<std::size_t> read_name(const Found& found, std::span<const std::string_view> names);
+/// The index of the alternative that {"type": NAME, ...} or "NAME" asks for.
+std::optional<std::size_t> read_alternative(const Found& found,
+                                            std::span<const std::string_view> names);
+void refuse_missing(const Found& parent, std::string_view key, const Field& field);
+
+/// The reading visitor: fills settings from an object of a document. A key that is not there leaves
+/// the member's default; every problem is noted and the reading goes on.
+class ObjectReader {
+ public:
+  explicit ObjectReader(const Found& object) : object_(object) {}
+
+  template <class T>
+  void operator()(std::string_view key, T& member, const Field& field) {
+    known_.push_back(key);
+    const auto it = object_.value.find(key);
+    if (it != object_.value.end()) {
+      read_value(object_.child(key, *it), member, field);
+    } else if (field.required) {
+      refuse_missing(object_, key, field);
+    }
+  }
+
+  /// A key that is known without being a member.
+  void know(std::string_view key) { known_.push_back(key); }
+  void refuse_unknown_keys() const { check_keys(object_, known_); }
+
+  template <class T>
+  static void read_value(const Found& found, T& out, const Field& field);
+
+ private:
+  template <class T, std::size_t N>
+  static void read_array(const Found& found, std::array<T, N>& out, const Field& field);
+  template <class T>
+  static void read_list(const Found& found, std::vector<T>& out, const Field& field);
+  template <class... Ts>
+  static void read_variant(const Found& found, std::variant<Ts...>& out);
+  template <class E>
+  static void read_enum(const Found& found, E& out);
+
+  const Found& object_;
+  std::vector<std::string_view> known_;
+};
+
+/// Reads a described struct; `out` holds the defaults.
+template <Described T>
+void read_settings(const Found& found, T& out) {
+  if (!check_object(found)) return;
+  ObjectReader reader(found);
+  describe(reader, out);
+  reader.refuse_unknown_keys();
+}
+
+template <class T>
+void ObjectReader::read_value(const Found& found, T& out, const Field& field) {
+  if constexpr (std::is_same_v<T, bool>) {
+    if (found.value.is_boolean()) {
+      out = found.value.get<bool>();
+    } else {
+      found.refuse("true or false");
+    }
+  } else if constexpr (Integer<T>) {
+    if (const auto v = read_integer(found, limits_of<T>(field))) out = static_cast<T>(*v);
+  } else if constexpr (std::is_same_v<T, double>) {
+    if (const auto v = read_number(found, limits_of<T>(field))) out = *v;
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    if (auto v = read_string(found, length_limits(field))) out = std::move(*v);
+  } else if constexpr (NamedEnum<T>) {
+    read_enum(found, out);
+  } else if constexpr (is_optional<T>) {
+    if (found.value.is_null()) {
+      out.reset();
+    } else {
+      read_value(found, out.emplace(), field);
+    }
+  } else if constexpr (is_array<T>) {
+    read_array(found, out, field);
+  } else if constexpr (is_vector<T>) {
+    read_list(found, out, field);
+  } else if constexpr (is_variant<T>) {
+    read_variant(found, out);
+  } else if constexpr (Described<T>) {
+    read_settings(found, out);
+  } else {
+    static_assert(unsupported_type<T>, "no reader for this type of member");
+  }
+}
+
+template <class T, std::size_t N>
+void ObjectReader::read_array(const Found& found, std::array<T, N>& out, const Field& field) {
+  if (!check_array(found, N)) return;
+  for (std::size_t i = 0; i < N; ++i) {
+    read_value(found.child(std::to_string(i), found.value[i]), out[i], field);
+  }
+}
+
+template <class T>
+void ObjectReader::read_list(const Found& found, std::vector<T>& out, const Field& field) {
+  if (!check_list(found, length_limits(field))) return;
+  out.clear();
+  for (std::size_t i = 0; i < found.value.size(); ++i) {
+    T element{};
+    read_value(found.child(std::to_string(i), found.value[i]), element, Field{});
+    out.push_back(std::move(element));
+  }
+}
+
+template <class... Ts>
+void ObjectReader::read_variant(const Found& found, std::variant<Ts...>& out) {
+  static constexpr std::array<std::string_view, sizeof...(Ts)> names{Ts::name...};
+  const auto chosen = read_alternative(found, names);
+  if (!chosen) return;
+  const Json nothing = Json::object();
+  const Found object{found.value.is_string() ? nothing : found.value, found.at, found.problems};
+  const auto read_as = [&]<class T>(T settings) {
+    ObjectReader reader(object);
+    reader.know(variant_key);
+    describe(reader, settings);
+    reader.refuse_unknown_keys();
+    out = std::move(settings);
+  };
+  std::size_t i = 0;
+  ((i++ == *chosen ? read_as(Ts{}) : void()), ...);
+}
+
+template <class E>
+void ObjectReader::read_enum(const Found& found, E& out) {
+  constexpr auto& values = EnumTable<E>::values;
+  static constexpr auto names = [] {
+    std::array<std::string_view, EnumTable<E>::values.size()> all;
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = EnumTable<E>::values[i].name;
+    return all;
+  }();
+  if (const auto i = read_name(found, names)) out = values[*i].value;
+}
+
+}  // namespace lacuna

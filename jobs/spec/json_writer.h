@@ -1,0 +1,70 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "jobs/spec/described.h"
+
+namespace lacuna {
+
+using OrderedJson = nlohmann::ordered_json;
+
+/// The writing visitor: an object with every key of the table, in its order.
+class ObjectWriter {
+ public:
+  template <class T>
+  void operator()(std::string_view key, const T& member, const Field&) {
+    json_[std::string(key)] = value_of(member);
+  }
+
+  /// What JSON has in place of a member: an optional without a value is null, a variant an object
+  /// with its name under "type".
+  template <class T>
+  static OrderedJson value_of(const T& member);
+
+  template <Described T>
+  void write(T settings) {  // a copy: tables take what they describe by reference
+    describe(*this, settings);
+  }
+
+ private:
+  OrderedJson json_ = OrderedJson::object();
+};
+
+template <class T>
+OrderedJson ObjectWriter::value_of(const T& member) {
+  if constexpr (NamedEnum<T>) {
+    return enum_name(member);
+  } else if constexpr (is_optional<T>) {
+    return member ? value_of(*member) : OrderedJson();
+  } else if constexpr (is_array<T> || is_vector<T>) {
+    OrderedJson list = OrderedJson::array();
+    for (const auto& element : member) list.push_back(value_of(element));
+    return list;
+  } else if constexpr (is_variant<T>) {
+    return std::visit(
+        [](const auto& alternative) {
+          ObjectWriter writer;
+          writer.json_[std::string(variant_key)] = alternative.name;
+          writer.write(alternative);
+          return writer.json_;
+        },
+        member);
+  } else if constexpr (Described<T>) {
+    ObjectWriter writer;
+    writer.write(member);
+    return writer.json_;
+  } else {
+    return OrderedJson(member);
+  }
+}
+
+/// Text of a document for files: two spaces of indent, a newline at its end. Bytes that are no
+/// UTF-8 (an error message may quote any) become U+FFFD; a number that is not finite becomes null.
+inline std::string document_text(const OrderedJson& json) {
+  return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + '\n';
+}
+
+}  // namespace lacuna

@@ -1,0 +1,148 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "jobs/spec/job_json.h"
+#include "jobs/spec/type_tree.h"
+
+namespace lacuna {
+namespace {
+
+using Kind = Type::Kind;
+
+OrderedJson schema_of(const Type& type);
+
+/// The key's own line, its unit, and what each name means.
+std::string description(const Member& member) {
+  std::string text(member.field.doc);
+  if (!member.field.unit.empty()) text += fmt::format(" [{}]", member.field.unit);
+  const Type& named = member.type.kind == Kind::list ? member.type.elements.front() : member.type;
+  for (const Type::Name& n : named.names) {
+    text += fmt::format("\n{}: {}", n.name, n.doc);
+  }
+  return text;
+}
+
+void put_limits(OrderedJson& schema, const Type& type) {
+  const auto number = [&](double x) {
+    return type.kind == Kind::integer ? OrderedJson(static_cast<std::int64_t>(x)) : OrderedJson(x);
+  };
+  if (std::isfinite(type.limits.min)) {
+    schema[type.limits.above_min ? "exclusiveMinimum" : "minimum"] = number(type.limits.min);
+  }
+  if (std::isfinite(type.limits.max)) schema["maximum"] = number(type.limits.max);
+}
+
+void put_lengths(OrderedJson& schema, const Limits& length, const char* min, const char* max) {
+  if (length.min > 0) schema[min] = static_cast<std::int64_t>(length.min);
+  if (std::isfinite(length.max)) schema[max] = static_cast<std::int64_t>(length.max);
+}
+
+/// Into an object's schema: its keys. `name`: of the alternative that it is, if it is one.
+void put_members(OrderedJson& schema, const Type& type, std::string_view name = {}) {
+  OrderedJson properties = OrderedJson::object();
+  OrderedJson required = OrderedJson::array();
+  if (!name.empty()) {
+    properties[std::string(variant_key)] = {{"const", name}};
+    required.push_back(variant_key);
+  }
+  for (const Member& member : type.members) {
+    OrderedJson property = {{"description", description(member)}};
+    property.update(schema_of(member.type));
+    if (member.field.required) {
+      required.push_back(member.name);
+    } else {
+      property["default"] = member.default_value;
+    }
+    properties[std::string(member.name)] = std::move(property);
+  }
+  schema["properties"] = std::move(properties);
+  schema["required"] = std::move(required);
+  schema["additionalProperties"] = false;
+}
+
+/// One object for each alternative, and the short form.
+OrderedJson choice_schema(const Type& type) {
+  OrderedJson choices = OrderedJson::array();
+  OrderedJson names = OrderedJson::array();
+  for (std::size_t i = 0; i < type.names.size(); ++i) {
+    OrderedJson choice = {
+        {"title", type.names[i].name}, {"description", type.names[i].doc}, {"type", "object"}};
+    put_members(choice, type.elements[i], type.names[i].name);
+    choices.push_back(std::move(choice));
+    names.push_back(type.names[i].name);
+  }
+  choices.push_back({{"title", "name alone"},
+                     {"description", "short for an object with this \"type\" and all defaults"},
+                     {"enum", names}});
+  if (type.optional) choices.push_back({{"type", "null"}});
+  return {{"oneOf", choices}};
+}
+
+OrderedJson enum_schema(const Type& type) {
+  OrderedJson names = OrderedJson::array();
+  for (const Type::Name& n : type.names) names.push_back(n.name);
+  if (type.optional) names.push_back(nullptr);
+  return {{"enum", names}};
+}
+
+std::string type_name(Kind kind) {
+  switch (kind) {
+    case Kind::boolean:
+      return "boolean";
+    case Kind::integer:
+      return "integer";
+    case Kind::number:
+      return "number";
+    case Kind::array:
+    case Kind::list:
+      return "array";
+    case Kind::object:
+      return "object";
+    default:
+      return "string";
+  }
+}
+
+OrderedJson schema_of(const Type& type) {
+  if (type.kind == Kind::choice) return choice_schema(type);
+  if (type.kind == Kind::word) return enum_schema(type);
+  OrderedJson schema;
+  schema["type"] = type_name(type.kind);
+  if (type.optional) schema["type"] = OrderedJson::array({type_name(type.kind), "null"});
+  switch (type.kind) {
+    case Kind::integer:
+    case Kind::number:
+      put_limits(schema, type);
+      break;
+    case Kind::string:
+      put_lengths(schema, type.limits, "minLength", "maxLength");
+      break;
+    case Kind::array:
+      schema["items"] = schema_of(type.elements.front());
+      schema["minItems"] = type.array_size;
+      schema["maxItems"] = type.array_size;
+      break;
+    case Kind::list:
+      schema["items"] = schema_of(type.elements.front());
+      put_lengths(schema, type.limits, "minItems", "maxItems");
+      break;
+    case Kind::object:
+      put_members(schema, type);
+      break;
+    default:
+      break;
+  }
+  return schema;
+}
+
+}  // namespace
+
+std::string job_schema() {
+  OrderedJson schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                        {"title", "Lacuna job"}};
+  schema.update(schema_of(TypeReader::type_of(JobSpec{}, Field{})));
+  return document_text(schema);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "jobs/spec/described.h"
+#include "jobs/spec/json_writer.h"
+#include "jobs/spec/limits.h"
+
+namespace lacuna {
+
+struct Member;
+
+/// A settings table as data, for what does not read or write settings but tells of them: the schema
+/// and the documentation.
+struct Type {
+  enum class Kind { boolean, integer, number, string, word, array, list, object, choice };
+
+  /// A value of an enum, or an alternative of a choice.
+  struct Name {
+    std::string_view name, doc;
+  };
+
+  Kind kind = Kind::boolean;
+  bool optional = false;  ///< may be null or absent
+  Limits limits = {};     ///< of a number; of the length of a string or list
+  std::size_t array_size = 0;
+  std::vector<Name> names;      ///< word, choice
+  std::vector<Type> elements;   ///< array, list: one; choice: an object for each name
+  std::vector<Member> members;  ///< object
+};
+
+/// One line of a table.
+struct Member {
+  std::string_view name;
+  Field field;
+  Type type;
+  OrderedJson default_value;  ///< unless field.required
+};
+
+/// The visitor that turns tables into data.
+class TypeReader {
+ public:
+  template <class T>
+  void operator()(std::string_view name, const T& member, const Field& field) {
+    members_.push_back({name, field, type_of(member, field), ObjectWriter::value_of(member)});
+  }
+
+  /// The type of a member with this field; `value` holds the defaults. Ranges hold for the elements
+  /// of an array, lengths for a list itself.
+  template <class T>
+  static Type type_of(const T& value, const Field& field);
+
+ private:
+  template <class T>
+  static Type object_of(T settings) {  // a copy: tables take what they describe by reference
+    TypeReader reader;
+    describe(reader, settings);
+    Type type;
+    type.kind = Type::Kind::object;
+    type.members = std::move(reader.members_);
+    return type;
+  }
+  template <class... Ts>
+  static Type choice_of(const std::variant<Ts...>&) {
+    Type type;
+    type.kind = Type::Kind::choice;
+    type.names = {Type::Name{Ts::name, Ts::doc}...};
+    type.elements = {object_of(Ts{})...};
+    return type;
+  }
+
+  std::vector<Member> members_;
+};
+
+template <class T>
+Type TypeReader::type_of(const T& value, const Field& field) {
+  Type type;
+  if constexpr (std::is_same_v<T, bool>) {
+    type.kind = Type::Kind::boolean;
+  } else if constexpr (Integer<T>) {
+    type.kind = Type::Kind::integer;
+    type.limits = limits_of<T>(field);
+  } else if constexpr (std::is_same_v<T, double>) {
+    type.kind = Type::Kind::number;
+    type.limits = limits_of<T>(field);
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    type.kind = Type::Kind::string;
+    type.limits = length_limits(field);
+  } else if constexpr (NamedEnum<T>) {
+    type.kind = Type::Kind::word;
+    for (const auto& v : EnumTable<T>::values) type.names.push_back({v.name, v.doc});
+  } else if constexpr (is_optional<T>) {
+    type = type_of(typename T::value_type{}, field);
+    type.optional = true;
+  } else if constexpr (is_array<T>) {
+    type.kind = Type::Kind::array;
+    type.array_size = std::tuple_size_v<T>;
+    type.elements.push_back(type_of(typename T::value_type{}, field));
+  } else if constexpr (is_vector<T>) {
+    type.kind = Type::Kind::list;
+    type.limits = length_limits(field);
+    type.elements.push_back(type_of(typename T::value_type{}, Field{}));
+  } else if constexpr (is_variant<T>) {
+    type = choice_of(value);
+  } else {
+    static_assert(Described<T>, "no description for this type of member");
+    type = object_of(value);
+  }
+  return type;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,147 @@
+#include "jobs/store/job_folder.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+
+#include "jobs/spec/described_json.h"
+#include "jobs/spec/job_json.h"
+#include "jobs/store/atomic_file.h"
+#include "jobs/store/file_handle.h"
+
+namespace lacuna {
+namespace {
+
+constexpr DocumentLimits state_limits{1 << 20, 8};
+
+/// What goes into a one-line field of state.json: no control characters, of bounded length.
+std::string one_line(std::string text) {
+  constexpr std::size_t longest = 4000;
+  if (text.size() > longest) {
+    text.resize(longest);
+    text += "...";
+  }
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  }
+  return text;
+}
+
+/// Puts a new folder, complete, in its place; it must not be there yet.
+void rename_folder(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return;
+  if (errno == EINVAL || errno == ENOSYS) {  // a file system without that flag
+    if (std::filesystem::exists(std::filesystem::symlink_status(to))) {
+      errno = EEXIST;
+    } else if (::rename(from.c_str(), to.c_str()) == 0) {
+      return;
+    }
+  }
+  if (errno == EEXIST) throw std::invalid_argument(fmt::format("{} is there already", to.string()));
+  throw_file_error(errno, "create", to);
+}
+
+}  // namespace
+
+const std::vector<FileInfo>& job_files() {
+  static const std::vector<FileInfo> files{
+      {"job.json", "application/json", "the job with every default filled in", true},
+      {"state.json", "application/json", "where the job stands", true},
+      {"progress.json", "application/json", "how far it has come", true},
+      {"image.exr", "image/x-exr", "the picture and its layers", true},
+      {"image.png", "image/png", "a tone-mapped thumbnail", true},
+      {"curve.csv", "text/csv", "error and counts against time", true},
+      {"report.json", "application/json", "where time and rays went", true},
+      {"checkpoint.bin", "application/octet-stream", "what it takes to go on", false},
+      {"log.txt", "text/plain; charset=utf-8", "what a person would want to read", true},
+  };
+  return files;
+}
+
+JobFolder JobFolder::create(const std::filesystem::path& dir, const JobSpec& spec) {
+  const std::filesystem::path absolute = std::filesystem::absolute(dir).lexically_normal();
+  const std::filesystem::path target =
+      absolute.has_filename() ? absolute : absolute.parent_path();  // "jobs/x/" is "jobs/x"
+  std::filesystem::create_directories(target.parent_path());
+  const JobFolder draft(temporary_name(target));
+  if (::mkdir(draft.dir().c_str(), 0777) != 0) throw_file_error(errno, "create", target);
+  try {
+    write_file_atomically(draft.file("job.json"), write_job(spec));
+    JobState state;
+    state.created = utc_now();
+    draft.write_state(state);
+    rename_folder(draft.dir(), target);
+  } catch (...) {
+    std::error_code ignored;  // the first error is the one to tell
+    std::filesystem::remove_all(draft.dir(), ignored);
+    throw;
+  }
+  sync_folder(target.parent_path());
+  return JobFolder(target);
+}
+
+JobSpec JobFolder::read_job() const {
+  try {
+    return parse_job(read_file(file("job.json"), max_job_bytes));
+  } catch (const std::length_error& e) {
+    throw BadJob({Problem{"", e.what()}});
+  }
+}
+
+JobState JobFolder::read_state() const {
+  const auto path = file("state.json");
+  try {
+    return read_document<JobState>(read_file(path, state_limits.max_bytes), state_limits);
+  } catch (const BadJob& e) {
+    throw std::runtime_error(fmt::format("{} is corrupt: {}", path.string(), e.what()));
+  } catch (const std::length_error& e) {
+    throw std::runtime_error(fmt::format("{} is corrupt: {}", path.string(), e.what()));
+  }
+}
+
+void JobFolder::write_state(const JobState& s) const {
+  JobState state = s;
+  state.error = one_line(std::move(state.error));
+  for (std::string& warning : state.warnings) warning = one_line(std::move(warning));
+  write_file_atomically(file("state.json"), write_document(state));
+}
+
+std::optional<Progress> JobFolder::read_progress() const {
+  // Not synced: after a power cut it may be empty or missing, which only means that nothing is
+  // known.
+  try {
+    return read_document<Progress>(read_file(file("progress.json"), state_limits.max_bytes),
+                                   state_limits);
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+}
+
+void JobFolder::write_progress(const Progress& p) const {
+  write_file_atomically(file("progress.json"), write_document(p), false);
+}
+
+std::optional<JobFolder::Lock> JobFolder::try_lock() const {
+  const auto path = file(".lock");
+  FileHandle handle(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
+  if (!handle) throw_file_error(errno, "lock", path);
+  while (::flock(handle.get(), LOCK_EX | LOCK_NB) != 0) {
+    if (errno == EINTR) continue;
+    if (errno == EWOULDBLOCK) return std::nullopt;
+    throw_file_error(errno, "lock", path);
+  }
+  remove_stale_temporaries(dir_);
+  return Lock(handle.release());
+}
+
+JobFolder::Lock::~Lock() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+}  // namespace lacuna

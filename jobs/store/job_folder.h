@@ -1,0 +1,132 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "jobs/spec/job_spec.h"
+#include "jobs/store/state.h"
+
+namespace lacuna {
+
+/// progress.json: what a watcher wants to know several times a second. Written without fsync.
+struct Progress {
+  std::int64_t iteration = 0;
+  double seconds = 0;      ///< render time so far, wall clock
+  double cpu_seconds = 0;  ///< render time so far, CPU seconds / threads
+  double share = 0;        ///< of the budget, [0, 1]
+  std::optional<double> remaining_seconds;
+  std::optional<double> error;  ///< latest value of `error_metric`
+  std::string error_metric;
+  bool operator==(const Progress&) const = default;
+};
+template <class V>
+void describe(V& v, Progress& s) {
+  v("iteration", s.iteration, {.doc = "iterations done", .min = 0, .required = true});
+  v("seconds", s.seconds, {.doc = "render time so far, wall clock", .unit = "s"});
+  v("cpu_seconds", s.cpu_seconds, {.doc = "render time so far, CPU time / threads", .unit = "s"});
+  v("share", s.share, {.doc = "of the budget, 0 to 1"});
+  v("remaining_seconds", s.remaining_seconds, {.doc = "estimate of what remains", .unit = "s"});
+  v("error", s.error, {.doc = "latest value of error_metric"});
+  v("error_metric", s.error_metric, {.doc = "which error"});
+}
+
+/// The names of the files in a job's folder: this list is the manifest, nothing else is ever
+/// served.
+struct FileInfo {
+  std::string_view name;
+  std::string_view media_type;
+  std::string_view doc;
+  bool served;  ///< over HTTP
+};
+const std::vector<FileInfo>& job_files();
+
+/// One job's folder (DESIGN, "A job's folder"). Cheap to copy: only a path.
+class JobFolder {
+ public:
+  explicit JobFolder(std::filesystem::path dir) : dir_(std::move(dir)) {}
+  const std::filesystem::path& dir() const { return dir_; }
+  std::string id() const { return dir_.filename().string(); }
+  std::filesystem::path file(std::string_view name) const { return dir_ / name; }
+
+  /// Creates the folder with job.json and state.json (`queued`), all synced, or nothing: it is made
+  /// under a temporary name and renamed. Throws std::system_error; std::invalid_argument if `dir`
+  /// is there already.
+  static JobFolder create(const std::filesystem::path& dir, const JobSpec& spec);
+
+  JobSpec read_job() const;                   ///< throws BadJob, std::system_error
+  JobState read_state() const;                ///< throws std::runtime_error if missing or corrupt
+  void write_state(const JobState& s) const;  ///< synced
+  std::optional<Progress> read_progress() const;
+  void write_progress(const Progress& p) const;
+
+  /// Takes the folder for this process until the object dies, so that two renderers never write
+  /// into one folder. Nothing if another process has it. Whoever gets it also tidies up the
+  /// temporary files of renderers that were killed. Throws std::system_error.
+  class Lock;
+  std::optional<Lock> try_lock() const;
+
+ private:
+  std::filesystem::path dir_;
+};
+
+/// flock on `.lock` in the folder; released by the kernel when the process dies, however it dies.
+class JobFolder::Lock {
+ public:
+  explicit Lock(int fd) : fd_(fd) {}
+  Lock(Lock&& o) noexcept : fd_(o.fd_) { o.fd_ = -1; }
+  Lock& operator=(Lock&&) = delete;
+  ~Lock();
+
+ private:
+  int fd_;
+};
+
+/// Where the data of a service or of a person lies, and the folders below it.
+struct DataRoot {
+  std::filesystem::path dir;
+  std::filesystem::path jobs() const { return dir / "jobs"; }
+  std::filesystem::path references() const { return dir / "references"; }
+  std::filesystem::path cache() const { return dir / "cache"; }
+
+  /// $LACUNA_DATA, or `lacuna-data` in the working directory.
+  static DataRoot from_environment();
+};
+
+/// Folders that scene, image and environment names are looked up in, in order. $LACUNA_SCENES
+/// (separated by ':'), or the built-in `jobs/scenes`.
+class ScenesRoots {
+ public:
+  explicit ScenesRoots(std::vector<std::filesystem::path> roots) : roots_(std::move(roots)) {}
+  /// $LACUNA_SCENES if set, else `jobs/scenes` in the working directory, then that of the source
+  /// tree this was built from, if it is there.
+  static ScenesRoots from_environment();
+  const std::vector<std::filesystem::path>& roots() const { return roots_; }
+
+  /// The regular file that `name` means. A name is relative, with '/' between parts; it may not
+  /// leave its root in any spelling, nor through a symbolic link. `extensions` have their dot
+  /// (".glb"); case does not matter. Throws std::invalid_argument saying why not and which names
+  /// are there.
+  std::filesystem::path resolve(std::string_view name,
+                                const std::vector<std::string_view>& extensions) const;
+
+  /// Names of all scenes (.glb, .gltf) below the roots, sorted: four folders deep, of the first
+  /// 10,000 entries of each root, without hidden ones and without following links.
+  std::vector<std::string> list() const;
+
+ private:
+  std::vector<std::filesystem::path> roots_;
+};
+
+/// A new job id: UTC time and random letters ("20260131-235959-k3x9qa"): sorts by time, safe as a
+/// file name.
+std::string new_job_id();
+/// The form that new_job_id() makes; nothing else is looked up on disk.
+bool is_job_id(std::string_view s);
+/// All jobs below `jobs`, oldest first; folders that are no jobs are left out.
+std::vector<JobFolder> list_jobs(const std::filesystem::path& jobs);
+/// Now, as JobState has it.
+std::string utc_now();
+
+}  // namespace lacuna

@@ -1,0 +1,67 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <random>
+
+#include "jobs/store/job_folder.h"
+
+namespace lacuna {
+namespace {
+
+/// The form of an id: 'd' a digit, 'x' a lower-case letter or digit, else itself.
+constexpr std::string_view id_form = "dddddddd-dddddd-xxxxxx";
+constexpr std::string_view id_letters = "abcdefghijklmnopqrstuvwxyz0123456789";
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+std::tm utc(std::chrono::system_clock::time_point t) {
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(t);
+  std::tm fields{};
+  ::gmtime_r(&seconds, &fields);
+  return fields;
+}
+
+}  // namespace
+
+std::string new_job_id() {
+  std::random_device random;
+  std::uniform_int_distribution<std::size_t> letter(0, id_letters.size() - 1);
+  std::string id = fmt::format("{:%Y%m%d-%H%M%S}-", utc(std::chrono::system_clock::now()));
+  while (id.size() < id_form.size()) id += id_letters[letter(random)];
+  return id;
+}
+
+bool is_job_id(std::string_view s) {
+  return std::equal(s.begin(), s.end(), id_form.begin(), id_form.end(), [](char c, char form) {
+    if (form == 'd') return is_digit(c);
+    if (form == 'x') return id_letters.find(c) != std::string_view::npos;
+    return c == form;
+  });
+}
+
+std::vector<JobFolder> list_jobs(const std::filesystem::path& jobs) {
+  namespace fs = std::filesystem;
+  std::vector<JobFolder> found;
+  if (!fs::exists(jobs)) return found;
+  for (const auto& entry : fs::directory_iterator(jobs)) {
+    std::error_code vanished;
+    if (!is_job_id(entry.path().filename().string())) continue;
+    if (!fs::is_directory(entry.symlink_status(vanished))) continue;
+    if (!fs::is_regular_file(fs::symlink_status(entry.path() / "job.json", vanished))) continue;
+    found.emplace_back(entry.path());
+  }
+  std::sort(found.begin(), found.end(),
+            [](const JobFolder& a, const JobFolder& b) { return a.id() < b.id(); });
+  return found;
+}
+
+std::string utc_now() {
+  const auto now = std::chrono::system_clock::now();
+  const auto since = std::chrono::floor<std::chrono::milliseconds>(now.time_since_epoch());
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", utc(now), since.count() % 1000);
+}
+
+}  // namespace lacuna

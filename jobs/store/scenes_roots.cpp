@@ -1,0 +1,173 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <set>
+#include <stdexcept>
+
+#include "jobs/spec/nearest.h"
+#include "jobs/store/file_handle.h"
+#include "jobs/store/job_folder.h"
+
+namespace lacuna {
+namespace {
+
+namespace fs = std::filesystem;
+using Extensions = std::vector<std::string_view>;
+
+constexpr int max_list_depth = 4;
+constexpr int max_list_entries = 10000;
+const Extensions scene_extensions{".glb", ".gltf"};
+
+/// The folder of the scenes that come with the source tree this was built from.
+fs::path source_scenes() { return fs::path(__FILE__).parent_path().parent_path() / "scenes"; }
+
+std::vector<std::string_view> parts_of(std::string_view name) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const auto slash = name.find('/');
+    parts.push_back(name.substr(0, slash));
+    if (slash == std::string_view::npos) return parts;
+    name.remove_prefix(slash + 1);
+  }
+}
+
+bool has_extension(std::string_view name, const Extensions& extensions) {
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; };
+  return std::any_of(extensions.begin(), extensions.end(), [&](std::string_view e) {
+    return name.size() > e.size() &&
+           std::equal(e.begin(), e.end(), name.end() - std::ptrdiff_t(e.size()),
+                      [&](char a, char b) { return lower(a) == lower(b); });
+  });
+}
+
+/// Why a name is refused before anything is looked up; empty: it is not.
+std::string_view fault_of(std::string_view name, const Extensions& extensions) {
+  if (name.empty()) return "it is empty";
+  if (name.front() == '/') return "it is absolute; allowed: a name below a scenes root";
+  for (const char c : name) {
+    if (c == '\\') return "it has a backslash; parts are separated by '/'";
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) return "it has a control character";
+  }
+  for (const std::string_view part : parts_of(name)) {
+    if (part.empty()) return "it has an empty part";
+    if (part == "." || part == "..") return "it has a part \".\" or \"..\"";
+  }
+  if (!has_extension(name, extensions)) return "it is no file of this kind";
+  return {};
+}
+
+/// The name as it may stand in a message.
+std::string shown(std::string_view name) {
+  constexpr std::size_t longest = 200;
+  std::string text(name.substr(0, longest));
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  }
+  return '"' + text + (name.size() > longest ? "...\"" : "\"");
+}
+
+/// Opens part after part, none of them through a link. 0: a regular file stands there; else an
+/// errno.
+int walk(const fs::path& root, std::string_view name) {
+  FileHandle at(::open(root.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+  struct stat info {};
+  for (const std::string_view part : parts_of(name)) {
+    if (!at) return errno;
+    const std::string text(part);
+    at = FileHandle(::openat(at.get(), text.c_str(), O_PATH | O_NOFOLLOW | O_CLOEXEC));
+    if (!at || ::fstat(at.get(), &info) != 0) return errno;
+    if (S_ISLNK(info.st_mode)) return ELOOP;
+  }
+  if (S_ISREG(info.st_mode)) return 0;
+  return S_ISDIR(info.st_mode) ? EISDIR : EINVAL;
+}
+
+/// Names below one root, without hidden ones and without following links.
+void list_root(const fs::path& root, const Extensions& extensions, std::set<std::string>& names) {
+  std::error_code error;  // a root or folder that cannot be read has nothing to offer
+  fs::recursive_directory_iterator it(root, fs::directory_options::skip_permission_denied, error);
+  for (int entries = 0; !error && it != fs::end(it) && entries < max_list_entries; ++entries) {
+    const auto status = it->symlink_status(error);
+    const bool hidden = it->path().filename().string().starts_with('.');
+    if (fs::is_directory(status) && (hidden || it.depth() + 1 >= max_list_depth)) {
+      it.disable_recursion_pending();
+    }
+    const std::string name = it->path().lexically_relative(root).generic_string();
+    if (!hidden && fs::is_regular_file(status) && fault_of(name, extensions).empty()) {
+      names.insert(name);
+    }
+    it.increment(error);
+  }
+}
+
+std::vector<std::string> names_below(const std::vector<fs::path>& roots,
+                                     const Extensions& extensions) {
+  std::set<std::string> names;
+  for (const fs::path& root : roots) list_root(root, extensions, names);
+  return {names.begin(), names.end()};
+}
+
+std::string available(std::string_view wanted, const std::vector<std::string>& names,
+                      const Extensions& extensions) {
+  constexpr std::size_t most = 20;
+  const std::string kinds = fmt::format("{}", fmt::join(extensions, ", "));
+  if (names.empty()) return fmt::format("; there is no {} file below the scenes roots", kinds);
+  std::string text = nearest_hint(wanted, {names.begin(), names.end()});
+  text += fmt::format("; there are ({}): ", kinds);
+  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
+    text += (i == 0 ? "" : ", ") + names[i];
+  }
+  if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
+  return text;
+}
+
+}  // namespace
+
+ScenesRoots ScenesRoots::from_environment() {
+  std::vector<fs::path> roots;
+  const char* named = std::getenv("LACUNA_SCENES");
+  if (named != nullptr && *named != '\0') {
+    std::string_view rest = named;
+    while (!rest.empty()) {
+      const auto colon = std::min(rest.find(':'), rest.size());
+      if (colon > 0) roots.push_back(fs::absolute(rest.substr(0, colon)));
+      rest.remove_prefix(std::min(colon + 1, rest.size()));
+    }
+    return ScenesRoots(std::move(roots));
+  }
+  roots.push_back(fs::absolute("jobs/scenes"));
+  std::error_code ignored;  // false where either is missing
+  const fs::path source = source_scenes();
+  if (fs::is_directory(source) && !fs::equivalent(roots.front(), source, ignored)) {
+    roots.push_back(source);
+  }
+  return ScenesRoots(std::move(roots));
+}
+
+fs::path ScenesRoots::resolve(std::string_view name, const Extensions& extensions) const {
+  std::string fault(fault_of(name, extensions));
+  if (fault.empty()) {
+    int worst = ENOENT;
+    for (const fs::path& root : roots_) {
+      const int error = walk(root, name);
+      if (error == 0) return root / name;
+      if (error != ENOENT && error != ENOTDIR) worst = error;
+    }
+    fault = worst == ENOENT  ? "it is not there"
+            : worst == ELOOP ? "a part of it is a symbolic link; links are not followed"
+                             : "it is not a regular file that can be read";
+  }
+  throw std::invalid_argument(
+      fmt::format("no file {}: {}{}", shown(name), fault,
+                  available(name, names_below(roots_, extensions), extensions)));
+}
+
+std::vector<std::string> ScenesRoots::list() const { return names_below(roots_, scene_extensions); }
+
+}  // namespace lacuna

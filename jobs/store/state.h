@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/settings/field.h"
+
+namespace lacuna {
+
+/// Where a job stands. The table of who may change what is jobs/store/state.cpp's.
+enum class State { queued, running, cancelling, interrupted, done, failed, cancelled };
+
+template <>
+struct EnumTable<State> {
+  static constexpr std::array<EnumValue<State>, 7> values{{
+      {State::queued, "queued", "waits for its turn"},
+      {State::running, "running", "a renderer works on it"},
+      {State::cancelling, "cancelling", "its renderer was asked to stop"},
+      {State::interrupted, "interrupted",
+       "its renderer stopped before the end; it goes on from its checkpoint"},
+      {State::done, "done", "its budget is spent and its results are complete"},
+      {State::failed, "failed", "it cannot be done; `error` says why"},
+      {State::cancelled, "cancelled", "it was stopped on request"},
+  }};
+};
+
+/// done, failed, cancelled: nothing will happen any more.
+bool is_terminal(State s);
+/// A job may go from `from` to `to`.
+bool may_follow(State from, State to);
+
+/// state.json. Times are UTC, ISO 8601 with milliseconds; empty: not yet.
+struct JobState {
+  State state = State::queued;
+  int attempts = 0;    ///< renderers started so far
+  int exit_code = -1;  ///< of the last renderer; -1: none ended
+  std::string created, started, finished;
+  std::string phase;  ///< of a running job: "loading", "reference", "rendering", "writing"
+  std::string error;  ///< one line; only of `failed`
+  std::vector<std::string> warnings;  ///< e.g. "the scene has no light: the picture is black"
+  bool operator==(const JobState&) const = default;
+};
+template <class V>
+void describe(V& v, JobState& s) {
+  v("state", s.state, {.doc = "where the job stands", .required = true});
+  v("attempts", s.attempts, {.doc = "renderers started so far", .min = 0, .required = true});
+  v("exit_code", s.exit_code, {.doc = "of the last renderer; -1: none ended"});
+  v("created", s.created, {.doc = "UTC, ISO 8601", .required = true});
+  v("started", s.started, {.doc = "UTC, ISO 8601; empty: not yet"});
+  v("finished", s.finished, {.doc = "UTC, ISO 8601; empty: not yet"});
+  v("phase", s.phase, {.doc = "of a running job"});
+  v("error", s.error, {.doc = "why it failed"});
+  v("warnings", s.warnings, {.doc = "what a person should know of the result"});
+}
+
+}  // namespace lacuna

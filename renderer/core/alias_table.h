@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "renderer/core/density.h"
+#include "renderer/core/rng.h"
+
+namespace lacuna {
+
+/// Discrete distribution with constant-time draws (Walker 1977, in Vose's form).
+class AliasTable {
+ public:
+  AliasTable() = default;
+  /// Weights need not be normalised. Throws std::invalid_argument on a negative or non-finite
+  /// weight. If all are 0 the table is empty.
+  explicit AliasTable(std::span<const double> weights);
+
+  bool empty() const { return bins_.empty(); }
+  std::size_t size() const { return bins_.size(); }
+  /// Draws an index from two random numbers. 64-bit arithmetic: 24 bits would not be enough to tell
+  /// a million bins apart.
+  std::uint32_t sample(Rng& rng) const {
+    const auto i = static_cast<std::uint32_t>((std::uint64_t{rng.next_u32()} * bins_.size()) >> 32);
+    return rng.next() < bins_[i].threshold ? i : bins_[i].alias;
+  }
+  Pdf<Count> pmf(std::uint32_t i) const { return Pdf<Count>(bins_[i].pmf); }
+
+ private:
+  struct Bin {
+    float threshold;  // below it: this index, else `alias`
+    std::uint32_t alias;
+    float pmf;
+  };
+  std::vector<Bin> bins_;
+};
+
+}  // namespace lacuna

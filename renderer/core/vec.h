@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Imath/ImathColor.h>
+#include <Imath/ImathMatrix.h>
+#include <Imath/ImathVec.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lacuna {
+
+using Imath::M44d;
+using Imath::V2f;
+using Imath::V2i;
+using Imath::V3d;
+using Imath::V3f;
+
+/// Linear RGB: radiance, reflectance or a throughput. Component-wise arithmetic.
+using Rgb = Imath::Color3f;
+
+inline float dot(const V3f& a, const V3f& b) { return a.dot(b); }
+inline V3f cross(const V3f& a, const V3f& b) { return a.cross(b); }
+inline float abs_dot(const V3f& a, const V3f& b) { return std::abs(a.dot(b)); }
+
+inline bool is_black(const Rgb& c) { return c.x == 0.0F && c.y == 0.0F && c.z == 0.0F; }
+inline bool is_finite(const V3f& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+inline float max_component(const V3f& v) { return std::max(v.x, std::max(v.y, v.z)); }
+inline float max_abs_component(const V3f& v) {
+  return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
+}
+/// Rec. 709 luminance, the scalar that selection probabilities are made of.
+inline float luminance(const Rgb& c) { return 0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z; }
+
+}  // namespace lacuna

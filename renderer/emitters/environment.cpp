@@ -1,0 +1,102 @@
+#include "renderer/emitters/environment.h"
+
+#include <numbers>
+
+#include "renderer/core/sampling.h"
+
+namespace lacuna {
+
+Environment::Environment(int width, int height, std::vector<float> rgb, float scale, float rotation)
+    : width_(width),
+      height_(height),
+      rgb_(std::move(rgb)),
+      scale_(scale),
+      cos_rotation_(std::cos(rotation)),
+      sin_rotation_(std::sin(rotation)) {
+  // The mean of a bilinear interpolant over a texel is (1/8, 6/8, 1/8) of the texel and its
+  // neighbours, along each axis.
+  constexpr std::array<double, 3> kernel{0.125, 0.75, 0.125};
+  std::vector<double> weights(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      double mean = 0;
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          mean += kernel[static_cast<std::size_t>(dx + 1)] *
+                  kernel[static_cast<std::size_t>(dy + 1)] *
+                  double(luminance(texel(x + dx, y + dy)));
+        }
+      }
+      const double w = mean * texel_solid_angle(y);
+      weights[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+              static_cast<std::size_t>(x)] = w;
+      integral_ += w;
+    }
+  }
+  texels_ = AliasTable(weights);
+}
+
+double Environment::texel_solid_angle(int y) const {
+  const double top = std::cos(std::numbers::pi * y / height_);
+  const double bottom = std::cos(std::numbers::pi * (y + 1) / height_);
+  return 2 * std::numbers::pi / width_ * (top - bottom);
+}
+
+Rgb Environment::texel(int x, int y) const {
+  x = (x % width_ + width_) % width_;
+  y = std::clamp(y, 0, height_ - 1);
+  const float* p = &rgb_[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                              static_cast<std::size_t>(x))];
+  return Rgb(p[0], p[1], p[2]) * scale_;
+}
+
+V2f Environment::to_image(const V3f& w) const {
+  const float x = cos_rotation_ * w.x - sin_rotation_ * w.z;
+  const float z = sin_rotation_ * w.x + cos_rotation_ * w.z;
+  const float phi = std::atan2(x, -z);  // 0 at -z, growing towards +x
+  const float theta = std::acos(std::clamp(w.y, -1.0F, 1.0F));
+  return {(phi / (2 * pi) + 0.5F) * static_cast<float>(width_),
+          theta / pi * static_cast<float>(height_)};
+}
+
+Rgb Environment::radiance(const V3f& w) const {
+  const V2f p = to_image(w) - V2f(0.5F, 0.5F);
+  const float fx = std::floor(p.x);
+  const float fy = std::floor(p.y);
+  const int x = static_cast<int>(fx);
+  const int y = static_cast<int>(fy);
+  const float a = p.x - fx;
+  const float b = p.y - fy;
+  return (1 - b) * ((1 - a) * texel(x, y) + a * texel(x + 1, y)) +
+         b * ((1 - a) * texel(x, y + 1) + a * texel(x + 1, y + 1));
+}
+
+Environment::Sample Environment::sample(Rng& rng) const {
+  const auto i = texels_.sample(rng);
+  const int x = static_cast<int>(i) % width_;
+  const int y = static_cast<int>(i) / width_;
+  const V2f u = rng.next2();
+  const double top = std::cos(std::numbers::pi * y / height_);
+  const double bottom = std::cos(std::numbers::pi * (y + 1) / height_);
+  const double cos_theta = top + double(u.y) * (bottom - top);
+  const double sin_theta = std::sqrt(std::max(0.0, 1 - cos_theta * cos_theta));
+  const double phi = 2 * std::numbers::pi * ((x + double(u.x)) / width_ - 0.5);
+  const double local_x = sin_theta * std::sin(phi);
+  const double local_z = -sin_theta * std::cos(phi);
+  const double c = cos_rotation_;
+  const double s = sin_rotation_;
+  const V3f w(static_cast<float>(c * local_x + s * local_z), static_cast<float>(cos_theta),
+              static_cast<float>(-s * local_x + c * local_z));
+  return {w, static_cast<float>(texels_.pmf(i).value / texel_solid_angle(y))};
+}
+
+float Environment::pdf(const V3f& w) const {
+  if (black()) return 0;
+  const V2f p = to_image(w);
+  const int x = std::clamp(static_cast<int>(p.x), 0, width_ - 1);
+  const int y = std::clamp(static_cast<int>(p.y), 0, height_ - 1);
+  const auto i = static_cast<std::uint32_t>(y * width_ + x);
+  return static_cast<float>(texels_.pmf(i).value / texel_solid_angle(y));
+}
+
+}  // namespace lacuna

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "renderer/core/alias_table.h"
+#include "renderer/core/vec.h"
+
+namespace lacuna {
+
+/// Light from infinitely far away, given by an equirectangular image: bilinear in the image, y up,
+/// its centre column along -z. Directions are drawn by texel, with the exact integral of the
+/// bilinear radiance over each row-weighted texel as its weight, so that none that shines is left
+/// out.
+class Environment {
+ public:
+  /// `rgb`: width x height x 3 radiances, top row first, finite and >= 0. `rotation` in radians,
+  /// about y, counter-clockwise from above.
+  Environment(int width, int height, std::vector<float> rgb, float scale, float rotation);
+
+  Rgb radiance(const V3f& w) const;  ///< `w` unit
+  struct Sample {
+    V3f w;      ///< unit, towards the light
+    float pdf;  ///< per steradian
+  };
+  Sample sample(Rng& rng) const;
+  float pdf(const V3f& w) const;  ///< per steradian
+  bool black() const { return texels_.empty(); }
+  /// Integral of luminance over the sphere.
+  double integral() const { return integral_; }
+
+ private:
+  V2f to_image(const V3f& w) const;  // in texels, texel centres at half-integers
+  Rgb texel(int x, int y) const;
+  double texel_solid_angle(int y) const;
+
+  int width_, height_;
+  std::vector<float> rgb_;
+  float scale_;
+  float cos_rotation_, sin_rotation_;
+  double integral_ = 0;
+  AliasTable texels_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+
+namespace lacuna {
+
+/// Two pictures compared by the means of square blocks: what remains of a difference after its
+/// noise has been averaged away.
+struct BlockStatistics {
+  int blocks = 0;  ///< whole blocks, the rest of the picture is left out
+  double largest_relative =
+      0;  ///< largest |mean a - mean b| / mean b of a block, over RGB together
+  /// z = (mean a - mean b) / sqrt(variance of the means), a channel of a block each. Pure noise has
+  /// mean 0, standard deviation 1 and 5 % beyond 1.96.
+  double z_mean = 0, z_deviation = 0, z_beyond = 0;
+};
+
+/// `a`, `b`: interleaved RGB of `width` x `height`; `variance` of the estimates a - b (empty: no
+/// z). `size` is the side of a block in pixels, at most the picture's.
+BlockStatistics block_statistics(std::span<const double> a, std::span<const double> b,
+                                 std::span<const double> variance, int width, int height, int size);
+
+}  // namespace lacuna

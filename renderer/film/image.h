@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "renderer/core/vec.h"
+
+namespace lacuna {
+
+/// One estimate of the whole picture: what an iteration makes. Linear RGB, top row first.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<Rgb> pixels;
+
+  Image() = default;
+  Image(int w, int h)
+      : width(w), height(h), pixels(std::size_t(w) * std::size_t(h), Rgb(0, 0, 0)) {}
+  Rgb& at(int x, int y) { return pixels[std::size_t(y) * std::size_t(width) + std::size_t(x)]; }
+  const Rgb& at(int x, int y) const {
+    return pixels[std::size_t(y) * std::size_t(width) + std::size_t(x)];
+  }
+};
+
+}  // namespace lacuna

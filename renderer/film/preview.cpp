@@ -1,0 +1,45 @@
+#include "renderer/film/preview.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "renderer/film/write_whole.h"
+
+namespace lacuna {
+
+namespace {
+
+double exposure(std::span<const double> rgb) {
+  std::vector<double> luminances;
+  luminances.reserve(rgb.size() / 3);
+  for (std::size_t i = 0; i + 2 < rgb.size(); i += 3) {
+    const double y = 0.2126 * rgb[i] + 0.7152 * rgb[i + 1] + 0.0722 * rgb[i + 2];
+    if (std::isfinite(y) && y > 0) luminances.push_back(y);
+  }
+  if (luminances.empty()) return 1;
+  const auto rank = static_cast<std::ptrdiff_t>(static_cast<double>(luminances.size() - 1) * 0.95);
+  std::nth_element(luminances.begin(), luminances.begin() + rank, luminances.end());
+  return 0.8 / luminances[static_cast<std::size_t>(rank)];
+}
+
+unsigned char encode(double linear) {
+  if (!(linear > 0)) return 0;
+  const double v = std::min(linear, 1.0);
+  const double s = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+  return static_cast<unsigned char>(std::lround(s * 255));
+}
+
+}  // namespace
+
+void write_preview(const std::filesystem::path& file, int width, int height,
+                   std::span<const double> rgb) {
+  const double scale = exposure(rgb);
+  std::vector<unsigned char> bytes(rgb.size());
+  std::transform(rgb.begin(), rgb.end(), bytes.begin(),
+                 [&](double v) { return encode(v * scale); });
+  const OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+  write_whole(file, "png", spec, OIIO::TypeDesc::UINT8, bytes.data());
+}
+
+}  // namespace lacuna

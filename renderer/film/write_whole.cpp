@@ -1,0 +1,28 @@
+#include "renderer/film/write_whole.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "jobs/store/atomic_file.h"
+
+namespace lacuna {
+
+void write_whole(const std::filesystem::path& file, const char* format, const OIIO::ImageSpec& spec,
+                 OIIO::TypeDesc type, const void* pixels) {
+  const auto fail = [&](const std::string& why) {
+    throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), why));
+  };
+  const auto output = OIIO::ImageOutput::create(format);
+  if (output == nullptr) fail(OIIO::geterror());
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  if (!output->set_ioproxy(&memory) || !output->open(file.filename().string(), spec) ||
+      !output->write_image(type, pixels) || !output->close()) {
+    fail(output->geterror());
+  }
+  write_file_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+}  // namespace lacuna

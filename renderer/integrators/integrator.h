@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "renderer/core/bytes.h"
+#include "renderer/film/image.h"
+#include "renderer/path/counters.h"
+#include "renderer/scene/camera.h"
+#include "renderer/scene/scene.h"
+#include "renderer/settings/integrator_settings.h"
+
+namespace lacuna {
+
+/// Thrown out of an iteration that was told to stop; what it had done is discarded, and the
+/// iteration can be run again with the same result.
+struct IterationStopped {};
+
+/// What one iteration works with.
+struct IterationContext {
+  const Scene& scene;
+  const Camera& camera;
+  const ThreadPool& pool;
+  std::uint64_t seed;
+  std::uint64_t iteration;  ///< < 2^32
+  /// Asked between tiles, from several threads: true ends the iteration by IterationStopped.
+  const std::function<bool()>& stop;
+};
+
+/// A rendering method. iterate() is a pure function of the scene, the settings, the seed, the
+/// iteration and of the state that save() writes; an iteration that was stopped leaves that state
+/// as it was.
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+
+  virtual SceneNeeds needs() const = 0;
+  /// One more independent estimate of the whole picture into `image` (of the film's size, black).
+  virtual Counters iterate(const IterationContext& context, Image& image) = 0;
+  /// Learned state, for the checkpoint.
+  virtual void save(ByteWriter&) const {}
+  virtual void load(ByteReader&) {}
+};
+
+/// The integrator of the given settings: the registry.
+std::unique_ptr<Integrator> make_integrator(const IntegratorSettings& settings);
+
+}  // namespace lacuna

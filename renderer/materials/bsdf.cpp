@@ -1,0 +1,276 @@
+#include "renderer/materials/bsdf.h"
+
+#include "renderer/core/frame.h"
+
+namespace lacuna {
+namespace {
+
+/// Rounding of the cosine between float unit vectors: a cosine below it does not even tell the
+/// side. Only divisors are held against it.
+constexpr float cos_rounding = 0x1p-24F;
+
+/// A uniform number in [0, width) stretched to [0, 1).
+float stretch(float u, float width) { return std::clamp(u / width, 0.0F, 1 - 0x1p-24F); }
+
+/// Probabilities that a facet reflects and that it transmits.
+struct Coin {
+  float reflect = 1, transmit = 0;
+
+  Coin() = default;  ///< the facet only reflects
+  explicit Coin(const Interface::Split& split) : Coin(split.reflected, split.transmitted) {}
+  Coin(const Rgb& reflected, const Rgb& transmitted) {
+    const float r = luminance(reflected);
+    const float t = luminance(transmitted);
+    if (r + t == 0) return;
+    reflect = r / (r + t);
+    transmit = t / (r + t);
+  }
+};
+
+/// The facet through which two directions on opposite sides refract into one another.
+struct RefractingFacet {
+  V3f m;
+  float cos_o, cos_i;  ///< with m: positive and negative
+  float cos_outside;  ///< of the one on the thin side: seen from there nothing is reflected totally
+  float jacobian;     ///< (cos_o + eta cos_i)^-2
+
+  static std::optional<RefractingFacet> find(const V3f& n, const V3f& wo, const V3f& wi,
+                                             float eta) {
+    const V3f h = wo + eta * wi;  // Walter et al. 2007, eq. 16
+    const float length = h.length();
+    if (length < cos_rounding) return std::nullopt;
+    V3f m = h / length;
+    if (dot(m, n) < 0) m = -m;
+    const float o = dot(wo, m);
+    const float i = dot(wi, m);
+    if (o <= 0 || i >= 0) return std::nullopt;
+    const float denominator = o + eta * i;
+    return RefractingFacet{m, o, i, eta >= 1 ? o : -i, 1 / (denominator * denominator)};
+  }
+};
+
+}  // namespace
+
+void Bsdf::add_interface(const SurfaceParams& params) {
+  interface_ = Interface(params);
+  if (!has_diffuse() && !(interface_.glass > 0 && interface_.clear())) return;
+  layer_ = Layer(max_component(params.f0), params.f90, interface_.alpha);
+  if (layer_.closed()) diffuse_ = Rgb(0, 0, 0);
+}
+
+Rgb Bsdf::albedo() const {
+  if (kind_ != Kind::layered) return diffuse_;
+  return interface_.r0 + layer_.let_through(0) * diffuse_ + interface_.glass_color;
+}
+
+Bsdf::Seen Bsdf::seen(const V3f& n, const V3f& wo) const {
+  const bool front = dot(wo, ng_) > 0;
+  Seen result{n, front, dot(wo, n), interface_.eta(front)};
+  if (has_diffuse() || (interface_.glass > 0 && interface_.clear()))
+    result.mean_weight = layer_.mean_weight(result.cos_o);
+  return result;
+}
+
+Bsdf::Choice Bsdf::choice(const Seen& from) const {
+  Choice c;
+  if (interface_.glass > 0) {
+    const Interface::Split s = interface_.split(from.cos_o, from.eta);
+    c.facets = luminance(s.reflected);
+    if (interface_.clear()) {
+      c.clear = luminance(s.transmitted);
+      // Where the mean facet hardly reflects, tilted ones still may.
+      if (interface_.ior > 1) c.facets += interface_.glass * from.mean_weight;
+    } else {
+      c.facets += luminance(s.transmitted);
+    }
+  } else {
+    const float r0 = luminance(interface_.r0);
+    c.facets = r0 + (interface_.r90 - r0) * from.mean_weight;
+  }
+  if (has_diffuse()) c.diffuse = luminance(diffuse_) * layer_.let_through(from.mean_weight);
+  const float sum = c.diffuse + c.facets + c.clear;
+  if (!(sum > 0)) return {};
+  return {c.diffuse / sum, c.facets / sum, c.clear / sum};
+}
+
+int Bsdf::passage(const Seen& from, const V3f& wi) const {
+  const float side_i = dot(wi, ng_);
+  const float cos_i = dot(wi, from.n);
+  const float same = from.front ? side_i : -side_i;
+  if (same > 0 && cos_i > 0) return 1;
+  return same < 0 && cos_i < 0 ? -1 : 0;
+}
+
+template <bool want_f, bool want_pdf>
+void Bsdf::reflected(const Seen& from, const Choice* c, const V3f& wo, const V3f& wi,
+                     Scatter& s) const {
+  const float cos_i = dot(wi, from.n);
+  if (has_diffuse()) {
+    if constexpr (want_f) {
+      const float scale = layer_.scale(layer_.let_through(from.mean_weight),
+                                       layer_.let_through(layer_.mean_weight(cos_i)));
+      s.f = diffuse_ * (scale * cos_i * inv_pi);
+    }
+    if constexpr (want_pdf) s.pdf = c->diffuse * cos_i * inv_pi;
+  }
+  const V3f h = wo + wi;
+  const float length = std::sqrt(h.length2());
+  if (interface_.smooth() || length < cos_rounding) return;
+  const V3f m = h * (1 / length);
+  const float a = interface_.alpha;
+  const float d = ggx_d(m, from.n, a);
+  Interface::Split split;
+  if (want_f || facets_transmit()) split = interface_.split(0.5F * length, from.eta);
+  if constexpr (want_f) s.f += split.reflected * (d * ggx_g2_over_4cos(from.cos_o, cos_i, a));
+  if constexpr (want_pdf) {
+    // Visible normals; dm / dwi = 1 / (4 wo.m).
+    const Coin coin = facets_transmit() ? Coin(split) : Coin();
+    s.pdf += c->facets * coin.reflect * 0.25F * ggx_g1_over_cos(from.cos_o, a) * d;
+  }
+}
+
+template <bool want_f, bool want_pdf>
+void Bsdf::transmitted(const Seen& from, const Choice* c, const V3f& wo, const V3f& wi,
+                       Scatter& s) const {
+  if (interface_.smooth() || !facets_transmit()) return;
+  const auto facet = RefractingFacet::find(from.n, wo, wi, from.eta);
+  if (!facet) return;
+  const Rgb share = interface_.split(facet->cos_outside, interface_.ior).transmitted;
+  const float a = interface_.alpha;
+  const float cos_i = -dot(wi, from.n);
+  const float common = ggx_d(facet->m, from.n, a) * ggx_g1_over_cos(from.cos_o, a) * facet->cos_o *
+                       -facet->cos_i * facet->jacobian;
+  // Walter et al. 2007, eq. 21, times the light's cosine; n_o^2 / (...)^2 is the jacobian, which
+  // holds the 1 / eta^2 of radiance.
+  if constexpr (want_f) s.f = share * (common * ggx_g1_over_cos(cos_i, a) * cos_i);
+  if constexpr (want_pdf) {
+    // dm / dwi = eta^2 |wi.m| / (...)^2 (Walter et al. 2007, eq. 17).
+    const Coin coin(interface_.split(facet->cos_o, from.eta).reflected, share);
+    s.pdf = c->facets * coin.transmit * common * from.eta * from.eta;
+  }
+}
+
+template <bool want_f, bool want_pdf>
+Bsdf::Scatter Bsdf::scatter(const Seen& from, const Choice* c, const V3f& wo, const V3f& wi) const {
+  Scatter s;
+  const int side = passage(from, wi);
+  if (side > 0) reflected<want_f, want_pdf>(from, c, wo, wi, s);
+  if (side < 0) transmitted<want_f, want_pdf>(from, c, wo, wi, s);
+  return s;
+}
+
+Rgb Bsdf::eval_any(const V3f& wo, const V3f& wi, Transport transport) const {
+  const float side = dot(wo, ng_);
+  const float side_i = dot(wi, ng_);
+  if (kind_ == Kind::black || side == 0 || side_i == 0) return Rgb(0, 0, 0);
+  if (transport == Transport::radiance || flat_) {
+    const Seen from = seen(facing_normal(wo, side), wo);
+    const Rgb f = scatter<true, false>(from, nullptr, wo, wi).f;
+    // Reciprocity where ns = ng: importance is not scaled by 1 / eta^2.
+    const bool unscale = transport == Transport::importance && (side > 0) != (side_i > 0);
+    return unscale ? f * (from.eta * from.eta) : f;
+  }
+  if (std::abs(side) < cos_rounding) return Rgb(0, 0, 0);
+  const Seen from = seen(facing_normal(wi, side_i), wi);
+  return scatter<true, false>(from, nullptr, wi, wo).f * std::abs(side_i / side);
+}
+
+Pdf<SolidAngle> Bsdf::pdf_any(const V3f& wo, const V3f& wi, Transport transport) const {
+  const float side = dot(wo, ng_);
+  if (kind_ == Kind::black || side == 0) return {};
+  const auto density = [&](const V3f& n) {
+    const Seen from = seen(n, wo);
+    const Choice c = choice(from);
+    return scatter<false, true>(from, &c, wo, wi).pdf;
+  };
+  const float p = density(facing_normal(wo, side));
+  if (transport == Transport::radiance || flat_ || !in_front_of_ns(wo)) return Pdf<SolidAngle>(p);
+  return Pdf<SolidAngle>(0.5F * (p + density(side < 0 ? -ng_ : ng_)));
+}
+
+std::optional<Bsdf::Draw> Bsdf::draw(const Seen& from, const Choice& c, const V3f& wo, float u_lobe,
+                                     const V2f& u) const {
+  const V3f& n = from.n;
+  if (u_lobe < c.diffuse) return Draw{sample_cosine(n, u)};
+  u_lobe -= c.diffuse;
+  const bool clear = u_lobe < c.clear;
+  if (!clear && c.facets == 0) return std::nullopt;
+  const bool smooth = clear || interface_.smooth();
+  V3f m = n;
+  if (!smooth) {
+    const Frame frame(n);
+    m = frame.to_world(ggx_sample_visible(frame.to_local(wo), interface_.alpha, u));
+  }
+  const float cos_m = dot(wo, m);
+  if (cos_m <= 0) return std::nullopt;
+  const Interface::Split split = interface_.split(cos_m, from.eta);
+  Draw result;
+  result.delta = smooth;
+  float p = c.clear;
+  if (clear) {
+    result.transmitted = true;
+  } else {
+    const Coin coin = facets_transmit() ? Coin(split) : Coin();
+    result.transmitted = stretch(u_lobe - c.clear, c.facets) >= coin.reflect;
+    p = c.facets * (result.transmitted ? coin.transmit : coin.reflect);
+  }
+  if (result.transmitted) {
+    const Fresnel f = fresnel_dielectric(cos_m, from.eta);
+    if (f.total) return std::nullopt;
+    result.wi = refract(wo, m, from.eta, f.cos_t);
+  } else {
+    result.wi = reflect(wo, m);
+  }
+  if (smooth) result.share = (result.transmitted ? split.transmitted : split.reflected) / p;
+  return result;
+}
+
+std::optional<BsdfSample> Bsdf::finish_delta(const Draw& drawn, const Seen& from, const V3f& wo,
+                                             float frame_probability, Transport transport) const {
+  Rgb weight = drawn.share / frame_probability;
+  if (transport == Transport::radiance) {
+    if (drawn.transmitted) weight /= from.eta * from.eta;
+  } else if (!flat_) {
+    // The eye, at wi, must see the surface with the normal that was used. The delta in the light's
+    // direction, seen as one in the eye's, gives the ratio of cosines with n, and just cancels the
+    // 1 / eta^2.
+    const bool with_ns = from.n == ns_ || from.n == -ns_;
+    const float divisor = abs_dot(drawn.wi, from.n) * abs_dot(wo, ng_);
+    if (in_front_of_ns(drawn.wi) != with_ns || divisor < cos_rounding * cos_rounding)
+      return std::nullopt;
+    weight *= from.cos_o * abs_dot(drawn.wi, ng_) / divisor;
+  }
+  return BsdfSample{drawn.wi, weight, {}, true, drawn.transmitted};
+}
+
+std::optional<BsdfSample> Bsdf::sample_any(const V3f& wo, float u_lobe, const V2f& u,
+                                           Transport transport) const {
+  const float side = dot(wo, ng_);
+  if (kind_ == Kind::black || side == 0) return std::nullopt;
+  V3f n = facing_normal(wo, side);
+  float frame_probability = 1;
+  if (transport == Transport::importance && !flat_ && in_front_of_ns(wo)) {
+    // Eyes in front of ns see the frame of ns, those behind it the one of ng: draw from either.
+    frame_probability = 0.5F;
+    if (u_lobe >= 0.5F) n = side < 0 ? -ng_ : ng_;
+    u_lobe = 2 * u_lobe - (u_lobe >= 0.5F ? 1.0F : 0.0F);
+  }
+  const Seen from = seen(n, wo);
+  const Choice c = choice(from);
+  const std::optional<Draw> drawn = draw(from, c, wo, u_lobe, u);
+  if (!drawn || passage(from, drawn->wi) != (drawn->transmitted ? -1 : 1)) return std::nullopt;
+  if (drawn->delta) return finish_delta(*drawn, from, wo, frame_probability, transport);
+
+  const V3f& wi = drawn->wi;
+  Scatter s;
+  if (transport == Transport::radiance || flat_) {
+    s = scatter<true, true>(from, &c, wo, wi);
+    if (transport == Transport::importance && drawn->transmitted) s.f *= from.eta * from.eta;
+  } else {
+    s = {eval_any(wo, wi, transport), pdf_any(wo, wi, transport).value};
+  }
+  if (!(s.pdf > 0)) return std::nullopt;
+  return BsdfSample{wi, s.f / s.pdf, Pdf<SolidAngle>(s.pdf), false, drawn->transmitted};
+}
+
+}  // namespace lacuna

@@ -1,0 +1,196 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "renderer/core/density.h"
+#include "renderer/core/vec.h"
+#include "renderer/materials/interface.h"
+#include "renderer/materials/lambert.h"
+#include "renderer/materials/layer.h"
+
+namespace lacuna {
+
+/// What is carried along the path: radiance (paths from the eye) or importance (paths from a
+/// light). The two differ where a BSDF is not symmetric: refraction and shading normals (Veach
+/// 1997, ch. 5).
+enum class Transport { radiance, importance };
+
+/// The parameters of the glTF surface model at one point, textures already looked up.
+struct SurfaceParams {
+  Rgb base_color{1, 1, 1};
+  float metallic = 0;           ///< [0, 1]
+  float alpha = 1;              ///< GGX width, roughness^2; below ggx_min_alpha: smooth, a delta
+  float ior = 1.5F;             ///< > = 1; of the inside, for refraction
+  Rgb f0{0.04F, 0.04F, 0.04F};  ///< dielectric reflectance at normal incidence
+  float f90 = 1;
+  float transmission = 0;  ///< [0, 1]: share of the dielectric's base that refracts
+};
+
+/// A direction drawn by a BSDF.
+struct BsdfSample {
+  V3f wi;      ///< unit, world space, leaves the surface
+  Rgb weight;  ///< f |cos| / pdf; for a delta lobe: its reflectance over its probability
+  Pdf<SolidAngle>
+      pdf;  ///< of the whole BSDF at wi, all non-delta lobes; for a delta lobe meaningless
+  bool delta = false;
+  bool transmitted = false;  ///< wi lies on the other side of ng
+};
+
+/// Scattering at one point of a surface: a flat value, made per hit, without allocation or virtual
+/// calls. The glTF metallic-roughness model, mix(dielectric, metal, metallic):
+/// - metal: GGX, Schlick from base_color to white;
+/// - dielectric: a GGX layer (Schlick from f0 to f90) over Lambert, or where it transmits a
+/// refracting interface
+///   with exact Fresnel (interface.h, layer.h). With f0 = f90 = 0 and nothing else: exactly
+///   Lambert.
+///
+/// `wo` and `wi` are unit, in world space, and leave the surface; `wi` is the one sampled. Which
+/// side a direction lies on is decided by the geometric normal `ng`, so light never leaks through a
+/// surface; cosines are taken with the shading normal `ns`, replaced by `ng` where the direction
+/// towards the eye lies behind `ns`, so that no black fringe appears. The direction towards the eye
+/// is `wo` for radiance and `wi` for importance, so that both modes measure the same light:
+///   eval(a, b, importance) = eval(b, a, radiance) |b.ng| / |a.ng|   (Veach 1997, sec. 5.3.2).
+/// All surfaces scatter on both sides; an opaque one looks the same from both.
+class Bsdf {
+ public:
+  /// `ng` and `ns` are unit; `ns` is turned to the side of `ng`. They need not be on the same side
+  /// as wo.
+  Bsdf(const SurfaceParams& params, const V3f& ng, const V3f& ns)
+      : ng_(ng), ns_(dot(ns, ng) < 0 ? -ns : ns), flat_(ns == ng) {
+    diffuse_ = ((1 - params.metallic) * (1 - params.transmission)) * params.base_color;
+    if (params.metallic > 0 || params.transmission > 0 || params.f90 > 0 || !is_black(params.f0)) {
+      add_interface(params);
+    } else {
+      kind_ = is_black(diffuse_) ? Kind::black : Kind::lambert;
+    }
+  }
+
+  /// f(wo, wi) |cos(wi, ns)| of all non-delta lobes; the cosine is included.
+  Rgb eval(const V3f& wo, const V3f& wi, Transport transport) const {
+    if (plain_lambert(transport)) return diffuse_ * lambert(wo, wi);
+    return eval_any(wo, wi, transport);
+  }
+
+  /// Density with which sample(wo) returns wi through a non-delta lobe; its integral over the
+  /// sphere is 1 minus the probability of the delta lobes and of failure. It depends on `transport`
+  /// only where ns differs from ng: importance must also be scattered to eyes behind ns.
+  Pdf<SolidAngle> pdf(const V3f& wo, const V3f& wi,
+                      Transport transport = Transport::radiance) const {
+    if (plain_lambert(transport)) return Pdf<SolidAngle>(lambert(wo, wi));
+    return pdf_any(wo, wi, transport);
+  }
+
+  /// Draws wi. `u_lobe` and `u` are uniform in [0, 1). Nothing where the draw fails (below the
+  /// surface) or the surface is black.
+  std::optional<BsdfSample> sample(const V3f& wo, float u_lobe, const V2f& u,
+                                   Transport transport) const {
+    if (plain_lambert(transport)) return sample_lambert(wo, u);
+    return sample_any(wo, u_lobe, u, transport);
+  }
+
+  /// Some lobe is not a delta: the vertex can be connected to others.
+  bool connectible() const {
+    return kind_ == Kind::lambert ||
+           (kind_ == Kind::layered && (!interface_.smooth() || has_diffuse()));
+  }
+
+  /// Albedo for the denoiser layer: base colour weighted by what the surface does with it.
+  Rgb albedo() const;
+
+ private:
+  enum class Kind : std::uint8_t { black, lambert, layered };
+
+  /// Probabilities of the lobes for one wo; they add up to 1, or are all 0.
+  struct Choice {
+    float diffuse = 0;
+    float facets = 0;  ///< a facet is drawn, which then reflects or transmits
+    float clear = 0;   ///< the transmission of Interface::clear()
+  };
+  /// The surface as seen from one direction, `wo`, with one of its normals.
+  struct Seen {
+    V3f n;  ///< on the side of wo
+    bool front;
+    float cos_o;
+    float eta;
+    float mean_weight = 0;  ///< of layer_, if there is something below it
+  };
+  /// Radiance's f |cos|, and the density of one frame; each 0 unless asked for.
+  struct Scatter {
+    Rgb f{0, 0, 0};
+    float pdf = 0;
+  };
+  /// A lobe's draw before the rules about sides are applied.
+  struct Draw {
+    V3f wi;
+    Rgb share{0, 0, 0};  ///< of a delta lobe: reflectance or transmittance over its probability
+    bool delta = false;
+    bool transmitted = false;
+  };
+
+  /// Nothing but a Lambertian lobe, and symmetric: the fast path.
+  bool plain_lambert(Transport transport) const {
+    return kind_ == Kind::lambert && (flat_ || transport == Transport::radiance);
+  }
+  float lambert(const V3f& wo, const V3f& wi) const {
+    const float side = dot(wo, ng_);
+    const float side_i = dot(wi, ng_);
+    if (!(side > 0 ? side_i > 0 : side < 0 && side_i < 0)) return 0;
+    return std::max(0.0F, dot(wi, facing_normal(wo, side)) * inv_pi);
+  }
+  std::optional<BsdfSample> sample_lambert(const V3f& wo, const V2f& u) const {
+    const float side = dot(wo, ng_);
+    const V3f n = facing_normal(wo, side);
+    const V3f wi = sample_cosine(n, u);
+    const float side_i = dot(wi, ng_);
+    if (!(side > 0 ? side_i > 0 : side < 0 && side_i < 0)) return std::nullopt;
+    return BsdfSample{wi, diffuse_, Pdf<SolidAngle>(dot(wi, n) * inv_pi), false, false};
+  }
+
+  bool has_diffuse() const { return !is_black(diffuse_); }
+  bool facets_transmit() const { return interface_.glass > 0 && !interface_.clear(); }
+
+  /// The normal that cosines are taken with when the eye lies in direction `w`; side = dot(w, ng).
+  V3f facing_normal(const V3f& w, float side) const {
+    const V3f n = side < 0 ? -ns_ : ns_;
+    if (dot(w, n) > 0) return n;
+    return side < 0 ? -ng_ : ng_;
+  }
+  bool in_front_of_ns(const V3f& w) const {
+    return dot(w, ng_) < 0 ? dot(w, ns_) < 0 : dot(w, ns_) > 0;
+  }
+
+  void add_interface(const SurfaceParams& params);
+  Rgb eval_any(const V3f& wo, const V3f& wi, Transport transport) const;
+  Pdf<SolidAngle> pdf_any(const V3f& wo, const V3f& wi, Transport transport) const;
+  std::optional<BsdfSample> sample_any(const V3f& wo, float u_lobe, const V2f& u,
+                                       Transport transport) const;
+
+  Seen seen(const V3f& n, const V3f& wo) const;
+  Choice choice(const Seen& from) const;
+  /// `c` may be null where no density is asked for.
+  template <bool want_f, bool want_pdf>
+  Scatter scatter(const Seen& from, const Choice* c, const V3f& wo, const V3f& wi) const;
+  template <bool want_f, bool want_pdf>
+  void reflected(const Seen& from, const Choice* c, const V3f& wo, const V3f& wi, Scatter& s) const;
+  template <bool want_f, bool want_pdf>
+  void transmitted(const Seen& from, const Choice* c, const V3f& wo, const V3f& wi,
+                   Scatter& s) const;
+  /// wi lies on the side of both normals that the lobe is for: 1 reflects, -1 transmits, 0 neither.
+  int passage(const Seen& from, const V3f& wi) const;
+
+  std::optional<Draw> draw(const Seen& from, const Choice& c, const V3f& wo, float u_lobe,
+                           const V2f& u) const;
+  std::optional<BsdfSample> finish_delta(const Draw& drawn, const Seen& from, const V3f& wo,
+                                         float frame_probability, Transport transport) const;
+
+  V3f ng_, ns_;
+  Rgb diffuse_;  // share of Lambert times base colour
+  Kind kind_ = Kind::layered;
+  bool flat_;
+  Layer layer_;  // these two only mean something in a layered surface; this one, if something is
+                 // below it
+  Interface interface_;
+};
+
+}  // namespace lacuna

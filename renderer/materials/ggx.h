@@ -1,0 +1,48 @@
+#pragma once
+
+#include "renderer/core/sampling.h"
+#include "renderer/core/vec.h"
+
+namespace lacuna {
+
+// The GGX distribution of facet normals with Smith's shadowing (Walter et al. 2007; Heitz 2014,
+// "Understanding the Masking-Shadowing Function"). Isotropic, width `alpha` in [ggx_min_alpha, 1].
+// Cosines are positive.
+
+/// Below it a lobe counts as smooth. A float direction is off by about 6e-8, which is 6e-4 of a
+/// lobe of this width: its density is still known to a fraction of a percent. Sharper lobes would
+/// be rounding noise, and are narrower than a pixel of any picture.
+inline constexpr float ggx_min_alpha = 1e-4F;
+
+/// Density of facet normals `m` around `n`, per projected area. The sine comes from a cross
+/// product: from 1 - cos^2 it would be lost for small alpha.
+inline float ggx_d(const V3f& m, const V3f& n, float alpha) {
+  const float a2 = alpha * alpha;
+  const float cos = dot(m, n);
+  const float t = cross(n, m).length2() / a2 + cos * cos;
+  return 1 / (std::numbers::pi_v<float> * a2 * t * t);
+}
+
+/// sqrt(alpha^2 + (1 - alpha^2) cos^2): what all of Smith's terms are made of.
+inline float ggx_slope_root(float cos, float alpha) {
+  const float a2 = alpha * alpha;
+  return std::sqrt(a2 + (1 - a2) * cos * cos);
+}
+
+/// Masking G1(w) / cos: finite at grazing angles.
+inline float ggx_g1_over_cos(float cos, float alpha) {
+  return 2 / (cos + ggx_slope_root(cos, alpha));
+}
+
+/// Height-correlated masking and shadowing (Heitz 2014, eq. 99) over four times the first cosine:
+/// G2 / (4 cos_o).
+inline float ggx_g2_over_4cos(float cos_o, float cos_i, float alpha) {
+  return 0.5F / (ggx_slope_root(cos_o, alpha) + cos_o * ggx_slope_root(cos_i, alpha) / cos_i);
+}
+
+/// Draws a facet normal visible from `wo`, all in the local frame (normal along z, wo.z > 0), with
+/// density G1(wo) (wo.m) D(m) / wo.z (Heitz 2018, "Sampling the GGX Distribution of Visible
+/// Normals").
+V3f ggx_sample_visible(const V3f& wo, float alpha, const V2f& u);
+
+}  // namespace lacuna

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "renderer/materials/bsdf.h"
+#include "renderer/scene/scene_data.h"
+
+namespace lacuna {
+
+using Textures = std::span<const std::unique_ptr<Texture>>;
+
+/// What a used texture reference says at `uv` (TEXCOORD_0 and _1). The texture must be decoded.
+inline Rgba texture_at(const TextureRef& ref, Textures textures, const std::array<V2f, 2>& uv) {
+  return textures[static_cast<std::size_t>(ref.texture)]->lookup(
+      ref.transform(uv[static_cast<std::size_t>(ref.uv_set)]));
+}
+
+/// The surface at texture coordinates `uv` (TEXCOORD_0 and _1). The textures that `material` uses
+/// must be decoded. KHR_materials_ior and _specular become f0 and f90; a surface that ends with
+/// both 0 is Lambertian.
+SurfaceParams surface_params(const Material& material, Textures textures,
+                             const std::array<V2f, 2>& uv);
+
+/// Radiance emitted, in every direction of the emitting side or sides.
+inline Rgb emission(const Material& material, Textures textures, const std::array<V2f, 2>& uv) {
+  if (!material.emission_texture.used()) return material.emission;
+  return material.emission * texture_at(material.emission_texture, textures, uv).rgb;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "renderer/materials/ggx.h"
+#include "renderer/materials/specular.h"
+
+namespace lacuna {
+
+struct SurfaceParams;
+
+/// The specular boundary of the glTF surface. One set of facets of width `alpha` carries all of
+/// - the metal: Schlick from the base colour to white,
+/// - the layer over the opaque dielectric: Schlick from f0 to f90,
+/// - the boundary of the transmissive dielectric: exact Fresnel, remapped from its own range to
+///   [f0, f90] so that KHR_materials_specular tints and dims it. A transmissive surface is the
+///   boundary of a solid whose outside is the front of ng; the thin wall of
+///   KHR_materials_transmission is not modelled.
+struct Interface {
+  Interface() = default;
+  explicit Interface(const SurfaceParams& params);
+
+  /// What a facet does with light that meets it at `cos`; `eta` as in specular.h.
+  struct Split {
+    Rgb reflected;
+    Rgb transmitted;  ///< without the 1 / eta^2 of radiance
+  };
+  Split split(float cos, float eta) const {
+    const Rgb white(1, 1, 1);
+    Split result{r0 + (r90 * white - r0) * schlick_weight(cos), Rgb(0, 0, 0)};
+    if (glass > 0) {
+      const Fresnel exact = fresnel_dielectric(cos, eta);
+      const Rgb f = exact.total ? white : remap(exact.reflectance);
+      result.reflected += glass * f;
+      result.transmitted = (1 - max_component(f)) * glass_color;
+    }
+    return result;
+  }
+
+  bool smooth() const { return alpha == 0; }
+  /// Transmission passes unscattered although the facets are rough: it is spread by about alpha
+  /// (ior - 1), and that is below what ggx_min_alpha resolves.
+  bool clear() const { return !smooth() && alpha * (ior - 1) < ggx_min_alpha; }
+  /// For light that arrives on the front or back side.
+  float eta(bool front) const { return front ? ior : 1 / ior; }
+
+  Rgb r0{0, 0, 0};  // metal and opaque dielectric, each by its share, at normal incidence
+  float r90 = 0;    // and at grazing incidence
+  float alpha = 0;
+  float glass = 0;           // share of the transmissive dielectric
+  Rgb glass_color{0, 0, 0};  // that share times the base colour
+  Rgb glass_f0{0, 0, 0};
+  float glass_f90 = 0;
+  float ior = 1;
+
+ private:
+  Rgb remap(float reflectance) const {
+    const float t = (reflectance - exact_f0_) * inv_range_;
+    const auto channel = [&](float low) {
+      return std::clamp(low + (glass_f90 - low) * t, 0.0F, 1.0F);
+    };
+    return {channel(glass_f0.x), channel(glass_f0.y), channel(glass_f0.z)};
+  }
+
+  float exact_f0_ = 0,
+        inv_range_ = 1;  // of exact Fresnel: its value at normal incidence, 1 / (1 - it)
+};
+
+}  // namespace lacuna

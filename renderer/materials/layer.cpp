@@ -1,0 +1,101 @@
+#include "renderer/materials/layer.h"
+
+#include <array>
+
+#include "renderer/materials/ggx.h"
+
+namespace lacuna {
+namespace {
+
+/// Means of Schlick's weight: rows over sqrt(alpha), columns over the cosine, both equidistant on
+/// [0, 1].
+class Table {
+ public:
+  Table() {
+    for (std::size_t r = 0; r < values_.size(); ++r) {
+      const float roughness = static_cast<float>(r) / (rows - 1);
+      const float alpha = roughness * roughness;
+      for (std::size_t c = 0; c < columns; ++c) {
+        const float cos = static_cast<float>(c) / (columns - 1);
+        values_[r][c] =
+            alpha < ggx_min_alpha ? schlick_weight(cos) : mean(std::max(cos, 1e-4F), alpha);
+      }
+      // Integral of the interpolant times 2 cos over [0, 1], exact, so that the base keeps its
+      // share.
+      constexpr double h = 1.0 / (columns - 1);
+      double sum = 0;
+      for (std::size_t c = 0; c + 1 < columns; ++c) {
+        const double x = static_cast<double>(c) * h;
+        const double a = values_[r][c], b = values_[r][c + 1];
+        sum += h * (x * (a + b) + h * (a / 3 + 2 * b / 3));
+      }
+      hemisphere_[r] = static_cast<float>(sum);
+    }
+  }
+
+  float at(float row, float cos) const {
+    const auto [r, fr] = split(row, rows);
+    const auto [c, fc] = split(std::clamp(cos, 0.0F, 1.0F) * (columns - 1), columns);
+    const float low = values_[r][c] + fc * (values_[r][c + 1] - values_[r][c]);
+    const float high = values_[r + 1][c] + fc * (values_[r + 1][c + 1] - values_[r + 1][c]);
+    return low + fr * (high - low);
+  }
+  float hemisphere(float row) const {
+    const auto [r, fr] = split(row, rows);
+    return hemisphere_[r] + fr * (hemisphere_[r + 1] - hemisphere_[r]);
+  }
+  static float row(float alpha) { return std::sqrt(alpha) * (rows - 1); }
+
+ private:
+  static constexpr int rows = 17, columns = 33;
+
+  static std::pair<std::size_t, float> split(float x, int n) {
+    const int i = std::min(static_cast<int>(x), n - 2);
+    return {static_cast<std::size_t>(i), x - static_cast<float>(i)};
+  }
+
+  /// Visible normals on a regular grid, each with the share of its light that is not shadowed.
+  static float mean(float cos, float alpha) {
+    constexpr int n = 32;
+    const V3f wo(std::sqrt(1 - cos * cos), 0, cos);
+    double weighted = 0, total = 0;
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) {
+        const V2f u((static_cast<float>(i) + 0.5F) / n, (static_cast<float>(j) + 0.5F) / n);
+        const V3f m = ggx_sample_visible(wo, alpha, u);
+        const float cos_i = reflect(wo, m).z;
+        if (cos_i <= 0) continue;
+        const double g = ggx_g2_over_4cos(cos, cos_i, alpha);
+        weighted += g * schlick_weight(dot(wo, m));
+        total += g;
+      }
+    }
+    return static_cast<float>(weighted / total);
+  }
+
+  std::array<std::array<float, columns>, rows> values_;
+  std::array<float, rows> hemisphere_;
+};
+
+/// Made when the first surface needs it: about ten milliseconds.
+const Table& table() {
+  static const Table result;
+  return result;
+}
+
+/// Integral of Schlick's weight times 2 cos over [0, 1].
+constexpr float smooth_hemisphere = 1.0F / 21;
+
+}  // namespace
+
+Layer::Layer(float f0, float f90, float alpha)
+    : f0_(f0), f90_(f90), row_(alpha == 0 ? -1.0F : Table::row(alpha)) {
+  const float mean = let_through(row_ < 0 ? smooth_hemisphere : table().hemisphere(row_));
+  norm_ = mean > 0 ? 1 / mean : 0;
+}
+
+float Layer::mean_weight(float cos) const {
+  return row_ < 0 ? schlick_weight(cos) : table().at(row_, cos);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "renderer/materials/specular.h"
+
+namespace lacuna {
+
+/// How a reflecting GGX layer dims the Lambertian base below it.
+///
+/// With K(w) the mean of Fresnel's factor over the facets that reflect light to w, the base is
+/// scaled by (1 - K(wo)) (1 - K(wi)) / (1 - mean K) (Kelemen and Szirmay-Kalos 2001, "A Microfacet
+/// Based Coupled Specular-Matte BRDF Model", sec. 2.3). That is reciprocal, and the base then
+/// reflects just the share 1 - K(wo) that the layer lets through. The sample implementation in the
+/// appendix of glTF 2.0 takes 1 - F of the half vector instead, which nearly doubles the energy at
+/// grazing angles.
+class Layer {
+ public:
+  Layer() = default;  ///< no layer
+  /// Schlick's reflectances of the layer, the largest channel of each, and its width: 0 or at least
+  /// ggx_min_alpha.
+  Layer(float f0, float f90, float alpha);
+
+  /// Mean of Schlick's weight over the facets that reflect light to a direction with this cosine.
+  float mean_weight(float cos) const;
+  /// 1 - K of a direction: the share that reaches the base. In [0, 1].
+  float let_through(float mean_weight) const { return 1 - (f0_ + (f90_ - f0_) * mean_weight); }
+  /// Scale of the base's f for the two directions' let_through().
+  float scale(float through_o, float through_i) const { return through_o * through_i * norm_; }
+  /// Nothing reaches the base.
+  bool closed() const { return norm_ == 0; }
+
+ private:
+  float f0_ = 0, f90_ = 0;
+  float norm_ = 1;  // 1 / (1 - mean K)
+  float row_ = -1;  // position in the table of means; negative: smooth
+};
+
+}  // namespace lacuna

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "renderer/core/vec.h"
+
+namespace lacuna {
+
+// Fresnel reflectance, and the directions of a mirror and of a smooth interface. `eta` is always
+// the index of refraction on the far side over the one on the side of `w`; `cos` = dot(w, m) > 0.
+
+/// Schlick's (1 - cos)^5 (Schlick 1994, eq. 15).
+inline float schlick_weight(float cos) {
+  const float x = std::max(0.0F, 1 - cos);
+  const float x2 = x * x;
+  return x2 * x2 * x;
+}
+
+/// Reflectance of a dielectric at normal incidence; `ior` >= 1.
+inline float normal_reflectance(float ior) {
+  const float r = (ior - 1) / (ior + 1);
+  return r * r;
+}
+
+/// What a smooth dielectric interface does with unpolarised light.
+struct Fresnel {
+  float reflectance;  ///< [0, 1]; exactly 1 under total internal reflection
+  float cos_t;        ///< >= 0: cosine on the far side
+  bool total;         ///< total internal reflection: nothing refracts
+};
+
+/// Fresnel's equations, exact. The cosine on the far side is computed from (eta^2 - 1) + cos^2,
+/// which keeps a direction unbent for eta = 1 at every angle.
+inline Fresnel fresnel_dielectric(float cos, float eta) {
+  const float t2 = (eta - 1) * (eta + 1) + cos * cos;
+  if (t2 <= 0) return {1, 0, true};
+  const float t = std::sqrt(t2);  // eta * cos_t
+  const float cos_t = t / eta;
+  const float perpendicular = (cos - t) / (cos + t);
+  const float parallel = (eta * cos - cos_t) / (eta * cos + cos_t);
+  return {std::min(1.0F, 0.5F * (perpendicular * perpendicular + parallel * parallel)), cos_t,
+          false};
+}
+
+/// The mirror image of `w` about `m`; both leave the surface.
+inline V3f reflect(const V3f& w, const V3f& m) { return 2 * dot(w, m) * m - w; }
+
+/// The refracted direction, on the far side of `m` (Snell); `cos_t` from fresnel_dielectric().
+/// Normalised: on the way out of a dense medium the rounding errors of `w` grow by its index.
+inline V3f refract(const V3f& w, const V3f& m, float eta, float cos_t) {
+  const float inv = 1 / eta;
+  const V3f t = (dot(w, m) * inv - cos_t) * m - w * inv;
+  return t * (1 / std::sqrt(t.length2()));
+}
+
+}  // namespace lacuna

@@ -1,0 +1,77 @@
+#include "renderer/scene/gltf_guard.h"
+
+#include <algorithm>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "renderer/scene/scene_data.h"
+
+namespace lacuna::gltf {
+namespace {
+
+constexpr std::uint32_t magic_glb = 0x46546C67;   // "glTF"
+constexpr std::uint32_t chunk_json = 0x4E4F534A;  // "JSON"
+constexpr std::uint32_t chunk_bin = 0x004E4942;   // "BIN\0"
+constexpr std::uint64_t header_bytes = 12;
+constexpr std::uint64_t chunk_header_bytes = 8;
+constexpr int max_depth = 64;
+
+std::uint32_t u32_at(std::span<const std::uint8_t> bytes, std::uint64_t offset) {
+  std::uint32_t value = 0;  // x86-64 is little-endian, as is GLB
+  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  return value;
+}
+
+}  // namespace
+
+Framing check_framing(std::span<const std::uint8_t> file) {
+  const auto fail = [](const std::string& what) { throw SceneError("GLB header: " + what); };
+  if (file.size() < 4 || u32_at(file, 0) != magic_glb) return {false, file, 0};
+
+  if (file.size() < header_bytes + chunk_header_bytes) {
+    fail("the file ends after " + std::to_string(file.size()) + " bytes; at least 20 are needed");
+  }
+  if (u32_at(file, 4) != 2) {
+    fail("version is " + std::to_string(u32_at(file, 4)) + "; allowed: 2");
+  }
+  const std::uint64_t length = u32_at(file, 8);
+  if (length != file.size()) {
+    fail("length is " + std::to_string(length) + "; the file has " + std::to_string(file.size()) +
+         " bytes");
+  }
+  const std::uint64_t json_bytes = u32_at(file, 12);
+  const std::uint64_t json_end = header_bytes + chunk_header_bytes + json_bytes;
+  if (u32_at(file, 16) != chunk_json) fail("the first chunk is not JSON");
+  if (json_end > length) {
+    fail("the JSON chunk of " + std::to_string(json_bytes) + " bytes goes beyond the file's " +
+         std::to_string(length));
+  }
+  Framing framing{true, file.subspan(header_bytes + chunk_header_bytes, json_bytes), 0};
+  if (json_end == length) return framing;
+
+  if (json_end + chunk_header_bytes > length) fail("the second chunk has no complete header");
+  const std::uint64_t bin_bytes = u32_at(file, json_end);
+  if (u32_at(file, json_end + 4) != chunk_bin) fail("the second chunk is not BIN");
+  if (json_end + chunk_header_bytes + bin_bytes > length) {
+    fail("the BIN chunk of " + std::to_string(bin_bytes) + " bytes goes beyond the file's " +
+         std::to_string(length));
+  }
+  framing.bin_bytes = bin_bytes;
+  return framing;
+}
+
+Json parse_json(std::span<const std::uint8_t> text) {
+  const auto limit_depth = [](int depth, Json::parse_event_t, Json&) {
+    if (depth > max_depth) {
+      throw SceneError("JSON: nested more than " + std::to_string(max_depth) + " levels deep");
+    }
+    return true;
+  };
+  try {
+    return Json::parse(text.begin(), text.end(), limit_depth);
+  } catch (const Json::exception& e) {
+    throw SceneError(std::string("JSON: ") + e.what());
+  }
+}
+
+}  // namespace lacuna::gltf

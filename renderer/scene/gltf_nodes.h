@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "renderer/core/vec.h"
+#include "renderer/scene/gltf_json.h"
+
+namespace lacuna::gltf {
+
+/// A node that puts something into the scene: a mesh, a camera or a light.
+struct PlacedNode {
+  Place place;
+  M44d to_world;           ///< row vectors: p_world = p * to_world; finite and invertible
+  double determinant = 0;  ///< of the upper 3x3; its sign tells mirrored nodes
+};
+
+/// The nodes that the default scene (or the first one, or, without scenes, all roots) reaches and
+/// that carry something, in depth-first order. Throws SceneError on a cycle, a node with two
+/// parents, more than 256 levels, and a singular or overflowing transform above something carried.
+std::vector<PlacedNode> place_nodes(const Place& root);
+
+}  // namespace lacuna::gltf

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "renderer/core/vec.h"
+
+namespace lacuna {
+
+/// Linear RGB pixels, top row first.
+struct FloatImage {
+  int width = 0, height = 0;
+  std::vector<float> rgb;  ///< 3 x width x height
+  /// String attributes of its header whose names begin with "lacuna:".
+  std::map<std::string, std::string> attributes;
+
+  /// Pixel (x, y), 0 <= x < width, 0 <= y < height.
+  Rgb at(int x, int y) const {
+    const auto i = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                        static_cast<std::size_t>(x));
+    return {rgb[i], rgb[i + 1], rgb[i + 2]};
+  }
+};
+
+/// Reads an OpenEXR or Radiance HDR file, told by its magic bytes, of up to 32768 pixels a side.
+/// `layer` chooses the channels of an EXR: empty means R, G, B, or Y alone as grey; "half_a" means
+/// half_a.R, half_a.G, half_a.B. Values are kept as they are, non-finite ones too. Throws
+/// SceneError: no such file or layer, another format, corrupt, deep, or a crop of a larger image.
+FloatImage read_float_image(const std::filesystem::path& file, const std::string& layer = "");
+
+/// Throws SceneError with `label`, the position and the value of the first pixel that is negative
+/// or not finite: light cannot be.
+void require_radiance(const FloatImage& image, const std::string& label);
+
+}  // namespace lacuna

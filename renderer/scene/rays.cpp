@@ -1,0 +1,163 @@
+#include "renderer/scene/rays.h"
+
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cstring>
+
+#include "renderer/scene/alpha_mask.h"
+
+namespace lacuna {
+
+namespace {
+
+// Embree's own bound on coordinates (rtcore_ray checks) is 1.8e18.
+constexpr float largest_coordinate = 1e18F;
+
+bool acceptable(const Ray& ray) {
+  // The comparison is false for NaN as well.
+  return max_abs_component(ray.o) <= largest_coordinate && is_finite(ray.o) &&
+         max_abs_component(ray.d) <= largest_coordinate && is_finite(ray.d) && ray.tmax >= 0.0F;
+}
+
+RTCRay to_embree(const Ray& ray) {
+  RTCRay r;
+  r.org_x = ray.o.x;
+  r.org_y = ray.o.y;
+  r.org_z = ray.o.z;
+  r.tnear = 0.0F;
+  r.dir_x = ray.d.x;
+  r.dir_y = ray.d.y;
+  r.dir_z = ray.d.z;
+  r.time = 0.0F;
+  r.tfar = ray.tmax;
+  r.mask = ~0U;
+  r.id = 0;
+  r.flags = 0;
+  return r;
+}
+
+// Called by Embree for every candidate hit on a geometry with a mask.
+void mask_filter(const RTCFilterFunctionNArguments* args) {
+  const auto& mask = *static_cast<const AlphaMask*>(args->geometryUserPtr);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] == 0) continue;
+    if (!mask.opaque(RTCHitN_primID(args->hit, args->N, i), RTCHitN_u(args->hit, args->N, i),
+                     RTCHitN_v(args->hit, args->N, i))) {
+      args->valid[i] = 0;
+    }
+  }
+}
+
+}  // namespace
+
+struct RayCaster::Impl {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  std::vector<std::unique_ptr<AlphaMask>> masks;
+  std::atomic<std::int64_t> bytes{0};
+  mutable std::atomic<std::uint64_t> refused{0};
+
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+    if (device != nullptr) rtcReleaseDevice(device);
+  }
+
+  void check(const char* doing) const {
+    const RTCError e = rtcGetDeviceError(device);
+    if (e == RTC_ERROR_NONE) return;
+    throw SceneError(fmt::format(
+        "Embree failed while {}: {}", doing,
+        e == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : fmt::format("error {}", int(e))));
+  }
+
+  void add(const SceneData& data, std::size_t index) {
+    const Mesh& mesh = data.meshes[index];
+    RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    static_assert(sizeof(V3f) == 12 && sizeof(mesh.triangles[0]) == 12);
+    void* positions = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                              sizeof(V3f), mesh.positions.size());
+    void* triangles = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                              sizeof(mesh.triangles[0]), mesh.triangles.size());
+    if (positions == nullptr || triangles == nullptr) {
+      rtcReleaseGeometry(g);
+      check("copying triangles");
+      throw SceneError("Embree gave no memory for triangles");
+    }
+    std::memcpy(positions, mesh.positions.data(), sizeof(V3f) * mesh.positions.size());
+    std::memcpy(triangles, mesh.triangles.data(),
+                sizeof(mesh.triangles[0]) * mesh.triangles.size());
+    if (AlphaMask::needed(data, mesh)) {
+      masks.push_back(std::make_unique<AlphaMask>(data, mesh));
+      rtcSetGeometryUserData(g, masks.back().get());
+      rtcSetGeometryIntersectFilterFunction(g, mask_filter);
+      rtcSetGeometryOccludedFilterFunction(g, mask_filter);
+    }
+    rtcCommitGeometry(g);
+    rtcAttachGeometryByID(scene, g, static_cast<unsigned>(index));
+    rtcReleaseGeometry(g);
+  }
+};
+
+RayCaster::RayCaster(const SceneData& data, int threads) : impl_(std::make_unique<Impl>()) {
+  impl_->device = rtcNewDevice(fmt::format("isa=avx2,threads={},set_affinity=0", threads).c_str());
+  impl_->check("starting");
+  rtcSetDeviceMemoryMonitorFunction(
+      impl_->device,
+      [](void* user, ssize_t bytes, bool) {
+        static_cast<Impl*>(user)->bytes += bytes;
+        return true;
+      },
+      impl_.get());
+  impl_->scene = rtcNewScene(impl_->device);
+  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
+  for (std::size_t i = 0; i < data.meshes.size(); ++i) impl_->add(data, i);
+  rtcCommitScene(impl_->scene);
+  impl_->check("building its acceleration structure");
+}
+
+RayCaster::~RayCaster() = default;
+RayCaster::RayCaster(RayCaster&&) noexcept = default;
+RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
+
+bool RayCaster::intersect(const Ray& ray, Hit& hit) const {
+  if (!acceptable(ray)) [[unlikely]] {
+    ++impl_->refused;
+    return false;
+  }
+  RTCRayHit query;
+  query.ray = to_embree(ray);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(impl_->scene, &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  hit = {query.ray.tfar, query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v};
+  return true;
+}
+
+bool RayCaster::occluded(const Ray& ray) const {
+  if (!acceptable(ray)) [[unlikely]] {
+    ++impl_->refused;
+    return true;
+  }
+  RTCRay query = to_embree(ray);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(impl_->scene, &context, &query);
+  return query.tfar < 0.0F;
+}
+
+std::uint64_t RayCaster::refused_rays() const { return impl_->refused; }
+int RayCaster::filters() const { return static_cast<int>(impl_->masks.size()); }
+RTCSceneTy* RayCaster::embree_scene() const { return impl_->scene; }
+std::uint64_t RayCaster::bytes() const {
+  return static_cast<std::uint64_t>(std::max<std::int64_t>(0, impl_->bytes));
+}
+
+}  // namespace lacuna

@@ -1,0 +1,83 @@
+#include "renderer/scene/scene.h"
+
+#include <set>
+
+#include "renderer/materials/gltf_material.h"
+#include "renderer/scene/alpha_mask.h"
+#include "renderer/scene/image_read.h"
+
+namespace lacuna {
+
+namespace {
+
+float scene_radius(const SceneData& data) {
+  V3d low(std::numeric_limits<double>::infinity());
+  V3d high = -low;
+  for (const Mesh& mesh : data.meshes) {
+    for (const auto& triangle : mesh.triangles) {
+      for (const auto i : triangle) {
+        const V3d p(mesh.positions[i]);
+        for (int k = 0; k < 3; ++k) {
+          low[k] = std::min(low[k], p[k]);
+          high[k] = std::max(high[k], p[k]);
+        }
+      }
+    }
+  }
+  return static_cast<float>((high - low).length() / 2);
+}
+
+std::unique_ptr<Environment> load_environment(const EnvironmentImage& e) {
+  FloatImage image = read_float_image(e.file);
+  require_radiance(image, e.file.string());
+  return std::make_unique<Environment>(image.width, image.height, std::move(image.rgb), e.scale,
+                                       e.rotation);
+}
+
+}  // namespace
+
+Scene::Scene(SceneData data, const SceneNeeds& needs,
+             const std::optional<EnvironmentImage>& environment, const ThreadPool& pool)
+    : data_(std::make_unique<SceneData>(std::move(data))),
+      radius_(scene_radius(*data_)),
+      triangles_(*data_),
+      rays_((decode_textures(needs, pool), RayCaster(*data_, pool.threads()))) {
+  if (needs.emission) {
+    emitters_ = std::make_unique<EmitterSet>(
+        *data_, triangles_, environment ? load_environment(*environment) : nullptr, radius_);
+  }
+}
+
+void Scene::decode_textures(const SceneNeeds& needs, const ThreadPool& pool) {
+  std::set<int> wanted;
+  const auto want = [&](const TextureRef& t) {
+    if (t.used()) wanted.insert(t.texture);
+  };
+  for (const Mesh& mesh : data_->meshes) {
+    const Material& m = data_->materials[mesh.material];
+    if (AlphaMask::needed(*data_, mesh)) want(m.base_color_texture);
+    if (needs.emission && m.emits()) want(m.emission_texture);
+    if (needs.materials) m.for_each_scattering_texture(want);
+  }
+  const std::vector<int> list(wanted.begin(), wanted.end());
+  pool.for_each(static_cast<int>(list.size()), [&](int i) {
+    data_->textures[static_cast<std::size_t>(list[static_cast<std::size_t>(i)])]->decode();
+  });
+  textures_decoded_ = static_cast<int>(list.size());
+}
+
+std::uint64_t Scene::texture_bytes() const {
+  std::uint64_t sum = 0;
+  for (const auto& t : data_->textures) sum += t->bytes();
+  return sum;
+}
+
+Ray Scene::shadow_ray(const Surface& a, const EmitterSample& b) {
+  if (b.infinite) return {offset_origin(a.x, a.ng, a.extent, b.x), b.x};
+  const V3f w = b.x - a.x;
+  const V3f from = offset_origin(a.x, a.ng, a.extent, w);
+  const V3f to = b.delta ? b.x : offset_origin(b.x, b.ng, b.extent, -w);
+  return {from, to - from, 1.0F};
+}
+
+}  // namespace lacuna

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "renderer/core/parallel.h"
+#include "renderer/emitters/emitter_set.h"
+#include "renderer/materials/gltf_material.h"
+#include "renderer/scene/rays.h"
+#include "renderer/scene/scene_data.h"
+#include "renderer/scene/surface.h"
+
+namespace lacuna {
+
+/// What an integrator wants to know of a scene. What nobody asks for is not built: masks decide
+/// what is there and are always included.
+struct SceneNeeds {
+  bool materials = false;  ///< scattering: textures of base colour, roughness, ...
+  bool emission = false;   ///< emitters and the environment
+};
+
+/// Light from all around, as a job names it.
+struct EnvironmentImage {
+  std::filesystem::path file;
+  float scale = 1;
+  float rotation = 0;  ///< radians
+};
+
+/// A scene ready to render. Immutable.
+class Scene {
+ public:
+  /// Decodes the textures that `needs` asks for, builds the ray caster and, if asked for, the
+  /// emitters. Throws SceneError.
+  Scene(SceneData data, const SceneNeeds& needs, const std::optional<EnvironmentImage>& environment,
+        const ThreadPool& pool);
+
+  const SceneData& data() const { return *data_; }
+  /// The surface at a hit of rays().
+  Surface surface(const Hit& hit) const { return {*data_, triangles_, hit}; }
+  const RayCaster& rays() const { return rays_; }
+  /// Only where SceneNeeds::emission was asked for.
+  const EmitterSet& emitters() const { return *emitters_; }
+  bool has_emitters() const { return emitters_ != nullptr; }
+  /// Half the diagonal of the bounding box of all triangles, scene units, > 0.
+  float radius() const { return radius_; }
+  int textures_decoded() const { return textures_decoded_; }
+  std::uint64_t texture_bytes() const;
+
+  /// No surface lies between `a` and `b` (or towards direction `b.x` at infinity, if b.infinite).
+  /// Both ends are moved off their surfaces.
+  bool visible(const Surface& a, const EmitterSample& b) const {
+    return !rays_.occluded(shadow_ray(a, b));
+  }
+  /// The ray that visible() asks about.
+  static Ray shadow_ray(const Surface& a, const EmitterSample& b);
+
+  /// Radiance that leaves `s` along unit `wo`.
+  Rgb emitted(const Surface& s, const V3f& wo) const {
+    if (!s.emits || (!s.emits_behind && dot(wo, s.ng) <= 0)) return {0, 0, 0};
+    return emission(material(s), data_->textures, s.uv);
+  }
+  const Material& material(const Surface& s) const { return data_->materials[s.material]; }
+
+ private:
+  void decode_textures(const SceneNeeds& needs, const ThreadPool& pool);
+
+  std::unique_ptr<SceneData> data_;  // on the heap: rays and emitters point into it
+  float radius_ = 0;
+  int textures_decoded_ = 0;
+  TriangleTable triangles_;
+  RayCaster rays_;
+  std::unique_ptr<EmitterSet> emitters_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+
+#include "analysis/settings/field.h"
+
+namespace lacuna {
+
+/// Layers beside the picture itself that can be asked for in image.exr.
+enum class ImageLayer { variance, halves, albedo, normal, depth };
+
+template <>
+struct EnumTable<ImageLayer> {
+  static constexpr std::array<EnumValue<ImageLayer>, 5> values{{
+      {ImageLayer::variance, "variance", "variance of the pixel's estimate (of the mean)"},
+      {ImageLayer::halves, "halves",
+       "means of the even and of the odd iterations, two independent estimates"},
+      {ImageLayer::albedo, "albedo", "base reflectance of the first hit"},
+      {ImageLayer::normal, "normal", "shading normal of the first hit, world space"},
+      {ImageLayer::depth, "depth", "distance to the first hit, scene units"},
+  }};
+};
+
+/// Precision of image.exr.
+enum class PixelType { half_float, single_float };
+
+template <>
+struct EnumTable<PixelType> {
+  static constexpr std::array<EnumValue<PixelType>, 2> values{{
+      {PixelType::single_float, "float", "32 bits"},
+      {PixelType::half_float, "half", "16 bits; refused where a value would overflow"},
+  }};
+};
+
+/// Error against a reference r of an estimate x, over pixels and channels (DESIGN, "A job's
+/// folder").
+enum class ErrorMetric { mae, rmse, mse, relmse, smape, est_rmse };
+
+template <>
+struct EnumTable<ErrorMetric> {
+  static constexpr std::array<EnumValue<ErrorMetric>, 6> values{{
+      {ErrorMetric::mae, "mae", "mean |x - r|"},
+      {ErrorMetric::rmse, "rmse", "square root of mse"},
+      {ErrorMetric::mse, "mse", "mean (x - r)^2"},
+      {ErrorMetric::relmse, "relmse", "mean (x - r)^2 / (r^2 + 0.01)"},
+      {ErrorMetric::smape, "smape", "mean |x - r| / ((|x| + |r|) / 2 + 0.01)"},
+      {ErrorMetric::est_rmse, "est_rmse",
+       "rmse estimated from two independent halves; needs no reference"},
+  }};
+};
+
+}  // namespace lacuna

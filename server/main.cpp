@@ -1,0 +1,78 @@
+// lacuna-server: takes jobs over HTTP and hands them to renderers.
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include "server/service.h"
+
+namespace {
+
+using namespace lacuna;
+
+void define_options(CLI::App& app, ServiceSettings& s) {
+  app.set_version_flag("--version", service_version());
+  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  app.add_option("--port", s.http.port, "port to listen on; 0: any free one")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
+  app.add_option("--bind", s.http.bind, "address to listen on; only loopback in this version")
+      ->capture_default_str();
+  app.add_option("--data", s.data, "folder of the jobs; default: $LACUNA_DATA or lacuna-data");
+  app.add_option("--scenes", s.scenes,
+                 "folder of scenes, may be repeated; default: $LACUNA_SCENES or jobs/scenes")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--jobs", s.queue.children, "renderers at a time")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  app.add_option("--max-attempts", s.queue.max_attempts,
+                 "how often a renderer that crashes is started for one job")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_option("--grace", s.grace_seconds, "seconds between SIGTERM and SIGKILL")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  app.add_option("--renderer", s.renderer, "the renderer; default: lacuna beside this program");
+  app.add_option("--web", s.web, "folder of the page; default: web of the source tree");
+}
+
+/// Blocks the signals that end the service in every thread, so that wait_for_end() gets them.
+sigset_t block_ends() {
+  sigset_t ends;
+  sigemptyset(&ends);
+  sigaddset(&ends, SIGTERM);
+  sigaddset(&ends, SIGINT);
+  sigaddset(&ends, SIGHUP);
+  pthread_sigmask(SIG_BLOCK, &ends, nullptr);
+  return ends;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ServiceSettings settings;
+  CLI::App app{"Lacuna's render service: takes jobs over HTTP and hands them to renderers."};
+  define_options(app, settings);
+  CLI11_PARSE(app, argc, argv);
+  spdlog::set_default_logger(spdlog::stderr_color_mt("lacuna-server"));
+
+  const sigset_t ends = block_ends();
+  try {
+    Service service(settings);
+    service.start();
+    fmt::print("lacuna-server: listening on {}\n", service.url());
+    std::fflush(stdout);
+    int signal = 0;
+    sigwait(&ends, &signal);
+    spdlog::info("ending (signal {})", signal);
+    service.stop();
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "lacuna-server: {}\n", error.what());
+    return 1;
+  }
+}

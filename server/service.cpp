@@ -1,0 +1,136 @@
+#include "server/service.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <sys/file.h>
+
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+
+#include "jobs/spec/version.h"
+#include "jobs/store/file_handle.h"
+#include "server/executor_local.h"
+#include "server/http.h"
+#include "server/listener.h"
+#include "server/queue.h"
+#include "server/routes.h"
+
+namespace lacuna {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where Debian's libjs-chart.js puts the plotting library.
+const fs::path chart_js = "/usr/share/javascript/chart.js/chart.min.js";
+
+fs::path own_folder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
+
+/// The page's folder: installed beside the program, or `web` of the tree that it was built in.
+fs::path find_web() {
+  const fs::path bin = own_folder();
+  for (const fs::path& place : {bin / "../share/lacuna/web", bin / "../../../web"}) {
+    if (fs::exists(place / "index.html")) return fs::canonical(place);
+  }
+  throw std::invalid_argument("the page is not found; name its folder with --web");
+}
+
+/// Folders in a form that holds in the children's working directory, too.
+std::vector<fs::path> absolute(const std::vector<fs::path>& folders) {
+  std::vector<fs::path> result;
+  for (const fs::path& folder : folders) {
+    if (!fs::is_directory(folder)) {
+      throw std::invalid_argument(fmt::format("{} is no folder of scenes", folder.string()));
+    }
+    result.push_back(fs::absolute(folder));
+  }
+  return result;
+}
+
+DataRoot data_root(const ServiceSettings& settings) {
+  const DataRoot named =
+      settings.data.empty() ? DataRoot::from_environment() : DataRoot{settings.data};
+  DataRoot data{fs::absolute(named.dir)};
+  fs::create_directories(data.jobs());
+  return data;
+}
+
+/// Two services on one folder would start every job twice.
+FileHandle lock_data(const DataRoot& data) {
+  const fs::path file = data.dir / ".lacuna-server.lock";
+  FileHandle lock(::open(file.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644));
+  if (!lock) throw std::system_error(errno, std::generic_category(), file.string());
+  if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) {
+    throw std::runtime_error(fmt::format("another lacuna-server works in {}", data.dir.string()));
+  }
+  return lock;
+}
+
+void check(const HttpSettings& settings) {
+  if (!is_loopback(settings.bind)) {
+    throw std::invalid_argument(fmt::format(
+        "{} can be reached from other machines, and this version has no access control: "
+        "bind to 127.0.0.1 or ::1, and tunnel to it",
+        settings.bind));
+  }
+}
+
+StaticFiles page(const ServiceSettings& settings) {
+  StaticFiles files(settings.web.empty() ? find_web() : fs::canonical(settings.web));
+  files.add("/vendor/chart.js", chart_js);
+  if (!files.has("/vendor/chart.js")) {
+    spdlog::warn("{} is not there (package libjs-chart.js): the page shows no curves",
+                 chart_js.string());
+  }
+  return files;
+}
+
+}  // namespace
+
+std::string service_version() { return "lacuna-server " + version(); }
+
+struct Service::Parts {
+  explicit Parts(const ServiceSettings& settings)
+      : scenes(settings.scenes.empty() ? absolute(ScenesRoots::from_environment().roots())
+                                       : absolute(settings.scenes)),
+        data(data_root(settings)),
+        lock(lock_data(data)),
+        executor({.renderer = settings.renderer.empty() ? own_folder() / "lacuna"
+                                                        : fs::absolute(settings.renderer),
+                  .data = data.dir,
+                  .scenes = scenes.roots(),
+                  .grace = std::chrono::milliseconds(
+                      static_cast<std::int64_t>(1000 * settings.grace_seconds))}),
+        queue(data, executor, settings.queue),
+        routes(data, scenes, queue, page(settings)),
+        http(settings.http, [this](const Request& r) { return routes.handle(r); }) {}
+
+  ScenesRoots scenes;
+  DataRoot data;
+  FileHandle lock;
+  LocalExecutor executor;
+  Queue queue;
+  Routes routes;
+  HttpServer http;
+};
+
+Service::Service(const ServiceSettings& settings) {
+  check(settings.http);
+  parts_ = std::make_unique<Parts>(settings);
+}
+Service::~Service() = default;
+
+void Service::start() {
+  parts_->queue.start();
+  parts_->http.start();
+}
+
+void Service::stop() {
+  parts_->http.stop();
+  parts_->queue.stop();
+}
+
+std::string Service::url() const { return parts_->http.url(); }
+
+}  // namespace lacuna

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "jobs/spec/described.h"
+#include "jobs/spec/job_spec.h"
+#include "jobs/spec/limits.h"
+
+namespace lacuna {
+
+/// A visitor that fills every member with something that its table allows: a new setting is tested
+/// as soon as it is in a table.
+class RandomSettings {
+ public:
+  explicit RandomSettings(std::uint64_t seed) : random_(seed) {}
+
+  template <class T>
+  void operator()(std::string_view, T& member, const Field& field) {
+    fill(member, field);
+  }
+
+  std::size_t below(std::size_t n) { return random_() % n; }
+
+  template <class T>
+  void fill(T& out, const Field& field) {
+    if constexpr (std::is_same_v<T, bool>) {
+      out = below(2) == 0;
+    } else if constexpr (std::is_arithmetic_v<T>) {
+      out = static_cast<T>(number(limits_of<T>(field), std::is_integral_v<T>));
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      out = text(field);
+    } else if constexpr (NamedEnum<T>) {
+      out = EnumTable<T>::values[below(EnumTable<T>::values.size())].value;
+    } else if constexpr (is_optional<T>) {
+      out.reset();
+      if (below(2) == 0) fill(out.emplace(), field);
+    } else if constexpr (is_array<T>) {
+      for (auto& element : out) fill(element, field);
+    } else if constexpr (is_vector<T>) {
+      out.resize(below(static_cast<std::size_t>(std::min(field.max, 5.0)) + 1));
+      for (auto& element : out) fill(element, Field{});
+    } else if constexpr (is_variant<T>) {
+      alternative(out, below(std::variant_size_v<T>));
+    } else {
+      describe(*this, out);
+    }
+  }
+
+ private:
+  double number(const Limits& limits, bool integral) {
+    const double low = std::max(limits.min, -1e18), high = std::min(limits.max, 1e18);
+    switch (below(4)) {
+      case 0:
+        return limits.above_min ? high : low;
+      case 1:
+        return high;
+      default: {
+        const double share = std::ldexp(static_cast<double>(random_() >> 11) + 1, -53);
+        const double scaled = below(2) == 0 ? share : std::pow(share, 8);
+        const double value = low + (high - low) * scaled;
+        return integral ? std::clamp(std::floor(value), low, high) : value;
+      }
+    }
+  }
+
+  std::string text(const Field& field) {
+    static constexpr std::string_view pieces[] = {"a", "Z",  "0", " ",  "\"",     "\\",
+                                                  "/", "\n", "ä", "世", "\u0001", "🙂"};
+    const double longest = std::min(field.max, 40.0);
+    std::string out;
+    const auto n = static_cast<std::size_t>(std::max(field.min, 0.0)) +
+                   below(static_cast<std::size_t>(longest - std::max(field.min, 0.0)) + 1);
+    for (std::size_t i = 0; i < n; ++i) out += pieces[below(std::size(pieces))];
+    return out;
+  }
+
+  template <std::size_t I = 0, class... Ts>
+  void alternative(std::variant<Ts...>& out, std::size_t chosen) {
+    if constexpr (I < sizeof...(Ts)) {
+      if (I != chosen) return alternative<I + 1>(out, chosen);
+      describe(*this, out.template emplace<I>());
+    }
+  }
+
+  std::mt19937_64 random_;
+};
+
+/// A job that parse_job accepts: the rules beyond single fields hold too.
+inline JobSpec random_job(std::uint64_t seed) {
+  RandomSettings random(seed);
+  JobSpec spec;
+  describe(random, spec);
+  auto& layers = spec.layers;
+  std::sort(layers.begin(), layers.end());
+  layers.erase(std::unique(layers.begin(), layers.end()), layers.end());
+  Budget& b = spec.budget;
+  if (!b.seconds && !b.cpu_seconds && !b.iterations && !b.error) b.iterations = 1;
+  if (spec.reference.empty()) spec.reference = "auto";
+  return spec;
+}
+
+}  // namespace lacuna

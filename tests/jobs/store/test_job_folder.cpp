@@ -1,0 +1,215 @@
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <optional>
+#include <stdexcept>
+
+#include "child_process.h"
+#include "jobs/spec/problems.h"
+#include "jobs/store/file_handle.h"
+#include "jobs/store/job_folder.h"
+#include "temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+using Names = std::set<std::string>;
+
+JobSpec some_job() {
+  JobSpec spec;
+  spec.scene = "cornell.glb";
+  spec.budget.iterations = 5;
+  return spec;
+}
+
+TEST(JobFolder, is_created_with_its_job_and_state) {
+  const TemporaryFolder tmp;
+  const JobFolder folder = JobFolder::create(tmp.dir() / "jobs" / "one", some_job());
+  EXPECT_EQ(folder.id(), "one");
+  EXPECT_EQ(names_in(folder.dir()), (Names{"job.json", "state.json"}));
+  EXPECT_EQ(names_in(tmp / "jobs"), Names{"one"});
+  EXPECT_EQ(folder.read_job(), some_job());
+  JobState expected;
+  expected.created = folder.read_state().created;
+  EXPECT_EQ(folder.read_state(), expected);
+  EXPECT_EQ(expected.state, State::queued);
+  EXPECT_EQ(expected.created.size(), utc_now().size());
+  EXPECT_EQ(folder.read_progress(), std::nullopt);
+}
+
+TEST(JobFolder, a_slash_at_the_end_changes_nothing) {
+  const TemporaryFolder tmp;
+  EXPECT_EQ(JobFolder::create(tmp / "one/", some_job()).id(), "one");
+}
+
+TEST(JobFolder, never_replaces_what_is_there) {
+  const TemporaryFolder tmp;
+  JobFolder::create(tmp / "one", some_job());
+  std::filesystem::create_directory(tmp / "empty");
+  put_file(tmp / "file", "x");
+  std::filesystem::create_symlink("nowhere", tmp / "link");
+  for (const char* name : {"one", "empty", "file", "link"}) {
+    const auto create = [&] { JobFolder::create(tmp / name, JobSpec{}); };
+    EXPECT_TRUE(contains(message_of<std::invalid_argument>(create), (tmp / name).string())) << name;
+  }
+  EXPECT_EQ(JobFolder(tmp / "one").read_job(), some_job());
+  EXPECT_EQ(names_in(tmp.dir()), (Names{"one", "empty", "file", "link"}));
+}
+
+TEST(JobFolder, is_created_whole_or_not_at_all) {
+  const TemporaryFolder tmp;
+  put_file(tmp / "file", "x");
+  EXPECT_THROW(JobFolder::create(tmp.dir() / "file" / "one", some_job()), std::system_error);
+  EXPECT_EQ(names_in(tmp.dir()), Names{"file"});
+}
+
+TEST(JobFolder, state_reads_back_as_written) {
+  const TemporaryFolder tmp;
+  const JobFolder folder = JobFolder::create(tmp / "one", some_job());
+  JobState s;
+  s.state = State::failed;
+  s.attempts = 3;
+  s.exit_code = -9;
+  s.created = "2026-01-31T23:59:59.123Z";
+  s.started = "2026-02-01T00:00:00.000Z";
+  s.finished = "2026-02-01T00:00:01.000Z";
+  s.phase = "loading";
+  s.error = "scene \"a\" has ünicode";
+  s.warnings = {"one", "two"};
+  folder.write_state(s);
+  EXPECT_EQ(folder.read_state(), s);
+}
+
+TEST(JobFolder, an_error_of_any_bytes_still_makes_a_readable_state) {
+  const TemporaryFolder tmp;
+  const JobFolder folder = JobFolder::create(tmp / "one", some_job());
+  JobState s;
+  s.error = std::string("a\0b\nc\x1b\xff", 7);
+  s.warnings = {std::string(100000, 'w'), std::string("\0", 1)};
+  folder.write_state(s);
+  const JobState back = folder.read_state();
+  EXPECT_EQ(back.error, "a b c \xef\xbf\xbd");
+  EXPECT_EQ(back.warnings[0].size(), 4003u);
+  EXPECT_EQ(back.warnings[1], " ");
+}
+
+TEST(JobFolder, a_missing_or_corrupt_state_is_told_with_its_file) {
+  const TemporaryFolder tmp;
+  const JobFolder folder(tmp.dir());
+  const auto read = [&] { folder.read_state(); };
+  EXPECT_TRUE(contains(message_of<std::runtime_error>(read), folder.file("state.json").string()));
+  for (const std::string& content :
+       {std::string(), std::string("{}"), std::string("{\"state\": \"running\""),
+        std::string(R"({"state": "lost", "attempts": 0, "created": ""})"),
+        std::string(R"({"state": "done", "attempts": 0, "created": "", "more": 1})"),
+        std::string(2 << 20, ' ')}) {
+    put_file(folder.file("state.json"), content);
+    const std::string message = message_of<std::runtime_error>(read);
+    EXPECT_TRUE(contains(message, folder.file("state.json").string())) << content.substr(0, 100);
+    EXPECT_TRUE(contains(message, "corrupt")) << message;
+  }
+}
+
+TEST(JobFolder, a_bad_job_file_is_told) {
+  const TemporaryFolder tmp;
+  const JobFolder folder(tmp.dir());
+  EXPECT_THROW(folder.read_job(), std::system_error);
+  put_file(folder.file("job.json"), "{}");
+  EXPECT_THROW(folder.read_job(), BadJob);
+  put_file(folder.file("job.json"), std::string(3 << 20, ' '));
+  EXPECT_THROW(folder.read_job(), BadJob);
+}
+
+TEST(JobFolder, progress_reads_back_as_written_and_is_nothing_where_it_is_damaged) {
+  const TemporaryFolder tmp;
+  const JobFolder folder(tmp.dir());
+  Progress p;
+  p.iteration = 12;
+  p.seconds = 1.0 / 3;
+  p.cpu_seconds = 0.1;
+  p.share = 1;
+  folder.write_progress(p);
+  EXPECT_EQ(folder.read_progress(), p);
+  p.remaining_seconds = 5;
+  p.error = 1e-300;
+  p.error_metric = "est_rmse";
+  folder.write_progress(p);
+  EXPECT_EQ(folder.read_progress(), p);
+  p.error = std::numeric_limits<double>::infinity();
+  folder.write_progress(p);
+  EXPECT_EQ(folder.read_progress()->error, std::nullopt);
+  for (const char* damaged : {"", "{\"iteration\": 1", "{}", "[]"}) {
+    put_file(folder.file("progress.json"), damaged);
+    EXPECT_EQ(folder.read_progress(), std::nullopt) << damaged;
+  }
+}
+
+/// 0: this process got the lock, 1: it did not.
+int try_to_lock(const JobFolder& folder) { return folder.try_lock() ? 0 : 1; }
+
+TEST(JobFolder, one_process_at_a_time_has_the_lock) {
+  const TemporaryFolder tmp;
+  const JobFolder folder(tmp.dir());
+  const auto taken = [&] {
+    return WEXITSTATUS(status_in_child([&] { return try_to_lock(folder); }));
+  };
+  EXPECT_EQ(taken(), 0);
+  {
+    auto lock = folder.try_lock();
+    ASSERT_TRUE(lock);
+    EXPECT_EQ(taken(), 1);
+    EXPECT_FALSE(folder.try_lock());
+    const JobFolder::Lock moved = std::move(*lock);
+    lock.reset();
+    EXPECT_EQ(taken(), 1);
+  }
+  EXPECT_EQ(taken(), 0);
+}
+
+TEST(JobFolder, the_lock_goes_with_the_process_however_it_dies) {
+  const TemporaryFolder tmp;
+  const JobFolder folder(tmp.dir());
+  const int status = status_in_child([&] {
+    const auto lock = folder.try_lock();
+    return lock ? ::raise(SIGKILL) : 1;
+  });
+  EXPECT_TRUE(WIFSIGNALED(status));
+  EXPECT_TRUE(folder.try_lock());
+}
+
+TEST(JobFolder, who_gets_the_lock_tidies_up_after_the_killed) {
+  const TemporaryFolder tmp;
+  const JobFolder folder(tmp.dir());
+  status_in_child([&] {
+    put_file(temporary_name(folder.file("checkpoint.bin")), "half a checkpoint");
+    return ::raise(SIGKILL);
+  });
+  ASSERT_EQ(names_in(tmp.dir()).size(), 1u);
+  const auto left = tmp / *names_in(tmp.dir()).begin();
+  std::filesystem::last_write_time(
+      left, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
+  ASSERT_TRUE(folder.try_lock());
+  EXPECT_EQ(names_in(tmp.dir()), Names{".lock"});
+}
+
+TEST(JobFolder, a_lock_that_cannot_be_made_is_an_error) {
+  const TemporaryFolder tmp;
+  const JobFolder folder(tmp / "missing");
+  EXPECT_THROW(folder.try_lock(), std::system_error);
+}
+
+TEST(JobFolder, the_manifest_serves_everything_but_the_checkpoint) {
+  Names names;
+  for (const FileInfo& f : job_files()) {
+    EXPECT_TRUE(names.emplace(f.name).second) << f.name;
+    EXPECT_EQ(f.served, f.name != "checkpoint.bin") << f.name;
+    EXPECT_NE(f.media_type.find('/'), std::string_view::npos);
+    EXPECT_EQ(f.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz."), std::string_view::npos);
+  }
+  EXPECT_EQ(names, (Names{"job.json", "state.json", "progress.json", "image.exr", "image.png",
+                          "curve.csv", "report.json", "checkpoint.bin", "log.txt"}));
+}
+
+}  // namespace
+}  // namespace lacuna

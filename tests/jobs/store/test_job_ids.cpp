@@ -1,0 +1,59 @@
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "jobs/store/job_folder.h"
+#include "temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+TEST(JobIds, have_the_form_that_is_looked_up) {
+  std::set<std::string> ids;
+  for (int i = 0; i < 1000; ++i) {
+    const std::string id = new_job_id();
+    EXPECT_TRUE(is_job_id(id)) << id;
+    ids.insert(id);
+  }
+  EXPECT_GE(ids.size(), 999u);  // 36^6 of them a second
+}
+
+TEST(JobIds, nothing_else_is_looked_up) {
+  ASSERT_TRUE(is_job_id("20260131-235959-k3x9qa"));
+  for (const std::string& s :
+       {std::string(), std::string("."), std::string(".."), std::string("20260131-235959-k3x9q"),
+        std::string("20260131-235959-k3x9qab"), std::string("20260131-235959-k3x9qA"),
+        std::string("20260131-235959-k3x9q/"), std::string("20260131-235959-k3x9q."),
+        std::string("20260131_235959-k3x9qa"), std::string("2026013a-235959-k3x9qa"),
+        std::string("20260131-235959-k3x9q\0", 22), std::string("../../../../../etc/pass"),
+        std::string(" 0260131-235959-k3x9qa")}) {
+    EXPECT_FALSE(is_job_id(s)) << s;
+  }
+}
+
+TEST(JobIds, now_is_iso_8601_with_milliseconds) {
+  const std::regex form(R"(20\d\d-[01]\d-[0-3]\dT[0-2]\d:[0-5]\d:[0-6]\d\.\d\d\dZ)");
+  EXPECT_TRUE(std::regex_match(utc_now(), form)) << utc_now();
+  const std::string before = utc_now(), after = utc_now();
+  EXPECT_LE(before, after);
+}
+
+TEST(JobIds, jobs_are_listed_oldest_first_and_nothing_else_is) {
+  const TemporaryFolder tmp;
+  EXPECT_TRUE(list_jobs(tmp / "missing").empty());
+  JobSpec spec;
+  spec.scene = "a.glb";
+  const std::vector<std::string> ids{"20251231-235959-zzzzzz", "20260101-000000-aaaaaa",
+                                     "20260131-120000-mmmmmm"};
+  for (const int i : {2, 0, 1}) JobFolder::create(tmp / ids[std::size_t(i)], spec);
+  JobFolder::create(tmp / "not-an-id", spec);
+  std::filesystem::create_directory(tmp / "20260131-120000-nojobs");
+  put_file(tmp / "20260131-120000-a0file", "x");
+  std::filesystem::create_directory_symlink(ids[0], tmp / "20260131-120000-a0link");
+  std::vector<std::string> listed;
+  for (const JobFolder& job : list_jobs(tmp.dir())) listed.push_back(job.id());
+  EXPECT_EQ(listed, ids);
+}
+
+}  // namespace
+}  // namespace lacuna

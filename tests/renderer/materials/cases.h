@@ -1,0 +1,141 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "renderer/core/rng.h"
+#include "renderer/materials/bsdf.h"
+
+namespace lacuna::cases {
+
+// The surfaces and views that every property is tested on.
+
+struct Surface {
+  std::string name;
+  SurfaceParams params;
+
+  bool opaque() const { return params.transmission == 0 || params.metallic == 1; }
+};
+
+/// Reflectances as KHR_materials_ior gives them.
+inline SurfaceParams dielectric(const Rgb& base, float alpha, float ior, float transmission) {
+  SurfaceParams p;
+  p.base_color = base;
+  p.alpha = alpha;
+  p.ior = ior;
+  const float f0 = normal_reflectance(ior);
+  p.f0 = Rgb(f0, f0, f0);
+  p.transmission = transmission;
+  return p;
+}
+inline SurfaceParams lambert(const Rgb& base) {
+  SurfaceParams p;
+  p.base_color = base;
+  p.f0 = Rgb(0, 0, 0);
+  p.f90 = 0;
+  return p;
+}
+inline SurfaceParams metal(const Rgb& base, float alpha) {
+  SurfaceParams p;
+  p.base_color = base;
+  p.alpha = alpha;
+  p.metallic = 1;
+  return p;
+}
+inline SurfaceParams mixed(SurfaceParams p, float metallic) {
+  p.metallic = metallic;
+  return p;
+}
+inline SurfaceParams layer(SurfaceParams p, const Rgb& f0, float f90) {
+  p.f0 = f0;
+  p.f90 = f90;
+  return p;
+}
+
+inline std::vector<Surface> surfaces() {
+  const Rgb white(1, 1, 1), black(0, 0, 0), orange(0.8F, 0.5F, 0.2F);
+  return {
+      {"lambert_white", lambert(white)},
+      {"lambert_orange", lambert(orange)},
+      {"black", lambert(black)},
+      {"metal_alpha_1", metal(white, 1)},
+      {"metal_alpha_03", metal(orange, 0.3F)},
+      {"metal_alpha_001", metal(orange, 0.01F)},
+      {"metal_alpha_min", metal(white, ggx_min_alpha)},
+      {"metal_smooth", metal(orange, 0)},
+      {"mirror", layer(lambert(white), white, 1)},
+      {"plastic_alpha_1", dielectric(white, 1, 1.5F, 0)},
+      {"plastic_alpha_02", dielectric(orange, 0.2F, 1.5F, 0)},
+      {"plastic_smooth", dielectric(white, 0, 1.5F, 0)},
+      {"plastic_black_base", dielectric(black, 0.1F, 1.5F, 0)},
+      {"plastic_ior_1", dielectric(white, 0.5F, 1, 0)},
+      {"plastic_ior_15", dielectric(white, 0.3F, 15, 0)},
+      {"plastic_dimmed", layer(dielectric(white, 0.25F, 1.5F, 0), {0.3F, 0.1F, 0}, 0.5F)},
+      {"half_metal", mixed(dielectric(orange, 0.25F, 1.5F, 0), 0.5F)},
+      {"glass_smooth", dielectric(white, 0, 1.5F, 1)},
+      {"glass_alpha_1", dielectric(white, 1, 1.5F, 1)},
+      {"glass_alpha_02", dielectric(orange, 0.2F, 1.5F, 1)},
+      {"glass_alpha_0003", dielectric(white, 0.003F, 1.33F, 1)},
+      {"glass_ior_15", dielectric(white, 0.1F, 15, 1)},
+      {"glass_ior_1", dielectric(orange, 0.5F, 1, 1)},
+      {"glass_ior_nearly_1", dielectric(white, 0.3F, 1.0002F, 1)},
+      {"glass_ior_105", dielectric(white, 0.5F, 1.05F, 1)},
+      {"glass_tinted", layer(dielectric(white, 0.3F, 1.5F, 1), {0.1F, 0.04F, 0}, 0.6F)},
+      {"glass_no_layer", layer(dielectric(white, 0.3F, 1.5F, 1), black, 0)},
+      {"half_glass", dielectric(orange, 0.2F, 1.5F, 0.5F)},
+      {"half_glass_smooth", dielectric(orange, 0, 1.5F, 0.5F)},
+      {"half_clear", mixed(dielectric(orange, 0.3F, 1, 0.5F), 0.25F)},
+  };
+}
+
+struct View {
+  std::string name;
+  V3f ng, ns, wo;
+
+  bool flat() const { return ng == ns; }
+};
+
+/// A direction in the frame of ng.
+inline V3f direction(const V3f& ng, float cos, float phi) {
+  const float sin = std::sqrt(1 - cos * cos);
+  return Frame(ng).to_world({sin * std::cos(phi), sin * std::sin(phi), cos}).normalized();
+}
+
+inline std::vector<View> views() {
+  // No axis, so that mixed-up frames show.
+  const V3f ng = V3f(1, -2, 0.5F).normalized();
+  const V3f slightly = direction(ng, 0.95F, 0.4F);
+  const V3f strongly = direction(ng, 0.5F, 0.4F);
+  return {
+      {"normal", ng, ng, ng},
+      {"oblique", ng, ng, direction(ng, 0.6F, 1)},
+      {"grazing", ng, ng, direction(ng, 0.05F, 2)},
+      {"nearly_parallel", ng, ng, direction(ng, 1e-3F, 2)},
+      {"inside", ng, ng, direction(ng, -0.9F, 1)},
+      {"inside_beyond_critical", ng, ng, direction(ng, -0.5F, 1)},
+      {"slightly_tilted", ng, slightly, direction(ng, 0.5F, -0.7F)},
+      {"slightly_tilted_inside", ng, slightly, direction(ng, -0.8F, 2)},
+      {"strongly_tilted", ng, strongly, direction(ng, 0.8F, 1.2F)},
+      {"behind_ns", ng, strongly, direction(ng, 0.3F, 0.4F + 3)},
+      {"behind_ns_inside", ng, strongly, direction(ng, -0.3F, 0.4F)},
+  };
+}
+
+inline Rng rng(std::uint64_t stream) { return Rng(20, stream, 0, Rng::Purpose::test); }
+
+/// Uniform on the sphere.
+inline V3f uniform_direction(Rng& random) {
+  const float z = 2 * random.next() - 1;
+  const float phi = 2 * pi * random.next();
+  const float r = std::sqrt(std::max(0.0F, 1 - z * z));
+  return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+inline std::optional<BsdfSample> sample(const Bsdf& bsdf, const V3f& wo, Rng& random,
+                                        Transport transport) {
+  const float u_lobe = random.next();
+  return bsdf.sample(wo, u_lobe, random.next2(), transport);
+}
+
+}  // namespace lacuna::cases

@@ -1,0 +1,194 @@
+// Mirrors and smooth glass against the laws of optics.
+
+#include <gtest/gtest.h>
+
+#include "cases.h"
+#include "tests/statistics.h"
+
+namespace lacuna {
+namespace {
+
+const V3f ng = V3f(1, -2, 0.5F).normalized();
+
+/// Everything that the lobes return for one wo, each lobe seen through its whole interval of
+/// u_lobe.
+struct Outcome {
+  V3f wi{0, 0, 0};
+  double share = 0;  ///< mean weight
+};
+struct Split {
+  Outcome mirrored, refracted;
+};
+Split split(const Bsdf& bsdf, const V3f& wo) {
+  Split result;
+  constexpr int n = 4096;
+  for (int i = 0; i < n; ++i) {
+    const float u = (static_cast<float>(i) + 0.5F) / n;
+    const auto s = bsdf.sample(wo, u, {0.3F, 0.6F}, Transport::importance);
+    if (!s || !s->delta) continue;
+    Outcome& o = s->transmitted ? result.refracted : result.mirrored;
+    o.wi = s->wi;
+    o.share += double(s->weight.x) / n;
+  }
+  return result;
+}
+
+TEST(Specular, mirror_direction) {
+  const Bsdf bsdf(cases::metal({1, 1, 1}, 0), ng, ng);
+  for (const float cos : {1.0F, 0.7F, 0.1F, 1e-3F, -0.4F}) {
+    const V3f wo = cases::direction(ng, cos, 1);
+    const auto s = bsdf.sample(wo, 0.5F, {0.1F, 0.9F}, Transport::radiance);
+    ASSERT_TRUE(s);
+    EXPECT_TRUE(s->delta);
+    EXPECT_FALSE(s->transmitted);
+    EXPECT_LT((s->wi + wo - 2 * dot(wo, ng) * ng).length(), 3e-7);
+  }
+}
+
+TEST(Specular, mirror_of_a_tilted_normal) {
+  const V3f ns = cases::direction(ng, 0.95F, 1);
+  const Bsdf bsdf(cases::metal({1, 1, 1}, 0), ng, ns);
+  const V3f wo = cases::direction(ng, 0.6F, 2);
+  const auto s = bsdf.sample(wo, 0.5F, {0.1F, 0.9F}, Transport::radiance);
+  ASSERT_TRUE(s);
+  EXPECT_LT((s->wi - reflect(wo, ns)).length(), 1e-6);
+}
+
+TEST(Specular, mirror_into_the_surface_fails) {
+  const V3f leaning = cases::direction(ng, 0.766F, 1 + pi);
+  const V3f eye = cases::direction(ng, 0.766F, 1);
+  ASSERT_GT(dot(eye, leaning), 0);
+  ASSERT_LT(dot(reflect(eye, leaning), ng), 0);
+  const Bsdf bsdf(cases::metal({1, 1, 1}, 0), ng, leaning);
+  EXPECT_FALSE(bsdf.sample(eye, 0.5F, {0.1F, 0.9F}, Transport::radiance));
+}
+
+/// sin / sin' = n' / n, in the plane of incidence, from both sides.
+TEST(Specular, snell) {
+  for (const float ior : {1.0F, 1.05F, 1.33F, 1.5F, 2.4F, 15.0F}) {
+    const Bsdf bsdf(cases::dielectric({1, 1, 1}, 0, ior, 1), ng, ng);
+    for (const float cos : {0.999F, 0.8F, 0.3F, 0.01F, -0.999F, -0.9F}) {
+      const V3f wo = cases::direction(ng, cos, 1);
+      const Outcome refracted = split(bsdf, wo).refracted;
+      const float eta = cos > 0 ? ior : 1 / ior;
+      const float sin_t = cross(wo, ng).length() / eta;
+      if (sin_t >= 1) {
+        EXPECT_EQ(refracted.share, 0);
+        continue;
+      }
+      ASSERT_GT(refracted.share, 0) << ior << " " << cos;
+      EXPECT_NEAR(cross(refracted.wi, ng).length(), sin_t, 1e-6 * std::max(1.0F, 1 / eta));
+      EXPECT_LT(dot(refracted.wi, ng) * cos, 0);
+      EXPECT_NEAR(refracted.wi.length(), 1, 1e-6);
+      EXPECT_LT(std::abs(dot(cross(wo, ng), refracted.wi)), 1e-6);
+    }
+  }
+}
+
+/// Refract, then refract back along the found direction: the way of light can be reversed.
+TEST(Specular, refraction_reverses) {
+  const Bsdf bsdf(cases::dielectric({1, 1, 1}, 0, 1.5F, 1), ng, ng);
+  for (const float cos : {0.9F, 0.5F, 0.1F}) {
+    const V3f wo = cases::direction(ng, cos, 1);
+    const Outcome there = split(bsdf, wo).refracted;
+    const Outcome back = split(bsdf, there.wi).refracted;
+    EXPECT_LT((back.wi - wo).length(), 2e-6);
+    EXPECT_NEAR(there.share, back.share, 1e-3);
+  }
+}
+
+/// Born and Wolf, sec. 1.5: 4 % at normal incidence for 1.5; nothing of one polarisation at
+/// Brewster's angle; everything beyond the critical angle.
+TEST(Specular, fresnel) {
+  EXPECT_NEAR(fresnel_dielectric(1, 1.5F).reflectance, 0.04, 1e-7);
+  EXPECT_NEAR(fresnel_dielectric(1, 1 / 1.5F).reflectance, 0.04, 1e-7);
+  EXPECT_NEAR(fresnel_dielectric(1, 15).reflectance, 0.765625, 1e-6);
+  EXPECT_EQ(normal_reflectance(1.5F), fresnel_dielectric(1, 1.5F).reflectance);
+  const float brewster = std::cos(std::atan(1.5F));
+  const double eta2 = 2.25, s = (eta2 - 1) / (eta2 + 1);
+  EXPECT_NEAR(fresnel_dielectric(brewster, 1.5F).reflectance, s * s / 2, 1e-6);
+  EXPECT_GT(fresnel_dielectric(1e-4F, 1.5F).reflectance, 0.999);
+  // From both ends of one path the interface is the same.
+  const Fresnel in = fresnel_dielectric(0.3F, 1.5F);
+  EXPECT_NEAR(fresnel_dielectric(in.cos_t, 1 / 1.5F).reflectance, in.reflectance, 1e-6);
+}
+
+TEST(Specular, smooth_glass_splits_by_fresnel) {
+  const Bsdf bsdf(cases::dielectric({1, 1, 1}, 0, 1.5F, 1), ng, ng);
+  for (const float cos : {1.0F, 0.5F, 0.1F, -0.9F}) {
+    const Split s = split(bsdf, cases::direction(ng, cos, 1));
+    const double f = fresnel_dielectric(std::abs(cos), cos > 0 ? 1.5F : 1 / 1.5F).reflectance;
+    EXPECT_NEAR(s.mirrored.share, f, 1e-3);
+    EXPECT_NEAR(s.refracted.share, 1 - f, 1e-3);
+  }
+}
+
+TEST(Specular, total_internal_reflection) {
+  for (const float alpha : {0.0F, 0.001F}) {
+    const Bsdf bsdf(cases::dielectric({1, 1, 1}, alpha, 1.5F, 1), ng, ng);
+    const V3f wo = cases::direction(ng, -0.5F, 1);  // the critical cosine is 0.745
+    Rng random = cases::rng(1);
+    for (int i = 0; i < 200; ++i) {
+      const auto s = cases::sample(bsdf, wo, random, Transport::radiance);
+      ASSERT_TRUE(s);
+      EXPECT_FALSE(s->transmitted);
+      EXPECT_NEAR(s->weight.x, 1, 0.01);
+    }
+  }
+  // It stays whole where KHR_materials_specular takes all other reflection away.
+  const Bsdf bare(cases::layer(cases::dielectric({1, 1, 1}, 0, 1.5F, 1), {0, 0, 0}, 0), ng, ng);
+  EXPECT_NEAR(split(bare, cases::direction(ng, -0.5F, 1)).mirrored.share, 1, 1e-6);
+  EXPECT_EQ(split(bare, cases::direction(ng, 0.5F, 1)).mirrored.share, 0);
+}
+
+/// An index of 1 is no interface: nothing is bent and nothing reflected, rough or not, also at
+/// grazing angles.
+TEST(Specular, ior_1_lets_everything_pass) {
+  for (const float alpha : {0.0F, 0.3F, 1.0F}) {
+    const Bsdf bsdf(cases::dielectric({1, 1, 1}, alpha, 1, 1), ng, ng);
+    for (const float cos : {1.0F, 0.3F, 1e-3F, -0.2F}) {
+      const V3f wo = cases::direction(ng, cos, 1);
+      const Split s = split(bsdf, wo);
+      EXPECT_EQ(s.mirrored.share, 0);
+      EXPECT_NEAR(s.refracted.share, 1, 1e-6);
+      EXPECT_LT((s.refracted.wi + wo).length(), 1e-6);
+    }
+  }
+}
+
+/// A rough interface whose index comes close to 1 neither jumps nor breaks down where it becomes
+/// clear.
+TEST(Specular, index_close_to_1) {
+  const V3f wo = cases::direction(ng, 0.6F, 1);
+  const float limit = 1 + ggx_min_alpha / 0.5F;
+  for (const float ior : {1.00001F, limit - 2e-5F, limit + 2e-5F, 1.001F}) {
+    const Bsdf bsdf(cases::dielectric({1, 1, 1}, 0.5F, ior, 1), ng, ng);
+    Rng random = cases::rng(2);
+    statistics::Moments passed;
+    for (int i = 0; i < 2000; ++i) {
+      const auto s = cases::sample(bsdf, wo, random, Transport::importance);
+      passed.add(s && s->transmitted ? double(s->weight.x) : 0.0);
+      if (s && s->transmitted) {
+        ASSERT_LT((s->wi + wo).length(), 40 * (ior - 1));
+      }
+    }
+    // Masking alone takes a tenth from rough facets.
+    EXPECT_GT(passed.mean(), 0.9);
+    EXPECT_LT(passed.mean(), 1.001 + 4 * passed.standard_error());
+  }
+}
+
+TEST(Specular, connectible) {
+  const auto connectible = [&](const SurfaceParams& p) { return Bsdf(p, ng, ng).connectible(); };
+  EXPECT_TRUE(connectible(cases::lambert({0.5F, 0.5F, 0.5F})));
+  EXPECT_FALSE(connectible(cases::lambert({0, 0, 0})));
+  EXPECT_FALSE(connectible(cases::metal({1, 1, 1}, 0)));
+  EXPECT_FALSE(connectible(cases::metal({1, 1, 1}, 0.5F * ggx_min_alpha)));
+  EXPECT_TRUE(connectible(cases::metal({1, 1, 1}, ggx_min_alpha)));
+  EXPECT_FALSE(connectible(cases::dielectric({1, 1, 1}, 0, 1.5F, 1)));
+  EXPECT_TRUE(connectible(cases::dielectric({1, 1, 1}, 0, 1.5F, 0)));
+  EXPECT_FALSE(connectible(cases::dielectric({0, 0, 0}, 0, 1.5F, 0)));
+}
+
+}  // namespace
+}  // namespace lacuna

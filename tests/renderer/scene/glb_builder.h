@@ -1,0 +1,199 @@
+#pragma once
+
+#include <stdlib.h>
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "renderer/core/vec.h"
+
+namespace lacuna::test {
+
+using Json = nlohmann::json;
+using Bytes = std::vector<std::uint8_t>;
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+/// A folder for one test, removed with all it holds.
+class TempFolder {
+ public:
+  TempFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "lacuna-test-XXXXXX").string();
+    if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("mkdtemp failed");
+    path_ = pattern;
+  }
+  ~TempFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TempFolder(const TempFolder&) = delete;
+  TempFolder& operator=(const TempFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path write(const std::string& name, const Bytes& bytes) const {
+    const auto file = path_ / name;
+    std::ofstream(file, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+    return file;
+  }
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    return write(name, Bytes(text.begin(), text.end()));
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Puts a small GLB together. Each add_ function returns the index of what it added; `json` and
+/// `bin` may be changed at will before glb() or gltf().
+class GlbBuilder {
+ public:
+  Json json = Json::parse(
+      R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": []}], "nodes": []})");
+  Bytes bin;
+
+  template <class T>
+  std::size_t add_view(const std::vector<T>& values) {
+    bin.resize((bin.size() + 3) / 4 * 4);
+    const std::size_t bytes = values.size() * sizeof(T);
+    const std::size_t offset = bin.size();
+    bin.resize(offset + bytes);
+    if (bytes > 0) std::memcpy(bin.data() + offset, values.data(), bytes);
+    return append("bufferViews", {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}});
+  }
+
+  template <class T>
+  std::size_t add_accessor(const std::vector<T>& values, int component_type,
+                           const std::string& type) {
+    return append("accessors", {{"bufferView", add_view(values)},
+                                {"componentType", component_type},
+                                {"count", values.size()},
+                                {"type", type}});
+  }
+
+  /// A mesh of one primitive; empty normals or uvs are left out, material -1 too.
+  std::size_t add_mesh(const std::vector<V3f>& positions, const Triangles& triangles,
+                       int material = -1, const std::vector<V3f>& normals = {},
+                       const std::vector<V2f>& uvs = {}) {
+    constexpr int component_float = 5126, component_u32 = 5125;
+    std::vector<std::uint32_t> indices;
+    for (const auto& t : triangles) indices.insert(indices.end(), t.begin(), t.end());
+    Json primitive;
+    primitive["attributes"]["POSITION"] = add_accessor(positions, component_float, "VEC3");
+    if (!normals.empty()) {
+      primitive["attributes"]["NORMAL"] = add_accessor(normals, component_float, "VEC3");
+    }
+    if (!uvs.empty()) {
+      primitive["attributes"]["TEXCOORD_0"] = add_accessor(uvs, component_float, "VEC2");
+    }
+    if (!triangles.empty()) primitive["indices"] = add_accessor(indices, component_u32, "SCALAR");
+    if (material >= 0) primitive["material"] = material;
+    return append("meshes", {{"primitives", Json::array({primitive})}});
+  }
+
+  /// A parallelogram with corners o, o+a, o+a+b, o+b and front side a x b; uv runs from o along a,
+  /// b.
+  std::size_t add_quad(const V3f& o, const V3f& a, const V3f& b, int material = -1) {
+    return add_mesh({o, o + a, o + a + b, o + b}, {{0, 1, 2}, {0, 2, 3}}, material, {},
+                    {{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+  }
+
+  /// A node of the scene, e.g. {{"mesh", 0}, {"translation", {1, 2, 3}}}.
+  std::size_t add_node(const Json& node) {
+    const std::size_t index = append("nodes", node);
+    json["scenes"][0]["nodes"].push_back(index);
+    return index;
+  }
+
+  std::size_t add_material(const Json& material) { return append("materials", material); }
+
+  /// A perspective camera at `position` looking along -z.
+  std::size_t add_camera(const std::string& name, const V3f& position, double yfov) {
+    const std::size_t camera =
+        append("cameras", {{"type", "perspective"},
+                           {"name", name},
+                           {"perspective", {{"yfov", yfov}, {"znear", 0.01}}}});
+    return add_node({{"camera", camera}, {"translation", {position.x, position.y, position.z}}});
+  }
+
+  /// A KHR_lights_punctual light on a node of its own.
+  std::size_t add_light(const Json& light, Json node = Json::object()) {
+    Json& lights = json["extensions"]["KHR_lights_punctual"]["lights"];
+    lights.push_back(light);
+    node["extensions"]["KHR_lights_punctual"]["light"] = lights.size() - 1;
+    return add_node(node);
+  }
+
+  /// A texture from an encoded image; `sampler` may be null.
+  std::size_t add_texture(const Bytes& encoded, const Json& sampler = nullptr) {
+    const std::size_t image =
+        append("images", {{"bufferView", add_view(encoded)}, {"mimeType", "image/png"}});
+    Json texture{{"source", image}};
+    if (!sampler.is_null()) texture["sampler"] = append("samplers", sampler);
+    return append("textures", texture);
+  }
+
+  Bytes glb() const { return frame(with_buffer(nullptr).dump(), bin); }
+
+  /// The JSON alone, with the buffer under `uri`.
+  std::string gltf(const std::string& uri) const { return with_buffer(uri).dump(); }
+
+  /// A GLB of these chunks, padded; the header tells the truth.
+  static Bytes frame(std::string json_text, Bytes bin_chunk) {
+    json_text.resize((json_text.size() + 3) / 4 * 4, ' ');
+    bin_chunk.resize((bin_chunk.size() + 3) / 4 * 4);
+    Bytes out;
+    const auto put = [&out](std::size_t value) {
+      for (int shift = 0; shift < 32; shift += 8) {
+        out.push_back(static_cast<std::uint8_t>(value >> shift));
+      }
+    };
+    const bool has_bin = !bin_chunk.empty();
+    put(0x46546C67);
+    put(2);
+    put(20 + json_text.size() + (has_bin ? 8 + bin_chunk.size() : 0));
+    put(json_text.size());
+    put(0x4E4F534A);
+    out.insert(out.end(), json_text.begin(), json_text.end());
+    if (has_bin) {
+      put(bin_chunk.size());
+      put(0x004E4942);
+      out.insert(out.end(), bin_chunk.begin(), bin_chunk.end());
+    }
+    return out;
+  }
+
+ private:
+  std::size_t append(const char* array, const Json& value) {
+    json[array].push_back(value);
+    return json[array].size() - 1;
+  }
+
+  Json with_buffer(const Json& uri) const {
+    Json out = json;
+    if (!bin.empty() && !out.contains("buffers")) {
+      out["buffers"] = Json::array({{{"byteLength", bin.size()}}});
+      if (!uri.is_null()) out["buffers"][0]["uri"] = uri;
+    }
+    return out;
+  }
+
+  static_assert(sizeof(V3f) == 12 && sizeof(V2f) == 8);
+};
+
+/// One triangle in the plane z = 0, facing +z, under one node.
+inline GlbBuilder triangle_scene() {
+  GlbBuilder builder;
+  const auto mesh = builder.add_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
+  builder.add_node({{"mesh", mesh}, {"name", "thing"}});
+  return builder;
+}
+
+}  // namespace lacuna::test

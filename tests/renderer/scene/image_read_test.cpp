@@ -1,0 +1,115 @@
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <limits>
+
+#include "renderer/scene/image_read.h"
+#include "renderer/scene/scene_data.h"
+#include "tests/renderer/scene/test_images.h"
+
+namespace lacuna {
+namespace {
+
+using test::TempFolder;
+
+std::filesystem::path write_exr(const TempFolder& folder, const std::vector<std::string>& channels,
+                                const std::vector<float>& pixels, int width, int height) {
+  OIIO::ImageSpec spec(width, height, static_cast<int>(channels.size()), OIIO::TypeDesc::FLOAT);
+  spec.channelnames = channels;
+  return test::write_image(folder, "image.exr", spec, pixels);
+}
+
+std::string refusal(const std::filesystem::path& file, const std::string& layer = "") {
+  try {
+    read_float_image(file, layer);
+  } catch (const SceneError& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+void expect_contains(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << text;
+}
+
+TEST(ImageRead, ExrWithLayersInAnyOrder) {
+  const TempFolder folder;
+  const auto file = write_exr(folder, {"B", "half_a.G", "R", "G", "half_a.B", "A", "half_a.R"},
+                              {3, 20, 1, 2, 30, 9, 10, 6, 50, 4, 5, 60, 9, 40}, 2, 1);
+  const FloatImage plain = read_float_image(file);
+  EXPECT_EQ(plain.width, 2);
+  EXPECT_EQ(plain.height, 1);
+  EXPECT_EQ(plain.at(0, 0), Rgb(1, 2, 3));
+  EXPECT_EQ(plain.at(1, 0), Rgb(4, 5, 6));
+  const FloatImage half = read_float_image(file, "half_a");
+  EXPECT_EQ(half.at(0, 0), Rgb(10, 20, 30));
+  EXPECT_EQ(half.at(1, 0), Rgb(40, 50, 60));
+  expect_contains(refusal(file, "half_b"), "lacks channel half_b.R, half_b.G, half_b.B; it has");
+}
+
+TEST(ImageRead, GreyAndMissingChannels) {
+  const TempFolder folder;
+  EXPECT_EQ(read_float_image(write_exr(folder, {"Y"}, {0.5F, 7}, 1, 2)).at(0, 1), Rgb(7));
+  expect_contains(refusal(write_exr(folder, {"R", "B"}, {1, 2}, 1, 1)), "lacks channel G; it has");
+}
+
+TEST(ImageRead, RadianceHdr) {
+  const TempFolder folder;
+  const auto file =
+      test::write_image(folder, "image.hdr", OIIO::ImageSpec(2, 2, 3, OIIO::TypeDesc::FLOAT),
+                        std::vector<float>{1, 0.5F, 0.25F, 1024, 512, 256, 2, 2, 2, 0, 0, 0});
+  const FloatImage image = read_float_image(file);
+  EXPECT_EQ(image.at(0, 0),
+            Rgb(1, 0.5F, 0.25F));  // exact in shared-exponent form, but for rounding
+  EXPECT_EQ(image.at(1, 0), Rgb(1024, 512, 256));
+  EXPECT_EQ(image.at(0, 1), Rgb(2, 2, 2));
+  EXPECT_EQ(image.at(1, 1), Rgb(0, 0, 0));
+}
+
+TEST(ImageRead, OtherFilesAreRefused) {
+  const TempFolder folder;
+  expect_contains(refusal(folder.write("image.exr", test::encode8(1, 1, 3, {1, 2, 3}))),
+                  "image.exr: is neither OpenEXR nor Radiance HDR");
+  expect_contains(refusal(folder.write("empty.exr", std::string())), "is neither");
+  expect_contains(refusal(folder.path() / "nothing.exr"), "nothing.exr");
+  expect_contains(refusal(folder.path()), "is not a regular file");
+  ASSERT_EQ(::mkfifo((folder.path() / "pipe.exr").c_str(), 0600), 0);
+  expect_contains(refusal(folder.path() / "pipe.exr"), "is not a regular file");
+}
+
+TEST(ImageRead, TruncatedFilesAreRefused) {
+  const TempFolder folder;
+  std::vector<float> pixels(64 * 64 * 3);
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<float>(i * 7919 % 1000);
+  const auto bytes = test::read_bytes(write_exr(folder, {"R", "G", "B"}, pixels, 64, 64));
+  for (const std::size_t length : {std::size_t{5}, std::size_t{200}, bytes.size() / 2}) {
+    const test::Bytes part(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length));
+    expect_contains(refusal(folder.write("part.exr", part)), "part.exr: ");
+  }
+}
+
+TEST(ImageRead, CropsAreRefused) {
+  const TempFolder folder;
+  OIIO::ImageSpec spec(2, 2, 3, OIIO::TypeDesc::FLOAT);
+  spec.full_width = 4;
+  const auto file = test::write_image(folder, "crop.exr", spec, std::vector<float>(12, 1.0F));
+  expect_contains(refusal(file), "is a crop");
+}
+
+TEST(ImageRead, RadianceMustBeFiniteAndNotNegative) {
+  FloatImage image{3, 2, std::vector<float>(18, 1.0F), {}};
+  EXPECT_NO_THROW(require_radiance(image, "sky"));
+  for (const float bad :
+       {-1.0F, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
+    image.rgb[3 * (1 * 3 + 2) + 1] = bad;
+    try {
+      require_radiance(image, "sky");
+      FAIL() << bad;
+    } catch (const SceneError& e) {
+      expect_contains(e.what(), "sky: pixel (2, 1) channel G is ");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,107 @@
+// Server-sent events of a job.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { folders, Service, until } from "./service.mjs";
+
+/// Follows a stream: `events` grows by {name, data}; `end` is when it ended by itself.
+async function follow(service, id, signal) {
+  const response = await service.fetch(`/api/jobs/${id}/events`, { signal });
+  assert.equal(response.status, 200);
+  assert.equal(response.headers.get("content-type"), "text/event-stream");
+  const events = [];
+  const read = async () => {
+    let text = "";
+    for await (const chunk of response.body.pipeThrough(new TextDecoderStream())) {
+      text += chunk;
+      const parts = text.split("\n\n");
+      text = parts.pop();
+      for (const part of parts) {
+        const found = /^event: (\w+)\ndata: (.*)$/.exec(part);
+        assert.ok(found, part);
+        events.push({ name: found[1], data: JSON.parse(found[2]) });
+      }
+    }
+  };
+  return { events, end: read() };
+}
+
+test("a watcher sees every state, the progress, and then the end", async (t) => {
+  const service = await Service.start(folders(t));
+  const blocker = await service.post("gate first");
+  await service.reaches(blocker, "running");
+  const id = await service.post("gate second");
+  const { events, end } = await follow(service, id);
+  const seen = (check) => until(() => events.some(check), "an event");
+  await seen((e) => e.name === "state" && e.data.state === "queued");
+  service.open("first");
+  await seen((e) => e.name === "state" && e.data.state === "running" && e.data.phase === "rendering");
+  await seen((e) => e.name === "progress" && e.data.share === 0.25);
+  service.open("second");
+  await end;
+  const states = events.filter((e) => e.name === "state").map((e) => e.data.state);
+  assert.deepEqual([...new Set(states)], ["queued", "running", "done"]);
+  assert.equal(events.at(-1).name, "state");
+  assert.equal(events.at(-1).data.exit_code, 0, "the last word");
+  assert.equal(events.findLast((e) => e.name === "progress").data.share, 1, "before the end");
+  for (let i = 1; i < events.length; i += 1) {
+    assert.notDeepEqual(events[i], events[i - 1], "only changes are sent");
+  }
+});
+
+test("the stream of a job that is over says so and ends", async (t) => {
+  const service = await Service.start(folders(t));
+  const id = await service.post("finish");
+  await service.reaches(id, "done");
+  const { events, end } = await follow(service, id);
+  await end;
+  assert.deepEqual(events.map((e) => e.name), ["progress", "state"]);
+});
+
+test("cancelling is seen", async (t) => {
+  const service = await Service.start(folders(t), ["--grace", "1"]);
+  const id = await service.post("stubborn");
+  await service.reaches(id, "running");
+  const { events, end } = await follow(service, id);
+  await service.cancel(id);
+  await end;
+  const states = events.filter((e) => e.name === "state").map((e) => e.data.state);
+  assert.ok(states.includes("cancelling"));
+  assert.equal(states.at(-1), "cancelled");
+});
+
+test("watchers are limited, and their places become free again", async (t) => {
+  const service = await Service.start(folders(t));
+  const id = await service.post("gate never");
+  const aborts = [];
+  for (let i = 0; i < 16; i += 1) {
+    const abort = new AbortController();
+    aborts.push(abort);
+    const { events, end } = await follow(service, id, abort.signal);
+    end.catch(() => {});
+    await until(() => events.length > 0, "a first event");
+  }
+  const refused = await service.fetch(`/api/jobs/${id}/events`);
+  assert.equal(refused.status, 503);
+  assert.ok(refused.headers.get("retry-after"));
+  assert.equal((await refused.json()).status, 503);
+  assert.deepEqual(await service.json("/health"), { status: "ok" });
+  aborts[3].abort();
+  await until(async () => {
+    const abort = new AbortController();
+    const { status } = await service.fetch(`/api/jobs/${id}/events`, { signal: abort.signal });
+    abort.abort();
+    return status === 200;
+  }, "a place is free");
+  aborts.forEach((a) => a.abort());
+});
+
+test("open streams do not delay the end of the service", async (t) => {
+  const service = await Service.start(folders(t));
+  const id = await service.post("gate never");
+  await service.reaches(id, "running");
+  const { end } = await follow(service, id);
+  end.catch(() => {});
+  const asked = Date.now();
+  assert.deepEqual(await service.stop(), { code: 0, signal: null });
+  assert.ok(Date.now() - asked < 5000);
+});

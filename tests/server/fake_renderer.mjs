@@ -1,0 +1,88 @@
+#!/usr/bin/env node
+// Stands in for `lacuna render FOLDER`: keeps its contract with the service and renders nothing.
+// The job's label says what happens:
+//   finish            done at once
+//   gate NAME         done as soon as the file NAME is in the working directory
+//   stubborn          never ends, not even when asked
+//   fail              state failed, exit code 3
+//   crash             kills itself, each time
+//   crash once        kills itself the first time, leaving a checkpoint
+//   exit N            ends with code N, leaving the state `running`
+//   environment       done; its environment goes to report.json
+import fs from "node:fs";
+import path from "node:path";
+
+const [command, folder, ...rest] = process.argv.slice(2);
+if (command !== "render" || !folder || rest.length > 0) process.exit(2);
+
+const file = (name) => path.join(folder, name);
+const read = (name) => JSON.parse(fs.readFileSync(file(name), "utf8"));
+function write(name, content) {
+  const temporary = file(`.${name}.${process.pid}`);
+  fs.writeFileSync(temporary, typeof content === "string" ? content : JSON.stringify(content));
+  fs.renameSync(temporary, file(name));
+}
+const state = (change) => write("state.json", { ...read("state.json"), ...change });
+const now = () => new Date().toISOString();
+const dieNow = () => process.kill(process.pid, "SIGKILL");
+
+const [word, argument] = read("job.json").label.split(" ");
+const resumed = fs.existsSync(file("checkpoint.bin"));
+const stubborn = word === "stubborn";
+
+function interrupt() {
+  write("checkpoint.bin", "checkpoint");
+  state({ state: "interrupted", phase: "", finished: now() });
+  process.exit(75);
+}
+for (const signal of ["SIGTERM", "SIGINT"]) process.on(signal, stubborn ? () => {} : interrupt);
+
+function progress(share) {
+  write("progress.json", {
+    iteration: Math.round(100 * share), seconds: share, cpu_seconds: share, share,
+    remaining_seconds: 1 - share, error: 0.5, error_metric: "est_rmse",
+  });
+}
+
+function finish() {
+  state({ phase: "writing" });
+  write("image.png", Buffer.from("89504e470d0a1a0a", "hex").toString("latin1"));
+  write("image.exr", "0123456789".repeat(10000));
+  write("curve.csv", "iteration,seconds,est_rmse\n100,1,0.5\n");
+  const seen = {
+    directory: process.cwd(), data: process.env.LACUNA_DATA, scenes: process.env.LACUNA_SCENES,
+    descriptors: fs.readdirSync("/proc/self/fd").length, group: process.pid,
+  };
+  write("report.json", { resumed, ...(word === "environment" ? seen : {}) });
+  progress(1);
+  state({ state: "done", phase: "", finished: now(), exit_code: -1 });
+  process.exit(0);
+}
+
+const attempts = read("state.json").attempts + 1;
+state({ state: "running", phase: "rendering", started: now(), attempts });
+progress(0.25);
+console.error(`attempt ${attempts}${resumed ? ", resumed" : ""}`);
+
+switch (word) {
+  case "crash":
+    if (argument === "once" && resumed) finish();
+    write("checkpoint.bin", "checkpoint");
+    dieNow();
+    break;
+  case "exit":
+    process.exit(Number(argument));
+    break;
+  case "fail":
+    state({ state: "failed", phase: "", error: "the scene is not to my liking", finished: now() });
+    process.exit(3);
+    break;
+  case "gate":
+    setInterval(() => { if (fs.existsSync(argument)) finish(); }, 10);
+    break;
+  case "stubborn":
+    setInterval(() => {}, 1000);
+    break;
+  default:
+    finish();
+}

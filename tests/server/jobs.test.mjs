@@ -1,0 +1,149 @@
+// A job's life over HTTP: posted, listed, done, and its files.
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import path from "node:path";
+import { test } from "node:test";
+import { folders, head, Service } from "./service.mjs";
+
+test("a job is posted, stored, rendered and listed", async (t) => {
+  const service = await Service.start(folders(t));
+  assert.deepEqual(await service.json("/health"), { status: "ok" });
+  assert.deepEqual(await service.json("/api/scenes"), { scenes: ["room/scene.glb"] });
+  assert.deepEqual(await service.json("/api/jobs"), { jobs: [] });
+
+  const response = await service.postText(JSON.stringify({
+    scene: "room/scene.glb", label: "gate one", integrator: { type: "path", max_depth: 3 },
+  }));
+  assert.equal(response.status, 201);
+  const posted = await response.json();
+  assert.equal(response.headers.get("location"), `/api/jobs/${posted.id}`);
+  assert.equal(posted.job.integrator.max_depth, 3);
+  assert.equal(posted.job.seed, 1, "defaults are filled in");
+  assert.deepEqual(JSON.parse(fs.readFileSync(path.join(service.folder(posted.id), "job.json"))),
+    posted.job);
+
+  const running = await service.reaches(posted.id, "running");
+  assert.equal(running.state.attempts, 1);
+  assert.ok(running.state.created && running.state.started && !running.state.finished);
+  service.open("one");
+  const done = await service.reaches(posted.id, "done");
+  assert.equal(done.progress.share, 1);
+  assert.equal(done.state.error, "");
+  assert.equal(done.state.exit_code, 0);
+  const names = done.files.map((f) => f.name).sort();
+  assert.deepEqual(names, ["curve.csv", "image.exr", "image.png", "job.json", "log.txt",
+    "progress.json", "report.json", "state.json"]);
+  assert.equal(done.files.find((f) => f.name === "image.exr").bytes, 100000);
+
+  const second = await service.post("finish");
+  await service.reaches(second, "done");
+  const { jobs } = await service.json("/api/jobs");
+  assert.deepEqual(jobs.map((j) => j.id), [second, posted.id], "newest first");
+  const listed = jobs.find((j) => j.id === posted.id);
+  assert.equal(listed.label, "gate one");
+  assert.equal(listed.scene, "room/scene.glb");
+  assert.equal(listed.integrator, "path");
+  assert.equal(listed.state, "done");
+  assert.equal(listed.progress.share, 1);
+});
+
+test("the schema is that of the job file", async (t) => {
+  const service = await Service.start(folders(t));
+  const schema = await service.json("/api/schema/job");
+  assert.match(schema.$schema, /2020-12/);
+  assert.ok(schema.properties.scene);
+});
+
+test("files have types, validators and byte ranges", async (t) => {
+  const service = await Service.start(folders(t));
+  const id = await service.post("finish");
+  await service.reaches(id, "done");
+  const address = `/api/jobs/${id}/files/image.exr`;
+  const whole = "0123456789".repeat(10000);
+
+  const first = await service.fetch(address);
+  assert.equal(first.status, 200);
+  assert.equal(first.headers.get("content-type"), "image/x-exr");
+  assert.equal(first.headers.get("x-content-type-options"), "nosniff");
+  assert.equal(await first.text(), whole);
+  const etag = first.headers.get("etag");
+
+  const again = await service.fetch(address, { headers: { "If-None-Match": etag } });
+  assert.equal(again.status, 304);
+  assert.equal(await again.text(), "");
+
+  const ranged = async (range, more = {}) => {
+    const r = await service.fetch(address, { headers: { Range: range, ...more } });
+    return [r.status, r.headers.get("content-range"), await r.text()];
+  };
+  assert.deepEqual(await ranged("bytes=3-7"), [206, "bytes 3-7/100000", "34567"]);
+  assert.deepEqual(await ranged("bytes=99998-"), [206, "bytes 99998-99999/100000", "89"]);
+  assert.deepEqual(await ranged("bytes=-3"), [206, "bytes 99997-99999/100000", "789"]);
+  assert.deepEqual(await ranged("bytes=99999-200000"), [206, "bytes 99999-99999/100000", "9"]);
+  assert.deepEqual(await ranged("bytes=0-1,0-1"), [200, null, whole], "several ranges: the whole");
+  assert.deepEqual(await ranged("bytes=1-2", { "If-Range": "\"old\"" }), [200, null, whole]);
+  assert.deepEqual(await ranged("bytes=1-2", { "If-Range": etag }),
+    [206, "bytes 1-2/100000", "12"]);
+  const [status, range] = await ranged("bytes=100000-");
+  assert.deepEqual([status, range], [416, "bytes */100000"]);
+
+  const only = await service.fetch(address, { method: "HEAD" });
+  assert.equal(only.status, 200);
+  assert.equal(only.headers.get("content-length"), "100000");
+  assert.equal(await only.text(), "");
+
+  fs.appendFileSync(path.join(service.folder(id), "image.exr"), "x");
+  const changed = await service.fetch(address, { headers: { "If-None-Match": etag } });
+  assert.equal(changed.status, 200, "a changed file has another tag");
+  assert.equal((await changed.text()).length, 100001);
+});
+
+test("only the listed files of a job are served, and no links", async (t) => {
+  const service = await Service.start(folders(t));
+  const id = await service.post("crash once");
+  await service.reaches(id, "done");
+  const folder = service.folder(id);
+  const status = async (name) => (await service.fetch(`/api/jobs/${id}/files/${name}`)).status;
+  assert.ok(fs.existsSync(path.join(folder, "checkpoint.bin")));
+  assert.equal(await status("checkpoint.bin"), 404, "not for others");
+  assert.equal(await status(".lock"), 404);
+  assert.equal(await status("nothing.txt"), 404);
+
+  fs.rmSync(path.join(folder, "curve.csv"));
+  assert.equal(await status("curve.csv"), 404, "not there");
+  fs.writeFileSync(path.join(service.places.root, "secret"), "secret");
+  fs.symlinkSync(path.join(service.places.root, "secret"), path.join(folder, "curve.csv"));
+  assert.equal(await status("curve.csv"), 404, "a link");
+  const { files } = await service.json(`/api/jobs/${id}`);
+  assert.ok(!files.some((f) => f.name === "curve.csv"));
+  fs.rmSync(path.join(folder, "report.json"));
+  fs.mkdirSync(path.join(folder, "report.json"));
+  assert.equal(await status("report.json"), 404, "a folder");
+
+  const elsewhere = path.join(service.places.root, "elsewhere");
+  fs.renameSync(folder, elsewhere);
+  fs.symlinkSync(elsewhere, folder);
+  assert.equal(await status("image.png"), 404, "a job's folder behind a link");
+});
+
+test("no spelling of a path leaves a job's folder", async (t) => {
+  const service = await Service.start(folders(t));
+  const id = await service.post("finish");
+  await service.reaches(id, "done");
+  const spellings = [
+    `/api/jobs/${id}/files/../job.json`, `/api/jobs/${id}/files/..%2fjob.json`,
+    `/api/jobs/${id}/files/%2e%2e/job.json`, `/api/jobs/${id}/files/job.json%00.png`,
+    `/api/jobs/${id}/files//etc/passwd`, `/api/jobs/${id}/files/job.json/`,
+    `/api/jobs/${id}/files/..\\job.json`, `/api/jobs/../jobs/${id}`, "/api/jobs/..", "/api/jobs/.",
+    `/api/jobs/${id}%00`, `/api/jobs/${id.toUpperCase()}`, "/api/jobs/%2e%2e%2f%2e%2e",
+    "/../../../../etc/passwd", "/..%2f..%2fetc/passwd", "/vendor/../index.html", "//index.html",
+    "/index.html%00", "/index.html/", "*", `http://localhost/api/jobs/${id}`,
+  ];
+  for (const spelling of spellings) {
+    const answer = await service.raw(head(`GET ${spelling}`));
+    assert.equal(answer.status, 404, spelling);
+    assert.ok(!answer.body.includes("scene"), spelling);
+  }
+  assert.equal((await service.raw(head(`GET /api/jobs/${id}/files/job.json`))).status, 200);
+  assert.equal((await service.raw(head(`GET /api/jobs/${id}/files/job.json?v=%00..`))).status, 200);
+});

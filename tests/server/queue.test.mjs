@@ -1,0 +1,285 @@
+// The queue: order, cancelling, crashes, restarts.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import fs from "node:fs";
+import path from "node:path";
+import { test } from "node:test";
+import { folders, runToEnd, Service, until } from "./service.mjs";
+
+const stateOnDisk = (service, id) =>
+  JSON.parse(fs.readFileSync(path.join(service.folder(id), "state.json")));
+
+/// The one child process of any thread of `pid`.
+function rendererOf(pid) {
+  const children = fs.readdirSync(`/proc/${pid}/task`).flatMap((task) =>
+    fs.readFileSync(`/proc/${pid}/task/${task}/children`, "utf8").split(" ").filter(Boolean));
+  assert.equal(children.length, 1);
+  return Number(children[0]);
+}
+
+/// Whether a process runs; one that has ended may still be listed.
+function runs(pid) {
+  try {
+    return !/^State:\s*Z/m.test(fs.readFileSync(`/proc/${pid}/status`, "utf8"));
+  } catch {
+    return false;
+  }
+}
+
+test("jobs are rendered in their order, as many at a time as is allowed", async (t) => {
+  const service = await Service.start(folders(t), ["--jobs", "2"]);
+  const ids = [];
+  for (const name of ["a", "b", "c", "d"]) ids.push(await service.post(`gate ${name}`));
+  await service.reaches(ids[0], "running");
+  await service.reaches(ids[1], "running");
+  const states = async () => Promise.all(
+    ids.map(async (id) => (await service.json(`/api/jobs/${id}`)).state.state));
+  assert.deepEqual(await states(), ["running", "running", "queued", "queued"]);
+  service.open("b");
+  await service.reaches(ids[1], "done");
+  await service.reaches(ids[2], "running");
+  assert.deepEqual(await states(), ["running", "done", "running", "queued"]);
+  for (const name of ["a", "c", "d"]) service.open(name);
+  for (const id of ids) await service.reaches(id, "done");
+});
+
+test("a queued job is cancelled at once", async (t) => {
+  const service = await Service.start(folders(t));
+  const first = await service.post("gate one");
+  await service.reaches(first, "running");
+  const second = await service.post("finish");
+  const third = await service.post("finish");
+  const answer = await service.cancel(second);
+  assert.equal(answer.status, 200);
+  assert.equal((await answer.json()).state.state, "cancelled");
+  assert.equal((await service.cancel(second)).status, 200, "again: still cancelled");
+  service.open("one");
+  await service.reaches(third, "done");
+  const job = await service.json(`/api/jobs/${second}`);
+  assert.equal(job.state.state, "cancelled");
+  assert.equal(job.state.attempts, 0, "it was never started");
+  assert.ok(job.state.finished);
+  assert.equal((await service.cancel(third)).status, 409, "done is done");
+});
+
+test("a running job is asked to stop, and keeps its checkpoint", async (t) => {
+  const service = await Service.start(folders(t));
+  const id = await service.post("gate never");
+  await service.reaches(id, "running");
+  const answer = await service.cancel(id);
+  assert.equal(answer.status, 202);
+  assert.ok(["cancelling", "cancelled"].includes((await answer.json()).state.state));
+  const job = await service.reaches(id, "cancelled");
+  assert.equal(job.state.exit_code, 75);
+  assert.ok(fs.existsSync(path.join(service.folder(id), "checkpoint.bin")));
+});
+
+test("a renderer that does not stop is killed after the grace", async (t) => {
+  const service = await Service.start(folders(t), ["--grace", "0.2"]);
+  const id = await service.post("stubborn");
+  await service.reaches(id, "running");
+  const asked = Date.now();
+  assert.equal((await (await service.cancel(id)).json()).state.state, "cancelling");
+  const job = await service.reaches(id, "cancelled");
+  assert.ok(Date.now() - asked >= 200, "not before the grace has passed");
+  assert.equal(job.state.exit_code, 128 + 9);
+});
+
+test("a crash is retried from the checkpoint", async (t) => {
+  const service = await Service.start(folders(t));
+  const id = await service.post("crash once");
+  const job = await service.reaches(id, "done");
+  assert.equal(job.state.attempts, 2);
+  const log = await (await service.fetch(`/api/jobs/${id}/files/log.txt`)).text();
+  assert.equal(log, "attempt 1\nattempt 2, resumed\n");
+});
+
+test("a job that crashes each time fails, with the reason, and the next one runs", async (t) => {
+  const service = await Service.start(folders(t), ["--max-attempts", "2"]);
+  const ids = [await service.post("crash"), await service.post("exit 1"), await service.post("exit 0")];
+  const last = await service.post("finish");
+  await service.reaches(last, "done");
+  const states = [];
+  for (const id of ids) states.push((await service.reaches(id, "failed")).state);
+  assert.match(states[0].error, /signal 9 \(Killed\), 2 times/);
+  assert.match(states[1].error, /exit code 1, 2 times/);
+  assert.match(states[2].error, /exit code 0 but left no result/);
+  for (const state of states) assert.equal(state.attempts, 2);
+});
+
+test("what the renderer refuses is not tried again", async (t) => {
+  const service = await Service.start(folders(t));
+  const said = await service.reaches(await service.post("fail"), "failed");
+  assert.equal(said.state.error, "the scene is not to my liking");
+  const silent = await service.reaches(await service.post("exit 3"), "failed");
+  assert.match(silent.state.error, /exit code 3/);
+  for (const job of [said, silent]) {
+    assert.equal(job.state.attempts, 1);
+    assert.equal(job.state.exit_code, 3);
+  }
+});
+
+test("an interrupted renderer's job goes on", async (t) => {
+  const service = await Service.start(folders(t));
+  const id = await service.post("gate later");
+  await service.reaches(id, "running");
+  const report = path.join(service.folder(id), "log.txt");
+  await until(() => fs.readFileSync(report, "utf8").includes("attempt 1"), "it began");
+  process.kill(rendererOf(service.child.pid), "SIGTERM");
+  await until(() => fs.readFileSync(report, "utf8").includes("attempt 2, resumed"), "it goes on");
+  service.open("later");
+  const job = await service.reaches(id, "done");
+  assert.equal(job.state.attempts, 2);
+});
+
+test("a renderer gets the folders, and nothing else that is open", async (t) => {
+  const places = folders(t);
+  const service = await Service.start(places);
+  const watched = await service.post("gate watched");
+  await service.reaches(watched, "running");
+  const stream = await service.fetch(`/api/jobs/${watched}/events`);
+  const renderer = rendererOf(service.child.pid);
+  const sockets = fs.readdirSync(`/proc/${renderer}/fd`).filter((fd) => {
+    try {
+      return fs.readlinkSync(`/proc/${renderer}/fd/${fd}`).startsWith("socket:");
+    } catch {
+      return false;
+    }
+  });
+  assert.deepEqual(sockets, [], "no connection of the service");
+  service.open("watched");
+  await stream.text();
+
+  const id = await service.post("environment");
+  await service.reaches(id, "done");
+  const seen = await service.json(`/api/jobs/${id}/files/report.json`);
+  assert.equal(seen.directory, places.data);
+  assert.equal(seen.data, places.data);
+  assert.equal(seen.scenes, places.scenes);
+});
+
+test("ended gently, the service lets renderers save, and goes on after a restart", async (t) => {
+  const places = folders(t);
+  const first = await Service.start(places);
+  const running = await first.post("gate go");
+  await first.reaches(running, "running");
+  const waiting = await first.post("gate go");
+  const gone = await first.post("finish");
+  await first.cancel(gone);
+  assert.deepEqual(await first.stop(), { code: 0, signal: null });
+  assert.equal(stateOnDisk(first, running).state, "queued");
+  assert.equal(stateOnDisk(first, running).finished, "");
+  assert.equal(stateOnDisk(first, waiting).state, "queued");
+  assert.ok(fs.existsSync(path.join(first.folder(running), "checkpoint.bin")));
+
+  const second = await Service.start(places);
+  await second.reaches(running, "running");
+  assert.equal((await second.json(`/api/jobs/${waiting}`)).state.state, "queued", "same order");
+  second.open("go");
+  const done = await second.reaches(running, "done");
+  assert.equal(done.state.attempts, 2);
+  assert.ok((await second.json(`/api/jobs/${running}/files/report.json`)).resumed);
+  await second.reaches(waiting, "done");
+  assert.equal((await second.json(`/api/jobs/${gone}`)).state.state, "cancelled");
+});
+
+test("killed, the service takes its renderers along and loses no job", async (t) => {
+  const places = folders(t);
+  const first = await Service.start(places);
+  const running = await first.post("gate go");
+  await first.reaches(running, "running");
+  const waiting = await first.post("gate go");
+  const renderer = rendererOf(first.child.pid);
+  await first.stop("SIGKILL");
+  await until(() => !runs(renderer), "its renderer ends too");
+  assert.equal(stateOnDisk(first, running).state, "interrupted");
+
+  const second = await Service.start(places);
+  second.open("go");
+  assert.equal((await second.reaches(running, "done")).state.attempts, 2);
+  await second.reaches(waiting, "done");
+});
+
+test("states that a dead service left are put right", async (t) => {
+  const places = folders(t);
+  const first = await Service.start(places);
+  const ids = [];
+  for (const label of ["gate x", "finish", "finish", "finish"]) ids.push(await first.post(label));
+  await first.reaches(ids[0], "running");
+  await first.stop("SIGKILL");
+  await until(() => stateOnDisk(first, ids[0]).state === "interrupted", "its renderer has ended");
+  const [, running, cancelling, corrupt] = ids;
+  const put = (id, state) => fs.writeFileSync(path.join(first.folder(id), "state.json"),
+    JSON.stringify({ ...stateOnDisk(first, id), state }));
+  put(running, "running");
+  put(cancelling, "cancelling");
+  fs.writeFileSync(path.join(first.folder(corrupt), "state.json"), "{\"state\":");
+  fs.mkdirSync(path.join(places.data, "jobs", "no-job"));
+
+  const second = await Service.start(places);
+  second.open("x");
+  await second.reaches(ids[0], "done");
+  await second.reaches(running, "done");
+  await second.reaches(cancelling, "cancelled");
+  const { jobs } = await second.json("/api/jobs");
+  assert.equal(jobs.length, 4, "a damaged one is listed, and hides no other");
+  const damaged = jobs.find((j) => j.id === corrupt);
+  assert.equal(damaged.state, "failed");
+  assert.match(damaged.error, /state\.json/);
+});
+
+test("a folder that another renderer still holds is waited for", async (t) => {
+  const places = folders(t);
+  const first = await Service.start(places);
+  const id = await first.post("gate x");
+  await first.reaches(id, "running");
+  await first.stop();
+  const holder = spawn("flock", [path.join(first.folder(id), ".lock"), "cat"],
+    { stdio: ["pipe", "pipe", "ignore"] });
+  t.after(() => holder.kill("SIGKILL"));
+  holder.stdin.write("held\n");
+  await new Promise((resolve) => { holder.stdout.once("data", resolve); });
+
+  const second = await Service.start(places);
+  second.open("x");
+  const other = await second.post("finish");
+  await second.cancel(other);
+  await second.reaches(other, "cancelled");
+  assert.equal((await second.json(`/api/jobs/${id}`)).state.attempts, 1, "nothing is started yet");
+  holder.stdin.end();
+  assert.equal((await second.reaches(id, "done")).state.attempts, 2);
+});
+
+test("a renderer that vanished fails the job, not the service", async (t) => {
+  const places = folders(t);
+  const renderer = path.join(places.root, "renderer");
+  fs.writeFileSync(renderer, "#!/bin/sh\nexit 0\n", { mode: 0o755 });
+  const service = await Service.start(places, ["--renderer", renderer]);
+  fs.rmSync(renderer);
+  const job = await service.reaches(await service.post("finish"), "failed");
+  assert.match(job.state.error, /could not be started.*No such file/);
+  assert.equal(job.state.attempts, 0);
+});
+
+test("a job that is removed by hand is gone", async (t) => {
+  const service = await Service.start(folders(t));
+  const first = await service.post("gate x");
+  await service.reaches(first, "running");
+  const second = await service.post("finish");
+  fs.rmSync(service.folder(second), { recursive: true });
+  assert.equal((await service.fetch(`/api/jobs/${second}`)).status, 404);
+  const third = await service.post("finish");
+  service.open("x");
+  await service.reaches(third, "done");
+  assert.deepEqual((await service.json("/api/jobs")).jobs.map((j) => j.id).sort(), [first, third].sort());
+});
+
+test("two services never share a data folder", async (t) => {
+  const places = folders(t);
+  const service = await Service.start(places);
+  const { code, err } = await runToEnd(["--port", "0", "--data", places.data, "--scenes", places.scenes,
+    "--renderer", "/bin/true"]);
+  assert.equal(code, 1);
+  assert.match(err, /another lacuna-server/);
+  assert.deepEqual(await service.json("/health"), { status: "ok" });
+});

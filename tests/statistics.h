@@ -1,0 +1,216 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace lacuna::statistics {
+
+// Tests of significance for samplers and estimators. A test yields a p-value: the probability, if
+// all is right, of a result at least as far off. A suite that makes n tests and accepts one false
+// alarm in 1 / level runs rejects where p < sidak(level, n).
+
+/// Level of each of `n` independent tests such that all pass together with probability 1 - level
+/// (Sidak 1967).
+inline double sidak(double level, std::size_t n) {
+  return -std::expm1(std::log1p(-level) / static_cast<double>(n));
+}
+
+/// Regularised upper incomplete gamma function Q(a, x), a > 0, x >= 0: by its series below a + 1,
+/// else by its continued fraction (Abramowitz and Stegun 6.5.29 and 6.5.31), the latter evaluated
+/// by Lentz's method.
+inline double gamma_q(double a, double x) {
+  if (!(a > 0) || !(x >= 0)) throw std::domain_error("gamma_q needs a > 0 and x >= 0");
+  if (x == 0) return 1;
+  constexpr double tiny = 1e-300, precision = 1e-15;
+  const double scale = std::exp(a * std::log(x) - x - std::lgamma(a));
+  if (x < a + 1) {
+    double term = 1 / a, sum = term;
+    for (double k = a + 1; term > sum * precision; ++k) sum += term *= x / k;
+    return 1 - scale * sum;
+  }
+  double b = x + 1 - a;
+  double c = 1 / tiny, d = 1 / b, h = d;
+  for (int i = 1; i < 100000; ++i) {
+    const double numerator = -i * (i - a);
+    b += 2;
+    d = numerator * d + b;
+    if (std::abs(d) < tiny) d = tiny;
+    c = b + numerator / c;
+    if (std::abs(c) < tiny) c = tiny;
+    d = 1 / d;
+    h *= d * c;
+    if (std::abs(d * c - 1) < precision) break;
+  }
+  return scale * h;
+}
+
+/// Regularised incomplete beta function I_x(a, b) (Abramowitz and Stegun 26.5.8).
+inline double beta_i(double x, double a, double b) {
+  if (x <= 0) return 0;
+  if (x >= 1) return 1;
+  // The continued fraction converges quickly on this side.
+  if (x > (a + 1) / (a + b + 2)) return 1 - beta_i(1 - x, b, a);
+  constexpr double tiny = 1e-300, precision = 1e-15;
+  double c = 1, d = 1 - (a + b) * x / (a + 1);
+  d = 1 / (std::abs(d) < tiny ? tiny : d);
+  double h = d;
+  const auto step = [&](double numerator) {
+    d = 1 + numerator * d;
+    d = 1 / (std::abs(d) < tiny ? tiny : d);
+    c = 1 + numerator / c;
+    if (std::abs(c) < tiny) c = tiny;
+    h *= d * c;
+    return std::abs(d * c - 1);
+  };
+  for (int m = 1; m < 100000; ++m) {
+    step(m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m)));
+    if (step(-(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))) < precision) break;
+  }
+  return h * std::exp(a * std::log(x) + b * std::log1p(-x) - std::log(a) + std::lgamma(a + b) -
+                      std::lgamma(a) - std::lgamma(b));
+}
+
+/// Probability that a chi-square variable exceeds `statistic`.
+inline double chi_square_p(double statistic, double degrees_of_freedom) {
+  return gamma_q(degrees_of_freedom / 2, statistic / 2);
+}
+/// Probability that a standard normal variable is further from 0 than `z`.
+inline double two_sided_p(double z) { return std::erfc(std::abs(z) / std::numbers::sqrt2); }
+/// Probability that a standard normal variable exceeds `z`.
+inline double upper_p(double z) { return 0.5 * std::erfc(z / std::numbers::sqrt2); }
+/// Probability that Student's variable is further from 0 than `t`.
+inline double student_two_sided_p(double t, double degrees_of_freedom) {
+  return beta_i(degrees_of_freedom / (degrees_of_freedom + t * t), degrees_of_freedom / 2, 0.5);
+}
+
+/// Mean and variance of a stream of numbers (Welford 1962).
+class Moments {
+ public:
+  void add(double x) {
+    ++n_;
+    const double d = x - mean_;
+    mean_ += d / static_cast<double>(n_);
+    m2_ += d * (x - mean_);
+  }
+  std::uint64_t count() const { return n_; }
+  double mean() const { return mean_; }
+  /// Unbiased; of at least two numbers.
+  double variance() const { return m2_ / static_cast<double>(n_ - 1); }
+  double standard_error() const { return std::sqrt(variance() / static_cast<double>(n_)); }
+
+ private:
+  std::uint64_t n_ = 0;
+  double mean_ = 0, m2_ = 0;
+};
+
+/// z of `difference`; where nothing varies, equal is equal and anything else is infinitely far off.
+inline double z_score(double difference, double standard_error) {
+  if (standard_error > 0) return difference / standard_error;
+  return difference == 0 ? 0 : std::copysign(std::numeric_limits<double>::infinity(), difference);
+}
+
+/// Is the mean of the sampled quantity `expected`? Normal approximation: for many samples.
+inline double z_test(const Moments& m, double expected) {
+  return two_sided_p(z_score(m.mean() - expected, m.standard_error()));
+}
+/// Is it at most `bound`? One-sided.
+inline double z_test_at_most(const Moments& m, double bound) {
+  return upper_p(z_score(m.mean() - bound, m.standard_error()));
+}
+/// Do two sampled quantities have the same mean?
+inline double z_test(const Moments& a, const Moments& b) {
+  return two_sided_p(
+      z_score(a.mean() - b.mean(), std::hypot(a.standard_error(), b.standard_error())));
+}
+/// Is the mean of a few normal samples `expected`? Student's test.
+inline double t_test(const Moments& m, double expected) {
+  const double t = z_score(m.mean() - expected, m.standard_error());
+  return std::isfinite(t) ? student_two_sided_p(t, static_cast<double>(m.count() - 1)) : 0;
+}
+/// Do a few normal samples of each kind have the same mean? Welch's test.
+inline double t_test(const Moments& a, const Moments& b) {
+  const double va = a.standard_error() * a.standard_error();
+  const double vb = b.standard_error() * b.standard_error();
+  const double t = z_score(a.mean() - b.mean(), std::sqrt(va + vb));
+  if (!std::isfinite(t)) return 0;
+  if (va + vb == 0) return 1;
+  const double dof =
+      (va + vb) * (va + vb) /
+      (va * va / static_cast<double>(a.count() - 1) + vb * vb / static_cast<double>(b.count() - 1));
+  return student_two_sided_p(t, dof);
+}
+
+struct ChiSquare {
+  double statistic = 0;
+  double degrees_of_freedom = 0;
+  double p = 1;
+  std::string message;  ///< what was found, for the log of a failed test
+};
+
+/// Do the counts `observed` follow the expected ones? Both add up to the number of samples. Cells
+/// that expect fewer than `pool_below` samples are pooled, smallest first, until the pool expects
+/// enough; a pool that never does joins the smallest of the others. Samples where exactly none are
+/// expected give p = 0.
+inline ChiSquare chi_square_test(std::span<const double> observed, std::span<const double> expected,
+                                 double pool_below = 5) {
+  if (observed.size() != expected.size() || observed.empty())
+    throw std::invalid_argument("chi_square_test needs as many observed cells as expected ones");
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    if (!(expected[i] >= 0) || !(observed[i] >= 0))
+      throw std::invalid_argument("chi_square_test: cell " + std::to_string(i) + " expects " +
+                                  std::to_string(expected[i]) + ", must be >= 0");
+    if (expected[i] == 0 && observed[i] > 0)
+      return {std::numeric_limits<double>::infinity(), 0, 0,
+              "cell " + std::to_string(i) + " holds " + std::to_string(observed[i]) +
+                  " samples and expects none"};
+    if (expected[i] > 0) order.push_back(i);
+  }
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return expected[a] < expected[b]; });
+
+  struct Cell {
+    double observed = 0, expected = 0;
+  };
+  std::vector<Cell> cells;
+  Cell pool;
+  for (const std::size_t i : order) {
+    pool.observed += observed[i];
+    pool.expected += expected[i];
+    if (pool.expected >= pool_below) {
+      cells.push_back(pool);
+      pool = {};
+    }
+  }
+  if (pool.expected > 0) {
+    if (cells.empty()) cells.emplace_back();
+    cells.front().observed += pool.observed;
+    cells.front().expected += pool.expected;
+  }
+
+  ChiSquare result;
+  Cell worst;
+  double worst_term = -1;
+  for (const Cell& c : cells) {
+    const double term = (c.observed - c.expected) * (c.observed - c.expected) / c.expected;
+    result.statistic += term;
+    if (term > worst_term) worst = c, worst_term = term;
+  }
+  result.degrees_of_freedom = static_cast<double>(cells.size()) - 1;
+  // A single cell holds every sample, right or wrong.
+  if (cells.size() > 1) result.p = chi_square_p(result.statistic, result.degrees_of_freedom);
+  result.message = "chi-square " + std::to_string(result.statistic) + " with " +
+                   std::to_string(cells.size()) + " cells; the worst holds " +
+                   std::to_string(worst.observed) + " and expects " +
+                   std::to_string(worst.expected);
+  return result;
+}
+
+}  // namespace lacuna::statistics

@@ -1,0 +1,44 @@
+// Chromium for the tests, and pages that remember what went wrong in them.
+import { mkdir } from "node:fs/promises";
+import { join } from "node:path";
+
+import { chromium } from "playwright-core";
+
+const args = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+  "--disable-background-networking", "--disable-component-update", "--disable-sync"];
+
+export const launch = () => chromium.launch({
+  executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", headless: true, args,
+});
+
+/// A page at `address`, ready to look at. `page.troubles` collects console errors and warnings,
+/// exceptions, and requests to other hosts.
+export async function openPage(browser, address, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...options });
+  const page = await context.newPage();
+  page.troubles = [];
+  page.on("console", (message) => {
+    if (["error", "warning"].includes(message.type())) page.troubles.push(message.text());
+  });
+  page.on("pageerror", (error) => page.troubles.push(String(error)));
+  page.on("request", (request) => {
+    const url = new URL(request.url());
+    if (url.host !== new URL(address).host && !["data:", "blob:"].includes(url.protocol)) {
+      page.troubles.push(`a request to ${url.host}`);
+    }
+  });
+  await page.goto(address);
+  await ready(page);
+  return page;
+}
+
+/// Waits until the router has shown the view.
+export const ready = (page) => page.waitForSelector("main[data-ready]");
+
+/// Writes a picture of the whole page to $LACUNA_SCREENSHOTS, if that is set.
+export async function screenshot(page, name) {
+  const folder = process.env.LACUNA_SCREENSHOTS;
+  if (!folder) return;
+  await mkdir(folder, { recursive: true });
+  await page.screenshot({ path: join(folder, `${name}.png`), fullPage: true });
+}

@@ -1,0 +1,125 @@
+// The page's arithmetic and its texts, in the browser it is written for.
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+
+import { launch, openPage } from "./browser.mjs";
+import { Mock } from "./mock_server.mjs";
+
+let browser;
+let mock;
+let page;
+
+before(async () => {
+  browser = await launch();
+  mock = new Mock();
+  page = await openPage(browser, `${await mock.listen()}/#/new`);
+});
+after(async () => {
+  await browser.close();
+  mock.close();
+});
+
+/// What a function of a module gives for some arguments.
+const call = (module, name, ...given) => page.evaluate(
+  async ([m, n, args]) => (await import(m))[n](...args), [module, name, given]);
+
+const near = (actual, expected) => assert.ok(Math.abs(actual / expected - 1) < 1e-12,
+  `${actual}, expected ${expected}`);
+
+/// y = level / sqrt(x) at the given x.
+const halfSlope = (level, xs) => xs.map((x) => ({ x, y: level / Math.sqrt(x), floor: false }));
+
+test("curve.csv: empty fields are no values, and points that log axes cannot show are left out", async () => {
+  const text = "iteration,seconds,rmse,est_rmse,at_floor\n1,0,0.5,,0\n2,0.2,,0.4,0\n4,0.4,0.25,0,1\n";
+  const rows = await call("/curve.js", "parseCurve", text);
+  assert.deepEqual(rows[1], { iteration: 2, seconds: 0.2, rmse: null, est_rmse: 0.4, at_floor: 0 });
+  assert.deepEqual(await call("/curve.js", "points", rows, "seconds", "rmse"), [{ x: 0.4, y: 0.25, floor: true }]);
+  assert.deepEqual(await call("/curve.js", "points", rows, "seconds", "est_rmse"), [{ x: 0.2, y: 0.4, floor: false }]);
+  assert.deepEqual((await call("/curve.js", "presentMetrics", rows)).map((m) => m.key), ["rmse", "est_rmse"]);
+  assert.deepEqual(await call("/curve.js", "parseCurve", ""), []);
+});
+
+test("errors and times are interpolated in log-log, and never beyond the curve", async () => {
+  const curve = halfSlope(1, [1, 4, 64]);
+  near(await call("/curve.js", "errorAt", curve, 16), 0.25);
+  near(await call("/curve.js", "errorAt", curve, 2), Math.SQRT1_2);
+  assert.equal(await call("/curve.js", "errorAt", curve, 1), 1);
+  assert.equal(await call("/curve.js", "errorAt", curve, 0.5), null);
+  assert.equal(await call("/curve.js", "errorAt", curve, 65), null);
+  near(await call("/curve.js", "reaches", curve, 0.25), 16);
+  assert.equal(await call("/curve.js", "reaches", curve, 0.1), null);
+});
+
+test("instants and errors that all curves share", async () => {
+  const curves = [halfSlope(1, [1, 200]), halfSlope(4, [3, 100]), []];
+  assert.deepEqual(await call("/curve.js", "commonInstants", curves), [10, 25, 50, 100]);
+  near(await call("/curve.js", "commonError", curves), 0.4);
+  assert.deepEqual(await call("/curve.js", "commonInstants", [halfSlope(1, [1, 2]), halfSlope(1, [3, 4])]), []);
+  assert.equal(await call("/curve.js", "commonError", [[]]), null);
+});
+
+test("the slope line lies on a curve that has the slope, and points at the floor do not bend it", async () => {
+  const curve = [...halfSlope(3, [1, 4, 16]), { x: 64, y: 2, floor: true }];
+  const [from, to] = await call("/curve.js", "slopeLine", [curve], -0.5);
+  near(from.y, 3);
+  assert.equal(to.x, 64);
+  near(to.y, 3 / 8);
+  assert.deepEqual(await call("/curve.js", "slopeLine", [curve.slice(0, 1)], -0.5), []);
+});
+
+test("ticks of log axes lie within them, a few for any range", async () => {
+  for (const [min, max] of [[0.02, 40], [1.1, 1.2], [1, 9], [1e-9, 1e9], [3e-5, 4e-5], [90, 1100]]) {
+    const ticks = await call("/plot.js", "logTicks", min, max);
+    assert.ok(ticks.length >= 2 && ticks.length <= 11, `${min} to ${max}: ${ticks}`);
+    assert.ok(ticks.every((t, i) => t >= min && t <= max && (i === 0 || t > ticks[i - 1])), `${ticks}`);
+  }
+});
+
+test("numbers are written with three digits, whole ones in full", async () => {
+  const written = { 0: "0", 7: "7", 1234567: "1\u202f234\u202f567", 0.0123456: "0.0123", 12.345: "12.3",
+    123.45: "123", 0.000123: "1.23e-4", 2500000.5: "2.50e6" };
+  for (const [value, text] of Object.entries(written)) {
+    assert.equal(await call("/format.js", "number", Number(value)), text);
+  }
+  assert.equal(await call("/format.js", "number", null), "—");
+  assert.equal(await call("/format.js", "duration", 59.6), "1 min 0 s");
+  assert.equal(await call("/format.js", "duration", 7500), "2 h 5 min");
+  assert.equal(await call("/format.js", "bytes", 1536), "1.50\u202fKiB");
+  assert.equal(await call("/format.js", "quantity", 2.5e7, ["rays_per_second"]), "25.0\u202fM/s");
+  assert.equal(await call("/format.js", "quantity", 0.5, ["load", "seconds"]), "0.500\u202fs");
+});
+
+test("a job survives the shell: quotes in names are quoted", async () => {
+  const line = await call("/format.js", "curlLine", { scene: "it's \"here\"; $(rm)" });
+  assert.ok(line.endsWith(`-d '{"scene":"it'\\''s \\"here\\"; $(rm)"}'`), line);
+});
+
+test("what a job leaves open is left out where it is posted again", async () => {
+  const job = { scene: "a", budget: { seconds: 5, iterations: null }, layers: [], environment: null };
+  assert.deepEqual(await call("/format.js", "withoutNulls", job), { scene: "a", budget: { seconds: 5 }, layers: [] });
+});
+
+test("a job file is written with short lists on one line, and reads back the same", async () => {
+  const job = { resolution: [8, 9], label: "[\n 1,\n 2\n]", layers: [], deep: { list: ["a", "b"] } };
+  const text = await call("/format.js", "prettyJob", job);
+  assert.match(text, /"resolution": \[8, 9\]/);
+  assert.deepEqual(JSON.parse(text), job);
+});
+
+test("the schema's keys are listed with what they allow", async () => {
+  const rows = await page.evaluate(async () =>
+    (await import("/schema.js")).schemaRows((await (await fetch("/api/schema/job")).json())));
+  const row = (pointer) => rows.find((r) => r.pointer === pointer);
+  assert.equal(row("/scene").default, "required");
+  assert.equal(row("/resolution").allowed, "≥ 1, ≤ 16384");
+  assert.equal(row("/integrator").allowed, "\"path\", \"inspect\"");
+  assert.equal(row("/integrator (path)/max_depth").default, "6");
+});
+
+test("only settings that differ are listed, and those that change the picture are doubtful", async () => {
+  const jobs = [{ scene: "a", seed: 1, budget: { seconds: 5 }, resolution: [2, 2] },
+    { scene: "b", seed: 2, budget: { seconds: 5 }, resolution: [2, 2], extra: true }];
+  const found = await call("/settings_diff.js", "differences", jobs);
+  assert.deepEqual(found.map((d) => d.pointer), ["/scene", "/seed", "/extra"]);
+  assert.deepEqual(await call("/settings_diff.js", "doubtful", found), ["/scene"]);
+});

@@ -1,0 +1,307 @@
+// Every view of the page against the mock server.
+import assert from "node:assert/strict";
+import { after, afterEach, before, beforeEach, test } from "node:test";
+
+import { launch, openPage, ready, screenshot } from "./browser.mjs";
+import { curve, hostile, progress } from "./fixtures.mjs";
+import { Mock } from "./mock_server.mjs";
+
+const running = "20260131-101900-running";
+const waiting = "20260131-101800-waiting";
+const evil = "20260131-101700-hostile";
+const shallow = "20260131-101500-shallow";
+const cornell = "20260131-101400-cornell";
+
+const views = {
+  jobs: "/#/",
+  job: `/#/job/${cornell}`,
+  running: `/#/job/${running}`,
+  failed: `/#/job/${evil}`,
+  compare: `/#/compare?jobs=${cornell},${shallow},${running}`,
+  new: "/#/new",
+};
+
+/// How many pictures a view has in the end.
+const pictures = { "#/": 3, [views.job.slice(1)]: 1, [views.running.slice(1)]: 1, [views.compare.slice(1)]: 3 };
+
+let browser;
+let mock;
+let origin;
+let page;
+
+before(async () => { browser = await launch(); });
+after(() => browser.close());
+beforeEach(async () => {
+  mock = new Mock();
+  origin = await mock.listen();
+});
+afterEach(async () => {
+  await page?.context().close();
+  page = undefined;
+  mock.close();
+});
+
+const open = async (path, options) => { page = await openPage(browser, origin + path, options); };
+const text = (selector) => page.locator(selector).first().innerText();
+const count = (selector) => page.locator(selector).count();
+const attribute = (selector, name) => page.locator(selector).first().getAttribute(name);
+/// Waits for all pictures that the view asks for.
+const settled = () => page.waitForFunction((n) => document.querySelectorAll("main img:not([hidden])").length >= n
+  && [...document.images].every((image) => image.complete), pictures[new URL(page.url()).hash] ?? 0);
+
+for (const [name, path] of Object.entries(views)) {
+  for (const colorScheme of ["light", "dark"]) {
+    test(`${name} loads in ${colorScheme} without a console message`, async () => {
+      await open(path, { colorScheme });
+      await settled();
+      assert.equal(await count("[role=alert] h1"), 0);
+      assert.ok((await text("h1")).length > 0);
+      await screenshot(page, `${name}-${colorScheme}`);
+      assert.deepEqual(page.troubles, []);
+    });
+  }
+
+  test(`${name} needs no sideways scrolling in a narrow window`, async () => {
+    await open(path, { viewport: { width: 360, height: 740 } });
+    const [inner, outer] = await page.evaluate(() => [
+      document.documentElement.scrollWidth, document.documentElement.clientWidth]);
+    assert.ok(inner <= outer, `${inner} pixels of content in a window of ${outer}`);
+    await screenshot(page, `${name}-narrow`);
+  });
+
+  test(`${name} shows names as text`, async () => {
+    for (const job of mock.jobs) job.job = { ...job.job, label: hostile, scene: `${hostile}.glb` };
+    await open(path);
+    if (name !== "new") assert.ok((await page.locator("main").innerText()).includes(hostile));
+    assert.equal(await count("main img[src=x]"), 0);
+    assert.equal(await page.evaluate(() => window.hacked), undefined);
+    assert.deepEqual(page.troubles, []);
+  });
+}
+
+test("the list shows every job, newest first, with pictures only where there are any", async () => {
+  await open(views.jobs);
+  const ids = await page.locator("tr[data-job]").evaluateAll((rows) => rows.map((r) => r.dataset.job));
+  assert.deepEqual(ids, mock.jobs.map((job) => job.id));
+  await page.waitForFunction(() => document.querySelectorAll(".thumb img").length === 3);
+  assert.match(await text(`tr[data-job="${running}"] .progress`), /^10 %, 27 s left$/);
+  assert.equal(await text(`tr[data-job="${cornell}"] .error`), "rmse 0.0138");
+  assert.equal(await text(`tr[data-job="${evil}"] .badge`), "failed");
+});
+
+test("the list follows the jobs", async () => {
+  await open(views.jobs);
+  const bar = page.locator(`tr[data-job="${running}"] progress`);
+  assert.equal(await bar.evaluate((b) => b.value), 0.1);
+  mock.update(running, { progress: progress(20, 0.5) });
+  await page.waitForFunction((id) => document.querySelector(`tr[data-job="${id}"] progress`).value === 0.5,
+    running);
+  mock.jobs.splice(1, 1);
+  await page.waitForSelector(`tr[data-job="${waiting}"]`, { state: "detached" });
+  assert.deepEqual(page.troubles, []);
+});
+
+test("the filter keeps its jobs and goes into the address", async () => {
+  await open(views.jobs);
+  await page.fill("input[type=search]", "cornell DONE");
+  assert.equal(await count("tr[data-job]"), 2);
+  assert.equal(await text("main > .tools output"), "2 of 6");
+  assert.ok(page.url().endsWith("#/?filter=cornell+DONE"));
+  await page.reload();
+  await ready(page);
+  assert.equal(await count("tr[data-job]"), 2);
+});
+
+test("jobs chosen in the list are compared", async () => {
+  await open(views.jobs);
+  const compare = page.getByRole("button", { name: /^Compare/ });
+  assert.equal(await compare.isDisabled(), true);
+  for (const id of [cornell, shallow]) await page.check(`tr[data-job="${id}"] input`);
+  await compare.click();
+  await page.waitForSelector("canvas[data-curves='2']");
+  assert.ok(page.url().endsWith(`#/compare?jobs=${cornell},${shallow}`));
+});
+
+test("an empty list says how to post the first job", async () => {
+  mock.jobs = [];
+  await open("/");
+  assert.match(await text(".empty pre"), new RegExp(`^curl .*${origin}/api/jobs`));
+  await screenshot(page, "empty");
+  assert.deepEqual(page.troubles, []);
+});
+
+test("a running job moves, gets its curve and picture, and ends", async () => {
+  await open(views.running);
+  assert.equal(await attribute("canvas", "data-points"), "3");
+  mock.update(running, { progress: progress(20, 0.5, { error_metric: "est_rmse" }) });
+  await page.waitForFunction(() => document.querySelector(".title progress").value === 0.5);
+  mock.update(running, { files: { "curve.csv": curve({ rows: 6, cost: 0.7, level: 0.4 }) },
+    state: { state: "done", phase: "", finished: "2026-01-31T10:20:00.000Z" } });
+  await page.waitForSelector("canvas[data-points='6']");
+  assert.equal(await text(".title .badge"), "done");
+  assert.equal(await page.locator(".title progress").isVisible(), false);
+  assert.equal(await page.getByRole("button", { name: "Cancel job" }).isVisible(), false);
+  await page.waitForFunction(() => document.querySelector(".frame img").naturalWidth === 640);
+  assert.equal(mock.listeners.size, 0, "the page has stopped listening");
+  assert.deepEqual(page.troubles, []);
+});
+
+test("a job is cancelled only after a question", async () => {
+  await open(views.running);
+  const cancel = page.getByRole("button", { name: "Cancel job" });
+  page.once("dialog", (dialog) => dialog.dismiss());
+  await cancel.click();
+  assert.equal(mock.find(running).state.state, "running");
+  page.once("dialog", (dialog) => dialog.accept());
+  await cancel.click();
+  await page.waitForSelector("article[data-state=cancelled]");
+  assert.equal(mock.find(running).state.state, "cancelled");
+  assert.deepEqual(page.troubles, []);
+});
+
+test("a job shows its report with units, its files and its settings", async () => {
+  await open(views.job);
+  const report = await page.locator(".report").innerText();
+  assert.match(report, /peak memory bytes\s+175\sMiB/);
+  assert.match(report, /render\s+30\.0\ss/);
+  assert.match(report, /rays per second\s+19\.9\sM\/s/);
+  assert.match(report, /built\s+none/);
+  assert.match(report, /type\s+share\s+1\s+camera\s+0\.310/);
+  assert.equal(await count(".files a"), 6);
+  assert.match(await page.locator("article").innerText(), /512 × 512/);
+  await page.getByText("Curve as a table").click();
+  assert.equal(await count("details[open] tbody tr"), 11);
+  await page.getByText("Log", { exact: true }).click();
+  await page.getByText("loaded the scene in 41 ms").waitFor();
+  assert.deepEqual(page.troubles, []);
+});
+
+test("a failed job says why, plainly", async () => {
+  await open(views.failed);
+  assert.equal(await text(".problem"), `scene ${hostile}.glb: no such file`);
+  assert.match(await text(".warning"), /no light/);
+  assert.equal(await text(".plot-figure .note"), "No errors have been measured.");
+});
+
+test("the curve's switches change the plot and the address", async () => {
+  await open(views.job);
+  const canvas = page.locator("canvas");
+  assert.match(await canvas.getAttribute("aria-label"), /^RMSE against render time/);
+  await page.getByLabel("Error", { exact: true }).selectOption("est_rmse");
+  await page.getByLabel("against", { exact: true }).selectOption("iteration");
+  assert.match(await canvas.getAttribute("aria-label"), /^estimated RMSE against iterations/);
+  assert.ok(page.url().includes("y=est_rmse"));
+  await page.reload();
+  await ready(page);
+  assert.match(await canvas.getAttribute("aria-label"), /^estimated RMSE against iterations/);
+  assert.deepEqual(page.troubles, []);
+});
+
+test("hollow points are explained where a reference's floor is reached, and only there", async () => {
+  await open(views.job);
+  const note = page.getByText("Hollow points");
+  assert.equal(await note.isVisible(), true);
+  await page.getByLabel("Error", { exact: true }).selectOption("est_rmse");
+  assert.equal(await note.isVisible(), false);
+});
+
+test("a click zooms the picture to its pixels, and keys move it", async () => {
+  await open(views.job);
+  const image = page.locator(".frame img");
+  await image.waitFor();
+  const scale = () => image.evaluate((i) => new DOMMatrix(getComputedStyle(i).transform).a);
+  const rendering = () => image.evaluate((i) => getComputedStyle(i).imageRendering);
+  assert.equal(await scale(), 1);
+  const box = await page.locator(".frame").boundingBox();
+  const position = { x: box.width / 4, y: box.height / 2 };
+  await page.locator(".frame").click({ position });
+  const shift = await image.evaluate((i) => new DOMMatrix(getComputedStyle(i).transform).e / i.offsetWidth);
+  assert.ok(Math.abs(shift - 0.25) < 0.01, `the point under the click stays: ${shift}`);
+  await page.locator(".frame").click({ position, modifiers: ["Shift"] });
+  assert.equal(await scale(), 1);
+  await page.locator(".frame").press("+");
+  await page.locator(".frame").press("+");
+  assert.equal(await scale(), 4);
+  assert.equal(await rendering(), "pixelated");
+  await page.locator(".frame").press("0");
+  assert.equal(await scale(), 1);
+  assert.deepEqual(page.troubles, []);
+});
+
+test("compare lays as many curves over one another as there are jobs", async () => {
+  await open(views.compare);
+  assert.equal(await attribute("canvas", "data-curves"), "3");
+  const table = await page.locator("main section table").first().innerText();
+  for (const name of ["Cornell box, 6 edges", "atrium.glb", "× the fastest"]) assert.ok(table.includes(name), name);
+  await page.waitForFunction(() => document.querySelectorAll(".gallery img:not([hidden])").length === 3);
+  assert.match(await text(".warning"), /differ in \/scene, \/resolution, \/reference/);
+  await page.locator(".frame").first().press("+");
+  const transforms = await page.locator(".gallery img").evaluateAll((all) => all.map((i) => i.style.transform));
+  assert.equal(new Set(transforms).size, 1, "the pictures are zoomed together");
+  assert.match(transforms[0], /scale\(2\)/);
+  assert.deepEqual(page.troubles, []);
+});
+
+test("compare shows what it can where a job is missing", async () => {
+  await open(`/#/compare?jobs=${cornell},nobody`);
+  assert.equal(await attribute("canvas", "data-curves"), "1");
+  assert.equal(await text(".problem"), "nobody: There is no job nobody.");
+});
+
+test("a job is posted, and problems name their places", async () => {
+  await open(views.new);
+  await page.fill("textarea", JSON.stringify({ scene: "nowhere.glb" }));
+  await page.getByRole("button", { name: "Post the job" }).click();
+  assert.match(await text(".errors li"), /^\/scene found "nowhere.glb", allowed: atrium.glb/);
+  await screenshot(page, "new-problems");
+  await page.fill("textarea", JSON.stringify({ scene: "cornell.glb", label: "mine" }));
+  await page.getByRole("button", { name: "Post the job" }).click();
+  await page.waitForSelector("article");
+  assert.equal(await text("h1"), "mine");
+  assert.deepEqual(page.troubles.filter((t) => !/400/.test(t)), []);
+});
+
+test("the new-job view takes a scene into the job and lists every key", async () => {
+  await open(views.new);
+  await page.getByLabel("Scene").selectOption("door/scene.glb");
+  assert.equal(JSON.parse(await page.inputValue("textarea")).scene, "door/scene.glb");
+  await page.getByText("Every key of a job file").click();
+  assert.match(await page.locator(".keys").innerText(), /\/integrator \(inspect\)\/show\s+word\s+"normal", "albedo"/);
+  await page.goto(`${origin}/#/new?from=${shallow}`);
+  await ready(page);
+  await page.waitForFunction(() => JSON.parse(document.querySelector("textarea").value).seed === 2);
+  assert.deepEqual(page.troubles, []);
+});
+
+test("unknown addresses and jobs say so", async () => {
+  await open("/#/job/nobody");
+  assert.equal(await text(".problem"), "There is no job nobody.");
+  await page.goto(`${origin}/#/elsewhere`);
+  await page.getByText("No such view").waitFor();
+});
+
+test("a server that goes away and comes back is said and forgotten", async () => {
+  await open(views.jobs);
+  const { port } = mock.server.address();
+  mock.close();
+  await page.getByText("The server does not answer; trying again.").waitFor();
+  assert.equal(await count("tr[data-job]"), 6);
+  const jobs = mock.jobs;
+  mock = new Mock();
+  mock.jobs = jobs;
+  await mock.listen(port);
+  await page.getByText("The server does not answer; trying again.").waitFor({ state: "detached" });
+});
+
+test("the keyboard reaches the jobs, their boxes and the skip link", async () => {
+  await open(views.jobs);
+  await page.keyboard.press("Tab");
+  assert.equal(await page.evaluate(() => document.activeElement.textContent), "Skip to the content");
+  const seen = [];
+  for (let i = 0; i < 12; i += 1) {
+    await page.keyboard.press("Tab");
+    seen.push(await page.evaluate(() => document.activeElement.getAttribute("href")
+      ?? document.activeElement.type));
+  }
+  assert.ok(seen.includes("checkbox") && seen.includes(`#/job/${running}`), seen.join(" "));
+});

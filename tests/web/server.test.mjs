@@ -1,0 +1,134 @@
+// The page against the real service and the real renderer.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { access, mkdtemp, rm } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { fileURLToPath } from "node:url";
+
+import { launch, openPage, ready, screenshot } from "./browser.mjs";
+
+const root = fileURLToPath(new URL("../../", import.meta.url));
+const bin = process.env.LACUNA_BIN ?? join(root, "build/release/bin");
+const small = { scene: "cornell.glb", resolution: [32, 32], threads: 1, budget: { iterations: 64 } };
+const patience = { timeout: 60_000 };  // a busy machine may render slowly
+
+let data;
+let server;
+let browser;
+
+/// The service on a free port, and its address once it says it.
+async function startServer(folder) {
+  const program = join(bin, "lacuna-server");
+  for (const file of [program, join(bin, "lacuna")]) await access(file);
+  const child = spawn(program, ["--port", "0", "--data", folder, "--scenes", join(root, "jobs/scenes")],
+    { stdio: ["ignore", "pipe", "pipe"] });
+  let said = "";
+  const address = await new Promise((resolve, reject) => {
+    const listen = (part) => {
+      said += part;
+      const found = /listening on (http:\/\/\S+)/.exec(said);
+      if (found) resolve(new URL(found[1]).origin);
+    };
+    child.stdout.on("data", listen);
+    child.stderr.on("data", listen);
+    child.on("exit", () => reject(new Error(`lacuna-server ended: ${said}`)));
+    child.on("error", reject);
+  });
+  return { child, address };
+}
+
+before(async () => {
+  data = await mkdtemp(join(tmpdir(), "lacuna-web-"));
+  server = await startServer(data);
+  browser = await launch();
+});
+
+after(async () => {
+  await browser?.close();
+  if (server?.child.exitCode === null) {
+    const ended = new Promise((resolve) => { server.child.on("exit", resolve); });
+    server.child.kill("SIGTERM");
+    await ended;
+  }
+  if (data) await rm(data, { recursive: true, force: true });
+});
+
+/// Posts a job through the form and waits until it is done; gives its id.
+async function render(page, job) {
+  await page.goto(`${server.address}/#/new`);
+  await page.waitForSelector("textarea");
+  await page.fill("textarea", JSON.stringify(job));
+  await page.getByRole("button", { name: "Post the job" }).click();
+  const article = page.locator("article[data-state=done], article[data-state=failed]");
+  await article.waitFor(patience);
+  assert.equal(await article.getAttribute("data-state"), "done", await page.locator(".notes").innerText());
+  await page.waitForSelector(".report table", patience);  // what the page reads last
+  return page.url().split("/").pop();
+}
+
+test("the first job, from the empty list to its curve, picture and report; then a comparison", async () => {
+  const page = await openPage(browser, server.address);
+  await page.getByText("No jobs yet").waitFor();
+  assert.deepEqual(page.troubles, []);
+
+  const withReference = { ...small, reference: "auto", reference_iterations: 256, label: "measured" };
+  const first = await render(page, withReference);
+  await page.waitForFunction(() => document.querySelector(".frame img").naturalWidth === 32);
+  assert.ok(Number(await page.locator("canvas").getAttribute("data-points")) >= 1);
+  const offered = await page.getByLabel("Error", { exact: true }).locator("option").allInnerTexts();
+  assert.deepEqual(offered, ["RMSE", "relMSE", "MSE", "MAE", "SMAPE", "estimated RMSE"]);
+  assert.match(await page.locator(".report").innerText(), /peak memory bytes\s+[\d.]+\s[KMG]iB/);
+  for (const name of ["image.exr", "image.png", "curve.csv", "report.json", "job.json"]) {
+    assert.equal(await page.locator(".files a", { hasText: name }).count(), 1, name);
+  }
+  await screenshot(page, "real-job");
+
+  const second = await render(page, { ...small, seed: 2 });
+  assert.deepEqual(await page.getByLabel("Error", { exact: true }).locator("option").allInnerTexts(),
+    ["estimated RMSE"]);
+  await page.goto(`${server.address}/#/compare?jobs=${first},${second}`);
+  await page.waitForSelector("canvas[data-curves='2']");
+  await page.waitForFunction(() => document.querySelectorAll(".gallery img:not([hidden])").length === 2);
+  await screenshot(page, "real-compare");
+
+  await page.goto(`${server.address}/#/`);
+  await page.waitForSelector(`tr[data-job="${second}"]`);
+  assert.deepEqual(await page.locator("tr[data-job] .badge").allInnerTexts(), ["done", "done"]);
+  await page.waitForFunction(() => document.querySelectorAll(".thumb img").length === 2);
+  await screenshot(page, "real-jobs");
+  assert.deepEqual(page.troubles, []);
+});
+
+test("a running job is followed and cancelled", async () => {
+  const page = await openPage(browser, `${server.address}/#/new`);
+  await page.fill("textarea", JSON.stringify({ ...small, budget: { seconds: 600 } }));
+  await page.getByRole("button", { name: "Post the job" }).click();
+  await page.waitForFunction(() => document.querySelector(".title progress")?.value > 0, null, patience);
+  const share = await page.locator(".title progress").evaluate((bar) => bar.value);
+  await page.waitForFunction((s) => document.querySelector(".title progress").value > s, share, patience);
+  page.on("dialog", (dialog) => dialog.accept());
+  await page.getByRole("button", { name: "Cancel job" }).click();
+  await page.waitForSelector("article[data-state=cancelled]", patience);
+  assert.deepEqual(page.troubles, []);
+});
+
+test("problems of a job name their places; the schema's keys are listed", async () => {
+  const page = await openPage(browser, `${server.address}/#/new`);
+  const scenes = await page.getByLabel("Scene").locator("option").allInnerTexts();
+  assert.ok(scenes.includes("cornell.glb"), scenes.join(" "));
+  await page.getByText("Every key of a job file").click();
+  assert.match(await page.locator(".keys").innerText(), /\/budget\/cpu_seconds\s/);
+  await screenshot(page, "real-new");
+  await page.fill("textarea", JSON.stringify({ ...small, resolution: [0, 32], integrator: { type: "pth" } }));
+  await page.getByRole("button", { name: "Post the job" }).click();
+  await page.waitForSelector(".errors li");
+  const places = await page.locator(".errors code").allInnerTexts();
+  assert.ok(places.includes("/resolution/0"), places.join(" "));
+  assert.ok(places.some((place) => place.startsWith("/integrator")), places.join(" "));
+  assert.deepEqual(page.troubles.filter((text) => !text.includes("400")), []);
+  await page.goto(`${server.address}/#/job/20200101-000000-nobody`);
+  await ready(page);
+  await page.getByText("There is no job").waitFor();
+});

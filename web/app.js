@@ -1,0 +1,70 @@
+// The router: one view per hash route, each given an AbortSignal that ends everything it started.
+import { ApiError } from "./api.js";
+import { h } from "./dom.js";
+import * as compare from "./view_compare.js";
+import * as job from "./view_job.js";
+import * as jobs from "./view_jobs.js";
+import * as create from "./view_new.js";
+
+const routes = [
+  { pattern: /^\/$/, show: jobs.show },
+  { pattern: /^\/job\/(?<id>[^/]+)$/, show: job.show },
+  { pattern: /^\/compare$/, show: compare.show },
+  { pattern: /^\/new$/, show: create.show },
+];
+
+const main = document.getElementById("main");
+let leaving = new AbortController();
+let shown = false;
+
+/// "#/compare?jobs=a,b" -> the path and its query.
+function address() {
+  const [path, query = ""] = location.hash.replace(/^#/, "").split("?", 2);
+  return { path: path || "/", query: new URLSearchParams(query) };
+}
+
+function markNavigation(path) {
+  for (const link of document.querySelectorAll("nav a")) {
+    if (link.getAttribute("href") === `#${path}`) link.setAttribute("aria-current", "page");
+    else link.removeAttribute("aria-current");
+  }
+}
+
+function explain(error) {
+  const known = error instanceof ApiError;
+  return h("section", { role: "alert" },
+    h("h1", {}, known ? error.title : "This view failed"),
+    h("p", { className: "problem" }, known ? error.message : String(error)),
+    h("p", {}, h("a", { href: "#/" }, "All jobs")));
+}
+
+async function route() {
+  leaving.abort();
+  leaving = new AbortController();
+  const { signal } = leaving;
+  const { path, query } = address();
+  const match = routes.map((r) => ({ show: r.show, found: r.pattern.exec(path) }))
+    .find((r) => r.found);
+  markNavigation(path);
+  main.replaceChildren();
+  main.removeAttribute("data-ready");
+  if (shown) main.focus({ preventScroll: true });
+  shown = true;
+  window.scrollTo(0, 0);
+  try {
+    if (!match) throw new ApiError(404, { title: "No such view", detail: `#${path} leads nowhere.` });
+    await match.show(main, { params: match.found.groups ?? {}, query, signal });
+  } catch (error) {
+    if (signal.aborted) return;
+    document.title = "Lacuna";
+    main.replaceChildren(explain(error));
+  }
+  main.setAttribute("data-ready", "");
+}
+
+// "#main" is the skip link's target, not a view.
+window.addEventListener("hashchange", () => {
+  if (location.hash === "#main") history.replaceState(null, "", "#/");
+  else route();
+});
+route();

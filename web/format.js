@@ -1,0 +1,107 @@
+// Numbers, times and names as people read them.
+
+const thin = "\u202f";
+
+/// `digits` significant digits, with an exponent where the number is very small or large.
+export function significant(value, digits = 3) {
+  const size = Math.abs(value);
+  if (size === 0) return "0";
+  if (size < 1e-3 || size >= 1e6) return value.toExponential(digits - 1).replace("e+", "e");
+  return value.toFixed(Math.max(0, digits - 1 - Math.floor(Math.log10(size))));
+}
+
+/// Whole numbers in groups of three, others with `digits` significant digits. null: an em dash.
+export function number(value, digits = 3) {
+  if (value === null || value === undefined) return "—";
+  if (!Number.isInteger(value) || Math.abs(value) >= 1e15) return significant(value, digits);
+  return String(value).replace(/\B(?=(\d{3})+$)/g, thin);
+}
+
+/// A value with an SI prefix and its unit: "19.9 M/s".
+function prefixed(value, unit) {
+  const [factor, prefix] = [[1e9, "G"], [1e6, "M"], [1e3, "k"]].find(([f]) => value >= f) ?? [1, ""];
+  return `${significant(value / factor)}${thin}${prefix}${unit}`;
+}
+
+/// Seconds with their unit, precise: "0.412 s", "35.2 s", "412 s".
+export const seconds = (value) => (value === null || value === undefined
+  ? "—" : `${significant(value)}${thin}s`);
+
+/// A length of time to wait for, in two units at most: "8 s", "3 min 12 s", "2 h 5 min".
+export function duration(value) {
+  if (value === null || value === undefined) return "—";
+  const s = Math.max(0, Math.round(value));
+  if (s < 60) return `${s} s`;
+  if (s < 3600) return `${Math.floor(s / 60)} min ${s % 60} s`;
+  if (s < 86400) return `${Math.floor(s / 3600)} h ${Math.floor((s % 3600) / 60)} min`;
+  return `${Math.floor(s / 86400)} d ${Math.floor((s % 86400) / 3600)} h`;
+}
+
+export function bytes(value) {
+  if (value === null || value === undefined) return "—";
+  const units = ["B", "KiB", "MiB", "GiB", "TiB"];
+  let size = value;
+  let unit = 0;
+  while (size >= 1024 && unit < units.length - 1) {
+    size /= 1024;
+    unit += 1;
+  }
+  return `${unit === 0 ? size : size.toPrecision(3)}${thin}${units[unit]}`;
+}
+
+/// An ISO instant in the reader's time zone: "2026-01-31 23:59:59"; empty stays empty.
+export function when(iso) {
+  const date = new Date(iso);
+  if (!iso || Number.isNaN(date.getTime())) return iso || "";
+  const two = (n) => String(n).padStart(2, "0");
+  return `${date.getFullYear()}-${two(date.getMonth() + 1)}-${two(date.getDate())} `
+    + `${two(date.getHours())}:${two(date.getMinutes())}:${two(date.getSeconds())}`;
+}
+
+/// "cpu_seconds" -> "cpu seconds".
+export const words = (key) => key.replaceAll("_", " ");
+
+const units = [
+  { ending: /(^|_)per_(cpu_)?second$/, show: (v, [, , cpu]) => prefixed(v, cpu ? "/CPU s" : "/s") },
+  { ending: /(^|_)seconds$/, show: seconds },
+  { ending: /(^|_)bytes$/, show: bytes },
+];
+
+/// A value of a report, with the unit that its keys (innermost first) name.
+export function quantity(value, keys) {
+  if (typeof value === "boolean") return value ? "yes" : "no";
+  if (typeof value !== "number") return value === null ? "—" : String(value);
+  for (const key of keys) {
+    for (const { ending, show } of units) {
+      const found = ending.exec(key);
+      if (found) return show(value, found);
+    }
+  }
+  return number(value);
+}
+
+/// A job file as people write one: short lists on one line.
+export const prettyJob = (job) => JSON.stringify(job, null, 2)
+  .replace(/\[\n\s+([^[\]{}]*?)\n\s+\]/g, (_, items) => `[${items.replace(/\n\s+/g, " ")}]`);
+
+/// "inspect", "path · bsdf": the integrator and the strategies in its slots.
+export function integratorName(integrator) {
+  if (typeof integrator === "string") return integrator;
+  const slots = Object.values(integrator).filter((v) => v && typeof v === "object" && v.type);
+  return [integrator.type, ...slots.map((s) => s.type)].join(" · ");
+}
+
+/// What a job is called: its own label, else its scene.
+export const jobTitle = (job) => job.label || job.scene;
+
+/// A word for the shell, quoted.
+export const shellQuote = (text) => `'${text.replaceAll("'", "'\\''")}'`;
+
+/// A job without the keys that are null, which say nothing.
+export const withoutNulls = (job) =>
+  JSON.parse(JSON.stringify(job, (key, value) => (value === null ? undefined : value)));
+
+/// The command that posts a job (an object) to this server.
+export const curlLine = (job) =>
+  `curl -sS -X POST ${location.origin}/api/jobs -H 'Content-Type: application/json' \\\n  -d `
+  + shellQuote(JSON.stringify(withoutNulls(job)));
