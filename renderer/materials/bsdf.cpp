@@ -53,7 +53,7 @@ struct RefractingFacet {
 
 void Bsdf::add_interface(const SurfaceParams& params) {
   interface_ = Interface(params);
-  if (!has_diffuse() && !(interface_.glass > 0 && interface_.clear())) return;
+  if (!facets_compete()) return;
   layer_ = Layer(max_component(params.f0), params.f90, interface_.alpha);
   if (layer_.closed()) diffuse_ = Rgb(0, 0, 0);
 }
@@ -66,13 +66,16 @@ Rgb Bsdf::albedo() const {
 Bsdf::Seen Bsdf::seen(const V3f& n, const V3f& wo) const {
   const bool front = dot(wo, ng_) > 0;
   Seen result{n, front, dot(wo, n), interface_.eta(front)};
-  if (has_diffuse() || (interface_.glass > 0 && interface_.clear()))
-    result.mean_weight = layer_.mean_weight(result.cos_o);
+  if (facets_compete()) result.mean_weight = layer_.mean_weight(result.cos_o);
   return result;
 }
 
 Bsdf::Choice Bsdf::choice(const Seen& from) const {
   Choice c;
+  if (!facets_compete()) {
+    c.facets = 1;
+    return c;
+  }
   if (interface_.glass > 0) {
     const Interface::Split s = interface_.split(from.cos_o, from.eta);
     c.facets = luminance(s.reflected);

@@ -113,7 +113,7 @@ class Bsdf {
     bool front;
     float cos_o;
     float eta;
-    float mean_weight = 0;  ///< of layer_, if there is something below it
+    float mean_weight = 0;  ///< of layer_, where facets_compete()
   };
   /// Radiance's f |cos|, and the density of one frame; each 0 unless asked for.
   struct Scatter {
@@ -148,6 +148,10 @@ class Bsdf {
   }
 
   bool has_diffuse() const { return !is_black(diffuse_); }
+  /// Other lobes than the facets' need a share of the draws.
+  bool facets_compete() const {
+    return has_diffuse() || (interface_.glass > 0 && interface_.clear());
+  }
   bool facets_transmit() const { return interface_.glass > 0 && !interface_.clear(); }
 
   /// The normal that cosines are taken with when the eye lies in direction `w`; side = dot(w, ng).

@@ -16,18 +16,21 @@ class Table {
       const float roughness = static_cast<float>(r) / (rows - 1);
       const float alpha = roughness * roughness;
       for (std::size_t c = 0; c < columns; ++c) {
-        const float cos = static_cast<float>(c) / (columns - 1);
+        const float x = static_cast<float>(c) / (columns - 1);
+        const float cos = x * x;
         values_[r][c] =
             alpha < ggx_min_alpha ? schlick_weight(cos) : mean(std::max(cos, 1e-4F), alpha);
       }
-      // Integral of the interpolant times 2 cos over [0, 1], exact, so that the base keeps its
+      // Integral of the interpolant times 2 cos d cos = 4 x^3 dx, exact, so that the base keeps its
       // share.
-      constexpr double h = 1.0 / (columns - 1);
       double sum = 0;
       for (std::size_t c = 0; c + 1 < columns; ++c) {
-        const double x = static_cast<double>(c) * h;
-        const double a = values_[r][c], b = values_[r][c + 1];
-        sum += h * (x * (a + b) + h * (a / 3 + 2 * b / 3));
+        const double x0 = static_cast<double>(c) / (columns - 1);
+        const double x1 = static_cast<double>(c + 1) / (columns - 1);
+        const double slope = (values_[r][c + 1] - values_[r][c]) / (x1 - x0);
+        const double at_0 = values_[r][c] - slope * x0;
+        sum += at_0 * (std::pow(x1, 4) - std::pow(x0, 4)) +
+               0.8 * slope * (std::pow(x1, 5) - std::pow(x0, 5));
       }
       hemisphere_[r] = static_cast<float>(sum);
     }
@@ -35,7 +38,7 @@ class Table {
 
   float at(float row, float cos) const {
     const auto [r, fr] = split(row, rows);
-    const auto [c, fc] = split(std::clamp(cos, 0.0F, 1.0F) * (columns - 1), columns);
+    const auto [c, fc] = split(std::sqrt(std::clamp(cos, 0.0F, 1.0F)) * (columns - 1), columns);
     const float low = values_[r][c] + fc * (values_[r][c + 1] - values_[r][c]);
     const float high = values_[r + 1][c] + fc * (values_[r + 1][c + 1] - values_[r + 1][c]);
     return low + fr * (high - low);

@@ -69,6 +69,7 @@ inline std::vector<Surface> surfaces() {
       {"plastic_alpha_02", dielectric(orange, 0.2F, 1.5F, 0)},
       {"plastic_smooth", dielectric(white, 0, 1.5F, 0)},
       {"plastic_black_base", dielectric(black, 0.1F, 1.5F, 0)},
+      {"grazing_only", layer(dielectric(black, 0.3F, 1.5F, 0), black, 1)},
       {"plastic_ior_1", dielectric(white, 0.5F, 1, 0)},
       {"plastic_ior_15", dielectric(white, 0.3F, 15, 0)},
       {"plastic_dimmed", layer(dielectric(white, 0.25F, 1.5F, 0), {0.3F, 0.1F, 0}, 0.5F)},

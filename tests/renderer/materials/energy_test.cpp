@@ -118,6 +118,43 @@ TEST(Energy, layer_over_white_loses_nothing) {
   }
 }
 
+/// The layer's means against GGX itself: with F = 1 the facets reflect the one, with Schlick's
+/// weight alone the other.
+TEST(Energy, layer_knows_the_mean_fresnel_factor_of_rough_facets) {
+  const V3f ng = views()[0].ng;
+  for (const float alpha : {0.01F, 0.2F, 0.55F, 1.0F}) {
+    const auto facets = [&](float f0) {
+      SurfaceParams p = cases::layer(cases::lambert({0, 0, 0}), {f0, f0, f0}, 1);
+      p.alpha = alpha;
+      return Bsdf(p, ng, ng);
+    };
+    const Layer layer(0, 1, alpha);
+    for (const float cos : {0.9F, 0.4F, 0.1F, 0.02F}) {
+      const V3f wo = cases::direction(ng, cos, 1);
+      const Furnace weighted(facets(0), wo, Transport::radiance, 20000, 12);
+      const Furnace all(facets(1), wo, Transport::radiance, 20000, 12);
+      EXPECT_NEAR(layer.mean_weight(cos), weighted.weight[0].mean() / all.weight[0].mean(),
+                  0.005 + 4 * weighted.weight[0].standard_error())
+          << alpha << " " << cos;
+    }
+  }
+}
+
+/// What enters a layer evenly from all around comes out again: no energy is lost between its two
+/// passages.
+TEST(Energy, layer_scale_is_normalised) {
+  for (const float alpha : {0.0F, 0.01F, 0.2F, 0.55F, 1.0F}) {
+    const Layer layer(0.04F, 1, alpha);
+    constexpr int n = 10000;
+    double sum = 0;
+    for (int i = 0; i < n; ++i) {
+      const float cos = (static_cast<float>(i) + 0.5F) / n;
+      sum += 2.0 / n * cos * layer.scale(1, layer.let_through(layer.mean_weight(cos)));
+    }
+    EXPECT_NEAR(sum, 1, 1e-5) << alpha;
+  }
+}
+
 /// Half a smooth mirror, half Lambert: the shares are those of the mix.
 TEST(Energy, metallic_mixes_by_its_share) {
   const cases::View v = views()[1];

@@ -178,6 +178,25 @@ TEST(Specular, index_close_to_1) {
   }
 }
 
+/// There the mean facet hardly reflects, but tilted ones do, even totally: they must be drawn often
+/// enough.
+TEST(Specular, clear_interface_reflects_at_grazing_angles) {
+  const SurfaceParams p = cases::dielectric({1, 1, 1}, 0.5F, 1.00015F, 1);
+  const Bsdf bsdf(p, ng, ng);
+  ASSERT_TRUE(Interface(p).clear());
+  const V3f wo = cases::direction(ng, -0.005F, 1);
+  const V3f mirrored = reflect(wo, ng);
+  Rng random = cases::rng(3);
+  int bright = 0;
+  for (int i = 0; i < 10000; ++i) {
+    const V3f wi = (mirrored + 0.02F * cases::uniform_direction(random)).normalized();
+    const float f = bsdf.eval(wo, wi, Transport::radiance).x;
+    bright += f > 0.1F;
+    ASSERT_LE(f, 10 * bsdf.pdf(wo, wi).value);
+  }
+  EXPECT_GT(bright, 0);
+}
+
 TEST(Specular, connectible) {
   const auto connectible = [&](const SurfaceParams& p) { return Bsdf(p, ng, ng).connectible(); };
   EXPECT_TRUE(connectible(cases::lambert({0.5F, 0.5F, 0.5F})));

@@ -1,0 +1,210 @@
+// Integrator `path` against answers that are known exactly (jobs/scenes/README.md).
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/renderer/integrators/render.h"
+#include "tests/statistics.h"
+
+namespace lacuna {
+namespace {
+
+using test::render;
+using test::Rendering;
+using test::RenderSettings;
+
+PathSettings path(int max_depth, bool nee = true) {
+  PathSettings s;
+  s.max_depth = max_depth;
+  s.next_event_estimation = nee;
+  return s;
+}
+
+/// The mean of the whole picture equals `expected`, within its own noise.
+void expect_mean(const Rendering& r, double expected) {
+  const double deviation = std::sqrt(r.variance_of_mean());
+  // 4.5 deviations: one false alarm in 150,000 tests. Rounding in float adds a little.
+  EXPECT_NEAR(r.mean(), expected, 4.5 * deviation + 2e-6 * expected);
+  EXPECT_LT(deviation, 0.02 * expected) << "the test has no power";
+  EXPECT_EQ(r.counters.rejected, 0U);
+}
+
+TEST(Furnace, EveryDepthAndStrategy) {
+  for (const bool nee : {true, false}) {
+    for (const int depth : {1, 2, 3, 6, 20}) {
+      SCOPED_TRACE(testing::Message() << "depth " << depth << ", nee " << nee);
+      const Rendering r =
+          render("furnace.glb", {.integrator = path(depth, nee), .camera = "inside"});
+      expect_mean(r, 2 - std::pow(2.0, 1 - depth));
+    }
+  }
+}
+
+TEST(Furnace, SmoothSphereKeepsItsEnergy) {
+  const Rendering r =
+      render("furnace_sphere.glb", {.integrator = path(2), .iterations = 64, .camera = "close"});
+  const std::vector<double> mean = r.film.mean();
+  const std::vector<double> variance = r.film.variance_of_mean();
+  // The middle of the picture shows the sphere alone: 0.8 (1 + cos d) / 2, d at most 0.1.
+  double sum = 0;
+  double sum_variance = 0;
+  int n = 0;
+  for (int y = 12; y < 20; ++y) {
+    for (int x = 12; x < 20; ++x) {
+      const auto i = static_cast<std::size_t>(3 * (y * 32 + x));
+      sum += mean[i];
+      sum_variance += variance[i];
+      ++n;
+    }
+  }
+  const double slack = 4.5 * std::sqrt(sum_variance) / n;
+  EXPECT_GT(sum / n, 0.798 - slack);
+  EXPECT_LT(sum / n, 0.800 + slack);
+  EXPECT_LT(slack, 0.02);
+}
+
+/// Pixel centres' floor positions in the four light scenes.
+V2f floor_position(int i, int j, int width) {
+  const auto at = [&](int k) {
+    return 1.5F * (2 * (static_cast<float>(k) + 0.5F) / static_cast<float>(width) - 1);
+  };
+  return {at(i), at(j)};
+}
+
+/// A z-test of each pixel against a smooth exact answer. The pixel averages over its own area, so
+/// the answer is averaged as well.
+template <class Exact>
+void expect_picture(const Rendering& r, Exact&& exact) {
+  const int n = r.film.width();
+  const std::vector<double> mean = r.film.mean();
+  const std::vector<double> variance = r.film.variance_of_mean();
+  double chi2 = 0;
+  int pixels = 0;
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      double expected = 0;
+      constexpr int sub = 8;
+      for (int b = 0; b < sub; ++b) {
+        for (int a = 0; a < sub; ++a) {
+          const V2f p = floor_position(i * sub + a, j * sub + b, n * sub);
+          expected += exact(double(p.x), double(p.y)) / (sub * sub);
+        }
+      }
+      const auto k = static_cast<std::size_t>(3 * (j * n + i));
+      const double d = mean[k] - expected;
+      const double floor = 1e-5 * (expected + 1e-6);  // rounding
+      chi2 += d * d / (variance[k] + floor * floor);
+      ++pixels;
+    }
+  }
+  EXPECT_GT(statistics::chi_square_p(chi2, pixels), 1e-5) << "chi2 " << chi2 << " of " << pixels;
+  EXPECT_EQ(r.counters.rejected, 0U);
+}
+
+constexpr double albedo_over_pi = 0.5 / std::numbers::pi;
+
+TEST(Lights, Point) {
+  const Rendering r =
+      render("point.glb", {.width = 16, .height = 16, .iterations = 256, .camera = "above"});
+  expect_picture(r, [](double x, double z) {
+    const double r2 = x * x + z * z + 4;
+    return albedo_over_pi * 10 * (2 / std::sqrt(r2)) / r2;
+  });
+}
+
+TEST(Lights, Spot) {
+  const Rendering r =
+      render("spot.glb", {.width = 16, .height = 16, .iterations = 512, .camera = "above"});
+  const auto radians = [](double degrees) { return degrees * std::numbers::pi / 180; };
+  expect_picture(r, [&](double x, double z) {
+    const double r2 = x * x + z * z + 4;
+    const double cos = 2 / std::sqrt(r2);
+    const double f = std::clamp(
+        (cos - std::cos(radians(30))) / (std::cos(radians(20)) - std::cos(radians(30))), 0.0, 1.0);
+    return albedo_over_pi * 10 * cos / r2 * f * f;
+  });
+}
+
+TEST(Lights, Directional) {
+  const Rendering r =
+      render("directional.glb", {.width = 8, .height = 8, .iterations = 2, .camera = "above"});
+  for (const double v : r.film.mean()) {
+    EXPECT_NEAR(v, albedo_over_pi * 3 * std::cos(std::numbers::pi / 6), 1e-6);
+  }
+}
+
+/// Form factor of a parallel rectangle seen from a corner's foot; a, b: sides over height.
+double corner_form_factor(double a, double b) {
+  const double u = std::sqrt(1 + a * a);
+  const double v = std::sqrt(1 + b * b);
+  return (a / u * std::atan(b / u) + b / v * std::atan(a / v)) / (2 * std::numbers::pi);
+}
+
+TEST(Lights, Area) {
+  const auto exact = [](double x, double z) {
+    const auto quarter = [](double a, double b) {
+      return std::copysign(1.0, a) * std::copysign(1.0, b) *
+             corner_form_factor(std::abs(a) / 2, std::abs(b) / 2);
+    };
+    return 0.5 * 5 *
+           (quarter(0.5 - x, 0.5 - z) + quarter(0.5 + x, 0.5 - z) + quarter(0.5 - x, 0.5 + z) +
+            quarter(0.5 + x, 0.5 + z));
+  };
+  const Rendering r =
+      render("area.glb", {.width = 16, .height = 16, .iterations = 256, .camera = "above"});
+  // The quad itself hides the floor below it from the camera above: look at what is seen of the
+  // floor only.
+  const int n = 16;
+  const std::vector<double> mean = r.film.mean();
+  const std::vector<double> variance = r.film.variance_of_mean();
+  double chi2 = 0;
+  int pixels = 0;
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      const V2f p = floor_position(i, j, n);
+      if (std::max(std::abs(p.x), std::abs(p.y)) < 1.1F) continue;
+      double expected = 0;
+      for (int s = 0; s < 64; ++s) {
+        const V2f q = floor_position(i * 8 + s % 8, j * 8 + s / 8, n * 8);
+        expected += exact(double(q.x), double(q.y)) / 64;
+      }
+      const auto k = static_cast<std::size_t>(3 * (j * n + i));
+      chi2 += (mean[k] - expected) * (mean[k] - expected) / variance[k];
+      ++pixels;
+    }
+  }
+  EXPECT_GT(pixels, 100);
+  EXPECT_GT(statistics::chi_square_p(chi2, pixels), 1e-5) << "chi2 " << chi2 << " of " << pixels;
+}
+
+TEST(Delta, EmitterSeenInAMirror) {
+  const Rendering r =
+      render("mirror.glb", {.width = 64, .height = 64, .iterations = 8, .camera = "front"});
+  const std::vector<double> mean = r.film.mean();
+  int exact = 0;
+  for (std::size_t i = 0; i < mean.size(); i += 3) {
+    if (mean[i] == 4 && mean[i + 1] == 3 && mean[i + 2] == 2) ++exact;
+  }
+  EXPECT_GT(exact, 50) << "no pixel shows the emitter with exactly its radiance";
+  EXPECT_EQ(r.counters.rejected, 0U);
+}
+
+TEST(Emission, SidesAndMasks) {
+  for (const std::string camera : {"front", "back"}) {
+    const Rendering r = render(
+        "sides.glb",
+        {.integrator = path(1), .width = 128, .height = 32, .iterations = 1, .camera = camera});
+    double largest = 0;
+    double sum = 0;
+    for (const double v : r.film.mean()) {
+      largest = std::max(largest, v);
+      sum += v;
+    }
+    EXPECT_NEAR(largest, 2, 1e-6) << camera;
+    EXPECT_GT(sum, 0) << camera;
+  }
+}
+
+}  // namespace
+}  // namespace lacuna
