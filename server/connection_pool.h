@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "jobs/store/file_handle.h"
+#include "analysis/storage/file_handle.h"
 
 namespace lacuna {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "jobs/store/file_handle.h"
+#include "analysis/storage/file_handle.h"
 #include "jobs/store/job_folder.h"
 
 namespace lacuna {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "jobs/spec/problems.h"
-#include "jobs/store/file_handle.h"
+#include "analysis/storage/file_handle.h"
 
 namespace lacuna {
 

@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "jobs/spec/version.h"
-#include "jobs/store/file_handle.h"
+#include "analysis/storage/file_handle.h"
 #include "server/executor_local.h"
 #include "server/http.h"
 #include "server/listener.h"

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cstddef>
 
-#include "jobs/store/file_handle.h"
+#include "analysis/storage/file_handle.h"
 #include "server/settings.h"
 
 namespace lacuna {

@@ -7,7 +7,7 @@
 #include "jobs/cli/terminal.h"
 #include "jobs/run/run_job.h"
 #include "jobs/spec/job_json.h"
-#include "jobs/store/atomic_file.h"
+#include "analysis/storage/atomic_file.h"
 
 namespace lacuna {
 

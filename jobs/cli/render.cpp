@@ -9,7 +9,7 @@
 #include "jobs/run/run_job.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/problems.h"
-#include "jobs/store/atomic_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "renderer/scene/scene_data.h"
 
 namespace lacuna {

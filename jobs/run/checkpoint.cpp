@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "jobs/store/atomic_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "renderer/core/bytes.h"
 
 namespace lacuna {

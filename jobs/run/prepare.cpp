@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "jobs/store/atomic_file.h"
+#include "analysis/storage/atomic_file.h"
 
 namespace lacuna {
 

@@ -4,7 +4,7 @@
 
 #include "jobs/run/checkpoint.h"
 #include "jobs/spec/job_json.h"
-#include "jobs/store/atomic_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "renderer/film/preview.h"
 
 namespace lacuna {

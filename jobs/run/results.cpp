@@ -4,7 +4,7 @@
 
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/version.h"
-#include "jobs/store/atomic_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "renderer/film/exr.h"
 #include "renderer/film/preview.h"
 

@@ -10,7 +10,7 @@
 #include "jobs/run/render_loop.h"
 #include "jobs/run/report.h"
 #include "jobs/run/results.h"
-#include "jobs/store/atomic_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "renderer/integrators/integrator.h"
 
 namespace lacuna {

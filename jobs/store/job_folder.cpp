@@ -12,8 +12,8 @@
 
 #include "jobs/spec/described_json.h"
 #include "jobs/spec/job_json.h"
-#include "jobs/store/atomic_file.h"
-#include "jobs/store/file_handle.h"
+#include "analysis/storage/atomic_file.h"
+#include "analysis/storage/file_handle.h"
 
 namespace lacuna {
 namespace {

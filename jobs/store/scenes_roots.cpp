@@ -11,7 +11,7 @@
 #include <stdexcept>
 
 #include "jobs/spec/nearest.h"
-#include "jobs/store/file_handle.h"
+#include "analysis/storage/file_handle.h"
 #include "jobs/store/job_folder.h"
 
 namespace lacuna {

@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-#include "jobs/store/atomic_file.h"
+#include "analysis/storage/atomic_file.h"
 
 namespace lacuna {
 

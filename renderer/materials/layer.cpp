@@ -59,7 +59,7 @@ class Table {
 
   /// Visible normals on a regular grid, each with the share of its light that is not shadowed.
   static float mean(float cos, float alpha) {
-    constexpr int n = 32;
+    constexpr int n = 24;
     const V3f wo(std::sqrt(1 - cos * cos), 0, cos);
     double weighted = 0, total = 0;
     for (int i = 0; i < n; ++i) {
@@ -80,7 +80,7 @@ class Table {
   std::array<float, rows> hemisphere_;
 };
 
-/// Made when the first surface needs it: about ten milliseconds.
+/// Made when the first surface needs it: about fifteen milliseconds.
 const Table& table() {
   static const Table result;
   return result;

@@ -99,7 +99,8 @@ FloatImage read_float_image(const std::filesystem::path& file, const std::string
   check_spec(file, spec);
 
   const auto [low, high] = std::minmax_element(channels->begin(), channels->end());
-  const auto read = static_cast<std::size_t>(*high - *low + 1);
+  const int channel_count = *high - *low + 1;
+  const auto read = static_cast<std::size_t>(channel_count);
   const auto pixels = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
   std::vector<float> stored(pixels * read);
   if (!in->read_image(in->current_subimage(), 0, *low, *high + 1, OIIO::TypeDesc::FLOAT,

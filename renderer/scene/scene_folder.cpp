@@ -16,6 +16,8 @@ namespace {
 
 constexpr std::uintmax_t byte_limit = (std::uintmax_t{1} << 31) - 1;  // tinygltf counts in int
 
+constexpr std::size_t max_uri = 4096;  // PATH_MAX of Linux
+
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
@@ -29,6 +31,11 @@ class Descriptor {
  private:
   int fd_;
 };
+
+[[noreturn]] void refuse_escape(const std::string& uri, const std::string& place) {
+  throw SceneError(place + " has a broken escape in \"" + uri +
+                   "\"; allowed: % and two hexadecimal digits, not 00");
+}
 
 }  // namespace
 
@@ -44,8 +51,7 @@ std::string percent_decode(const std::string& uri, const std::string& place) {
     const char* first = uri.data() + i + 1;
     const bool complete = i + 2 < uri.size();
     if (!complete || std::from_chars(first, first + 2, value, 16).ptr != first + 2 || value == 0) {
-      throw SceneError(place + " has a broken escape in \"" + uri +
-                       "\"; allowed: % and two hexadecimal digits, not 00");
+      refuse_escape(uri, place);
     }
     out.push_back(static_cast<char>(value));
     i += 2;
@@ -64,6 +70,10 @@ SceneFolder::SceneFolder(const std::filesystem::path& main_file)
 Bytes SceneFolder::read_main() { return read_regular(main_file_, "the scene file"); }
 
 Bytes SceneFolder::read(const std::string& uri, const std::string& place) {
+  if (uri.size() > max_uri) {
+    throw SceneError(place + " is a path of " + std::to_string(uri.size()) +
+                     " bytes; allowed: " + std::to_string(max_uri));
+  }
   const std::string name = percent_decode(uri, place);
   const std::filesystem::path relative(name);
   const bool climbs = std::find(relative.begin(), relative.end(), "..") != relative.end();

@@ -120,7 +120,8 @@ Rgba Texture::mean() const {
   for (std::size_t i = 0; i < texels_.size(); i += 4) {
     for (std::size_t k = 0; k < 4; ++k) ++counts[k][texels_[i + k]];
   }
-  const double texel_count = static_cast<double>(texels_.size() / 4);
+  const std::size_t texels = texels_.size() / 4;
+  const auto texel_count = static_cast<double>(texels);
   std::array<double, 4> sums{};
   for (std::size_t k = 0; k < 4; ++k) {
     const float* table = to_linear_ + (k < 3 ? 0 : 256);

@@ -119,8 +119,8 @@ test("what the renderer refuses is not tried again", async (t) => {
   }
 });
 
-test("an interrupted renderer's job goes on", async (t) => {
-  const service = await Service.start(folders(t));
+test("an interrupted renderer's job goes on: that is no crash", async (t) => {
+  const service = await Service.start(folders(t), ["--max-attempts", "1"]);
   const id = await service.post("gate later");
   await service.reaches(id, "running");
   const report = path.join(service.folder(id), "log.txt");
@@ -158,6 +158,20 @@ test("a renderer gets the folders, and nothing else that is open", async (t) => 
   assert.equal(seen.scenes, places.scenes);
 });
 
+test("a renderer starts with no signal blocked or ignored", async (t) => {
+  const places = folders(t);
+  const renderer = path.join(places.root, "renderer");
+  fs.writeFileSync(renderer, "#!/bin/sh\ncat /proc/self/status >$2/curve.csv\nexit 3\n", { mode: 0o755 });
+  const service = await Service.start(places, ["--renderer", renderer]);
+  const id = await service.post("finish");
+  await service.reaches(id, "failed");
+  const status = await (await service.fetch(`/api/jobs/${id}/files/curve.csv`)).text();
+  const mask = (name) => BigInt(`0x${new RegExp(`^${name}:\\s*(\\w+)`, "m").exec(status)[1]}`);
+  const watched = [1, 2, 13, 15].reduce((sum, signal) => sum | (1n << BigInt(signal - 1)), 0n);
+  assert.equal(mask("SigBlk"), 0n);
+  assert.equal(mask("SigIgn") & watched, 0n);
+});
+
 test("ended gently, the service lets renderers save, and goes on after a restart", async (t) => {
   const places = folders(t);
   const first = await Service.start(places);
@@ -181,6 +195,15 @@ test("ended gently, the service lets renderers save, and goes on after a restart
   assert.ok((await second.json(`/api/jobs/${running}/files/report.json`)).resumed);
   await second.reaches(waiting, "done");
   assert.equal((await second.json(`/api/jobs/${gone}`)).state.state, "cancelled");
+});
+
+test("a renderer that has to be killed at the end of the service costs no job", async (t) => {
+  const service = await Service.start(folders(t), ["--grace", "0.2", "--max-attempts", "1"]);
+  const id = await service.post("stubborn");
+  await service.reaches(id, "running");
+  assert.deepEqual(await service.stop(), { code: 0, signal: null });
+  const state = stateOnDisk(service, id);
+  assert.deepEqual([state.state, state.exit_code, state.error], ["queued", 128 + 9, ""]);
 });
 
 test("killed, the service takes its renderers along and loses no job", async (t) => {
@@ -217,10 +240,12 @@ test("states that a dead service left are put right", async (t) => {
   fs.mkdirSync(path.join(places.data, "jobs", "no-job"));
 
   const second = await Service.start(places);
+  await second.reaches(ids[0], "running");
+  await second.reaches(cancelling, "cancelled");
+  assert.equal((await second.json(`/api/jobs/${running}`)).state.state, "queued");
   second.open("x");
   await second.reaches(ids[0], "done");
   await second.reaches(running, "done");
-  await second.reaches(cancelling, "cancelled");
   const { jobs } = await second.json("/api/jobs");
   assert.equal(jobs.length, 4, "a damaged one is listed, and hides no other");
   const damaged = jobs.find((j) => j.id === corrupt);

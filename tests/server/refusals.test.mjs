@@ -105,6 +105,7 @@ test("the framing of a body must be clear", async (t) => {
     head("POST /api/nothing", { "Content-Length": "0" }) + hidden);
   assert.equal(smuggled.status, 404);
   assert.ok(!smuggled.body.includes("HTTP/1.1"), "one answer a connection");
+  assert.match(smuggled.head, /^Connection: close\r?$/m);
   await noJobs(service);
 });
 

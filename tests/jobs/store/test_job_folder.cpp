@@ -5,11 +5,11 @@
 #include <optional>
 #include <stdexcept>
 
-#include "child_process.h"
+#include "tests/child_process.h"
 #include "jobs/spec/problems.h"
-#include "jobs/store/file_handle.h"
+#include "analysis/storage/file_handle.h"
 #include "jobs/store/job_folder.h"
-#include "temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace lacuna {
 namespace {

@@ -3,7 +3,7 @@
 #include <regex>
 
 #include "jobs/store/job_folder.h"
-#include "temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace lacuna {
 namespace {

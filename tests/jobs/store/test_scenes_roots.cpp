@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "jobs/store/job_folder.h"
-#include "temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace lacuna {
 namespace {

@@ -80,6 +80,8 @@ TEST(HostileFiles, PathsOutOfTheFolderAreRefused) {
     expect_refusal(scene_with_buffer(folder, uri),
                    {"buffers[0]", uri, "inside the scene's folder"});
   }
+  expect_refusal(scene_with_buffer(folder, std::string(100000, 'a')),
+                 {"buffers[0]", "a path of 100000 bytes; allowed: 4096"});
   expect_refusal(scene_with_buffer(folder, "a%00.bin"), {"buffers[0]", "broken escape"});
   expect_refusal(scene_with_buffer(folder, "missing.bin"),
                  {"buffers[0]", "missing.bin", "No such file"});

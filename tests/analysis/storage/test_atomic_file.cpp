@@ -7,10 +7,10 @@
 #include <system_error>
 #include <thread>
 
-#include "child_process.h"
-#include "jobs/store/atomic_file.h"
-#include "jobs/store/file_handle.h"
-#include "temporary_folder.h"
+#include "tests/child_process.h"
+#include "analysis/storage/atomic_file.h"
+#include "analysis/storage/file_handle.h"
+#include "tests/temporary_folder.h"
 
 namespace lacuna {
 namespace {

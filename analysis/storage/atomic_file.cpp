@@ -1,4 +1,4 @@
-#include "jobs/store/atomic_file.h"
+#include "analysis/storage/atomic_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <stdexcept>
 
-#include "jobs/store/file_handle.h"
+#include "analysis/storage/file_handle.h"
 
 namespace lacuna {
 namespace {

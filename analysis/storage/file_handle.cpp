@@ -1,4 +1,4 @@
-#include "jobs/store/file_handle.h"
+#include "analysis/storage/file_handle.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,0 +1,142 @@
+import assert from "node:assert/strict";
+import { existsSync, readFileSync, symlinkSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+
+import { job, root, run, temporaryFolder } from "./command.mjs";
+
+test("help and version", async (t) => {
+  const folder = temporaryFolder(t);
+  const help = await run(folder, "--help");
+  assert.equal(help.code, 0);
+  for (const word of ["render", "check", "schema", "list", "compare", "75 interrupted"]) assert.ok(help.out.includes(word), word);
+  assert.match((await run(folder, "--version")).out, /^lacuna \d+\.\d+\.\d+\n$/);
+  assert.equal((await run(folder, "paint")).code, 2);
+  assert.equal((await run(folder)).code, 2);
+});
+
+test("render: results, a line a milestone, done already, another job in the way", async (t) => {
+  const folder = temporaryFolder(t);
+  job(folder, "a.json", {});
+  const first = await run(folder, "render", "a.json");
+  assert.equal(first.code, 0, first.err);
+  for (const name of ["image.exr", "image.png", "curve.csv", "report.json", "job.json", "state.json", "log.txt"]) {
+    assert.ok(existsSync(join(folder, "a.job", name)), name);
+  }
+  assert.match(first.err, /iteration 2, /);
+  const again = await run(folder, "render", "a.json");
+  assert.equal(again.code, 0);
+  assert.match(again.err, /done already/);
+  job(folder, "b.json", { seed: 7 });
+  const other = await run(folder, "render", "b.json", "--out", "a.job");
+  assert.equal(other.code, 2);
+  assert.match(other.err, /holds another job/);
+  writeFileSync(join(folder, "file"), "mine");
+  assert.equal((await run(folder, "render", "b.json", "--out", "file")).code, 2);
+  assert.equal(readFileSync(join(folder, "file"), "utf8"), "mine");
+});
+
+test("check prints the job with its defaults, which is the same job", async (t) => {
+  const folder = temporaryFolder(t);
+  job(folder, "a.json", {});
+  const checked = await run(folder, "check", "a.json");
+  assert.equal(checked.code, 0, checked.err);
+  writeFileSync(join(folder, "full.json"), checked.out);
+  assert.equal((await run(folder, "check", "full.json")).out, checked.out);
+  assert.equal(JSON.parse(checked.out).integrator.type, "path");
+});
+
+test("schema and settings pages", async (t) => {
+  const folder = temporaryFolder(t);
+  const schema = JSON.parse((await run(folder, "schema")).out);
+  assert.equal(schema.$schema, "https://json-schema.org/draft/2020-12/schema");
+  assert.ok(schema.required.includes("scene"));
+  assert.match((await run(folder, "schema", "--markdown")).out, /roulette_depth/);
+});
+
+test("list: scenes and jobs", async (t) => {
+  const folder = temporaryFolder(t);
+  assert.match((await run(folder, "list", "--scenes")).out, /^cornell\.glb$/m);
+  assert.equal((await run(folder, "list")).code, 0);
+});
+
+test("compare: equal pictures, different ones, other sizes", async (t) => {
+  const folder = temporaryFolder(t);
+  job(folder, "a.json", { layers: ["variance"] });
+  job(folder, "b.json", { seed: 2, layers: ["variance"] });
+  job(folder, "c.json", { resolution: [8, 8] });
+  for (const name of ["a", "b", "c"]) assert.equal((await run(folder, "render", `${name}.json`, "-q")).code, 0);
+  const same = await run(folder, "compare", "a.job/image.exr", "a.job/image.exr");
+  assert.match(same.out, /^mse +0$/m);
+  const different = await run(folder, "compare", "a.job/image.exr", "b.job/image.exr", "--block", "4");
+  assert.match(different.out, /^mse +[0-9.e-]*[1-9]/m);
+  assert.match(different.out, /z_deviation/);
+  const sizes = await run(folder, "compare", "a.job/image.exr", "c.job/image.exr");
+  assert.equal(sizes.code, 3);
+  assert.match(sizes.err, /24 x 16.*8 x 8/);
+});
+
+// What is wrong with it, the job file, what the message must name.
+const badJobs = [
+  ["malformed JSON", '{"scene": "cornell.glb",', /line 1/],
+  ["not an object", "[1]", /object/],
+  ["unknown key", { integratr: "path" }, /\/integratr.*integrator/s],
+  ["duplicate key", '{"scene": "cornell.glb", "seed": 1, "seed": 2}', /\/seed/],
+  ["no scene", '{"resolution": [8, 8]}', /\/scene/],
+  ["out of range", { resolution: [0, 16] }, /\/resolution\/0.*0/s],
+  ["wrong type", { threads: "two" }, /\/threads.*"two"/s],
+  ["not a number", '{"scene": "cornell.glb", "budget": {"seconds": NaN}}', /line 1/],
+  ["negative", { seed: -1 }, /\/seed.*-1/s],
+  ["a fraction", { budget: { iterations: 1.5 } }, /\/budget\/iterations.*1\.5/s],
+  ["unknown integrator", { integrator: { type: "bidir" } }, /\/integrator\/type.*path/s],
+  ["deep nesting", `{"scene": ${"[".repeat(100000)}`, /nest|deep/],
+  ["an error target without a reference", { budget: { error: { metric: "mse", target: 0.1 } } }, /reference/],
+];
+for (const [what, content, message] of badJobs) {
+  test(`bad job: ${what}: exit 2, and no folder`, async (t) => {
+    const folder = temporaryFolder(t);
+    job(folder, "a.json", content);
+    const result = await run(folder, "render", "a.json");
+    assert.equal(result.code, 2, result.err);
+    assert.match(result.err, message);
+    assert.ok(!existsSync(join(folder, "a.job")));
+  });
+}
+
+const badAssets = [
+  ["a scene that is not there", { scene: "cornel.glb" }, /cornel\.glb/],
+  ["a scene above its root", { scene: "../secret.glb" }, /\.\.\/secret\.glb/],
+  ["an absolute scene", { scene: "/etc/passwd.glb" }, /passwd/],
+  ["a scene through a link", { scene: "link.glb" }, /link\.glb/],
+  ["a file that is no glTF", { scene: "noise.glb" }, /noise\.glb/],
+  ["a camera that is not there", { camera: "left" }, /"left".*"front"/s],
+  ["an environment that is no image", { scene: "open.glb", environment: { file: "noise.hdr" } }, /noise\.hdr/],
+  ["a reference of another size", { reference: "small.job/image.exr" }, /8 x 8/],
+];
+for (const [what, content, message] of badAssets) {
+  test(`bad asset: ${what}: exit 3, state failed with the reason`, async (t) => {
+    const folder = temporaryFolder(t);
+    symlinkSync(join(root, "jobs/scenes/cornell.glb"), join(folder, "link.glb"));
+    writeFileSync(join(folder, "noise.glb"), "glTF but no more than that");
+    writeFileSync(join(folder, "noise.hdr"), "#?RADIANCE and no more than that");
+    if (content.reference) {
+      job(folder, "small.json", { resolution: [8, 8] });
+      assert.equal((await run(folder, "render", "small.json", "-q")).code, 0);
+    }
+    job(folder, "a.json", content);
+    const result = await run(folder, "render", "a.json");
+    assert.equal(result.code, 3, result.err);
+    assert.match(result.err, message);
+    const state = JSON.parse(readFileSync(join(folder, "a.job/state.json"), "utf8"));
+    assert.equal(state.state, "failed");
+    assert.match(state.error, message);
+  });
+}
+
+test("a folder that cannot be made", async (t) => {
+  const folder = temporaryFolder(t);
+  job(folder, "a.json", {});
+  const result = await run(folder, "render", "a.json", "--out", "a.json/below");
+  assert.notEqual(result.code, 0);
+  assert.match(result.err, /a\.json/);
+});

@@ -1,0 +1,243 @@
+#include "jobs/run/run_job.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <nlohmann/json.hpp>
+
+#include "analysis/storage/atomic_file.h"
+#include "jobs/run/reference.h"
+#include "jobs/spec/problems.h"
+#include "renderer/film/exr.h"
+#include "renderer/scene/image_read.h"
+#include "renderer/scene/scene_data.h"
+#include "tests/renderer/scene/glb_builder.h"
+
+namespace lacuna {
+namespace {
+
+using nlohmann::json;
+
+class Silent final : public Observer {
+ public:
+  void phase(const std::string& name) override { phases.push_back(name); }
+  void progress(const Progress&) override {}
+  void milestone(const std::string&) override {}
+  void warning(const std::string& line) override { warnings.push_back(line); }
+  std::vector<std::string> phases, warnings;
+};
+
+/// A data root of one test, with the project's scenes and one folder more.
+class RunJob : public testing::Test {
+ protected:
+  RunContext context(const std::function<bool()>& interrupted) {
+    return {DataRoot{temp.path()},
+            ScenesRoots({std::filesystem::path(LACUNA_SOURCE_DIR) / "jobs/scenes", temp.path()}), 2,
+            interrupted, observer};
+  }
+  JobFolder create(const JobSpec& spec, const std::string& name = "job") {
+    return JobFolder::create(temp.path() / name, spec);
+  }
+  Outcome run(const JobFolder& folder) { return run_job(folder, context(never)); }
+  static JobSpec spec(const std::string& scene = "cornell.glb", int iterations = 4) {
+    JobSpec s;
+    s.scene = scene;
+    s.resolution = {24, 16};
+    s.budget.iterations = iterations;
+    return s;
+  }
+  static json report(const JobFolder& folder) {
+    return json::parse(read_file(folder.file("report.json"), 1 << 20));
+  }
+  static std::vector<float> pixels(const JobFolder& folder, const std::string& layer = "") {
+    return read_float_image(folder.file("image.exr"), layer).rgb;
+  }
+
+  test::TempFolder temp;
+  Silent observer;
+  const std::function<bool()> never = [] { return false; };
+};
+
+TEST_F(RunJob, LeavesItsFolderComplete) {
+  JobSpec s = spec();
+  s.layers = {ImageLayer::variance, ImageLayer::halves, ImageLayer::albedo, ImageLayer::normal,
+              ImageLayer::depth};
+  const JobFolder folder = create(s);
+  EXPECT_EQ(run(folder), Outcome::done);
+  EXPECT_EQ(folder.read_state().state, State::done);
+  for (const char* name : {"image.exr", "image.png", "curve.csv", "report.json", "progress.json"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder.file(name))) << name;
+  }
+  const std::vector<float> all = pixels(folder);
+  const std::vector<float> even = pixels(folder, "even");
+  const std::vector<float> odd = pixels(folder, "odd");
+  for (std::size_t i = 0; i < all.size(); ++i)
+    EXPECT_NEAR(all[i], (even[i] + odd[i]) / 2, 1e-5 * std::abs(all[i]));
+  EXPECT_EQ(observer.phases, (std::vector<std::string>{"loading", "rendering", "writing"}));
+  EXPECT_EQ(run(folder), Outcome::done) << "a job that is done is left as it is";
+}
+
+TEST_F(RunJob, ReportSaysThatNothingWasBuiltThatNobodyNeeds) {
+  const JobFolder folder = create(spec());
+  run(folder);
+  const json r = report(folder);
+  EXPECT_TRUE(r.at("artefacts").at("built").empty());
+  EXPECT_TRUE(r.at("artefacts").at("loaded").empty());
+  EXPECT_EQ(r.at("scene").at("textures").at("decoded"), 0);
+  EXPECT_EQ(r.at("scene").at("mask_filters"), 0);
+  EXPECT_FALSE(std::filesystem::exists(temp.path() / "cache"));
+  JobSpec s = spec("ajar.glb", 1);
+  s.integrator = InspectSettings{InspectQuantity::normal};
+  const JobFolder shape = create(s, "shape");
+  run(shape);
+  EXPECT_EQ(report(shape).at("scene").at("emitters"), "not needed");
+  EXPECT_EQ(report(shape).at("scene").at("textures").at("decoded"), 0);
+  EXPECT_GT(report(shape).at("scene").at("textures").at("in_scene"), 0);
+}
+
+TEST_F(RunJob, InterruptedAnywhereItGoesOnToTheSameBits) {
+  const JobFolder whole = create(spec("ajar.glb", 12), "whole");
+  run(whole);
+  const JobFolder parts = create(spec("ajar.glb", 12), "parts");
+  int stops = 0;
+  for (int patience = 0; parts.read_state().state != State::done; patience += 2) {
+    std::atomic<int> asked{0};
+    const std::function<bool()> impatient = [&] { return ++asked > patience; };
+    const Outcome outcome = run_job(parts, context(impatient));
+    if (outcome == Outcome::interrupted) {
+      ++stops;
+      EXPECT_EQ(parts.read_state().state, State::interrupted);
+    }
+    ASSERT_LT(stops, 200);
+  }
+  EXPECT_GT(stops, 3);
+  EXPECT_EQ(pixels(parts), pixels(whole));
+  EXPECT_EQ(report(parts).at("counts").at("rays"), report(whole).at("counts").at("rays"));
+}
+
+TEST_F(RunJob, DamagedCheckpointIsReportedKeptAndDoneWithout) {
+  const JobFolder whole = create(spec("cornell.glb", 6), "whole");
+  run(whole);
+  const JobFolder folder = create(spec("cornell.glb", 6));
+  std::atomic<int> asked{0};
+  const std::function<bool()> soon = [&] { return ++asked > 6; };
+  ASSERT_EQ(run_job(folder, context(soon)), Outcome::interrupted);
+  std::string bytes = read_file(folder.file("checkpoint.bin"), 1 << 24);
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  write_file_atomically(folder.file("checkpoint.bin"), bytes);
+  EXPECT_EQ(run(folder), Outcome::done);
+  ASSERT_FALSE(observer.warnings.empty());
+  EXPECT_NE(observer.warnings.back().find("checksum"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(folder.file("checkpoint.unusable")));
+  EXPECT_EQ(pixels(folder), pixels(whole));
+}
+
+TEST_F(RunJob, AutoReferenceIsMadeOnceAndKnowsItsNoise) {
+  JobSpec s = spec();
+  s.reference = "auto";
+  s.reference_iterations = 64;
+  const JobFolder first = create(s, "first");
+  run(first);
+  const auto references = [&] {
+    std::vector<std::filesystem::path> found;
+    for (const auto& e : std::filesystem::directory_iterator(temp.path() / "references"))
+      found.push_back(e.path());
+    return found;
+  };
+  ASSERT_EQ(references().size(), 1U);
+  const auto written = std::filesystem::last_write_time(references()[0] / "image.exr");
+  const json errors = report(first).at("errors");
+  EXPECT_GT(errors.at("reference").at("own_rmse"), 0);
+  EXPECT_GT(errors.at("rmse"), errors.at("reference").at("own_rmse"));
+  s.seed = 2;
+  run(create(s, "second"));
+  EXPECT_EQ(references().size(), 1U);
+  EXPECT_EQ(std::filesystem::last_write_time(references()[0] / "image.exr"), written);
+  s.camera = "front";
+  s.resolution = {8, 8};
+  run(create(s, "third"));
+  EXPECT_EQ(references().size(), 2U);
+}
+
+TEST_F(RunJob, CurveSaysWhenTheReferenceIsTheFloor) {
+  JobSpec s = spec("cornell.glb", 512);
+  s.reference = "auto";
+  s.reference_iterations = 4;
+  const JobFolder folder = create(s);
+  run(folder);
+  EXPECT_EQ(report(folder).at("errors").at("reference").at("at_floor"), true);
+}
+
+TEST_F(RunJob, StopsAtAnErrorTarget) {
+  JobSpec s = spec("cornell.glb", 1);
+  s.budget.iterations = 1000000;
+  s.budget.error = ErrorTarget{ErrorMetric::est_rmse, 0.5};
+  const JobFolder folder = create(s);
+  run(folder);
+  EXPECT_LE(report(folder).at("errors").at("est_rmse"), 0.5);
+}
+
+TEST_F(RunJob, NoLightIsBlackAndSaysSo) {
+  const JobFolder folder = create(spec("open.glb", 1));
+  EXPECT_EQ(run(folder), Outcome::done);
+  for (const float v : pixels(folder)) EXPECT_EQ(v, 0);
+  ASSERT_EQ(folder.read_state().warnings.size(), 1U);
+  EXPECT_NE(folder.read_state().warnings[0].find("no light"), std::string::npos);
+}
+
+/// Runs a job that cannot be done; the state says why.
+std::string failure(const JobFolder& folder, const RunContext& context) {
+  try {
+    run_job(folder, context);
+  } catch (const SceneError& e) {
+    EXPECT_EQ(folder.read_state().state, State::failed);
+    EXPECT_EQ(folder.read_state().error, e.what());
+    return e.what();
+  }
+  ADD_FAILURE() << "the job did not fail";
+  return "";
+}
+
+TEST_F(RunJob, WhatCannotBeDoneFailsAndNamesThePlace) {
+  const auto context_of = [&] { return context(never); };
+  JobSpec s = spec("nowhere.glb");
+  EXPECT_NE(failure(create(s, "a"), context_of()).find("nowhere.glb"), std::string::npos);
+  s = spec();
+  s.camera = "back";
+  const std::string camera = failure(create(s, "b"), context_of());
+  EXPECT_NE(camera.find("\"back\""), std::string::npos);
+  EXPECT_NE(camera.find("\"front\""), std::string::npos);
+  write_exr(temp.path() / "small.exr", 2, 2, {{"", {"R", "G", "B"}, std::vector<double>(12, 1)}},
+            PixelType::single_float, {});
+  s = spec();
+  s.reference = "small.exr";
+  EXPECT_NE(failure(create(s, "c"), context_of()).find("2 x 2"), std::string::npos);
+  s.reference = "20260101-000000-abcdef";
+  EXPECT_NE(failure(create(s, "d"), context_of()).find("no such job"), std::string::npos);
+  s.reference = "../job";
+  EXPECT_NE(failure(create(s, "e"), context_of()).find("../job"), std::string::npos);
+  s = spec("open.glb");
+  s.environment = EnvironmentSettings{"missing.hdr", 1, 0};
+  EXPECT_NE(failure(create(s, "f"), context_of()).find("missing.hdr"), std::string::npos);
+}
+
+TEST_F(RunJob, AFolderIsOneProcessAtATime) {
+  const JobFolder folder = create(spec());
+  const auto lock = folder.try_lock();
+  EXPECT_THROW(run(folder), FolderBusy);
+  EXPECT_EQ(folder.read_state().state, State::queued);
+}
+
+TEST_F(RunJob, EnvironmentLightsTheScene) {
+  JobSpec s = spec("open.glb", 2);
+  s.environment = EnvironmentSettings{"sky.hdr", 1, 0};
+  const JobFolder folder = create(s);
+  run(folder);
+  float largest = 0;
+  for (const float v : pixels(folder)) largest = std::max(largest, v);
+  EXPECT_GT(largest, 0);
+  EXPECT_TRUE(folder.read_state().warnings.empty());
+}
+
+}  // namespace
+}  // namespace lacuna
