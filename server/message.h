@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "jobs/spec/problems.h"
 #include "analysis/storage/file_handle.h"
+#include "jobs/spec/problems.h"
 
 namespace lacuna {
 

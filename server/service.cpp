@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "jobs/spec/version.h"
 #include "analysis/storage/file_handle.h"
+#include "jobs/spec/version.h"
 #include "server/executor_local.h"
 #include "server/http.h"
 #include "server/listener.h"

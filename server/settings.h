@@ -25,13 +25,13 @@ struct ExecutorSettings {
 /// Bounds that keep one client from using up the service (FACTS, section 4).
 struct HttpSettings {
   std::string bind = "127.0.0.1";
-  int port = 8017;                                  ///< 0: any free one
-  std::size_t threads = 64;                         ///< requests at a time
-  std::size_t waiting = 256;                        ///< connections that wait for a thread
-  std::chrono::milliseconds head_time{5'000};       ///< to send the head of a request
-  std::chrono::milliseconds body_time{15'000};      ///< to send its body
-  std::chrono::milliseconds answer_time{15'000};    ///< to take an answer, and more for a long one:
-  std::size_t answer_bytes_per_second = 64 * 1024;  ///< the slowest reader that is served
+  int port = 8017;                                ///< 0: any free one
+  std::size_t threads = 64;                       ///< requests at a time
+  std::size_t waiting = 256;                      ///< connections that wait for a thread
+  std::chrono::milliseconds head_time{5'000};     ///< to send the head of a request
+  std::chrono::milliseconds body_time{15'000};    ///< to send its body
+  std::chrono::milliseconds answer_time{15'000};  ///< in which a slow reader has to take
+  std::size_t answer_bytes = 1 << 20;             ///< this much of a long answer, again and again
 };
 
 /// Watchers of events at a time: each holds a thread.

@@ -39,15 +39,15 @@ class TimedSocket {
  private:
   using Clock = std::chrono::steady_clock;
   bool wait(short events, Clock::time_point deadline);
+  void open_window();
 
   FileHandle socket_;
   int stop_fd_;
   const HttpSettings& settings_;
   Clock::time_point read_deadline_;
-  Clock::time_point write_start_;
+  Clock::time_point window_end_;
   std::size_t bytes_left_;
-  std::size_t written_ = 0;
-  bool writing_ = false;
+  std::size_t window_bytes_ = 0;
   bool streaming_ = false;
   bool timed_out_ = false;
   std::array<char, 8192> buffer_;

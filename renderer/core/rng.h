@@ -1,5 +1,7 @@
 #pragma once
 
+#include <immintrin.h>
+
 #include <array>
 #include <cstdint>
 
@@ -25,12 +27,8 @@ class Rng {
 
   /// 32 uniform bits.
   std::uint32_t next_u32() {
-    if (used_ == 4) {
-      block_ = philox(counter_, key_);
-      ++counter_[0];
-      used_ = 0;
-    }
-    return block_[used_++];
+    if (used_ == numbers_.size()) refill();
+    return numbers_[used_++];
   }
 
   /// Uniform in [0, 1), a multiple of 2^-24: never 1.
@@ -43,24 +41,59 @@ class Rng {
   }
 
   using Block = std::array<std::uint32_t, 4>;
-  /// The bijection itself, for its known-answer test.
+  /// The bijection itself; next_u32() gives the words of its values at successive counters.
   static Block philox(Block c, std::array<std::uint32_t, 2> k) {
     for (int round = 0; round < 10; ++round) {
-      const std::uint64_t p0 = 0xD2511F53ULL * c[0];
-      const std::uint64_t p1 = 0xCD9E8D57ULL * c[2];
+      const std::uint64_t p0 = multiplier_0 * c[0];
+      const std::uint64_t p1 = multiplier_1 * c[2];
       c = {static_cast<std::uint32_t>(p1 >> 32) ^ c[1] ^ k[0], static_cast<std::uint32_t>(p1),
            static_cast<std::uint32_t>(p0 >> 32) ^ c[3] ^ k[1], static_cast<std::uint32_t>(p0)};
-      k[0] += 0x9E3779B9U;
-      k[1] += 0xBB67AE85U;
+      k[0] += weyl_0;
+      k[1] += weyl_1;
     }
     return c;
   }
 
  private:
+  static constexpr std::uint64_t multiplier_0 = 0xD2511F53, multiplier_1 = 0xCD9E8D57;
+  static constexpr std::uint32_t weyl_0 = 0x9E3779B9, weyl_1 = 0xBB67AE85;
+
+  // Four blocks at once, one in each 64-bit lane (values in the low halves): a quarter of the work.
+  void refill() {
+    const __m256i low = _mm256_set1_epi64x(0xffffffff);
+    const auto spread = [](std::uint32_t v) { return _mm256_set1_epi64x(v); };
+    __m256i c0 = _mm256_add_epi64(spread(counter_[0]), _mm256_setr_epi64x(0, 1, 2, 3));
+    __m256i c1 = spread(counter_[1]);
+    __m256i c2 = spread(counter_[2]);
+    __m256i c3 = spread(counter_[3]);
+    std::uint32_t k0 = key_[0];
+    std::uint32_t k1 = key_[1];
+    for (int round = 0; round < 10; ++round) {
+      const __m256i p0 = _mm256_mul_epu32(c0, spread(multiplier_0));
+      const __m256i p1 = _mm256_mul_epu32(c2, spread(multiplier_1));
+      c0 = _mm256_xor_si256(_mm256_xor_si256(_mm256_srli_epi64(p1, 32), c1), spread(k0));
+      c2 = _mm256_xor_si256(_mm256_xor_si256(_mm256_srli_epi64(p0, 32), c3), spread(k1));
+      c1 = _mm256_and_si256(p1, low);
+      c3 = _mm256_and_si256(p0, low);
+      k0 += weyl_0;
+      k1 += weyl_1;
+    }
+    // Words 0 and 1, and 2 and 3, of each block side by side; then each block's halves together.
+    const __m256i w01 = _mm256_or_si256(c0, _mm256_slli_epi64(c1, 32));
+    const __m256i w23 = _mm256_or_si256(c2, _mm256_slli_epi64(c3, 32));
+    const __m256i even = _mm256_unpacklo_epi64(w01, w23);  // blocks 0 and 2
+    const __m256i odd = _mm256_unpackhi_epi64(w01, w23);   // blocks 1 and 3
+    auto* out = reinterpret_cast<__m256i*>(numbers_.data());
+    _mm256_store_si256(out, _mm256_permute2x128_si256(even, odd, 0x20));
+    _mm256_store_si256(out + 1, _mm256_permute2x128_si256(even, odd, 0x31));
+    counter_[0] += 4;
+    used_ = 0;
+  }
+
   std::array<std::uint32_t, 2> key_;
   Block counter_;
-  Block block_{};
-  int used_ = 4;
+  alignas(32) std::array<std::uint32_t, 16> numbers_;
+  std::uint32_t used_ = 16;
 };
 
 }  // namespace lacuna

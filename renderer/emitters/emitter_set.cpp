@@ -36,23 +36,22 @@ double power(const PunctualLight& light, double scene_radius) {
 
 }  // namespace
 
-EmitterSet::EmitterSet(const SceneData& scene, const TriangleTable& triangles,
-                       std::unique_ptr<Environment> environment, float scene_radius)
+EmitterSet::EmitterSet(const SceneData& scene, std::unique_ptr<Environment> environment,
+                       float scene_radius)
     : scene_(&scene),
-      triangles_(&triangles),
       environment_(std::move(environment)),
       first_entry_(scene.meshes.size(), none) {
   std::vector<double> powers;
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) add_mesh(m, powers);
   for (std::uint32_t l = 0; l < scene.lights.size(); ++l) {
-    entries_.push_back({Entry::Kind::punctual, l, 0, Pdf<Area>(1.0F), Rgb(0, 0, 0)});
-    powers.push_back(power(scene.lights[l], scene_radius));
+    Source source{Source::Kind::punctual};
+    source.index = l;
+    add_light(source, power(scene.lights[l], scene_radius), powers);
   }
   if (environment_ != nullptr && !environment_->black()) {
     environment_entry_ = static_cast<std::uint32_t>(entries_.size());
-    entries_.push_back({Entry::Kind::environment, 0, 0, Pdf<Area>(1.0F), Rgb(0, 0, 0)});
-    powers.push_back(environment_->integral() * std::numbers::pi * double(scene_radius) *
-                     double(scene_radius));
+    const double disk = std::numbers::pi * double(scene_radius) * double(scene_radius);
+    add_light({Source::Kind::environment}, environment_->integral() * disk, powers);
   }
   selection_ = AliasTable(powers);
   if (selection_.empty()) return;
@@ -61,61 +60,81 @@ EmitterSet::EmitterSet(const SceneData& scene, const TriangleTable& triangles,
   }
 }
 
+void EmitterSet::add_light(const Source& source, double power, std::vector<double>& powers) {
+  Entry e;
+  e.pdf = Pdf<Area>(1.0F);
+  e.source = static_cast<std::uint32_t>(sources_.size());
+  sources_.push_back(source);
+  entries_.push_back(e);
+  powers.push_back(power);
+}
+
 void EmitterSet::add_mesh(std::uint32_t m, std::vector<double>& powers) {
   const Mesh& mesh = scene_->meshes[m];
   const Material& material = scene_->materials[mesh.material];
   if (!material.emits()) return;
-  double radiance = luminance(material.emission);
-  if (material.emission_texture.used()) {
-    const auto& texture =
-        *scene_->textures[static_cast<std::size_t>(material.emission_texture.texture)];
-    radiance = luminance(material.emission * texture.mean().rgb);
+  Source source{Source::Kind::mesh,
+                material.double_sided,
+                material.emission_texture.used(),
+                material.emission,
+                m,
+                static_cast<std::uint32_t>(entries_.size())};
+  Rgb radiance = material.emission;
+  if (source.textured) {
+    const auto texture = static_cast<std::size_t>(material.emission_texture.texture);
+    radiance *= scene_->textures[texture]->mean().rgb;
   }
-  first_entry_[m] = static_cast<std::uint32_t>(entries_.size());
+  const double exitance =
+      std::numbers::pi * double(luminance(radiance)) * (source.both_sides ? 2 : 1);
+  first_entry_[m] = source.first_entry;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const float area = triangles_->at(m, t).area;
-    entries_.push_back({Entry::Kind::triangle, m, t, Pdf<Area>(1 / area), material.emission});
-    powers.push_back(radiance * double(area) * std::numbers::pi * (material.double_sided ? 2 : 1));
+    Entry e{TriangleShape(mesh, t), {}, static_cast<std::uint32_t>(sources_.size())};
+    const double area = e.area();
+    e.pdf = Pdf<Area>(static_cast<float>(1 / area));
+    entries_.push_back(e);
+    powers.push_back(exitance * area);
   }
+  sources_.push_back(source);
 }
 
-EmitterSample EmitterSet::sample(const V3f& x, Rng& rng) const {
-  const Entry& e = entries_[selection_.sample(rng)];
-  switch (e.kind) {
-    case Entry::Kind::triangle:
-      return sample_triangle_of(e, x, rng.next2());
-    case Entry::Kind::punctual: {
-      EmitterSample s = sample_punctual(scene_->lights[e.mesh_or_light], x);
-      s.pdf = e.pdf;
-      return s;
-    }
-    case Entry::Kind::environment:
-      break;
-  }
+EmitterSample EmitterSet::sample(std::uint32_t chosen, const V3f& x, Rng& rng) const {
+  const Entry& e = entries_[chosen];
+  const Source& source = sources_[e.source];
+  if (source.kind == Source::Kind::mesh) return sample_triangle_of(chosen, x, rng.next2());
+  EmitterSample s = source.kind == Source::Kind::punctual
+                        ? sample_punctual(scene_->lights[source.index], x)
+                        : sample_environment(rng);
+  s.pdf = s.pdf.value * e.pdf;
+  return s;
+}
+
+EmitterSample EmitterSet::sample_environment(Rng& rng) const {
   const Environment::Sample d = environment_->sample(rng);
   EmitterSample s;
   s.x = d.w;
   s.emission = environment_->radiance(d.w);
-  s.pdf = d.pdf * e.pdf;
+  s.pdf = Pdf<Area>(d.pdf);
   s.infinite = true;
   return s;
 }
 
-EmitterSample EmitterSet::sample_triangle_of(const Entry& e, const V3f& x, const V2f& u) const {
-  const TriangleRecord& t = triangles_->at(e.mesh_or_light, e.triangle);
+EmitterSample EmitterSet::sample_triangle_of(std::uint32_t chosen, const V3f& x,
+                                             const V2f& u) const {
+  const Entry& e = entries_[chosen];
+  const Source& source = sources_[e.source];
   const V2f b = sample_triangle(u);
   EmitterSample s;
-  s.x = t.at(b.x, b.y);
-  s.ng = t.ng;
-  s.extent = t.extent;
+  s.x = e.at(b.x, b.y);
+  s.ng = e.ng;
+  s.extent = e.extent;
   s.pdf = e.pdf;
   s.emission = Rgb(0, 0, 0);
-  if (!t.emits_behind && dot(x - s.x, s.ng) <= 0) return s;
-  s.emission = e.emission;
-  const Material& material = scene_->materials[t.material];
-  if (t.textured && material.emission_texture.used()) {
-    const Mesh& mesh = scene_->meshes[e.mesh_or_light];
-    s.emission = emission(material, scene_->textures, mesh.uvs_at(e.triangle, b.x, b.y));
+  if (!source.both_sides && dot(x - s.x, s.ng) <= 0) return s;
+  s.emission = source.emission;
+  if (source.textured) {
+    const Mesh& mesh = scene_->meshes[source.index];
+    s.emission = emission(scene_->materials[mesh.material], scene_->textures,
+                          mesh.uvs_at(chosen - source.first_entry, b.x, b.y));
   }
   return s;
 }
@@ -123,6 +142,7 @@ EmitterSample EmitterSet::sample_triangle_of(const Entry& e, const V3f& x, const
 EmitterSample EmitterSet::sample_punctual(const PunctualLight& light, const V3f& x) {
   EmitterSample s;
   s.delta = true;
+  s.pdf = Pdf<Area>(1.0F);
   s.emission = light.intensity;
   if (light.kind == PunctualLight::Kind::directional) {
     s.x = -light.direction;

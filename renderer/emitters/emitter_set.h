@@ -15,7 +15,7 @@ namespace lacuna {
 struct EmitterSample {
   V3f x;             ///< position; for an infinite emitter: unit direction towards it
   V3f ng{0, 0, 0};   ///< of an area emitter: unit normal of its front side
-  float extent = 0;  ///< of the triangle x lies on, see TriangleRecord
+  float extent = 0;  ///< of the triangle x lies on, see TriangleShape
   Rgb emission;  ///< towards the receiver: radiance; W/sr of a point; W/m^2 of a directional light
   Pdf<Area>
       pdf{};  ///< selection included. Infinite: per steradian. Delta: the selection's probability
@@ -28,16 +28,23 @@ struct EmitterSample {
 class EmitterSet {
  public:
   /// `scene_radius` > 0 (scene units) bounds the scene: the power of infinite emitters is what
-  /// passes through its great disk. Keeps pointers to `scene` and `triangles`; the emission
-  /// textures must be decoded.
-  EmitterSet(const SceneData& scene, const TriangleTable& triangles,
-             std::unique_ptr<Environment> environment, float scene_radius);
+  /// passes through its great disk. Keeps a pointer to `scene`; the emission textures must be
+  /// decoded.
+  EmitterSet(const SceneData& scene, std::unique_ptr<Environment> environment, float scene_radius);
 
   bool empty() const { return selection_.empty(); }
   std::size_t size() const { return entries_.size(); }
 
-  /// Draws a point for the receiver at `x`. Not to be called when empty().
-  EmitterSample sample(const V3f& x, Rng& rng) const;
+  /// Draws an emitter, before the receiver is known: its memory is then on its way while the ray to
+  /// the receiver is traced. Not to be called when empty().
+  std::uint32_t choose(Rng& rng) const {
+    const std::uint32_t i = selection_.sample(rng);
+    __builtin_prefetch(&entries_[i]);
+    return i;
+  }
+  /// Draws a point on the emitter `chosen` for the receiver at `x`; its density includes the
+  /// choice.
+  EmitterSample sample(std::uint32_t chosen, const V3f& x, Rng& rng) const;
 
   /// Density with which sample() returns a point of triangle `triangle` of `mesh`.
   Pdf<Area> pdf(std::uint32_t mesh, std::uint32_t triangle) const;
@@ -48,22 +55,31 @@ class EmitterSet {
   const Environment* environment() const { return environment_.get(); }
 
  private:
-  struct Entry {
-    enum class Kind : std::uint8_t { triangle, punctual, environment } kind;
-    std::uint32_t mesh_or_light = 0;
-    std::uint32_t triangle = 0;
-    Pdf<Area> pdf{};        // of a triangle: selection included
-    Rgb emission{0, 0, 0};  // of a triangle without an emission texture
+  /// What the entries of one mesh, or the only entry of a light, have in common.
+  struct Source {
+    enum class Kind : std::uint8_t { mesh, punctual, environment } kind;
+    bool both_sides = false;
+    bool textured = false;    // emission is not the same everywhere
+    Rgb emission{0, 0, 0};    // of a mesh
+    std::uint32_t index = 0;  // of the mesh or of the light
+    std::uint32_t first_entry = 0;
+  };
+  /// A triangle or a light; what a draw needs lies in one cache line.
+  struct alignas(64) Entry : TriangleShape {
+    Pdf<Area> pdf{};  // selection included
+    std::uint32_t source = 0;
   };
 
   void add_mesh(std::uint32_t mesh, std::vector<double>& powers);
-  EmitterSample sample_triangle_of(const Entry& e, const V3f& x, const V2f& u) const;
+  void add_light(const Source& source, double power, std::vector<double>& powers);
+  EmitterSample sample_triangle_of(std::uint32_t chosen, const V3f& x, const V2f& u) const;
+  EmitterSample sample_environment(Rng& rng) const;
   static EmitterSample sample_punctual(const PunctualLight& light, const V3f& x);
 
   const SceneData* scene_;
-  const TriangleTable* triangles_;
   std::unique_ptr<Environment> environment_;
-  std::vector<Entry> entries_;
+  std::vector<Source> sources_;
+  HugeVector<Entry> entries_;
   AliasTable selection_;
   static constexpr std::uint32_t none = ~0U;
   std::vector<std::uint32_t> first_entry_;  // of each mesh; none: it does not emit

@@ -38,16 +38,23 @@ class Path final : public Integrator {
                Counters& counters) const {
     Rgb radiance(0, 0, 0);
     const WalkLimits limits{settings_.max_depth, settings_.roulette_depth};
-    // The film's measure of directions does not enter: the eye's density and its importance cancel.
-    walk(scene, ray, Pdf<SolidAngle>(1.0F), guide_, limits, rng, path, counters, [&](int depth) {
+    // The film's measure of directions does not enter walk(): the eye's density and its importance
+    // cancel.
+    std::uint32_t chosen = 0;
+    const auto choose_emitter = [&](int depth) {
+      if (nee(scene) && depth < settings_.max_depth) chosen = scene.emitters().choose(rng);
+    };
+    const auto gather = [&](int depth) {
       const Vertex& v = path[static_cast<std::size_t>(depth)];
       const Vertex& from = path[static_cast<std::size_t>(depth) - 1];
       radiance += emitter_hit(scene, v, from);
       const bool goes_on = v.kind == Vertex::Kind::surface && depth < settings_.max_depth;
       if (goes_on && nee(scene) && v.bsdf->connectible()) {
-        radiance += direct(scene, v, rng, counters);
+        radiance += direct(scene, v, chosen, rng, counters);
       }
-    });
+    };
+    walk(scene, ray, Pdf<SolidAngle>(1.0F), guide_, limits, rng, path, counters, choose_emitter,
+         gather);
     return radiance;
   }
 
@@ -76,8 +83,9 @@ class Path final : public Integrator {
   }
 
   /// s = 1: `v` joined to a point drawn on an emitter.
-  Rgb direct(const Scene& scene, const Vertex& v, Rng& rng, Counters& counters) const {
-    const EmitterSample e = scene.emitters().sample(v.surface.x, rng);
+  Rgb direct(const Scene& scene, const Vertex& v, std::uint32_t chosen, Rng& rng,
+             Counters& counters) const {
+    const EmitterSample e = scene.emitters().sample(chosen, v.surface.x, rng);
     const Connection c = connect(v, e);
     if (is_black(c.contribution)) return c.contribution;
     ++counters.shadow_rays;

@@ -21,7 +21,7 @@ struct SurfaceParams {
   Rgb base_color{1, 1, 1};
   float metallic = 0;           ///< [0, 1]
   float alpha = 1;              ///< GGX width, roughness^2; below ggx_min_alpha: smooth, a delta
-  float ior = 1.5F;             ///< > = 1; of the inside, for refraction
+  float ior = 1.5F;             ///< >= 1; of the inside, for refraction
   Rgb f0{0.04F, 0.04F, 0.04F};  ///< dielectric reflectance at normal incidence
   float f90 = 1;
   float transmission = 0;  ///< [0, 1]: share of the dielectric's base that refracts
@@ -31,8 +31,8 @@ struct SurfaceParams {
 struct BsdfSample {
   V3f wi;      ///< unit, world space, leaves the surface
   Rgb weight;  ///< f |cos| / pdf; for a delta lobe: its reflectance over its probability
-  Pdf<SolidAngle>
-      pdf;  ///< of the whole BSDF at wi, all non-delta lobes; for a delta lobe meaningless
+  /// Of the whole BSDF at wi, all non-delta lobes; for a delta lobe meaningless.
+  Pdf<SolidAngle> pdf;
   bool delta = false;
   bool transmitted = false;  ///< wi lies on the other side of ng
 };
@@ -40,10 +40,9 @@ struct BsdfSample {
 /// Scattering at one point of a surface: a flat value, made per hit, without allocation or virtual
 /// calls. The glTF metallic-roughness model, mix(dielectric, metal, metallic):
 /// - metal: GGX, Schlick from base_color to white;
-/// - dielectric: a GGX layer (Schlick from f0 to f90) over Lambert, or where it transmits a
-/// refracting interface
-///   with exact Fresnel (interface.h, layer.h). With f0 = f90 = 0 and nothing else: exactly
-///   Lambert.
+/// - dielectric: a GGX layer, Schlick from f0 to f90, over Lambert (layer.h), or where it transmits
+///   a refracting interface with exact Fresnel (interface.h).
+/// With f0 = f90 = 0 and nothing else it is exactly Lambert.
 ///
 /// `wo` and `wi` are unit, in world space, and leave the surface; `wi` is the one sampled. Which
 /// side a direction lies on is decided by the geometric normal `ng`, so light never leaks through a
@@ -57,7 +56,7 @@ class Bsdf {
   /// `ng` and `ns` are unit; `ns` is turned to the side of `ng`. They need not be on the same side
   /// as wo.
   Bsdf(const SurfaceParams& params, const V3f& ng, const V3f& ns)
-      : ng_(ng), ns_(dot(ns, ng) < 0 ? -ns : ns), flat_(ns == ng) {
+      : ng_(ng), ns_(dot(ns, ng) < 0 ? -ns : ns), flat_((ns_ - ng).length2() < 1e-12F) {
     diffuse_ = ((1 - params.metallic) * (1 - params.transmission)) * params.base_color;
     if (params.metallic > 0 || params.transmission > 0 || params.f90 > 0 || !is_black(params.f0)) {
       add_interface(params);
@@ -191,9 +190,8 @@ class Bsdf {
   V3f ng_, ns_;
   Rgb diffuse_;  // share of Lambert times base colour
   Kind kind_ = Kind::layered;
-  bool flat_;
-  Layer layer_;  // these two only mean something in a layered surface; this one, if something is
-                 // below it
+  bool flat_;    // ns is ng, up to the rounding of an interpolated normal
+  Layer layer_;  // where facets_compete()
   Interface interface_;
 };
 

@@ -20,11 +20,12 @@ struct WalkLimits {
 /// Random walk through `scene` from vertex 0 (`path[0]`, whose throughput is set) along `ray`,
 /// which was drawn there with density `p`. Each vertex reached is stored in `path` (of at least
 /// max_depth + 1) and handed to `visit(depth)`, depth = edges walked, before the walk goes on from
-/// it. A guide draws the directions (renderer/guides). The densities of all vertices are per area.
-template <class Guide, class Visit>
+/// it; `before(depth)` is called before the ray to it is traced, for what can be drawn ahead. A
+/// guide draws the directions (renderer/guides). The densities of all vertices are per area.
+template <class Guide, class Before, class Visit>
 void walk(const Scene& scene, Ray ray, Pdf<SolidAngle> p, const Guide& guide,
           const WalkLimits& limits, Rng& rng, std::span<Vertex> path, Counters& counters,
-          Visit&& visit) {
+          Before&& before, Visit&& visit) {
   Rgb throughput = path[0].throughput;
   for (int depth = 1; depth <= limits.max_depth; ++depth) {
     const Vertex& from = path[static_cast<std::size_t>(depth) - 1];
@@ -32,6 +33,7 @@ void walk(const Scene& scene, Ray ray, Pdf<SolidAngle> p, const Guide& guide,
     v.delta = false;
     v.wp = -ray.d;
     v.throughput = throughput;
+    before(depth);
     Hit hit;
     ++counters.rays;
     if (!scene.rays().intersect(ray, hit)) {

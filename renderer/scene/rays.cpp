@@ -2,6 +2,7 @@
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
+#include <immintrin.h>
 
 #include <atomic>
 #include <cstring>
@@ -16,9 +17,12 @@ namespace {
 constexpr float largest_coordinate = 1e18F;
 
 bool acceptable(const Ray& ray) {
-  // The comparison is false for NaN as well.
-  return max_abs_component(ray.o) <= largest_coordinate && is_finite(ray.o) &&
-         max_abs_component(ray.d) <= largest_coordinate && is_finite(ray.d) && ray.tmax >= 0.0F;
+  // The ray's o and d at once; an ordered comparison is false for NaN as well.
+  static_assert(sizeof(Ray) == 32);
+  const __m256 all = _mm256_load_ps(&ray.o.x);
+  const __m256 magnitude = _mm256_andnot_ps(_mm256_set1_ps(-0.0F), all);
+  const __m256 small = _mm256_cmp_ps(magnitude, _mm256_set1_ps(largest_coordinate), _CMP_LE_OQ);
+  return (_mm256_movemask_ps(small) & 0x3f) == 0x3f && ray.tmax >= 0.0F;
 }
 
 RTCRay to_embree(const Ray& ray) {

@@ -12,7 +12,7 @@ struct RTCSceneTy;
 namespace lacuna {
 
 /// A ray or, with a finite `tmax`, a segment. `d` need not be unit; t counts in multiples of it.
-struct Ray {
+struct alignas(32) Ray {
   V3f o;
   V3f d;
   float tmax = std::numeric_limits<float>::infinity();

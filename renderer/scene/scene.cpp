@@ -44,7 +44,7 @@ Scene::Scene(SceneData data, const SceneNeeds& needs,
       rays_((decode_textures(needs, pool), RayCaster(*data_, pool.threads()))) {
   if (needs.emission) {
     emitters_ = std::make_unique<EmitterSet>(
-        *data_, triangles_, environment ? load_environment(*environment) : nullptr, radius_);
+        *data_, environment ? load_environment(*environment) : nullptr, radius_);
   }
 }
 

@@ -12,22 +12,24 @@ bool uses_textures(const Material& m) {
 
 }  // namespace
 
-TriangleRecord::TriangleRecord(const SceneData& scene, std::uint32_t mesh_index,
-                               std::uint32_t triangle) {
-  const Mesh& mesh = scene.meshes[mesh_index];
-  const Material& m = scene.materials[mesh.material];
+TriangleShape::TriangleShape(const Mesh& mesh, std::uint32_t triangle) {
   const auto& t = mesh.triangles[triangle];
   const V3f& a = mesh.positions[t[0]];
   const V3f& b = mesh.positions[t[1]];
   const V3f& c = mesh.positions[t[2]];
-  const V3d doubled_area = (V3d(b) - V3d(a)).cross(V3d(c) - V3d(a));
   p = a;
   e1 = b - a;
   e2 = c - a;
-  ng = V3f(doubled_area.normalized());
-  area = static_cast<float>(doubled_area.length() / 2);
+  ng = V3f((V3d(b) - V3d(a)).cross(V3d(c) - V3d(a)).normalized());
   extent = std::max({max_abs_component(a), max_abs_component(b), max_abs_component(c),
                      max_abs_component(e1), max_abs_component(e2), max_abs_component(c - b)});
+}
+
+TriangleRecord::TriangleRecord(const SceneData& scene, std::uint32_t mesh_index,
+                               std::uint32_t triangle)
+    : TriangleShape(scene.meshes[mesh_index], triangle) {
+  const Mesh& mesh = scene.meshes[mesh_index];
+  const Material& m = scene.materials[mesh.material];
   smooth = !mesh.normals.empty();
   textured = uses_textures(m) && !(mesh.uvs[0].empty() && mesh.uvs[1].empty());
   two_uv_sets = !mesh.uvs[1].empty();

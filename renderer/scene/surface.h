@@ -1,31 +1,57 @@
 #pragma once
 
+#include <immintrin.h>
+
+#include <immintrin.h>
+
 #include <vector>
 
+#include "renderer/core/huge_pages.h"
 #include "renderer/scene/rays.h"
 #include "renderer/scene/scene_data.h"
 
 namespace lacuna {
 
-/// What a hit needs of a triangle, in one cache line.
-struct alignas(64) TriangleRecord {
-  V3f p;       ///< first corner
-  V3f e1, e2;  ///< edges to the second and the third
-  V3f ng;      ///< unit, towards the front (counter-clockwise)
-  float
-      extent;  ///< the size that rounding errors on it are relative to: largest coordinate or edge
-  float area;
-  bool smooth;    ///< has interpolated normals
-  bool textured;  ///< has texture coordinates that its material uses
-  bool two_uv_sets;
-  bool emits : 1;
-  bool emits_behind : 1;
-  std::uint32_t material;
+/// Where a triangle lies.
+struct TriangleShape {
+  V3f p{0, 0, 0};                ///< first corner
+  V3f e1{0, 0, 0}, e2{0, 0, 0};  ///< edges to the second and the third
+  V3f ng{0, 0, 0};               ///< unit, towards the front (counter-clockwise)
+  float extent =
+      0;  ///< the size that rounding errors on it are relative to: largest coordinate or edge
 
-  TriangleRecord(const SceneData& scene, std::uint32_t mesh, std::uint32_t triangle);
+  TriangleShape() = default;
+  TriangleShape(const Mesh& mesh, std::uint32_t triangle);
+  double area() const { return V3d(e1).cross(V3d(e2)).length() / 2; }
   /// The point at barycentric (u, v); in double, so that the error across the plane is the last
   /// rounding.
-  V3f at(float u, float v) const { return V3f(V3d(p) + double(u) * V3d(e1) + double(v) * V3d(e2)); }
+  V3f at(float u, float v) const {
+    // p, e1, e2 and ng lie side by side: the fourth lane of each load is a neighbour's and is left
+    // out.
+    const __m256d base = _mm256_cvtps_pd(_mm_loadu_ps(&p.x));
+    const __m256d along_1 = _mm256_cvtps_pd(_mm_loadu_ps(&e1.x));
+    const __m256d along_2 = _mm256_cvtps_pd(_mm_loadu_ps(&e2.x));
+    const __m256d x =
+        _mm256_add_pd(_mm256_add_pd(base, _mm256_mul_pd(_mm256_set1_pd(double(u)), along_1)),
+                      _mm256_mul_pd(_mm256_set1_pd(double(v)), along_2));
+    const __m128 rounded = _mm256_cvtpd_ps(x);
+    V3f result;
+    _mm_storel_pi(reinterpret_cast<__m64*>(&result.x), rounded);
+    _mm_store_ss(&result.z, _mm_movehl_ps(rounded, rounded));
+    return result;
+  }
+};
+
+/// What a hit needs of a triangle, in one cache line.
+struct alignas(64) TriangleRecord : TriangleShape {
+  bool smooth = false;    ///< has interpolated normals
+  bool textured = false;  ///< has texture coordinates that its material uses
+  bool two_uv_sets = false;
+  bool emits : 1 = false;
+  bool emits_behind : 1 = false;
+  std::uint32_t material = 0;
+
+  TriangleRecord(const SceneData& scene, std::uint32_t mesh, std::uint32_t triangle);
 };
 static_assert(sizeof(TriangleRecord) == 64);
 
@@ -56,8 +82,8 @@ class TriangleTable {
     std::size_t record, attributes;
   };
   std::vector<First> first_;  // of each mesh
-  std::vector<TriangleRecord> records_;
-  std::vector<TriangleAttributes> attributes_;
+  HugeVector<TriangleRecord> records_;
+  HugeVector<TriangleAttributes> attributes_;
 };
 
 /// Where a ray's origin must lie so that it does not meet the surface it leaves: `x` moved along
@@ -73,7 +99,7 @@ struct Surface {
   V3f x{0, 0, 0};
   V3f ng{0, 0, 0};
   V3f ns{0, 0, 0};   ///< unit; interpolated normals, or ng
-  float extent = 0;  ///< see TriangleRecord
+  float extent = 0;  ///< see TriangleShape
   std::array<V2f, 2> uv{V2f(0, 0), V2f(0, 0)};
   std::uint32_t mesh = 0;
   std::uint32_t triangle = 0;

@@ -90,7 +90,7 @@ void Texture::decode() {
   Rgba8Image image = decode_png_or_jpeg(encoded_, label_);
   width_ = image.width;
   height_ = image.height;
-  texels_ = std::move(image.rgba);
+  texels_.assign(image.rgba.begin(), image.rgba.end());
   std::vector<std::uint8_t>().swap(encoded_);
 }
 

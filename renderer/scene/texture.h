@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/core/huge_pages.h"
 #include "renderer/core/vec.h"
 
 namespace lacuna {
@@ -48,7 +49,7 @@ class Texture {
   const float* to_linear_;  ///< what the bytes of a texel mean under the encoding
   Wrap wrap_s_, wrap_t_;
   int width_ = 0, height_ = 0;
-  std::vector<std::uint8_t> texels_;  ///< RGBA8 as stored in the file
+  HugeVector<std::uint8_t> texels_;  ///< RGBA8 as stored in the file
 };
 
 }  // namespace lacuna

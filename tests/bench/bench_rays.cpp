@@ -53,22 +53,28 @@ Recording record(const Scene& scene, const Camera& camera, const V2i& size,
         path[0].surface.x = first.o;
         Ray next = first;
         Counters counters;
-        walk(scene, first, Pdf<SolidAngle>(1.0F), BsdfGuide{},
-             {settings.max_depth, settings.roulette_depth}, rng, path, counters, [&](int depth) {
-               const Vertex& v = path[static_cast<std::size_t>(depth)];
-               if (depth > 1) {
-                 const Surface& s = path[static_cast<std::size_t>(depth) - 1].surface;
-                 next = {offset_origin(s.x, s.ng, s.extent, -v.wp), -v.wp};
-               }
-               rays.push_back({next, false});
-               if (v.kind != Vertex::Kind::surface || depth == settings.max_depth ||
-                   !v.bsdf->connectible()) {
-                 return;
-               }
-               const EmitterSample e = scene.emitters().sample(v.surface.x, rng);
-               if (is_black(connect(v, e).contribution)) return;
-               rays.push_back({scene.shadow_ray(v.surface, e), true});
-             });
+        std::uint32_t chosen = 0;
+        walk(
+            scene, first, Pdf<SolidAngle>(1.0F), BsdfGuide{},
+            {settings.max_depth, settings.roulette_depth}, rng, path, counters,
+            [&](int depth) {
+              if (depth < settings.max_depth) chosen = scene.emitters().choose(rng);
+            },
+            [&](int depth) {
+              const Vertex& v = path[static_cast<std::size_t>(depth)];
+              if (depth > 1) {
+                const Surface& s = path[static_cast<std::size_t>(depth) - 1].surface;
+                next = {offset_origin(s.x, s.ng, s.extent, -v.wp), -v.wp};
+              }
+              rays.push_back({next, false});
+              if (v.kind != Vertex::Kind::surface || depth == settings.max_depth ||
+                  !v.bsdf->connectible()) {
+                return;
+              }
+              const EmitterSample e = scene.emitters().sample(chosen, v.surface.x, rng);
+              if (is_black(connect(v, e).contribution)) return;
+              rays.push_back({scene.shadow_ray(v.surface, e), true});
+            });
       }
     }
   }

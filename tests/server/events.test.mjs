@@ -1,5 +1,7 @@
 // Server-sent events of a job.
 import assert from "node:assert/strict";
+import fs from "node:fs";
+import path from "node:path";
 import { test } from "node:test";
 import { folders, Service, until } from "./service.mjs";
 
@@ -36,6 +38,12 @@ test("a watcher sees every state, the progress, and then the end", async (t) => 
   service.open("first");
   await seen((e) => e.name === "state" && e.data.state === "running" && e.data.phase === "rendering");
   await seen((e) => e.name === "progress" && e.data.share === 0.25);
+  const file = path.join(service.folder(id), "progress.json");
+  for (const share of [0.5, 0.75]) {
+    fs.writeFileSync(`${file}.new`, JSON.stringify({ ...JSON.parse(fs.readFileSync(file)), share }));
+    fs.renameSync(`${file}.new`, file);
+    await seen((e) => e.name === "progress" && e.data.share === share);
+  }
   service.open("second");
   await end;
   const states = events.filter((e) => e.name === "state").map((e) => e.data.state);
@@ -43,8 +51,11 @@ test("a watcher sees every state, the progress, and then the end", async (t) => 
   assert.equal(events.at(-1).name, "state");
   assert.equal(events.at(-1).data.exit_code, 0, "the last word");
   assert.equal(events.findLast((e) => e.name === "progress").data.share, 1, "before the end");
-  for (let i = 1; i < events.length; i += 1) {
-    assert.notDeepEqual(events[i], events[i - 1], "only changes are sent");
+  for (const name of ["state", "progress"]) {
+    const same = events.filter((e) => e.name === name);
+    for (let i = 1; i < same.length; i += 1) {
+      assert.notDeepEqual(same[i], same[i - 1], "only changes are sent");
+    }
   }
 });
 

@@ -130,7 +130,15 @@ test("no spelling of a path leaves a job's folder", async (t) => {
   const service = await Service.start(folders(t));
   const id = await service.post("finish");
   await service.reaches(id, "done");
+  const jobs = path.dirname(service.folder(id));
+  fs.mkdirSync(path.join(jobs, "copy"));
+  for (const folder of [path.join(jobs, "copy"), jobs, path.dirname(jobs)]) {
+    for (const name of ["job.json", "state.json"]) {
+      fs.copyFileSync(path.join(service.folder(id), name), path.join(folder, name));
+    }
+  }
   const spellings = [
+    "/api/jobs/copy", "/api/jobs/copy/files/job.json", "/api/jobs/../files/job.json",
     `/api/jobs/${id}/files/../job.json`, `/api/jobs/${id}/files/..%2fjob.json`,
     `/api/jobs/${id}/files/%2e%2e/job.json`, `/api/jobs/${id}/files/job.json%00.png`,
     `/api/jobs/${id}/files//etc/passwd`, `/api/jobs/${id}/files/job.json/`,

@@ -18,6 +18,16 @@ TEST(Philox, KnownAnswers) {
             (Rng::Block{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
 }
 
+TEST(Rng, NumbersAreTheBlocksInOrder) {
+  const std::uint64_t seed = 0x0123456789abcdef;
+  Rng rng(seed, 77, 0xabcdef0123, Rng::Purpose::light_path);
+  for (std::uint32_t block = 0; block < 9; ++block) {
+    const Rng::Block expected =
+        Rng::philox({block, 0xcdef0123, 0xab | 1U << 24, 77}, {0x89abcdef, 0x01234567});
+    for (const std::uint32_t word : expected) ASSERT_EQ(rng.next_u32(), word) << "block " << block;
+  }
+}
+
 TEST(Rng, StreamsDifferInEveryPartOfTheirKey) {
   using P = Rng::Purpose;
   std::set<std::uint32_t> first;

@@ -52,6 +52,17 @@ std::vector<V3f> ordinary_directions(const V3f& ng) {
 const V3f z(0, 0, 1);
 const V3f tilted = V3f(0.6F, 0, 0.8F);
 
+/// The disk's rim would be a direction along the surface, of density 0.
+TEST(Extremes, disk_is_open) {
+  for (const float x : numbers) {
+    for (const float y : numbers) {
+      const V2f d = sample_disk({x, y});
+      EXPECT_GT(1 - d.x * d.x - d.y * d.y, 0) << x << " " << y;
+      EXPECT_GT(dot(sample_cosine(tilted, {x, y}), tilted), 2e-4F) << x << " " << y;
+    }
+  }
+}
+
 TEST(Extremes, every_surface_at_every_corner_of_the_random_numbers) {
   for (const cases::Surface& s : cases::surfaces()) {
     SCOPED_TRACE(s.name);

@@ -1,0 +1,124 @@
+"""Measures what the project promises, as ratios within one run, and prints each figure beside its bound."""
+
+import argparse
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BIN = ROOT / "build/release/bin"
+SHARED = ROOT.parent / "shared/scenes"
+
+
+class Bench:
+    def __init__(self):
+        self.missed = 0
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="lacuna-bench-"))
+
+    def figure(self, name, value, bound, good):
+        self.missed += not good
+        print(f"{name:<64} {value:>12}   {'ok' if good else 'MISSED'}: {bound}", flush=True)
+
+    def render(self, name, spec, *arguments):
+        """Renders a job in a folder of its own; gives the folder and the report."""
+        file = self.folder / f"{name}.json"
+        file.write_text(json.dumps(spec))
+        out = self.folder / name
+        shutil.rmtree(out, ignore_errors=True)
+        subprocess.run([BIN / "lacuna", "render", file, "--out", out, "-q", *arguments], check=True,
+                       env={**os.environ, "LACUNA_DATA": str(self.folder / "data")})
+        return out, json.loads((out / "report.json").read_text())
+
+    def compare(self, a, b, block):
+        done = subprocess.run([BIN / "lacuna", "compare", a, b, "--block", str(block)], check=True,
+                              capture_output=True, text=True)
+        return {k: float(v) for k, v in re.findall(r"^(\S+) +(-?[0-9.e+-]+)$", done.stdout, re.M)}
+
+
+def rays(bench, _):
+    """Integrator path against a bare Embree loop that sends the same rays."""
+    for scene in ("door", "sponza"):
+        done = subprocess.run([BIN / "bench_rays", SHARED / scene / "scene.glb", "512", "256", "6", "9"],
+                              check=True, capture_output=True, text=True)
+        ratio = float(re.search(r"ratio ([0-9.]+)", done.stdout)[1])
+        bench.figure(f"{scene}: rays a CPU second, path / bare Embree loop", f"{ratio:.3f}", "at least 0.65",
+                     ratio >= 0.65)
+        print("  " + done.stdout.strip())
+
+
+def corridor(bench, options):
+    """The thesis author's own render, 63,555 samples a pixel."""
+    out, report = bench.render("corridor", {
+        "scene": "corridor/scene.glb", "resolution": [512, 512],
+        "integrator": {"type": "path", "max_depth": 6},
+        "budget": {"cpu_seconds": options.seconds}, "layers": ["variance"]})
+    c = bench.compare(out / "image.exr", SHARED / "corridor/reference.exr", 64)
+    # The standard error of the picture's mean, from independent pixels.
+    noise = report["errors"]["est_rmse"] / 512 / c["mean_b"]
+    bench.figure("corridor: difference of means", f"{100 * c['mean_relative']:+.3f} %",
+                 f"0.5 % (own noise {100 * noise:.3f} %)", abs(c["mean_relative"]) <= max(0.005, 3 * noise))
+    bench.figure("corridor: z of 64x64 blocks, mean", f"{c['z_mean']:+.3f}", "within 0.6", abs(c["z_mean"]) <= 0.6)
+    bench.figure("corridor: z of 64x64 blocks, deviation", f"{c['z_deviation']:.3f}", "0.7 to 1.4",
+                 0.7 <= c["z_deviation"] <= 1.4)
+
+
+def cornell(bench, options):
+    """Tungsten's render of the Cornell box."""
+    out, _ = bench.render("cornell-box", {
+        "scene": "cornell-box/scene.glb", "resolution": [1024, 1024],
+        "integrator": {"type": "path", "max_depth": 64},
+        "budget": {"cpu_seconds": options.seconds}, "layers": ["variance"]})
+    c = bench.compare(out / "image.exr", SHARED / "cornell-box/reference-tungsten.exr", 32)
+    bench.figure("cornell-box: largest difference of a 32x32 block's mean", f"{100 * c['block_relative']:.2f} %",
+                 "1 %", c["block_relative"] <= 0.01)
+
+
+def overhead(bench, _):
+    """What is not rendering, of a job of 60 seconds: errors, checkpoints, files."""
+    spec = {"scene": "door/scene.glb", "resolution": [1024, 512], "budget": {"seconds": 60},
+            "reference": "black.exr"}
+    # A reference that costs nothing: any picture of the right size.
+    out, _ = bench.render("size", {**spec, "budget": {"iterations": 1}, "reference": ""})
+    os.environ["LACUNA_SCENES"] += f":{out}"
+    start = time.monotonic()
+    _, report = bench.render("door", {**spec, "reference": "image.exr"})
+    wall = time.monotonic() - start
+    seconds = report["seconds"]
+    extra = sum(seconds.get(k, 0) for k in ("evaluate", "checkpoint", "preview", "progress", "write"))
+    bench.figure("door 1024x512, 60 s: errors, checkpoints and files", f"{100 * extra / wall:.2f} %", "under 3 %",
+                 extra < 0.03 * wall)
+    bench.figure("door: seconds until rendering starts", f"{seconds['load']:.2f} s", "within 1 s",
+                 seconds["load"] <= 1)
+
+
+CHECKS = {"rays": rays, "cornell": cornell, "overhead": overhead, "corridor": corridor}
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="./dev bench", description=__doc__)
+    parser.add_argument("checks", nargs="*", metavar="CHECK", help=f"of {', '.join(CHECKS)} (default: all)")
+    parser.add_argument("--seconds", type=float, default=120, help="CPU seconds a thread for each picture")
+    options = parser.parse_args()
+    if unknown := [c for c in options.checks if c not in CHECKS]:
+        parser.error(f"no check {unknown[0]}; there are {', '.join(CHECKS)}")
+    if not SHARED.is_dir():
+        print(f"bench: the real scenes are not there ({SHARED}); nothing to measure", file=sys.stderr)
+        return 1
+    bench = Bench()
+    try:
+        for name in options.checks or CHECKS:
+            CHECKS[name](bench, options)
+    finally:
+        shutil.rmtree(bench.folder, ignore_errors=True)
+    print(f"{bench.missed} figures missed")
+    return 1 if bench.missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,60 @@
+"""Long checks: many kills and resumes, sanitizers over all tests, mutated scenes and jobs."""
+
+import argparse
+import os
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def run(name, command, **environment):
+    print(f"== {name}", flush=True)
+    done = subprocess.run(command, cwd=ROOT, env={**os.environ, **environment}, check=False)
+    print(f"== {name}: {'passed' if done.returncode == 0 else 'FAILED'}", flush=True)
+    return done.returncode == 0
+
+
+def kills(count):
+    return run(f"{count} kills at any moment, resumed to the same bits",
+               ["node", "--test", "tests/jobs/cli/kill.test.mjs"], LACUNA_KILLS=str(count))
+
+
+def sanitizers(preset, options):
+    """All test programs under a sanitizer preset."""
+    if not run(f"{preset}: build", ["./dev", "build-tests", preset]):
+        return False
+    programs = sorted((ROOT / f"build/{preset}/tests").glob("test_*"))
+    results = [run(f"{preset}: {program.name}", [str(program), "--gtest_brief=1"], **options)
+               for program in programs if os.access(program, os.X_OK)]
+    return bool(results) and all(results)
+
+
+CHECKS = {
+    "kills": lambda: kills(20),
+    "asan": lambda: sanitizers("asan", {
+        # libpng leaves by longjmp through OpenImageIO and leaks a few bytes of a corrupt file's state.
+        "LSAN_OPTIONS": f"suppressions={ROOT}/tests/soak/lsan.txt",
+    }),
+    "tsan": lambda: sanitizers("tsan", {
+        "TSAN_OPTIONS": f"suppressions={ROOT}/tests/soak/tsan.txt",
+    }),
+}
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="./dev soak", description=__doc__)
+    parser.add_argument("checks", nargs="*", metavar="CHECK", help=f"of {', '.join(CHECKS)} (default: all)")
+    chosen = parser.parse_args().checks or list(CHECKS)
+    if unknown := [c for c in chosen if c not in CHECKS]:
+        parser.error(f"no check {unknown[0]}; there are {', '.join(CHECKS)}")
+    results = {c: CHECKS[c]() for c in chosen}
+    for name, passed in results.items():
+        print(f"{name:<8} {'passed' if passed else 'FAILED'}")
+    print(f"{sum(results.values())} passed, {len(results) - sum(results.values())} failed")
+    return 0 if all(results.values()) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
