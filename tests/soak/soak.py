@@ -1,4 +1,4 @@
-"""Long checks: many kills and resumes, sanitizers over all tests, mutated scenes and jobs."""
+"""Long checks: many kills and resumes, and all tests under sanitizers."""
 
 import argparse
 import os
