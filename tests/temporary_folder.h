@@ -24,8 +24,21 @@ class TemporaryFolder {
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   ~TemporaryFolder() { std::filesystem::remove_all(dir_); }
 
-  const std::filesystem::path& dir() const { return dir_; }
+  const std::filesystem::path& path() const { return dir_; }
   std::filesystem::path operator/(std::string_view name) const { return dir_ / name; }
+
+  /// Writes a file into it and gives its path.
+  template <class Bytes>
+  std::filesystem::path write(std::string_view name, const Bytes& bytes) const {
+    const std::string_view text = [&] {
+      if constexpr (std::is_convertible_v<Bytes, std::string_view>)
+        return std::string_view(bytes);
+      else
+        return std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    }();
+    std::ofstream(dir_ / name, std::ios::binary) << text;
+    return dir_ / name;
+  }
 
  private:
   std::filesystem::path dir_;

@@ -2,12 +2,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include "analysis/storage/atomic_file.h"
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/terminal.h"
 #include "jobs/run/run_job.h"
 #include "jobs/spec/job_json.h"
-#include "analysis/storage/atomic_file.h"
 
 namespace lacuna {
 

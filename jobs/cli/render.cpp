@@ -3,13 +3,13 @@
 
 #include <CLI/CLI.hpp>
 
+#include "analysis/storage/atomic_file.h"
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/terminal.h"
 #include "jobs/run/run_job.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/problems.h"
-#include "analysis/storage/atomic_file.h"
 #include "renderer/scene/scene_data.h"
 
 namespace lacuna {

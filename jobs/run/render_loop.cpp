@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "analysis/storage/atomic_file.h"
 #include "jobs/run/checkpoint.h"
 #include "jobs/spec/job_json.h"
-#include "analysis/storage/atomic_file.h"
 #include "renderer/film/preview.h"
 
 namespace lacuna {

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "analysis/storage/atomic_file.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/version.h"
-#include "analysis/storage/atomic_file.h"
 #include "renderer/film/exr.h"
 #include "renderer/film/preview.h"
 
@@ -35,7 +35,8 @@ std::vector<double> every_third(const std::vector<double>& values) {
   return result;
 }
 
-void add_layer(const RenderTask& task, const Film& film, ImageLayer layer, std::vector<ExrLayer>& out) {
+void add_layer(const RenderTask& task, const Film& film, ImageLayer layer,
+               std::vector<ExrLayer>& out) {
   switch (layer) {
     case ImageLayer::variance:
       out.push_back({"variance", rgb, film.variance_of_mean()});

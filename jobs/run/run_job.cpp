@@ -5,12 +5,12 @@
 #include <chrono>
 #include <thread>
 
+#include "analysis/storage/atomic_file.h"
 #include "jobs/run/prepare.h"
 #include "jobs/run/reference.h"
 #include "jobs/run/render_loop.h"
 #include "jobs/run/report.h"
 #include "jobs/run/results.h"
-#include "analysis/storage/atomic_file.h"
 #include "renderer/integrators/integrator.h"
 
 namespace lacuna {

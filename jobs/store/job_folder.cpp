@@ -10,10 +10,10 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "jobs/spec/described_json.h"
-#include "jobs/spec/job_json.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/file_handle.h"
+#include "jobs/spec/described_json.h"
+#include "jobs/spec/job_json.h"
 
 namespace lacuna {
 namespace {

@@ -10,8 +10,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "jobs/spec/nearest.h"
 #include "analysis/storage/file_handle.h"
+#include "jobs/spec/nearest.h"
 #include "jobs/store/job_folder.h"
 
 namespace lacuna {

@@ -17,6 +17,7 @@ constexpr Transition transitions[] = {
     {State::running, State::running},         // a new phase; a new renderer after one was killed
     {State::running, State::cancelling},      // on request, while the renderer lives
     {State::running, State::interrupted},     // the renderer stopped or died before the end
+    {State::running, State::queued},          // its renderer crashed; another will go on
     {State::running, State::done},            //
     {State::running, State::failed},          //
     {State::running, State::cancelled},       // on request, after the renderer has died

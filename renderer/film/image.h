@@ -14,10 +14,11 @@ struct Image {
   Image() = default;
   Image(int w, int h)
       : width(w), height(h), pixels(std::size_t(w) * std::size_t(h), Rgb(0, 0, 0)) {}
-  Rgb& at(int x, int y) { return pixels[std::size_t(y) * std::size_t(width) + std::size_t(x)]; }
-  const Rgb& at(int x, int y) const {
-    return pixels[std::size_t(y) * std::size_t(width) + std::size_t(x)];
+  std::size_t index(int x, int y) const {
+    return std::size_t(y) * std::size_t(width) + std::size_t(x);
   }
+  Rgb& at(int x, int y) { return pixels[index(x, y)]; }
+  const Rgb& at(int x, int y) const { return pixels[index(x, y)]; }
 };
 
 }  // namespace lacuna

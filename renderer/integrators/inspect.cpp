@@ -28,7 +28,8 @@ class Inspect final : public Integrator {
           return context.scene.rays().intersect(ray, hit)
                      ? quantity(context.scene, context.scene.surface(hit), ray, hit)
                      : background(context.scene, ray);
-        });
+        },
+        [](int, Counters&) {});
   }
 
  private:

@@ -4,6 +4,7 @@
 #include "renderer/integrators/tiles.h"
 #include "renderer/path/connect.h"
 #include "renderer/path/mis.h"
+#include "renderer/path/shadow_queue.h"
 #include "renderer/path/walk.h"
 
 namespace lacuna {
@@ -22,39 +23,57 @@ class Path final : public Integrator {
   Counters iterate(const IterationContext& context, Image& image) override {
     const auto vertices = static_cast<std::size_t>(settings_.max_depth) + 1;
     return for_each_pixel(
-        context, image, [&] { return std::vector<Vertex>(vertices); },
-        [&](int x, int y, Rng& rng, Counters& counters, std::vector<Vertex>& path) {
+        context, image,
+        [&] {
+          return Scratch{std::vector<Vertex>(vertices), {}};
+        },
+        [&](int x, int y, Rng& rng, Counters& counters, Scratch& scratch) {
           const V2f u = rng.next2();
           const Ray ray =
               context.camera.ray(static_cast<float>(x) + u.x, static_cast<float>(y) + u.y);
-          path[0].kind = Vertex::Kind::eye;
-          path[0].surface.x = ray.o;
-          return estimate(context.scene, ray, rng, path, counters);
+          scratch.path[0].kind = Vertex::Kind::eye;
+          scratch.path[0].surface.x = ray.o;
+          return estimate(context.scene, ray, static_cast<std::uint32_t>(image.index(x, y)), rng,
+                          scratch, counters);
+        },
+        [&](Scratch& scratch, Counters& counters) {
+          scratch.shadows.flush(context.scene.rays(), counters,
+                                [&](std::uint32_t pixel, const Rgb& value) {
+                                  accumulate(image.pixels[pixel], value, counters);
+                                });
         });
   }
 
  private:
-  Rgb estimate(const Scene& scene, const Ray& ray, Rng& rng, std::span<Vertex> path,
+  struct Scratch {
+    std::vector<Vertex> path;
+    ShadowQueue shadows;
+  };
+
+  /// The emitters that the path itself hits; what next event estimation finds waits in
+  /// `scratch.shadows`.
+  Rgb estimate(const Scene& scene, const Ray& ray, std::uint32_t pixel, Rng& rng, Scratch& scratch,
                Counters& counters) const {
     Rgb radiance(0, 0, 0);
     const WalkLimits limits{settings_.max_depth, settings_.roulette_depth};
-    // The film's measure of directions does not enter walk(): the eye's density and its importance
-    // cancel.
     std::uint32_t chosen = 0;
     const auto choose_emitter = [&](int depth) {
       if (nee(scene) && depth < settings_.max_depth) chosen = scene.emitters().choose(rng);
     };
     const auto gather = [&](int depth) {
-      const Vertex& v = path[static_cast<std::size_t>(depth)];
-      const Vertex& from = path[static_cast<std::size_t>(depth) - 1];
-      radiance += emitter_hit(scene, v, from);
+      const Vertex& v = scratch.path[static_cast<std::size_t>(depth)];
+      radiance += emitter_hit(scene, v, scratch.path[static_cast<std::size_t>(depth) - 1]);
       const bool goes_on = v.kind == Vertex::Kind::surface && depth < settings_.max_depth;
       if (goes_on && nee(scene) && v.bsdf->connectible()) {
-        radiance += direct(scene, v, chosen, rng, counters);
+        const EmitterSample e = scene.emitters().sample(chosen, v.surface.x, rng);
+        const Rgb value = direct(v, e);
+        if (!is_black(value)) scratch.shadows.add(Scene::shadow_ray(v.surface, e), value, pixel);
       }
     };
-    walk(scene, ray, Pdf<SolidAngle>(1.0F), guide_, limits, rng, path, counters, choose_emitter,
-         gather);
+    // The film's measure of directions does not enter walk(): the eye's density and its importance
+    // cancel.
+    walk(scene, ray, Pdf<SolidAngle>(1.0F), guide_, limits, rng, scratch.path, counters,
+         choose_emitter, gather);
     return radiance;
   }
 
@@ -82,14 +101,10 @@ class Path final : public Integrator {
     return v.throughput * emission * static_cast<float>(mis_weight(pdfs, 0, strategies()));
   }
 
-  /// s = 1: `v` joined to a point drawn on an emitter.
-  Rgb direct(const Scene& scene, const Vertex& v, std::uint32_t chosen, Rng& rng,
-             Counters& counters) const {
-    const EmitterSample e = scene.emitters().sample(chosen, v.surface.x, rng);
+  /// s = 1: `v` joined to a point drawn on an emitter, if nothing lies between.
+  Rgb direct(const Vertex& v, const EmitterSample& e) const {
     const Connection c = connect(v, e);
     if (is_black(c.contribution)) return c.contribution;
-    ++counters.shadow_rays;
-    if (!scene.visible(v.surface, e)) return {0, 0, 0};
     const Pdf<Area> p_hit = to_area(guide_.pdf(v, c.w), c, e);
     const std::array<VertexPdfs, 2> pdfs{{{e.pdf.value, p_hit.value, true}, {0, 0, true}}};
     return c.contribution * static_cast<float>(mis_weight(pdfs, 1, strategies()));

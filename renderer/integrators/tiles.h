@@ -7,12 +7,23 @@
 
 namespace lacuna {
 
+/// Adds a contribution to a pixel. One that is not finite is dropped and counted: nothing
+/// non-finite enters a film.
+inline void accumulate(Rgb& pixel, const Rgb& value, Counters& counters) {
+  if (!is_finite(value)) [[unlikely]] {
+    ++counters.rejected;
+    return;
+  }
+  if (value.x < 0 || value.y < 0 || value.z < 0) ++counters.negative;
+  pixel += value;
+}
+
 /// Estimates every pixel once, tile by tile in parallel. `estimate(x, y, rng, counters, scratch)`
-/// gives one sample of pixel (x, y); `rng` is its own stream. `make_scratch()` makes what a tile
-/// can reuse. Values that are not finite are dropped and counted.
-template <class MakeScratch, class Estimate>
+/// gives one sample of pixel (x, y); `rng` is its own stream. `make_scratch()` makes what the
+/// pixels of a tile share; `finish(scratch, counters)` is called after its last pixel.
+template <class MakeScratch, class Estimate, class Finish>
 Counters for_each_pixel(const IterationContext& context, Image& image, MakeScratch&& make_scratch,
-                        Estimate&& estimate) {
+                        Estimate&& estimate, Finish&& finish) {
   constexpr int size = 32;  // pixels; small enough to stop quickly, large enough to be coherent
   const int across = (image.width + size - 1) / size;
   const int down = (image.height + size - 1) / size;
@@ -29,19 +40,12 @@ Counters for_each_pixel(const IterationContext& context, Image& image, MakeScrat
     const int y0 = tile / across * size;
     for (int y = y0; y < std::min(y0 + size, image.height); ++y) {
       for (int x = x0; x < std::min(x0 + size, image.width); ++x) {
-        const auto pixel = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(image.width) +
-                           static_cast<std::uint64_t>(x);
-        Rng rng(context.seed, context.iteration, pixel);
+        Rng rng(context.seed, context.iteration, image.index(x, y));
         ++count.samples;
-        const Rgb value = estimate(x, y, rng, count, scratch);
-        if (!is_finite(value)) [[unlikely]] {
-          ++count.rejected;
-          continue;
-        }
-        if (value.x < 0 || value.y < 0 || value.z < 0) ++count.negative;
-        image.at(x, y) = value;
+        accumulate(image.at(x, y), estimate(x, y, rng, count, scratch), count);
       }
     }
+    finish(scratch, count);
     counters[static_cast<std::size_t>(tile)] = count;
   });
   if (stopped) throw IterationStopped{};

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <immintrin.h>
 
+#include <array>
 #include <atomic>
 #include <cstring>
 
@@ -155,6 +156,27 @@ bool RayCaster::occluded(const Ray& ray) const {
   rtcInitIntersectContext(&context);
   rtcOccluded1(impl_->scene, &context, &query);
   return query.tfar < 0.0F;
+}
+
+void RayCaster::occluded(std::span<const Ray> rays, std::span<std::uint8_t> result) const {
+  constexpr std::size_t batch = 128;  // fits the first-level cache
+  std::array<RTCRay, batch> queries;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  for (std::size_t first = 0; first < rays.size(); first += batch) {
+    const std::size_t n = std::min(batch, rays.size() - first);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Ray& ray = rays[first + i];
+      const bool good = acceptable(ray);
+      queries[i] = to_embree(good ? ray : Ray{V3f(0, 0, 0), V3f(0, 0, 1), 0});
+      if (!good) {
+        ++impl_->refused;
+        queries[i].tfar = -1;  // inactive, and reads as occluded
+      }
+    }
+    rtcOccluded1M(impl_->scene, &context, queries.data(), static_cast<unsigned>(n), sizeof(RTCRay));
+    for (std::size_t i = 0; i < n; ++i) result[first + i] = queries[i].tfar < 0.0F ? 1 : 0;
+  }
 }
 
 std::uint64_t RayCaster::refused_rays() const { return impl_->refused; }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 
 #include "renderer/core/vec.h"
 #include "renderer/scene/scene_data.h"
@@ -43,6 +44,8 @@ class RayCaster {
   bool intersect(const Ray& ray, Hit& hit) const;
   /// Whether anything lies in (0, tmax].
   bool occluded(const Ray& ray) const;
+  /// The same for many rays at once; `result` has as many places, 1: occluded.
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> result) const;
 
   std::uint64_t refused_rays() const;  ///< not finite, or of a magnitude beyond Embree's range
   int filters() const;                 ///< geometries with an alpha-mask filter

@@ -46,12 +46,8 @@ class Scene {
   int textures_decoded() const { return textures_decoded_; }
   std::uint64_t texture_bytes() const;
 
-  /// No surface lies between `a` and `b` (or towards direction `b.x` at infinity, if b.infinite).
-  /// Both ends are moved off their surfaces.
-  bool visible(const Surface& a, const EmitterSample& b) const {
-    return !rays_.occluded(shadow_ray(a, b));
-  }
-  /// The ray that visible() asks about.
+  /// The ray that meets nothing if no surface lies between `a` and `b` (or towards direction `b.x`
+  /// at infinity, if b.infinite). Both ends are moved off their surfaces.
   static Ray shadow_ray(const Surface& a, const EmitterSample& b);
 
   /// Radiance that leaves `s` along unit `wo`.

@@ -7,9 +7,9 @@
 #include <system_error>
 #include <thread>
 
-#include "tests/child_process.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/file_handle.h"
+#include "tests/child_process.h"
 #include "tests/temporary_folder.h"
 
 namespace lacuna {
@@ -24,7 +24,7 @@ TEST(AtomicFile, replaces_the_whole_content) {
          {std::string("first"), std::string(), std::string(3 << 20, 'x'), std::string("a\0b", 3)}) {
       write_file_atomically(tmp / "f", content, sync);
       EXPECT_EQ(content_of(tmp / "f"), content);
-      EXPECT_EQ(names_in(tmp.dir()), Names{"f"});
+      EXPECT_EQ(names_in(tmp.path()), Names{"f"});
     }
   }
 }
@@ -41,21 +41,21 @@ TEST(AtomicFile, replaces_a_link_not_what_it_points_to) {
 TEST(AtomicFile, names_the_file_that_cannot_be_written) {
   const TemporaryFolder tmp;
   put_file(tmp / "plain", "old");
-  const auto below_a_file = tmp.dir() / "plain" / "f";  // holds for root too
-  const auto missing = tmp.dir() / "nowhere" / "f";
+  const auto below_a_file = tmp.path() / "plain" / "f";  // holds for root too
+  const auto missing = tmp.path() / "nowhere" / "f";
   for (const auto& file : {below_a_file, missing}) {
     const auto write = [&] { write_file_atomically(file, "x"); };
     EXPECT_TRUE(contains(message_of<std::system_error>(write), file.string()));
   }
-  EXPECT_EQ(names_in(tmp.dir()), Names{"plain"});
+  EXPECT_EQ(names_in(tmp.path()), Names{"plain"});
 }
 
 TEST(AtomicFile, a_folder_in_the_way_is_an_error_and_no_temporary_stays) {
   const TemporaryFolder tmp;
-  std::filesystem::create_directories(tmp.dir() / "f" / "inside");
+  std::filesystem::create_directories(tmp.path() / "f" / "inside");
   const auto write = [&] { write_file_atomically(tmp / "f", "x"); };
   EXPECT_TRUE(contains(message_of<std::system_error>(write), (tmp / "f").string()));
-  EXPECT_EQ(names_in(tmp.dir()), Names{"f"});
+  EXPECT_EQ(names_in(tmp.path()), Names{"f"});
 }
 
 /// A disk that is full after 4096 bytes, as far as one process can have it.
@@ -76,7 +76,7 @@ TEST(AtomicFile, a_full_disk_leaves_the_old_content_and_no_temporary) {
   put_file(tmp / "f", "old");
   EXPECT_EQ(status_in_child([&] { return write_on_a_full_disk(tmp / "f"); }), 0);
   EXPECT_EQ(content_of(tmp / "f"), "old");
-  EXPECT_EQ(names_in(tmp.dir()), Names{"f"});
+  EXPECT_EQ(names_in(tmp.path()), Names{"f"});
 }
 
 TEST(AtomicFile, a_reader_sees_one_writer_s_content_whole) {
@@ -97,7 +97,7 @@ TEST(AtomicFile, a_reader_sees_one_writer_s_content_whole) {
   one.join();
   two.join();
   EXPECT_TRUE(whole);
-  EXPECT_EQ(names_in(tmp.dir()), Names{"f"});
+  EXPECT_EQ(names_in(tmp.path()), Names{"f"});
 }
 
 TEST(ReadFile, reads_up_to_the_bound_and_no_further) {
@@ -147,13 +147,13 @@ TEST(Temporaries, of_dead_processes_go_once_they_are_old) {
   const auto old = std::filesystem::file_time_type::clock::now() - std::chrono::hours(1);
   for (const std::string& name : {dead_old, dead_new, mine}) put_file(tmp / name, "x");
   for (const std::string& name : others) put_file(tmp / name, "x");
-  for (const std::string& name : names_in(tmp.dir())) {
+  for (const std::string& name : names_in(tmp.path())) {
     if (name != dead_new) std::filesystem::last_write_time(tmp / name, old);
   }
-  remove_stale_temporaries(tmp.dir());
+  remove_stale_temporaries(tmp.path());
   Names expected = others;
   expected.insert({dead_new, mine});
-  EXPECT_EQ(names_in(tmp.dir()), expected);
+  EXPECT_EQ(names_in(tmp.path()), expected);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 const std::string content = "what a picture needs to go on: \0 bytes of any kind";
 
 TEST(Checkpoint, ComesBack) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.path() / "checkpoint.bin";
   EXPECT_FALSE(read_checkpoint(file, "key"));
   write_checkpoint(file, "key", content);
@@ -19,14 +19,14 @@ TEST(Checkpoint, ComesBack) {
 }
 
 TEST(Checkpoint, OfAnotherPictureIsRefused) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.path() / "checkpoint.bin";
   write_checkpoint(file, "key", content);
   EXPECT_THROW(read_checkpoint(file, "other"), std::runtime_error);
 }
 
 TEST(Checkpoint, EveryDamagedByteAndEveryCutIsSeen) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.path() / "checkpoint.bin";
   write_checkpoint(file, "key", content);
   const std::string whole = read_file(file, 1 << 20);

@@ -53,7 +53,7 @@ class RunJob : public testing::Test {
     return read_float_image(folder.file("image.exr"), layer).rgb;
   }
 
-  test::TempFolder temp;
+  TemporaryFolder temp;
   Silent observer;
   const std::function<bool()> never = [] { return false; };
 };

@@ -5,10 +5,10 @@
 #include <optional>
 #include <stdexcept>
 
-#include "tests/child_process.h"
-#include "jobs/spec/problems.h"
 #include "analysis/storage/file_handle.h"
+#include "jobs/spec/problems.h"
 #include "jobs/store/job_folder.h"
+#include "tests/child_process.h"
 #include "tests/temporary_folder.h"
 
 namespace lacuna {
@@ -25,7 +25,7 @@ JobSpec some_job() {
 
 TEST(JobFolder, is_created_with_its_job_and_state) {
   const TemporaryFolder tmp;
-  const JobFolder folder = JobFolder::create(tmp.dir() / "jobs" / "one", some_job());
+  const JobFolder folder = JobFolder::create(tmp.path() / "jobs" / "one", some_job());
   EXPECT_EQ(folder.id(), "one");
   EXPECT_EQ(names_in(folder.dir()), (Names{"job.json", "state.json"}));
   EXPECT_EQ(names_in(tmp / "jobs"), Names{"one"});
@@ -54,14 +54,14 @@ TEST(JobFolder, never_replaces_what_is_there) {
     EXPECT_TRUE(contains(message_of<std::invalid_argument>(create), (tmp / name).string())) << name;
   }
   EXPECT_EQ(JobFolder(tmp / "one").read_job(), some_job());
-  EXPECT_EQ(names_in(tmp.dir()), (Names{"one", "empty", "file", "link"}));
+  EXPECT_EQ(names_in(tmp.path()), (Names{"one", "empty", "file", "link"}));
 }
 
 TEST(JobFolder, is_created_whole_or_not_at_all) {
   const TemporaryFolder tmp;
   put_file(tmp / "file", "x");
-  EXPECT_THROW(JobFolder::create(tmp.dir() / "file" / "one", some_job()), std::system_error);
-  EXPECT_EQ(names_in(tmp.dir()), Names{"file"});
+  EXPECT_THROW(JobFolder::create(tmp.path() / "file" / "one", some_job()), std::system_error);
+  EXPECT_EQ(names_in(tmp.path()), Names{"file"});
 }
 
 TEST(JobFolder, state_reads_back_as_written) {
@@ -96,7 +96,7 @@ TEST(JobFolder, an_error_of_any_bytes_still_makes_a_readable_state) {
 
 TEST(JobFolder, a_missing_or_corrupt_state_is_told_with_its_file) {
   const TemporaryFolder tmp;
-  const JobFolder folder(tmp.dir());
+  const JobFolder folder(tmp.path());
   const auto read = [&] { folder.read_state(); };
   EXPECT_TRUE(contains(message_of<std::runtime_error>(read), folder.file("state.json").string()));
   for (const std::string& content :
@@ -113,7 +113,7 @@ TEST(JobFolder, a_missing_or_corrupt_state_is_told_with_its_file) {
 
 TEST(JobFolder, a_bad_job_file_is_told) {
   const TemporaryFolder tmp;
-  const JobFolder folder(tmp.dir());
+  const JobFolder folder(tmp.path());
   EXPECT_THROW(folder.read_job(), std::system_error);
   put_file(folder.file("job.json"), "{}");
   EXPECT_THROW(folder.read_job(), BadJob);
@@ -123,7 +123,7 @@ TEST(JobFolder, a_bad_job_file_is_told) {
 
 TEST(JobFolder, progress_reads_back_as_written_and_is_nothing_where_it_is_damaged) {
   const TemporaryFolder tmp;
-  const JobFolder folder(tmp.dir());
+  const JobFolder folder(tmp.path());
   Progress p;
   p.iteration = 12;
   p.seconds = 1.0 / 3;
@@ -150,7 +150,7 @@ int try_to_lock(const JobFolder& folder) { return folder.try_lock() ? 0 : 1; }
 
 TEST(JobFolder, one_process_at_a_time_has_the_lock) {
   const TemporaryFolder tmp;
-  const JobFolder folder(tmp.dir());
+  const JobFolder folder(tmp.path());
   const auto taken = [&] {
     return WEXITSTATUS(status_in_child([&] { return try_to_lock(folder); }));
   };
@@ -169,7 +169,7 @@ TEST(JobFolder, one_process_at_a_time_has_the_lock) {
 
 TEST(JobFolder, the_lock_goes_with_the_process_however_it_dies) {
   const TemporaryFolder tmp;
-  const JobFolder folder(tmp.dir());
+  const JobFolder folder(tmp.path());
   const int status = status_in_child([&] {
     const auto lock = folder.try_lock();
     return lock ? ::raise(SIGKILL) : 1;
@@ -180,17 +180,17 @@ TEST(JobFolder, the_lock_goes_with_the_process_however_it_dies) {
 
 TEST(JobFolder, who_gets_the_lock_tidies_up_after_the_killed) {
   const TemporaryFolder tmp;
-  const JobFolder folder(tmp.dir());
+  const JobFolder folder(tmp.path());
   status_in_child([&] {
     put_file(temporary_name(folder.file("checkpoint.bin")), "half a checkpoint");
     return ::raise(SIGKILL);
   });
-  ASSERT_EQ(names_in(tmp.dir()).size(), 1u);
-  const auto left = tmp / *names_in(tmp.dir()).begin();
+  ASSERT_EQ(names_in(tmp.path()).size(), 1u);
+  const auto left = tmp / *names_in(tmp.path()).begin();
   std::filesystem::last_write_time(
       left, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
   ASSERT_TRUE(folder.try_lock());
-  EXPECT_EQ(names_in(tmp.dir()), Names{".lock"});
+  EXPECT_EQ(names_in(tmp.path()), Names{".lock"});
 }
 
 TEST(JobFolder, a_lock_that_cannot_be_made_is_an_error) {

@@ -51,7 +51,7 @@ TEST(JobIds, jobs_are_listed_oldest_first_and_nothing_else_is) {
   put_file(tmp / "20260131-120000-a0file", "x");
   std::filesystem::create_directory_symlink(ids[0], tmp / "20260131-120000-a0link");
   std::vector<std::string> listed;
-  for (const JobFolder& job : list_jobs(tmp.dir())) listed.push_back(job.id());
+  for (const JobFolder& job : list_jobs(tmp.path())) listed.push_back(job.id());
   EXPECT_EQ(listed, ids);
 }
 

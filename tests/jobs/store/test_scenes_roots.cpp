@@ -24,7 +24,7 @@ class ScenesRootsTest : public testing::Test {
     put_file(root_ / "door" / "notes.txt", "notes");
     put_file(root_ / ".hidden" / "x.glb", "x");
     put_file(tmp_ / "secret.glb", "secret");
-    put_file(tmp_.dir() / "outside" / "secret.glb", "secret");
+    put_file(tmp_.path() / "outside" / "secret.glb", "secret");
     fs::create_symlink(tmp_ / "secret.glb", root_ / "link.glb");
     fs::create_symlink("box.glb", root_ / "inner.glb");
     fs::create_directory_symlink(tmp_ / "outside", root_ / "way");
@@ -83,7 +83,7 @@ TEST_F(ScenesRootsTest, a_refusal_says_what_there_is) {
   EXPECT_TRUE(contains(message, "did you mean \"door/scene.glb\"?")) << message;
   EXPECT_TRUE(contains(message, "box.glb, door/scene.glb")) << message;
   EXPECT_FALSE(contains(message, "link")) << message;
-  EXPECT_FALSE(contains(message, tmp_.dir().string())) << message;
+  EXPECT_FALSE(contains(message, tmp_.path().string())) << message;
   EXPECT_TRUE(contains(
       message_of<std::invalid_argument>([] { ScenesRoots({}).resolve("box.glb", scenes); }),
       "there is no .glb, .gltf file below the scenes roots"));
@@ -95,8 +95,8 @@ TEST_F(ScenesRootsTest, a_refused_name_is_shown_safely) {
 }
 
 TEST_F(ScenesRootsTest, the_first_root_that_has_the_file_wins) {
-  put_file(tmp_.dir() / "second" / "box.glb", "other");
-  put_file(tmp_.dir() / "second" / "more.glb", "more");
+  put_file(tmp_.path() / "second" / "box.glb", "other");
+  put_file(tmp_.path() / "second" / "more.glb", "more");
   const ScenesRoots both({root_, tmp_ / "missing", tmp_ / "second"});
   EXPECT_EQ(both.resolve("box.glb", scenes), root_ / "box.glb");
   EXPECT_EQ(both.resolve("more.glb", scenes), tmp_ / "second" / "more.glb");

@@ -55,6 +55,7 @@ TEST(State, work_starts_again_after_a_kill) {
   EXPECT_TRUE(may_follow(State::interrupted, State::running));
   EXPECT_TRUE(may_follow(State::interrupted, State::queued));
   EXPECT_TRUE(may_follow(State::running, State::running));
+  EXPECT_TRUE(may_follow(State::running, State::queued));
 }
 
 }  // namespace

@@ -36,7 +36,8 @@ TEST(AliasTable, DrawsInProportion) {
 }
 
 TEST(AliasTable, TellsAMillionBinsApart) {
-  // Half the bins weigh three times as much as the others; with coarse random numbers they would not.
+  // Half the bins weigh three times as much as the others; with coarse random numbers they would
+  // not.
   constexpr std::size_t n = 1 << 20;
   std::vector<double> weights(n);
   for (std::size_t i = 0; i < n; ++i) weights[i] = i % 2 == 0 ? 1 : 3;

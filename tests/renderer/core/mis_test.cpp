@@ -6,7 +6,8 @@
 namespace lacuna {
 namespace {
 
-/// The definition: every strategy's density as a plain product, possible or not decided on its own terms.
+/// The definition: every strategy's density as a plain product, possible or not decided on its own
+/// terms.
 double by_products(const std::vector<VertexPdfs>& path, int s, const std::vector<double>& n) {
   const auto density = [&](std::size_t strategy) {
     if (strategy > 0 && !(path[strategy].connectible && path[strategy - 1].connectible)) return 0.0;

@@ -148,7 +148,7 @@ TEST(BlockStatistics, NoiseLooksLikeNoiseAndADifferenceDoesNot) {
 }
 
 TEST(Exr, LayersAndAttributesComeBack) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.path() / "a.exr";
   const std::vector<double> picture{0, 1, 2, 3, 4, 5, 1e30, -7, 8, 9, 10, 11};
   const std::vector<ExrLayer> layers{{"", {"R", "G", "B"}, picture},
@@ -170,7 +170,7 @@ TEST(Exr, LayersAndAttributesComeBack) {
 }
 
 TEST(Exr, HalfRefusesWhatOverflowsAndLeavesTheOldFile) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.path() / "a.exr";
   write_exr(file, 1, 1, {{"", {"R", "G", "B"}, {1, 2, 3}}}, PixelType::half_float, {});
   EXPECT_THROW(

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <stdlib.h>
-
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -13,43 +11,13 @@
 #include <vector>
 
 #include "renderer/core/vec.h"
+#include "tests/temporary_folder.h"
 
 namespace lacuna::test {
 
 using Json = nlohmann::json;
 using Bytes = std::vector<std::uint8_t>;
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
-
-/// A folder for one test, removed with all it holds.
-class TempFolder {
- public:
-  TempFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "lacuna-test-XXXXXX").string();
-    if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("mkdtemp failed");
-    path_ = pattern;
-  }
-  ~TempFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path write(const std::string& name, const Bytes& bytes) const {
-    const auto file = path_ / name;
-    std::ofstream(file, std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));
-    return file;
-  }
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
-    return write(name, Bytes(text.begin(), text.end()));
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// Puts a small GLB together. Each add_ function returns the index of what it added; `json` and
 /// `bin` may be changed at will before glb() or gltf().

@@ -10,7 +10,6 @@ namespace {
 
 using test::Bytes;
 using test::GlbBuilder;
-using test::TempFolder;
 
 std::string refusal(const std::filesystem::path& file) {
   try {
@@ -29,20 +28,20 @@ void expect_refusal(const std::filesystem::path& file, const std::vector<std::st
 }
 
 /// A scene in a folder of its own below `folder`, with its buffer under `uri`.
-std::filesystem::path scene_with_buffer(const TempFolder& folder, const std::string& uri) {
+std::filesystem::path scene_with_buffer(const TemporaryFolder& folder, const std::string& uri) {
   std::filesystem::create_directory(folder.path() / "scene");
   return folder.write("scene/scene.gltf", test::triangle_scene().gltf(uri));
 }
 
 TEST(HostileFiles, ABufferInTheFolderIsRead) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = scene_with_buffer(folder, "with%20space.bin");
   folder.write("scene/with space.bin", test::triangle_scene().bin);
   EXPECT_EQ(load_gltf(file).triangle_count(), 1U);
 }
 
 TEST(HostileFiles, ALongerBufferIsLegalAShorterOneNot) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = scene_with_buffer(folder, "a.bin");
   Bytes bin = test::triangle_scene().bin;
   bin.push_back(0);
@@ -54,7 +53,7 @@ TEST(HostileFiles, ALongerBufferIsLegalAShorterOneNot) {
 }
 
 TEST(HostileFiles, ADataUriIsRead) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   GlbBuilder builder = test::triangle_scene();
   builder.json["accessors"].erase(1);
   builder.json["bufferViews"].erase(1);
@@ -72,7 +71,7 @@ TEST(HostileFiles, ADataUriIsRead) {
 }
 
 TEST(HostileFiles, PathsOutOfTheFolderAreRefused) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   folder.write("outside.bin", test::triangle_scene().bin);
   for (const std::string uri :
        {"../../etc/hostname", "../outside.bin", "sub/../../outside.bin", "/etc/hostname",
@@ -88,7 +87,7 @@ TEST(HostileFiles, PathsOutOfTheFolderAreRefused) {
 }
 
 TEST(HostileFiles, SymbolicLinks) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   folder.write("outside.bin", test::triangle_scene().bin);
   const auto file = scene_with_buffer(folder, "link.bin");
   std::filesystem::create_symlink("../outside.bin", folder.path() / "scene/link.bin");
@@ -100,7 +99,7 @@ TEST(HostileFiles, SymbolicLinks) {
 }
 
 TEST(HostileFiles, FifosAndFoldersNeverHang) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = scene_with_buffer(folder, "pipe.bin");
   ASSERT_EQ(::mkfifo((folder.path() / "scene/pipe.bin").c_str(), 0600), 0);
   expect_refusal(file, {"buffers[0]", "pipe.bin", "not a regular file"});
@@ -122,7 +121,7 @@ GlbBuilder textured_scene(const Bytes& image) {
 }
 
 TEST(HostileFiles, AMissingImageIsNamedAtLoad) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   GlbBuilder builder = textured_scene({1, 2, 3, 4});
   builder.json["images"][0] = {{"uri", "wood.png"}, {"name", "wood"}};
   const auto file = folder.write("scene.glb", builder.glb());
@@ -135,7 +134,7 @@ TEST(HostileFiles, AMissingImageIsNamedAtLoad) {
 }
 
 TEST(HostileFiles, AnImageThatNobodyUsesIsNotOpened) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   GlbBuilder builder = textured_scene({1, 2, 3, 4});
   builder.json["images"][0] = {{"uri", "wood.png"}};
   builder.json["materials"][0] = test::Json::object();
@@ -143,7 +142,7 @@ TEST(HostileFiles, AnImageThatNobodyUsesIsNotOpened) {
 }
 
 TEST(HostileFiles, ImagesThatCannotBeDecodedAreNamed) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const std::vector<std::uint8_t> noise = [] {
     std::vector<std::uint8_t> out(64 * 64 * 3);
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<std::uint8_t>(i * i >> 3);
@@ -178,7 +177,7 @@ TEST(HostileFiles, ImagesThatCannotBeDecodedAreNamed) {
 }
 
 TEST(HostileFiles, ContentHashCoversEveryFile) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = scene_with_buffer(folder, "a.bin");
   Bytes bin = test::triangle_scene().bin;
   folder.write("scene/a.bin", bin);

@@ -103,7 +103,7 @@ const std::vector<FramingCase> cases{
 class HostileFraming : public testing::TestWithParam<FramingCase> {};
 
 TEST_P(HostileFraming, IsRefused) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.write("scene.glb", GetParam().bytes());
   try {
     load_gltf(file);
@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(Table, HostileFraming, testing::ValuesIn(cases),
                          [](const auto& c) { return c.param.name; });
 
 TEST(Framing, TheUnspoiltSceneLoads) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   const SceneData scene = load_gltf(folder.write("scene.glb", test::triangle_scene().glb()));
   EXPECT_EQ(scene.triangle_count(), 1U);
   EXPECT_TRUE(scene.warnings.empty());
@@ -126,7 +126,7 @@ TEST(Framing, TheUnspoiltSceneLoads) {
 
 /// The last of two equal keys counts, for the guard and for tinygltf alike.
 TEST(Framing, DuplicateKeysCannotSlipPastTheGuard) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   const auto builder = test::triangle_scene();
   const auto with = [&](const std::string& counts) {
     GlbBuilder b = builder;
@@ -142,7 +142,7 @@ TEST(Framing, DuplicateKeysCannotSlipPastTheGuard) {
 }
 
 TEST(Framing, SixtyLevelsAreFine) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   auto builder = test::triangle_scene();
   test::Json deep = 1;
   for (int i = 0; i < 60; ++i) deep = test::Json::array({deep});

@@ -215,7 +215,7 @@ std::vector<HostileCase> graph_cases() {
 class HostileJson : public testing::TestWithParam<HostileCase> {};
 
 TEST_P(HostileJson, IsRefusedWithItsPlace) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   GlbBuilder builder = good_scene();
   GetParam().spoil(builder);
   const auto file = folder.write("scene.glb", builder.glb());
@@ -235,7 +235,7 @@ INSTANTIATE_TEST_SUITE_P(Values, HostileJson, testing::ValuesIn(value_cases()), 
 INSTANTIATE_TEST_SUITE_P(Graph, HostileJson, testing::ValuesIn(graph_cases()), case_name);
 
 TEST(HostileJsonBase, TheUnspoiltSceneLoads) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   const SceneData scene = load_gltf(folder.write("scene.glb", good_scene().glb()));
   EXPECT_EQ(scene.triangle_count(), 1U);
   EXPECT_EQ(scene.cameras.size(), 1U);
@@ -244,7 +244,7 @@ TEST(HostileJsonBase, TheUnspoiltSceneLoads) {
 }
 
 TEST(HostileJsonBase, ASingularNodeThatCarriesNothingIsFine) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   GlbBuilder builder = good_scene();
   builder.add_node({{"name", "empty"}, {"scale", {0, 0, 0}}});
   EXPECT_EQ(load_gltf(folder.write("scene.glb", builder.glb())).triangle_count(), 1U);

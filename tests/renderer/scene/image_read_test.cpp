@@ -10,9 +10,8 @@
 namespace lacuna {
 namespace {
 
-using test::TempFolder;
-
-std::filesystem::path write_exr(const TempFolder& folder, const std::vector<std::string>& channels,
+std::filesystem::path write_exr(const TemporaryFolder& folder,
+                                const std::vector<std::string>& channels,
                                 const std::vector<float>& pixels, int width, int height) {
   OIIO::ImageSpec spec(width, height, static_cast<int>(channels.size()), OIIO::TypeDesc::FLOAT);
   spec.channelnames = channels;
@@ -33,7 +32,7 @@ void expect_contains(const std::string& text, const std::string& part) {
 }
 
 TEST(ImageRead, ExrWithLayersInAnyOrder) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = write_exr(folder, {"B", "half_a.G", "R", "G", "half_a.B", "A", "half_a.R"},
                               {3, 20, 1, 2, 30, 9, 10, 6, 50, 4, 5, 60, 9, 40}, 2, 1);
   const FloatImage plain = read_float_image(file);
@@ -48,13 +47,13 @@ TEST(ImageRead, ExrWithLayersInAnyOrder) {
 }
 
 TEST(ImageRead, GreyAndMissingChannels) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   EXPECT_EQ(read_float_image(write_exr(folder, {"Y"}, {0.5F, 7}, 1, 2)).at(0, 1), Rgb(7));
   expect_contains(refusal(write_exr(folder, {"R", "B"}, {1, 2}, 1, 1)), "lacks channel G; it has");
 }
 
 TEST(ImageRead, RadianceHdr) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto file =
       test::write_image(folder, "image.hdr", OIIO::ImageSpec(2, 2, 3, OIIO::TypeDesc::FLOAT),
                         std::vector<float>{1, 0.5F, 0.25F, 1024, 512, 256, 2, 2, 2, 0, 0, 0});
@@ -67,7 +66,7 @@ TEST(ImageRead, RadianceHdr) {
 }
 
 TEST(ImageRead, OtherFilesAreRefused) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   expect_contains(refusal(folder.write("image.exr", test::encode8(1, 1, 3, {1, 2, 3}))),
                   "image.exr: is neither OpenEXR nor Radiance HDR");
   expect_contains(refusal(folder.write("empty.exr", std::string())), "is neither");
@@ -78,7 +77,7 @@ TEST(ImageRead, OtherFilesAreRefused) {
 }
 
 TEST(ImageRead, TruncatedFilesAreRefused) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   std::vector<float> pixels(64 * 64 * 3);
   for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<float>(i * 7919 % 1000);
   const auto bytes = test::read_bytes(write_exr(folder, {"R", "G", "B"}, pixels, 64, 64));
@@ -89,7 +88,7 @@ TEST(ImageRead, TruncatedFilesAreRefused) {
 }
 
 TEST(ImageRead, CropsAreRefused) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   OIIO::ImageSpec spec(2, 2, 3, OIIO::TypeDesc::FLOAT);
   spec.full_width = 4;
   const auto file = test::write_image(folder, "crop.exr", spec, std::vector<float>(12, 1.0F));

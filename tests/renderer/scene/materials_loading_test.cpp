@@ -13,7 +13,7 @@ using test::GlbBuilder;
 using test::Json;
 
 SceneData load(const GlbBuilder& builder) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   return load_gltf(folder.write("scene.glb", builder.glb()));
 }
 

@@ -71,7 +71,7 @@ Bytes mutate(Bytes glb, std::mt19937& rng) {
 /// Either a scene that keeps every promise of SceneData, or a SceneError; anything else (another
 /// exception, a crash, a sanitizer's report) fails.
 TEST(Mutations, LoadOrRefuse) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   const Bytes seed = seed_scene();
   ASSERT_EQ(load_gltf(folder.write("seed.glb", seed)).triangle_count(), 3U);
   std::mt19937 rng(20240607);

@@ -11,7 +11,7 @@ namespace lacuna::test {
 
 /// Writes an image through OpenImageIO; `spec` says size, channels and type of `pixels`.
 template <class T>
-std::filesystem::path write_image(const TempFolder& folder, const std::string& name,
+std::filesystem::path write_image(const TemporaryFolder& folder, const std::string& name,
                                   OIIO::ImageSpec spec, const std::vector<T>& pixels) {
   const auto file = folder.path() / name;
   const auto out = OIIO::ImageOutput::create(file.string());
@@ -31,7 +31,7 @@ inline Bytes read_bytes(const std::filesystem::path& file) {
 /// The bytes of a PNG or JPEG (by `format`) with 8 bits a channel.
 inline Bytes encode8(int width, int height, int channels, const std::vector<std::uint8_t>& pixels,
                      const std::string& format = "png") {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   return read_bytes(write_image(folder, "image." + format,
                                 OIIO::ImageSpec(width, height, channels, OIIO::TypeDesc::UINT8),
                                 pixels));

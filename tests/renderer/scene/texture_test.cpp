@@ -98,7 +98,7 @@ TEST(Texture, GreyAndGreyAlpha) {
 }
 
 TEST(Texture, SixteenBitsAreRounded) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   const auto file =
       test::write_image(folder, "deep.png", OIIO::ImageSpec(1, 1, 3, OIIO::TypeDesc::UINT16),
                         std::vector<std::uint16_t>{0, 257 * 100, 65535});
