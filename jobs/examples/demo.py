@@ -16,6 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = ROOT / "build/release/bin"
 # Scenes of the project, always there; together about two minutes on two cores.
 JOBS = ["cornell", "bends", "ajar", "atrium"]
+NAME = 46  # columns of a job's name
 ENDED = {"done", "failed", "cancelled"}
 
 
@@ -45,7 +46,7 @@ def bar(job, width):
     progress = job.get("progress") or {}
     share = 1.0 if state == "done" else progress.get("share", 0.0) if state == "running" else 0.0
     filled = int(share * 24)
-    text = f"{job['label'] or job['scene']:<28.28} [{'#' * filled}{'.' * (24 - filled)}] {state:<10}"
+    text = f"{job['label'] or job['scene']:<{NAME}.{NAME}} [{'#' * filled}{'.' * (24 - filled)}] {state:<10}"
     if state == "running":
         text += f" {job.get('phase', ''):<10}"
     if progress.get("error") is not None and state in ("running", "done"):
@@ -90,9 +91,9 @@ def rows_of(base, job):
 def table(base, jobs):
     instants = [1, 2, 5, 10]
     print("\nrelMSE against render time (seconds); * where the reference's own noise is reached")
-    print(f"{'job':<28}" + "".join(f"{str(t) + ' s':>12}" for t in instants) + f"{'rays/s':>12}")
+    print(f"{'job':<{NAME}}" + "".join(f"{str(t) + ' s':>12}" for t in instants) + f"{'rays/s':>12}")
     for job in jobs:
-        name = f"{(job['label'] or job['scene']):<28.28}"
+        name = f"{(job['label'] or job['scene']):<{NAME}.{NAME}}"
         if job["state"] != "done":
             print(name + f"  {job['state']}")
             continue
