@@ -50,8 +50,8 @@ void print_blocks(const Options& o, const FloatImage& image, const std::vector<d
   }
   const std::vector<double> variance = variance_of_difference(o);
   const BlockStatistics s = block_statistics(a, b, variance, image.width, image.height, o.block);
-  fmt::print("blocks  {} of {} x {} pixels\nblock_relative {:.6g}\n", s.blocks, o.block, o.block,
-             s.largest_relative);
+  fmt::print("blocks  {} of {} x {} pixels\nblock_relative {:.6g}\nworst_block {}, {}\n", s.blocks,
+             o.block, o.block, s.largest_relative, s.worst_x, s.worst_y);
   if (variance.empty()) return;
   fmt::print("z_mean {:.4f}\nz_deviation {:.4f}\nz_beyond_1.96 {:.4f}\n", s.z_mean, s.z_deviation,
              s.z_beyond);

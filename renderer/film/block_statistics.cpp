@@ -37,9 +37,11 @@ BlockStatistics block_statistics(std::span<const double> a, std::span<const doub
       ++s.blocks;
       const double sum_a = block.a[0] + block.a[1] + block.a[2];
       const double sum_b = block.b[0] + block.b[1] + block.b[2];
-      if (sum_b != 0) {
-        s.largest_relative =
-            std::max(s.largest_relative, std::abs(sum_a - sum_b) / std::abs(sum_b));
+      const double relative = sum_b != 0 ? std::abs(sum_a - sum_b) / std::abs(sum_b) : 0;
+      if (relative > s.largest_relative) {
+        s.largest_relative = relative;
+        s.worst_x = x0;
+        s.worst_y = y0;
       }
       for (std::size_t c = 0; c < 3; ++c) {
         if (block.variance[c] > 0)

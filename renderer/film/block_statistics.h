@@ -10,6 +10,7 @@ struct BlockStatistics {
   int blocks = 0;  ///< whole blocks, the rest of the picture is left out
   double largest_relative =
       0;  ///< largest |mean a - mean b| / mean b of a block, over RGB together
+  int worst_x = 0, worst_y = 0;  ///< upper left pixel of that block
   /// z = (mean a - mean b) / sqrt(variance of the means), a channel of a block each. Pure noise has
   /// mean 0, standard deviation 1 and 5 % beyond 1.96.
   double z_mean = 0, z_deviation = 0, z_beyond = 0;
