@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <span>
 
 namespace lacuna {
@@ -17,8 +18,11 @@ struct BlockStatistics {
 };
 
 /// `a`, `b`: interleaved RGB of `width` x `height`; `variance` of the estimates a - b (empty: no
-/// z). `size` is the side of a block in pixels, at most the picture's.
+/// z). `size` is the side of a block in pixels, at most the picture's. Blocks in which a channel of
+/// `b` exceeds `skip_above` are left out: at the rim of a lamp two renderers' pixel filters differ
+/// by more than their light.
 BlockStatistics block_statistics(std::span<const double> a, std::span<const double> b,
-                                 std::span<const double> variance, int width, int height, int size);
+                                 std::span<const double> variance, int width, int height, int size,
+                                 double skip_above = std::numeric_limits<double>::infinity());
 
 }  // namespace lacuna

@@ -35,10 +35,10 @@ class Bench:
                        env={**os.environ, "LACUNA_DATA": str(self.folder / "data")})
         return out, json.loads((out / "report.json").read_text())
 
-    def compare(self, a, b, block):
-        done = subprocess.run([BIN / "lacuna", "compare", a, b, "--block", str(block)], check=True,
+    def compare(self, a, b, block, *arguments):
+        done = subprocess.run([BIN / "lacuna", "compare", a, b, "--block", str(block), *arguments], check=True,
                               capture_output=True, text=True)
-        return {k: float(v) for k, v in re.findall(r"^(\S+) +(-?[0-9.e+-]+)$", done.stdout, re.M)}
+        return {k: float(v) for k, v in re.findall(r"^(\S+) +(-?[0-9.e+-]+)(?: of .*)?$", done.stdout, re.M)}
 
 
 def rays(bench, _):
@@ -74,7 +74,10 @@ def cornell(bench, options):
         "scene": "cornell-box/scene.glb", "resolution": [1024, 1024],
         "integrator": {"type": "path", "max_depth": 64},
         "budget": {"cpu_seconds": options.seconds}, "layers": ["variance"]})
-    c = bench.compare(out / "image.exr", SHARED / "cornell-box/reference-tungsten.exr", 32)
+    # Tungsten's pixel filter carries the rim of the lamp (radiance 17) into its neighbours, also across the border
+    # of a block; everything else is darker than 2.
+    c = bench.compare(out / "image.exr", SHARED / "cornell-box/reference-tungsten.exr", 32, "--skip-above", "2")
+    print(f"  {c['blocks']:.0f} of 1024 blocks hold no pixel of the lamp")
     bench.figure("cornell-box: largest difference of a 32x32 block's mean", f"{100 * c['block_relative']:.2f} %",
                  "1 %", c["block_relative"] <= 0.01)
 
