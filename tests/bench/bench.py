@@ -62,7 +62,7 @@ def corridor(bench, options):
     # The standard error of the picture's mean, from independent pixels.
     noise = report["errors"]["est_rmse"] / 512 / c["mean_b"]
     bench.figure("corridor: difference of means", f"{100 * c['mean_relative']:+.3f} %",
-                 f"0.5 % (own noise {100 * noise:.3f} %)", abs(c["mean_relative"]) <= max(0.005, 3 * noise))
+                 f"0.5 % (own noise {100 * noise:.3f} %)", abs(c["mean_relative"]) <= 0.005)
     bench.figure("corridor: z of 64x64 blocks, mean", f"{c['z_mean']:+.3f}", "within 0.6", abs(c["z_mean"]) <= 0.6)
     bench.figure("corridor: z of 64x64 blocks, deviation", f"{c['z_deviation']:.3f}", "0.7 to 1.4",
                  0.7 <= c["z_deviation"] <= 1.4)
