@@ -1,7 +1,6 @@
 #include "renderer/integrators/inspect.h"
 
 #include "renderer/integrators/tiles.h"
-#include "renderer/materials/gltf_material.h"
 
 namespace lacuna {
 
@@ -17,19 +16,20 @@ class Inspect final : public Integrator {
   }
 
   Counters iterate(const IterationContext& context, Image& image) override {
-    return for_each_pixel(
-        context, image, [] { return 0; },
-        [&](int x, int y, Rng& rng, Counters& counters, int) {
-          const V2f u = rng.next2();
-          const Ray ray =
-              context.camera.ray(static_cast<float>(x) + u.x, static_cast<float>(y) + u.y);
-          ++counters.rays;
-          Hit hit;
-          return context.scene.rays().intersect(ray, hit)
-                     ? quantity(context.scene, context.scene.surface(hit), ray, hit)
-                     : background(context.scene, ray);
-        },
-        [](int, Counters&) {});
+    return for_each_tile(context, image, [&](const Tile& tile, Counters& counters) {
+      for (int i = 0; i < tile.pixels(); ++i) {
+        const V2i pixel = tile.pixel(i);
+        const Ray ray = CameraSample(context, image, pixel).ray;
+        ++counters.samples;
+        ++counters.rays;
+        Hit hit;
+        accumulate(image.at(pixel.x, pixel.y),
+                   context.scene.rays().intersect(ray, hit)
+                       ? quantity(context.scene, context.scene.surface(hit), ray, hit)
+                       : background(context.scene, ray),
+                   counters);
+      }
+    });
   }
 
  private:
@@ -43,8 +43,9 @@ class Inspect final : public Integrator {
         // The side that is seen.
         return dot(s.ng, ray.d) > 0 ? -s.ns : s.ns;
       case InspectQuantity::albedo: {
-        const Bsdf bsdf(surface_params(scene.material(s), scene.data().textures, s.uv), s.ng, s.ns);
-        return bsdf.albedo();
+        std::optional<Bsdf> bsdf;
+        scene.make_bsdf(s, bsdf);
+        return bsdf->albedo();
       }
       case InspectQuantity::depth:
         return Rgb(hit.t);

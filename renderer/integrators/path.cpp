@@ -21,60 +21,81 @@ class Path final : public Integrator {
   SceneNeeds needs() const override { return {.materials = true, .emission = true}; }
 
   Counters iterate(const IterationContext& context, Image& image) override {
-    const auto vertices = static_cast<std::size_t>(settings_.max_depth) + 1;
-    return for_each_pixel(
-        context, image,
-        [&] {
-          return Scratch{std::vector<Vertex>(vertices), {}};
-        },
-        [&](int x, int y, Rng& rng, Counters& counters, Scratch& scratch) {
-          const V2f u = rng.next2();
-          const Ray ray =
-              context.camera.ray(static_cast<float>(x) + u.x, static_cast<float>(y) + u.y);
-          scratch.path[0].kind = Vertex::Kind::eye;
-          scratch.path[0].surface.x = ray.o;
-          return estimate(context.scene, ray, static_cast<std::uint32_t>(image.index(x, y)), rng,
-                          scratch, counters);
-        },
-        [&](Scratch& scratch, Counters& counters) {
-          scratch.shadows.flush(context.scene.rays(), counters,
-                                [&](std::uint32_t pixel, const Rgb& value) {
-                                  accumulate(image.pixels[pixel], value, counters);
-                                });
-        });
+    return for_each_tile(context, image, [&](const Tile& tile, Counters& counters) {
+      Batch batch(settings_.max_depth);
+      for (int first = 0; first < tile.pixels(); first += Batch::size) {
+        batch.walkers.clear();
+        for (int i = first; i < std::min(first + Batch::size, tile.pixels()); ++i) {
+          batch.start(context, image, tile.pixel(i));
+        }
+        counters.samples += batch.walkers.size();
+        estimate(context.scene, batch, counters);
+        for (std::size_t i = 0; i < batch.walkers.size(); ++i) {
+          accumulate(image.pixels[batch.pixels[i]], batch.radiance[i], counters);
+        }
+      }
+      batch.shadows.flush(context.scene.rays(), counters,
+                          [&](std::uint32_t pixel, const Rgb& value) {
+                            accumulate(image.pixels[pixel], value, counters);
+                          });
+    });
   }
 
  private:
-  struct Scratch {
-    std::vector<Vertex> path;
-    ShadowQueue shadows;
+  /// Samples of neighbouring pixels that are walked together, and what they share.
+  struct Batch {
+    static constexpr int size = 64;  // their vertices fit the second-level cache
+
+    explicit Batch(int max_depth)
+        : places(static_cast<std::size_t>(max_depth) + 1), vertices(places * size) {
+      walkers.reserve(size);
+    }
+
+    void start(const IterationContext& context, const Image& image, const V2i& pixel) {
+      const CameraSample sample(context, image, pixel);
+      const std::size_t i = walkers.size();
+      const std::span<Vertex> path = std::span(vertices).subspan(i * places, places);
+      path[0].kind = Vertex::Kind::eye;
+      path[0].surface.x = sample.ray.o;
+      // The film's measure of directions does not enter the walk: the eye's density and its
+      // importance cancel.
+      walkers.push_back({sample.rng, sample.ray, Pdf<SolidAngle>(1.0F), path});
+      pixels[i] = static_cast<std::uint32_t>(image.index(pixel.x, pixel.y));
+      radiance[i] = Rgb(0, 0, 0);
+    }
+
+    std::size_t places;
+    std::vector<Vertex> vertices;
+    std::vector<Walker> walkers;
+    std::array<std::uint32_t, size> pixels{};
+    std::array<Rgb, size> radiance{};          // what the paths themselves hit
+    std::array<std::uint32_t, size> chosen{};  // the emitters of next event estimation
+    ShadowQueue shadows;                       // and what they give
   };
 
-  /// The emitters that the path itself hits; what next event estimation finds waits in
-  /// `scratch.shadows`.
-  Rgb estimate(const Scene& scene, const Ray& ray, std::uint32_t pixel, Rng& rng, Scratch& scratch,
-               Counters& counters) const {
-    Rgb radiance(0, 0, 0);
-    const WalkLimits limits{settings_.max_depth, settings_.roulette_depth};
-    std::uint32_t chosen = 0;
-    const auto choose_emitter = [&](int depth) {
-      if (nee(scene) && depth < settings_.max_depth) chosen = scene.emitters().choose(rng);
-    };
-    const auto gather = [&](int depth) {
-      const Vertex& v = scratch.path[static_cast<std::size_t>(depth)];
-      radiance += emitter_hit(scene, v, scratch.path[static_cast<std::size_t>(depth) - 1]);
-      const bool goes_on = v.kind == Vertex::Kind::surface && depth < settings_.max_depth;
-      if (goes_on && nee(scene) && v.bsdf->connectible()) {
-        const EmitterSample e = scene.emitters().sample(chosen, v.surface.x, rng);
-        const Rgb value = direct(v, e);
-        if (!is_black(value)) scratch.shadows.add(Scene::shadow_ray(v.surface, e), value, pixel);
+  /// One sample of each pixel of `batch`, into its `radiance` and `shadows`.
+  void estimate(const Scene& scene, Batch& batch, Counters& counters) const {
+    Walk walk(scene, guide_, {settings_.max_depth, settings_.roulette_depth}, counters);
+    const auto choose_emitter = [&](std::size_t i, int depth) {
+      if (nee(scene) && depth < settings_.max_depth) {
+        batch.chosen[i] = scene.emitters().choose(batch.walkers[i].rng);
       }
     };
-    // The film's measure of directions does not enter walk(): the eye's density and its importance
-    // cancel.
-    walk(scene, ray, Pdf<SolidAngle>(1.0F), guide_, limits, rng, scratch.path, counters,
-         choose_emitter, gather);
-    return radiance;
+    const auto gather = [&](std::size_t i, int depth) {
+      const Vertex& v = batch.walkers[i].path[static_cast<std::size_t>(depth)];
+      const Vertex& from = batch.walkers[i].path[static_cast<std::size_t>(depth) - 1];
+      batch.radiance[i] += emitter_hit(scene, v, from);
+      const bool goes_on = v.kind == Vertex::Kind::surface && depth < settings_.max_depth;
+      if (goes_on && nee(scene) && v.bsdf->connectible()) {
+        const EmitterSample e =
+            scene.emitters().sample(batch.chosen[i], v.surface.x, batch.walkers[i].rng);
+        const Rgb value = direct(v, e);
+        if (!is_black(value)) {
+          batch.shadows.add(Scene::shadow_ray(v.surface, e), value, batch.pixels[i]);
+        }
+      }
+    };
+    walk.lead(batch.walkers, choose_emitter, gather);
   }
 
   bool nee(const Scene& scene) const {

@@ -18,40 +18,53 @@ inline void accumulate(Rgb& pixel, const Rgb& value, Counters& counters) {
   pixel += value;
 }
 
-/// Estimates every pixel once, tile by tile in parallel. `estimate(x, y, rng, counters, scratch)`
-/// gives one sample of pixel (x, y); `rng` is its own stream. `make_scratch()` makes what the
-/// pixels of a tile share; `finish(scratch, counters)` is called after its last pixel.
-template <class MakeScratch, class Estimate, class Finish>
-Counters for_each_pixel(const IterationContext& context, Image& image, MakeScratch&& make_scratch,
-                        Estimate&& estimate, Finish&& finish) {
+/// A rectangle of an image, rendered by one thread.
+struct Tile {
+  V2i first{0, 0};
+  V2i size{0, 0};
+
+  int pixels() const { return size.x * size.y; }
+  V2i pixel(int i) const { return first + V2i(i % size.x, i / size.x); }
+};
+
+/// Calls `render(tile, counters)` for all tiles of `image` in parallel and adds up what they
+/// counted. Throws IterationStopped if the context asks for it.
+template <class Render>
+Counters for_each_tile(const IterationContext& context, const Image& image, Render&& render) {
   constexpr int size = 32;  // pixels; small enough to stop quickly, large enough to be coherent
   const int across = (image.width + size - 1) / size;
   const int down = (image.height + size - 1) / size;
   std::vector<Counters> counters(static_cast<std::size_t>(across) * static_cast<std::size_t>(down));
   std::atomic<bool> stopped{false};
-  context.pool.for_each(across * down, [&](int tile) {
+  context.pool.for_each(across * down, [&](int i) {
     if (stopped || context.stop()) {
       stopped = true;
       return;
     }
-    auto scratch = make_scratch();
+    const V2i first = V2i(i % across, i / across) * size;
+    const Tile tile{
+        first, V2i(std::min(size, image.width - first.x), std::min(size, image.height - first.y))};
     Counters count;  // not in the shared array: neighbours would share a cache line
-    const int x0 = tile % across * size;
-    const int y0 = tile / across * size;
-    for (int y = y0; y < std::min(y0 + size, image.height); ++y) {
-      for (int x = x0; x < std::min(x0 + size, image.width); ++x) {
-        Rng rng(context.seed, context.iteration, image.index(x, y));
-        ++count.samples;
-        accumulate(image.at(x, y), estimate(x, y, rng, count, scratch), count);
-      }
-    }
-    finish(scratch, count);
-    counters[static_cast<std::size_t>(tile)] = count;
+    render(tile, count);
+    counters[static_cast<std::size_t>(i)] = count;
   });
   if (stopped) throw IterationStopped{};
   Counters sum;
   for (const Counters& c : counters) sum += c;
   return sum;
 }
+
+/// Where a sample of a pixel starts: its stream of random numbers, and its ray through a point
+/// drawn in the pixel (pixel filter: box).
+struct CameraSample {
+  Rng rng;
+  Ray ray;
+
+  CameraSample(const IterationContext& context, const Image& image, const V2i& pixel)
+      : rng(context.seed, context.iteration, image.index(pixel.x, pixel.y)) {
+    const V2f u = rng.next2();
+    ray = context.camera.ray(static_cast<float>(pixel.x) + u.x, static_cast<float>(pixel.y) + u.y);
+  }
+};
 
 }  // namespace lacuna

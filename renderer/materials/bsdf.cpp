@@ -51,46 +51,41 @@ struct RefractingFacet {
 
 }  // namespace
 
-void Bsdf::add_interface(const SurfaceParams& params) {
-  interface_ = Interface(params);
-  if (!facets_compete()) return;
-  layer_ = Layer(max_component(params.f0), params.f90, interface_.alpha);
-  if (layer_.closed()) diffuse_ = Rgb(0, 0, 0);
-}
-
 Rgb Bsdf::albedo() const {
-  if (kind_ != Kind::layered) return diffuse_;
-  return interface_.r0 + layer_.let_through(0) * diffuse_ + interface_.glass_color;
+  if (lobes_.kind != Lobes::Kind::layered) return lobes_.diffuse;
+  return lobes_.interface.r0 + lobes_.layer.let_through(0) * lobes_.diffuse +
+         lobes_.interface.glass_color;
 }
 
 Bsdf::Seen Bsdf::seen(const V3f& n, const V3f& wo) const {
   const bool front = dot(wo, ng_) > 0;
-  Seen result{n, front, dot(wo, n), interface_.eta(front)};
-  if (facets_compete()) result.mean_weight = layer_.mean_weight(result.cos_o);
+  Seen result{n, front, dot(wo, n), lobes_.interface.eta(front)};
+  if (lobes_.facets_compete()) result.mean_weight = lobes_.layer.mean_weight(result.cos_o);
   return result;
 }
 
 Bsdf::Choice Bsdf::choice(const Seen& from) const {
   Choice c;
-  if (!facets_compete()) {
+  if (!lobes_.facets_compete()) {
     c.facets = 1;
     return c;
   }
-  if (interface_.glass > 0) {
-    const Interface::Split s = interface_.split(from.cos_o, from.eta);
+  if (lobes_.interface.glass > 0) {
+    const Interface::Split s = lobes_.interface.split(from.cos_o, from.eta);
     c.facets = luminance(s.reflected);
-    if (interface_.clear()) {
+    if (lobes_.interface.clear()) {
       c.clear = luminance(s.transmitted);
       // Where the mean facet hardly reflects, tilted ones still may.
-      if (interface_.ior > 1) c.facets += interface_.glass * from.mean_weight;
+      if (lobes_.interface.ior > 1) c.facets += lobes_.interface.glass * from.mean_weight;
     } else {
       c.facets += luminance(s.transmitted);
     }
   } else {
-    const float r0 = luminance(interface_.r0);
-    c.facets = r0 + (interface_.r90 - r0) * from.mean_weight;
+    const float r0 = luminance(lobes_.interface.r0);
+    c.facets = r0 + (lobes_.interface.r90 - r0) * from.mean_weight;
   }
-  if (has_diffuse()) c.diffuse = luminance(diffuse_) * layer_.let_through(from.mean_weight);
+  if (lobes_.has_diffuse())
+    c.diffuse = luminance(lobes_.diffuse) * lobes_.layer.let_through(from.mean_weight);
   const float sum = c.diffuse + c.facets + c.clear;
   if (!(sum > 0)) return {};
   return {c.diffuse / sum, c.facets / sum, c.clear / sum};
@@ -108,26 +103,27 @@ template <bool want_f, bool want_pdf>
 void Bsdf::reflected(const Seen& from, const Choice* c, const V3f& wo, const V3f& wi,
                      Scatter& s) const {
   const float cos_i = dot(wi, from.n);
-  if (has_diffuse()) {
+  if (lobes_.has_diffuse()) {
     if constexpr (want_f) {
-      const float scale = layer_.scale(layer_.let_through(from.mean_weight),
-                                       layer_.let_through(layer_.mean_weight(cos_i)));
-      s.f = diffuse_ * (scale * cos_i * inv_pi);
+      const float scale =
+          lobes_.layer.scale(lobes_.layer.let_through(from.mean_weight),
+                             lobes_.layer.let_through(lobes_.layer.mean_weight(cos_i)));
+      s.f = lobes_.diffuse * (scale * cos_i * inv_pi);
     }
     if constexpr (want_pdf) s.pdf = c->diffuse * cos_i * inv_pi;
   }
   const V3f h = wo + wi;
   const float length = std::sqrt(h.length2());
-  if (interface_.smooth() || length < cos_rounding) return;
+  if (lobes_.interface.smooth() || length < cos_rounding) return;
   const V3f m = h * (1 / length);
-  const float a = interface_.alpha;
+  const float a = lobes_.interface.alpha;
   const float d = ggx_d(m, from.n, a);
   Interface::Split split;
-  if (want_f || facets_transmit()) split = interface_.split(0.5F * length, from.eta);
+  if (want_f || lobes_.facets_transmit()) split = lobes_.interface.split(0.5F * length, from.eta);
   if constexpr (want_f) s.f += split.reflected * (d * ggx_g2_over_4cos(from.cos_o, cos_i, a));
   if constexpr (want_pdf) {
     // Visible normals; dm / dwi = 1 / (4 wo.m).
-    const Coin coin = facets_transmit() ? Coin(split) : Coin();
+    const Coin coin = lobes_.facets_transmit() ? Coin(split) : Coin();
     s.pdf += c->facets * coin.reflect * 0.25F * ggx_g1_over_cos(from.cos_o, a) * d;
   }
 }
@@ -135,11 +131,11 @@ void Bsdf::reflected(const Seen& from, const Choice* c, const V3f& wo, const V3f
 template <bool want_f, bool want_pdf>
 void Bsdf::transmitted(const Seen& from, const Choice* c, const V3f& wo, const V3f& wi,
                        Scatter& s) const {
-  if (interface_.smooth() || !facets_transmit()) return;
+  if (lobes_.interface.smooth() || !lobes_.facets_transmit()) return;
   const auto facet = RefractingFacet::find(from.n, wo, wi, from.eta);
   if (!facet) return;
-  const Rgb share = interface_.split(facet->cos_outside, interface_.ior).transmitted;
-  const float a = interface_.alpha;
+  const Rgb share = lobes_.interface.split(facet->cos_outside, lobes_.interface.ior).transmitted;
+  const float a = lobes_.interface.alpha;
   const float cos_i = -dot(wi, from.n);
   const float common = ggx_d(facet->m, from.n, a) * ggx_g1_over_cos(from.cos_o, a) * facet->cos_o *
                        -facet->cos_i * facet->jacobian;
@@ -148,7 +144,7 @@ void Bsdf::transmitted(const Seen& from, const Choice* c, const V3f& wo, const V
   if constexpr (want_f) s.f = share * (common * ggx_g1_over_cos(cos_i, a) * cos_i);
   if constexpr (want_pdf) {
     // dm / dwi = eta^2 |wi.m| / (...)^2 (Walter et al. 2007, eq. 17).
-    const Coin coin(interface_.split(facet->cos_o, from.eta).reflected, share);
+    const Coin coin(lobes_.interface.split(facet->cos_o, from.eta).reflected, share);
     s.pdf = c->facets * coin.transmit * common * from.eta * from.eta;
   }
 }
@@ -165,7 +161,7 @@ Bsdf::Scatter Bsdf::scatter(const Seen& from, const Choice* c, const V3f& wo, co
 Rgb Bsdf::eval_any(const V3f& wo, const V3f& wi, Transport transport) const {
   const float side = dot(wo, ng_);
   const float side_i = dot(wi, ng_);
-  if (kind_ == Kind::black || side == 0 || side_i == 0) return Rgb(0, 0, 0);
+  if (lobes_.kind == Lobes::Kind::black || side == 0 || side_i == 0) return Rgb(0, 0, 0);
   if (transport == Transport::radiance || flat_) {
     const Seen from = seen(facing_normal(wo, side), wo);
     const Rgb f = scatter<true, false>(from, nullptr, wo, wi).f;
@@ -180,7 +176,7 @@ Rgb Bsdf::eval_any(const V3f& wo, const V3f& wi, Transport transport) const {
 
 Pdf<SolidAngle> Bsdf::pdf_any(const V3f& wo, const V3f& wi, Transport transport) const {
   const float side = dot(wo, ng_);
-  if (kind_ == Kind::black || side == 0) return {};
+  if (lobes_.kind == Lobes::Kind::black || side == 0) return {};
   const auto density = [&](const V3f& n) {
     const Seen from = seen(n, wo);
     const Choice c = choice(from);
@@ -198,22 +194,22 @@ std::optional<Bsdf::Draw> Bsdf::draw(const Seen& from, const Choice& c, const V3
   u_lobe -= c.diffuse;
   const bool clear = u_lobe < c.clear;
   if (!clear && c.facets == 0) return std::nullopt;
-  const bool smooth = clear || interface_.smooth();
+  const bool smooth = clear || lobes_.interface.smooth();
   V3f m = n;
   if (!smooth) {
     const Frame frame(n);
-    m = frame.to_world(ggx_sample_visible(frame.to_local(wo), interface_.alpha, u));
+    m = frame.to_world(ggx_sample_visible(frame.to_local(wo), lobes_.interface.alpha, u));
   }
   const float cos_m = dot(wo, m);
   if (cos_m <= 0) return std::nullopt;
-  const Interface::Split split = interface_.split(cos_m, from.eta);
+  const Interface::Split split = lobes_.interface.split(cos_m, from.eta);
   Draw result;
   result.delta = smooth;
   float p = c.clear;
   if (clear) {
     result.transmitted = true;
   } else {
-    const Coin coin = facets_transmit() ? Coin(split) : Coin();
+    const Coin coin = lobes_.facets_transmit() ? Coin(split) : Coin();
     result.transmitted = stretch(u_lobe - c.clear, c.facets) >= coin.reflect;
     p = c.facets * (result.transmitted ? coin.transmit : coin.reflect);
   }
@@ -249,7 +245,7 @@ std::optional<BsdfSample> Bsdf::finish_delta(const Draw& drawn, const Seen& from
 std::optional<BsdfSample> Bsdf::sample_any(const V3f& wo, float u_lobe, const V2f& u,
                                            Transport transport) const {
   const float side = dot(wo, ng_);
-  if (kind_ == Kind::black || side == 0) return std::nullopt;
+  if (lobes_.kind == Lobes::Kind::black || side == 0) return std::nullopt;
   V3f n = facing_normal(wo, side);
   float frame_probability = 1;
   if (transport == Transport::importance && !flat_ && in_front_of_ns(wo)) {

@@ -5,9 +5,8 @@
 
 #include "renderer/core/density.h"
 #include "renderer/core/vec.h"
-#include "renderer/materials/interface.h"
 #include "renderer/materials/lambert.h"
-#include "renderer/materials/layer.h"
+#include "renderer/materials/lobes.h"
 
 namespace lacuna {
 
@@ -15,17 +14,6 @@ namespace lacuna {
 /// light). The two differ where a BSDF is not symmetric: refraction and shading normals (Veach
 /// 1997, ch. 5).
 enum class Transport { radiance, importance };
-
-/// The parameters of the glTF surface model at one point, textures already looked up.
-struct SurfaceParams {
-  Rgb base_color{1, 1, 1};
-  float metallic = 0;           ///< [0, 1]
-  float alpha = 1;              ///< GGX width, roughness^2; below ggx_min_alpha: smooth, a delta
-  float ior = 1.5F;             ///< >= 1; of the inside, for refraction
-  Rgb f0{0.04F, 0.04F, 0.04F};  ///< dielectric reflectance at normal incidence
-  float f90 = 1;
-  float transmission = 0;  ///< [0, 1]: share of the dielectric's base that refracts
-};
 
 /// A direction drawn by a BSDF.
 struct BsdfSample {
@@ -55,19 +43,15 @@ class Bsdf {
  public:
   /// `ng` and `ns` are unit; `ns` is turned to the side of `ng`. They need not be on the same side
   /// as wo.
-  Bsdf(const SurfaceParams& params, const V3f& ng, const V3f& ns)
-      : ng_(ng), ns_(dot(ns, ng) < 0 ? -ns : ns), flat_((ns_ - ng).length2() < 1e-12F) {
-    diffuse_ = ((1 - params.metallic) * (1 - params.transmission)) * params.base_color;
-    if (params.metallic > 0 || params.transmission > 0 || params.f90 > 0 || !is_black(params.f0)) {
-      add_interface(params);
-    } else {
-      kind_ = is_black(diffuse_) ? Kind::black : Kind::lambert;
-    }
-  }
+  Bsdf(const Lobes& lobes, const V3f& ng, const V3f& ns)
+      : ng_(ng),
+        ns_(dot(ns, ng) < 0 ? -ns : ns),
+        flat_((ns_ - ng).length2() < 1e-12F),
+        lobes_(lobes) {}
 
   /// f(wo, wi) |cos(wi, ns)| of all non-delta lobes; the cosine is included.
   Rgb eval(const V3f& wo, const V3f& wi, Transport transport) const {
-    if (plain_lambert(transport)) return diffuse_ * lambert(wo, wi);
+    if (plain_lambert(transport)) return lobes_.diffuse * lambert(wo, wi);
     return eval_any(wo, wi, transport);
   }
 
@@ -90,16 +74,15 @@ class Bsdf {
 
   /// Some lobe is not a delta: the vertex can be connected to others.
   bool connectible() const {
-    return kind_ == Kind::lambert ||
-           (kind_ == Kind::layered && (!interface_.smooth() || has_diffuse()));
+    return lobes_.kind == Lobes::Kind::lambert ||
+           (lobes_.kind == Lobes::Kind::layered &&
+            (!lobes_.interface.smooth() || lobes_.has_diffuse()));
   }
 
   /// Albedo for the denoiser layer: base colour weighted by what the surface does with it.
   Rgb albedo() const;
 
  private:
-  enum class Kind : std::uint8_t { black, lambert, layered };
-
   /// Probabilities of the lobes for one wo; they add up to 1, or are all 0.
   struct Choice {
     float diffuse = 0;
@@ -112,7 +95,7 @@ class Bsdf {
     bool front;
     float cos_o;
     float eta;
-    float mean_weight = 0;  ///< of layer_, where facets_compete()
+    float mean_weight = 0;  ///< of the layer, where facets_compete()
   };
   /// Radiance's f |cos|, and the density of one frame; each 0 unless asked for.
   struct Scatter {
@@ -129,7 +112,7 @@ class Bsdf {
 
   /// Nothing but a Lambertian lobe, and symmetric: the fast path.
   bool plain_lambert(Transport transport) const {
-    return kind_ == Kind::lambert && (flat_ || transport == Transport::radiance);
+    return lobes_.kind == Lobes::Kind::lambert && (flat_ || transport == Transport::radiance);
   }
   float lambert(const V3f& wo, const V3f& wi) const {
     const float side = dot(wo, ng_);
@@ -143,15 +126,8 @@ class Bsdf {
     const V3f wi = sample_cosine(n, u);
     const float side_i = dot(wi, ng_);
     if (!(side > 0 ? side_i > 0 : side < 0 && side_i < 0)) return std::nullopt;
-    return BsdfSample{wi, diffuse_, Pdf<SolidAngle>(dot(wi, n) * inv_pi), false, false};
+    return BsdfSample{wi, lobes_.diffuse, Pdf<SolidAngle>(dot(wi, n) * inv_pi), false, false};
   }
-
-  bool has_diffuse() const { return !is_black(diffuse_); }
-  /// Other lobes than the facets' need a share of the draws.
-  bool facets_compete() const {
-    return has_diffuse() || (interface_.glass > 0 && interface_.clear());
-  }
-  bool facets_transmit() const { return interface_.glass > 0 && !interface_.clear(); }
 
   /// The normal that cosines are taken with when the eye lies in direction `w`; side = dot(w, ng).
   V3f facing_normal(const V3f& w, float side) const {
@@ -163,7 +139,6 @@ class Bsdf {
     return dot(w, ng_) < 0 ? dot(w, ns_) < 0 : dot(w, ns_) > 0;
   }
 
-  void add_interface(const SurfaceParams& params);
   Rgb eval_any(const V3f& wo, const V3f& wi, Transport transport) const;
   Pdf<SolidAngle> pdf_any(const V3f& wo, const V3f& wi, Transport transport) const;
   std::optional<BsdfSample> sample_any(const V3f& wo, float u_lobe, const V2f& u,
@@ -188,11 +163,8 @@ class Bsdf {
                                          float frame_probability, Transport transport) const;
 
   V3f ng_, ns_;
-  Rgb diffuse_;  // share of Lambert times base colour
-  Kind kind_ = Kind::layered;
-  bool flat_;    // ns is ng, up to the rounding of an interpolated normal
-  Layer layer_;  // where facets_compete()
-  Interface interface_;
+  bool flat_;  // ns is ng, up to the rounding of an interpolated normal
+  Lobes lobes_;
 };
 
 }  // namespace lacuna

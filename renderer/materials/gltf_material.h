@@ -22,6 +22,15 @@ inline Rgba texture_at(const TextureRef& ref, Textures textures, const std::arra
 SurfaceParams surface_params(const Material& material, Textures textures,
                              const std::array<V2f, 2>& uv);
 
+/// Asks for the texels that surface_params() will read.
+inline void prefetch_textures(const Material& material, Textures textures,
+                              const std::array<V2f, 2>& uv) {
+  material.for_each_scattering_texture([&](const TextureRef& ref) {
+    textures[static_cast<std::size_t>(ref.texture)]->prefetch(
+        ref.transform(uv[static_cast<std::size_t>(ref.uv_set)]));
+  });
+}
+
 /// Radiance emitted, in every direction of the emitting side or sides.
 inline Rgb emission(const Material& material, Textures textures, const std::array<V2f, 2>& uv) {
   if (!material.emission_texture.used()) return material.emission;

@@ -1,6 +1,6 @@
 #include "renderer/materials/interface.h"
 
-#include "renderer/materials/bsdf.h"
+#include "renderer/materials/lobes.h"
 
 namespace lacuna {
 

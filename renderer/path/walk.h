@@ -1,9 +1,10 @@
 #pragma once
 
+#include <numeric>
 #include <span>
+#include <vector>
 
 #include "renderer/core/rng.h"
-#include "renderer/materials/gltf_material.h"
 #include "renderer/path/counters.h"
 #include "renderer/path/vertex.h"
 #include "renderer/scene/scene.h"
@@ -17,55 +18,102 @@ struct WalkLimits {
   Transport transport = Transport::radiance;
 };
 
-/// Random walk through `scene` from vertex 0 (`path[0]`, whose throughput is set) along `ray`,
-/// which was drawn there with density `p`. Each vertex reached is stored in `path` (of at least
-/// max_depth + 1) and handed to `visit(depth)`, depth = edges walked, before the walk goes on from
-/// it; `before(depth)` is called before the ray to it is traced, for what can be drawn ahead. A
-/// guide draws the directions (renderer/guides). The densities of all vertices are per area.
-template <class Guide, class Before, class Visit>
-void walk(const Scene& scene, Ray ray, Pdf<SolidAngle> p, const Guide& guide,
-          const WalkLimits& limits, Rng& rng, std::span<Vertex> path, Counters& counters,
-          Before&& before, Visit&& visit) {
-  Rgb throughput = path[0].throughput;
-  for (int depth = 1; depth <= limits.max_depth; ++depth) {
-    const Vertex& from = path[static_cast<std::size_t>(depth) - 1];
-    Vertex& v = path[static_cast<std::size_t>(depth)];
-    v.delta = false;
-    v.wp = -ray.d;
-    v.throughput = throughput;
-    before(depth);
-    Hit hit;
-    ++counters.rays;
-    if (!scene.rays().intersect(ray, hit)) {
-      v.kind = Vertex::Kind::background;
-      v.surface.x = ray.d;
-      v.p_fwd = to_area(p, from.surface.x, ray.d, v);
-      visit(depth);
-      return;
-    }
-    v.kind = Vertex::Kind::surface;
-    v.surface = scene.surface(hit);
-    v.p_fwd = to_area(p, from.surface.x, ray.d, v);
-    const bool last = depth == limits.max_depth;
-    if (!last) {
-      v.bsdf.emplace(surface_params(scene.material(v.surface), scene.data().textures, v.surface.uv),
-                     v.surface.ng, v.surface.ns);
-    }
-    visit(depth);
-    if (last) return;
+/// A random walk, between two of its edges.
+struct Walker {
+  Rng rng;
+  Ray ray;                 ///< the next edge
+  Pdf<SolidAngle> p;       ///< density with which it was drawn
+  std::span<Vertex> path;  ///< max_depth + 1 places; path[0] is set, its throughput included
+  Rgb throughput = path[0].throughput;  ///< along `ray`
+  Hit hit{};
+};
 
-    const std::optional<BsdfSample> next = guide.sample(v, rng, limits.transport);
-    if (!next) return;
-    throughput *= next->weight;
-    if (depth >= limits.roulette_depth) {
-      const float survival = std::min(1.0F, max_component(throughput));
-      if (rng.next() >= survival) return;
-      throughput /= survival;
+/// Leads random walks through a scene, all of them edge by edge: what a vertex needs from memory is
+/// asked for while the others' rays are traced, which hides half of a vertex's cost. The guide
+/// (renderer/guides) draws the directions. Walks know nothing of one another: the results are the
+/// same however many are led together.
+template <class Guide>
+class Walk {
+ public:
+  Walk(const Scene& scene, const Guide& guide, const WalkLimits& limits, Counters& counters)
+      : scene_(scene), guide_(guide), limits_(limits), counters_(counters) {}
+
+  /// Each vertex reached is stored in its walker's path and handed to `visit(i, depth)`, i = index
+  /// of the walker and depth = edges walked, before the walk goes on from it; `before(i, depth)` is
+  /// called before the ray to it is traced, for what can be drawn ahead. The densities of all
+  /// vertices are per area.
+  template <class Before, class Visit>
+  void lead(std::span<Walker> walkers, Before&& before, Visit&& visit) {
+    active_.resize(walkers.size());
+    std::iota(active_.begin(), active_.end(), std::size_t{0});
+    for (int depth = 1; depth <= limits_.max_depth && !active_.empty(); ++depth) {
+      for (const std::size_t i : active_) {
+        before(i, depth);
+        trace(walkers[i], depth);
+      }
+      for (const std::size_t i : active_) arrive(walkers[i], depth);
+      std::erase_if(active_, [&](std::size_t i) {
+        scatter(walkers[i], depth);
+        visit(i, depth);
+        return !leave(walkers[i], depth);
+      });
+    }
+  }
+
+ private:
+  static Vertex& vertex(Walker& w, int depth) { return w.path[static_cast<std::size_t>(depth)]; }
+
+  void trace(Walker& w, int depth) {
+    ++counters_.rays;
+    const bool met = scene_.rays().intersect(w.ray, w.hit);
+    vertex(w, depth).kind = met ? Vertex::Kind::surface : Vertex::Kind::background;
+    if (met) scene_.prefetch(w.hit);
+  }
+
+  void arrive(Walker& w, int depth) {
+    Vertex& v = vertex(w, depth);
+    v.delta = false;
+    v.wp = -w.ray.d;
+    v.throughput = w.throughput;
+    if (v.kind == Vertex::Kind::background) {
+      v.surface.x = w.ray.d;
+    } else {
+      v.surface = scene_.surface(w.hit);
+      if (depth < limits_.max_depth) scene_.prefetch_bsdf(v.surface);
+    }
+    v.p_fwd = to_area(w.p, vertex(w, depth - 1).surface.x, w.ray.d, v);
+  }
+
+  /// The last vertex needs no scattering: nothing goes on from it.
+  void scatter(Walker& w, int depth) {
+    Vertex& v = vertex(w, depth);
+    if (v.kind == Vertex::Kind::background || depth == limits_.max_depth) return;
+    scene_.make_bsdf(v.surface, v.bsdf);
+  }
+
+  /// Draws the next edge; false where the walk ends.
+  bool leave(Walker& w, int depth) {
+    Vertex& v = vertex(w, depth);
+    if (v.kind == Vertex::Kind::background || depth == limits_.max_depth) return false;
+    const std::optional<BsdfSample> next = guide_.sample(v, w.rng, limits_.transport);
+    if (!next) return false;
+    w.throughput *= next->weight;
+    if (depth >= limits_.roulette_depth) {
+      const float survival = std::min(1.0F, max_component(w.throughput));
+      if (w.rng.next() >= survival) return false;
+      w.throughput /= survival;
     }
     v.delta = next->delta;
-    p = next->pdf;
-    ray = {offset_origin(v.surface.x, v.surface.ng, v.surface.extent, next->wi), next->wi};
+    w.p = next->pdf;
+    w.ray = {offset_origin(v.surface.x, v.surface.ng, v.surface.extent, next->wi), next->wi};
+    return true;
   }
-}
+
+  const Scene& scene_;
+  const Guide& guide_;
+  WalkLimits limits_;
+  Counters& counters_;
+  std::vector<std::size_t> active_;
+};
 
 }  // namespace lacuna

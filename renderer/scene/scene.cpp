@@ -42,9 +42,20 @@ Scene::Scene(SceneData data, const SceneNeeds& needs,
       radius_(scene_radius(*data_)),
       triangles_(*data_),
       rays_((decode_textures(needs, pool), RayCaster(*data_, pool.threads()))) {
+  if (needs.materials) make_uniform_lobes();
   if (needs.emission) {
     emitters_ = std::make_unique<EmitterSet>(
         *data_, environment ? load_environment(*environment) : nullptr, radius_);
+  }
+}
+
+void Scene::make_uniform_lobes() {
+  uniform_lobes_.resize(data_->materials.size());
+  for (std::size_t i = 0; i < data_->materials.size(); ++i) {
+    const Material& m = data_->materials[i];
+    bool textured = false;
+    m.for_each_scattering_texture([&](const TextureRef&) { textured = true; });
+    if (!textured) uniform_lobes_[i] = surface_params(m, {}, {});
   }
 }
 

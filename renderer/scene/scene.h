@@ -37,6 +37,8 @@ class Scene {
   const SceneData& data() const { return *data_; }
   /// The surface at a hit of rays().
   Surface surface(const Hit& hit) const { return {*data_, triangles_, hit}; }
+  /// Asks for what surface() will read.
+  void prefetch(const Hit& hit) const { triangles_.prefetch(hit.mesh, hit.triangle); }
   const RayCaster& rays() const { return rays_; }
   /// Only where SceneNeeds::emission was asked for.
   const EmitterSet& emitters() const { return *emitters_; }
@@ -55,15 +57,30 @@ class Scene {
     if (!s.emits || (!s.emits_behind && dot(wo, s.ng) <= 0)) return {0, 0, 0};
     return emission(material(s), data_->textures, s.uv);
   }
+  /// Makes the scattering at `s` in `place`, where it is to stay: it is too large to be moved
+  /// about. Only where SceneNeeds::materials was asked for.
+  void make_bsdf(const Surface& s, std::optional<Bsdf>& place) const {
+    if (const auto& lobes = uniform_lobes_[s.material]) {
+      place.emplace(*lobes, s.ng, s.ns);
+    } else {
+      place.emplace(surface_params(material(s), data_->textures, s.uv), s.ng, s.ns);
+    }
+  }
+  /// Asks for the texels that make_bsdf() will read.
+  void prefetch_bsdf(const Surface& s) const {
+    if (!uniform_lobes_[s.material]) prefetch_textures(material(s), data_->textures, s.uv);
+  }
   const Material& material(const Surface& s) const { return data_->materials[s.material]; }
 
  private:
+  void make_uniform_lobes();
   void decode_textures(const SceneNeeds& needs, const ThreadPool& pool);
 
   std::unique_ptr<SceneData> data_;  // on the heap: rays and emitters point into it
   float radius_ = 0;
   int textures_decoded_ = 0;
   TriangleTable triangles_;
+  std::vector<std::optional<Lobes>> uniform_lobes_;  // of materials whose scattering has no texture
   RayCaster rays_;
   std::unique_ptr<EmitterSet> emitters_;
 };

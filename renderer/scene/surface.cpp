@@ -42,10 +42,11 @@ TriangleTable::TriangleTable(const SceneData& scene) {
   records_.reserve(scene.triangle_count());
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
     const Mesh& mesh = scene.meshes[m];
-    first_.push_back({records_.size(), attributes_.size()});
+    First& first = first_.emplace_back(First{records_.size(), none});
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
       const TriangleRecord& r = records_.emplace_back(scene, m, t);
       if (!r.smooth && !r.textured) continue;
+      if (t == 0) first.attributes = attributes_.size();
       TriangleAttributes& a = attributes_.emplace_back();
       for (std::size_t k = 0; k < 3; ++k) {
         const auto i = mesh.triangles[t][k];

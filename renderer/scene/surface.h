@@ -2,8 +2,6 @@
 
 #include <immintrin.h>
 
-#include <immintrin.h>
-
 #include <vector>
 
 #include "renderer/core/huge_pages.h"
@@ -72,14 +70,24 @@ class TriangleTable {
   const TriangleAttributes& attributes(std::uint32_t mesh, std::uint32_t triangle) const {
     return attributes_[first_[mesh].attributes + triangle];
   }
+  /// Asks for what at() and attributes() will read.
+  void prefetch(std::uint32_t mesh, std::uint32_t triangle) const {
+    const First& first = first_[mesh];
+    _mm_prefetch(reinterpret_cast<const char*>(&records_[first.record + triangle]), _MM_HINT_T0);
+    if (first.attributes == none) return;
+    _mm_prefetch(reinterpret_cast<const char*>(&attributes_[first.attributes + triangle]),
+                 _MM_HINT_T0);
+  }
   std::uint64_t bytes() const {
     return records_.size() * sizeof(TriangleRecord) +
            attributes_.size() * sizeof(TriangleAttributes);
   }
 
  private:
+  static constexpr std::size_t none = ~std::size_t{0};
   struct First {
-    std::size_t record, attributes;
+    std::size_t record;
+    std::size_t attributes;  // or none
   };
   std::vector<First> first_;  // of each mesh
   HugeVector<TriangleRecord> records_;

@@ -94,23 +94,43 @@ void Texture::decode() {
   std::vector<std::uint8_t>().swap(encoded_);
 }
 
-Rgba Texture::lookup(const V2f& uv) const {
+/// The four texels of a lookup, and their weights.
+struct Texture::Footprint {
+  const std::uint8_t* upper;  ///< rows
+  const std::uint8_t* lower;
+  std::size_t left, right;   ///< in a row
+  float weight_x, weight_y;  ///< of right and lower
+};
+
+[[gnu::always_inline]] inline Texture::Footprint Texture::footprint(const V2f& uv) const {
   const bool usable = std::isfinite(uv.x) && std::isfinite(uv.y);
   const Pair x = usable ? between(uv.x, width_, wrap_s_) : Pair{0, 0, 0};
   const Pair y = usable ? between(uv.y, height_, wrap_t_) : Pair{0, 0, 0};
   const auto stride = static_cast<std::size_t>(width_) * 4;
-  const std::uint8_t* upper = texels_.data() + static_cast<std::size_t>(y.first) * stride;
-  const std::uint8_t* lower = texels_.data() + static_cast<std::size_t>(y.second) * stride;
-  const std::size_t left = static_cast<std::size_t>(x.first) * 4;
-  const std::size_t right = static_cast<std::size_t>(x.second) * 4;
+  return {texels_.data() + static_cast<std::size_t>(y.first) * stride,
+          texels_.data() + static_cast<std::size_t>(y.second) * stride,
+          static_cast<std::size_t>(x.first) * 4,
+          static_cast<std::size_t>(x.second) * 4,
+          x.weight,
+          y.weight};
+}
 
-  const __m128 weight_x = _mm_set1_ps(x.weight);
-  const __m128 top = lerp(linear_texel(upper + left, to_linear_),
-                          linear_texel(upper + right, to_linear_), weight_x);
-  const __m128 bottom = lerp(linear_texel(lower + left, to_linear_),
-                             linear_texel(lower + right, to_linear_), weight_x);
+void Texture::prefetch(const V2f& uv) const {
+  // The right texels mostly share a cache line with the left ones.
+  const Footprint f = footprint(uv);
+  _mm_prefetch(reinterpret_cast<const char*>(f.upper + f.left), _MM_HINT_T0);
+  _mm_prefetch(reinterpret_cast<const char*>(f.lower + f.left), _MM_HINT_T0);
+}
+
+Rgba Texture::lookup(const V2f& uv) const {
+  const Footprint f = footprint(uv);
+  const __m128 weight_x = _mm_set1_ps(f.weight_x);
+  const __m128 top = lerp(linear_texel(f.upper + f.left, to_linear_),
+                          linear_texel(f.upper + f.right, to_linear_), weight_x);
+  const __m128 bottom = lerp(linear_texel(f.lower + f.left, to_linear_),
+                             linear_texel(f.lower + f.right, to_linear_), weight_x);
   alignas(16) std::array<float, 4> out;
-  _mm_store_ps(out.data(), lerp(top, bottom, _mm_set1_ps(y.weight)));
+  _mm_store_ps(out.data(), lerp(top, bottom, _mm_set1_ps(f.weight_y)));
   return {Rgb(out[0], out[1], out[2]), out[3]};
 }
 

@@ -39,11 +39,16 @@ class Texture {
   /// Bilinear in linear light; (0, 0) is the upper left corner of the image, as in glTF. Any `uv`
   /// is safe: where it is not finite, the texel at that corner. Must be decoded.
   Rgba lookup(const V2f& uv) const;
+  /// Asks for the texels that lookup(uv) will read.
+  void prefetch(const V2f& uv) const;
 
   /// Mean over all texels, linear: what emitter powers are estimated from. Must be decoded.
   Rgba mean() const;
 
  private:
+  struct Footprint;
+  Footprint footprint(const V2f& uv) const;
+
   std::string label_;
   std::vector<std::uint8_t> encoded_;
   const float* to_linear_;  ///< what the bytes of a texel mean under the encoding

@@ -36,6 +36,7 @@ double cpu_seconds() {
 Recording record(const Scene& scene, const Camera& camera, const V2i& size,
                  const PathSettings& settings) {
   constexpr int tile = 32;
+  const BsdfGuide guide;
   Recording recording;
   std::vector<Vertex> path(static_cast<std::size_t>(settings.max_depth) + 1);
   for (int y0 = 0; y0 < size.y; y0 += tile) {
@@ -54,13 +55,14 @@ Recording record(const Scene& scene, const Camera& camera, const V2i& size,
         Ray next = first;
         Counters counters;
         std::uint32_t chosen = 0;
-        walk(
-            scene, first, Pdf<SolidAngle>(1.0F), BsdfGuide{},
-            {settings.max_depth, settings.roulette_depth}, rng, path, counters,
-            [&](int depth) {
-              if (depth < settings.max_depth) chosen = scene.emitters().choose(rng);
+        std::array<Walker, 1> walker{Walker{rng, first, Pdf<SolidAngle>(1.0F), path}};
+        Walk walk(scene, guide, {settings.max_depth, settings.roulette_depth}, counters);
+        walk.lead(
+            walker,
+            [&](std::size_t, int depth) {
+              if (depth < settings.max_depth) chosen = scene.emitters().choose(walker[0].rng);
             },
-            [&](int depth) {
+            [&](std::size_t, int depth) {
               const Vertex& v = path[static_cast<std::size_t>(depth)];
               if (depth > 1) {
                 const Surface& s = path[static_cast<std::size_t>(depth) - 1].surface;
@@ -71,7 +73,7 @@ Recording record(const Scene& scene, const Camera& camera, const V2i& size,
                   !v.bsdf->connectible()) {
                 return;
               }
-              const EmitterSample e = scene.emitters().sample(chosen, v.surface.x, rng);
+              const EmitterSample e = scene.emitters().sample(chosen, v.surface.x, walker[0].rng);
               if (is_black(connect(v, e).contribution)) return;
               rays.push_back({scene.shadow_ray(v.surface, e), true});
             });
