@@ -1,7 +1,6 @@
 #include "jobs/run/prepare.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <xxhash.h>
 
 #include <algorithm>
@@ -20,21 +19,6 @@ std::filesystem::path resolve(const RunContext& context, const std::string& what
   } catch (const std::invalid_argument& e) {
     throw SceneError(fmt::format("{} \"{}\": {}", what, name, e.what()));
   }
-}
-
-const CameraData& choose_camera(const SceneData& scene, const std::string& file,
-                                const std::string& name) {
-  if (scene.cameras.empty()) {
-    throw SceneError(fmt::format("scene \"{}\" has no perspective camera; it needs one", file));
-  }
-  if (name.empty()) return scene.cameras.front();
-  const auto found = std::find_if(scene.cameras.begin(), scene.cameras.end(),
-                                  [&](const CameraData& c) { return c.name == name; });
-  if (found != scene.cameras.end()) return *found;
-  std::vector<std::string> names;
-  for (const CameraData& c : scene.cameras) names.push_back(fmt::format("\"{}\"", c.name));
-  throw SceneError(fmt::format("scene \"{}\" has no camera \"{}\"; it has {}", file, name,
-                               fmt::join(names, ", ")));
 }
 
 SceneNeeds needs_of(const JobSpec& spec, const Integrator& integrator) {
@@ -57,8 +41,8 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   p.pool = std::make_unique<ThreadPool>(context.threads >= 0 ? context.threads : spec.threads);
   p.integrator = make_integrator(spec.integrator);
   SceneData data = load_gltf(resolve(context, "scene", spec.scene, {".glb", ".gltf"}));
-  p.camera = std::make_unique<Camera>(choose_camera(data, spec.scene, spec.camera),
-                                      spec.resolution[0], spec.resolution[1]);
+  p.camera = std::make_unique<Camera>(choose_camera(data, spec.camera, spec.scene),
+                                      spec.resolution[0], spec.resolution[1], spec.pixel_filter);
   p.warnings = data.warnings;
   if (data.dropped_triangles > 0) {
     p.warnings.push_back(

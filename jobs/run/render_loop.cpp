@@ -5,6 +5,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "jobs/run/checkpoint.h"
 #include "jobs/spec/job_json.h"
+#include "jobs/spec/version.h"
 #include "renderer/film/preview.h"
 
 namespace lacuna {
@@ -28,10 +29,14 @@ RenderLoop::RenderLoop(const RenderTask& task)
       previews_(0, preview_share),
       progress_(progress_interval, checkpoint_share) {}
 
+std::string RenderLoop::identity() const {
+  return fmt::format("{} {} {}", picture_key(task_.spec), task_.content, version());
+}
+
 void RenderLoop::resume() {
   const auto file = task_.folder.file("checkpoint.bin");
   try {
-    const auto content = read_checkpoint(file, picture_key(task_.spec));
+    const auto content = read_checkpoint(file, identity());
     if (!content) return;
     ByteReader in(*content);
     Film film(film_.width(), film_.height());
@@ -133,7 +138,7 @@ void RenderLoop::write_checkpoint_now() {
     out.put(counters_);
     curve_.save(out);
     task_.integrator.save(out);
-    write_checkpoint(task_.folder.file("checkpoint.bin"), picture_key(task_.spec), out.bytes());
+    write_checkpoint(task_.folder.file("checkpoint.bin"), identity(), out.bytes());
   }
   task_.phases["checkpoint"] += cost;
   checkpoints_.done(cost);

@@ -32,6 +32,7 @@ struct RenderTask {
   const std::function<bool()>& interrupted;  ///< from a signal: true asks the loop to stop
   Observer& observer;
   PhaseSeconds& phases;
+  std::string content;  ///< hashes of the files the picture depends on
 };
 
 /// A picture in the making: iterations until the budget is spent, rows of the curve at log-spaced
@@ -53,6 +54,8 @@ class RenderLoop {
   Spent spent() const { return completed_; }
 
  private:
+  /// What a checkpoint must agree with to be gone on from.
+  std::string identity() const;
   bool iterate();
   void add_row();
   void write_checkpoint_now();

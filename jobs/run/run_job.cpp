@@ -139,7 +139,8 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
                         reference ? &*reference : nullptr,
                         context.interrupted,
                         context.observer,
-                        phases};
+                        phases,
+                        prepared.content};
   RenderLoop loop(task);
   loop.resume();
   if (!loop.run()) return Outcome::interrupted;

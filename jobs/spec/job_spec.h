@@ -88,6 +88,7 @@ struct JobSpec {
   std::uint64_t seed = 1;
   int threads = 0;
   std::vector<ImageLayer> layers;
+  PixelFilter pixel_filter = PixelFilter::box;
   PixelType pixel_type = PixelType::single_float;
   double checkpoint_seconds = 10;
   bool operator==(const JobSpec&) const = default;
@@ -118,6 +119,7 @@ void describe(V& v, JobSpec& s) {
   v("seed", s.seed, {.doc = "of the random numbers", .min = 0, .max = 9007199254740991.0});
   v("threads", s.threads, {.doc = "0: one for each core", .min = 0, .max = 1024});
   v("layers", s.layers, {.doc = "more layers for image.exr", .max = 16});
+  v("pixel_filter", s.pixel_filter, {.doc = "how a pixel gathers the light around its centre"});
   v("pixel_type", s.pixel_type, {.doc = "precision of image.exr"});
   v("checkpoint_seconds", s.checkpoint_seconds,
     {.doc = "time between checkpoints; longer where writing one is slow",

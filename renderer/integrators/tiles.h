@@ -54,17 +54,14 @@ Counters for_each_tile(const IterationContext& context, const Image& image, Rend
   return sum;
 }
 
-/// Where a sample of a pixel starts: its stream of random numbers, and its ray through a point
-/// drawn in the pixel (pixel filter: box).
+/// Where a sample of a pixel starts: its stream of random numbers, and its first ray.
 struct CameraSample {
   Rng rng;
   Ray ray;
 
   CameraSample(const IterationContext& context, const Image& image, const V2i& pixel)
-      : rng(context.seed, context.iteration, image.index(pixel.x, pixel.y)) {
-    const V2f u = rng.next2();
-    ray = context.camera.ray(static_cast<float>(pixel.x) + u.x, static_cast<float>(pixel.y) + u.y);
-  }
+      : rng(context.seed, context.iteration, image.index(pixel.x, pixel.y)),
+        ray(context.camera.sample(pixel, rng.next2())) {}
 };
 
 }  // namespace lacuna

@@ -1,8 +1,29 @@
 #include "renderer/scene/camera.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
 namespace lacuna {
 
-Camera::Camera(const CameraData& data, int width, int height) {
+const CameraData& choose_camera(const SceneData& scene, const std::string& name,
+                                const std::string& file) {
+  if (scene.cameras.empty()) {
+    throw SceneError(fmt::format("scene \"{}\" has no perspective camera; it needs one", file));
+  }
+  if (name.empty()) return scene.cameras.front();
+  const auto found = std::find_if(scene.cameras.begin(), scene.cameras.end(),
+                                  [&](const CameraData& c) { return c.name == name; });
+  if (found != scene.cameras.end()) return *found;
+  std::vector<std::string> names;
+  for (const CameraData& c : scene.cameras) names.push_back(fmt::format("\"{}\"", c.name));
+  throw SceneError(fmt::format("scene \"{}\" has no camera \"{}\"; it has {}", file, name,
+                               fmt::join(names, ", ")));
+}
+
+Camera::Camera(const CameraData& data, int width, int height, PixelFilter filter)
+    : filter_(filter) {
   const M44d& m = data.to_world;
   const V3d right(m[0][0], m[0][1], m[0][2]);
   const V3d up(m[1][0], m[1][1], m[1][2]);
@@ -14,6 +35,16 @@ Camera::Camera(const CameraData& data, int width, int height) {
   dx_ = right * pixel;
   dy_ = up * -pixel;
   origin_ = -back + up * half_height - right * (pixel * width / 2);
+}
+
+Ray Camera::sample(const V2i& pixel, const V2f& u) const {
+  // From the pixel's upper left corner: the box ends at its edges, the tent one pixel from its
+  // centre.
+  const auto place = [&](float x) {
+    if (filter_ == PixelFilter::box) return x;
+    return x < 0.5F ? std::sqrt(2 * x) - 0.5F : 1.5F - std::sqrt(2 * (1 - x));
+  };
+  return ray(static_cast<float>(pixel.x) + place(u.x), static_cast<float>(pixel.y) + place(u.y));
 }
 
 Ray Camera::ray(float x, float y) const {

@@ -21,6 +21,17 @@ struct EnumTable<ImageLayer> {
   }};
 };
 
+/// How the light of the film's points is weighted in a pixel.
+enum class PixelFilter { box, tent };
+
+template <>
+struct EnumTable<PixelFilter> {
+  static constexpr std::array<EnumValue<PixelFilter>, 2> values{{
+      {PixelFilter::box, "box", "the mean over the pixel's square"},
+      {PixelFilter::tent, "tent", "falls off linearly to the centres of the neighbours"},
+  }};
+};
+
 /// Precision of image.exr.
 enum class PixelType { half_float, single_float };
 

@@ -49,8 +49,7 @@ Recording record(const Scene& scene, const Camera& camera, const V2i& size,
         Rng rng(1, 0,
                 static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(size.x) +
                     static_cast<std::uint64_t>(x));
-        const V2f u = rng.next2();
-        const Ray first = camera.ray(static_cast<float>(x) + u.x, static_cast<float>(y) + u.y);
+        const Ray first = camera.sample(V2i(x, y), rng.next2());
         path[0].surface.x = first.o;
         Ray next = first;
         Counters counters;

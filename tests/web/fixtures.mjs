@@ -49,7 +49,7 @@ function jobFile(changes) {
     integrator: { type: "path", max_depth: 6, guide: { type: "bsdf" }, next_event_estimation: true,
       roulette_depth: 4 },
     budget: { seconds: 30, iterations: null }, reference: "auto", reference_iterations: 1024,
-    analysis: { resolution: 128 }, seed: 1, threads: 0, layers: [], pixel_type: "float", checkpoint_seconds: 10, ...changes,
+    analysis: { resolution: 128 }, seed: 1, threads: 0, layers: [], pixel_filter: "box", pixel_type: "float", checkpoint_seconds: 10, ...changes,
   };
 }
 

@@ -132,6 +132,23 @@ TEST_F(RunJob, DamagedCheckpointIsReportedKeptAndDoneWithout) {
   EXPECT_EQ(pixels(folder), pixels(whole));
 }
 
+TEST_F(RunJob, CheckpointOfAnotherSceneIsNotGoneOnFrom) {
+  const auto scenes = std::filesystem::path(LACUNA_SOURCE_DIR) / "jobs/scenes";
+  const JobFolder whole = create(spec("cornell.glb", 6), "whole");
+  run(whole);
+  std::filesystem::copy_file(scenes / "ajar.glb", temp.path() / "own.glb");
+  const JobFolder folder = create(spec("own.glb", 6));
+  std::atomic<int> asked{0};
+  const std::function<bool()> soon = [&] { return ++asked > 6; };
+  ASSERT_EQ(run_job(folder, context(soon)), Outcome::interrupted);
+  std::filesystem::copy_file(scenes / "cornell.glb", temp.path() / "own.glb",
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_EQ(run(folder), Outcome::done);
+  ASSERT_FALSE(observer.warnings.empty());
+  EXPECT_NE(observer.warnings.back().find("another picture"), std::string::npos);
+  EXPECT_EQ(pixels(folder), pixels(whole));
+}
+
 TEST_F(RunJob, AutoReferenceIsMadeOnceAndKnowsItsNoise) {
   JobSpec s = spec();
   s.reference = "auto";

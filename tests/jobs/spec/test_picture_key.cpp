@@ -32,12 +32,14 @@ const std::map<std::string, std::function<void(JobSpec&)>> changes{
     {"seed", [](JobSpec& s) { s.seed = 2; }},
     {"threads", [](JobSpec& s) { s.threads = 2; }},
     {"layers", [](JobSpec& s) { s.layers = {ImageLayer::albedo}; }},
+    {"pixel_filter", [](JobSpec& s) { s.pixel_filter = PixelFilter::tent; }},
     {"pixel_type", [](JobSpec& s) { s.pixel_type = PixelType::half_float; }},
     {"checkpoint_seconds", [](JobSpec& s) { s.checkpoint_seconds = 11; }},
 };
 
-const std::set<std::string> decides_the_picture{
-    "scene", "camera", "resolution", "integrator", "analysis", "environment", "seed"};
+const std::set<std::string> decides_the_picture{"scene",      "camera",      "resolution",
+                                                "integrator", "analysis",    "environment",
+                                                "seed",       "pixel_filter"};
 
 TEST(PictureKey, changes_with_what_decides_the_pixels_and_with_nothing_else) {
   JobSpec base;

@@ -103,6 +103,7 @@ TEST(Schema, states_ranges_and_names) {
   EXPECT_EQ(keys["resolution"]["minItems"], 2);
   EXPECT_EQ(keys["budget"]["properties"]["seconds"]["exclusiveMinimum"], 0);
   EXPECT_EQ(keys["seed"]["maximum"].dump(), "9007199254740991");
+  EXPECT_EQ(keys["pixel_filter"]["enum"], (Json{"box", "tent"}));
   EXPECT_EQ(keys["pixel_type"]["enum"], (Json{"float", "half"}));
   EXPECT_EQ(keys["scene"]["minLength"], 1);
 }

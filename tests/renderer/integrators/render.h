@@ -55,11 +55,7 @@ inline std::filesystem::path own_scene(const std::string& name) {
 inline Rendering render(SceneData data, const RenderSettings& s) {
   const ThreadPool pool(s.threads);
   const auto integrator = make_integrator(s.integrator);
-  const CameraData* chosen = &data.cameras.front();
-  for (const CameraData& c : data.cameras) {
-    if (c.name == s.camera) chosen = &c;
-  }
-  const Camera camera(*chosen, s.width, s.height);
+  const Camera camera(choose_camera(data, s.camera, "test"), s.width, s.height);
   const Scene scene(std::move(data), integrator->needs(), s.environment, pool);
   Rendering r;
   r.film = Film(s.width, s.height);
