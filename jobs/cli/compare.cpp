@@ -15,7 +15,6 @@ namespace {
 struct Options {
   std::filesystem::path a, b;
   int block = 0;
-  double skip_above = std::numeric_limits<double>::infinity();
 };
 
 std::vector<double> in_double(const FloatImage& image) {
@@ -50,8 +49,7 @@ void print_blocks(const Options& o, const FloatImage& image, const std::vector<d
                                  image.width, image.height));
   }
   const std::vector<double> variance = variance_of_difference(o);
-  const BlockStatistics s =
-      block_statistics(a, b, variance, image.width, image.height, o.block, o.skip_above);
+  const BlockStatistics s = block_statistics(a, b, variance, image.width, image.height, o.block);
   fmt::print("blocks  {} of {} x {} pixels\nblock_relative {:.6g}\nworst_block {}, {}\n", s.blocks,
              o.block, o.block, s.largest_relative, s.worst_x, s.worst_y);
   if (variance.empty()) return;
@@ -91,8 +89,6 @@ void add_compare(CLI::App& app, int& code) {
                    "compare the means of square blocks of this many pixels too; with the layer "
                    "\"variance\" in A (and in B), also as z-scores")
       ->check(CLI::Range(1, 16384));
-  command->add_option("--skip-above", o->skip_above,
-                      "leave out blocks in which a channel of B exceeds this (lamps)");
   command->callback([o, &code] {
     compare(*o);
     code = exit_done;

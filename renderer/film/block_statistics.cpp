@@ -11,14 +11,13 @@ namespace {
 
 struct Block {
   std::array<double, 3> a{}, b{}, variance{};
-  double brightest = 0;  // of b
 };
 
 }  // namespace
 
 BlockStatistics block_statistics(std::span<const double> a, std::span<const double> b,
-                                 std::span<const double> variance, int width, int height, int size,
-                                 double skip_above) {
+                                 std::span<const double> variance, int width, int height,
+                                 int size) {
   BlockStatistics s;
   std::vector<double> z;
   for (int y0 = 0; y0 + size <= height; y0 += size) {
@@ -31,12 +30,10 @@ BlockStatistics block_statistics(std::span<const double> a, std::span<const doub
           for (std::size_t c = 0; c < 3; ++c) {
             block.a[c] += a[pixel + c];
             block.b[c] += b[pixel + c];
-            block.brightest = std::max(block.brightest, b[pixel + c]);
             if (!variance.empty()) block.variance[c] += variance[pixel + c];
           }
         }
       }
-      if (block.brightest > skip_above) continue;
       ++s.blocks;
       const double sum_a = block.a[0] + block.a[1] + block.a[2];
       const double sum_b = block.b[0] + block.b[1] + block.b[2];

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <span>
 
 namespace lacuna {
@@ -18,11 +17,8 @@ struct BlockStatistics {
 };
 
 /// `a`, `b`: interleaved RGB of `width` x `height`; `variance` of the estimates a - b (empty: no
-/// z). `size` is the side of a block in pixels, at most the picture's. Blocks in which a channel of
-/// `b` exceeds `skip_above` are left out: at the rim of a lamp two renderers' pixel filters differ
-/// by more than their light.
+/// z). `size` is the side of a block in pixels, at most the picture's.
 BlockStatistics block_statistics(std::span<const double> a, std::span<const double> b,
-                                 std::span<const double> variance, int width, int height, int size,
-                                 double skip_above = std::numeric_limits<double>::infinity());
+                                 std::span<const double> variance, int width, int height, int size);
 
 }  // namespace lacuna
