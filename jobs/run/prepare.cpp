@@ -13,9 +13,10 @@ namespace lacuna {
 namespace {
 
 std::filesystem::path resolve(const RunContext& context, const std::string& what,
-                              const std::string& name, std::vector<std::string_view> extensions) {
+                              const std::string& name,
+                              const std::vector<std::string_view>& extensions) {
   try {
-    return context.scenes.resolve(name, std::move(extensions));
+    return context.scenes.resolve(name, extensions);
   } catch (const std::invalid_argument& e) {
     throw SceneError(fmt::format("{} \"{}\": {}", what, name, e.what()));
   }

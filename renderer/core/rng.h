@@ -90,10 +90,10 @@ class Rng {
     used_ = 0;
   }
 
-  std::array<std::uint32_t, 2> key_;
-  Block counter_;
   alignas(32) std::array<std::uint32_t, 16> numbers_;
   std::uint32_t used_ = 16;
+  std::array<std::uint32_t, 2> key_;
+  Block counter_;
 };
 
 }  // namespace lacuna

@@ -20,8 +20,8 @@ struct Interface {
 
   /// What a facet does with light that meets it at `cos`; `eta` as in specular.h.
   struct Split {
-    Rgb reflected;
-    Rgb transmitted;  ///< without the 1 / eta^2 of radiance
+    Rgb reflected{0, 0, 0};
+    Rgb transmitted{0, 0, 0};  ///< without the 1 / eta^2 of radiance
   };
   Split split(float cos, float eta) const {
     const Rgb white(1, 1, 1);

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <regex>
-
 #include "jobs/store/job_folder.h"
 #include "tests/temporary_folder.h"
 
@@ -32,8 +30,11 @@ TEST(JobIds, nothing_else_is_looked_up) {
 }
 
 TEST(JobIds, now_is_iso_8601_with_milliseconds) {
-  const std::regex form(R"(20\d\d-[01]\d-[0-3]\dT[0-2]\d:[0-5]\d:[0-6]\d\.\d\d\dZ)");
-  EXPECT_TRUE(std::regex_match(utc_now(), form)) << utc_now();
+  std::string shape = utc_now();
+  for (char& c : shape) {
+    if (c >= '0' && c <= '9') c = 'd';
+  }
+  EXPECT_EQ(shape, "dddd-dd-ddTdd:dd:dd.dddZ");
   const std::string before = utc_now(), after = utc_now();
   EXPECT_LE(before, after);
 }

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -33,7 +33,8 @@ class GlbBuilder {
     const std::size_t bytes = values.size() * sizeof(T);
     const std::size_t offset = bin.size();
     bin.resize(offset + bytes);
-    if (bytes > 0) std::memcpy(bin.data() + offset, values.data(), bytes);
+    const auto* from = reinterpret_cast<const std::uint8_t*>(values.data());
+    std::copy_n(from, bytes, bin.begin() + static_cast<std::ptrdiff_t>(offset));
     return append("bufferViews", {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}});
   }
 
