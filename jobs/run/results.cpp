@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "analysis/storage/atomic_file.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/version.h"
 #include "renderer/film/exr.h"
+#include "renderer/film/half_layers.h"
 #include "renderer/film/preview.h"
 
 namespace lacuna {
@@ -72,6 +75,24 @@ std::map<std::string, std::string> attributes(const RenderTask& task, const Rend
   return a;
 }
 
+/// layers.half, then layers.json, which says what lies where in it.
+void write_half_layers(const RenderTask& task, std::vector<ExrLayer> layers) {
+  if (task.reference != nullptr) layers.push_back({"reference", rgb, task.reference->rgb});
+  const HalfLayers packed = pack_half(layers);
+  nlohmann::ordered_json index;
+  index["width"] = task.spec.resolution[0];
+  index["height"] = task.spec.resolution[1];
+  for (const HalfLayer& l : packed.index) {
+    index["layers"].push_back({{"name", l.name},
+                               {"channels", l.channels},
+                               {"offset", l.offset},
+                               {"bytes", l.bytes},
+                               {"scale", l.scale}});
+  }
+  write_file_atomically(task.folder.file("layers.half"), packed.bytes);
+  write_file_atomically(task.folder.file("layers.json"), index.dump(2) + "\n");
+}
+
 }  // namespace
 
 void write_results(const RenderTask& task, const RenderLoop& loop) {
@@ -81,6 +102,7 @@ void write_results(const RenderTask& task, const RenderLoop& loop) {
   for (const ImageLayer layer : task.spec.layers) add_layer(task, film, layer, layers);
   write_exr(task.folder.file("image.exr"), film.width(), film.height(), layers,
             task.spec.pixel_type, attributes(task, loop));
+  write_half_layers(task, layers);
   write_preview(task.folder.file("image.png"), film.width(), film.height(), mean);
   write_file_atomically(task.folder.file("curve.csv"), loop.curve().csv());
 }

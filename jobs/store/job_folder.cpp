@@ -56,6 +56,8 @@ const std::vector<FileInfo>& job_files() {
       {"progress.json", "application/json", "how far it has come", true},
       {"image.exr", "image/x-exr", "the picture and its layers", true},
       {"image.png", "image/png", "a tone-mapped thumbnail", true},
+      {"layers.half", "application/octet-stream", "the layers, for viewers that read no EXR", true},
+      {"layers.json", "application/json", "what lies where in layers.half", true},
       {"curve.csv", "text/csv", "error and counts against time", true},
       {"report.json", "application/json", "where time and rays went", true},
       {"checkpoint.bin", "application/octet-stream", "what it takes to go on", false},

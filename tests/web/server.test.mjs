@@ -80,7 +80,7 @@ test("the first job, from the empty list to its curve, picture and report; then 
   const offered = await page.getByLabel("Error", { exact: true }).locator("option").allInnerTexts();
   assert.deepEqual(offered, ["RMSE", "relMSE", "MSE", "MAE", "SMAPE", "estimated RMSE"]);
   assert.match(await page.locator(".report").innerText(), /peak memory bytes\s+[\d.]+\s[KMG]iB/);
-  for (const name of ["image.exr", "image.png", "curve.csv", "report.json", "job.json"]) {
+  for (const name of ["image.exr", "image.png", "layers.half", "layers.json", "curve.csv", "report.json", "job.json"]) {
     assert.equal(await page.locator(".files a", { hasText: name }).count(), 1, name);
   }
   await screenshot(page, "real-job");

@@ -20,7 +20,7 @@ test("render: results, a line a milestone, done already, another job in the way"
   job(folder, "a.json", {});
   const first = await run(folder, "render", "a.json");
   assert.equal(first.code, 0, first.err);
-  for (const name of ["image.exr", "image.png", "curve.csv", "report.json", "job.json", "state.json", "log.txt"]) {
+  for (const name of ["image.exr", "image.png", "layers.half", "layers.json", "curve.csv", "report.json", "job.json", "state.json", "log.txt"]) {
     assert.ok(existsSync(join(folder, "a.job", name)), name);
   }
   assert.match(first.err, /iteration 2, /);

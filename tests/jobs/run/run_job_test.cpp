@@ -65,7 +65,8 @@ TEST_F(RunJob, LeavesItsFolderComplete) {
   const JobFolder folder = create(s);
   EXPECT_EQ(run(folder), Outcome::done);
   EXPECT_EQ(folder.read_state().state, State::done);
-  for (const char* name : {"image.exr", "image.png", "curve.csv", "report.json", "progress.json"}) {
+  for (const char* name : {"image.exr", "image.png", "layers.half", "layers.json", "curve.csv",
+                           "report.json", "progress.json"}) {
     EXPECT_TRUE(std::filesystem::exists(folder.file(name))) << name;
   }
   const std::vector<float> all = pixels(folder);

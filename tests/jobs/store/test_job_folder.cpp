@@ -208,7 +208,8 @@ TEST(JobFolder, the_manifest_serves_everything_but_the_checkpoint) {
     EXPECT_EQ(f.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz."), std::string_view::npos);
   }
   EXPECT_EQ(names, (Names{"job.json", "state.json", "progress.json", "image.exr", "image.png",
-                          "curve.csv", "report.json", "checkpoint.bin", "log.txt"}));
+                          "layers.half", "layers.json", "curve.csv", "report.json",
+                          "checkpoint.bin", "log.txt"}));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "renderer/core/rng.h"
 #include "renderer/film/block_statistics.h"
 #include "renderer/film/exr.h"
+#include "renderer/film/half_layers.h"
 #include "renderer/film/metrics.h"
 #include "renderer/scene/image_read.h"
 #include "tests/renderer/scene/glb_builder.h"
@@ -167,6 +168,35 @@ TEST(Exr, LayersAndAttributesComeBack) {
   std::ifstream g(again, std::ios::binary);
   EXPECT_TRUE(
       std::equal(std::istreambuf_iterator<char>(f), {}, std::istreambuf_iterator<char>(g), {}));
+}
+
+TEST(HalfLayers, KeepElevenBitsOfEveryLayer) {
+  const std::vector<ExrLayer> layers{
+      {"", {"R", "G", "B"}, {0, 1e30, 3.14159e25, -7e29, 5e29, 1e22}},
+      {"depth", {"Z"}, {1e-20, 3e-21}},
+      {"black", {"Z"}, {0, 0}}};
+  const HalfLayers packed = pack_half(layers);
+  ASSERT_EQ(packed.index.size(), layers.size());
+  std::size_t offset = 0;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const HalfLayer& l = packed.index[i];
+    EXPECT_EQ(l.name, layers[i].name);
+    EXPECT_EQ(l.channels, layers[i].channels);
+    EXPECT_EQ(l.offset, offset);
+    ASSERT_EQ(l.bytes, 2 * layers[i].values.size());
+    offset += l.bytes;
+    for (std::size_t k = 0; k < layers[i].values.size(); ++k) {
+      const auto byte = [&](std::size_t b) {
+        return static_cast<unsigned>(
+            static_cast<unsigned char>(packed.bytes[l.offset + 2 * k + b]));
+      };
+      half h;
+      h.setBits(static_cast<std::uint16_t>(byte(0) | byte(1) << 8));
+      const double v = layers[i].values[k];
+      EXPECT_NEAR(static_cast<float>(h) * l.scale, v, 0x1p-11 * std::abs(v)) << l.name << " " << k;
+    }
+  }
+  EXPECT_EQ(packed.bytes.size(), offset);
 }
 
 TEST(Exr, HalfRefusesWhatOverflowsAndLeavesTheOldFile) {
