@@ -6,7 +6,7 @@ import { curvePanel } from "./curve_panel.js";
 import { copyButton, h, setText } from "./dom.js";
 import { bytes, curlLine, duration, integratorName, jobTitle, number, prettyJob, seconds, when }
   from "./format.js";
-import { picture, zoomGroup } from "./picture.js";
+import { jobPicture } from "./job_picture.js";
 import { reportView } from "./report.js";
 import { badge, currentError, progressBar } from "./status.js";
 
@@ -87,8 +87,9 @@ function page(id, query, signal) {
   const notes = h("div", { className: "notes" });
   const settings = h("div");
   const progressFacts = h("div");
-  const image = picture("The picture", "", zoomGroup());
-  const panel = curvePanel(query, () => history.replaceState(null, "", `#/job/${id}?${query}`), signal);
+  const remember = () => history.replaceState(null, "", `#/job/${id}?${query}`);
+  const image = jobPicture(id, query, remember, signal);
+  const panel = curvePanel(query, remember, signal);
   const rows = h("details", {}, h("summary", {}, "Curve as a table"));
   const report = h("section", { hidden: true });
   const files = h("section");
@@ -141,7 +142,9 @@ export async function show(main, { params, query, signal }) {
     const files = Object.fromEntries(shown.files.map((f) => [f.name, f]));
     const next = Object.fromEntries(shown.files.map((f) => [f.name, `${shown.state.state} ${f.bytes}`]));
     const changed = (name) => files[name] && next[name] !== versions[name];
-    view.image.load(files["image.png"] ? fileUrl(id, "image.png", next["image.png"]) : null);
+    // image.png is written after the layers, and unlike theirs its size changes with its content.
+    view.image.update(files, next["image.png"] ?? "", jobTitle(shown.job))
+      .catch((error) => { if (!signal.aborted) setText(view.progressFacts, error.message); });
     view.log.hidden = !files["log.txt"];
     view.files.replaceChildren(h("h2", {}, "Files"), fileList(id, shown.files));
     if (changed("curve.csv") || !files["curve.csv"]) {

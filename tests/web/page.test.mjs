@@ -22,7 +22,7 @@ const views = {
 };
 
 /// How many pictures a view has in the end.
-const pictures = { "#/": 3, [views.job.slice(1)]: 1, [views.running.slice(1)]: 1, [views.compare.slice(1)]: 3 };
+const pictures = { "#/": 3, [views.running.slice(1)]: 1, [views.compare.slice(1)]: 3 };
 
 let browser;
 let mock;
@@ -118,7 +118,7 @@ test("jobs chosen in the list are compared", async () => {
   assert.equal(await compare.isDisabled(), true);
   for (const id of [cornell, shallow]) await page.check(`tr[data-job="${id}"] input`);
   await compare.click();
-  await page.waitForSelector("canvas[data-curves='2']");
+  await page.waitForSelector(".plot canvas[data-curves='2']");
   assert.ok(page.url().endsWith(`#/compare?jobs=${cornell},${shallow}`));
 });
 
@@ -132,12 +132,12 @@ test("an empty list says how to post the first job", async () => {
 
 test("a running job moves, gets its curve and picture, and ends", async () => {
   await open(views.running);
-  assert.equal(await attribute("canvas", "data-points"), "3");
+  assert.equal(await attribute(".plot canvas", "data-points"), "3");
   mock.update(running, { progress: progress(20, 0.5, { error_metric: "est_rmse" }) });
   await page.waitForFunction(() => document.querySelector(".title progress").value === 0.5);
   mock.update(running, { files: { "curve.csv": curve({ rows: 6, cost: 0.7, level: 0.4 }) },
     state: { state: "done", phase: "", finished: "2026-01-31T10:20:00.000Z" } });
-  await page.waitForSelector("canvas[data-points='6']");
+  await page.waitForSelector(".plot canvas[data-points='6']");
   assert.equal(await text(".title .badge"), "done");
   assert.equal(await page.locator(".title progress").isVisible(), false);
   assert.equal(await page.getByRole("button", { name: "Cancel job" }).isVisible(), false);
@@ -167,7 +167,7 @@ test("a job shows its report with units, its files and its settings", async () =
   assert.match(report, /rays per second\s+19\.9\sM\/s/);
   assert.match(report, /built\s+none/);
   assert.match(report, /type\s+share\s+1\s+camera\s+0\.310/);
-  assert.equal(await count(".files a"), 6);
+  assert.equal(await count(".files a"), 8);
   assert.match(await page.locator("article").innerText(), /512 × 512/);
   await page.getByText("Curve as a table").click();
   assert.equal(await count("details[open] tbody tr"), 11);
@@ -185,7 +185,7 @@ test("a failed job says why, plainly", async () => {
 
 test("the curve's switches change the plot and the address", async () => {
   await open(views.job);
-  const canvas = page.locator("canvas");
+  const canvas = page.locator(".plot canvas");
   assert.match(await canvas.getAttribute("aria-label"), /^RMSE against render time/);
   await page.getByLabel("Error", { exact: true }).selectOption("est_rmse");
   await page.getByLabel("against", { exact: true }).selectOption("iteration");
@@ -206,7 +206,7 @@ test("hollow points are explained where a reference's floor is reached, and only
 });
 
 test("a click zooms the picture to its pixels, and keys move it", async () => {
-  await open(views.job);
+  await open(views.running);
   const image = page.locator(".frame img");
   await image.waitFor();
   const scale = () => image.evaluate((i) => new DOMMatrix(getComputedStyle(i).transform).a);
@@ -230,7 +230,7 @@ test("a click zooms the picture to its pixels, and keys move it", async () => {
 
 test("compare lays as many curves over one another as there are jobs", async () => {
   await open(views.compare);
-  assert.equal(await attribute("canvas", "data-curves"), "3");
+  assert.equal(await attribute(".plot canvas", "data-curves"), "3");
   const table = await page.locator("main section table").first().innerText();
   for (const name of ["Cornell box, 6 edges", "atrium.glb", "× the fastest"]) assert.ok(table.includes(name), name);
   await page.waitForFunction(() => document.querySelectorAll(".gallery img:not([hidden])").length === 3);
@@ -244,7 +244,7 @@ test("compare lays as many curves over one another as there are jobs", async () 
 
 test("compare shows what it can where a job is missing", async () => {
   await open(`/#/compare?jobs=${cornell},nobody`);
-  assert.equal(await attribute("canvas", "data-curves"), "1");
+  assert.equal(await attribute(".plot canvas", "data-curves"), "1");
   assert.equal(await text(".problem"), "nobody: There is no job nobody.");
 });
 
