@@ -1,11 +1,11 @@
 // Several jobs over one another: curves, error at equal time, time to equal error, pictures.
-import { fileUrl, getJob, getText, isTerminal, poll } from "./api.js";
+import { getJob, getText, isTerminal, poll } from "./api.js";
+import { comparePictures } from "./compare_pictures.js";
 import { axes, commonError, commonInstants, errorAt, metrics, parseCurve, points, reaches }
   from "./curve.js";
 import { curvePanel } from "./curve_panel.js";
 import { append, h, table } from "./dom.js";
 import { integratorName, jobTitle, number, significant } from "./format.js";
-import { picture, zoomGroup } from "./picture.js";
 import { differences, doubtful } from "./settings_diff.js";
 
 const everyMs = 5000;
@@ -16,9 +16,7 @@ async function readJob(id, before, signal) {
   const job = await getJob(id, signal);
   const has = (name) => job.files.find((f) => f.name === name);
   const rows = has("curve.csv") ? parseCurve(await getText(id, "curve.csv", signal)) : [];
-  const file = has("image.png");
-  const image = file ? fileUrl(id, file.name, `${job.state.state} ${file.bytes}`) : null;
-  return { ...job, rows, image };
+  return { ...job, rows };
 }
 
 /// "label, integrator"; where two would read the same, with the end of the id.
@@ -74,27 +72,6 @@ function warning(jobs) {
     `These jobs differ in ${found.join(", ")}: their errors may not be comparable.`);
 }
 
-/// Frames stay while jobs run, so that the zoom stays too.
-function gallery() {
-  const group = zoomGroup();
-  const frames = new Map();
-  const element = h("div", { className: "gallery" });
-  return {
-    element,
-    show(jobs, labels) {
-      jobs.forEach((job, i) => {
-        if (!frames.has(job.id)) {
-          const caption = h("a", { href: `#/job/${job.id}` }, labels[i]);
-          const frame = picture(`Picture of ${labels[i]}`, caption, group);
-          frames.set(job.id, frame);
-          element.append(frame.element);
-        }
-        frames.get(job.id).load(job.image);
-      });
-    },
-  };
-}
-
 const idsOf = (query) => [...new Set((query.get("jobs") ?? "").split(",").filter(Boolean))];
 
 function noJobs() {
@@ -114,12 +91,15 @@ export async function show(main, { query, signal }) {
   const notes = h("div", { className: "notes" });
   const times = h("section");
   const settings = h("section");
-  const pictures = gallery();
   let drawn = () => {};
-  const panel = curvePanel(query, () => {
+  function remember() {
     const rest = new URLSearchParams(query);
     rest.delete("jobs");
     history.replaceState(null, "", `#/compare?jobs=${ids.join(",")}&${rest}`);
+  }
+  const pictures = comparePictures(query, remember, signal);
+  const panel = curvePanel(query, () => {
+    remember();
     drawn();
   }, signal);
 
@@ -141,11 +121,13 @@ export async function show(main, { query, signal }) {
     drawn = () => drawTimes(series);
     drawn();
     settings.replaceChildren(h("h2", {}, "Settings that differ"), differenceTable(jobs, labels));
-    pictures.show(jobs, labels);
+    pictures.show(jobs, labels).catch((error) => {
+      if (!signal.aborted) append(notes, [h("p", { className: "problem" }, error.message)]);
+    });
   }
 
-  main.append(notes, panel.element, times, settings,
-    h("section", {}, h("h2", {}, "Pictures"), pictures.element));
+  main.append(notes, panel.element, times,
+    h("section", {}, h("h2", {}, "Pictures"), pictures.element), settings);
   await poll(async () => {
     const results = await Promise.allSettled(ids.map((id) => readJob(id, read.get(id), signal)));
     signal.throwIfAborted();

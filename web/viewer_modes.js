@@ -28,7 +28,7 @@ export function modeTools(change) {
       by.fill(errorKinds.map(({ key, label }) => ({ key, label })), state.by);
       right.element.hidden = state.mode === "one";
       and.hidden = right.element.hidden;
-      and.textContent = state.mode === "split" ? "left of" : "as r, as x:";
+      and.textContent = state.mode === "split" ? "left of" : "subtracted from";
       by.element.hidden = state.mode !== "difference";
     },
   };

@@ -22,7 +22,7 @@ const views = {
 };
 
 /// How many pictures a view has in the end.
-const pictures = { "#/": 3, [views.running.slice(1)]: 1, [views.compare.slice(1)]: 3 };
+const pictures = { "#/": 3, [views.running.slice(1)]: 1, [views.compare.slice(1)]: 1 };
 
 let browser;
 let mock;
@@ -233,8 +233,17 @@ test("compare lays as many curves over one another as there are jobs", async () 
   assert.equal(await attribute(".plot canvas", "data-curves"), "3");
   const table = await page.locator("main section table").first().innerText();
   for (const name of ["Cornell box, 6 edges", "atrium.glb", "× the fastest"]) assert.ok(table.includes(name), name);
-  await page.waitForFunction(() => document.querySelectorAll(".gallery img:not([hidden])").length === 3);
   assert.match(await text(".warning"), /differ in \/scene, \/resolution, \/reference/);
+  assert.deepEqual(page.troubles, []);
+});
+
+test("compare shows pictures without layers side by side, zoomed together", async () => {
+  for (const id of [cornell, shallow]) {
+    delete mock.find(id).files["layers.json"];
+  }
+  await open(views.compare);
+  await page.waitForFunction(() => document.querySelectorAll(".gallery img:not([hidden])").length === 3);
+  assert.match(await text(".note p"), /no layers.json, so image.png is shown/);
   await page.locator(".frame").first().press("+");
   const transforms = await page.locator(".gallery img").evaluateAll((all) => all.map((i) => i.style.transform));
   assert.equal(new Set(transforms).size, 1, "the pictures are zoomed together");

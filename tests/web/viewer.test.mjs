@@ -7,6 +7,7 @@ import { layerFiles, toHalf } from "./layers.mjs";
 import { Mock } from "./mock_server.mjs";
 
 const job = "20260131-101400-cornell";
+const other = "20260131-101500-shallow";
 const old = "20260131-101900-running";
 const rgb = ["R", "G", "B"];
 
@@ -51,6 +52,7 @@ const frames = () => page.evaluate(() => new Promise((resolve) => {
 }));
 /// Moves the pointer to the middle of the pixel (x, y) of a picture of `width` pixels that fits.
 async function pointAt(x, y, width = 4) {
+  await page.locator(stage).scrollIntoViewIfNeeded();
   const box = await page.locator(stage).boundingBox();
   const zoom = box.width / width;
   await page.mouse.move(box.x + (x + 0.5) * zoom, box.y + (y + 0.5) * zoom);
@@ -267,4 +269,58 @@ test("a lost graphics context comes back", async () => {
     await new Promise((resolve) => { setTimeout(resolve, 300); });
   });
   assert.deepEqual(await coloursOf(page, stage, at), before);
+});
+
+/// The other job's estimate is twice this one's.
+function openPair(query, options) {
+  mock.update(job, { files: small() });
+  mock.update(other, { files: layerFiles(4, 2, [
+    { name: "", channels: rgb, pixel: (x, y) => [1, 2, 3].map((c) => c * (y + 1) / 4 + (x - 1) / 4) },
+    { name: "reference", channels: rgb, pixel: (x, y) => [1, 2, 3].map((c) => c * (y + 1) / 8) }]) });
+  return open(`/#/compare?jobs=${job},${other},${old}${query}`, options).then(() => page.waitForSelector(stage));
+}
+
+test("number keys flip pictures at one exposure and one zoom", async () => {
+  await openPair("&ev=0");
+  assert.deepEqual(await page.getByLabel("Show", { exact: true }).locator("option").allInnerTexts(),
+    ["picture", "reference", "signed error", "absolute error", "squared error", "relative squared error"]);
+  await page.locator(stage).focus();
+  const [before] = await pixelColours([[2, 0]]);
+  like(before, [0.25, 0.375, 0.5].map(srgb));
+  await page.keyboard.press("2");
+  await frames();
+  const [flipped] = await pixelColours([[2, 0]]);
+  like(flipped, [0.5, 0.75, 1].map(srgb));
+  assert.ok(page.url().includes("left=1"));
+  await page.keyboard.press("3");
+  assert.ok(page.url().includes("left=1"), "the third has no layers");
+  await page.getByText("no layers.json, so image.png is shown").waitFor();
+  assert.deepEqual(page.troubles, []);
+});
+
+test("two pictures are split by a line that a drag moves", async () => {
+  await openPair("&ev=0&mode=split");
+  like((await pixelColours([[2, 0]]))[0], [0.5, 0.75, 1].map(srgb));
+  like((await pixelColours([[1, 0]]))[0], [0.125, 0.25, 0.375].map(srgb));
+  const box = await page.locator(stage).boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + 20);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.8 * box.width, box.y + 20);
+  await page.mouse.up();
+  like((await pixelColours([[2, 0]]))[0], [0.25, 0.375, 0.5].map(srgb));
+  assert.ok(page.url().includes("split=0.8"));
+  await screenshot(page, "compare-split");
+  assert.deepEqual(page.troubles, []);
+});
+
+test("two pictures are subtracted, and the address holds how", async () => {
+  await openPair("&mode=difference");
+  await pointAt(3, 1);
+  assert.equal(await readout(), "(3, 1)  0.7500\nx: R 1.000  G 1.500  B 2.000\nr: R 0.5000  G 0.7500  B 1.000");
+  await page.getByLabel("by", { exact: true }).selectOption("squared");
+  await page.getByText("squared error, (x − r)²; mean").waitFor();
+  assert.ok(page.url().includes("mode=difference") && page.url().includes("by=squared"));
+  await page.reload();
+  await page.getByText("squared error, (x − r)²; mean").waitFor();
+  assert.deepEqual(page.troubles, []);
 });
