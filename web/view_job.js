@@ -4,9 +4,11 @@ import { parseCurve } from "./curve.js";
 import { curveTable } from "./curve_table.js";
 import { curvePanel } from "./curve_panel.js";
 import { copyButton, h, setText } from "./dom.js";
+import { effortView } from "./effort.js";
 import { bytes, curlLine, duration, integratorName, jobTitle, number, prettyJob, seconds, when }
   from "./format.js";
 import { jobPicture } from "./job_picture.js";
+import { logView } from "./log_view.js";
 import { reportView } from "./report.js";
 import { badge, currentError, progressBar } from "./status.js";
 
@@ -69,15 +71,6 @@ function jobSource(id, job) {
         h("a", { href: `#/new?from=${id}` }, "Change it and post it here"))));
 }
 
-/// A part that is read when it is opened.
-function folded(title, read) {
-  const place = h("div");
-  const element = h("details", { ontoggle: async () => {
-    if (element.open) place.replaceChildren(await read());
-  } }, h("summary", {}, title), place);
-  return element;
-}
-
 /// The parts of the page that follow the job, and `set...` to bring them up to date.
 function page(id, query, signal) {
   const heading = h("h1");
@@ -94,15 +87,14 @@ function page(id, query, signal) {
   const report = h("section", { hidden: true });
   const files = h("section");
   const source = h("div", { className: "source" });
-  const log = folded("Log", async () => h("pre", { tabIndex: 0, className: "tall" },
-    await getText(id, "log.txt", signal).catch((error) => error.message)));
+  const log = logView(id, signal);
   const element = h("article", {},
     h("div", { className: "title" }, heading, state.element, bar.element, cancel),
     h("p", { className: "id" }, id), notes,
     h("div", { className: "columns" },
       h("div", {}, image.element, settings, progressFacts),
       h("div", {}, h("h2", {}, "Error"), panel.element, rows, files)),
-    report, source, log);
+    report, source, log.element);
   return {
     element, heading, state, bar, cancel, notes, settings, progressFacts, image, panel, rows, report,
     files, source, log,
@@ -134,6 +126,7 @@ export async function show(main, { params, query, signal }) {
     setText(view.heading, jobTitle(job));
     view.settings.replaceChildren(settingFacts(job));
     view.source.replaceChildren(jobSource(id, job));
+    view.log.element.open = shown.state.state === "failed";
     main.replaceChildren(view.element);
   }
 
@@ -145,7 +138,7 @@ export async function show(main, { params, query, signal }) {
     // image.png is written after the layers, and unlike theirs its size changes with its content.
     view.image.update(files, next["image.png"] ?? "", jobTitle(shown.job))
       .catch((error) => { if (!signal.aborted) setText(view.progressFacts, error.message); });
-    view.log.hidden = !files["log.txt"];
+    view.log.update(files["log.txt"]?.bytes ?? null);
     view.files.replaceChildren(h("h2", {}, "Files"), fileList(id, shown.files));
     if (changed("curve.csv") || !files["curve.csv"]) {
       const curve = files["curve.csv"] ? parseCurve(await getText(id, "curve.csv", signal)) : [];
@@ -156,7 +149,8 @@ export async function show(main, { params, query, signal }) {
     }
     if (changed("report.json")) {
       const report = JSON.parse(await getText(id, "report.json", signal));
-      view.report.replaceChildren(h("h2", {}, "Report"), reportView(report));
+      view.report.replaceChildren(h("h2", {}, "Where time and rays went"), effortView(report),
+        h("h2", {}, "Report"), reportView(report));
       view.report.hidden = false;
     }
     versions = next;

@@ -165,7 +165,7 @@ test("a job shows its report with units, its files and its settings", async () =
   assert.match(report, /peak memory bytes\s+175\sMiB/);
   assert.match(report, /render\s+30\.0\ss/);
   assert.match(report, /rays per second\s+19\.9\sM\/s/);
-  assert.match(report, /built\s+none/);
+  assert.match(report, /loaded\s+octree/);
   assert.match(report, /type\s+share\s+1\s+camera\s+0\.310/);
   assert.equal(await count(".files a"), 8);
   assert.match(await page.locator("article").innerText(), /512 × 512/);
@@ -173,6 +173,37 @@ test("a job shows its report with units, its files and its settings", async () =
   assert.equal(await count("details[open] tbody tr"), 11);
   await page.getByText("Log", { exact: true }).click();
   await page.getByText("loaded the scene in 41 ms").waitFor();
+  assert.deepEqual(page.troubles, []);
+});
+
+test("a job shows where its time and rays went, and what was built, loaded and left out", async () => {
+  await open(views.job);
+  const effort = await page.locator(".effort").innerText();
+  assert.match(effort, /Time: 42\.9\ss in all/);
+  assert.match(effort, /render 30\.0\ss, 69\.9 %/);
+  assert.match(effort, /shadow rays 512\s000\s000, 35\.7 %/);
+  assert.match(effort, /built\s+skeleton \(1\.50\ss\)\s+loaded\s+octree\s+left out\s+2 of 3 textures/);
+  const widths = await page.locator(".stacked-bar").first().locator("span").evaluateAll(
+    (all) => all.map((piece) => piece.getBoundingClientRect().width / piece.parentElement.clientWidth));
+  assert.ok(Math.abs(widths[0] - 30.02 / 42.94) < 0.01, `${widths}`);
+  assert.ok(Math.abs(widths.reduce((a, b) => a + b) - 1) < 0.01, `${widths}`);
+});
+
+test("the log is followed while the job runs, from its tail on, and only while it is open", async () => {
+  const lines = (from, to) => Array.from({ length: to - from }, (_, i) => `line ${from + i} ä`).join("\n") + "\n";
+  mock.update(running, { files: { "log.txt": lines(0, 10000) } });
+  await open(views.running);
+  assert.ok(!mock.requests.some((r) => r.includes("log.txt")));
+  await page.getByText("Log", { exact: true }).click();
+  const log = page.locator("pre[aria-label=Log]");
+  await page.waitForFunction(() => document.querySelector("pre[aria-label=Log]").textContent.endsWith("line 9999 ä\n"));
+  const start = await log.evaluate((pre) => pre.textContent.slice(0, 20));
+  assert.match(start, /^line \d+ ä\nline/);
+  assert.match(await page.locator("details[open] .note").innerText(), /^The last part of it, from .* on\. The whole log$/);
+  assert.ok(await log.evaluate((pre) => pre.scrollTop > 0));
+  mock.update(running, { files: { "log.txt": lines(0, 10003) }, progress: progress(8, 0.2) });
+  await page.waitForFunction(() => document.querySelector("pre[aria-label=Log]").textContent
+    .endsWith("line 9999 ä\nline 10000 ä\nline 10001 ä\nline 10002 ä\n"));
   assert.deepEqual(page.troubles, []);
 });
 
