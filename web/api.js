@@ -86,17 +86,22 @@ function sayLink(text) {
   if (place.textContent !== text) place.textContent = text;
 }
 
-/// Calls `step` now and every `ms` after its end, while the page can be seen, until `signal` is
-/// aborted or `step` gives false. An unanswered request is said in the head of the page and tried
+const longestPause = 30_000;
+
+/// Calls `step` now and `ms` after its end (after a long one later, so that thousands of jobs do not
+/// keep both sides busy), while the page can be seen, until `signal` is aborted or `step` gives false. An unanswered request is said in the head of the page and tried
 /// again; other errors end it. The first call's errors are thrown to the caller.
 export async function poll(step, ms, signal) {
   signal.addEventListener("abort", () => sayLink(""));
+  let began = performance.now();
   let more = await step();
   (async () => {
     while (more !== false) {
-      await new Promise((resolve) => { setTimeout(resolve, ms); });
+      const pause = Math.max(ms, Math.min(longestPause, 10 * (performance.now() - began)));
+      await new Promise((resolve) => { setTimeout(resolve, pause); });
       await whenVisible(signal);
       if (signal.aborted) return;
+      began = performance.now();
       try {
         more = await step();
         sayLink("");

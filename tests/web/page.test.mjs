@@ -112,6 +112,46 @@ test("the filter keeps its jobs and goes into the address", async () => {
   assert.equal(await count("tr[data-job]"), 2);
 });
 
+test("the list is narrowed to a state, which goes into the address", async () => {
+  await open(views.jobs);
+  const state = page.getByLabel("State", { exact: true });
+  assert.ok((await state.innerText()).includes("done (2)"));
+  await state.selectOption("failed");
+  assert.equal(await count("tr[data-job]"), 1);
+  assert.ok(page.url().endsWith("#/?state=failed"));
+  await page.fill("input[type=search]", "nothing like it");
+  assert.equal(await text("main > .tools output"), "0 of 6");
+  await page.goto(`${origin}/#/?state=done&filter=without`);
+  await page.waitForFunction(() => document.querySelectorAll("tr[data-job]").length === 1);
+});
+
+test("ten thousand jobs are listed a page at a time, without a pause", async () => {
+  const [like] = mock.jobs.slice(-1);
+  mock.jobs = Array.from({ length: 10000 }, (_, i) => ({ ...like, id: `20260131-101400-${10000 + i}`,
+    job: { ...like.job, label: `job ${i}` } }));
+  await open("/#/?page=2");
+  assert.equal(await count("tr[data-job]"), 100);
+  assert.equal(await text(".pager output"), "101–200 of 10000");
+  await page.getByRole("button", { name: "Next page" }).click();
+  assert.equal(await text("tr[data-job] .name a"), "job 200");
+  assert.ok(page.url().endsWith("#/?page=3"));
+  const took = await page.evaluate(() => {
+    const filter = document.querySelector("input[type=search]");
+    filter.value = "job 77";
+    const began = performance.now();
+    filter.dispatchEvent(new Event("input"));
+    document.body.getBoundingClientRect();
+    return performance.now() - began;
+  });
+  assert.equal(await text("main > .tools output"), "280 of 10000");
+  assert.ok(took < 500, `${took} ms to filter`);
+  console.log(`# filtering 10,000 jobs: ${took.toFixed(0)} ms`);
+  const asked = mock.requests.filter((r) => /GET \/api\/jobs\/[^/]+$/.test(r)).length;
+  assert.ok(asked < 100, `${asked} jobs asked for their thumbnails`);
+  await screenshot(page, "jobs-many");
+  assert.deepEqual(page.troubles, []);
+});
+
 test("jobs chosen in the list are compared", async () => {
   await open(views.jobs);
   const compare = page.getByRole("button", { name: /^Compare/ });
