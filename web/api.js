@@ -88,9 +88,10 @@ function sayLink(text) {
 
 const longestPause = 30_000;
 
-/// Calls `step` now and `ms` after its end (after a long one later, so that thousands of jobs do not
-/// keep both sides busy), while the page can be seen, until `signal` is aborted or `step` gives false. An unanswered request is said in the head of the page and tried
-/// again; other errors end it. The first call's errors are thrown to the caller.
+/// Calls `step` now and `ms` after its end (later after a long one, so that thousands of jobs do not
+/// keep both sides busy), while the page can be seen, until `signal` is aborted or `step` gives
+/// false. An unanswered request is said in the head of the page and tried again; other errors end
+/// it. The first call's errors are thrown to the caller.
 export async function poll(step, ms, signal) {
   signal.addEventListener("abort", () => sayLink(""));
   let began = performance.now();

@@ -3,7 +3,7 @@ import { fileUrl } from "./api.js";
 import { append, h } from "./dom.js";
 import { openLayers } from "./layers.js";
 import { picture, zoomGroup } from "./picture.js";
-import { viewer } from "./viewer.js";
+import { noViewer, viewer } from "./viewer.js";
 
 /// Frames stay while jobs run, so that the zoom stays too.
 function gallery() {
@@ -29,7 +29,7 @@ function gallery() {
 
 /// What is said of the jobs that the viewer leaves out.
 function reasons(plain, hasViewer) {
-  if (!hasViewer) return ["This browser offers no WebGL 2: the tone-mapped image.png are shown instead of the values."];
+  if (!hasViewer) return [noViewer];
   const of = (found, text) => found.length > 0 && `${found.map((e) => e.label).join("; ")}: ${text}`;
   return [
     of(plain.filter((e) => e.layers), "of another size than the first, so shown by itself."),

@@ -3,7 +3,7 @@ import { fileUrl } from "./api.js";
 import { h, setText } from "./dom.js";
 import { openLayers } from "./layers.js";
 import { picture, zoomGroup } from "./picture.js";
-import { viewer } from "./viewer.js";
+import { noViewer, viewer } from "./viewer.js";
 
 /// `update(files, version, name)` follows the job's files ({name: {bytes}}); `version` says when they
 /// changed. The viewer's state is in `query`.
@@ -38,7 +38,7 @@ export function jobPicture(id, query, changed, signal) {
     }
     put(plain.element);
     sayWhy(!image ? "" : numbers === null
-      ? "This browser offers no WebGL 2: the tone-mapped image.png is shown instead of the values."
+      ? noViewer
       : "This job has no layers.json, which newer versions write: its tone-mapped image.png is shown.");
     plain.load(image ? fileUrl(id, "image.png", version) : null);
   }

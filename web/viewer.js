@@ -13,6 +13,9 @@ import { readState, writeState } from "./viewer_state.js";
 import { viewerTools } from "./viewer_tools.js";
 import { pointAt, zoomOf } from "./viewport.js";
 
+/// What is said where viewer() gives null.
+export const noViewer = "This browser offers no WebGL 2: image.png is shown, tone-mapped, instead of the values.";
+
 const contentKeys = ["show", "mode", "left", "right", "by"];
 const ratio = () => window.devicePixelRatio || 1;
 

@@ -1,7 +1,6 @@
 // The controls for several pictures: one at a time, two split by a line, or their difference.
 import { errorKinds } from "./error_picture.js";
-import { h } from "./dom.js";
-import { labelledSelect } from "./viewer_tools.js";
+import { h, labelledSelect } from "./dom.js";
 
 const names = { one: "one at a time", split: "split", difference: "difference" };
 

@@ -1,30 +1,5 @@
 // A viewer's controls: what is shown, how bright, and how large.
-import { h, setText } from "./dom.js";
-
-let made = 0;
-
-/// A select with its label; `fill(options, value)`: options are {key, label, group}.
-export function labelledSelect(label, onchange) {
-  made += 1;
-  const id = `viewer-${made}`;
-  const select = h("select", { id, onchange: () => onchange(select.value) });
-  let known = "";
-  return {
-    element: h("span", { className: "choice" }, h("label", { htmlFor: id }, label), " ", select),
-    fill(options, value) {
-      const next = JSON.stringify(options);
-      if (next !== known) {
-        known = next;
-        const groups = [...new Set(options.map((o) => o.group))];
-        const items = (group) => options.filter((o) => o.group === group)
-          .map((o) => h("option", { value: o.key }, o.label));
-        select.replaceChildren(...groups.flatMap((group) =>
-          (group ? h("optgroup", { label: group }, items(group)) : items(group))));
-      }
-      select.value = value;
-    },
-  };
-}
+import { h, labelledSelect, setText } from "./dom.js";
 
 const button = (text, label, onclick) =>
   h("button", { type: "button", className: "small", title: label, "aria-label": label, onclick }, text);

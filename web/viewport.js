@@ -36,8 +36,8 @@ function held(view, size, box) {
 /// The view after zooming to `zoom` with the point under (u, v) staying where it is. Zooming out ends
 /// with the whole picture.
 export function zoomTo(view, size, box, zoom, u = box.width / 2, v = box.height / 2) {
-  const least = Math.min(1, fitZoom(size, box));
-  if (zoom <= least) return { zoom: least < 1 ? null : least, x: 0.5, y: 0.5 };
+  const fit = fitZoom(size, box);
+  if (zoom <= Math.min(1, fit)) return { zoom: fit <= 1 ? null : 1, x: 0.5, y: 0.5 };
   const next = Math.min(largestZoom, zoom);
   const kept = pointAt(view, size, box, u, v);
   return held({

@@ -276,26 +276,37 @@ test("hollow points are explained where a reference's floor is reached, and only
   assert.equal(await note.isVisible(), false);
 });
 
-test("a click zooms the picture to its pixels, and keys move it", async () => {
+test("the wheel zooms a PNG under the pointer, a drag and keys move it", async () => {
   await open(views.running);
   const image = page.locator(".frame img");
   await image.waitFor();
-  const scale = () => image.evaluate((i) => new DOMMatrix(getComputedStyle(i).transform).a);
+  const transform = () => image.evaluate((i) => {
+    const { a, e } = new DOMMatrix(getComputedStyle(i).transform);
+    return { scale: a, shift: e / i.offsetWidth };
+  });
   const rendering = () => image.evaluate((i) => getComputedStyle(i).imageRendering);
-  assert.equal(await scale(), 1);
-  const box = await page.locator(".frame").boundingBox();
-  const position = { x: box.width / 4, y: box.height / 2 };
-  await page.locator(".frame").click({ position });
-  const shift = await image.evaluate((i) => new DOMMatrix(getComputedStyle(i).transform).e / i.offsetWidth);
-  assert.ok(Math.abs(shift - 0.25) < 0.01, `the point under the click stays: ${shift}`);
-  await page.locator(".frame").click({ position, modifiers: ["Shift"] });
-  assert.equal(await scale(), 1);
-  await page.locator(".frame").press("+");
-  await page.locator(".frame").press("+");
-  assert.equal(await scale(), 4);
+  const frame = page.locator(".frame");
+  const box = await frame.boundingBox();
+  await frame.focus();
+  await page.mouse.move(box.x + box.width / 4, box.y + box.height / 2);
+  await page.mouse.wheel(0, -100);
+  await page.waitForFunction(() => /scale\(1.25\)/.test(document.querySelector(".frame img").style.transform));
+  const before = await transform();
+  assert.ok(Math.abs(before.shift - 0.0625) < 0.01, `the point under the pointer stays: ${before.shift}`);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 4 + 20, box.y + box.height / 2);
+  await page.mouse.up();
+  assert.ok(Math.abs((await transform()).shift - before.shift - 20 / box.width) < 0.01, "a drag takes it along");
+  await frame.press("0");
+  assert.equal((await transform()).scale, 1);
+  await frame.press("+");
+  await frame.press("+");
+  assert.equal((await transform()).scale, 4);
   assert.equal(await rendering(), "pixelated");
-  await page.locator(".frame").press("0");
-  assert.equal(await scale(), 1);
+  await frame.press("ArrowRight");
+  assert.ok((await transform()).shift < 0);
+  await frame.press("f");
+  assert.equal((await transform()).scale, 1);
   assert.deepEqual(page.troubles, []);
 });
 
