@@ -32,7 +32,7 @@ function reasons(plain, hasViewer) {
   if (!hasViewer) return [noViewer];
   const of = (found, text) => found.length > 0 && `${found.map((e) => e.label).join("; ")}: ${text}`;
   return [
-    of(plain.filter((e) => e.layers), "of another size than the first, so shown by itself."),
+    of(plain.filter((e) => e.layers), "not of the first's size, so image.png is shown."),
     of(plain.filter((e) => e.image && !e.layers), "no layers.json, so image.png is shown."),
   ];
 }
@@ -49,7 +49,6 @@ export function comparePictures(query, changed, signal) {
   async function entryOf({ id, state, files }, label) {
     const file = (name) => files.find((f) => f.name === name);
     const png = file("image.png");
-    // image.png is written after the layers, and unlike theirs its size changes with its content.
     const version = `${state.state} ${png?.bytes}`;
     const image = png ? fileUrl(id, "image.png", version) : null;
     if (!numbers || !file("layers.json")) return { id, label, image, version };

@@ -13,12 +13,8 @@ export const errorKinds = [
     metric: "relmse", of: (x, r) => (x - r) ** 2 / (r * r + 0.01) },
 ];
 
-/// A power of two that brings `values` into the range of a float.
-function powerScale(values) {
-  let largest = 0;
-  for (const v of values) if (Math.abs(v) > largest && Number.isFinite(v)) largest = Math.abs(v);
-  return largest === 0 ? 1 : 2 ** Math.floor(Math.log2(largest));
-}
+/// The power of two not above `largest`: it brings values into the range of a float.
+const powerScale = (largest) => (largest === 0 ? 1 : 2 ** Math.floor(Math.log2(largest)));
 
 /// A picture of one channel with the errors of `image` against `reference`, and their `mean`.
 export function errorPicture(image, reference, kind) {
@@ -28,18 +24,24 @@ export function errorPicture(image, reference, kind) {
       + `${reference.width} × ${reference.height} pixels.`);
   }
   const [x, r] = [reader(image), reader(reference)];
+  const { of } = kind;
   const n = image.channels.length;
   const values = new Float64Array(image.width * image.height);
   let sum = 0;
+  let largest = 0;
   for (let i = 0, k = 0; i < values.length; i += 1) {
     let total = 0;
-    for (let c = 0; c < n; c += 1, k += 1) total += kind.of(x(k), r(k));
-    values[i] = total / n;
-    sum += values[i];
+    for (let c = 0; c < n; c += 1, k += 1) total += of(x(k), r(k));
+    const value = total / n;
+    values[i] = value;
+    sum += value;
+    if (value > largest || -value > largest) largest = Math.abs(value);
   }
-  const scale = powerScale(values);
+  const scale = powerScale(Number.isFinite(largest) ? largest : 1);
+  const data = new Float32Array(values.length);
+  for (let i = 0; i < data.length; i += 1) data[i] = values[i] / scale;
   return {
-    width: image.width, height: image.height, channels: [kind.label], scale,
-    data: Float32Array.from(values, (v) => v / scale), mean: sum / values.length, kind,
+    width: image.width, height: image.height, channels: [kind.label], scale, data,
+    mean: sum / values.length, kind,
   };
 }

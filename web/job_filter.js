@@ -7,19 +7,19 @@ const states = ["running", "queued", "done", "failed", "cancelled", "interrupted
 const textOf = (job) => [job.id, job.label, job.scene, integratorName(job.integrator), job.state]
   .join(" ").toLowerCase();
 
-/// The controls, beginning with what `query` says; `changed(address)` gets what the address should
-/// hold, as an object. `pick(jobs)` gives the jobs to show, and counts those of each state.
+/// The controls, beginning with what `query` says. `values()` is what the address should hold;
+/// `pick(jobs)` gives the jobs to show, and counts those of each state.
 export function jobFilter(query, changed) {
-  const tell = () => changed({ filter: text.value, state: state.value });
   const text = h("input", {
     type: "search", value: query.get("filter") ?? "", placeholder: "Filter: label, scene, integrator …",
-    "aria-label": "Filter the jobs", oninput: tell,
+    "aria-label": "Filter the jobs", oninput: changed,
   });
   const options = ["", ...states].map((name) => h("option", { value: name }, name || "all states"));
-  const state = h("select", { "aria-label": "State", onchange: tell }, options);
+  const state = h("select", { "aria-label": "State", onchange: changed }, options);
   state.value = states.includes(query.get("state")) ? query.get("state") : "";
   return {
     elements: [text, state],
+    values: () => ({ filter: text.value, state: state.value }),
     active: () => text.value.trim() !== "" || state.value !== "",
     pick(jobs) {
       const words = text.value.toLowerCase().split(/\s+/).filter(Boolean);

@@ -30,9 +30,14 @@ export function jobPicture(id, query, changed, signal) {
       if (numbers) {
         put(numbers.element);
         if (shown === version) return;
-        await numbers.show([{ name, layers: await openLayers(id, signal) }]);
-        shown = version;
+        shown = version;  // at once: a job's news come faster than its layers can be read
         sayWhy("");
+        try {
+          await numbers.show([{ name, layers: await openLayers(id, signal) }]);
+        } catch (error) {
+          shown = null;
+          throw error;
+        }
         return;
       }
     }

@@ -27,7 +27,7 @@ function actionsOf(group, frame) {
       set(moved(group.view, size, box, du, dv));
       return true;
     },
-    oneToOne() {}, expose() {}, cycle() {}, pick: () => false, splits: () => false, hover() {},
+    oneToOne() {}, expose() {}, cycle() {}, pick: () => false, shiftSplit() {}, splits: () => false, hover() {},
   };
 }
 

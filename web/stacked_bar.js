@@ -1,7 +1,6 @@
 // Shares of a whole as one bar, with a legend that says the same in words.
 import { h } from "./dom.js";
-
-const colours = 8;  // --curve-0 ... in style.css
+import { colours } from "./plot.js";
 
 /// `parts` are [{name, value, text}]; those without a value are only in the legend.
 export function stackedBar(title, parts) {

@@ -101,11 +101,40 @@ function page(id, query, signal) {
   };
 }
 
+/// A function that shows a job's files and reads again those whose size or state changed.
+function fileReader(id, view, signal) {
+  let versions = {};
+  return async (shown) => {
+    const files = Object.fromEntries(shown.files.map((f) => [f.name, f]));
+    const next = Object.fromEntries(shown.files.map((f) => [f.name, `${shown.state.state} ${f.bytes}`]));
+    const changed = (name) => files[name] && next[name] !== versions[name];
+    // image.png is written after the layers, and unlike theirs its size changes with its content.
+    view.image.update(files, next["image.png"] ?? "", jobTitle(shown.job))
+      .catch((error) => { if (!signal.aborted) setText(view.progressFacts, error.message); });
+    view.log.update(files["log.txt"]?.bytes ?? null);
+    view.files.replaceChildren(h("h2", {}, "Files"), fileList(id, shown.files));
+    if (changed("curve.csv") || !files["curve.csv"]) {
+      const curve = files["curve.csv"] ? parseCurve(await getText(id, "curve.csv", signal)) : [];
+      view.panel.show([{ name: integratorName(shown.job.integrator), rows: curve }],
+        shown.progress?.error_metric);
+      view.rows.hidden = curve.length === 0;
+      view.rows.replaceChildren(view.rows.firstChild, curveTable(curve));
+    }
+    if (changed("report.json")) {
+      const report = JSON.parse(await getText(id, "report.json", signal));
+      view.report.replaceChildren(h("h2", {}, "Where time and rays went"), effortView(report),
+        h("h2", {}, "Report"), reportView(report));
+      view.report.hidden = false;
+    }
+    versions = next;
+  };
+}
+
 export async function show(main, { params, query, signal }) {
   const { id } = params;
   const view = page(id, query, signal);
   let shown = null;
-  let versions = {};
+  const drawFiles = fileReader(id, view, signal);
   let reading = Promise.resolve();
   let waiting = false;
   let stop = () => {};
@@ -130,38 +159,12 @@ export async function show(main, { params, query, signal }) {
     main.replaceChildren(view.element);
   }
 
-  /// Reads again the files whose size or state changed.
-  async function drawFiles() {
-    const files = Object.fromEntries(shown.files.map((f) => [f.name, f]));
-    const next = Object.fromEntries(shown.files.map((f) => [f.name, `${shown.state.state} ${f.bytes}`]));
-    const changed = (name) => files[name] && next[name] !== versions[name];
-    // image.png is written after the layers, and unlike theirs its size changes with its content.
-    view.image.update(files, next["image.png"] ?? "", jobTitle(shown.job))
-      .catch((error) => { if (!signal.aborted) setText(view.progressFacts, error.message); });
-    view.log.update(files["log.txt"]?.bytes ?? null);
-    view.files.replaceChildren(h("h2", {}, "Files"), fileList(id, shown.files));
-    if (changed("curve.csv") || !files["curve.csv"]) {
-      const curve = files["curve.csv"] ? parseCurve(await getText(id, "curve.csv", signal)) : [];
-      view.panel.show([{ name: integratorName(shown.job.integrator), rows: curve }],
-        shown.progress?.error_metric);
-      view.rows.hidden = curve.length === 0;
-      view.rows.replaceChildren(view.rows.firstChild, curveTable(curve));
-    }
-    if (changed("report.json")) {
-      const report = JSON.parse(await getText(id, "report.json", signal));
-      view.report.replaceChildren(h("h2", {}, "Where time and rays went"), effortView(report),
-        h("h2", {}, "Report"), reportView(report));
-      view.report.hidden = false;
-    }
-    versions = next;
-  }
-
   async function refresh() {
     const first = shown === null;
     shown = await getJob(id, signal);
     if (first) drawOnce();
     drawStatus();
-    await drawFiles();
+    await drawFiles(shown);
     const over = isTerminal(shown.state.state);
     if (over) stop();
     return !over;

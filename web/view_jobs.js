@@ -92,12 +92,11 @@ export async function show(main, { query, signal }) {
   const pictures = thumbnails(signal);
   let jobs = [];
   let empty = null;
-  let wanted = { filter: query.get("filter") ?? "", state: query.get("state") ?? "" };
   let page = Number(query.get("page")) || 1;
 
   /// The address holds what is not as at first.
   function remember() {
-    const held = new URLSearchParams(Object.entries({ ...wanted, page: page > 1 ? page : "" })
+    const held = new URLSearchParams(Object.entries({ ...filter.values(), page: page > 1 ? page : "" })
       .filter(([, value]) => value !== ""));
     history.replaceState(null, "", held.size > 0 ? `#/?${held}` : "#/");
   }
@@ -106,10 +105,7 @@ export async function show(main, { query, signal }) {
     draw();
     remember();
   }
-  const filter = jobFilter(query, (next) => {
-    wanted = next;
-    go(1);
-  });
+  const filter = jobFilter(query, () => go(1));
   const pages = pager((next) => {
     go(next);
     main.scrollIntoView();

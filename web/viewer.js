@@ -45,6 +45,7 @@ function drawAll(own) {
   const stops = { colour: state.ev ?? look.ev, direction: null, false: state.stops }[look.look];
   own.tools.show({ options: own.options, chosen: state.show, zoom: zoom * ratio(), stops });
   own.modes.show(state, own.sources.map((s) => s.name));
+  seen.frame.classList.toggle("zoomed", state.view.zoom !== null);
   seen.frame.setAttribute("data-shown", state.show || "picture");
   seen.frame.setAttribute("data-zoom", Number(zoom.toPrecision(4)));
 }

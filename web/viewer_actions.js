@@ -11,6 +11,7 @@ export function viewerActions(own) {
   const ready = (action) => (...given) => (own.look() === null ? undefined : action(...given));
   const isColour = () => own.look().look === "colour";
   const setExposure = ready((value) => change(isColour() ? { ev: value } : { stops: value ?? 0 }));
+  const setSplit = (at) => change({ split: Math.min(1, Math.max(0, at)) });
   return {
     change,
     choose: (show) => change({ show }),
@@ -39,6 +40,7 @@ export function viewerActions(own) {
       return true;
     },
     splits: (u) => state.mode === "split" && Math.abs(u - state.split * own.box().width) < grip,
-    split: (u) => change({ split: Math.min(1, Math.max(0, u / own.box().width)) }),
+    split: (u) => setSplit(u / own.box().width),
+    shiftSplit: (by) => setSplit(state.split + by),
   };
 }

@@ -2,7 +2,7 @@
 
 const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
-/// Calls `actions` for the keys of a frame: {zoomBy, fit, oneToOne, move, expose, cycle, pick}.
+/// Calls `actions` for the keys of a frame: {zoomBy, fit, oneToOne, move, expose, cycle, pick, shiftSplit}.
 export function handleKeys(frame, actions) {
   frame.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
@@ -16,6 +16,8 @@ export function handleKeys(frame, actions) {
       o: () => actions.oneToOne(),
       e: () => actions.expose(0.5),
       E: () => actions.expose(-0.5),
+      ",": () => actions.shiftSplit(-0.05),
+      ".": () => actions.shiftSplit(0.05),
       "[": () => actions.cycle(-1),
       "]": () => actions.cycle(1),
     };

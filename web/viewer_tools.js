@@ -32,6 +32,7 @@ const keyHelp = [
   ["e, E", "brighter, darker by half a stop"], ["[, ]", "the layer before, after"],
   ["+, −, wheel", "zoom; the wheel once the picture has the focus"], ["arrows, drag", "move"],
   ["0 or f, o", "fit; one to one"], ["1 … 9", "of several pictures: that one"],
+  [", .", "the line between two pictures"],
 ];
 
 /// `actions`: {choose(key), setExposure(stops or null), zoomBy(factor), fit(), oneToOne()}.

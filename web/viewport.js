@@ -2,7 +2,7 @@
 // of the picture, null: the whole picture; (x, y), in [0, 1] of the picture, lies in the middle.
 // `size` is the picture's and `box` the frame's {width, height}.
 
-export const largestZoom = 256;
+const largestZoom = 256;
 
 /// The zoom that shows the whole picture.
 export const fitZoom = (size, box) => Math.min(box.width / size.width, box.height / size.height);

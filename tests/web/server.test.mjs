@@ -12,6 +12,7 @@ import { launch, openPage, ready, screenshot } from "./browser.mjs";
 const root = fileURLToPath(new URL("../../", import.meta.url));
 const bin = process.env.LACUNA_BIN ?? join(root, "build/release/bin");
 const small = { scene: "cornell.glb", resolution: [32, 32], threads: 1, budget: { iterations: 64 } };
+const pictured = ".stage[data-shown], .frame img:not([hidden])";
 const patience = { timeout: 60_000 };  // a busy machine may render slowly
 
 let data;
@@ -75,7 +76,7 @@ test("the first job, from the empty list to its curve, picture and report; then 
 
   const withReference = { ...small, reference: "auto", reference_iterations: 256, label: "measured" };
   const first = await render(page, withReference);
-  await page.waitForFunction(() => document.querySelector(".frame img").naturalWidth === 32);
+  await page.waitForSelector(pictured);
   assert.ok(Number(await page.locator(".plot canvas").getAttribute("data-points")) >= 1);
   const offered = await page.getByLabel("Error", { exact: true }).locator("option").allInnerTexts();
   assert.deepEqual(offered, ["RMSE", "relMSE", "MSE", "MAE", "SMAPE", "estimated RMSE"]);
@@ -90,7 +91,7 @@ test("the first job, from the empty list to its curve, picture and report; then 
     ["estimated RMSE"]);
   await page.goto(`${server.address}/#/compare?jobs=${first},${second}`);
   await page.waitForSelector(".plot canvas[data-curves='2']");
-  await page.waitForFunction(() => document.querySelectorAll(".gallery img:not([hidden])").length === 2);
+  await page.waitForSelector(pictured);
   await screenshot(page, "real-compare");
 
   await page.goto(`${server.address}/#/`);

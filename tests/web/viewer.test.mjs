@@ -309,6 +309,8 @@ test("two pictures are split by a line that a drag moves", async () => {
   await page.mouse.up();
   like((await pixelColours([[2, 0]]))[0], [0.25, 0.375, 0.5].map(srgb));
   assert.ok(page.url().includes("split=0.8"));
+  for (let i = 0; i < 7; i += 1) await page.locator(stage).press(",");
+  like((await pixelColours([[2, 0]]))[0], [0.5, 0.75, 1].map(srgb));
   await screenshot(page, "compare-split");
   assert.deepEqual(page.troubles, []);
 });
