@@ -41,6 +41,23 @@ export const getScenes = async (signal) => (await json("/api/scenes", signal)).s
 export const getJobSchema = (signal) => json("/api/schema/job", signal);
 export const getText = async (id, name, signal) =>
   (await request(fileUrl(id, name), { signal, cache: "no-cache" })).text();
+export const getJson = async (id, name, signal) =>
+  (await request(fileUrl(id, name), { signal, cache: "no-cache" })).json();
+
+/// `bytes` bytes of a file from `offset` on, as an ArrayBuffer.
+export async function getPart(id, name, offset, bytes, signal) {
+  if (bytes === 0) return new ArrayBuffer(0);
+  const headers = { Range: `bytes=${offset}-${offset + bytes - 1}` };
+  const response = await request(fileUrl(id, name), { signal, headers, cache: "no-store" });
+  const data = await response.arrayBuffer();
+  const part = response.status === 206 ? data : data.slice(offset, offset + bytes);
+  if (part.byteLength === bytes) return part;
+  throw new ApiError(response.status, {
+    title: "A part of a file is missing",
+    detail: `${name} has ${part.byteLength} of the ${bytes} bytes from ${offset} on.`,
+  });
+}
+
 export const cancelJob = (id) => request(`${jobPath(id)}/cancel`, { method: "POST" });
 
 /// Posts a job file as it was typed; gives the new job's id.
@@ -69,17 +86,23 @@ function sayLink(text) {
   if (place.textContent !== text) place.textContent = text;
 }
 
-/// Calls `step` now and every `ms` after its end, while the page can be seen, until `signal` is
-/// aborted or `step` gives false. An unanswered request is said in the head of the page and tried
-/// again; other errors end it. The first call's errors are thrown to the caller.
+const longestPause = 30_000;
+
+/// Calls `step` now and `ms` after its end (later after a long one, so that thousands of jobs do not
+/// keep both sides busy), while the page can be seen, until `signal` is aborted or `step` gives
+/// false. An unanswered request is said in the head of the page and tried again; other errors end
+/// it. The first call's errors are thrown to the caller.
 export async function poll(step, ms, signal) {
   signal.addEventListener("abort", () => sayLink(""));
+  let began = performance.now();
   let more = await step();
   (async () => {
     while (more !== false) {
-      await new Promise((resolve) => { setTimeout(resolve, ms); });
+      const pause = Math.max(ms, Math.min(longestPause, 10 * (performance.now() - began)));
+      await new Promise((resolve) => { setTimeout(resolve, pause); });
       await whenVisible(signal);
       if (signal.aborted) return;
+      began = performance.now();
       try {
         more = await step();
         sayLink("");

@@ -1,15 +1,17 @@
-// The router: one view per hash route, each given an AbortSignal that ends everything it started.
+// The router: one view per hash route, and with `embed` in the query its curves alone; each is given
+// an AbortSignal that ends everything it started.
 import { ApiError } from "./api.js";
 import { h } from "./dom.js";
 import * as compare from "./view_compare.js";
+import * as figure from "./view_figure.js";
 import * as job from "./view_job.js";
 import * as jobs from "./view_jobs.js";
 import * as create from "./view_new.js";
 
 const routes = [
   { pattern: /^\/$/, show: jobs.show },
-  { pattern: /^\/job\/(?<id>[^/]+)$/, show: job.show },
-  { pattern: /^\/compare$/, show: compare.show },
+  { pattern: /^\/job\/(?<id>[^/]+)$/, show: job.show, alone: figure.show },
+  { pattern: /^\/compare$/, show: compare.show, alone: figure.show },
   { pattern: /^\/new$/, show: create.show },
 ];
 
@@ -43,8 +45,10 @@ async function route() {
   leaving = new AbortController();
   const { signal } = leaving;
   const { path, query } = address();
-  const match = routes.map((r) => ({ show: r.show, found: r.pattern.exec(path) }))
+  const match = routes.map((r) => ({ ...r, found: r.pattern.exec(path) }))
     .find((r) => r.found);
+  const alone = query.has("embed") && match?.alone;
+  document.body.classList.toggle("embed", Boolean(alone));
   markNavigation(path);
   main.replaceChildren();
   main.removeAttribute("data-ready");
@@ -53,7 +57,7 @@ async function route() {
   window.scrollTo(0, 0);
   try {
     if (!match) throw new ApiError(404, { title: "No such view", detail: `#${path} leads nowhere.` });
-    await match.show(main, { params: match.found.groups ?? {}, query, signal });
+    await (alone || match.show)(main, { params: match.found.groups ?? {}, query, signal });
   } catch (error) {
     if (signal.aborted) return;
     document.title = "Lacuna";

@@ -7,15 +7,15 @@ export const axes = [
   { key: "iteration", label: "iterations", unit: "" },
 ];
 
-/// What the y axis can show, the preferred first. A Monte Carlo estimate's error falls as
-/// x^slope: squared errors with the samples, the others with their root.
+/// What the y axis can show, the preferred first; radiance is in the scene's own unit. A Monte Carlo
+/// estimate's error falls as x^slope: squared errors with the samples, the others with their root.
 export const metrics = [
-  { key: "rmse", label: "RMSE", slope: -0.5 },
-  { key: "relmse", label: "relMSE", slope: -1 },
-  { key: "mse", label: "MSE", slope: -1 },
-  { key: "mae", label: "MAE", slope: -0.5 },
-  { key: "smape", label: "SMAPE", slope: -0.5 },
-  { key: "est_rmse", label: "estimated RMSE", slope: -0.5 },
+  { key: "rmse", label: "RMSE", unit: "radiance", slope: -0.5 },
+  { key: "relmse", label: "relMSE", unit: "", slope: -1 },
+  { key: "mse", label: "MSE", unit: "radiance²", slope: -1 },
+  { key: "mae", label: "MAE", unit: "radiance", slope: -0.5 },
+  { key: "smape", label: "SMAPE", unit: "", slope: -0.5 },
+  { key: "est_rmse", label: "estimated RMSE", unit: "radiance", slope: -0.5 },
 ];
 
 export const slopeName = (slope) => (slope === -1 ? "−1" : "−1/2");

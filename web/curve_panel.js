@@ -1,34 +1,33 @@
 // The error plot with its switches, as the job view and the comparison show it.
 import { axes, metrics, presentMetrics } from "./curve.js";
-import { h } from "./dom.js";
+import { h, labelledSelect } from "./dom.js";
 import { plot } from "./plot.js";
 
-function chooser(id, label, onchange) {
-  const select = h("select", { id, onchange });
+/// What is shown of `series`: {offered, x, y}, the metrics that any of them has, and the keys of the
+/// axes: what `query` says; else the metric `preferred`, else the first that all of them have. `y` is
+/// null if there is nothing.
+export function chosenAxes(query, series, preferred) {
+  const offered = metrics.filter((m) => series.some((s) => presentMetrics(s.rows).includes(m)));
+  const shared = offered.find((m) => series.every((s) => presentMetrics(s.rows).includes(m)));
+  const pick = (key) => offered.find((m) => m.key === key);
   return {
-    select,
-    element: h("span", { className: "choice" }, h("label", { htmlFor: id }, label), " ", select),
+    offered,
+    x: (axes.find((a) => a.key === query.get("x")) ?? axes[0]).key,
+    y: (pick(query.get("y")) ?? pick(preferred) ?? shared ?? offered[0])?.key ?? null,
   };
 }
 
-function fill(select, options, value) {
-  const same = options.length === select.options.length
-    && options.every((o, i) => o.key === select.options[i].value);
-  if (!same) {
-    select.replaceChildren(...options.map((o) => h("option", { value: o.key }, o.label)));
-  }
-  select.value = value;
-}
-
 /// A plot and its switches. `query` (URLSearchParams) holds the choice, `x` and `y`; it is changed
-/// with the switches, then `changed()` is called. `show(series, preferred)` draws: metrics that no
-/// series has are not offered; without a choice the metric is `preferred`, else the first that all
-/// of the series have. After it, `x` and `y` say what is shown (`y` null if there is nothing).
+/// with the switches, then `changed()` is called. `show(series, preferred)` draws (see chosenAxes).
+/// After it, `x` and `y` say what is shown.
 export function curvePanel(query, changed, signal) {
   const figure = plot(signal);
-  const x = chooser("axis-x", "against", () => choose("x", x.select.value));
-  const y = chooser("axis-y", "Error", () => choose("y", y.select.value));
-  const switches = h("div", { className: "switches" }, y.element, x.element);
+  const x = labelledSelect("against", (value) => choose("x", value));
+  const y = labelledSelect("Error", (value) => choose("y", value));
+  const alone = h("button", { type: "button", className: "small", onclick: () => {
+    location.hash += `${location.hash.includes("?") ? "&" : "?"}embed`;
+  } }, "Figure alone");
+  const switches = h("div", { className: "switches" }, y.element, x.element, alone);
   let shown = [];
   let wanted = null;
 
@@ -39,14 +38,11 @@ export function curvePanel(query, changed, signal) {
     show(series, preferred = null) {
       shown = series;
       wanted = preferred;
-      const offered = metrics.filter((m) => series.some((s) => presentMetrics(s.rows).includes(m)));
-      const shared = offered.find((m) => series.every((s) => presentMetrics(s.rows).includes(m)));
-      const pick = (key) => offered.find((m) => m.key === key);
-      panel.x = (axes.find((a) => a.key === query.get("x")) ?? axes[0]).key;
-      panel.y = (pick(query.get("y")) ?? pick(preferred) ?? shared ?? offered[0])?.key ?? null;
+      const { offered, ...keys } = chosenAxes(query, series, preferred);
+      Object.assign(panel, keys);
       switches.hidden = panel.y === null;
-      fill(x.select, axes, panel.x);
-      fill(y.select, offered, panel.y);
+      x.fill(axes, panel.x);
+      y.fill(offered, panel.y);
       figure.draw(series, panel.x, panel.y);
     },
   };

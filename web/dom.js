@@ -43,6 +43,31 @@ export function copyButton(text) {
   return button;
 }
 
+let made = 0;
+
+/// A select with its label; `fill(options, value)`: options are {key, label, group}.
+export function labelledSelect(label, onchange) {
+  made += 1;
+  const id = `select-${made}`;
+  const select = h("select", { id, onchange: () => onchange(select.value) });
+  let known = "";
+  return {
+    element: h("span", { className: "choice" }, h("label", { htmlFor: id }, label), " ", select),
+    fill(options, value) {
+      const next = JSON.stringify(options);
+      if (next !== known) {
+        known = next;
+        const groups = [...new Set(options.map((o) => o.group))];
+        const items = (group) => options.filter((o) => o.group === group)
+          .map((o) => h("option", { value: o.key }, o.label));
+        select.replaceChildren(...groups.flatMap((group) =>
+          (group ? h("optgroup", { label: group }, items(group)) : items(group))));
+      }
+      select.value = value;
+    },
+  };
+}
+
 /// A table of text: `columns` are headings (or {title, number: true}), rows are arrays of what h()
 /// takes as children; the first cell of a row heads it.
 export function table(columns, rows, className = "") {

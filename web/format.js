@@ -95,7 +95,7 @@ export function integratorName(integrator) {
 export const jobTitle = (job) => job.label || job.scene;
 
 /// A word for the shell, quoted.
-export const shellQuote = (text) => `'${text.replaceAll("'", "'\\''")}'`;
+const shellQuote = (text) => `'${text.replaceAll("'", "'\\''")}'`;
 
 /// A job without the keys that are null, which say nothing.
 export const withoutNulls = (job) =>

@@ -1,80 +1,34 @@
-// A picture that can be zoomed to its pixels and dragged; pictures of one group move together.
+// A PNG that is zoomed and moved as the viewer's pictures are; pictures of one group move together.
 import { h, setText } from "./dom.js";
+import { handleKeys, handlePointer } from "./viewer_input.js";
+import { fitZoom, moved, zoomOf, zoomTo } from "./viewport.js";
 
-const largest = 64;
+const whole = { zoom: null, x: 0.5, y: 0.5 };
 
-/// A shared zoom: `scale` 1 fits the frame; (x, y) is the point of the picture, in [0, 1], that lies
-/// in the middle of the frame.
-export function zoomGroup() {
-  return { scale: 1, x: 0.5, y: 0.5, members: new Set() };
-}
+/// What pictures of one group share: `view` (see viewport.js), as of pictures that fill their frames.
+export const zoomGroup = () => ({ view: whole, members: new Set() });
 
-function move(group, scale, x, y) {
-  group.scale = Math.min(largest, Math.max(1, scale));
-  const margin = 0.5 / group.scale;
-  group.x = Math.min(1 - margin, Math.max(margin, x));
-  group.y = Math.min(1 - margin, Math.max(margin, y));
-  for (const apply of group.members) apply();
-}
+/// What the group's pictures are measured in: frames, so that pictures of any size go together.
+const size = { width: 1, height: 1 };
+const box = size;
 
-/// Zooms by `factor`, keeping the point under (u, v) of the frame, in [0, 1], where it is.
-function zoom(group, factor, u = 0.5, v = 0.5) {
-  const scale = Math.min(largest, Math.max(1, group.scale * factor));
-  const shift = 1 / group.scale - 1 / scale;
-  move(group, scale, group.x + (u - 0.5) * shift, group.y + (v - 0.5) * shift);
-}
-
-function onKey(group, event) {
-  const step = 0.1 / group.scale;
-  const actions = {
-    "+": () => zoom(group, 2),
-    "=": () => zoom(group, 2),
-    "-": () => zoom(group, 0.5),
-    "0": () => move(group, 1, 0.5, 0.5),
-    ArrowLeft: () => move(group, group.scale, group.x - step, group.y),
-    ArrowRight: () => move(group, group.scale, group.x + step, group.y),
-    ArrowUp: () => move(group, group.scale, group.x, group.y - step),
-    ArrowDown: () => move(group, group.scale, group.x, group.y + step),
+function actionsOf(group, frame) {
+  const set = (view) => {
+    group.view = view;
+    for (const apply of group.members) apply();
   };
-  if (!actions[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
-  if (event.key.startsWith("Arrow") && group.scale === 1) return;
-  event.preventDefault();
-  actions[event.key]();
-}
-
-/// A click zooms in (with Shift: out) where it falls, a drag moves; the wheel zooms while the
-/// picture has the focus.
-function handlePointer(frame, group) {
-  let drag = null;
-  const at = (event) => {
-    const box = frame.getBoundingClientRect();
-    return [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
+  const share = (u, v) => (u === undefined ? [] : [u / frame.clientWidth, v / frame.clientHeight]);
+  return {
+    zoomBy: (factor, u, v) => set(zoomTo(group.view, size, box, zoomOf(group.view, size, box) * factor, ...share(u, v))),
+    fit: () => set(whole),
+    drag: (du, dv) => set(moved(group.view, size, box, ...share(-du, -dv))),
+    move(du, dv) {
+      if (zoomOf(group.view, size, box) <= fitZoom(size, box)) return false;
+      set(moved(group.view, size, box, du, dv));
+      return true;
+    },
+    oneToOne() {}, expose() {}, cycle() {}, pick: () => false, shiftSplit() {}, splits: () => false, hover() {},
   };
-  frame.addEventListener("pointerdown", (event) => {
-    if (event.button !== 0) return;
-    const [u, v] = at(event);
-    drag = { u, v, x: group.x, y: group.y, moved: false };
-    frame.setPointerCapture(event.pointerId);
-  });
-  frame.addEventListener("pointermove", (event) => {
-    if (!drag) return;
-    const [u, v] = at(event);
-    drag.moved ||= Math.hypot(u - drag.u, v - drag.v) > 0.01;
-    if (drag.moved) {
-      move(group, group.scale, drag.x - (u - drag.u) / group.scale,
-        drag.y - (v - drag.v) / group.scale);
-    }
-  });
-  frame.addEventListener("pointerup", (event) => {
-    if (drag && !drag.moved) zoom(group, event.shiftKey ? 0.5 : 2, ...at(event));
-    drag = null;
-  });
-  frame.addEventListener("pointercancel", () => { drag = null; });
-  frame.addEventListener("wheel", (event) => {
-    if (document.activeElement !== frame) return;
-    event.preventDefault();
-    zoom(group, event.deltaY < 0 ? 1.25 : 0.8, ...at(event));
-  }, { passive: false });
 }
 
 /// A zoomable picture with the text `alt` and, below it, the zoom and `caption`. `load(url)` shows
@@ -82,31 +36,25 @@ function handlePointer(frame, group) {
 export function picture(alt, caption, group) {
   const image = h("img", { alt, draggable: false, hidden: true });
   const none = h("span", { className: "note" }, "no picture");
-  const frame = h("div", {
-    className: "frame",
-    tabIndex: 0,
-    role: "group",
-    title: "Click: zoom in; Shift-click: out; wheel, arrows and 0 once it has the focus",
-    "aria-label": `${alt}. Plus and minus zoom, arrows move, 0 fits.`,
-  }, image, none);
+  const frame = h("div", { className: "frame", tabIndex: 0, role: "group",
+    "aria-label": `${alt}. Plus and minus zoom, arrows move, 0 fits.` }, image, none);
+  const actions = actionsOf(group, frame);
   const level = h("output", { className: "muted" });
   const button = (text, label, onclick) =>
     h("button", { type: "button", className: "small", "aria-label": label, onclick }, text);
-  const tools = h("div", { className: "tools" },
-    button("−", "Zoom out", () => zoom(group, 0.5)),
-    button("+", "Zoom in", () => zoom(group, 2)),
-    button("Fit", "Fit the picture", () => move(group, 1, 0.5, 0.5)),
-    level);
+  const tools = h("div", { className: "tools" }, button("−", "Zoom out", () => actions.zoomBy(0.5)),
+    button("+", "Zoom in", () => actions.zoomBy(2)), button("Fit", "Fit the picture", actions.fit), level);
 
-  const apply = () => {
-    const offset = (centre) => `${-100 * (centre - 0.5) * group.scale}%`;
-    image.style.transform = `translate(${offset(group.x)}, ${offset(group.y)}) scale(${group.scale})`;
-    frame.classList.toggle("zoomed", group.scale > 1);
-    setText(level, group.scale === 1 ? "" : `${Number(group.scale.toPrecision(3))}×`);
-  };
+  function apply() {
+    const scale = zoomOf(group.view, size, box);
+    const offset = (centre) => `${-100 * (centre - 0.5) * scale}%`;
+    image.style.transform = `translate(${offset(group.view.x)}, ${offset(group.view.y)}) scale(${scale})`;
+    frame.classList.toggle("zoomed", scale > 1);
+    setText(level, scale === 1 ? "" : `${Number(scale.toPrecision(3))}×`);
+  }
   group.members.add(apply);
-  frame.addEventListener("keydown", (event) => onKey(group, event));
-  handlePointer(frame, group);
+  handleKeys(frame, actions);
+  handlePointer(frame, actions);
   apply();
 
   let current = null;
@@ -118,8 +66,7 @@ export function picture(alt, caption, group) {
       image.hidden = true;
       return;
     }
-    const next = h("img", { src: url });
-    await next.decode().catch(() => {});
+    await h("img", { src: url }).decode().catch(() => {});
     if (url !== current) return;
     image.src = url;
     image.hidden = false;

@@ -6,7 +6,7 @@ import { number } from "./format.js";
 const shapes = ["circle", "rect", "triangle", "rectRot", "crossRot", "star", "rectRounded", "cross"];
 export const colours = 8;  // --curve-0 ... in style.css
 
-const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+export const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 /// Ticks of a log axis: decades, and between them as many steps as the range leaves room for.
 export function logTicks(min, max) {
@@ -32,15 +32,20 @@ export function logTicks(min, max) {
   return ticks;
 }
 
-function tickLabel(value) {
+export function tickLabel(value) {
   const size = Math.abs(value);
   return size >= 1e-3 && size < 1e5 ? String(Number(value.toPrecision(3)))
     : value.toExponential().replace("e+", "e");
 }
 
+/// The ends of a log axis with room for its points.
+export const ends = (values) => [Math.min(...values) / 1.15, Math.max(...values) * 1.15];
+
+/// "render time (s)".
+export const axisTitle = ({ label, unit }) => (unit ? `${label} (${unit})` : label);
+
 function scale(title, values) {
-  const min = Math.min(...values) / 1.15;
-  const max = Math.max(...values) * 1.15;
+  const [min, max] = ends(values);
   return {
     type: "logarithmic",
     min,
@@ -113,8 +118,8 @@ function settings(shown) {
       maintainAspectRatio: false,
       color: text,
       scales: all.length === 0 ? {} : {
-        x: scale(axis.unit ? `${axis.label} (${axis.unit})` : axis.label, all.map((p) => p.x)),
-        y: scale(metric.label, all.map((p) => p.y)),
+        x: scale(axisTitle(axis), all.map((p) => p.x)),
+        y: scale(axisTitle(metric), all.map((p) => p.y)),
       },
       plugins: {
         legend: { position: "bottom", labels: { color: text, usePointStyle: true, boxHeight: 7 } },
@@ -125,9 +130,9 @@ function settings(shown) {
 }
 
 function describe({ curves, series, axis, metric }) {
-  const ends = curves.map((c, i) => (c.length === 0 ? `${series[i].name}: no values`
+  const last = curves.map((c, i) => (c.length === 0 ? `${series[i].name}: no values`
     : `${series[i].name}: ${number(c[c.length - 1].y)} at ${number(c[c.length - 1].x)} ${axis.unit}`));
-  return `${metric.label} against ${axis.label}, log-log. ${ends.join("; ")}.`;
+  return `${metric.label} against ${axis.label}, log-log. ${last.join("; ")}.`;
 }
 
 /// A plot of `series` ([{name, rows}], see parseCurve) with the axes' keys `x` and `y`.

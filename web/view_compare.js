@@ -1,32 +1,15 @@
 // Several jobs over one another: curves, error at equal time, time to equal error, pictures.
-import { fileUrl, getJob, getText, isTerminal, poll } from "./api.js";
-import { axes, commonError, commonInstants, errorAt, metrics, parseCurve, points, reaches }
+import { isTerminal, poll } from "./api.js";
+import { comparePictures } from "./compare_pictures.js";
+import { axes, commonError, commonInstants, errorAt, metrics, points, reaches }
   from "./curve.js";
 import { curvePanel } from "./curve_panel.js";
 import { append, h, table } from "./dom.js";
-import { integratorName, jobTitle, number, significant } from "./format.js";
-import { picture, zoomGroup } from "./picture.js";
+import { number, significant } from "./format.js";
+import { idsOf, names, readJob, reportedMetric } from "./series.js";
 import { differences, doubtful } from "./settings_diff.js";
 
 const everyMs = 5000;
-
-/// A job with its curve. One that has ended is read once.
-async function readJob(id, before, signal) {
-  if (before && isTerminal(before.state.state)) return before;
-  const job = await getJob(id, signal);
-  const has = (name) => job.files.find((f) => f.name === name);
-  const rows = has("curve.csv") ? parseCurve(await getText(id, "curve.csv", signal)) : [];
-  const file = has("image.png");
-  const image = file ? fileUrl(id, file.name, `${job.state.state} ${file.bytes}`) : null;
-  return { ...job, rows, image };
-}
-
-/// "label, integrator"; where two would read the same, with the end of the id.
-function names(jobs) {
-  const plain = jobs.map(({ job }) => `${jobTitle(job)}, ${integratorName(job.integrator)}`);
-  return jobs.map(({ id }, i) => (plain.filter((n) => n === plain[i]).length > 1
-    ? `${plain[i]} (${id.split("-").pop()})` : plain[i]));
-}
 
 /// How many times `value` is as large as the best; the best itself is 1.
 const ratio = (value, best) => (value === null || best === null ? "—" : `${significant(value / best)}×`);
@@ -74,29 +57,6 @@ function warning(jobs) {
     `These jobs differ in ${found.join(", ")}: their errors may not be comparable.`);
 }
 
-/// Frames stay while jobs run, so that the zoom stays too.
-function gallery() {
-  const group = zoomGroup();
-  const frames = new Map();
-  const element = h("div", { className: "gallery" });
-  return {
-    element,
-    show(jobs, labels) {
-      jobs.forEach((job, i) => {
-        if (!frames.has(job.id)) {
-          const caption = h("a", { href: `#/job/${job.id}` }, labels[i]);
-          const frame = picture(`Picture of ${labels[i]}`, caption, group);
-          frames.set(job.id, frame);
-          element.append(frame.element);
-        }
-        frames.get(job.id).load(job.image);
-      });
-    },
-  };
-}
-
-const idsOf = (query) => [...new Set((query.get("jobs") ?? "").split(",").filter(Boolean))];
-
 function noJobs() {
   return h("p", {}, "Choose two or more in the ", h("a", { href: "#/" }, "list of jobs"),
     ", or name them in the address: ", h("code", {}, "#/compare?jobs=ID,ID"), ".");
@@ -114,12 +74,15 @@ export async function show(main, { query, signal }) {
   const notes = h("div", { className: "notes" });
   const times = h("section");
   const settings = h("section");
-  const pictures = gallery();
   let drawn = () => {};
-  const panel = curvePanel(query, () => {
+  function remember() {
     const rest = new URLSearchParams(query);
     rest.delete("jobs");
     history.replaceState(null, "", `#/compare?jobs=${ids.join(",")}&${rest}`);
+  }
+  const pictures = comparePictures(query, remember, signal);
+  const panel = curvePanel(query, () => {
+    remember();
     drawn();
   }, signal);
 
@@ -136,16 +99,17 @@ export async function show(main, { query, signal }) {
     const series = jobs.map((job, i) => ({ name: labels[i], rows: job.rows }));
     notes.replaceChildren();
     append(notes, [problems.map((text) => h("p", { className: "problem" }, text)), warning(jobs)]);
-    const reported = new Set(jobs.map(({ progress }) => progress?.error_metric));
-    panel.show(series, reported.size === 1 ? [...reported][0] : null);
+    panel.show(series, reportedMetric(jobs));
     drawn = () => drawTimes(series);
     drawn();
     settings.replaceChildren(h("h2", {}, "Settings that differ"), differenceTable(jobs, labels));
-    pictures.show(jobs, labels);
+    pictures.show(jobs, labels).catch((error) => {
+      if (!signal.aborted) append(notes, [h("p", { className: "problem" }, error.message)]);
+    });
   }
 
-  main.append(notes, panel.element, times, settings,
-    h("section", {}, h("h2", {}, "Pictures"), pictures.element));
+  main.append(notes, panel.element, times,
+    h("section", {}, h("h2", {}, "Pictures"), pictures.element), settings);
   await poll(async () => {
     const results = await Promise.allSettled(ids.map((id) => readJob(id, read.get(id), signal)));
     signal.throwIfAborted();

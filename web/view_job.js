@@ -4,9 +4,11 @@ import { parseCurve } from "./curve.js";
 import { curveTable } from "./curve_table.js";
 import { curvePanel } from "./curve_panel.js";
 import { copyButton, h, setText } from "./dom.js";
+import { effortView } from "./effort.js";
 import { bytes, curlLine, duration, integratorName, jobTitle, number, prettyJob, seconds, when }
   from "./format.js";
-import { picture, zoomGroup } from "./picture.js";
+import { jobPicture } from "./job_picture.js";
+import { logView } from "./log_view.js";
 import { reportView } from "./report.js";
 import { badge, currentError, progressBar } from "./status.js";
 
@@ -69,15 +71,6 @@ function jobSource(id, job) {
         h("a", { href: `#/new?from=${id}` }, "Change it and post it here"))));
 }
 
-/// A part that is read when it is opened.
-function folded(title, read) {
-  const place = h("div");
-  const element = h("details", { ontoggle: async () => {
-    if (element.open) place.replaceChildren(await read());
-  } }, h("summary", {}, title), place);
-  return element;
-}
-
 /// The parts of the page that follow the job, and `set...` to bring them up to date.
 function page(id, query, signal) {
   const heading = h("h1");
@@ -87,24 +80,53 @@ function page(id, query, signal) {
   const notes = h("div", { className: "notes" });
   const settings = h("div");
   const progressFacts = h("div");
-  const image = picture("The picture", "", zoomGroup());
-  const panel = curvePanel(query, () => history.replaceState(null, "", `#/job/${id}?${query}`), signal);
+  const remember = () => history.replaceState(null, "", `#/job/${id}?${query}`);
+  const image = jobPicture(id, query, remember, signal);
+  const panel = curvePanel(query, remember, signal);
   const rows = h("details", {}, h("summary", {}, "Curve as a table"));
   const report = h("section", { hidden: true });
   const files = h("section");
   const source = h("div", { className: "source" });
-  const log = folded("Log", async () => h("pre", { tabIndex: 0, className: "tall" },
-    await getText(id, "log.txt", signal).catch((error) => error.message)));
+  const log = logView(id, signal);
   const element = h("article", {},
     h("div", { className: "title" }, heading, state.element, bar.element, cancel),
     h("p", { className: "id" }, id), notes,
     h("div", { className: "columns" },
       h("div", {}, image.element, settings, progressFacts),
       h("div", {}, h("h2", {}, "Error"), panel.element, rows, files)),
-    report, source, log);
+    report, source, log.element);
   return {
     element, heading, state, bar, cancel, notes, settings, progressFacts, image, panel, rows, report,
     files, source, log,
+  };
+}
+
+/// A function that shows a job's files and reads again those whose size or state changed.
+function fileReader(id, view, signal) {
+  let versions = {};
+  return async (shown) => {
+    const files = Object.fromEntries(shown.files.map((f) => [f.name, f]));
+    const next = Object.fromEntries(shown.files.map((f) => [f.name, `${shown.state.state} ${f.bytes}`]));
+    const changed = (name) => files[name] && next[name] !== versions[name];
+    // image.png is written after the layers, and unlike theirs its size changes with its content.
+    view.image.update(files, next["image.png"] ?? "", jobTitle(shown.job))
+      .catch((error) => { if (!signal.aborted) setText(view.progressFacts, error.message); });
+    view.log.update(files["log.txt"]?.bytes ?? null);
+    view.files.replaceChildren(h("h2", {}, "Files"), fileList(id, shown.files));
+    if (changed("curve.csv") || !files["curve.csv"]) {
+      const curve = files["curve.csv"] ? parseCurve(await getText(id, "curve.csv", signal)) : [];
+      view.panel.show([{ name: integratorName(shown.job.integrator), rows: curve }],
+        shown.progress?.error_metric);
+      view.rows.hidden = curve.length === 0;
+      view.rows.replaceChildren(view.rows.firstChild, curveTable(curve));
+    }
+    if (changed("report.json")) {
+      const report = JSON.parse(await getText(id, "report.json", signal));
+      view.report.replaceChildren(h("h2", {}, "Where time and rays went"), effortView(report),
+        h("h2", {}, "Report"), reportView(report));
+      view.report.hidden = false;
+    }
+    versions = next;
   };
 }
 
@@ -112,7 +134,7 @@ export async function show(main, { params, query, signal }) {
   const { id } = params;
   const view = page(id, query, signal);
   let shown = null;
-  let versions = {};
+  const drawFiles = fileReader(id, view, signal);
   let reading = Promise.resolve();
   let waiting = false;
   let stop = () => {};
@@ -133,30 +155,8 @@ export async function show(main, { params, query, signal }) {
     setText(view.heading, jobTitle(job));
     view.settings.replaceChildren(settingFacts(job));
     view.source.replaceChildren(jobSource(id, job));
+    view.log.element.open = shown.state.state === "failed";
     main.replaceChildren(view.element);
-  }
-
-  /// Reads again the files whose size or state changed.
-  async function drawFiles() {
-    const files = Object.fromEntries(shown.files.map((f) => [f.name, f]));
-    const next = Object.fromEntries(shown.files.map((f) => [f.name, `${shown.state.state} ${f.bytes}`]));
-    const changed = (name) => files[name] && next[name] !== versions[name];
-    view.image.load(files["image.png"] ? fileUrl(id, "image.png", next["image.png"]) : null);
-    view.log.hidden = !files["log.txt"];
-    view.files.replaceChildren(h("h2", {}, "Files"), fileList(id, shown.files));
-    if (changed("curve.csv") || !files["curve.csv"]) {
-      const curve = files["curve.csv"] ? parseCurve(await getText(id, "curve.csv", signal)) : [];
-      view.panel.show([{ name: integratorName(shown.job.integrator), rows: curve }],
-        shown.progress?.error_metric);
-      view.rows.hidden = curve.length === 0;
-      view.rows.replaceChildren(view.rows.firstChild, curveTable(curve));
-    }
-    if (changed("report.json")) {
-      const report = JSON.parse(await getText(id, "report.json", signal));
-      view.report.replaceChildren(h("h2", {}, "Report"), reportView(report));
-      view.report.hidden = false;
-    }
-    versions = next;
   }
 
   async function refresh() {
@@ -164,7 +164,7 @@ export async function show(main, { params, query, signal }) {
     shown = await getJob(id, signal);
     if (first) drawOnce();
     drawStatus();
-    await drawFiles();
+    await drawFiles(shown);
     const over = isTerminal(shown.state.state);
     if (over) stop();
     return !over;

@@ -1,17 +1,13 @@
-// The list of jobs, live, with a filter and a choice of jobs to compare.
+// The list of jobs, live, a page at a time, with a filter and a choice of jobs to compare.
 import { getJobs, getScenes, poll } from "./api.js";
 import { copyButton, h, setText } from "./dom.js";
 import { curlLine, integratorName, jobTitle, when } from "./format.js";
+import { jobFilter } from "./job_filter.js";
+import { pager, pageSize } from "./pager.js";
 import { badge, currentError, progressBar } from "./status.js";
 import { thumbnails } from "./thumbnail.js";
 
 const everyMs = 2000;
-
-function matches(job, words) {
-  const text = [job.id, job.label, job.scene, integratorName(job.integrator), job.state]
-    .join(" ").toLowerCase();
-  return words.every((word) => text.includes(word));
-}
 
 // The narrow layout shows rows as grids, and browsers then forget that they are a table's.
 const cell = (className, ...children) => h("td", { role: "cell", className }, children);
@@ -96,15 +92,23 @@ export async function show(main, { query, signal }) {
   const pictures = thumbnails(signal);
   let jobs = [];
   let empty = null;
+  let page = Number(query.get("page")) || 1;
 
-  const filter = h("input", {
-    type: "search", value: query.get("filter") ?? "", placeholder: "Filter: scene, integrator, state …",
-    "aria-label": "Filter the jobs",
-    oninput: () => {
-      const address = filter.value ? `#/?${new URLSearchParams({ filter: filter.value })}` : "#/";
-      history.replaceState(null, "", address);
-      draw();
-    },
+  /// The address holds what is not as at first.
+  function remember() {
+    const held = new URLSearchParams(Object.entries({ ...filter.values(), page: page > 1 ? page : "" })
+      .filter(([, value]) => value !== ""));
+    history.replaceState(null, "", held.size > 0 ? `#/?${held}` : "#/");
+  }
+  function go(next) {
+    page = next;
+    draw();
+    remember();
+  }
+  const filter = jobFilter(query, () => go(1));
+  const pages = pager((next) => {
+    go(next);
+    main.scrollIntoView();
   });
   const count = h("output", { className: "muted" });
   const compare = h("button", {
@@ -112,9 +116,9 @@ export async function show(main, { query, signal }) {
     onclick: () => { location.hash = `#/compare?jobs=${[...chosen].join(",")}`; },
   });
   const { element, body } = jobTable();
-  const tools = h("div", { className: "tools", role: "search" }, filter, count, compare);
+  const tools = h("div", { className: "tools", role: "search" }, filter.elements, count, compare);
   const place = h("div");
-  main.append(h("h1", {}, "Jobs"), tools, place);
+  main.append(h("h1", {}, "Jobs"), tools, place, pages.element);
 
   function showCompare() {
     compare.disabled = chosen.size < 2;
@@ -135,11 +139,13 @@ export async function show(main, { query, signal }) {
   }
 
   function draw() {
-    const words = filter.value.toLowerCase().split(/\s+/).filter(Boolean);
-    const visible = jobs.filter((job) => matches(job, words));
+    const found = filter.pick(jobs);
+    page = pages.show(page, found.length);
+    const visible = found.slice((page - 1) * pageSize, page * pageSize);
+    for (const id of rows.keys()) if (!visible.some((job) => job.id === id)) rows.delete(id);
     arrange(body, visible.map(rowOf));
     tools.hidden = jobs.length === 0;
-    setText(count, words.length > 0 ? `${visible.length} of ${jobs.length}` : `${jobs.length} jobs`);
+    setText(count, filter.active() ? `${found.length} of ${jobs.length}` : `${jobs.length} jobs`);
     const shown = jobs.length === 0 && empty ? empty : element;
     if (place.firstChild !== shown) place.replaceChildren(shown);
     showCompare();

@@ -5,11 +5,15 @@ import { join } from "node:path";
 import { chromium } from "playwright-core";
 
 const args = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+  "--enable-unsafe-swiftshader",
   "--disable-background-networking", "--disable-component-update", "--disable-sync"];
 
 export const launch = () => chromium.launch({
   executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", headless: true, args,
 });
+
+/// What the software renderer says when a picture of the page is taken.
+const noise = /GL Driver Message.*GPU stall due to ReadPixels/;
 
 /// A page at `address`, ready to look at. `page.troubles` collects console errors and warnings,
 /// exceptions, and requests to other hosts.
@@ -18,7 +22,8 @@ export async function openPage(browser, address, options = {}) {
   const page = await context.newPage();
   page.troubles = [];
   page.on("console", (message) => {
-    if (["error", "warning"].includes(message.type())) page.troubles.push(message.text());
+    const told = ["error", "warning"].includes(message.type()) && !noise.test(message.text());
+    if (told) page.troubles.push(message.text());
   });
   page.on("pageerror", (error) => page.troubles.push(String(error)));
   page.on("request", (request) => {
@@ -41,4 +46,19 @@ export async function screenshot(page, name) {
   if (!folder) return;
   await mkdir(folder, { recursive: true });
   await page.screenshot({ path: join(folder, `${name}.png`), fullPage: true });
+}
+
+/// The colours, [r, g, b] in bytes, that the screen shows at `points` ([{u, v}], in CSS pixels) of an
+/// element.
+export async function coloursOf(page, selector, points) {
+  const bytes = await page.locator(selector).screenshot();
+  return page.evaluate(async ([source, places]) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${source}`;
+    await image.decode();
+    const context = Object.assign(document.createElement("canvas"),
+      { width: image.width, height: image.height }).getContext("2d", { willReadFrequently: true });
+    context.drawImage(image, 0, 0);
+    return places.map(({ u, v }) => [...context.getImageData(u, v, 1, 1).data].slice(0, 3));
+  }, [bytes.toString("base64"), points]);
 }

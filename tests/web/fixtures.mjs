@@ -1,5 +1,6 @@
 // The jobs that the mock server starts with.
-import { noise, room } from "./png.mjs";
+import { layerFiles } from "./layers.mjs";
+import { noise, radiance, room } from "./png.mjs";
 
 const columns = ["iteration", "seconds", "cpu_seconds", "samples", "rays", "shadow_rays", "mae", "rmse",
   "mse", "relmse", "smape", "est_rmse", "negative", "rejected", "at_floor"];
@@ -35,9 +36,9 @@ export const report = {
   errors: { rmse: 0.0138, est_rmse: 0.0125, efficiency: 174.9,
     reference: { name: "auto", own_rmse: 0.02, at_floor: true } },
   scene: { triangles: 36, dropped_triangles: 0, emitters: 2,
-    textures: { in_scene: 0, decoded: 0, decoded_bytes: 0 }, mask_filters: 0, ray_caster_bytes: 52480,
+    textures: { in_scene: 3, decoded: 1, decoded_bytes: 0 }, mask_filters: 0, ray_caster_bytes: 52480,
     content_hash: "f00dcafe00112233" },
-  artefacts: { built: [], loaded: [] },
+  artefacts: { built: [{ name: "skeleton", seconds: 1.5 }], loaded: ["octree"] },
   strategies: [{ type: "camera", share: 0.31 }, { type: "emitter", share: 0.69 }],
   warnings: [],
   machine: { processor: "A processor, 2 GHz", cores: 2, threads: 2, peak_memory_bytes: 183500800 },
@@ -76,6 +77,21 @@ function files(job, curveText, image, more = {}) {
   };
 }
 
+const rgb = ["R", "G", "B"];
+
+/// The layers of the room, `side` pixels wide and high.
+function roomLayers(side, grain, seed) {
+  const smooth = radiance(side, side, 0, 1);
+  return layerFiles(side, side, [
+    { name: "", channels: rgb, scale: 2 ** -10, pixel: radiance(side, side, grain, seed) },
+    { name: "variance", channels: rgb, scale: 2 ** -20, pixel: (x, y) => smooth(x, y).map((v) => (grain * v) ** 2 / 12) },
+    { name: "normal", channels: ["X", "Y", "Z"], pixel: (x) => [x < 0.2 * side ? 1 : x > 0.8 * side ? -1 : 0, 0,
+      x >= 0.2 * side && x <= 0.8 * side ? 1 : 0] },
+    { name: "depth", channels: ["Z"], scale: 2, pixel: (x, y) => [400 + y] },
+    { name: "reference", channels: rgb, scale: 2 ** -10, pixel: smooth },
+  ]);
+}
+
 const withReport = { "report.json": JSON.stringify(report) };
 const ended = (iteration, error) => progress(iteration, 1, { remaining_seconds: 0, error });
 
@@ -105,10 +121,10 @@ export function makeJobs() {
       files: { "job.json": JSON.stringify(normals) } },
     { id: "20260131-101500-shallow", job: shallow, state: state("done"), progress: ended(1024, 0.0391),
       files: files(shallow, curve({ rows: 11, cost: 0.021, level: 1.25, floor: 0.004, seed: 5 }),
-        room(512, 512, 0.4, 7), withReport) },
+        room(512, 512, 0.4, 7), { ...withReport, ...roomLayers(128, 1.2, 7) }) },
     { id: "20260131-101400-cornell", job: plain, state: state("done"), progress: ended(1024, 0.0138),
       files: files(plain, curve({ rows: 11, cost: 0.029, level: 0.4, floor: 0.02, seed: 9 }),
-        room(512, 512, 0.1, 9), withReport) },
+        room(512, 512, 0.1, 9), { ...withReport, ...roomLayers(128, 0.3, 9) }) },
   ];
 }
 

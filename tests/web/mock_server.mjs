@@ -13,6 +13,7 @@ const types = {
   ".html": "text/html; charset=utf-8", ".css": "text/css; charset=utf-8",
   ".js": "text/javascript; charset=utf-8", ".png": "image/png", ".exr": "image/x-exr",
   ".csv": "text/csv; charset=utf-8", ".json": "application/json", ".txt": "text/plain; charset=utf-8",
+  ".half": "application/octet-stream",
 };
 const policy = "default-src 'self'; img-src 'self' blob: data:; object-src 'none'; "
   + "frame-ancestors 'none'; base-uri 'none'";
@@ -23,6 +24,16 @@ function send(response, status, type, body, headers = {}) {
     ...headers,
   });
   response.end(body);
+}
+
+/// A file of a job, or the one range of it that is asked for.
+function sendFile(request, response, name, content) {
+  const bytes = Buffer.from(content);
+  const range = /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? "");
+  if (!range) return send(response, 200, types[extname(name)], bytes);
+  const [first, last] = [Number(range[1]), Math.min(Number(range[2]), bytes.length - 1)];
+  return send(response, 206, types[extname(name)], bytes.subarray(first, last + 1),
+    { "Content-Range": `bytes ${first}-${last}/${bytes.length}` });
 }
 
 const sendJson = (response, value) => send(response, 200, "application/json", JSON.stringify(value));
@@ -107,8 +118,7 @@ export class Mock {
       return sendJson(response, detail(job));
     }
     const content = job.files[name];
-    return content === undefined ? notFound(response, `file ${name}`)
-      : send(response, 200, types[extname(name)], content);
+    return content === undefined ? notFound(response, `file ${name}`) : sendFile(request, response, name, content);
   }
 
   follow(request, response, job) {

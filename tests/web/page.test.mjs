@@ -22,7 +22,7 @@ const views = {
 };
 
 /// How many pictures a view has in the end.
-const pictures = { "#/": 3, [views.job.slice(1)]: 1, [views.running.slice(1)]: 1, [views.compare.slice(1)]: 3 };
+const pictures = { "#/": 3, [views.running.slice(1)]: 1, [views.compare.slice(1)]: 1 };
 
 let browser;
 let mock;
@@ -112,13 +112,53 @@ test("the filter keeps its jobs and goes into the address", async () => {
   assert.equal(await count("tr[data-job]"), 2);
 });
 
+test("the list is narrowed to a state, which goes into the address", async () => {
+  await open(views.jobs);
+  const state = page.getByLabel("State", { exact: true });
+  assert.ok((await state.innerText()).includes("done (2)"));
+  await state.selectOption("failed");
+  assert.equal(await count("tr[data-job]"), 1);
+  assert.ok(page.url().endsWith("#/?state=failed"));
+  await page.fill("input[type=search]", "nothing like it");
+  assert.equal(await text("main > .tools output"), "0 of 6");
+  await page.goto(`${origin}/#/?state=done&filter=without`);
+  await page.waitForFunction(() => document.querySelectorAll("tr[data-job]").length === 1);
+});
+
+test("ten thousand jobs are listed a page at a time, without a pause", async () => {
+  const [like] = mock.jobs.slice(-1);
+  mock.jobs = Array.from({ length: 10000 }, (_, i) => ({ ...like, id: `20260131-101400-${10000 + i}`,
+    job: { ...like.job, label: `job ${i}` } }));
+  await open("/#/?page=2");
+  assert.equal(await count("tr[data-job]"), 100);
+  assert.equal(await text(".pager output"), "101–200 of 10000");
+  await page.getByRole("button", { name: "Next page" }).click();
+  assert.equal(await text("tr[data-job] .name a"), "job 200");
+  assert.ok(page.url().endsWith("#/?page=3"));
+  const took = await page.evaluate(() => {
+    const filter = document.querySelector("input[type=search]");
+    filter.value = "job 77";
+    const began = performance.now();
+    filter.dispatchEvent(new Event("input"));
+    document.body.getBoundingClientRect();
+    return performance.now() - began;
+  });
+  assert.equal(await text("main > .tools output"), "280 of 10000");
+  assert.ok(took < 500, `${took} ms to filter`);
+  console.log(`# filtering 10,000 jobs: ${took.toFixed(0)} ms`);
+  const asked = mock.requests.filter((r) => /GET \/api\/jobs\/[^/]+$/.test(r)).length;
+  assert.ok(asked < 100, `${asked} jobs asked for their thumbnails`);
+  await screenshot(page, "jobs-many");
+  assert.deepEqual(page.troubles, []);
+});
+
 test("jobs chosen in the list are compared", async () => {
   await open(views.jobs);
   const compare = page.getByRole("button", { name: /^Compare/ });
   assert.equal(await compare.isDisabled(), true);
   for (const id of [cornell, shallow]) await page.check(`tr[data-job="${id}"] input`);
   await compare.click();
-  await page.waitForSelector("canvas[data-curves='2']");
+  await page.waitForSelector(".plot canvas[data-curves='2']");
   assert.ok(page.url().endsWith(`#/compare?jobs=${cornell},${shallow}`));
 });
 
@@ -132,12 +172,12 @@ test("an empty list says how to post the first job", async () => {
 
 test("a running job moves, gets its curve and picture, and ends", async () => {
   await open(views.running);
-  assert.equal(await attribute("canvas", "data-points"), "3");
+  assert.equal(await attribute(".plot canvas", "data-points"), "3");
   mock.update(running, { progress: progress(20, 0.5, { error_metric: "est_rmse" }) });
   await page.waitForFunction(() => document.querySelector(".title progress").value === 0.5);
   mock.update(running, { files: { "curve.csv": curve({ rows: 6, cost: 0.7, level: 0.4 }) },
     state: { state: "done", phase: "", finished: "2026-01-31T10:20:00.000Z" } });
-  await page.waitForSelector("canvas[data-points='6']");
+  await page.waitForSelector(".plot canvas[data-points='6']");
   assert.equal(await text(".title .badge"), "done");
   assert.equal(await page.locator(".title progress").isVisible(), false);
   assert.equal(await page.getByRole("button", { name: "Cancel job" }).isVisible(), false);
@@ -165,14 +205,45 @@ test("a job shows its report with units, its files and its settings", async () =
   assert.match(report, /peak memory bytes\s+175\sMiB/);
   assert.match(report, /render\s+30\.0\ss/);
   assert.match(report, /rays per second\s+19\.9\sM\/s/);
-  assert.match(report, /built\s+none/);
+  assert.match(report, /loaded\s+octree/);
   assert.match(report, /type\s+share\s+1\s+camera\s+0\.310/);
-  assert.equal(await count(".files a"), 6);
+  assert.equal(await count(".files a"), 8);
   assert.match(await page.locator("article").innerText(), /512 × 512/);
   await page.getByText("Curve as a table").click();
   assert.equal(await count("details[open] tbody tr"), 11);
   await page.getByText("Log", { exact: true }).click();
   await page.getByText("loaded the scene in 41 ms").waitFor();
+  assert.deepEqual(page.troubles, []);
+});
+
+test("a job shows where its time and rays went, and what was built, loaded and left out", async () => {
+  await open(views.job);
+  const effort = await page.locator(".effort").innerText();
+  assert.match(effort, /Time: 42\.9\ss in all/);
+  assert.match(effort, /render 30\.0\ss, 69\.9 %/);
+  assert.match(effort, /shadow rays 512\s000\s000, 35\.7 %/);
+  assert.match(effort, /built\s+skeleton \(1\.50\ss\)\s+loaded\s+octree\s+left out\s+2 of 3 textures/);
+  const widths = await page.locator(".stacked-bar").first().locator("span").evaluateAll(
+    (all) => all.map((piece) => piece.getBoundingClientRect().width / piece.parentElement.clientWidth));
+  assert.ok(Math.abs(widths[0] - 30.02 / 42.94) < 0.01, `${widths}`);
+  assert.ok(Math.abs(widths.reduce((a, b) => a + b) - 1) < 0.01, `${widths}`);
+});
+
+test("the log is followed while the job runs, from its tail on, and only while it is open", async () => {
+  const lines = (from, to) => Array.from({ length: to - from }, (_, i) => `line ${from + i} ä`).join("\n") + "\n";
+  mock.update(running, { files: { "log.txt": lines(0, 10000) } });
+  await open(views.running);
+  assert.ok(!mock.requests.some((r) => r.includes("log.txt")));
+  await page.getByText("Log", { exact: true }).click();
+  const log = page.locator("pre[aria-label=Log]");
+  await page.waitForFunction(() => document.querySelector("pre[aria-label=Log]").textContent.endsWith("line 9999 ä\n"));
+  const start = await log.evaluate((pre) => pre.textContent.slice(0, 20));
+  assert.match(start, /^line \d+ ä\nline/);
+  assert.match(await page.locator("details[open] .note").innerText(), /^The last part of it, from .* on\. The whole log$/);
+  assert.ok(await log.evaluate((pre) => pre.scrollTop > 0));
+  mock.update(running, { files: { "log.txt": lines(0, 10003) }, progress: progress(8, 0.2) });
+  await page.waitForFunction(() => document.querySelector("pre[aria-label=Log]").textContent
+    .endsWith("line 9999 ä\nline 10000 ä\nline 10001 ä\nline 10002 ä\n"));
   assert.deepEqual(page.troubles, []);
 });
 
@@ -185,7 +256,7 @@ test("a failed job says why, plainly", async () => {
 
 test("the curve's switches change the plot and the address", async () => {
   await open(views.job);
-  const canvas = page.locator("canvas");
+  const canvas = page.locator(".plot canvas");
   assert.match(await canvas.getAttribute("aria-label"), /^RMSE against render time/);
   await page.getByLabel("Error", { exact: true }).selectOption("est_rmse");
   await page.getByLabel("against", { exact: true }).selectOption("iteration");
@@ -205,36 +276,56 @@ test("hollow points are explained where a reference's floor is reached, and only
   assert.equal(await note.isVisible(), false);
 });
 
-test("a click zooms the picture to its pixels, and keys move it", async () => {
-  await open(views.job);
+test("the wheel zooms a PNG under the pointer, a drag and keys move it", async () => {
+  await open(views.running);
   const image = page.locator(".frame img");
   await image.waitFor();
-  const scale = () => image.evaluate((i) => new DOMMatrix(getComputedStyle(i).transform).a);
+  const transform = () => image.evaluate((i) => {
+    const { a, e } = new DOMMatrix(getComputedStyle(i).transform);
+    return { scale: a, shift: e / i.offsetWidth };
+  });
   const rendering = () => image.evaluate((i) => getComputedStyle(i).imageRendering);
-  assert.equal(await scale(), 1);
-  const box = await page.locator(".frame").boundingBox();
-  const position = { x: box.width / 4, y: box.height / 2 };
-  await page.locator(".frame").click({ position });
-  const shift = await image.evaluate((i) => new DOMMatrix(getComputedStyle(i).transform).e / i.offsetWidth);
-  assert.ok(Math.abs(shift - 0.25) < 0.01, `the point under the click stays: ${shift}`);
-  await page.locator(".frame").click({ position, modifiers: ["Shift"] });
-  assert.equal(await scale(), 1);
-  await page.locator(".frame").press("+");
-  await page.locator(".frame").press("+");
-  assert.equal(await scale(), 4);
+  const frame = page.locator(".frame");
+  const box = await frame.boundingBox();
+  await frame.focus();
+  await page.mouse.move(box.x + box.width / 4, box.y + box.height / 2);
+  await page.mouse.wheel(0, -100);
+  await page.waitForFunction(() => /scale\(1.25\)/.test(document.querySelector(".frame img").style.transform));
+  const before = await transform();
+  assert.ok(Math.abs(before.shift - 0.0625) < 0.01, `the point under the pointer stays: ${before.shift}`);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 4 + 20, box.y + box.height / 2);
+  await page.mouse.up();
+  assert.ok(Math.abs((await transform()).shift - before.shift - 20 / box.width) < 0.01, "a drag takes it along");
+  await frame.press("0");
+  assert.equal((await transform()).scale, 1);
+  await frame.press("+");
+  await frame.press("+");
+  assert.equal((await transform()).scale, 4);
   assert.equal(await rendering(), "pixelated");
-  await page.locator(".frame").press("0");
-  assert.equal(await scale(), 1);
+  await frame.press("ArrowRight");
+  assert.ok((await transform()).shift < 0);
+  await frame.press("f");
+  assert.equal((await transform()).scale, 1);
   assert.deepEqual(page.troubles, []);
 });
 
 test("compare lays as many curves over one another as there are jobs", async () => {
   await open(views.compare);
-  assert.equal(await attribute("canvas", "data-curves"), "3");
+  assert.equal(await attribute(".plot canvas", "data-curves"), "3");
   const table = await page.locator("main section table").first().innerText();
   for (const name of ["Cornell box, 6 edges", "atrium.glb", "× the fastest"]) assert.ok(table.includes(name), name);
-  await page.waitForFunction(() => document.querySelectorAll(".gallery img:not([hidden])").length === 3);
   assert.match(await text(".warning"), /differ in \/scene, \/resolution, \/reference/);
+  assert.deepEqual(page.troubles, []);
+});
+
+test("compare shows pictures without layers side by side, zoomed together", async () => {
+  for (const id of [cornell, shallow]) {
+    delete mock.find(id).files["layers.json"];
+  }
+  await open(views.compare);
+  await page.waitForFunction(() => document.querySelectorAll(".gallery img:not([hidden])").length === 3);
+  assert.match(await text(".note p"), /no layers.json, so image.png is shown/);
   await page.locator(".frame").first().press("+");
   const transforms = await page.locator(".gallery img").evaluateAll((all) => all.map((i) => i.style.transform));
   assert.equal(new Set(transforms).size, 1, "the pictures are zoomed together");
@@ -244,7 +335,7 @@ test("compare lays as many curves over one another as there are jobs", async () 
 
 test("compare shows what it can where a job is missing", async () => {
   await open(`/#/compare?jobs=${cornell},nobody`);
-  assert.equal(await attribute("canvas", "data-curves"), "1");
+  assert.equal(await attribute(".plot canvas", "data-curves"), "1");
   assert.equal(await text(".problem"), "nobody: There is no job nobody.");
 });
 

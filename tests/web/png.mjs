@@ -49,13 +49,24 @@ export function noise(seed) {
   };
 }
 
+const wallColour = (u) => (u < 0.2 ? [180, 60, 50] : u > 0.8 ? [60, 140, 70] : [190, 185, 175]);
+const lightOf = (u, v) => (Math.hypot(u - 0.5, v - 0.05) < 0.12 ? 2 : 0.35 + 0.6 * Math.exp(-4 * v * v));
+
 /// A room with a lit wall, more or less noisy.
 export function room(width, height, grain, seed) {
   const random = noise(seed);
   return png(width, height, (x, y) => {
     const [u, v] = [x / width, y / height];
-    const wall = u < 0.2 ? [180, 60, 50] : u > 0.8 ? [60, 140, 70] : [190, 185, 175];
-    const light = Math.hypot(u - 0.5, v - 0.05) < 0.12 ? 2 : 0.35 + 0.6 * Math.exp(-4 * v * v);
-    return wall.map((c) => c * light + 255 * grain * (random() - 0.5));
+    return wallColour(u).map((c) => c * lightOf(u, v) + 255 * grain * (random() - 0.5));
   });
+}
+
+/// The same room as radiance: a function of the pixel.
+export function radiance(width, height, grain, seed) {
+  const random = noise(seed);
+  return (x, y) => {
+    const [u, v] = [x / width, y / height];
+    const wall = lightOf(u, v) === 2 ? [17, 12, 4] : wallColour(u).map((c) => (c / 255) ** 2.2 * lightOf(u, v));
+    return wall.map((c) => c * (1 + grain * (random() - 0.5)));
+  };
 }

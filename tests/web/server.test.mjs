@@ -12,6 +12,7 @@ import { launch, openPage, ready, screenshot } from "./browser.mjs";
 const root = fileURLToPath(new URL("../../", import.meta.url));
 const bin = process.env.LACUNA_BIN ?? join(root, "build/release/bin");
 const small = { scene: "cornell.glb", resolution: [32, 32], threads: 1, budget: { iterations: 64 } };
+const pictured = ".stage[data-shown], .frame img:not([hidden])";
 const patience = { timeout: 60_000 };  // a busy machine may render slowly
 
 let data;
@@ -75,8 +76,8 @@ test("the first job, from the empty list to its curve, picture and report; then 
 
   const withReference = { ...small, reference: "auto", reference_iterations: 256, label: "measured" };
   const first = await render(page, withReference);
-  await page.waitForFunction(() => document.querySelector(".frame img").naturalWidth === 32);
-  assert.ok(Number(await page.locator("canvas").getAttribute("data-points")) >= 1);
+  await page.waitForSelector(pictured);
+  assert.ok(Number(await page.locator(".plot canvas").getAttribute("data-points")) >= 1);
   const offered = await page.getByLabel("Error", { exact: true }).locator("option").allInnerTexts();
   assert.deepEqual(offered, ["RMSE", "relMSE", "MSE", "MAE", "SMAPE", "estimated RMSE"]);
   assert.match(await page.locator(".report").innerText(), /peak memory bytes\s+[\d.]+\s[KMG]iB/);
@@ -89,8 +90,8 @@ test("the first job, from the empty list to its curve, picture and report; then 
   assert.deepEqual(await page.getByLabel("Error", { exact: true }).locator("option").allInnerTexts(),
     ["estimated RMSE"]);
   await page.goto(`${server.address}/#/compare?jobs=${first},${second}`);
-  await page.waitForSelector("canvas[data-curves='2']");
-  await page.waitForFunction(() => document.querySelectorAll(".gallery img:not([hidden])").length === 2);
+  await page.waitForSelector(".plot canvas[data-curves='2']");
+  await page.waitForSelector(pictured);
   await screenshot(page, "real-compare");
 
   await page.goto(`${server.address}/#/`);

@@ -1,0 +1,328 @@
+// The viewer of pictures of numbers, against layers whose values are known.
+import assert from "node:assert/strict";
+import { after, afterEach, before, beforeEach, test } from "node:test";
+
+import { coloursOf, launch, openPage, ready, screenshot } from "./browser.mjs";
+import { layerFiles, toHalf } from "./layers.mjs";
+import { Mock } from "./mock_server.mjs";
+
+const job = "20260131-101400-cornell";
+const other = "20260131-101500-shallow";
+const old = "20260131-101900-running";
+const rgb = ["R", "G", "B"];
+
+let browser;
+let mock;
+let origin;
+let page;
+
+before(async () => { browser = await launch(); });
+after(() => browser.close());
+beforeEach(async () => {
+  mock = new Mock();
+  origin = await mock.listen();
+});
+afterEach(async () => {
+  await page?.context().close();
+  page = undefined;
+  mock.close();
+});
+
+/// Four by two pixels: the estimate is the reference plus (x - 1) / 8 in every channel.
+const small = (scale = 1) => layerFiles(4, 2, [
+  { name: "", channels: rgb, scale, pixel: (x, y) => [1, 2, 3].map((c) => scale * (c * (y + 1) / 8 + (x - 1) / 8)) },
+  { name: "depth", channels: ["Z"], pixel: (x, y) => [x + 4 * y] },
+  { name: "reference", channels: rgb, scale, pixel: (x, y) => [1, 2, 3].map((c) => scale * c * (y + 1) / 8) },
+]);
+
+const stage = ".stage[data-shown]";
+const address = (query = "") => `/#/job/${job}${query}`;
+
+async function open(path, options) {
+  page = await openPage(browser, origin + path, options);
+}
+async function openViewer(query, options) {
+  await open(address(query), options);
+  await page.waitForSelector(stage);
+}
+const shows = (key) => page.waitForSelector(`.stage[data-shown="${key}"]`);
+const readout = () => page.locator(".readout").innerText();
+const frames = () => page.evaluate(() => new Promise((resolve) => {
+  requestAnimationFrame(() => requestAnimationFrame(resolve));
+}));
+/// Moves the pointer to the middle of the pixel (x, y) of a picture of `width` pixels that fits.
+async function pointAt(x, y, width = 4) {
+  await page.locator(stage).scrollIntoViewIfNeeded();
+  const box = await page.locator(stage).boundingBox();
+  const zoom = box.width / width;
+  await page.mouse.move(box.x + (x + 0.5) * zoom, box.y + (y + 0.5) * zoom);
+  await frames();
+}
+/// The colours of pixels of such a picture, beside the values that are printed in them.
+async function pixelColours(pixels, width = 4) {
+  const zoom = (await page.locator(stage).boundingBox()).width / width;
+  await page.mouse.move(0, 0);
+  return coloursOf(page, stage, pixels.map(([x, y]) => ({ u: (x + 0.1) * zoom, v: (y + 0.1) * zoom })));
+}
+const call = (module, name, ...given) => page.evaluate(
+  async ([m, n, args]) => (await import(m))[n](...args), [module, name, given]);
+
+const srgb = (v) => Math.round(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * Math.min(1, v) ** (1 / 2.4) - 0.055));
+function like(found, expected) {
+  found.forEach((v, c) => assert.ok(Math.abs(v - expected[c]) <= 1, `${found}, expected ${expected}`));
+}
+
+test("half floats: every kind of number", async () => {
+  await open("/#/new");
+  const cases = [[0x0000, 0], [0x3c00, 1], [0xc000, -2], [0x7bff, 65504], [0x0001, 2 ** -24],
+    [0x03ff, 1023 * 2 ** -24], [0x0400, 2 ** -14], [0x3555, 0.333251953125], [0x7c00, Infinity], [0xfc00, -Infinity]];
+  for (const [bits, value] of cases) {
+    assert.equal(await call("/half.js", "halfToNumber", bits), value);
+    assert.equal(toHalf(value), bits);
+  }
+  assert.ok(Number.isNaN(await call("/half.js", "halfToNumber", 0x7e00)));
+});
+
+test("the pixel under the pointer tells its true values, whatever the scale", async () => {
+  for (const [scale, expected] of [[1, "(2, 1)  R 0.3750  G 0.6250  B 0.8750"],
+    [2 ** 100, "(2, 1)  R 4.754e29  G 7.923e29  B 1.109e30"], [2 ** -100, "(2, 1)  R 2.958e-31  G 4.930e-31  B 6.903e-31"]]) {
+    mock.update(job, { files: small(scale) });
+    await openViewer();
+    await pointAt(2, 1);
+    assert.equal(await readout(), expected);
+    // The 95th percentile of luminance is 0.8 of white, so nothing is black or all white.
+    const [[r, g]] = await pixelColours([[2, 1]]);
+    assert.ok(r > 60 && g > r && g < 255, `${r} ${g}`);
+    assert.deepEqual(page.troubles, []);
+    await page.context().close();
+  }
+});
+
+test("exposure and sRGB are what the screen shows", async () => {
+  mock.update(job, { files: small() });
+  await openViewer("?ev=-1");
+  const [seen, row] = await pixelColours([[2, 1], [2, 0]]);
+  like(seen, [0.375, 0.625, 0.875].map((c) => srgb(c / 2)));
+  like(row, [0.25, 0.375, 0.5].map((c) => srgb(c / 2)));
+  await page.locator(stage).press("e");
+  await page.locator(stage).press("e");
+  like((await pixelColours([[2, 1]]))[0], [0.375, 0.625, 0.875].map(srgb));
+  assert.ok(page.url().includes("ev=0"));
+  await page.locator(stage).press("E");
+  assert.ok(page.url().includes("ev=-0.5"));
+  assert.deepEqual(page.troubles, []);
+});
+
+test("errors against the reference are the project's, with their mean and their colours", async () => {
+  mock.update(job, { files: small() });
+  await openViewer("?show=error-relative");
+  await shows("error-relative");
+  await pointAt(3, 0);
+  const relative = [1, 2, 3].map((c) => 0.25 ** 2 / ((c / 8) ** 2 + 0.01)).reduce((a, b) => a + b) / 3;
+  assert.equal(await readout(), `(3, 0)  ${relative.toPrecision(4)}\nx: R 0.3750  G 0.5000  B 0.6250`
+    + "\nr: R 0.1250  G 0.2500  B 0.3750");
+  const mean = async (key) => {
+    await page.getByLabel("Show", { exact: true }).selectOption(key);
+    await shows(key);
+    return /mean (\S+)/.exec(await page.locator(".bar-title").innerText())[1];
+  };
+  assert.equal(await mean("error-signed"), (0.25 / 4).toPrecision(3));
+  assert.equal(await mean("error-absolute"), "0.125");
+  assert.equal(await mean("error-squared"), ((1 + 0 + 1 + 4) / 64 / 4).toPrecision(3));
+  assert.match(await page.locator(".bar-title").innerText(), /\(MSE\)/);
+  await page.getByLabel("Show", { exact: true }).selectOption("error-signed");
+  await shows("error-signed");
+  const [below, none, above] = await pixelColours([[0, 0], [1, 0], [3, 0]]);
+  assert.ok(below[2] > below[0] + 50, `below: blue, not ${below}`);
+  assert.ok(above[0] > above[2] + 50, `above: orange, not ${above}`);
+  assert.ok(Math.max(...none) < 60, `none: dark, not ${none}`);
+  assert.deepEqual(await page.locator(".bar-labels span").allInnerTexts(),
+    ["-0.500", "-0.250", "0", "0.250", "0.500"]);
+  assert.deepEqual(page.troubles, []);
+});
+
+test("a layer of one channel has a colour bar with its range; a layer is read alone", async () => {
+  mock.update(job, { files: small() });
+  await openViewer();
+  assert.equal(mock.requests.filter((r) => r.includes("layers.half")).length, 1);
+  await page.locator(stage).press("]");
+  await shows("depth");
+  assert.equal(mock.requests.filter((r) => r.includes("layers.half")).length, 2);
+  assert.deepEqual(await page.locator(".bar-labels span").allInnerTexts(), ["1.00", "2.50", "4.00", "5.50", "7.00"]);
+  await pointAt(3, 1);
+  assert.equal(await readout(), "(3, 1)  7.000");
+  await page.locator(stage).press("[");
+  await page.locator(stage).press("[");
+  await shows("error-relative");
+  assert.deepEqual(page.troubles, []);
+});
+
+test("zoom, place, layer and exposure go into the address and come back", async () => {
+  await openViewer();
+  const frame = page.locator(stage);
+  const zoom = () => frame.getAttribute("data-zoom").then(Number);
+  const fitted = await zoom();
+  const box = await frame.boundingBox();
+  await frame.focus();
+  await pointAt(32, 32, 128);
+  const under = await readout();
+  for (let i = 0; i < 4; i += 1) await page.mouse.wheel(0, -100);
+  await page.waitForFunction((z) => Number(document.querySelector(".stage").dataset.zoom) > 2 * z, fitted);
+  assert.equal(await readout(), under, "the pixel under the pointer stays there");
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.up();
+  await frames();
+  assert.equal(await readout(), under, "a drag takes the picture along");
+  await frame.press("]");
+  await shows("variance");
+  const before = await zoom();
+  await page.mouse.move(0, 0);
+  await frames();
+  const middle = await readout();
+  for (const key of ["show=variance", "zoom=", "at="]) assert.ok(page.url().includes(key), page.url());
+  await page.reload();
+  await ready(page);
+  await shows("variance");
+  assert.equal(await zoom(), before);
+  assert.equal(await readout(), middle);
+  await frame.press("o");
+  await page.waitForSelector(".stage[data-zoom='1']");
+  await frame.press("0");
+  await frames();
+  assert.equal(await zoom(), fitted);
+  assert.ok(!page.url().includes("zoom="));
+  assert.deepEqual(page.troubles, []);
+});
+
+test("magnified pixels carry their values and keep sharp edges", async () => {
+  await openViewer("?zoom=96&at=0.2,0.5");
+  const blank = () => page.locator(".pixel-text").evaluate((canvas) => canvas.toDataURL()
+    === Object.assign(document.createElement("canvas"), { width: canvas.width, height: canvas.height }).toDataURL());
+  assert.equal(await blank(), false);
+  await screenshot(page, "viewer-magnified");
+  await page.locator(stage).press("0");
+  await frames();
+  assert.equal(await blank(), true);
+  assert.deepEqual(page.troubles, []);
+});
+
+for (const [colorScheme, width] of [["light", 1280], ["dark", 1280], ["dark", 400], ["light", 400]]) {
+  test(`the error picture in ${colorScheme} at ${width}`, async () => {
+    await openViewer("?show=error-signed", { colorScheme, viewport: { width, height: 900 } });
+    await shows("error-signed");
+    const [inner, outer] = await page.evaluate(() => [
+      document.documentElement.scrollWidth, document.documentElement.clientWidth]);
+    assert.ok(inner <= outer, `${inner} pixels of content in a window of ${outer}`);
+    await screenshot(page, `viewer-error-${colorScheme}-${width}`);
+    assert.deepEqual(page.troubles, []);
+  });
+}
+
+test("a job without layers shows image.png and says why", async () => {
+  await open(`/#/job/${old}`);
+  await page.getByText("This job has no layers.json").waitFor();
+  await page.waitForFunction(() => document.querySelector(".frame img").naturalWidth === 640);
+  mock.update(old, { files: { "image.png": mock.find(job).files["image.png"], ...small() } });
+  mock.update(old, { state: { state: "done" } });
+  await page.waitForSelector(stage);
+  assert.equal(await page.getByText("This job has no layers.json").isVisible(), false);
+  assert.deepEqual(page.troubles, []);
+});
+
+test("a browser without WebGL 2 shows image.png and says why", async () => {
+  await open("/#/new");
+  await page.addInitScript(() => {
+    const get = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function context(kind, ...more) {
+      return kind === "webgl2" ? null : get.call(this, kind, ...more);
+    };
+  });
+  await page.reload();
+  await page.goto(origin + address());
+  await page.getByText("This browser offers no WebGL 2").waitFor();
+  await page.waitForFunction(() => document.querySelector(".frame img").naturalWidth === 512);
+  assert.deepEqual(page.troubles, []);
+});
+
+test("a layer that cannot be read is said; the picture before it stays", async () => {
+  await openViewer();
+  delete mock.find(job).files["layers.half"];
+  await page.getByLabel("Show", { exact: true }).selectOption("depth");
+  await page.getByText("There is no file layers.half.").waitFor();
+  assert.equal(await page.locator(".stage").getAttribute("data-shown"), "picture");
+  mock.close();
+  await page.getByLabel("Show", { exact: true }).selectOption("normal");
+  await page.getByText(/No answer from .* Is lacuna-server running\?/).waitFor();
+});
+
+test("a lost graphics context comes back", async () => {
+  mock.update(job, { files: small() });
+  await openViewer("?ev=0");
+  const at = [{ u: 30, v: 20 }];
+  const before = await coloursOf(page, stage, at);
+  await page.evaluate(async () => {
+    const extension = document.querySelector(".pixels").getContext("webgl2").getExtension("WEBGL_lose_context");
+    extension.loseContext();
+    await new Promise((resolve) => { setTimeout(resolve, 100); });
+    extension.restoreContext();
+    await new Promise((resolve) => { setTimeout(resolve, 300); });
+  });
+  assert.deepEqual(await coloursOf(page, stage, at), before);
+});
+
+/// The other job's estimate is twice this one's.
+function openPair(query, options) {
+  mock.update(job, { files: small() });
+  mock.update(other, { files: layerFiles(4, 2, [
+    { name: "", channels: rgb, pixel: (x, y) => [1, 2, 3].map((c) => c * (y + 1) / 4 + (x - 1) / 4) },
+    { name: "reference", channels: rgb, pixel: (x, y) => [1, 2, 3].map((c) => c * (y + 1) / 8) }]) });
+  return open(`/#/compare?jobs=${job},${other},${old}${query}`, options).then(() => page.waitForSelector(stage));
+}
+
+test("number keys flip pictures at one exposure and one zoom", async () => {
+  await openPair("&ev=0");
+  assert.deepEqual(await page.getByLabel("Show", { exact: true }).locator("option").allInnerTexts(),
+    ["picture", "reference", "signed error", "absolute error", "squared error", "relative squared error"]);
+  await page.locator(stage).focus();
+  const [before] = await pixelColours([[2, 0]]);
+  like(before, [0.25, 0.375, 0.5].map(srgb));
+  await page.keyboard.press("2");
+  await frames();
+  const [flipped] = await pixelColours([[2, 0]]);
+  like(flipped, [0.5, 0.75, 1].map(srgb));
+  assert.ok(page.url().includes("left=1"));
+  await page.keyboard.press("3");
+  assert.ok(page.url().includes("left=1"), "the third has no layers");
+  await page.getByText("no layers.json, so image.png is shown").waitFor();
+  assert.deepEqual(page.troubles, []);
+});
+
+test("two pictures are split by a line that a drag moves", async () => {
+  await openPair("&ev=0&mode=split");
+  like((await pixelColours([[2, 0]]))[0], [0.5, 0.75, 1].map(srgb));
+  like((await pixelColours([[1, 0]]))[0], [0.125, 0.25, 0.375].map(srgb));
+  const box = await page.locator(stage).boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + 20);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.8 * box.width, box.y + 20);
+  await page.mouse.up();
+  like((await pixelColours([[2, 0]]))[0], [0.25, 0.375, 0.5].map(srgb));
+  assert.ok(page.url().includes("split=0.8"));
+  for (let i = 0; i < 7; i += 1) await page.locator(stage).press(",");
+  like((await pixelColours([[2, 0]]))[0], [0.5, 0.75, 1].map(srgb));
+  await screenshot(page, "compare-split");
+  assert.deepEqual(page.troubles, []);
+});
+
+test("two pictures are subtracted, and the address holds how", async () => {
+  await openPair("&mode=difference");
+  await pointAt(3, 1);
+  assert.equal(await readout(), "(3, 1)  0.7500\nx: R 1.000  G 1.500  B 2.000\nr: R 0.5000  G 0.7500  B 1.000");
+  await page.getByLabel("by", { exact: true }).selectOption("squared");
+  await page.getByText("squared error, (x − r)²; mean").waitFor();
+  assert.ok(page.url().includes("mode=difference") && page.url().includes("by=squared"));
+  await page.reload();
+  await page.getByText("squared error, (x − r)²; mean").waitFor();
+  assert.deepEqual(page.troubles, []);
+});

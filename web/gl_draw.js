@@ -1,0 +1,177 @@
+// Drawing pictures of numbers with WebGL 2: exposure, sRGB, false colour; nearest pixels when
+// magnified, means of pixels when made smaller (of values, before they become colours).
+import { colourMap, steps } from "./colour_maps.js";
+
+const vertexSource = `#version 300 es
+void main() {  // one triangle over everything
+  gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+}`;
+
+const fragmentSource = `#version 300 es
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+uniform sampler2D picture;
+uniform sampler2D colours;
+uniform vec2 corner;     // the picture's point in the canvas's upper left corner
+uniform float pace;      // pixels of the picture in one of the canvas
+uniform float height;    // of the canvas
+uniform int look;        // 0 colour, 1 direction, 2 false colour
+uniform float gain, offset;
+out vec4 colour;
+
+const vec3 invalid = vec3(1.0, 0.0, 1.0);
+const int most = 8;      // pixels averaged along a side
+
+vec3 srgb(vec3 v) {
+  v = clamp(v, 0.0, 1.0);
+  return mix(12.92 * v, 1.055 * pow(v, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, v));
+}
+
+void main() {
+  ivec2 size = textureSize(picture, 0);
+  vec2 at = corner + pace * vec2(gl_FragCoord.x, height - gl_FragCoord.y);
+  if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, vec2(size)))) {
+    colour = vec4(0.0);
+    return;
+  }
+  int n = clamp(int(ceil(pace)), 1, most);
+  vec3 sum = vec3(0.0);
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      vec2 shift = pace > 1.0 ? pace * ((vec2(i, j) + 0.5) / float(n) - 0.5) : vec2(0.0);
+      sum += texelFetch(picture, clamp(ivec2(floor(at + shift)), ivec2(0), size - 1), 0).rgb;
+    }
+  }
+  vec3 v = sum / float(n * n);
+  if (look == 2) v = v.rrr;
+  if (any(isnan(v)) || any(isinf(v))) {
+    colour = vec4(invalid, 1.0);
+    return;
+  }
+  v = v * gain + offset;
+  if (look == 0) v = srgb(v);
+  if (look == 2) v = texelFetch(colours, ivec2(clamp(v.r, 0.0, 1.0) * ${steps - 1}.0 + 0.5, 0), 0).rgb;
+  colour = vec4(v, 1.0);
+}`;
+
+const looks = { colour: 0, direction: 1, false: 2 };
+const keptTextures = 8;
+
+function compile(gl, type, source) {
+  const shader = gl.createShader(type);
+  gl.shaderSource(shader, source);
+  gl.compileShader(shader);
+  if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) {
+    throw new Error(gl.getShaderInfoLog(shader));
+  }
+  return shader;
+}
+
+function link(gl) {
+  const program = gl.createProgram();
+  gl.attachShader(program, compile(gl, gl.VERTEX_SHADER, vertexSource));
+  gl.attachShader(program, compile(gl, gl.FRAGMENT_SHADER, fragmentSource));
+  gl.linkProgram(program);
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) {
+    throw new Error(gl.getProgramInfoLog(program));
+  }
+  return program;
+}
+
+/// A texture that is only ever fetched by pixel, which floats need no extension for.
+function upload(gl, width, height, [internal, format, type], data) {
+  const texture = gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_2D, texture);
+  gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+  gl.texImage2D(gl.TEXTURE_2D, 0, internal, width, height, 0, format, type, data);
+  for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
+    gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
+  }
+  return texture;
+}
+
+function uploadPicture(gl, { width, height, channels, data }) {
+  const largest = gl.getParameter(gl.MAX_TEXTURE_SIZE);
+  if (Math.max(width, height) > largest) {
+    throw new Error(`This browser draws at most ${largest} pixels a side.`);
+  }
+  const one = channels.length === 1;
+  const format = one ? gl.RED : gl.RGB;
+  const half = [one ? gl.R16F : gl.RGB16F, format, gl.HALF_FLOAT];
+  const single = [one ? gl.R32F : gl.RGB32F, format, gl.FLOAT];
+  return upload(gl, width, height, data instanceof Uint16Array ? half : single, data);
+}
+
+/// What one context holds; made anew when the context was lost.
+function resources(gl) {
+  const program = link(gl);
+  const maps = Object.fromEntries(["sequential", "diverging"].map((name) => [name,
+    upload(gl, steps, 1, [gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE], colourMap(name))]));
+  const uniform = Object.fromEntries(["picture", "colours", "corner", "pace", "height", "look", "gain", "offset"]
+    .map((name) => [name, gl.getUniformLocation(program, name)]));
+  gl.useProgram(program);
+  gl.uniform1i(uniform.picture, 0);
+  gl.uniform1i(uniform.colours, 1);
+  return { maps, uniform, textures: new Map() };
+}
+
+/// A painter on `canvas`; null where the browser has no WebGL 2. `draw(parts, place)` paints: a part
+/// is {image, look, gain, offset, map, from, to}, with `from` and `to` in [0, 1] its share of the
+/// canvas's width; `place` is {x, y, pace}, see the shader's `corner` and `pace`.
+export function painter(canvas, onrestored) {
+  const gl = canvas.getContext("webgl2", { antialias: false, depth: false, premultipliedAlpha: true });
+  if (!gl) return null;
+  let held = resources(gl);
+  canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
+  canvas.addEventListener("webglcontextrestored", () => {
+    held = resources(gl);
+    onrestored();
+  });
+
+  /// The least recently drawn textures go first.
+  function texture(image) {
+    const { textures } = held;
+    const found = textures.get(image) ?? uploadPicture(gl, image);
+    textures.delete(image);
+    textures.set(image, found);
+    for (const [old, name] of textures) {
+      if (textures.size <= keptTextures) break;
+      gl.deleteTexture(name);
+      textures.delete(old);
+    }
+    return found;
+  }
+
+  function drawPart({ image, look, gain, offset, map, from, to }) {
+    const { uniform, maps } = held;
+    gl.activeTexture(gl.TEXTURE1);
+    gl.bindTexture(gl.TEXTURE_2D, maps[map ?? "sequential"]);
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, texture(image));
+    gl.uniform1i(uniform.look, looks[look]);
+    gl.uniform1f(uniform.gain, gain * image.scale);
+    gl.uniform1f(uniform.offset, offset);
+    const left = Math.round(from * canvas.width);
+    gl.scissor(left, 0, Math.max(0, Math.round(to * canvas.width) - left), canvas.height);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+  }
+
+  return {
+    draw(parts, { x, y, pace }) {
+      if (gl.isContextLost()) return;
+      gl.viewport(0, 0, canvas.width, canvas.height);
+      gl.disable(gl.SCISSOR_TEST);
+      gl.clearColor(0, 0, 0, 0);
+      gl.clear(gl.COLOR_BUFFER_BIT);
+      gl.enable(gl.SCISSOR_TEST);
+      gl.uniform2f(held.uniform.corner, x, y);
+      gl.uniform1f(held.uniform.pace, pace);
+      gl.uniform1f(held.uniform.height, canvas.height);
+      parts.forEach(drawPart);
+    },
+    release() {
+      gl.getExtension("WEBGL_lose_context")?.loseContext();
+    },
+  };
+}
