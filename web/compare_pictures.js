@@ -30,11 +30,8 @@ function gallery() {
 /// What is said of the jobs that the viewer leaves out.
 function reasons(plain, hasViewer) {
   if (!hasViewer) return [noViewer];
-  const of = (found, text) => found.length > 0 && `${found.map((e) => e.label).join("; ")}: ${text}`;
-  return [
-    of(plain.filter((e) => e.layers), "not of the first's size, so image.png is shown."),
-    of(plain.filter((e) => e.image && !e.layers), "no layers.json, so image.png is shown."),
-  ];
+  return plain.filter((e) => e.image).map((e) => `${e.label}: ${
+    e.layers ? "not of the first's size" : "no layers.json"}, so image.png is shown.`);
 }
 
 /// `show(jobs, labels)`: jobs are {id, state, files}. The viewer's state is in `query`.
@@ -66,7 +63,7 @@ export function comparePictures(query, changed, signal) {
       const apart = entries.filter((e) => !fits(e));
       plainOnes.show(apart);
       notes.replaceChildren();
-      append(notes, reasons(apart, numbers !== null).filter(Boolean).map((text) => h("p", {}, text)));
+      append(notes, reasons(apart, numbers !== null).map((text) => h("p", {}, text)));
       const now = together.map((e) => `${e.id} ${e.version}`).join();
       if (together.length === 0 || now === shown) return;
       shown = now;

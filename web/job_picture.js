@@ -5,8 +5,8 @@ import { openLayers } from "./layers.js";
 import { picture, zoomGroup } from "./picture.js";
 import { noViewer, viewer } from "./viewer.js";
 
-/// `update(files, version, name)` follows the job's files ({name: {bytes}}); `version` says when they
-/// changed. The viewer's state is in `query`.
+/// `update(files, version, name, over)` follows the job's files ({name: {bytes}}); `version` says when
+/// they changed, and `over` that they will no more. The viewer's state is in `query`.
 export function jobPicture(id, query, changed, signal) {
   const place = h("div");
   const note = h("p", { className: "note", hidden: true });
@@ -23,7 +23,7 @@ export function jobPicture(id, query, changed, signal) {
     if (place.firstChild !== element) place.replaceChildren(element);
   };
 
-  async function update(files, version, name) {
+  async function update(files, version, name, over) {
     const image = files["image.png"];
     if (files["layers.json"] && numbers !== null) {
       numbers ??= viewer(query, changed, signal);
@@ -44,7 +44,8 @@ export function jobPicture(id, query, changed, signal) {
     put(plain.element);
     sayWhy(!image ? "" : numbers === null
       ? noViewer
-      : "This job has no layers.json, which newer versions write: its tone-mapped image.png is shown.");
+      : `${over ? "This job has no layers.json, which newer versions write" : "No layers.json has been written yet"}`
+        + ": its tone-mapped image.png is shown.");
     plain.load(image ? fileUrl(id, "image.png", version) : null);
   }
   return { element: h("div", {}, place, note), update };

@@ -109,7 +109,7 @@ function fileReader(id, view, signal) {
     const next = Object.fromEntries(shown.files.map((f) => [f.name, `${shown.state.state} ${f.bytes}`]));
     const changed = (name) => files[name] && next[name] !== versions[name];
     // image.png is written after the layers, and unlike theirs its size changes with its content.
-    view.image.update(files, next["image.png"] ?? "", jobTitle(shown.job))
+    view.image.update(files, next["image.png"] ?? "", jobTitle(shown.job), isTerminal(shown.state.state))
       .catch((error) => { if (!signal.aborted) setText(view.progressFacts, error.message); });
     view.log.update(files["log.txt"]?.bytes ?? null);
     view.files.replaceChildren(h("h2", {}, "Files"), fileList(id, shown.files));

@@ -34,7 +34,7 @@ function drawAll(own) {
   printPixels(seen.text, box, ratio(), { corner, zoom, size, imageAt });
   seen.line.hidden = state.mode !== "split";
   seen.line.style.left = `${100 * state.split}%`;
-  own.bar.show(look, barTitle(content.shown));
+  own.bar.show(look, barTitle(content.shown, state.show));
 
   // Without a pointer, the pixel in the middle is read.
   const [u, v] = own.pointer ? [own.pointer.u, own.pointer.v] : [box.width / 2, box.height / 2];

@@ -54,8 +54,8 @@ export function pixelText(image, details, x, y) {
 }
 
 /// What a colour bar measures, with the mean: it is the error that the curve shows.
-export function barTitle({ kind, mean, channels }) {
-  if (!kind) return channels.join("");
+export function barTitle({ kind, mean }, layer) {
+  if (!kind) return layer;
   const metric = metrics.find((m) => m.key === kind.metric);
   return `${kind.label}, ${kind.formula}; mean ${number(mean)}${metric ? ` (${metric.label})` : ""}`;
 }

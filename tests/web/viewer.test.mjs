@@ -148,6 +148,7 @@ test("a layer of one channel has a colour bar with its range; a layer is read al
   await page.locator(stage).press("]");
   await shows("depth");
   assert.equal(mock.requests.filter((r) => r.includes("layers.half")).length, 2);
+  assert.equal(await page.locator(".bar-title").innerText(), "depth");
   assert.deepEqual(await page.locator(".bar-labels span").allInnerTexts(), ["1.00", "2.50", "4.00", "5.50", "7.00"]);
   await pointAt(3, 1);
   assert.equal(await readout(), "(3, 1)  7.000");
@@ -221,12 +222,16 @@ for (const [colorScheme, width] of [["light", 1280], ["dark", 1280], ["dark", 40
 
 test("a job without layers shows image.png and says why", async () => {
   await open(`/#/job/${old}`);
-  await page.getByText("This job has no layers.json").waitFor();
+  await page.getByText("No layers.json has been written yet").waitFor();
   await page.waitForFunction(() => document.querySelector(".frame img").naturalWidth === 640);
+  mock.update(old, { progress: mock.find(job).progress });
   mock.update(old, { files: { "image.png": mock.find(job).files["image.png"], ...small() } });
   mock.update(old, { state: { state: "done" } });
   await page.waitForSelector(stage);
-  assert.equal(await page.getByText("This job has no layers.json").isVisible(), false);
+  assert.equal(await page.getByText("No layers.json").isVisible(), false);
+  delete mock.find(job).files["layers.json"];
+  await page.goto(origin + address());
+  await page.getByText("This job has no layers.json, which newer versions write").waitFor();
   assert.deepEqual(page.troubles, []);
 });
 
@@ -295,6 +300,15 @@ test("number keys flip pictures at one exposure and one zoom", async () => {
   await page.keyboard.press("3");
   assert.ok(page.url().includes("left=1"), "the third has no layers");
   await page.getByText("no layers.json, so image.png is shown").waitFor();
+  assert.deepEqual(page.troubles, []);
+});
+
+test("a picture of another size is shown apart, and it is said", async () => {
+  mock.update(job, { files: small() });
+  await open(`/#/compare?jobs=${job},${other}`);
+  await page.getByText("not of the first's size, so image.png is shown").waitFor();
+  await page.waitForSelector(stage);
+  await page.waitForFunction(() => document.querySelectorAll(".gallery img:not([hidden])").length === 1);
   assert.deepEqual(page.troubles, []);
 });
 
