@@ -1,31 +1,16 @@
 // The curves alone, and what is saved of them.
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
-import { after, afterEach, before, beforeEach, test } from "node:test";
+import { test } from "node:test";
 
-import { launch, openPage, ready, screenshot } from "./browser.mjs";
+import { ready, screenshot } from "./browser.mjs";
 import { hostile } from "./fixtures.mjs";
-import { Mock } from "./mock_server.mjs";
+import { mock, open, page } from "./stage.mjs";
 
 const job = "20260131-101400-cornell";
 const other = "20260131-101500-shallow";
 const both = `/#/compare?jobs=${job},${other}&embed`;
 
-let browser;
-let mock;
-let page;
-
-before(async () => { browser = await launch(); });
-after(() => browser.close());
-beforeEach(() => { mock = new Mock(); });
-afterEach(async () => {
-  await page?.context().close();
-  mock.close();
-});
-
-async function open(path, options) {
-  page = await openPage(browser, await mock.listen() + path, options);
-}
 async function saved(kind) {
   const download = page.waitForEvent("download");
   await page.getByRole("button", { name: `Save as ${kind}` }).click();

@@ -1,10 +1,11 @@
 // Every view of the page against the mock server.
 import assert from "node:assert/strict";
-import { after, afterEach, before, beforeEach, test } from "node:test";
+import { test } from "node:test";
 
-import { launch, openPage, ready, screenshot } from "./browser.mjs";
+import { ready, screenshot } from "./browser.mjs";
 import { curve, hostile, progress } from "./fixtures.mjs";
 import { Mock } from "./mock_server.mjs";
+import { mock, open, origin, page } from "./stage.mjs";
 
 const running = "20260131-101900-running";
 const waiting = "20260131-101800-waiting";
@@ -24,24 +25,6 @@ const views = {
 /// How many pictures a view has in the end.
 const pictures = { "#/": 3, [views.running.slice(1)]: 1, [views.compare.slice(1)]: 1 };
 
-let browser;
-let mock;
-let origin;
-let page;
-
-before(async () => { browser = await launch(); });
-after(() => browser.close());
-beforeEach(async () => {
-  mock = new Mock();
-  origin = await mock.listen();
-});
-afterEach(async () => {
-  await page?.context().close();
-  page = undefined;
-  mock.close();
-});
-
-const open = async (path, options) => { page = await openPage(browser, origin + path, options); };
 const text = (selector) => page.locator(selector).first().innerText();
 const count = (selector) => page.locator(selector).count();
 const attribute = (selector, name) => page.locator(selector).first().getAttribute(name);
@@ -371,16 +354,16 @@ test("unknown addresses and jobs say so", async () => {
   await page.getByText("No such view").waitFor();
 });
 
-test("a server that goes away and comes back is said and forgotten", async () => {
+test("a server that goes away and comes back is said and forgotten", async (t) => {
   await open(views.jobs);
   const { port } = mock.server.address();
   mock.close();
   await page.getByText("The server does not answer; trying again.").waitFor();
   assert.equal(await count("tr[data-job]"), 6);
-  const jobs = mock.jobs;
-  mock = new Mock();
-  mock.jobs = jobs;
-  await mock.listen(port);
+  const again = new Mock();
+  t.after(() => again.close());
+  again.jobs = mock.jobs;
+  await again.listen(port);
   await page.getByText("The server does not answer; trying again.").waitFor({ state: "detached" });
 });
 

@@ -1,32 +1,15 @@
 // The viewer of pictures of numbers, against layers whose values are known.
 import assert from "node:assert/strict";
-import { after, afterEach, before, beforeEach, test } from "node:test";
+import { test } from "node:test";
 
-import { coloursOf, launch, openPage, ready, screenshot } from "./browser.mjs";
+import { coloursOf, ready, screenshot } from "./browser.mjs";
 import { layerFiles, toHalf } from "./layers.mjs";
-import { Mock } from "./mock_server.mjs";
+import { mock, open, origin, page } from "./stage.mjs";
 
 const job = "20260131-101400-cornell";
 const other = "20260131-101500-shallow";
 const old = "20260131-101900-running";
 const rgb = ["R", "G", "B"];
-
-let browser;
-let mock;
-let origin;
-let page;
-
-before(async () => { browser = await launch(); });
-after(() => browser.close());
-beforeEach(async () => {
-  mock = new Mock();
-  origin = await mock.listen();
-});
-afterEach(async () => {
-  await page?.context().close();
-  page = undefined;
-  mock.close();
-});
 
 /// Four by two pixels: the estimate is the reference plus (x - 1) / 8 in every channel.
 const small = (scale = 1) => layerFiles(4, 2, [
@@ -38,9 +21,6 @@ const small = (scale = 1) => layerFiles(4, 2, [
 const stage = ".stage[data-shown]";
 const address = (query = "") => `/#/job/${job}${query}`;
 
-async function open(path, options) {
-  page = await openPage(browser, origin + path, options);
-}
 async function openViewer(query, options) {
   await open(address(query), options);
   await page.waitForSelector(stage);
