@@ -52,7 +52,7 @@ class ByteReader {
     if (n > bytes_.size() / sizeof(T)) throw std::runtime_error("saved state ends early");
     const std::string_view from = take(n * sizeof(T));
     std::vector<T> values(n);
-    std::memcpy(values.data(), from.data(), from.size());
+    if (n > 0) std::memcpy(values.data(), from.data(), from.size());  // an empty vector has no data
     return values;
   }
   std::string_view get_text() { return take(get<std::uint64_t>()); }

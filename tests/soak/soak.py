@@ -34,7 +34,9 @@ def sanitizers(preset, options):
 CHECKS = {
     "kills": lambda: kills(20),
     "asan": lambda: sanitizers("asan", {
-        # libpng leaves by longjmp through OpenImageIO and leaks a few bytes of a corrupt file's state.
+        # libpng leaves by longjmp through OpenImageIO and leaks a few bytes of a corrupt file's state. To know
+        # it by its caller takes whole stacks, which libstdc++ without frame pointers gives to the slow unwinder only.
+        "ASAN_OPTIONS": "fast_unwind_on_malloc=0",
         "LSAN_OPTIONS": f"suppressions={ROOT}/tests/soak/lsan.txt",
     }),
     "tsan": lambda: sanitizers("tsan", {
