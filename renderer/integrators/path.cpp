@@ -23,13 +23,14 @@ class Path final : public Integrator {
   Counters iterate(const IterationContext& context, Image& image) override {
     return for_each_tile(context, image, [&](const Tile& tile, Counters& counters) {
       Batch batch(settings_.max_depth);
+      Walk walk(context.scene, guide_, {settings_.max_depth, settings_.roulette_depth}, counters);
       for (int first = 0; first < tile.pixels(); first += Batch::size) {
         batch.walkers.clear();
         for (int i = first; i < std::min(first + Batch::size, tile.pixels()); ++i) {
           batch.start(context, image, tile.pixel(i));
         }
         counters.samples += batch.walkers.size();
-        estimate(context.scene, batch, counters);
+        estimate(context.scene, walk, batch);
         for (std::size_t i = 0; i < batch.walkers.size(); ++i) {
           accumulate(image.pixels[batch.pixels[i]], batch.radiance[i], counters);
         }
@@ -74,8 +75,7 @@ class Path final : public Integrator {
   };
 
   /// One sample of each pixel of `batch`, into its `radiance` and `shadows`.
-  void estimate(const Scene& scene, Batch& batch, Counters& counters) const {
-    Walk walk(scene, guide_, {settings_.max_depth, settings_.roulette_depth}, counters);
+  void estimate(const Scene& scene, Walk<Guide>& walk, Batch& batch) const {
     const auto choose_emitter = [&](std::size_t i, int depth) {
       if (nee(scene) && depth < settings_.max_depth) {
         batch.chosen[i] = scene.emitters().choose(batch.walkers[i].rng);

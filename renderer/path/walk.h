@@ -29,9 +29,9 @@ struct Walker {
 };
 
 /// Leads random walks through a scene, all of them edge by edge: what a vertex needs from memory is
-/// asked for while the others' rays are traced, which hides half of a vertex's cost. The guide
-/// (renderer/guides) draws the directions. Walks know nothing of one another: the results are the
-/// same however many are led together.
+/// asked for while the others' rays are traced, which pays where a scene is larger than the caches.
+/// The guide (renderer/guides) draws the directions. Walks know nothing of one another: the results
+/// are the same however many are led together.
 template <class Guide>
 class Walk {
  public:
