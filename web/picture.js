@@ -27,7 +27,6 @@ function actionsOf(group, frame) {
       set(moved(group.view, size, box, du, dv));
       return true;
     },
-    oneToOne() {}, expose() {}, cycle() {}, pick: () => false, shiftSplit() {}, splits: () => false, hover() {},
   };
 }
 
