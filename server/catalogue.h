@@ -1,47 +1,20 @@
 #pragma once
 
-#include <map>
-#include <mutex>
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
-
-#include "jobs/store/job_folder.h"
-#include "server/queue.h"
+#include "server/entry_json.h"
+#include "server/job_table.h"
 
 namespace lacuna {
 
-using Json = nlohmann::ordered_json;
+/// The entry of a job that is there, on disk too; throws HttpError 404.
+EntryPtr find_job(JobTable& table, const std::string& id);
 
-Json to_json(const JobState& state);
-Json to_json(const Progress& progress);
+/// A page of the list as JSON text: {"jobs", "total", "counts", "next", "last_event"}. Made from
+/// the entries' texts: a list of a thousand jobs costs little more than copying them.
+std::string list_text(const JobTable::Page& page);
 
-/// Jobs as the API shows them, read from their folders.
-class Catalogue {
- public:
-  Catalogue(DataRoot data, const Queue& queue) : data_(std::move(data)), queue_(queue) {}
-
-  /// The job's folder; throws HttpError 404 if there is no such job.
-  JobFolder find(const std::string& id) const;
-  /// All jobs, newest first: {"jobs": [{id, label, scene, integrator, state, progress, ...}]}.
-  Json list() const;
-  /// One job: {id, job, state, progress, files}.
-  Json detail(const JobFolder& folder) const;
-
- private:
-  /// What never changes once it is known: a job file, and the state of a job that is over.
-  struct Known {
-    std::string label, scene, integrator;
-    bool over = false;
-    JobState state;
-    std::optional<Progress> progress;
-  };
-  Known known(const JobFolder& folder) const;
-
-  const DataRoot data_;
-  const Queue& queue_;
-  mutable std::mutex mutex_;  // guards known_ only
-  mutable std::map<std::string, Known> known_;
-};
+/// One job: {id, job, state, progress, priority, held, files}.
+Json job_detail(const JobTable& table, const JobEntry& entry);
 
 }  // namespace lacuna

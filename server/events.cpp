@@ -2,20 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
-#include <thread>
 #include <utility>
 
+#include "server/entry_json.h"
 #include "server/message.h"
 #include "server/settings.h"
 
 namespace lacuna {
 namespace {
 
-// Renderers write progress a few times a second: looking at two small files as often is simpler
-// than a notice from the kernel, and costs next to nothing.
-constexpr std::chrono::milliseconds look_again{250};
+// How long a stream may wait before it looks whether its client is still there.
+constexpr std::chrono::milliseconds look_at_client{250};
 constexpr std::chrono::seconds heartbeat{15};
 
 /// Counts one open stream for as long as it lives.
@@ -25,7 +25,7 @@ class Seat {
     if (taken_->fetch_add(1) < max_event_streams) return;
     taken_->fetch_sub(1);
     throw HttpError(503, fmt::format("{} streams of events are open, and there may be no more: "
-                                     "poll the job instead.",
+                                     "poll instead.",
                                      max_event_streams))
         .with("Retry-After", "5");
   }
@@ -37,53 +37,150 @@ class Seat {
   std::shared_ptr<std::atomic<int>> taken_;
 };
 
-/// One watcher of one job.
+/// What all streams do: follow the journal, and let the client know now and then that they live.
 class Stream {
  public:
-  Stream(const Queue& queue, JobFolder folder, std::shared_ptr<std::atomic<int>> seats)
-      : queue_(queue), folder_(std::move(folder)), seat_(std::move(seats)) {}
+  Stream(Journal& journal, std::shared_ptr<std::atomic<int>> seats)
+      : journal_(journal), seat_(std::move(seats)) {}
+  virtual ~Stream() = default;
 
   std::optional<std::string> next() {
     if (over_) return std::nullopt;
-    if (!std::exchange(first_, false)) std::this_thread::sleep_for(look_again);
-    std::string text;
-    try {
-      // In this order, the last progress is there before a terminal state, and that is final.
-      const bool held = queue_.holds(folder_);
-      const JobState state = queue_.state(folder_);
-      if (const auto p = folder_.read_progress()) append(text, "progress", to_json(*p), progress_);
-      append(text, "state", to_json(state), state_);
-      over_ = !held && is_terminal(state.state);
-    } catch (const std::runtime_error&) {  // the folder was removed
-      return std::nullopt;
-    }
+    std::string text = std::exchange(begins_, false) ? begin() : follow();
     const auto now = std::chrono::steady_clock::now();
-    if (text.empty() && now - last_ >= heartbeat) text = ":\n\n";
-    if (!text.empty()) last_ = now;
+    if (text.empty() && now - said_ >= heartbeat) text = ":\n\n";
+    if (!text.empty()) said_ = now;
     return text;
   }
 
- private:
-  static void append(std::string& text, const char* name, const Json& json, std::string& last) {
-    std::string data = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-    if (data == last) return;
-    text += fmt::format("event: {}\ndata: {}\n\n", name, data);
-    last = std::move(data);
+ protected:
+  /// The first texts; sets `seen_`.
+  virtual std::string begin() = 0;
+  virtual std::string text_of(const JobEvent& event) = 0;
+  /// The events after `seen_` are forgotten.
+  virtual std::string forgotten() = 0;
+
+  std::string format(std::string_view name, std::string_view data) const {
+    return fmt::format("id: {}\nevent: {}\ndata: {}\n\n", journal_.name(seen_), name, data);
   }
 
-  const Queue& queue_;
-  JobFolder folder_;
+  Journal& journal_;
+  std::uint64_t seen_ = 0;
+  bool over_ = false;
+
+ private:
+  std::string follow() {
+    const auto events = journal_.since(seen_, look_at_client);
+    if (!events) return forgotten();
+    std::string text;
+    for (const JobEvent& event : *events) {
+      seen_ = event.number;
+      text += text_of(event);
+      if (over_) break;
+    }
+    return text;
+  }
+
   Seat seat_;
+  std::chrono::steady_clock::time_point said_ = std::chrono::steady_clock::now();
+  bool begins_ = true;
+};
+
+class JobStream final : public Stream {
+ public:
+  JobStream(JobTable& table, std::shared_ptr<std::atomic<int>> seats, std::string id,
+            std::optional<std::uint64_t> last)
+      : Stream(table.journal(), std::move(seats)),
+        table_(table),
+        id_(std::move(id)),
+        last_(last) {}
+
+ private:
+  std::string begin() override {
+    if (!last_) return forgotten();
+    seen_ = *last_;
+    const auto missed = journal_.since(seen_, {});
+    if (!missed) return forgotten();
+    const bool news = std::any_of(missed->begin(), missed->end(),
+                                  [&](const JobEvent& event) { return event.id == id_; });
+    // Browsers come back to a stream that has ended: they have seen all.
+    const EntryPtr entry = table_.find(id_);
+    over_ = !news && (!entry || entry->over);
+    return {};
+  }
+
+  std::string forgotten() override {
+    seen_ = journal_.last();  // before the entry: what happens in between is told twice, not never
+    const EntryPtr entry = table_.find(id_);
+    return entry ? tell(*entry) : end();
+  }
+
+  std::string text_of(const JobEvent& event) override {
+    if (event.id != id_) return {};
+    return event.entry ? tell(*event.entry) : end();
+  }
+
+  std::string tell(const JobEntry& entry) {
+    std::string text;
+    if (entry.progress) append(text, "progress", json_text(to_json(*entry.progress)), progress_);
+    append(text, "state", json_text(to_json(entry.state)), state_);
+    over_ = entry.over;
+    return text;
+  }
+
+  std::string end() {
+    over_ = true;
+    return {};
+  }
+
+  void append(std::string& text, const char* name, std::string data, std::string& told) const {
+    if (data == told) return;
+    text += format(name, data);
+    told = std::move(data);
+  }
+
+  JobTable& table_;
+  const std::string id_;
+  const std::optional<std::uint64_t> last_;
   std::string state_, progress_;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-  bool first_ = true, over_ = false;
+};
+
+class AllStream final : public Stream {
+ public:
+  AllStream(Journal& journal, std::shared_ptr<std::atomic<int>> seats,
+            std::optional<std::uint64_t> last, bool reset)
+      : Stream(journal, std::move(seats)), last_(last), reset_(reset) {}
+
+ private:
+  std::string begin() override {
+    seen_ = last_.value_or(journal_.last());
+    return reset_ ? format("reset", "{}") : std::string(":\n\n");
+  }
+  std::string forgotten() override {
+    seen_ = journal_.last();
+    return format("reset", "{}");
+  }
+  std::string text_of(const JobEvent& event) override {
+    if (event.entry) return format("job", event.entry->text);
+    return format("removed", json_text({{"id", event.id}}));
+  }
+
+  const std::optional<std::uint64_t> last_;
+  const bool reset_;
 };
 
 }  // namespace
 
-std::function<std::optional<std::string>()> Events::open(const JobFolder& folder) {
-  return
-      [stream = std::make_shared<Stream>(queue_, folder, open_streams_)] { return stream->next(); };
+Events::Stream Events::job(const std::string& id, const std::optional<std::string>& last) {
+  const auto seen = last ? table_.journal().number(*last) : std::nullopt;
+  return [stream = std::make_shared<JobStream>(table_, open_, id, seen)] { return stream->next(); };
+}
+
+Events::Stream Events::all(const std::optional<std::string>& last) {
+  const auto seen = last ? table_.journal().number(*last) : std::nullopt;
+  return [stream = std::make_shared<AllStream>(table_.journal(), open_, seen, last && !seen)] {
+    return stream->next();
+  };
 }
 
 }  // namespace lacuna

@@ -6,22 +6,32 @@
 #include <optional>
 #include <string>
 
-#include "server/catalogue.h"
+#include "server/job_table.h"
 
 namespace lacuna {
 
-/// Server-sent events of jobs. Each stream begins with what is now (`progress`, if there is any,
-/// and `state`), follows every change, and ends after a terminal state.
+/// Streams of server-sent events, made from the table's journal. Every event has the journal's
+/// number as its id; a client that comes back with the last one it saw (Last-Event-ID) misses
+/// nothing, or is told so. All throw HttpError 503 if too many streams are open.
 class Events {
  public:
-  explicit Events(const Queue& queue) : queue_(queue) {}
+  /// For Response::stream.
+  using Stream = std::function<std::optional<std::string>()>;
 
-  /// The texts of one stream, for Response::stream. Throws HttpError 503 if too many are open.
-  std::function<std::optional<std::string>()> open(const JobFolder& folder);
+  explicit Events(JobTable& table) : table_(table) {}
+
+  /// One job: begins with what is now (`progress`, if there is any, and `state`), follows every
+  /// change, and ends once it is over. `last`: the client's Last-Event-ID.
+  Stream job(const std::string& id, const std::optional<std::string>& last);
+  /// All jobs: `job` with an entry of the list, `removed`, and `reset` where some events are
+  /// forgotten and the list has to be read again. Begins after `last`, or now.
+  Stream all(const std::optional<std::string>& last);
+
+  int open() const { return open_->load(); }
 
  private:
-  const Queue& queue_;
-  std::shared_ptr<std::atomic<int>> open_streams_ = std::make_shared<std::atomic<int>>(0);
+  JobTable& table_;
+  std::shared_ptr<std::atomic<int>> open_ = std::make_shared<std::atomic<int>>(0);
 };
 
 }  // namespace lacuna

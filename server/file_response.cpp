@@ -41,6 +41,8 @@ std::optional<std::pair<std::int64_t, std::int64_t>> one_range(std::string_view 
   return std::pair(begin, end - begin);
 }
 
+}  // namespace
+
 bool holds_tag(std::string_view list, std::string_view tag) {
   return list == "*" || list.find(tag) != std::string_view::npos;
 }
@@ -52,18 +54,15 @@ FileHandle open_regular(const std::filesystem::path& folder, std::string_view na
   FileHandle file(dir ? ::openat(dir.get(), std::string(name).c_str(),
                                  O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC)
                       : -1);
-  if (!file || ::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
-    throw HttpError(404, fmt::format("There is no file \"{}\".", name));
-  }
+  if (!file || ::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) return {};
   return file;
 }
-
-}  // namespace
 
 Response file_response(const Request& request, const std::filesystem::path& folder,
                        std::string_view name, std::string_view media_type) {
   struct stat status {};
   FileHandle file = open_regular(folder, name, status);
+  if (!file) throw HttpError(404, fmt::format("There is no file \"{}\".", name));
   const std::string tag = fmt::format("\"{:x}.{:x}-{:x}-{:x}\"", status.st_mtim.tv_sec,
                                       status.st_mtim.tv_nsec, status.st_size, status.st_ino);
   Response response;

@@ -184,13 +184,15 @@ HttpServer::Engine::Engine(const HttpSettings& settings, HttpServer::Handler han
       fill(out, problem_response(HttpError(414, "The address is too long."), ""));
     } else if (!is_plain(path)) {
       fill(out, problem_response(HttpError(404, "There is nothing here."), path));
-    } else if (in.method == "POST") {
+    } else if (in.method == "POST" || in.method == "PATCH") {
       return HandlerResponse::Unhandled;
     } else {
       answer(in, out, nullptr);
     }
     return HandlerResponse::Handled;
   });
+  Patch(".*", [this](const httplib::Request& in, httplib::Response& out,
+                    const httplib::ContentReader& reader) { answer(in, out, &reader); });
   Post(".*", [this](const httplib::Request& in, httplib::Response& out,
                     const httplib::ContentReader& reader) { answer(in, out, &reader); });
   set_exception_handler(
@@ -225,6 +227,7 @@ void HttpServer::Engine::answer(const httplib::Request& in, httplib::Response& o
   Request request;
   request.method = in.method;
   request.path = in.target.substr(0, in.target.find('?'));
+  for (const auto& [name, value] : in.params) request.query[name] = value;
   for (const auto& [name, value] : in.headers) request.headers.emplace(lower_case(name), value);
   current->unread_input =
       request.headers.contains("content-length") || request.headers.contains("transfer-encoding");

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace lacuna {
@@ -47,6 +48,18 @@ std::optional<std::string> Request::header(const std::string& lower_case_name) c
     throw HttpError(400, fmt::format("Header {} stands more than once.", lower_case_name));
   }
   return first->second;
+}
+
+std::optional<std::string> Request::parameter(const std::string& name) const {
+  const auto found = query.find(name);
+  if (found == query.end()) return std::nullopt;
+  return found->second;
+}
+
+std::optional<std::int64_t> Request::integer(const std::string& name, std::int64_t min, std::int64_t max) const {
+  const auto text = parameter(name);
+  if (!text) return std::nullopt;
+  return std::clamp<std::int64_t>(std::stoll(*text), min, max);
 }
 
 Response problem_response(const HttpError& error, const std::string& path) {

@@ -19,6 +19,10 @@ struct Request {
   std::string method;
   std::string path;  ///< as sent, without the query; nothing is decoded: no name here needs it
   std::multimap<std::string, std::string> headers;  ///< names in lower case
+  std::map<std::string, std::string> query;  ///< decoded parameters
+
+  std::optional<std::string> parameter(const std::string& name) const;
+  std::optional<std::int64_t> integer(const std::string& name, std::int64_t min, std::int64_t max) const;
 
   /// Reads the body, at most `max_bytes` of it; throws HttpError: 413 if it is larger, 415 if it is
   /// encoded, 400 if its framing is wrong, 408 if it comes too slowly.

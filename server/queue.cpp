@@ -1,239 +1,319 @@
 #include "server/queue.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
-#include <chrono>
 #include <utility>
 
+#include "jobs/spec/budget_extension.h"
+#include "jobs/spec/described_json.h"
 #include "server/child_process.h"
 
 namespace lacuna {
-namespace {
 
-// How often a folder that another renderer holds is looked at again.
-constexpr std::chrono::milliseconds look_again{500};
-
-JobState cancelled(JobState state) { return ended(std::move(state), State::cancelled, utc_now()); }
-
-}  // namespace
-
-Queue::Queue(DataRoot data, Executor& executor, QueueSettings settings)
-    : data_(std::move(data)), executor_(executor), settings_(settings) {}
+Queue::Queue(Executor& executor, JobTable& table, QueueSettings settings)
+    : executor_(executor), table_(table), settings_(settings) {}
 
 void Queue::start() {
-  std::vector<std::pair<std::string, JobFolder>> unfinished;  // ids tell the order only to a second
-  for (const JobFolder& f : list_jobs(data_.jobs())) {
-    try {
-      const JobState state = f.read_state();
-      if (!is_terminal(state.state)) unfinished.emplace_back(state.created, f);
-    } catch (const std::exception& error) {
-      spdlog::error("{} is left alone: {}", f.id(), error.what());
-    }
-  }
-  std::stable_sort(unfinished.begin(), unfinished.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (const auto& [created, f] : unfinished) {
-    try {
-      rebuild(f);
-    } catch (const std::exception& error) {
-      spdlog::error("{} is left alone: {}", f.id(), error.what());
-    }
+  for (const EntryPtr& entry : table_.all()) {
+    if (entry->damaged) spdlog::error("{} is left alone: {}", entry->id, entry->state.error);
+    if (!entry->over) enter(entry);
   }
   for (int i = 0; i < settings_.children; ++i) runners_.emplace_back([this] { run(); });
-}
-
-void Queue::rebuild(const JobFolder& f) {
-  JobState state = f.read_state();
-  const bool cancel = state.state == State::cancelling;
-  // Held: a renderer of an earlier service is still ending. A runner will wait for it.
-  if (const auto free = f.try_lock()) {
-    if (cancel) return f.write_state(cancelled(state));
-    if (state.state != State::queued) f.write_state(queued(std::move(state)));
-  }
-  add(f);
-  if (!cancel) return;
-  const std::lock_guard lock(mutex_);
-  work_.at(f.id())->cancel = true;
 }
 
 void Queue::stop() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
-    for (const auto& [id, work] : work_) work->stop.request();
+    for (const auto& [id, work] : work_) {
+      if (work->stop) work->stop->request();
+    }
   }
   changed_.notify_all();
   for (std::thread& runner : runners_) runner.join();
   runners_.clear();
 }
 
-void Queue::add(const JobFolder& f) {
+void Queue::check_room() const {
+  const std::lock_guard lock(mutex_);
+  if (work_.size() >= settings_.max_waiting) {
+    throw Full(fmt::format("{} jobs wait or run, and there may be no more.", work_.size()));
+  }
+}
+
+EntryPtr Queue::add(const std::string& id) {
+  EntryPtr entry = table_.add(id);
+  if (!entry->over) enter(entry);
+  return entry;
+}
+
+/// A job that is not over comes in: new, or left by an earlier run of the service.
+void Queue::enter(const EntryPtr& entry) {
+  const std::lock_guard lock(mutex_);
+  if (work_.contains(entry->id)) return;
   const auto work = std::make_shared<Work>();
-  {
-    const std::lock_guard lock(mutex_);
-    work_.emplace(f.id(), work);
-    waiting_.push_back(f.id());
-  }
-  changed_.notify_one();
+  work->id = entry->id;
+  work->created = entry->state.created;
+  work->exclusive = entry->exclusive;
+  work->control = entry->control;
+  work_.emplace(work->id, work);
+  if (work->control.cancel && withdraw(*work, State::cancelled)) return;
+  if (work->control.held && withdraw(*work, State::held)) return;
+  const State state = entry->state.state;
+  // Where a renderer of an earlier service still ends, its state.json is not ours yet.
+  if (state != State::queued) withdraw(*work, State::queued);
+  line_up(*work);
 }
 
-Queue::Cancel Queue::cancel(const JobFolder& f) {
-  {
-    const std::lock_guard lock(mutex_);
-    const auto found = work_.find(f.id());
-    if (found == work_.end()) return Cancel::over;
-    found->second->cancel = true;
-    const auto place = std::find(waiting_.begin(), waiting_.end(), f.id());
-    if (place == waiting_.end()) {
-      found->second->stop.request();
-      return Cancel::cancelling;
-    }
-    waiting_.erase(place);  // from here on no runner takes it
-  }
-  try {
-    if (withdraw(f)) return Cancel::cancelled;
-  } catch (const std::exception& error) {
-    spdlog::error("{}: {}", f.id(), error.what());
-  }
-  {
-    const std::lock_guard lock(mutex_);
-    waiting_.push_front(f.id());
-  }
-  changed_.notify_one();
-  return Cancel::cancelling;
+void Queue::line_up(Work& work) {
+  work.place = Place{-work.control.priority, work.created, work.id};
+  line_.insert(*work.place);
+  changed_.notify_all();
 }
 
-/// Ends a job that no runner has. False: a renderer of somebody else still holds its folder.
-bool Queue::withdraw(const JobFolder& f) {
+void Queue::leave_line(Work& work) {
+  if (work.place) line_.erase(*work.place);
+  work.place.reset();
+}
+
+/// Writes the new state of a job that no runner has. False: a renderer of somebody else still holds
+/// its folder, and a runner has to wait for that.
+bool Queue::withdraw(Work& work, State how) {
+  const JobFolder folder = table_.folder(work.id);
   const std::lock_guard no_forks(fork_mutex());
-  const auto free = f.try_lock();
+  const auto free = folder.try_lock();
   if (!free) return false;
-  const JobState state = f.read_state();
-  if (!is_terminal(state.state)) save(f, cancelled(state));
-  const std::lock_guard lock(mutex_);
-  work_.erase(f.id());
+  const JobState state = stored_state(work.id);
+  if (is_terminal(state.state)) {
+    table_.set_state(work.id, state, true);
+    forget(work.id);
+    return true;
+  }
+  if (how == State::queued) {
+    write_state(work.id, queued(state), false);
+  } else if (how == State::held) {
+    write_state(work.id, held(state), false);
+  } else {
+    write_state(work.id, ended(state, how, utc_now()), true);
+    forget(work.id);
+  }
   return true;
 }
 
-bool Queue::holds(const JobFolder& f) const {
-  const std::lock_guard lock(mutex_);
-  return work_.contains(f.id());
+void Queue::forget(const std::string& id) {
+  const auto found = work_.find(id);
+  if (found == work_.end()) return;
+  leave_line(*found->second);
+  work_.erase(found);
 }
 
-JobState Queue::state(const JobFolder& f) const {
-  bool cancelling = false;
-  {
-    const std::lock_guard lock(mutex_);
-    const auto unsaved = unsaved_.find(f.id());
-    if (unsaved != unsaved_.end()) return unsaved->second;
-    const auto work = work_.find(f.id());
-    cancelling = work != work_.end() && work->second->cancel;
+EntryPtr Queue::checked(const std::string& id, const std::string& revision) const {
+  EntryPtr entry = table_.find(id);
+  if (!entry) throw Conflict("The job is not there any more.");
+  if (!revision.empty() && revision != "*" && revision != entry->revision) {
+    throw Changed(fmt::format("The job has changed meanwhile: its revision is {}.",
+                              entry->revision));
   }
-  JobState state = f.read_state();
-  if (cancelling && !is_terminal(state.state)) state.state = State::cancelling;
-  return state;
+  return entry;
 }
 
-void Queue::run() {
-  while (const auto id = take()) {
-    std::shared_ptr<Work> work;
-    {
-      const std::lock_guard lock(mutex_);
-      work = work_.at(*id);
+void Queue::write_control(Work& work, const JobControl& control) {
+  table_.folder(work.id).write_control(control);
+  work.control = control;
+  table_.set_control(work.id, control);
+}
+
+void Queue::change(const std::string& id, std::optional<int> priority, std::optional<bool> held,
+                   const std::string& revision) {
+  const std::lock_guard lock(mutex_);
+  const EntryPtr entry = checked(id, revision);
+  const auto found = work_.find(id);
+  if (found == work_.end()) {
+    throw Conflict(fmt::format("The job is {}: it waits for nothing.",
+                               enum_name(entry->state.state)));
+  }
+  Work& work = *found->second;
+  JobControl control = work.control;
+  control.priority = priority.value_or(control.priority);
+  control.held = held.value_or(control.held);
+  if (control == work.control) return;
+  if (work.control.cancel) throw Conflict("The job is being cancelled.");
+  write_control(work, control);
+  if (work.stop) {  // a runner has it and looks at what was asked when its renderer has ended
+    if (control.held) work.stop->request();
+    return;
+  }
+  leave_line(work);
+  if (!control.held) {
+    if (entry->state.state == State::held) withdraw(work, State::queued);
+  } else if (withdraw(work, State::held)) {
+    return;
+  }
+  line_up(work);
+}
+
+void Queue::cancel(const std::string& id, const std::string& revision) {
+  const std::lock_guard lock(mutex_);
+  const EntryPtr entry = checked(id, revision);
+  const auto found = work_.find(id);
+  if (found == work_.end()) {
+    if (entry->state.state == State::cancelled) return;
+    throw Conflict(fmt::format("The job is {}.", enum_name(entry->state.state)));
+  }
+  Work& work = *found->second;
+  if (!work.control.cancel) {
+    JobControl control = work.control;
+    control.cancel = true;
+    write_control(work, control);
+  }
+  JobState state = entry->state;
+  if (work.stop) {
+    work.stop->request();
+  } else {
+    leave_line(work);
+    if (withdraw(work, State::cancelled)) return;
+    line_up(work);
+  }
+  if (is_terminal(state.state)) return;
+  state.state = State::cancelling;
+  table_.set_state(id, state, false);
+}
+
+void Queue::retry(const std::string& id, const std::string& revision) {
+  const std::lock_guard lock(mutex_);
+  const EntryPtr entry = checked(id, revision);
+  const State state = entry->state.state;
+  if (!entry->over || entry->damaged || state == State::done) {
+    throw Conflict(fmt::format("The job is {}: only one that failed or was cancelled is tried again.",
+                               entry->damaged ? "damaged" : enum_name(state)));
+  }
+  line_up(reopen(entry));
+}
+
+void Queue::extend(const std::string& id, const Budget& budget, const std::string& revision) {
+  const std::lock_guard lock(mutex_);
+  const EntryPtr entry = checked(id, revision);
+  if (!entry->over || entry->damaged) {
+    throw Conflict(fmt::format("The job is {}: only one that is over is extended.",
+                               entry->damaged ? "damaged" : enum_name(entry->state.state)));
+  }
+  JobSpec spec = table_.folder(id).read_job();
+  throw_if_any(extension_problems(spec.budget, budget));
+  spec.budget = budget;
+  // First the state: a crash in between leaves a job that ends at once with its old budget, and not
+  // one that says it is done and is not.
+  Work& work = reopen(entry);
+  try {
+    table_.folder(id).write_job(spec);
+  } catch (...) {
+    line_up(work);
+    throw;
+  }
+  table_.reread_job(id);
+  line_up(work);
+}
+
+/// A job that was over is open again, but not in the line yet.
+Queue::Work& Queue::reopen(const EntryPtr& entry) {
+  const JobFolder folder = table_.folder(entry->id);
+  const std::lock_guard no_forks(fork_mutex());
+  const auto free = folder.try_lock();
+  if (!free) throw Conflict("A renderer still works in the job's folder.");
+  JobControl control = entry->control;
+  control.cancel = control.held = false;
+  control.crashes = 0;
+  folder.write_control(control);
+  const JobState state = queued(folder.read_state());
+  folder.write_state(state);
+  table_.set_control(entry->id, control);
+  table_.set_state(entry->id, state, false);
+  const auto work = std::make_shared<Work>();
+  work->id = entry->id;
+  work->created = state.created;
+  work->exclusive = entry->exclusive;
+  work->control = control;
+  work_[work->id] = work;
+  return *work;
+}
+
+void Queue::remove(const std::string& id, const std::string& revision) {
+  const std::lock_guard lock(mutex_);
+  const EntryPtr entry = checked(id, revision);
+  if (!entry->over) {
+    throw Conflict(fmt::format("The job is {}: only one that is over can be removed.",
+                               enum_name(entry->state.state)));
+  }
+  for (const auto& [other, work] : work_) {
+    const EntryPtr user = table_.find(other);
+    if (user && user->reference == id) {
+      throw Conflict(fmt::format("Job {} measures its error against it.", other));
     }
+  }
+  const JobFolder folder = table_.folder(id);
+  const std::lock_guard no_forks(fork_mutex());
+  if (!folder.try_lock()) throw Conflict("A renderer still works in the job's folder.");
+  folder.remove();
+  table_.remove(id);
+}
+
+void Queue::set_disk_low(bool low) {
+  const std::lock_guard lock(mutex_);
+  if (low == disk_low_) return;
+  disk_low_ = low;
+  for (const auto& [id, work] : work_) {
+    if (!low || !work->stop) continue;
+    work->stopped_for_disk = true;
+    work->stop->request();
+  }
+  changed_.notify_all();
+}
+
+void Queue::look_at_running() {
+  const std::lock_guard lock(mutex_);  // or an old state could be told after a new one
+  for (const auto& [id, work] : work_) {
+    if (!work->stop) continue;
+    const JobFolder folder = table_.folder(id);
     try {
-      attend(*id, *work);
-    } catch (const std::exception& error) {
-      spdlog::error("{} is given up: {}", *id, error.what());
-      const std::lock_guard lock(mutex_);
-      work_.erase(*id);
+      if (const auto progress = folder.read_progress()) table_.set_progress(id, *progress);
+      JobState state = stored_state(id);
+      if (work->control.cancel && !is_terminal(state.state)) state.state = State::cancelling;
+      table_.set_state(id, state, false);
+    } catch (const std::exception& error) {  // its runner will find out, too
+      spdlog::debug("{}: {}", id, error.what());
     }
   }
 }
 
-std::optional<std::string> Queue::take() {
-  std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return stopping_ || !waiting_.empty(); });
-  if (stopping_) return std::nullopt;
-  std::string id = std::move(waiting_.front());
-  waiting_.pop_front();
-  return id;
+/// Throws std::runtime_error if the job's folder does not say.
+JobState Queue::stored_state(const std::string& id) const {
+  const auto unsaved = unsaved_.find(id);
+  return unsaved != unsaved_.end() ? unsaved->second : table_.folder(id).read_state();
 }
 
-/// False: the service ends first.
-bool Queue::wait_until_free(const JobFolder& f) {
-  const auto is_free = [&] {
-    const std::lock_guard no_forks(fork_mutex());
-    return f.try_lock().has_value();
-  };
-  while (!is_free()) {
-    std::unique_lock lock(mutex_);
-    if (changed_.wait_for(lock, look_again, [&] { return stopping_; })) return false;
-  }
-  return true;
-}
-
-void Queue::attend(const std::string& id, Work& work) {
-  const JobFolder f = folder(id);
-  if (!wait_until_free(f)) return;
-  Attempt attempt{.before = f.read_state(), .after = {}, .ending = {}, .crashes = work.crashes};
-  bool cancel = false;
-  {
-    const std::lock_guard lock(mutex_);
-    cancel = work.cancel;
-    if (is_terminal(attempt.before.state)) work_.erase(id);
-  }
-  if (is_terminal(attempt.before.state)) return;
-  if (cancel) {
-    withdraw(f);
-    return;
-  }
-  spdlog::info("{}: a renderer is started", id);
-  attempt.ending = executor_.run(f, work.stop);
-  spdlog::info("{}: {}", id, attempt.ending.reason);
+void Queue::write_state(const std::string& id, const JobState& state, bool over) {
   try {
-    attempt.after = f.read_state();
-  } catch (const std::runtime_error& error) {
-    spdlog::error("{}: {}", id, error.what());
-    attempt.after = attempt.before;
-  }
-  settle(id, work, std::move(attempt));
-}
-
-void Queue::settle(const std::string& id, Work& work, Attempt attempt) {
-  for (;;) {
-    {
-      const std::lock_guard lock(mutex_);
-      attempt.cancel = work.cancel;
-      attempt.stopped = stopping_;
-    }
-    const Verdict verdict = judge(attempt, settings_.max_attempts, utc_now());
-    save(folder(id), verdict.state);
-    const std::lock_guard lock(mutex_);
-    const bool over = is_terminal(verdict.state.state);
-    if (!over && work.cancel != attempt.cancel) continue;  // asked for while it was written
-    if (verdict.crashed) ++work.crashes;
-    if (over) {
-      work_.erase(id);
-    } else {
-      waiting_.push_back(id);
-      changed_.notify_one();
-    }
-    return;
-  }
-}
-
-void Queue::save(const JobFolder& f, const JobState& state) {
-  try {
-    f.write_state(state);
-    const std::lock_guard lock(mutex_);
-    unsaved_.erase(f.id());
+    table_.folder(id).write_state(state);
+    unsaved_.erase(id);
   } catch (const std::exception& error) {
-    spdlog::error("{}: its state could not be saved: {}", f.id(), error.what());
-    const std::lock_guard lock(mutex_);
-    unsaved_[f.id()] = state;
+    spdlog::error("{}: its state could not be saved: {}", id, error.what());
+    unsaved_[id] = state;
   }
+  table_.set_state(id, state, over);
+}
+
+void Queue::save_pending() {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(unsaved_, [&](const auto& pending) {
+    const auto& [id, state] = pending;
+    try {
+      table_.folder(id).write_state(state);
+      return true;
+    } catch (const std::exception&) {
+      std::error_code ignored;
+      return !std::filesystem::exists(table_.folder(id).dir(), ignored);
+    }
+  });
 }
 
 }  // namespace lacuna

@@ -1,79 +1,136 @@
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
-#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
+#include <stdexcept>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <vector>
 
 #include "jobs/store/job_folder.h"
 #include "server/executor.h"
+#include "server/job_table.h"
 #include "server/settings.h"
 #include "server/verdict.h"
 
 namespace lacuna {
 
-/// The jobs that wait and those that are rendered, first come, first served. The folders are the
-/// truth; this is what can be rebuilt from them. While a renderer runs, its job's state.json
-/// belongs to it; before and after, to the queue.
+/// What is asked for is not possible for a job in its state.
+class Conflict : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+/// The job is no longer the one that the asker had seen.
+class Changed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+/// No more jobs may wait.
+class Full : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The jobs that wait and those that are rendered: by priority, then first come, first served; an
+/// exclusive job runs alone, and none overtakes it. The folders are the truth; this is what can be
+/// rebuilt from them. While a renderer runs, its job's state.json belongs to it; before and after,
+/// to the queue. What a person asks for is on disk before the call returns.
+///
+/// The calls that change a job take the `revision` that the asker has seen; empty: any. All throw
+/// Changed, Conflict, and std::system_error if the request could not be stored.
 class Queue {
  public:
-  Queue(DataRoot data, Executor& executor, QueueSettings settings);
+  Queue(Executor& executor, JobTable& table, QueueSettings settings);
   ~Queue() { stop(); }
   Queue(const Queue&) = delete;
   Queue& operator=(const Queue&) = delete;
 
-  /// Puts every unfinished job below the data root in the line again, and begins.
+  /// Puts every unfinished job of the table in the line again, and begins.
   void start();
   /// Asks all renderers to stop and waits for them; their jobs go on after the next start().
   void stop();
 
+  /// Throws Full if `max_waiting` jobs wait.
+  void check_room() const;
   /// A new job, whose folder is complete on disk.
-  void add(const JobFolder& folder);
+  EntryPtr add(const std::string& id);
 
-  enum class Cancel { cancelled, cancelling, over };
-  /// Stops a job for good. `cancelling`: its renderer was asked to stop and has not ended yet.
-  /// `over`: it had ended before, or it is not in this queue.
-  Cancel cancel(const JobFolder& folder);
+  /// A running job that is held is stopped, with its checkpoint.
+  void change(const std::string& id, std::optional<int> priority, std::optional<bool> held,
+              const std::string& revision = {});
+  /// Stops a job for good; nothing happens if it is cancelled already.
+  void cancel(const std::string& id, const std::string& revision = {});
+  /// A failed or cancelled job goes on from its checkpoint.
+  void retry(const std::string& id, const std::string& revision = {});
+  /// A job that is over goes on until a larger budget is spent. Throws BadJob if it is no larger.
+  void extend(const std::string& id, const Budget& budget, const std::string& revision = {});
+  /// Removes a job that is over, and its folder.
+  void remove(const std::string& id, const std::string& revision = {});
 
-  /// The job waits or is rendered, or its renderer's end is being noted.
-  bool holds(const JobFolder& folder) const;
-
-  /// Where a job stands; final if it is terminal and holds() was false before. Throws
-  /// std::runtime_error if its folder does not say.
-  JobState state(const JobFolder& folder) const;
+  /// While there is too little room on the disk, nothing starts and all renderers stop.
+  void set_disk_low(bool low);
+  /// Takes over what the renderers have written about their jobs meanwhile.
+  void look_at_running();
+  /// Tries once more to write the states that could not be written.
+  void save_pending();
 
  private:
-  /// A job that waits or is rendered.
+  using Clock = std::chrono::steady_clock;
+  using Place = std::tuple<int, std::string, std::string>;  // -priority, creation, id
+
+  /// A job that is not over.
   struct Work {
-    StopSignal stop;
-    bool cancel = false;
-    int crashes = 0;
+    std::string id;
+    std::string created;
+    bool exclusive = false;
+    JobControl control;
+    Clock::time_point not_before{};
+    std::optional<Place> place;       // in the line
+    std::shared_ptr<StopSignal> stop;  // a runner has it
+    bool stopped_for_disk = false;
   };
+  using WorkPtr = std::shared_ptr<Work>;
 
-  JobFolder folder(const std::string& id) const { return JobFolder(data_.jobs() / id); }
-  void rebuild(const JobFolder& folder);
   void run();
-  std::optional<std::string> take();
-  void attend(const std::string& id, Work& work);
-  bool wait_until_free(const JobFolder& folder);
-  void settle(const std::string& id, Work& work, Attempt attempt);
-  bool withdraw(const JobFolder& folder);
-  void save(const JobFolder& folder, const JobState& state);
+  WorkPtr take();
+  WorkPtr first_ready(Clock::time_point& look_again) const;
+  void attend(Work& work);
+  bool wait_until_free(const Work& work);
+  void note_renderer(Work& work, pid_t pid);
+  void settle(Work& work, Attempt attempt);
+  void resume(Work& work);
+  void give_up(const Work& work, const std::string& reason);
+  void enter(const EntryPtr& entry);
+  void line_up(Work& work);
+  void leave_line(Work& work);
+  bool withdraw(Work& work, State how);
+  void write_control(Work& work, const JobControl& control);
+  void write_state(const std::string& id, const JobState& state, bool over);
+  void forget(const std::string& id);
+  JobState stored_state(const std::string& id) const;
+  Work& reopen(const EntryPtr& entry);
+  EntryPtr checked(const std::string& id, const std::string& revision) const;
 
-  const DataRoot data_;
   Executor& executor_;
+  JobTable& table_;
   const QueueSettings settings_;
 
-  mutable std::mutex mutex_;  // guards all below; nothing is read, written or waited for under it
+  // Guards all below, and is held while a decision is written to disk, so that decisions and what
+  // is stored of them have one order. Nothing else is waited for under it.
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<std::string> waiting_;
-  std::map<std::string, std::shared_ptr<Work>> work_;
+  std::map<std::string, WorkPtr> work_;
+  std::set<Place> line_;
   std::map<std::string, JobState> unsaved_;  // states that could not be written (disk full)
+  int running_ = 0;
+  bool exclusive_runs_ = false;
+  bool disk_low_ = false;
   bool stopping_ = false;
   std::vector<std::thread> runners_;
 };

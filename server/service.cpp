@@ -11,6 +11,7 @@
 
 #include "analysis/storage/file_handle.h"
 #include "jobs/spec/version.h"
+#include "server/caretaker.h"
 #include "server/executor_local.h"
 #include "server/http.h"
 #include "server/listener.h"
@@ -67,6 +68,10 @@ FileHandle lock_data(const DataRoot& data) {
   return lock;
 }
 
+std::chrono::milliseconds grace(const ServiceSettings& settings) {
+  return std::chrono::milliseconds(static_cast<std::int64_t>(1000 * settings.grace_seconds));
+}
+
 void check(const HttpSettings& settings) {
   if (!is_loopback(settings.bind)) {
     throw std::invalid_argument(fmt::format(
@@ -74,6 +79,12 @@ void check(const HttpSettings& settings) {
         "bind to 127.0.0.1 or ::1, and tunnel to it",
         settings.bind));
   }
+}
+
+QueueSettings queue_settings(const ServiceSettings& settings) {
+  QueueSettings queue = settings.queue;
+  queue.grace = grace(settings);
+  return queue;
 }
 
 StaticFiles page(const ServiceSettings& settings) {
@@ -100,17 +111,20 @@ struct Service::Parts {
                                                         : fs::absolute(settings.renderer),
                   .data = data.dir,
                   .scenes = scenes.roots(),
-                  .grace = std::chrono::milliseconds(
-                      static_cast<std::int64_t>(1000 * settings.grace_seconds))}),
-        queue(data, executor, settings.queue),
-        routes(data, scenes, queue, page(settings)),
+                  .grace = grace(settings)}),
+        table(data),
+        queue(executor, table, queue_settings(settings)),
+        caretaker(data, table, queue, settings.care),
+        routes(data, scenes, table, queue, page(settings)),
         http(settings.http, [this](const Request& r) { return routes.handle(r); }) {}
 
   ScenesRoots scenes;
   DataRoot data;
   FileHandle lock;
   LocalExecutor executor;
+  JobTable table;
   Queue queue;
+  Caretaker caretaker;
   Routes routes;
   HttpServer http;
 };
@@ -122,6 +136,9 @@ Service::Service(const ServiceSettings& settings) {
 Service::~Service() = default;
 
 void Service::start() {
+  remove_stale_folders(parts_->data.jobs());
+  parts_->table.rescan();
+  parts_->caretaker.start();
   parts_->queue.start();
   parts_->http.start();
 }
@@ -129,6 +146,7 @@ void Service::start() {
 void Service::stop() {
   parts_->http.stop();
   parts_->queue.stop();
+  parts_->caretaker.stop();
 }
 
 std::string Service::url() const { return parts_->http.url(); }

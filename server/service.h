@@ -13,6 +13,7 @@ namespace lacuna {
 struct ServiceSettings {
   HttpSettings http;
   QueueSettings queue;
+  CareSettings care;
   double grace_seconds = 10;
   std::filesystem::path data, renderer, web;
   std::vector<std::filesystem::path> scenes;

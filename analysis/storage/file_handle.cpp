@@ -77,4 +77,17 @@ void remove_stale_temporaries(const std::filesystem::path& folder) {
   for (const fs::path& file : stale) fs::remove(file, ignored);
 }
 
+void remove_stale_folders(const std::filesystem::path& folder) {
+  namespace fs = std::filesystem;
+  std::vector<fs::path> stale;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const pid_t owner = owner_of(entry.path().filename().string());
+    if (owner == 0 || !is_gone(owner)) continue;
+    std::error_code vanished;
+    if (fs::is_directory(entry.symlink_status(vanished))) stale.push_back(entry.path());
+  }
+  std::error_code ignored;
+  for (const fs::path& dir : stale) fs::remove_all(dir, ignored);
+}
+
 }  // namespace lacuna

@@ -42,4 +42,8 @@ std::filesystem::path temporary_name(const std::filesystem::path& file);
 /// this machine and nobody has touched them for a minute (it may live on another machine).
 void remove_stale_temporaries(const std::filesystem::path& folder);
 
+/// The same for whole folders with such names. Only for who owns `folder` on every machine: it does
+/// not wait for a minute.
+void remove_stale_folders(const std::filesystem::path& folder);
+
 }  // namespace lacuna

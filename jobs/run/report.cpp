@@ -4,11 +4,11 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "jobs/spec/version.h"
+#include "jobs/store/machine.h"
 
 namespace lacuna {
 
@@ -17,14 +17,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json optional(std::optional<double> v) { return v ? Json(*v) : Json(nullptr); }
-
-std::string processor() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);) {
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  }
-  return "unknown";
-}
 
 Json seconds(const PhaseSeconds& phases, const Spent& spent) {
   Json j;
@@ -88,7 +80,7 @@ Json errors_json(const RenderTask& task, const Curve& curve) {
 Json machine(const ThreadPool& pool) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return {{"processor", processor()},
+  return {{"processor", processor_name()},
           {"cores", sysconf(_SC_NPROCESSORS_ONLN)},
           {"threads", pool.threads()},
           {"peak_memory_bytes", std::int64_t{usage.ru_maxrss} * 1024}};

@@ -33,6 +33,18 @@ std::string one_line(std::string text) {
   return text;
 }
 
+/// A file that Lacuna itself has written. Throws std::system_error, std::runtime_error.
+template <Described T>
+T read_own(const std::filesystem::path& path) {
+  try {
+    return read_document<T>(read_file(path, state_limits.max_bytes), state_limits);
+  } catch (const BadJob& e) {
+    throw std::runtime_error(fmt::format("{} is corrupt: {}", path.string(), e.what()));
+  } catch (const std::length_error& e) {
+    throw std::runtime_error(fmt::format("{} is corrupt: {}", path.string(), e.what()));
+  }
+}
+
 /// Puts a new folder, complete, in its place; it must not be there yet.
 void rename_folder(const std::filesystem::path& from, const std::filesystem::path& to) {
   if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return;
@@ -54,6 +66,7 @@ const std::vector<FileInfo>& job_files() {
       {"job.json", "application/json", "the job with every default filled in", true},
       {"state.json", "application/json", "where the job stands", true},
       {"progress.json", "application/json", "how far it has come", true},
+      {"queue.json", "application/json", "what the service was asked for", false},
       {"image.exr", "image/x-exr", "the picture and its layers", true},
       {"image.png", "image/png", "a tone-mapped thumbnail", true},
       {"layers.half", "application/octet-stream", "the layers, for viewers that read no EXR", true},
@@ -66,7 +79,8 @@ const std::vector<FileInfo>& job_files() {
   return files;
 }
 
-JobFolder JobFolder::create(const std::filesystem::path& dir, const JobSpec& spec) {
+JobFolder JobFolder::create(const std::filesystem::path& dir, const JobSpec& spec,
+                            const JobControl& control) {
   const std::filesystem::path absolute = std::filesystem::absolute(dir).lexically_normal();
   const std::filesystem::path target =
       absolute.has_filename() ? absolute : absolute.parent_path();  // "jobs/x/" is "jobs/x"
@@ -74,10 +88,12 @@ JobFolder JobFolder::create(const std::filesystem::path& dir, const JobSpec& spe
   const JobFolder draft(temporary_name(target));
   if (::mkdir(draft.dir().c_str(), 0777) != 0) throw_file_error(errno, "create", target);
   try {
-    write_file_atomically(draft.file("job.json"), write_job(spec));
+    draft.write_job(spec);
     JobState state;
+    state.state = control.held ? State::held : State::queued;
     state.created = utc_now();
     draft.write_state(state);
+    if (control != JobControl{}) draft.write_control(control);
     rename_folder(draft.dir(), target);
   } catch (...) {
     std::error_code ignored;  // the first error is the one to tell
@@ -96,15 +112,20 @@ JobSpec JobFolder::read_job() const {
   }
 }
 
-JobState JobFolder::read_state() const {
-  const auto path = file("state.json");
-  try {
-    return read_document<JobState>(read_file(path, state_limits.max_bytes), state_limits);
-  } catch (const BadJob& e) {
-    throw std::runtime_error(fmt::format("{} is corrupt: {}", path.string(), e.what()));
-  } catch (const std::length_error& e) {
-    throw std::runtime_error(fmt::format("{} is corrupt: {}", path.string(), e.what()));
-  }
+void JobFolder::write_job(const JobSpec& spec) const {
+  write_file_atomically(file("job.json"), lacuna::write_job(spec));
+}
+
+JobState JobFolder::read_state() const { return read_own<JobState>(file("state.json")); }
+
+JobControl JobFolder::read_control() const {
+  const auto path = file("queue.json");
+  if (::access(path.c_str(), F_OK) != 0 && errno == ENOENT) return {};
+  return read_own<JobControl>(path);
+}
+
+void JobFolder::write_control(const JobControl& c) const {
+  write_file_atomically(file("queue.json"), write_document(c));
 }
 
 void JobFolder::write_state(const JobState& s) const {
@@ -127,6 +148,13 @@ std::optional<Progress> JobFolder::read_progress() const {
 
 void JobFolder::write_progress(const Progress& p) const {
   write_file_atomically(file("progress.json"), write_document(p), false);
+}
+
+void JobFolder::remove() const {
+  const std::filesystem::path trash = temporary_name(dir_);
+  if (::rename(dir_.c_str(), trash.c_str()) != 0) throw_file_error(errno, "remove", dir_);
+  sync_folder(dir_.parent_path());
+  std::filesystem::remove_all(trash);
 }
 
 std::optional<JobFolder::Lock> JobFolder::try_lock() const {

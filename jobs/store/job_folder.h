@@ -1,11 +1,13 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "jobs/spec/job_spec.h"
+#include "jobs/store/control.h"
 #include "jobs/store/state.h"
 
 namespace lacuna {
@@ -50,16 +52,24 @@ class JobFolder {
   std::string id() const { return dir_.filename().string(); }
   std::filesystem::path file(std::string_view name) const { return dir_ / name; }
 
-  /// Creates the folder with job.json and state.json (`queued`), all synced, or nothing: it is made
-  /// under a temporary name and renamed. Throws std::system_error; std::invalid_argument if `dir`
-  /// is there already.
-  static JobFolder create(const std::filesystem::path& dir, const JobSpec& spec);
+  /// Creates the folder with job.json, state.json (`queued`, or `held` if `control` says so) and,
+  /// where `control` says anything, queue.json, all synced, or nothing: it is made under a temporary
+  /// name and renamed. Throws std::system_error; std::invalid_argument if `dir` is there already.
+  static JobFolder create(const std::filesystem::path& dir, const JobSpec& spec,
+                          const JobControl& control = {});
 
   JobSpec read_job() const;                   ///< throws BadJob, std::system_error
   JobState read_state() const;                ///< throws std::runtime_error if missing or corrupt
+  void write_job(const JobSpec& spec) const;  ///< synced
   void write_state(const JobState& s) const;  ///< synced
+  JobControl read_control() const;  ///< all defaults if missing; throws std::runtime_error if corrupt
+  void write_control(const JobControl& c) const;  ///< synced
   std::optional<Progress> read_progress() const;
   void write_progress(const Progress& p) const;
+
+  /// Removes the folder and all in it; a crash midway leaves nothing that looks like a job. Throws
+  /// std::system_error.
+  void remove() const;
 
   /// Takes the folder for this process until the object dies, so that two renderers never write
   /// into one folder. Nothing if another process has it. Whoever gets it also tidies up the
@@ -126,7 +136,9 @@ std::string new_job_id();
 bool is_job_id(std::string_view s);
 /// All jobs below `jobs`, oldest first; folders that are no jobs are left out.
 std::vector<JobFolder> list_jobs(const std::filesystem::path& jobs);
-/// Now, as JobState has it.
+/// A time as JobState has it: UTC, ISO 8601 with milliseconds; such texts sort by time.
+std::string utc_text(std::chrono::system_clock::time_point time);
+/// Now.
 std::string utc_now();
 
 }  // namespace lacuna

@@ -58,10 +58,11 @@ std::vector<JobFolder> list_jobs(const std::filesystem::path& jobs) {
   return found;
 }
 
-std::string utc_now() {
-  const auto now = std::chrono::system_clock::now();
-  const auto since = std::chrono::floor<std::chrono::milliseconds>(now.time_since_epoch());
-  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", utc(now), since.count() % 1000);
+std::string utc_text(std::chrono::system_clock::time_point time) {
+  const auto since = std::chrono::floor<std::chrono::milliseconds>(time.time_since_epoch());
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", utc(time), since.count() % 1000);
 }
+
+std::string utc_now() { return utc_text(std::chrono::system_clock::now()); }
 
 }  // namespace lacuna

@@ -2,21 +2,24 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/settings/field.h"
 
 namespace lacuna {
 
-/// Where a job stands. The table of who may change what is jobs/store/state.cpp's.
-enum class State { queued, running, cancelling, interrupted, done, failed, cancelled };
+/// Where a job stands. state_transitions() says what may follow what.
+enum class State { queued, running, held, cancelling, interrupted, done, failed, cancelled };
 
 template <>
 struct EnumTable<State> {
-  static constexpr std::array<EnumValue<State>, 7> values{{
+  static constexpr std::array<EnumValue<State>, 8> values{{
       {State::queued, "queued", "waits for its turn"},
       {State::running, "running", "a renderer works on it"},
+      {State::held, "held", "does not start, or go on, until it is released"},
       {State::cancelling, "cancelling", "its renderer was asked to stop"},
       {State::interrupted, "interrupted",
        "its renderer stopped before the end; it goes on from its checkpoint"},
@@ -26,10 +29,21 @@ struct EnumTable<State> {
   }};
 };
 
-/// done, failed, cancelled: nothing will happen any more.
+/// done, failed, cancelled: nothing happens any more, unless a person asks for it.
 bool is_terminal(State s);
-/// A job may go from `from` to `to`.
+
+/// One change of state that there is.
+struct Transition {
+  State from, to;
+  std::string_view by;   ///< who makes it: "service", "renderer", "person"
+  std::string_view why;  ///< when
+};
+/// The state machine: every change of state there is, and no other.
+std::span<const Transition> state_transitions();
+/// A job may go from `from` to `to`; staying is no change.
 bool may_follow(State from, State to);
+/// The state machine as a page of Markdown.
+std::string state_documentation();
 
 /// state.json. Times are UTC, ISO 8601 with milliseconds; empty: not yet.
 struct JobState {

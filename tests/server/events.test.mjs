@@ -18,9 +18,10 @@ async function follow(service, id, signal) {
       const parts = text.split("\n\n");
       text = parts.pop();
       for (const part of parts) {
-        const found = /^event: (\w+)\ndata: (.*)$/.exec(part);
+        if (part.startsWith(":")) continue;  // a heartbeat
+        const found = /^id: ([0-9a-f]+-\d+)\nevent: (\w+)\ndata: (.*)$/.exec(part);
         assert.ok(found, part);
-        events.push({ name: found[1], data: JSON.parse(found[2]) });
+        events.push({ id: found[1], name: found[2], data: JSON.parse(found[3]) });
       }
     }
   };

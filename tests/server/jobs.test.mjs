@@ -9,7 +9,8 @@ test("a job is posted, stored, rendered and listed", async (t) => {
   const service = await Service.start(folders(t));
   assert.deepEqual(await service.json("/health"), { status: "ok" });
   assert.deepEqual(await service.json("/api/scenes"), { scenes: ["room/scene.glb"] });
-  assert.deepEqual(await service.json("/api/jobs"), { jobs: [] });
+  const empty = await service.json("/api/jobs");
+  assert.deepEqual([empty.jobs, empty.total, empty.next], [[], 0, null]);
 
   const response = await service.postText(JSON.stringify({
     scene: "room/scene.glb", label: "gate one", integrator: { type: "path", max_depth: 3 },

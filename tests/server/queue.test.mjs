@@ -299,6 +299,8 @@ test("a job that is removed by hand is gone", async (t) => {
   const third = await service.post("finish");
   service.open("x");
   await service.reaches(third, "done");
+  await until(async () => (await service.json("/api/jobs")).jobs.every((j) => j.id !== second),
+    "the list knows, too");
   assert.deepEqual((await service.json("/api/jobs")).jobs.map((j) => j.id).sort(), [first, third].sort());
 });
 

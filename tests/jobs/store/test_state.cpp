@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "jobs/store/state.h"
 
@@ -22,26 +24,44 @@ TEST(State, three_states_are_final) {
   }
 }
 
-TEST(State, nothing_follows_a_final_state) {
-  for (const State from : {State::done, State::failed, State::cancelled}) {
-    for (const State to : all_states()) EXPECT_FALSE(may_follow(from, to));
+TEST(State, only_a_person_wakes_a_job_that_is_over) {
+  for (const Transition& t : state_transitions()) {
+    if (!is_terminal(t.from)) continue;
+    EXPECT_EQ(t.to, State::queued) << enum_name(t.from);
+    EXPECT_EQ(t.by, "person") << enum_name(t.from);
   }
 }
 
-TEST(State, every_unfinished_job_can_be_cancelled_and_can_fail) {
+TEST(State, every_change_stands_once_and_every_state_is_in_it) {
+  std::set<std::pair<State, State>> seen;
+  std::set<State> reached{State::queued};
+  for (const Transition& t : state_transitions()) {
+    EXPECT_TRUE(seen.emplace(t.from, t.to).second) << enum_name(t.from) << enum_name(t.to);
+    reached.insert(t.to);
+  }
+  EXPECT_EQ(reached.size(), all_states().size());
+}
+
+TEST(State, every_unfinished_job_can_be_cancelled) {
   for (const State from : all_states()) {
-    if (is_terminal(from)) continue;
-    EXPECT_TRUE(may_follow(from, State::cancelled)) << enum_name(from);
-    EXPECT_TRUE(may_follow(from, State::failed)) << enum_name(from);
+    if (!is_terminal(from)) EXPECT_TRUE(may_follow(from, State::cancelled)) << enum_name(from);
+  }
+}
+
+TEST(State, the_documentation_names_every_state_and_change) {
+  const std::string page = state_documentation();
+  for (const Transition& t : state_transitions()) {
+    const std::string row = "| `" + std::string(enum_name(t.from)) + "` | `" +
+                            std::string(enum_name(t.to)) + "` | " + std::string(t.by);
+    EXPECT_NE(page.find(row), std::string::npos) << row;
   }
 }
 
 TEST(State, only_a_renderer_at_work_can_finish_a_job) {
-  const std::set<State> at_work{State::running, State::cancelling};
-  for (const State from : all_states()) {
-    EXPECT_EQ(may_follow(from, State::done), at_work.contains(from)) << enum_name(from);
-    EXPECT_EQ(may_follow(from, State::interrupted), at_work.contains(from)) << enum_name(from);
+  for (const Transition& t : state_transitions()) {
+    if (t.to == State::done || t.to == State::interrupted) EXPECT_EQ(t.by, "renderer");
   }
+  EXPECT_FALSE(may_follow(State::held, State::done));
 }
 
 TEST(State, a_request_to_stop_is_not_forgotten) {

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "jobs/store/job_folder.h"
+#include "server/events.h"
+#include "server/job_table.h"
+#include "server/posting.h"
+#include "server/queue.h"
+#include "server/router.h"
+
+namespace lacuna {
+
+/// The addresses below /api/jobs, and /api/events. All references outlive it.
+class JobRoutes {
+ public:
+  JobRoutes(DataRoot data, const ScenesRoots& scenes, JobTable& table, Queue& queue);
+  void add_to(Router& router);
+  int open_streams() const { return events_.open(); }
+
+ private:
+  Response list(const Request& request);
+  Response detail(const Request& request, const std::string& id);
+  Response change(const Request& request, const std::string& id);
+  Response cancel(const Request& request, const std::string& id);
+  Response retry(const Request& request, const std::string& id);
+  Response extend(const Request& request, const std::string& id);
+  Response remove(const Request& request, const std::string& id);
+  Response log(const Request& request, const std::string& id);
+  Response file(const Request& request, const std::string& id, const std::string& name);
+  Response answer(const Request& request, int status, const std::string& id);
+
+  JobTable& table_;
+  Queue& queue_;
+  Posting posting_;
+  Events events_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,246 @@
+#include "server/job_table.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <sys/stat.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+#include <variant>
+
+#include "jobs/spec/job_json.h"
+#include "server/entry_json.h"
+
+namespace lacuna {
+namespace {
+
+std::string hash(std::string_view text) {
+  return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
+}
+
+std::string lower_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+void read_spec(JobEntry& entry, const JobFolder& folder) {
+  const JobSpec spec = folder.read_job();
+  entry.label = spec.label;
+  entry.scene = spec.scene;
+  entry.integrator = std::visit([](const auto& s) { return std::string(s.name); }, spec.integrator);
+  entry.reference = spec.reference;
+  entry.job_hash = hash(write_job(spec));
+}
+
+std::shared_ptr<JobEntry> read_entry(const JobFolder& folder) {
+  auto entry = std::make_shared<JobEntry>();
+  entry->id = folder.id();
+  try {
+    read_spec(*entry, folder);
+    entry->state = folder.read_state();
+    entry->control = folder.read_control();
+    entry->progress = folder.read_progress();
+    entry->over = is_terminal(entry->state.state);
+  } catch (const std::exception& error) {  // a damaged folder hides no other job
+    entry->damaged = true;
+    entry->over = true;
+    entry->state.state = State::failed;
+    entry->state.error = fmt::format("the job's folder cannot be read: {}", error.what());
+  }
+  return entry;
+}
+
+std::int64_t time_of_change(const std::filesystem::path& folder) {
+  struct stat status {};
+  if (::stat(folder.c_str(), &status) != 0) return 0;
+  return status.st_mtim.tv_sec * 1'000'000'000 + status.st_mtim.tv_nsec;
+}
+
+bool is_any_of(const std::vector<State>& states, State state) {
+  return states.empty() || std::find(states.begin(), states.end(), state) != states.end();
+}
+
+/// A job's place in the list, as text: the same after a restart.
+std::string cursor(const JobEntry& entry) { return entry.state.created + "_" + entry.id; }
+
+std::pair<std::string, std::string> place_of(const std::string& cursor) {
+  const auto bar = cursor.find('_');
+  if (bar == std::string::npos) {
+    throw std::invalid_argument("it is not the `next` of another page");
+  }
+  return {cursor.substr(0, bar), cursor.substr(bar + 1)};
+}
+
+}  // namespace
+
+void JobTable::rescan() {
+  // Taken before the folder is read: what changes meanwhile is seen next time.
+  const std::int64_t changed = time_of_change(data_.jobs());
+  std::set<std::string> there;
+  std::vector<std::string> fresh;
+  for (const JobFolder& f : list_jobs(data_.jobs())) there.insert(f.id());
+  std::vector<std::string> gone;
+  {
+    const std::lock_guard lock(mutex_);
+    scanned_ = changed;
+    for (const std::string& id : there) {
+      if (!places_.contains(id)) fresh.push_back(id);
+    }
+    for (const auto& [id, place] : places_) {
+      if (!there.contains(id)) gone.push_back(id);
+    }
+  }
+  for (const std::string& id : fresh) add(id);
+  for (const std::string& id : gone) {
+    std::error_code ignored;  // it may have been added while the folder was read
+    if (!std::filesystem::exists(folder(id).dir(), ignored)) remove(id);
+  }
+}
+
+void JobTable::rescan_if_changed() {
+  const std::int64_t changed = time_of_change(data_.jobs());
+  {
+    const std::lock_guard lock(mutex_);
+    if (changed == scanned_) return;
+  }
+  rescan();
+}
+
+EntryPtr JobTable::find(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto place = places_.find(id);
+  return place == places_.end() ? nullptr : jobs_.at(place->second);
+}
+
+EntryPtr JobTable::add(const std::string& id) {
+  const auto entry = read_entry(folder(id));
+  const std::lock_guard lock(mutex_);
+  if (const auto place = places_.find(id); place != places_.end()) return jobs_.at(place->second);
+  put(entry, JobEvent::Kind::added);
+  return entry;
+}
+
+void JobTable::remove(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  const auto place = places_.find(id);
+  if (place == places_.end()) return;
+  --counts_[jobs_.at(place->second)->state.state];
+  jobs_.erase(place->second);
+  places_.erase(place);
+  journal_.add(JobEvent::Kind::removed, id, nullptr);
+}
+
+/// Only under the lock.
+void JobTable::put(std::shared_ptr<JobEntry> entry, JobEvent::Kind kind) {
+  entry->text = json_text(to_json(*entry));
+  entry->revision = hash(fmt::format("{} {} {} {} {}", entry->job_hash,
+                                     json_text(to_json(entry->state)), entry->control.priority,
+                                     entry->control.held, entry->control.cancel));
+  entry->words = lower_case(
+      fmt::format("{}\n{}\n{}\n{}", entry->label, entry->scene, entry->integrator, entry->id));
+  const std::string id = entry->id;
+  const Place place{entry->state.created, id};
+  const auto old = places_.find(id);
+  if (old != places_.end()) {
+    --counts_[jobs_.at(old->second)->state.state];
+    jobs_.erase(old->second);
+  }
+  ++counts_[entry->state.state];
+  EntryPtr finished = std::move(entry);
+  places_[id] = place;
+  jobs_[place] = finished;
+  journal_.add(kind, id, std::move(finished));
+}
+
+template <class Change>
+void JobTable::change(const std::string& id, Change&& change) {
+  const std::lock_guard lock(mutex_);
+  const auto place = places_.find(id);
+  if (place == places_.end()) return;
+  auto entry = std::make_shared<JobEntry>(*jobs_.at(place->second));
+  if (const auto kind = change(*entry)) put(std::move(entry), *kind);
+}
+
+void JobTable::set_state(const std::string& id, const JobState& state, bool over) {
+  change(id, [&](JobEntry& entry) -> std::optional<JobEvent::Kind> {
+    if (entry.state == state && entry.over == over) return std::nullopt;
+    if (state.state != entry.state.state && !may_follow(entry.state.state, state.state)) {
+      spdlog::error("{}: {} follows {}, which the table of states does not know", id,
+                    enum_name(state.state), enum_name(entry.state.state));
+    }
+    entry.state = state;
+    entry.over = over;
+    return JobEvent::Kind::state;
+  });
+}
+
+void JobTable::set_control(const std::string& id, const JobControl& control) {
+  change(id, [&](JobEntry& entry) -> std::optional<JobEvent::Kind> {
+    if (entry.control == control) return std::nullopt;
+    entry.control = control;
+    return JobEvent::Kind::control;
+  });
+}
+
+void JobTable::set_progress(const std::string& id, const Progress& progress) {
+  change(id, [&](JobEntry& entry) -> std::optional<JobEvent::Kind> {
+    if (entry.progress == progress) return std::nullopt;
+    entry.progress = progress;
+    return JobEvent::Kind::progress;
+  });
+}
+
+void JobTable::reread_job(const std::string& id) {
+  change(id, [&](JobEntry& entry) -> std::optional<JobEvent::Kind> {
+    read_spec(entry, folder(id));
+    return JobEvent::Kind::control;
+  });
+}
+
+std::size_t JobTable::count(const std::vector<State>& states) const {
+  std::size_t sum = 0;
+  for (const auto& [state, n] : counts_) {
+    if (is_any_of(states, state)) sum += n;
+  }
+  return sum;
+}
+
+JobTable::Page JobTable::list(const Query& query) const {
+  const Place after = query.after.empty() ? Place{} : place_of(query.after);
+  Page page;
+  const std::lock_guard lock(mutex_);
+  page.counts = counts_;
+  page.last_event = journal_.name(journal_.last());
+  // Only a search by words has to look at every job; other pages cost what they hold.
+  const bool counts_known = query.words.empty();
+  if (counts_known) page.total = count(query.states);
+  const bool begins_after = counts_known && !query.after.empty();
+  auto it = begins_after ? std::make_reverse_iterator(jobs_.lower_bound(after)) : jobs_.rbegin();
+  for (; it != jobs_.rend(); ++it) {
+    const auto& [place, entry] = *it;
+    if (!is_any_of(query.states, entry->state.state)) continue;
+    if (entry->words.find(query.words) == std::string::npos) continue;
+    if (!counts_known) ++page.total;
+    if (!query.after.empty() && place >= after) continue;
+    if (page.jobs.size() < query.limit) {
+      page.jobs.push_back(entry);
+    } else {
+      if (page.next.empty()) page.next = cursor(*page.jobs.back());
+      if (counts_known) break;
+    }
+  }
+  return page;
+}
+
+std::vector<EntryPtr> JobTable::all() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<EntryPtr> all;
+  all.reserve(jobs_.size());
+  for (const auto& [place, entry] : jobs_) all.push_back(entry);
+  return all;
+}
+
+}  // namespace lacuna

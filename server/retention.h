@@ -1,0 +1,17 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "server/job_table.h"
+#include "server/settings.h"
+
+namespace lacuna {
+
+/// The jobs that `settings` say need not be kept, oldest first: over, not damaged, and no other
+/// job's reference. `jobs` are all there are, oldest first; `now` is UTC as JobState has it.
+std::vector<std::string> outdated(const std::vector<EntryPtr>& jobs, const CareSettings& settings,
+                                  std::chrono::system_clock::time_point now);
+
+}  // namespace lacuna
