@@ -14,6 +14,11 @@ namespace {
 // How often a folder that another renderer holds is looked at again.
 constexpr std::chrono::milliseconds look_again{500};
 
+std::int64_t iterations_of(const JobFolder& f) {
+  const auto progress = f.read_progress();
+  return progress ? progress->iteration : 0;
+}
+
 JobState cancelled(JobState state) { return ended(std::move(state), State::cancelled, utc_now()); }
 
 }  // namespace
@@ -189,8 +194,9 @@ void Queue::attend(const std::string& id, Work& work) {
     withdraw(f);
     return;
   }
+  attempt.iteration_before = iterations_of(f);
   spdlog::info("{}: a renderer is started", id);
-  attempt.ending = executor_.run(f, work.stop);
+  attempt.ending = executor_.run(f, work.stop, {});
   spdlog::info("{}: {}", id, attempt.ending.reason);
   try {
     attempt.after = f.read_state();
@@ -198,6 +204,7 @@ void Queue::attend(const std::string& id, Work& work) {
     spdlog::error("{}: {}", id, error.what());
     attempt.after = attempt.before;
   }
+  attempt.iteration_after = iterations_of(f);
   settle(id, work, std::move(attempt));
 }
 

@@ -101,7 +101,8 @@ struct Service::Parts {
                   .data = data.dir,
                   .scenes = scenes.roots(),
                   .grace = std::chrono::milliseconds(
-                      static_cast<std::int64_t>(1000 * settings.grace_seconds))}),
+                      static_cast<std::int64_t>(1000 * settings.grace_seconds)),
+                  .limits = settings.limits}),
         queue(data, executor, settings.queue),
         routes(data, scenes, queue, page(settings)),
         http(settings.http, [this](const Request& r) { return routes.handle(r); }) {}

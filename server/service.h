@@ -14,6 +14,7 @@ struct ServiceSettings {
   HttpSettings http;
   QueueSettings queue;
   double grace_seconds = 10;
+  ChildLimits limits = ExecutorSettings{}.limits;  ///< of every renderer
   std::filesystem::path data, renderer, web;
   std::vector<std::filesystem::path> scenes;
 };

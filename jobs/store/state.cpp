@@ -14,6 +14,12 @@ constexpr Transition transitions[] = {
     {State::queued, State::running},
     {State::queued, State::cancelled},        // nothing had started
     {State::queued, State::failed},           // no renderer could be started
+    {State::queued, State::held},             // on request
+    {State::running, State::held},            // on request, after the renderer has stopped
+    {State::interrupted, State::held},        // likewise
+    {State::held, State::queued},             // released
+    {State::held, State::cancelled},          //
+    {State::held, State::failed},             //
     {State::running, State::running},         // a new phase; a new renderer after one was killed
     {State::running, State::cancelling},      // on request, while the renderer lives
     {State::running, State::interrupted},     // the renderer stopped or died before the end

@@ -10,13 +10,14 @@
 namespace lacuna {
 
 /// Where a job stands. The table of who may change what is jobs/store/state.cpp's.
-enum class State { queued, running, cancelling, interrupted, done, failed, cancelled };
+enum class State { queued, running, held, cancelling, interrupted, done, failed, cancelled };
 
 template <>
 struct EnumTable<State> {
-  static constexpr std::array<EnumValue<State>, 7> values{{
+  static constexpr std::array<EnumValue<State>, 8> values{{
       {State::queued, "queued", "waits for its turn"},
       {State::running, "running", "a renderer works on it"},
+      {State::held, "held", "does not start until it is released"},
       {State::cancelling, "cancelling", "its renderer was asked to stop"},
       {State::interrupted, "interrupted",
        "its renderer stopped before the end; it goes on from its checkpoint"},
@@ -38,7 +39,7 @@ struct JobState {
   int exit_code = -1;  ///< of the last renderer; -1: none ended
   std::string created, started, finished;
   std::string phase;  ///< of a running job: "loading", "reference", "rendering", "writing"
-  std::string error;  ///< one line; only of `failed`
+  std::string error;  ///< one line; of `failed`, and of `interrupted` if nobody asked for it
   std::vector<std::string> warnings;  ///< e.g. "the scene has no light: the picture is black"
   bool operator==(const JobState&) const = default;
 };
@@ -51,7 +52,7 @@ void describe(V& v, JobState& s) {
   v("started", s.started, {.doc = "UTC, ISO 8601; empty: not yet"});
   v("finished", s.finished, {.doc = "UTC, ISO 8601; empty: not yet"});
   v("phase", s.phase, {.doc = "of a running job"});
-  v("error", s.error, {.doc = "why it failed"});
+  v("error", s.error, {.doc = "why it failed, or why it stopped before the end"});
   v("warnings", s.warnings, {.doc = "what a person should know of the result"});
 }
 
