@@ -5,17 +5,22 @@
 #include <linux/close_range.h>
 #include <poll.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <fstream>
 #include <system_error>
 
 namespace lacuna {
 namespace {
+
+constexpr const char* oom_score_file = "/proc/self/oom_score_adj";
 
 std::vector<char*> c_strings(const std::vector<std::string>& strings) {
   std::vector<char*> result;
@@ -36,6 +41,24 @@ struct Prepared {
   const char* directory;
   int input, output, report;
   pid_t parent;
+  std::uint64_t memory_bytes, file_bytes;
+  int niceness;               // absolute
+  const char* oom_score_adj;  // as text; empty: as it is
+  std::size_t oom_score_adj_length;
+};
+
+/// The limits in the form that the child sets them in.
+struct AbsoluteLimits {
+  explicit AbsoluteLimits(const ChildLimits& limits)
+      : niceness(std::min(19, ::getpriority(PRIO_PROCESS, 0) + limits.niceness)) {
+    int own = 0;
+    std::ifstream file(oom_score_file);
+    if (limits.oom_score_adj > 0 && file >> own) {
+      oom_score_adj = std::to_string(std::min(1000, own + limits.oom_score_adj));
+    }
+  }
+  int niceness;
+  std::string oom_score_adj;
 };
 
 [[noreturn]] void become(const Prepared& p) {
@@ -47,6 +70,19 @@ struct Prepared {
   };
   check(::setpgid(0, 0));
   check(::prctl(PR_SET_PDEATHSIG, SIGTERM));
+  const auto limit = [&](__rlimit_resource resource, std::uint64_t bytes) {
+    const rlimit both{bytes, bytes};
+    if (bytes > 0) check(::setrlimit(resource, &both));
+  };
+  limit(RLIMIT_DATA, p.memory_bytes);
+  limit(RLIMIT_FSIZE, p.file_bytes);
+  check(::setpriority(PRIO_PROCESS, 0, p.niceness));
+  if (p.oom_score_adj_length > 0) {
+    const int file = ::open(oom_score_file, O_WRONLY | O_CLOEXEC);
+    check(file);
+    check(::write(file, p.oom_score_adj, p.oom_score_adj_length));
+    ::close(file);
+  }
   if (::getppid() != p.parent) ::_exit(127);  // the service died before the line above
   for (const int s : {SIGTERM, SIGINT, SIGPIPE, SIGHUP}) ::signal(s, SIG_DFL);
   check(::dup2(p.input, STDIN_FILENO));
@@ -72,8 +108,10 @@ std::mutex& fork_mutex() {
 ChildProcess::ChildProcess(const Command& command) {
   const FileHandle input(::open("/dev/null", O_RDONLY | O_CLOEXEC));
   const FileHandle output(
-      ::open(command.output.c_str(),
-             O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0644));
+      command.output_fd >= 0
+          ? ::fcntl(command.output_fd, F_DUPFD_CLOEXEC, 3)
+          : ::open(command.output.c_str(),
+                   O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0644));
   if (!output) fail(errno, command.output.string());
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail(errno, "pipe");
@@ -82,9 +120,19 @@ ChildProcess::ChildProcess(const Command& command) {
 
   const auto arguments = c_strings(command.arguments);
   const auto environment = c_strings(command.environment);
-  const Prepared prepared{arguments.data(), environment.data(), command.directory.c_str(),
-                          input.get(),      output.get(),       child_report.get(),
-                          ::getpid()};
+  const AbsoluteLimits absolute(command.limits);
+  const Prepared prepared{arguments.data(),
+                          environment.data(),
+                          command.directory.c_str(),
+                          input.get(),
+                          output.get(),
+                          child_report.get(),
+                          ::getpid(),
+                          command.limits.memory_bytes,
+                          command.limits.file_bytes,
+                          absolute.niceness,
+                          absolute.oom_score_adj.c_str(),
+                          absolute.oom_score_adj.size()};
   const std::lock_guard no_locks(fork_mutex());
   pid_ = ::fork();
   if (pid_ < 0) fail(errno, "fork");

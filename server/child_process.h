@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/executor.h"
+#include "server/settings.h"
 
 namespace lacuna {
 
@@ -22,6 +23,8 @@ struct Command {
   std::vector<std::string> environment;  ///< "NAME=value"
   std::filesystem::path directory;       ///< working directory
   std::filesystem::path output;          ///< where its output is appended
+  int output_fd = -1;                    ///< >= 0: its output goes there instead
+  ChildLimits limits;
 };
 
 /// A running child process, the leader of its own process group. Only the thread that started it
@@ -30,6 +33,7 @@ class ChildProcess {
  public:
   /// Returns once the program runs; throws std::system_error if it cannot be started.
   explicit ChildProcess(const Command& command);
+  pid_t pid() const { return pid_; }  ///< and the number of its group
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
   ~ChildProcess();  ///< kills it if it still runs

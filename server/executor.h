@@ -1,5 +1,8 @@
 #pragma once
 
+#include <sys/types.h>
+
+#include <functional>
 #include <string>
 
 #include "analysis/storage/file_handle.h"
@@ -9,9 +12,10 @@ namespace lacuna {
 
 /// How a renderer ended.
 struct Ending {
-  enum class Kind { exited, killed, not_started };
+  /// out_of_memory: it said so itself (exit_memory), or the kernel killed it for it.
+  enum class Kind { exited, killed, not_started, out_of_memory };
   Kind kind = Kind::exited;
-  int code = 0;        ///< exit code; signal; errno
+  int code = 0;        ///< exit code, out_of_memory too (128 + SIGKILL if killed); signal; errno
   std::string reason;  ///< "renderer ended by signal 9 (Killed)"
 };
 
@@ -30,9 +34,11 @@ class StopSignal {
 class Executor {
  public:
   virtual ~Executor() = default;
+  /// Called with the process that renders, the leader of its own group, once it runs.
+  using Started = std::function<void(pid_t)>;
   /// Renders one job; returns when its renderer has ended. `stop` asks that renderer to write a
-  /// checkpoint and end. Called from several threads.
-  virtual Ending run(const JobFolder& folder, const StopSignal& stop) = 0;
+  /// checkpoint and end. `started` may be empty, and must not throw. Called from several threads.
+  virtual Ending run(const JobFolder& folder, const StopSignal& stop, const Started& started) = 0;
 };
 
 }  // namespace lacuna

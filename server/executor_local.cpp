@@ -9,10 +9,26 @@
 #include <string_view>
 #include <system_error>
 
+#include "jobs/cli/commands.h"
+#include "jobs/spec/byte_size.h"
 #include "server/child_process.h"
+#include "server/oom_kills.h"
 
 namespace lacuna {
 namespace {
+
+/// The ending, told for what it was where memory ran out.
+Ending name_memory(Ending end, std::uint64_t limit, bool kernel_killed) {
+  if (end.kind == Ending::Kind::exited && end.code == exit_memory) {
+    const std::string size = limit > 0 ? fmt::format(" (limit {})", byte_size_text(limit)) : "";
+    return {Ending::Kind::out_of_memory, end.code, "renderer ran out of memory" + size};
+  }
+  if (end.kind == Ending::Kind::killed && end.code == SIGKILL && kernel_killed) {
+    return {Ending::Kind::out_of_memory, 128 + SIGKILL,
+            "renderer ran out of memory: killed by the kernel"};
+  }
+  return end;
+}
 
 /// The service's own environment, with the places it was told on its command line.
 std::vector<std::string> child_environment(const ExecutorSettings& settings) {
@@ -55,22 +71,28 @@ LocalExecutor::LocalExecutor(ExecutorSettings settings) : settings_(std::move(se
   environment_ = child_environment(settings_);
 }
 
-Ending LocalExecutor::run(const JobFolder& folder, const StopSignal& stop) {
+Ending LocalExecutor::run(const JobFolder& folder, const StopSignal& stop, const Started& started) {
   try {
+    const std::uint64_t kills_before = oom_kills();
     ChildProcess child({.arguments = {settings_.renderer.string(), "render", folder.dir().string()},
                         .environment = environment_,
                         .directory = settings_.data,
-                        .output = folder.file("log.txt")});
+                        .output = folder.file("log.txt"),
+                        .limits = settings_.limits});
+    if (started) started(child.pid());
+    bool killed = false;
     if (!child.wait(stop.fd(), std::chrono::milliseconds(-1))) {
       child.signal(SIGTERM);
       if (!child.wait(-1, settings_.grace)) {
         spdlog::warn("{}: its renderer did not end within {} s of being asked and is killed",
                      folder.id(), static_cast<double>(settings_.grace.count()) / 1000);
         child.signal(SIGKILL);
+        killed = true;
         child.wait(-1, std::chrono::milliseconds(-1));
       }
     }
-    return child.reap();
+    return name_memory(child.reap(), settings_.limits.memory_bytes,
+                       !killed && oom_kills() > kills_before);
   } catch (const std::system_error& error) {
     return {Ending::Kind::not_started, error.code().value(),
             fmt::format("renderer could not be started: {}", error.what())};

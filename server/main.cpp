@@ -7,12 +7,28 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <stdexcept>
 
+#include "jobs/spec/byte_size.h"
 #include "server/service.h"
 
 namespace {
 
 using namespace lacuna;
+
+/// Throws CLI::ValidationError: no number of bytes, or too few for any renderer.
+std::uint64_t memory_limit(const std::string& text) {
+  constexpr std::uint64_t least = 256 << 20;
+  try {
+    const std::uint64_t bytes = parse_byte_size(text);
+    if (bytes == 0 || bytes >= least) return bytes;
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError("--memory-limit", error.what());
+  }
+  throw CLI::ValidationError(
+      "--memory-limit",
+      fmt::format("found \"{}\"; allowed: 0, or at least {}", text, byte_size_text(least)));
+}
 
 void define_options(CLI::App& app, ServiceSettings& s) {
   app.set_version_flag("--version", service_version());
@@ -35,6 +51,14 @@ void define_options(CLI::App& app, ServiceSettings& s) {
       ->capture_default_str();
   app.add_option("--grace", s.grace_seconds, "seconds between SIGTERM and SIGKILL")
       ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  app.add_option_function<std::string>(
+         "--memory-limit",
+         [&s](const std::string& text) { s.limits.memory_bytes = memory_limit(text); },
+         "memory a renderer may use, as 4G or 512M; 0: no limit")
+      ->default_str("0");
+  app.add_option("--nice", s.limits.niceness, "how far renderers stand back for all else")
+      ->check(CLI::Range(0, 19))
       ->capture_default_str();
   app.add_option("--renderer", s.renderer, "the renderer; default: lacuna beside this program");
   app.add_option("--web", s.web, "folder of the page; default: web of the source tree");

@@ -15,6 +15,7 @@ struct ServiceSettings {
   QueueSettings queue;
   CareSettings care;
   double grace_seconds = 10;
+  ChildLimits limits = ExecutorSettings{}.limits;  ///< of every renderer
   std::filesystem::path data, renderer, web;
   std::vector<std::filesystem::path> scenes;
 };

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "jobs/cli/commands.h"
+#include "jobs/run/obstacle.h"
 #include "jobs/spec/problems.h"
 #include "jobs/spec/version.h"
 #include "renderer/scene/scene_data.h"
@@ -14,7 +15,8 @@ constexpr const char* about =
     "Lacuna renders light transport in occluded scenes and measures error against time.";
 constexpr const char* footer =
     "Exit codes: 0 done, 1 other error, 2 bad job or command line, 3 scene or other asset,\n"
-    "75 interrupted (the same command goes on from the checkpoint).\n"
+    "71 out of memory, 75 interrupted or disk full (the same command goes on from the "
+    "checkpoint).\n"
     "Environment: LACUNA_SCENES, folders that scenes are looked up in (separated by ':');\n"
     "LACUNA_DATA, the folder of jobs, references and cache (default: lacuna-data).";
 
@@ -39,17 +41,26 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
+lacuna::ExitCode lacuna::exit_code_of(const std::exception& e) {
+  switch (obstacle_of(e)) {
+    case Obstacle::memory:
+      return exit_memory;
+    case Obstacle::storage:
+      return exit_interrupted;
+    case Obstacle::none:
+      break;
+  }
+  if (dynamic_cast<const BadJob*>(&e) != nullptr) return exit_bad_job;
+  if (dynamic_cast<const SceneError*>(&e) != nullptr) return exit_asset;
+  return exit_error;
+}
+
 int main(int argc, char** argv) {
   try {
+    lacuna::watch_memory();
     return run(argc, argv);
-  } catch (const lacuna::BadJob& e) {
-    fmt::print(stderr, "lacuna: {}\n", e.what());
-    return lacuna::exit_bad_job;
-  } catch (const lacuna::SceneError& e) {
-    fmt::print(stderr, "lacuna: {}\n", e.what());
-    return lacuna::exit_asset;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "lacuna: {}\n", e.what());
-    return lacuna::exit_error;
+    fmt::print(stderr, "lacuna: {}\n", lacuna::reason_of(e));
+    return lacuna::exit_code_of(e);
   }
 }

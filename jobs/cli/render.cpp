@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <signal.h>
+#include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
 
@@ -7,16 +8,24 @@
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/terminal.h"
+#include "jobs/run/obstacle.h"
 #include "jobs/run/run_job.h"
+#include "jobs/spec/byte_size.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/problems.h"
-#include "renderer/scene/scene_data.h"
 
 namespace lacuna {
 
 namespace {
 
 namespace fs = std::filesystem;
+
+/// "raise the limit of 4.0 GiB (ulimit -d), ", if this process has one.
+std::string memory_limit_advice() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_DATA, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return "";
+  return fmt::format("raise the limit of {} (ulimit -d), ", byte_size_text(limit.rlim_cur));
+}
 
 /// The folder of a job file's results: there already with this very job, or made now.
 JobFolder folder_for(const fs::path& job_file, fs::path out) {
@@ -41,6 +50,22 @@ JobFolder folder_for(const fs::path& job_file, fs::path out) {
   return folder;
 }
 
+/// What a person can do about it.
+std::string advice_for(Obstacle obstacle) {
+  switch (obstacle) {
+    case Obstacle::none:
+      return "";
+    case Obstacle::memory:
+      return memory_limit_advice() +
+             "free memory, or ask for a smaller resolution or fewer layers; the same command goes "
+             "on from the last checkpoint";
+    case Obstacle::storage:
+      return "nothing stored is lost: with room to write the same command goes on from the last "
+             "checkpoint";
+  }
+  return "";
+}
+
 int render(const fs::path& what, const fs::path& out, int threads, bool quiet) {
   // A full disk or a size limit must become an error, not the end of the process.
   signal(SIGXFSZ, SIG_IGN);
@@ -49,10 +74,6 @@ int render(const fs::path& what, const fs::path& out, int threads, bool quiet) {
   Terminal terminal(folder.file("log.txt"), quiet);
   const RunContext context{DataRoot::from_environment(), ScenesRoots::from_environment(), threads,
                            interrupt_requested(), terminal};
-  const auto failed = [&](const std::exception& e, ExitCode code) {
-    terminal.error(e.what());
-    return code;
-  };
   try {
     if (folder.read_state().state == State::done) {
       terminal.milestone(fmt::format("{}: done already", folder.dir().string()));
@@ -62,12 +83,10 @@ int render(const fs::path& what, const fs::path& out, int threads, bool quiet) {
       terminal.milestone("interrupted; the same command goes on from here");
       return exit_interrupted;
     }
-  } catch (const BadJob& e) {
-    return failed(e, exit_bad_job);
-  } catch (const SceneError& e) {
-    return failed(e, exit_asset);
   } catch (const std::exception& e) {
-    return failed(e, exit_error);
+    const std::string advice = advice_for(obstacle_of(e));
+    terminal.error(reason_of(e) + (advice.empty() ? "" : "; " + advice));
+    return exit_code_of(e);
   }
   terminal.milestone(fmt::format("done: {}", folder.file("image.exr").string()));
   return exit_done;

@@ -54,12 +54,15 @@ Terminal::Terminal(const std::filesystem::path& log, bool quiet)
   console->set_level(quiet ? spdlog::level::warn : spdlog::level::info);
   console->set_pattern(to_log ? "%Y-%m-%d %T.%e %l: %v" : "%v");
   logger_ = std::make_unique<spdlog::logger>("lacuna", console);
-  if (!log.empty() && !to_log) {
+  logger_->flush_on(spdlog::level::info);
+  if (log.empty() || to_log) return;
+  try {
     const auto file = std::make_shared<spdlog::sinks::basic_file_sink_mt>(log.string());
     file->set_pattern("%Y-%m-%d %T.%e %l: %v");
     logger_->sinks().push_back(file);
+  } catch (const spdlog::spdlog_ex& e) {  // a full or read-only disk; the job itself will say so
+    warning(e.what());
   }
-  logger_->flush_on(spdlog::level::info);
 }
 
 Terminal::~Terminal() { clear_bar(); }

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <system_error>
+
 #include "analysis/storage/atomic_file.h"
 #include "jobs/run/checkpoint.h"
+#include "jobs/run/obstacle.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/version.h"
 #include "renderer/film/preview.h"
@@ -44,11 +47,18 @@ void RenderLoop::resume() {
     completed_ = in.get<Spent>();
     counters_ = in.get<Counters>();
     curve_.load(in);
+    refused_before_ = in.get<std::uint64_t>();
+    const PhaseSeconds phases = load_phases(in);
     task_.integrator.load(in);
+    for (const auto& [name, seconds] : phases) task_.phases[name] += seconds;
     film_ = std::move(film);
     clock_.set(completed_.seconds, completed_.cpu_seconds);
+    saved_ = completed_.iterations;
+    report_progress();
     task_.observer.milestone(fmt::format("going on from iteration {} ({:.1f} s)",
                                          completed_.iterations, completed_.seconds));
+  } catch (const std::system_error&) {
+    throw;  // the checkpoint may be good
   } catch (const std::runtime_error& e) {
     std::filesystem::rename(file, task_.folder.file("checkpoint.unusable"));
     task_.observer.warning(
@@ -56,7 +66,29 @@ void RenderLoop::resume() {
     completed_ = {};
     counters_ = {};
     curve_ = {};
+    refused_before_ = 0;
   }
+}
+
+std::uint64_t RenderLoop::refused_rays() const {
+  return refused_before_ + task_.scene.rays().refused_rays();
+}
+
+void RenderLoop::save_phases(ByteWriter& out) const {
+  out.put(static_cast<std::uint64_t>(task_.phases.size()));
+  for (const auto& [name, seconds] : task_.phases) {
+    out.put(std::string_view(name));
+    out.put(seconds);
+  }
+}
+
+PhaseSeconds RenderLoop::load_phases(ByteReader& in) {
+  PhaseSeconds phases;
+  for (auto n = in.get<std::uint64_t>(); n > 0; --n) {
+    const std::string name(in.get_text());
+    phases[name] = in.get<double>();
+  }
+  return phases;
 }
 
 bool RenderLoop::run() {
@@ -65,6 +97,7 @@ bool RenderLoop::run() {
     if (task_.interrupted() || !iterate()) {
       if (!task_.interrupted()) break;  // out of time
       write_checkpoint_now();
+      report_progress();  // of what the checkpoint holds
       return false;
     }
     // An error target is looked at after each of the instants, like any other use of the error.
@@ -73,8 +106,20 @@ bool RenderLoop::run() {
     if (progress_.due()) report_progress();
   }
   add_row();
+  write_last_checkpoint();
   report_progress();
   return true;
+}
+
+void RenderLoop::write_last_checkpoint() {
+  if (saved_ == completed_.iterations) return;
+  try {
+    write_checkpoint_now();
+  } catch (const std::system_error& e) {
+    if (obstacle_of(e) != Obstacle::storage) throw;
+    // The results need less room. A larger budget would go on from the checkpoint before.
+    task_.observer.warning(e.what());
+  }
 }
 
 bool RenderLoop::iterate() {
@@ -137,11 +182,14 @@ void RenderLoop::write_checkpoint_now() {
     out.put(completed_);
     out.put(counters_);
     curve_.save(out);
+    out.put(refused_rays());
+    save_phases(out);
     task_.integrator.save(out);
     write_checkpoint(task_.folder.file("checkpoint.bin"), identity(), out.bytes());
   }
   task_.phases["checkpoint"] += cost;
   checkpoints_.done(cost);
+  saved_ = completed_.iterations;
 }
 
 void RenderLoop::write_preview_now() {

@@ -17,7 +17,8 @@
 
 namespace lacuna {
 
-/// The wall seconds of each phase of a job, for the report.
+/// The wall seconds of each phase of a job, for the report: of this process, and of those before it
+/// up to the checkpoint it went on from.
 using PhaseSeconds = std::map<std::string, double>;
 
 /// What the loop works on. All references outlive it.
@@ -45,13 +46,15 @@ class RenderLoop {
   /// to the observer, kept under another name, and the picture begins anew.
   void resume();
 
-  /// True: the budget is spent. False: interrupted; a checkpoint was written.
+  /// True: the budget is spent; the checkpoint holds this very end, so that a larger budget can go
+  /// on from it. False: interrupted; a checkpoint was written.
   bool run();
 
   const Film& film() const { return film_; }
   const Curve& curve() const { return curve_; }
   const Counters& counters() const { return counters_; }
   Spent spent() const { return completed_; }
+  std::uint64_t refused_rays() const;  ///< as RayCaster counts them, since the job began
 
  private:
   /// What a checkpoint must agree with to be gone on from.
@@ -59,6 +62,9 @@ class RenderLoop {
   bool iterate();
   void add_row();
   void write_checkpoint_now();
+  void write_last_checkpoint();
+  void save_phases(ByteWriter& out) const;
+  static PhaseSeconds load_phases(ByteReader& in);
   void write_preview_now();
   void report_progress();
 
@@ -68,6 +74,8 @@ class RenderLoop {
   Image frame_;
   Curve curve_;
   Counters counters_;
+  std::uint64_t refused_before_ = 0;  // by processes before this one
+  std::uint64_t saved_ = 0;           // iterations in the checkpoint
   RenderClock clock_;
   Spent completed_;  // when the last finished iteration ended
   Pace checkpoints_, previews_, progress_;

@@ -26,14 +26,12 @@ Json seconds(const PhaseSeconds& phases, const Spent& spent) {
   return j;
 }
 
-Json counts(const RenderTask& task, const Spent& spent, const Counters& c) {
-  return {{"iterations", spent.iterations},
-          {"samples", c.samples},
-          {"rays", c.rays},
-          {"shadow_rays", c.shadow_rays},
-          {"negative", c.negative},
-          {"rejected", c.rejected},
-          {"refused_rays", task.scene.rays().refused_rays()}};
+Json counts(const RenderLoop& loop) {
+  const Counters& c = loop.counters();
+  return {
+      {"iterations", loop.spent().iterations}, {"samples", c.samples},   {"rays", c.rays},
+      {"shadow_rays", c.shadow_rays},          {"negative", c.negative}, {"rejected", c.rejected},
+      {"refused_rays", loop.refused_rays()}};
 }
 
 Json rates(const RenderTask& task, const Spent& spent, const Counters& c) {
@@ -95,7 +93,7 @@ std::string write_report(const ReportInput& input) {
   j["version"] = version();
   j["job"] = task.folder.id();
   j["seconds"] = seconds(task.phases, loop.spent());
-  j["counts"] = counts(task, loop.spent(), loop.counters());
+  j["counts"] = counts(loop);
   j["rates"] = rates(task, loop.spent(), loop.counters());
   j["errors"] = errors_json(task, loop.curve());
   j["scene"] = scene(task.scene);

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "analysis/storage/atomic_file.h"
+#include "jobs/run/obstacle.h"
 #include "jobs/run/prepare.h"
 #include "jobs/run/reference.h"
 #include "jobs/run/render_loop.h"
@@ -45,6 +46,15 @@ class Running {
     state_.error = error;
     state_.finished = utc_now();
     folder_.write_state(state_);
+  }
+  /// After an exception, which is what counts: that the state cannot be written, too, is only told.
+  void stop(const std::exception& e) {
+    const bool may_go_on = obstacle_of(e) != Obstacle::none;
+    try {
+      finish(may_go_on ? State::interrupted : State::failed, reason_of(e));
+    } catch (const std::exception& second) {
+      observer_.warning(second.what());
+    }
   }
   const std::vector<std::string>& warnings() const { return state_.warnings; }
 
@@ -172,7 +182,7 @@ Outcome run_job(const JobFolder& folder, const RunContext& context) {
     running.finish(outcome == Outcome::done ? State::done : State::interrupted);
     return outcome;
   } catch (const std::exception& e) {
-    running.finish(State::failed, e.what());
+    running.stop(e);
     throw;
   }
 }

@@ -27,8 +27,9 @@ class FolderBusy : public std::runtime_error {
 
 /// Does the job of `folder`, from its checkpoint if there is one: state.json becomes `running`,
 /// then `done`, `interrupted`, or `failed` with the reason (and the exception goes on): BadJob,
-/// SceneError, std::system_error and others. A job that is done is left as it is. Throws
-/// FolderBusy.
+/// SceneError and others. What another time may bring (see Obstacle) leaves the job `interrupted`
+/// with the reason, if the state can be written at all, and the exception goes on, too. A job that
+/// is done is left as it is. Throws FolderBusy.
 Outcome run_job(const JobFolder& folder, const RunContext& context);
 
 /// Loads all that the job needs and throws what run_job would, without rendering: `lacuna check`.

@@ -91,6 +91,7 @@ struct JobSpec {
   PixelFilter pixel_filter = PixelFilter::box;
   PixelType pixel_type = PixelType::single_float;
   double checkpoint_seconds = 10;
+  bool exclusive = false;
   bool operator==(const JobSpec&) const = default;
 };
 template <class V>
@@ -126,6 +127,8 @@ void describe(V& v, JobSpec& s) {
      .min = 0.05,
      .max = 86400,
      .unit = "s"});
+  v("exclusive", s.exclusive,
+    {.doc = "run alone: the service renders no other job meanwhile, so that its times hold"});
 }
 
 }  // namespace lacuna

@@ -12,7 +12,7 @@ namespace {
 
 /// The keys of a job that do not touch the bits of its estimate after a given number of iterations.
 /// Every other key does, or is taken to: a new key is part of the hash until it is listed here.
-constexpr std::array<std::string_view, 8> not_in_the_picture{
+constexpr std::array<std::string_view, 9> not_in_the_picture{
     "label",                 // for people
     "budget",                // when to stop, not what is estimated
     "reference",             // what the estimate is compared with
@@ -20,7 +20,8 @@ constexpr std::array<std::string_view, 8> not_in_the_picture{
     "threads",               // random numbers are counted, not drawn
     "layers",                // features of the first hit, written beside the estimate
     "pixel_type",            // rounds the file, not the film
-    "checkpoint_seconds"};   // when to save
+    "checkpoint_seconds",    // when to save
+    "exclusive"};            // what else runs meanwhile
 
 }  // namespace
 

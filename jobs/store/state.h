@@ -52,7 +52,7 @@ struct JobState {
   int exit_code = -1;  ///< of the last renderer; -1: none ended
   std::string created, started, finished;
   std::string phase;  ///< of a running job: "loading", "reference", "rendering", "writing"
-  std::string error;  ///< one line; only of `failed`
+  std::string error;  ///< one line; of `failed`, and of `interrupted` if nobody asked for it
   std::vector<std::string> warnings;  ///< e.g. "the scene has no light: the picture is black"
   bool operator==(const JobState&) const = default;
 };
@@ -65,7 +65,7 @@ void describe(V& v, JobState& s) {
   v("started", s.started, {.doc = "UTC, ISO 8601; empty: not yet"});
   v("finished", s.finished, {.doc = "UTC, ISO 8601; empty: not yet"});
   v("phase", s.phase, {.doc = "of a running job"});
-  v("error", s.error, {.doc = "why it failed"});
+  v("error", s.error, {.doc = "why it failed, or why it stopped before the end"});
   v("warnings", s.warnings, {.doc = "what a person should know of the result"});
 }
 

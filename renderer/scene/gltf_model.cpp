@@ -1,6 +1,7 @@
 #include "renderer/scene/gltf_model.h"
 
 #include <deque>
+#include <new>
 
 #include "renderer/scene/scene_data.h"
 
@@ -94,6 +95,8 @@ tinygltf::Model parse_model(std::span<const std::uint8_t> file, const Framing& f
                                           reinterpret_cast<const char*>(file.data()),
                                           static_cast<unsigned>(file.size()), "");
     }
+  } catch (const std::bad_alloc&) {
+    throw;  // says nothing of the file
   } catch (const std::exception& e) {
     parsed = false;
     error = e.what();

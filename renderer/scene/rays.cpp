@@ -7,6 +7,7 @@
 #include <array>
 #include <atomic>
 #include <cstring>
+#include <new>
 
 #include "renderer/scene/alpha_mask.h"
 
@@ -75,9 +76,8 @@ struct RayCaster::Impl {
   void check(const char* doing) const {
     const RTCError e = rtcGetDeviceError(device);
     if (e == RTC_ERROR_NONE) return;
-    throw SceneError(fmt::format(
-        "Embree failed while {}: {}", doing,
-        e == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : fmt::format("error {}", int(e))));
+    if (e == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    throw SceneError(fmt::format("Embree failed while {}: error {}", doing, int(e)));
   }
 
   void add(const SceneData& data, std::size_t index) {
@@ -91,7 +91,7 @@ struct RayCaster::Impl {
     if (positions == nullptr || triangles == nullptr) {
       rtcReleaseGeometry(g);
       check("copying triangles");
-      throw SceneError("Embree gave no memory for triangles");
+      throw std::bad_alloc();
     }
     std::memcpy(positions, mesh.positions.data(), sizeof(V3f) * mesh.positions.size());
     std::memcpy(triangles, mesh.triangles.data(),

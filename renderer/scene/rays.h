@@ -34,7 +34,8 @@ class RayCaster {
  public:
   /// Copies the triangles of `scene` and keeps a pointer to its materials and textures for alpha
   /// masks: a hit where alpha < cutoff is no hit. Only geometries whose material has a mask get a
-  /// filter. Builds with `threads` threads. Throws SceneError if Embree runs out of memory.
+  /// filter. Builds with `threads` threads. Throws SceneError, and std::bad_alloc if Embree runs
+  /// out of memory.
   RayCaster(const SceneData& scene, int threads);
   ~RayCaster();
   RayCaster(RayCaster&&) noexcept;

@@ -9,7 +9,7 @@ test("help and version", async () => {
   const help = await runToEnd(["--help"]);
   assert.equal(help.code, 0);
   for (const option of ["--port", "--bind", "--data", "--scenes", "--jobs", "--renderer", "--web",
-    "--max-attempts", "--grace"]) {
+    "--max-attempts", "--grace", "--memory-limit", "--nice"]) {
     assert.ok(help.out.includes(option), option);
   }
   const version = await runToEnd(["--version"]);
@@ -36,6 +36,11 @@ test("what cannot work is refused with a message", async (t) => {
   await refused(["--port", "70000"], /70000/);
   await refused(["--jobs", "0"], /--jobs/);
   await refused(["--grace", "-1"], /--grace/);
+  await refused(["--nice", "20"], /--nice/);
+  await refused(["--nice", "-1"], /--nice/);
+  await refused(["--memory-limit", "4X"], /--memory-limit.*"4X".*4G/);
+  await refused(["--memory-limit", "-1"], /--memory-limit.*"-1"/);
+  await refused(["--memory-limit", "1M"], /--memory-limit.*"1M".*256\.0 MiB/);
   await refused(["--nonsense"], /nonsense/);
   const file = path.join(places.root, "file");
   fs.writeFileSync(file, "");

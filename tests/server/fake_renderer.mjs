@@ -8,8 +8,14 @@
 //   crash             kills itself, each time
 //   crash once        kills itself the first time, leaving a checkpoint
 //   exit N            ends with code N, leaving the state `running`
+//   memory            out of memory, each time: exit code 71, state interrupted
+//   interrupt         interrupted by itself, each time, without an iteration more
+//   interrupt on      likewise, with one iteration more each time; done at the fourth attempt
+//   full              state interrupted because its disk is full, each time
+//   limits            done; its limits, niceness and oom_score_adj go to report.json
 //   environment       done; its environment goes to report.json
 import fs from "node:fs";
+import os from "node:os";
 import path from "node:path";
 
 const [command, folder, ...rest] = process.argv.slice(2);
@@ -53,7 +59,11 @@ function finish() {
     directory: process.cwd(), data: process.env.LACUNA_DATA, scenes: process.env.LACUNA_SCENES,
     descriptors: fs.readdirSync("/proc/self/fd").length, group: process.pid,
   };
-  write("report.json", { resumed, ...(word === "environment" ? seen : {}) });
+  const limits = {
+    nice: os.getPriority(), oom_score_adj: Number(fs.readFileSync("/proc/self/oom_score_adj", "utf8")),
+    data: /Max data size\s+(\w+)/.exec(fs.readFileSync("/proc/self/limits", "utf8"))[1],
+  };
+  write("report.json", { resumed, ...(word === "environment" ? seen : {}), ...(word === "limits" ? limits : {}) });
   progress(1);
   state({ state: "done", phase: "", finished: now(), exit_code: -1 });
   process.exit(0);
@@ -76,6 +86,20 @@ switch (word) {
   case "fail":
     state({ state: "failed", phase: "", error: "the scene is not to my liking", finished: now() });
     process.exit(3);
+    break;
+  case "memory":
+    state({ state: "interrupted", phase: "", error: "out of memory", finished: now() });
+    process.exit(71);
+    break;
+  case "interrupt":
+    if (argument !== "on") interrupt();
+    if (attempts === 4) finish();
+    progress((24 + attempts) / 100);
+    interrupt();
+    break;
+  case "full":
+    state({ state: "interrupted", phase: "", error: "cannot write image.exr: No space left on device", finished: now() });
+    process.exit(75);
     break;
   case "gate":
     setInterval(() => { if (fs.existsSync(argument)) finish(); }, 10);

@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import fs from "node:fs";
+import os from "node:os";
 import path from "node:path";
 import { test } from "node:test";
 import { folders, runToEnd, Service, until } from "./service.mjs";
@@ -130,6 +131,41 @@ test("an interrupted renderer's job goes on: that is no crash", async (t) => {
   service.open("later");
   const job = await service.reaches(id, "done");
   assert.equal(job.state.attempts, 2);
+});
+
+test("an interruption that nobody asked for is a crash unless the job came on", async (t) => {
+  const service = await Service.start(folders(t), ["--max-attempts", "2"]);
+  const idle = await service.reaches(await service.post("interrupt"), "failed");
+  assert.match(idle.state.error, /exit code 75, unasked and without progress, 2 times/);
+  assert.equal(idle.state.attempts, 3, "the first brought it from nothing to iteration 25");
+  const full = await service.reaches(await service.post("full"), "failed");
+  assert.match(full.state.error, /No space left on device, 2 times/);
+  const busy = await service.reaches(await service.post("interrupt on"), "done");
+  assert.equal(busy.state.attempts, 4);
+});
+
+test("a renderer that ran out of memory is named, and tried again like one that crashed", async (t) => {
+  const service = await Service.start(folders(t), ["--max-attempts", "3", "--memory-limit", "4G"]);
+  const { state } = await service.reaches(await service.post("memory"), "failed");
+  assert.equal(state.error, "renderer ran out of memory (limit 4.0 GiB), 3 times");
+  assert.deepEqual([state.attempts, state.exit_code], [3, 71]);
+});
+
+test("renderers are held to their limits and stand back", async (t) => {
+  const limits = async (...args) => {
+    const service = await Service.start(folders(t), args);
+    const id = await service.post("limits");
+    await service.reaches(id, "done");
+    return service.json(`/api/jobs/${id}/files/report.json`);
+  };
+  const own = { nice: os.getPriority(), score: Number(fs.readFileSync("/proc/self/oom_score_adj", "utf8")) };
+  const preset = await limits();
+  assert.equal(preset.nice, Math.min(19, own.nice + 10));
+  assert.equal(preset.oom_score_adj, Math.min(1000, own.score + 500));
+  assert.equal(preset.data, "unlimited");
+  const given = await limits("--nice", "0", "--memory-limit", "3G");
+  assert.equal(given.nice, own.nice);
+  assert.equal(given.data, String(3 * 1024 ** 3));
 });
 
 test("a renderer gets the folders, and nothing else that is open", async (t) => {

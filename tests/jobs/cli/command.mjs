@@ -17,8 +17,12 @@ export function temporaryFolder(test) {
 }
 
 /// Starts `lacuna ARGS` in `folder`; `ended` gives {code, signal, out, err}.
-export function start(folder, ...args) {
-  const child = spawn(program, args, {
+export const start = (folder, ...args) => startWith([], folder, ...args);
+
+/// The same by a program in front, as ["nice"].
+export function startWith(front, folder, ...args) {
+  const [command, ...rest] = [...front, program, ...args];
+  const child = spawn(command, rest, {
     cwd: folder,
     env: { ...process.env, LACUNA_DATA: join(folder, "data"), LACUNA_SCENES: `${join(root, "jobs/scenes")}:${folder}` },
   });

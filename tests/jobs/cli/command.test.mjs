@@ -9,7 +9,7 @@ test("help and version", async (t) => {
   const folder = temporaryFolder(t);
   const help = await run(folder, "--help");
   assert.equal(help.code, 0);
-  for (const word of ["render", "check", "schema", "list", "compare", "75 interrupted"]) assert.ok(help.out.includes(word), word);
+  for (const word of ["render", "check", "schema", "list", "compare", "71 out of memory", "75 interrupted"]) assert.ok(help.out.includes(word), word);
   assert.match((await run(folder, "--version")).out, /^lacuna \d+\.\d+\.\d+\n$/);
   assert.equal((await run(folder, "paint")).code, 2);
   assert.equal((await run(folder)).code, 2);
@@ -44,6 +44,22 @@ test("check prints the job with its defaults, which is the same job", async (t) 
   writeFileSync(join(folder, "full.json"), checked.out);
   assert.equal((await run(folder, "check", "full.json")).out, checked.out);
   assert.equal(JSON.parse(checked.out).integrator.type, "path");
+});
+
+test("check --scene: what a scene holds, or why it is none", async (t) => {
+  const folder = temporaryFolder(t);
+  const good = await run(folder, "check", "--scene", join(root, "jobs/scenes/cornell.glb"));
+  assert.equal(good.code, 0, good.err);
+  assert.match(good.out, /^cornell\.glb: [1-9]\d* triangles, [1-9]\d* materials, \d+ textures, [1-9]\d* cameras, \d+ lights\n$/);
+  writeFileSync(join(folder, "noise.glb"), "glTF but no more than that");
+  const bad = await run(folder, "check", "--scene", "noise.glb");
+  assert.equal(bad.code, 3);
+  assert.match(bad.err, /noise\.glb/);
+  assert.equal(bad.out, "");
+  assert.equal((await run(folder, "check", "--scene", "nowhere.glb")).code, 2);
+  assert.equal((await run(folder, "check")).code, 2, "a job or a scene");
+  job(folder, "a.json", {});
+  assert.equal((await run(folder, "check", "a.json", "--scene", "noise.glb")).code, 2, "not both");
 });
 
 test("schema and settings pages", async (t) => {

@@ -2,12 +2,13 @@
 // LACUNA_KILLS: how many kills (3 in a quick run, 20 in a long one).
 
 import assert from "node:assert/strict";
-import { existsSync, readFileSync } from "node:fs";
+import { spawnSync } from "node:child_process";
+import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { setTimeout as pause } from "node:timers/promises";
 
-import { job, run, start, temporaryFolder } from "./command.mjs";
+import { job, run, start, startWith, temporaryFolder } from "./command.mjs";
 
 const kills = Number(process.env.LACUNA_KILLS ?? 3);
 const spec = {
@@ -63,24 +64,92 @@ test("stopped by SIGTERM: exit 75, state interrupted, then the same bits", async
   await sameBits(folder, "whole.job", "stopped.job");
 });
 
-test("a disk that is full: failed with the reason, nothing stored is lost", async (t) => {
+/// The same command, run by a shell after `setting`.
+function runAfter(setting, folder, ...args) {
+  return startWith(["bash", "-c", `${setting}; exec "$0" "$@"`], folder, ...args).ended;
+}
+
+const stateOf = (folder) => JSON.parse(readFileSync(join(folder, "a.job/state.json"), "utf8"));
+const temporaries = (folder) => readdirSync(join(folder, "a.job")).filter((name) => name.endsWith(".tmp"));
+
+/// Renders a job with checkpoints until it is stopped; gives the checkpoint's bytes.
+async function begin(folder, content = {}) {
+  job(folder, "a.json", { ...spec, budget: { iterations: 100000 }, ...content });
+  const { child, ended } = start(folder, "render", "a.json", "-q");
+  const checkpoint = join(folder, "a.job/checkpoint.bin");
+  while (!existsSync(checkpoint) && child.exitCode === null) await pause(5);
+  child.kill("SIGTERM");
+  assert.equal((await ended).code, 75);
+  return readFileSync(checkpoint);
+}
+
+test("a file that does not fit: interrupted with the reason, the old checkpoint whole", async (t) => {
   const folder = temporaryFolder(t);
-  job(folder, "a.json", { ...spec, budget: { iterations: 4 } });
-  // A limit on file sizes stands for a full disk: the checkpoint and the picture do not fit.
-  const { spawn } = await import("node:child_process");
-  const { root } = await import("./command.mjs");
-  const child = spawn("bash", ["-c", `ulimit -f 64; exec "${join(process.env.LACUNA_BIN ?? join(root, "build/release/bin"), "lacuna")}" render a.json`], {
-    cwd: folder,
-    env: { ...process.env, LACUNA_SCENES: join(root, "jobs/scenes"), LACUNA_DATA: join(folder, "data") },
-  });
-  let err = "";
-  child.stderr.on("data", (bytes) => (err += bytes));
-  const code = await new Promise((done) => child.on("close", done));
-  assert.equal(code, 1, err);
-  assert.match(err, /(image\.exr|checkpoint\.bin).*(large|space)/i);
-  const state = JSON.parse(readFileSync(join(folder, "a.job/state.json"), "utf8"));
-  assert.equal(state.state, "failed");
+  const checkpoint = await begin(folder);
+  const full = await runAfter("ulimit -f 64", folder, "render", "a.json");
+  assert.equal(full.code, 75, full.err);
+  assert.match(full.err, /error: cannot write .*(checkpoint\.bin|image\.png).*File too large.*the same command goes on/);
+  assert.match(readFileSync(join(folder, "a.job/log.txt"), "utf8"), /File too large/);
+  assert.equal(stateOf(folder).state, "interrupted");
+  assert.match(stateOf(folder).error, /cannot write/);
+  assert.deepEqual(readFileSync(join(folder, "a.job/checkpoint.bin")), checkpoint);
+  assert.deepEqual(temporaries(folder), []);
+});
+
+test("no room for the results: interrupted, and done with room again", async (t) => {
+  const folder = temporaryFolder(t);
+  job(folder, "a.json", { ...spec, budget: { iterations: 4 }, checkpoint_seconds: 100 });
+  const full = await runAfter("ulimit -f 64", folder, "render", "a.json");
+  assert.equal(full.code, 75, full.err);
+  assert.match(full.err, /warning: cannot write .*checkpoint\.bin/);
+  assert.match(full.err, /error: cannot write .*image\.exr/);
+  assert.equal(stateOf(folder).state, "interrupted");
   assert.ok(!existsSync(join(folder, "a.job/image.exr")));
-  // With room again the same command does it.
+  assert.deepEqual(temporaries(folder), []);
   assert.equal((await run(folder, "render", "a.json", "-q")).code, 0);
+  assert.equal(stateOf(folder).error, "");
+});
+
+test("a disk that fills up while a job is rendered, and a folder that turns read-only", async (t) => {
+  const folder = temporaryFolder(t);
+  const disk = join(folder, "disk");
+  mkdirSync(disk);
+  const mounted = process.getuid() === 0
+    && spawnSync("mount", ["-t", "tmpfs", "-o", "size=12m", "tmpfs", disk]).status === 0;
+  if (!mounted) return t.skip("a small disk can be mounted by root only");
+  t.after(() => spawnSync("umount", ["-l", disk]));
+  const checkpoint = await begin(disk);
+  const out = join(disk, "a.job");
+  writeFileSync(join(disk, "ballast"), "");
+  spawnSync("dd", ["if=/dev/zero", `of=${join(disk, "ballast")}`, "bs=4096"]);  // until it is full
+  const full = await run(disk, "render", "a.json");
+  assert.equal(full.code, 75, full.err);
+  assert.match(full.err, /No space left on device/);
+  assert.deepEqual(readFileSync(join(out, "checkpoint.bin")), checkpoint);
+  assert.deepEqual(temporaries(disk), []);
+
+  rmSync(join(disk, "ballast"));
+  assert.equal(spawnSync("mount", ["-o", "remount,ro", disk]).status, 0);
+  const sealed = await run(disk, "render", "a.json");
+  assert.equal(sealed.code, 75, sealed.err);
+  assert.match(sealed.err, /Read-only file system/);
+  assert.equal(spawnSync("mount", ["-o", "remount,rw", disk]).status, 0);
+  assert.deepEqual(readFileSync(join(out, "checkpoint.bin")), checkpoint);
+
+  const { child, ended } = start(disk, "render", "a.json");
+  while (!/going on from iteration/.test(readFileSync(join(out, "log.txt"), "utf8").split("Read-only").pop())
+    && child.exitCode === null) await pause(5);
+  child.kill("SIGTERM");
+  assert.equal((await ended).code, 75);
+  assert.equal(stateOf(disk).error, "", "stopped on request");
+});
+
+test("not enough memory: exit 71, resumable, and it says what to do", async (t) => {
+  const folder = temporaryFolder(t);
+  job(folder, "a.json", { resolution: [4096, 4096], budget: { iterations: 1 } });
+  const short = await runAfter("ulimit -d 524288", folder, "render", "a.json", "-t", "2");
+  assert.equal(short.code, 71, short.err);
+  assert.match(short.err, /error: out of memory.*; raise the limit of 512\.0 MiB \(ulimit -d\), .*resolution/);
+  assert.equal(stateOf(folder).state, "interrupted");
+  assert.match(stateOf(folder).error, /^out of memory/);
 });

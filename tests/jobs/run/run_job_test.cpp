@@ -1,12 +1,17 @@
 #include "jobs/run/run_job.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <atomic>
+#include <csignal>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <system_error>
 
 #include "analysis/storage/atomic_file.h"
 #include "jobs/run/reference.h"
+#include "jobs/spec/job_json.h"
 #include "jobs/spec/problems.h"
 #include "renderer/film/exr.h"
 #include "renderer/scene/image_read.h"
@@ -22,9 +27,9 @@ class Silent final : public Observer {
  public:
   void phase(const std::string& name) override { phases.push_back(name); }
   void progress(const Progress&) override {}
-  void milestone(const std::string&) override {}
+  void milestone(const std::string& line) override { milestones.push_back(line); }
   void warning(const std::string& line) override { warnings.push_back(line); }
-  std::vector<std::string> phases, warnings;
+  std::vector<std::string> phases, warnings, milestones;
 };
 
 /// A data root of one test, with the project's scenes and one folder more.
@@ -114,6 +119,128 @@ TEST_F(RunJob, InterruptedAnywhereItGoesOnToTheSameBits) {
   EXPECT_GT(stops, 3);
   EXPECT_EQ(pixels(parts), pixels(whole));
   EXPECT_EQ(report(parts).at("counts").at("rays"), report(whole).at("counts").at("rays"));
+}
+
+/// Gives a job that is done a larger budget, as the service does.
+void extend(const JobFolder& folder, const std::function<void(Budget&)>& grow) {
+  JobSpec s = folder.read_job();
+  grow(s.budget);
+  write_file_atomically(folder.file("job.json"), write_job(s));
+  JobState state = folder.read_state();
+  state.state = State::queued;
+  folder.write_state(state);
+}
+
+std::vector<std::string> lines_of(const JobFolder& folder) {
+  std::istringstream text(content_of(folder.file("curve.csv")));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST_F(RunJob, DoneItGoesOnWithALargerBudgetToTheSameBits) {
+  JobSpec s = spec("ajar.glb", 14);
+  s.layers = {ImageLayer::variance, ImageLayer::halves};
+  const JobFolder whole = create(s, "whole");
+  run(whole);
+  s.budget.iterations = 5;
+  const JobFolder parts = create(s, "parts");
+  run(parts);
+  const json first = report(parts);
+  const std::vector<std::string> rows = lines_of(parts);
+  for (const int iterations : {6, 14}) {
+    observer.milestones.clear();
+    extend(parts, [&](Budget& b) { b.iterations = iterations; });
+    EXPECT_EQ(run(parts), Outcome::done);
+    EXPECT_EQ(observer.milestones.front().rfind("going on from iteration ", 0), 0U);
+    EXPECT_TRUE(observer.warnings.empty());
+  }
+  for (const char* layer : {"", "variance", "even", "odd"}) {
+    EXPECT_EQ(pixels(parts, layer), pixels(whole, layer)) << layer;
+  }
+  const json last = report(parts);
+  EXPECT_EQ(last.at("counts"), report(whole).at("counts"));
+  for (const auto& [phase, seconds] : first.at("seconds").items()) {
+    if (phase == "write" || phase == "checkpoint" || phase == "progress") continue;  // ends later
+    EXPECT_GE(last.at("seconds").at(phase), seconds) << phase;
+  }
+  EXPECT_GT(last.at("seconds").at("load"), first.at("seconds").at("load")) << "loaded three times";
+  const std::vector<std::string> more = lines_of(parts);
+  ASSERT_GT(more.size(), rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(more[i], rows[i]) << "row " << i;
+  EXPECT_EQ(more.back().substr(0, 3), "14,");
+}
+
+TEST_F(RunJob, ABudgetOfTimeGoesOnFromWhereItEnded) {
+  JobSpec s = spec();
+  s.budget = {};
+  s.budget.seconds = 0.05;
+  const JobFolder folder = create(s);
+  run(folder);
+  const std::int64_t before = report(folder).at("counts").at("iterations");
+  extend(folder, [](Budget& b) { b.seconds = 0.2; });
+  run(folder);
+  EXPECT_GT(report(folder).at("counts").at("iterations"), before);
+  EXPECT_GT(report(folder).at("seconds").at("render"), 0.05);
+  EXPECT_EQ(folder.read_progress()->iteration, report(folder).at("counts").at("iterations"));
+}
+
+TEST_F(RunJob, KilledWhileItsResultsAreWrittenItRendersNothingAnew) {
+  const JobFolder folder = create(spec());
+  run(folder);
+  const auto checkpoint = std::filesystem::last_write_time(folder.file("checkpoint.bin"));
+  const json counts = report(folder).at("counts");
+  std::filesystem::remove(folder.file("image.exr"));
+  extend(folder, [](Budget&) {});
+  EXPECT_EQ(run(folder), Outcome::done);
+  EXPECT_EQ(report(folder).at("counts"), counts);
+  EXPECT_TRUE(std::filesystem::exists(folder.file("image.exr")));
+  EXPECT_EQ(std::filesystem::last_write_time(folder.file("checkpoint.bin")), checkpoint);
+}
+
+TEST_F(RunJob, InterruptedItsProgressIsThatOfItsCheckpoint) {
+  const JobFolder folder = create(spec("cornell.glb", 1000000));
+  std::atomic<int> asked{0};
+  const std::function<bool()> soon = [&] { return ++asked > 50; };
+  ASSERT_EQ(run_job(folder, context(soon)), Outcome::interrupted);
+  const auto progress = folder.read_progress();
+  ASSERT_TRUE(progress);
+  EXPECT_GT(progress->iteration, 0);
+  observer.milestones.clear();
+  const std::function<bool()> at_once = [] { return true; };
+  ASSERT_EQ(run_job(folder, context(at_once)), Outcome::interrupted);
+  const std::string said = observer.milestones.front();
+  EXPECT_EQ(said.rfind("going on from iteration " + std::to_string(progress->iteration) + " ", 0),
+            0U)
+      << said;
+  EXPECT_EQ(folder.read_progress()->iteration, progress->iteration);
+}
+
+TEST_F(RunJob, AFolderThatCannotBeWrittenLeavesTheJobAsItIs) {
+  const JobFolder folder = create(spec("cornell.glb", 1000000));
+  std::atomic<int> asked{0};
+  const std::function<bool()> soon = [&] { return ++asked > 50; };
+  ASSERT_EQ(run_job(folder, context(soon)), Outcome::interrupted);
+  const std::string checkpoint = content_of(folder.file("checkpoint.bin"));
+  // A limit on the size of files stands for a full disk.
+  JobSpec s = folder.read_job();
+  s.budget.iterations = folder.read_progress()->iteration + 1;
+  write_file_atomically(folder.file("job.json"), write_job(s));
+  rlimit limit{};
+  ::getrlimit(RLIMIT_FSIZE, &limit);
+  ::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{4096, limit.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &small);
+  EXPECT_THROW(run(folder), std::system_error);
+  ::setrlimit(RLIMIT_FSIZE, &limit);
+  EXPECT_EQ(folder.read_state().state, State::interrupted);
+  EXPECT_NE(folder.read_state().error.find("cannot write"), std::string::npos);
+  EXPECT_EQ(content_of(folder.file("checkpoint.bin")), checkpoint);
+  for (const std::string& name : names_in(folder.dir())) {
+    EXPECT_FALSE(name.ends_with(".tmp")) << name;
+  }
+  EXPECT_EQ(run(folder), Outcome::done);
+  EXPECT_EQ(folder.read_state().error, "");
 }
 
 TEST_F(RunJob, DamagedCheckpointIsReportedKeptAndDoneWithout) {

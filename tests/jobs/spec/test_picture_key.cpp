@@ -35,6 +35,7 @@ const std::map<std::string, std::function<void(JobSpec&)>> changes{
     {"pixel_filter", [](JobSpec& s) { s.pixel_filter = PixelFilter::tent; }},
     {"pixel_type", [](JobSpec& s) { s.pixel_type = PixelType::half_float; }},
     {"checkpoint_seconds", [](JobSpec& s) { s.checkpoint_seconds = 11; }},
+    {"exclusive", [](JobSpec& s) { s.exclusive = true; }},
 };
 
 const std::set<std::string> decides_the_picture{"scene",      "camera",      "resolution",

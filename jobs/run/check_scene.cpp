@@ -1,0 +1,19 @@
+#include "jobs/run/check_scene.h"
+
+#include <optional>
+#include <utility>
+
+#include "renderer/scene/scene.h"
+
+namespace lacuna {
+
+SceneCounts check_scene(const std::filesystem::path& file, const ThreadPool& pool) {
+  SceneData data = load_gltf(file);
+  SceneCounts counts{data.triangle_count(), data.materials.size() - 1,  // without glTF's own
+                     data.textures.size(),  data.cameras.size(),
+                     data.lights.size(),    data.warnings};
+  const Scene scene(std::move(data), {.materials = true, .emission = true}, std::nullopt, pool);
+  return counts;
+}
+
+}  // namespace lacuna

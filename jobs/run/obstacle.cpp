@@ -1,0 +1,48 @@
+#include "jobs/run/obstacle.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <new>
+#include <system_error>
+
+namespace lacuna {
+namespace {
+
+// EACCES: a folder that was made read-only; EFBIG: beyond RLIMIT_FSIZE.
+constexpr std::array storage_errors{ENOSPC, EDQUOT, EFBIG, EROFS, EIO, EACCES};
+
+std::atomic<bool> ran_out{false};
+
+bool is_bad_alloc(const std::exception& e) {  // also TBB's, which derive from it
+  return dynamic_cast<const std::bad_alloc*>(&e) != nullptr;
+}
+
+}  // namespace
+
+void watch_memory() {
+  std::set_new_handler([] {
+    ran_out = true;
+    throw std::bad_alloc();
+  });
+}
+
+Obstacle obstacle_of(const std::exception& e) {
+  if (is_bad_alloc(e)) return Obstacle::memory;
+  if (const auto* error = dynamic_cast<const std::system_error*>(&e)) {
+    const int number = error->code().value();
+    if (number == ENOMEM) return Obstacle::memory;
+    if (std::find(storage_errors.begin(), storage_errors.end(), number) != storage_errors.end()) {
+      return Obstacle::storage;
+    }
+  }
+  return ran_out ? Obstacle::memory : Obstacle::none;
+}
+
+std::string reason_of(const std::exception& e) {
+  if (is_bad_alloc(e)) return "out of memory";
+  return obstacle_of(e) == Obstacle::memory ? std::string("out of memory: ") + e.what() : e.what();
+}
+
+}  // namespace lacuna

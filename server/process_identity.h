@@ -1,0 +1,39 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace lacuna {
+
+/// A process, told from a later one with the same number by the time it started: in clock ticks
+/// since this machine's boot, so an identity holds until the next boot only.
+struct ProcessIdentity {
+  pid_t pid = 0;
+  std::uint64_t start_ticks = 0;
+  bool operator==(const ProcessIdentity&) const = default;
+};
+
+/// What /proc/PID/stat says of a process. The second field, its name in parentheses, may hold
+/// anything: spaces, parentheses, line breaks.
+struct ProcessStat {
+  char state = '?';  ///< 'Z', 'X': it has ended
+  pid_t group = 0;
+  std::uint64_t start_ticks = 0;
+};
+std::optional<ProcessStat> parse_process_stat(std::string_view stat);
+
+/// The process that has this number now; nothing if none has.
+std::optional<ProcessIdentity> identity_of(pid_t pid);
+
+/// This very process is there and has not ended; one that waits for its parent to take its status
+/// has ended.
+bool is_alive(const ProcessIdentity& identity);
+
+/// Sends a signal to the group that this process leads. False, and nothing is sent, if it has ended
+/// or leads no group.
+bool kill_group(const ProcessIdentity& identity, int signal);
+
+}  // namespace lacuna

@@ -1,0 +1,132 @@
+#include "server/verdict.h"
+
+#include <gtest/gtest.h>
+
+#include <cerrno>
+#include <csignal>
+
+namespace lacuna {
+namespace {
+
+using Kind = Ending::Kind;
+
+/// A renderer that began and ended so; nobody asked it to.
+Attempt attempt(const Ending& ending, State left = State::running) {
+  Attempt a;
+  a.after.state = left;
+  a.after.attempts = 1;
+  a.ending = ending;
+  return a;
+}
+Verdict judged(const Attempt& a, int max_attempts = 2) { return judge(a, max_attempts, "now"); }
+
+const Ending crash{Kind::killed, SIGSEGV, "renderer ended by signal 11 (Segmentation fault)"};
+const Ending interruption{Kind::exited, 75, "renderer ended with exit code 75"};
+const Ending no_memory{Kind::out_of_memory, 71, "renderer ran out of memory (limit 4.0 GiB)"};
+
+TEST(Verdict, a_crash_is_retried_until_there_were_enough) {
+  Attempt a = attempt(crash);
+  Verdict v = judged(a);
+  EXPECT_EQ(v.state.state, State::queued);
+  EXPECT_TRUE(v.crashed);
+  a.crashes = 1;
+  v = judged(a);
+  EXPECT_EQ(v.state.state, State::failed);
+  EXPECT_EQ(v.state.error, crash.reason + ", 2 times");
+  EXPECT_EQ(v.state.exit_code, 128 + SIGSEGV);
+}
+
+TEST(Verdict, want_of_memory_counts_as_a_crash_and_names_itself) {
+  Attempt a = attempt(no_memory, State::interrupted);
+  a.after.error = "out of memory";
+  Verdict v = judged(a);
+  EXPECT_EQ(v.state.state, State::queued);
+  EXPECT_TRUE(v.crashed);
+  EXPECT_EQ(v.state.error, "") << "it waits; nothing has failed";
+  EXPECT_EQ(v.state.exit_code, 71);
+  a.crashes = 1;
+  v = judged(a);
+  EXPECT_EQ(v.state.state, State::failed);
+  EXPECT_EQ(v.state.error, "renderer ran out of memory (limit 4.0 GiB), 2 times");
+}
+
+TEST(Verdict, an_interruption_that_nobody_asked_for_is_a_crash_unless_the_job_came_on) {
+  Attempt a = attempt(interruption, State::interrupted);
+  a.iteration_before = a.iteration_after = 40;
+  Verdict v = judged(a);
+  EXPECT_EQ(v.state.state, State::queued);
+  EXPECT_TRUE(v.crashed);
+  a.crashes = 1;
+  EXPECT_EQ(judged(a).state.error, interruption.reason + ", unasked and without progress, 2 times");
+  a.after.error = "cannot write x: No space left on device";
+  EXPECT_EQ(judged(a).state.error, a.after.error + ", 2 times") << "what the renderer said";
+  a.iteration_after = 41;
+  v = judged(a);
+  EXPECT_EQ(v.state.state, State::queued);
+  EXPECT_FALSE(v.crashed);
+}
+
+TEST(Verdict, a_crash_is_one_even_if_the_job_came_on) {
+  Attempt a = attempt(crash);
+  a.iteration_after = 41;
+  EXPECT_TRUE(judged(a).crashed);
+}
+
+TEST(Verdict, nothing_is_counted_while_the_disk_is_low) {
+  for (const Ending& ending : {crash, interruption, no_memory}) {
+    Attempt a = attempt(ending);
+    a.disk_low = true;
+    a.crashes = 100;
+    const Verdict v = judged(a);
+    EXPECT_EQ(v.state.state, State::queued) << ending.reason;
+    EXPECT_FALSE(v.crashed) << ending.reason;
+  }
+}
+
+TEST(Verdict, a_low_disk_does_not_make_a_bad_job_good) {
+  Attempt a = attempt({Kind::exited, 2, "renderer ended with exit code 2"});
+  a.disk_low = true;
+  EXPECT_EQ(judged(a).state.state, State::failed);
+}
+
+TEST(Verdict, asked_to_stop_it_is_cancelled_held_or_queued_in_this_order) {
+  for (const Ending& ending : {crash, interruption, no_memory}) {
+    Attempt a = attempt(ending, State::interrupted);
+    a.after.error = "out of memory";
+    a.stopped = true;
+    EXPECT_EQ(judged(a, 1).state.state, State::queued);
+    a.hold = true;
+    const Verdict held = judged(a, 1);
+    EXPECT_EQ(held.state.state, State::held);
+    EXPECT_FALSE(held.crashed);
+    EXPECT_EQ(held.state.error, "");
+    EXPECT_EQ(held.state.finished, "");
+    a.cancel = true;
+    const Verdict cancelled = judged(a, 1);
+    EXPECT_EQ(cancelled.state.state, State::cancelled);
+    EXPECT_EQ(cancelled.state.error, "");
+    EXPECT_EQ(cancelled.state.finished, "now");
+  }
+}
+
+TEST(Verdict, what_the_renderer_finished_stands) {
+  Attempt a = attempt({Kind::exited, 0, "renderer ended with exit code 0"}, State::done);
+  a.cancel = a.hold = a.stopped = a.disk_low = true;
+  EXPECT_EQ(judged(a).state.state, State::done);
+}
+
+TEST(Verdict, a_renderer_that_cannot_be_started_fails_its_job_unless_that_may_pass) {
+  Attempt a = attempt({Kind::not_started, ENOENT, "renderer could not be started"}, State::queued);
+  a.after.attempts = 0;
+  EXPECT_EQ(judged(a).state.state, State::failed);
+  a.ending.code = ENOSPC;
+  const Verdict v = judged(a);
+  EXPECT_EQ(v.state.state, State::queued);
+  EXPECT_TRUE(v.crashed) << "or it would be tried for ever";
+  EXPECT_EQ(v.state.attempts, 0);
+  a.disk_low = true;
+  EXPECT_FALSE(judged(a).crashed);
+}
+
+}  // namespace
+}  // namespace lacuna
