@@ -9,7 +9,6 @@
 
 #include "jobs/spec/job_json.h"
 #include "server/file_response.h"
-#include "server/guard.h"
 
 namespace lacuna {
 namespace {
@@ -92,7 +91,6 @@ Routes::Routes(DataRoot data, ScenesRoots scenes, Queue& queue, StaticFiles page
 }
 
 Response Routes::handle(const Request& request) const {
-  check_sender(request);
   const bool reads = request.method == "GET" || request.method == "HEAD";
   if (reads && page_.has(request.path)) return page_.get(request);
   return router_.route(request);

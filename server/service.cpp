@@ -4,13 +4,16 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <stdexcept>
 #include <system_error>
 
 #include "analysis/storage/file_handle.h"
 #include "jobs/spec/version.h"
+#include "server/access.h"
 #include "server/executor_local.h"
 #include "server/http.h"
 #include "server/listener.h"
@@ -67,12 +70,24 @@ FileHandle lock_data(const DataRoot& data) {
   return lock;
 }
 
-void check(const HttpSettings& settings) {
-  if (!is_loopback(settings.bind)) {
+void check(const ServiceSettings& settings) {
+  if (!is_loopback(settings.http.bind) && settings.access.token_file.empty()) {
     throw std::invalid_argument(fmt::format(
-        "{} can be reached from other machines, and this version has no access control: "
-        "bind to 127.0.0.1 or ::1, and tunnel to it",
-        settings.bind));
+        "{} can be reached from other machines, where everybody could use the service: name a "
+        "--token-file, or bind to 127.0.0.1 or ::1 and tunnel to it",
+        settings.http.bind));
+  }
+}
+
+/// Connections need descriptors: what was allowed at the start is often too little.
+void allow_descriptors() {
+  constexpr rlim_t wanted = 8192;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= wanted) return;
+  limit.rlim_cur = std::min(wanted, limit.rlim_max);
+  if (::setrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur < wanted) {
+    spdlog::warn("only {} files may be open at a time: less than {} clients can be served at once",
+                 limit.rlim_cur, wanted);
   }
 }
 
@@ -103,20 +118,31 @@ struct Service::Parts {
                   .grace = std::chrono::milliseconds(
                       static_cast<std::int64_t>(1000 * settings.grace_seconds))}),
         queue(data, executor, settings.queue),
-        routes(data, scenes, queue, page(settings)),
-        http(settings.http, [this](const Request& r) { return routes.handle(r); }) {}
+        files(page(settings)),
+        routes(data, scenes, queue, files),
+        access(settings.http.bind, settings.access,
+               [this](const std::string& path) { return files.has(path); }),
+        http(settings.http, [this](const Request& r) { return handle(r); }) {}
+
+  Response handle(const Request& request) {
+    if (auto answer = access.admit(request)) return std::move(*answer);
+    return routes.handle(request);
+  }
 
   ScenesRoots scenes;
   DataRoot data;
   FileHandle lock;
   LocalExecutor executor;
   Queue queue;
+  const StaticFiles files;
   Routes routes;
+  Access access;
   HttpServer http;
 };
 
 Service::Service(const ServiceSettings& settings) {
-  check(settings.http);
+  check(settings);
+  allow_descriptors();
   parts_ = std::make_unique<Parts>(settings);
 }
 Service::~Service() = default;

@@ -12,7 +12,9 @@ namespace lacuna {
 /// What the command line says; paths that are empty take their defaults.
 struct ServiceSettings {
   HttpSettings http;
+  AccessSettings access;
   QueueSettings queue;
+  bool verbose = false;
   double grace_seconds = 10;
   std::filesystem::path data, renderer, web;
   std::vector<std::filesystem::path> scenes;
