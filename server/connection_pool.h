@@ -8,21 +8,21 @@
 #include <thread>
 #include <vector>
 
-#include "analysis/storage/file_handle.h"
+#include "server/reception.h"
 
 namespace lacuna {
 
-/// Threads that each serve one connection at a time, and a bounded line of connections that wait.
+/// Threads that each answer one request at a time, and a bounded line of requests that wait.
 class ConnectionPool {
  public:
-  using Serve = std::function<void(FileHandle)>;
+  using Serve = std::function<void(Arrival)>;
   ConnectionPool(std::size_t threads, std::size_t max_waiting, Serve serve);
   ~ConnectionPool() { stop(); }
   ConnectionPool(const ConnectionPool&) = delete;
   ConnectionPool& operator=(const ConnectionPool&) = delete;
 
-  /// Takes the connection over, or returns false and leaves it alone: the line is full.
-  bool offer(FileHandle& connection);
+  /// Takes the request over, or returns false and leaves it alone: the line is full.
+  bool offer(Arrival& arrival);
   /// Drops who waits, and waits for who is served.
   void stop();
 
@@ -33,7 +33,7 @@ class ConnectionPool {
   const Serve serve_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<FileHandle> waiting_;
+  std::deque<Arrival> waiting_;
   bool stopping_ = false;
   std::vector<std::thread> threads_;
 };

@@ -36,8 +36,17 @@ void define_options(CLI::App& app, ServiceSettings& s) {
   app.add_option("--port", s.http.port, "port to listen on; 0: any free one")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
-  app.add_option("--bind", s.http.bind, "address to listen on; only loopback in this version")
+  app.add_option("--bind", s.http.bind,
+                 "address to listen on; beyond loopback only with --token-file")
       ->capture_default_str();
+  app.add_option("--token-file", s.access.token_file,
+                 "file with the token that callers must show: one line of 16 to 256 characters, "
+                 "mode 0600");
+  app.add_option("--host", s.access.hosts,
+                 "NAME or NAME:PORT of this service in header Host, beside its address; may be "
+                 "repeated")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_flag("--verbose", s.verbose, "log every request");
   app.add_option("--data", s.data, "folder of the jobs; default: $LACUNA_DATA or lacuna-data");
   app.add_option("--scenes", s.scenes,
                  "folder of scenes, may be repeated; default: $LACUNA_SCENES or jobs/scenes")
@@ -83,6 +92,7 @@ int main(int argc, char** argv) {
   define_options(app, settings);
   CLI11_PARSE(app, argc, argv);
   spdlog::set_default_logger(spdlog::stderr_color_mt("lacuna-server"));
+  if (settings.verbose) spdlog::set_level(spdlog::level::debug);
 
   const sigset_t ends = block_ends();
   try {

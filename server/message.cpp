@@ -2,69 +2,70 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <array>
+#include <cctype>
 #include <nlohmann/json.hpp>
 
 namespace lacuna {
-namespace {
 
-const char* title(int status) {
-  switch (status) {
-    case 400:
-      return "Bad request";
-    case 403:
-      return "Forbidden";
-    case 404:
-      return "Not found";
-    case 405:
-      return "Method not allowed";
-    case 408:
-      return "Too slow";
-    case 409:
-      return "Conflict";
-    case 413:
-      return "Too large";
-    case 414:
-      return "Address too long";
-    case 415:
-      return "Unsupported media type";
-    case 416:
-      return "Range not satisfiable";
-    case 503:
-      return "Busy";
-    case 507:
-      return "Cannot store";
-    default:
-      return "Internal error";
+const char* status_title(int status) {
+  using Pair = std::pair<int, const char*>;
+  constexpr std::array<Pair, 28> titles{{
+      {200, "OK"},
+      {201, "Created"},
+      {202, "Accepted"},
+      {204, "No content"},
+      {206, "Partial content"},
+      {304, "Not modified"},
+      {400, "Bad request"},
+      {401, "Token needed"},
+      {403, "Forbidden"},
+      {404, "Not found"},
+      {405, "Method not allowed"},
+      {408, "Too slow"},
+      {409, "Conflict"},
+      {411, "Length needed"},
+      {412, "Changed meanwhile"},
+      {413, "Too large"},
+      {414, "Address too long"},
+      {415, "Unsupported media type"},
+      {416, "Range not satisfiable"},
+      {417, "Expectation failed"},
+      {422, "Not usable"},
+      {429, "Too many"},
+      {431, "Head too large"},
+      {500, "Internal error"},
+      {501, "Unknown method"},
+      {503, "Busy"},
+      {505, "Unknown version of HTTP"},
+      {507, "Cannot store"},
+  }};
+  for (const auto& [number, text] : titles) {
+    if (number == status) return text;
   }
+  return "Error";
 }
 
-}  // namespace
-
-std::optional<std::string> Request::header(const std::string& lower_case_name) const {
-  const auto [first, last] = headers.equal_range(lower_case_name);
+std::optional<std::string> single_header(const Headers& headers, const std::string& name) {
+  const auto [first, last] = headers.equal_range(name);
   if (first == last) return std::nullopt;
   if (std::next(first) != last) {
-    throw HttpError(400, fmt::format("Header {} stands more than once.", lower_case_name));
+    throw HttpError(400, fmt::format("Header {} stands more than once.", name));
   }
   return first->second;
 }
 
-std::optional<std::string> Request::parameter(const std::string& name) const {
-  const auto found = query.find(name);
-  if (found == query.end()) return std::nullopt;
-  return found->second;
-}
-
-std::optional<std::int64_t> Request::integer(const std::string& name, std::int64_t min, std::int64_t max) const {
-  const auto text = parameter(name);
-  if (!text) return std::nullopt;
-  return std::clamp<std::int64_t>(std::stoll(*text), min, max);
+std::string media_type(const Request& request) {
+  std::string type = request.header("content-type").value_or("");
+  type = type.substr(0, type.find(';'));
+  type.erase(type.find_last_not_of(" \t") + 1);
+  for (char& c : type) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return type;
 }
 
 Response problem_response(const HttpError& error, const std::string& path) {
   nlohmann::ordered_json json = {{"type", "about:blank"},
-                                 {"title", title(error.status())},
+                                 {"title", status_title(error.status())},
                                  {"status", error.status()},
                                  {"detail", error.what()},
                                  {"instance", path}};

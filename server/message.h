@@ -11,26 +11,39 @@
 
 #include "analysis/storage/file_handle.h"
 #include "jobs/spec/problems.h"
+#include "server/query.h"
 
 namespace lacuna {
+
+/// Names are in lower case; values have no blanks around them.
+using Headers = std::multimap<std::string, std::string>;
+
+/// The value of a header that may stand only once; nothing if it is absent. Throws HttpError.
+std::optional<std::string> single_header(const Headers& headers, const std::string& name);
 
 /// A request as the routes see it: bounded and well formed.
 struct Request {
   std::string method;
   std::string path;  ///< as sent, without the query; nothing is decoded: no name here needs it
-  std::multimap<std::string, std::string> headers;  ///< names in lower case
-  std::map<std::string, std::string> query;  ///< decoded parameters
-
-  std::optional<std::string> parameter(const std::string& name) const;
-  std::optional<std::int64_t> integer(const std::string& name, std::int64_t min, std::int64_t max) const;
+  Query query;       ///< what stands behind the path, decoded
+  Headers headers;
 
   /// Reads the body, at most `max_bytes` of it; throws HttpError: 413 if it is larger, 415 if it is
-  /// encoded, 400 if its framing is wrong, 408 if it comes too slowly.
+  /// encoded, 400 if its framing is wrong, 408 if it comes too slowly, 503 if too many clients are
+  /// slow. A body can be read once.
   std::function<std::string(std::size_t max_bytes)> read_body;
+  /// The same for a large body, which goes to a file from where that stands; gives its number of
+  /// bytes. The sender has all the time it needs as long as it keeps to a least rate. Throws
+  /// std::system_error, too, when the file cannot take it.
+  std::function<std::uint64_t(int fd, std::uint64_t max_bytes)> read_body_to;
 
-  /// The value of a header that may stand only once; nothing if it is absent. Throws HttpError.
-  std::optional<std::string> header(const std::string& lower_case_name) const;
+  std::optional<std::string> header(const std::string& lower_case_name) const {
+    return single_header(headers, lower_case_name);
+  }
 };
+
+/// Of the body, in lower case and without parameters: "application/json"; empty if it has none.
+std::string media_type(const Request& request);
 
 /// A part of an open file.
 struct FilePart {
@@ -50,6 +63,9 @@ struct Response {
   /// nothing at the end.
   std::function<std::optional<std::string>()> stream;
 };
+
+/// "Not found" and the like.
+const char* status_title(int status);
 
 /// A request that is refused: becomes an application/problem+json answer.
 class HttpError : public std::runtime_error {

@@ -1,29 +1,57 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "server/message.h"
 
 namespace lacuna {
 
-/// A table of methods and path patterns such as "/api/jobs/{}/files/{}"; each {} is one part of the
-/// path, given to the handler in order. HEAD is answered as GET.
+/// A parameter behind the ? of an address. The router checks it before the handler is called.
+struct QueryParameter {
+  enum class Type { text, integer, flag };
+  std::string name;
+  Type type = Type::text;
+  std::string doc;
+  std::int64_t min = INT64_MIN, max = INT64_MAX;  ///< of an integer
+};
+
+/// What a route does, for people and for programs that read /openapi.json.
+struct RouteDoc {
+  std::string summary;
+  std::vector<QueryParameter> query;                 ///< others are refused
+  std::string body_type;                             ///< media type; empty: it takes no body
+  std::string body_schema;                           ///< JSON Schema, as text; empty: none
+  std::vector<std::pair<int, std::string>> answers;  ///< status, and what it means
+  bool needs_token = true;                           ///< where the service has one
+};
+
+/// A table of methods and path patterns such as "/api/jobs/{id}/files/{name}"; each part in braces
+/// is one part of the path, given to the handler in order. HEAD is answered as GET.
 class Router {
  public:
   using Parts = std::vector<std::string>;
   using Handler = std::function<Response(const Request&, const Parts&)>;
 
+  void add(std::string method, std::string_view pattern, RouteDoc doc, Handler handler);
+  /// With no query parameters and no description.
   void add(std::string method, std::string_view pattern, Handler handler);
-  /// Calls the handler; throws HttpError 404, or 405 with Allow.
+  /// Calls the handler; throws HttpError 404, or 405 with Allow, or 400 for the query.
   Response route(const Request& request) const;
+  /// The OpenAPI 3.1 document of all routes. `info`: {"title", "version", ...}. Throws
+  /// nlohmann::json::exception for a body_schema that is no JSON.
+  nlohmann::ordered_json openapi(const nlohmann::ordered_json& info) const;
 
  private:
   struct Route {
     std::string method;
     Parts pattern;
+    RouteDoc doc;
     Handler handler;
   };
   std::vector<Route> routes_;

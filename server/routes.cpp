@@ -6,7 +6,6 @@
 #include "jobs/spec/job_json.h"
 #include "server/conditional.h"
 #include "server/entry_json.h"
-#include "server/guard.h"
 
 namespace lacuna {
 namespace {
@@ -50,7 +49,6 @@ Routes::Routes(DataRoot data, ScenesRoots scenes, JobTable& table, Queue& queue,
 }
 
 Response Routes::handle(const Request& request) const {
-  check_sender(request);
   const bool reads = request.method == "GET" || request.method == "HEAD";
   if (reads && page_.has(request.path)) return page_.get(request);
   return router_.route(request);

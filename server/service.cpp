@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <stdexcept>
 #include <system_error>
@@ -12,6 +14,7 @@
 #include "analysis/storage/file_handle.h"
 #include "jobs/spec/version.h"
 #include "server/caretaker.h"
+#include "server/access.h"
 #include "server/executor_local.h"
 #include "server/http.h"
 #include "server/listener.h"
@@ -72,12 +75,24 @@ std::chrono::milliseconds grace(const ServiceSettings& settings) {
   return std::chrono::milliseconds(static_cast<std::int64_t>(1000 * settings.grace_seconds));
 }
 
-void check(const HttpSettings& settings) {
-  if (!is_loopback(settings.bind)) {
+void check(const ServiceSettings& settings) {
+  if (!is_loopback(settings.http.bind) && settings.access.token_file.empty()) {
     throw std::invalid_argument(fmt::format(
-        "{} can be reached from other machines, and this version has no access control: "
-        "bind to 127.0.0.1 or ::1, and tunnel to it",
-        settings.bind));
+        "{} can be reached from other machines, where everybody could use the service: name a "
+        "--token-file, or bind to 127.0.0.1 or ::1 and tunnel to it",
+        settings.http.bind));
+  }
+}
+
+/// Connections need descriptors: what was allowed at the start is often too little.
+void allow_descriptors() {
+  constexpr rlim_t wanted = 8192;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= wanted) return;
+  limit.rlim_cur = std::min(wanted, limit.rlim_max);
+  if (::setrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur < wanted) {
+    spdlog::warn("only {} files may be open at a time: less than {} clients can be served at once",
+                 limit.rlim_cur, wanted);
   }
 }
 
@@ -116,8 +131,16 @@ struct Service::Parts {
         table(data),
         queue(executor, table, queue_settings(settings)),
         caretaker(data, table, queue, settings.care),
-        routes(data, scenes, table, queue, page(settings)),
-        http(settings.http, [this](const Request& r) { return routes.handle(r); }) {}
+        files(page(settings)),
+        routes(data, scenes, table, queue, files),
+        access(settings.http.bind, settings.access,
+               [this](const std::string& path) { return files.has(path); }),
+        http(settings.http, [this](const Request& r) { return handle(r); }) {}
+
+  Response handle(const Request& request) {
+    if (auto answer = access.admit(request)) return std::move(*answer);
+    return routes.handle(request);
+  }
 
   ScenesRoots scenes;
   DataRoot data;
@@ -126,12 +149,15 @@ struct Service::Parts {
   JobTable table;
   Queue queue;
   Caretaker caretaker;
+  const StaticFiles files;
   Routes routes;
+  Access access;
   HttpServer http;
 };
 
 Service::Service(const ServiceSettings& settings) {
-  check(settings.http);
+  check(settings);
+  allow_descriptors();
   parts_ = std::make_unique<Parts>(settings);
 }
 Service::~Service() = default;

@@ -12,8 +12,10 @@ namespace lacuna {
 /// What the command line says; paths that are empty take their defaults.
 struct ServiceSettings {
   HttpSettings http;
+  AccessSettings access;
   QueueSettings queue;
   CareSettings care;
+  bool verbose = false;
   double grace_seconds = 10;
   ChildLimits limits = ExecutorSettings{}.limits;  ///< of every renderer
   std::filesystem::path data, renderer, web;

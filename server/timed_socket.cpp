@@ -4,103 +4,101 @@
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <utility>
 
 namespace lacuna {
-namespace {
 
-constexpr std::size_t max_head_bytes = 64 * 1024;
-constexpr std::chrono::milliseconds drain_time{1000};
-
-}  // namespace
-
-TimedSocket::TimedSocket(FileHandle socket, int stop_fd, const HttpSettings& settings)
+TimedSocket::TimedSocket(FileHandle socket, std::string received, int stop_fd,
+                         const HttpSettings& settings, SlowSeats& seats)
     : socket_(std::move(socket)),
+      received_(std::move(received)),
       stop_fd_(stop_fd),
       settings_(settings),
-      read_deadline_(Clock::now() + settings.head_time),
-      bytes_left_(max_head_bytes) {}
+      seats_(seats),
+      body_deadline_(settings.body_time) {}
 
-void TimedSocket::expect_body(std::size_t max_bytes) {
-  read_deadline_ = Clock::now() + settings_.body_time;
-  bytes_left_ = max_bytes;
+void TimedSocket::begin_body(Pace pace) {
+  body_deadline_ = pace == Pace::total ? PacedDeadline(settings_.body_time)
+                                       : PacedDeadline(settings_.body_time, settings_.body_bytes);
+  constexpr std::string_view go_on = "HTTP/1.1 100 Continue\r\n\r\n";
+  if (std::exchange(expect_continue_, false) && received_.empty()) {
+    ::send(socket_.get(), go_on.data(), go_on.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  }
 }
 
-bool TimedSocket::wait(short events, Clock::time_point deadline) {
+TimedSocket::Wait TimedSocket::wait(short events, PacedDeadline::Clock::time_point deadline) const {
   for (;;) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
-    if (left <= 0) {
-      timed_out_ = true;
-      return false;
-    }
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(deadline - PacedDeadline::Clock::now());
+    if (left.count() <= 0) return Wait::late;
     std::array<pollfd, 2> fds{{{socket_.get(), events, 0}, {stop_fd_, POLLIN, 0}}};
-    const int ready = ::poll(fds.data(), fds.size(), static_cast<int>(left));
-    if (ready < 0 && errno != EINTR) return false;
+    const int ready = ::poll(fds.data(), fds.size(), static_cast<int>(left.count()));
+    if (ready < 0 && errno != EINTR) return Wait::failed;
     if (ready <= 0) continue;
-    if (fds[0].revents != 0) return true;
-    return false;  // the service ends
+    return fds[0].revents != 0 ? Wait::ready : Wait::failed;  // failed: the service ends
   }
 }
 
-ssize_t TimedSocket::read(char* data, std::size_t size) {
-  while (taken_ == buffered_) {
-    const std::size_t room = std::min(buffer_.size(), bytes_left_);
-    if (room == 0 || !wait(POLLIN, read_deadline_)) return -1;
-    const ssize_t n = ::recv(socket_.get(), buffer_.data(), room, MSG_DONTWAIT);
-    if (n < 0 && (errno == EAGAIN || errno == EINTR)) continue;
-    if (n <= 0) return n;
-    bytes_left_ -= static_cast<std::size_t>(n);
-    buffered_ = static_cast<std::size_t>(n);
-    taken_ = 0;
+void TimedSocket::wait_for_body() {
+  if (!seat_) seat_ = seats_.take();
+  if (!seat_) {
+    throw HttpError(503, "Too many clients send slowly at present.").with("Retry-After", "5");
   }
-  const std::size_t n = std::min(size, buffered_ - taken_);
-  std::memcpy(data, buffer_.data() + taken_, n);
-  taken_ += n;
-  return static_cast<ssize_t>(n);
+  const Wait result = wait(POLLIN, body_deadline_.end());
+  if (result == Wait::late && body_deadline_.over()) {
+    throw HttpError(408, "The body came too slowly.");
+  }
+  if (result == Wait::failed) throw HttpError(503, "The service ends.");
 }
 
-ssize_t TimedSocket::write(const char* data, std::size_t size) {
-  if (window_end_ == Clock::time_point() || streaming_) open_window();
+std::size_t TimedSocket::read(char* data, std::size_t size) {
+  if (taken_ < received_.size()) {
+    const std::size_t n = received_.copy(data, size, taken_);
+    taken_ += n;
+    return n;
+  }
   for (;;) {
-    const ssize_t n = ::send(socket_.get(), data, size, MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (body_deadline_.over()) throw HttpError(408, "The body came too slowly.");
+    const ssize_t n = ::recv(socket_.get(), data, size, MSG_DONTWAIT);
     if (n >= 0) {
-      window_bytes_ += static_cast<std::size_t>(n);
-      return n;
+      body_deadline_.count(static_cast<std::size_t>(n));
+      return static_cast<std::size_t>(n);
     }
     if (errno == EINTR) continue;
-    if (errno != EAGAIN) return -1;
-    // Here the peer is what is slow: it must take enough in each window, however much it took
-    // before.
-    const bool took_enough = window_bytes_ >= settings_.answer_bytes;
-    if (Clock::now() >= window_end_ && took_enough) open_window();
-    if (!wait(POLLOUT, window_end_) && !(timed_out_ && took_enough)) return -1;
-    timed_out_ = false;
+    if (errno != EAGAIN) return 0;  // reset: as good as closed
+    wait_for_body();
   }
 }
 
-void TimedSocket::open_window() {
-  window_end_ = Clock::now() + settings_.answer_time;
-  window_bytes_ = 0;
+bool TimedSocket::write(std::string_view text) {
+  PacedDeadline deadline(settings_.answer_time, settings_.answer_bytes);
+  while (!text.empty()) {
+    const ssize_t n = ::send(socket_.get(), text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (n >= 0) {
+      deadline.count(static_cast<std::size_t>(n));
+      text.remove_prefix(static_cast<std::size_t>(n));
+    } else if (errno == EAGAIN) {
+      const Wait result = wait(POLLOUT, deadline.end());
+      if (result == Wait::failed || (result == Wait::late && deadline.over())) return false;
+    } else if (errno != EINTR) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool TimedSocket::stopping() const {
+  pollfd stop{stop_fd_, POLLIN, 0};
+  return ::poll(&stop, 1, 0) > 0;
 }
 
 bool TimedSocket::peer_gone() const {
   char byte = 0;
   const ssize_t n = ::recv(socket_.get(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);
   return n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR);
-}
-
-void TimedSocket::finish(bool unread_input) {
-  ::shutdown(socket_.get(), SHUT_WR);
-  if (unread_input) {
-    const auto deadline = Clock::now() + drain_time;
-    while (wait(POLLIN, deadline)) {
-      const ssize_t n = ::recv(socket_.get(), buffer_.data(), buffer_.size(), MSG_DONTWAIT);
-      if (n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR)) break;
-    }
-  }
-  socket_.close();
 }
 
 }  // namespace lacuna

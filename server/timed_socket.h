@@ -1,57 +1,54 @@
 #pragma once
 
-#include <sys/types.h>
-
-#include <array>
-#include <chrono>
-#include <cstddef>
+#include <string>
+#include <string_view>
 
 #include "analysis/storage/file_handle.h"
+#include "server/body_reader.h"
+#include "server/paced_deadline.h"
 #include "server/settings.h"
+#include "server/slow_seats.h"
 
 namespace lacuna {
 
-/// A connection on which every phase has a deadline and a number of bytes: head, body, answer. A
-/// client that is slower than that, in whatever rhythm, holds its thread no longer.
-class TimedSocket {
+/// A connection that a thread waits for: while a body comes, with a deadline and one of the slow
+/// seats, and for as long as a stream of texts is open. A client that is slower than that, in
+/// whatever rhythm, holds its thread no longer.
+class TimedSocket : public ByteSource {
  public:
-  /// `stop_fd` becomes readable when the service ends: then nothing waits any more.
-  TimedSocket(FileHandle socket, int stop_fd, const HttpSettings& settings);
+  /// `received`: what has been read of the body already. `stop_fd` becomes readable when the
+  /// service ends: then nothing waits any more. The references outlive it.
+  TimedSocket(FileHandle socket, std::string received, int stop_fd, const HttpSettings& settings,
+              SlowSeats& seats);
 
-  /// Starts the next phase of reading. `max_bytes` counts what comes over the wire.
-  void expect_body(std::size_t max_bytes);
-  /// The answer is a stream without an end: each of its texts gets the time of an answer.
-  void stream_answer() { streaming_ = true; }
+  /// Sends "100 Continue" when the body is asked for and nothing of it has come.
+  void expect_continue() { expect_continue_ = true; }
+  void begin_body(Pace pace) override;
+  void end_body() override { seat_.reset(); }
+  std::size_t read(char* data, std::size_t size) override;
 
-  /// As read(2) and write(2), blocking; -1 on any error and past the deadline.
-  ssize_t read(char* data, std::size_t size);
-  ssize_t write(const char* data, std::size_t size);
-
-  bool timed_out() const { return timed_out_; }
+  /// Sends a text of a stream, waiting for the client; false if that failed.
+  bool write(std::string_view text);
   /// The peer has closed or reset the connection.
   bool peer_gone() const;
-  /// Says that no more will come, and reads what the peer still sends for a short while: closing at
-  /// once would reset the connection, and the peer would lose the answer.
-  void finish(bool unread_input);
-
-  int fd() const { return socket_.get(); }
+  /// The service ends.
+  bool stopping() const;
+  FileHandle release() { return std::move(socket_); }
 
  private:
-  using Clock = std::chrono::steady_clock;
-  bool wait(short events, Clock::time_point deadline);
-  void open_window();
+  enum class Wait { ready, late, failed };
+  Wait wait(short events, PacedDeadline::Clock::time_point deadline) const;
+  void wait_for_body();
 
   FileHandle socket_;
+  std::string received_;
+  std::size_t taken_ = 0;
   int stop_fd_;
   const HttpSettings& settings_;
-  Clock::time_point read_deadline_;
-  Clock::time_point window_end_;
-  std::size_t bytes_left_;
-  std::size_t window_bytes_ = 0;
-  bool streaming_ = false;
-  bool timed_out_ = false;
-  std::array<char, 8192> buffer_;
-  std::size_t buffered_ = 0, taken_ = 0;
+  SlowSeats& seats_;
+  SlowSeats::Seat seat_;
+  PacedDeadline body_deadline_;
+  bool expect_continue_ = false;
 };
 
 }  // namespace lacuna

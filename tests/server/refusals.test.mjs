@@ -135,18 +135,99 @@ test("malformed requests get an answer or none, never a crash", async (t) => {
   const service = await Service.start(folders(t));
   const status = async (text) => (await service.raw(text)).status;
   assert.equal(await status("GARBAGE\r\n\r\n"), 400);
-  assert.equal(await status("GET /health HTTP/3.0\r\nHost: localhost\r\n\r\n"), 400);
-  assert.equal(await status(head("BREW /health")), 400);
+  assert.equal(await status("GET /health HTTP/3.0\r\nHost: localhost\r\n\r\n"), 505);
+  assert.equal(await status(head("BREW /health")), 501);
   assert.equal(await status(head(`GET /${"a".repeat(2000)}`)), 414);
   assert.equal(await status(head(`GET /${"a".repeat(20000)}`)), 414);
-  assert.equal(await status(head("GET /health", { Long: "a".repeat(20000) })), 400);
-  assert.equal(await status(head("GET /health", { Range: "bytes=nonsense" })), 416);
+  assert.equal(await status(head("GET /health", { Long: "a".repeat(20000) })), 431);
+  assert.equal(await status(head("GET /health", { Range: "bytes=nonsense" })), 200);
   assert.equal(await status(head("GET /health", { Range: `bytes=${"-,".repeat(4000)}-` })), 200);
-  assert.equal(await status(head("GET /health", { Range: `bytes=${"9".repeat(8000)}-` })), 416);
-  await service.raw(`${head("GET /health").slice(0, -2)}${"A: b\r\n".repeat(100000)}\r\n`);
-  await service.raw("\0".repeat(100000));
+  assert.equal(await status(head("GET /health", { Range: `bytes=${"9".repeat(8000)}-` })), 200);
+  const many = (n) => `${head("GET /health").slice(0, -2)}${"A: b\r\n".repeat(n)}\r\n`;
+  assert.equal(await status(many(63)), 200);
+  assert.equal(await status(many(64)), 431);
+  assert.equal(await status(many(100000)), 431);
+  assert.equal(await status("\0".repeat(100000)), 414);
   await service.raw("\r\n".repeat(1000));
   assert.deepEqual(await service.json("/health"), { status: "ok" });
+});
+
+test("what two programs could understand in two ways is refused", async (t) => {
+  const service = await Service.start(folders(t));
+  const start = "GET /health HTTP/1.1\r\nHost: localhost\r\n";
+  const refused = {
+    "bare LF": "GET /health HTTP/1.1\nHost: localhost\n\n",
+    "bare LF in the middle": `${start}A: b\nC: d\r\n\r\n`,
+    "bare LF at the end": `${start}\n`,
+    "bare CR": `${start}A: b\rC: d\r\n\r\n`,
+    NUL: `${start}A: b\0\r\n\r\n`,
+    "a folded header": `${start}A: b\r\n c\r\n\r\n`,
+    "a blank before the colon": `${start}Content-Length : 3\r\n\r\nabc`,
+    "a header without a name": `${start}: b\r\n\r\n`,
+    "a header without a colon": `${start}Nonsense\r\n\r\n`,
+    "an empty line first": `\r\n${start}\r\n`,
+    "two blanks": "GET  /health HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    "a tab": "GET\t/health\tHTTP/1.1\r\nHost: localhost\r\n\r\n",
+    "no version": "GET /health\r\nHost: localhost\r\n\r\n",
+    "an absolute address": "GET http://localhost/health HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    "an authority": "GET localhost:80 HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    asterisk: "OPTIONS * HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    "bytes beyond ASCII": "GET /h\u00e9alth HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    "two lengths that agree": `${start}Content-Length: 3\r\nContent-Length: 3\r\n\r\nabc`,
+    "a list of lengths": `${start}Content-Length: 3, 3\r\n\r\nabc`,
+    "length and chunks": `${start}Content-Length: 3\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n`,
+    "two encodings": `${start}Transfer-Encoding: chunked\r\nTransfer-Encoding: identity\r\n\r\n0\r\n\r\n`,
+    "chunks in HTTP/1.0": "POST /api/jobs HTTP/1.0\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n",
+  };
+  for (const [what, text] of Object.entries(refused)) {
+    const answer = await service.raw(text);
+    assert.equal(answer.status, 400, what);
+    assert.match(answer.head, /application\/problem\+json/, what);
+  }
+  const chunks = { "Content-Type": "application/json", "Transfer-Encoding": "chunked" };
+  const size = good.length.toString(16);
+  const chunked = async (body) => (await service.raw(head("POST /api/jobs", chunks) + body)).status;
+  for (const body of [`-${size}\r\n${good}\r\n0\r\n\r\n`, `0x${size}\r\n${good}\r\n0\r\n\r\n`,
+    ` ${size}\r\n${good}\r\n0\r\n\r\n`, `${size} x\r\n${good}\r\n0\r\n\r\n`,
+    `${size}\n${good}\n0\n\n`, `${size}\r\n${good}x\r\n0\r\n\r\n`, `fffffffffffffffff\r\n${good}`,
+    `${size};${"a".repeat(1000)}\r\n${good}\r\n0\r\n\r\n`]) {
+    assert.equal(await chunked(body), 400, body);
+  }
+  await noJobs(service);
+  assert.equal(await chunked(`${size};name=value\r\n${good}\r\n0\r\nTrailer: x\r\n\r\n`), 201);
+});
+
+test("HTTP/1.0, requests in a row and half-closed connections", async (t) => {
+  const service = await Service.start(folders(t));
+  const old = await service.raw("GET /health HTTP/1.0\r\nHost: localhost\r\n\r\n");
+  assert.equal(old.status, 200);
+  assert.deepEqual(JSON.parse(old.body), { status: "ok" });
+  const row = await service.raw(head("GET /health").repeat(50));
+  assert.equal(row.status, 200);
+  assert.deepEqual(JSON.parse(row.body), { status: "ok" }, "only the first is answered");
+  const id = await service.post("finish");
+  await service.reaches(id, "done");
+  const events = await service.raw(`GET /api/jobs/${id}/events HTTP/1.0\r\nHost: localhost\r\n\r\n`);
+  assert.match(events.body, /^event: /, "HTTP/1.0 knows no chunks");
+  const none = await service.raw(head("HEAD /health"));
+  assert.equal(none.status, 200);
+  assert.match(none.head, /^Content-Length: [1-9]/m);
+  assert.equal(none.body, "");
+});
+
+test("a query must be well formed, and its parameters known", async (t) => {
+  const service = await Service.start(folders(t));
+  const detail = async (query) => (await problem(await service.fetch(`/api/scenes?${query}`), 400)).detail;
+  assert.match(await detail("lmit=3"), /unknown query parameter "lmit"; known: none/);
+  assert.match(await detail("a=1&a=2"), /"a" stands more than once/);
+  assert.match(await detail("a=1&%61=2"), /"a" stands more than once/);
+  for (const bad of ["a=%", "a=%4", "a=%zz", "a=%00", "a=%0a", "a=%7f", "a=%c2%85", "a=%ff",
+    "a=%c0%80", "a=%ed%a0%80", "%00=1"]) {
+    assert.match(await detail(bad), /% that two|no UTF-8/, bad);
+  }
+  assert.match(await detail("=1"), /without a name/);
+  assert.equal((await service.raw(head("GET /api/scenes?"))).status, 200);
+  assert.equal((await service.raw(head(`GET /api/scenes?a=${"x".repeat(1100)}`))).status, 414);
 });
 
 test("other sites can neither read nor write", async (t) => {
@@ -169,9 +250,10 @@ test("other sites can neither read nor write", async (t) => {
     Host: "localhost:8017", Origin: origin, "Content-Type": "application/json",
     "Content-Length": `${good.length}`,
   }) + good);
-  for (const origin of ["http://evil.example", "null", "http://localhost:8018", "https://localhost:8017"]) {
+  for (const origin of ["http://evil.example", "null", "http://localhost:8018", "https://localhost", "http://localhost:8017/", "localhost:8017"]) {
     assert.equal((await post(origin)).status, 403, origin);
   }
   await noJobs(service);
   assert.equal((await post("http://localhost:8017")).status, 201);
+  assert.equal((await post("https://localhost:8017")).status, 201, "a TLS proxy in front");
 });

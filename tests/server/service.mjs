@@ -81,10 +81,10 @@ export class Service {
     service.ended.then(() => { over = true; });
     places.services.push(service);
     await until(() => over || out.includes("\n"), "the service says its address");
-    const address = /^lacuna-server: listening on (http:\/\/127\.0\.0\.1:(\d+)\/)\n$/.exec(out);
+    const address = /^lacuna-server: listening on http:\/\/[\d.]+:(\d+)\/\n$/.exec(out);
     assert.ok(address, `it said ${JSON.stringify(out)} and ${service.log}`);
-    service.url = address[1];
-    service.port = Number(address[2]);
+    service.port = Number(address[1]);
+    service.url = `http://127.0.0.1:${service.port}/`;
     return service;
   }
 

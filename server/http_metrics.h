@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+
+namespace lacuna {
+
+class PrometheusText;
+
+/// What the HTTP layer has seen and done since its start. Written by many threads, read by any.
+struct HttpMetrics {
+  using Count = std::atomic<std::uint64_t>;
+
+  /// Upper bounds of the buckets of `seconds`, in seconds; one more bucket has none.
+  static constexpr std::array<double, 13> bounds{0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1,
+                                                 0.25,  0.5,    1,     2.5,  5,     10};
+
+  Count accepted{0};    ///< connections
+  Count refused{0};     ///< of these, answered before a handler: malformed, late or too many
+  Count parked{0};      ///< now: connections whose request is still coming
+  Count delivering{0};  ///< now: answers whose clients are slow to take them
+  Count given_up{0};    ///< answers that were cut off: their clients took too little
+  Count slow_seats{0};  ///< now: threads that wait for a body
+  Count streams{0};     ///< now: open streams of events
+  Count bytes_out{0};   ///< to clients, heads included
+  std::array<Count, 5> requests{};                 ///< answered, by the first digit of the status
+  std::array<Count, bounds.size() + 1> seconds{};  ///< from the whole request to its answer
+  Count microseconds{0};                           ///< their sum
+
+  void answered(int status, std::chrono::nanoseconds time);
+};
+
+/// Writes all of them as lacuna_http_...
+void write_metrics(PrometheusText& text, const HttpMetrics& metrics);
+
+}  // namespace lacuna

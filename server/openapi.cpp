@@ -1,0 +1,124 @@
+// Router::openapi(): the table of routes as an OpenAPI 3.1 document.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "server/router.h"
+#include "server/sessions.h"
+
+namespace lacuna {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// The names of the parts in braces; "{}" is named after its place.
+Router::Parts named(Router::Parts pattern) {
+  for (std::size_t i = 0; i < pattern.size(); ++i) {
+    if (pattern[i] == "{}") pattern[i] = fmt::format("{{part{}}}", i);
+  }
+  return pattern;
+}
+
+ordered_json path_parameters(const Router::Parts& pattern) {
+  ordered_json result = ordered_json::array();
+  for (const std::string& part : pattern) {
+    if (!part.starts_with('{')) continue;
+    result.push_back({{"name", part.substr(1, part.size() - 2)},
+                      {"in", "path"},
+                      {"required", true},
+                      {"schema", {{"type", "string"}}}});
+  }
+  return result;
+}
+
+ordered_json schema(const QueryParameter& p) {
+  if (p.type == QueryParameter::Type::flag) return {{"enum", {"1", "0", "true", "false"}}};
+  if (p.type == QueryParameter::Type::text) return {{"type", "string"}};
+  ordered_json result = {{"type", "integer"}};
+  if (p.min != INT64_MIN) result["minimum"] = p.min;
+  if (p.max != INT64_MAX) result["maximum"] = p.max;
+  return result;
+}
+
+ordered_json answers(const RouteDoc& doc) {
+  const ordered_json problem = {
+      {"application/problem+json", {{"schema", {{"$ref", "#/components/schemas/Problem"}}}}}};
+  ordered_json result = ordered_json::object();
+  for (const auto& [status, text] : doc.answers) {
+    ordered_json& answer = result[std::to_string(status)];
+    answer["description"] = text;
+    if (status >= 400) answer["content"] = problem;
+  }
+  result["default"] = {{"description", "The request is refused."}, {"content", problem}};
+  return result;
+}
+
+ordered_json operation(const RouteDoc& doc, ordered_json parameters) {
+  ordered_json result;
+  if (!doc.summary.empty()) result["summary"] = doc.summary;
+  for (const QueryParameter& p : doc.query) {
+    parameters.push_back(
+        {{"name", p.name}, {"in", "query"}, {"description", p.doc}, {"schema", schema(p)}});
+  }
+  if (!parameters.empty()) result["parameters"] = std::move(parameters);
+  if (!doc.body_type.empty()) {
+    ordered_json content = ordered_json::object();
+    if (!doc.body_schema.empty()) content["schema"] = ordered_json::parse(doc.body_schema);
+    result["requestBody"] = {{"required", true},
+                             {"content", {{doc.body_type, std::move(content)}}}};
+  }
+  result["responses"] = answers(doc);
+  if (!doc.needs_token) result["security"] = ordered_json::array();
+  return result;
+}
+
+/// RFC 9457, and the places in a document.
+ordered_json problem_schema() {
+  const ordered_json text = {{"type", "string"}};
+  const ordered_json place = {
+      {"type", "object"},
+      {"required", {"pointer", "message"}},
+      {"properties", {{"pointer", text}, {"message", text}}},
+  };
+  return {{"type", "object"},
+          {"required", {"type", "title", "status", "detail", "instance"}},
+          {"properties",
+           {{"type", text},
+            {"title", text},
+            {"status", {{"type", "integer"}}},
+            {"detail", text},
+            {"instance", text},
+            {"errors", {{"type", "array"}, {"items", place}}}}}};
+}
+
+}  // namespace
+
+ordered_json Router::openapi(const ordered_json& info) const {
+  ordered_json paths = ordered_json::object();
+  for (const Route& route : routes_) {
+    const Parts pattern = named(route.pattern);
+    std::string path;
+    for (std::size_t i = 1; i < pattern.size(); ++i) path += "/" + pattern[i];
+    std::string method = route.method;
+    std::transform(method.begin(), method.end(), method.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    paths[path][method] = operation(route.doc, path_parameters(pattern));
+  }
+  return {{"openapi", "3.1.0"},
+          {"info", info},
+          // The token is asked for only by services that have one: {} stands for those that do not.
+          {"security",
+           {ordered_json::object(),
+            {{"token", ordered_json::array()}},
+            {{"session", ordered_json::array()}}}},
+          {"paths", std::move(paths)},
+          {"components",
+           {{"schemas", {{"Problem", problem_schema()}}},
+            {"securitySchemes",
+             {{"token", {{"type", "http"}, {"scheme", "bearer"}}},
+              {"session", {{"type", "apiKey"}, {"in", "cookie"}, {"name", session_cookie}}}}}}}};
+}
+
+}  // namespace lacuna

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace lacuna {
+
+/// Writes metrics in Prometheus's text format, version 0.0.4:
+///
+///     text.gauge("lacuna_jobs", "Jobs, by state.").value(3, {{"state", "queued"}});
+class PrometheusText {
+ public:
+  using Labels = std::vector<std::pair<std::string, std::string>>;
+  static constexpr std::string_view media_type = "text/plain; version=0.0.4; charset=utf-8";
+
+  /// Begins a metric; its values follow. Throws std::invalid_argument for a name that is none, or
+  /// was used before.
+  PrometheusText& counter(std::string_view name, std::string_view help);
+  PrometheusText& gauge(std::string_view name, std::string_view help);
+  /// One value of the metric begun last. Throws std::invalid_argument for a bad label's name.
+  PrometheusText& value(double value, const Labels& labels = {});
+
+  /// A whole histogram. `bounds`: upper bounds of the buckets, ascending; `counts`: in each bucket
+  /// (not cumulative), and one more for what is above all bounds.
+  PrometheusText& histogram(std::string_view name, std::string_view help,
+                            const std::vector<double>& bounds,
+                            const std::vector<std::uint64_t>& counts, double sum,
+                            const Labels& labels = {});
+
+  const std::string& text() const { return text_; }
+
+ private:
+  PrometheusText& begin(std::string_view name, std::string_view help, std::string_view type);
+  void line(const std::string& name, const Labels& labels, double value);
+
+  std::string text_, name_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lacuna {
+
+/// The parameters of an address, "state=done&limit=10", decoded: %XX is a byte and + a blank.
+class Query {
+ public:
+  Query() = default;
+  /// Throws HttpError 400 for a bad escape, a control character, text that is not UTF-8, an empty
+  /// name and a name that stands twice.
+  static Query parse(std::string_view text);
+
+  bool has(const std::string& name) const { return values_.contains(name); }
+  std::optional<std::string> text(const std::string& name) const;
+  /// A decimal integer in [min, max]. Throws HttpError 400.
+  std::optional<std::int64_t> integer(const std::string& name, std::int64_t min = INT64_MIN,
+                                      std::int64_t max = INT64_MAX) const;
+  /// "1" or "true", "0" or "false"; false if it is absent. Throws HttpError 400.
+  bool flag(const std::string& name) const;
+  /// Throws HttpError 400 if there is a parameter beside these.
+  void check_known(const std::vector<std::string>& names) const;
+
+ private:
+  std::map<std::string, std::string> values_;
+};
+
+}  // namespace lacuna
