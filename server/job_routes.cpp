@@ -66,10 +66,10 @@ JobRoutes::JobRoutes(DataRoot data, const ScenesRoots& scenes, JobTable& table, 
 
 Response JobRoutes::list(const Request& request) {
   JobTable::Query query;
-  if (const auto states = request.parameter("state")) query.states = states_of(*states);
-  query.words = lower_case(request.parameter("label").value_or(""));
-  query.limit = static_cast<std::size_t>(request.integer("limit", 1, 1000).value_or(100));
-  query.after = request.parameter("cursor").value_or("");
+  if (const auto states = request.query.text("state")) query.states = states_of(*states);
+  query.words = lower_case(request.query.text("label").value_or(""));
+  query.limit = static_cast<std::size_t>(request.query.integer("limit", 1, 1000).value_or(100));
+  query.after = request.query.text("cursor").value_or("");
   try {
     return with_tag(request, json_response(200, list_text(table_.list(query))));
   } catch (const std::invalid_argument& error) {
@@ -132,7 +132,7 @@ Response JobRoutes::file(const Request& request, const std::string& id, const st
 
 Response JobRoutes::log(const Request& request, const std::string& id) {
   find_job(table_, id);
-  return log_response(table_.folder(id).dir(), "log.txt", request.integer("offset", 0, max_log_offset).value_or(0));
+  return log_response(table_.folder(id).dir(), "log.txt", request.query.integer("offset", 0, max_log_offset).value_or(0));
 }
 
 void JobRoutes::add_to(Router& router) {
@@ -151,7 +151,7 @@ void JobRoutes::add_to(Router& router) {
   };
   router.add("GET", "/api/jobs", [this](const Request& request, const Parts&) { return list(request); });
   router.add("POST", "/api/jobs", [this](const Request& request, const Parts&) {
-    const bool dry = request.integer("dry_run", 0, 1).value_or(0) == 1;
+    const bool dry = request.query.integer("dry_run", 0, 1).value_or(0) == 1;
     return dry ? posting_.dry_run(request) : posting_.post(request);
   });
   router.add("GET", "/api/jobs/{}", with_id(&JobRoutes::detail));
@@ -169,7 +169,7 @@ void JobRoutes::add_to(Router& router) {
   });
   router.add("GET", "/api/events", [this, stream](const Request& request, const Parts&) {
     const auto last = request.header("last-event-id");
-    return stream(events_.all(last ? last : request.parameter("after")));
+    return stream(events_.all(last ? last : request.query.text("after")));
   });
 }
 

@@ -1,7 +1,5 @@
 #include "server/json_body.h"
 
-#include <algorithm>
-
 #include "jobs/spec/described_json.h"
 #include "jobs/store/control.h"
 
@@ -35,19 +33,10 @@ T read_settings_body(const Request& request, const char* what) {
   }
 }
 
-/// "application/json; charset=utf-8" and the like.
-bool is_json(std::string type) {
-  type = type.substr(0, type.find(';'));
-  type.erase(type.find_last_not_of(" \t") + 1);
-  std::transform(type.begin(), type.end(), type.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return type == "application/json";
-}
-
 }  // namespace
 
 std::string read_json_body(const Request& request, std::size_t max_bytes) {
-  if (!is_json(request.header("content-type").value_or(""))) {
+  if (media_type(request) != "application/json") {
     throw HttpError(415, "This takes a body with Content-Type: application/json.");
   }
   return request.read_body(max_bytes);

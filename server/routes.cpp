@@ -27,10 +27,11 @@ Json states() {
 
 }  // namespace
 
-Routes::Routes(DataRoot data, ScenesRoots scenes, JobTable& table, Queue& queue, StaticFiles page)
+Routes::Routes(DataRoot data, const ScenesRoots& scenes, JobTable& table, Queue& queue,
+               const StaticFiles& page)
     : data_(std::move(data)),
-      scenes_(std::move(scenes)),
-      page_(std::move(page)),
+      scenes_(scenes),
+      page_(page),
       jobs_(data_, scenes_, table, queue) {
   using Parts = Router::Parts;
   router_.add("GET", "/health", [](const Request&, const Parts&) {

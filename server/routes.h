@@ -10,15 +10,16 @@ namespace lacuna {
 /// The service's addresses and what each does. All references outlive it.
 class Routes {
  public:
-  Routes(DataRoot data, ScenesRoots scenes, JobTable& table, Queue& queue, StaticFiles page);
+  Routes(DataRoot data, const ScenesRoots& scenes, JobTable& table, Queue& queue,
+         const StaticFiles& page);
 
   /// For HttpServer.
   Response handle(const Request& request) const;
 
  private:
   const DataRoot data_;
-  const ScenesRoots scenes_;
-  const StaticFiles page_;
+  const ScenesRoots& scenes_;
+  const StaticFiles& page_;
   JobRoutes jobs_;
   Router router_;
 };

@@ -35,17 +35,6 @@ struct ChildLimits {
   std::uint64_t file_bytes = 0;  ///< of a file that it writes, RLIMIT_FSIZE; 0: no limit
 };
 
-/// What a child process is held to, so that the service outlives it and stays quick.
-struct ChildLimits {
-  /// Of its private writable memory, RLIMIT_DATA; 0: none. Not RLIMIT_AS: that counts address space
-  /// too that is only reserved (malloc's arenas, 64 MiB a thread, Embree, TBB) and every library
-  /// and file that is mapped, so that it says little of memory and grows with the cores.
-  std::uint64_t memory_bytes = 0;
-  int niceness = 0;              ///< added to the service's own; the sum is at most 19
-  int oom_score_adj = 0;         ///< added to the service's own: the kernel takes the child first
-  std::uint64_t file_bytes = 0;  ///< of a file that it writes, RLIMIT_FSIZE; 0: no limit
-};
-
 /// How the local executor treats its children.
 struct ExecutorSettings {
   std::filesystem::path renderer;             ///< the `lacuna` command
