@@ -63,6 +63,7 @@ struct RayCaster::Impl {
   RTCScene scene = nullptr;
   std::vector<std::unique_ptr<AlphaMask>> masks;
   std::atomic<std::int64_t> bytes{0};
+  std::string said;  // by Embree of its latest error
   mutable std::atomic<std::uint64_t> refused{0};
 
   Impl() = default;
@@ -76,8 +77,10 @@ struct RayCaster::Impl {
   void check(const char* doing) const {
     const RTCError e = rtcGetDeviceError(device);
     if (e == RTC_ERROR_NONE) return;
-    if (e == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
-    throw SceneError(fmt::format("Embree failed while {}: error {}", doing, int(e)));
+    // One of its tasks ran out of memory and cancelled the others, which are quicker to say so.
+    const bool cancelled = e == RTC_ERROR_UNKNOWN && said == "task cancelled";
+    if (e == RTC_ERROR_OUT_OF_MEMORY || cancelled) throw std::bad_alloc();
+    throw SceneError(fmt::format("Embree failed while {}: error {} ({})", doing, int(e), said));
   }
 
   void add(const SceneData& data, std::size_t index) {
@@ -111,6 +114,12 @@ struct RayCaster::Impl {
 RayCaster::RayCaster(const SceneData& data, int threads) : impl_(std::make_unique<Impl>()) {
   impl_->device = rtcNewDevice(fmt::format("isa=avx2,threads={},set_affinity=0", threads).c_str());
   impl_->check("starting");
+  rtcSetDeviceErrorFunction(
+      impl_->device,
+      [](void* user, RTCError, const char* text) {
+        static_cast<Impl*>(user)->said = text == nullptr ? "" : text;
+      },
+      impl_.get());
   rtcSetDeviceMemoryMonitorFunction(
       impl_->device,
       [](void* user, ssize_t bytes, bool) {

@@ -9,6 +9,7 @@
 //   crash once        kills itself the first time, leaving a checkpoint
 //   exit N            ends with code N, leaving the state `running`
 //   memory            out of memory, each time: exit code 71, state interrupted
+//   hog               takes ever more memory
 //   interrupt         interrupted by itself, each time, without an iteration more
 //   interrupt on      likewise, with one iteration more each time; done at the fourth attempt
 //   full              state interrupted because its disk is full, each time
@@ -91,6 +92,11 @@ switch (word) {
     state({ state: "interrupted", phase: "", error: "out of memory", finished: now() });
     process.exit(71);
     break;
+  case "hog": {
+    const held = [];
+    setInterval(() => held.push(Buffer.alloc(8 << 20, 1)), 1);
+    break;
+  }
   case "interrupt":
     if (argument !== "on") interrupt();
     if (attempts === 4) finish();

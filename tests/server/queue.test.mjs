@@ -151,6 +151,43 @@ test("a renderer that ran out of memory is named, and tried again like one that 
   assert.deepEqual([state.attempts, state.exit_code], [3, 71]);
 });
 
+/// A control group of a test's own with so much memory; nothing where none can be made.
+function memoryGroup(t, bytes) {
+  const places = [["/sys/fs/cgroup/memory", "memory.limit_in_bytes"], ["/sys/fs/cgroup", "memory.max"]];
+  for (const [root, limit] of places) {
+    const group = path.join(root, `lacuna-test-${process.pid}`);
+    try {
+      fs.mkdirSync(group);
+      t.after(() => until(() => {
+        try {
+          fs.rmdirSync(group);
+          return true;
+        } catch {
+          return false;  // its processes are still ending
+        }
+      }, "the control group is empty"));
+      fs.writeFileSync(path.join(group, limit), String(bytes), { flag: "r+" });
+      return group;
+    } catch {
+      // the other kind, perhaps
+    }
+  }
+  return null;
+}
+
+test("short of memory, the kernel takes the renderer, and the service names it", async (t) => {
+  const places = folders(t);
+  const group = memoryGroup(t, 256 << 20);
+  if (!group) return t.skip("a control group can be made by root only");
+  const service = await Service.start(places, ["--max-attempts", "2"]);
+  fs.writeFileSync(path.join(group, "cgroup.procs"), String(service.child.pid));
+  const { state } = await service.reaches(await service.post("hog"), "failed");
+  assert.equal(state.error, "renderer ran out of memory: killed by the kernel, 2 times");
+  assert.deepEqual([state.attempts, state.exit_code], [2, 128 + 9]);
+  await service.reaches(await service.post("finish"), "done");
+  return undefined;
+});
+
 test("renderers are held to their limits and stand back", async (t) => {
   const limits = async (...args) => {
     const service = await Service.start(folders(t), args);

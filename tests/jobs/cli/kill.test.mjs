@@ -111,13 +111,15 @@ test("no room for the results: interrupted, and done with room again", async (t)
 });
 
 test("a disk that fills up while a job is rendered, and a folder that turns read-only", async (t) => {
+  let unmount = () => {};
+  t.after(() => unmount());  // before the folder is removed
   const folder = temporaryFolder(t);
   const disk = join(folder, "disk");
   mkdirSync(disk);
   const mounted = process.getuid() === 0
     && spawnSync("mount", ["-t", "tmpfs", "-o", "size=12m", "tmpfs", disk]).status === 0;
   if (!mounted) return t.skip("a small disk can be mounted by root only");
-  t.after(() => spawnSync("umount", ["-l", disk]));
+  unmount = () => spawnSync("umount", [disk]);
   const checkpoint = await begin(disk);
   const out = join(disk, "a.job");
   writeFileSync(join(disk, "ballast"), "");
@@ -152,4 +154,20 @@ test("not enough memory: exit 71, resumable, and it says what to do", async (t) 
   assert.match(short.err, /error: out of memory.*; raise the limit of 512\.0 MiB \(ulimit -d\), .*resolution/);
   assert.equal(stateOf(folder).state, "interrupted");
   assert.match(stateOf(folder).error, /^out of memory/);
+});
+
+test("wherever memory runs out, it ends as itself and goes on with more", async (t) => {
+  const folder = temporaryFolder(t);
+  job(folder, "a.json", { scene: "ajar.glb", resolution: [192, 108], layers: ["albedo", "variance"] });
+  let short = 0;
+  for (let mebibytes = 160; mebibytes <= 340; mebibytes += 12) {
+    const { code, signal, err } = await runAfter(`ulimit -d ${mebibytes * 1024}`, folder, "render", "a.json", "-t", "2");
+    if (code === 0) break;
+    assert.equal(code, 71, `${mebibytes} MiB: ${signal} ${err}`);
+    assert.equal(stateOf(folder).state, "interrupted");
+    assert.deepEqual(temporaries(folder), []);
+    ++short;
+  }
+  assert.ok(short > 0, "the least of these limits is too little");
+  assert.equal((await run(folder, "render", "a.json", "-q")).code, 0);
 });
