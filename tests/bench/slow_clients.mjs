@@ -64,8 +64,11 @@ try {
       [program, `${service.port}`, kind, "500", `/api/jobs/${id}/files/image.exr`],
       { stdio: ["ignore", "pipe", "inherit"] });
     await new Promise((resolve) => { child.stdout.once("data", resolve); });
-    await health(`500 slow: ${kind}`);
-    child.kill("SIGKILL");
+    try {
+      await health(`500 slow: ${kind}`);
+    } finally {
+      child.kill("SIGKILL");
+    }
   }
 } finally {
   for (const cleanup of cleanups) await cleanup();
