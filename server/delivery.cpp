@@ -192,9 +192,12 @@ void Delivery::expire() {
 
 /// Who has taken nothing for longest goes first: clients that merely have a thin line stay.
 void Delivery::make_room() {
-  while (sending_.size() > settings_.delivering ||
-         (bytes_ > settings_.delivering_bytes && sending_.size() > 1)) {
-    drop(sending_.front(), true);
+  while (sending_.size() > settings_.delivering) drop(sending_.front(), true);
+  const auto is_in_memory = [](const Item& item) { return !item.answer.file; };
+  while (bytes_ > settings_.delivering_bytes) {
+    const auto first = std::find_if(sending_.begin(), sending_.end(), is_in_memory);
+    if (first == sending_.end()) break;
+    drop(*first, true);
   }
   while (lingering_.size() > settings_.delivering) drop(lingering_.front(), false);
 }

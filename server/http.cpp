@@ -96,8 +96,13 @@ HttpServer::Engine::Engine(const HttpSettings& settings, HttpServer::Handler han
 
 void HttpServer::Engine::start() {
   delivery_ = std::make_unique<Delivery>(settings_, metrics_);
-  pool_ = std::make_unique<ConnectionPool>(settings_.threads, settings_.waiting,
-                                           [this](Arrival a) { serve(std::move(a)); });
+  pool_ = std::make_unique<ConnectionPool>(settings_.threads, settings_.waiting, [this](Arrival a) {
+    try {
+      serve(std::move(a));
+    } catch (const std::exception& error) {
+      spdlog::error("a connection failed: {}", error.what());
+    }
+  });
   reception_ = std::make_unique<Reception>(
       listener_, stop_.get(), settings_, metrics_, [this](Arrival& a) { return pool_->offer(a); },
       [this](FileHandle s, const HttpError& error) { refuse(std::move(s), error); });

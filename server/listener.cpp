@@ -15,6 +15,7 @@ namespace lacuna {
 namespace {
 
 constexpr int backlog = 512;
+constexpr int send_buffer = 256 * 1024;
 
 struct Address {
   sockaddr_storage storage{};
@@ -85,6 +86,8 @@ FileHandle Listener::accept() const {
   if (connection) {
     const int yes = 1;  // answers and events are written whole: nothing to wait for
     ::setsockopt(connection.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+    // Else clients that take nothing could each hold megabytes of the kernel's memory.
+    ::setsockopt(connection.get(), SOL_SOCKET, SO_SNDBUF, &send_buffer, sizeof send_buffer);
   }
   return connection;
 }

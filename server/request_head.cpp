@@ -82,7 +82,8 @@ void parse_header(std::string_view line, Headers& headers) {
   headers.emplace(lower_case(name), value);
 }
 
-/// Of several lines of a list header, such as Range, none is meant for us in particular.
+/// Headers of which two lines could be understood in two ways, whoever reads them; of others,
+/// single_header() says so when they are used.
 void check_once(const Headers& headers) {
   for (const char* name : {"host", "content-length", "transfer-encoding", "content-type",
                            "authorization", "origin", "expect"}) {

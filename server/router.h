@@ -17,18 +17,18 @@ struct QueryParameter {
   enum class Type { text, integer, flag };
   std::string name;
   Type type = Type::text;
-  std::string doc;
+  std::string doc = {};
   std::int64_t min = INT64_MIN, max = INT64_MAX;  ///< of an integer
 };
 
 /// What a route does, for people and for programs that read /openapi.json.
 struct RouteDoc {
-  std::string summary;
-  std::vector<QueryParameter> query;                 ///< others are refused
-  std::string body_type;                             ///< media type; empty: it takes no body
-  std::string body_schema;                           ///< JSON Schema, as text; empty: none
-  std::vector<std::pair<int, std::string>> answers;  ///< status, and what it means
-  bool needs_token = true;                           ///< where the service has one
+  std::string summary = {};
+  std::vector<QueryParameter> query = {};                 ///< others are refused
+  std::string body_type = {};                             ///< media type; empty: it takes no body
+  std::string body_schema = {};                           ///< JSON Schema, as text; empty: none
+  std::vector<std::pair<int, std::string>> answers = {};  ///< status, and what it means
+  bool needs_token = true;                                ///< where the service has one
 };
 
 /// A table of methods and path patterns such as "/api/jobs/{id}/files/{name}"; each part in braces

@@ -9,7 +9,8 @@ test("help and version", async () => {
   const help = await runToEnd(["--help"]);
   assert.equal(help.code, 0);
   for (const option of ["--port", "--bind", "--data", "--scenes", "--jobs", "--renderer", "--web",
-    "--max-attempts", "--grace", "--memory-limit", "--nice"]) {
+    "--max-attempts", "--grace", "--memory-limit", "--nice", "--max-jobs", "--disk-floor",
+    "--keep-jobs", "--keep-days", "--uploads", "--token-file", "--host", "--verbose"]) {
     assert.ok(help.out.includes(option), option);
   }
   const version = await runToEnd(["--version"]);
