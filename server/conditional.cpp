@@ -26,9 +26,8 @@ Response json_response(int status, std::string text) {
 }
 
 Response with_tag(const Request& request, Response response, std::string_view prefix) {
-  const std::string tag =
-      fmt::format("\"{}{}{:016x}\"", prefix, prefix.empty() ? "" : ".",
-                  XXH3_64bits(response.body.data(), response.body.size()));
+  const std::string tag = fmt::format("\"{}{}{:016x}\"", prefix, prefix.empty() ? "" : ".",
+                                      XXH3_64bits(response.body.data(), response.body.size()));
   response.headers = {{"Cache-Control", "no-cache"}, {"ETag", tag}};
   const auto known = request.header("if-none-match");
   if (known && holds_tag(*known, tag)) {

@@ -90,10 +90,7 @@ class JobStream final : public Stream {
  public:
   JobStream(JobTable& table, std::shared_ptr<std::atomic<int>> seats, std::string id,
             std::optional<std::uint64_t> last)
-      : Stream(table.journal(), std::move(seats)),
-        table_(table),
-        id_(std::move(id)),
-        last_(last) {}
+      : Stream(table.journal(), std::move(seats)), table_(table), id_(std::move(id)), last_(last) {}
 
  private:
   std::string begin() override {

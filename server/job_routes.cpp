@@ -43,8 +43,10 @@ std::vector<State> states_of(const std::string& text) {
                                     [&](const auto& value) { return value.name == word; });
     if (found == values.end()) {
       std::string names;
-      for (const auto& value : values) names += fmt::format("{}{}", names.empty() ? "" : ", ", value.name);
-      throw HttpError(400, fmt::format("Query parameter state: \"{}\" is none of {}.", word, names));
+      for (const auto& value : values)
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", value.name);
+      throw HttpError(400,
+                      fmt::format("Query parameter state: \"{}\" is none of {}.", word, names));
     }
     states.push_back(found->value);
     begin = end + 1;
@@ -62,7 +64,10 @@ constexpr std::int64_t max_log_offset = std::int64_t{1} << 50;
 }  // namespace
 
 JobRoutes::JobRoutes(DataRoot data, const ScenesRoots& scenes, JobTable& table, Queue& queue)
-    : table_(table), queue_(queue), posting_(std::move(data), scenes, table, queue), events_(table) {}
+    : table_(table),
+      queue_(queue),
+      posting_(std::move(data), scenes, table, queue),
+      events_(table) {}
 
 Response JobRoutes::list(const Request& request) {
   JobTable::Query query;
@@ -132,7 +137,8 @@ Response JobRoutes::file(const Request& request, const std::string& id, const st
 
 Response JobRoutes::log(const Request& request, const std::string& id) {
   find_job(table_, id);
-  return log_response(table_.folder(id).dir(), "log.txt", request.query.integer("offset", 0, max_log_offset).value_or(0));
+  return log_response(table_.folder(id).dir(), "log.txt",
+                      request.query.integer("offset", 0, max_log_offset).value_or(0));
 }
 
 void JobRoutes::add_to(Router& router) {
@@ -149,7 +155,8 @@ void JobRoutes::add_to(Router& router) {
     response.stream = std::move(texts);
     return response;
   };
-  router.add("GET", "/api/jobs", [this](const Request& request, const Parts&) { return list(request); });
+  router.add("GET", "/api/jobs",
+             [this](const Request& request, const Parts&) { return list(request); });
   router.add("POST", "/api/jobs", [this](const Request& request, const Parts&) {
     const bool dry = request.query.integer("dry_run", 0, 1).value_or(0) == 1;
     return dry ? posting_.dry_run(request) : posting_.post(request);
@@ -161,9 +168,10 @@ void JobRoutes::add_to(Router& router) {
   router.add("POST", "/api/jobs/{}/retry", with_id(&JobRoutes::retry));
   router.add("POST", "/api/jobs/{}/extend", with_id(&JobRoutes::extend));
   router.add("GET", "/api/jobs/{}/log", with_id(&JobRoutes::log));
-  router.add("GET", "/api/jobs/{}/events", [this, stream](const Request& request, const Parts& parts) {
-    return stream(events_.job(find_job(table_, parts[0])->id, request.header("last-event-id")));
-  });
+  router.add(
+      "GET", "/api/jobs/{}/events", [this, stream](const Request& request, const Parts& parts) {
+        return stream(events_.job(find_job(table_, parts[0])->id, request.header("last-event-id")));
+      });
   router.add("GET", "/api/jobs/{}/files/{}", [this](const Request& request, const Parts& parts) {
     return file(request, parts[0], parts[1]);
   });

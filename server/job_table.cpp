@@ -136,9 +136,9 @@ void JobTable::remove(const std::string& id) {
 /// Only under the lock.
 void JobTable::put(std::shared_ptr<JobEntry> entry, JobEvent::Kind kind) {
   entry->text = json_text(to_json(*entry));
-  entry->revision = hash(fmt::format("{} {} {} {} {}", entry->job_hash,
-                                     json_text(to_json(entry->state)), entry->control.priority,
-                                     entry->control.held, entry->control.cancel));
+  entry->revision =
+      hash(fmt::format("{} {} {} {} {}", entry->job_hash, json_text(to_json(entry->state)),
+                       entry->control.priority, entry->control.held, entry->control.cancel));
   entry->words = lower_case(
       fmt::format("{}\n{}\n{}\n{}", entry->label, entry->scene, entry->integrator, entry->id));
   const std::string id = entry->id;
@@ -233,6 +233,14 @@ JobTable::Page JobTable::list(const Query& query) const {
     }
   }
   return page;
+}
+
+std::map<State, std::size_t> JobTable::counts() const {
+  std::map<State, std::size_t> counts;
+  for (const auto& value : EnumTable<State>::values) counts[value.value] = 0;
+  const std::lock_guard lock(mutex_);
+  for (const auto& [state, n] : counts_) counts[state] = n;
+  return counts;
 }
 
 std::vector<EntryPtr> JobTable::all() const {

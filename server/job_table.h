@@ -66,11 +66,11 @@ class JobTable {
     std::vector<State> states;  ///< any of these; empty: all
     std::string words;          ///< lower case; somewhere in label, scene, integrator or id
     std::size_t limit = 100;
-    std::string after;          ///< the `next` of the page before; empty: from the newest on
+    std::string after;  ///< the `next` of the page before; empty: from the newest on
   };
   struct Page {
     std::vector<EntryPtr> jobs;
-    std::size_t total = 0;  ///< that match, on all pages
+    std::size_t total = 0;                ///< that match, on all pages
     std::map<State, std::size_t> counts;  ///< of all jobs
     std::string next;                     ///< empty: this was the last page
     std::string last_event;
@@ -80,7 +80,11 @@ class JobTable {
   /// All of them, oldest first.
   std::vector<EntryPtr> all() const;
 
+  /// How many jobs there are in each state.
+  std::map<State, std::size_t> counts() const;
+
   Journal& journal() { return journal_; }
+  const Journal& journal() const { return journal_; }
 
  private:
   using Place = std::pair<std::string, std::string>;  // time of creation, id

@@ -16,15 +16,20 @@ namespace {
 
 using namespace lacuna;
 
-/// Throws CLI::ValidationError: no number of bytes, or too few for any renderer.
+/// Throws CLI::ValidationError: no number of bytes.
+std::uint64_t byte_size(const char* option, const std::string& text) {
+  try {
+    return parse_byte_size(text);
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError(option, error.what());
+  }
+}
+
+/// Throws CLI::ValidationError, too, if that is too little for any renderer.
 std::uint64_t memory_limit(const std::string& text) {
   constexpr std::uint64_t least = 256 << 20;
-  try {
-    const std::uint64_t bytes = parse_byte_size(text);
-    if (bytes == 0 || bytes >= least) return bytes;
-  } catch (const std::invalid_argument& error) {
-    throw CLI::ValidationError("--memory-limit", error.what());
-  }
+  const std::uint64_t bytes = byte_size("--memory-limit", text);
+  if (bytes == 0 || bytes >= least) return bytes;
   throw CLI::ValidationError(
       "--memory-limit",
       fmt::format("found \"{}\"; allowed: 0, or at least {}", text, byte_size_text(least)));
@@ -69,6 +74,23 @@ void define_options(CLI::App& app, ServiceSettings& s) {
   app.add_option("--nice", s.limits.niceness, "how far renderers stand back for all else")
       ->check(CLI::Range(0, 19))
       ->capture_default_str();
+  app.add_option("--max-jobs", s.queue.max_waiting, "jobs that may wait or run; more are refused")
+      ->check(CLI::Range(1, 10'000'000))
+      ->capture_default_str();
+  app.add_option_function<std::string>(
+         "--disk-floor",
+         [&s](const std::string& text) { s.care.disk_floor = byte_size("--disk-floor", text); },
+         "room to leave on the disk, as 1G; with less, jobs wait and renderers stop")
+      ->default_str(byte_size_text(s.care.disk_floor));
+  app.add_option("--keep-jobs", s.care.keep_jobs,
+                 "remove the oldest jobs that are over when there are more; 0: keep all")
+      ->check(CLI::Range(0, 10'000'000))
+      ->capture_default_str();
+  app.add_option("--keep-days", s.care.keep_days,
+                 "remove jobs this long after they ended; 0: keep all")
+      ->check(CLI::Range(0.0, 36'500.0))
+      ->capture_default_str();
+  app.add_flag("--uploads", s.uploads, "take scenes in over HTTP (PUT /api/scenes/NAME.glb)");
   app.add_option("--renderer", s.renderer, "the renderer; default: lacuna beside this program");
   app.add_option("--web", s.web, "folder of the page; default: web of the source tree");
 }

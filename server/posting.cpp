@@ -70,9 +70,10 @@ void Posting::read_keys() {
 Response Posting::replay(const std::string& id, const std::string& body_hash) const {
   const EntryPtr entry = find_job(table_, id);
   if (entry->control.body_hash != body_hash) {
-    throw HttpError(422, fmt::format("This Idempotency-Key stands for job {}, which was posted with "
-                                     "another body.",
-                                     id));
+    throw HttpError(422,
+                    fmt::format("This Idempotency-Key stands for job {}, which was posted with "
+                                "another body.",
+                                id));
   }
   Response response = json_response(200, job_detail(table_, *entry));
   response.headers.emplace_back("Location", "/api/jobs/" + id);
@@ -87,8 +88,7 @@ Response Posting::create(const JobSpec& spec, const JobControl& control) {
       return JobFolder::create(data_.jobs() / new_job_id(), spec, control);
     } catch (const std::system_error& error) {
       spdlog::error("a job could not be stored: {}", error.what());
-      throw HttpError(507,
-                      fmt::format("The job could not be stored: {}.", error.code().message()));
+      throw HttpError(507, fmt::format("The job could not be stored: {}.", error.code().message()));
     }
   }();
   const std::string id = folder.id();

@@ -112,8 +112,8 @@ EntryPtr Queue::checked(const std::string& id, const std::string& revision) cons
   EntryPtr entry = table_.find(id);
   if (!entry) throw Conflict("The job is not there any more.");
   if (!revision.empty() && revision != "*" && revision != entry->revision) {
-    throw Changed(fmt::format("The job has changed meanwhile: its revision is {}.",
-                              entry->revision));
+    throw Changed(
+        fmt::format("The job has changed meanwhile: its revision is {}.", entry->revision));
   }
   return entry;
 }
@@ -130,8 +130,8 @@ void Queue::change(const std::string& id, std::optional<int> priority, std::opti
   const EntryPtr entry = checked(id, revision);
   const auto found = work_.find(id);
   if (found == work_.end()) {
-    throw Conflict(fmt::format("The job is {}: it waits for nothing.",
-                               enum_name(entry->state.state)));
+    throw Conflict(
+        fmt::format("The job is {}: it waits for nothing.", enum_name(entry->state.state)));
   }
   Work& work = *found->second;
   JobControl control = work.control;
@@ -185,8 +185,9 @@ void Queue::retry(const std::string& id, const std::string& revision) {
   const EntryPtr entry = checked(id, revision);
   const State state = entry->state.state;
   if (!entry->over || entry->damaged || state == State::done) {
-    throw Conflict(fmt::format("The job is {}: only one that failed or was cancelled is tried again.",
-                               entry->damaged ? "damaged" : enum_name(state)));
+    throw Conflict(
+        fmt::format("The job is {}: only one that failed or was cancelled is tried again.",
+                    entry->damaged ? "damaged" : enum_name(state)));
   }
   line_up(reopen(entry));
 }

@@ -91,7 +91,7 @@ class Queue {
     bool exclusive = false;
     JobControl control;
     Clock::time_point not_before{};
-    std::optional<Place> place;       // in the line
+    std::optional<Place> place;        // in the line
     std::shared_ptr<StopSignal> stop;  // a runner has it
     bool stopped_for_disk = false;
   };

@@ -1,6 +1,5 @@
 #include "server/retention.h"
 
-
 #include <set>
 
 namespace lacuna {
@@ -14,9 +13,9 @@ std::vector<std::string> outdated(const std::vector<EntryPtr>& jobs, const CareS
   for (const EntryPtr& job : jobs) {
     if (job->over && !job->damaged && !referenced.contains(job->id)) over.push_back(job);
   }
-  const std::size_t surplus =
-      settings.keep_jobs > 0 && over.size() > settings.keep_jobs ? over.size() - settings.keep_jobs
-                                                                 : 0;
+  const std::size_t surplus = settings.keep_jobs > 0 && over.size() > settings.keep_jobs
+                                  ? over.size() - settings.keep_jobs
+                                  : 0;
   const auto age = std::chrono::duration_cast<std::chrono::system_clock::duration>(
       std::chrono::duration<double, std::ratio<86400>>(settings.keep_days));
   const std::string too_old = utc_text(now - age);

@@ -13,13 +13,14 @@
 
 #include "analysis/storage/file_handle.h"
 #include "jobs/spec/version.h"
-#include "server/caretaker.h"
 #include "server/access.h"
+#include "server/caretaker.h"
 #include "server/executor_local.h"
 #include "server/http.h"
 #include "server/listener.h"
 #include "server/queue.h"
 #include "server/routes.h"
+#include "server/scene_uploads.h"
 
 namespace lacuna {
 namespace {
@@ -50,6 +51,26 @@ std::vector<fs::path> absolute(const std::vector<fs::path>& folders) {
     result.push_back(fs::absolute(folder));
   }
   return result;
+}
+
+fs::path renderer(const ServiceSettings& settings) {
+  return settings.renderer.empty() ? own_folder() / "lacuna" : fs::absolute(settings.renderer);
+}
+
+/// Where uploaded scenes lie: the last of the scenes roots, so that they hide no other.
+fs::path uploads_folder(const DataRoot& data) { return data.dir / "scenes"; }
+
+std::unique_ptr<SceneUploads> make_uploads(const ServiceSettings& settings, const DataRoot& data) {
+  if (!settings.uploads) return nullptr;
+  return std::make_unique<SceneUploads>(SceneUploadSettings{
+      .folder = uploads_folder(data), .renderer = renderer(settings), .limits = settings.limits});
+}
+
+ScenesRoots scenes_roots(const ServiceSettings& settings, const DataRoot& data) {
+  auto roots =
+      absolute(settings.scenes.empty() ? ScenesRoots::from_environment().roots() : settings.scenes);
+  if (settings.uploads) roots.push_back(uploads_folder(data));
+  return ScenesRoots(std::move(roots));
 }
 
 DataRoot data_root(const ServiceSettings& settings) {
@@ -117,13 +138,13 @@ StaticFiles page(const ServiceSettings& settings) {
 std::string service_version() { return "lacuna-server " + version(); }
 
 struct Service::Parts {
-  explicit Parts(const ServiceSettings& settings)
-      : scenes(settings.scenes.empty() ? absolute(ScenesRoots::from_environment().roots())
-                                       : absolute(settings.scenes)),
+  explicit Parts(const ServiceSettings& given)
+      : settings(given),
         data(data_root(settings)),
         lock(lock_data(data)),
-        executor({.renderer = settings.renderer.empty() ? own_folder() / "lacuna"
-                                                        : fs::absolute(settings.renderer),
+        uploads(make_uploads(settings, data)),
+        scenes(scenes_roots(settings, data)),
+        executor({.renderer = renderer(settings),
                   .data = data.dir,
                   .scenes = scenes.roots(),
                   .grace = grace(settings),
@@ -132,27 +153,30 @@ struct Service::Parts {
         queue(executor, table, queue_settings(settings)),
         caretaker(data, table, queue, settings.care),
         files(page(settings)),
-        routes(data, scenes, table, queue, files),
         access(settings.http.bind, settings.access,
                [this](const std::string& path) { return files.has(path); }),
-        http(settings.http, [this](const Request& r) { return handle(r); }) {}
+        http(settings.http, [this](const Request& r) { return handle(r); }),
+        routes({settings, data, scenes, table, http.metrics(), uploads.get()}, table, queue,
+               files) {}
 
   Response handle(const Request& request) {
     if (auto answer = access.admit(request)) return std::move(*answer);
     return routes.handle(request);
   }
 
-  ScenesRoots scenes;
-  DataRoot data;
-  FileHandle lock;
+  const ServiceSettings settings;
+  const DataRoot data;
+  const FileHandle lock;
+  const std::unique_ptr<SceneUploads> uploads;
+  const ScenesRoots scenes;
   LocalExecutor executor;
   JobTable table;
   Queue queue;
   Caretaker caretaker;
   const StaticFiles files;
-  Routes routes;
   Access access;
-  HttpServer http;
+  HttpServer http;  // asks the routes, but not before it is started
+  Routes routes;
 };
 
 Service::Service(const ServiceSettings& settings) {
@@ -160,7 +184,7 @@ Service::Service(const ServiceSettings& settings) {
   allow_descriptors();
   parts_ = std::make_unique<Parts>(settings);
 }
-Service::~Service() = default;
+Service::~Service() { stop(); }
 
 void Service::start() {
   remove_stale_folders(parts_->data.jobs());
@@ -171,6 +195,7 @@ void Service::start() {
 }
 
 void Service::stop() {
+  if (parts_->uploads) parts_->uploads->stop();
   parts_->http.stop();
   parts_->queue.stop();
   parts_->caretaker.stop();

@@ -15,7 +15,8 @@ struct ServiceSettings {
   AccessSettings access;
   QueueSettings queue;
   CareSettings care;
-  bool verbose = false;
+  bool uploads = false;  ///< scenes may be put
+  bool verbose = false;  ///< every request is logged
   double grace_seconds = 10;
   ChildLimits limits = ExecutorSettings{}.limits;  ///< of every renderer
   std::filesystem::path data, renderer, web;

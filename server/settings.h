@@ -11,8 +11,8 @@ namespace lacuna {
 
 /// How the service hands jobs to renderers.
 struct QueueSettings {
-  int children = 1;      ///< renderers at a time
-  int max_attempts = 3;  ///< a renderer that crashes is started this often for one job
+  int children = 1;                   ///< renderers at a time
+  int max_attempts = 3;               ///< a renderer that crashes is started this often for one job
   std::size_t max_waiting = 100'000;  ///< jobs that wait or run; more are refused
   std::chrono::milliseconds grace{10'000};  ///< between SIGTERM and SIGKILL
 };

@@ -53,8 +53,9 @@ class JobFolder {
   std::filesystem::path file(std::string_view name) const { return dir_ / name; }
 
   /// Creates the folder with job.json, state.json (`queued`, or `held` if `control` says so) and,
-  /// where `control` says anything, queue.json, all synced, or nothing: it is made under a temporary
-  /// name and renamed. Throws std::system_error; std::invalid_argument if `dir` is there already.
+  /// where `control` says anything, queue.json, all synced, or nothing: it is made under a
+  /// temporary name and renamed. Throws std::system_error; std::invalid_argument if `dir` is there
+  /// already.
   static JobFolder create(const std::filesystem::path& dir, const JobSpec& spec,
                           const JobControl& control = {});
 
@@ -62,7 +63,8 @@ class JobFolder {
   JobState read_state() const;                ///< throws std::runtime_error if missing or corrupt
   void write_job(const JobSpec& spec) const;  ///< synced
   void write_state(const JobState& s) const;  ///< synced
-  JobControl read_control() const;  ///< all defaults if missing; throws std::runtime_error if corrupt
+  JobControl read_control()
+      const;  ///< all defaults if missing; throws std::runtime_error if corrupt
   void write_control(const JobControl& c) const;  ///< synced
   std::optional<Progress> read_progress() const;
   void write_progress(const Progress& p) const;

@@ -19,10 +19,12 @@ constexpr Transition transitions[] = {
     {State::running, State::running, renderer, "a new phase, or a new attempt after a crash"},
     {State::running, State::cancelling, person, "cancels it; its renderer is asked to stop"},
     {State::running, State::interrupted, renderer, "it stops before the end, with a checkpoint"},
-    {State::running, State::queued, service, "its renderer crashed, or there is no room on the disk"},
+    {State::running, State::queued, service,
+     "its renderer crashed, or there is no room on the disk"},
     {State::running, State::held, service, "its renderer has stopped because the job is held"},
     {State::running, State::done, renderer, "the budget is spent, the results are written"},
-    {State::running, State::failed, renderer, "the job or an asset is bad; the service: it crashed too often"},
+    {State::running, State::failed, renderer,
+     "the job or an asset is bad; the service: it crashed too often"},
     {State::running, State::cancelled, service, "its renderer has ended after it was cancelled"},
     {State::held, State::queued, person, "releases it"},
     {State::held, State::cancelled, person, "cancels it"},
@@ -34,7 +36,8 @@ constexpr Transition transitions[] = {
     {State::interrupted, State::running, renderer, "it goes on"},
     {State::interrupted, State::held, service, "its renderer has stopped because the job is held"},
     {State::interrupted, State::cancelling, person, "cancels it just then"},
-    {State::interrupted, State::cancelled, service, "its renderer has ended after it was cancelled"},
+    {State::interrupted, State::cancelled, service,
+     "its renderer has ended after it was cancelled"},
     {State::interrupted, State::failed, service, "it was interrupted too often without coming on"},
     {State::failed, State::queued, person, "retries or extends it"},
     {State::cancelled, State::queued, person, "retries or extends it"},
@@ -61,8 +64,8 @@ std::string state_documentation() {
   }
   page += "\n| from | to | by | when |\n| --- | --- | --- | --- |\n";
   for (const Transition& t : transitions) {
-    page += fmt::format("| `{}` | `{}` | {} | {} |\n", enum_name(t.from), enum_name(t.to), t.by,
-                        t.why);
+    page +=
+        fmt::format("| `{}` | `{}` | {} | {} |\n", enum_name(t.from), enum_name(t.to), t.by, t.why);
   }
   return page;
 }

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "jobs/store/job_folder.h"
+
+namespace lacuna {
+
+/// What is kept below the data root so that it need not be made again: {"bytes", "entries": [{kind,
+/// name, bytes, used}]}, largest first. `kind`: "reference" (a rendered or stored picture) or
+/// "artefact"; `used`: UTC, when it was last written or read, as far as the file system knows.
+nlohmann::ordered_json cache_listing(const DataRoot& data);
+
+}  // namespace lacuna

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+
+#include "jobs/store/job_folder.h"
+#include "server/http_metrics.h"
+#include "server/job_table.h"
+#include "server/router.h"
+#include "server/scene_uploads.h"
+#include "server/service.h"
+
+namespace lacuna {
+
+/// What the addresses that are about the service itself need to know. All outlive them.
+struct ServiceFacts {
+  const ServiceSettings& settings;
+  const DataRoot& data;
+  const ScenesRoots& scenes;
+  const JobTable& table;
+  const HttpMetrics& http;
+  SceneUploads* uploads;  ///< none: uploads are off
+};
+
+/// /health, /metrics, /openapi.json, /api/info, /api/states, /api/schema/job, /api/scenes and
+/// /api/cache.
+class ServiceRoutes {
+ public:
+  explicit ServiceRoutes(const ServiceFacts& facts) : facts_(facts) {}
+  void add_to(Router& router);
+
+ private:
+  Response info() const;
+  Response metrics() const;
+  Response put_scene(const Request& request, const std::string& name) const;
+
+  const ServiceFacts facts_;
+  const std::string started_ = utc_now();
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace lacuna
