@@ -79,9 +79,12 @@ Routes::Routes(DataRoot data, ScenesRoots scenes, Queue& queue, StaticFiles page
     response.stream = events_.open(catalogue_.find(parts[0]));
     return response;
   });
-  router_.add("GET", "/api/jobs/{}/files/{}", [this](const Request& request, const Parts& parts) {
-    return job_file(request, parts[0], parts[1]);
-  });
+  // The page gives each version of a file an address of its own.
+  const RouteDoc versioned{.query = {{.name = "v", .doc = "Any text; has no effect."}}};
+  router_.add("GET", "/api/jobs/{}/files/{}", versioned,
+              [this](const Request& request, const Parts& parts) {
+                return job_file(request, parts[0], parts[1]);
+              });
   router_.add("GET", "/api/schema/job", [](const Request&, const Parts&) {
     return json_response(200, Json::parse(job_schema()));
   });
