@@ -27,8 +27,6 @@ class Events {
   /// forgotten and the list has to be read again. Begins after `last`, or now.
   Stream all(const std::optional<std::string>& last);
 
-  int open() const { return open_->load(); }
-
  private:
   JobTable& table_;
   std::shared_ptr<std::atomic<int>> open_ = std::make_shared<std::atomic<int>>(0);

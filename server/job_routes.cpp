@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-#include "jobs/spec/problems.h"
+#include "jobs/spec/job_json.h"
 #include "server/catalogue.h"
 #include "server/conditional.h"
 #include "server/file_response.h"
@@ -59,7 +59,7 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-constexpr std::int64_t max_log_offset = std::int64_t{1} << 50;
+constexpr std::int64_t max_page = 1000, default_page = 100;
 
 }  // namespace
 
@@ -73,7 +73,8 @@ Response JobRoutes::list(const Request& request) {
   JobTable::Query query;
   if (const auto states = request.query.text("state")) query.states = states_of(*states);
   query.words = lower_case(request.query.text("label").value_or(""));
-  query.limit = static_cast<std::size_t>(request.query.integer("limit", 1, 1000).value_or(100));
+  query.limit =
+      static_cast<std::size_t>(request.query.integer("limit", 1, max_page).value_or(default_page));
   query.after = request.query.text("cursor").value_or("");
   try {
     return with_tag(request, json_response(200, list_text(table_.list(query))));
@@ -138,47 +139,128 @@ Response JobRoutes::file(const Request& request, const std::string& id, const st
 Response JobRoutes::log(const Request& request, const std::string& id) {
   find_job(table_, id);
   return log_response(table_.folder(id).dir(), "log.txt",
-                      request.query.integer("offset", 0, max_log_offset).value_or(0));
+                      request.query.integer("offset", 0).value_or(0));
 }
 
+namespace {
+
+using Type = QueryParameter::Type;
+
+RouteDoc list_doc() {
+  return {.summary = "Jobs, newest first, by pages",
+          .query = {{"state", Type::text, "any of these states, separated by commas"},
+                    {"label", Type::text, "words in label, scene, integrator or id"},
+                    {"limit", Type::integer, "jobs on a page; default 100", 1, max_page},
+                    {"cursor", Type::text, "`next` of the page before"}},
+          .answers = {{200, "{jobs, total, counts, next, last_event}"}, {304, "as you have it"}}};
+}
+
+RouteDoc post_doc() {
+  return {.summary = "Queues a job; with an Idempotency-Key, once",
+          .query = {{"dry_run", Type::flag, "only check it and fill in its defaults"}},
+          .body_type = "application/json",
+          .body_schema = job_schema(),
+          .answers = {{201, "the job is on disk and waits"},
+                      {200, "dry run; or the job that the same key has made before"},
+                      {400, "the job is not valid: `errors` has every mistake"},
+                      {422, "the key stands for another body"},
+                      {429, "too many jobs wait"},
+                      {507, "it could not be stored"}}};
+}
+
+/// Of what changes a job.
+RouteDoc change_doc(std::string summary, std::string conflict, std::string body_schema = {}) {
+  RouteDoc doc{.summary = std::move(summary)};
+  if (!body_schema.empty()) doc.body_type = "application/json";
+  doc.body_schema = std::move(body_schema);
+  doc.answers = {{200, "the job as it is now"},
+                 {404, "there is no such job"},
+                 {409, std::move(conflict)},
+                 {412, "it is not the job of If-Match any more"}};
+  return doc;
+}
+
+Response event_stream(Events::Stream texts) {
+  Response response;
+  response.content_type = "text/event-stream";
+  response.headers = {{"Cache-Control", "no-store"}};
+  response.stream = std::move(texts);
+  return response;
+}
+
+}  // namespace
+
 void JobRoutes::add_to(Router& router) {
+  add_collection(router);
+  add_changes(router);
+  add_results(router);
+}
+
+void JobRoutes::add_collection(Router& router) {
   using Parts = Router::Parts;
-  const auto with_id = [this](Response (JobRoutes::*handler)(const Request&, const std::string&)) {
-    return [this, handler](const Request& request, const Parts& parts) {
-      return (this->*handler)(request, parts[0]);
-    };
-  };
-  const auto stream = [](Events::Stream texts) {
-    Response response;
-    response.content_type = "text/event-stream";
-    response.headers = {{"Cache-Control", "no-store"}};
-    response.stream = std::move(texts);
-    return response;
-  };
-  router.add("GET", "/api/jobs",
+  router.add("GET", "/api/jobs", list_doc(),
              [this](const Request& request, const Parts&) { return list(request); });
-  router.add("POST", "/api/jobs", [this](const Request& request, const Parts&) {
-    const bool dry = request.query.integer("dry_run", 0, 1).value_or(0) == 1;
-    return dry ? posting_.dry_run(request) : posting_.post(request);
+  router.add("POST", "/api/jobs", post_doc(), [this](const Request& request, const Parts&) {
+    return request.query.flag("dry_run") ? posting_.dry_run(request) : posting_.post(request);
   });
-  router.add("GET", "/api/jobs/{}", with_id(&JobRoutes::detail));
-  router.add("PATCH", "/api/jobs/{}", with_id(&JobRoutes::change));
-  router.add("DELETE", "/api/jobs/{}", with_id(&JobRoutes::remove));
-  router.add("POST", "/api/jobs/{}/cancel", with_id(&JobRoutes::cancel));
-  router.add("POST", "/api/jobs/{}/retry", with_id(&JobRoutes::retry));
-  router.add("POST", "/api/jobs/{}/extend", with_id(&JobRoutes::extend));
-  router.add("GET", "/api/jobs/{}/log", with_id(&JobRoutes::log));
+  router.add("GET", "/api/events",
+             {.summary = "What happens to all jobs, as server-sent events: job, removed, reset",
+              .query = {{"after", Type::text, "the list's last_event, or Last-Event-ID"}}},
+             [this](const Request& request, const Parts&) {
+               const auto last = request.header("last-event-id");
+               return event_stream(events_.all(last ? last : request.query.text("after")));
+             });
+}
+
+Router::Handler JobRoutes::with_id(Response (JobRoutes::*handler)(const Request&,
+                                                                  const std::string&)) {
+  return [this, handler](const Request& request, const Router::Parts& parts) {
+    return (this->*handler)(request, parts[0]);
+  };
+}
+
+void JobRoutes::add_changes(Router& router) {
   router.add(
-      "GET", "/api/jobs/{}/events", [this, stream](const Request& request, const Parts& parts) {
-        return stream(events_.job(find_job(table_, parts[0])->id, request.header("last-event-id")));
-      });
-  router.add("GET", "/api/jobs/{}/files/{}", [this](const Request& request, const Parts& parts) {
-    return file(request, parts[0], parts[1]);
-  });
-  router.add("GET", "/api/events", [this, stream](const Request& request, const Parts&) {
-    const auto last = request.header("last-event-id");
-    return stream(events_.all(last ? last : request.query.text("after")));
-  });
+      "PATCH", "/api/jobs/{id}",
+      change_doc("Another priority; holds it or releases it", "it is over", job_change_schema()),
+      with_id(&JobRoutes::change));
+  auto cancel = change_doc("Stops it for good", "it was over before");
+  cancel.answers.emplace_back(202, "its renderer is asked to stop");
+  router.add("POST", "/api/jobs/{id}/cancel", std::move(cancel), with_id(&JobRoutes::cancel));
+  router.add("POST", "/api/jobs/{id}/retry",
+             change_doc("It goes on from its checkpoint", "it has not failed or been cancelled"),
+             with_id(&JobRoutes::retry));
+  router.add(
+      "POST", "/api/jobs/{id}/extend",
+      change_doc("It goes on until a larger budget is spent", "it is not over", extension_schema()),
+      with_id(&JobRoutes::extend));
+  router.add("DELETE", "/api/jobs/{id}",
+             {.summary = "Removes it and its results",
+              .answers = {{204, "it is gone"},
+                          {409, "it is not over, or is the reference of a job that is not"},
+                          {412, "it is not the job of If-Match any more"}}},
+             with_id(&JobRoutes::remove));
+}
+
+void JobRoutes::add_results(Router& router) {
+  using Parts = Router::Parts;
+  router.add("GET", "/api/jobs/{id}", {.summary = "One job"}, with_id(&JobRoutes::detail));
+  router.add("GET", "/api/jobs/{id}/log",
+             {.summary = "Its log from a byte on; header Next-Offset has the next",
+              .query = {{"offset", Type::integer, "bytes to leave out", 0, INT64_MAX}}},
+             with_id(&JobRoutes::log));
+  router.add("GET", "/api/jobs/{id}/events",
+             {.summary = "Its state and progress as server-sent events, until it is over"},
+             [this](const Request& request, const Parts& parts) {
+               const EntryPtr entry = find_job(table_, parts[0]);
+               return event_stream(events_.job(entry->id, request.header("last-event-id")));
+             });
+  router.add("GET", "/api/jobs/{id}/files/{name}",
+             {.summary = "A result; knows ETag, If-None-Match, Range and If-Range",
+              .query = {{"v", Type::text, "anything: another address, so that it is read anew"}}},
+             [this](const Request& request, const Parts& parts) {
+               return file(request, parts[0], parts[1]);
+             });
 }
 
 }  // namespace lacuna

@@ -14,9 +14,13 @@ class JobRoutes {
  public:
   JobRoutes(DataRoot data, const ScenesRoots& scenes, JobTable& table, Queue& queue);
   void add_to(Router& router);
-  int open_streams() const { return events_.open(); }
 
  private:
+  void add_collection(Router& router);
+  void add_changes(Router& router);
+  void add_results(Router& router);
+  Router::Handler with_id(Response (JobRoutes::*handler)(const Request&, const std::string&));
+
   Response list(const Request& request);
   Response detail(const Request& request, const std::string& id);
   Response change(const Request& request, const std::string& id);

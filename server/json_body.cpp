@@ -1,6 +1,7 @@
 #include "server/json_body.h"
 
 #include "jobs/spec/described_json.h"
+#include "jobs/spec/type_tree.h"
 #include "jobs/store/control.h"
 
 namespace lacuna {
@@ -41,6 +42,10 @@ std::string read_json_body(const Request& request, std::size_t max_bytes) {
   }
   return request.read_body(max_bytes);
 }
+
+std::string job_change_schema() { return schema_text(TypeReader::type_of(JobChange{}, Field{})); }
+
+std::string extension_schema() { return schema_text(TypeReader::type_of(Extension{}, Field{})); }
 
 JobChange read_job_change(const Request& request) {
   return read_settings_body<JobChange>(request, "The change");

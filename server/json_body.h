@@ -20,7 +20,11 @@ struct JobChange {
 /// Throws HttpError 400 with the place of every mistake.
 JobChange read_job_change(const Request& request);
 
+/// Its JSON Schema.
+std::string job_change_schema();
+
 /// POST /api/jobs/ID/extend: {"budget": ...}. Throws HttpError 400 likewise.
 Budget read_extension(const Request& request);
+std::string extension_schema();
 
 }  // namespace lacuna

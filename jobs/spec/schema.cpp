@@ -138,6 +138,8 @@ OrderedJson schema_of(const Type& type) {
 
 }  // namespace
 
+std::string schema_text(const Type& type) { return document_text(schema_of(type)); }
+
 std::string job_schema() {
   OrderedJson schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
                         {"title", "Lacuna job"}};

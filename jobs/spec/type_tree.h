@@ -113,4 +113,7 @@ Type TypeReader::type_of(const T& value, const Field& field) {
   return type;
 }
 
+/// The JSON Schema of a type, as text.
+std::string schema_text(const Type& type);
+
 }  // namespace lacuna

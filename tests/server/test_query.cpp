@@ -9,8 +9,7 @@ namespace {
 void expect_refused(std::string_view text) { EXPECT_THROW(Query::parse(text), HttpError) << text; }
 
 TEST(Query, decodes_names_and_values) {
-  const Query query =
-      Query::parse("st%61te=a%2cb&label=two+words%2B&empty=&bare&&sky=%F0%9F%98%80");
+  const Query query = Query::parse("st%61te=a%2cb&label=two+words%2B&empty=&bare&sky=%F0%9F%98%80");
   EXPECT_EQ(query.text("state"), "a,b");
   EXPECT_EQ(query.text("label"), "two words+");
   EXPECT_EQ(query.text("empty"), "");
@@ -20,9 +19,9 @@ TEST(Query, decodes_names_and_values) {
 }
 
 TEST(Query, is_strict) {
-  for (const char* text :
-       {"a=%", "a=%1", "a=%g1", "a=%00", "a=%1f", "a=%7F", "a=%80", "a=%c0%af", "a=%e0%80%80",
-        "a=%ed%bf%bf", "a=%f4%90%80%80", "a=%f0%80%80%80", "a=%c2%9f", "=1", "a=1&a=1", "a&a"}) {
+  for (const char* text : {"a=%", "a=%1", "a=%g1", "a=%00", "a=%1f", "a=%7F", "a=%80", "a=%c0%af",
+                           "a=%e0%80%80", "a=%ed%bf%bf", "a=%f4%90%80%80", "a=%f0%80%80%80",
+                           "a=%c2%9f", "=1", "a&&b", "a=1&a=1", "a&a"}) {
     expect_refused(text);
   }
 }
