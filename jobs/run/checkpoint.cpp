@@ -14,7 +14,7 @@ namespace lacuna {
 namespace {
 
 // Changes with the layout of anything that is saved.
-constexpr std::string_view magic = "lacuna-checkpoint-1";
+constexpr std::string_view magic = "lacuna-checkpoint-2";
 
 }  // namespace
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "analysis/storage/atomic_file.h"
 #include "jobs/run/checkpoint.h"
 #include "jobs/spec/job_json.h"
@@ -16,6 +18,20 @@ namespace {
 constexpr double checkpoint_share = 0.01;
 constexpr double preview_share = 0.005;
 constexpr double progress_interval = 0.5;  // seconds
+
+/// Throws std::runtime_error where the parts of a checkpoint contradict each other: its checksum
+/// knows damage, not what another program wrote.
+void check_saved(const Film& film, const Spent& spent, const ByteReader& in) {
+  const auto is_time = [](double t) { return std::isfinite(t) && t >= 0; };
+  if (!in.at_end()) throw std::runtime_error("saved state goes on after its end");
+  if (film.iterations() != spent.iterations ||
+      film.half_iterations(0) != spent.iterations - spent.iterations / 2) {
+    throw std::runtime_error("saved film has another number of iterations");
+  }
+  if (!is_time(spent.seconds) || !is_time(spent.cpu_seconds)) {
+    throw std::runtime_error("saved times are not times");
+  }
+}
 
 }  // namespace
 
@@ -45,6 +61,7 @@ void RenderLoop::resume() {
     counters_ = in.get<Counters>();
     curve_.load(in);
     task_.integrator.load(in);
+    check_saved(film, completed_, in);
     film_ = std::move(film);
     clock_.set(completed_.seconds, completed_.cpu_seconds);
     task_.observer.milestone(fmt::format("going on from iteration {} ({:.1f} s)",

@@ -89,6 +89,17 @@ TEST(Film, RefusesBytesOfAnotherSizeAndShortOnes) {
   }
 }
 
+TEST(Film, RefusesSavedValuesThatAreNotFinite) {
+  ByteWriter out;
+  noisy(2, 1).save(out);
+  std::string bytes = out.take();
+  const double infinite = std::numeric_limits<double>::infinity();
+  std::memcpy(bytes.data() + bytes.size() - sizeof infinite, &infinite, sizeof infinite);
+  Film film(5, 4);
+  ByteReader in(bytes);
+  EXPECT_THROW(film.load(in), std::runtime_error);
+}
+
 TEST(Metrics, ByHand) {
   const std::vector<double> x{1, 2, -1};
   const std::vector<double> r{1, 1, 0};
