@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 
 #include "renderer/scene/scene_data.h"
 
@@ -23,12 +24,11 @@ const char* format_of(std::span<const std::uint8_t> bytes) {
   return starts_with(png) ? "png" : starts_with(jpeg) ? "jpeg" : nullptr;
 }
 
-void expand(const std::vector<std::uint8_t>& from, std::size_t channels,
-            std::vector<std::uint8_t>& rgba) {
+void expand(const std::uint8_t* from, std::size_t channels, std::vector<std::uint8_t>& rgba) {
   const bool grey = channels < 3;
   const bool alpha = channels == 2 || channels == 4;
   for (std::size_t i = 0; i < rgba.size() / 4; ++i) {
-    const std::uint8_t* in = from.data() + i * channels;
+    const std::uint8_t* in = from + i * channels;
     std::uint8_t* out = rgba.data() + i * 4;
     out[0] = in[0];
     out[1] = grey ? in[0] : in[1];
@@ -64,15 +64,16 @@ Rgba8Image decode_png_or_jpeg(std::span<const std::uint8_t> encoded, const std::
   Rgba8Image image{spec.width, spec.height, {}};
   const auto texels = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
   const auto channels = static_cast<std::size_t>(spec.nchannels);
-  std::vector<std::uint8_t> stored(texels * channels);
-  const bool read = in->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, stored.data());
+  // Not set to zero: memory is used up only as texels come, however large the header says they are.
+  const auto stored = std::make_unique_for_overwrite<std::uint8_t[]>(texels * channels);
+  const bool read = in->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, stored.get());
   // libjpeg fills what a truncated file lacks with grey and only warns: a warning is an error here.
   if (!read || in->has_error()) fail("is corrupt: " + in->geterror());
   if (channels == 4) {
-    image.rgba = std::move(stored);
+    image.rgba.assign(stored.get(), stored.get() + texels * channels);
   } else {
     image.rgba.resize(texels * 4);
-    expand(stored, channels, image.rgba);
+    expand(stored.get(), channels, image.rgba);
   }
   return image;
 }

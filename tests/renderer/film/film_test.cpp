@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+#include <limits>
+
 #include "renderer/core/bytes.h"
 #include "renderer/core/rng.h"
 #include "renderer/film/block_statistics.h"
