@@ -130,6 +130,18 @@ TEST(ImageRead, AnAttributeLargerThanItsFileIsRefused) {
   }
 }
 
+TEST(ImageRead, AChannelOfAnUnknownTypeIsRefused) {
+  // The library would end the process.
+  const TemporaryFolder folder;
+  test::Bytes bytes = test::read_bytes(write_exr(folder, {"R", "G", "B"}, {1, 2, 3}, 1, 1));
+  const std::string list("chlist\0\x37\0\0\0B\0", 13);
+  const auto found = std::search(bytes.begin(), bytes.end(), list.begin(), list.end());
+  ASSERT_NE(found, bytes.end());
+  found[13] = 3;
+  expect_contains(refusal(folder.write("type.exr", bytes)),
+                  "channel \"B\" has pixel type 3; allowed: 0 to 2");
+}
+
 TEST(ImageRead, AHeaderThatEndsEarlyIsRefused) {
   const TemporaryFolder folder;
   const auto bytes = test::read_bytes(write_exr(folder, {"R", "G", "B"}, {1, 2, 3}, 1, 1));
