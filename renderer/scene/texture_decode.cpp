@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <memory>
+#include <string_view>
 
 #include "renderer/scene/scene_data.h"
 
@@ -22,6 +24,20 @@ const char* format_of(std::span<const std::uint8_t> bytes) {
     return bytes.size() >= magic.size() && std::equal(magic.begin(), magic.end(), bytes.begin());
   };
   return starts_with(png) ? "png" : starts_with(jpeg) ? "jpeg" : nullptr;
+}
+
+/// Whether a PNG's chunks are all there, to its IEND. A short read in the middle of one makes
+/// libpng jump out of OpenImageIO, which then loses memory.
+bool has_whole_chunks(std::span<const std::uint8_t> png) {
+  constexpr std::size_t signature = 8, around = 12;  // length and type before the data, CRC behind
+  for (auto rest = png.subspan(signature); rest.size() >= around;) {
+    const std::size_t length = std::size_t{rest[0]} << 24 | std::size_t{rest[1]} << 16 |
+                               std::size_t{rest[2]} << 8 | rest[3];
+    if (length > rest.size() - around) return false;
+    if (std::memcmp(&rest[4], "IEND", 4) == 0) return true;
+    rest = rest.subspan(around + length);
+  }
+  return false;
 }
 
 void expand(const std::uint8_t* from, std::size_t channels, std::vector<std::uint8_t>& rgba) {
@@ -43,6 +59,9 @@ Rgba8Image decode_png_or_jpeg(std::span<const std::uint8_t> encoded, const std::
   const auto fail = [&label](const std::string& what) { throw SceneError(label + ": " + what); };
   const char* format = format_of(encoded);
   if (format == nullptr) fail("neither a PNG nor a JPEG");
+  if (format == std::string_view("png") && !has_whole_chunks(encoded)) {
+    fail("is corrupt: it ends before its last chunk (IEND)");
+  }
   const auto in = OIIO::ImageInput::create(format);
   if (!in) fail(std::string("OpenImageIO has no reader for ") + format);
 
