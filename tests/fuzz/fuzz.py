@@ -141,6 +141,8 @@ def main():
     if unknown := set(asked.targets) - set(names):
         parser.error(f"no target {min(unknown)}; there are {', '.join(names)}")
     chosen = [t for t in TARGETS if not asked.targets or t.name in asked.targets]
+    if missing := [t.name for t in chosen if not (BUILD / f"bin/fuzz_{t.name}").exists()]:
+        sys.exit(f"build/fuzz has no {', '.join(missing)}: ./dev build-tests fuzz fuzz")
     with concurrent.futures.ThreadPoolExecutor(asked.jobs) as pool:
         results = list(pool.map(lambda t: run(t, asked.seconds, asked.grow), chosen))
     print(f"{sum(results)} passed, {len(results) - sum(results)} failed")
