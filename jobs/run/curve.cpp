@@ -10,6 +10,24 @@ namespace {
 
 std::string number(std::optional<double> v) { return v ? fmt::format("{:.17g}", *v) : ""; }
 
+/// A flag as a byte: any other value of a bool would be undefined.
+bool get_flag(ByteReader& in) {
+  const auto byte = in.get<std::uint8_t>();
+  if (byte > 1) throw std::runtime_error("saved curve has a flag that is neither 0 nor 1");
+  return byte == 1;
+}
+
+template <class T>
+void put_optional(ByteWriter& out, const std::optional<T>& value) {
+  out.put(static_cast<std::uint8_t>(value.has_value()));
+  if (value) out.put(*value);
+}
+
+template <class T>
+std::optional<T> get_optional(ByteReader& in) {
+  return get_flag(in) ? std::optional(in.get<T>()) : std::nullopt;
+}
+
 }  // namespace
 
 bool Curve::due(double seconds) const {
@@ -40,6 +58,33 @@ std::string Curve::csv() const {
         r.counters.negative, r.counters.rejected, r.at_floor ? 1 : 0);
   }
   return text;
+}
+
+void Curve::save(ByteWriter& out) const {
+  out.put(static_cast<std::uint64_t>(rows_.size()));
+  for (const CurveRow& r : rows_) {
+    out.put(r.iteration);
+    out.put(r.seconds);
+    out.put(r.cpu_seconds);
+    out.put(r.counters);
+    put_optional(out, r.errors);
+    put_optional(out, r.est_rmse);
+    out.put(static_cast<std::uint8_t>(r.at_floor));
+  }
+}
+
+void Curve::load(ByteReader& in) {
+  rows_.clear();
+  for (auto left = in.get<std::uint64_t>(); left > 0; --left) {
+    CurveRow& r = rows_.emplace_back();
+    r.iteration = in.get<std::uint64_t>();
+    r.seconds = in.get<double>();
+    r.cpu_seconds = in.get<double>();
+    r.counters = in.get<Counters>();
+    r.errors = get_optional<Errors>(in);
+    r.est_rmse = get_optional<double>(in);
+    r.at_floor = get_flag(in);
+  }
 }
 
 }  // namespace lacuna

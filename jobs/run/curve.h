@@ -41,8 +41,10 @@ class Curve {
   /// curve.csv: a header and a line a row; empty where there is no value; 17 significant digits.
   std::string csv() const;
 
-  void save(ByteWriter& out) const { out.put(rows_); }
-  void load(ByteReader& in) { rows_ = in.get_vector<CurveRow>(); }
+  /// The rows as bytes and back, for checkpoints. load() throws std::runtime_error on what save()
+  /// never writes.
+  void save(ByteWriter& out) const;
+  void load(ByteReader& in);
 
  private:
   std::vector<CurveRow> rows_;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <system_error>
 
 #include "analysis/storage/atomic_file.h"
@@ -19,6 +20,20 @@ namespace {
 constexpr double checkpoint_share = 0.01;
 constexpr double preview_share = 0.005;
 constexpr double progress_interval = 0.5;  // seconds
+
+/// Throws std::runtime_error where the parts of a checkpoint contradict each other: its checksum
+/// knows damage, not what another program wrote.
+void check_saved(const Film& film, const Spent& spent, const ByteReader& in) {
+  const auto is_time = [](double t) { return std::isfinite(t) && t >= 0; };
+  if (!in.at_end()) throw std::runtime_error("saved state goes on after its end");
+  if (film.iterations() != spent.iterations ||
+      film.half_iterations(0) != spent.iterations - spent.iterations / 2) {
+    throw std::runtime_error("saved film has another number of iterations");
+  }
+  if (!is_time(spent.seconds) || !is_time(spent.cpu_seconds)) {
+    throw std::runtime_error("saved times are not times");
+  }
+}
 
 }  // namespace
 
@@ -50,6 +65,7 @@ void RenderLoop::resume() {
     refused_before_ = in.get<std::uint64_t>();
     const PhaseSeconds phases = load_phases(in);
     task_.integrator.load(in);
+    check_saved(film, completed_, in);
     for (const auto& [name, seconds] : phases) task_.phases[name] += seconds;
     film_ = std::move(film);
     clock_.set(completed_.seconds, completed_.cpu_seconds);

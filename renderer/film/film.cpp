@@ -1,5 +1,8 @@
 #include "renderer/film/film.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "renderer/core/bytes.h"
 
 namespace lacuna {
@@ -73,6 +76,11 @@ void Film::load(ByteReader& in) {
     h.m2 = in.get_vector<double>();
     if (h.mean.size() != size || h.m2.size() != size) {
       throw std::runtime_error("saved film has another size");
+    }
+    const auto finite = [](double v) { return std::isfinite(v); };
+    if (!std::all_of(h.mean.begin(), h.mean.end(), finite) ||
+        !std::all_of(h.m2.begin(), h.m2.end(), finite)) {
+      throw std::runtime_error("saved film has values that are not finite");
     }
   }
 }

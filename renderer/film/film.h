@@ -33,7 +33,7 @@ class Film {
   std::vector<double> variance_of_mean() const;
 
   /// The state as bytes and back, for checkpoints. load() throws std::runtime_error on another
-  /// size.
+  /// size and on values that are not finite.
   void save(class ByteWriter& out) const;
   void load(class ByteReader& in);
 

@@ -7,8 +7,10 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <memory>
 #include <optional>
 
+#include "renderer/scene/exr_guard.h"
 #include "renderer/scene/scene_data.h"
 
 namespace lacuna {
@@ -84,7 +86,9 @@ void check_spec(const std::filesystem::path& file, const OIIO::ImageSpec& spec) 
 }  // namespace
 
 FloatImage read_float_image(const std::filesystem::path& file, const std::string& layer) {
-  const auto in = OIIO::ImageInput::create(format_of(file));
+  const std::string_view format = format_of(file);
+  if (format == "openexr") check_exr_header(file);
+  const auto in = OIIO::ImageInput::create(std::string(format));
   OIIO::ImageSpec spec;
   if (!in || !in->open(file.string(), spec)) {
     fail(file, "cannot be decoded: " + (in ? in->geterror() : OIIO::geterror()));
@@ -102,9 +106,10 @@ FloatImage read_float_image(const std::filesystem::path& file, const std::string
   const int channel_count = *high - *low + 1;
   const auto read = static_cast<std::size_t>(channel_count);
   const auto pixels = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
-  std::vector<float> stored(pixels * read);
+  // Not set to zero: memory is used up only as pixels come, however large the header says they are.
+  const auto stored = std::make_unique_for_overwrite<float[]>(pixels * read);
   if (!in->read_image(in->current_subimage(), 0, *low, *high + 1, OIIO::TypeDesc::FLOAT,
-                      stored.data()) ||
+                      stored.get()) ||
       in->has_error()) {
     fail(file, "is corrupt: " + in->geterror());
   }

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
+#include <memory>
+#include <string_view>
 
 #include "renderer/scene/scene_data.h"
 
@@ -23,12 +26,25 @@ const char* format_of(std::span<const std::uint8_t> bytes) {
   return starts_with(png) ? "png" : starts_with(jpeg) ? "jpeg" : nullptr;
 }
 
-void expand(const std::vector<std::uint8_t>& from, std::size_t channels,
-            std::vector<std::uint8_t>& rgba) {
+/// Whether a PNG's chunks are all there, to its IEND. A short read in the middle of one makes
+/// libpng jump out of OpenImageIO, which then loses memory.
+bool has_whole_chunks(std::span<const std::uint8_t> png) {
+  constexpr std::size_t signature = 8, around = 12;  // length and type before the data, CRC behind
+  for (auto rest = png.subspan(signature); rest.size() >= around;) {
+    const std::size_t length = std::size_t{rest[0]} << 24 | std::size_t{rest[1]} << 16 |
+                               std::size_t{rest[2]} << 8 | rest[3];
+    if (length > rest.size() - around) return false;
+    if (std::memcmp(&rest[4], "IEND", 4) == 0) return true;
+    rest = rest.subspan(around + length);
+  }
+  return false;
+}
+
+void expand(const std::uint8_t* from, std::size_t channels, std::vector<std::uint8_t>& rgba) {
   const bool grey = channels < 3;
   const bool alpha = channels == 2 || channels == 4;
   for (std::size_t i = 0; i < rgba.size() / 4; ++i) {
-    const std::uint8_t* in = from.data() + i * channels;
+    const std::uint8_t* in = from + i * channels;
     std::uint8_t* out = rgba.data() + i * 4;
     out[0] = in[0];
     out[1] = grey ? in[0] : in[1];
@@ -43,6 +59,9 @@ Rgba8Image decode_png_or_jpeg(std::span<const std::uint8_t> encoded, const std::
   const auto fail = [&label](const std::string& what) { throw SceneError(label + ": " + what); };
   const char* format = format_of(encoded);
   if (format == nullptr) fail("neither a PNG nor a JPEG");
+  if (format == std::string_view("png") && !has_whole_chunks(encoded)) {
+    fail("is corrupt: it ends before its last chunk (IEND)");
+  }
   const auto in = OIIO::ImageInput::create(format);
   if (!in) fail(std::string("OpenImageIO has no reader for ") + format);
 
@@ -64,15 +83,16 @@ Rgba8Image decode_png_or_jpeg(std::span<const std::uint8_t> encoded, const std::
   Rgba8Image image{spec.width, spec.height, {}};
   const auto texels = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
   const auto channels = static_cast<std::size_t>(spec.nchannels);
-  std::vector<std::uint8_t> stored(texels * channels);
-  const bool read = in->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, stored.data());
+  // Not set to zero: memory is used up only as texels come, however large the header says they are.
+  const auto stored = std::make_unique_for_overwrite<std::uint8_t[]>(texels * channels);
+  const bool read = in->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, stored.get());
   // libjpeg fills what a truncated file lacks with grey and only warns: a warning is an error here.
   if (!read || in->has_error()) fail("is corrupt: " + in->geterror());
   if (channels == 4) {
-    image.rgba = std::move(stored);
+    image.rgba.assign(stored.get(), stored.get() + texels * channels);
   } else {
     image.rgba.resize(texels * 4);
-    expand(stored, channels, image.rgba);
+    expand(stored.get(), channels, image.rgba);
   }
   return image;
 }

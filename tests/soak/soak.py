@@ -1,4 +1,4 @@
-"""Long checks: many kills and resumes, and all tests under sanitizers."""
+"""Long checks: many kills and resumes, all tests under sanitizers, and fuzzing."""
 
 import argparse
 import os
@@ -31,27 +31,37 @@ def sanitizers(preset, options):
     return bool(results) and all(results)
 
 
+def fuzz(seconds):
+    """Every fuzz target, going on from the corpus that earlier runs found; findings: build/fuzz/findings."""
+    return (run("fuzz: build", ["./dev", "build-tests", "fuzz", "fuzz"])
+            and run(f"fuzz: {seconds} s for each target",
+                    ["python3", "tests/fuzz/fuzz.py", "--grow", "--seconds", str(seconds)]))
+
+
 CHECKS = {
-    "kills": lambda: kills(20),
-    "asan": lambda: sanitizers("asan", {
+    "kills": lambda _: kills(20),
+    "asan": lambda _: sanitizers("asan", {
         # libpng leaves by longjmp through OpenImageIO and leaks a few bytes of a corrupt file's state. To know
         # it by its caller takes whole stacks, which libstdc++ without frame pointers gives to the slow unwinder only.
         "ASAN_OPTIONS": "fast_unwind_on_malloc=0",
         "LSAN_OPTIONS": f"suppressions={ROOT}/tests/soak/lsan.txt",
     }),
-    "tsan": lambda: sanitizers("tsan", {
+    "tsan": lambda _: sanitizers("tsan", {
         "TSAN_OPTIONS": f"suppressions={ROOT}/tests/soak/tsan.txt",
     }),
+    "fuzz": lambda asked: fuzz(asked.seconds),
 }
 
 
 def main():
     parser = argparse.ArgumentParser(prog="./dev soak", description=__doc__)
     parser.add_argument("checks", nargs="*", metavar="CHECK", help=f"of {', '.join(CHECKS)} (default: all)")
-    chosen = parser.parse_args().checks or list(CHECKS)
+    parser.add_argument("--seconds", type=int, default=600, help="of fuzzing, for each target (default: %(default)s)")
+    asked = parser.parse_args()
+    chosen = asked.checks or list(CHECKS)
     if unknown := [c for c in chosen if c not in CHECKS]:
         parser.error(f"no check {unknown[0]}; there are {', '.join(CHECKS)}")
-    results = {c: CHECKS[c]() for c in chosen}
+    results = {c: CHECKS[c](asked) for c in chosen}
     for name, passed in results.items():
         print(f"{name:<8} {'passed' if passed else 'FAILED'}")
     print(f"{sum(results.values())} passed, {len(results) - sum(results.values())} failed")

@@ -57,6 +57,36 @@ TEST(Curve, CsvLeavesOutWhatIsNotKnown) {
             "2,0.5,0,0,7,0,0.10000000000000001,0.5,0.25,3,4,0.125,0,0,1\n");
 }
 
+TEST(Curve, ComesBackFromACheckpoint) {
+  Curve curve;
+  curve.add(row(1, 0.5));
+  CurveRow r = row(2, 1);
+  r.counters = {1, 2, 3, 4, 5};
+  r.errors = Errors{0.1, 0.5, 0.25, 3, 4};
+  r.est_rmse = 0.125;
+  r.at_floor = true;
+  curve.add(r);
+  ByteWriter out;
+  curve.save(out);
+  ByteReader in(out.bytes());
+  Curve again;
+  again.load(in);
+  EXPECT_TRUE(in.at_end());
+  EXPECT_EQ(again.csv(), curve.csv());
+  EXPECT_EQ(again.rows().size(), 2U);
+}
+
+TEST(Curve, ASavedFlagIsZeroOrOne) {
+  Curve curve;
+  curve.add(row(1, 0.5));
+  ByteWriter out;
+  curve.save(out);
+  std::string bytes = out.take();
+  bytes.back() = 2;  // at_floor
+  ByteReader in(bytes);
+  EXPECT_THROW(curve.load(in), std::runtime_error);
+}
+
 TEST(Budget, FirstLimitReachedEndsIt) {
   Budget b;
   b.seconds = 10;

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+#include <limits>
+
 #include "renderer/core/bytes.h"
 #include "renderer/core/rng.h"
 #include "renderer/film/block_statistics.h"
@@ -87,6 +90,17 @@ TEST(Film, RefusesBytesOfAnotherSizeAndShortOnes) {
     ByteReader cut(std::string_view(out.bytes()).substr(0, n));
     EXPECT_THROW(film.load(cut), std::runtime_error);
   }
+}
+
+TEST(Film, RefusesSavedValuesThatAreNotFinite) {
+  ByteWriter out;
+  noisy(2, 1).save(out);
+  std::string bytes = out.take();
+  const double infinite = std::numeric_limits<double>::infinity();
+  std::memcpy(bytes.data() + bytes.size() - sizeof infinite, &infinite, sizeof infinite);
+  Film film(5, 4);
+  ByteReader in(bytes);
+  EXPECT_THROW(film.load(in), std::runtime_error);
 }
 
 TEST(Metrics, ByHand) {

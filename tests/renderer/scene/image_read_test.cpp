@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <cstring>
 #include <limits>
 
 #include "renderer/scene/image_read.h"
@@ -107,6 +108,46 @@ TEST(ImageRead, RadianceMustBeFiniteAndNotNegative) {
     } catch (const SceneError& e) {
       expect_contains(e.what(), "sky: pixel (2, 1) channel G is ");
     }
+  }
+}
+
+/// The first attribute of an EXR with another size, and what reading it says.
+std::string refusal_of_attribute_size(std::uint32_t size) {
+  const TemporaryFolder folder;
+  test::Bytes bytes = test::read_bytes(write_exr(folder, {"R", "G", "B"}, {1, 2, 3}, 1, 1));
+  std::size_t at = 8;
+  for (int text = 0; text < 2; ++at) text += bytes[at] == 0 ? 1 : 0;  // its name, its type
+  std::memcpy(bytes.data() + at, &size, sizeof size);
+  return refusal(folder.write("lies.exr", bytes));
+}
+
+TEST(ImageRead, AnAttributeLargerThanItsFileIsRefused) {
+  // The library would make room for it first.
+  for (const std::uint32_t size : {1700000000U, 0x7fffffffU, 0xffffffffU}) {
+    const std::string message = refusal_of_attribute_size(size);
+    expect_contains(message, "lies.exr: OpenEXR header: attribute");
+    expect_contains(message, std::to_string(size) + " bytes");
+  }
+}
+
+TEST(ImageRead, AChannelOfAnUnknownTypeIsRefused) {
+  // The library would end the process.
+  const TemporaryFolder folder;
+  test::Bytes bytes = test::read_bytes(write_exr(folder, {"R", "G", "B"}, {1, 2, 3}, 1, 1));
+  const std::string list("chlist\0\x37\0\0\0B\0", 13);
+  const auto found = std::search(bytes.begin(), bytes.end(), list.begin(), list.end());
+  ASSERT_NE(found, bytes.end());
+  found[13] = 3;
+  expect_contains(refusal(folder.write("type.exr", bytes)),
+                  "channel \"B\" has pixel type 3; allowed: 0 to 2");
+}
+
+TEST(ImageRead, AHeaderThatEndsEarlyIsRefused) {
+  const TemporaryFolder folder;
+  const auto bytes = test::read_bytes(write_exr(folder, {"R", "G", "B"}, {1, 2, 3}, 1, 1));
+  for (std::size_t n = 4; n < 100; ++n) {
+    const test::Bytes cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(n));
+    expect_contains(refusal(folder.write("cut.exr", cut)), "cut.exr: OpenEXR header: ");
   }
 }
 

@@ -1,0 +1,147 @@
+#include "renderer/scene/exr_guard.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "renderer/scene/scene_data.h"
+
+namespace lacuna {
+namespace {
+
+// OpenEXR File Layout: magic, version, then for each part attributes until an empty name; where
+// there are several parts, an empty header ends them.
+constexpr std::uint32_t several_parts = 0x1000;
+constexpr std::size_t longest_name = 255;
+constexpr std::uint32_t pixel_types = 3;  // unsigned int, half, float
+
+// OpenEXR reads these without a look at the size that the file gives them: another size would let
+// it go on somewhere else than this guard.
+struct FixedSize {
+  std::string_view type;
+  std::uint32_t bytes;
+};
+constexpr std::array<FixedSize, 23> fixed_sizes{{
+    {"box2i", 16},      {"box2f", 16},   {"chromaticities", 32},
+    {"compression", 1}, {"double", 8},   {"envmap", 1},
+    {"float", 4},       {"int", 4},      {"keycode", 28},
+    {"lineOrder", 1},   {"m33f", 36},    {"m33d", 72},
+    {"m44f", 64},       {"m44d", 128},   {"rational", 8},
+    {"tiledesc", 9},    {"timecode", 8}, {"v2i", 8},
+    {"v2f", 8},         {"v2d", 16},     {"v3i", 12},
+    {"v3f", 12},        {"v3d", 24},
+}};
+
+class Header {
+ public:
+  explicit Header(const std::filesystem::path& file)
+      : file_(file), size_(std::filesystem::file_size(file)), stream_(file, std::ios::binary) {}
+
+  void check() {
+    integer();  // the magic
+    const bool parts = (integer() & several_parts) != 0;
+    for (bool first = true; check_attributes(first) && parts; first = false) {
+    }
+  }
+
+ private:
+  /// Up to the empty name that ends a header. False if there was none before it.
+  bool check_attributes(bool first) {
+    bool any = false;
+    for (std::string name = text(); !name.empty(); name = text()) {
+      any = true;
+      const std::string type = text();
+      const std::uint32_t bytes = integer();
+      const auto at = static_cast<std::uintmax_t>(stream_.tellg());
+      if (bytes > size_ - at) {
+        fail("attribute \"" + printable(name) + "\" (" + printable(type) + ") has " +
+             std::to_string(bytes) + " bytes; the file ends after " + std::to_string(size_ - at));
+      }
+      const bool sized = check_value(type, at + bytes);
+      if (!sized) {
+        fail("attribute \"" + printable(name) + "\" has " + std::to_string(bytes) +
+             " bytes, which is no size of its type " + printable(type));
+      }
+      stream_.seekg(static_cast<std::streamoff>(at + bytes));
+    }
+    if (first && !any) fail("there are no attributes");
+    return any;
+  }
+
+  /// Whether a value from here to `end` can be of `type`.
+  bool check_value(const std::string& type, std::uintmax_t end) {
+    const auto at = [&] { return static_cast<std::uintmax_t>(stream_.tellg()); };
+    if (type == "chlist") {
+      check_channels();
+      return at() == end;
+    }
+    if (type == "preview") {
+      if (end - at() < 8) return false;
+      const std::uint64_t width = integer();
+      const std::uint64_t height = integer();
+      return width < 65536 && height < 65536 && end - at() == 4 * width * height;
+    }
+    if (type == "stringvector") {
+      while (end - at() >= 4) {
+        const std::uint32_t length = integer();
+        if (length > end - at()) return false;
+        stream_.seekg(length, std::ios::cur);
+      }
+      return at() == end;
+    }
+    const auto* const fixed = std::find_if(fixed_sizes.begin(), fixed_sizes.end(),
+                                           [&](const FixedSize& f) { return f.type == type; });
+    return fixed == fixed_sizes.end() || end - at() == fixed->bytes;
+  }
+
+  void check_channels() {
+    for (std::string name = text(); !name.empty(); name = text()) {
+      const std::uint32_t type = integer();
+      if (type >= pixel_types) {
+        fail("channel \"" + printable(name) + "\" has pixel type " + std::to_string(type) +
+             "; allowed: 0 to " + std::to_string(pixel_types - 1));
+      }
+      for (int i = 0; i < 3; ++i) integer();  // whether it is linear; its sampling
+    }
+  }
+
+  std::uint32_t integer() {
+    std::uint32_t value = 0;  // x86-64 is little-endian, as is OpenEXR
+    if (!stream_.read(reinterpret_cast<char*>(&value), sizeof value)) fail("the file ends in it");
+    return value;
+  }
+
+  std::string text() {
+    std::string value;
+    for (int c = stream_.get(); c != 0; c = stream_.get()) {
+      if (!stream_) fail("the file ends in it");
+      if (value.size() == longest_name) {
+        fail("a name is longer than " + std::to_string(longest_name) + " bytes");
+      }
+      value.push_back(static_cast<char>(c));
+    }
+    return value;
+  }
+
+  static std::string printable(std::string s) {
+    for (char& c : s) c = c >= 0x20 && c < 0x7f ? c : '?';
+    return s;
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw SceneError(file_.string() + ": OpenEXR header: " + what);
+  }
+
+  const std::filesystem::path& file_;
+  std::uintmax_t size_;
+  std::ifstream stream_;
+};
+
+}  // namespace
+
+void check_exr_header(const std::filesystem::path& file) { Header(file).check(); }
+
+}  // namespace lacuna

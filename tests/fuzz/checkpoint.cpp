@@ -1,0 +1,144 @@
+#include "jobs/run/checkpoint.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "analysis/storage/atomic_file.h"
+#include "jobs/run/render_loop.h"
+#include "tests/fuzz/input_file.h"
+
+// A checkpoint. The bytes are read as a whole file, where the checksum stops nearly all of them,
+// and as the content of a file with a right header: refused, or a state from which the loop goes
+// on, and which it writes as it was.
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
+
+namespace lacuna::fuzz {
+namespace {
+
+/// Gives a picture without rendering one, and has some state to save.
+class Still final : public Integrator {
+ public:
+  SceneNeeds needs() const override { return {}; }
+  Counters iterate(const IterationContext& context, Image& image) override {
+    for (Rgb& p : image.pixels) p = Rgb(1, 2, static_cast<float>(context.iteration));
+    ++learned_;
+    return {image.pixels.size(), image.pixels.size(), 0, 0, 0};
+  }
+  void save(ByteWriter& out) const override { out.put(learned_); }
+  void load(ByteReader& in) override { learned_ = in.get<std::uint64_t>(); }
+
+ private:
+  std::uint64_t learned_ = 0;
+};
+
+class Quiet final : public Observer {
+ public:
+  void phase(const std::string&) override {}
+  void progress(const Progress&) override {}
+  void milestone(const std::string&) override {}
+  void warning(const std::string&) override { ++warnings; }
+  int warnings = 0;
+};
+
+SceneData one_triangle() {
+  SceneData data;
+  data.materials.emplace_back();
+  Mesh mesh;
+  mesh.positions = {V3f(0, 0, 0), V3f(1, 0, 0), V3f(0, 1, 0)};
+  mesh.triangles = {{0, 1, 2}};
+  data.meshes.push_back(std::move(mesh));
+  return data;
+}
+
+/// A job that renders two by two pixels.
+class Job {
+ public:
+  Job() {
+    spec.scene = "a.glb";
+    spec.resolution = {2, 2};
+    spec.budget.iterations = 1000;
+    spec.checkpoint_seconds = 86400;
+  }
+
+  /// Goes on from `checkpoint`, for `iterations` more, and gives the content that is saved after
+  /// them; nothing if the checkpoint was refused.
+  std::optional<std::string> go_on(int iterations) {
+    Still still;
+    Quiet quiet;
+    int left = iterations;
+    const std::function<bool()> interrupted = [&] { return left-- <= 0; };
+    RenderLoop loop({folder, spec, scene, camera, pool, still, &reference, interrupted, quiet,
+                     phases, "content"});
+    loop.resume();
+    if (quiet.warnings > 0) return std::nullopt;
+    loop.run();
+    return read_checkpoint(checkpoint(), key_of(read_file(checkpoint(), 1 << 20)));
+  }
+
+  std::filesystem::path checkpoint() const { return folder.file("checkpoint.bin"); }
+  /// The key in the header of a checkpoint.
+  static std::string key_of(const std::string& bytes) {
+    ByteReader in(bytes);
+    in.get_text();
+    return std::string(in.get_text());
+  }
+
+  Folder temporary;
+  JobFolder folder{temporary.dir()};
+  JobSpec spec;
+  ThreadPool pool{1};
+  Scene scene{one_triangle(), {}, std::nullopt, pool};
+  Camera camera{CameraData{}, 2, 2};
+  Reference reference{"reference", std::vector<double>(12, 1.0), 0.5};
+  PhaseSeconds phases;
+};
+
+/// The job, the key of its checkpoints, and one that the loop wrote itself.
+struct Ready {
+  Job job;
+  std::string own = job.go_on(3).value();
+  std::string key = Job::key_of(read_file(job.checkpoint(), 1 << 20));
+};
+Ready& ready() {
+  static Ready once;
+  return once;
+}
+
+void read_as_file(std::string_view bytes) {
+  Job& job = ready().job;
+  write_file_atomically(job.checkpoint(), bytes, false);
+  try {
+    read_checkpoint(job.checkpoint(), ready().key);
+  } catch (const std::runtime_error&) {
+  }
+}
+
+void read_as_content(const std::string& content) {
+  Job& job = ready().job;
+  write_checkpoint(job.checkpoint(), ready().key, content);
+  if (const auto saved = job.go_on(0)) {
+    expect(*saved == content, "what a checkpoint restores is saved as it was");
+  }
+}
+
+}  // namespace
+}  // namespace lacuna::fuzz
+
+/// Begins with a checkpoint of today's layout, so that no stored one can be out of date.
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t max_size, unsigned) {
+  const std::string& own = lacuna::fuzz::ready().own;
+  if (size < 16 && own.size() <= max_size) {
+    std::memcpy(data, own.data(), own.size());
+    size = own.size();
+  }
+  return LLVMFuzzerMutate(data, size, max_size);
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  lacuna::fuzz::read_as_file(bytes);
+  lacuna::fuzz::read_as_content(bytes);
+  return 0;
+}

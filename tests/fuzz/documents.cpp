@@ -1,0 +1,34 @@
+#include "jobs/spec/described_json.h"
+#include "jobs/store/job_folder.h"
+#include "tests/fuzz/expect.h"
+
+// state.json and progress.json: refused with their problems, or written and read back without a
+// change. The text is tried as both.
+
+namespace lacuna::fuzz {
+namespace {
+
+constexpr DocumentLimits limits{1 << 16, 8};
+
+template <Described T>
+void read(std::string_view text) {
+  T document;
+  try {
+    document = read_document<T>(text, limits);
+  } catch (const BadJob& bad) {
+    expect(!bad.problems().empty(), "a document that is refused has a problem");
+    return;
+  }
+  expect(read_document<T>(write_document(document), {1 << 20, 8}) == document,
+         "a document that is written reads back equal");
+}
+
+}  // namespace
+}  // namespace lacuna::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  lacuna::fuzz::read<lacuna::JobState>(text);
+  lacuna::fuzz::read<lacuna::Progress>(text);
+  return 0;
+}

@@ -1,0 +1,35 @@
+#include "renderer/scene/image_read.h"
+#include "renderer/scene/scene_data.h"
+#include "tests/fuzz/input_file.h"
+
+// An OpenEXR or Radiance HDR file, as references and environments are: refused, or an image of the
+// size it says, for the picture itself and for a layer.
+
+namespace lacuna::fuzz {
+namespace {
+
+void read(const std::filesystem::path& file, const std::string& layer) {
+  try {
+    const FloatImage image = read_float_image(file, layer);
+    expect(image.width > 0 && image.height > 0, "an image has pixels");
+    expect(image.rgb.size() == 3 * std::size_t(image.width) * std::size_t(image.height),
+           "and three values a pixel");
+    require_radiance(image, "input");
+  } catch (const SceneError&) {
+  }
+}
+
+}  // namespace
+}  // namespace lacuna::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace lacuna::fuzz;
+  static const InputFile input("input.exr");
+  const std::string layer = "half_a";
+  const auto& file = input.holding({data, size});
+  read(file, "");
+  // Decoding is slow: only where there may be such a layer.
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  if (text.find(layer) != std::string_view::npos) read(file, layer);
+  return 0;
+}

@@ -1,0 +1,88 @@
+#include <algorithm>
+#include <random>
+
+#include "renderer/integrators/integrator.h"
+#include "renderer/scene/gltf_guard.h"
+#include "tests/fuzz/input_file.h"
+#include "tests/renderer/scene/glb_frame.h"
+#include "tests/renderer/scene/scene_promises.h"
+
+// A .glb or .gltf: refused, or a scene that keeps the promises of SceneData, is built, and gives a
+// small picture without a value that is not finite.
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
+
+namespace lacuna::fuzz {
+namespace {
+
+const ThreadPool& pool() {
+  static const ThreadPool one(1);
+  return one;
+}
+
+void render(SceneData data) {
+  if (data.cameras.empty()) return;
+  constexpr int side = 4;
+  const Camera camera(data.cameras.front(), side, side);
+  PathSettings settings;
+  settings.max_depth = 4;
+  const auto integrator = make_integrator(settings);
+  const Scene scene(std::move(data), integrator->needs(), std::nullopt, pool());
+  Image image(side, side);
+  const std::function<bool()> never = [] { return false; };
+  const Counters counters = integrator->iterate({scene, camera, pool(), 1, 0, never}, image);
+  expect(counters.samples == side * side, "every pixel is sampled");
+  for (const Rgb& p : image.pixels) expect(is_finite(p), "nothing non-finite enters a picture");
+}
+
+/// Changes one of the chunks and puts them together again: without this nearly every change of a
+/// length ends at the header.
+std::size_t mutate_chunk(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                         bool json_chunk) {
+  const gltf::Framing framing = gltf::check_framing({data, size});
+  const auto* bin_begin = framing.json.data() + framing.json.size() + 8;
+  std::vector<std::uint8_t> json(framing.json.begin(), framing.json.end());
+  std::vector<std::uint8_t> bin;
+  if (framing.bin_bytes > 0) bin.assign(bin_begin, bin_begin + framing.bin_bytes);
+  std::vector<std::uint8_t>& changed = json_chunk || bin.empty() ? json : bin;
+  const std::size_t others = size - changed.size();
+  constexpr std::size_t slack = 16;  // padding and a header
+  if (others + slack >= max_size) return LLVMFuzzerMutate(data, size, max_size);
+  const std::size_t before = changed.size();
+  changed.resize(std::max(before, max_size - others - slack));
+  changed.resize(LLVMFuzzerMutate(changed.data(), before, changed.size()));
+  const auto out = test::frame_glb({json.begin(), json.end()}, std::move(bin));
+  if (out.size() > max_size) return LLVMFuzzerMutate(data, size, max_size);
+  std::copy(out.begin(), out.end(), data);
+  return out.size();
+}
+
+}  // namespace
+}  // namespace lacuna::fuzz
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t max_size, unsigned seed) {
+  std::minstd_rand random(seed);
+  const auto choice = random() % 10;
+  if (choice == 0) return LLVMFuzzerMutate(data, size, max_size);
+  try {
+    if (!lacuna::gltf::check_framing({data, size}).binary) {
+      return LLVMFuzzerMutate(data, size, max_size);
+    }
+    return lacuna::fuzz::mutate_chunk(data, size, max_size, choice > 3);
+  } catch (const lacuna::SceneError&) {
+    return LLVMFuzzerMutate(data, size, max_size);
+  }
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace lacuna;
+  static const fuzz::InputFile input("input.glb");
+  try {
+    SceneData scene = load_gltf(input.holding({data, size}));
+    fuzz::expect(test::broken_promise(scene).empty(), "a scene keeps the promises of SceneData");
+    fuzz::render(std::move(scene));
+  } catch (const SceneError&) {
+  }
+  return 0;
+}

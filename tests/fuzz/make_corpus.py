@@ -1,0 +1,138 @@
+"""Makes the seeds of tests/fuzz/corpus that are not text: small pictures and a scene of every kind that is read."""
+
+import base64
+import json
+import pathlib
+import struct
+import subprocess
+
+CORPUS = pathlib.Path(__file__).resolve().parent / "corpus"
+PATTERN = "fill:topleft=.1,.2,.3,1:topright=1,0,0,.5:bottomleft=0,1,0,1:bottomright=2,3,.5,0"
+
+
+def make(file, *options, size="7x5", channels=4, save=()):
+    file = CORPUS / file
+    file.parent.mkdir(parents=True, exist_ok=True)
+    subprocess.run(["oiiotool", "--nosoftwareattrib", "--pattern", PATTERN, size, str(channels), *options,
+                    "--attrib", "DateTime", "2000:01:01 00:00:00", *save, "-o", str(file)], check=True)
+
+
+def float_images():
+    for compression in ("none", "rle", "zip", "zips", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"):
+        make(f"float_image/{compression}.exr", channels=3, save=("-d", "half", "--compression", compression))
+    rgb = {"channels": 3}
+    make("float_image/float.exr", **rgb, save=("-d", "float"))
+    make("float_image/uint.exr", **rgb, save=("-d", "uint32"))
+    make("float_image/tiled.exr", **rgb, save=("-d", "half", "--tile", "4", "4"))
+    make("float_image/grey.exr", "--ch", "R", "--chnames", "Y", **rgb, save=("-d", "half"))
+    make("float_image/layers.exr", "--dup", "--chnames", "half_a.R,half_a.G,half_a.B", "--chappend", **rgb,
+         save=("-d", "half"))
+    make("float_image/parts.exr", "--dup", "--chnames", "half_a.R,half_a.G,half_a.B", "--siappend", **rgb,
+         save=("-d", "half"))
+    make("float_image/attributes.exr", "--attrib", "lacuna:est_rmse", "0.25", "--attrib:type=float", "x", "3",
+         **rgb, save=("-d", "half"))
+    make("float_image/crop.exr", "--crop", "3x2+1+1", **rgb, save=("-d", "half"))
+    make("float_image/flat.hdr", size="4x3", **rgb)
+    make("float_image/runs.hdr", size="16x3", **rgb)
+
+
+def textures():
+    for channels, name in ((1, "grey"), (2, "grey_alpha"), (3, "rgb"), (4, "rgba")):
+        make(f"texture/{name}.png", "--ch", "R,G,B,A"[:2 * channels - 1], save=("-d", "uint8"))
+        make(f"texture/{name}16.png", "--ch", "R,G,B,A"[:2 * channels - 1], save=("-d", "uint16"))
+    make("texture/grey.jpg", "--ch", "R", save=("-d", "uint8"))
+    make("texture/rgb.jpg", channels=3, save=("-d", "uint8"))
+    make("texture/rgb_large.jpg", size="40x24", channels=3, save=("-d", "uint8", "--quality", "30"))
+
+
+class Buffer:
+    """Collects the binary of a scene; each call gives the index of an accessor or of a bufferView."""
+
+    def __init__(self):
+        self.bytes, self.views, self.accessors = bytearray(), [], []
+
+    def view(self, data, **more):
+        self.bytes += bytes(-len(self.bytes) % 4)
+        self.views.append({"buffer": 0, "byteOffset": len(self.bytes), "byteLength": len(data), **more})
+        self.bytes += data
+        return len(self.views) - 1
+
+    def accessor(self, view, component, kind, count, offset=0, **more):
+        self.accessors.append({"bufferView": view, "byteOffset": offset, "componentType": component, "count": count,
+                               "type": kind, **more})
+        return len(self.accessors) - 1
+
+
+def primitives(buffer):
+    """A strip and a list, interleaved and apart, with every type of index and of texture coordinate."""
+    corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, .5)]
+    both = buffer.view(b"".join(struct.pack("<6f", *c, 0, 0, 1) for c in corners), byteStride=24)
+    position, normal = (buffer.accessor(both, 5126, "VEC3", 4, 12 * k) for k in range(2))
+    shorts = buffer.accessor(buffer.view(struct.pack("<8H", 0, 0, 65535, 0, 0, 65535, 65535, 65535)), 5123, "VEC2", 4,
+                             normalized=True)
+    floats = buffer.accessor(buffer.view(struct.pack("<8f", 0, 0, 2, 0, 0, -2, 2, 2)), 5126, "VEC2", 4)
+    indices = [buffer.accessor(buffer.view(struct.pack(f"<6{code}", 0, 1, 2, 2, 1, 3)), component, "SCALAR", 6)
+               for code, component in (("B", 5121), ("H", 5123), ("I", 5125))]
+    attributes = {"POSITION": position, "NORMAL": normal, "TEXCOORD_0": shorts, "TEXCOORD_1": floats}
+    return [{"attributes": attributes, "indices": indices[0], "material": 0},
+            {"attributes": attributes, "indices": indices[1], "material": 1},
+            {"attributes": {"POSITION": position}, "indices": indices[2], "material": 2},
+            {"attributes": attributes, "mode": 5, "material": 0},
+            {"attributes": {"POSITION": position}, "mode": 6}]
+
+
+def materials():
+    def texture(**more):
+        return {"index": 0, **more}
+    turned = {"extensions": {"KHR_texture_transform": {"offset": [.1, .2], "rotation": 1, "scale": [2, 3]}}}
+    return [
+        {"alphaMode": "MASK", "alphaCutoff": .4, "doubleSided": True,
+         "pbrMetallicRoughness": {"baseColorTexture": texture(texCoord=1, **turned), "metallicFactor": .5}},
+        {"emissiveFactor": [1, .5, 0], "emissiveTexture": texture(),
+         "pbrMetallicRoughness": {"metallicRoughnessTexture": texture(), "roughnessFactor": .3},
+         "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 5}}},
+        {"pbrMetallicRoughness": {"baseColorFactor": [.2, .5, .8, 1], "roughnessFactor": 0},
+         "extensions": {"KHR_materials_ior": {"ior": 1.4}, "KHR_materials_transmission": {"transmissionFactor": .9},
+                        "KHR_materials_specular": {"specularFactor": .5, "specularColorFactor": [1, .9, .8]}}}]
+
+
+def scene(buffer):
+    mesh = {"primitives": primitives(buffer)}
+    image = buffer.view((CORPUS / "texture/rgba.png").read_bytes())
+    lights = [{"type": "point", "intensity": 3}, {"type": "directional", "color": [1, .5, 0]},
+              {"type": "spot", "intensity": 9, "spot": {"innerConeAngle": .1, "outerConeAngle": .5}}]
+    nodes = [{"mesh": 0, "rotation": [0, 0, .6, .8], "scale": [1, -2, 1], "children": [1]},
+             {"mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, .5, 0, -1, 1]},
+             {"camera": 0, "translation": [.4, .4, 2]}]
+    nodes += [{"translation": [0, 1, 1], "extensions": {"KHR_lights_punctual": {"light": i}}} for i in range(3)]
+    return {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 2, 3, 4, 5]}], "nodes": nodes,
+            "extensionsUsed": ["KHR_lights_punctual", "KHR_texture_transform"],
+            "meshes": [mesh], "materials": materials(), "accessors": buffer.accessors, "bufferViews": buffer.views,
+            "textures": [{"source": 0, "sampler": 0}], "samplers": [{"wrapS": 33071, "wrapT": 33648}],
+            "images": [{"bufferView": image, "mimeType": "image/png"}],
+            "cameras": [{"type": "perspective", "perspective": {"yfov": .8, "znear": .01}}],
+            "extensions": {"KHR_lights_punctual": {"lights": lights}}}
+
+
+def scenes():
+    buffer = Buffer()
+    content = scene(buffer)
+    folder = CORPUS / "glb"
+    folder.mkdir(parents=True, exist_ok=True)
+    content["buffers"] = [{"byteLength": len(buffer.bytes)}]
+    text = json.dumps(content, separators=(",", ":")).encode()
+    text += b" " * (-len(text) % 4)
+    binary = bytes(buffer.bytes) + bytes(-len(buffer.bytes) % 4)
+    (folder / "everything.glb").write_bytes(
+        struct.pack("<5I", 0x46546C67, 2, 28 + len(text) + len(binary), len(text), 0x4E4F534A) + text
+        + struct.pack("<2I", len(binary), 0x004E4942) + binary)
+    uri = "data:application/octet-stream;base64," + base64.b64encode(binary).decode()
+    content["buffers"] = [{"byteLength": len(binary), "uri": uri}]
+    content["images"] = [{"uri": "data:image/png;base64,"
+                          + base64.b64encode((CORPUS / "texture/rgba.png").read_bytes()).decode()}]
+    (folder / "everything.gltf").write_text(json.dumps(content, separators=(",", ":")))
+
+
+float_images()
+textures()
+scenes()

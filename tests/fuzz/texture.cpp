@@ -1,0 +1,26 @@
+#include "renderer/scene/texture.h"
+
+#include "renderer/scene/scene_data.h"
+#include "tests/fuzz/expect.h"
+
+// A PNG or JPEG of a scene: refused, or texels that can be looked up anywhere.
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace lacuna;
+  Texture texture("input", {data, data + size}, Texture::Encoding::srgb, Texture::Wrap::repeat,
+                  Texture::Wrap::mirrored);
+  try {
+    texture.decode();
+  } catch (const SceneError&) {
+    return 0;
+  }
+  fuzz::expect(texture.decoded() && texture.bytes() % 4 == 0, "a texture has RGBA texels");
+  const auto is_colour = [](const Rgba& c) {
+    return c.rgb.x >= 0 && c.rgb.x <= 1 && c.a >= 0 && c.a <= 1;
+  };
+  for (const V2f& uv : {V2f(0, 0), V2f(1, 1), V2f(0.3F, -7.7F), V2f(3e38F, -3e38F)}) {
+    fuzz::expect(is_colour(texture.lookup(uv)), "a texel lies in [0, 1]");
+  }
+  fuzz::expect(is_colour(texture.mean()), "so does the mean");
+  return 0;
+}
