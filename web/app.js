@@ -1,7 +1,8 @@
 // The router: one view per hash route, and with `embed` in the query its curves alone; each is given
 // an AbortSignal that ends everything it started.
 import { ApiError } from "./api.js";
-import { h } from "./dom.js";
+import { h, problem } from "./dom.js";
+import "./keys.js";
 import * as compare from "./view_compare.js";
 import * as figure from "./view_figure.js";
 import * as job from "./view_job.js";
@@ -35,13 +36,14 @@ function markNavigation(path) {
 function explain(error) {
   const known = error instanceof ApiError;
   return h("section", { role: "alert" },
-    h("h1", {}, known ? error.title : "This view failed"),
-    h("p", { className: "problem" }, known ? error.message : String(error)),
-    h("p", {}, h("a", { href: "#/" }, "All jobs")));
+    h("h1", known ? error.title : "This view failed"),
+    problem(known ? error.message : String(error)),
+    h("p", h("a", { href: "#/" }, "All jobs")));
 }
 
 async function route() {
   leaving.abort();
+  document.querySelector("dialog")?.close();
   leaving = new AbortController();
   const { signal } = leaving;
   const { path, query } = address();

@@ -1,11 +1,11 @@
 // A job's state and progress, as every view shows them.
-import { isTerminal } from "./api.js";
 import { h, setText } from "./dom.js";
 import { duration, number, seconds } from "./format.js";
+import { isTerminal } from "./states.js";
 
 /// A badge that says a state in words; `set(state, phase)`.
 export function badge() {
-  const element = h("span", { className: "badge" });
+  const element = h("span.badge");
   return {
     element,
     set(state, phase = "") {
@@ -18,8 +18,8 @@ export function badge() {
 /// A bar with what remains beside it; `set(state, progress)`. It hides once nothing more happens.
 export function progressBar(label) {
   const bar = h("progress", { max: 1, value: 0, "aria-label": label });
-  const text = h("span", { className: "remaining" });
-  const element = h("span", { className: "progress" }, bar, text);
+  const text = h("span.remaining");
+  const element = h("span.progress", bar, text);
   return {
     element,
     set(state, progress) {
