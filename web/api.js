@@ -54,7 +54,6 @@ const json = async (path, signal) => (await request(path, { signal })).json();
 export const getJobs = (wanted, signal) => json(`/api/jobs?${queryOf(wanted)}`, signal);
 export const getJob = (id, signal) => json(jobPath(id), signal);
 export const getScenes = async (signal) => (await json("/api/scenes", signal)).scenes;
-export const getJobSchema = (signal) => json("/api/schema/job", signal);
 /// A file as it is now: a Response.
 export const getFile = (id, name, signal) => request(fileUrl(id, name), { signal, cache: "no-cache" });
 export const getText = async (id, name, signal) => (await getFile(id, name, signal)).text();
@@ -68,12 +67,8 @@ export async function getPart(id, name, offset, bytes, signal) {
     throw error;
   });
   const data = await response.arrayBuffer();
-  const total = /\/(\d+)$/.exec(response.headers.get("Content-Range"))?.[1];
-  return {
-    data: total === undefined ? data.slice(offset, offset + bytes) : data,
-    total: Number(total ?? data.byteLength),
-    tag: response.headers.get("ETag"),
-  };
+  const total = /\d+$/.exec(response.headers.get("Content-Range"))?.[0];
+  return { data, total: Number(total ?? 0), tag: response.headers.get("ETag") };
 }
 
 /// The log from the byte `offset` on: {data, next}, where the rest of it begins; beyond the log's end
@@ -97,23 +92,17 @@ export async function postJob(text) {
 
 const sayLink = (text) => setText(document.getElementById("link-state"), text);
 
-const longestPause = 30_000;
-
-/// Calls `step` now and `ms` after its end (later after a long one, so that thousands of jobs do not
-/// keep both sides busy), while the page can be seen, until `signal` is aborted or `step` gives
-/// false. An unanswered request is said in the head of the page and tried again; other errors end
-/// it. The first call's errors are thrown to the caller.
+/// Calls `step` now and `ms` after its end, while the page can be seen, until `signal` is aborted or
+/// `step` gives false. An unanswered request is said in the head of the page and tried again. The first
+/// call's errors are thrown to the caller.
 export async function poll(step, ms, signal) {
   signal.addEventListener("abort", () => sayLink(""));
-  let began = performance.now();
   let more = await step();
   (async () => {
     while (more !== false) {
-      const pause = Math.max(ms, Math.min(longestPause, 10 * (performance.now() - began)));
-      await new Promise((resolve) => { setTimeout(resolve, pause); });
+      await new Promise((resolve) => { setTimeout(resolve, ms); });
       if (signal.aborted) return;
       if (document.hidden) continue;
-      began = performance.now();
       try {
         more = await step();
         sayLink("");

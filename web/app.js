@@ -26,13 +26,6 @@ function address() {
   return { path: path || "/", query: new URLSearchParams(query) };
 }
 
-function markNavigation(path) {
-  for (const link of document.querySelectorAll("nav a")) {
-    if (link.getAttribute("href") === `#${path}`) link.setAttribute("aria-current", "page");
-    else link.removeAttribute("aria-current");
-  }
-}
-
 function explain(error) {
   const known = error instanceof ApiError;
   return h("section", { role: "alert" },
@@ -47,11 +40,10 @@ async function route() {
   leaving = new AbortController();
   const { signal } = leaving;
   const { path, query } = address();
-  const match = routes.map((r) => ({ ...r, found: r.pattern.exec(path) }))
-    .find((r) => r.found);
+  const match = routes.find(({ pattern }) => pattern.test(path));
   const alone = query.has("embed") && match?.alone;
   document.body.classList.toggle("embed", Boolean(alone));
-  markNavigation(path);
+  for (const link of document.querySelectorAll("nav a")) link.ariaCurrent = link.hash === `#${path}` ? "page" : null;
   main.replaceChildren();
   main.removeAttribute("data-ready");
   if (shown) main.focus({ preventScroll: true });
@@ -59,7 +51,7 @@ async function route() {
   window.scrollTo(0, 0);
   try {
     if (!match) throw new ApiError(404, { title: "No such view", detail: `#${path} leads nowhere.` });
-    await (alone || match.show)(main, { params: match.found.groups ?? {}, query, signal });
+    await (alone || match.show)(main, { params: match.pattern.exec(path).groups ?? {}, query, signal });
   } catch (error) {
     if (signal.aborted) return;
     document.title = "Lacuna";

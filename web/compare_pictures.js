@@ -1,6 +1,6 @@
 // The pictures of several jobs: those with layers of one size in one viewer, the others side by side.
 import { fileUrl } from "./api.js";
-import { h, note, replace } from "./dom.js";
+import { h, replace } from "./dom.js";
 import { openLayers } from "./layers.js";
 import { picture } from "./picture.js";
 import { currentError } from "./status.js";
@@ -9,8 +9,7 @@ import { noViewer, viewer } from "./viewer.js";
 /// `show(jobs, labels)`: jobs are {id, state, progress, files}. The viewer's state is in `query`.
 export function comparePictures(query, signal) {
   const numbers = viewer(query, signal);
-  const gallery = h("div.gallery");
-  const notes = h("div");
+  const apart = h("div.gallery");
   const place = h("div");
   const plain = new Map();  // stay while jobs run
   const opened = new Map();
@@ -29,17 +28,17 @@ export function comparePictures(query, signal) {
 
   /// image.png of those that the viewer leaves out, and why.
   function showApart(entries) {
-    for (const { id, name, image } of entries) {
-      if (!plain.has(id)) plain.set(id, picture(`Picture of ${name}`, h("a", { href: `#/job/${id}` }, name)));
+    for (const { id, name, image, layers } of entries) {
+      const why = numbers === null ? noViewer
+        : `${layers ? "Not of the first's size" : "No layers.json"}: image.png, each as bright as it chose.`;
+      if (!plain.has(id)) plain.set(id, picture(`Picture of ${name}`, [h("a", { href: `#/job/${id}` }, name), why]));
       plain.get(id).load(image);
     }
-    replace(gallery, entries.map(({ id }) => plain.get(id).element));
-    replace(notes, numbers === null ? note(noViewer) : entries.filter((e) => e.image).map(({ name, layers }) =>
-      note(`${name}: ${layers ? "not of the first's size" : "no layers.json"}, so image.png is shown.`)));
+    replace(apart, entries.map(({ id }) => plain.get(id).element));
   }
 
   return {
-    element: h("div", place, notes, gallery),
+    element: h("div", place, apart),
     async show(jobs, labels) {
       const entries = await Promise.all(jobs.map((job, i) => entryOf(job, labels[i])));
       const first = entries.find((e) => e.layers)?.layers;

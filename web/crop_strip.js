@@ -47,7 +47,8 @@ export function cropStrip(signal) {
 
   return {
     element,
-    show({ mode, crop }, sources, images, look, ratio) {
+    /// One crop a frame, because many at once would be a pause.
+    async show({ mode, crop }, sources, images, look, ratio) {
       element.hidden = mode !== "crops" || images.includes(undefined);
       if (element.hidden) return;
       const now = JSON.stringify([crop, look, ratio]);
@@ -58,7 +59,10 @@ export function cropStrip(signal) {
       const zoom = Math.max(1, Math.floor(longest / Math.max(crop.w, crop.h)));
       setText(title, `${crop.w} × ${crop.h} pixels at (${crop.x}, ${crop.y}), ${zoom} times as large. `
         + `Drag over the picture to choose others, at most ${longest} a side.`);
-      images.forEach((image, i) => draw(canvases[i], image, crop, zoom, look, ratio));
+      for (let i = 0; i < images.length && shown.images === images && shown.now === now; i += 1) {
+        draw(canvases[i], images[i], crop, zoom, look, ratio);
+        await new Promise(requestAnimationFrame);
+      }
     },
   };
 }

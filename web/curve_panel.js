@@ -1,16 +1,14 @@
 // The error plot with its switches, as the job view, the comparison and the figure alone show it.
 import { axes, metrics, presentMetrics } from "./curve.js";
-import { h, labelledSelect, remember, small } from "./dom.js";
+import { addressOf, h, labelledSelect, remember, small } from "./dom.js";
 import { saveFigure } from "./figure_file.js";
 import { figureSvg } from "./figure_svg.js";
 import { plot } from "./plot.js";
 
-const leave = () => location.hash.replace(/[?&]embed(=[^&]*)?(?=&|$)/, "").replace(/^([^?&]*)&/, "$1?");
-
-/// A plot and its switches. `query` (URLSearchParams) holds the choice, `x` and `y`; it is changed
-/// with the switches, the address with it, and then `changed()` is called. `show(series, preferred)` draws, against what `query`
-/// says: else the metric `preferred`, else the first that all of them have. After it, `x` and `y` say
-/// what is shown; `y` is null if there is nothing.
+/// A plot and its switches. `query` (URLSearchParams) holds the choice, `x` and `y`; the switches change
+/// it and the address, and then `changed()` is called. `show(series, preferred)` draws what `query` says:
+/// else the metric `preferred`, else the first that all of them have. After it, `x` and `y` say what is
+/// shown; `y` is null if there is nothing.
 export function curvePanel(query, signal, changed = () => {}) {
   const figure = plot(signal);
   const choose = (key) => (value) => {
@@ -23,8 +21,11 @@ export function curvePanel(query, signal, changed = () => {}) {
   const y = labelledSelect("Error", choose("y"));
   const save = (kind) => small(`Save as ${kind}`, () => saveFigure(figureSvg(shown, panel.x, panel.y),
     `lacuna-${panel.y}.${kind.toLowerCase()}`));
-  const alone = small(query.has("embed") ? "Leave the figure" : "Figure alone", () => {
-    location.hash = query.has("embed") ? leave() : `${location.hash}${location.hash.includes("?") ? "&" : "?"}embed`;
+  const embedded = query.has("embed");
+  const alone = small(embedded ? "Leave the figure" : "Figure alone", () => {
+    if (embedded) query.delete("embed");
+    else query.set("embed", "");
+    location.hash = addressOf(query);
   });
   const switches = h("div.switches", y.element, x.element,
     h("span.tools", alone, save("SVG"), save("PNG")));

@@ -43,9 +43,11 @@ export function setText(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-/// Makes `query` (URLSearchParams) that of the address, without a new step in the history.
-export const remember = (query) => history.replaceState(null, "",
-  `${(location.hash || "#/").split("?")[0]}?${query}`.replaceAll("%2C", ",").replace(/\?$/, ""));
+/// The address of this view with `query` (URLSearchParams), and giving it that without a new step in the
+/// history.
+export const addressOf = (query) =>
+  `${(location.hash || "#/").split("?")[0]}?${query}`.replaceAll("%2C", ",").replace(/\?$/, "");
+export const remember = (query) => history.replaceState(null, "", addressOf(query));
 
 /// A button; `props` as for h().
 export const button = (text, onclick, props = {}) => h("button", { type: "button", onclick, ...props }, text);

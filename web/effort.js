@@ -1,8 +1,27 @@
 // Where a job's time and rays went, and what it built, from report.json.
 import { facts, h } from "./dom.js";
 import { number, quantity, seconds, words } from "./format.js";
+import { curveColour } from "./palette.js";
 import { leafName, leaves } from "./report.js";
-import { stackedBar } from "./stacked_bar.js";
+
+/// Shares of a whole as one bar, with a legend that says the same in words; `parts` are [{name, value, text}].
+function stackedBar(title, parts) {
+  const total = parts.reduce((sum, p) => sum + p.value, 0);
+  const percent = ({ value }) => (total > 0 ? (100 * value) / total : 0);
+  const paint = (element, i) => {
+    element.style.background = curveColour(i);
+    return element;
+  };
+  const pieces = parts.map((part, i) => {
+    const piece = paint(h("span", { title: `${part.name}: ${part.text}` }), i);
+    piece.style.width = `${percent(part)}%`;
+    return piece;
+  });
+  const entries = parts.map((part, i) => h("li", paint(h("span.swatch"), i),
+    `${part.name} `, h("span.muted", `${part.text}, ${percent(part).toFixed(1)} %`)));
+  return h("section.stacked", h("h3", title),
+    h("div.stacked-bar", { "aria-hidden": "true" }, pieces), h("ul", entries));
+}
 
 /// A bar of the numbers in `object` whose name `belongs`, the largest first.
 function bar(title, object, show, belongs) {

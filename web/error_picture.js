@@ -21,11 +21,7 @@ const powerScale = (largest) => (largest === 0 ? 1 : 2 ** Math.floor(Math.log2(l
 /// A picture of one channel with the errors of `image` against `reference`, and their `mean`; `key` is
 /// a kind's. It takes its time, so pages leave it to error_worker.js.
 export function errorPicture(image, reference, key) {
-  if (image.width !== reference.width || image.height !== reference.height
-    || image.channels.length !== reference.channels.length) {
-    throw new Error(`These pictures cannot be compared: ${image.width} × ${image.height} and `
-      + `${reference.width} × ${reference.height} pixels.`);
-  }
+  if (image.data.length !== reference.data.length) throw new Error("These pictures differ in size.");
   const [x, r] = [image.data, reference.data];
   const { of, label } = kindOf(key);
   const n = image.channels.length;

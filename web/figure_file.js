@@ -11,8 +11,21 @@ async function pngOf(source, { width, height }) {
   return new Promise((resolve) => { canvas.toBlob(resolve, "image/png"); });
 }
 
+/// Gives every part of `svg` the colours that the page's names stand for now.
+function resolveColours(svg) {
+  svg.setAttribute("hidden", "");
+  document.body.append(svg);
+  for (const part of svg.querySelectorAll("[fill], [stroke]")) {
+    const { fill, stroke } = getComputedStyle(part);
+    for (const [name, value] of Object.entries({ fill, stroke })) part.setAttribute(name, value);
+  }
+  svg.remove();
+  svg.removeAttribute("hidden");
+}
+
 /// Saves an SVG element as `name`, whose ending, svg or png, says how.
 export async function saveFigure(svg, name) {
+  resolveColours(svg);
   const text = new XMLSerializer().serializeToString(svg);
   const sources = [URL.createObjectURL(new Blob([text], { type: "image/svg+xml" }))];
   if (name.endsWith("png")) sources.push(URL.createObjectURL(await pngOf(sources[0], svg.viewBox.baseVal)));

@@ -1,10 +1,12 @@
-// Error curves as an SVG that needs nothing else: on the page, and saved for papers and slides.
+// Error curves as an SVG whose colours are the page's (see figure_file.js for one that needs nothing else).
 import { axes, metrics, points, slopeLine, slopeName } from "./curve.js";
 import { number } from "./format.js";
 import { logAxis, tickLabel } from "./log_axis.js";
-import { curveName, inks, round } from "./palette.js";
+import { colours, curveColour } from "./palette.js";
 
 const size = { left: 68, right: 14, top: 14, plot: 360, below: 52, line: 18, column: 320, letter: 6.6 };
+
+const [grid, muted] = ["var(--line)", "var(--muted)"];
 
 /// An SVG element with attributes; never with `style`, which the page's policy forbids.
 function svg(tag, attributes, ...children) {
@@ -26,63 +28,60 @@ const marks = [
     + `l${-1.4 * r} ${-1.4 * r}z` }),
 ];
 
-/// What draws with the page's colours as they are now.
-function pens() {
-  const ink = inks();
-  return {
-    ink,
-    text: (content, attributes) => svg("text", { fill: ink("--text"), "font-size": 12, ...attributes }, content),
-    line: (places, name, more = {}) => svg("polyline", {
-      points: places.map(([x, y]) => `${x.toFixed(2)},${y.toFixed(2)}`).join(" "),
-      fill: "none", stroke: ink(name), "stroke-width": 1.5, ...more }),
-    mark(i, x, y, hollow) {
-      const shape = marks[(i + round(i)) % marks.length](Number(x.toFixed(2)), Number(y.toFixed(2)), 3.2);
-      shape.setAttribute("stroke", ink(curveName(i)));
-      shape.setAttribute("fill", ink(hollow ? "--surface" : curveName(i)));
-      return shape;
-    },
-  };
+const text = (content, attributes) =>
+  svg("text", { fill: "var(--text)", "font-size": 12, ...attributes }, content);
+
+const line = (places, stroke, more = {}) => svg("polyline", {
+  points: places.map(([x, y]) => `${x.toFixed(2)},${y.toFixed(2)}`).join(" "),
+  fill: "none", stroke, "stroke-width": 1.5, ...more });
+
+/// The mark of the i-th curve; curves of one colour have different ones.
+function mark(i, x, y, hollow) {
+  const shape = marks[(i + Math.floor(i / colours)) % marks.length](Number(x.toFixed(2)), Number(y.toFixed(2)), 3.2);
+  shape.setAttribute("stroke", curveColour(i));
+  shape.setAttribute("fill", hollow ? "var(--surface)" : curveColour(i));
+  return shape;
 }
 
-function frame(pen, width, x, y, axis, metric) {
+function frame(width, x, y, axis, metric) {
   const [right, bottom] = [width - size.right, size.top + size.plot];
   const thin = { "stroke-width": 1 };
   const middle = size.top + size.plot / 2;
   return [
-    ...x.ticks.flatMap((v) => [pen.line([[x.at(v), size.top], [x.at(v), bottom]], "--line", thin),
-      pen.text(tickLabel(v), { x: x.at(v).toFixed(1), y: bottom + 17, "text-anchor": "middle" })]),
-    ...y.ticks.flatMap((v) => [pen.line([[size.left, y.at(v)], [right, y.at(v)]], "--line", thin),
-      pen.text(tickLabel(v), { x: size.left - 7, y: (y.at(v) + 4).toFixed(1), "text-anchor": "end" })]),
-    pen.line([[size.left, size.top], [size.left, bottom], [right, bottom]], "--muted"),
-    pen.text(axisTitle(axis), { x: (size.left + right) / 2, y: bottom + 38, "text-anchor": "middle" }),
-    pen.text(axisTitle(metric), { x: 14, y: middle, "text-anchor": "middle",
+    ...x.ticks.flatMap((v) => [line([[x.at(v), size.top], [x.at(v), bottom]], grid, thin),
+      text(tickLabel(v), { x: x.at(v).toFixed(1), y: bottom + 17, "text-anchor": "middle" })]),
+    ...y.ticks.flatMap((v) => [line([[size.left, y.at(v)], [right, y.at(v)]], grid, thin),
+      text(tickLabel(v), { x: size.left - 7, y: (y.at(v) + 4).toFixed(1), "text-anchor": "end" })]),
+    line([[size.left, size.top], [size.left, bottom], [right, bottom]], muted),
+    text(axisTitle(axis), { x: (size.left + right) / 2, y: bottom + 38, "text-anchor": "middle" }),
+    text(axisTitle(metric), { x: 14, y: middle, "text-anchor": "middle",
       transform: `rotate(-90 14 ${middle})` })];
 }
 
 /// The entries in columns below the plot, names that are too long cut short, and their height.
-function legend(pen, width, entries, top) {
+function legend(width, entries, top) {
   const columns = Math.max(1, Math.min(Math.floor((width - 30) / size.column), Math.ceil(entries.length / 4)));
   const rows = Math.ceil(entries.length / columns);
   const room = (width - 20) / columns;
   const letters = Math.floor((room - 40) / size.letter);
   const parts = entries.flatMap(({ symbol, label }, i) => {
     const [x, y] = [20 + room * Math.floor(i / rows), top + (i % rows) * size.line];
-    const text = pen.text(label.length > letters ? `${label.slice(0, letters - 1)}…` : label, { x: x + 18, y: y + 4 });
-    if (label.length > letters) text.append(svg("title", {}, label));
-    return [symbol(x, y), text];
+    const words = text(label.length > letters ? `${label.slice(0, letters - 1)}…` : label, { x: x + 18, y: y + 4 });
+    if (label.length > letters) words.append(svg("title", {}, label));
+    return [symbol(x, y), words];
   });
   return { parts, height: rows * size.line };
 }
 
 /// A curve and its marks, each of which tells its values.
-function curveGroup(pen, i, name, curve, place, unit, metric) {
+function curveGroup(i, name, curve, place, unit, metric) {
   const told = curve.map((p) => {
-    const mark = pen.mark(i, ...place(p), p.floor);
-    mark.append(svg("title", {}, `${name}: ${metric.label} ${number(p.y)} at ${number(p.x)} ${unit}`
+    const shape = mark(i, ...place(p), p.floor);
+    shape.append(svg("title", {}, `${name}: ${metric.label} ${number(p.y)} at ${number(p.x)} ${unit}`
       + `${p.floor ? ", at the floor" : ""}`));
-    return mark;
+    return shape;
   });
-  return svg("g", { class: "curve" }, pen.line(curve.map(place), curveName(i)), ...told);
+  return svg("g", { class: "curve" }, line(curve.map(place), curveColour(i)), ...told);
 }
 
 /// `series` ([{name, rows}]) over the axes' keys `x` and `y`, `width` pixels wide; null if there is
@@ -93,31 +92,30 @@ export function figureSvg(series, xKey, yKey, width = 720) {
   const curves = metric ? series.map((s) => points(s.rows, xKey, yKey)) : [];
   const all = curves.flat();
   if (all.length === 0) return null;
-  const pen = pens();
   const bottom = size.top + size.plot;
   const x = logAxis(all.map((p) => p.x), size.left, width - size.right, 48);
   const y = logAxis(all.map((p) => p.y), bottom, size.top, 20);
   const place = (p) => [x.at(p.x), y.at(p.y)];
-  const entries = series.map(({ name }, i) => ({ label: name, symbol: (u, v) => pen.mark(i, u, v, false) }));
+  const entries = series.map(({ name }, i) => ({ label: name, symbol: (u, v) => mark(i, u, v, false) }));
   const slope = slopeLine(curves, metric.slope);
   const dashed = { "stroke-dasharray": "6 4", "stroke-width": 1 };
   if (slope.length > 0) {
     entries.push({ label: `slope ${slopeName(metric.slope)} (Monte Carlo)`,
-      symbol: (u, v) => pen.line([[u - 10, v], [u + 10, v]], "--muted", dashed) });
+      symbol: (u, v) => line([[u - 10, v], [u + 10, v]], muted, dashed) });
   }
   if (all.some((p) => p.floor)) {
-    entries.push({ label: "at the reference's own noise", symbol: (u, v) => pen.mark(0, u, v, true) });
+    entries.push({ label: "hollow: at the reference's own noise", symbol: (u, v) => mark(0, u, v, true) });
   }
   const top = bottom + size.below + size.line / 2;
-  const names = legend(pen, width, entries, top);
+  const names = legend(width, entries, top);
   const height = top + names.height;
   const clip = svg("clipPath", { id: "plot" }, svg("rect", {
     x: size.left, y: size.top, width: width - size.left - size.right, height: size.plot }));
   return svg("svg", { viewBox: `0 0 ${width} ${height}`, width, height, role: "img",
     "aria-label": `${axisTitle(metric)} against ${axisTitle(axis)}`,
     "font-family": "DejaVu Sans, Helvetica, Arial, sans-serif" },
-  clip, svg("rect", { width, height, fill: pen.ink("--surface") }), ...frame(pen, width, x, y, axis, metric),
-  svg("g", { "clip-path": "url(#plot)" }, pen.line(slope.map(place), "--muted", dashed)),
-  ...curves.map((curve, i) => curveGroup(pen, i, series[i].name, curve, place, axis.unit || axis.label, metric)),
+  clip, svg("rect", { width, height, fill: "var(--surface)" }), ...frame(width, x, y, axis, metric),
+  svg("g", { "clip-path": "url(#plot)" }, line(slope.map(place), muted, dashed)),
+  ...curves.map((curve, i) => curveGroup(i, series[i].name, curve, place, axis.unit || axis.label, metric)),
   ...names.parts);
 }

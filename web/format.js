@@ -21,7 +21,7 @@ export function number(value, digits = 3) {
 function scaled(value, units) {
   if (value === null || value === undefined) return "—";
   const [factor, name] = units.find(([f]) => value >= f) ?? units.at(-1);
-  return `${number(value / factor)}${thin}${name}`;
+  return `${factor === 1 ? number(value) : significant(value / factor)}${thin}${name}`;
 }
 const rate = (unit) => [[1e9, `G${unit}`], [1e6, `M${unit}`], [1e3, `k${unit}`], [1, unit]];
 
@@ -41,9 +41,12 @@ export function duration(value) {
 export const bytes = (value) => scaled(value, [
   [2 ** 40, "TiB"], [2 ** 30, "GiB"], [2 ** 20, "MiB"], [2 ** 10, "KiB"], [1, "B"]]);
 
-/// An ISO instant in the reader's time zone: "2026-01-31 23:59:59"; empty stays empty. (Swedish dates are
-/// written so.)
-export const when = (iso) => (iso ? new Date(iso).toLocaleString("sv-SE") : "");
+/// An ISO instant in the reader's time zone: "2026-01-31 23:59:59"; empty stays empty.
+export function when(iso) {
+  if (!iso) return "";
+  const date = new Date(iso);
+  return new Date(date - 60_000 * date.getTimezoneOffset()).toISOString().slice(0, 19).replace("T", " ");
+}
 
 /// "cpu_seconds" -> "cpu seconds".
 export const words = (key) => key.replaceAll("_", " ");
@@ -80,6 +83,11 @@ export function integratorName(integrator) {
 
 /// What a job is called: its own label, else its scene.
 export const jobTitle = (job) => job.label || job.scene;
+
+/// A job to start from.
+export const firstJob = (scenes) => ({
+  scene: scenes[0] ?? "SCENE.glb", integrator: { type: "path" }, budget: { seconds: 30 }, reference: "auto",
+});
 
 /// A word for the shell, quoted.
 const shellQuote = (text) => `'${text.replaceAll("'", "'\\''")}'`;

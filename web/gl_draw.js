@@ -123,18 +123,15 @@ export function painter(canvas, onrestored) {
     onrestored();
   });
 
-  /// The least recently drawn textures go first.
+  /// Those that are kept go together when they are too many.
   function texture(image) {
     const { textures } = held;
-    const found = textures.get(image) ?? uploadPicture(gl, image);
-    textures.delete(image);
-    textures.set(image, found);
-    for (const [old, name] of textures) {
-      if (textures.size <= keptTextures) break;
-      gl.deleteTexture(name);
-      textures.delete(old);
+    if (!textures.has(image) && textures.size >= keptTextures) {
+      textures.forEach((old) => gl.deleteTexture(old));
+      textures.clear();
     }
-    return found;
+    if (!textures.has(image)) textures.set(image, uploadPicture(gl, image));
+    return textures.get(image);
   }
 
   function drawPart({ image, look, gain, offset, map, from, to }) {

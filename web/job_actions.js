@@ -2,7 +2,7 @@
 import { change, remove, tell } from "./api.js";
 import { ask } from "./dialog.js";
 import { button, h, setText, sign } from "./dom.js";
-import { can } from "./states.js";
+import { can } from "./status.js";
 
 const priorities = [-100, 100];
 

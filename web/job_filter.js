@@ -1,6 +1,6 @@
 // Which jobs of the list are asked for: those in one state, those whose texts hold a word.
 import { h } from "./dom.js";
-import { states } from "./states.js";
+import { states } from "./status.js";
 
 /// The controls, beginning with what `query` says. `values()` is what the address, and the request,
 /// should hold; `count(counts)` says how many jobs of each state there are.

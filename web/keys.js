@@ -3,7 +3,7 @@ import { ask } from "./dialog.js";
 import { facts } from "./dom.js";
 
 const keys = [
-  ["?", "this list"], ["Tab, Enter, Space", "every control"], ["Esc", "closes a question"],
+  ["?", "this list"], ["Esc", "closes a question"],
   ["e, E", "brighter, darker by half a stop"], ["[, ]", "the layer before, after"],
   ["+, −, wheel", "zoom; the wheel once the picture has the focus"], ["arrows, drag", "move the picture"],
   ["0 or f, o", "fit; one to one"], ["1 … 9", "of several pictures: that one"],

@@ -4,13 +4,6 @@ import { extent } from "./pixels.js";
 
 const tries = 4;
 
-function check(layer, { width, height }) {
-  const expected = 2 * width * height * layer.channels.length;
-  if (layer.bytes !== expected || layer.offset < 0) {
-    throw new Error(`layers.json: layer "${layer.name}" has ${layer.bytes} bytes, not ${expected}.`);
-  }
-}
-
 /// The layers of job `id` as they stand: {width, height, names, read(...names)}; `read` gives a picture
 /// (see pixels.js) for each name, all of one generation, and the same ones when asked again.
 export async function openLayers(id, signal) {
@@ -25,12 +18,11 @@ export async function openLayers(id, signal) {
   async function readLayer(name) {
     const layer = index.layers.find((l) => l.name === name);
     if (!layer) throw new Error(`This job has no layer "${name}" any more.`);
-    check(layer, index);
     const length = Math.max(...index.layers.map((l) => l.offset + l.bytes));
     const { data, total, tag } = await getPart(id, "layers.half", layer.offset, layer.bytes, signal);
-    if (total !== length) return { tag: null };
+    if (total !== length || data.byteLength !== 2 * width * height * layer.channels.length) return { tag: null };
     const picture = {
-      width: index.width, height: index.height, channels: layer.channels, scale: layer.scale,
+      width, height, channels: layer.channels, scale: layer.scale,
       data: new Float16Array(data),
     };
     return { tag, picture: { ...picture, extent: extent(picture) } };
@@ -42,7 +34,7 @@ export async function openLayers(id, signal) {
   }
 
   /// A job that goes on replaces both files, one after the other. Parts belong together that come from
-  /// one layers.half, of the length that the index tells, while the index stayed the same.
+  /// one layers.half, of the lengths that the index tells, while the index stayed the same.
   async function read(...names) {
     for (let i = 0; i < tries; i += 1) {
       const anew = names.some((name) => !kept.has(name));

@@ -13,15 +13,10 @@ export function logTicks(min, max) {
   }
   const parts = decades > 3 ? [1] : decades > 1.5 ? [1, 3] : [1, 2, 5];
   const every = Math.ceil(decades / 8);
-  const ticks = [];
-  for (let e = Math.floor(Math.log10(min)); e <= Math.log10(max); e += 1) {
-    if (e % every !== 0) continue;
-    for (const part of parts) {
-      const value = Number(`${part}e${e}`);
-      if (value >= min && value <= max) ticks.push(value);
-    }
-  }
-  return ticks;
+  const first = Math.floor(Math.log10(min));
+  return Array.from({ length: Math.floor(Math.log10(max)) - first + 1 }, (_, i) => first + i)
+    .filter((e) => e % every === 0).flatMap((e) => parts.map((part) => Number(`${part}e${e}`)))
+    .filter((value) => value >= min && value <= max);
 }
 
 export function tickLabel(value) {

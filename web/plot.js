@@ -2,7 +2,6 @@
 import { points } from "./curve.js";
 import { h } from "./dom.js";
 import { figureSvg } from "./figure_svg.js";
-import { onColours } from "./palette.js";
 
 const narrowest = 280;
 
@@ -11,9 +10,6 @@ const narrowest = 280;
 export function plot(signal) {
   const box = h("div.plot");
   const empty = h("p.note", "No errors have been measured.");
-  const floor = h("p.note", { hidden: true },
-    "Hollow points: the reference's own noise is reached there, so the error no longer measures "
-    + "this picture alone.");
   let last = null;
   let width = 0;
 
@@ -29,13 +25,11 @@ export function plot(signal) {
   });
   watch.observe(box);
   signal.addEventListener("abort", () => watch.disconnect());
-  onColours(redraw, signal);
   return {
-    element: h("figure", box, floor),
+    element: h("figure", box),
     draw(series, x, y) {
       last = [series, x, y];
       const curves = y ? series.map((s) => points(s.rows, x, y)) : [];
-      floor.hidden = !curves.flat().some((p) => p.floor);
       box.setAttribute("data-curves", curves.filter((c) => c.length > 0).length);
       box.setAttribute("data-points", curves.flat().length);
       redraw();

@@ -2,7 +2,7 @@
 import { getJob, getText, poll } from "./api.js";
 import { parseCurve } from "./curve.js";
 import { integratorName, jobTitle } from "./format.js";
-import { isTerminal } from "./states.js";
+import { isTerminal } from "./status.js";
 
 const everyMs = 5000;
 

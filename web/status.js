@@ -1,7 +1,21 @@
-// A job's state and progress, as every view shows them.
+// A job's states: what can be done in which, and how every view shows them and the progress.
 import { h, setText } from "./dom.js";
 import { duration, number, seconds } from "./format.js";
-import { isTerminal } from "./states.js";
+
+export const states = ["running", "queued", "held", "interrupted", "cancelling", "done", "failed", "cancelled"];
+
+const over = ["done", "failed", "cancelled"];
+const waiting = ["queued", "running", "interrupted"];
+const allowed = {
+  cancel: [...waiting, "held"], hold: waiting, release: ["held"], priority: [...waiting, "held"],
+  retry: ["failed", "cancelled"], extend: over, delete: over,
+};
+
+/// done, failed, cancelled: nothing happens any more, unless it is asked for.
+export const isTerminal = (state) => over.includes(state);
+
+/// Whether `action` (see above) makes sense in `state`; the service decides.
+export const can = (action, state) => allowed[action].includes(state);
 
 /// A badge that says a state in words; `set(state, phase)`.
 export function badge() {
@@ -9,7 +23,7 @@ export function badge() {
   return {
     element,
     set(state, phase = "") {
-      element.setAttribute("data-state", state);
+      element.className = `badge ${state}`;
       setText(element, phase && state === "running" ? `${state} · ${phase}` : state);
     },
   };

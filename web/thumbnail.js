@@ -1,7 +1,7 @@
 // A small picture of a job, loaded when it comes into sight.
 import { fileUrl } from "./api.js";
 import { h } from "./dom.js";
-import { isTerminal } from "./states.js";
+import { isTerminal } from "./status.js";
 
 const refreshSeconds = 10;
 

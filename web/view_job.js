@@ -11,22 +11,18 @@ import { jobActions } from "./job_actions.js";
 import { jobPicture } from "./job_picture.js";
 import { logView } from "./log_view.js";
 import { reportView } from "./report.js";
-import { isTerminal } from "./states.js";
-import { badge, currentError, progressBar } from "./status.js";
+import { badge, currentError, isTerminal, progressBar } from "./status.js";
 import { chosen } from "./view_jobs.js";
 
 const refreshMs = 2000;
 
-const settingFacts = (job) => facts([
+const jobFacts = ({ job, state, progress }) => facts([
   ["Scene", job.scene],
   ["Camera", job.camera],
   ["Integrator", integratorName(job.integrator)],
   ["Resolution", job.resolution?.join(" × ")],
   ["Reference", job.reference],
   ["Seed", job.seed],
-]);
-
-const stateFacts = (state, progress) => facts([
   ["Created", when(state.created)],
   ["Started", when(state.started)],
   ["Finished", when(state.finished)],
@@ -56,21 +52,19 @@ function jobSource(id, job) {
 
 /// The page, and those parts of it that follow the job.
 function page(id, query, signal) {
-  const [heading, notes, refusal, settings, progressFacts, files, report, source] = ["h1", "div", "div", "div",
-    "div", "section", "section", "div"].map((tag) => h(tag));
-  const [state, bar, log] = [badge(), progressBar("Share of the budget"), logView(id, signal)];
-  const image = jobPicture(id, query, signal);
-  const panel = curvePanel(query, signal);
-  const rows = h("details", h("summary", "Curve as a table"));
-  const title = h("div.title", heading, state.element, bar.element);
-  const element = h("article", title, h("p.id", id), notes, refusal,
-    h("div.columns",
-      h("div", image.element, settings, progressFacts),
-      h("div", h("h2", "Error"), panel.element, rows, files)),
-    report, source, log.element);
-  const say = (text) => replace(refusal, text && problem(text));
-  return { element, title, heading, notes, settings, progressFacts, files, report, source, state, bar, log, image, panel,
-    rows, say };
+  const view = {
+    heading: h("h1"), notes: h("div"), refusal: h("div"), facts: h("div"), files: h("section"), report: h("section"),
+    source: h("div.source"), state: badge(), bar: progressBar("Share of the budget"), log: logView(id, signal),
+    image: jobPicture(id, query, signal), panel: curvePanel(query, signal),
+    rows: h("details", h("summary", "Curve as a table")),
+    say: (text) => replace(view.refusal, text && problem(text)),
+  };
+  view.title = h("div.title", view.heading, view.state.element, view.bar.element);
+  view.element = h("article", view.title, h("p.id", id), view.notes, view.refusal,
+    h("div.columns", h("div", view.image.element, view.facts),
+      h("div", h("h2", "Error"), view.panel.element, view.rows, view.files)),
+    view.report, view.source, view.log.element);
+  return view;
 }
 
 /// A function that shows a job's files and reads again those whose size or state changed.
@@ -123,7 +117,7 @@ export async function show(main, { params, query, signal }) {
     view.bar.set(state.state, progress);
     actions.show(shown);
     replace(view.notes, state.error && problem(state.error), state.warnings?.map(warning));
-    replace(view.progressFacts, stateFacts(state, progress));
+    replace(view.facts, jobFacts(shown));
     view.element.setAttribute("data-state", state.state);
   }
 
@@ -131,7 +125,6 @@ export async function show(main, { params, query, signal }) {
   function drawJob({ job }) {
     document.title = `${jobTitle(job)} · Lacuna`;
     setText(view.heading, jobTitle(job));
-    replace(view.settings, settingFacts(job));
     replace(view.source, jobSource(id, job));
   }
 

@@ -1,7 +1,7 @@
 // The list of jobs, live, a page at a time, with a filter and a choice of jobs to compare.
 import { getJobs, getScenes, listen, poll, queryOf, soon } from "./api.js";
 import { button, copyButton, h, note, problem, remember, setText } from "./dom.js";
-import { curlLine } from "./format.js";
+import { curlLine, firstJob } from "./format.js";
 import { jobFilter } from "./job_filter.js";
 import { jobRow, jobTable } from "./job_row.js";
 import { pager, pageSize } from "./pager.js";
@@ -13,10 +13,9 @@ const typingMs = 150;
 /// The jobs to compare: the choice survives turning pages and looking at jobs.
 export const chosen = new Set();
 
-async function firstJob(signal) {
+async function noJobs(signal) {
   const scenes = await getScenes(signal);
-  const job = { scene: scenes[0] ?? "SCENE.glb", budget: { seconds: 30 }, reference: "auto" };
-  const command = curlLine(job);
+  const command = curlLine(firstJob(scenes));
   return h("section.empty",
     h("h2", "No jobs yet"),
     h("p", "Post the first from a shell, or from ", h("a", { href: "#/new" }, "New job"), ":"),
@@ -26,11 +25,11 @@ async function firstJob(signal) {
 }
 
 /// The buttons of the choice.
-function choice(uncheck) {
+function choice(redraw) {
   const compare = button("Compare", () => { location.hash = `#/compare?jobs=${[...chosen].join(",")}`; });
   const clear = button("Clear the choice", () => {
     chosen.clear();
-    uncheck();
+    redraw();
     show();
   });
   function show() {
@@ -57,7 +56,7 @@ export async function show(main, { query, signal }) {
     main.scrollIntoView();
   });
   const count = h("output.muted");
-  const choosing = choice(() => element.querySelectorAll(":checked").forEach((box) => { box.checked = false; }));
+  const choosing = choice(() => listSoon(0));
   const { element, arrange } = jobTable();
   const tools = h("div.tools", { role: "search" }, filter.elements, count, choosing.element);
   const body = h("div");
@@ -98,7 +97,7 @@ export async function show(main, { query, signal }) {
     asked += 1;
     const mine = asked;
     const found = await getJobs({ ...filter.values(), cursor: place.cursor, limit: pageSize }, signal);
-    if (found.total === 0) empty ??= await firstJob(signal);
+    if (found.total === 0) empty ??= await noJobs(signal);
     if (mine !== asked) return;
     last = found.last_event;
     draw(found);

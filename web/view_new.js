@@ -1,7 +1,7 @@
 // Posting a job: its file as text, the scenes there are, and every problem with its place.
-import { getJob, getJobSchema, getScenes, postJob } from "./api.js";
+import { getJob, getScenes, postJob } from "./api.js";
 import { h, problem, replace } from "./dom.js";
-import { prettyJob, withoutNulls } from "./format.js";
+import { firstJob, prettyJob, withoutNulls } from "./format.js";
 
 function parsed(text) {
   try {
@@ -10,15 +10,6 @@ function parsed(text) {
     return null;
   }
 }
-
-/// A job to start from; what it shows of the defaults is the schema's.
-const example = (scenes, { properties }) => ({
-  scene: scenes[0] ?? "",
-  resolution: properties.resolution?.default,
-  integrator: properties.integrator?.default,
-  budget: { seconds: 30 },
-  reference: "auto",
-});
 
 /// The list of what is wrong, each with the JSON pointer to its place.
 function problems(error) {
@@ -32,9 +23,8 @@ function problems(error) {
 export async function show(main, { query, signal }) {
   document.title = "New job · Lacuna";
   const from = query.get("from");
-  const [scenes, schema, source] = await Promise.all([
-    getScenes(signal), getJobSchema(signal), from ? getJob(from, signal) : null]);
-  const start = source ? withoutNulls(source.job) : example(scenes, schema);
+  const [scenes, source] = await Promise.all([getScenes(signal), from ? getJob(from, signal) : null]);
+  const start = source ? withoutNulls(source.job) : firstJob(scenes);
 
   const text = h("textarea", {
     id: "job", rows: 18, spellcheck: false, value: prettyJob(start),
@@ -49,9 +39,7 @@ export async function show(main, { query, signal }) {
       if (job !== null && typeof job === "object") text.value = prettyJob({ ...job, scene: scene.value });
     },
   }, scenes.map((name) => h("option", { value: name }, name)));
-  const follow = () => { scene.value = parsed(text.value)?.scene ?? ""; };
-  text.addEventListener("input", follow);
-  follow();
+  scene.value = start.scene;
 
   const form = h("form.new-job", {
     onsubmit: async (event) => {

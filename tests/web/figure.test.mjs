@@ -21,9 +21,10 @@ async function saved(kind) {
 for (const [colorScheme, width] of [["light", 1280], ["dark", 400]]) {
   test(`two jobs as one figure in ${colorScheme} at ${width}`, async () => {
     await open(both, { colorScheme, viewport: { width, height: 700 } });
+    await page.waitForSelector(".plot svg");
     const words = await page.locator(".plot svg text").evaluateAll((all) => all.map((t) => t.textContent));
     for (const expected of ["RMSE (radiance)", "render time (s)", "Cornell box, 6 edges, path · bsdf",
-      "slope −1/2 (Monte Carlo)", "at the reference's own noise"]) assert.ok(words.includes(expected), `${words}`);
+      "slope −1/2 (Monte Carlo)", "hollow: at the reference's own noise"]) assert.ok(words.includes(expected), `${words}`);
     assert.equal(await page.locator(".bar").isVisible(), false);
     assert.equal(await page.locator(".plot svg circle").count(), 11 + 1 + 1, "11 points and two in the legend");
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth));

@@ -289,14 +289,14 @@ test("number keys flip pictures at one exposure and one zoom", async () => {
   assert.ok(page.url().includes("left=1"));
   await page.keyboard.press("3");
   assert.ok(page.url().includes("left=1"), "the third has no layers");
-  await page.getByText("no layers.json, so image.png is shown").waitFor();
+  await page.getByText("No layers.json: image.png").waitFor();
   assert.deepEqual(page.troubles, []);
 });
 
 test("a picture of another size is shown apart, and it is said", async () => {
   mock.update(job, { files: small() });
   await open(`/#/compare?jobs=${job},${other}`);
-  await page.getByText("not of the first's size, so image.png is shown").waitFor();
+  await page.getByText("Not of the first's size: image.png").waitFor();
   await page.waitForSelector(stage);
   await page.waitForFunction(() => document.querySelectorAll(".gallery img").length === 1);
   assert.deepEqual(page.troubles, []);
@@ -355,6 +355,7 @@ test("one crop of all jobs at one exposure, chosen by a drag or by keys, and in 
   await openPair("&ev=0&mode=crops");
   await page.waitForSelector(".crops canvas");
   assert.equal(await page.locator(".crops canvas").count(), 2);
+  await page.locator(stage).scrollIntoViewIfNeeded();
   const box = await page.locator(stage).boundingBox();
   const at = (x, y) => [box.x + (x * box.width) / 4, box.y + (y * box.height) / 2];
   await page.mouse.move(...at(2.1, 0.1));
