@@ -115,6 +115,35 @@ test("a running job is followed and cancelled", async () => {
   assert.deepEqual(page.troubles, []);
 });
 
+test("a done job is extended, held on its way, and deleted; the list follows", async () => {
+  const page = await openPage(browser, `${server.address}/#/`);
+  const list = await openPage(browser, `${server.address}/#/`);
+  const id = await render(page, { ...small, label: "extended", seed: 3 });
+  const row = list.locator(`tr[data-job="${id}"]`);
+  await row.locator(".badge.done").waitFor(patience);
+  await page.getByRole("button", { name: "Extend …" }).click();
+  const field = page.getByRole("textbox", { name: "Budget" });
+  assert.equal(await field.inputValue(), "{\"iterations\":128}");
+  await field.fill("{\"seconds\":600}");
+  await page.getByRole("button", { name: "Extend", exact: true }).click();
+  await page.locator(".title .badge.running").waitFor(patience);
+  await page.getByRole("button", { name: "Hold" }).click();
+  await page.locator("article[data-state=held]").waitFor(patience);
+  await row.locator(".badge.held").waitFor(patience);
+  await page.getByRole("button", { name: "Higher priority" }).click();
+  await page.getByText("priority 1").waitFor(patience);
+  await page.getByRole("button", { name: "Release" }).click();
+  await page.locator(".title .badge.running").waitFor(patience);
+  await page.getByRole("button", { name: "Cancel job" }).click();
+  await page.locator("dialog").getByRole("button", { name: "Cancel job" }).click();
+  await page.locator("article[data-state=cancelled]").waitFor(patience);
+  await page.getByRole("button", { name: "Delete …" }).click();
+  await page.getByRole("button", { name: "Delete for good" }).click();
+  await page.waitForSelector("main > h1:text-is('Jobs')");
+  await row.waitFor({ state: "detached", ...patience });
+  assert.deepEqual([...page.troubles, ...list.troubles], []);
+});
+
 test("problems of a job name their places; its scenes are offered", async () => {
   const page = await openPage(browser, `${server.address}/#/new`);
   const scenes = await page.getByLabel("Scene").locator("option").allInnerTexts();
