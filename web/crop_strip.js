@@ -14,7 +14,7 @@ function aboutTimes(sources) {
   return most <= mostApart * least
     ? note("Of equal time: the jobs' last pictures; their render times differ by at most 5 %.")
     : warning(`Not of equal time: the jobs' last pictures, after ${seconds(least)} to ${seconds(most)} of rendering. `
-      + "Earlier pictures are not kept; what the errors were at equal times, the table above tells.");
+      + "Earlier ones are not kept; the table above has the errors at equal times.");
 }
 
 /// `show(state, sources, images, look, ratio)`: the state's crop of all images, where it asks for crops;

@@ -101,17 +101,12 @@ export function labelledSelect(label, onchange) {
   };
 }
 
-/// A table of text: `columns` are headings (or {title, number: true}), rows are arrays of what h()
-/// takes as children; the first cell of a row heads it.
-export function table(columns, rows, className = "") {
-  const heads = columns.map((c) => (typeof c === "string" ? { title: c } : c));
-  const cell = (content, i) => h(i === 0 ? "th" : "td", {
-    scope: i === 0 ? "row" : undefined,
-    className: heads[i]?.number ? "number" : "",
-  }, content);
-  return h("div.scroll", { tabIndex: 0, role: "group", "aria-label": "Table" },
-    h("table", { className },
-      h("thead", h("tr", heads.map((c) =>
-        h("th", { scope: "col", className: c.number ? "number" : "" }, c.title)))),
-      h("tbody", rows.map((row) => h("tr", row.map(cell))))));
+/// A table: `columns` are headings, rows arrays of what h() takes as children; the first cell of a row
+/// heads it, and with `numbers` the others are numbers.
+export function table(columns, rows, numbers = false) {
+  const cell = (tag, scope) => (content, i) => h(i === 0 && scope === "row" ? "th" : tag, {
+    scope: i === 0 || tag === "th" ? scope : null, className: numbers && i > 0 ? "number" : "" }, content);
+  return h("div.scroll", { tabIndex: 0, role: "group", "aria-label": "Table" }, h("table.values",
+    h("thead", h("tr", columns.map(cell("th", "col")))),
+    h("tbody", rows.map((row) => h("tr", row.map(cell("td", "row")))))));
 }

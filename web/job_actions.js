@@ -4,8 +4,6 @@ import { ask } from "./dialog.js";
 import { button, h, setText, sign } from "./dom.js";
 import { can } from "./status.js";
 
-const priorities = [-100, 100];
-
 /// A budget twice as large: every limit doubled, an error to reach halved.
 export const doubled = (budget) => Object.fromEntries(Object.entries(budget)
   .filter(([, limit]) => limit !== null)
@@ -34,9 +32,8 @@ export function jobActions(id, { changed, gone, failed }) {
   };
   const by = (step) => act(() => change(id, { priority: job.priority + step }));
   const level = h("output.muted");
-  const [less, more] = [sign("−", "Lower priority", by(-1)), sign("+", "Higher priority", by(1))];
   const parts = {
-    priority: h("span.tools", level, less, more),
+    priority: h("span.tools", level, sign("−", "Lower priority", by(-1)), sign("+", "Higher priority", by(1))),
     hold: button("Hold", act(() => change(id, { held: true }))),
     release: button("Release", act(() => change(id, { held: false }))),
     retry: button("Retry", act(() => tell(id, "retry"))),
@@ -53,9 +50,7 @@ export function jobActions(id, { changed, gone, failed }) {
       job = detail;
       const { state } = detail.state;
       for (const [name, part] of Object.entries(parts)) part.hidden = !can(name, state);
-      const priority = detail.priority ?? 0;
-      setText(level, `priority ${priority}`);
-      [less.disabled, more.disabled] = priorities.map((end) => priority === end);
+      setText(level, `priority ${detail.priority}`);
     },
   };
 }

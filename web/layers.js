@@ -43,7 +43,8 @@ export async function openLayers(id, signal) {
         const before = index.tag;
         if (anew) index = await readIndex();
         const [{ tag }] = found;
-        if (tag !== null && index.tag === before && found.every((f) => f.tag === tag)) return found.map((f) => f.picture);
+        const one = tag !== null && index.tag === before && found.every((f) => f.tag === tag);
+        if (one) return found.map((f) => f.picture);
       } catch (error) {
         kept.clear();
         throw error;

@@ -18,7 +18,7 @@ export const leafName = (keys) => keys.toReversed().map(words).join(" ");
 
 function section(title, value) {
   const rows = leaves(value).map(({ keys, value: v }) => [leafName(keys), quantity(v, [...keys, title])]);
-  return rows.length > 0 && h("section", h("h3", words(title)), table(["", { title: "", number: true }], rows, "values"));
+  return rows.length > 0 && h("section", h("h3", words(title)), table(["", ""], rows, true));
 }
 
 /// The whole report as one element: a section for each of its parts, what stands alone first.

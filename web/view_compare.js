@@ -7,9 +7,6 @@ import { number, significant } from "./format.js";
 import { followJobs, idsOf } from "./series.js";
 import { differences, doubtful } from "./settings_diff.js";
 
-/// How many times `value` is as large as the best; the best itself is 1.
-const ratio = (value, best) => (value === null || best === null ? "—" : `${significant(value / best)}×`);
-
 function equalTimes(series, axis, metric) {
   const curves = metric ? series.map((s) => points(s.rows, axis.key, metric.key)) : [];
   const instants = commonInstants(curves);
@@ -20,16 +17,15 @@ function equalTimes(series, axis, metric) {
   const fastest = Math.min(...times.filter((t) => t !== null));
   const lowest = instants.map((x) => Math.min(...curves.map((c) => errorAt(c, x) ?? Infinity)));
   const errorCell = (error, best) => h(error === best ? "strong" : "span", {}, number(error));
-  const heads = ["Job", ...[...instants.map((x) => `at ${at(x)}`), `${axis.label} to reach ${number(target)}`,
-    "× the fastest"].map((title) => ({ title, number: true }))];
+  const heads = ["Job", ...instants.map((x) => `at ${at(x)}`), `${axis.label} to reach ${number(target)}`,
+    "× the fastest"];
   const rows = curves.map((c, i) => [
     series[i].name,
     ...instants.map((x, k) => errorCell(errorAt(c, x), lowest[k])),
-    times[i] === null ? "—" : at(times[i]),
-    ratio(times[i], fastest),
+    ...(times[i] === null ? ["—", "—"] : [at(times[i]), `${significant(times[i] / fastest)}×`]),
   ]);
   return [
-    table(heads, rows, "values"),
+    table(heads, rows, true),
     note(`${metric.label}, interpolated in log-log. `,
       instants.length === 0 && "The curves share no instant. ",
       `${number(target)} is the smallest error that all of them reach.`),
@@ -67,7 +63,7 @@ export async function show(main, { query, signal }) {
     panel.show(series, preferred);
     drawTimes();
     replace(settings, h("h2", "Settings that differ"), found.length === 0 ? note("The job files are the same.")
-      : table(["", ...labels], found.map((d) => [d.pointer, ...d.values]), "values"));
+      : table(["", ...labels], found.map((d) => [d.pointer, ...d.values])));
     pictures.show(jobs, labels).catch((error) => { if (!signal.aborted) append(notes, problem(error.message)); });
   }
 

@@ -53,8 +53,8 @@ function jobSource(id, job) {
 /// The page, and those parts of it that follow the job.
 function page(id, query, signal) {
   const view = {
-    heading: h("h1"), notes: h("div.notes"), refusal: h("div"), facts: h("div"), files: h("section"), report: h("section"),
-    source: h("div.source"), state: badge(), bar: progressBar("Share of the budget"), log: logView(id, signal),
+    heading: h("h1"), notes: h("div.notes"), refusal: h("div"), facts: h("div"), files: h("section"),
+    report: h("section"), source: h("div"), state: badge(), bar: progressBar("Share of the budget"), log: logView(id, signal),
     image: jobPicture(id, query, signal), panel: curvePanel(query, signal),
     rows: h("details", h("summary", "Curve as a table")),
     say: (text) => replace(view.refusal, text && problem(text)),

@@ -46,7 +46,7 @@ function drawAll(own) {
   const stops = { colour: state.ev ?? look.ev, direction: null, false: state.stops }[look.look];
   own.tools.show({ options: own.options, chosen: state.show, zoom: zoom * ratio(), stops });
   own.modes.show(state, own.sources.map((s) => s.name));
-  seen.frame.classList.toggle("zoomed", state.view.zoom !== null);
+  seen.frame.classList.toggle("zoomed", state.view.zoom !== null || state.mode === "crops");
   seen.frame.setAttribute("data-shown", state.show || "picture");
   seen.frame.setAttribute("data-zoom", Number(zoom.toPrecision(4)));
 }
@@ -140,7 +140,7 @@ export function viewer(query, signal) {
       own.sources = sources;
       seen.setSize(own.size());
       seen.frame.setAttribute("aria-label", `Picture of ${sources.map((s) => s.name).join(" and ")}.`
-        + " Plus and minus zoom, arrows move, 0 fits, e and E expose, brackets change the layer.");
+        + " The question mark lists its keys.");
       return refresh();
     },
   };

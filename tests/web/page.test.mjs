@@ -235,5 +235,5 @@ test("? lists the keys, Esc closes them, and text fields keep their ?", async ()
   await page.setViewportSize({ width: 400, height: 800 });
   await screenshot(page, "keys-narrow");
   await page.getByRole("button", { name: "Close" }).click();
-  assert.equal(await count("dialog"), 0);
+  await page.waitForSelector("dialog", { state: "detached" });
 });
