@@ -1,4 +1,6 @@
 // Lacuna's HTTP API as the page uses it: requests, problems, polling and events.
+import { setText } from "./dom.js";
+import { signIn } from "./session.js";
 
 /// A request that did not succeed: problem+json, or `status` 0 where no answer came.
 export class ApiError extends Error {
@@ -9,6 +11,8 @@ export class ApiError extends Error {
     this.errors = problem.errors ?? [];
   }
 }
+
+const noAnswer = "The server does not answer; trying again.";
 
 async function request(path, options = {}) {
   let response;
@@ -22,11 +26,22 @@ async function request(path, options = {}) {
     });
   }
   if (response.ok) return response;
+  if (response.status === 401 && path !== "/api/session" && await signIn(postToken)) return request(path, options);
   const fallback = { title: `Error ${response.status}`, detail: response.statusText };
   throw new ApiError(response.status, await response.json().catch(() => fallback));
 }
 
-const jobPath = (id) => `/api/jobs/${encodeURIComponent(id)}`;
+/// A request that changes something; `body` is JSON, undefined: there is none.
+const send = (method, path, body) => request(path, {
+  method, body, headers: body === undefined ? {} : { "Content-Type": "application/json" },
+});
+const postToken = (token) => send("POST", "/api/session", JSON.stringify({ token }));
+
+export const jobPath = (id) => `/api/jobs/${encodeURIComponent(id)}`;
+
+/// An address's query without what is empty or 0.
+export const queryOf = (values) =>
+  new URLSearchParams(Object.entries(values).filter(([, value]) => value)).toString();
 
 /// The address of one file of a job. `version` tells the browser that the content has changed.
 export function fileUrl(id, name, version) {
@@ -35,90 +50,95 @@ export function fileUrl(id, name, version) {
 }
 
 const json = async (path, signal) => (await request(path, { signal })).json();
-export const getJobs = async (signal) => (await json("/api/jobs", signal)).jobs;
+/// A part of the list: {jobs, total, counts, next, last_event}; `wanted`: {state, label, limit, cursor}.
+export const getJobs = (wanted, signal) => json(`/api/jobs?${queryOf(wanted)}`, signal);
 export const getJob = (id, signal) => json(jobPath(id), signal);
 export const getScenes = async (signal) => (await json("/api/scenes", signal)).scenes;
-export const getJobSchema = (signal) => json("/api/schema/job", signal);
-export const getText = async (id, name, signal) =>
-  (await request(fileUrl(id, name), { signal, cache: "no-cache" })).text();
-export const getJson = async (id, name, signal) =>
-  (await request(fileUrl(id, name), { signal, cache: "no-cache" })).json();
+/// A file as it is now: a Response.
+export const getFile = (id, name, signal) => request(fileUrl(id, name), { signal, cache: "no-cache" });
+export const getText = async (id, name, signal) => (await getFile(id, name, signal)).text();
 
-/// `bytes` bytes of a file from `offset` on, as an ArrayBuffer.
+/// Up to `bytes` bytes of a file from `offset` on: {data, total, tag}, with the whole file's length and
+/// its ETag, which two versions of it never share. What lies beyond the file's end is empty.
 export async function getPart(id, name, offset, bytes, signal) {
-  if (bytes === 0) return new ArrayBuffer(0);
   const headers = { Range: `bytes=${offset}-${offset + bytes - 1}` };
-  const response = await request(fileUrl(id, name), { signal, headers, cache: "no-store" });
-  const data = await response.arrayBuffer();
-  const part = response.status === 206 ? data : data.slice(offset, offset + bytes);
-  if (part.byteLength === bytes) return part;
-  throw new ApiError(response.status, {
-    title: "A part of a file is missing",
-    detail: `${name} has ${part.byteLength} of the ${bytes} bytes from ${offset} on.`,
+  const response = await request(fileUrl(id, name), { signal, headers, cache: "no-store" }).catch((error) => {
+    if (error.status === 416) return new Response();
+    throw error;
   });
+  const data = await response.arrayBuffer();
+  const total = /\d+$/.exec(response.headers.get("Content-Range"))?.[0];
+  return { data, total: Number(total ?? 0), tag: response.headers.get("ETag") };
 }
 
-export const cancelJob = (id) => request(`${jobPath(id)}/cancel`, { method: "POST" });
+/// The log from the byte `offset` on: {data, next}, where the rest of it begins; beyond the log's end
+/// there is an error 416.
+export async function getLog(id, offset, signal) {
+  const response = await request(`${jobPath(id)}/log?offset=${offset}`, { signal, cache: "no-store" });
+  return { data: await response.arrayBuffer(), next: Number(response.headers.get("Next-Offset")) };
+}
+
+/// `verb`: cancel, retry, or extend with the JSON of a body.
+export const tell = (id, verb, body) => send("POST", `${jobPath(id)}/${verb}`, body);
+/// `values`: {priority, held}, either or both.
+export const change = (id, values) => send("PATCH", jobPath(id), JSON.stringify(values));
+export const remove = (id) => send("DELETE", jobPath(id));
 
 /// Posts a job file as it was typed; gives the new job's id.
 export async function postJob(text) {
-  const response = await request("/api/jobs", {
-    method: "POST",
-    headers: { "Content-Type": "application/json" },
-    body: text,
-  });
+  const response = await send("POST", "/api/jobs", text);
   return decodeURIComponent(response.headers.get("Location").split("/").pop());
 }
 
-/// done, failed, cancelled: nothing will happen any more.
-export const isTerminal = (state) => ["done", "failed", "cancelled"].includes(state);
-export const canCancel = (state) => ["queued", "running", "interrupted"].includes(state);
+const sayLink = (text) => setText(document.getElementById("link-state"), text);
 
-function whenVisible(signal) {
-  if (!document.hidden) return Promise.resolve();
-  return new Promise((resolve) => {
-    document.addEventListener("visibilitychange", resolve, { once: true, signal });
-  });
-}
-
-function sayLink(text) {
-  const place = document.getElementById("link-state");
-  if (place.textContent !== text) place.textContent = text;
-}
-
-const longestPause = 30_000;
-
-/// Calls `step` now and `ms` after its end (later after a long one, so that thousands of jobs do not
-/// keep both sides busy), while the page can be seen, until `signal` is aborted or `step` gives
-/// false. An unanswered request is said in the head of the page and tried again; other errors end
-/// it. The first call's errors are thrown to the caller.
+/// Calls `step` now and `ms` after its end, while the page can be seen, until `signal` is aborted or
+/// `step` gives false. An unanswered request is said in the head of the page and tried again. The first
+/// call's errors are thrown to the caller.
 export async function poll(step, ms, signal) {
   signal.addEventListener("abort", () => sayLink(""));
-  let began = performance.now();
   let more = await step();
   (async () => {
     while (more !== false) {
-      const pause = Math.max(ms, Math.min(longestPause, 10 * (performance.now() - began)));
-      await new Promise((resolve) => { setTimeout(resolve, pause); });
-      await whenVisible(signal);
+      await new Promise((resolve) => { setTimeout(resolve, ms); });
       if (signal.aborted) return;
-      began = performance.now();
+      if (document.hidden) continue;
       try {
         more = await step();
         sayLink("");
       } catch (error) {
         if (signal.aborted) return;
-        sayLink(error instanceof ApiError && error.status === 0
-          ? "The server does not answer; trying again." : error.message);
+        sayLink(error.status === 0 ? noAnswer : error.message);
         if (!(error instanceof ApiError)) throw error;
+        if (error.status === 401) return;
       }
     }
   })();
 }
 
-/// Listens to a job's events while the page can be seen: `on.state` and `on.progress` get the data.
-/// `on.lost` is called once where events cannot be had (too many listeners): poll instead.
-export function listen(id, on, signal) {
+/// `soon(ms)` calls `step` after that time, however often it is asked until then; who is in a greater
+/// hurry goes first. One call ends before the next begins. What `step` throws is `failed(error)`'s.
+export function soon(step, failed, signal) {
+  let due = Infinity;
+  let timer;
+  let running = Promise.resolve();
+  signal.addEventListener("abort", () => clearTimeout(timer));
+  return (ms) => {
+    const at = performance.now() + ms;
+    if (at >= due || signal.aborted) return;
+    clearTimeout(timer);
+    due = at;
+    timer = setTimeout(() => {
+      due = Infinity;
+      running = running.then(step).catch((error) => { if (!signal.aborted) failed(error); });
+    }, ms);
+  };
+}
+
+/// Listens to events while the page can be seen: `on[name]` gets the data of the events called so,
+/// and their id. `path()` is asked anew whenever the stream is opened. `lost` is called once where
+/// events cannot be had (too many listeners): poll instead. Gives a function that ends it.
+export function listen(path, on, lost, signal) {
   let source = null;
   const close = () => {
     source?.close();
@@ -126,18 +146,17 @@ export function listen(id, on, signal) {
   };
   const open = () => {
     if (source || document.hidden || signal.aborted) return;
-    source = new EventSource(`${jobPath(id)}/events`);
-    for (const name of ["state", "progress"]) {
-      source.addEventListener(name, (event) => on[name](JSON.parse(event.data)));
+    source = new EventSource(path());
+    for (const [name, tellIt] of Object.entries(on)) {
+      source.addEventListener(name, (event) => tellIt(event.data && JSON.parse(event.data), event.lastEventId));
     }
     source.addEventListener("open", () => sayLink(""));
     source.addEventListener("error", () => {
       if (source?.readyState === EventSource.CLOSED) {
-        close();
-        document.removeEventListener("visibilitychange", follow);
-        on.lost();
+        stop();
+        lost();
       } else {
-        sayLink("The server does not answer; trying again.");
+        sayLink(noAnswer);
       }
     });
   };

@@ -1,7 +1,8 @@
 // The router: one view per hash route, and with `embed` in the query its curves alone; each is given
 // an AbortSignal that ends everything it started.
 import { ApiError } from "./api.js";
-import { h } from "./dom.js";
+import { h, problem } from "./dom.js";
+import "./keys.js";
 import * as compare from "./view_compare.js";
 import * as figure from "./view_figure.js";
 import * as job from "./view_job.js";
@@ -25,31 +26,24 @@ function address() {
   return { path: path || "/", query: new URLSearchParams(query) };
 }
 
-function markNavigation(path) {
-  for (const link of document.querySelectorAll("nav a")) {
-    if (link.getAttribute("href") === `#${path}`) link.setAttribute("aria-current", "page");
-    else link.removeAttribute("aria-current");
-  }
-}
-
 function explain(error) {
   const known = error instanceof ApiError;
   return h("section", { role: "alert" },
-    h("h1", {}, known ? error.title : "This view failed"),
-    h("p", { className: "problem" }, known ? error.message : String(error)),
-    h("p", {}, h("a", { href: "#/" }, "All jobs")));
+    h("h1", known ? error.title : "This view failed"),
+    problem(known ? error.message : String(error)),
+    h("p", h("a", { href: "#/" }, "All jobs")));
 }
 
 async function route() {
   leaving.abort();
+  document.querySelector("dialog")?.close();
   leaving = new AbortController();
   const { signal } = leaving;
   const { path, query } = address();
-  const match = routes.map((r) => ({ ...r, found: r.pattern.exec(path) }))
-    .find((r) => r.found);
+  const match = routes.find(({ pattern }) => pattern.test(path));
   const alone = query.has("embed") && match?.alone;
   document.body.classList.toggle("embed", Boolean(alone));
-  markNavigation(path);
+  for (const link of document.querySelectorAll("nav a")) link.ariaCurrent = link.hash === `#${path}` ? "page" : null;
   main.replaceChildren();
   main.removeAttribute("data-ready");
   if (shown) main.focus({ preventScroll: true });
@@ -57,7 +51,7 @@ async function route() {
   window.scrollTo(0, 0);
   try {
     if (!match) throw new ApiError(404, { title: "No such view", detail: `#${path} leads nowhere.` });
-    await (alone || match.show)(main, { params: match.found.groups ?? {}, query, signal });
+    await (alone || match.show)(main, { params: match.pattern.exec(path).groups ?? {}, query, signal });
   } catch (error) {
     if (signal.aborted) return;
     document.title = "Lacuna";

@@ -9,9 +9,9 @@ const parts = 4;
 export function colourBar() {
   const canvas = h("canvas", { width: steps, height: 1, role: "img" });
   const labels = Array.from({ length: parts + 1 }, () => h("span"));
-  const title = h("span", { className: "bar-title" });
-  const element = h("div", { className: "colour-bar", hidden: true }, title, canvas,
-    h("div", { className: "bar-labels" }, labels));
+  const title = h("span.bar-title");
+  const element = h("div.colour-bar", { hidden: true }, title, canvas,
+    h("div.bar-labels", labels));
   let painted = null;
   return {
     element,
@@ -25,7 +25,7 @@ export function colourBar() {
       if (painted === look.map) return;
       painted = look.map;
       canvas.getContext("2d")
-        .putImageData(new ImageData(new Uint8ClampedArray(colourMap(look.map)), steps, 1), 0, 0);
+        .putImageData(new ImageData(colourMap(look.map), steps, 1), 0, 0);
     },
   };
 }

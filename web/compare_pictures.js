@@ -1,74 +1,55 @@
 // The pictures of several jobs: those with layers of one size in one viewer, the others side by side.
 import { fileUrl } from "./api.js";
-import { append, h } from "./dom.js";
+import { h, replace } from "./dom.js";
 import { openLayers } from "./layers.js";
-import { picture, zoomGroup } from "./picture.js";
+import { picture } from "./picture.js";
+import { currentError } from "./status.js";
 import { noViewer, viewer } from "./viewer.js";
 
-/// Frames stay while jobs run, so that the zoom stays too.
-function gallery() {
-  const group = zoomGroup();
-  const frames = new Map();
-  const element = h("div", { className: "gallery" });
-  return {
-    element,
-    show(entries) {
-      for (const { id, label, image } of entries) {
-        if (!frames.has(id)) {
-          frames.set(id, picture(`Picture of ${label}`, h("a", { href: `#/job/${id}` }, label), group));
-        }
-        frames.get(id).load(image);
-      }
-      const wanted = entries.map(({ id }) => frames.get(id).element);
-      if (wanted.some((e, i) => element.children[i] !== e) || element.children.length > wanted.length) {
-        element.replaceChildren(...wanted);
-      }
-    },
-  };
-}
-
-/// What is said of the jobs that the viewer leaves out.
-function reasons(plain, hasViewer) {
-  if (!hasViewer) return [noViewer];
-  return plain.filter((e) => e.image).map((e) => `${e.label}: ${
-    e.layers ? "not of the first's size" : "no layers.json"}, so image.png is shown.`);
-}
-
-/// `show(jobs, labels)`: jobs are {id, state, files}. The viewer's state is in `query`.
-export function comparePictures(query, changed, signal) {
-  const numbers = viewer(query, changed, signal);
-  const plainOnes = gallery();
-  const notes = h("div", { className: "note" });
+/// `show(jobs, labels)`: jobs are {id, state, progress, files}. The viewer's state is in `query`.
+export function comparePictures(query, signal) {
+  const numbers = viewer(query, signal);
+  const apart = h("div.gallery");
   const place = h("div");
+  const plain = new Map();  // stay while jobs run
   const opened = new Map();
   let shown = "";
 
-  async function entryOf({ id, state, files }, label) {
-    const file = (name) => files.find((f) => f.name === name);
+  async function entryOf({ id, state, progress, files }, name) {
+    const file = (wanted) => files.find((f) => f.name === wanted);
     const png = file("image.png");
     const version = `${state.state} ${png?.bytes}`;
-    const image = png ? fileUrl(id, "image.png", version) : null;
-    if (!numbers || !file("layers.json")) return { id, label, image, version };
+    const entry = { id, name, version, image: png ? fileUrl(id, "image.png", version) : null,
+      seconds: progress?.seconds, error: currentError(progress) };
+    if (!numbers || !file("layers.json")) return entry;
     if (opened.get(id)?.version !== version) opened.set(id, { version, layers: await openLayers(id, signal) });
-    return { id, label, image, ...opened.get(id) };
+    return { ...entry, layers: opened.get(id).layers };
+  }
+
+  /// image.png of those that the viewer leaves out, and why.
+  function showApart(entries) {
+    for (const { id, name, image, layers } of entries) {
+      const why = numbers === null ? noViewer
+        : `${layers ? "Not of the first's size" : "No layers.json"}: image.png, each as bright as it chose.`;
+      if (!plain.has(id)) plain.set(id, picture(`Picture of ${name}`, [h("a", { href: `#/job/${id}` }, name), why]));
+      plain.get(id).load(image);
+    }
+    replace(apart, entries.map(({ id }) => plain.get(id).element));
   }
 
   return {
-    element: h("div", {}, place, notes, plainOnes.element),
+    element: h("div", place, apart),
     async show(jobs, labels) {
       const entries = await Promise.all(jobs.map((job, i) => entryOf(job, labels[i])));
       const first = entries.find((e) => e.layers)?.layers;
       const fits = ({ layers }) => layers && layers.width === first.width && layers.height === first.height;
       const together = entries.filter(fits);
-      const apart = entries.filter((e) => !fits(e));
-      plainOnes.show(apart);
-      notes.replaceChildren();
-      append(notes, reasons(apart, numbers !== null).map((text) => h("p", {}, text)));
+      showApart(entries.filter((e) => !fits(e)));
       const now = together.map((e) => `${e.id} ${e.version}`).join();
       if (together.length === 0 || now === shown) return;
       shown = now;
       if (!place.firstChild) place.append(numbers.element);
-      await numbers.show(together.map(({ label, layers }) => ({ name: label, layers })));
+      await numbers.show(together);
     },
   };
 }

@@ -20,21 +20,10 @@ export const metrics = [
 
 export const slopeName = (slope) => (slope === -1 ? "−1" : "−1/2");
 
-function parseField(text) {
-  if (text === "" || text === undefined) return null;
-  if (text === "true" || text === "false") return text === "true" ? 1 : 0;
-  return Number(text);
-}
-
 /// Rows of curve.csv as objects of numbers; null where a field is empty.
 export function parseCurve(text) {
-  const lines = text.split(/\r?\n/).filter((line) => line !== "");
-  if (lines.length === 0) return [];
-  const names = lines[0].split(",").map((name) => name.trim());
-  return lines.slice(1).map((line) => {
-    const fields = line.split(",");
-    return Object.fromEntries(names.map((name, i) => [name, parseField(fields[i]?.trim())]));
-  });
+  const [head, ...lines] = text.split(/\r?\n/).filter((line) => line !== "").map((line) => line.split(","));
+  return lines.map((fields) => Object.fromEntries(head.map((name, i) => [name, fields[i] ? Number(fields[i]) : null])));
 }
 
 /// The metrics with at least one value in a curve.
@@ -50,46 +39,39 @@ export function points(rows, x, y) {
     .sort((a, b) => a.x - b.x);
 }
 
-function between(a, b, from, to, at) {
-  if (from === to) return b;
-  const t = (Math.log(at) - Math.log(from)) / (Math.log(to) - Math.log(from));
-  return Math.exp(Math.log(a) + t * (Math.log(b) - Math.log(a)));
+/// The value of `what` of a curve where the value of `where` is `at`, between the point `after` and the one
+/// before it, interpolated in log-log.
+function between(curve, after, where, what, at) {
+  const [a, b] = [curve[after - 1], curve[after]].map((p) => ({ u: Math.log(p[where]), v: Math.log(p[what]) }));
+  return a.u === b.u ? curve[after][what] : Math.exp(a.v + ((Math.log(at) - a.u) / (b.u - a.u)) * (b.v - a.v));
 }
 
 /// The error at `x`, interpolated in log-log; null outside the curve.
 export function errorAt(curve, x) {
   const after = curve.findIndex((p) => p.x >= x);
-  if (after < 0) return null;
-  if (curve[after].x === x) return curve[after].y;
-  if (after === 0) return null;
-  const [a, b] = [curve[after - 1], curve[after]];
-  return between(a.y, b.y, a.x, b.x, x);
+  if (curve[after]?.x === x) return curve[after].y;
+  return after > 0 ? between(curve, after, "x", "y", x) : null;
 }
 
 /// The x at which the error first is at or below `y`, interpolated in log-log; null if never.
 export function reaches(curve, y) {
   const after = curve.findIndex((p) => p.y <= y);
-  if (after < 0) return null;
-  if (after === 0) return curve[0].x;
-  const [a, b] = [curve[after - 1], curve[after]];
-  return between(a.x, b.x, a.y, b.y, y);
+  return after > 0 ? between(curve, after, "y", "x", y) : curve[after]?.x ?? null;
 }
 
 /// The instants at which curves can be compared: the last one that all of them reach, and
 /// 1/2, 1/4, 1/10 and 1/100 of it where all of them have begun. Ascending; empty if they share none.
 export function commonInstants(curves) {
   const filled = curves.filter((c) => c.length > 0);
-  if (filled.length === 0) return [];
   const first = Math.max(...filled.map((c) => c[0].x));
-  const last = Math.min(...filled.map((c) => c[c.length - 1].x));
+  const last = Math.min(...filled.map((c) => c.at(-1).x));
   return [100, 10, 4, 2, 1].map((n) => last / n).filter((x) => x >= first);
 }
 
 /// The smallest error that all curves reach; null if there are none.
 export function commonError(curves) {
   const filled = curves.filter((c) => c.length > 0);
-  if (filled.length === 0) return null;
-  return Math.max(...filled.map((c) => Math.min(...c.map((p) => p.y))));
+  return filled.length === 0 ? null : Math.max(...filled.map((c) => Math.min(...c.map((p) => p.y))));
 }
 
 /// Two ends of the line of the given slope that lies amid the points (least squares in log-log),

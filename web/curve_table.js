@@ -6,6 +6,5 @@ import { number, words } from "./format.js";
 export function curveTable(rows) {
   if (rows.length === 0) return "";
   const keys = Object.keys(rows[0]).filter((key) => rows.some((row) => row[key] !== null));
-  return table(keys.map((key) => ({ title: words(key), number: true })),
-    rows.map((row) => keys.map((key) => number(row[key], 4))), "values");
+  return table(keys.map(words), rows.map((row) => keys.map((key) => number(row[key], 4))), true);
 }

@@ -1,30 +1,35 @@
 // Where a job's time and rays went, and what it built, from report.json.
-import { h } from "./dom.js";
+import { facts, h } from "./dom.js";
 import { number, quantity, seconds, words } from "./format.js";
-import { stackedBar } from "./stacked_bar.js";
+import { curveColour } from "./palette.js";
+import { leafName, leaves } from "./report.js";
 
-/// "load", "build voxelise", ...: the numbers of an object, also of nested ones.
-function numbersIn(object, path = "") {
-  return Object.entries(object ?? {}).flatMap(([key, value]) => {
-    const name = path ? `${path} ${words(key)}` : words(key);
-    if (value !== null && typeof value === "object") return numbersIn(value, name);
-    return typeof value === "number" ? [{ name, value }] : [];
-  });
-}
-
-/// CPU seconds are the same work on another clock, so they are no part of the whole.
-function timeBar(report) {
-  const parts = numbersIn(report.seconds).filter(({ name }) => !name.endsWith("cpu"))
-    .map((p) => ({ ...p, text: seconds(p.value) })).sort((a, b) => b.value - a.value);
+/// Shares of a whole as one bar, with a legend that says the same in words; `parts` are [{name, value, text}].
+function stackedBar(title, parts) {
   const total = parts.reduce((sum, p) => sum + p.value, 0);
-  return parts.length > 0 && stackedBar(`Time: ${seconds(total)} in all`, parts);
+  const percent = ({ value }) => (total > 0 ? (100 * value) / total : 0);
+  const paint = (element, i) => {
+    element.style.background = curveColour(i);
+    return element;
+  };
+  const pieces = parts.map((part, i) => {
+    const piece = paint(h("span", { title: `${part.name}: ${part.text}` }), i);
+    piece.style.width = `${percent(part)}%`;
+    return piece;
+  });
+  const entries = parts.map((part, i) => h("li", paint(h("span.swatch"), i),
+    `${part.name} `, h("span.muted", `${part.text}, ${percent(part).toFixed(1)} %`)));
+  return h("section.stacked", h("h3", title),
+    h("div.stacked-bar", { "aria-hidden": "true" }, pieces), h("ul", entries));
 }
 
-function rayBar({ counts = {} }) {
-  const parts = Object.entries(counts).filter(([key]) => ["rays", "shadow_rays"].includes(key))
-    .map(([key, value]) => ({ name: words(key), value, text: number(value) }));
-  return parts.length > 0 && stackedBar(
-    `Rays: ${number(parts.reduce((sum, p) => sum + p.value, 0))} in all`, parts);
+/// A bar of the numbers in `object` whose name `belongs`, the largest first.
+function bar(title, object, show, belongs) {
+  const parts = leaves(object ?? {})
+    .map(({ keys, value }) => ({ name: leafName(keys), value, text: show(value) }))
+    .filter(({ name, value }) => typeof value === "number" && belongs(name)).sort((a, b) => b.value - a.value);
+  const total = parts.reduce((sum, p) => sum + p.value, 0);
+  return parts.length > 0 && stackedBar(`${title}: ${show(total)} in all`, parts);
 }
 
 /// An artefact is a name, or {name, seconds, bytes, ...}.
@@ -48,11 +53,12 @@ function leftOut({ scene = {} }) {
 function builtList(report) {
   const rows = { built: [], loaded: [], left_out: [], ...report.artefacts };
   rows.left_out = [...rows.left_out, ...leftOut(report)];
-  return h("section", { className: "stacked" }, h("h3", {}, "Built for it"),
-    h("dl", { className: "facts" }, Object.entries(rows).map(([key, list]) => h("div", {},
-      h("dt", {}, words(key)),
-      h("dd", {}, [list].flat().map(artefactText).join(", ") || "nothing")))));
+  return h("section.stacked", h("h3", "Built for it"),
+    facts(Object.entries(rows).map(([key, list]) => [words(key), list.map(artefactText).join(", ") || "nothing"])));
 }
 
-export const effortView = (report) => h("div", { className: "effort" },
-  timeBar(report), rayBar(report), builtList(report));
+/// CPU seconds are the same work on another clock, so they are no part of the whole.
+export const effortView = (report) => h("div.effort",
+  bar("Time", report.seconds, seconds, (name) => !name.endsWith("cpu")),
+  bar("Rays", report.counts, number, (name) => ["rays", "shadow rays"].includes(name)),
+  builtList(report));

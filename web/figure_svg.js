@@ -1,8 +1,12 @@
-// Error curves as an SVG that needs nothing else: for papers, slides and pages.
+// Error curves as an SVG whose colours are the page's (see figure_file.js for one that needs nothing else).
 import { axes, metrics, points, slopeLine, slopeName } from "./curve.js";
-import { axisTitle, colours, css, ends, logTicks, tickLabel } from "./plot.js";
+import { number } from "./format.js";
+import { logAxis, tickLabel } from "./log_axis.js";
+import { colours, curveColour } from "./palette.js";
 
-const size = { width: 720, left: 74, right: 18, top: 14, plot: 360, below: 52, line: 18 };
+const size = { left: 68, right: 14, top: 14, plot: 360, below: 52, line: 18, column: 320, letter: 6.6 };
+
+const [grid, muted] = ["var(--line)", "var(--muted)"];
 
 /// An SVG element with attributes; never with `style`, which the page's policy forbids.
 function svg(tag, attributes, ...children) {
@@ -12,8 +16,8 @@ function svg(tag, attributes, ...children) {
   return element;
 }
 
-const text = (content, attributes) =>
-  svg("text", { fill: css("--text"), "font-size": 12, ...attributes }, content);
+/// "render time (s)".
+const axisTitle = ({ label, unit }) => (unit ? `${label} (${unit})` : label);
 
 /// Marks that are told apart without their colours.
 const marks = [
@@ -24,83 +28,94 @@ const marks = [
     + `l${-1.4 * r} ${-1.4 * r}z` }),
 ];
 
+const text = (content, attributes) =>
+  svg("text", { fill: "var(--text)", "font-size": 12, ...attributes }, content);
+
+const line = (places, stroke, more = {}) => svg("polyline", {
+  points: places.map(([x, y]) => `${x.toFixed(2)},${y.toFixed(2)}`).join(" "),
+  fill: "none", stroke, "stroke-width": 1.5, ...more });
+
+/// The mark of the i-th curve; curves of one colour have different ones.
 function mark(i, x, y, hollow) {
-  const colour = css(`--curve-${i % colours}`);
-  const shape = marks[i % marks.length](Number(x.toFixed(2)), Number(y.toFixed(2)), 3.2);
-  shape.setAttribute("stroke", colour);
-  shape.setAttribute("fill", hollow ? css("--surface") : colour);
+  const shape = marks[(i + Math.floor(i / colours)) % marks.length](Number(x.toFixed(2)), Number(y.toFixed(2)), 3.2);
+  shape.setAttribute("stroke", curveColour(i));
+  shape.setAttribute("fill", hollow ? "var(--surface)" : curveColour(i));
   return shape;
 }
 
-function line(places, stroke, more = {}) {
-  const path = places.map(([x, y]) => `${x.toFixed(2)},${y.toFixed(2)}`).join(" ");
-  return svg("polyline", { points: path, fill: "none", stroke, "stroke-width": 1.5, ...more });
-}
-
-/// A log axis: values to places, from `from` to `to`.
-function logAxis(values, from, to) {
-  const [min, max] = ends(values);
-  const at = (v) => from + ((to - from) * Math.log(v / min)) / Math.log(max / min);
-  return { at, ticks: logTicks(min, max) };
-}
-
-function frame(x, y, axis, metric) {
-  const [right, bottom] = [size.width - size.right, size.top + size.plot];
-  const grid = css("--line");
-  const parts = [];
-  for (const v of x.ticks) {
-    parts.push(line([[x.at(v), size.top], [x.at(v), bottom]], grid, { "stroke-width": 1 }),
-      text(tickLabel(v), { x: x.at(v).toFixed(1), y: bottom + 17, "text-anchor": "middle" }));
-  }
-  for (const v of y.ticks) {
-    parts.push(line([[size.left, y.at(v)], [right, y.at(v)]], grid, { "stroke-width": 1 }),
-      text(tickLabel(v), { x: size.left - 7, y: (y.at(v) + 4).toFixed(1), "text-anchor": "end" }));
-  }
+function frame(width, x, y, axis, metric) {
+  const [right, bottom] = [width - size.right, size.top + size.plot];
+  const thin = { "stroke-width": 1 };
   const middle = size.top + size.plot / 2;
-  return [...parts, line([[size.left, size.top], [size.left, bottom], [right, bottom]], css("--muted")),
+  return [
+    ...x.ticks.flatMap((v) => [line([[x.at(v), size.top], [x.at(v), bottom]], grid, thin),
+      text(tickLabel(v), { x: x.at(v).toFixed(1), y: bottom + 17, "text-anchor": "middle" })]),
+    ...y.ticks.flatMap((v) => [line([[size.left, y.at(v)], [right, y.at(v)]], grid, thin),
+      text(tickLabel(v), { x: size.left - 7, y: (y.at(v) + 4).toFixed(1), "text-anchor": "end" })]),
+    line([[size.left, size.top], [size.left, bottom], [right, bottom]], muted),
     text(axisTitle(axis), { x: (size.left + right) / 2, y: bottom + 38, "text-anchor": "middle" }),
-    text(axisTitle(metric), { x: 16, y: middle, "text-anchor": "middle",
-      transform: `rotate(-90 16 ${middle})` })];
+    text(axisTitle(metric), { x: 14, y: middle, "text-anchor": "middle",
+      transform: `rotate(-90 14 ${middle})` })];
 }
 
-function legend(entries, top) {
-  return entries.flatMap(({ symbol, label }, i) => {
-    const y = top + i * size.line;
-    return [symbol(size.left + 12, y), text(label, { x: size.left + 30, y: y + 4 })];
+/// The entries in columns below the plot, names that are too long cut short, and their height.
+function legend(width, entries, top) {
+  const columns = Math.max(1, Math.min(Math.floor((width - 30) / size.column), Math.ceil(entries.length / 4)));
+  const rows = Math.ceil(entries.length / columns);
+  const room = (width - 20) / columns;
+  const letters = Math.floor((room - 40) / size.letter);
+  const parts = entries.flatMap(({ symbol, label }, i) => {
+    const [x, y] = [20 + room * Math.floor(i / rows), top + (i % rows) * size.line];
+    const words = text(label.length > letters ? `${label.slice(0, letters - 1)}…` : label, { x: x + 18, y: y + 4 });
+    if (label.length > letters) words.append(svg("title", {}, label));
+    return [symbol(x, y), words];
   });
+  return { parts, height: rows * size.line };
 }
 
-/// `series` ([{name, rows}]) over the axes' keys `x` and `y`; null if there is nothing to show.
-export function figureSvg(series, xKey, yKey) {
+/// A curve and its marks, each of which tells its values.
+function curveGroup(i, name, curve, place, unit, metric) {
+  const told = curve.map((p) => {
+    const shape = mark(i, ...place(p), p.floor);
+    shape.append(svg("title", {}, `${name}: ${metric.label} ${number(p.y)} at ${number(p.x)} ${unit}`
+      + `${p.floor ? ", at the floor" : ""}`));
+    return shape;
+  });
+  return svg("g", { class: "curve" }, line(curve.map(place), curveColour(i)), ...told);
+}
+
+/// `series` ([{name, rows}]) over the axes' keys `x` and `y`, `width` pixels wide; null if there is
+/// nothing to show.
+export function figureSvg(series, xKey, yKey, width = 720) {
   const axis = axes.find((a) => a.key === xKey);
   const metric = metrics.find((m) => m.key === yKey);
   const curves = metric ? series.map((s) => points(s.rows, xKey, yKey)) : [];
   const all = curves.flat();
   if (all.length === 0) return null;
   const bottom = size.top + size.plot;
-  const x = logAxis(all.map((p) => p.x), size.left, size.width - size.right);
-  const y = logAxis(all.map((p) => p.y), bottom, size.top);
+  const x = logAxis(all.map((p) => p.x), size.left, width - size.right, 48);
+  const y = logAxis(all.map((p) => p.y), bottom, size.top, 20);
   const place = (p) => [x.at(p.x), y.at(p.y)];
   const entries = series.map(({ name }, i) => ({ label: name, symbol: (u, v) => mark(i, u, v, false) }));
   const slope = slopeLine(curves, metric.slope);
   const dashed = { "stroke-dasharray": "6 4", "stroke-width": 1 };
   if (slope.length > 0) {
     entries.push({ label: `slope ${slopeName(metric.slope)} (Monte Carlo)`,
-      symbol: (u, v) => line([[u - 10, v], [u + 10, v]], css("--muted"), dashed) });
+      symbol: (u, v) => line([[u - 10, v], [u + 10, v]], muted, dashed) });
   }
   if (all.some((p) => p.floor)) {
-    entries.push({ label: "at the reference's own noise", symbol: (u, v) => mark(0, u, v, true) });
+    entries.push({ label: "hollow: at the reference's own noise", symbol: (u, v) => mark(0, u, v, true) });
   }
   const top = bottom + size.below + size.line / 2;
-  const height = top + entries.length * size.line;
+  const names = legend(width, entries, top);
+  const height = top + names.height;
   const clip = svg("clipPath", { id: "plot" }, svg("rect", {
-    x: size.left, y: size.top, width: size.width - size.left - size.right, height: size.plot }));
-  return svg("svg", { viewBox: `0 0 ${size.width} ${height}`, width: size.width, height, role: "img",
+    x: size.left, y: size.top, width: width - size.left - size.right, height: size.plot }));
+  return svg("svg", { viewBox: `0 0 ${width} ${height}`, width, height, role: "img",
     "aria-label": `${axisTitle(metric)} against ${axisTitle(axis)}`,
     "font-family": "DejaVu Sans, Helvetica, Arial, sans-serif" },
-  clip, svg("rect", { width: size.width, height, fill: css("--surface") }), ...frame(x, y, axis, metric),
-  svg("g", { "clip-path": "url(#plot)" }, line(slope.map(place), css("--muted"), dashed)),
-  ...curves.flatMap((curve, i) => [line(curve.map(place), css(`--curve-${i % colours}`)),
-    ...curve.map((p) => mark(i, ...place(p), p.floor))]),
-  ...legend(entries, top));
+  clip, svg("rect", { width, height, fill: "var(--surface)" }), ...frame(width, x, y, axis, metric),
+  svg("g", { "clip-path": "url(#plot)" }, line(slope.map(place), muted, dashed)),
+  ...curves.map((curve, i) => curveGroup(i, series[i].name, curve, place, axis.unit || axis.label, metric)),
+  ...names.parts);
 }

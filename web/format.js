@@ -17,11 +17,13 @@ export function number(value, digits = 3) {
   return String(value).replace(/\B(?=(\d{3})+$)/g, thin);
 }
 
-/// A value with an SI prefix and its unit: "19.9 M/s".
-function prefixed(value, unit) {
-  const [factor, prefix] = [[1e9, "G"], [1e6, "M"], [1e3, "k"]].find(([f]) => value >= f) ?? [1, ""];
-  return `${significant(value / factor)}${thin}${prefix}${unit}`;
+/// A value in the largest of `units` ([factor, name]) that is not above it: "19.9 M/s".
+function scaled(value, units) {
+  if (value === null || value === undefined) return "—";
+  const [factor, name] = units.find(([f]) => value >= f) ?? units.at(-1);
+  return `${factor === 1 ? number(value) : significant(value / factor)}${thin}${name}`;
 }
+const rate = (unit) => [[1e9, `G${unit}`], [1e6, `M${unit}`], [1e3, `k${unit}`], [1, unit]];
 
 /// Seconds with their unit, precise: "0.412 s", "35.2 s", "412 s".
 export const seconds = (value) => (value === null || value === undefined
@@ -32,37 +34,25 @@ export function duration(value) {
   if (value === null || value === undefined) return "—";
   const s = Math.max(0, Math.round(value));
   if (s < 60) return `${s} s`;
-  if (s < 3600) return `${Math.floor(s / 60)} min ${s % 60} s`;
-  if (s < 86400) return `${Math.floor(s / 3600)} h ${Math.floor((s % 3600) / 60)} min`;
-  return `${Math.floor(s / 86400)} d ${Math.floor((s % 86400) / 3600)} h`;
+  const [large, small] = [[86400, "d"], [3600, "h"], [60, "min"], [1, "s"]].filter(([n]) => n <= s);
+  return `${Math.floor(s / large[0])} ${large[1]} ${Math.floor((s % large[0]) / small[0])} ${small[1]}`;
 }
 
-export function bytes(value) {
-  if (value === null || value === undefined) return "—";
-  const units = ["B", "KiB", "MiB", "GiB", "TiB"];
-  let size = value;
-  let unit = 0;
-  while (size >= 1024 && unit < units.length - 1) {
-    size /= 1024;
-    unit += 1;
-  }
-  return `${unit === 0 ? size : size.toPrecision(3)}${thin}${units[unit]}`;
-}
+export const bytes = (value) => scaled(value, [
+  [2 ** 40, "TiB"], [2 ** 30, "GiB"], [2 ** 20, "MiB"], [2 ** 10, "KiB"], [1, "B"]]);
 
 /// An ISO instant in the reader's time zone: "2026-01-31 23:59:59"; empty stays empty.
 export function when(iso) {
+  if (!iso) return "";
   const date = new Date(iso);
-  if (!iso || Number.isNaN(date.getTime())) return iso || "";
-  const two = (n) => String(n).padStart(2, "0");
-  return `${date.getFullYear()}-${two(date.getMonth() + 1)}-${two(date.getDate())} `
-    + `${two(date.getHours())}:${two(date.getMinutes())}:${two(date.getSeconds())}`;
+  return new Date(date - 60_000 * date.getTimezoneOffset()).toISOString().slice(0, 19).replace("T", " ");
 }
 
 /// "cpu_seconds" -> "cpu seconds".
 export const words = (key) => key.replaceAll("_", " ");
 
 const units = [
-  { ending: /(^|_)per_(cpu_)?second$/, show: (v, [, , cpu]) => prefixed(v, cpu ? "/CPU s" : "/s") },
+  { ending: /(^|_)per_(cpu_)?second$/, show: (v, [, , cpu]) => scaled(v, rate(cpu ? "/CPU s" : "/s")) },
   { ending: /(^|_)seconds$/, show: seconds },
   { ending: /(^|_)bytes$/, show: bytes },
 ];
@@ -93,6 +83,11 @@ export function integratorName(integrator) {
 
 /// What a job is called: its own label, else its scene.
 export const jobTitle = (job) => job.label || job.scene;
+
+/// A job to start from.
+export const firstJob = (scenes) => ({
+  scene: scenes[0] ?? "SCENE.glb", integrator: { type: "path" }, budget: { seconds: 30 }, reference: "auto",
+});
 
 /// A word for the shell, quoted.
 const shellQuote = (text) => `'${text.replaceAll("'", "'\\''")}'`;

@@ -58,20 +58,14 @@ void main() {
 const looks = { colour: 0, direction: 1, false: 2 };
 const keptTextures = 8;
 
-function compile(gl, type, source) {
-  const shader = gl.createShader(type);
-  gl.shaderSource(shader, source);
-  gl.compileShader(shader);
-  if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) {
-    throw new Error(gl.getShaderInfoLog(shader));
-  }
-  return shader;
-}
-
 function link(gl) {
   const program = gl.createProgram();
-  gl.attachShader(program, compile(gl, gl.VERTEX_SHADER, vertexSource));
-  gl.attachShader(program, compile(gl, gl.FRAGMENT_SHADER, fragmentSource));
+  for (const [type, source] of [[gl.VERTEX_SHADER, vertexSource], [gl.FRAGMENT_SHADER, fragmentSource]]) {
+    const shader = gl.createShader(type);
+    gl.shaderSource(shader, source);
+    gl.compileShader(shader);
+    gl.attachShader(program, shader);
+  }
   gl.linkProgram(program);
   if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) {
     throw new Error(gl.getProgramInfoLog(program));
@@ -98,9 +92,9 @@ function uploadPicture(gl, { width, height, channels, data }) {
   }
   const one = channels.length === 1;
   const format = one ? gl.RED : gl.RGB;
-  const half = [one ? gl.R16F : gl.RGB16F, format, gl.HALF_FLOAT];
-  const single = [one ? gl.R32F : gl.RGB32F, format, gl.FLOAT];
-  return upload(gl, width, height, data instanceof Uint16Array ? half : single, data);
+  return data instanceof Float32Array
+    ? upload(gl, width, height, [one ? gl.R32F : gl.RGB32F, format, gl.FLOAT], data)
+    : upload(gl, width, height, [one ? gl.R16F : gl.RGB16F, format, gl.HALF_FLOAT], new Uint16Array(data.buffer));
 }
 
 /// What one context holds; made anew when the context was lost.
@@ -129,18 +123,15 @@ export function painter(canvas, onrestored) {
     onrestored();
   });
 
-  /// The least recently drawn textures go first.
+  /// Those that are kept go together when they are too many.
   function texture(image) {
     const { textures } = held;
-    const found = textures.get(image) ?? uploadPicture(gl, image);
-    textures.delete(image);
-    textures.set(image, found);
-    for (const [old, name] of textures) {
-      if (textures.size <= keptTextures) break;
-      gl.deleteTexture(name);
-      textures.delete(old);
+    if (!textures.has(image) && textures.size >= keptTextures) {
+      textures.forEach((old) => gl.deleteTexture(old));
+      textures.clear();
     }
-    return found;
+    if (!textures.has(image)) textures.set(image, uploadPicture(gl, image));
+    return textures.get(image);
   }
 
   function drawPart({ image, look, gain, offset, map, from, to }) {

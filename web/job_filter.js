@@ -1,17 +1,12 @@
-// Which jobs of the list are shown: those in one state whose texts hold all words.
+// Which jobs of the list are asked for: those in one state, those whose texts hold a word.
 import { h } from "./dom.js";
-import { integratorName } from "./format.js";
+import { states } from "./status.js";
 
-const states = ["running", "queued", "done", "failed", "cancelled", "interrupted"];
-
-const textOf = (job) => [job.id, job.label, job.scene, integratorName(job.integrator), job.state]
-  .join(" ").toLowerCase();
-
-/// The controls, beginning with what `query` says. `values()` is what the address should hold;
-/// `pick(jobs)` gives the jobs to show, and counts those of each state.
+/// The controls, beginning with what `query` says. `values()` is what the address, and the request,
+/// should hold; `count(counts)` says how many jobs of each state there are.
 export function jobFilter(query, changed) {
   const text = h("input", {
-    type: "search", value: query.get("filter") ?? "", placeholder: "Filter: label, scene, integrator …",
+    type: "search", value: query.get("label") ?? "", placeholder: "Filter: label, scene, integrator or id",
     "aria-label": "Filter the jobs", oninput: changed,
   });
   const options = ["", ...states].map((name) => h("option", { value: name }, name || "all states"));
@@ -19,16 +14,10 @@ export function jobFilter(query, changed) {
   state.value = states.includes(query.get("state")) ? query.get("state") : "";
   return {
     elements: [text, state],
-    values: () => ({ filter: text.value, state: state.value }),
+    values: () => ({ label: text.value.trim(), state: state.value }),
     active: () => text.value.trim() !== "" || state.value !== "",
-    pick(jobs) {
-      const words = text.value.toLowerCase().split(/\s+/).filter(Boolean);
-      const found = words.length === 0 ? jobs
-        : jobs.filter((job) => words.every((word) => textOf(job).includes(word)));
-      for (const option of options.slice(1)) {
-        option.textContent = `${option.value} (${found.filter((job) => job.state === option.value).length})`;
-      }
-      return state.value === "" ? found : found.filter((job) => job.state === state.value);
+    count(counts) {
+      for (const option of options.slice(1)) option.textContent = `${option.value} (${counts[option.value] ?? 0})`;
     },
   };
 }

@@ -1,52 +1,58 @@
 // A job's layers, read one at a time from layers.half as layers.json says.
-import { getJson, getPart } from "./api.js";
+import { getFile, getPart } from "./api.js";
+import { extent } from "./pixels.js";
 
-const tries = 3;
+const tries = 4;
 
-function check(layer, width, height) {
-  const expected = 2 * width * height * layer.channels.length;
-  if (layer.bytes !== expected || layer.offset < 0) {
-    throw new Error(`layers.json: layer "${layer.name}" has ${layer.bytes} bytes, not ${expected}.`);
-  }
-}
-
-/// The layers of job `id` as they stand: {width, height, names, read(name)}; `read` gives a picture
-/// (see pixels.js), and the same one when asked again.
+/// The layers of job `id` as they stand: {width, height, names, read(...names)}; `read` gives a picture
+/// (see pixels.js) for each name, all of one generation, and the same ones when asked again.
 export async function openLayers(id, signal) {
-  const readIndex = () => getJson(id, "layers.json", signal);
-  const index = await readIndex();
+  async function readIndex() {
+    const response = await getFile(id, "layers.json", signal);
+    return { tag: response.headers.get("ETag"), ...await response.json() };
+  }
+  let index = await readIndex();
   const { width, height } = index;
   const kept = new Map();
 
-  /// A running job replaces both files, one after the other. What was read between two equal
-  /// indices belongs to them.
-  async function readOnce(name) {
-    let before = index;
-    for (let i = 0; i < tries; i += 1) {
-      const layer = before.layers.find((l) => l.name === name);
-      if (!layer) break;
-      check(layer, width, height);
-      const data = new Uint16Array(await getPart(id, "layers.half", layer.offset, layer.bytes, signal));
-      const after = await readIndex();
-      if (JSON.stringify(after) === JSON.stringify(before)) {
-        return { width, height, channels: layer.channels, data, scale: layer.scale };
-      }
-      before = after;
-    }
-    throw new Error(`Layer "${name}" changed while it was read.`);
+  async function readLayer(name) {
+    const layer = index.layers.find((l) => l.name === name);
+    if (!layer) throw new Error(`This job has no layer "${name}" any more.`);
+    const length = Math.max(...index.layers.map((l) => l.offset + l.bytes));
+    const { data, total, tag } = await getPart(id, "layers.half", layer.offset, layer.bytes, signal);
+    if (total !== length || data.byteLength !== 2 * width * height * layer.channels.length) return { tag: null };
+    const picture = {
+      width, height, channels: layer.channels, scale: layer.scale,
+      data: new Float16Array(data),
+    };
+    return { tag, picture: { ...picture, extent: extent(picture) } };
   }
 
-  return {
-    width,
-    height,
-    names: index.layers.map((l) => l.name),
-    read(name) {
-      if (!kept.has(name)) {
-        const reading = readOnce(name);
-        kept.set(name, reading);
-        reading.catch(() => kept.delete(name));
+  function once(name) {
+    if (!kept.has(name)) kept.set(name, readLayer(name));
+    return kept.get(name);
+  }
+
+  /// A job that goes on replaces both files, one after the other. Parts belong together that come from
+  /// one layers.half, of the lengths that the index tells, while the index stayed the same.
+  async function read(...names) {
+    for (let i = 0; i < tries; i += 1) {
+      const anew = names.some((name) => !kept.has(name));
+      try {
+        const found = await Promise.all(names.map(once));
+        const before = index.tag;
+        if (anew) index = await readIndex();
+        const [{ tag }] = found;
+        const one = tag !== null && index.tag === before && found.every((f) => f.tag === tag);
+        if (one) return found.map((f) => f.picture);
+      } catch (error) {
+        kept.clear();
+        throw error;
       }
-      return kept.get(name);
-    },
-  };
+      kept.clear();
+    }
+    throw new Error("These layers changed while they were read.");
+  }
+
+  return { width, height, names: index.layers.map((l) => l.name), read };
 }

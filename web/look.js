@@ -1,13 +1,7 @@
 // How values become colours: exposure for colours, a range of a colour map for single channels.
-import { quantile } from "./pixels.js";
-
-const luminance = ([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
 
 /// As image.png is exposed: the 95th percentile of luminance becomes 0.8 of white. In stops, to a tenth.
-function automatic(image) {
-  const bright = quantile(image, 0.95, (v) => Math.max(0, luminance(v)));
-  return bright === null ? 0 : Math.round(10 * Math.log2(0.8 / bright)) / 10;
-}
+const automatic = ({ extent: [, bright] }) => (bright > 0 ? Math.round(10 * Math.log2(0.8 / bright)) / 10 : 0);
 
 /// The smallest of 1, 2 and 5 times a power of ten that is not below `value`.
 function rounded(value) {
@@ -15,18 +9,16 @@ function rounded(value) {
   return [1, 2, 5, 10].find((n) => n * power >= value) * power;
 }
 
-/// The values at the ends of the colour map, before the stops: of errors, up to 99.5 % of all
-/// pixels; of other layers, the least and the largest value.
+/// The values at the ends of the colour map, before the stops.
 function range(images) {
-  const of = (q, f) => Math.max(...images.map((image) => quantile(image, q, f) ?? -Infinity));
+  const high = Math.max(...images.map((image) => image.extent[1] ?? -Infinity));
   if (images[0].kind) {
-    const top = of(0.995, ([v]) => Math.abs(v));
-    const high = top > 0 ? rounded(top) : 1;
-    return images[0].kind.key === "signed" ? [-high, high] : [0, high];
+    const top = high > 0 ? rounded(high) : 1;
+    return images[0].kind === "signed" ? [-top, top] : [0, top];
   }
-  const high = of(1, ([v]) => v);
-  const low = -of(1, ([v]) => -v);
-  return Number.isFinite(high) && high > low ? [low, high] : [Math.min(0, low || 0), Math.max(1, high)];
+  const low = Math.min(...images.map((image) => image.extent[0] ?? Infinity));
+  return Number.isFinite(high) && high > low ? [low, high]
+    : [Math.min(0, Number.isFinite(low) ? low : 0), Math.max(1, high)];
 }
 
 /// What does not depend on the reader's choice: {look, ev} or {look, map, low, high}, for pictures
@@ -35,7 +27,7 @@ export function lookOf(images) {
   const [{ channels, kind }] = images;
   if (channels.length === 1) {
     const [low, high] = range(images);
-    return { look: "false", map: kind?.key === "signed" ? "diverging" : "sequential", low, high };
+    return { look: "false", map: kind === "signed" ? "diverging" : "sequential", low, high };
   }
   if (channels.join("") === "XYZ") return { look: "direction" };
   return { look: "colour", ev: automatic(images[0]) };

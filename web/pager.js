@@ -1,28 +1,32 @@
-// A long list in pages.
-import { h, setText } from "./dom.js";
+// A long list in pages: the service says where the next begins, the way back is remembered here.
+import { button, h, setText } from "./dom.js";
 
 export const pageSize = 100;
 
-/// `show(page, total)` gives the page, from 1, that there is: `page` or the nearest. `go(page)` is
-/// called when the reader turns.
+/// `place` is {cursor, from}: where the page begins, and how many jobs come before it; both empty on the
+/// first page. `go(place)` is called when the reader turns.
 export function pager(go) {
-  let now = 1;
-  const turn = (text, label, by) => h("button", {
-    type: "button", className: "small", "aria-label": label, onclick: () => go(now + by),
-  }, text);
-  const before = turn("‹", "Previous page", -1);
-  const after = turn("›", "Next page", 1);
-  const text = h("output", { className: "muted" });
+  let back = [];
+  let here = null;
+  let next = null;
+  const before = button("‹ Newer", () => go(back.pop() ?? { cursor: "", from: 0 }));
+  const after = button("Older ›", () => {
+    back.push(here);
+    go(next);
+  });
+  const text = h("output.muted");
+  const element = h("nav.tools.pager", { "aria-label": "Pages" }, before, text, after);
   return {
-    element: h("nav", { className: "tools pager", "aria-label": "Pages" }, before, text, after),
-    show(page, total) {
-      const last = Math.max(1, Math.ceil(total / pageSize));
-      now = Math.min(last, Math.max(1, page));
-      before.disabled = now === 1;
-      after.disabled = now === last;
-      setText(text, `${(now - 1) * pageSize + 1}–${Math.min(total, now * pageSize)} of ${total}`);
-      text.parentElement.hidden = last === 1;
-      return now;
+    element,
+    /// `shown` jobs of `total` are on the page, and the next begins at `cursor`; null: it is the last.
+    show(place, shown, total, cursor) {
+      if (!place.cursor) back = [];
+      here = place;
+      next = { cursor, from: place.from + shown };
+      before.disabled = !place.cursor;
+      after.disabled = cursor === null;
+      setText(text, `${shown && place.from + 1}–${place.from + shown} of ${total}`);
+      element.hidden = before.disabled && after.disabled;
     },
   };
 }

@@ -1,38 +1,50 @@
-// What a picture of numbers is: {width, height, channels, data, scale}. `data` holds half floats
-// (Uint16Array) or floats (Float32Array), interleaved, the top row first; a value is its number times
-// `scale`. Values are read in double, so that a scale outside a float's range loses nothing.
-import { halfTable } from "./half.js";
-
-/// A function from a place in `data` to its value.
-export function reader({ data, scale }) {
-  if (!(data instanceof Uint16Array)) return (k) => data[k] * scale;
-  const numbers = halfTable();
-  return (k) => numbers[data[k]] * scale;
-}
+// What a picture of numbers is: {width, height, channels, data, scale}. `data` holds half floats or
+// floats, interleaved, the top row first; a value is its number times `scale`, in double, so that a scale
+// outside a float's range loses nothing. Pictures to be shown have their `extent`, too; those of errors,
+// the key of their `kind` and their `mean`.
 
 /// The values of the pixel (x, y), one a channel; null outside the picture.
-export function valuesAt(image, x, y) {
-  const { width, height, channels } = image;
+export function valuesAt({ width, height, channels, data, scale }, x, y) {
   if (!(x >= 0 && y >= 0 && x < width && y < height)) return null;
-  const read = reader(image);
   const first = (y * width + x) * channels.length;
-  return channels.map((_, c) => read(first + c));
+  return channels.map((_, c) => data[first + c] * scale);
 }
 
-const most = 1 << 16;
-
-/// The value below which the share `q` of what `of(values of a pixel)` gives lies, over the finite
-/// ones that are not 0; large pictures are asked at evenly spread pixels. null: there are none.
-export function quantile(image, q, of) {
-  const read = reader(image);
+/// The part {x, y, w, h} of a picture, in pixels, as a picture.
+export function cut(image, { x, y, w, h }) {
   const n = image.channels.length;
-  const pixels = image.width * image.height;
-  const every = Math.max(1, Math.floor(pixels / most));
+  const data = new image.data.constructor(w * h * n);
+  for (let row = 0; row < h; row += 1) {
+    const first = ((y + row) * image.width + x) * n;
+    data.set(image.data.subarray(first, first + w * n), row * w * n);
+  }
+  return { ...image, width: w, height: h, data };
+}
+
+// Enough for a percentile, and few enough that a large picture is no pause.
+const most = 1 << 14;
+
+/// The values below which the `shares` of what `of(r, g, b)` gives lie, over the finite ones that are
+/// not 0; large pictures are asked at evenly spread pixels. null: there are none.
+function quantiles({ width, height, channels, data, scale }, shares, of) {
+  const n = channels.length;
+  const step = n * Math.max(1, Math.floor((width * height) / most));
   const found = [];
-  for (let i = 0; i < pixels; i += every) {
-    const value = of(image.channels.map((_, c) => read(i * n + c)));
+  for (let k = 0; k < data.length; k += step) {
+    const value = of(data[k] * scale, data[k + 1] * scale, data[k + 2] * scale);
     if (Number.isFinite(value) && value !== 0) found.push(value);
   }
-  if (found.length === 0) return null;
-  return Float64Array.from(found).sort()[Math.floor((found.length - 1) * q)];
+  const sorted = Float64Array.from(found).sort();
+  return shares.map((q) => sorted[Math.floor((found.length - 1) * q)] ?? null);
+}
+
+/// What decides how bright a picture is shown, [low, high], null where there is nothing: of colours, no
+/// low and the 95th percentile of luminance; of errors, up to 99.5 % of all pixels; of other single
+/// channels, the least and the largest value.
+export function extent(image) {
+  if (image.channels.length > 1) {
+    return [null, ...quantiles(image, [0.95], (r, g, b) => Math.max(0, 0.2126 * r + 0.7152 * g + 0.0722 * b))];
+  }
+  if (image.kind) return [null, ...quantiles(image, [0.995], Math.abs)];
+  return quantiles(image, [0, 1], (v) => v);
 }

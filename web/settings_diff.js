@@ -1,23 +1,17 @@
 // What differs between job files.
+import { leaves } from "./report.js";
 
-/// "/integrator/max_depth": 6, ... for every leaf of a job file; arrays count as leaves.
-export function leaves(value, pointer = "", into = {}) {
-  if (value !== null && typeof value === "object" && !Array.isArray(value)) {
-    for (const [key, child] of Object.entries(value)) leaves(child, `${pointer}/${key}`, into);
-  } else {
-    into[pointer] = JSON.stringify(value);
-  }
-  return into;
-}
+/// "/integrator/max_depth" -> 6, ... for every value of a job file.
+const settings = (job) => new Map(leaves(job).map(({ keys, value }) =>
+  [`/${keys.toReversed().join("/")}`, JSON.stringify(value)]));
 
 /// The pointers whose values are not the same in all jobs, each with a value per job ("" where a
 /// job has none).
 export function differences(jobs) {
-  const all = jobs.map((job) => leaves(job));
-  const pointers = [...new Set(all.flatMap((l) => Object.keys(l)))];
-  return pointers
-    .filter((p) => all.some((l) => l[p] !== all[0][p]))
-    .map((pointer) => ({ pointer, values: all.map((l) => l[pointer] ?? "") }));
+  const all = jobs.map(settings);
+  return [...new Set(all.flatMap((one) => [...one.keys()]))]
+    .map((pointer) => ({ pointer, values: all.map((one) => one.get(pointer) ?? "") }))
+    .filter(({ values }) => values.some((value) => value !== values[0]));
 }
 
 /// What must be the same for errors to be comparable. Longer paths and another environment make

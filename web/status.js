@@ -1,15 +1,29 @@
-// A job's state and progress, as every view shows them.
-import { isTerminal } from "./api.js";
+// A job's states: what can be done in which, and how every view shows them and the progress.
 import { h, setText } from "./dom.js";
 import { duration, number, seconds } from "./format.js";
 
+export const states = ["running", "queued", "held", "interrupted", "cancelling", "done", "failed", "cancelled"];
+
+const over = ["done", "failed", "cancelled"];
+const waiting = ["queued", "running", "interrupted"];
+const allowed = {
+  cancel: [...waiting, "held"], hold: waiting, release: ["held"], priority: [...waiting, "held"],
+  retry: ["failed", "cancelled"], extend: over, delete: over,
+};
+
+/// done, failed, cancelled: nothing happens any more, unless it is asked for.
+export const isTerminal = (state) => over.includes(state);
+
+/// Whether `action` (see above) makes sense in `state`; the service decides.
+export const can = (action, state) => allowed[action].includes(state);
+
 /// A badge that says a state in words; `set(state, phase)`.
 export function badge() {
-  const element = h("span", { className: "badge" });
+  const element = h("span.badge");
   return {
     element,
     set(state, phase = "") {
-      element.setAttribute("data-state", state);
+      element.className = `badge ${state}`;
       setText(element, phase && state === "running" ? `${state} · ${phase}` : state);
     },
   };
@@ -18,8 +32,8 @@ export function badge() {
 /// A bar with what remains beside it; `set(state, progress)`. It hides once nothing more happens.
 export function progressBar(label) {
   const bar = h("progress", { max: 1, value: 0, "aria-label": label });
-  const text = h("span", { className: "remaining" });
-  const element = h("span", { className: "progress" }, bar, text);
+  const text = h("span.remaining");
+  const element = h("span.progress", bar, text);
   return {
     element,
     set(state, progress) {

@@ -1,56 +1,28 @@
-// Small pictures of jobs: loaded when they come into sight, and only where the job has a picture.
-import { fileUrl, getJob, isTerminal } from "./api.js";
+// A small picture of a job, loaded when it comes into sight.
+import { fileUrl } from "./api.js";
 import { h } from "./dom.js";
+import { isTerminal } from "./status.js";
 
 const refreshSeconds = 10;
 
-/// Thumbnails that watch their own visibility until `signal` is aborted. `make()` gives an element;
-/// `update(element, job)` says which job it shows and where that stands.
-export function thumbnails(signal) {
-  const known = new WeakMap();
-  const observer = new IntersectionObserver((entries) => {
-    for (const entry of entries) {
-      const thumb = known.get(entry.target);
-      thumb.visible = entry.isIntersecting;
-      refresh(entry.target, thumb);
-    }
-  }, { rootMargin: "200px" });
-  signal.addEventListener("abort", () => observer.disconnect());
-
-  /// What the picture can depend on: it changes with the state, and in a running job with time.
-  function version({ state, progress }) {
-    return isTerminal(state) || !progress
-      ? state : `${state} ${Math.floor(progress.seconds / refreshSeconds)}`;
-  }
-
-  async function refresh(element, thumb) {
-    const wanted = version(thumb.job);
-    if (!thumb.visible || thumb.shown === wanted || thumb.job.state === "queued") return;
-    thumb.shown = wanted;
-    try {
-      const { files } = await getJob(thumb.job.id, signal);
-      const file = files.find((f) => f.name === "image.png");
-      if (!file) return;
-      const url = fileUrl(thumb.job.id, file.name, `${wanted} ${file.bytes}`);
-      const image = h("img", { src: url, alt: "", decoding: "async" });
-      await image.decode();
-      element.replaceChildren(image);
-    } catch {
-      thumb.shown = null;  // the list itself says what is wrong; try again with its next state
-    }
-  }
-
+/// `update(entry)` says where the job stands. Its picture changes with the state, and while it runs with
+/// time; before there is progress there is none.
+export function thumbnail() {
+  const element = h("span.thumb");
+  let shown = "";
   return {
-    make: () => h("span", { className: "thumb" }),
-    update(element, job) {
-      const thumb = known.get(element);
-      if (thumb) {
-        thumb.job = job;
-        refresh(element, thumb);
-      } else {
-        known.set(element, { job, visible: false, shown: null });
-        observer.observe(element);
-      }
+    element,
+    update({ id, state, progress }) {
+      if (!progress?.iteration) return;
+      const age = isTerminal(state) ? "" : Math.floor(progress.seconds / refreshSeconds);
+      const source = fileUrl(id, "image.png", `${state} ${age}`);
+      if (source === shown) return;
+      shown = source;
+      const image = h("img", { loading: "lazy", decoding: "async", alt: "", src: source });
+      // What is there stays until the next is loaded; a picture that cannot be had is none.
+      image.onload = () => element.replaceChildren(image);
+      image.onerror = () => image.remove();
+      element.append(image);
     },
   };
 }

@@ -1,159 +1,125 @@
 // The list of jobs, live, a page at a time, with a filter and a choice of jobs to compare.
-import { getJobs, getScenes, poll } from "./api.js";
-import { copyButton, h, setText } from "./dom.js";
-import { curlLine, integratorName, jobTitle, when } from "./format.js";
+import { getJobs, getScenes, listen, poll, queryOf, soon } from "./api.js";
+import { button, copyButton, h, note, problem, remember, setText } from "./dom.js";
+import { curlLine, firstJob } from "./format.js";
 import { jobFilter } from "./job_filter.js";
+import { jobRow, jobTable } from "./job_row.js";
 import { pager, pageSize } from "./pager.js";
-import { badge, currentError, progressBar } from "./status.js";
-import { thumbnails } from "./thumbnail.js";
 
-const everyMs = 2000;
+const pollMs = 2000;
+const soonMs = 500;
+const typingMs = 150;
 
-// The narrow layout shows rows as grids, and browsers then forget that they are a table's.
-const cell = (className, ...children) => h("td", { role: "cell", className }, children);
+/// The jobs to compare: the choice survives turning pages and looking at jobs.
+export const chosen = new Set();
 
-/// A table row that follows its job; cells that did not change are left alone.
-function makeRow(id, pictures, onchoose) {
-  const choose = h("input", { type: "checkbox", onchange: () => onchoose(id, choose.checked) });
-  const thumb = pictures.make();
-  const title = h("a", { href: `#/job/${id}` });
-  const detail = h("span", { className: "detail" });
-  const reason = h("span", { className: "reason" });
-  const integrator = cell("integrator");
-  const state = badge();
-  const progress = progressBar("Share of the budget");
-  const error = cell("error");
-  const created = h("time", {});
-  const element = h("tr", { role: "row", "data-job": id },
-    cell("choose", h("label", {}, choose)),
-    cell("picture-cell", h("a", { href: title.href, tabIndex: -1, "aria-hidden": "true" }, thumb)),
-    h("th", { role: "rowheader", scope: "row", className: "name" }, title, detail, reason),
-    integrator,
-    cell("state", state.element),
-    cell("progress-cell", progress.element),
-    error,
-    cell("created", created));
-  return {
-    element,
-    set(job, chosen) {
-      const name = jobTitle(job);
-      choose.setAttribute("aria-label", `Compare ${name}, ${id}`);
-      choose.checked = chosen;
-      setText(title, name);
-      setText(detail, job.label ? `${job.scene} · ${id}` : id);
-      setText(reason, job.error ?? "");
-      setText(integrator, integratorName(job.integrator));
-      state.set(job.state);
-      progress.set(job.state, job.progress);
-      setText(error, currentError(job.progress));
-      setText(created, when(job.created));
-      created.dateTime = job.created;
-      pictures.update(thumb, job);
-    },
-  };
-}
-
-async function firstJob(signal) {
+async function noJobs(signal) {
   const scenes = await getScenes(signal);
-  const job = { scene: scenes[0] ?? "SCENE.glb", budget: { seconds: 30 }, reference: "auto" };
-  const command = curlLine(job);
-  return h("section", { className: "empty" },
-    h("h2", {}, "No jobs yet"),
-    h("p", {}, "Post the first from a shell, or from ", h("a", { href: "#/new" }, "New job"), ":"),
+  const command = curlLine(firstJob(scenes));
+  return h("section.empty",
+    h("h2", "No jobs yet"),
+    h("p", "Post the first from a shell, or from ", h("a", { href: "#/new" }, "New job"), ":"),
     h("pre", { tabIndex: 0 }, command), copyButton(() => command),
-    scenes.length === 0 && h("p", { className: "problem" },
+    scenes.length === 0 && problem(
       "The server sees no scenes: start it with LACUNA_SCENES set to a folder that has some."));
 }
 
-const heads = ["Job", "Integrator", "State", "Progress", "Error", "Created"];
-
-function jobTable() {
-  const body = h("tbody", { role: "rowgroup" });
-  const element = h("table", { role: "table", className: "jobs" },
-    h("thead", {}, h("tr", {},
-      h("td", { className: "choose" }), h("td", { className: "picture-cell" }),
-      heads.map((text) => h("th", { scope: "col" }, text)))),
-    body);
-  return { element, body };
-}
-
-/// Puts `elements` into `body` in their order, moving only what is out of place.
-function arrange(body, elements) {
-  elements.forEach((element, i) => {
-    if (body.children[i] !== element) body.insertBefore(element, body.children[i] ?? null);
+/// The buttons of the choice.
+function choice(redraw) {
+  const compare = button("Compare", () => { location.hash = `#/compare?jobs=${[...chosen].join(",")}`; });
+  const clear = button("Clear the choice", () => {
+    chosen.clear();
+    redraw();
+    show();
   });
-  while (body.children.length > elements.length) body.lastElementChild.remove();
+  function show() {
+    compare.disabled = chosen.size < 2;
+    clear.hidden = chosen.size === 0;
+    setText(compare, chosen.size > 0 ? `Compare (${chosen.size})` : "Compare");
+  }
+  show();
+  return { element: h("span.tools.choose-tools", clear, compare), show };
 }
 
 export async function show(main, { query, signal }) {
   document.title = "Jobs · Lacuna";
-  const chosen = new Set();
-  const rows = new Map();
-  const pictures = thumbnails(signal);
-  let jobs = [];
+  let rows = new Map();  // of the page that is shown, by id
+  const known = new Map();  // the state of every job that was told of
+  let place = { cursor: query.get("cursor") ?? "", from: Number(query.get("from")) || 0 };
+  let last = "";  // the last event that is known of
   let empty = null;
-  let page = Number(query.get("page")) || 1;
+  let asked = 0;
 
-  /// The address holds what is not as at first.
-  function remember() {
-    const held = new URLSearchParams(Object.entries({ ...filter.values(), page: page > 1 ? page : "" })
-      .filter(([, value]) => value !== ""));
-    history.replaceState(null, "", held.size > 0 ? `#/?${held}` : "#/");
-  }
-  function go(next) {
-    page = next;
-    draw();
-    remember();
-  }
-  const filter = jobFilter(query, () => go(1));
+  const filter = jobFilter(query, () => go({ cursor: "", from: 0 }, typingMs));
   const pages = pager((next) => {
-    go(next);
+    go(next, 0);
     main.scrollIntoView();
   });
-  const count = h("output", { className: "muted" });
-  const compare = h("button", {
-    type: "button",
-    onclick: () => { location.hash = `#/compare?jobs=${[...chosen].join(",")}`; },
-  });
-  const { element, body } = jobTable();
-  const tools = h("div", { className: "tools", role: "search" }, filter.elements, count, compare);
-  const place = h("div");
-  main.append(h("h1", {}, "Jobs"), tools, place, pages.element);
-
-  function showCompare() {
-    compare.disabled = chosen.size < 2;
-    setText(compare, chosen.size > 0 ? `Compare (${chosen.size})` : "Compare");
-  }
+  const count = h("output.muted");
+  const choosing = choice(() => listSoon(0));
+  const { element, arrange } = jobTable();
+  const tools = h("div.tools", { role: "search" }, filter.elements, count, choosing.element);
+  const body = h("div");
+  main.append(h("h1", "Jobs"), tools, body, pages.element);
 
   function onchoose(id, on) {
     if (on) chosen.add(id);
     else chosen.delete(id);
-    showCompare();
+    choosing.show();
   }
 
-  function rowOf(job) {
-    if (!rows.has(job.id)) rows.set(job.id, makeRow(job.id, pictures, onchoose));
-    const row = rows.get(job.id);
-    row.set(job, chosen.has(job.id));
-    return row.element;
+  /// The address holds what is not as at first.
+  function go(next, ms) {
+    place = next;
+    remember(queryOf({ ...filter.values(), ...place }));
+    listSoon(ms);
   }
 
-  function draw() {
-    const found = filter.pick(jobs);
-    page = pages.show(page, found.length);
-    const visible = found.slice((page - 1) * pageSize, page * pageSize);
-    for (const id of rows.keys()) if (!visible.some((job) => job.id === id)) rows.delete(id);
-    arrange(body, visible.map(rowOf));
-    tools.hidden = jobs.length === 0;
-    setText(count, filter.active() ? `${found.length} of ${jobs.length}` : `${jobs.length} jobs`);
-    const shown = jobs.length === 0 && empty ? empty : element;
-    if (place.firstChild !== shown) place.replaceChildren(shown);
-    showCompare();
+  function draw({ jobs, total, counts, next }) {
+    const all = Object.values(counts).reduce((sum, n) => sum + n, 0);
+    const before = rows;
+    rows = new Map(jobs.map((job) => [job.id, before.get(job.id) ?? jobRow(job.id, onchoose)]));
+    for (const job of jobs) {
+      known.set(job.id, job.state);
+      rows.get(job.id).set(job, chosen.has(job.id));
+    }
+    arrange([...rows.values()].map((row) => row.element));
+    filter.count(counts);
+    tools.hidden = all === 0;
+    setText(count, filter.active() ? `${total} of ${all}` : `${all} jobs`);
+    pages.show(place, jobs.length, total, next);
+    const shown = all === 0 ? empty : total === 0 ? note("No job matches the filter.") : element;
+    if (body.firstChild !== shown) body.replaceChildren(shown);
   }
 
-  await poll(async () => {
-    jobs = await getJobs(signal);
-    if (jobs.length === 0) empty ??= await firstJob(signal);
-    draw();
-  }, everyMs, signal);
+  /// Asks for the page; an answer that a newer question has overtaken is dropped.
+  async function list() {
+    asked += 1;
+    const mine = asked;
+    const found = await getJobs({ ...filter.values(), cursor: place.cursor, limit: pageSize }, signal);
+    if (found.total === 0) empty ??= await noJobs(signal);
+    if (mine !== asked) return;
+    last = found.last_event;
+    draw(found);
+  }
+
+  const listSoon = soon(list, (error) => setText(count, error.message), signal);
+
+  await list();
+  listen(() => `/api/events?after=${encodeURIComponent(last)}`, {
+    job(entry, id) {
+      last = id || last;
+      rows.get(entry.id)?.set(entry, chosen.has(entry.id));
+      // What is on the page, and the counts, change only with the jobs' states.
+      if (known.get(entry.id) !== entry.state) listSoon(soonMs);
+      known.set(entry.id, entry.state);
+    },
+    removed({ id }, event) {
+      last = event || last;
+      known.delete(id);
+      if (chosen.delete(id)) choosing.show();
+      listSoon(soonMs);
+    },
+    reset: () => listSoon(soonMs),
+  }, () => poll(list, pollMs, signal), signal);
 }

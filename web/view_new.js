@@ -1,8 +1,7 @@
 // Posting a job: its file as text, the scenes there are, and every problem with its place.
-import { getJob, getJobSchema, getScenes, postJob } from "./api.js";
-import { append, h, table } from "./dom.js";
-import { prettyJob, withoutNulls } from "./format.js";
-import { schemaRows } from "./schema.js";
+import { getJob, getScenes, postJob } from "./api.js";
+import { h, problem, replace } from "./dom.js";
+import { firstJob, prettyJob, withoutNulls } from "./format.js";
 
 function parsed(text) {
   try {
@@ -12,37 +11,20 @@ function parsed(text) {
   }
 }
 
-/// A job to start from; what it shows of the defaults is the schema's.
-const example = (scenes, { properties }) => ({
-  scene: scenes[0] ?? "",
-  resolution: properties.resolution?.default,
-  integrator: properties.integrator?.default,
-  budget: { seconds: 30 },
-  reference: "auto",
-});
-
 /// The list of what is wrong, each with the JSON pointer to its place.
 function problems(error) {
   return [
-    h("p", { className: "problem" }, error.title, ". ", error.message),
-    error.errors?.length > 0 && h("ul", { className: "errors" }, error.errors.map((e) => h("li", {},
-      h("code", {}, e.pointer === "" ? "(the whole)" : e.pointer), " ", e.message))),
+    problem(`${error.title}. ${error.message}`),
+    error.errors?.length > 0 && h("ul.errors", error.errors.map((e) => h("li",
+      h("code", e.pointer === "" ? "(the whole)" : e.pointer), " ", e.message))),
   ];
-}
-
-function schemaTable(schema) {
-  const rows = schemaRows(schema).map((row) => [
-    h("code", {}, row.pointer), row.type, row.allowed, row.default, row.doc]);
-  return h("details", {}, h("summary", {}, "Every key of a job file"),
-    table(["Key", "Type", "Allowed", "Default", "Meaning"], rows, "values keys"));
 }
 
 export async function show(main, { query, signal }) {
   document.title = "New job · Lacuna";
   const from = query.get("from");
-  const [scenes, schema, source] = await Promise.all([
-    getScenes(signal), getJobSchema(signal), from ? getJob(from, signal) : null]);
-  const start = source ? withoutNulls(source.job) : example(scenes, schema);
+  const [scenes, source] = await Promise.all([getScenes(signal), from ? getJob(from, signal) : null]);
+  const start = source ? withoutNulls(source.job) : firstJob(scenes);
 
   const text = h("textarea", {
     id: "job", rows: 18, spellcheck: false, value: prettyJob(start),
@@ -57,28 +39,26 @@ export async function show(main, { query, signal }) {
       if (job !== null && typeof job === "object") text.value = prettyJob({ ...job, scene: scene.value });
     },
   }, scenes.map((name) => h("option", { value: name }, name)));
-  const follow = () => { scene.value = parsed(text.value)?.scene ?? ""; };
-  text.addEventListener("input", follow);
-  follow();
+  scene.value = start.scene;
 
-  const form = h("form", {
-    className: "new-job",
+  const form = h("form.new-job", {
     onsubmit: async (event) => {
       event.preventDefault();
       submit.disabled = true;
-      errors.replaceChildren();
+      replace(errors);
       try {
         location.hash = `#/job/${await postJob(text.value)}`;
       } catch (error) {
-        append(errors, problems(error));
+        replace(errors, problems(error));
       }
       submit.disabled = false;
     },
   },
-  h("p", {}, h("label", { htmlFor: "scene" }, "Scene "), scene,
-    scenes.length === 0 && h("span", { className: "problem" }, " the server sees no scenes")),
-  h("p", {}, h("label", { htmlFor: "job" }, "Job file (JSON); keys that are left out take their defaults")),
+  h("p", h("label", { htmlFor: "scene" }, "Scene "), scene,
+    scenes.length === 0 && h("span.problem", " the server sees no scenes")),
+  h("p", h("label", { htmlFor: "job" }, "Job file (JSON); keys that are left out take their defaults. "),
+    h("a", { href: "/api/schema/job" }, "Every key, with what it allows")),
   text, errors, submit);
 
-  main.append(h("h1", {}, "New job"), form, schemaTable(schema));
+  main.append(h("h1", "New job"), form);
 }

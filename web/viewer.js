@@ -1,6 +1,7 @@
 // The viewer of pictures of numbers: it keeps the state, reads what the state asks for, and draws.
 import { colourBar } from "./colour_bar.js";
-import { h, setText } from "./dom.js";
+import { cropStrip } from "./crop_strip.js";
+import { h, remember, setText } from "./dom.js";
 import { painter } from "./gl_draw.js";
 import { exposed } from "./look.js";
 import { printPixels } from "./pixel_text.js";
@@ -17,7 +18,7 @@ import { pointAt, zoomOf } from "./viewport.js";
 export const noViewer = "This browser offers no WebGL 2: image.png is shown, tone-mapped, instead of the values.";
 
 const contentKeys = ["show", "mode", "left", "right", "by"];
-const ratio = () => window.devicePixelRatio || 1;
+const ratio = () => window.devicePixelRatio;
 
 /// Draws `own` (see viewer) into its elements.
 function drawAll(own) {
@@ -32,8 +33,8 @@ function drawAll(own) {
   const imageAt = (u) => (parts.find((p) => u < p.to * box.width) ?? parts.at(-1)).image;
   own.paint.draw(parts.map((part) => ({ ...part, ...look })), { ...corner, pace: 1 / (zoom * ratio()) });
   printPixels(seen.text, box, ratio(), { corner, zoom, size, imageAt });
-  seen.line.hidden = state.mode !== "split";
-  seen.line.style.left = `${100 * state.split}%`;
+  seen.mark(state, corner, zoom);
+  own.crops.show(state, own.sources, content.images, look, ratio());
   own.bar.show(look, barTitle(content.shown, state.show));
 
   // Without a pointer, the pixel in the middle is read.
@@ -45,7 +46,7 @@ function drawAll(own) {
   const stops = { colour: state.ev ?? look.ev, direction: null, false: state.stops }[look.look];
   own.tools.show({ options: own.options, chosen: state.show, zoom: zoom * ratio(), stops });
   own.modes.show(state, own.sources.map((s) => s.name));
-  seen.frame.classList.toggle("zoomed", state.view.zoom !== null);
+  seen.frame.classList.toggle("zoomed", state.view.zoom !== null || state.mode === "crops");
   seen.frame.setAttribute("data-shown", state.show || "picture");
   seen.frame.setAttribute("data-zoom", Number(zoom.toPrecision(4)));
 }
@@ -67,13 +68,13 @@ function listen(own, actions, signal) {
   });
 }
 
-/// A viewer whose state is in `query` (URLSearchParams), which it changes before it calls `changed()`.
-/// `show(sources)` takes [{name, layers}] (see layers.js) of one size, all shown alike. null: there is
-/// no WebGL 2 here.
-export function viewer(query, changed, signal) {
+/// A viewer whose state is in `query` (URLSearchParams), and in the address with it.
+/// `show(sources)` takes [{name, layers, seconds, error}] (see layers.js; how long was rendered and what
+/// the error is, in words) of one size, all shown alike. null: there is no WebGL 2 here.
+export function viewer(query, signal) {
   const seen = stage();
   const state = readState(query);
-  const problem = h("p", { className: "problem", role: "alert", hidden: true });
+  const problem = h("p.problem", { role: "alert", hidden: true });
   let pending = false;
   let turn = 0;
 
@@ -85,7 +86,8 @@ export function viewer(query, changed, signal) {
   const own = {
     state, seen, sources: [], options: [], content: null, pointer: null,
     bar: colourBar(),
-    readout: h("p", { className: "readout" }),
+    crops: cropStrip(signal),
+    readout: h("p.readout"),
     size: () => own.sources[0].layers,
     redraw() {
       if (pending) return;
@@ -120,29 +122,25 @@ export function viewer(query, changed, signal) {
     }
   }
 
-  const actions = viewerActions({
-    state, size: own.size, box: seen.box, ratio, look: () => own.content?.look ?? null,
-    options: () => own.options, sources: () => own.sources,
-    change(values) {
-      Object.assign(state, values);
-      writeState(state, query);
-      changed();
-      if (contentKeys.some((key) => key in values)) refresh();
-      else own.redraw();
-    },
+  const actions = viewerActions(own, (values) => {
+    Object.assign(state, values);
+    writeState(state, query);
+    remember(query);
+    if (contentKeys.some((key) => key in values)) refresh();
+    else own.redraw();
   });
   own.tools = viewerTools(actions);
   own.modes = modeTools(actions.change);
   listen(own, actions, signal);
 
   return {
-    element: h("figure", { className: "viewer" }, own.modes.element, seen.frame, own.bar.element,
-      own.readout, problem, own.tools.element),
+    element: h("figure.viewer", own.modes.element, seen.frame, own.bar.element,
+      own.readout, problem, own.tools.element, own.crops.element),
     show(sources) {
       own.sources = sources;
       seen.setSize(own.size());
       seen.frame.setAttribute("aria-label", `Picture of ${sources.map((s) => s.name).join(" and ")}.`
-        + " Plus and minus zoom, arrows move, 0 fits, e and E expose, brackets change the layer.");
+        + " The question mark lists its keys.");
       return refresh();
     },
   };

@@ -1,10 +1,12 @@
 // What a viewer's state asks for, read and computed.
+import { settleCrop } from "./crop.js";
 import { metrics } from "./curve.js";
-import { errorKinds } from "./error_picture.js";
+import { kindOf } from "./error_picture.js";
+import { errorOf } from "./errors.js";
 import { number, significant } from "./format.js";
 import { lookOf } from "./look.js";
 import { valuesAt } from "./pixels.js";
-import { choices, errorOf, kindOf, pictureOf } from "./shown.js";
+import { choices, pictureOf } from "./shown.js";
 
 /// Makes `state` one that `sources` can show.
 export function settle(state, sources) {
@@ -13,23 +15,28 @@ export function settle(state, sources) {
   state.left = Math.min(state.left, sources.length - 1);
   state.right = Math.min(state.right, Math.max(1, sources.length - 1));
   if (sources.length < 2) state.mode = "one";
+  if (state.mode === "crops") state.crop = settleCrop(state.crop, sources[0].layers);
   return options;
 }
 
-/// {images, shown, look, details}: a picture a source; the one shown where there is one; how they
-/// look; and further pictures, with names, whose values are read with those of the one shown.
+/// {images, shown, look, details}: the pictures of the sources that are needed; the one shown where
+/// there is one; how they look; and further pictures, with names, whose values are read with those of
+/// the one shown. The first is always needed, because its exposure is that of all; all of them are
+/// where they share a range of values.
 export async function contentOf(state, sources) {
-  const images = await Promise.all(sources.map((s) => pictureOf(s, state.show)));
+  const read = (i) => pictureOf(sources[i], state.show);
+  const first = await read(0);
+  const all = state.mode === "crops" || first.picture.channels.length === 1;
+  const found = await Promise.all(sources.map((_, i) =>
+    (i === 0 ? first : all || i === state.left || (i === state.right && state.mode !== "one") ? read(i) : null)));
+  const images = found.map((f) => f?.picture);
   const [left, right] = [images[state.left], images[state.right]];
   if (state.mode === "difference") {
-    const kind = errorKinds.find((k) => k.key === state.by) ?? errorKinds[0];
-    const shown = errorOf(right, left, kind);
+    const shown = await errorOf(right, left, (kindOf(state.by) ?? kindOf("signed")).key);
     return { images, shown, look: lookOf([shown]), details: [["x", right], ["r", left]] };
   }
-  const { layers } = sources[state.left];
-  const details = state.mode === "one" && kindOf(state.show)
-    ? [["x", await layers.read("")], ["r", await layers.read("reference")]] : [];
-  return { images, shown: left, look: lookOf(images), details };
+  return { images, shown: left, look: lookOf(images.filter(Boolean)),
+    details: state.mode === "split" ? [] : found[state.left].from };
 }
 
 /// The parts of the frame from left to right: one picture, or two beside the line.
@@ -54,8 +61,9 @@ export function pixelText(image, details, x, y) {
 }
 
 /// What a colour bar measures, with the mean: it is the error that the curve shows.
-export function barTitle({ kind, mean }, layer) {
-  if (!kind) return layer;
+export function barTitle({ kind: key, mean }, layer) {
+  if (!key) return layer;
+  const kind = kindOf(key);
   const metric = metrics.find((m) => m.key === kind.metric);
   return `${kind.label}, ${kind.formula}; mean ${number(mean)}${metric ? ` (${metric.label})` : ""}`;
 }

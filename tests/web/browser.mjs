@@ -20,6 +20,11 @@ const noise = /GL Driver Message.*GPU stall due to ReadPixels/;
 export async function openPage(browser, address, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...options });
   const page = await context.newPage();
+  await page.addInitScript(() => {
+    window.longTasks = [];
+    new PerformanceObserver((list) => window.longTasks.push(...list.getEntries().map((task) => task.duration)))
+      .observe({ type: "longtask", buffered: true });
+  });
   page.troubles = [];
   page.on("console", (message) => {
     const told = ["error", "warning"].includes(message.type()) && !noise.test(message.text());
@@ -36,6 +41,15 @@ export async function openPage(browser, address, options = {}) {
   await ready(page);
   return page;
 }
+
+/// The longest time in ms that one task has kept the page busy, of those above 50 ms; 0: there was none.
+/// With `anew`, only what comes later counts the next time.
+export const longestTask = (page, anew = false) => page.evaluate(async (forget) => {
+  await new Promise((resolve) => { setTimeout(resolve, 100); });
+  const longest = Math.max(0, ...window.longTasks);
+  if (forget) window.longTasks = [];
+  return Math.round(longest);
+}, anew);
 
 /// Waits until the router has shown the view.
 export const ready = (page) => page.waitForSelector("main[data-ready]");

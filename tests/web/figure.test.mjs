@@ -3,8 +3,8 @@ import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { test } from "node:test";
 
-import { ready, screenshot } from "./browser.mjs";
-import { hostile } from "./fixtures.mjs";
+import { longestTask, ready, screenshot } from "./browser.mjs";
+import { hostile, manyJobs } from "./fixtures.mjs";
 import { mock, open, page } from "./stage.mjs";
 
 const job = "20260131-101400-cornell";
@@ -21,12 +21,12 @@ async function saved(kind) {
 for (const [colorScheme, width] of [["light", 1280], ["dark", 400]]) {
   test(`two jobs as one figure in ${colorScheme} at ${width}`, async () => {
     await open(both, { colorScheme, viewport: { width, height: 700 } });
-    const words = await page.locator(".figure svg text").allInnerTexts().catch(() => [])
-      .then(() => page.locator(".figure svg text").evaluateAll((all) => all.map((t) => t.textContent)));
+    await page.waitForSelector(".plot svg");
+    const words = await page.locator(".plot svg text").evaluateAll((all) => all.map((t) => t.textContent));
     for (const expected of ["RMSE (radiance)", "render time (s)", "Cornell box, 6 edges, path · bsdf",
-      "slope −1/2 (Monte Carlo)", "at the reference's own noise"]) assert.ok(words.includes(expected), `${words}`);
+      "slope −1/2 (Monte Carlo)", "hollow: at the reference's own noise"]) assert.ok(words.includes(expected), `${words}`);
     assert.equal(await page.locator(".bar").isVisible(), false);
-    assert.equal(await page.locator(".figure svg circle").count(), 11 + 1 + 1, "11 points and two in the legend");
+    assert.equal(await page.locator(".plot svg circle").count(), 11 + 1 + 1, "11 points and two in the legend");
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth));
     await screenshot(page, `figure-${colorScheme}-${width}`);
     assert.deepEqual(page.troubles, []);
@@ -37,13 +37,13 @@ test("the figure is saved as SVG and as PNG, with its axes", async () => {
   mock.find(job).job.label = hostile;
   await open(`/#/job/${job}?x=iteration&y=relmse&embed`);
   const svg = await saved("SVG");
-  assert.equal(svg.name, `lacuna-${job}.svg`);
+  assert.equal(svg.name, "lacuna-relmse.svg");
   const text = svg.bytes.toString();
   assert.match(text, /^<svg xmlns="http:\/\/www.w3.org\/2000\/svg"/);
   assert.ok(text.includes(">iterations<") && text.includes(">relMSE<") && !/NaN|undefined|style=/.test(text));
   assert.ok(text.includes("&lt;img src=x") && !text.includes("<img"));
   const png = await saved("PNG");
-  assert.equal(png.name, `lacuna-${job}.png`);
+  assert.equal(png.name, "lacuna-relmse.png");
   assert.equal(png.bytes.readUInt32BE(16), 2160);
   assert.ok(png.bytes.length > 20000, `${png.bytes.length} bytes`);
   assert.deepEqual(page.troubles, []);
@@ -53,9 +53,9 @@ test("from the page to its figure and back, with the choice of axes", async () =
   await open(`/#/job/${job}`);
   await page.getByLabel("against", { exact: true }).selectOption("iteration");
   await page.getByRole("button", { name: "Figure alone" }).click();
-  await page.waitForSelector(".figure svg[aria-label='RMSE (radiance) against iterations']");
+  await page.waitForSelector(".plot svg[aria-label='RMSE (radiance) against iterations']");
   await page.getByRole("button", { name: "Leave the figure" }).click();
-  await page.waitForSelector(".plot canvas");
+  await page.waitForSelector("article .plot svg");
   assert.ok(page.url().endsWith(`#/job/${job}?x=iteration`), page.url());
   assert.equal(await page.locator(".bar").isVisible(), true);
   await page.goto(`${page.url().split("#")[0]}#/compare?jobs=${job}&embed`);
@@ -70,4 +70,30 @@ test("a figure without values, and one of a job that is not there", async () => 
   assert.equal(await page.getByRole("button", { name: "Save as SVG" }).isVisible(), false);
   await page.goto(`${page.url().split("#")[0]}#/job/nobody?embed`);
   await page.getByText("There is no job nobody.").waitFor();
+});
+
+test("twenty curves are laid over one another without a pause", async () => {
+  mock.jobs = manyJobs(20, 40);
+  const began = performance.now();
+  await open(`/#/compare?jobs=${mock.jobs.map((j) => j.id).join(",")}`);
+  await page.waitForSelector(".plot[data-curves='20'] svg");
+  const shown = performance.now() - began;
+  const loading = await longestTask(page, true);
+  await page.getByLabel("against", { exact: true }).selectOption("iteration");
+  const switching = await longestTask(page, true);
+  await page.waitForSelector(".stage[data-shown]");
+  await page.getByLabel("Pictures", { exact: true }).selectOption("crops");
+  await page.waitForFunction(() => document.querySelectorAll(".crops canvas").length === 20);
+  const crops = await longestTask(page);
+  console.log(`# 20 curves of 40 points: shown ${shown.toFixed(0)} ms after the browser was asked; longest task ${loading} ms `
+    + `while loading, ${switching} ms for another axis, ${crops} ms for 20 crops (0: none above 50)`);
+  assert.ok(Math.max(loading, switching) < 1000);
+  assert.equal(await page.locator(".plot svg .curve").count(), 20);
+  const looks = await page.locator(".curve").evaluateAll((all) => all.map((g) => {
+    const mark = g.children[1];
+    return `${mark.tagName} ${mark.getAttribute("stroke")} ${mark.getAttribute("d")?.replace(/^M[^l]*/, "")}`;
+  }));
+  assert.equal(new Set(looks).size, 20, "no two curves look the same");
+  await screenshot(page, "compare-20");
+  assert.deepEqual(page.troubles, []);
 });

@@ -128,6 +128,16 @@ export function makeJobs() {
   ];
 }
 
+/// `n` finished jobs, newest first, with curves of `rows` rows that differ.
+export function manyJobs(n, rows = 11) {
+  const like = makeJobs().at(-1);
+  return Array.from({ length: n }, (_, i) => ({
+    ...like, id: `20260130-101400-${10000 + i}`, job: { ...like.job, label: `job ${i}` }, state: { ...like.state },
+    files: { ...like.files, "curve.csv": n > 100 ? like.files["curve.csv"]
+      : curve({ rows, cost: 0.02 * (1 + i / n), level: 0.4 + 0.05 * i, floor: 0.001, seed: i + 1 }) },
+  }));
+}
+
 export const scenes = ["atrium.glb", "cornell.glb", "door/scene.glb", hostile];
 
 export const schema = {

@@ -1,14 +1,14 @@
 // A stand-in for lacuna-server with fixed jobs, which a test changes by hand. By itself
-// (`node mock_server.mjs [PORT]`) it serves the page for work on it, with one job that moves on.
+// (`node mock_server.mjs [PORT [JOBS]]`) it serves the page for work on it, with one job that moves on.
+import { createHash } from "node:crypto";
 import { readFile } from "node:fs/promises";
 import { createServer } from "node:http";
 import { extname } from "node:path";
 import { fileURLToPath } from "node:url";
 
-import { curve, makeJobs, progress, scenes, schema } from "./fixtures.mjs";
+import { curve, makeJobs, manyJobs, progress, scenes, schema } from "./fixtures.mjs";
 
 const web = new URL("../../web/", import.meta.url);
-const chart = "/usr/share/javascript/chart.js/chart.min.js";
 const types = {
   ".html": "text/html; charset=utf-8", ".css": "text/css; charset=utf-8",
   ".js": "text/javascript; charset=utf-8", ".png": "image/png", ".exr": "image/x-exr",
@@ -26,28 +26,39 @@ function send(response, status, type, body, headers = {}) {
   response.end(body);
 }
 
-/// A file of a job, or the one range of it that is asked for.
-function sendFile(request, response, name, content) {
-  const bytes = Buffer.from(content);
-  const range = /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? "");
-  if (!range) return send(response, 200, types[extname(name)], bytes);
-  const [first, last] = [Number(range[1]), Math.min(Number(range[2]), bytes.length - 1)];
-  return send(response, 206, types[extname(name)], bytes.subarray(first, last + 1),
-    { "Content-Range": `bytes ${first}-${last}/${bytes.length}` });
+const tags = new WeakMap();
+
+function tagOf(bytes) {
+  if (!tags.has(bytes)) tags.set(bytes, `"${createHash("sha1").update(bytes).digest("hex")}"`);
+  return tags.get(bytes);
 }
 
-const sendJson = (response, value) => send(response, 200, "application/json", JSON.stringify(value));
+/// A file of a job, or the one range of it that is asked for.
+function sendFile(request, response, name, content) {
+  const bytes = Buffer.isBuffer(content) ? content : Buffer.from(content);
+  const headers = { ETag: tagOf(bytes), "Cache-Control": "no-cache" };
+  const range = /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? "");
+  if (!range) return send(response, 200, types[extname(name)], bytes, headers);
+  const [first, last] = [Number(range[1]), Math.min(Number(range[2]), bytes.length - 1)];
+  if (first > last) return problem(response, 416, "Range not satisfiable", `${bytes.length} bytes`);
+  return send(response, 206, types[extname(name)], bytes.subarray(first, last + 1),
+    { ...headers, "Content-Range": `bytes ${first}-${last}/${bytes.length}` });
+}
+
+const sendJson = (response, value, status = 200) => send(response, status, "application/json", JSON.stringify(value));
 const problem = (response, status, title, detail, errors = []) => send(response, status,
   "application/problem+json", JSON.stringify({ type: "about:blank", title, status, detail, errors }));
 
 const notFound = (response, what) => problem(response, 404, "Not found", `There is no ${what}.`);
 
-const row = ({ id, job, state, progress: p }) => ({
-  id, label: job.label, scene: job.scene, integrator: job.integrator.type, ...state, progress: p,
+const terminal = ["done", "failed", "cancelled"];
+
+const row = ({ id, job, state, progress: p, priority = 0, held = false }) => ({
+  id, label: job.label, scene: job.scene, integrator: job.integrator.type, ...state, progress: p, priority, held,
 });
 
-const detail = ({ id, job, state, progress: p, files }) => ({
-  id, job, state, progress: p, files: Object.entries(files).map(([name, content]) => ({
+const detail = ({ id, job, state, progress: p, files, priority = 0, held = false }) => ({
+  id, job, state, progress: p, priority, held, files: Object.entries(files).map(([name, content]) => ({
     name, bytes: Buffer.byteLength(content), media_type: types[extname(name)],
   })),
 });
@@ -55,15 +66,19 @@ const detail = ({ id, job, state, progress: p, files }) => ({
 async function body(request) {
   let text = "";
   for await (const part of request) text += part;
-  return text;
+  return text === "" ? undefined : JSON.parse(text);
 }
 
-/// The mock: `jobs` may be changed at will; `update(id, changes)` also sends the events.
+/// The mock: `jobs` may be changed at will; `update(id, changes)` and `drop(id)` also send the events.
+/// With a `token`, it must be known; with `events` false, no event stream is to be had.
 export class Mock {
   constructor() {
     this.jobs = makeJobs();
     this.listeners = new Set();
     this.requests = [];
+    this.token = null;
+    this.events = true;
+    this.told = 0;
     this.server = createServer((request, response) => this.answer(request, response)
       .catch((error) => problem(response, 500, "Error", error.stack)));
   }
@@ -82,68 +97,143 @@ export class Mock {
 
   update(id, changes) {
     const job = this.find(id);
-    if (changes.state) this.event(id, "state", Object.assign(job.state, changes.state));
-    if (changes.progress) this.event(id, "progress", job.progress = changes.progress);
-    Object.assign(job.files, changes.files);
+    const { state, progress: p, files, ...rest } = changes;
+    Object.assign(job, rest);
+    Object.assign(job.files, files);
+    if (state) this.event(id, "state", Object.assign(job.state, state));
+    if (p) this.event(id, "progress", job.progress = p);
+    if (state || p || "priority" in rest) this.event(null, "job", row(job));
   }
 
+  add(job) {
+    this.jobs.unshift(job);
+    this.event(null, "job", row(job));
+  }
+
+  drop(id) {
+    this.jobs = this.jobs.filter((job) => job.id !== id);
+    this.event(null, "removed", { id });
+  }
+
+  /// To those that listen to the job `id`; null: to those that listen to all.
   event(id, name, data) {
+    if (id === null) this.told += 1;
     for (const listener of this.listeners) {
-      if (listener.id === id) listener.response.write(`event: ${name}\ndata: ${JSON.stringify(data)}\n\n`);
+      if (listener.id === id) {
+        listener.response.write(`id: mock-${this.told}\nevent: ${name}\ndata: ${JSON.stringify(data)}\n\n`);
+      }
     }
   }
 
   async answer(request, response) {
-    const path = decodeURIComponent(new URL(request.url, "http://mock").pathname);
+    const url = new URL(request.url, "http://mock");
+    const path = decodeURIComponent(url.pathname);
     this.requests.push(`${request.method} ${path}`);
-    if (path === "/vendor/chart.js") return send(response, 200, types[".js"], await readFile(chart));
-    if (path === "/api/scenes") return sendJson(response, { scenes });
-    if (path === "/api/schema/job") return sendJson(response, schema);
-    if (path === "/api/jobs" && request.method === "POST") return this.post(request, response);
-    if (path === "/api/jobs") return sendJson(response, { jobs: this.jobs.map(row) });
-    const match = /^\/api\/jobs\/([^/]+)(?:\/(events|cancel|files)(?:\/([^/]+))?)?$/.exec(path);
-    if (match) return this.answerJob(request, response, match);
+    if (path === "/api/session") {
+      if ((await body(request)).token !== this.token) return problem(response, 401, "Unauthorized", "That is not the token.");
+      return send(response, 204, "text/plain", "", { "Set-Cookie": `lacuna=${this.token}; HttpOnly; SameSite=Strict` });
+    }
+    if (path.startsWith("/api/")) {
+      if (this.token !== null && request.headers.cookie !== `lacuna=${this.token}`) {
+        return problem(response, 401, "Unauthorized", "A token is needed.");
+      }
+      return this.answerApi(request, response, url, path);
+    }
     const name = path === "/" ? "index.html" : path.slice(1);
     if (!/^[a-z_]+\.(html|css|js)$/.test(name)) return notFound(response, path);
     return send(response, 200, types[extname(name)], await readFile(new URL(name, web)));
   }
 
-  answerJob(request, response, [, id, what, name]) {
+  async answerApi(request, response, url, path) {
+    if (path === "/api/scenes") return sendJson(response, { scenes });
+    if (path === "/api/schema/job") return sendJson(response, schema);
+    if (path === "/api/jobs" && request.method === "POST") return this.post(request, response);
+    if (path === "/api/jobs") return this.list(response, url.searchParams);
+    if (path === "/api/events") return this.follow(request, response, null);
+    const match = /^\/api\/jobs\/([^/]+)(?:\/(events|log|cancel|retry|extend|files)(?:\/([^/]+))?)?$/.exec(path);
+    if (!match) return notFound(response, path);
+    const [, id, what, name] = match;
     const job = this.find(id);
     if (!job) return notFound(response, `job ${id}`);
+    if (request.method !== "GET") return this.change(request, response, job, what ?? request.method);
     if (what === undefined) return sendJson(response, detail(job));
     if (what === "events") return this.follow(request, response, job);
-    if (what === "cancel") {
-      this.update(id, { state: { state: "cancelled" } });
-      return sendJson(response, detail(job));
+    const content = job.files[name ?? "log.txt"];
+    if (content === undefined) return notFound(response, `file ${name}`);
+    return what === "log" ? this.log(response, Buffer.from(content), Number(url.searchParams.get("offset")))
+      : sendFile(request, response, name, content);
+  }
+
+  /// A cursor is the id of the last job of the page before.
+  list(response, query) {
+    const [states, label] = [(query.get("state") ?? "").split(",").filter(Boolean), (query.get("label") ?? "").toLowerCase()];
+    const counts = {};
+    for (const { state } of this.jobs) counts[state.state] = (counts[state.state] ?? 0) + 1;
+    const found = this.jobs.filter(({ id, job, state }) => (states.length === 0 || states.includes(state.state))
+      && [id, job.label, job.scene, job.integrator.type].some((text) => text.toLowerCase().includes(label)));
+    const first = query.has("cursor") ? 1 + found.findIndex(({ id }) => id === query.get("cursor")) : 0;
+    const jobs = found.slice(first, first + Number(query.get("limit") ?? 100));
+    return sendJson(response, { jobs: jobs.map(row), total: found.length, counts, last_event: `mock-${this.told}`,
+      next: first + jobs.length < found.length ? jobs.at(-1).id : null });
+  }
+
+  log(response, bytes, offset) {
+    if (offset > bytes.length) return problem(response, 416, "Range not satisfiable", `${bytes.length} bytes`);
+    const part = bytes.subarray(offset, offset + 2 ** 20);
+    return send(response, 200, types[".txt"], part, { "Next-Offset": offset + part.length });
+  }
+
+  /// What is allowed here is what the service allows; `job.state` says what comes of it at once.
+  async change(request, response, job, what) {
+    const given = await body(request);
+    const { state } = job.state;
+    const over = terminal.includes(state);
+    const allowed = { cancel: !over, retry: ["failed", "cancelled"].includes(state), extend: over, PATCH: !over, DELETE: over };
+    if (!allowed[what]) return problem(response, 409, "Conflict", `The job is ${state}.`);
+    if (what === "DELETE") {
+      this.drop(job.id);
+      return send(response, 204, "text/plain", "");
     }
-    const content = job.files[name];
-    return content === undefined ? notFound(response, `file ${name}`) : sendFile(request, response, name, content);
+    if (what === "extend" && given.budget.seconds < job.job.budget.seconds) {
+      return problem(response, 400, "The budget is too small", `/budget/seconds: found ${given.budget.seconds}, `
+        + `allowed: ${job.job.budget.seconds} or more`);
+    }
+    if (what === "extend") job.job = { ...job.job, budget: { ...job.job.budget, ...given.budget } };
+    if (what === "PATCH") {
+      const held = given.held ?? job.held;
+      this.update(job.id, { ...given, ...(given.held === undefined ? {} : { state: { state: held ? "held" : "queued", phase: "" } }) });
+    } else {
+      this.update(job.id, { state: { state: what === "cancel" ? "cancelled" : "queued", error: "" } });
+    }
+    return sendJson(response, detail(job));
   }
 
   follow(request, response, job) {
+    if (!this.events) return problem(response, 503, "Service unavailable", "Too many listeners.");
     response.writeHead(200, { "Content-Type": "text/event-stream", "Cache-Control": "no-store" });
-    const listener = { id: job.id, response };
+    response.write(": here\n\n");
+    const listener = { id: job?.id ?? null, response };
     this.listeners.add(listener);
     request.on("close", () => this.listeners.delete(listener));
-    this.event(job.id, "state", job.state);
+    if (job) this.event(job.id, "state", job.state);
   }
 
   async post(request, response) {
-    const job = JSON.parse(await body(request));
+    const job = await body(request);
     if (!scenes.includes(job.scene)) {
       return problem(response, 400, "The job is not valid", "1 problem", [
         { pointer: "/scene", message: `found "${job.scene}", allowed: ${scenes.join(", ")}` }]);
     }
     const [like] = makeJobs().slice(1);
     const id = `20260131-120000-new${this.jobs.length}`;
-    this.jobs.unshift({ ...like, id, job: { ...like.job, ...job } });
+    this.add({ ...like, id, job: { ...like.job, ...job } });
     return send(response, 201, "application/json", JSON.stringify({ id }), { Location: `/api/jobs/${id}` });
   }
 }
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
   const mock = new Mock();
+  mock.jobs.push(...manyJobs(Number(process.argv[3] ?? 0)));
   console.log(await mock.listen(Number(process.argv[2] ?? 0)));
   let step = 4;
   setInterval(() => {

@@ -69,7 +69,7 @@ test("the slope line lies on a curve that has the slope, and points at the floor
 
 test("ticks of log axes lie within them, a few for any range", async () => {
   for (const [min, max] of [[0.02, 40], [1.1, 1.2], [1, 9], [1e-9, 1e9], [3e-5, 4e-5], [90, 1100]]) {
-    const ticks = await call("/plot.js", "logTicks", min, max);
+    const ticks = await call("/log_axis.js", "logTicks", min, max);
     assert.ok(ticks.length >= 2 && ticks.length <= 11, `${min} to ${max}: ${ticks}`);
     assert.ok(ticks.every((t, i) => t >= min && t <= max && (i === 0 || t > ticks[i - 1])), `${ticks}`);
   }
@@ -106,20 +106,22 @@ test("a job file is written with short lists on one line, and reads back the sam
   assert.deepEqual(JSON.parse(text), job);
 });
 
-test("the schema's keys are listed with what they allow", async () => {
-  const rows = await page.evaluate(async () =>
-    (await import("/schema.js")).schemaRows((await (await fetch("/api/schema/job")).json())));
-  const row = (pointer) => rows.find((r) => r.pointer === pointer);
-  assert.equal(row("/scene").default, "required");
-  assert.equal(row("/resolution").allowed, "≥ 1, ≤ 16384");
-  assert.equal(row("/integrator").allowed, "\"path\", \"inspect\"");
-  assert.equal(row("/integrator (path)/max_depth").default, "6");
-});
-
 test("only settings that differ are listed, and those that change the picture are doubtful", async () => {
   const jobs = [{ scene: "a", seed: 1, budget: { seconds: 5 }, resolution: [2, 2] },
     { scene: "b", seed: 2, budget: { seconds: 5 }, resolution: [2, 2], extra: true }];
   const found = await call("/settings_diff.js", "differences", jobs);
   assert.deepEqual(found.map((d) => d.pointer), ["/scene", "/seed", "/extra"]);
   assert.deepEqual(await call("/settings_diff.js", "doubtful", found), ["/scene"]);
+});
+
+test("crops lie within the picture, in whole pixels", async () => {
+  const size = { width: 300, height: 20 };
+  assert.deepEqual(await call("/crop.js", "settleCrop", null, size), { x: 148, y: 8, w: 5, h: 5 });
+  assert.deepEqual(await call("/crop.js", "cropBetween", { x: 310, y: -3 }, { x: 9.5, y: 4.2 }, size), { x: 9, y: 0, w: 256, h: 8 });
+  assert.deepEqual(await call("/crop.js", "movedCrop", { x: 290, y: 0, w: 8, h: 8 }, 1, -1, size), { x: 291, y: 0, w: 8, h: 8 });
+});
+
+test("a budget is doubled in every limit it has", async () => {
+  const budget = { seconds: 30, iterations: null, error: { metric: "rmse", target: 0.02 } };
+  assert.deepEqual(await call("/job_actions.js", "doubled", budget), { seconds: 60, error: { metric: "rmse", target: 0.01 } });
 });

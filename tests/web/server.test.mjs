@@ -12,7 +12,7 @@ import { launch, openPage, ready, screenshot } from "./browser.mjs";
 const root = fileURLToPath(new URL("../../", import.meta.url));
 const bin = process.env.LACUNA_BIN ?? join(root, "build/release/bin");
 const small = { scene: "cornell.glb", resolution: [32, 32], threads: 1, budget: { iterations: 64 } };
-const pictured = ".stage[data-shown], .frame img:not([hidden])";
+const pictured = ".stage[data-shown], .frame img";
 const patience = { timeout: 60_000 };  // a busy machine may render slowly
 
 let data;
@@ -77,7 +77,7 @@ test("the first job, from the empty list to its curve, picture and report; then 
   const withReference = { ...small, reference: "auto", reference_iterations: 256, label: "measured" };
   const first = await render(page, withReference);
   await page.waitForSelector(pictured);
-  assert.ok(Number(await page.locator(".plot canvas").getAttribute("data-points")) >= 1);
+  assert.ok(Number(await page.locator(".plot").getAttribute("data-points")) >= 1);
   const offered = await page.getByLabel("Error", { exact: true }).locator("option").allInnerTexts();
   assert.deepEqual(offered, ["RMSE", "relMSE", "MSE", "MAE", "SMAPE", "estimated RMSE"]);
   assert.match(await page.locator(".report").innerText(), /peak memory bytes\s+[\d.]+\s[KMG]iB/);
@@ -90,7 +90,7 @@ test("the first job, from the empty list to its curve, picture and report; then 
   assert.deepEqual(await page.getByLabel("Error", { exact: true }).locator("option").allInnerTexts(),
     ["estimated RMSE"]);
   await page.goto(`${server.address}/#/compare?jobs=${first},${second}`);
-  await page.waitForSelector(".plot canvas[data-curves='2']");
+  await page.waitForSelector(".plot[data-curves='2']");
   await page.waitForSelector(pictured);
   await screenshot(page, "real-compare");
 
@@ -109,18 +109,45 @@ test("a running job is followed and cancelled", async () => {
   await page.waitForFunction(() => document.querySelector(".title progress")?.value > 0, null, patience);
   const share = await page.locator(".title progress").evaluate((bar) => bar.value);
   await page.waitForFunction((s) => document.querySelector(".title progress").value > s, share, patience);
-  page.on("dialog", (dialog) => dialog.accept());
   await page.getByRole("button", { name: "Cancel job" }).click();
+  await page.locator("dialog").getByRole("button", { name: "Cancel job" }).click();
   await page.waitForSelector("article[data-state=cancelled]", patience);
   assert.deepEqual(page.troubles, []);
 });
 
-test("problems of a job name their places; the schema's keys are listed", async () => {
+test("a done job is extended, held on its way, and deleted; the list follows", async () => {
+  const page = await openPage(browser, `${server.address}/#/`);
+  const list = await openPage(browser, `${server.address}/#/`);
+  const id = await render(page, { ...small, label: "extended", seed: 3 });
+  const row = list.locator(`tr[data-job="${id}"]`);
+  await row.locator(".badge.done").waitFor(patience);
+  await page.getByRole("button", { name: "Extend …" }).click();
+  const field = page.getByRole("textbox", { name: "Budget" });
+  assert.equal(await field.inputValue(), "{\"iterations\":128}");
+  await field.fill("{\"seconds\":600}");
+  await page.getByRole("button", { name: "Extend", exact: true }).click();
+  await page.locator(".title .badge.running").waitFor(patience);
+  await page.getByRole("button", { name: "Hold" }).click();
+  await page.locator("article[data-state=held]").waitFor(patience);
+  await row.locator(".badge.held").waitFor(patience);
+  await page.getByRole("button", { name: "Higher priority" }).click();
+  await page.getByText("priority 1").waitFor(patience);
+  await page.getByRole("button", { name: "Release" }).click();
+  await page.locator(".title .badge.running").waitFor(patience);
+  await page.getByRole("button", { name: "Cancel job" }).click();
+  await page.locator("dialog").getByRole("button", { name: "Cancel job" }).click();
+  await page.locator("article[data-state=cancelled]").waitFor(patience);
+  await page.getByRole("button", { name: "Delete …" }).click();
+  await page.getByRole("button", { name: "Delete for good" }).click();
+  await page.waitForSelector("main > h1:text-is('Jobs')");
+  await row.waitFor({ state: "detached", ...patience });
+  assert.deepEqual([...page.troubles, ...list.troubles], []);
+});
+
+test("problems of a job name their places; its scenes are offered", async () => {
   const page = await openPage(browser, `${server.address}/#/new`);
   const scenes = await page.getByLabel("Scene").locator("option").allInnerTexts();
   assert.ok(scenes.includes("cornell.glb"), scenes.join(" "));
-  await page.getByText("Every key of a job file").click();
-  assert.match(await page.locator(".keys").innerText(), /\/budget\/cpu_seconds\s/);
   await screenshot(page, "real-new");
   await page.fill("textarea", JSON.stringify({ ...small, resolution: [0, 32], integrator: { type: "pth" } }));
   await page.getByRole("button", { name: "Post the job" }).click();

@@ -2,8 +2,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { coloursOf, ready, screenshot } from "./browser.mjs";
-import { layerFiles, toHalf } from "./layers.mjs";
+import { coloursOf, longestTask, ready, screenshot } from "./browser.mjs";
+import { layerFiles } from "./layers.mjs";
 import { mock, open, origin, page } from "./stage.mjs";
 
 const job = "20260131-101400-cornell";
@@ -44,24 +44,10 @@ async function pixelColours(pixels, width = 4) {
   await page.mouse.move(0, 0);
   return coloursOf(page, stage, pixels.map(([x, y]) => ({ u: (x + 0.1) * zoom, v: (y + 0.1) * zoom })));
 }
-const call = (module, name, ...given) => page.evaluate(
-  async ([m, n, args]) => (await import(m))[n](...args), [module, name, given]);
-
 const srgb = (v) => Math.round(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * Math.min(1, v) ** (1 / 2.4) - 0.055));
 function like(found, expected) {
   found.forEach((v, c) => assert.ok(Math.abs(v - expected[c]) <= 1, `${found}, expected ${expected}`));
 }
-
-test("half floats: every kind of number", async () => {
-  await open("/#/new");
-  const cases = [[0x0000, 0], [0x3c00, 1], [0xc000, -2], [0x7bff, 65504], [0x0001, 2 ** -24],
-    [0x03ff, 1023 * 2 ** -24], [0x0400, 2 ** -14], [0x3555, 0.333251953125], [0x7c00, Infinity], [0xfc00, -Infinity]];
-  for (const [bits, value] of cases) {
-    assert.equal(await call("/half.js", "halfToNumber", bits), value);
-    assert.equal(toHalf(value), bits);
-  }
-  assert.ok(Number.isNaN(await call("/half.js", "halfToNumber", 0x7e00)));
-});
 
 test("the pixel under the pointer tells its true values, whatever the scale", async () => {
   for (const [scale, expected] of [[1, "(2, 1)  R 0.3750  G 0.6250  B 0.8750"],
@@ -188,27 +174,51 @@ test("magnified pixels carry their values and keep sharp edges", async () => {
   assert.deepEqual(page.troubles, []);
 });
 
-for (const [colorScheme, width] of [["light", 1280], ["dark", 1280], ["dark", 400], ["light", 400]]) {
-  test(`the error picture in ${colorScheme} at ${width}`, async () => {
-    await openViewer("?show=error-signed", { colorScheme, viewport: { width, height: 900 } });
-    await shows("error-signed");
-    const [inner, outer] = await page.evaluate(() => [
-      document.documentElement.scrollWidth, document.documentElement.clientWidth]);
-    assert.ok(inner <= outer, `${inner} pixels of content in a window of ${outer}`);
+test("the error picture in light and dark, wide and narrow", async () => {
+  await openViewer("?show=error-signed");
+  await shows("error-signed");
+  for (const [colorScheme, width] of [["light", 1280], ["dark", 1280], ["dark", 400], ["light", 400]]) {
+    await page.emulateMedia({ colorScheme });
+    await page.setViewportSize({ width, height: 900 });
+    await frames();
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= document.documentElement.clientWidth));
     await screenshot(page, `viewer-error-${colorScheme}-${width}`);
-    assert.deepEqual(page.troubles, []);
-  });
+  }
+  assert.deepEqual(page.troubles, []);
+});
+
+/// A picture of some size with noise in it, made fast: the halves of 1/2 to 1, by hash.
+function large(width, height) {
+  const bytes = 6 * width * height;
+  const data = new Uint16Array(bytes);
+  for (let i = 0; i < data.length; i += 1) data[i] = 0x3800 + (Math.imul(i, 2654435761) >>> 22);
+  const layers = ["", "reference"].map((name, i) => ({ name, channels: rgb, offset: i * bytes, bytes, scale: 1 }));
+  return { "layers.json": JSON.stringify({ width, height, layers }), "layers.half": Buffer.from(data.buffer) };
 }
+
+test("errors of a large picture are computed by a worker, and the page stays quick", async () => {
+  mock.update(job, { files: large(2048, 1024) });
+  await openViewer();
+  await frames();
+  const loading = await longestTask(page, true);
+  await page.getByLabel("Show", { exact: true }).selectOption("error-absolute");
+  await shows("error-absolute");
+  const errors = await longestTask(page);
+  console.log(`# 2048 x 1024: longest task ${loading} ms until the picture is seen, ${errors} ms for its errors (0: none above 50)`);
+  assert.deepEqual(page.workers().map((w) => new URL(w.url()).pathname), ["/error_worker.js"]);
+  assert.ok(errors < 1000);
+  assert.deepEqual(page.troubles, []);
+});
 
 test("a job without layers shows image.png and says why", async () => {
   await open(`/#/job/${old}`);
-  await page.getByText("No layers.json has been written yet").waitFor();
-  await page.waitForFunction(() => document.querySelector(".frame img").naturalWidth === 640);
+  await page.getByText("A preview: the tone-mapped image.png as last written.").waitFor();
+  await page.waitForFunction(() => document.querySelector(".frame img")?.naturalWidth === 640);
   mock.update(old, { progress: mock.find(job).progress });
   mock.update(old, { files: { "image.png": mock.find(job).files["image.png"], ...small() } });
   mock.update(old, { state: { state: "done" } });
   await page.waitForSelector(stage);
-  assert.equal(await page.getByText("No layers.json").isVisible(), false);
+  assert.equal(await page.getByText("A preview").isVisible(), false);
   delete mock.find(job).files["layers.json"];
   await page.goto(origin + address());
   await page.getByText("This job has no layers.json, which newer versions write").waitFor();
@@ -226,7 +236,7 @@ test("a browser without WebGL 2 shows image.png and says why", async () => {
   await page.reload();
   await page.goto(origin + address());
   await page.getByText("This browser offers no WebGL 2").waitFor();
-  await page.waitForFunction(() => document.querySelector(".frame img").naturalWidth === 512);
+  await page.waitForFunction(() => document.querySelector(".frame img")?.naturalWidth === 512);
   assert.deepEqual(page.troubles, []);
 });
 
@@ -279,16 +289,16 @@ test("number keys flip pictures at one exposure and one zoom", async () => {
   assert.ok(page.url().includes("left=1"));
   await page.keyboard.press("3");
   assert.ok(page.url().includes("left=1"), "the third has no layers");
-  await page.getByText("no layers.json, so image.png is shown").waitFor();
+  await page.getByText("No layers.json: image.png").waitFor();
   assert.deepEqual(page.troubles, []);
 });
 
 test("a picture of another size is shown apart, and it is said", async () => {
   mock.update(job, { files: small() });
   await open(`/#/compare?jobs=${job},${other}`);
-  await page.getByText("not of the first's size, so image.png is shown").waitFor();
+  await page.getByText("Not of the first's size: image.png").waitFor();
   await page.waitForSelector(stage);
-  await page.waitForFunction(() => document.querySelectorAll(".gallery img:not([hidden])").length === 1);
+  await page.waitForFunction(() => document.querySelectorAll(".gallery img").length === 1);
   assert.deepEqual(page.troubles, []);
 });
 
@@ -318,5 +328,61 @@ test("two pictures are subtracted, and the address holds how", async () => {
   assert.ok(page.url().includes("mode=difference") && page.url().includes("by=squared"));
   await page.reload();
   await page.getByText("squared error, (x − r)²; mean").waitFor();
+  assert.deepEqual(page.troubles, []);
+});
+
+test("layers that were replaced meanwhile are all read again", async () => {
+  mock.update(job, { files: small() });
+  await openViewer();
+  // The same layout and so the same layers.json: only the ETag of layers.half tells.
+  const twice = layerFiles(4, 2, [
+    { name: "", channels: rgb, pixel: (x, y) => [1, 2, 3].map((c) => c * (y + 1) / 8 + 0.5) },
+    { name: "depth", channels: ["Z"], pixel: (x, y) => [x + 4 * y] },
+    { name: "reference", channels: rgb, pixel: (x, y) => [1, 2, 3].map((c) => c * (y + 1) / 8) }]);
+  assert.equal(twice["layers.json"], mock.find(job).files["layers.json"]);
+  mock.update(job, { files: twice });
+  await page.getByLabel("Show", { exact: true }).selectOption("error-signed");
+  await shows("error-signed");
+  assert.match(await page.locator(".bar-title").innerText(), /mean 0\.500/);
+  // One that the index does not fit yet is not shown.
+  mock.update(job, { files: { "layers.half": Buffer.alloc(10) } });
+  await page.getByLabel("Show", { exact: true }).selectOption("depth");
+  await page.getByText("These layers changed while they were read.").waitFor();
+  assert.deepEqual(page.troubles.filter((t) => !/416/.test(t)), []);
+});
+
+test("one crop of all jobs at one exposure, chosen by a drag or by keys, and in the address", async () => {
+  await openPair("&ev=0&mode=crops");
+  await page.waitForSelector(".crops canvas");
+  assert.equal(await page.locator(".crops canvas").count(), 2);
+  await page.locator(stage).scrollIntoViewIfNeeded();
+  const box = await page.locator(stage).boundingBox();
+  const at = (x, y) => [box.x + (x * box.width) / 4, box.y + (y * box.height) / 2];
+  await page.mouse.move(...at(2.1, 0.1));
+  await page.mouse.down();
+  await page.mouse.move(...at(3.9, 0.9));
+  await page.mouse.up();
+  await frames();
+  await page.getByText("2 × 1 pixels at (2, 0), 128 times as large.").waitFor();
+  assert.ok(page.url().includes("crop=2,0,2,1"), page.url());
+  const places = [{ u: 5, v: 5 }, { u: 250, v: 5 }];
+  const crop = (i) => coloursOf(page, `.crops figure:nth-child(${i}) canvas`, places);
+  for (const [i, factor] of [[1, 1], [2, 2]]) {
+    const [left, right] = await crop(i);
+    like(left, [0.25, 0.375, 0.5].map((v) => srgb(factor * v)));
+    like(right, [0.375, 0.5, 0.625].map((v) => srgb(factor * v)));
+  }
+  assert.match(await page.locator(".crops figcaption").first().innerText(), /30\.0\ss, rmse 0\.0138/);
+  await page.getByText("Of equal time: the jobs' last pictures").waitFor();
+  await page.locator(stage).press("ArrowLeft");
+  await page.locator(stage).press("ArrowDown");
+  await page.getByText("2 × 1 pixels at (1, 1)").waitFor();
+  await page.locator(stage).press(".");
+  await page.getByText("3 × 2 pixels at (1, 0)").waitFor();
+  await screenshot(page, "crops");
+  mock.find(other).progress.seconds = 33;
+  await page.reload();
+  await page.getByText("Not of equal time: the jobs' last pictures, after 30.0\u202fs to 33.0\u202fs of rendering.").waitFor();
+  assert.ok(page.url().includes("crop=1,0,3,2"));
   assert.deepEqual(page.troubles, []);
 });

@@ -1,0 +1,254 @@
+// The list of jobs, what can be done to a job, and the token, against the mock server.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { longestTask, ready, screenshot } from "./browser.mjs";
+import { manyJobs, progress } from "./fixtures.mjs";
+import { Mock } from "./mock_server.mjs";
+import { mock, open, origin, page } from "./stage.mjs";
+
+const running = "20260131-101900-running";
+const waiting = "20260131-101800-waiting";
+const evil = "20260131-101700-hostile";
+const stopped = "20260131-101600-stopped";
+const shallow = "20260131-101500-shallow";
+const cornell = "20260131-101400-cornell";
+
+const text = (selector) => page.locator(selector).first().innerText();
+const rows = () => page.locator("tr[data-job]").evaluateAll((all) => all.map((r) => r.dataset.job));
+const rowCount = (n) => page.waitForFunction((m) => document.querySelectorAll("tr[data-job]").length === m, n);
+const counted = (words) => page.waitForFunction((t) => document.querySelector("main > .tools output").textContent === t, words);
+const button = (name) => page.getByRole("button", { name, exact: true });
+const stateIs = (state) => page.waitForSelector(`article[data-state=${state}]`);
+/// The asking window's button; it closes by the answer.
+const answer = async (name) => {
+  await page.locator("dialog").getByRole("button", { name }).click();
+  await page.waitForSelector("dialog", { state: "detached" });
+};
+
+test("the list shows every job, newest first, with pictures only where there are any", async () => {
+  await open("/");
+  assert.deepEqual(await rows(), mock.jobs.map((job) => job.id));
+  await page.waitForFunction(() => document.querySelectorAll(".thumb img").length === 3);
+  assert.match(await text(`tr[data-job="${running}"] .progress`), /^10 %, 27 s left$/);
+  assert.equal(await text(`tr[data-job="${cornell}"] .error`), "rmse 0.0138");
+  assert.equal(await text(`tr[data-job="${evil}"] .badge`), "failed");
+});
+
+test("one stream of events moves the list: progress, states, jobs that come and go", async () => {
+  await open("/");
+  const bar = page.locator(`tr[data-job="${running}"] progress`);
+  assert.equal(await bar.evaluate((b) => b.value), 0.1);
+  const asked = () => mock.requests.filter((r) => r === "GET /api/jobs").length;
+  while (mock.listeners.size === 0) await page.waitForTimeout(20);
+  const before = asked();
+  mock.update(running, { progress: progress(20, 0.5) });
+  await page.waitForFunction((id) => document.querySelector(`tr[data-job="${id}"] progress`).value === 0.5, running);
+  assert.equal(asked(), before, "progress needs no other request");
+  mock.add({ ...mock.find(waiting), id: "20260131-102000-newest" });
+  await rowCount(7);
+  assert.equal((await rows())[0], "20260131-102000-newest");
+  mock.update(running, { state: { state: "held", phase: "" } });
+  await page.waitForFunction(() => document.querySelector("select").innerText.includes("held (1)"));
+  assert.equal(await text(`tr[data-job="${running}"] .badge`), "held");
+  mock.drop(waiting);
+  await rowCount(6);
+  mock.jobs.splice(0, 1);
+  mock.event(null, "reset", {});
+  await rowCount(5);
+  assert.equal(mock.listeners.size, 1);
+  assert.deepEqual(page.troubles, []);
+});
+
+test("where no events can be had, the list asks", async () => {
+  mock.events = false;
+  await open("/");
+  mock.update(running, { progress: progress(20, 0.5) });
+  await page.waitForFunction((id) => document.querySelector(`tr[data-job="${id}"] progress`).value === 0.5, running);
+});
+
+test("the filter and the state are the service's, and go into the address", async () => {
+  await open("/");
+  await page.fill("input[type=search]", "CORNELL box");
+  await counted("2 of 6");
+  assert.ok(page.url().endsWith("#/?label=CORNELL+box"), page.url());
+  await page.reload();
+  await ready(page);
+  assert.deepEqual(await rows(), [shallow, cornell]);
+  const state = page.getByLabel("State", { exact: true });
+  assert.ok((await state.innerText()).includes("done (2)"));
+  await state.selectOption("failed");
+  await counted("0 of 6");
+  await page.getByText("No job matches the filter.").waitFor();
+  await page.fill("input[type=search]", "");
+  await counted("1 of 6");
+  assert.ok(page.url().endsWith("#/?state=failed"));
+  assert.deepEqual(page.troubles, []);
+});
+
+test("ten thousand jobs: pages by cursor, a choice that survives them, and no pause", async () => {
+  mock.jobs = manyJobs(10000);
+  const began = performance.now();
+  await open("/");
+  await rowCount(100);
+  const shown = performance.now() - began;
+  const loading = await longestTask(page, true);
+  assert.equal(await text(".pager output"), "1–100 of 10000");
+  const check = (n) => page.locator("tr[data-job] input").nth(n).check();
+  await check(3);
+  await button("Older ›").click();
+  await page.waitForFunction(() => document.querySelector(".pager output").textContent.startsWith("101–200"));
+  assert.equal(await text("tr[data-job] .name a"), "job 100");
+  await check(4);
+  assert.equal(await button("Compare (2)").isEnabled(), true);
+  await button("Older ›").click();
+  await page.waitForFunction(() => document.querySelector(".pager output").textContent.startsWith("201–300"));
+  await page.reload();
+  await ready(page);
+  assert.equal(await text("tr[data-job] .name a"), "job 200", "the address holds the page");
+  await page.goto(`${origin}/#/`);
+  await page.waitForFunction(() => document.querySelector(".pager output").textContent.startsWith("1–100"));
+  await check(3);
+  await button("Older ›").click();
+  await page.waitForFunction(() => document.querySelector(".pager output").textContent.startsWith("101–200"));
+  await button("‹ Newer").click();
+  await page.waitForFunction(() => document.querySelector(".pager output").textContent.startsWith("1–100"));
+  assert.equal(await page.locator("tr[data-job] input:checked").count(), 1, "the choice is still seen");
+  await longestTask(page, true);
+  await page.fill("input[type=search]", "job 77");
+  await counted("111 of 10000");
+  const filtering = await longestTask(page);
+  console.log(`# 10,000 jobs: first rows ${shown.toFixed(0)} ms after the browser was asked; longest task ${loading} ms `
+    + `while loading, ${filtering} ms while filtering (0: none above 50)`);
+  assert.ok(Math.max(loading, filtering) < 1000);
+  const details = mock.requests.filter((r) => /GET \/api\/jobs\/[^/]+$/.test(r)).length;
+  assert.equal(details, 0, "the list needs no job's details");
+  await screenshot(page, "jobs-many");
+  assert.deepEqual(page.troubles, []);
+});
+
+test("jobs chosen in the list are compared; the choice is kept, and cleared", async () => {
+  await open("/");
+  assert.equal(await button("Compare").isDisabled(), true);
+  for (const id of [cornell, shallow]) await page.check(`tr[data-job="${id}"] input`);
+  await button("Compare (2)").click();
+  await page.waitForSelector(".plot[data-curves='2']");
+  assert.ok(page.url().endsWith(`#/compare?jobs=${cornell},${shallow}`));
+  await page.goBack();
+  await page.waitForSelector(`tr[data-job="${cornell}"] input:checked`);
+  await button("Clear the choice").click();
+  await page.waitForFunction(() => document.querySelectorAll("tr[data-job] input:checked").length === 0);
+  assert.equal(await button("Compare").isDisabled(), true);
+});
+
+test("an empty list says how to post the first job, and sees it come", async () => {
+  const [job] = mock.jobs;
+  mock.jobs = [];
+  await open("/");
+  assert.match(await text(".empty pre"), new RegExp(`^curl .*${origin}/api/jobs`));
+  await screenshot(page, "empty");
+  while (mock.listeners.size === 0) await page.waitForTimeout(20);
+  mock.add(job);
+  await rowCount(1);
+  assert.deepEqual(page.troubles, []);
+});
+
+test("a server that goes away and comes back is said and forgotten", async (t) => {
+  await open("/");
+  const { port } = mock.server.address();
+  mock.close();
+  await page.getByText("The server does not answer; trying again.").waitFor();
+  assert.equal((await rows()).length, 6);
+  const again = new Mock();
+  t.after(() => again.close());
+  again.jobs = mock.jobs;
+  await again.listen(port);
+  await page.getByText("The server does not answer; trying again.").waitFor({ state: "detached" });
+});
+
+test("a job's buttons are those that its state allows", async () => {
+  const shown = () => page.locator(".actions button:visible").allInnerTexts();
+  const waits = ["−", "+", "Hold", "Cancel job"];
+  const expected = { [running]: waits, [waiting]: waits, [stopped]: ["Retry", "Extend …", "Delete …"],
+    [evil]: ["Retry", "Extend …", "Delete …"], [cornell]: ["Extend …", "Delete …"] };
+  await open("/");
+  for (const [id, names] of Object.entries(expected)) {
+    await page.goto(`${origin}/#/job/${id}`);
+    await page.waitForFunction((i) => document.querySelector("p.id")?.textContent === i, id);
+    assert.deepEqual(await shown(), names, id);
+  }
+  assert.deepEqual(page.troubles, []);
+});
+
+test("a job is held, released, put forward and cancelled", async () => {
+  await open(`/#/job/${running}`);
+  await button("Hold").click();
+  await stateIs("held");
+  assert.equal(mock.find(running).held, true);
+  await screenshot(page, "held");
+  await button("Release").click();
+  await stateIs("queued");
+  await button("Higher priority").click();
+  await page.getByText("priority 1").waitFor();
+  assert.equal(mock.find(running).priority, 1);
+  await button("Cancel job").click();
+  await page.locator("dialog").waitFor();
+  await screenshot(page, "ask");
+  await answer("Back");
+  assert.equal(mock.find(running).state.state, "queued");
+  await button("Cancel job").click();
+  await answer("Cancel job");
+  await stateIs("cancelled");
+  await button("Retry").click();
+  await stateIs("queued");
+  mock.update(running, { state: { state: "running", phase: "rendering" }, progress: progress(8, 0.3) });
+  await page.waitForFunction(() => document.querySelector(".title progress").value === 0.3);
+  assert.deepEqual(page.troubles, []);
+});
+
+test("a done job gets a larger budget; what the service refuses is said, and the question stays", async () => {
+  await open(`/#/job/${cornell}`);
+  await button("Extend …").click();
+  const field = page.getByRole("textbox", { name: "Budget" });
+  assert.equal(await field.inputValue(), "{\"seconds\":60}");
+  await field.fill("{\"seconds\":10}");
+  await button("Extend").click();
+  await page.getByText("/budget/seconds: found 10, allowed: 30 or more").waitFor();
+  await field.fill("{\"seconds\":60}");
+  await answer("Extend");
+  await stateIs("queued");
+  await page.getByText("\"seconds\": 60").waitFor();
+  while (![...mock.listeners].some((l) => l.id === cornell)) await page.waitForTimeout(20);
+  mock.update(cornell, { state: { state: "running" }, progress: progress(1100, 0.6) });
+  await page.waitForFunction(() => document.querySelector(".title progress").value === 0.6);
+  assert.deepEqual(page.troubles.filter((t) => !/400/.test(t)), []);
+});
+
+test("a job is deleted only after a question, and a refusal is said in words", async () => {
+  await open(`/#/job/${stopped}`);
+  mock.find(stopped).state.state = "running";  // behind the page's back
+  await button("Delete …").click();
+  await button("Delete for good").click();
+  await page.getByText("The job is running.").waitFor();
+  await answer("Back");
+  mock.find(stopped).state.state = "cancelled";
+  await button("Delete …").click();
+  await button("Delete for good").click();
+  await rowCount(5);
+  assert.ok(!(await rows()).includes(stopped));
+});
+
+test("a service with a token asks for it once, and the page goes on where it was", async () => {
+  await open("/#/new");
+  mock.token = "open sesame";
+  await page.goto(`${origin}/#/job/${cornell}`);
+  await page.getByRole("textbox", { name: "Token" }).fill("wrong");
+  await button("Go on").click();
+  await page.getByText("That is not the token.").waitFor();
+  await screenshot(page, "token");
+  await page.getByRole("textbox", { name: "Token" }).fill(mock.token);
+  await button("Go on").click();
+  await page.getByRole("heading", { name: "Cornell box, 6 edges" }).waitFor();
+  await page.waitForSelector(".stage[data-shown]");
+  assert.equal(await page.locator("dialog").count(), 0);
+});

@@ -1,0 +1,68 @@
+// One crop of several jobs side by side, at one exposure, with each job's time and error.
+import { longest } from "./crop.js";
+import { h, note, replace, setText, warning } from "./dom.js";
+import { seconds } from "./format.js";
+import { painter } from "./gl_draw.js";
+import { cut } from "./pixels.js";
+
+const mostApart = 1.05;  // times that differ by no more count as equal
+
+/// What can be said of the jobs' times: only their last pictures are kept.
+function aboutTimes(sources) {
+  const times = sources.map((s) => s.seconds ?? 0);
+  const [least, most] = [Math.min(...times), Math.max(...times)];
+  return most <= mostApart * least
+    ? note("Of equal time: the jobs' last pictures; their render times differ by at most 5 %.")
+    : warning(`Not of equal time: the jobs' last pictures, after ${seconds(least)} to ${seconds(most)} of rendering. `
+      + "Earlier ones are not kept; the table above has the errors at equal times.");
+}
+
+/// `show(state, sources, images, look, ratio)`: the state's crop of all images, where it asks for crops;
+/// `ratio` is how many of the screen's pixels make a CSS pixel.
+export function cropStrip(signal) {
+  const hidden = h("canvas");
+  const title = note();
+  const times = h("div");
+  const strip = h("div.crops");
+  const element = h("section", { hidden: true }, h("h3", "Crops"), title, times, strip);
+  let paint = null;
+  let shown = {};
+  let canvases = [];
+  signal.addEventListener("abort", () => paint?.release());
+
+  function makeFrames(sources) {
+    canvases = sources.map(({ name }) => h("canvas", { role: "img", "aria-label": `Crop of ${name}` }));
+    replace(strip, sources.map((s, i) => h("figure", canvases[i],
+      h("figcaption", h("span", s.name), h("span", `${seconds(s.seconds)}, ${s.error || "no error measured"}`)))));
+    replace(times, aboutTimes(sources));
+  }
+
+  function draw(canvas, image, crop, zoom, look, ratio) {
+    const [width, height] = [crop.w, crop.h].map((n) => Math.round(n * zoom * ratio));
+    for (const one of [hidden, canvas]) Object.assign(one, { width, height });
+    canvas.style.width = `${crop.w * zoom}px`;
+    paint.draw([{ ...look, image: cut(image, crop), from: 0, to: 1 }], { x: 0, y: 0, pace: crop.w / width });
+    canvas.getContext("2d").drawImage(hidden, 0, 0);
+  }
+
+  return {
+    element,
+    /// One crop a frame, because many at once would be a pause.
+    async show({ mode, crop }, sources, images, look, ratio) {
+      element.hidden = mode !== "crops" || images.includes(undefined);
+      if (element.hidden) return;
+      const now = JSON.stringify([crop, look, ratio]);
+      if (shown.images === images && shown.now === now) return;
+      if (shown.sources !== sources) makeFrames(sources);
+      shown = { sources, images, now };
+      paint ??= painter(hidden, () => { shown = {}; });
+      const zoom = Math.max(1, Math.floor(longest / Math.max(crop.w, crop.h)));
+      setText(title, `${crop.w} × ${crop.h} pixels at (${crop.x}, ${crop.y}), ${zoom} times as large. `
+        + `Drag over the picture to choose others, at most ${longest} a side.`);
+      for (let i = 0; i < images.length && shown.images === images && shown.now === now; i += 1) {
+        draw(canvases[i], images[i], crop, zoom, look, ratio);
+        await new Promise(requestAnimationFrame);
+      }
+    },
+  };
+}
