@@ -44,7 +44,8 @@ TEST(State, every_change_stands_once_and_every_state_is_in_it) {
 
 TEST(State, every_unfinished_job_can_be_cancelled) {
   for (const State from : all_states()) {
-    if (!is_terminal(from)) EXPECT_TRUE(may_follow(from, State::cancelled)) << enum_name(from);
+    if (is_terminal(from)) continue;
+    EXPECT_TRUE(may_follow(from, State::cancelled)) << enum_name(from);
   }
 }
 
@@ -59,7 +60,8 @@ TEST(State, the_documentation_names_every_state_and_change) {
 
 TEST(State, only_a_renderer_at_work_can_finish_a_job) {
   for (const Transition& t : state_transitions()) {
-    if (t.to == State::done || t.to == State::interrupted) EXPECT_EQ(t.by, "renderer");
+    if (t.to != State::done && t.to != State::interrupted) continue;
+    EXPECT_EQ(t.by, "renderer") << enum_name(t.from);
   }
   EXPECT_FALSE(may_follow(State::held, State::done));
 }
