@@ -32,6 +32,7 @@ void read_spec(JobEntry& entry, const JobFolder& folder) {
   entry.scene = spec.scene;
   entry.integrator = std::visit([](const auto& s) { return std::string(s.name); }, spec.integrator);
   entry.reference = spec.reference;
+  entry.exclusive = spec.exclusive;
   entry.job_hash = hash(write_job(spec));
 }
 

@@ -82,7 +82,11 @@ Response Posting::replay(const std::string& id, const std::string& body_hash) co
 }
 
 Response Posting::create(const JobSpec& spec, const JobControl& control) {
-  queue_.check_room();
+  try {
+    queue_.check_room();
+  } catch (const Full& full) {
+    throw HttpError(429, full.what()).with("Retry-After", "10");
+  }
   const JobFolder folder = [&] {
     try {
       return JobFolder::create(data_.jobs() / new_job_id(), spec, control);

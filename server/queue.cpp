@@ -57,6 +57,7 @@ void Queue::enter(const EntryPtr& entry) {
   work->created = entry->state.created;
   work->exclusive = entry->exclusive;
   work->control = entry->control;
+  if (entry->state.state == State::cancelling) work->control.cancel = true;
   work_.emplace(work->id, work);
   if (work->control.cancel && withdraw(*work, State::cancelled)) return;
   if (work->control.held && withdraw(*work, State::held)) return;
@@ -80,9 +81,8 @@ void Queue::leave_line(Work& work) {
 /// Writes the new state of a job that no runner has. False: a renderer of somebody else still holds
 /// its folder, and a runner has to wait for that.
 bool Queue::withdraw(Work& work, State how) {
-  const JobFolder folder = table_.folder(work.id);
   const std::lock_guard no_forks(fork_mutex());
-  const auto free = folder.try_lock();
+  const auto free = try_folder(work);
   if (!free) return false;
   const JobState state = stored_state(work.id);
   if (is_terminal(state.state)) {

@@ -109,6 +109,7 @@ class Queue {
   void enter(const EntryPtr& entry);
   void line_up(Work& work);
   void leave_line(Work& work);
+  std::optional<JobFolder::Lock> try_folder(const Work& work) const;
   bool withdraw(Work& work, State how);
   void write_control(Work& work, const JobControl& control);
   void write_state(const std::string& id, const JobState& state, bool over);

@@ -21,7 +21,20 @@ std::chrono::milliseconds back_off(int crashes) {
   return std::min(longest, first * (1 << std::min(crashes - 1, 10)));
 }
 
+ProcessIdentity renderer_of(const JobControl& control) {
+  return {static_cast<pid_t>(control.renderer_pid),
+          static_cast<std::uint64_t>(control.renderer_start)};
+}
+
 }  // namespace
+
+/// The job's folder for ourselves; nothing while a renderer has it, or may be about to take it.
+/// Only under the fork mutex.
+std::optional<JobFolder::Lock> Queue::try_folder(const Work& work) const {
+  const ProcessIdentity renderer = renderer_of(work.control);
+  if (renderer.pid > 0 && is_alive(renderer)) return std::nullopt;
+  return table_.folder(work.id).try_lock();
+}
 
 void Queue::run() {
   while (const WorkPtr work = take()) {
@@ -89,18 +102,15 @@ Queue::WorkPtr Queue::take() {
 /// Waits while somebody else's renderer has the folder; one that an earlier run of this service
 /// started has had its notice to stop and is killed after the grace. False: stop was asked for.
 bool Queue::wait_until_free(const Work& work) {
-  const JobFolder folder = table_.folder(work.id);
   const auto is_free = [&] {
     const std::lock_guard no_forks(fork_mutex());
-    return folder.try_lock().has_value();
+    return try_folder(work).has_value();
   };
-  const ProcessIdentity orphan{static_cast<pid_t>(work.control.renderer_pid),
-                               static_cast<std::uint64_t>(work.control.renderer_start)};
   const auto patience = Clock::now() + settings_.grace;
   bool killed = false;
   while (!is_free()) {
-    if (!killed && Clock::now() >= patience && orphan.pid > 0) {
-      killed = kill_group(orphan, SIGKILL);
+    if (!killed && Clock::now() >= patience) {
+      killed = kill_group(renderer_of(work.control), SIGKILL);
       if (killed) spdlog::warn("{}: an earlier renderer did not end and is killed", work.id);
     }
     std::unique_lock lock(mutex_);
@@ -156,16 +166,14 @@ void Queue::note_renderer(Work& work, pid_t pid) {
 
 void Queue::settle(Work& work, Attempt attempt) {
   const auto progress = table_.folder(work.id).read_progress();
+  if (progress) attempt.iteration_after = progress->iteration;
   const std::lock_guard lock(mutex_);
   attempt.cancel = work.control.cancel;
   attempt.hold = work.control.held;
   attempt.stopped = stopping_ || work.stopped_for_disk;
   attempt.disk_low = disk_low_;
   const Verdict verdict = judge(attempt, settings_.max_attempts, utc_now());
-  if (progress) {
-    attempt.iteration_after = progress->iteration;
-    table_.set_progress(work.id, *progress);
-  }
+  if (progress) table_.set_progress(work.id, *progress);
   if (verdict.crashed) {
     JobControl control = work.control;
     ++control.crashes;
