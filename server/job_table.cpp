@@ -1,7 +1,6 @@
 #include "server/job_table.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <sys/stat.h>
 #include <xxhash.h>
 
@@ -168,10 +167,6 @@ void JobTable::change(const std::string& id, Change&& change) {
 void JobTable::set_state(const std::string& id, const JobState& state, bool over) {
   change(id, [&](JobEntry& entry) -> std::optional<JobEvent::Kind> {
     if (entry.state == state && entry.over == over) return std::nullopt;
-    if (state.state != entry.state.state && !may_follow(entry.state.state, state.state)) {
-      spdlog::error("{}: {} follows {}, which the table of states does not know", id,
-                    enum_name(state.state), enum_name(entry.state.state));
-    }
     entry.state = state;
     entry.over = over;
     return JobEvent::Kind::state;

@@ -294,6 +294,10 @@ JobState Queue::stored_state(const std::string& id) const {
 
 void Queue::write_state(const std::string& id, const JobState& state, bool over) {
   try {
+    const State before = stored_state(id).state;
+    if (before != state.state && !may_follow(before, state.state)) {
+      spdlog::error("{}: {} may not follow {}", id, enum_name(state.state), enum_name(before));
+    }
     table_.folder(id).write_state(state);
     unsaved_.erase(id);
   } catch (const std::exception& error) {

@@ -27,9 +27,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where Debian's libjs-chart.js puts the plotting library.
-const fs::path chart_js = "/usr/share/javascript/chart.js/chart.min.js";
-
 fs::path own_folder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
 
 /// The page's folder: installed beside the program, or `web` of the tree that it was built in.
@@ -124,13 +121,7 @@ QueueSettings queue_settings(const ServiceSettings& settings) {
 }
 
 StaticFiles page(const ServiceSettings& settings) {
-  StaticFiles files(settings.web.empty() ? find_web() : fs::canonical(settings.web));
-  files.add("/vendor/chart.js", chart_js);
-  if (!files.has("/vendor/chart.js")) {
-    spdlog::warn("{} is not there (package libjs-chart.js): the page shows no curves",
-                 chart_js.string());
-  }
-  return files;
+  return StaticFiles(settings.web.empty() ? find_web() : fs::canonical(settings.web));
 }
 
 }  // namespace

@@ -12,13 +12,38 @@ namespace lacuna {
 
 namespace {
 
+/// A rectangle of pixels.
+struct Crop {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
 struct Options {
   std::filesystem::path a, b;
   int block = 0;
+  std::vector<int> crop;  ///< x, y, width, height; empty: the whole picture
 };
 
-std::vector<double> in_double(const FloatImage& image) {
-  return {image.rgb.begin(), image.rgb.end()};
+/// Throws SceneError if the rectangle that was asked for is not in the picture.
+Crop crop_of(const Options& o, const FloatImage& image) {
+  if (o.crop.empty()) return {0, 0, image.width, image.height};
+  const Crop c{o.crop[0], o.crop[1], o.crop[2], o.crop[3]};
+  if (c.x < 0 || c.y < 0 || c.width < 1 || c.height < 1 || c.x > image.width - c.width ||
+      c.y > image.height - c.height) {
+    throw SceneError(fmt::format("--crop {} {} {} {} is not inside the pictures, {} x {}", c.x, c.y,
+                                 c.width, c.height, image.width, image.height));
+  }
+  return c;
+}
+
+/// The rectangle's values, three a pixel.
+std::vector<double> in_double(const FloatImage& image, const Crop& crop) {
+  std::vector<double> values;
+  values.reserve(3 * static_cast<std::size_t>(crop.width) * static_cast<std::size_t>(crop.height));
+  for (int y = crop.y; y < crop.y + crop.height; ++y) {
+    const auto row = image.rgb.begin() + 3 * (std::ptrdiff_t{y} * image.width + crop.x);
+    values.insert(values.end(), row, row + 3 * std::ptrdiff_t{crop.width});
+  }
+  return values;
 }
 
 double mean(const std::vector<double>& values) {
@@ -28,11 +53,11 @@ double mean(const std::vector<double>& values) {
 }
 
 /// Variance of a - b as far as it is known; empty: A has no such layer.
-std::vector<double> variance_of_difference(const Options& o) {
+std::vector<double> variance_of_difference(const Options& o, const Crop& crop) {
   std::vector<double> sum;
   for (const auto& file : {o.a, o.b}) {
     try {
-      const std::vector<double> v = in_double(read_float_image(file, "variance"));
+      const std::vector<double> v = in_double(read_float_image(file, "variance"), crop);
       if (sum.empty()) sum.resize(v.size());
       for (std::size_t i = 0; i < v.size(); ++i) sum[i] += v[i];
     } catch (const SceneError&) {
@@ -42,16 +67,16 @@ std::vector<double> variance_of_difference(const Options& o) {
   return sum;
 }
 
-void print_blocks(const Options& o, const FloatImage& image, const std::vector<double>& a,
+void print_blocks(const Options& o, const Crop& crop, const std::vector<double>& a,
                   const std::vector<double>& b) {
-  if (o.block > std::min(image.width, image.height)) {
-    throw SceneError(fmt::format("--block {} is larger than the pictures, {} x {}", o.block,
-                                 image.width, image.height));
+  if (o.block > std::min(crop.width, crop.height)) {
+    throw SceneError(fmt::format("--block {} is larger than what is compared, {} x {}", o.block,
+                                 crop.width, crop.height));
   }
-  const std::vector<double> variance = variance_of_difference(o);
-  const BlockStatistics s = block_statistics(a, b, variance, image.width, image.height, o.block);
+  const std::vector<double> variance = variance_of_difference(o, crop);
+  const BlockStatistics s = block_statistics(a, b, variance, crop.width, crop.height, o.block);
   fmt::print("blocks  {} of {} x {} pixels\nblock_relative {:.6g}\nworst_block {}, {}\n", s.blocks,
-             o.block, o.block, s.largest_relative, s.worst_x, s.worst_y);
+             o.block, o.block, s.largest_relative, crop.x + s.worst_x, crop.y + s.worst_y);
   if (variance.empty()) return;
   fmt::print("z_mean {:.4f}\nz_deviation {:.4f}\nz_beyond_1.96 {:.4f}\n", s.z_mean, s.z_deviation,
              s.z_beyond);
@@ -64,8 +89,9 @@ void compare(const Options& o) {
     throw SceneError(fmt::format("{} has {} x {} pixels, {} {} x {}", o.a.string(), image_a.width,
                                  image_a.height, o.b.string(), image_b.width, image_b.height));
   }
-  const std::vector<double> a = in_double(image_a);
-  const std::vector<double> b = in_double(image_b);
+  const Crop crop = crop_of(o, image_a);
+  const std::vector<double> a = in_double(image_a, crop);
+  const std::vector<double> b = in_double(image_b, crop);
   const Errors e = errors(a, b);
   for (const auto& metric : EnumTable<ErrorMetric>::values) {
     if (metric.value == ErrorMetric::est_rmse) continue;
@@ -73,7 +99,7 @@ void compare(const Options& o) {
   }
   fmt::print("mean_a  {:.9g}\nmean_b  {:.9g}\nmean_relative {:.6g}\n", mean(a), mean(b),
              (mean(a) - mean(b)) / mean(b));
-  if (o.block > 0) print_blocks(o, image_a, a, b);
+  if (o.block > 0) print_blocks(o, crop, a, b);
 }
 
 }  // namespace
@@ -89,6 +115,10 @@ void add_compare(CLI::App& app, int& code) {
                    "compare the means of square blocks of this many pixels too; with the layer "
                    "\"variance\" in A (and in B), also as z-scores")
       ->check(CLI::Range(1, 16384));
+  command
+      ->add_option("--crop", o->crop, "compare only this rectangle, in pixels from the upper left")
+      ->type_name("X Y WIDTH HEIGHT")
+      ->expected(4);
   command->callback([o, &code] {
     compare(*o);
     code = exit_done;

@@ -4,15 +4,21 @@
 
 #include "jobs/cli/commands.h"
 #include "jobs/spec/job_json.h"
+#include "jobs/store/state.h"
 
 namespace lacuna {
 
 void add_schema(CLI::App& app, int& code) {
   const auto markdown = std::make_shared<bool>(false);
+  const auto states = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("schema", "Print the JSON Schema of the job file");
   command->add_flag("--markdown", *markdown, "the settings pages for people instead");
-  command->callback([markdown, &code] {
-    fmt::print("{}", *markdown ? job_documentation() : job_schema());
+  command->add_flag("--states", *states, "the states of a job and what may follow what instead")
+      ->excludes("--markdown");
+  command->callback([markdown, states, &code] {
+    fmt::print("{}", *states     ? state_documentation()
+                     : *markdown ? job_documentation()
+                                 : job_schema());
     code = exit_done;
   });
 }

@@ -58,7 +58,7 @@ bool may_follow(State from, State to) {
 }
 
 std::string state_documentation() {
-  std::string page = "# The states of a job\n\n| state | meaning |\n| --- | --- |\n";
+  std::string page = "| state | meaning |\n| --- | --- |\n";
   for (const auto& [state, name, doc] : EnumTable<State>::values) {
     page += fmt::format("| `{}` | {}{} |\n", name, doc, is_terminal(state) ? " (an end)" : "");
   }

@@ -1,21 +1,18 @@
 #include "server/http.h"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <poll.h>
-#include <spdlog/spdlog.h>
-#include <sys/socket.h>
-
 #include <fstream>
+#include <string_view>
+#include <utility>
 
 #include "jobs/spec/job_json.h"
+#include "server/access.h"
 #include "server/file_response.h"
-#include "server/guard.h"
+
 #include "server/router.h"
 #include "tests/fuzz/input_file.h"
 
 // The bytes that a client sends on one connection before it sends no more: answered by one HTTP/1.1
-// answer of the service, or by nothing, and always closed.
+// answer of the service, or by nothing where the head is not whole.
 
 namespace lacuna::fuzz {
 namespace {
@@ -46,8 +43,8 @@ class Site {
       return response;
     });
   }
-  Response handle(const Request& request) const {
-    check_sender(request);
+  Response handle(const Request& request) {
+    if (auto answer = access_.admit(request)) return std::move(*answer);
     return router_.route(request);
   }
 
@@ -61,62 +58,8 @@ class Site {
 
   Folder folder_;
   Router router_;
+  Access access_{"127.0.0.1", {}, [](const std::string& path) { return path == "/"; }};
 };
-
-HttpSettings settings() {
-  HttpSettings s;
-  s.port = 0;
-  s.threads = 2;
-  return s;
-}
-
-/// A service that runs until the end of the process.
-class Running {
- public:
-  Running() : server_(settings(), [this](const Request& r) { return site_.handle(r); }) {
-    spdlog::set_level(spdlog::level::off);
-    server_.start();
-    const std::string url = server_.url();
-    port_ = std::stoi(url.substr(url.rfind(':') + 1));
-  }
-  ~Running() { server_.stop(); }
-  Running(const Running&) = delete;
-  Running& operator=(const Running&) = delete;
-
-  FileHandle connect() const {
-    FileHandle client(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
-    // Closed by a reset: millions of connections must not stay behind in TIME_WAIT.
-    const linger reset{1, 0};
-    ::setsockopt(client.get(), SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(port_));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    expect(
-        ::connect(client.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0,
-        "the service takes connections");
-    return client;
-  }
-
- private:
-  Site site_;
-  HttpServer server_;
-  int port_ = 0;
-};
-
-/// All that comes back until the service closes.
-std::string answer_to(const FileHandle& client, std::span<const std::uint8_t> bytes) {
-  ::send(client.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
-  ::shutdown(client.get(), SHUT_WR);
-  std::string answer;
-  std::array<char, 8192> buffer;
-  for (;;) {
-    const ssize_t n = ::recv(client.get(), buffer.data(), buffer.size(), 0);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return answer;
-    answer.append(buffer.data(), static_cast<std::size_t>(n));
-  }
-}
 
 void check(std::string answer) {
   // An interim answer to `Expect: 100-continue`.
@@ -139,7 +82,9 @@ void check(std::string answer) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace lacuna::fuzz;
-  static const Running service;
-  check(answer_to(service.connect(), {data, size}));
+  static Site site;
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  check(lacuna::HttpServer::answer(
+      bytes, [](const lacuna::Request& request) { return site.handle(request); }));
   return 0;
 }

@@ -5,14 +5,13 @@ import path from "node:path";
 import { test } from "node:test";
 import { folders, Service, web } from "./service.mjs";
 
-test("the page and the plotting library are served", async (t) => {
+test("the page is served", async (t) => {
   const service = await Service.start(folders(t));
   const index = await service.fetch("/");
   assert.equal(index.status, 200);
   assert.equal(index.headers.get("content-type"), "text/html; charset=utf-8");
   assert.equal(await index.text(), fs.readFileSync(path.join(web, "index.html"), "utf8"));
-  for (const [name, type] of [["app.js", "text/javascript"], ["style.css", "text/css"],
-    ["vendor/chart.js", "text/javascript"]]) {
+  for (const [name, type] of [["app.js", "text/javascript"], ["style.css", "text/css"]]) {
     const response = await service.fetch(`/${name}`);
     assert.equal(response.status, 200, name);
     assert.ok(response.headers.get("content-type").startsWith(type), name);

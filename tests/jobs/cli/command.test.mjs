@@ -76,6 +76,14 @@ test("list: scenes and jobs", async (t) => {
   assert.equal((await run(folder, "list")).code, 0);
 });
 
+test("the service's documentation holds the state machine as it is", async (t) => {
+  const states = await run(temporaryFolder(t), "schema", "--states");
+  assert.equal(states.code, 0);
+  assert.match(states.out, /\| `held` \| `queued` \| person \|/);
+  const page = readFileSync(new URL("../../../server/README.md", import.meta.url), "utf8");
+  assert.ok(page.endsWith(states.out), "server/README.md ends with what `lacuna schema --states` prints");
+});
+
 test("compare: equal pictures, different ones, other sizes", async (t) => {
   const folder = temporaryFolder(t);
   job(folder, "a.json", { layers: ["variance"] });
@@ -87,6 +95,19 @@ test("compare: equal pictures, different ones, other sizes", async (t) => {
   const different = await run(folder, "compare", "a.job/image.exr", "b.job/image.exr", "--block", "4");
   assert.match(different.out, /^mse +[0-9.e-]*[1-9]/m);
   assert.match(different.out, /z_deviation/);
+  // The sum of the squared differences of the whole is that of its halves.
+  const mse = async (...crop) => {
+    const { out, err } = await run(folder, "compare", "a.job/image.exr", "b.job/image.exr", ...crop);
+    return Number(/^mse +(\S+)$/m.exec(out)?.[1] ?? assert.fail(err));
+  };
+  const halves = [await mse("--crop", "0", "0", "24", "8"),
+    await mse("--crop", "0", "8", "24", "8")];
+  assert.ok(halves[0] !== halves[1]);
+  assert.ok(Math.abs((halves[0] + halves[1]) / 2 - await mse()) <= 1e-8 * await mse());
+  const outside = await run(folder, "compare", "a.job/image.exr", "b.job/image.exr", "--crop", "1", "0",
+    "24", "1");
+  assert.equal(outside.code, 3);
+  assert.match(outside.err, /--crop 1 0 24 1 is not inside the pictures, 24 x 16/);
   const sizes = await run(folder, "compare", "a.job/image.exr", "c.job/image.exr");
   assert.equal(sizes.code, 3);
   assert.match(sizes.err, /24 x 16.*8 x 8/);

@@ -1,0 +1,137 @@
+// The service with 10,000 jobs:
+//     node tests/bench/service.mjs
+// prints the figures below and ends with 1 if one is missed.
+import { spawnSync } from "node:child_process";
+import fs from "node:fs";
+import http from "node:http";
+import path from "node:path";
+import { setTimeout as pause } from "node:timers/promises";
+import { fileURLToPath } from "node:url";
+import { binary, folders, Service, until } from "../server/service.mjs";
+
+const many = 10000, clients = 64, window = 8000, pairs = 4;
+const lacuna = path.join(path.dirname(binary), "lacuna");
+const scenes = path.join(path.dirname(fileURLToPath(import.meta.url)), "../../jobs/scenes");
+let missed = 0;
+
+function figure(name, value, unit, allowed) {
+  const ok = value <= allowed;
+  if (!ok) missed += 1;
+  console.log(`${name.padEnd(66)} ${value.toFixed(1).padStart(8)} ${unit}   ${ok ? "ok" : "MISSED"}: ${allowed} ${unit}`);
+}
+const quantile = (times, share) => [...times].sort((a, b) => a - b)[Math.min(times.length - 1, Math.floor(share * times.length))];
+
+/// Copies of one finished job under other names, with times of their own.
+function fill(data, template) {
+  const state = JSON.parse(fs.readFileSync(path.join(template, "state.json")));
+  const letters = "abcdefghijklmnopqrstuvwxyz";
+  for (let i = 0; i < many; i += 1) {
+    const created = new Date(Date.UTC(2026, 0, 1) + 60000 * i).toISOString();
+    const stamp = created.replace(/[-:]/g, "").replace("T", "-").slice(0, 15);
+    const name = [0, 1, 2, 3, 4, 5].map((k) => letters[Math.floor(i / 26 ** k) % 26]).join("");
+    const dir = path.join(data, "jobs", `${stamp}-${name}`);
+    fs.mkdirSync(dir);
+    for (const file of ["job.json", "progress.json", "report.json", "curve.csv"]) {
+      fs.copyFileSync(path.join(template, file), path.join(dir, file));
+    }
+    fs.writeFileSync(path.join(dir, "state.json"), JSON.stringify({ ...state, created, finished: created }));
+  }
+}
+
+function get(service, target) {
+  const begin = performance.now();
+  return new Promise((resolve, reject) => {
+    http.get({ port: service.port, host: "127.0.0.1", path: target, agent: false }, (response) => {
+      response.resume();
+      response.on("end", () => (response.statusCode === 200
+        ? resolve(performance.now() - begin) : reject(new Error(`status ${response.statusCode}`))));
+    }).on("error", reject);
+  });
+}
+
+/// `clients` of them ask for the list once a second; gives the times of the answers.
+async function poll(service, ms) {
+  const times = [], end = performance.now() + ms;
+  await Promise.all(Array.from({ length: clients }, async (_, i) => {
+    await pause(1000 * i / clients);
+    while (performance.now() < end) {
+      times.push(await get(service, "/api/jobs"));
+      await pause(1000);
+    }
+  }));
+  return times;
+}
+
+/// Render time's iterations a second of both jobs together, over `ms`.
+async function speed(service, ids, ms, meanwhile) {
+  const now = () => ids.map((id) => JSON.parse(fs.readFileSync(path.join(service.folder(id), "progress.json"))));
+  const before = now(), times = await meanwhile(ms), after = now();
+  const rates = ids.map((_, i) => (after[i].iteration - before[i].iteration) / (after[i].seconds - before[i].seconds));
+  return { rate: rates[0] + rates[1], times };
+}
+
+async function measure(places) {
+  const plain = await Service.start({ ...places, scenes: places.scenes });
+  const id = await plain.post("finish");
+  await plain.reaches(id, "done");
+  const template = plain.folder(id);
+  await plain.stop();
+  fill(places.data, template);
+
+  const begin = performance.now();
+  const service = await Service.start({ ...places, scenes }, ["--renderer", lacuna, "--jobs", "2"]);
+  figure(`start with ${many} jobs`, (performance.now() - begin) / 1000, "s", 3);
+  const list = await service.json("/api/jobs?limit=1");
+  if (list.total !== many + 1) throw new Error(`${list.total} jobs are listed`);
+
+  const spec = { scene: "cornell.glb", resolution: [64, 64], threads: 1, budget: { seconds: 600 } };
+  const ids = [];
+  for (let k = 0; k < 2; k += 1) ids.push(await service.post(`job ${k}`, { ...spec, seed: k + 1 }));
+  for (const one of ids) {
+    await until(() => fs.existsSync(path.join(service.folder(one), "progress.json")), "it renders");
+  }
+  await pause(3000);
+  const quiet = [], asked = [], times = [];
+  for (let i = 0; i < pairs; i += 1) {
+    quiet.push((await speed(service, ids, window, pause)).rate);
+    const busy = await speed(service, ids, window, (ms) => poll(service, ms));
+    asked.push(busy.rate);
+    times.push(...busy.times);
+  }
+  const sum = (list) => list.reduce((a, b) => a + b, 0);
+  console.log(`  GET /api/jobs: ${times.length} answers, p50 ${quantile(times, 0.5).toFixed(1)} ms, max ${quantile(times, 1).toFixed(1)} ms`);
+  figure(`GET /api/jobs, p99, ${clients} clients once a second, two jobs rendering`, quantile(times, 0.99), "ms", 20);
+  figure("the two jobs are slower by", 100 * (1 - sum(asked) / sum(quiet)), "%", 3);
+  await service.stop();
+}
+
+/// From POST to the first instruction of the renderer.
+async function start(places) {
+  const renderer = path.join(places.root, "renderer");
+  fs.writeFileSync(renderer, "#!/bin/sh\ndate +%s%N >\"$2/curve.csv\"\nexit 3\n", { mode: 0o755 });
+  const service = await Service.start(places, ["--renderer", renderer]);
+  const times = [];
+  for (let i = 0; i < 20; i += 1) {
+    const asked = BigInt(Date.now()) * 1000000n;
+    const id = await service.post("x");
+    const file = path.join(service.folder(id), "curve.csv");
+    await until(() => fs.existsSync(file) && fs.readFileSync(file, "utf8").endsWith("\n"), "it starts");
+    times.push(Number(BigInt(fs.readFileSync(file, "utf8").trim()) - asked) / 1e6);
+    await service.reaches(id, "failed");
+  }
+  console.log(`  from POST to the renderer: p50 ${quantile(times, 0.5).toFixed(1)} ms`);
+  figure("from POST to the renderer's first instruction, worst of 20", quantile(times, 1), "ms", 30);
+  await service.stop();
+}
+
+const cleanups = [];
+try {
+  if (spawnSync(lacuna, ["--version"]).status !== 0) throw new Error("./dev build first");
+  const test = { after: (f) => cleanups.push(f) };
+  await start(folders(test));
+  await measure(folders(test));
+} finally {
+  for (const cleanup of cleanups) await cleanup();
+}
+console.log(`${missed} figures missed`);
+process.exitCode = missed > 0 ? 1 : 0;

@@ -1,0 +1,213 @@
+// The service, its renderers, or both are killed at any moment, again and again: no job that was
+// accepted is lost or doubled, none that was cancelled is rendered, no file is half-written, and the
+// pictures have the bits of jobs that nobody disturbed.
+// LACUNA_KILLS: rounds (10 in a quick run, 200 in a long one).
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import fs from "node:fs";
+import path from "node:path";
+import { test } from "node:test";
+import { setTimeout as pause } from "node:timers/promises";
+import { fileURLToPath } from "node:url";
+import { binary, folders, Service, until } from "../server/service.mjs";
+
+const rounds = Number(process.env.LACUNA_KILLS ?? 10);
+const lacuna = path.join(path.dirname(binary), "lacuna");
+const scenes = path.join(path.dirname(fileURLToPath(import.meta.url)), "../../jobs/scenes");
+const ends = ["done", "failed", "cancelled"];
+// Each kill of a renderer counts as its crash.
+const options = ["--renderer", lacuna, "--jobs", "2", "--grace", "2", "--max-attempts", "1000", "--nice", "0"];
+
+// Numbers that are the same in every run.
+let seed = 1;
+function random(n) {
+  seed = (seed * 48271) % 2147483647;
+  return seed % n;
+}
+
+const spec = (kind) => ({
+  scene: "cornell.glb", resolution: [96, 96], seed: 1 + kind, threads: 1, layers: ["variance"],
+  budget: { iterations: 30 + 10 * kind }, checkpoint_seconds: 0.05,
+});
+const kinds = 4;
+
+/// The pictures as they are when nobody disturbs.
+function references(places) {
+  return Array.from({ length: kinds }, (_, kind) => {
+    const file = path.join(places.root, `whole${kind}.json`);
+    fs.writeFileSync(file, JSON.stringify(spec(kind)));
+    const env = { ...process.env, LACUNA_SCENES: scenes, LACUNA_DATA: places.root };
+    const done = spawnSync(lacuna, ["render", file, "-q"], { env, cwd: places.root });
+    assert.equal(done.status, 0, String(done.stderr));
+    return path.join(places.root, `whole${kind}.job`);
+  });
+}
+
+/// Whatever the service may do meanwhile: an answer, or nothing.
+async function ask(service, target, request) {
+  try {
+    const response = await service.fetch(target, { ...request, signal: AbortSignal.timeout(5000) });
+    return { status: response.status, body: await response.json() };
+  } catch {
+    return null;
+  }
+}
+
+const post = (service, wish) => ask(service, "/api/jobs", {
+  method: "POST", body: JSON.stringify({ ...spec(wish.kind), label: wish.key }),
+  headers: { "Content-Type": "application/json", "Idempotency-Key": wish.key },
+});
+
+/// Posts the wishes that have no answer yet, in their order; gives up when the service is gone.
+async function postAll(service, wishes) {
+  for (const wish of wishes.filter((w) => !w.id)) {
+    const answer = await post(service, wish);
+    if (!answer) return;
+    assert.ok([200, 201].includes(answer.status), JSON.stringify(answer));
+    wish.id = answer.body.id;
+  }
+}
+
+/// Cancels a job that is not over, if there is one.
+async function cancelOne(service, wishes) {
+  const known = wishes.filter((w) => w.id && !w.cancelled);
+  if (known.length === 0) return;
+  const wish = known[random(known.length)];
+  const answer = await ask(service, `/api/jobs/${wish.id}/cancel`, { method: "POST" });
+  if (answer && [200, 202].includes(answer.status)) wish.cancelled = true;
+}
+
+function renderersOf(service) {
+  try {
+    return fs.readdirSync(`/proc/${service.child.pid}/task`).flatMap((task) =>
+      fs.readFileSync(`/proc/${service.child.pid}/task/${task}/children`, "utf8").split(" ").filter(Boolean));
+  } catch {
+    return [];  // it has just ended
+  }
+}
+
+/// Kills the service, a renderer, or both in either order. True: the service is gone.
+function kill(service) {
+  const what = random(4);
+  const killAll = () => renderersOf(service).forEach((pid) => {
+    try {
+      process.kill(Number(pid), "SIGKILL");
+    } catch { /* it has just ended */ }
+  });
+  if (what !== 1) service.child.kill("SIGKILL");
+  if (what !== 0) killAll();
+  return what !== 1;
+}
+
+/// Nothing in a job's folder is half-written; gives its state.
+function checkFolder(dir) {
+  for (const name of ["job.json", "state.json", "queue.json"]) {
+    const file = path.join(dir, name);
+    if (name !== "queue.json" || fs.existsSync(file)) JSON.parse(fs.readFileSync(file, "utf8"));
+  }
+  return JSON.parse(fs.readFileSync(path.join(dir, "state.json"), "utf8")).state;
+}
+
+function sameBits(dir, reference) {
+  const done = spawnSync(lacuna, ["compare", path.join(dir, "image.exr"), path.join(reference, "image.exr")]);
+  assert.match(String(done.stdout), /^mse +0$/m, dir);
+}
+
+test(`${rounds} rounds of kill -9`, async (t) => {
+  const places = { ...folders(t), scenes };
+  const wholes = references(places);
+  const wishes = [];
+  let service = await Service.start(places, options);
+  let kills = 0;
+  for (let i = 0; i < rounds; i += 1) {
+    const more = random(3);
+    for (let k = 0; k < more; k += 1) wishes.push({ key: `round-${i}-${k}`, kind: random(kinds) });
+    const posting = postAll(service, wishes);
+    const cancelling = random(3) === 0 ? cancelOne(service, wishes) : null;
+    await pause(random(10) < 3 ? random(30) : random(900));
+    if (kill(service)) {
+      kills += 1;
+      await service.ended;
+      await Promise.all([posting, cancelling]);
+      for (const id of fs.readdirSync(path.join(places.data, "jobs")).filter((n) => !n.startsWith("."))) {
+        checkFolder(path.join(places.data, "jobs", id));
+      }
+      service = await Service.start(places, options);
+    } else {
+      await Promise.all([posting, cancelling]);
+    }
+  }
+  await postAll(service, wishes);
+  assert.ok(wishes.every((w) => w.id));
+  const list = async () => {
+    const jobs = [];
+    for (let next = ""; next !== null;) {
+      const page = await service.json(`/api/jobs?limit=1000${next && `&cursor=${encodeURIComponent(next)}`}`);
+      jobs.push(...page.jobs);
+      next = page.next;
+    }
+    return jobs;
+  };
+  await until(async () => (await list()).every((job) => ends.includes(job.state) && job.exit_code !== null),
+    "every job is over", 600000);
+
+  const jobs = await list();
+  assert.equal(jobs.length, wishes.length, "none is lost or doubled");
+  let done = 0;
+  for (const wish of wishes) {
+    const job = jobs.find((j) => j.id === wish.id);
+    assert.equal(job?.label, wish.key);
+    assert.notEqual(job.state, "failed", job.error);
+    if (job.state === "cancelled") assert.ok(wish.cancelled, "nobody had asked for that");
+    const dir = service.folder(wish.id);
+    assert.equal(checkFolder(dir), job.state);
+    if (job.state !== "done") continue;
+    done += 1;
+    sameBits(dir, wholes[wish.kind]);
+    assert.deepEqual(fs.readdirSync(dir).filter((n) => n === "checkpoint.unusable"), []);
+  }
+  const hidden = fs.readdirSync(path.join(places.data, "jobs")).filter((n) => n.startsWith("."));
+  assert.deepEqual(hidden, [], "no folder is left half-made");
+  assert.ok(done > 0 && kills > 0);
+  t.diagnostic(`${wishes.length} jobs, ${done} done, ${wishes.length - done} cancelled; `
+    + `the service was killed ${kills} times`);
+});
+
+test("a disk that fills up, and one that turns read-only, cost no job", async (t) => {
+  let unmount = () => {};
+  t.after(() => unmount());
+  const base = folders(t);
+  fs.mkdirSync(path.join(base.root, "disk"));
+  const disk = path.join(base.root, "disk");
+  const mounted = process.getuid() === 0
+    && spawnSync("mount", ["-t", "tmpfs", "-o", "size=24m", "tmpfs", disk]).status === 0;
+  if (!mounted) return t.skip("a small disk can be mounted by root only");
+  unmount = () => spawnSync("umount", ["-l", disk]);
+  const places = { ...base, scenes, data: path.join(disk, "data") };
+  const [whole] = references(base);
+  const service = await Service.start(places, [...options, "--disk-floor", "4M", "--jobs", "1"]);
+  const wishes = Array.from({ length: 6 }, (_, i) => ({ key: `disk-${i}`, kind: 0 }));
+  await postAll(service, wishes.slice(0, 3));
+  const ballast = path.join(disk, "ballast");
+  fs.writeFileSync(ballast, "");
+  spawnSync("dd", ["if=/dev/zero", `of=${ballast}`, "bs=4096"]);  // until it is full
+  const refused = await post(service, wishes[3]);
+  assert.equal(refused.status, 507, JSON.stringify(refused));
+  assert.ok(await ask(service, "/health"), "it still answers");
+  await pause(2000);
+  fs.rmSync(ballast);
+  await postAll(service, wishes);
+  for (const wish of wishes) await service.reaches(wish.id, "done");
+
+  assert.equal(spawnSync("mount", ["-o", "remount,ro", disk]).status, 0);
+  const sealed = await post(service, { key: "sealed", kind: 0 });
+  assert.equal(sealed.status, 507, JSON.stringify(sealed));
+  assert.equal((await service.json(`/api/jobs/${wishes[0].id}`)).state.state, "done");
+  assert.equal(spawnSync("mount", ["-o", "remount,rw", disk]).status, 0);
+  const last = { key: "last", kind: 0 };
+  await postAll(service, [last]);
+  await service.reaches(last.id, "done");
+  for (const wish of [...wishes, last]) sameBits(service.folder(wish.id), whole);
+  assert.equal((await service.json("/api/jobs")).total, 7, "what was refused is not there");
+  await service.stop();
+});
