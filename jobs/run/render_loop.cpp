@@ -21,10 +21,11 @@ constexpr double checkpoint_share = 0.01;
 constexpr double preview_share = 0.005;
 constexpr double progress_interval = 0.5;  // seconds
 
+bool is_time(double t) { return std::isfinite(t) && t >= 0; }
+
 /// Throws std::runtime_error where the parts of a checkpoint contradict each other: its checksum
 /// knows damage, not what another program wrote.
 void check_saved(const Film& film, const Spent& spent, const ByteReader& in) {
-  const auto is_time = [](double t) { return std::isfinite(t) && t >= 0; };
   if (!in.at_end()) throw std::runtime_error("saved state goes on after its end");
   if (film.iterations() != spent.iterations ||
       film.half_iterations(0) != spent.iterations - spent.iterations / 2) {
@@ -63,8 +64,8 @@ void RenderLoop::resume() {
     counters_ = in.get<Counters>();
     curve_.load(in);
     refused_before_ = in.get<std::uint64_t>();
-    const PhaseSeconds phases = load_phases(in);
     task_.integrator.load(in);
+    const PhaseSeconds phases = load_phases(in);
     check_saved(film, completed_, in);
     for (const auto& [name, seconds] : phases) task_.phases[name] += seconds;
     film_ = std::move(film);
@@ -102,7 +103,10 @@ PhaseSeconds RenderLoop::load_phases(ByteReader& in) {
   PhaseSeconds phases;
   for (auto n = in.get<std::uint64_t>(); n > 0; --n) {
     const std::string name(in.get_text());
-    phases[name] = in.get<double>();
+    const auto seconds = in.get<double>();
+    const bool follows = phases.empty() || phases.rbegin()->first < name;
+    if (!follows || !is_time(seconds)) throw std::runtime_error("saved phases are not phases");
+    phases[name] = seconds;
   }
   return phases;
 }
@@ -199,8 +203,8 @@ void RenderLoop::write_checkpoint_now() {
     out.put(counters_);
     curve_.save(out);
     out.put(refused_rays());
-    save_phases(out);
     task_.integrator.save(out);
+    save_phases(out);
     write_checkpoint(task_.folder.file("checkpoint.bin"), identity(), out.bytes());
   }
   task_.phases["checkpoint"] += cost;

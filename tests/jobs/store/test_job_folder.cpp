@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/file_handle.h"
 #include "jobs/spec/problems.h"
 #include "jobs/store/job_folder.h"
@@ -199,17 +200,49 @@ TEST(JobFolder, a_lock_that_cannot_be_made_is_an_error) {
   EXPECT_THROW(folder.try_lock(), std::system_error);
 }
 
-TEST(JobFolder, the_manifest_serves_everything_but_the_checkpoint) {
+TEST(JobFolder, the_manifest_serves_results_and_nothing_of_the_works) {
   Names names;
   for (const FileInfo& f : job_files()) {
     EXPECT_TRUE(names.emplace(f.name).second) << f.name;
-    EXPECT_EQ(f.served, f.name != "checkpoint.bin") << f.name;
+    EXPECT_EQ(f.served, f.name != "checkpoint.bin" && f.name != "queue.json") << f.name;
     EXPECT_NE(f.media_type.find('/'), std::string_view::npos);
     EXPECT_EQ(f.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz."), std::string_view::npos);
   }
   EXPECT_EQ(names, (Names{"job.json", "state.json", "progress.json", "image.exr", "image.png",
                           "layers.half", "layers.json", "curve.csv", "report.json",
-                          "checkpoint.bin", "log.txt"}));
+                          "checkpoint.bin", "queue.json", "log.txt"}));
+}
+
+TEST(JobFolder, what_the_service_was_asked_for_is_kept) {
+  const TemporaryFolder temporary;
+  EXPECT_EQ(JobFolder::create(temporary.path() / "plain", some_job()).read_control(), JobControl{});
+  JobControl control;
+  control.priority = -3;
+  control.held = true;
+  control.idempotency_key = "k";
+  const JobFolder f = JobFolder::create(temporary.path() / "held", some_job(), control);
+  EXPECT_EQ(f.read_control(), control);
+  EXPECT_EQ(f.read_state().state, State::held);
+  control.cancel = true;
+  f.write_control(control);
+  EXPECT_EQ(f.read_control(), control);
+  write_file_atomically(f.file("queue.json"), R"({"priority": 101})");
+  EXPECT_THROW(f.read_control(), std::runtime_error);
+}
+
+TEST(JobFolder, removed_as_a_whole_and_what_a_crash_left_is_tidied_up) {
+  const TemporaryFolder temporary;
+  const JobFolder f = JobFolder::create(temporary.path() / "a", some_job());
+  f.remove();
+  EXPECT_TRUE(std::filesystem::is_empty(temporary.path()));
+  EXPECT_THROW(f.remove(), std::system_error);
+  // No process has this number; the second is our own, still at work.
+  const auto dead = temporary.path() / ".b.4194305-0123456789abcdef.tmp";
+  const auto ours = temporary_name(temporary.path() / "c");
+  for (const auto& dir : {dead, ours}) std::filesystem::create_directories(dir / "deep");
+  remove_stale_folders(temporary.path());
+  EXPECT_FALSE(std::filesystem::exists(dead));
+  EXPECT_TRUE(std::filesystem::exists(ours));
 }
 
 }  // namespace
