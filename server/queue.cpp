@@ -11,8 +11,8 @@
 
 namespace lacuna {
 
-Queue::Queue(Executor& executor, JobTable& table, QueueSettings settings)
-    : executor_(executor), table_(table), settings_(settings) {}
+Queue::Queue(Executor& executor, JobTable& table, DiskWatch& disk, QueueSettings settings)
+    : executor_(executor), table_(table), disk_(disk), settings_(settings) {}
 
 void Queue::start() {
   for (const EntryPtr& entry : table_.all()) {
@@ -258,10 +258,9 @@ void Queue::remove(const std::string& id, const std::string& revision) {
   table_.remove(id);
 }
 
-void Queue::set_disk_low(bool low) {
+void Queue::look_at_disk() {
+  const bool low = disk_.is_low();
   const std::lock_guard lock(mutex_);
-  if (low == disk_low_) return;
-  disk_low_ = low;
   for (const auto& [id, work] : work_) {
     if (!low || !work->stop) continue;
     work->stopped_for_disk = true;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "jobs/store/job_folder.h"
+#include "server/disk_watch.h"
 #include "server/executor.h"
 #include "server/job_table.h"
 #include "server/settings.h"
@@ -46,7 +47,7 @@ class Full : public std::runtime_error {
 /// Changed, Conflict, and std::system_error if the request could not be stored.
 class Queue {
  public:
-  Queue(Executor& executor, JobTable& table, QueueSettings settings);
+  Queue(Executor& executor, JobTable& table, DiskWatch& disk, QueueSettings settings);
   ~Queue() { stop(); }
   Queue(const Queue&) = delete;
   Queue& operator=(const Queue&) = delete;
@@ -74,7 +75,7 @@ class Queue {
   void remove(const std::string& id, const std::string& revision = {});
 
   /// While there is too little room on the disk, nothing starts and all renderers stop.
-  void set_disk_low(bool low);
+  void look_at_disk();
   /// Takes over what the renderers have written about their jobs meanwhile.
   void look_at_running();
   /// Tries once more to write the states that could not be written.
@@ -120,6 +121,7 @@ class Queue {
 
   Executor& executor_;
   JobTable& table_;
+  DiskWatch& disk_;
   const QueueSettings settings_;
 
   // Guards all below, and is held while a decision is written to disk, so that decisions and what
@@ -131,7 +133,6 @@ class Queue {
   std::map<std::string, JobState> unsaved_;  // states that could not be written (disk full)
   int running_ = 0;
   bool exclusive_runs_ = false;
-  bool disk_low_ = false;
   bool stopping_ = false;
   std::vector<std::thread> runners_;
 };

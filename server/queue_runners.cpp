@@ -70,7 +70,7 @@ void Queue::give_up(const Work& work, const std::string& reason) {
 
 /// The first in the line that may start now; `look_again` is when time alone may change that.
 Queue::WorkPtr Queue::first_ready(Clock::time_point& look_again) const {
-  if (disk_low_ || exclusive_runs_) return nullptr;
+  if (line_.empty() || exclusive_runs_ || disk_.is_low()) return nullptr;
   const auto now = Clock::now();
   for (const Place& place : line_) {
     const WorkPtr& work = work_.at(std::get<2>(place));
@@ -171,13 +171,18 @@ void Queue::settle(Work& work, Attempt attempt) {
   attempt.cancel = work.control.cancel;
   attempt.hold = work.control.held;
   attempt.stopped = stopping_ || work.stopped_for_disk;
-  attempt.disk_low = disk_low_;
+  attempt.disk_low = disk_.is_low();
   const Verdict verdict = judge(attempt, settings_.max_attempts, utc_now());
   if (progress) table_.set_progress(work.id, *progress);
   if (verdict.crashed) {
     JobControl control = work.control;
     ++control.crashes;
-    write_control(work, control);
+    try {
+      write_control(work, control);
+    } catch (const std::exception& error) {
+      spdlog::warn("{}: {}", work.id, error.what());
+      work.control = control;
+    }
     work.not_before = Clock::now() + back_off(control.crashes);
   }
   const bool over = is_terminal(verdict.state.state);

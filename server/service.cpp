@@ -141,13 +141,14 @@ struct Service::Parts {
                   .grace = grace(settings),
                   .limits = settings.limits}),
         table(data),
-        queue(executor, table, queue_settings(settings)),
-        caretaker(data, table, queue, settings.care),
+        disk(data.jobs(), settings.care.disk_floor),
+        queue(executor, table, disk, queue_settings(settings)),
+        caretaker(table, queue, settings.care),
         files(page(settings)),
         access(settings.http.bind, settings.access,
                [this](const std::string& path) { return files.has(path); }),
         http(settings.http, [this](const Request& r) { return handle(r); }),
-        routes({settings, data, scenes, table, http.metrics(), uploads.get()}, table, queue,
+        routes({settings, data, scenes, table, disk, http.metrics(), uploads.get()}, table, queue,
                files) {}
 
   Response handle(const Request& request) {
@@ -162,6 +163,7 @@ struct Service::Parts {
   const ScenesRoots scenes;
   LocalExecutor executor;
   JobTable table;
+  DiskWatch disk;
   Queue queue;
   Caretaker caretaker;
   const StaticFiles files;

@@ -10,7 +10,6 @@
 #include "jobs/spec/version.h"
 #include "jobs/store/machine.h"
 #include "server/cache_listing.h"
-#include "server/caretaker.h"
 #include "server/conditional.h"
 #include "server/entry_json.h"
 #include "server/prometheus.h"
@@ -67,7 +66,7 @@ Response ServiceRoutes::info() const {
         {{"cpu", processor_name()},
          {"cores", processor_threads()},
          {"memory_bytes", memory_bytes()}}},
-       {"disk", {{"free_bytes", free_bytes(facts_.data.dir)}, {"floor_bytes", s.care.disk_floor}}},
+       {"disk", {{"free_bytes", facts_.disk.free_bytes()}, {"floor_bytes", facts_.disk.floor()}}},
        {"queue",
         {{"queued", counts.at(State::queued)},
          {"running", counts.at(State::running)},
@@ -81,9 +80,9 @@ Response ServiceRoutes::metrics() const {
     jobs.value(static_cast<double>(n), {{"state", std::string(enum_name(state))}});
   }
   text.gauge("lacuna_disk_free_bytes", "Room where the jobs lie.")
-      .value(static_cast<double>(free_bytes(facts_.data.dir)));
+      .value(static_cast<double>(facts_.disk.free_bytes()));
   text.gauge("lacuna_disk_floor_bytes", "With less room than this, jobs wait.")
-      .value(static_cast<double>(facts_.settings.care.disk_floor));
+      .value(static_cast<double>(facts_.disk.floor()));
   text.counter("lacuna_events_total", "Events of jobs since the service started.")
       .value(static_cast<double>(facts_.table.journal().last()));
   text.counter("lacuna_cpu_seconds_total", "CPU time, of the service and of renderers that ended.")

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "jobs/store/job_folder.h"
+#include "server/disk_watch.h"
 #include "server/http_metrics.h"
 #include "server/job_table.h"
 #include "server/router.h"
@@ -19,6 +20,7 @@ struct ServiceFacts {
   const DataRoot& data;
   const ScenesRoots& scenes;
   const JobTable& table;
+  const DiskWatch& disk;
   const HttpMetrics& http;
   SceneUploads* uploads;  ///< none: uploads are off
 };
