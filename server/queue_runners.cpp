@@ -47,7 +47,10 @@ void Queue::run() {
     work->stop.reset();
     --running_;
     exclusive_runs_ = false;
-    if (const auto left = work_.find(work->id); left != work_.end()) resume(*work);
+    // Not one that was retried meanwhile: that is another work.
+    if (const auto left = work_.find(work->id); left != work_.end() && left->second == work) {
+      resume(*work);
+    }
     changed_.notify_all();
   }
 }

@@ -21,6 +21,11 @@ def kills(count):
                ["node", "--test", "tests/jobs/cli/kill.test.mjs"], LACUNA_KILLS=str(count))
 
 
+def service(count):
+    return run(f"the service killed {count} times, and a disk that fills up",
+               ["node", "--test", "tests/soak/service_kills.test.mjs"], LACUNA_KILLS=str(count))
+
+
 def sanitizers(preset, options):
     """All test programs under a sanitizer preset."""
     if not run(f"{preset}: build", ["./dev", "build-tests", preset]):
@@ -40,6 +45,7 @@ def fuzz(seconds):
 
 CHECKS = {
     "kills": lambda _: kills(20),
+    "service": lambda _: service(200),
     "asan": lambda _: sanitizers("asan", {
         # libpng leaves by longjmp through OpenImageIO and leaks a few bytes of a corrupt file's state. To know
         # it by its caller takes whole stacks, which libstdc++ without frame pointers gives to the slow unwinder only.
