@@ -54,11 +54,6 @@ std::vector<State> states_of(const std::string& text) {
   return states;
 }
 
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 constexpr std::int64_t max_page = 1000, default_page = 100;
 
 }  // namespace
@@ -72,7 +67,7 @@ JobRoutes::JobRoutes(DataRoot data, const ScenesRoots& scenes, JobTable& table, 
 Response JobRoutes::list(const Request& request) {
   JobTable::Query query;
   if (const auto states = request.query.text("state")) query.states = states_of(*states);
-  query.words = lower_case(request.query.text("label").value_or(""));
+  query.words = request.query.text("label").value_or("");
   query.limit =
       static_cast<std::size_t>(request.query.integer("limit", 1, max_page).value_or(default_page));
   query.after = request.query.text("cursor").value_or("");

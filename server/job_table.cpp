@@ -205,20 +205,21 @@ std::size_t JobTable::count(const std::vector<State>& states) const {
 }
 
 JobTable::Page JobTable::list(const Query& query) const {
+  const std::string words = lower_case(query.words);
   const Place after = query.after.empty() ? Place{} : place_of(query.after);
   Page page;
   const std::lock_guard lock(mutex_);
   page.counts = counts_;
   page.last_event = journal_.name(journal_.last());
   // Only a search by words has to look at every job; other pages cost what they hold.
-  const bool counts_known = query.words.empty();
+  const bool counts_known = words.empty();
   if (counts_known) page.total = count(query.states);
   const bool begins_after = counts_known && !query.after.empty();
   auto it = begins_after ? std::make_reverse_iterator(jobs_.lower_bound(after)) : jobs_.rbegin();
   for (; it != jobs_.rend(); ++it) {
     const auto& [place, entry] = *it;
     if (!is_any_of(query.states, entry->state.state)) continue;
-    if (entry->words.find(query.words) == std::string::npos) continue;
+    if (entry->words.find(words) == std::string::npos) continue;
     if (!counts_known) ++page.total;
     if (!query.after.empty() && place >= after) continue;
     if (page.jobs.size() < query.limit) {

@@ -64,7 +64,7 @@ class JobTable {
   /// A part of the list, newest first.
   struct Query {
     std::vector<State> states;  ///< any of these; empty: all
-    std::string words;          ///< lower case; somewhere in label, scene, integrator or id
+    std::string words;          ///< somewhere in label, scene, integrator or id, in any case
     std::size_t limit = 100;
     std::string after;  ///< the `next` of the page before; empty: from the newest on
   };

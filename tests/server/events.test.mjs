@@ -6,8 +6,12 @@ import { test } from "node:test";
 import { folders, Service, until } from "./service.mjs";
 
 /// Follows a stream: `events` grows by {name, data}; `end` is when it ended by itself.
-async function follow(service, id, signal) {
-  const response = await service.fetch(`/api/jobs/${id}/events`, { signal });
+async function follow(service, id, signal, headers = {}) {
+  return followAll(service, `/api/jobs/${id}/events`, signal, headers);
+}
+
+async function followAll(service, target, signal, headers = {}) {
+  const response = await service.fetch(target, { signal, headers });
   assert.equal(response.status, 200);
   assert.equal(response.headers.get("content-type"), "text/event-stream");
   const events = [];
@@ -116,4 +120,54 @@ test("open streams do not delay the end of the service", async (t) => {
   const asked = Date.now();
   assert.deepEqual(await service.stop(), { code: 0, signal: null });
   assert.ok(Date.now() - asked < 5000);
+});
+
+test("who comes back with the last event it saw misses nothing, and hears nothing twice", async (t) => {
+  const service = await Service.start(folders(t));
+  const id = await service.post("gate go");
+  await service.reaches(id, "running");
+  const abort = new AbortController();
+  const first = await follow(service, id, abort.signal);
+  first.end.catch(() => {});
+  await until(() => first.events.some((e) => e.name === "state" && e.data.state === "running"), "it runs");
+  const last = first.events.at(-1).id;
+  abort.abort();
+  service.open("go");
+  await service.reaches(id, "done");
+  const second = await follow(service, id, undefined, { "Last-Event-ID": last });
+  await second.end;
+  assert.equal(second.events.at(-1).data.state, "done");
+  assert.ok(second.events.every((e) => Number(e.id.split("-")[1]) > Number(last.split("-")[1])));
+  const third = await follow(service, id, undefined, { "Last-Event-ID": second.events.at(-1).id });
+  await third.end;
+  assert.deepEqual(third.events, [], "the end was seen");
+  const other = await follow(service, id, undefined, { "Last-Event-ID": "0123abcd-5" });
+  await other.end;
+  assert.deepEqual(other.events.map((e) => e.name), ["progress", "state"], "of another run: what is now");
+});
+
+test("one stream tells of all jobs, from the list on", async (t) => {
+  const service = await Service.start(folders(t));
+  const old = await service.post("finish");
+  await service.reaches(old, "done");
+  const list = await service.json("/api/jobs");
+  const id = await service.post("finish");
+  await service.reaches(id, "done");
+  await service.fetch(`/api/jobs/${old}`, { method: "DELETE" });
+  const abort = new AbortController();
+  const { events, end } = await followAll(service, `/api/events?after=${list.last_event}`, abort.signal);
+  end.catch(() => {});
+  await until(() => events.some((e) => e.name === "removed"), "the removal");
+  assert.deepEqual(events.find((e) => e.name === "removed").data, { id: old });
+  const states = events.filter((e) => e.name === "job").map((e) => e.data);
+  assert.ok(states.every((job) => job.id === id), "what the list held is not told again");
+  assert.equal(states[0].state, "queued");
+  assert.equal(states.at(-1).state, "done");
+  const now = await service.json("/api/jobs");
+  assert.deepEqual(states.at(-1), now.jobs[0], "an entry of the list");
+
+  const lost = await followAll(service, "/api/events?after=0123abcd-5", abort.signal);
+  lost.end.catch(() => {});
+  await until(() => lost.events.some((e) => e.name === "reset"), "it is told to list again");
+  abort.abort();
 });

@@ -157,3 +157,66 @@ test("no spelling of a path leaves a job's folder", async (t) => {
   assert.equal((await service.raw(head(`GET /api/jobs/${id}/files/job.json?v=..`))).status, 200);
   assert.equal((await service.raw(head(`GET /api/jobs/${id}/files/job.json?w=..`))).status, 400);
 });
+
+test("the list comes by pages, and is searched by state and words", async (t) => {
+  const service = await Service.start(folders(t));
+  const ids = [];
+  for (let i = 0; i < 7; i += 1) ids.push(await service.post(i % 2 ? `finish Odd ${i}` : `finish even ${i}`));
+  for (const id of ids) await service.reaches(id, "done");
+  await service.reaches(await service.post("fail"), "failed");
+  const seen = [];
+  let pages = 0;
+  for (let next = ""; next !== null; pages += 1) {
+    const page = await service.json(`/api/jobs?state=done&limit=3${next && `&cursor=${encodeURIComponent(next)}`}`);
+    assert.equal(page.total, 7);
+    assert.equal(page.counts.done, 7);
+    assert.equal(page.counts.failed, 1);
+    seen.push(...page.jobs.map((j) => j.id));
+    next = page.next;
+  }
+  assert.equal(pages, 3);
+  assert.deepEqual(seen, [...ids].reverse());
+  const odd = await service.json("/api/jobs?label=oDD&limit=2");
+  assert.deepEqual([odd.total, odd.jobs.length], [3, 2]);
+  const rest = await service.json(`/api/jobs?label=oDD&limit=2&cursor=${encodeURIComponent(odd.next)}`);
+  assert.deepEqual([rest.total, rest.jobs.length, rest.next], [3, 1, null]);
+  assert.equal((await service.json("/api/jobs?state=done,failed&limit=1")).total, 8);
+  for (const bad of ["state=dnoe", "limit=0", "limit=1001", "cursor=x", "page=2"]) {
+    const answer = await service.fetch(`/api/jobs?${bad}`);
+    assert.equal(answer.status, 400, bad);
+    assert.ok((await answer.json()).detail.includes(bad.split("=")[0]), bad);
+  }
+});
+
+test("the log is read from any place on", async (t) => {
+  const service = await Service.start(folders(t));
+  const id = await service.post("crash once");
+  await service.reaches(id, "done");
+  const whole = fs.readFileSync(path.join(service.folder(id), "log.txt"), "utf8");
+  const first = await service.fetch(`/api/jobs/${id}/log`);
+  assert.equal(await first.text(), whole);
+  assert.equal(first.headers.get("next-offset"), String(whole.length));
+  assert.equal(await (await service.fetch(`/api/jobs/${id}/log?offset=10`)).text(), whole.slice(10));
+  assert.equal(await (await service.fetch(`/api/jobs/${id}/log?offset=${whole.length}`)).text(), "");
+  assert.equal((await service.fetch(`/api/jobs/${id}/log?offset=${whole.length + 1}`)).status, 416);
+});
+
+test("every address describes itself", async (t) => {
+  const service = await Service.start(folders(t));
+  const { openapi, paths } = await service.json("/openapi.json");
+  assert.match(openapi, /^3\.1/);
+  for (const [target, methods] of Object.entries(paths)) {
+    for (const [method, doc] of Object.entries(methods)) assert.ok(doc.summary, `${method} ${target}`);
+  }
+  assert.ok(paths["/api/jobs/{id}"].patch.requestBody);
+  const { states, transitions } = await service.json("/api/states");
+  assert.deepEqual(states.filter((s) => s.terminal).map((s) => s.name), ["done", "failed", "cancelled"]);
+  assert.ok(transitions.some((x) => x.from === "held" && x.to === "queued" && x.by === "person"));
+  const metrics = await (await service.fetch("/metrics")).text();
+  assert.match(metrics, /^lacuna_jobs\{state="queued"\} 0$/m);
+  const cache = await service.json("/api/cache");
+  assert.deepEqual(cache, { bytes: 0, entries: [] });
+  const upload = await service.fetch("/api/scenes/a.glb", { method: "PUT", body: "x",
+    headers: { "Content-Type": "model/gltf-binary" } });
+  assert.equal(upload.status, 404, "off unless asked for");
+});
