@@ -9,8 +9,6 @@
 namespace lacuna {
 namespace {
 
-using std::chrono::steady_clock;
-
 // Renderers write their progress a few times a second: looking at two small files as often is
 // simpler than a notice from the kernel, and costs next to nothing.
 constexpr std::chrono::milliseconds tick{250};

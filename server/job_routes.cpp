@@ -54,7 +54,7 @@ std::vector<State> states_of(const std::string& text) {
   return states;
 }
 
-constexpr std::int64_t max_page = 1000, default_page = 100;
+constexpr std::int64_t max_page = 1000;
 
 }  // namespace
 
@@ -68,8 +68,9 @@ Response JobRoutes::list(const Request& request) {
   JobTable::Query query;
   if (const auto states = request.query.text("state")) query.states = states_of(*states);
   query.words = request.query.text("label").value_or("");
-  query.limit =
-      static_cast<std::size_t>(request.query.integer("limit", 1, max_page).value_or(default_page));
+  if (const auto limit = request.query.integer("limit", 1, max_page)) {
+    query.limit = static_cast<std::size_t>(*limit);
+  }
   query.after = request.query.text("cursor").value_or("");
   try {
     return with_tag(request, json_response(200, list_text(table_.list(query))));
@@ -142,12 +143,14 @@ namespace {
 using Type = QueryParameter::Type;
 
 RouteDoc list_doc() {
-  return {.summary = "Jobs, newest first, by pages",
-          .query = {{"state", Type::text, "any of these states, separated by commas"},
-                    {"label", Type::text, "words in label, scene, integrator or id"},
-                    {"limit", Type::integer, "jobs on a page; default 100", 1, max_page},
-                    {"cursor", Type::text, "`next` of the page before"}},
-          .answers = {{200, "{jobs, total, counts, next, last_event}"}, {304, "as you have it"}}};
+  return {
+      .summary = "Jobs, newest first, by pages",
+      .query = {{"state", Type::text, "any of these states, separated by commas"},
+                {"label", Type::text, "words in label, scene, integrator or id"},
+                {"limit", Type::integer,
+                 fmt::format("jobs on a page; default {}", JobTable::Query{}.limit), 1, max_page},
+                {"cursor", Type::text, "`next` of the page before"}},
+      .answers = {{200, "{jobs, total, counts, next, last_event}"}, {304, "as you have it"}}};
 }
 
 RouteDoc post_doc() {

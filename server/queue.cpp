@@ -17,7 +17,12 @@ Queue::Queue(Executor& executor, JobTable& table, DiskWatch& disk, QueueSettings
 void Queue::start() {
   for (const EntryPtr& entry : table_.all()) {
     if (entry->damaged) spdlog::error("{} is left alone: {}", entry->id, entry->state.error);
-    if (!entry->over) enter(entry);
+    if (entry->over) continue;
+    try {
+      enter(entry);
+    } catch (const std::exception& error) {
+      give_up(entry->id, error.what());
+    }
   }
   for (int i = 0; i < settings_.children; ++i) runners_.emplace_back([this] { run(); });
 }
@@ -52,19 +57,25 @@ EntryPtr Queue::add(const std::string& id) {
 void Queue::enter(const EntryPtr& entry) {
   const std::lock_guard lock(mutex_);
   if (work_.contains(entry->id)) return;
-  const auto work = std::make_shared<Work>();
-  work->id = entry->id;
-  work->created = entry->state.created;
-  work->exclusive = entry->exclusive;
-  work->control = entry->control;
+  const WorkPtr work = open(*entry, entry->control);
   if (entry->state.state == State::cancelling) work->control.cancel = true;
-  work_.emplace(work->id, work);
   if (work->control.cancel && withdraw(*work, State::cancelled)) return;
   if (work->control.held && withdraw(*work, State::held)) return;
   const State state = entry->state.state;
   // Where a renderer of an earlier service still ends, its state.json is not ours yet.
   if (state != State::queued) withdraw(*work, State::queued);
-  line_up(*work);
+  // Unless that renderer has come to the end just now, and the job is over.
+  if (work_.contains(work->id)) line_up(*work);
+}
+
+Queue::WorkPtr Queue::open(const JobEntry& entry, const JobControl& control) {
+  const auto work = std::make_shared<Work>();
+  work->id = entry.id;
+  work->created = entry.state.created;
+  work->exclusive = entry.exclusive;
+  work->control = control;
+  work_[work->id] = work;
+  return work;
 }
 
 void Queue::line_up(Work& work) {
@@ -229,13 +240,7 @@ Queue::Work& Queue::reopen(const EntryPtr& entry) {
   folder.write_state(state);
   table_.set_control(entry->id, control);
   table_.set_state(entry->id, state, false);
-  const auto work = std::make_shared<Work>();
-  work->id = entry->id;
-  work->created = state.created;
-  work->exclusive = entry->exclusive;
-  work->control = control;
-  work_[work->id] = work;
-  return *work;
+  return *open(*entry, control);
 }
 
 void Queue::remove(const std::string& id, const std::string& revision) {

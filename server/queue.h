@@ -106,8 +106,9 @@ class Queue {
   void note_renderer(Work& work, pid_t pid);
   void settle(Work& work, Attempt attempt);
   void resume(Work& work);
-  void give_up(const Work& work, const std::string& reason);
+  void give_up(const std::string& id, const std::string& reason);
   void enter(const EntryPtr& entry);
+  WorkPtr open(const JobEntry& entry, const JobControl& control);
   void line_up(Work& work);
   void leave_line(Work& work);
   std::optional<JobFolder::Lock> try_folder(const Work& work) const;

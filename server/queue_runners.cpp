@@ -41,7 +41,7 @@ void Queue::run() {
     try {
       attend(*work);
     } catch (const std::exception& error) {
-      give_up(*work, error.what());
+      give_up(work->id, error.what());
     }
     const std::lock_guard lock(mutex_);
     work->stop.reset();
@@ -56,18 +56,18 @@ void Queue::run() {
 }
 
 /// The job's folder cannot be read or written any more.
-void Queue::give_up(const Work& work, const std::string& reason) {
-  spdlog::error("{} is given up: {}", work.id, reason);
+void Queue::give_up(const std::string& id, const std::string& reason) {
+  spdlog::error("{} is given up: {}", id, reason);
   const std::lock_guard lock(mutex_);
-  forget(work.id);
+  forget(id);
   std::error_code ignored;
-  if (!std::filesystem::exists(table_.folder(work.id).dir(), ignored)) {
-    return table_.remove(work.id);
+  if (!std::filesystem::exists(table_.folder(id).dir(), ignored)) {
+    return table_.remove(id);
   }
-  if (const EntryPtr entry = table_.find(work.id)) {
+  if (const EntryPtr entry = table_.find(id)) {
     JobState state = ended(entry->state, State::failed, utc_now());
     state.error = reason;
-    table_.set_state(work.id, state, true);
+    table_.set_state(id, state, true);
   }
 }
 

@@ -14,7 +14,7 @@ struct QueueSettings {
   int children = 1;                   ///< renderers at a time
   int max_attempts = 3;               ///< a renderer that crashes is started this often for one job
   std::size_t max_waiting = 100'000;  ///< jobs that wait or run; more are refused
-  std::chrono::milliseconds grace{10'000};  ///< between SIGTERM and SIGKILL
+  std::chrono::milliseconds grace{};  ///< between SIGTERM and SIGKILL
 };
 
 /// What the service keeps, and how much room it leaves on the disk.
