@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/core/parallel.h"
+#include "analysis/parallel/thread_pool.h"
 
 namespace lacuna {
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "renderer/core/parallel.h"
+#include "analysis/parallel/thread_pool.h"
 #include "renderer/emitters/emitter_set.h"
 #include "renderer/materials/gltf_material.h"
 #include "renderer/scene/rays.h"

@@ -1,4 +1,4 @@
-#include "renderer/core/parallel.h"
+#include "analysis/parallel/thread_pool.h"
 
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
