@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Imath/ImathVec.h>
+
+#include <array>
+#include <vector>
+
+#include "analysis/complex/cubical_complex.h"
+
+namespace lacuna {
+
+/// What a collapse holds of a block beside the complex.
+struct alignas(64) BorderBlock {
+  std::array<Plane, 3> free_edges;  ///< by axis: edges that exactly one square contains
+  Plane free_vertices;              ///< vertices that exactly one edge contains
+  std::array<Plane, face_types>
+      layer;      ///< the closed border L of Alg. 2, by face type (not vertices)
+  Plane changed;  ///< cells whose faces were removed in this layer
+};
+
+/// Fills in the free edges and vertices of a block and returns its facet edges by axis. Depends on
+/// faces up to one cell away.
+std::array<Plane, 3> find_free(const CubicalComplex& complex, std::vector<BorderBlock>& border,
+                               std::size_t block);
+
+/// Fills in the layer L of a block: the closure of all faces that belong to a free pair. The blocks
+/// below it along each axis must be complete and the free faces of those above known. Returns the
+/// cells where L has any face but vertices.
+Plane close_border(const CubicalComplex& complex, std::vector<BorderBlock>& border,
+                   std::size_t block);
+
+/// The neighbouring blocks, as steps from `low` to `high` along each axis, that what lies within
+/// two cells of the given cells reaches into.
+struct Reach {
+  Imath::V3i low, high;
+};
+Reach reach_of(const Plane& cells);
+
+}  // namespace lacuna
