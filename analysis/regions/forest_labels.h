@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "analysis/geometry/grid.h"
+#include "analysis/parallel/thread_pool.h"
+#include "analysis/space/opening.h"
+
+namespace lacuna {
+
+/// A region that means: the voxel is not in the domain.
+inline constexpr std::uint32_t no_region = 0xffffffff;
+
+/// One region of the opening forest labelling.
+struct Region {
+  std::uint64_t voxels = 0;
+  std::uint16_t opening = 0;  ///< of its root: the radius of its largest balls, in voxels
+  std::uint32_t root = 0;     ///< index of the first voxel of its root
+};
+
+/// The opening forest labelling (Noel 2015, 10.3.3): regions 0 .. n - 1, numbered by the first
+/// voxel of their roots.
+struct RegionLabels {
+  Grid3<std::uint32_t> label;  ///< the region of every voxel, or no_region
+  std::vector<Region> regions;
+};
+
+/// Labels every voxel by the root of its tree; roots of equal opening that touch through faces are
+/// one (def. 10.8, 10.9). The forest's memory becomes the labels'.
+RegionLabels forest_labels(OpeningForest forest, const ThreadPool& pool);
+
+}  // namespace lacuna

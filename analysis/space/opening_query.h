@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "analysis/geometry/grid.h"
+#include "analysis/parallel/thread_pool.h"
+
+namespace lacuna {
+
+/// Omega_1 of single voxels (Noel 2015, 6.2.2), for which no map is built: thinning asks for it at
+/// few voxels only. Holds the largest D_1 of each block of 8^3 and of 64^3 voxels.
+class OpeningQuery {
+ public:
+  /// `l1` is what l1_distance() gives; it is kept by reference and must outlive the query.
+  OpeningQuery(const Grid3<std::uint16_t>& l1, const ThreadPool& pool);
+
+  /// max { D_1(y) : |x - y|_1 < D_1(y) }: the radius of the largest ball in the domain that holds
+  /// `voxel`; 0 outside the domain. The voxel must lie in the grid. Safe from several threads.
+  std::uint16_t operator()(Imath::V3i voxel) const;
+
+ private:
+  struct Search;
+  const Grid3<std::uint16_t>* l1_;
+  Grid3<std::uint16_t> blocks_;  // largest D_1 of 8^3 voxels
+  Grid3<std::uint16_t> tiles_;   // of 8^3 blocks
+};
+
+}  // namespace lacuna
