@@ -1,0 +1,45 @@
+#include "analysis/complex/curvilinear.h"
+
+#include "analysis/complex/pierce.h"
+
+namespace lacuna {
+namespace {
+
+/// Adds to `kept` what the rule finds in `complex`, which is collapsed for it.
+int ask_rule(CubicalComplex complex, const SpaceMaps& maps, KeptEdges& kept,
+             ThinningReport& report) {
+  KeepRule rule(complex, maps, kept);
+  const int layers = collapse(complex, KeptEdges(complex), &rule);
+  rule.finish();
+  report.openings_asked += rule.openings_asked();
+  return layers;
+}
+
+}  // namespace
+
+CubicalComplex thin(const BitGrid3& domain, const SpaceMaps& maps, KeptEdges& kept,
+                    ThinningReport& report) {
+  report.layers = ask_rule(CubicalComplex(domain), maps, kept, report);
+  report.kept_edges = kept.count();
+  CubicalComplex complex(domain);
+  collapse(complex, kept);
+  return complex;
+}
+
+CubicalComplex curvilinear_skeleton(const BitGrid3& domain, const SpaceMaps& maps,
+                                    ThinningReport& report) {
+  CubicalComplex complex(domain);
+  KeptEdges kept(complex);
+  complex = thin(domain, maps, kept, report);
+  for (;;) {
+    const std::vector<Square> squares = squares_to_pierce(complex, maps.distance);
+    if (squares.empty()) return complex;
+    ++report.pierce_rounds;
+    report.squares_pierced += squares.size();
+    for (const Square& s : squares) complex.remove(s.cell, s.type);
+    ask_rule(complex, maps, kept, report);
+    collapse(complex, kept);
+  }
+}
+
+}  // namespace lacuna

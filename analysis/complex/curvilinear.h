@@ -1,0 +1,30 @@
+#pragma once
+
+#include "analysis/complex/cubical_complex.h"
+#include "analysis/complex/keep_rule.h"
+
+namespace lacuna {
+
+/// What was done to get a skeleton.
+struct ThinningReport {
+  int layers = 0;              ///< of the first collapse: how deep the space is
+  std::size_t kept_edges = 0;  ///< edges of W before piercing
+  std::size_t openings_asked = 0;
+  int pierce_rounds = 0;  ///< 0: the space had no surface left
+  std::size_t squares_pierced = 0;
+};
+
+/// CurvilinearSkeleton (thesis Alg. 3): edges that live long for their place are kept, all else is
+/// collapsed. Homotopic to the closure of `domain`; may hold squares around cavities.
+/// `kept`, made for a complex of this size, receives W.
+CubicalComplex thin(const BitGrid3& domain, const SpaceMaps& maps, KeptEdges& kept,
+                    ThinningReport& report);
+
+/// The same, then pierced (6.2.4) and thinned again until it is a graph: vertices and edges only.
+/// After each round the keep rule is asked again on the pierced complex, with the distances of the
+/// original voxels and the old edges kept: with the old edges alone a closed surface would shrink
+/// into the point where a curve meets it, and the space around a floating object would get no node.
+CubicalComplex curvilinear_skeleton(const BitGrid3& domain, const SpaceMaps& maps,
+                                    ThinningReport& report);
+
+}  // namespace lacuna

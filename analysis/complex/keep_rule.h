@@ -1,0 +1,54 @@
+#pragma once
+
+#include <functional>
+
+#include "analysis/complex/collapse.h"
+#include "analysis/geometry/grid.h"
+
+namespace lacuna {
+
+/// The empty space as the rule sees it.
+struct SpaceMaps {
+  /// Distance of every voxel to the scene (0 there), L1 as in the thesis.
+  const Grid3<std::uint16_t>& distance;
+  /// Radius of the largest ball of that distance that holds a voxel of empty space (Omega).
+  std::function<int(Imath::V3i)> opening;
+};
+
+/// Finds the edges that a curvilinear skeleton must keep (line 1 of thesis Alg. 3) while it watches
+/// a collapse without constraint: those with
+///
+///     Lifespan > decenterness + Birth - D
+///
+/// and those that never die. Dates are held only of edges that outlive a layer as facets: of all
+/// others Birth = Death, and every edge has Birth >= D in the closure of its voxels. Edges of
+/// closed surfaces, which are never born, are not kept, or piercing would free nothing.
+class KeepRule final : public LayerObserver {
+ public:
+  /// All three must outlive it.
+  KeepRule(const CubicalComplex& complex, const SpaceMaps& maps, KeptEdges& kept);
+
+  void edges(int date, std::size_t block, const std::array<Plane, 3>& present,
+             const std::array<Plane, 3>& facets) override;
+  /// After the last layer: what was born and is still there never dies.
+  void finish();
+  /// How often a ball had to be looked for.
+  std::size_t openings_asked() const { return openings_asked_; }
+
+ private:
+  struct Birth {
+    std::uint16_t edge;  // position in the block + 512 * axis
+    std::uint32_t date;
+  };
+  int take_birth(std::size_t block, std::uint16_t edge);
+  bool holds(Imath::V3i cell, int axis, int birth, int death);
+
+  const CubicalComplex& complex_;
+  const SpaceMaps& maps_;
+  KeptEdges& kept_;
+  std::vector<std::array<Plane, 3>> alive_;  // edges that are facets, by block and axis
+  std::vector<std::vector<Birth>> births_;   // of these
+  std::size_t openings_asked_ = 0;
+};
+
+}  // namespace lacuna
