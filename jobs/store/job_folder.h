@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/storage/file_lock.h"
 #include "jobs/spec/job_spec.h"
 #include "jobs/store/control.h"
 #include "jobs/store/state.h"
@@ -76,23 +77,11 @@ class JobFolder {
   /// Takes the folder for this process until the object dies, so that two renderers never write
   /// into one folder. Nothing if another process has it. Whoever gets it also tidies up the
   /// temporary files of renderers that were killed. Throws std::system_error.
-  class Lock;
+  using Lock = FileLock;
   std::optional<Lock> try_lock() const;
 
  private:
   std::filesystem::path dir_;
-};
-
-/// flock on `.lock` in the folder; released by the kernel when the process dies, however it dies.
-class JobFolder::Lock {
- public:
-  explicit Lock(int fd) : fd_(fd) {}
-  Lock(Lock&& o) noexcept : fd_(o.fd_) { o.fd_ = -1; }
-  Lock& operator=(Lock&&) = delete;
-  ~Lock();
-
- private:
-  int fd_;
 };
 
 /// Where the data of a service or of a person lies, and the folders below it.
