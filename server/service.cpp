@@ -67,9 +67,8 @@ ScenesRoots scenes_roots(const ServiceSettings& settings, const DataRoot& data) 
 }
 
 DataRoot data_root(const ServiceSettings& settings) {
-  const DataRoot named =
-      settings.data.empty() ? DataRoot::from_environment() : DataRoot{settings.data};
-  DataRoot data{fs::absolute(named.dir)};
+  DataRoot data =
+      settings.data.empty() ? DataRoot::from_environment() : DataRoot::at(settings.data);
   fs::create_directories(data.jobs());
   return data;
 }
@@ -131,6 +130,7 @@ struct Service::Parts {
         scenes(scenes_roots(settings, data)),
         executor({.renderer = renderer(settings),
                   .data = data.dir,
+                  .cache = data.cache(),
                   .scenes = scenes.roots(),
                   .grace = grace(settings),
                   .limits = settings.limits}),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -87,12 +88,21 @@ class JobFolder {
 /// Where the data of a service or of a person lies, and the folders below it.
 struct DataRoot {
   std::filesystem::path dir;
+  std::filesystem::path cache_folder = {};              ///< empty: `cache` below `dir`
+  std::uint64_t cache_limit = std::uint64_t{10} << 30;  ///< bytes, of all artefacts together
+
   std::filesystem::path jobs() const { return dir / "jobs"; }
   std::filesystem::path references() const { return dir / "references"; }
-  std::filesystem::path cache() const { return dir / "cache"; }
+  /// Of the artefacts.
+  std::filesystem::path cache() const {
+    return cache_folder.empty() ? dir / "cache" : cache_folder;
+  }
 
-  /// $LACUNA_DATA, or `lacuna-data` in the working directory.
+  /// $LACUNA_DATA, or `lacuna-data` in the working directory, and of the cache as at() has it.
   static DataRoot from_environment();
+  /// `dir`, with the cache where $LACUNA_CACHE and as large as $LACUNA_CACHE_LIMIT say, if they do.
+  /// All paths become absolute. Throws std::invalid_argument: no such limit.
+  static DataRoot at(const std::filesystem::path& dir);
 };
 
 /// Folders that scene, image and environment names are looked up in, in order. $LACUNA_SCENES

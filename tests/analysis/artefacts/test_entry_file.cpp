@@ -60,6 +60,17 @@ TEST(EntryFile, the_same_artefact_has_the_same_bytes) {
   EXPECT_EQ(entry_of(key_of("")), entry_of(key_of("")));
 }
 
+TEST(EntryFile, of_an_earlier_build_is_read) {
+  // If this fails, the layout has changed: count format_version up, and make the files anew.
+  const auto folder =
+      std::filesystem::path(LACUNA_SOURCE_DIR) / "tests" / "fuzz" / "corpus" / "cache_entry";
+  const ArtefactKey key = ArtefactKey("numbers", 1).from("geometry", "00ff");
+  const Read r = read(folder / entry_name(key), key);
+  ASSERT_FALSE(r.refusal) << r.refusal->text;
+  EXPECT_EQ(r.value, (Numbers{3, 1, 4, 1, 5}));
+  EXPECT_EQ(r.header.label, "door.glb");
+}
+
 TEST(EntryFile, no_damaged_byte_and_no_cut_is_believed) {
   const TemporaryFolder tmp;
   const ArtefactKey key = key_of("");
