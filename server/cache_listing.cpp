@@ -9,58 +9,78 @@
 #include <string>
 #include <vector>
 
+#include "analysis/artefacts/cache_folder.h"
+
 namespace lacuna {
 namespace {
 
 namespace fs = std::filesystem;
 using std::chrono::system_clock;
 
+/// With `bytes` and `used` in front, for the order.
 struct Entry {
-  std::string kind, name;
   std::uint64_t bytes = 0;
-  std::int64_t used = 0;  ///< seconds since 1970
+  system_clock::time_point used;
+  nlohmann::ordered_json json;
 };
 
-void add_file(Entry& entry, const fs::path& file) {
-  struct stat status {};
-  if (::lstat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return;
-  entry.bytes += static_cast<std::uint64_t>(status.st_size);
-  entry.used = std::max({entry.used, status.st_mtim.tv_sec, status.st_atim.tv_sec});
+Entry entry_of(const char* kind, const std::string& name, std::uint64_t bytes,
+               system_clock::time_point used) {
+  return {
+      bytes, used, {{"kind", kind}, {"name", name}, {"bytes", bytes}, {"used", utc_text(used)}}};
 }
 
-/// Each entry of `folder` with all that is below it; hidden ones are unfinished.
-void add_entries(std::vector<Entry>& entries, const fs::path& folder, const std::string& kind) {
-  std::error_code gone;  // entries come and go meanwhile
-  for (const auto& item : fs::directory_iterator(folder, gone)) {
-    Entry entry{kind, item.path().filename().string()};
-    if (entry.name.starts_with('.')) continue;
-    add_file(entry, item.path());
-    if (fs::is_directory(item.symlink_status(gone))) {
-      for (const auto& part : fs::recursive_directory_iterator(item, gone)) {
-        add_file(entry, part.path());
-      }
-    }
-    entries.push_back(std::move(entry));
+/// All regular files of a reference's folder, or the one file that it is.
+Entry reference_entry(const fs::path& path) {
+  std::uint64_t bytes = 0;
+  std::time_t used = 0;
+  const auto add = [&](const fs::path& file) {
+    struct stat status {};
+    if (::lstat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return;
+    bytes += static_cast<std::uint64_t>(status.st_size);
+    used = std::max({used, status.st_mtim.tv_sec, status.st_atim.tv_sec});
+  };
+  add(path);
+  std::error_code gone;  // files come and go meanwhile
+  if (fs::is_directory(fs::symlink_status(path, gone))) {
+    for (const auto& part : fs::recursive_directory_iterator(path, gone)) add(part.path());
   }
+  return entry_of("reference", path.filename().string(), bytes, system_clock::from_time_t(used));
+}
+
+Entry artefact_entry(const CacheEntry& artefact) {
+  const std::string& name = artefact.refusal ? "?" : artefact.header.type;
+  Entry entry = entry_of("artefact", name, artefact.bytes, artefact.used);
+  entry.json["file"] = artefact.file.filename().string();
+  if (artefact.refusal) {
+    entry.json["refused"] = artefact.refusal->text;
+  } else {
+    entry.json["key"] = artefact.header.key;
+    entry.json["label"] = artefact.header.label;
+  }
+  return entry;
 }
 
 }  // namespace
 
 nlohmann::ordered_json cache_listing(const DataRoot& data) {
   std::vector<Entry> entries;
-  add_entries(entries, data.references(), "reference");
-  add_entries(entries, data.cache(), "artefact");
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return std::pair(b.bytes, a.name) < std::pair(a.bytes, b.name);
-  });
+  std::error_code gone;
+  for (const auto& item : fs::directory_iterator(data.references(), gone)) {
+    // Hidden ones are unfinished.
+    if (item.path().filename().string().starts_with('.')) continue;
+    entries.push_back(reference_entry(item.path()));
+  }
+  for (const CacheEntry& artefact : list_cache(data.cache(), CacheCheck::headers)) {
+    entries.push_back(artefact_entry(artefact));
+  }
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const Entry& a, const Entry& b) { return a.bytes > b.bytes; });
   std::uint64_t bytes = 0;
   auto list = nlohmann::ordered_json::array();
-  for (const Entry& e : entries) {
+  for (Entry& e : entries) {
     bytes += e.bytes;
-    list.push_back({{"kind", e.kind},
-                    {"name", e.name},
-                    {"bytes", e.bytes},
-                    {"used", utc_text(system_clock::from_time_t(e.used))}});
+    list.push_back(std::move(e.json));
   }
   return {{"bytes", bytes}, {"entries", std::move(list)}};
 }

@@ -32,11 +32,13 @@ Ending name_memory(Ending end, std::uint64_t limit, bool kernel_killed) {
 
 /// The service's own environment, with the places it was told on its command line.
 std::vector<std::string> child_environment(const ExecutorSettings& settings) {
-  const std::string data = "LACUNA_DATA=", scenes = "LACUNA_SCENES=";
+  const std::string data = "LACUNA_DATA=", cache = "LACUNA_CACHE=", scenes = "LACUNA_SCENES=";
   std::vector<std::string> result;
   for (char** p = ::environ; *p != nullptr; ++p) {
     const std::string_view entry = *p;
-    if (!entry.starts_with(data) && !entry.starts_with(scenes)) result.emplace_back(entry);
+    const bool own =
+        entry.starts_with(data) || entry.starts_with(cache) || entry.starts_with(scenes);
+    if (!own) result.emplace_back(entry);
   }
   std::string roots;
   for (const auto& root : settings.scenes) {
@@ -44,6 +46,7 @@ std::vector<std::string> child_environment(const ExecutorSettings& settings) {
     roots += root.string();
   }
   result.push_back(data + settings.data.string());
+  if (!settings.cache.empty()) result.push_back(cache + settings.cache.string());
   result.push_back(scenes + roots);
   return result;
 }

@@ -1,17 +1,13 @@
 #include "server/service.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <sys/file.h>
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <stdexcept>
-#include <system_error>
 
-#include "analysis/storage/file_handle.h"
+#include "analysis/storage/file_lock.h"
 #include "jobs/spec/version.h"
 #include "server/access.h"
 #include "server/caretaker.h"
@@ -71,22 +67,19 @@ ScenesRoots scenes_roots(const ServiceSettings& settings, const DataRoot& data) 
 }
 
 DataRoot data_root(const ServiceSettings& settings) {
-  const DataRoot named =
-      settings.data.empty() ? DataRoot::from_environment() : DataRoot{settings.data};
-  DataRoot data{fs::absolute(named.dir)};
+  DataRoot data =
+      settings.data.empty() ? DataRoot::from_environment() : DataRoot::at(settings.data);
   fs::create_directories(data.jobs());
   return data;
 }
 
 /// Two services on one folder would start every job twice.
-FileHandle lock_data(const DataRoot& data) {
-  const fs::path file = data.dir / ".lacuna-server.lock";
-  FileHandle lock(::open(file.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644));
-  if (!lock) throw std::system_error(errno, std::generic_category(), file.string());
-  if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) {
+FileLock lock_data(const DataRoot& data) {
+  auto lock = FileLock::try_take(data.dir / ".lacuna-server.lock");
+  if (!lock) {
     throw std::runtime_error(fmt::format("another lacuna-server works in {}", data.dir.string()));
   }
-  return lock;
+  return std::move(*lock);
 }
 
 std::chrono::milliseconds grace(const ServiceSettings& settings) {
@@ -137,6 +130,7 @@ struct Service::Parts {
         scenes(scenes_roots(settings, data)),
         executor({.renderer = renderer(settings),
                   .data = data.dir,
+                  .cache = data.cache(),
                   .scenes = scenes.roots(),
                   .grace = grace(settings),
                   .limits = settings.limits}),
@@ -158,7 +152,7 @@ struct Service::Parts {
 
   const ServiceSettings settings;
   const DataRoot data;
-  const FileHandle lock;
+  const FileLock lock;
   const std::unique_ptr<SceneUploads> uploads;
   const ScenesRoots scenes;
   LocalExecutor executor;

@@ -39,6 +39,7 @@ struct ChildLimits {
 struct ExecutorSettings {
   std::filesystem::path renderer;             ///< the `lacuna` command
   std::filesystem::path data;                 ///< working directory of the children
+  std::filesystem::path cache = {};           ///< of their artefacts; empty: below `data`
   std::vector<std::filesystem::path> scenes;  ///< what they look scenes up in
   std::chrono::milliseconds grace{};          ///< between SIGTERM and SIGKILL
   ChildLimits limits{.niceness = 10, .oom_score_adj = 500};

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -70,18 +69,10 @@ void write_file_atomically(const std::filesystem::path& file, std::string_view c
 }
 
 std::string read_file(const std::filesystem::path& file, std::size_t max_bytes) {
-  // O_NONBLOCK: opening a FIFO must not wait for a writer.
-  const FileHandle handle(
-      ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY));
-  if (!handle) throw_file_error(errno, errno == ELOOP ? "follow the link" : "read", file);
-  struct stat info {};
-  if (::fstat(handle.get(), &info) != 0) throw_file_error(errno, "read", file);
-  if (!S_ISREG(info.st_mode)) {
-    throw_file_error(S_ISDIR(info.st_mode) ? EISDIR : EINVAL, "read (no regular file)", file);
-  }
-  const auto size = static_cast<std::size_t>(info.st_size);
+  std::uint64_t size = 0;
+  const FileHandle handle = open_regular_file(file, size);
   if (size > max_bytes) throw_too_large(file, max_bytes);
-  std::string content(size, '\0');
+  std::string content(static_cast<std::size_t>(size), '\0');
   std::size_t filled = 0;
   // A file that grows or shrinks meanwhile is read as far as it goes.
   for (;;) {

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -45,6 +46,20 @@ bool FileHandle::close() {
 void throw_file_error(int error, const std::string& action, const std::filesystem::path& file) {
   throw std::system_error(error, std::generic_category(),
                           fmt::format("cannot {} {}", action, file.string()));
+}
+
+FileHandle open_regular_file(const std::filesystem::path& file, std::uint64_t& size) {
+  // O_NONBLOCK: opening a FIFO must not wait for a writer.
+  FileHandle handle(
+      ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY));
+  if (!handle) throw_file_error(errno, errno == ELOOP ? "follow the link" : "read", file);
+  struct stat info {};
+  if (::fstat(handle.get(), &info) != 0) throw_file_error(errno, "read", file);
+  if (!S_ISREG(info.st_mode)) {
+    throw_file_error(S_ISDIR(info.st_mode) ? EISDIR : EINVAL, "read (no regular file)", file);
+  }
+  size = static_cast<std::uint64_t>(info.st_size);
+  return handle;
 }
 
 void sync_folder(const std::filesystem::path& folder) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -31,6 +32,10 @@ class FileHandle {
 /// Throws std::system_error: "cannot ACTION FILE: ..." with the reason in `error` (an errno).
 [[noreturn]] void throw_file_error(int error, const std::string& action,
                                    const std::filesystem::path& file);
+
+/// Opens a regular file to be read (through links no further than the name itself), and gives its
+/// size in bytes as it is now. Throws std::system_error.
+FileHandle open_regular_file(const std::filesystem::path& file, std::uint64_t& size);
 
 /// Makes a rename or a new name in `folder` outlast a power cut.
 void sync_folder(const std::filesystem::path& folder);

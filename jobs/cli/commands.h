@@ -28,5 +28,6 @@ void add_check(CLI::App& app, int& code);
 void add_schema(CLI::App& app, int& code);
 void add_list(CLI::App& app, int& code);
 void add_compare(CLI::App& app, int& code);
+void add_cache(CLI::App& app, int& code);
 
 }  // namespace lacuna

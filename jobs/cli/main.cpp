@@ -18,7 +18,9 @@ constexpr const char* footer =
     "71 out of memory, 75 interrupted or disk full (the same command goes on from the "
     "checkpoint).\n"
     "Environment: LACUNA_SCENES, folders that scenes are looked up in (separated by ':');\n"
-    "LACUNA_DATA, the folder of jobs, references and cache (default: lacuna-data).";
+    "LACUNA_DATA, the folder of jobs, references and cache (default: lacuna-data);\n"
+    "LACUNA_CACHE, another folder for the cache of artefacts; LACUNA_CACHE_LIMIT, its size, as 4G\n"
+    "(default: 10G).";
 
 int run(int argc, char** argv) {
   CLI::App app(about, "lacuna");
@@ -31,6 +33,7 @@ int run(int argc, char** argv) {
   lacuna::add_schema(app, code);
   lacuna::add_list(app, code);
   lacuna::add_compare(app, code);
+  lacuna::add_cache(app, code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "analysis/storage/atomic_file.h"
-#include "renderer/core/bytes.h"
+#include "analysis/storage/bytes.h"
 
 namespace lacuna {
 

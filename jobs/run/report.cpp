@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "jobs/run/artefacts_json.h"
 #include "jobs/spec/version.h"
 #include "jobs/store/machine.h"
 
@@ -97,8 +98,7 @@ std::string write_report(const ReportInput& input) {
   j["rates"] = rates(task, loop.spent(), loop.counters());
   j["errors"] = errors_json(task, loop.curve());
   j["scene"] = scene(task.scene);
-  // No integrator of this version asks for one.
-  j["artefacts"] = {{"built", Json::array()}, {"loaded", Json::array()}};
+  j["artefacts"] = artefacts_json(input.artefacts);
   j["warnings"] = input.warnings;
   j["machine"] = machine(task.pool);
   return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

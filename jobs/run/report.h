@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "analysis/artefacts/record.h"
 #include "jobs/run/render_loop.h"
 
 namespace lacuna {
@@ -11,10 +12,11 @@ struct ReportInput {
   const RenderTask& task;
   const RenderLoop& loop;
   std::vector<std::string> warnings;
+  std::vector<ArtefactRecord> artefacts = {};  ///< ArtefactStore::records()
 };
 
 /// report.json: seconds by phase, counts, rates, what of the scene was built and what was not
-/// needed, errors, memory, machine.
+/// needed, artefacts built, loaded and left out, errors, memory, machine.
 std::string write_report(const ReportInput& input);
 
 }  // namespace lacuna

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -158,20 +157,9 @@ void JobFolder::remove() const {
 }
 
 std::optional<JobFolder::Lock> JobFolder::try_lock() const {
-  const auto path = file(".lock");
-  FileHandle handle(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
-  if (!handle) throw_file_error(errno, "lock", path);
-  while (::flock(handle.get(), LOCK_EX | LOCK_NB) != 0) {
-    if (errno == EINTR) continue;
-    if (errno == EWOULDBLOCK) return std::nullopt;
-    throw_file_error(errno, "lock", path);
-  }
-  remove_stale_temporaries(dir_);
-  return Lock(handle.release());
-}
-
-JobFolder::Lock::~Lock() {
-  if (fd_ >= 0) ::close(fd_);
+  auto lock = FileLock::try_take(file(".lock"));
+  if (lock) remove_stale_temporaries(dir_);
+  return lock;
 }
 
 }  // namespace lacuna

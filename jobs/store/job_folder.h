@@ -1,11 +1,13 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "analysis/storage/file_lock.h"
 #include "jobs/spec/job_spec.h"
 #include "jobs/store/control.h"
 #include "jobs/store/state.h"
@@ -76,34 +78,31 @@ class JobFolder {
   /// Takes the folder for this process until the object dies, so that two renderers never write
   /// into one folder. Nothing if another process has it. Whoever gets it also tidies up the
   /// temporary files of renderers that were killed. Throws std::system_error.
-  class Lock;
+  using Lock = FileLock;
   std::optional<Lock> try_lock() const;
 
  private:
   std::filesystem::path dir_;
 };
 
-/// flock on `.lock` in the folder; released by the kernel when the process dies, however it dies.
-class JobFolder::Lock {
- public:
-  explicit Lock(int fd) : fd_(fd) {}
-  Lock(Lock&& o) noexcept : fd_(o.fd_) { o.fd_ = -1; }
-  Lock& operator=(Lock&&) = delete;
-  ~Lock();
-
- private:
-  int fd_;
-};
-
 /// Where the data of a service or of a person lies, and the folders below it.
 struct DataRoot {
   std::filesystem::path dir;
+  std::filesystem::path cache_folder = {};              ///< empty: `cache` below `dir`
+  std::uint64_t cache_limit = std::uint64_t{10} << 30;  ///< bytes, of all artefacts together
+
   std::filesystem::path jobs() const { return dir / "jobs"; }
   std::filesystem::path references() const { return dir / "references"; }
-  std::filesystem::path cache() const { return dir / "cache"; }
+  /// Of the artefacts.
+  std::filesystem::path cache() const {
+    return cache_folder.empty() ? dir / "cache" : cache_folder;
+  }
 
-  /// $LACUNA_DATA, or `lacuna-data` in the working directory.
+  /// $LACUNA_DATA, or `lacuna-data` in the working directory, and of the cache as at() has it.
   static DataRoot from_environment();
+  /// `dir`, with the cache where $LACUNA_CACHE and as large as $LACUNA_CACHE_LIMIT say, if they do.
+  /// All paths become absolute. Throws std::invalid_argument: no such limit.
+  static DataRoot at(const std::filesystem::path& dir);
 };
 
 /// Folders that scene, image and environment names are looked up in, in order. $LACUNA_SCENES

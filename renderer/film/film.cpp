@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderer/core/bytes.h"
+#include "analysis/storage/bytes.h"
 
 namespace lacuna {
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <memory>
 
-#include "renderer/core/bytes.h"
+#include "analysis/storage/bytes.h"
 #include "renderer/film/image.h"
 #include "renderer/path/counters.h"
 #include "renderer/scene/camera.h"

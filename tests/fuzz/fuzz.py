@@ -36,6 +36,7 @@ TARGETS = (
     Target("http", 4096, 512),
     Target("glb", 16384, 1024, ("jobs/scenes/*.glb",)),
     Target("checkpoint", 2048, 512),
+    Target("cache_entry", 2048, 512),
     # A size is believed, without being touched, until pixels lack: 32768 x 32768 x 4 floats.
     Target("float_image", 4096, 1024, max_malloc_mb=20000),
     Target("texture", 4096, 1024),

@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import fs from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
+import { fileURLToPath } from "node:url";
 import { folders, head, Service } from "./service.mjs";
 
 test("a job is posted, stored, rendered and listed", async (t) => {
@@ -199,6 +200,25 @@ test("the log is read from any place on", async (t) => {
   assert.equal(await (await service.fetch(`/api/jobs/${id}/log?offset=10`)).text(), whole.slice(10));
   assert.equal(await (await service.fetch(`/api/jobs/${id}/log?offset=${whole.length}`)).text(), "");
   assert.equal((await service.fetch(`/api/jobs/${id}/log?offset=${whole.length + 1}`)).status, 416);
+});
+
+test("the cache: artefacts as `lacuna cache list` shows them, and references", async (t) => {
+  const places = folders(t);
+  const entries = fileURLToPath(new URL("../fuzz/corpus/cache_entry", import.meta.url));
+  fs.cpSync(entries, path.join(places.data, "cache"), { recursive: true });
+  fs.writeFileSync(path.join(places.data, `cache/${"0".repeat(32)}.artefact`), "no entry");
+  fs.mkdirSync(path.join(places.data, "references/door"), { recursive: true });
+  fs.writeFileSync(path.join(places.data, "references/door/image.exr"), "x".repeat(1000));
+  const service = await Service.start(places);
+  const cache = await service.json("/api/cache");
+  assert.deepEqual(cache.entries.map((e) => [e.kind, e.name, e.bytes]), [
+    ["reference", "door", 1000], ["artefact", "skeleton", 192], ["artefact", "voxels", 149],
+    ["artefact", "numbers", 141], ["artefact", "?", 8]]);
+  assert.equal(cache.bytes, 1490);
+  assert.equal(cache.entries[1].key, "skeleton 3 {resolution=128} geometry:00ff");
+  assert.equal(cache.entries[1].label, "door.glb");
+  assert.match(cache.entries[4].refused, /no entry/);
+  for (const e of cache.entries) assert.match(e.used, /^\d{4}-\d\d-\d\dT.*Z$/);
 });
 
 test("every address describes itself", async (t) => {

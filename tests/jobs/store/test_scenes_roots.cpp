@@ -161,6 +161,22 @@ TEST(Roots, come_from_the_environment) {
   EXPECT_EQ(DataRoot::from_environment().cache(), "/data/cache");
 }
 
+TEST(Roots, the_cache_can_be_elsewhere_and_of_another_size) {
+  const Environment data_variable("LACUNA_DATA", "/data");
+  for (const char* folder : {"/fast/cache", "fast/cache"}) {
+    const Environment cache_variable("LACUNA_CACHE", folder);
+    EXPECT_EQ(DataRoot::from_environment().cache(), fs::absolute(folder));
+    EXPECT_EQ(DataRoot::at("elsewhere").cache(), fs::absolute(folder));
+    EXPECT_EQ(DataRoot::from_environment().jobs(), "/data/jobs");
+  }
+  EXPECT_EQ(DataRoot::at("elsewhere").cache(), fs::absolute("elsewhere/cache"));
+  const Environment limit_variable("LACUNA_CACHE_LIMIT", "3M");
+  EXPECT_EQ(DataRoot::from_environment().cache_limit, 3u << 20);
+  const Environment wrong_variable("LACUNA_CACHE_LIMIT", "3 MB");
+  const auto message = message_of<std::invalid_argument>([] { DataRoot::from_environment(); });
+  EXPECT_TRUE(contains(message, "LACUNA_CACHE_LIMIT") && contains(message, "\"3 MB\"")) << message;
+}
+
 TEST(Roots, have_defaults) {
   for (const char* nothing : {static_cast<const char*>(nullptr), ""}) {
     const Environment scenes_variable("LACUNA_SCENES", nothing);
