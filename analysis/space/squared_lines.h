@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace lacuna {
+
+/// One pass of the exact Euclidean distance over neighbouring lines side by side: each value
+/// becomes the least value(j) + (i - j)^2 over all positions j of its line, where positions -1 and
+/// n, outside the grid, have value 0.
+class SquaredLines {
+ public:
+  static constexpr int lanes = 16;
+
+  /// Lines of `length` positions.
+  explicit SquaredLines(int length);
+
+  /// Value of position i in [0, length) of a line; whoever runs a pass fills all lanes.
+  std::uint32_t* at(int i) { return &values_[static_cast<std::size_t>(i) * lanes]; }
+
+  /// All lines at once, from each position outwards until no farther position can be nearer: fast
+  /// where distances are short. The result is read from at().
+  void search_outwards();
+  /// Line after line by the lower envelope of parabolas (Meijster, Roerdink and Hesselink 2000): in
+  /// linear time.
+  void lower_envelope();
+  /// The faster of the two.
+  void run();
+
+ private:
+  void lower_envelope(std::size_t lane);
+
+  int length_;
+  std::vector<std::uint32_t> values_, result_;
+  std::vector<std::int64_t> line_;  // of one lane, with the two positions outside
+  std::vector<int> vertex_,
+      begin_;  // parabolas of the envelope: where its vertex is, and its start
+};
+
+}  // namespace lacuna
