@@ -1,7 +1,5 @@
 #include "analysis/complex/cubical_complex.h"
 
-#include <cstring>
-
 namespace lacuna {
 
 CubicalComplex::CubicalComplex(const BitGrid3& voxels)
@@ -83,8 +81,13 @@ std::ptrdiff_t CubicalComplex::euler() const {
 }
 
 bool CubicalComplex::operator==(const CubicalComplex& o) const {
-  return size_ == o.size_ &&
-         std::memcmp(data_.data(), o.data_.data(), data_.size() * sizeof(ComplexBlock)) == 0;
+  if (size_ != o.size_) return false;
+  for (std::size_t i = 0; i < data_.size(); ++i) {
+    for (std::size_t m = 0; m < face_types; ++m) {
+      if ((data_[i].faces[m] ^ o.data_[i].faces[m]).any()) return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace lacuna
