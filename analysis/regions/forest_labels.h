@@ -22,12 +22,13 @@ struct Region {
 /// The opening forest labelling (Noel 2015, 10.3.3): regions 0 .. n - 1, numbered by the first
 /// voxel of their roots.
 struct RegionLabels {
-  Grid3<std::uint32_t> label;  ///< the region of every voxel, or no_region
+  Grid3<std::uint32_t> label;    ///< the region of every voxel, or no_region
+  Grid3<std::uint16_t> opening;  ///< the opening map that they come from
   std::vector<Region> regions;
 };
 
 /// Labels every voxel by the root of its tree; roots of equal opening that touch through faces are
-/// one (def. 10.8, 10.9). The forest's memory becomes the labels'.
+/// one (def. 10.8, 10.9). The forest's memory becomes the labels', and a bit a voxel is added.
 RegionLabels forest_labels(OpeningForest forest, const ThreadPool& pool);
 
 }  // namespace lacuna

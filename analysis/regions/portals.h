@@ -14,9 +14,9 @@ namespace lacuna {
 /// The voxel faces that separate two regions (Noel 2015, def. 10.12), a < b.
 struct Portal {
   std::uint32_t a = 0, b = 0;
-  std::uint32_t first = 0;                 ///< into Portals::voxels
+  std::uint64_t first = 0;                 ///< into Portals::voxels
   std::array<std::uint32_t, 6> by_side{};  ///< how many faces lie at each side of their voxels
-  std::uint32_t faces() const;
+  std::uint64_t faces() const;
 };
 
 /// All portals of a labelling, ordered by (a, b). A face is stored as its voxel in `a`; faces of
@@ -31,7 +31,7 @@ struct Portals {
     return {of_region.data() + first[region], of_region.data() + first[region + 1]};
   }
   /// Face `i` in [0, portal.faces()), seen from `a`: its normal points into `b`.
-  VoxelFace face(const Portal& portal, std::uint32_t i) const;
+  VoxelFace face(const Portal& portal, std::uint64_t i) const;
 };
 
 /// Throws MemoryLimitError if it would take more than `byte_limit` bytes.

@@ -2,6 +2,7 @@
 
 #include <Imath/ImathVec.h>
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,9 +13,9 @@ namespace lacuna {
 /// (i, j, k) spans [i, i+1] x [j, j+1] x [k, k+1]. The graph is symmetric, without loops of one
 /// node and without double edges; every list of neighbours ascends.
 struct SkeletonGraph {
-  std::vector<Imath::V3i> corners;         ///< position of each node, in voxels
-  std::vector<float> radii;                ///< Euclidean distance to the scene's voxels, in voxels
-  std::vector<std::uint32_t> first;        ///< nodes + 1 offsets into `neighbours`
+  std::vector<Imath::V3i> corners;      ///< position of each node, in voxels
+  std::vector<float> radii;             ///< Euclidean distance to the scene's voxels, in voxels
+  std::vector<std::uint32_t> first{0};  ///< nodes + 1 offsets into `neighbours`
   std::vector<std::uint32_t> neighbours;
 
   std::size_t nodes() const { return corners.size(); }
@@ -23,6 +24,16 @@ struct SkeletonGraph {
     return {neighbours.data() + first[node], neighbours.data() + first[node + 1]};
   }
   std::size_t degree(std::uint32_t node) const { return first[node + 1] - first[node]; }
+  /// The radius squared, which is a whole number; exact for radii up to 1448 voxels.
+  std::int64_t squared_radius(std::uint32_t node) const {
+    return std::llround(static_cast<double>(radii[node]) * static_cast<double>(radii[node]));
+  }
+  /// Whether a node lies in the closed ball of `centre`.
+  bool in_ball(std::uint32_t node, std::uint32_t centre) const {
+    const Imath::V3i d = corners[node] - corners[centre];
+    return std::int64_t{d.x} * d.x + std::int64_t{d.y} * d.y + std::int64_t{d.z} * d.z <=
+           squared_radius(centre);
+  }
 };
 
 /// A node index that means: none.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -61,6 +62,56 @@ inline std::vector<BitGrid3> small_grids(unsigned seed) {
     grids.push_back(random_rooms(size, 3, 2.5, rng));
   }
   return grids;
+}
+
+inline void add_triangle(TriangleSoup& soup, Imath::V3d a, Imath::V3d b, Imath::V3d c) {
+  const auto i = static_cast<std::uint32_t>(soup.positions.size());
+  for (const Imath::V3d& p : {a, b, c}) soup.positions.emplace_back(p);
+  soup.triangles.push_back({i, i + 1, i + 2});
+}
+
+/// A point makes the grid larger and nothing else.
+inline void add_point(TriangleSoup& soup, Imath::V3d p) { add_triangle(soup, p, p, p); }
+
+/// A random rotation, as three orthonormal axes.
+inline std::array<Imath::V3d, 3> random_rotation(std::mt19937& rng) {
+  std::normal_distribution<double> g;
+  const Imath::V3d z = Imath::V3d(g(rng), g(rng), g(rng)).normalized();
+  const Imath::V3d x = z.cross(Imath::V3d(g(rng), g(rng), g(rng))).normalized();
+  return {x, z.cross(x), z};
+}
+
+/// A closed box without thickness: 12 triangles, half sides `half` along `axes`.
+inline void add_box(TriangleSoup& soup, Imath::V3d centre, const std::array<Imath::V3d, 3>& axes,
+                    Imath::V3d half) {
+  const auto corner = [&](int i) {
+    Imath::V3d p = centre;
+    for (int a = 0; a < 3; ++a)
+      p += axes[static_cast<std::size_t>(a)] * half[a] * (i >> a & 1 ? 1 : -1);
+    return p;
+  };
+  for (int a = 0; a < 3; ++a)
+    for (const int side : {0, 1 << a}) {
+      const int u = 1 << (a + 1) % 3, v = 1 << (a + 2) % 3;
+      add_triangle(soup, corner(side), corner(side | u), corner(side | u | v));
+      add_triangle(soup, corner(side), corner(side | u | v), corner(side | v));
+    }
+}
+
+/// A closed sphere without thickness of 2 * n * n triangles, some of them degenerate at its poles.
+inline void add_sphere(TriangleSoup& soup, Imath::V3d centre, const std::array<Imath::V3d, 3>& axes,
+                       double radius, int n) {
+  const auto point = [&](int i, int j) {
+    const double theta = M_PI * i / n, phi = 2 * M_PI * (j % n) / n;
+    const double s = i == 0 || i == n ? 0 : std::sin(theta);
+    return centre + radius * (axes[0] * s * std::cos(phi) + axes[1] * s * std::sin(phi) +
+                              axes[2] * std::cos(theta));
+  };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      add_triangle(soup, point(i, j), point(i + 1, j), point(i + 1, j + 1));
+      add_triangle(soup, point(i, j), point(i + 1, j + 1), point(i, j + 1));
+    }
 }
 
 }  // namespace lacuna

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "analysis/skeleton/graph.h"
+
+namespace lacuna {
+
+/// Gives a graph, whose nodes are there already, its edges, in linear time. An edge may be listed
+/// several times, in either direction; edges from a node to itself are left out.
+void set_edges(SkeletonGraph& graph, const std::vector<std::array<std::uint32_t, 2>>& edges);
+
+}  // namespace lacuna

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+
+#include "analysis/complex/cubical_complex.h"
+#include "analysis/geometry/grid.h"
+#include "analysis/parallel/thread_pool.h"
+#include "analysis/skeleton/graph.h"
+
+namespace lacuna {
+
+/// The graph of a complex of vertices and edges (Noel 2015, 6.2.5), as curvilinear_skeleton() gives
+/// it: a node for each vertex, x fastest, then y, then z. Radii are Euclidean, in voxels, from the
+/// corner to the nearest closed cube that is not in the domain, what lies outside the grid included
+/// (squared_ball_radius()). `l1` is l1_distance() of the domain. Throws std::invalid_argument if
+/// the complex holds squares or cubes, or is not of the size of `l1`.
+SkeletonGraph build_graph(const CubicalComplex& skeleton, const Grid3<std::uint16_t>& l1,
+                          const ThreadPool& pool);
+
+}  // namespace lacuna

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "analysis/skeleton/graph.h"
+
+namespace lacuna {
+
+/// Why a node of the skeleton was kept (Noel 2015, 7.2.1).
+enum class NodeKind : std::uint8_t {
+  topology,   ///< degree other than two, or without it a loop would be lost
+  curvature,  ///< lies further from the straight line between its extrema than its radius
+  coverage,   ///< lies in the ball of neither of its extrema
+};
+
+/// The simplified skeleton: the nodes that hold the shape, joined along the lines between them.
+struct SimplifiedSkeleton {
+  SkeletonGraph graph;
+  std::vector<NodeKind> kinds;        ///< of each node
+  std::vector<std::uint32_t> source;  ///< of each node its node in the first graph, ascending
+  std::vector<std::uint32_t>
+      parent;  ///< s(n): of each node of the first graph the nearest extremum
+};
+
+/// Noel 2015, 7.2.1. It has as many components and as many independent loops as `graph`, and every
+/// node of `graph` lies in the ball of one of the two extrema of its line. Decided here, where the
+/// text leaves it open:
+/// - A line is split at its node of largest curvature (eq. 156) while that is above 1; among equals
+///   at the one nearest to the line's middle. The curvature of a node of radius 0 off the straight
+///   line is infinite. Where both extrema are one node, the distance is to this node.
+/// - Then at the middle one of the nodes that no extremum covers, while there are any.
+/// - A ring without any node of degree other than two starts at its node of largest radius.
+/// - Where a line would end where it began, or run beside another between the same two extrema,
+///   its middle node is kept as well, as a topology node: a graph without double edges would lose
+///   the loop.
+/// - s(n) is nearest in edges along the line; between equals the one of lower index.
+SimplifiedSkeleton simplify_skeleton(const SkeletonGraph& graph);
+
+}  // namespace lacuna

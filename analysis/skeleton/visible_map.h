@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+
+#include "analysis/geometry/grid.h"
+#include "analysis/parallel/thread_pool.h"
+#include "analysis/skeleton/graph.h"
+
+namespace lacuna {
+
+/// What the visibility-aware map changed, in voxels.
+struct SightReport {
+  std::uint64_t mapped = 0;       ///< voxels with a node
+  std::uint64_t seen_before = 0;  ///< of these, those that see their nearest node
+  std::uint64_t seen_after = 0;   ///< of these, those that see the node they have now
+};
+
+/// How many nodes besides its own a voxel may try.
+inline constexpr int sight_candidates = 32;
+
+/// The visibility-aware variant of the node mapping grid (Noel 2015, 7.4.2.1 asks for one): turns
+/// node_map()'s `map` of this graph into one where a voxel takes the node that it sees (sees()),
+/// nearest geodesically. A voxel that sees its nearest node keeps it. Any other takes, among the
+/// nodes around its own in the graph (at most sight_candidates, denser near by), the nearest that
+/// it sees; to a node in sight the distance over faces is the L1 distance, up to single steps
+/// around corners. A voxel that sees none of them keeps its nearest node. The same for any number
+/// of threads. `l1` is l1_distance() of the domain. Throws std::invalid_argument if the grids
+/// differ in size.
+SightReport prefer_visible_nodes(Grid3<std::uint32_t>& map, const SkeletonGraph& graph,
+                                 const Grid3<std::uint16_t>& l1, const ThreadPool& pool);
+
+}  // namespace lacuna
