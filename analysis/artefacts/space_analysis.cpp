@@ -1,0 +1,214 @@
+#include "analysis/artefacts/space_analysis.h"
+
+#include <fmt/format.h>
+
+#include "analysis/artefacts/settings_text.h"
+#include "analysis/artefacts/space_codecs.h"
+#include "analysis/skeleton/build_graph.h"
+#include "analysis/skeleton/node_map.h"
+#include "analysis/skeleton/visible_map.h"
+#include "analysis/space/distance.h"
+#include "analysis/space/memory_limit.h"
+#include "analysis/space/opening.h"
+#include "analysis/space/opening_query.h"
+
+namespace lacuna {
+namespace {
+
+/// Raised when the same inputs give other bits.
+constexpr std::uint32_t voxels_version = 1, domain_version = 1, skeleton_version = 1,
+                        filtered_version = 1, map_version = 1, simplified_version = 1,
+                        clusters_version = 1, gates_version = 1, regions_version = 1,
+                        portals_version = 1;
+
+/// By how much a node's radius may fall short of its cluster's (thesis 7.2.2).
+constexpr double cluster_alpha = 0.2;
+
+template <class T>
+void append(std::string& bytes, const T& value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+std::string hash_of(const DomainSeeds& seeds) {
+  std::string bytes;
+  append(bytes, seeds.from_infinity);
+  for (const Seed& s : seeds.points) {
+    append(bytes, s.position);
+    append(bytes, s.normal.value_or(Imath::V3d(0.0)));
+  }
+  return key_hash(bytes);
+}
+
+std::string hash_of(const BitGrid3& grid) {
+  const auto& blocks = grid.data();
+  std::string size;
+  append(size, grid.size());
+  return key_hash(size + key_hash({reinterpret_cast<const char*>(blocks.data()),
+                                   blocks.size() * sizeof(BitBlock)}));
+}
+
+/// What came from disk and what it points into must agree; a checksum cannot know.
+void require_map(const Grid3<std::uint32_t>& map, Imath::V3i size, std::size_t nodes) {
+  bool fits = map.size() == size;
+  for (std::size_t i = 0; fits && i < map.count(); ++i) fits = map[i] < nodes || map[i] == no_node;
+  if (!fits) throw std::runtime_error("the cache's node mapping grid is not of its skeleton");
+}
+
+}  // namespace
+
+SpaceAnalysis::SpaceAnalysis(SpaceInput input, ArtefactStore& store, const ThreadPool& pool)
+    : input_(std::move(input)), store_(store), pool_(pool) {}
+
+template <class T>
+const T& SpaceAnalysis::part(Part<T>& place, const ArtefactKey& key,
+                             const std::function<T()>& build) {
+  if (!place) place = store_.get<T>(key, build);
+  return *place;
+}
+
+ArtefactKey SpaceAnalysis::voxels_key() const {
+  return ArtefactKey("voxels", voxels_version,
+                     fmt::format("resolution={}", input_.settings.resolution))
+      .from("geometry", input_.geometry);
+}
+
+ArtefactKey SpaceAnalysis::domain_key() const {
+  return ArtefactKey("domain", domain_version)
+      .from(voxels_key())
+      .from("seeds", hash_of(input_.seeds));
+}
+
+ArtefactKey SpaceAnalysis::of_domain(const char* type, std::uint32_t version,
+                                     std::string settings) {
+  if (domain_hash_.empty()) domain_hash_ = hash_of(domain().voxels);
+  return ArtefactKey(type, version, std::move(settings)).from("domain", domain_hash_);
+}
+
+ArtefactKey SpaceAnalysis::skeleton_key() { return of_domain("skeleton", skeleton_version); }
+ArtefactKey SpaceAnalysis::filtered_key() {
+  return ArtefactKey("filtered_skeleton", filtered_version).from(skeleton_key());
+}
+ArtefactKey SpaceAnalysis::simplified_key() {
+  return ArtefactKey("simplified_skeleton", simplified_version).from(skeleton_key());
+}
+ArtefactKey SpaceAnalysis::clusters_key() {
+  return ArtefactKey("visibility_clusters", clusters_version,
+                     fmt::format("alpha={}", cluster_alpha))
+      .from(simplified_key());
+}
+ArtefactKey SpaceAnalysis::regions_key() { return of_domain("regions", regions_version); }
+ArtefactKey SpaceAnalysis::map_key(const char* type, const ArtefactKey& graph) {
+  return of_domain(type, map_version, fmt::format("mapping={}", enum_name(input_.settings.mapping)))
+      .from(graph);
+}
+
+const Voxels& SpaceAnalysis::voxels() {
+  return part<Voxels>(voxels_, voxels_key(), [this] {
+    return voxelize(input_.triangles(), input_.settings.resolution, pool_, input_.byte_limit);
+  });
+}
+
+const Domain& SpaceAnalysis::domain() {
+  return part<Domain>(domain_, domain_key(), [this] {
+    return restrict_domain(voxels(), input_.seeds, pool_, input_.byte_limit);
+  });
+}
+
+const Grid3<std::uint16_t>& SpaceAnalysis::distance() {
+  if (!distance_) {
+    distance_ = std::make_unique<Grid3<std::uint16_t>>(
+        l1_distance(domain().voxels, pool_, input_.byte_limit));
+  }
+  return *distance_;
+}
+
+const SkeletonGraph& SpaceAnalysis::skeleton() {
+  return part<SkeletonGraph>(skeleton_, skeleton_key(), [this] {
+    const OpeningQuery opening(distance(), pool_);
+    const SpaceMaps maps{distance(), [&](Imath::V3i v) { return static_cast<int>(opening(v)); }};
+    ThinningReport report;
+    const CubicalComplex complex = curvilinear_skeleton(domain().voxels, maps, report);
+    return build_graph(complex, distance(), pool_);
+  });
+}
+
+const FilteredSkeleton& SpaceAnalysis::filtered() {
+  return part<FilteredSkeleton>(filtered_, filtered_key(),
+                                [this] { return filter_skeleton(skeleton()); });
+}
+
+Grid3<std::uint32_t> SpaceAnalysis::make_map(const SkeletonGraph& graph) {
+  Grid3<std::uint32_t> map = lacuna::node_map(domain().voxels, graph, pool_, input_.byte_limit);
+  if (input_.settings.mapping == NodeMapping::visible) {
+    prefer_visible_nodes(map, graph, distance(), pool_);
+  }
+  return map;
+}
+
+const Grid3<std::uint32_t>& SpaceAnalysis::node_map() {
+  if (!node_map_) {
+    part<Grid3<std::uint32_t>>(node_map_, map_key("node_map", skeleton_key()),
+                               [this] { return make_map(skeleton()); });
+    require_map(*node_map_, domain().voxels.size(), skeleton().nodes());
+  }
+  return *node_map_;
+}
+
+const Grid3<std::uint32_t>& SpaceAnalysis::filtered_map() {
+  if (!filtered_map_) {
+    part<Grid3<std::uint32_t>>(filtered_map_, map_key("filtered_map", filtered_key()),
+                               [this] { return make_map(filtered().graph); });
+    require_map(*filtered_map_, domain().voxels.size(), filtered().graph.nodes());
+  }
+  return *filtered_map_;
+}
+
+const SimplifiedSkeleton& SpaceAnalysis::simplified() {
+  return part<SimplifiedSkeleton>(simplified_, simplified_key(),
+                                  [this] { return simplify_skeleton(skeleton()); });
+}
+
+const VisibilityClusters& SpaceAnalysis::clusters() {
+  return part<VisibilityClusters>(clusters_, clusters_key(), [this] {
+    return visibility_clusters(simplified(), cluster_alpha);
+  });
+}
+
+const VisibilityGates& SpaceAnalysis::gates() {
+  return part<VisibilityGates>(gates_,
+                               ArtefactKey("visibility_gates", gates_version).from(clusters_key()),
+                               [this] { return visibility_gates(simplified().graph, clusters()); });
+}
+
+const RegionLabels& SpaceAnalysis::regions() {
+  return part<RegionLabels>(regions_, regions_key(), [this] {
+    return forest_labels(
+        opening_forest(chebyshev_distance(domain().voxels, pool_, input_.byte_limit), pool_,
+                       input_.byte_limit),
+        pool_);
+  });
+}
+
+const Portals& SpaceAnalysis::portals() {
+  return part<Portals>(portals_, ArtefactKey("portals", portals_version).from(regions_key()),
+                       [this] { return find_portals(regions(), pool_, input_.byte_limit); });
+}
+
+void SpaceAnalysis::close() {
+  const auto note = [this](const auto& place, const char* type) {
+    if (!place) store_.not_needed(type);
+  };
+  note(voxels_, "voxels");
+  note(domain_, "domain");
+  note(skeleton_, "skeleton");
+  note(filtered_, "filtered_skeleton");
+  note(node_map_, "node_map");
+  note(filtered_map_, "filtered_map");
+  note(simplified_, "simplified_skeleton");
+  note(clusters_, "visibility_clusters");
+  note(gates_, "visibility_gates");
+  note(regions_, "regions");
+  note(portals_, "portals");
+}
+
+}  // namespace lacuna

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "analysis/artefacts/store.h"
+#include "analysis/complex/curvilinear.h"
+#include "analysis/geometry/triangle_soup.h"
+#include "analysis/regions/forest_labels.h"
+#include "analysis/regions/portals.h"
+#include "analysis/settings/analysis_settings.h"
+#include "analysis/skeleton/clusters.h"
+#include "analysis/skeleton/filter.h"
+#include "analysis/skeleton/gates.h"
+#include "analysis/skeleton/simplify.h"
+#include "analysis/space/domain.h"
+#include "analysis/space/voxelize.h"
+
+namespace lacuna {
+
+/// What is analysed.
+struct SpaceInput {
+  std::function<TriangleSoup()> triangles;  ///< called only if the scene is voxelised now
+  std::string geometry;                     ///< hash of the triangles, lower-case hexadecimal
+  DomainSeeds seeds;                        ///< which parts of the empty space matter
+  AnalysisSettings settings;
+  std::uint64_t byte_limit = 0;  ///< of memory, for any one step
+};
+
+/// The shape of a scene's empty space. Each part is made or loaded when it is first asked for, with
+/// all that it is made from, and then stays: what nobody asks for is never built. Not for use by
+/// several threads at once; what was returned may be read by all. Every call may throw what
+/// voxelize() throws, MemoryLimitError and WaitInterrupted.
+class SpaceAnalysis {
+ public:
+  /// `store` and `pool` outlive it.
+  SpaceAnalysis(SpaceInput input, ArtefactStore& store, const ThreadPool& pool);
+
+  const Voxels& voxels();
+  /// What of the empty space the seeds reach.
+  const Domain& domain();
+  /// L1 distance to all that is not in the domain. Not kept on disk: reading takes as long.
+  const Grid3<std::uint16_t>& distance();
+  const SkeletonGraph& skeleton();
+  const FilteredSkeleton& filtered();
+  /// Of every voxel of the domain its node of skeleton() (or filtered().graph), as
+  /// AnalysisSettings::mapping says.
+  const Grid3<std::uint32_t>& node_map();
+  const Grid3<std::uint32_t>& filtered_map();
+  const SimplifiedSkeleton& simplified();
+  const VisibilityClusters& clusters();
+  const VisibilityGates& gates();
+  const RegionLabels& regions();
+  const Portals& portals();
+
+  const SpaceInput& input() const { return input_; }
+  /// Notes in the store what was not asked for.
+  void close();
+
+ private:
+  template <class T>
+  using Part = std::shared_ptr<const T>;
+  template <class T>
+  const T& part(Part<T>& place, const ArtefactKey& key, const std::function<T()>& build);
+  /// Keys name all that the bits depend on: the domain's own voxels stand for scene and seeds, so
+  /// two cameras in one room share what is made from it.
+  ArtefactKey voxels_key() const;
+  ArtefactKey domain_key() const;
+  ArtefactKey of_domain(const char* type, std::uint32_t version, std::string settings = {});
+  ArtefactKey map_key(const char* type, const ArtefactKey& graph);
+  ArtefactKey skeleton_key();
+  ArtefactKey filtered_key();
+  ArtefactKey simplified_key();
+  ArtefactKey clusters_key();
+  ArtefactKey regions_key();
+  Grid3<std::uint32_t> make_map(const SkeletonGraph& graph);
+
+  SpaceInput input_;
+  ArtefactStore& store_;
+  const ThreadPool& pool_;
+  std::string domain_hash_;
+  std::unique_ptr<Grid3<std::uint16_t>> distance_;
+  Part<Voxels> voxels_;
+  Part<Domain> domain_;
+  Part<SkeletonGraph> skeleton_;
+  Part<FilteredSkeleton> filtered_;
+  Part<Grid3<std::uint32_t>> node_map_, filtered_map_;
+  Part<SimplifiedSkeleton> simplified_;
+  Part<VisibilityClusters> clusters_;
+  Part<VisibilityGates> gates_;
+  Part<RegionLabels> regions_;
+  Part<Portals> portals_;
+};
+
+}  // namespace lacuna
