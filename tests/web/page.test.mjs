@@ -71,7 +71,7 @@ test("a running job moves, gets its curve and picture, and ends", async () => {
   assert.equal(await text(".title .badge"), "done");
   assert.equal(await page.locator(".title progress").isVisible(), false);
   assert.equal(await page.getByRole("button", { name: "Cancel job" }).isVisible(), false);
-  await page.waitForFunction(() => document.querySelector(".frame img").naturalWidth === 640);
+  await page.waitForFunction(() => document.querySelector(".frame img").naturalWidth === 160);
   assert.equal([...mock.listeners].length, 0, "the page has stopped listening");
   assert.deepEqual(page.troubles, []);
 });
