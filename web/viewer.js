@@ -111,6 +111,7 @@ export function viewer(query, signal) {
     turn += 1;
     const mine = turn;
     own.options = settle(state, own.sources);
+    seen.frame.ariaBusy = "true";
     try {
       const content = await contentOf(state, own.sources);
       if (mine !== turn || signal.aborted) return;
@@ -120,6 +121,7 @@ export function viewer(query, signal) {
     } catch (error) {
       if (mine === turn && !signal.aborted) say(error.message);
     }
+    if (mine === turn) seen.frame.ariaBusy = "false";
   }
 
   const actions = viewerActions(own, (values) => {

@@ -1,5 +1,6 @@
 // Every view of the page against the mock server.
 import assert from "node:assert/strict";
+import { readdirSync, statSync } from "node:fs";
 import { test } from "node:test";
 
 import { ready, screenshot } from "./browser.mjs";
@@ -46,6 +47,12 @@ for (const [name, path] of Object.entries(views)) {
     assert.deepEqual(page.troubles, []);
   });
 }
+
+test("the page's own files are under 150 kB", () => {
+  const folder = new URL("../../web/", import.meta.url);
+  const bytes = readdirSync(folder).reduce((sum, name) => sum + statSync(new URL(name, folder)).size, 0);
+  assert.ok(bytes < 150_000, `${bytes} bytes`);
+});
 
 test("every view shows names as text", async () => {
   for (const job of mock.jobs) job.job = { ...job.job, label: hostile, scene: `${hostile}.glb` };

@@ -210,6 +210,41 @@ test("errors of a large picture are computed by a worker, and the page stays qui
   assert.deepEqual(page.troubles, []);
 });
 
+test("what is still computed is shown to be, over the picture before it; so is what is read first", async () => {
+  await open("/#/");
+  const held = [];
+  const hold = (route) => held.push(route);
+  const letGo = () => held.splice(0).forEach((route) => route.continue());
+  const ring = () => page.locator(".stage").evaluate((frame) => ({
+    busy: frame.ariaBusy, size: getComputedStyle(frame, "::after").width }));
+  /// The ring is there, and no longer in the 50 ms in which it is not seen.
+  const turns = async () => {
+    const frame = await page.waitForSelector(".stage[aria-busy=true]");
+    await page.waitForFunction((stage) => getComputedStyle(stage, "::after").opacity === "1", frame);
+    assert.equal((await ring()).size, "36px");
+  };
+  await page.context().route(/layers\.half|error_worker/, hold);
+  await page.goto(origin + address());
+  await turns();
+  assert.equal(await page.locator(".stage").getAttribute("data-shown"), null);
+  letGo();
+  await page.waitForSelector(".stage[data-shown=picture][aria-busy=false]");
+  await page.getByLabel("Show", { exact: true }).selectOption("reference");
+  await turns();
+  letGo();
+  await page.waitForSelector(".stage[data-shown=reference][aria-busy=false]");
+  await page.getByLabel("Show", { exact: true }).selectOption("error-signed");
+  await turns();
+  await screenshot(page, "viewer-busy");
+  assert.equal(await page.locator(".stage").getAttribute("data-shown"), "reference");
+  assert.deepEqual(held.map((route) => new URL(route.request().url()).pathname), ["/error_worker.js"]);
+  letGo();
+  await page.waitForSelector(".stage[data-shown=error-signed][aria-busy=false]");
+  assert.deepEqual(await ring(), { busy: "false", size: "auto" });
+  await page.context().unrouteAll();
+  assert.deepEqual(page.troubles, []);
+});
+
 test("a job without layers shows image.png and says why", async () => {
   await open(`/#/job/${old}`);
   await page.getByText("A preview: the tone-mapped image.png as last written.").waitFor();
