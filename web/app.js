@@ -45,7 +45,7 @@ async function route() {
   document.body.classList.toggle("embed", Boolean(alone));
   for (const link of document.querySelectorAll("nav a")) link.ariaCurrent = link.hash === `#${path}` ? "page" : null;
   main.replaceChildren();
-  main.removeAttribute("data-ready");
+  delete main.dataset.ready;
   if (shown) main.focus({ preventScroll: true });
   shown = true;
   window.scrollTo(0, 0);
@@ -57,7 +57,7 @@ async function route() {
     document.title = "Lacuna";
     main.replaceChildren(explain(error));
   }
-  main.setAttribute("data-ready", "");
+  main.dataset.ready = "";
 }
 
 // "#main" is the skip link's target, not a view.
