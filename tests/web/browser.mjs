@@ -67,6 +67,11 @@ export const longestTask = (page, anew = false) => page.evaluate(async (forget) 
 /// Waits until the router has shown the view.
 export const ready = (page) => page.waitForSelector("main[data-ready]");
 
+/// Waits until what was asked for has been drawn.
+export const frames = (page) => page.evaluate(() => new Promise((resolve) => {
+  requestAnimationFrame(() => requestAnimationFrame(resolve));
+}));
+
 /// Writes a picture of the whole page to $LACUNA_SCREENSHOTS, if that is set.
 export async function screenshot(page, name) {
   const folder = process.env.LACUNA_SCREENSHOTS;

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readdirSync, statSync } from "node:fs";
 import { test } from "node:test";
 
-import { ready, screenshot } from "./browser.mjs";
+import { frames, ready, screenshot } from "./browser.mjs";
 import { curve, hostile, progress } from "./fixtures.mjs";
 import { mock, open, origin, page } from "./stage.mjs";
 
@@ -38,11 +38,11 @@ for (const [name, path] of Object.entries(views)) {
     await page.emulateMedia({ colorScheme: "dark" });
     await screenshot(page, `${name}-dark`);
     await page.setViewportSize({ width: 400, height: 800 });
-    await page.waitForTimeout(100);
+    await frames(page);
     assert.equal(await overflow(), 0, "no sideways scrolling at 400 pixels");
     await screenshot(page, `${name}-narrow`);
     await page.setViewportSize({ width: 340, height: 700 });
-    await page.waitForTimeout(100);
+    await frames(page);
     assert.equal(await overflow(), 0, "no sideways scrolling at 340 pixels");
     assert.deepEqual(page.troubles, []);
   });

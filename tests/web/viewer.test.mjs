@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { coloursOf, longestTask, ready, screenshot } from "./browser.mjs";
+import { coloursOf, frames as drawn, longestTask, ready, screenshot } from "./browser.mjs";
 import { layerFiles } from "./layers.mjs";
 import { mock, open, origin, page } from "./stage.mjs";
 
@@ -27,9 +27,7 @@ async function openViewer(query, options) {
 }
 const shows = (key) => page.waitForSelector(`.stage[data-shown="${key}"]`);
 const readout = () => page.locator(".readout").innerText();
-const frames = () => page.evaluate(() => new Promise((resolve) => {
-  requestAnimationFrame(() => requestAnimationFrame(resolve));
-}));
+const frames = () => drawn(page);
 /// Moves the pointer to the middle of the pixel (x, y) of a picture of `width` pixels that fits.
 async function pointAt(x, y, width = 4) {
   await page.locator(stage).scrollIntoViewIfNeeded();
@@ -292,13 +290,14 @@ test("a lost graphics context comes back", async () => {
   await openViewer("?ev=0");
   const at = [{ u: 30, v: 20 }];
   const before = await coloursOf(page, stage, at);
-  await page.evaluate(async () => {
-    const extension = document.querySelector(".pixels").getContext("webgl2").getExtension("WEBGL_lose_context");
+  await page.evaluate(() => new Promise((resolve) => {
+    const canvas = document.querySelector(".pixels");
+    const extension = canvas.getContext("webgl2").getExtension("WEBGL_lose_context");
+    canvas.addEventListener("webglcontextlost", () => setTimeout(() => extension.restoreContext()));
+    canvas.addEventListener("webglcontextrestored", resolve);
     extension.loseContext();
-    await new Promise((resolve) => { setTimeout(resolve, 100); });
-    extension.restoreContext();
-    await new Promise((resolve) => { setTimeout(resolve, 300); });
-  });
+  }));
+  await frames();
   assert.deepEqual(await coloursOf(page, stage, at), before);
 });
 
