@@ -1,7 +1,7 @@
 // The router: one view per hash route, and with `embed` in the query its curves alone; each is given
 // an AbortSignal that ends everything it started.
 import { ApiError } from "./api.js";
-import { h, problem } from "./dom.js";
+import { button, h, problem } from "./dom.js";
 import "./keys.js";
 import * as compare from "./view_compare.js";
 import * as figure from "./view_figure.js";
@@ -31,7 +31,7 @@ function explain(error) {
   return h("section", { role: "alert" },
     h("h1", known ? error.title : "This view failed"),
     problem(known ? error.message : String(error)),
-    h("p", h("a", { href: "#/" }, "All jobs")));
+    h("p.tools", button("Try again", route), h("a", { href: "#/" }, "All jobs")));
 }
 
 async function route() {
@@ -45,7 +45,7 @@ async function route() {
   document.body.classList.toggle("embed", Boolean(alone));
   for (const link of document.querySelectorAll("nav a")) link.ariaCurrent = link.hash === `#${path}` ? "page" : null;
   main.replaceChildren();
-  main.removeAttribute("data-ready");
+  delete main.dataset.ready;
   if (shown) main.focus({ preventScroll: true });
   shown = true;
   window.scrollTo(0, 0);
@@ -57,7 +57,7 @@ async function route() {
     document.title = "Lacuna";
     main.replaceChildren(explain(error));
   }
-  main.setAttribute("data-ready", "");
+  main.dataset.ready = "";
 }
 
 // "#main" is the skip link's target, not a view.

@@ -20,7 +20,7 @@ function aboutTimes(sources) {
 /// `show(state, sources, images, look, ratio)`: the state's crop of all images, where it asks for crops;
 /// `ratio` is how many of the screen's pixels make a CSS pixel.
 export function cropStrip(signal) {
-  const hidden = h("canvas");
+  const hidden = new OffscreenCanvas(1, 1);
   const title = note();
   const times = h("div");
   const strip = h("div.crops");
@@ -37,31 +37,38 @@ export function cropStrip(signal) {
     replace(times, aboutTimes(sources));
   }
 
-  function draw(canvas, image, crop, zoom, look, ratio) {
-    const [width, height] = [crop.w, crop.h].map((n) => Math.round(n * zoom * ratio));
-    for (const one of [hidden, canvas]) Object.assign(one, { width, height });
-    canvas.style.width = `${crop.w * zoom}px`;
+  function draw(image, crop, scale, look) {
+    const [width, height] = [crop.w, crop.h].map((n) => Math.round(n * scale));
+    Object.assign(hidden, { width, height });
     paint.draw([{ ...look, image: cut(image, crop), from: 0, to: 1 }], { x: 0, y: 0, pace: crop.w / width });
-    canvas.getContext("2d").drawImage(hidden, 0, 0);
+  }
+
+  function fetchInto(canvas, wide) {
+    Object.assign(canvas, { width: hidden.width, height: hidden.height });
+    canvas.style.width = `${wide}px`;
+    canvas.getContext("bitmaprenderer").transferFromImageBitmap(hidden.transferToImageBitmap());
   }
 
   return {
     element,
-    /// One crop a frame, because many at once would be a pause.
+    /// One crop a frame, fetched in the next, because many at once, or waiting for one, would be a pause.
     async show({ mode, crop }, sources, images, look, ratio) {
       element.hidden = mode !== "crops" || images.includes(undefined);
       if (element.hidden) return;
       const now = JSON.stringify([crop, look, ratio]);
       if (shown.images === images && shown.now === now) return;
       if (shown.sources !== sources) makeFrames(sources);
-      shown = { sources, images, now };
+      const mine = { sources, images, now };
+      shown = mine;
       paint ??= painter(hidden, () => { shown = {}; });
       const zoom = Math.max(1, Math.floor(longest / Math.max(crop.w, crop.h)));
       setText(title, `${crop.w} × ${crop.h} pixels at (${crop.x}, ${crop.y}), ${zoom} times as large. `
         + `Drag over the picture to choose others, at most ${longest} a side.`);
-      for (let i = 0; i < images.length && shown.images === images && shown.now === now; i += 1) {
-        draw(canvases[i], images[i], crop, zoom, look, ratio);
+      for (let i = 0; i < images.length; i += 1) {
+        draw(images[i], crop, zoom * ratio, look);
         await new Promise(requestAnimationFrame);
+        if (shown !== mine) return;
+        fetchInto(canvases[i], crop.w * zoom);
       }
     },
   };

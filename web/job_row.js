@@ -32,7 +32,7 @@ export function jobRow(id, onchoose) {
     element,
     set(job, chosen) {
       const name = jobTitle(job);
-      choose.setAttribute("aria-label", `Compare ${name}, ${id}`);
+      choose.ariaLabel = `Compare ${name}, ${id}`;
       choose.checked = chosen;
       setText(title, name);
       setText(detail, job.label ? `${job.scene} · ${id}` : id);

@@ -15,7 +15,7 @@ export function pager(go) {
     go(next);
   });
   const text = h("output.muted");
-  const element = h("nav.tools.pager", { "aria-label": "Pages" }, before, text, after);
+  const element = h("nav.tools.pager", { "aria-label": "Pages", hidden: true }, before, text, after);
   return {
     element,
     /// `shown` jobs of `total` are on the page, and the next begins at `cursor`; null: it is the last.

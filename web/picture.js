@@ -4,7 +4,7 @@ import { h } from "./dom.js";
 /// A picture with the text `alt` and `caption` below it; it leads to the PNG itself. `load(url)` shows
 /// another version of it without a flash; null: there is none yet.
 export function picture(alt, caption) {
-  const frame = h("a.frame", h("span.note", "no picture yet"));
+  const frame = h("a.frame", h("span.note", "no picture"));
   let current = null;
   async function load(url) {
     if (url === null || url === current) return;

@@ -30,8 +30,8 @@ export function plot(signal) {
     draw(series, x, y) {
       last = [series, x, y];
       const curves = y ? series.map((s) => points(s.rows, x, y)) : [];
-      box.setAttribute("data-curves", curves.filter((c) => c.length > 0).length);
-      box.setAttribute("data-points", curves.flat().length);
+      box.dataset.curves = curves.filter((c) => c.length > 0).length;
+      box.dataset.points = curves.flat().length;
       redraw();
     },
   };

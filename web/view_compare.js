@@ -12,7 +12,7 @@ function equalTimes(series, axis, metric) {
   const instants = commonInstants(curves);
   const target = commonError(curves);
   if (target === null) return note("No errors have been measured.");
-  const at = (x) => `${significant(x)}${axis.unit ? ` ${axis.unit}` : ""}`;
+  const at = (x) => `${significant(x)} ${axis.unit}`;
   const times = curves.map((c) => reaches(c, target));
   const fastest = Math.min(...times.filter((t) => t !== null));
   const lowest = instants.map((x) => Math.min(...curves.map((c) => errorAt(c, x) ?? Infinity)));

@@ -118,7 +118,7 @@ export async function show(main, { params, query, signal }) {
     actions.show(shown);
     replace(view.notes, state.error && problem(state.error), state.warnings?.map(warning));
     replace(view.facts, jobFacts(shown));
-    view.element.setAttribute("data-state", state.state);
+    view.element.dataset.state = state.state;
   }
 
   /// The job file changes only when its budget does.

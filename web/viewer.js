@@ -47,8 +47,8 @@ function drawAll(own) {
   own.tools.show({ options: own.options, chosen: state.show, zoom: zoom * ratio(), stops });
   own.modes.show(state, own.sources.map((s) => s.name));
   seen.frame.classList.toggle("zoomed", state.view.zoom !== null || state.mode === "crops");
-  seen.frame.setAttribute("data-shown", state.show || "picture");
-  seen.frame.setAttribute("data-zoom", Number(zoom.toPrecision(4)));
+  seen.frame.dataset.shown = state.show || "picture";
+  seen.frame.dataset.zoom = Number(zoom.toPrecision(4));
 }
 
 function listen(own, actions, signal) {
@@ -111,6 +111,7 @@ export function viewer(query, signal) {
     turn += 1;
     const mine = turn;
     own.options = settle(state, own.sources);
+    seen.frame.ariaBusy = "true";
     try {
       const content = await contentOf(state, own.sources);
       if (mine !== turn || signal.aborted) return;
@@ -120,6 +121,7 @@ export function viewer(query, signal) {
     } catch (error) {
       if (mine === turn && !signal.aborted) say(error.message);
     }
+    if (mine === turn) seen.frame.ariaBusy = "false";
   }
 
   const actions = viewerActions(own, (values) => {
@@ -139,8 +141,7 @@ export function viewer(query, signal) {
     show(sources) {
       own.sources = sources;
       seen.setSize(own.size());
-      seen.frame.setAttribute("aria-label", `Picture of ${sources.map((s) => s.name).join(" and ")}.`
-        + " The question mark lists its keys.");
+      seen.frame.ariaLabel = `Picture of ${sources.map((s) => s.name).join(" and ")}. The question mark lists its keys.`;
       return refresh();
     },
   };

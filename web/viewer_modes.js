@@ -14,8 +14,8 @@ export function modeTools(change) {
   const and = h("span.muted");
   const element = h("div.tools", { hidden: true },
     mode.element, left.element, and, right.element, by.element);
-  left.element.querySelector("select").setAttribute("aria-label", "First picture");
-  right.element.querySelector("select").setAttribute("aria-label", "Second picture");
+  left.element.lastChild.ariaLabel = "First picture";
+  right.element.lastChild.ariaLabel = "Second picture";
   return {
     element,
     show(state, labels) {

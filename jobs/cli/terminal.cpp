@@ -52,13 +52,13 @@ Terminal::Terminal(const std::filesystem::path& log, bool quiet)
   const auto console = std::make_shared<spdlog::sinks::stderr_sink_mt>();
   const bool to_log = !log.empty() && stderr_goes_to(log);
   console->set_level(quiet ? spdlog::level::warn : spdlog::level::info);
-  console->set_pattern(to_log ? "%Y-%m-%d %T.%e %l: %v" : "%v");
+  console->set_pattern(to_log ? "%Y-%m-%d %T.%e %v" : "%v");
   logger_ = std::make_unique<spdlog::logger>("lacuna", console);
   logger_->flush_on(spdlog::level::info);
   if (log.empty() || to_log) return;
   try {
     const auto file = std::make_shared<spdlog::sinks::basic_file_sink_mt>(log.string());
-    file->set_pattern("%Y-%m-%d %T.%e %l: %v");
+    file->set_pattern("%Y-%m-%d %T.%e %v");
     logger_->sinks().push_back(file);
   } catch (const spdlog::spdlog_ex& e) {  // a full or read-only disk; the job itself will say so
     warning(e.what());

@@ -6,37 +6,12 @@ import fs from "node:fs";
 import net from "node:net";
 import path from "node:path";
 import { setTimeout as pause } from "node:timers/promises";
-import { fileURLToPath } from "node:url";
-import { binary, folders, Service, until } from "../server/service.mjs";
+import { lacuna, ownScenes, startReal } from "../server/real_service.mjs";
+import { folders, Service, until } from "../server/service.mjs";
+import { bench, figure, quantile } from "./figures.mjs";
+import { fill, many } from "./many_jobs.mjs";
 
-const many = 10000, clients = 64, window = 8000, pairs = 4;
-const lacuna = path.join(path.dirname(binary), "lacuna");
-const scenes = path.join(path.dirname(fileURLToPath(import.meta.url)), "../../jobs/scenes");
-let missed = 0;
-
-function figure(name, value, unit, allowed) {
-  const ok = value <= allowed;
-  if (!ok) missed += 1;
-  console.log(`${name.padEnd(66)} ${value.toFixed(1).padStart(8)} ${unit}   ${ok ? "ok" : "MISSED"}: ${allowed} ${unit}`);
-}
-const quantile = (times, share) => [...times].sort((a, b) => a - b)[Math.min(times.length - 1, Math.floor(share * times.length))];
-
-/// Copies of one finished job under other names, with times of their own.
-function fill(data, template) {
-  const state = JSON.parse(fs.readFileSync(path.join(template, "state.json")));
-  const letters = "abcdefghijklmnopqrstuvwxyz";
-  for (let i = 0; i < many; i += 1) {
-    const created = new Date(Date.UTC(2026, 0, 1) + 60000 * i).toISOString();
-    const stamp = created.replace(/[-:]/g, "").replace("T", "-").slice(0, 15);
-    const name = [0, 1, 2, 3, 4, 5].map((k) => letters[Math.floor(i / 26 ** k) % 26]).join("");
-    const dir = path.join(data, "jobs", `${stamp}-${name}`);
-    fs.mkdirSync(dir);
-    for (const file of ["job.json", "progress.json", "report.json", "curve.csv"]) {
-      fs.copyFileSync(path.join(template, file), path.join(dir, file));
-    }
-    fs.writeFileSync(path.join(dir, "state.json"), JSON.stringify({ ...state, created, finished: created }));
-  }
-}
+const clients = 64, window = 8000, pairs = 4;
 
 /// One request, by a client that costs next to nothing: it shares its cores with the renderers.
 function get(service, target) {
@@ -79,8 +54,9 @@ async function speed(service, ids, ms, meanwhile) {
   return { rate: rates[0] + rates[1], times };
 }
 
-async function measure(places) {
-  const plain = await Service.start({ ...places, scenes: places.scenes });
+async function measure(test) {
+  const places = folders(test);
+  const plain = await Service.start(places);
   const id = await plain.post("finish");
   await plain.reaches(id, "done");
   const template = plain.folder(id);
@@ -88,7 +64,7 @@ async function measure(places) {
   fill(places.data, template);
 
   const begin = performance.now();
-  const service = await Service.start({ ...places, scenes }, ["--renderer", lacuna, "--jobs", "2"]);
+  const service = await startReal({ ...places, scenes: ownScenes }, ["--jobs", "2"]);
   figure(`start with ${many} jobs`, (performance.now() - begin) / 1000, "s", 3);
   const list = await service.json("/api/jobs?limit=1");
   if (list.total !== many + 1) throw new Error(`${list.total} jobs are listed`);
@@ -138,14 +114,8 @@ async function start(places) {
   await service.stop();
 }
 
-const cleanups = [];
-try {
+await bench(async (test) => {
   if (spawnSync(lacuna, ["--version"]).status !== 0) throw new Error("./dev build first");
-  const test = { after: (f) => cleanups.push(f) };
   await start(folders(test));
-  await measure(folders(test));
-} finally {
-  for (const cleanup of cleanups) await cleanup();
-}
-console.log(`${missed} figures missed`);
-process.exitCode = missed > 0 ? 1 : 0;
+  await measure(test);
+});

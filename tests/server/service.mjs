@@ -119,15 +119,15 @@ export class Service {
     return this.fetch(`/api/jobs/${id}/cancel`, { method: "POST" });
   }
 
-  /// Waits until a job is in a state; gives its JSON. A terminal state that a renderer wrote is
-  /// final once its exit code is noted, too.
-  reaches(id, state) {
+  /// Waits up to `ms` until a job is in a state; gives its JSON. A terminal state that a renderer wrote
+  /// is final once its exit code is noted, too.
+  reaches(id, state, ms) {
     return until(async () => {
       const job = await this.json(`/api/jobs/${id}`);
       const ended = !["done", "failed"].includes(state) || job.state.exit_code >= 0
         || job.state.attempts === 0;
       return job.state.state === state && ended && job;
-    }, `job ${id} is ${state}`);
+    }, `job ${id} is ${state}`, ms);
   }
 
   folder(id) {

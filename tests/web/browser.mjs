@@ -15,11 +15,11 @@ export const launch = () => chromium.launch({
 /// What the software renderer says when a picture of the page is taken.
 const noise = /GL Driver Message.*GPU stall due to ReadPixels/;
 
-/// A page at `address`, ready to look at. `page.troubles` collects console errors and warnings,
-/// exceptions, and requests to other hosts.
-export async function openPage(browser, address, options = {}) {
-  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...options });
-  const page = await context.newPage();
+/// A page in a fresh context with `options`, or in `context`. `page.troubles` collects console errors
+/// and warnings, exceptions, and requests to other hosts than that of the last visit().
+export async function newPage(browser, { context = null, ...options } = {}) {
+  const own = context ?? await browser.newContext({ viewport: { width: 1280, height: 900 }, ...options });
+  const page = await own.newPage();
   await page.addInitScript(() => {
     window.longTasks = [];
     new PerformanceObserver((list) => window.longTasks.push(...list.getEntries().map((task) => task.duration)))
@@ -33,12 +33,25 @@ export async function openPage(browser, address, options = {}) {
   page.on("pageerror", (error) => page.troubles.push(String(error)));
   page.on("request", (request) => {
     const url = new URL(request.url());
-    if (url.host !== new URL(address).host && !["data:", "blob:"].includes(url.protocol)) {
+    if (url.host !== page.home && !["about:", "data:", "blob:"].includes(url.protocol)) {
       page.troubles.push(`a request to ${url.host}`);
     }
   });
+  return page;
+}
+
+/// Loads `address`, and with `wait` waits until it is ready to look at. Earlier troubles are forgotten.
+export async function visit(page, address, wait = true) {
+  page.troubles = [];
+  page.home = new URL(address).host;
   await page.goto(address);
-  await ready(page);
+  if (wait) await ready(page);
+}
+
+/// A new page at `address`; see newPage() and visit().
+export async function openPage(browser, address, { wait = true, ...options } = {}) {
+  const page = await newPage(browser, options);
+  await visit(page, address, wait);
   return page;
 }
 
@@ -53,6 +66,11 @@ export const longestTask = (page, anew = false) => page.evaluate(async (forget) 
 
 /// Waits until the router has shown the view.
 export const ready = (page) => page.waitForSelector("main[data-ready]");
+
+/// Waits until what was asked for has been drawn.
+export const frames = (page) => page.evaluate(() => new Promise((resolve) => {
+  requestAnimationFrame(() => requestAnimationFrame(resolve));
+}));
 
 /// Writes a picture of the whole page to $LACUNA_SCREENSHOTS, if that is set.
 export async function screenshot(page, name) {

@@ -70,17 +70,30 @@ export function progress(iteration, share, changes = {}) {
   };
 }
 
+const exr = Buffer.alloc(3145728);
+
 function files(job, curveText, image, more = {}) {
   return {
     "job.json": JSON.stringify(job, null, 2), "curve.csv": curveText, "image.png": image,
-    "image.exr": Buffer.alloc(3145728), "log.txt": "loaded the scene in 41 ms\nrendering\n", ...more,
+    "image.exr": exr, "log.txt": "loaded the scene in 41 ms\nrendering\n", ...more,
   };
 }
 
 const rgb = ["R", "G", "B"];
 
+/// What `make` gives for the same arguments, made once: pictures take long, and nobody writes into them.
+function once(make) {
+  const made = new Map();
+  return (...given) => {
+    const key = given.join();
+    if (!made.has(key)) made.set(key, make(...given));
+    return made.get(key);
+  };
+}
+const picture = once(room);
+
 /// The layers of the room, `side` pixels wide and high.
-function roomLayers(side, grain, seed) {
+const roomLayers = once((side, grain, seed) => {
   const smooth = radiance(side, side, 0, 1);
   return layerFiles(side, side, [
     { name: "", channels: rgb, scale: 2 ** -10, pixel: radiance(side, side, grain, seed) },
@@ -90,7 +103,7 @@ function roomLayers(side, grain, seed) {
     { name: "depth", channels: ["Z"], scale: 2, pixel: (x, y) => [400 + y] },
     { name: "reference", channels: rgb, scale: 2 ** -10, pixel: smooth },
   ]);
-}
+});
 
 const withReport = { "report.json": JSON.stringify(report) };
 const ended = (iteration, error) => progress(iteration, 1, { remaining_seconds: 0, error });
@@ -109,7 +122,7 @@ export function makeJobs() {
   return [
     { id: "20260131-101900-running", job: atrium, state: state("running", { phase: "rendering" }),
       progress: progress(4, 0.1, { error_metric: "est_rmse" }),
-      files: files(atrium, curve({ rows: 3, cost: 0.7, level: 0.4 }), room(640, 360, 0.5, 3)) },
+      files: files(atrium, curve({ rows: 3, cost: 0.7, level: 0.4 }), picture(160, 90, 0.5, 3)) },
     { id: "20260131-101800-waiting", job: jobFile({ label: "waits" }),
       state: state("queued", { attempts: 0, started: "" }), progress: null,
       files: { "job.json": JSON.stringify(jobFile({ label: "waits" })) } },
@@ -121,10 +134,10 @@ export function makeJobs() {
       files: { "job.json": JSON.stringify(normals) } },
     { id: "20260131-101500-shallow", job: shallow, state: state("done"), progress: ended(1024, 0.0391),
       files: files(shallow, curve({ rows: 11, cost: 0.021, level: 1.25, floor: 0.004, seed: 5 }),
-        room(512, 512, 0.4, 7), { ...withReport, ...roomLayers(128, 1.2, 7) }) },
+        picture(128, 128, 0.4, 7), { ...withReport, ...roomLayers(128, 1.2, 7) }) },
     { id: "20260131-101400-cornell", job: plain, state: state("done"), progress: ended(1024, 0.0138),
       files: files(plain, curve({ rows: 11, cost: 0.029, level: 0.4, floor: 0.02, seed: 9 }),
-        room(512, 512, 0.1, 9), { ...withReport, ...roomLayers(128, 0.3, 9) }) },
+        picture(128, 128, 0.1, 9), { ...withReport, ...roomLayers(128, 0.3, 9) }) },
   ];
 }
 

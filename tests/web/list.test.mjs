@@ -4,7 +4,6 @@ import { test } from "node:test";
 
 import { longestTask, ready, screenshot } from "./browser.mjs";
 import { manyJobs, progress } from "./fixtures.mjs";
-import { Mock } from "./mock_server.mjs";
 import { mock, open, origin, page } from "./stage.mjs";
 
 const running = "20260131-101900-running";
@@ -153,16 +152,13 @@ test("an empty list says how to post the first job, and sees it come", async () 
   assert.deepEqual(page.troubles, []);
 });
 
-test("a server that goes away and comes back is said and forgotten", async (t) => {
+test("a server that goes away and comes back is said and forgotten", async () => {
   await open("/");
   const { port } = mock.server.address();
   mock.close();
   await page.getByText("The server does not answer; trying again.").waitFor();
   assert.equal((await rows()).length, 6);
-  const again = new Mock();
-  t.after(() => again.close());
-  again.jobs = mock.jobs;
-  await again.listen(port);
+  await mock.listen(port);
   await page.getByText("The server does not answer; trying again.").waitFor({ state: "detached" });
 });
 

@@ -1,7 +1,7 @@
 // A stand-in for lacuna-server with fixed jobs, which a test changes by hand. By itself
 // (`node mock_server.mjs [PORT [JOBS]]`) it serves the page for work on it, with one job that moves on.
 import { createHash } from "node:crypto";
-import { readFile } from "node:fs/promises";
+import { readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { extname } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -24,6 +24,14 @@ function send(response, status, type, body, headers = {}) {
     ...headers,
   });
   response.end(body);
+}
+
+const pageFiles = new Map();
+
+/// A file of the page as it was when it was first asked for.
+function pageFile(name) {
+  if (!pageFiles.has(name)) pageFiles.set(name, readFileSync(new URL(name, web)));
+  return pageFiles.get(name);
 }
 
 const tags = new WeakMap();
@@ -73,14 +81,20 @@ async function body(request) {
 /// With a `token`, it must be known; with `events` false, no event stream is to be had.
 export class Mock {
   constructor() {
+    this.reset();
+    this.server = createServer((request, response) => this.answer(request, response)
+      .catch((error) => problem(response, 500, "Error", error.stack)));
+  }
+
+  /// As at first; who listened is sent away.
+  reset() {
+    for (const { response } of this.listeners ?? []) response.destroy();
     this.jobs = makeJobs();
     this.listeners = new Set();
     this.requests = [];
     this.token = null;
     this.events = true;
     this.told = 0;
-    this.server = createServer((request, response) => this.answer(request, response)
-      .catch((error) => problem(response, 500, "Error", error.stack)));
   }
 
   async listen(port = 0) {
@@ -141,7 +155,7 @@ export class Mock {
     }
     const name = path === "/" ? "index.html" : path.slice(1);
     if (!/^[a-z_]+\.(html|css|js)$/.test(name)) return notFound(response, path);
-    return send(response, 200, types[extname(name)], await readFile(new URL(name, web)));
+    return send(response, 200, types[extname(name)], pageFile(name), { "Cache-Control": "max-age=600" });
   }
 
   async answerApi(request, response, url, path) {

@@ -1,8 +1,9 @@
 // Every view of the page against the mock server.
 import assert from "node:assert/strict";
+import { readdirSync, statSync } from "node:fs";
 import { test } from "node:test";
 
-import { ready, screenshot } from "./browser.mjs";
+import { frames, ready, screenshot } from "./browser.mjs";
 import { curve, hostile, progress } from "./fixtures.mjs";
 import { mock, open, origin, page } from "./stage.mjs";
 
@@ -37,15 +38,21 @@ for (const [name, path] of Object.entries(views)) {
     await page.emulateMedia({ colorScheme: "dark" });
     await screenshot(page, `${name}-dark`);
     await page.setViewportSize({ width: 400, height: 800 });
-    await page.waitForTimeout(100);
+    await frames(page);
     assert.equal(await overflow(), 0, "no sideways scrolling at 400 pixels");
     await screenshot(page, `${name}-narrow`);
     await page.setViewportSize({ width: 340, height: 700 });
-    await page.waitForTimeout(100);
+    await frames(page);
     assert.equal(await overflow(), 0, "no sideways scrolling at 340 pixels");
     assert.deepEqual(page.troubles, []);
   });
 }
+
+test("the page's own files are under 150 kB", () => {
+  const folder = new URL("../../web/", import.meta.url);
+  const bytes = readdirSync(folder).reduce((sum, name) => sum + statSync(new URL(name, folder)).size, 0);
+  assert.ok(bytes < 150_000, `${bytes} bytes`);
+});
 
 test("every view shows names as text", async () => {
   for (const job of mock.jobs) job.job = { ...job.job, label: hostile, scene: `${hostile}.glb` };
@@ -71,7 +78,7 @@ test("a running job moves, gets its curve and picture, and ends", async () => {
   assert.equal(await text(".title .badge"), "done");
   assert.equal(await page.locator(".title progress").isVisible(), false);
   assert.equal(await page.getByRole("button", { name: "Cancel job" }).isVisible(), false);
-  await page.waitForFunction(() => document.querySelector(".frame img").naturalWidth === 640);
+  await page.waitForFunction(() => document.querySelector(".frame img").naturalWidth === 160);
   assert.equal([...mock.listeners].length, 0, "the page has stopped listening");
   assert.deepEqual(page.troubles, []);
 });

@@ -1,64 +1,32 @@
 // The page against the real service and the real renderer.
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
-import { access, mkdtemp, rm } from "node:fs/promises";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { fileURLToPath } from "node:url";
 
+import { realFolders, startReal } from "../server/real_service.mjs";
 import { launch, openPage, ready, screenshot } from "./browser.mjs";
 
-const root = fileURLToPath(new URL("../../", import.meta.url));
-const bin = process.env.LACUNA_BIN ?? join(root, "build/release/bin");
 const small = { scene: "cornell.glb", resolution: [32, 32], threads: 1, budget: { iterations: 64 } };
 const pictured = ".stage[data-shown], .frame img";
 const patience = { timeout: 60_000 };  // a busy machine may render slowly
 
-let data;
-let server;
+const cleanups = [];
+let address;
 let browser;
 
-/// The service on a free port, and its address once it says it.
-async function startServer(folder) {
-  const program = join(bin, "lacuna-server");
-  for (const file of [program, join(bin, "lacuna")]) await access(file);
-  const child = spawn(program, ["--port", "0", "--data", folder, "--scenes", join(root, "jobs/scenes")],
-    { stdio: ["ignore", "pipe", "pipe"] });
-  let said = "";
-  const address = await new Promise((resolve, reject) => {
-    const listen = (part) => {
-      said += part;
-      const found = /listening on (http:\/\/\S+)/.exec(said);
-      if (found) resolve(new URL(found[1]).origin);
-    };
-    child.stdout.on("data", listen);
-    child.stderr.on("data", listen);
-    child.on("exit", () => reject(new Error(`lacuna-server ended: ${said}`)));
-    child.on("error", reject);
-  });
-  return { child, address };
-}
-
 before(async () => {
-  data = await mkdtemp(join(tmpdir(), "lacuna-web-"));
-  server = await startServer(data);
+  const service = await startReal(realFolders({ after: (f) => cleanups.push(f) }));
+  address = new URL(service.url).origin;
   browser = await launch();
 });
 
 after(async () => {
   await browser?.close();
-  if (server?.child.exitCode === null) {
-    const ended = new Promise((resolve) => { server.child.on("exit", resolve); });
-    server.child.kill("SIGTERM");
-    await ended;
-  }
-  if (data) await rm(data, { recursive: true, force: true });
+  for (const cleanup of cleanups) await cleanup();
 });
 
 /// Posts a job through the form and waits until it is done; gives its id.
 async function render(page, job) {
-  await page.goto(`${server.address}/#/new`);
+  await page.goto(`${address}/#/new`);
   await page.waitForSelector("textarea");
   await page.fill("textarea", JSON.stringify(job));
   await page.getByRole("button", { name: "Post the job" }).click();
@@ -70,7 +38,7 @@ async function render(page, job) {
 }
 
 test("the first job, from the empty list to its curve, picture and report; then a comparison", async () => {
-  const page = await openPage(browser, server.address);
+  const page = await openPage(browser, address);
   await page.getByText("No jobs yet").waitFor();
   assert.deepEqual(page.troubles, []);
 
@@ -89,12 +57,12 @@ test("the first job, from the empty list to its curve, picture and report; then 
   const second = await render(page, { ...small, seed: 2 });
   assert.deepEqual(await page.getByLabel("Error", { exact: true }).locator("option").allInnerTexts(),
     ["estimated RMSE"]);
-  await page.goto(`${server.address}/#/compare?jobs=${first},${second}`);
+  await page.goto(`${address}/#/compare?jobs=${first},${second}`);
   await page.waitForSelector(".plot[data-curves='2']");
   await page.waitForSelector(pictured);
   await screenshot(page, "real-compare");
 
-  await page.goto(`${server.address}/#/`);
+  await page.goto(`${address}/#/`);
   await page.waitForSelector(`tr[data-job="${second}"]`);
   assert.deepEqual(await page.locator("tr[data-job] .badge").allInnerTexts(), ["done", "done"]);
   await page.waitForFunction(() => document.querySelectorAll(".thumb img").length === 2);
@@ -103,7 +71,7 @@ test("the first job, from the empty list to its curve, picture and report; then 
 });
 
 test("a running job is followed and cancelled", async () => {
-  const page = await openPage(browser, `${server.address}/#/new`);
+  const page = await openPage(browser, `${address}/#/new`);
   await page.fill("textarea", JSON.stringify({ ...small, budget: { seconds: 600 } }));
   await page.getByRole("button", { name: "Post the job" }).click();
   await page.waitForFunction(() => document.querySelector(".title progress")?.value > 0, null, patience);
@@ -116,8 +84,8 @@ test("a running job is followed and cancelled", async () => {
 });
 
 test("a done job is extended, held on its way, and deleted; the list follows", async () => {
-  const page = await openPage(browser, `${server.address}/#/`);
-  const list = await openPage(browser, `${server.address}/#/`);
+  const page = await openPage(browser, `${address}/#/`);
+  const list = await openPage(browser, `${address}/#/`);
   const id = await render(page, { ...small, label: "extended", seed: 3 });
   const row = list.locator(`tr[data-job="${id}"]`);
   await row.locator(".badge.done").waitFor(patience);
@@ -145,7 +113,7 @@ test("a done job is extended, held on its way, and deleted; the list follows", a
 });
 
 test("problems of a job name their places; its scenes are offered", async () => {
-  const page = await openPage(browser, `${server.address}/#/new`);
+  const page = await openPage(browser, `${address}/#/new`);
   const scenes = await page.getByLabel("Scene").locator("option").allInnerTexts();
   assert.ok(scenes.includes("cornell.glb"), scenes.join(" "));
   await screenshot(page, "real-new");
@@ -156,7 +124,7 @@ test("problems of a job name their places; its scenes are offered", async () => 
   assert.ok(places.includes("/resolution/0"), places.join(" "));
   assert.ok(places.some((place) => place.startsWith("/integrator")), places.join(" "));
   assert.deepEqual(page.troubles.filter((text) => !text.includes("400")), []);
-  await page.goto(`${server.address}/#/job/20200101-000000-nobody`);
+  await page.goto(`${address}/#/job/20200101-000000-nobody`);
   await ready(page);
   await page.getByText("There is no job").waitFor();
 });

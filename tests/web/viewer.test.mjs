@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { coloursOf, longestTask, ready, screenshot } from "./browser.mjs";
+import { coloursOf, frames as drawn, longestTask, ready, screenshot } from "./browser.mjs";
 import { layerFiles } from "./layers.mjs";
 import { mock, open, origin, page } from "./stage.mjs";
 
@@ -27,9 +27,7 @@ async function openViewer(query, options) {
 }
 const shows = (key) => page.waitForSelector(`.stage[data-shown="${key}"]`);
 const readout = () => page.locator(".readout").innerText();
-const frames = () => page.evaluate(() => new Promise((resolve) => {
-  requestAnimationFrame(() => requestAnimationFrame(resolve));
-}));
+const frames = () => drawn(page);
 /// Moves the pointer to the middle of the pixel (x, y) of a picture of `width` pixels that fits.
 async function pointAt(x, y, width = 4) {
   await page.locator(stage).scrollIntoViewIfNeeded();
@@ -60,7 +58,7 @@ test("the pixel under the pointer tells its true values, whatever the scale", as
     const [[r, g]] = await pixelColours([[2, 1]]);
     assert.ok(r > 60 && g > r && g < 255, `${r} ${g}`);
     assert.deepEqual(page.troubles, []);
-    await page.context().close();
+    await page.goto("about:blank");
   }
 });
 
@@ -210,10 +208,45 @@ test("errors of a large picture are computed by a worker, and the page stays qui
   assert.deepEqual(page.troubles, []);
 });
 
+test("what is still computed is shown to be, over the picture before it; so is what is read first", async () => {
+  await open("/#/");
+  const held = [];
+  const hold = (route) => held.push(route);
+  const letGo = () => held.splice(0).forEach((route) => route.continue());
+  const ring = () => page.locator(".stage").evaluate((frame) => ({
+    busy: frame.ariaBusy, size: getComputedStyle(frame, "::after").width }));
+  /// The ring is there, and no longer in the 50 ms in which it is not seen.
+  const turns = async () => {
+    const frame = await page.waitForSelector(".stage[aria-busy=true]");
+    await page.waitForFunction((stage) => getComputedStyle(stage, "::after").opacity === "1", frame);
+    assert.equal((await ring()).size, "36px");
+  };
+  await page.context().route(/layers\.half|error_worker/, hold);
+  await page.goto(origin + address());
+  await turns();
+  assert.equal(await page.locator(".stage").getAttribute("data-shown"), null);
+  letGo();
+  await page.waitForSelector(".stage[data-shown=picture][aria-busy=false]");
+  await page.getByLabel("Show", { exact: true }).selectOption("reference");
+  await turns();
+  letGo();
+  await page.waitForSelector(".stage[data-shown=reference][aria-busy=false]");
+  await page.getByLabel("Show", { exact: true }).selectOption("error-signed");
+  await turns();
+  await screenshot(page, "viewer-busy");
+  assert.equal(await page.locator(".stage").getAttribute("data-shown"), "reference");
+  assert.deepEqual(held.map((route) => new URL(route.request().url()).pathname), ["/error_worker.js"]);
+  letGo();
+  await page.waitForSelector(".stage[data-shown=error-signed][aria-busy=false]");
+  assert.deepEqual(await ring(), { busy: "false", size: "auto" });
+  await page.context().unrouteAll();
+  assert.deepEqual(page.troubles, []);
+});
+
 test("a job without layers shows image.png and says why", async () => {
   await open(`/#/job/${old}`);
   await page.getByText("A preview: the tone-mapped image.png as last written.").waitFor();
-  await page.waitForFunction(() => document.querySelector(".frame img")?.naturalWidth === 640);
+  await page.waitForFunction(() => document.querySelector(".frame img")?.naturalWidth === 160);
   mock.update(old, { progress: mock.find(job).progress });
   mock.update(old, { files: { "image.png": mock.find(job).files["image.png"], ...small() } });
   mock.update(old, { state: { state: "done" } });
@@ -236,8 +269,9 @@ test("a browser without WebGL 2 shows image.png and says why", async () => {
   await page.reload();
   await page.goto(origin + address());
   await page.getByText("This browser offers no WebGL 2").waitFor();
-  await page.waitForFunction(() => document.querySelector(".frame img")?.naturalWidth === 512);
+  await page.waitForFunction(() => document.querySelector(".frame img")?.naturalWidth === 128);
   assert.deepEqual(page.troubles, []);
+  await page.close();
 });
 
 test("a layer that cannot be read is said; the picture before it stays", async () => {
@@ -256,13 +290,14 @@ test("a lost graphics context comes back", async () => {
   await openViewer("?ev=0");
   const at = [{ u: 30, v: 20 }];
   const before = await coloursOf(page, stage, at);
-  await page.evaluate(async () => {
-    const extension = document.querySelector(".pixels").getContext("webgl2").getExtension("WEBGL_lose_context");
+  await page.evaluate(() => new Promise((resolve) => {
+    const canvas = document.querySelector(".pixels");
+    const extension = canvas.getContext("webgl2").getExtension("WEBGL_lose_context");
+    canvas.addEventListener("webglcontextlost", () => setTimeout(() => extension.restoreContext()));
+    canvas.addEventListener("webglcontextrestored", resolve);
     extension.loseContext();
-    await new Promise((resolve) => { setTimeout(resolve, 100); });
-    extension.restoreContext();
-    await new Promise((resolve) => { setTimeout(resolve, 300); });
-  });
+  }));
+  await frames();
   assert.deepEqual(await coloursOf(page, stage, at), before);
 });
 
