@@ -9,7 +9,6 @@
 #include "analysis/skeleton/visible_map.h"
 #include "analysis/space/distance.h"
 #include "analysis/space/memory_limit.h"
-#include "analysis/space/opening.h"
 #include "analysis/space/opening_query.h"
 
 namespace lacuna {
@@ -18,8 +17,8 @@ namespace {
 /// Raised when the same inputs give other bits.
 constexpr std::uint32_t voxels_version = 1, domain_version = 1, skeleton_version = 1,
                         filtered_version = 1, map_version = 1, simplified_version = 1,
-                        clusters_version = 1, gates_version = 1, regions_version = 1,
-                        portals_version = 1;
+                        clusters_version = 1, gates_version = 1, opening_version = 1,
+                        regions_version = 1, portals_version = 1;
 
 /// By how much a node's radius may fall short of its cluster's (thesis 7.2.2).
 constexpr double cluster_alpha = 0.2;
@@ -72,10 +71,8 @@ ArtefactKey SpaceAnalysis::voxels_key() const {
       .from("geometry", input_.geometry);
 }
 
-ArtefactKey SpaceAnalysis::domain_key() const {
-  return ArtefactKey("domain", domain_version)
-      .from(voxels_key())
-      .from("seeds", hash_of(input_.seeds));
+ArtefactKey SpaceAnalysis::domain_key(const DomainSeeds& seeds) const {
+  return ArtefactKey("domain", domain_version).from(voxels_key()).from("seeds", hash_of(seeds));
 }
 
 ArtefactKey SpaceAnalysis::of_domain(const char* type, std::uint32_t version,
@@ -109,9 +106,12 @@ const Voxels& SpaceAnalysis::voxels() {
 }
 
 const Domain& SpaceAnalysis::domain() {
-  return part<Domain>(domain_, domain_key(), [this] {
-    return restrict_domain(voxels(), input_.seeds, pool_, input_.byte_limit);
-  });
+  if (!domain_) {
+    const DomainSeeds seeds = input_.seeds();
+    part<Domain>(domain_, domain_key(seeds),
+                 [&] { return restrict_domain(voxels(), seeds, pool_, input_.byte_limit); });
+  }
+  return *domain_;
 }
 
 const Grid3<std::uint16_t>& SpaceAnalysis::distance() {
@@ -180,18 +180,29 @@ const VisibilityGates& SpaceAnalysis::gates() {
                                [this] { return visibility_gates(simplified().graph, clusters()); });
 }
 
+OpeningForest SpaceAnalysis::make_forest() {
+  return opening_forest(chebyshev_distance(domain().voxels, pool_, input_.byte_limit), pool_,
+                        input_.byte_limit);
+}
+
+const Grid3<std::uint16_t>& SpaceAnalysis::opening() {
+  return part<Grid3<std::uint16_t>>(opening_, of_domain("opening", opening_version),
+                                    [this] { return make_forest().opening; });
+}
+
 const RegionLabels& SpaceAnalysis::regions() {
-  return part<RegionLabels>(regions_, regions_key(), [this] {
-    return forest_labels(
-        opening_forest(chebyshev_distance(domain().voxels, pool_, input_.byte_limit), pool_,
-                       input_.byte_limit),
-        pool_);
-  });
+  return part<RegionLabels>(regions_, regions_key(),
+                            [this] { return forest_labels(make_forest(), pool_); });
 }
 
 const Portals& SpaceAnalysis::portals() {
   return part<Portals>(portals_, ArtefactKey("portals", portals_version).from(regions_key()),
                        [this] { return find_portals(regions(), pool_, input_.byte_limit); });
+}
+
+std::size_t SpaceAnalysis::complex_faces() {
+  const CubicalComplex complex(domain().voxels);
+  return complex.count(0) + complex.count(1) + complex.count(2) + complex.count(3);
 }
 
 void SpaceAnalysis::close() {
@@ -207,6 +218,7 @@ void SpaceAnalysis::close() {
   note(simplified_, "simplified_skeleton");
   note(clusters_, "visibility_clusters");
   note(gates_, "visibility_gates");
+  note(opening_, "opening");
   note(regions_, "regions");
   note(portals_, "portals");
 }

@@ -15,6 +15,7 @@
 #include "analysis/skeleton/gates.h"
 #include "analysis/skeleton/simplify.h"
 #include "analysis/space/domain.h"
+#include "analysis/space/opening.h"
 #include "analysis/space/voxelize.h"
 
 namespace lacuna {
@@ -23,7 +24,7 @@ namespace lacuna {
 struct SpaceInput {
   std::function<TriangleSoup()> triangles;  ///< called only if the scene is voxelised now
   std::string geometry;                     ///< hash of the triangles, lower-case hexadecimal
-  DomainSeeds seeds;                        ///< which parts of the empty space matter
+  std::function<DomainSeeds()> seeds;       ///< which parts of the empty space matter
   AnalysisSettings settings;
   std::uint64_t byte_limit = 0;  ///< of memory, for any one step
 };
@@ -51,10 +52,13 @@ class SpaceAnalysis {
   const SimplifiedSkeleton& simplified();
   const VisibilityClusters& clusters();
   const VisibilityGates& gates();
+  /// Omega_infinity of every voxel of the domain, in voxels; 0 outside it (thesis 10.3.1).
+  const Grid3<std::uint16_t>& opening();
   const RegionLabels& regions();
   const Portals& portals();
 
-  const SpaceInput& input() const { return input_; }
+  /// Of the closure of the domain: what thinning starts from, and its cost grows with.
+  std::size_t complex_faces();
   /// Notes in the store what was not asked for.
   void close();
 
@@ -66,7 +70,7 @@ class SpaceAnalysis {
   /// Keys name all that the bits depend on: the domain's own voxels stand for scene and seeds, so
   /// two cameras in one room share what is made from it.
   ArtefactKey voxels_key() const;
-  ArtefactKey domain_key() const;
+  ArtefactKey domain_key(const DomainSeeds& seeds) const;
   ArtefactKey of_domain(const char* type, std::uint32_t version, std::string settings = {});
   ArtefactKey map_key(const char* type, const ArtefactKey& graph);
   ArtefactKey skeleton_key();
@@ -75,6 +79,7 @@ class SpaceAnalysis {
   ArtefactKey clusters_key();
   ArtefactKey regions_key();
   Grid3<std::uint32_t> make_map(const SkeletonGraph& graph);
+  OpeningForest make_forest();
 
   SpaceInput input_;
   ArtefactStore& store_;
@@ -89,6 +94,7 @@ class SpaceAnalysis {
   Part<SimplifiedSkeleton> simplified_;
   Part<VisibilityClusters> clusters_;
   Part<VisibilityGates> gates_;
+  Part<Grid3<std::uint16_t>> opening_;
   Part<RegionLabels> regions_;
   Part<Portals> portals_;
 };

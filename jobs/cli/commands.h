@@ -29,5 +29,6 @@ void add_schema(CLI::App& app, int& code);
 void add_list(CLI::App& app, int& code);
 void add_compare(CLI::App& app, int& code);
 void add_cache(CLI::App& app, int& code);
+void add_analyze(CLI::App& app, int& code);
 
 }  // namespace lacuna

@@ -7,6 +7,8 @@
 #include <new>
 #include <system_error>
 
+#include "analysis/space/memory_limit.h"
+
 namespace lacuna {
 namespace {
 
@@ -29,7 +31,9 @@ void watch_memory() {
 }
 
 Obstacle obstacle_of(const std::exception& e) {
-  if (is_bad_alloc(e)) return Obstacle::memory;
+  if (is_bad_alloc(e) || dynamic_cast<const MemoryLimitError*>(&e) != nullptr) {
+    return Obstacle::memory;
+  }
   if (const auto* error = dynamic_cast<const std::system_error*>(&e)) {
     const int number = error->code().value();
     if (number == ENOMEM) return Obstacle::memory;

@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "analysis/storage/atomic_file.h"
+#include "jobs/store/machine.h"
+#include "renderer/scene/scene_shape.h"
 
 namespace lacuna {
 
@@ -35,6 +37,30 @@ std::uint64_t file_hash(const std::filesystem::path& file) {
   return XXH3_64bits(bytes.data(), bytes.size());
 }
 
+/// The analysis of the scene's empty space as seen by the job's camera, of which nothing is built.
+void set_up_analysis(Prepared& p, const JobSpec& spec, const RunContext& context,
+                     const CameraData& camera) {
+  Observer& observer = context.observer;
+  p.artefacts = std::make_unique<ArtefactStore>(
+      StoreSettings{.folder = context.data.cache(),
+                    .byte_limit = context.data.cache_limit,
+                    .label = spec.scene,
+                    .message = [&observer](const std::string& line) { observer.milestone(line); },
+                    .warning = [&observer](const std::string& line) { observer.warning(line); },
+                    .interrupted = context.interrupted});
+  const SceneData& data = p.scene->data();
+  p.space = std::make_unique<SpaceAnalysis>(
+      SpaceInput{.triangles = [&data] { return triangle_soup(data); },
+                 .geometry = geometry_key(data),
+                 .seeds =
+                     [&data, camera, everywhere = spec.environment.has_value()] {
+                       return domain_seeds(data, camera, everywhere);
+                     },
+                 .settings = spec.analysis,
+                 .byte_limit = available_memory()},
+      *p.artefacts, *p.pool);
+}
+
 }  // namespace
 
 Prepared prepare(const JobSpec& spec, const RunContext& context) {
@@ -42,8 +68,9 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   p.pool = std::make_unique<ThreadPool>(context.threads >= 0 ? context.threads : spec.threads);
   p.integrator = make_integrator(spec.integrator);
   SceneData data = load_gltf(resolve(context, "scene", spec.scene, {".glb", ".gltf"}));
-  p.camera = std::make_unique<Camera>(choose_camera(data, spec.camera, spec.scene),
-                                      spec.resolution[0], spec.resolution[1], spec.pixel_filter);
+  const CameraData camera = choose_camera(data, spec.camera, spec.scene);
+  p.camera =
+      std::make_unique<Camera>(camera, spec.resolution[0], spec.resolution[1], spec.pixel_filter);
   p.warnings = data.warnings;
   if (data.dropped_triangles > 0) {
     p.warnings.push_back(
@@ -66,7 +93,13 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   if (needs.emission && p.scene->emitters().empty()) {
     p.warnings.emplace_back("the scene has no light: the picture is black");
   }
+  set_up_analysis(p, spec, context, camera);
   return p;
+}
+
+void analyse(const Prepared& p) {
+  p.integrator->prepare({*p.scene, *p.pool, *p.space});
+  p.space->close();
 }
 
 }  // namespace lacuna

@@ -127,6 +127,14 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
   }
   for (const std::string& w : prepared.warnings) running.warn(w);
 
+  if (prepared.integrator->needs().space) running.phase("analysing");
+  try {
+    const ScopedSeconds timed(phases["analysis"]);
+    analyse(prepared);
+  } catch (const WaitInterrupted&) {
+    return Outcome::interrupted;
+  }
+
   std::optional<Reference> reference;
   if (!spec.reference.empty()) {
     running.phase("reference");
@@ -164,7 +172,8 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
     running.warn(fmt::format("{} contributions were not finite and were left out",
                              loop.counters().rejected));
   }
-  write_file_atomically(folder.file("report.json"), write_report({task, loop, running.warnings()}));
+  write_file_atomically(folder.file("report.json"), write_report({task, loop, running.warnings(),
+                                                                  prepared.artefacts->records()}));
   return Outcome::done;
 }
 

@@ -11,5 +11,8 @@ std::string processor_name();
 int processor_threads();
 /// Main memory, bytes.
 std::uint64_t memory_bytes();
+/// How much of it this process may still take: what is available now, or less where a limit on its
+/// address space says so, bytes.
+std::uint64_t available_memory();
 
 }  // namespace lacuna

@@ -1,5 +1,6 @@
 #include "renderer/integrators/inspect.h"
 
+#include "renderer/integrators/inspect_space.h"
 #include "renderer/integrators/tiles.h"
 
 namespace lacuna {
@@ -12,7 +13,12 @@ class Inspect final : public Integrator {
 
   SceneNeeds needs() const override {
     return {.materials = show_ == InspectQuantity::albedo,
-            .emission = show_ == InspectQuantity::emission};
+            .emission = show_ == InspectQuantity::emission,
+            .space = SpaceView::shows(show_)};
+  }
+
+  void prepare(const PrepareContext& context) override {
+    if (SpaceView::shows(show_)) space_.emplace(show_, context);
   }
 
   Counters iterate(const IterationContext& context, Image& image) override {
@@ -24,9 +30,8 @@ class Inspect final : public Integrator {
         ++counters.rays;
         Hit hit;
         accumulate(image.at(pixel.x, pixel.y),
-                   context.scene.rays().intersect(ray, hit)
-                       ? quantity(context.scene, context.scene.surface(hit), ray, hit)
-                       : background(context.scene, ray),
+                   context.scene.rays().intersect(ray, hit) ? quantity(context, ray, hit, counters)
+                                                            : background(context.scene, ray),
                    counters);
       }
     });
@@ -37,7 +42,11 @@ class Inspect final : public Integrator {
     return show_ == InspectQuantity::emission ? scene.emitters().background(ray.d) : Rgb(0, 0, 0);
   }
 
-  Rgb quantity(const Scene& scene, const Surface& s, const Ray& ray, const Hit& hit) const {
+  Rgb quantity(const IterationContext& context, const Ray& ray, const Hit& hit,
+               Counters& counters) const {
+    const Scene& scene = context.scene;
+    const Surface s = scene.surface(hit);
+    if (space_) return space_->colour(scene, s, ray.d, context.seed, counters);
     switch (show_) {
       case InspectQuantity::normal:
         // The side that is seen.
@@ -51,11 +60,13 @@ class Inspect final : public Integrator {
         return Rgb(hit.t);
       case InspectQuantity::emission:
         return scene.emitted(s, -ray.d);
+      default:
+        return {0, 0, 0};
     }
-    return {0, 0, 0};
   }
 
   InspectQuantity show_;
+  std::optional<SpaceView> space_;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "analysis/artefacts/space_analysis.h"
 #include "analysis/storage/bytes.h"
 #include "renderer/film/image.h"
 #include "renderer/path/counters.h"
@@ -28,6 +29,14 @@ struct IterationContext {
   const std::function<bool()>& stop;
 };
 
+/// What an integrator may look at before its first iteration. `space` builds only what it is asked
+/// for.
+struct PrepareContext {
+  const Scene& scene;
+  const ThreadPool& pool;
+  SpaceAnalysis& space;
+};
+
 /// A rendering method. iterate() is a pure function of the scene, the settings, the seed, the
 /// iteration and of the state that save() writes; an iteration that was stopped leaves that state
 /// as it was.
@@ -36,6 +45,9 @@ class Integrator {
   virtual ~Integrator() = default;
 
   virtual SceneNeeds needs() const = 0;
+  /// Called once, before everything else but needs(). What it takes from `space` is charged to the
+  /// job's preparation.
+  virtual void prepare(const PrepareContext&) {}
   /// One more independent estimate of the whole picture into `image` (of the film's size, black).
   virtual Counters iterate(const IterationContext& context, Image& image) = 0;
   /// Learned state, for the checkpoint.

@@ -17,6 +17,7 @@ namespace lacuna {
 struct SceneNeeds {
   bool materials = false;  ///< scattering: textures of base colour, roughness, ...
   bool emission = false;   ///< emitters and the environment
+  bool space = false;      ///< the analysis of the empty space
 };
 
 /// Light from all around, as a job names it.

@@ -8,22 +8,46 @@
 namespace lacuna {
 
 /// What integrator `inspect` shows.
-enum class InspectQuantity { normal, albedo, depth, emission };
+enum class InspectQuantity {
+  normal,
+  albedo,
+  depth,
+  emission,
+  node_mapping,
+  filtered_mapping,
+  opening,
+  region_labels,
+  visibility_clusters,
+  nearest_node_visible
+};
 
 template <>
 struct EnumTable<InspectQuantity> {
-  static constexpr std::array<EnumValue<InspectQuantity>, 4> values{{
+  static constexpr std::array<EnumValue<InspectQuantity>, 10> values{{
       {InspectQuantity::normal, "normal", "shading normal, world space, components in [-1, 1]"},
       {InspectQuantity::albedo, "albedo", "base reflectance"},
       {InspectQuantity::depth, "depth", "distance from the eye, scene units"},
       {InspectQuantity::emission, "emission", "radiance emitted towards the eye"},
+      {InspectQuantity::node_mapping, "node_mapping",
+       "the skeleton's node that the surface belongs to, a colour for each"},
+      {InspectQuantity::filtered_mapping, "filtered_mapping", "the same for the filtered skeleton"},
+      {InspectQuantity::opening, "opening",
+       "half the side of the largest cube of empty space that holds the voxel in front of the "
+       "surface, scene units"},
+      {InspectQuantity::region_labels, "region_labels",
+       "the region of the opening forest labelling, a colour for each"},
+      {InspectQuantity::visibility_clusters, "visibility_clusters",
+       "the visibility cluster of the surface's node, a colour for each"},
+      {InspectQuantity::nearest_node_visible, "nearest_node_visible",
+       "green where the surface sees its node, red where not, black where it has none"},
   }};
 };
 
 /// integrator: inspect.
 struct InspectSettings {
   static constexpr std::string_view name = "inspect";
-  static constexpr std::string_view doc = "false-colour pictures of what the first hit is";
+  static constexpr std::string_view doc =
+      "false-colour pictures of the first hit, and of the empty space in front of it";
 
   InspectQuantity show = InspectQuantity::normal;
 

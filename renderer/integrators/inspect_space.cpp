@@ -1,0 +1,74 @@
+#include "renderer/integrators/inspect_space.h"
+
+#include "renderer/core/false_colour.h"
+
+namespace lacuna {
+
+bool SpaceView::shows(InspectQuantity quantity) {
+  switch (quantity) {
+    case InspectQuantity::node_mapping:
+    case InspectQuantity::filtered_mapping:
+    case InspectQuantity::opening:
+    case InspectQuantity::region_labels:
+    case InspectQuantity::visibility_clusters:
+    case InspectQuantity::nearest_node_visible:
+      return true;
+    default:
+      return false;
+  }
+}
+
+SpaceView::SpaceView(InspectQuantity quantity, const PrepareContext& context)
+    : quantity_(quantity), transform_(context.space.voxels().transform) {
+  SpaceAnalysis& space = context.space;
+  switch (quantity) {
+    case InspectQuantity::filtered_mapping:
+      graph_ = &space.filtered().graph;
+      lookup_.emplace(transform_, space.filtered_map());
+      return;
+    case InspectQuantity::opening:
+      opening_ = &space.opening();
+      lookup_.emplace(transform_, space.regions().label);
+      return;
+    case InspectQuantity::region_labels:
+      lookup_.emplace(transform_, space.regions().label);
+      return;
+    case InspectQuantity::visibility_clusters:
+      parent_ = &space.simplified().parent;
+      cluster_ = &space.clusters().of_node;
+      [[fallthrough]];
+    default:
+      graph_ = &space.skeleton();
+      lookup_.emplace(transform_, space.node_map());
+  }
+}
+
+Rgb SpaceView::colour(const Scene& scene, const Surface& s, const V3f& d, std::uint64_t seed,
+                      Counters& counters) const {
+  const V3d x(s.x), n(s.ng), w(-d);
+  if (quantity_ == InspectQuantity::opening) {
+    const auto voxel = lookup_->voxel(x, n, w);
+    const double radius = voxel ? (*opening_)(*voxel) * transform_.voxel_size : 0;
+    return Rgb(static_cast<float>(radius));
+  }
+  const std::uint32_t label = lookup_->node(x, n, w);
+  if (label == no_node) return {0, 0, 0};
+  if (quantity_ == InspectQuantity::nearest_node_visible) return sight(scene, s, label, counters);
+  return false_colour(label_of_node(label), seed);
+}
+
+std::uint32_t SpaceView::label_of_node(std::uint32_t node) const {
+  return cluster_ == nullptr ? node : (*cluster_)[(*parent_)[node]];
+}
+
+Rgb SpaceView::sight(const Scene& scene, const Surface& s, std::uint32_t node,
+                     Counters& counters) const {
+  const V3d centre = transform_.to_world(V3d(graph_->corners[node]));
+  EmitterSample end;
+  end.x = V3f(centre);
+  end.delta = true;
+  ++counters.shadow_rays;
+  return scene.rays().occluded(Scene::shadow_ray(s, end)) ? Rgb(1, 0, 0) : Rgb(0, 1, 0);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,66 @@
+#include "renderer/scene/scene_shape.h"
+
+#include <fmt/format.h>
+
+namespace lacuna {
+namespace {
+
+/// The centre of a triangle, and points close to its corners: a large light may shine into more
+/// than one room.
+void add_emitter(DomainSeeds& seeds, const std::array<V3d, 3>& corners, bool both_sides) {
+  const V3d n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  const V3d centre = (corners[0] + corners[1] + corners[2]) / 3;
+  constexpr double inwards = 0.1;
+  for (const V3d& p : {centre, centre * inwards + corners[0] * (1 - inwards),
+                       centre * inwards + corners[1] * (1 - inwards),
+                       centre * inwards + corners[2] * (1 - inwards)}) {
+    seeds.points.push_back({p, n});
+    if (both_sides) seeds.points.push_back({p, -n});
+  }
+}
+
+}  // namespace
+
+TriangleSoup triangle_soup(const SceneData& scene) {
+  TriangleSoup soup;
+  std::size_t vertices = 0;
+  for (const Mesh& m : scene.meshes) vertices += m.positions.size();
+  soup.positions.reserve(vertices);
+  soup.triangles.reserve(scene.triangle_count());
+  for (const Mesh& m : scene.meshes) {
+    const auto first = static_cast<std::uint32_t>(soup.positions.size());
+    soup.positions.insert(soup.positions.end(), m.positions.begin(), m.positions.end());
+    for (const auto& t : m.triangles) {
+      soup.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+  }
+  return soup;
+}
+
+std::string geometry_key(const SceneData& scene) {
+  return fmt::format("{:016x}", scene.geometry_hash);
+}
+
+DomainSeeds domain_seeds(const SceneData& scene, const CameraData& camera, bool environment) {
+  DomainSeeds seeds;
+  seeds.points.push_back({camera.to_world.translation(), std::nullopt});
+  for (const Mesh& m : scene.meshes) {
+    const Material& material = scene.materials[m.material];
+    if (!material.emits()) continue;
+    for (const auto& t : m.triangles) {
+      add_emitter(seeds, {V3d(m.positions[t[0]]), V3d(m.positions[t[1]]), V3d(m.positions[t[2]])},
+                  material.double_sided);
+    }
+  }
+  seeds.from_infinity = environment;
+  for (const PunctualLight& light : scene.lights) {
+    if (light.kind == PunctualLight::Kind::directional) {
+      seeds.from_infinity = true;
+    } else {
+      seeds.points.push_back({V3d(light.position), std::nullopt});
+    }
+  }
+  return seeds;
+}
+
+}  // namespace lacuna
