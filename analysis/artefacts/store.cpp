@@ -55,7 +55,7 @@ std::string owner_text() {
 std::string owner_of(const fs::path& lock) {
   constexpr std::size_t longest = 1000;
   try {
-    const std::string text = read_file(lock, longest);
+    std::string text = read_file(lock, longest);
     if (!text.empty()) return text;
   } catch (const std::exception&) {
     // It is released just now, or has no such text.

@@ -58,6 +58,7 @@ function finish() {
   write("curve.csv", "iteration,seconds,est_rmse\n100,1,0.5\n");
   const seen = {
     directory: process.cwd(), data: process.env.LACUNA_DATA, scenes: process.env.LACUNA_SCENES,
+    cache: process.env.LACUNA_CACHE,
     descriptors: fs.readdirSync("/proc/self/fd").length, group: process.pid,
   };
   const limits = {

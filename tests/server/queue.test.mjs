@@ -227,6 +227,7 @@ test("a renderer gets the folders, and nothing else that is open", async (t) => 
   await service.reaches(id, "done");
   const seen = await service.json(`/api/jobs/${id}/files/report.json`);
   assert.equal(seen.directory, places.data);
+  assert.equal(seen.cache, path.join(places.data, "cache"));
   assert.equal(seen.data, places.data);
   assert.equal(seen.scenes, places.scenes);
 });
