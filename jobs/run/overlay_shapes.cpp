@@ -128,7 +128,7 @@ std::vector<OverlayMesh> portal_overlay(const Portals& portals, const RegionLabe
               false_colour(static_cast<std::uint32_t>(i), 3));
     for (std::uint32_t k = 0; k < portal.faces(); ++k) {
       const VoxelFace f = portals.face(portal, k);
-      const V3i at = regions.label.voxel(f.voxel);
+      const Imath::V3i at = regions.label.voxel(f.voxel);
       b.quad(f.point(at, 0, 0), f.point(at, 1, 0), f.point(at, 1, 1), f.point(at, 0, 1));
     }
     meshes.push_back(b.take());
