@@ -16,6 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = ROOT / "build/release/bin"
 # Scenes of the project, always there; together about two minutes on two cores.
 JOBS = ["cornell", "bends", "ajar", "atrium"]
+ANALYSED = "ajar-skeleton"  # and one that looks at the shape of the empty space
 NAME = 46  # columns of a job's name
 ENDED = {"done", "failed", "cancelled"}
 
@@ -109,6 +110,23 @@ def table(base, jobs):
         print(name + "".join(f"{cell:>12}" for cell in cells) + f"{rate / 1e6:>10.2f} M")
 
 
+def report_of(base, job):
+    with urllib.request.urlopen(f"{base}/api/jobs/{job}/files/report.json", timeout=30) as answer:
+        return json.load(answer)
+
+
+def artefacts(base, job):
+    """What of the analysis was made now, and what an earlier run had left in the cache."""
+    if job["state"] != "done":
+        return
+    made = report_of(base, job["id"])["artefacts"]
+    print(f"\nthe shape of the empty space, for \"{job['label']}\":")
+    for key, text in (("built", "built now"), ("loaded", "found in the cache")):
+        if made[key]:
+            seconds = sum(a["seconds"] for a in made[key])
+            print(f"  {text}: {', '.join(a['name'] for a in made[key])} ({seconds:.2f} s)")
+
+
 def main():
     parser = argparse.ArgumentParser(prog="./dev demo", description=__doc__)
     parser.add_argument("--exit", action="store_true", help="end after the table instead of serving on")
@@ -121,11 +139,12 @@ def main():
     try:
         print(f"the service listens on {base}/", flush=True)
         ids = []
-        for name in JOBS:
+        for name in [*JOBS, ANALYSED]:
             body = (ROOT / "jobs/examples" / f"{name}.json").read_bytes()
             ids.append(call(base, "/api/jobs", body)["id"])
         jobs = watch(base, ids)
-        table(base, jobs)
+        table(base, jobs[:-1])
+        artefacts(base, jobs[-1])
         print(f"\npictures and curves: {base}/\nresults on disk:     {options.data.resolve() / 'jobs'}", flush=True)
         failed = any(job["state"] != "done" for job in jobs)
         if not options.exit:
