@@ -2,8 +2,11 @@
 
 #include <Imath/ImathVec.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <memory>
+#include <optional>
 
 namespace lacuna {
 
@@ -56,7 +59,21 @@ inline bool in_grid(Imath::V3i v, Imath::V3i size) {
   return v.x >= 0 && v.y >= 0 && v.z >= 0 && v.x < size.x && v.y < size.y && v.z < size.z;
 }
 
-/// Where a grid lies in the scene: voxel (i, j, k) spans origin + voxel_size * [(i, j, k), (i, j, k)
+/// The voxel that a point, in grid coordinates, belongs to: up to half a voxel outside the grid,
+/// where rounding may bring it, one of the outermost; further out, or where it is not a number,
+/// none.
+inline std::optional<Imath::V3i> voxel_at(Imath::V3d point, Imath::V3i size) {
+  constexpr double rim = 0.5;
+  Imath::V3i v;
+  for (int a = 0; a < 3; ++a) {
+    if (size[a] == 0 || !(point[a] >= -rim && point[a] <= size[a] + rim)) return {};
+    v[a] = std::clamp(static_cast<int>(std::floor(point[a])), 0, size[a] - 1);
+  }
+  return v;
+}
+
+/// Where a grid lies in the scene: voxel (i, j, k) spans origin + voxel_size * [(i, j, k), (i, j,
+/// k)
 /// + 1]. Grid coordinates are in voxels, in double: scenes lie far from the origin, too.
 struct GridTransform {
   Imath::V3d origin{0.0};   ///< scene units

@@ -13,9 +13,9 @@ namespace lacuna {
 /// (i, j, k) spans [i, i+1] x [j, j+1] x [k, k+1]. The graph is symmetric, without loops of one
 /// node and without double edges; every list of neighbours ascends.
 struct SkeletonGraph {
-  std::vector<Imath::V3i> corners;      ///< position of each node, in voxels
-  std::vector<float> radii;             ///< Euclidean distance to the scene's voxels, in voxels
-  std::vector<std::uint32_t> first{0};  ///< nodes + 1 offsets into `neighbours`
+  std::vector<Imath::V3i> corners;   ///< position of each node, in voxels
+  std::vector<float> radii;          ///< Euclidean distance to the scene's voxels, in voxels
+  std::vector<std::uint32_t> first;  ///< nodes + 1 offsets into `neighbours`
   std::vector<std::uint32_t> neighbours;
 
   std::size_t nodes() const { return corners.size(); }

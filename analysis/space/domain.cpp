@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/geometry/shell.h"
 #include "analysis/space/bit_rows.h"
 #include "analysis/space/components.h"
 #include "analysis/space/memory_limit.h"
@@ -13,23 +14,6 @@
 namespace lacuna {
 
 namespace {
-
-/// How far outside the grid a seed may lie by rounding and still belong to its outermost voxels.
-constexpr double rim = 0.5;
-
-/// The best of the empty voxels of a shell, by the largest product with the normal; among equals
-/// the nearest, then the first in memory.
-struct Best {
-  double product = 0;
-  int length2 = 0;
-  Imath::V3i voxel{0};
-
-  bool found() const { return length2 > 0; }
-  void offer(double p, Imath::V3i offset, Imath::V3i v) {
-    const int l2 = offset.dot(offset);
-    if (p > product || (found() && p == product && l2 < length2)) *this = {p, l2, v};
-  }
-};
 
 class Selection {
  public:
@@ -49,8 +33,6 @@ class Selection {
 
  private:
   bool empty(Imath::V3i v) const { return components_.at(v) != no_component; }
-  template <class Visit>
-  static void for_each_in_shell(int radius, Visit&& visit);
   bool keep_from_shell(Imath::V3i s, int radius);
   bool keep_from_shell(Imath::V3i s, int radius, Imath::V3d normal);
 
@@ -58,15 +40,6 @@ class Selection {
   std::vector<bool> kept_;
   bool border_kept_ = false;
 };
-
-template <class Visit>
-void Selection::for_each_in_shell(int radius, Visit&& visit) {
-  for (int z = -radius; z <= radius; ++z)
-    for (int y = -radius; y <= radius; ++y) {
-      const bool full = std::abs(z) == radius || std::abs(y) == radius;
-      for (int x = -radius; x <= radius; x += full ? 1 : 2 * radius) visit(Imath::V3i(x, y, z));
-    }
-}
 
 bool Selection::keep_from_shell(Imath::V3i s, int radius) {
   bool found = false;
@@ -84,15 +57,15 @@ bool Selection::keep_from_shell(Imath::V3i s, int radius) {
 }
 
 bool Selection::keep_from_shell(Imath::V3i s, int radius, Imath::V3d normal) {
-  Best inside, outside;
+  BestAlongNormal inside, outside;
   for_each_in_shell(radius, [&](Imath::V3i offset) {
     const double product = Imath::V3d(offset).dot(normal);
-    if (product <= 0) return;
     const Imath::V3i v = s + offset;
-    if (!in_grid(v, components_.size))
-      outside.offer(product, offset, v);
-    else if (empty(v))
-      inside.offer(product, offset, v);
+    if (!in_grid(v, components_.size)) {
+      if (outside.beaten_by(product, offset)) outside.take(product, offset, v);
+    } else if (inside.beaten_by(product, offset) && empty(v)) {
+      inside.take(product, offset, v);
+    }
   });
   if (inside.found()) keep(inside.voxel);
   if (outside.found() && outside.product > inside.product) keep_border();
@@ -100,21 +73,17 @@ bool Selection::keep_from_shell(Imath::V3i s, int radius, Imath::V3d normal) {
 }
 
 bool Selection::keep_for(const Seed& seed, const GridTransform& transform) {
-  const Imath::V3d p = transform.to_grid(seed.position);
-  Imath::V3i s;
-  for (int a = 0; a < 3; ++a) {
-    if (p[a] < -rim || p[a] > components_.size[a] + rim) {
-      keep_border();
-      return true;
-    }
-    s[a] = std::clamp(static_cast<int>(std::floor(p[a])), 0, components_.size[a] - 1);
+  const std::optional<Imath::V3i> s = voxel_at(transform.to_grid(seed.position), components_.size);
+  if (!s) {
+    keep_border();
+    return true;
   }
-  if (empty(s)) {
-    keep(s);
+  if (empty(*s)) {
+    keep(*s);
     return true;
   }
   for (int radius = 1; radius <= seed_reach; ++radius)
-    if (seed.normal ? keep_from_shell(s, radius, *seed.normal) : keep_from_shell(s, radius))
+    if (seed.normal ? keep_from_shell(*s, radius, *seed.normal) : keep_from_shell(*s, radius))
       return true;
   return false;
 }

@@ -1,0 +1,52 @@
+#include "analysis/skeleton/filter.h"
+
+#include "analysis/skeleton/adjacency.h"
+#include "analysis/skeleton/by_radius.h"
+#include "analysis/skeleton/subgraph.h"
+
+namespace lacuna {
+namespace {
+
+/// Of each node the node that it belongs to, itself included (lines 1-8 of Alg. 4).
+std::vector<std::uint32_t> claim(const SkeletonGraph& graph) {
+  std::vector<std::uint32_t> owner(graph.nodes(), no_node), found;
+  for (const std::uint32_t centre : by_falling_radius(graph)) {
+    if (owner[centre] != no_node) continue;
+    owner[centre] = centre;
+    found.assign(1, centre);
+    while (!found.empty()) {
+      const std::uint32_t n = found.back();
+      found.pop_back();
+      for (const std::uint32_t m : graph.of(n)) {
+        if (owner[m] != no_node || !graph.in_ball(m, centre)) continue;
+        owner[m] = centre;
+        found.push_back(m);
+      }
+    }
+  }
+  return owner;
+}
+
+}  // namespace
+
+FilteredSkeleton filter_skeleton(const SkeletonGraph& graph) {
+  FilteredSkeleton filtered;
+  const std::vector<std::uint32_t> owner = claim(graph);
+  std::vector<bool> kept(graph.nodes());
+  for (std::uint32_t n = 0; n < graph.nodes(); ++n) kept[n] = owner[n] == n;
+  const std::vector<std::uint32_t> number =
+      take_nodes(graph, kept, filtered.graph, filtered.source);
+  filtered.parent.resize(graph.nodes());
+  for (std::uint32_t n = 0; n < graph.nodes(); ++n) filtered.parent[n] = number[owner[n]];
+
+  // Lines 10-18: edges between parts become edges between the nodes that stand for them.
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  for (std::uint32_t n = 0; n < graph.nodes(); ++n)
+    for (const std::uint32_t m : graph.of(n))
+      if (n < m && filtered.parent[n] != filtered.parent[m])
+        edges.push_back({filtered.parent[n], filtered.parent[m]});
+  set_edges(filtered.graph, edges);
+  return filtered;
+}
+
+}  // namespace lacuna
