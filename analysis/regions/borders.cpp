@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "analysis/regions/region_faces.h"
 #include "analysis/space/memory_limit.h"
 #include "analysis/space/sweep.h"
 
@@ -13,26 +14,10 @@ namespace {
 /// Calls visit(6 * region + side, voxel) for each face of the border in plane z.
 template <class Visit>
 void for_each_face(const Grid3<std::uint32_t>& label, BorderFaces which, int z, Visit&& visit) {
-  const Imath::V3i size = label.size();
-  const std::array<std::size_t, 3> stride{1, static_cast<std::size_t>(size.x),
-                                          label.index(0, 0, 1)};
-  for (int y = 0; y < size.y; ++y)
-    for (int x = 0; x < size.x; ++x) {
-      const std::size_t i = label.index(x, y, z);
-      const std::uint32_t region = label[i];
-      if (region == no_region) continue;
-      const Imath::V3i v(x, y, z);
-      for (int side = 0; side < 6; ++side) {
-        const int axis = side / 2;
-        const std::size_t step = stride[static_cast<std::size_t>(axis)];
-        const bool at_rim = v[axis] == (side % 2 == 0 ? 0 : size[axis] - 1);
-        const std::uint32_t beyond =
-            at_rim ? no_region : label[side % 2 == 0 ? i - step : i + step];
-        if (beyond == region || (beyond == no_region && which == BorderFaces::portals)) continue;
-        visit(6 * std::size_t{region} + static_cast<std::size_t>(side),
-              static_cast<std::uint32_t>(i));
-      }
-    }
+  RegionFaces(label).for_each(z, [&](VoxelFace face, std::uint32_t region, std::uint32_t beyond) {
+    if (beyond != no_region || which == BorderFaces::all)
+      visit(6 * std::size_t{region} + face.side, face.voxel);
+  });
 }
 
 std::uint64_t add_one(std::uint64_t& counter) {

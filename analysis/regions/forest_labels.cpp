@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "analysis/geometry/bit_grid.h"
+#include "analysis/regions/stray_pieces.h"
 #include "analysis/space/bit_rows.h"
 #include "analysis/space/sweep.h"
 
@@ -180,6 +181,7 @@ RegionLabels forest_labels(OpeningForest forest, const ThreadPool& pool) {
   if (forest.centre.count() > 0) labels.regions = Labeller(forest, pool).run();
   labels.label = std::move(forest.centre);
   labels.opening = std::move(forest.opening);
+  labels.pieces_joined = join_stray_pieces(labels, pool);
   return labels;
 }
 

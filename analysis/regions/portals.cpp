@@ -4,6 +4,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "analysis/regions/region_faces.h"
 #include "analysis/space/memory_limit.h"
 #include "analysis/space/sweep.h"
 
@@ -17,27 +18,12 @@ struct Found {
   std::uint8_t side;
 };
 
-/// Calls visit(Found) for each face of plane z towards higher x, y and z.
+/// Calls visit(Found) for each face of plane z that leaves the lower of two regions.
 template <class Visit>
 void for_each_face(const Grid3<std::uint32_t>& label, int z, Visit&& visit) {
-  const Imath::V3i size = label.size();
-  const std::array<std::size_t, 3> stride{1, static_cast<std::size_t>(size.x),
-                                          label.index(0, 0, 1)};
-  for (int y = 0; y < size.y; ++y)
-    for (int x = 0; x < size.x; ++x) {
-      const std::size_t i = label.index(x, y, z);
-      if (label[i] == no_region) continue;
-      const Imath::V3i v(x, y, z);
-      for (int axis = 0; axis < 3; ++axis) {
-        if (v[axis] + 1 == size[axis]) continue;
-        const std::size_t j = i + stride[static_cast<std::size_t>(axis)];
-        if (label[j] == no_region || label[j] == label[i]) continue;
-        const bool forwards = label[i] < label[j];
-        visit(Found{std::min(label[i], label[j]), std::max(label[i], label[j]),
-                    static_cast<std::uint32_t>(forwards ? i : j),
-                    static_cast<std::uint8_t>(2 * axis + (forwards ? 1 : 0))});
-      }
-    }
+  RegionFaces(label).for_each(z, [&](VoxelFace face, std::uint32_t region, std::uint32_t beyond) {
+    if (beyond != no_region && region < beyond) visit(Found{region, beyond, face.voxel, face.side});
+  });
 }
 
 /// All faces, ordered by a, b, side and voxel.

@@ -1,5 +1,7 @@
 #include "analysis/space/squared_lines.h"
 
+#include <immintrin.h>
+
 #include <algorithm>
 
 namespace lacuna {
@@ -20,23 +22,36 @@ SquaredLines::SquaredLines(int length)
       begin_(line_.size()) {}
 
 void SquaredLines::search_outwards() {
+  static_assert(lanes == 16, "two vectors of eight");
+  const auto load = [](const std::uint32_t* p) {
+    return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
+  };
+  const auto store = [](std::uint32_t* p, __m256i v) {
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), v);
+  };
   for (int i = 0; i < length_; ++i) {
-    std::uint32_t best[lanes];
     const auto rim = static_cast<std::uint32_t>(std::min(i + 1, length_ - i));
-    const std::uint32_t* here = at(i);
-    for (int l = 0; l < lanes; ++l) best[l] = std::min(here[l], rim * rim);
+    const std::uint32_t* const here = at(i);
+    const __m256i outside = _mm256_set1_epi32(static_cast<int>(rim * rim));
+    __m256i low = _mm256_min_epu32(load(here), outside);
+    __m256i high = _mm256_min_epu32(load(here + 8), outside);
+    const std::uint32_t *before = here, *after = here;
     for (std::uint32_t k = 1; k < rim; ++k) {
-      const std::uint32_t square = k * k;
-      const std::uint32_t* before = here - k * lanes;
-      const std::uint32_t* after = here + k * lanes;
-      std::uint32_t farther = 0;  // lanes that a position beyond can still serve
-      for (int l = 0; l < lanes; ++l) {
-        best[l] = std::min(best[l], std::min(before[l], after[l]) + square);
-        farther |= static_cast<std::uint32_t>(best[l] > square);
-      }
-      if (farther == 0) break;
+      before -= lanes;
+      after += lanes;
+      const __m256i square = _mm256_set1_epi32(static_cast<int>(k * k));
+      const __m256i largest = _mm256_max_epu32(low, high);
+      // No lane is farther than k: positions from here on cannot be nearer.
+      if (_mm256_movemask_epi8(_mm256_cmpeq_epi32(_mm256_max_epu32(largest, square), square)) == -1)
+        break;
+      low = _mm256_min_epu32(low,
+                             _mm256_add_epi32(_mm256_min_epu32(load(before), load(after)), square));
+      high = _mm256_min_epu32(
+          high, _mm256_add_epi32(_mm256_min_epu32(load(before + 8), load(after + 8)), square));
     }
-    std::copy(best, best + lanes, &result_[static_cast<std::size_t>(i) * lanes]);
+    std::uint32_t* const to = &result_[static_cast<std::size_t>(i) * lanes];
+    store(to, low);
+    store(to + 8, high);
   }
   values_.swap(result_);
 }

@@ -155,18 +155,24 @@ void add_grid(const std::string& name, BitGrid3 grid) {
     benchmark::DoNotOptimize(squared_distance(*domain, pool, no_memory_limit).data());
   });
   add_queries(name, domain);
-  add(name + "/chebyshev, forest, labels, portals, borders", [=](const ThreadPool& pool) {
-    const RegionLabels labels = forest_labels(
-        opening_forest(chebyshev_distance(*domain, pool, no_memory_limit), pool, no_memory_limit),
-        pool);
+  // Each with all that it needs.
+  const auto forest = [=](const ThreadPool& pool) {
+    return opening_forest(chebyshev_distance(*domain, pool, no_memory_limit), pool,
+                          no_memory_limit);
+  };
+  add(name + "/forest",
+      [=](const ThreadPool& pool) { benchmark::DoNotOptimize(forest(pool).centre.data()); });
+  add(name + "/labels", [=](const ThreadPool& pool) {
+    benchmark::DoNotOptimize(forest_labels(forest(pool), pool).regions.data());
+  });
+  add(name + "/portals", [=](const ThreadPool& pool) {
+    const RegionLabels labels = forest_labels(forest(pool), pool);
     benchmark::DoNotOptimize(find_portals(labels, pool, no_memory_limit).voxels.data());
+  });
+  add(name + "/borders", [=](const ThreadPool& pool) {
+    const RegionLabels labels = forest_labels(forest(pool), pool);
     benchmark::DoNotOptimize(
         find_borders(labels, BorderFaces::all, pool, no_memory_limit).voxels.data());
-  });
-  add(name + "/chebyshev, forest", [=](const ThreadPool& pool) {
-    benchmark::DoNotOptimize(
-        opening_forest(chebyshev_distance(*domain, pool, no_memory_limit), pool, no_memory_limit)
-            .centre.data());
   });
 }
 

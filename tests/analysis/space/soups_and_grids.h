@@ -11,15 +11,10 @@
 
 namespace lacuna {
 
-/// Pools of one and of several threads: results are to be the same.
-inline const ThreadPool& one_thread() {
-  static const ThreadPool pool(1);
-  return pool;
-}
-inline const ThreadPool& four_threads() {
-  static const ThreadPool pool(4);
-  return pool;
-}
+/// Pools of one and of several threads: results are to be the same. Two pools that live at the same
+/// time share the smaller's number of threads, so each lives for one call.
+inline ThreadPool one_thread() { return ThreadPool(1); }
+inline ThreadPool four_threads() { return ThreadPool(4); }
 
 /// Every bit 1 with probability `share`.
 inline BitGrid3 random_grid(Imath::V3i size, double share, std::mt19937& rng) {

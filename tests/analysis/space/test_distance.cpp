@@ -60,14 +60,12 @@ TEST(Distance, has_the_same_bits_for_any_number_of_threads) {
   for (const BitGrid3& domain :
        {random_rooms({33, 150, 70}, 400, 9, rng), random_grid({20, 200, 40}, 0.999, rng),
         random_grid({5, 300, 35}, 1, rng)}) {
-    const ThreadPool& one = one_thread();
-    const ThreadPool& four = four_threads();
-    expect_equal(l1_distance(domain, one, no_memory_limit),
-                 l1_distance(domain, four, no_memory_limit));
-    expect_equal(chebyshev_distance(domain, one, no_memory_limit),
-                 chebyshev_distance(domain, four, no_memory_limit));
-    expect_equal(squared_distance(domain, one, no_memory_limit),
-                 squared_distance(domain, four, no_memory_limit));
+    const auto sums = l1_distance(domain, one_thread(), no_memory_limit);
+    const auto largest = chebyshev_distance(domain, one_thread(), no_memory_limit);
+    const auto squares = squared_distance(domain, one_thread(), no_memory_limit);
+    expect_equal(sums, l1_distance(domain, four_threads(), no_memory_limit));
+    expect_equal(largest, chebyshev_distance(domain, four_threads(), no_memory_limit));
+    expect_equal(squares, squared_distance(domain, four_threads(), no_memory_limit));
   }
 }
 
