@@ -8,7 +8,7 @@
 #include "analysis/skeleton/node_map.h"
 #include "analysis/skeleton/visible_map.h"
 #include "analysis/space/distance.h"
-#include "analysis/space/memory_limit.h"
+#include "analysis/space/opening.h"
 #include "analysis/space/opening_query.h"
 
 namespace lacuna {
@@ -180,19 +180,13 @@ const VisibilityGates& SpaceAnalysis::gates() {
                                [this] { return visibility_gates(simplified().graph, clusters()); });
 }
 
-OpeningForest SpaceAnalysis::make_forest() {
-  return opening_forest(chebyshev_distance(domain().voxels, pool_, input_.byte_limit), pool_,
-                        input_.byte_limit);
-}
-
-const Grid3<std::uint16_t>& SpaceAnalysis::opening() {
-  return part<Grid3<std::uint16_t>>(opening_, of_domain("opening", opening_version),
-                                    [this] { return make_forest().opening; });
-}
-
 const RegionLabels& SpaceAnalysis::regions() {
-  return part<RegionLabels>(regions_, regions_key(),
-                            [this] { return forest_labels(make_forest(), pool_); });
+  return part<RegionLabels>(regions_, regions_key(), [this] {
+    return forest_labels(
+        opening_forest(chebyshev_distance(domain().voxels, pool_, input_.byte_limit), pool_,
+                       input_.byte_limit),
+        pool_);
+  });
 }
 
 const Portals& SpaceAnalysis::portals() {
@@ -218,7 +212,6 @@ void SpaceAnalysis::close() {
   note(simplified_, "simplified_skeleton");
   note(clusters_, "visibility_clusters");
   note(gates_, "visibility_gates");
-  note(opening_, "opening");
   note(regions_, "regions");
   note(portals_, "portals");
 }

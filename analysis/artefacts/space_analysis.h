@@ -15,7 +15,6 @@
 #include "analysis/skeleton/gates.h"
 #include "analysis/skeleton/simplify.h"
 #include "analysis/space/domain.h"
-#include "analysis/space/opening.h"
 #include "analysis/space/voxelize.h"
 
 namespace lacuna {
@@ -52,8 +51,7 @@ class SpaceAnalysis {
   const SimplifiedSkeleton& simplified();
   const VisibilityClusters& clusters();
   const VisibilityGates& gates();
-  /// Omega_infinity of every voxel of the domain, in voxels; 0 outside it (thesis 10.3.1).
-  const Grid3<std::uint16_t>& opening();
+  /// With the opening map (thesis 10.3.1) that they come from.
   const RegionLabels& regions();
   const Portals& portals();
 
@@ -79,7 +77,6 @@ class SpaceAnalysis {
   ArtefactKey clusters_key();
   ArtefactKey regions_key();
   Grid3<std::uint32_t> make_map(const SkeletonGraph& graph);
-  OpeningForest make_forest();
 
   SpaceInput input_;
   ArtefactStore& store_;
@@ -94,7 +91,6 @@ class SpaceAnalysis {
   Part<SimplifiedSkeleton> simplified_;
   Part<VisibilityClusters> clusters_;
   Part<VisibilityGates> gates_;
-  Part<Grid3<std::uint16_t>> opening_;
   Part<RegionLabels> regions_;
   Part<Portals> portals_;
 };

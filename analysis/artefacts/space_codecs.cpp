@@ -136,13 +136,16 @@ VisibilityGates Codec<VisibilityGates>::read(ArtefactReader& in) {
 }
 
 void Codec<RegionLabels>::write(ArtefactWriter& out, const RegionLabels& r) {
-  encode(out, r.label);
+  encode(out, r.label, r.opening, r.pieces_joined);
   out.put(static_cast<std::uint64_t>(r.regions.size()));
   for (const Region& region : r.regions) encode(out, region.voxels, region.opening, region.root);
 }
 RegionLabels Codec<RegionLabels>::read(ArtefactReader& in) {
   RegionLabels r;
   r.label = decode<Grid3<std::uint32_t>>(in);
+  r.opening = decode<Grid3<std::uint16_t>>(in);
+  r.pieces_joined = decode<std::uint64_t>(in);
+  require(r.opening.size() == r.label.size(), "labels and openings are of one grid");
   constexpr std::size_t bytes =
       sizeof(Region::voxels) + sizeof(Region::opening) + sizeof(Region::root);
   r.regions.resize(in.get_length(bytes));

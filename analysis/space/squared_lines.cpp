@@ -8,7 +8,7 @@ namespace lacuna {
 
 namespace {
 
-/// Up to this distance searching outwards is faster than the envelope, measured.
+/// Up to this distance lines search outwards, beyond it they take the envelope. An estimate.
 constexpr std::uint32_t search_limit = 160;
 
 }  // namespace

@@ -27,7 +27,7 @@ SpaceView::SpaceView(InspectQuantity quantity, const PrepareContext& context)
       lookup_.emplace(transform_, space.filtered_map());
       return;
     case InspectQuantity::opening:
-      opening_ = &space.opening();
+      opening_ = &space.regions().opening;
       lookup_.emplace(transform_, space.regions().label);
       return;
     case InspectQuantity::region_labels:
