@@ -60,7 +60,7 @@ class SpaceAnalysisTest : public ::testing::Test {
     return names;
   }
 
-  test::TemporaryFolder folder_;
+  TemporaryFolder folder_;
   const ThreadPool pool_{2};
   int soups_ = 0;
 };
