@@ -50,7 +50,14 @@ class SpaceAnalysisTest : public ::testing::Test {
             .settings = {.resolution = resolution},
             .byte_limit = std::uint64_t{1} << 30};
   }
-  ArtefactStore store() { return ArtefactStore({.folder = folder_.path(), .byte_limit = 1 << 30}); }
+  ArtefactStore store() {
+    return ArtefactStore({.folder = folder_.path(),
+                          .byte_limit = 1 << 30,
+                          .label = {},
+                          .message = {},
+                          .warning = {},
+                          .interrupted = {}});
+  }
   static std::multiset<std::string> types(const ArtefactStore& store,
                                           ArtefactRecord::Origin origin) {
     std::multiset<std::string> names;
