@@ -170,11 +170,11 @@ void Codec<Portals>::write(ArtefactWriter& out, const Portals& p) {
 }
 Portals Codec<Portals>::read(ArtefactReader& in) {
   Portals p;
-  p.portals.resize(in.get_length(9 * sizeof(std::uint32_t)));
+  p.portals.resize(in.get_length(8 * sizeof(std::uint32_t) + sizeof(Portal::first)));
   for (Portal& portal : p.portals) {
     portal.a = decode<std::uint32_t>(in);
     portal.b = decode<std::uint32_t>(in);
-    portal.first = decode<std::uint32_t>(in);
+    portal.first = decode<std::uint64_t>(in);
     portal.by_side = decode<std::array<std::uint32_t, 6>>(in);
   }
   p.voxels = decode<std::vector<std::uint32_t>>(in);
@@ -185,11 +185,10 @@ Portals Codec<Portals>::read(ArtefactReader& in) {
   require_offsets(p.first, regions, p.of_region.size(), "lists of portals follow each other");
   require_below(p.of_region, p.portals.size(), "lists name portals that are there");
   for (const Portal& portal : p.portals) {
-    std::uint64_t faces = 0;
-    for (const std::uint32_t n : portal.by_side) faces += n;
     require(portal.a < portal.b && portal.b < regions,
             "portals lie between regions that are there");
-    require(portal.first + faces <= p.voxels.size(), "a portal's faces are there");
+    require(portal.first <= p.voxels.size() && portal.faces() <= p.voxels.size() - portal.first,
+            "a portal's faces are there");
   }
   return p;
 }

@@ -133,7 +133,7 @@ std::shared_ptr<const void> ArtefactStore::Attempt::load() {
     record_.remark.clear();
     return value;
   }
-  const std::string found = fmt::format("its entry is {}", refusal->text);
+  const std::string found = fmt::format("its entry: {}", refusal->text);
   if (refusal->fault != EntryFault::missing && record_.remark != found) report(found);
   return nullptr;
 }

@@ -126,7 +126,7 @@ std::vector<OverlayMesh> portal_overlay(const Portals& portals, const RegionLabe
     const Portal& portal = portals.portals[i];
     Builder b(grid, "portal " + std::to_string(portal.a) + " " + std::to_string(portal.b),
               false_colour(static_cast<std::uint32_t>(i), 3));
-    for (std::uint32_t k = 0; k < portal.faces(); ++k) {
+    for (std::uint64_t k = 0; k < portal.faces(); ++k) {
       const VoxelFace f = portals.face(portal, k);
       const Imath::V3i at = regions.label.voxel(f.voxel);
       b.quad(f.point(at, 0, 0), f.point(at, 1, 0), f.point(at, 1, 1), f.point(at, 0, 1));
