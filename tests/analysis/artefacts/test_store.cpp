@@ -145,7 +145,7 @@ TEST(ArtefactStore, an_entry_that_is_refused_is_made_anew_and_reported) {
     TestStore store(tmp.path());
     EXPECT_EQ(store.get(1), noise(1));
     EXPECT_EQ(store.built, 1);
-    EXPECT_TRUE(contains(store.last().remark, "its entry is ")) << store.last().remark;
+    EXPECT_TRUE(contains(store.last().remark, "its entry: ")) << store.last().remark;
     ASSERT_EQ(store.warnings.size(), 1u) << "said once";
     EXPECT_TRUE(contains(store.warnings[0], "\"numbers\""));
     EXPECT_EQ(content_of(file), whole);
