@@ -127,7 +127,7 @@ const SkeletonGraph& SpaceAnalysis::skeleton() {
     const OpeningQuery opening(distance(), pool_);
     const SpaceMaps maps{distance(), [&](Imath::V3i v) { return static_cast<int>(opening(v)); }};
     ThinningReport report;
-    const CubicalComplex complex = curvilinear_skeleton(domain().voxels, maps, report);
+    const CubicalComplex complex = curvilinear_skeleton(domain().voxels, maps, report, &pool_);
     return build_graph(complex, distance(), pool_);
   });
 }

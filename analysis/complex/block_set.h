@@ -2,6 +2,7 @@
 
 #include <Imath/ImathVec.h>
 
+#include <atomic>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -19,8 +20,10 @@ class BlockSet {
         words_(static_cast<std::size_t>(row_words_) * static_cast<std::size_t>(blocks.y) *
                static_cast<std::size_t>(blocks.z)) {}
 
+  /// Safe from several threads.
   void insert(int bx, int by, int bz) {
-    words_[word(bx >> 6, by, bz)] |= std::uint64_t{1} << (bx & 63);
+    std::atomic_ref(words_[word(bx >> 6, by, bz)])
+        .fetch_or(std::uint64_t{1} << (bx & 63), std::memory_order_relaxed);
   }
   void clear() { words_.assign(words_.size(), 0); }
   bool empty() const {
@@ -31,14 +34,34 @@ class BlockSet {
   }
   Imath::V3i blocks() const { return blocks_; }
 
-  /// Visits (bx, by, bz), ascending along every axis but `descending` (-1: all ascend). With x
-  /// descending it is x that goes down within a row.
+  /// Number of blocks in each slice across an axis, y or z.
+  std::vector<std::size_t> slices(int axis) const {
+    std::vector<std::size_t> counts(static_cast<std::size_t>(axis == 1 ? blocks_.y : blocks_.z));
+    for (int bz = 0; bz < blocks_.z; ++bz) {
+      for (int by = 0; by < blocks_.y; ++by) {
+        std::size_t n = 0;
+        for (int i = 0; i < row_words_; ++i) {
+          n += static_cast<std::size_t>(std::popcount(words_[word(i, by, bz)]));
+        }
+        counts[static_cast<std::size_t>(axis == 1 ? by : bz)] += n;
+      }
+    }
+    return counts;
+  }
+
+  /// Blocks from `low` up to and without `high`.
+  struct Range {
+    Imath::V3i low, high;
+  };
+  Range all() const { return {Imath::V3i(0), blocks_}; }
+  /// Visits the blocks (bx, by, bz) of a range along y and z (along x always all), ascending along
+  /// every axis but `descending` (-1: all ascend).
   template <class F>
-  void for_each(int descending, const F& visit) const {
-    for (int k = 0; k < blocks_.z; ++k) {
-      const int bz = descending == 2 ? blocks_.z - 1 - k : k;
-      for (int j = 0; j < blocks_.y; ++j) {
-        const int by = descending == 1 ? blocks_.y - 1 - j : j;
+  void for_each(const Range& range, int descending, const F& visit) const {
+    for (int k = range.low.z; k < range.high.z; ++k) {
+      const int bz = descending == 2 ? range.low.z + range.high.z - 1 - k : k;
+      for (int j = range.low.y; j < range.high.y; ++j) {
+        const int by = descending == 1 ? range.low.y + range.high.y - 1 - j : j;
         descending == 0 ? row_down(by, bz, visit) : row_up(by, bz, visit);
       }
     }

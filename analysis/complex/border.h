@@ -23,10 +23,15 @@ struct alignas(64) BorderBlock {
 std::array<Plane, 3> find_free(const CubicalComplex& complex, std::vector<BorderBlock>& border,
                                std::size_t block);
 
-/// Fills in the layer L of a block: the closure of all faces that belong to a free pair. The blocks
-/// below it along each axis must be complete and the free faces of those above known. Returns the
-/// cells where L has any face but vertices.
-Plane close_border(const CubicalComplex& complex, std::vector<BorderBlock>& border,
+/// Fill in the layer L of a block: the closure of all faces that belong to a free pair. Cubes
+/// first, then squares, then edges: each needs those before it of the blocks below along each axis,
+/// and the free faces of the blocks above. So one ascending walk may take all three at each block.
+void border_cubes(const CubicalComplex& complex, std::vector<BorderBlock>& border,
+                  std::size_t block);
+void border_squares(const CubicalComplex& complex, std::vector<BorderBlock>& border,
+                    std::size_t block);
+/// Returns the cells where L has any face but vertices.
+Plane border_edges(const CubicalComplex& complex, std::vector<BorderBlock>& border,
                    std::size_t block);
 
 /// The neighbouring blocks, as steps from `low` to `high` along each axis, that what lies within

@@ -6,10 +6,10 @@ namespace lacuna {
 namespace {
 
 /// Adds to `kept` what the rule finds in `complex`, which is collapsed for it.
-int ask_rule(CubicalComplex complex, const SpaceMaps& maps, KeptEdges& kept,
-             ThinningReport& report) {
+int ask_rule(CubicalComplex complex, const SpaceMaps& maps, KeptEdges& kept, ThinningReport& report,
+             const ThreadPool* pool) {
   KeepRule rule(complex, maps, kept);
-  const int layers = collapse(complex, KeptEdges(complex), &rule);
+  const int layers = collapse(complex, KeptEdges(complex), &rule, all_layers, pool);
   rule.finish();
   report.openings_asked += rule.openings_asked();
   return layers;
@@ -18,27 +18,27 @@ int ask_rule(CubicalComplex complex, const SpaceMaps& maps, KeptEdges& kept,
 }  // namespace
 
 CubicalComplex thin(const BitGrid3& domain, const SpaceMaps& maps, KeptEdges& kept,
-                    ThinningReport& report) {
-  report.layers = ask_rule(CubicalComplex(domain), maps, kept, report);
+                    ThinningReport& report, const ThreadPool* pool) {
+  report.layers = ask_rule(CubicalComplex(domain), maps, kept, report, pool);
   report.kept_edges = kept.count();
   CubicalComplex complex(domain);
-  collapse(complex, kept);
+  collapse(complex, kept, nullptr, all_layers, pool);
   return complex;
 }
 
 CubicalComplex curvilinear_skeleton(const BitGrid3& domain, const SpaceMaps& maps,
-                                    ThinningReport& report) {
+                                    ThinningReport& report, const ThreadPool* pool) {
   CubicalComplex complex(domain);
   KeptEdges kept(complex);
-  complex = thin(domain, maps, kept, report);
+  complex = thin(domain, maps, kept, report, pool);
   for (;;) {
     const std::vector<Square> squares = squares_to_pierce(complex, maps.distance);
     if (squares.empty()) return complex;
     ++report.pierce_rounds;
     report.squares_pierced += squares.size();
     for (const Square& s : squares) complex.remove(s.cell, s.type);
-    ask_rule(complex, maps, kept, report);
-    collapse(complex, kept);
+    ask_rule(complex, maps, kept, report, pool);
+    collapse(complex, kept, nullptr, all_layers, pool);
   }
 }
 

@@ -18,13 +18,13 @@ struct ThinningReport {
 /// collapsed. Homotopic to the closure of `domain`; may hold squares around cavities.
 /// `kept`, made for a complex of this size, receives W.
 CubicalComplex thin(const BitGrid3& domain, const SpaceMaps& maps, KeptEdges& kept,
-                    ThinningReport& report);
+                    ThinningReport& report, const ThreadPool* pool = nullptr);
 
 /// The same, then pierced (6.2.4) and thinned again until it is a graph: vertices and edges only.
 /// After each round the keep rule is asked again on the pierced complex, with the distances of the
 /// original voxels and the old edges kept: with the old edges alone a closed surface would shrink
 /// into the point where a curve meets it, and the space around a floating object would get no node.
 CubicalComplex curvilinear_skeleton(const BitGrid3& domain, const SpaceMaps& maps,
-                                    ThinningReport& report);
+                                    ThinningReport& report, const ThreadPool* pool = nullptr);
 
 }  // namespace lacuna

@@ -33,6 +33,7 @@ void KeepRule::edges(int date, std::size_t block, const std::array<Plane, 3>& pr
       for_each_bit(died, [&](int position) {
         const int birth = take_birth(block, edge(position));
         if (holds(complex_.corner(block) + cell_of(position), axis, birth, date)) {
+          const std::lock_guard lock(keeping_);
           kept_.add(block, axis, at_position(position));
         }
       });

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <atomic>
 #include <functional>
+#include <mutex>
 
 #include "analysis/complex/collapse.h"
 #include "analysis/geometry/grid.h"
@@ -11,7 +13,8 @@ namespace lacuna {
 struct SpaceMaps {
   /// Distance of every voxel to the scene (0 there), L1 as in the thesis.
   const Grid3<std::uint16_t>& distance;
-  /// Radius of the largest ball of that distance that holds a voxel of empty space (Omega).
+  /// Radius of the largest ball of that distance that holds a voxel of empty space (Omega). Safe
+  /// from several threads.
   std::function<int(Imath::V3i)> opening;
 };
 
@@ -48,7 +51,8 @@ class KeepRule final : public LayerObserver {
   KeptEdges& kept_;
   std::vector<std::array<Plane, 3>> alive_;  // edges that are facets, by block and axis
   std::vector<std::vector<Birth>> births_;   // of these
-  std::size_t openings_asked_ = 0;
+  std::atomic<std::size_t> openings_asked_ = 0;
+  std::mutex keeping_;  // of kept_
 };
 
 }  // namespace lacuna

@@ -18,11 +18,6 @@ namespace {
 using testing::LiteralComplex;
 using testing::random_voxels;
 
-const ThreadPool& pool() {
-  static const ThreadPool threads(2);
-  return threads;
-}
-
 /// Everything that thinning is given for a domain.
 struct Space {
   BitGrid3 domain;
@@ -32,8 +27,8 @@ struct Space {
 
   explicit Space(BitGrid3 d)
       : domain(std::move(d)),
-        distance(l1_distance(domain, pool(), no_memory_limit)),
-        opening(distance, pool()),
+        distance(l1_distance(domain, ThreadPool(1), no_memory_limit)),
+        opening(distance, ThreadPool(1)),
         maps{distance, [this](Imath::V3i v) { return static_cast<int>(opening(v)); }} {}
   Space(const Space&) = delete;
 };
@@ -211,6 +206,22 @@ TEST(CurvilinearSkeleton, CommutesWithTranslation) {
           ASSERT_EQ(ga.has({x, y, z}, m), gb.has(Imath::V3i(x, y, z) + shift, m));
         }
       }
+    }
+  }
+}
+
+TEST(CurvilinearSkeleton, IsTheSameForAnyNumberOfThreads) {
+  for (const Imath::V3i& size : {Imath::V3i(100, 90, 60), Imath::V3i(20, 60, 130)}) {
+    const Space s(random_voxels(size, 0.0004, 9, 3));
+    ThinningReport alone;
+    const CubicalComplex expected = curvilinear_skeleton(s.domain, s.maps, alone);
+    EXPECT_GT(expected.count(0), 50u);
+    for (const int threads : {1, 2, 3, 5}) {
+      const ThreadPool some(threads);
+      ThinningReport report;
+      EXPECT_TRUE(curvilinear_skeleton(s.domain, s.maps, report, &some) == expected) << threads;
+      EXPECT_EQ(report.kept_edges, alone.kept_edges);
+      EXPECT_EQ(report.layers, alone.layers);
     }
   }
 }
