@@ -2,6 +2,8 @@
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
@@ -24,6 +26,7 @@ struct Options {
   std::filesystem::path out;
   int threads = 0;
   bool no_cache = false;
+  bool json = false;
 };
 
 /// A path as it is, or a name below the scenes roots.
@@ -56,43 +59,66 @@ struct GraphCounts {
   }
 };
 
-void print_steps(const ArtefactStore& store) {
-  fmt::print("\n{:<20} {:>8} {:>10} {:>12}\n", "STEP", "", "SECONDS", "ON DISK");
-  double total = 0;
-  for (const ArtefactRecord& r : store.records()) {
-    const bool built = r.origin == ArtefactRecord::Origin::built;
-    total += r.seconds;
-    fmt::print("{:<20} {:>8} {:>10.3f} {:>12}\n", r.type, built ? "built" : "loaded", r.seconds,
-               r.disk_bytes > 0 ? byte_size_text(r.disk_bytes) : "-");
-  }
-  fmt::print("{:<20} {:>8} {:>10.3f}\n", "all", "", total);
-}
+using Json = nlohmann::ordered_json;
 
-void print_shape(const Options& o, SpaceAnalysis& space) {
+/// What a scene's empty space is like, in numbers.
+Json shape(const Options& o, SpaceAnalysis& space) {
   const Voxels& v = space.voxels();
   const Imath::V3i n = v.scene.size();
   const Domain& d = space.domain();
-  const std::size_t all =
-      static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) * static_cast<std::size_t>(n.z);
   const GraphCounts counts(space.skeleton());
-  const auto row = [](const char* name, const std::string& value) {
-    fmt::print("{:<28} {}\n", name, value);
-  };
-  row("scene", o.scene);
-  row("grid", fmt::format("{} x {} x {}", n.x, n.y, n.z));
-  row("voxel, scene units", fmt::format("{:.6g}", v.transform.voxel_size));
-  row("voxels", fmt::format("{}: {} scene, {} in the domain, {} dropped", all, v.scene.count(),
-                            d.voxels_kept, d.voxels_dropped));
-  row("components of empty space",
-      fmt::format("{} kept, {} dropped", d.components_kept, d.components_dropped));
-  row("faces of its complex", fmt::format("{}", space.complex_faces()));
-  row("nodes of the skeleton",
-      fmt::format("{}; {} filtered, {} simplified", space.skeleton().nodes(),
-                  space.filtered().graph.nodes(), space.simplified().graph.nodes()));
-  row("components, loops", fmt::format("{}, {}", counts.components, counts.loops));
-  row("clusters, gates", fmt::format("{}, {}", space.clusters().count, space.gates().gates.size()));
-  row("regions, portals",
-      fmt::format("{}, {}", space.regions().regions.size(), space.portals().portals.size()));
+  return {{"scene", o.scene},
+          {"grid", {n.x, n.y, n.z}},
+          {"voxel_size", v.transform.voxel_size},
+          {"scene_voxels", v.scene.count()},
+          {"domain_voxels", d.voxels_kept},
+          {"dropped_voxels", d.voxels_dropped},
+          {"domain_components", d.components_kept},
+          {"dropped_components", d.components_dropped},
+          {"buried_seeds", d.seeds_buried},
+          {"complex_faces", space.complex_faces()},
+          {"nodes", space.skeleton().nodes()},
+          {"filtered_nodes", space.filtered().graph.nodes()},
+          {"simplified_nodes", space.simplified().graph.nodes()},
+          {"components", counts.components},
+          {"loops", counts.loops},
+          {"clusters", space.clusters().count},
+          {"gates", space.gates().gates.size()},
+          {"regions", space.regions().regions.size()},
+          {"portals", space.portals().portals.size()}};
+}
+
+Json steps(const ArtefactStore& store) {
+  Json all = Json::array();
+  for (const ArtefactRecord& r : store.records()) {
+    const bool built = r.origin == ArtefactRecord::Origin::built;
+    all.push_back({{"name", r.type},
+                   {"origin", built ? "built" : "loaded"},
+                   {"seconds", r.seconds},
+                   {"disk_bytes", r.disk_bytes}});
+  }
+  return all;
+}
+
+void print(const Json& j) {
+  for (const auto& [name, value] : j.items()) {
+    if (name == "steps" || name == "peak_memory_bytes" || name == "threads") continue;
+    std::string label = name;
+    std::replace(label.begin(), label.end(), '_', ' ');
+    fmt::print("{:<20} {}\n", label, value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  fmt::print("\n{:<20} {:>8} {:>10} {:>12}\n", "STEP", "", "SECONDS", "ON DISK");
+  double total = 0;
+  for (const Json& step : j["steps"]) {
+    const auto seconds = step["seconds"].get<double>();
+    const auto bytes = step["disk_bytes"].get<std::uint64_t>();
+    total += seconds;
+    fmt::print("{:<20} {:>8} {:>10.3f} {:>12}\n", step["name"].get<std::string>(),
+               step["origin"].get<std::string>(), seconds, bytes > 0 ? byte_size_text(bytes) : "-");
+  }
+  fmt::print("{:<20} {:>8} {:>10.3f}\n", "all", "", total);
+  fmt::print("peak memory {}, {} threads\n",
+             byte_size_text(j["peak_memory_bytes"].get<std::uint64_t>()), j["threads"].dump());
 }
 
 void write_overlays(const std::filesystem::path& dir, const SceneData& scene,
@@ -101,7 +127,7 @@ void write_overlays(const std::filesystem::path& dir, const SceneData& scene,
   const GridTransform& grid = space.voxels().transform;
   const auto write = [&](const char* name, const std::vector<OverlayMesh>& overlay) {
     write_overlay(dir / name, scene, overlay);
-    fmt::print("{}\n", (dir / name).string());
+    fmt::print(stderr, "{}\n", (dir / name).string());
   };
   write("skeleton.glb", skeleton_overlay(space.skeleton(), grid));
   write("filtered.glb", skeleton_overlay(space.filtered().graph, grid));
@@ -130,12 +156,13 @@ void analyze(const Options& o) {
                       store, pool);
   space.node_map();
   space.filtered_map();
-  print_shape(o, space);
-  print_steps(store);
+  Json result = shape(o, space);
+  result["steps"] = steps(store);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  fmt::print("peak memory {}, {} threads\n",
-             byte_size_text(static_cast<std::uint64_t>(usage.ru_maxrss) * 1024), pool.threads());
+  result["peak_memory_bytes"] = std::int64_t{usage.ru_maxrss} * 1024;
+  result["threads"] = pool.threads();
+  o.json ? fmt::print("{}\n", result.dump(2)) : print(result);
   if (!o.out.empty()) write_overlays(o.out, scene, space);
 }
 
@@ -166,6 +193,7 @@ void add_analyze(CLI::App& app, int& code) {
   command->add_option("--threads", o->threads, "0: one for each core (default)")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--no-cache", o->no_cache, "builds everything anew and keeps nothing");
+  command->add_flag("--json", o->json, "prints JSON, for scripts");
   command->callback([o, &code] {
     analyze(*o);
     code = exit_done;
