@@ -2,7 +2,6 @@
 
 #include <Imath/ImathVec.h>
 
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -26,7 +25,8 @@ struct SkeletonGraph {
   std::size_t degree(std::uint32_t node) const { return first[node + 1] - first[node]; }
   /// The radius squared, which is a whole number; exact for radii up to 1448 voxels.
   std::int64_t squared_radius(std::uint32_t node) const {
-    return std::llround(static_cast<double>(radii[node]) * static_cast<double>(radii[node]));
+    const auto r = static_cast<double>(radii[node]);
+    return static_cast<std::int64_t>(r * r + 0.5);
   }
   /// Whether a node lies in the closed ball of `centre`.
   bool in_ball(std::uint32_t node, std::uint32_t centre) const {

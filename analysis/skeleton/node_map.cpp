@@ -6,7 +6,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "analysis/skeleton/label_front.h"
+#include "analysis/skeleton/wavefront.h"
 #include "analysis/space/memory_limit.h"
 #include "analysis/space/sweep.h"
 
@@ -21,7 +21,7 @@ void fill(Grid3<std::uint32_t>& map, const ThreadPool& pool) {
   });
 }
 
-void start_from_nodes(LabelFront& front, const SkeletonGraph& graph, Imath::V3i size) {
+void start_from_nodes(Wavefront& front, const SkeletonGraph& graph, Imath::V3i size) {
   for (std::uint32_t n = 0; n < graph.nodes(); ++n) {
     const Imath::V3i corner = graph.corners[n];
     if (!in_grid(corner, size + Imath::V3i(1)))
@@ -115,11 +115,10 @@ Grid3<std::uint32_t> node_map(const BitGrid3& domain, const SkeletonGraph& graph
                               const ThreadPool& pool, std::uint64_t byte_limit) {
   const Imath::V3i size = domain.size();
   require_memory("a node map", size,
-                 checked_voxels(size) * sizeof(std::uint32_t) + LabelFront::bytes(size),
-                 byte_limit);
+                 checked_voxels(size) * sizeof(std::uint32_t) + Wavefront::bytes(size), byte_limit);
   Grid3<std::uint32_t> map(size);
   fill(map, pool);
-  LabelFront front(domain, map);
+  Wavefront front(domain, map);
   start_from_nodes(front, graph, size);
   front.run(pool);
   if (graph.nodes() > 0) Rest(map, front.unreached());

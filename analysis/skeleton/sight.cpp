@@ -2,97 +2,108 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdlib>
 
 namespace lacuna {
 namespace {
 
-/// A walk along the line. Each coordinate leads from the middle of a voxel to a face between two,
-/// so it changes by an odd number of halves, A, and the line crosses the planes across this axis at
-/// (2 i + 1) / A of its length, i = 0 to (A - 1) / 2; the last one is at the corner.
+/// A walk along the line, from voxel to voxel. Each coordinate leads from the middle of a voxel to
+/// a face between two, so it changes by an odd number of halves, A, and the line crosses the planes
+/// across this axis at (2 i + 1) / A of its length; the last time at the corner. Places on the line
+/// are held as whole numbers: in 1 / (A_x A_y A_z).
 class Walk {
  public:
-  Walk(const Grid3<std::uint16_t>& l1, Imath::V3i voxel, Imath::V3i corner)
-      : l1_(l1), voxel_(voxel), crossed_(0) {
-    for (int a = 0; a < 3; ++a) {
-      const int halves = 2 * corner[a] - 2 * voxel[a] - 1;
-      side_[a] = halves > 0 ? 1 : -1;
-      halves_[a] = std::abs(halves);
-      if (halves_[a] > halves_[longest_]) longest_ = a;
+  Walk(const Grid3<std::uint16_t>& l1, Imath::V3i voxel, Imath::V3i corner,
+       std::int64_t squared_radius)
+      : here_(l1.data() + l1.index(voxel)) {
+    const Imath::V3i size = l1.size();
+    const std::array<std::ptrdiff_t, 3> along{1, size.x, std::ptrdiff_t{size.x} * size.y};
+    const Imath::V3i halves = 2 * corner - 2 * voxel - Imath::V3i(1);
+    std::array<std::int64_t, 3> length;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const int n = halves[static_cast<int>(a)];
+      length[a] = std::abs(n);
+      step_[a] = n > 0 ? along[a] : -along[a];
     }
+    for (std::size_t a = 0; a < 3; ++a) {
+      next_[a] = length[(a + 1) % 3] * length[(a + 2) % 3];
+      apart_[a] = 2 * next_[a];
+    }
+    end_ = length[0] * next_[0];
+    planes_ =
+        static_cast<double>(length[0] + length[1] + length[2]) / (2 * static_cast<double>(end_));
+    if (squared_radius == 0) return;
+    // The ball's part is left out, from where the line enters it, rounded up.
+    const std::int64_t length2 =
+        length[0] * length[0] + length[1] * length[1] + length[2] * length[2];
+    const double inside =
+        std::sqrt(4 * static_cast<double>(squared_radius) / static_cast<double>(length2));
+    const double outside = (1 - inside + 1e-12) * static_cast<double>(end_);
+    end_ = std::min(end_, std::max(std::int64_t{0}, static_cast<std::int64_t>(outside) + 1));
   }
 
   bool arrives() {
-    int empty = l1_(voxel_);
-    while (empty > 0) {
-      if (!leap(empty)) {
-        std::array<bool, 3> crosses;
-        if (!next(crosses)) return true;
-        if (!cross(crosses)) return false;
-      }
-      empty = l1_(voxel_);
+    for (;;) {
+      if (*here_ == 0) return false;
+      if (*here_ >= worth_a_leap && leap()) return true;
+      at_ = std::min({next_[0], next_[1], next_[2]});
+      if (at_ >= end_) return true;
+      if (!cross()) return false;
+    }
+  }
+
+ private:
+  static constexpr int worth_a_leap = 12;
+
+  /// Into the next voxel. Where the line meets an edge or a corner it touches all voxels around;
+  /// false if one of them, but the next, is scene.
+  bool cross() {
+    const std::array<std::int64_t, 3> crossed{-std::int64_t{next_[0] == at_},
+                                              -std::int64_t{next_[1] == at_},
+                                              -std::int64_t{next_[2] == at_}};  // 0 or all bits
+    const auto all = static_cast<unsigned>((crossed[0] & 1) | (crossed[1] & 2) | (crossed[2] & 4));
+    if ((all & (all - 1)) != 0) [[unlikely]]
+      for (unsigned part = 1; part < all; ++part)
+        if ((part & ~all) == 0 && *stepped(part) == 0) return false;
+    // Which axis it is cannot be predicted: no branches.
+    here_ += (crossed[0] & step_[0]) + (crossed[1] & step_[1]) + (crossed[2] & step_[2]);
+    for (std::size_t a = 0; a < 3; ++a) next_[a] += crossed[a] & apart_[a];
+    return true;
+  }
+  const std::uint16_t* stepped(unsigned axes) const {
+    const std::uint16_t* p = here_;
+    for (unsigned a = 0; a < 3; ++a) p += (axes >> a & 1) != 0 ? step_[a] : 0;
+    return p;
+  }
+  /// Crosses as many planes at once as lead to voxels nearer than the scene: in a stretch of length
+  /// s at most s / apart + 1 across each axis. True if this leads to the end.
+  bool leap() {
+    at_ += static_cast<std::int64_t>((*here_ - 4) / planes_);
+    if (at_ >= end_) return true;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (next_[a] > at_) continue;
+      const std::int64_t n = (at_ - next_[a]) / apart_[a] + 1;
+      here_ += n * step_[a];
+      next_[a] += n * apart_[a];
     }
     return false;
   }
 
- private:
-  /// Which planes the line crosses next, all at the same place; false if it is at the corner.
-  bool next(std::array<bool, 3>& crosses) const {
-    int first = 0;
-    for (int a = 1; a < 3; ++a)
-      if (order(a, first) < 0) first = a;
-    for (int a = 0; a < 3; ++a) crosses[static_cast<std::size_t>(a)] = order(a, first) == 0;
-    return 2 * crossed_[first] + 1 < halves_[first];
-  }
-  /// Below, equal to or above 0 where the next plane across a comes before, with, after that of b.
-  std::int64_t order(int a, int b) const {
-    return (2 * std::int64_t{crossed_[a]} + 1) * halves_[b] -
-           (2 * std::int64_t{crossed_[b]} + 1) * halves_[a];
-  }
-  /// Where the line meets an edge or a corner, it touches all voxels around. False at the scene.
-  bool cross(const std::array<bool, 3>& crosses) {
-    const unsigned all = (crosses[0] ? 1u : 0u) | (crosses[1] ? 2u : 0u) | (crosses[2] ? 4u : 0u);
-    for (unsigned part = 1; part < all; ++part)
-      if ((part & ~all) == 0 && l1_(stepped(part)) == 0) return false;
-    voxel_ = stepped(all);
-    for (int a = 0; a < 3; ++a) crossed_[a] += static_cast<int>(all >> a & 1);
-    return true;
-  }
-  Imath::V3i stepped(unsigned axes) const {
-    Imath::V3i v = voxel_;
-    for (int a = 0; a < 3; ++a) v[a] += (axes >> a & 1) != 0 ? side_[a] : 0;
-    return v;
-  }
-  /// Crosses several planes at once where all voxels on the way are nearer than `empty`: m across
-  /// the longest axis, and across another one as many as come no later, at most m A / A_longest
-  /// + 1.
-  bool leap(int empty) {
-    const std::int64_t length = halves_[longest_];
-    const std::int64_t sum = std::int64_t{halves_[0]} + halves_[1] + halves_[2];
-    const std::int64_t left = (length - 1) / 2 - crossed_[longest_];
-    const std::int64_t m = std::min((empty - 3) * length / sum, left);
-    if (m < 2) return false;
-    const std::int64_t at = 2 * (crossed_[longest_] + m) - 1;  // in 1 / length
-    for (int a = 0; a < 3; ++a) {
-      const auto now = static_cast<int>((at * halves_[a] + length) / (2 * length));
-      voxel_[a] += side_[a] * (now - crossed_[a]);
-      crossed_[a] = now;
-    }
-    return true;
-  }
-
-  const Grid3<std::uint16_t>& l1_;
-  Imath::V3i voxel_;
-  Imath::V3i crossed_;  // planes across each axis
-  Imath::V3i side_;
-  Imath::V3i halves_;
-  int longest_ = 0;
+  const std::uint16_t* here_;
+  std::int64_t at_ = 0, end_;
+  std::array<std::int64_t, 3> next_;   // where the next plane across an axis is crossed
+  std::array<std::int64_t, 3> apart_;  // between two such places
+  std::array<std::ptrdiff_t, 3> step_;
+  double planes_;  // crossed in a stretch of length 1, on average
 };
 
 }  // namespace
 
-bool sees(const Grid3<std::uint16_t>& l1, Imath::V3i voxel, Imath::V3i corner) {
-  return Walk(l1, voxel, corner).arrives();
+bool sees(const Grid3<std::uint16_t>& l1, Imath::V3i voxel, Imath::V3i corner,
+          std::int64_t squared_radius) {
+  return Walk(l1, voxel, corner, squared_radius).arrives();
 }
 
 }  // namespace lacuna

@@ -98,10 +98,7 @@ class Slab {
       unseeing_.push_back({n, v});
   }
   bool in_sight(Imath::V3i v, std::uint32_t n) const {
-    const Imath::V3i d = halves(v, graph_.corners[n]);
-    const std::int64_t length2 =
-        std::int64_t{d.x} * d.x + std::int64_t{d.y} * d.y + std::int64_t{d.z} * d.z;
-    return length2 <= 4 * graph_.squared_radius(n) || sees(l1_, v, graph_.corners[n]);
+    return sees(l1_, v, graph_.corners[n], graph_.squared_radius(n));
   }
   bool choose(Imath::V3i v, const std::vector<std::uint32_t>& around) {
     order_.clear();

@@ -11,40 +11,53 @@
 
 namespace lacuna {
 
-/// A front that walks through a domain over shared faces, all voxels of one distance at a time, and
-/// hands labels on: a voxel takes the smallest label among its neighbours that were reached one
-/// step before. Works on blocks of 8^3 voxels, and only on those that the front is in; each block
-/// has one thread for a whole step.
-class LabelFront {
+/// A front that walks through a domain over shared faces from labelled voxels, all voxels of one
+/// distance at a time. A voxel takes the label of a neighbour that was reached one step before, of
+/// the first in the order -x, +x, -y, +y, -z, +z.
+///
+/// Works on bit planes of 8^3 voxels, and only where the front is. The planes hold which neighbour
+/// that was, as 3 bits a voxel; labels follow at the end, and because x comes first most of them
+/// are runs along x.
+class Wavefront {
  public:
   /// `labels`, as large as the domain and no_node everywhere, receives the labels.
-  LabelFront(const BitGrid3& domain, Grid3<std::uint32_t>& labels);
+  Wavefront(const BitGrid3& domain, Grid3<std::uint32_t>& labels);
 
   /// Gives a voxel its label, at distance 0; nothing if it is not in the domain or has one.
   void start(Imath::V3i voxel, std::uint32_t label);
-  /// Walks until nothing more can be reached.
+  /// Walks until nothing more can be reached, and labels all that was.
   void run(const ThreadPool& pool);
-  /// The voxels of the domain that have no label, by block.
+  /// The voxels of the domain that were not reached, by block.
   std::vector<Imath::V3i> unreached() const;
 
-  /// Bytes that a front takes for a grid of that size.
+  /// Bytes that a front takes in a grid of that size.
   static std::uint64_t bytes(Imath::V3i size);
 
  private:
+  struct Block {
+    Plane open;  // in the domain, not reached
+    /// Where a voxel was reached from, a bit of it in each plane: 1 to 6 in the order of preference
+    /// (1 is -x, 2 is +x), 7 at a start, 0 where it was not.
+    std::array<Plane, 3> from;
+  };
+
   std::size_t index(Imath::V3i voxel) const {
     return static_cast<std::size_t>((voxel.x >> 3) + 1 + stride_[1] * ((voxel.y >> 3) + 1) +
                                     stride_[2] * ((voxel.z >> 3) + 1));
   }
   Imath::V3i corner(std::size_t block) const;
+  unsigned from(Imath::V3i voxel) const;
   void find_candidates();
   bool step(std::size_t block);
-  void hand_on(std::size_t block, const std::array<Plane, 6>& from, const Plane& next);
+  void trace(Imath::V3i voxel, std::vector<Imath::V3i>& way);
+  void label_sources();
+  void label_row(int y, int z);
 
   Grid3<std::uint32_t>& labels_;
   // Blocks lie in a ring of empty ones.
-  Imath::V3i blocks_;
+  Imath::V3i ringed_;
   std::array<std::ptrdiff_t, 3> stride_;
-  std::vector<Plane> open_;   // in the domain, without label
+  std::vector<Block> blocks_;
   std::vector<Plane> front_;  // reached by the step before
   std::vector<Plane> next_;   // reached by this step
   std::vector<std::uint32_t> active_, candidates_;

@@ -1,0 +1,205 @@
+#include "analysis/skeleton/wavefront.h"
+
+#include <algorithm>
+
+#include "analysis/complex/cubical_complex.h"
+#include "analysis/skeleton/graph.h"
+#include "analysis/space/sweep.h"
+
+namespace lacuna {
+namespace {
+
+Imath::V3i with_ring(Imath::V3i size) {
+  return (size + Imath::V3i(BitBlock::side - 1)) / BitBlock::side + Imath::V3i(2);
+}
+std::size_t volume(Imath::V3i n) {
+  return static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) *
+         static_cast<std::size_t>(n.z);
+}
+Plane bit_of(Imath::V3i voxel) {
+  BitBlock bits;
+  bits.z[static_cast<std::size_t>(voxel.z & 7)] = std::uint64_t{1}
+                                                  << ((voxel.y & 7) * 8 + (voxel.x & 7));
+  return Plane::of(bits);
+}
+
+}  // namespace
+
+Wavefront::Wavefront(const BitGrid3& domain, Grid3<std::uint32_t>& labels)
+    : labels_(labels),
+      ringed_(with_ring(domain.size())),
+      stride_{1, ringed_.x, std::ptrdiff_t{ringed_.x} * ringed_.y},
+      blocks_(volume(ringed_)),
+      front_(blocks_.size(), Plane::zero()),
+      next_(blocks_.size(), Plane::zero()),
+      asked_(blocks_.size(), 0) {
+  const Imath::V3i n = domain.blocks();
+  for (int z = 0; z < n.z; ++z)
+    for (int y = 0; y < n.y; ++y)
+      for (int x = 0; x < n.x; ++x)
+        blocks_[index(Imath::V3i(x, y, z) * BitBlock::side)].open =
+            Plane::of(domain.block(x, y, z));
+}
+
+std::uint64_t Wavefront::bytes(Imath::V3i size) {
+  return volume(with_ring(size)) * (sizeof(Block) + 2 * sizeof(Plane) + 3 * sizeof(std::uint32_t));
+}
+
+Imath::V3i Wavefront::corner(std::size_t block) const {
+  const auto b = static_cast<std::ptrdiff_t>(block);
+  return (Imath::V3i(static_cast<int>(b % stride_[1]),
+                     static_cast<int>(b % stride_[2] / stride_[1]),
+                     static_cast<int>(b / stride_[2])) -
+          Imath::V3i(1)) *
+         BitBlock::side;
+}
+
+unsigned Wavefront::from(Imath::V3i voxel) const {
+  const Block& block = blocks_[index(voxel)];
+  const auto lane = static_cast<std::size_t>(voxel.z & 7);
+  const int bit = (voxel.y & 7) * 8 + (voxel.x & 7);
+  unsigned code = 0;
+  for (unsigned i = 0; i < 3; ++i) {
+    const std::uint64_t word = block.from[i].bits().z[lane];
+    code |= static_cast<unsigned>(word >> bit & 1) << i;
+  }
+  return code;
+}
+
+void Wavefront::start(Imath::V3i voxel, std::uint32_t label) {
+  if (!in_grid(voxel, labels_.size())) return;
+  const std::size_t b = index(voxel);
+  Block& block = blocks_[b];
+  const Plane bit = bit_of(voxel);
+  if (!(block.open & bit).any()) return;
+  block.open &= ~bit;
+  for (Plane& p : block.from) p |= bit;
+  if (!front_[b].any()) active_.push_back(static_cast<std::uint32_t>(b));
+  front_[b] |= bit;
+  labels_(voxel) = label;
+}
+
+void Wavefront::find_candidates() {
+  ++steps_;
+  candidates_.clear();
+  const auto ask = [&](std::size_t block) {
+    if (asked_[block] == steps_) return;
+    asked_[block] = steps_;
+    if (blocks_[block].open.any()) candidates_.push_back(static_cast<std::uint32_t>(block));
+  };
+  for (const std::uint32_t block : active_) {
+    ask(block);
+    for (const std::ptrdiff_t s : stride_) {
+      ask(static_cast<std::size_t>(block - s));
+      ask(static_cast<std::size_t>(block + s));
+    }
+  }
+}
+
+void Wavefront::run(const ThreadPool& pool) {
+  constexpr std::size_t at_a_time = 32;
+  std::vector<char> reached;
+  while (!active_.empty()) {
+    find_candidates();
+    reached.assign(candidates_.size(), 0);
+    const std::size_t parts = (candidates_.size() + at_a_time - 1) / at_a_time;
+    const auto work = [&](int part) {
+      const std::size_t from = static_cast<std::size_t>(part) * at_a_time;
+      for (std::size_t i = from; i < std::min(from + at_a_time, candidates_.size()); ++i)
+        reached[i] = step(candidates_[i]);
+    };
+    run_parallel(pool, static_cast<int>(parts), work);
+    for (const std::uint32_t block : active_) front_[block] = Plane::zero();
+    front_.swap(next_);
+    active_.clear();
+    for (std::size_t i = 0; i < candidates_.size(); ++i)
+      if (reached[i]) active_.push_back(candidates_[i]);
+  }
+  label_sources();
+  run_parallel(pool, labels_.size().z, [&](int z) {
+    for (int y = 0; y < labels_.size().y; ++y) label_row(y, z);
+  });
+}
+
+bool Wavefront::step(std::size_t block) {
+  const Plane own = front_[block];
+  const auto at = static_cast<std::ptrdiff_t>(block);
+  const auto front = [&](std::ptrdiff_t offset) {
+    return front_[static_cast<std::size_t>(at + offset)];
+  };
+  Block& b = blocks_[block];
+  const std::array<Plane, 6> reach{
+      from_low<0>(own, front(-1)),          from_high<0>(own, front(1)),
+      from_low<1>(own, front(-stride_[1])), from_high<1>(own, front(stride_[1])),
+      from_low<2>(own, front(-stride_[2])), from_high<2>(own, front(stride_[2]))};
+  Plane left = b.open;
+  for (unsigned d = 0; d < 6; ++d) {
+    const Plane taken = left & reach[d];
+    for (unsigned i = 0; i < 3; ++i)
+      if (((d + 1) >> i & 1) != 0) b.from[i] |= taken;
+    left &= ~taken;
+  }
+  const Plane next = b.open & ~left;
+  if (!next.any()) return false;
+  next_[block] = next;
+  b.open = left;
+  return true;
+}
+
+/// Labels the way from a voxel back to the next one that has a label.
+void Wavefront::trace(Imath::V3i voxel, std::vector<Imath::V3i>& way) {
+  way.clear();
+  while (labels_(voxel) == no_node) {
+    way.push_back(voxel);
+    const int code = static_cast<int>(from(voxel)) - 1;
+    voxel[code / 2] += code % 2 == 0 ? -1 : 1;
+  }
+  for (const Imath::V3i& v : way) labels_(v) = labels_(voxel);
+}
+
+/// Labels all voxels that were not reached along x: where the runs begin.
+void Wavefront::label_sources() {
+  std::vector<Imath::V3i> way;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const auto& [low, mid, high] = blocks_[b].from;
+    const Plane sources = (low & mid) | high;
+    if (sources.any())
+      for_each_bit(sources, [&](int position) { trace(corner(b) + cell_of(position), way); });
+  }
+}
+
+void Wavefront::label_row(int y, int z) {
+  std::uint32_t* row = labels_.row(y, z);
+  const std::size_t first = index({0, y, z});
+  const auto lane = static_cast<std::size_t>(z & 7);
+  const int shift = (y & 7) * 8, blocks = ringed_.x - 2;
+  const auto code_bits = [&](int bx, std::size_t which) {
+    const Block& block = blocks_[first + static_cast<std::size_t>(bx)];
+    const auto byte = [&](std::size_t i) {
+      return static_cast<unsigned>(block.from[i].bits().z[lane] >> shift) & 0xffu;
+    };
+    return byte(which) & ~byte(1 - which) & ~byte(2);
+  };
+  for (int bx = 0; bx < blocks; ++bx)
+    for (unsigned bits = code_bits(bx, 0); bits != 0; bits &= bits - 1) {
+      const int x = 8 * bx + std::countr_zero(bits);
+      row[x] = row[x - 1];
+    }
+  for (int bx = blocks - 1; bx >= 0; --bx)
+    for (unsigned bits = code_bits(bx, 1); bits != 0;) {
+      const int high = std::bit_width(bits) - 1;
+      row[8 * bx + high] = row[8 * bx + high + 1];
+      bits ^= 1u << high;
+    }
+}
+
+std::vector<Imath::V3i> Wavefront::unreached() const {
+  std::vector<Imath::V3i> voxels;
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    if (blocks_[b].open.any())
+      for_each_bit(blocks_[b].open,
+                   [&](int position) { voxels.push_back(corner(b) + cell_of(position)); });
+  return voxels;
+}
+
+}  // namespace lacuna
