@@ -20,11 +20,11 @@ Environment::Environment(int width, int height, std::vector<float> rgb, float sc
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       double mean = 0;
-      for (int dy = -1; dy <= 1; ++dy) {
-        for (int dx = -1; dx <= 1; ++dx) {
-          mean += kernel[static_cast<std::size_t>(dx + 1)] *
-                  kernel[static_cast<std::size_t>(dy + 1)] *
-                  double(luminance(texel(x + dx, y + dy)));
+      for (std::size_t j = 0; j < kernel.size(); ++j) {
+        for (std::size_t i = 0; i < kernel.size(); ++i) {
+          mean +=
+              kernel[i] * kernel[j] *
+              double(luminance(texel(x + static_cast<int>(i) - 1, y + static_cast<int>(j) - 1)));
         }
       }
       const double w = mean * texel_solid_angle(y);

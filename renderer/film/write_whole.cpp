@@ -11,7 +11,7 @@
 namespace lacuna {
 
 void write_whole(const std::filesystem::path& file, const char* format, const OIIO::ImageSpec& spec,
-                 OIIO::TypeDesc type, const void* pixels) {
+                 const OIIO::TypeDesc& type, const void* pixels) {
   const auto fail = [&](const std::string& why) {
     if (why.empty()) throw std::bad_alloc();  // no memory for a thread; all else it gives a name
     throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), why));

@@ -10,6 +10,6 @@ namespace lacuna {
 /// whole. Included only where images are written. Throws std::runtime_error or std::system_error
 /// naming the file.
 void write_whole(const std::filesystem::path& file, const char* format, const OIIO::ImageSpec& spec,
-                 OIIO::TypeDesc type, const void* pixels);
+                 const OIIO::TypeDesc& type, const void* pixels);
 
 }  // namespace lacuna
