@@ -60,8 +60,7 @@ unsigned Wavefront::from(Imath::V3i voxel) const {
   const int bit = (voxel.y & 7) * 8 + (voxel.x & 7);
   unsigned code = 0;
   for (unsigned i = 0; i < 3; ++i) {
-    const std::uint64_t word = block.from[i].bits().z[lane];
-    code |= static_cast<unsigned>(word >> bit & 1) << i;
+    code |= static_cast<unsigned>(block.from[i].z[lane] >> bit & 1) << i;
   }
   return code;
 }
@@ -73,7 +72,7 @@ void Wavefront::start(Imath::V3i voxel, std::uint32_t label) {
   const Plane bit = bit_of(voxel);
   if (!(block.open & bit).any()) return;
   block.open &= ~bit;
-  for (Plane& p : block.from) p |= bit;
+  for (BitBlock& bits : block.from) bits = (Plane::of(bits) | bit).bits();
   if (!front_[b].any()) active_.push_back(static_cast<std::uint32_t>(b));
   front_[b] |= bit;
   labels_(voxel) = label;
@@ -115,10 +114,8 @@ void Wavefront::run(const ThreadPool& pool) {
     for (std::size_t i = 0; i < candidates_.size(); ++i)
       if (reached[i]) active_.push_back(candidates_[i]);
   }
-  label_sources();
-  run_parallel(pool, labels_.size().z, [&](int z) {
-    for (int y = 0; y < labels_.size().y; ++y) label_row(y, z);
-  });
+  label_across_planes();
+  run_parallel(pool, labels_.size().z, [&](int z) { label_plane(z); });
 }
 
 bool Wavefront::step(std::size_t block) {
@@ -133,16 +130,18 @@ bool Wavefront::step(std::size_t block) {
       from_low<1>(own, front(-stride_[1])), from_high<1>(own, front(stride_[1])),
       from_low<2>(own, front(-stride_[2])), from_high<2>(own, front(stride_[2]))};
   Plane left = b.open;
+  std::array<Plane, 3> from{Plane::zero(), Plane::zero(), Plane::zero()};
   for (unsigned d = 0; d < 6; ++d) {
     const Plane taken = left & reach[d];
     for (unsigned i = 0; i < 3; ++i)
-      if (((d + 1) >> i & 1) != 0) b.from[i] |= taken;
+      if (((d + 1) >> i & 1) != 0) from[i] |= taken;
     left &= ~taken;
   }
   const Plane next = b.open & ~left;
   if (!next.any()) return false;
   next_[block] = next;
   b.open = left;
+  for (std::size_t i = 0; i < 3; ++i) b.from[i] = (Plane::of(b.from[i]) | from[i]).bits();
   return true;
 }
 
@@ -157,15 +156,32 @@ void Wavefront::trace(Imath::V3i voxel, std::vector<Imath::V3i>& way) {
   for (const Imath::V3i& v : way) labels_(v) = labels_(voxel);
 }
 
-/// Labels all voxels that were not reached along x: where the runs begin.
-void Wavefront::label_sources() {
+/// Labels the voxels that were reached along z.
+void Wavefront::label_across_planes() {
   std::vector<Imath::V3i> way;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    const auto& [low, mid, high] = blocks_[b].from;
-    const Plane sources = (low & mid) | high;
-    if (sources.any())
-      for_each_bit(sources, [&](int position) { trace(corner(b) + cell_of(position), way); });
+    const auto& from = blocks_[b].from;
+    const Plane along_z = Plane::of(from[2]) & (Plane::of(from[0]) ^ Plane::of(from[1]));
+    if (along_z.any())
+      for_each_bit(along_z, [&](int position) { trace(corner(b) + cell_of(position), way); });
   }
+}
+
+/// Labels what was reached along y, from where ways do not leave the plane any more, then along x.
+void Wavefront::label_plane(int z) {
+  std::vector<Imath::V3i> way;
+  const auto lane = static_cast<std::size_t>(z & 7);
+  const Imath::V3i n = labels_.size();
+  for (int y = 0; y < n.y; y += BitBlock::side)
+    for (int x = 0; x < n.x; x += BitBlock::side) {
+      const auto& from = blocks_[index({x, y, z})].from;
+      const std::uint64_t low = from[0].z[lane], mid = from[1].z[lane], high = from[2].z[lane];
+      for (std::uint64_t w = (low & mid & ~high) | (~low & ~mid & high); w != 0; w &= w - 1) {
+        const int bit = std::countr_zero(w);
+        trace({x + (bit & 7), y + (bit >> 3), z}, way);
+      }
+    }
+  for (int y = 0; y < n.y; ++y) label_row(y, z);
 }
 
 void Wavefront::label_row(int y, int z) {
@@ -176,7 +192,7 @@ void Wavefront::label_row(int y, int z) {
   const auto code_bits = [&](int bx, std::size_t which) {
     const Block& block = blocks_[first + static_cast<std::size_t>(bx)];
     const auto byte = [&](std::size_t i) {
-      return static_cast<unsigned>(block.from[i].bits().z[lane] >> shift) & 0xffu;
+      return static_cast<unsigned>(block.from[i].z[lane] >> shift) & 0xffu;
     };
     return byte(which) & ~byte(1 - which) & ~byte(2);
   };

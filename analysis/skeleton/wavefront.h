@@ -16,8 +16,8 @@ namespace lacuna {
 /// the first in the order -x, +x, -y, +y, -z, +z.
 ///
 /// Works on bit planes of 8^3 voxels, and only where the front is. The planes hold which neighbour
-/// that was, as 3 bits a voxel; labels follow at the end, and because x comes first most of them
-/// are runs along x.
+/// that was, as 3 bits a voxel; labels follow at the end: because x comes first, then y, most of
+/// them are runs along x, and nearly all the rest stays in a plane.
 class Wavefront {
  public:
   /// `labels`, as large as the domain and no_node everywhere, receives the labels.
@@ -38,7 +38,7 @@ class Wavefront {
     Plane open;  // in the domain, not reached
     /// Where a voxel was reached from, a bit of it in each plane: 1 to 6 in the order of preference
     /// (1 is -x, 2 is +x), 7 at a start, 0 where it was not.
-    std::array<Plane, 3> from;
+    std::array<BitBlock, 3> from;
   };
 
   std::size_t index(Imath::V3i voxel) const {
@@ -50,7 +50,8 @@ class Wavefront {
   void find_candidates();
   bool step(std::size_t block);
   void trace(Imath::V3i voxel, std::vector<Imath::V3i>& way);
-  void label_sources();
+  void label_across_planes();
+  void label_plane(int z);
   void label_row(int y, int z);
 
   Grid3<std::uint32_t>& labels_;
