@@ -17,8 +17,8 @@ namespace {
 /// Raised when the same inputs give other bits.
 constexpr std::uint32_t voxels_version = 1, domain_version = 1, skeleton_version = 1,
                         filtered_version = 1, map_version = 1, simplified_version = 1,
-                        clusters_version = 1, gates_version = 1, opening_version = 1,
-                        regions_version = 1, portals_version = 1;
+                        clusters_version = 1, gates_version = 1, regions_version = 1,
+                        portals_version = 1;
 
 /// By how much a node's radius may fall short of its cluster's (thesis 7.2.2).
 constexpr double cluster_alpha = 0.2;

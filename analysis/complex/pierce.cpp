@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 #include <unordered_map>
 
 #include "analysis/complex/complex_components.h"
@@ -21,7 +22,8 @@ Imath::V3i before(Imath::V3i cell, int axis) {
   return cell;
 }
 
-/// All squares, those farthest from the scene first, equal ones in the order of memory.
+/// All squares, those farthest from the scene first, equal ones by cell (x fastest) and type: not
+/// in the order of blocks, so that the result commutes with translations of the grid.
 std::vector<Candidate> candidates(const CubicalComplex& thin,
                                   const Grid3<std::uint16_t>& distance) {
   std::vector<Candidate> all;
@@ -37,8 +39,13 @@ std::vector<Candidate> candidates(const CubicalComplex& thin,
       });
     }
   }
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.distance > b.distance; });
+  std::sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
+    const auto order = [](const Candidate& c) {
+      const auto& [cell, type] = c.square;
+      return std::tuple(-c.distance, cell.z, cell.y, cell.x, type);
+    };
+    return order(a) < order(b);
+  });
   return all;
 }
 
@@ -65,7 +72,9 @@ class DisjointSets {
 std::vector<Square> one_of_each_part(const std::vector<Candidate>& all, Imath::V3i size) {
   DisjointSets parts(all.size());
   std::unordered_map<std::uint64_t, std::uint32_t> square_at_edge;
-  const auto w = static_cast<std::uint64_t>(size.x + 1), h = static_cast<std::uint64_t>(size.y + 1);
+  // The grid of cells, one more than voxels along each axis.
+  const std::uint64_t w = static_cast<std::uint64_t>(size.x) + 1,
+                      h = static_cast<std::uint64_t>(size.y) + 1;
   for (std::uint32_t i = 0; i < all.size(); ++i) {
     const auto& [cell, type] = all[i].square;
     for (int axis = 0; axis < 3; ++axis) {  // the two edges of the square along this axis

@@ -71,8 +71,8 @@ inline Plane from_low(Plane own, Plane below) {
   } else if constexpr (axis == 1) {
     return {(own.lo << 8) | (below.lo >> 56), (own.hi << 8) | (below.hi >> 56)};
   } else {
-    const Half lo = __builtin_shuffle(below.hi, own.lo, Half{3, 4, 5, 6});
-    const Half hi = __builtin_shuffle(own.lo, own.hi, Half{3, 4, 5, 6});
+    const Half lo = __builtin_shufflevector(below.hi, own.lo, 3, 4, 5, 6);
+    const Half hi = __builtin_shufflevector(own.lo, own.hi, 3, 4, 5, 6);
     return {lo, hi};
   }
 }
@@ -88,8 +88,8 @@ inline Plane from_high(Plane own, Plane above) {
   } else if constexpr (axis == 1) {
     return {(own.lo >> 8) | (above.lo << 56), (own.hi >> 8) | (above.hi << 56)};
   } else {
-    const Half lo = __builtin_shuffle(own.lo, own.hi, Half{1, 2, 3, 4});
-    const Half hi = __builtin_shuffle(own.hi, above.lo, Half{1, 2, 3, 4});
+    const Half lo = __builtin_shufflevector(own.lo, own.hi, 1, 2, 3, 4);
+    const Half hi = __builtin_shufflevector(own.hi, above.lo, 1, 2, 3, 4);
     return {lo, hi};
   }
 }

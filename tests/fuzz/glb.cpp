@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <random>
 
-#include "renderer/integrators/integrator.h"
+#include "renderer/integrators/path.h"
 #include "renderer/scene/gltf_guard.h"
 #include "tests/fuzz/input_file.h"
 #include "tests/renderer/scene/glb_frame.h"
@@ -26,7 +26,7 @@ void render(SceneData data) {
   const Camera camera(data.cameras.front(), side, side);
   PathSettings settings;
   settings.max_depth = 4;
-  const auto integrator = make_integrator(settings);
+  const auto integrator = make_path(settings);
   const Scene scene(std::move(data), integrator->needs(), std::nullopt, pool());
   Image image(side, side);
   const std::function<bool()> never = [] { return false; };
