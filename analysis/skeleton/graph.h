@@ -2,6 +2,7 @@
 
 #include <Imath/ImathVec.h>
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -26,7 +27,7 @@ struct SkeletonGraph {
   /// The radius squared, which is a whole number; exact for radii up to 1448 voxels.
   std::int64_t squared_radius(std::uint32_t node) const {
     const auto r = static_cast<double>(radii[node]);
-    return static_cast<std::int64_t>(r * r + 0.5);
+    return std::llrint(r * r);
   }
   /// Whether a node lies in the closed ball of `centre`.
   bool in_ball(std::uint32_t node, std::uint32_t centre) const {
