@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <immintrin.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstring>
@@ -96,7 +97,7 @@ struct RayCaster::Impl {
       check("copying triangles");
       throw std::bad_alloc();
     }
-    std::memcpy(positions, mesh.positions.data(), sizeof(V3f) * mesh.positions.size());
+    std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<V3f*>(positions));
     std::memcpy(triangles, mesh.triangles.data(),
                 sizeof(mesh.triangles[0]) * mesh.triangles.size());
     if (AlphaMask::needed(data, mesh)) {
