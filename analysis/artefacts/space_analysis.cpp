@@ -59,20 +59,20 @@ SpaceAnalysis::SpaceAnalysis(SpaceInput input, ArtefactStore& store, const Threa
     : input_(std::move(input)), store_(store), pool_(pool) {}
 
 template <class T>
-const T& SpaceAnalysis::part(Part<T>& place, const ArtefactKey& key,
-                             const std::function<T()>& build) {
-  if (!place) place = store_.get<T>(key, build);
-  return *place;
+const T& SpaceAnalysis::get(Part<T>& part, const ArtefactKey& key,
+                            const std::function<T()>& build) {
+  if (!part.value) part.value = store_.get<T>(key, build);
+  return *part.value;
 }
 
 ArtefactKey SpaceAnalysis::voxels_key() const {
-  return ArtefactKey("voxels", voxels_version,
+  return ArtefactKey(voxels_.type, voxels_version,
                      fmt::format("resolution={}", input_.settings.resolution))
       .from("geometry", input_.geometry);
 }
 
 ArtefactKey SpaceAnalysis::domain_key(const DomainSeeds& seeds) const {
-  return ArtefactKey("domain", domain_version).from(voxels_key()).from("seeds", hash_of(seeds));
+  return ArtefactKey(domain_.type, domain_version).from(voxels_key()).from("seeds", hash_of(seeds));
 }
 
 ArtefactKey SpaceAnalysis::of_domain(const char* type, std::uint32_t version,
@@ -81,37 +81,36 @@ ArtefactKey SpaceAnalysis::of_domain(const char* type, std::uint32_t version,
   return ArtefactKey(type, version, std::move(settings)).from("domain", domain_hash_);
 }
 
-ArtefactKey SpaceAnalysis::skeleton_key() { return of_domain("skeleton", skeleton_version); }
+ArtefactKey SpaceAnalysis::skeleton_key() { return of_domain(skeleton_.type, skeleton_version); }
 ArtefactKey SpaceAnalysis::filtered_key() {
-  return ArtefactKey("filtered_skeleton", filtered_version).from(skeleton_key());
+  return ArtefactKey(filtered_.type, filtered_version).from(skeleton_key());
 }
 ArtefactKey SpaceAnalysis::simplified_key() {
-  return ArtefactKey("simplified_skeleton", simplified_version).from(skeleton_key());
+  return ArtefactKey(simplified_.type, simplified_version).from(skeleton_key());
 }
 ArtefactKey SpaceAnalysis::clusters_key() {
-  return ArtefactKey("visibility_clusters", clusters_version,
-                     fmt::format("alpha={}", cluster_alpha))
+  return ArtefactKey(clusters_.type, clusters_version, fmt::format("alpha={}", cluster_alpha))
       .from(simplified_key());
 }
-ArtefactKey SpaceAnalysis::regions_key() { return of_domain("regions", regions_version); }
+ArtefactKey SpaceAnalysis::regions_key() { return of_domain(regions_.type, regions_version); }
 ArtefactKey SpaceAnalysis::map_key(const char* type, const ArtefactKey& graph) {
   return of_domain(type, map_version, fmt::format("mapping={}", enum_name(input_.settings.mapping)))
       .from(graph);
 }
 
 const Voxels& SpaceAnalysis::voxels() {
-  return part<Voxels>(voxels_, voxels_key(), [this] {
+  return get<Voxels>(voxels_, voxels_key(), [this] {
     return voxelize(input_.triangles(), input_.settings.resolution, pool_, input_.byte_limit);
   });
 }
 
 const Domain& SpaceAnalysis::domain() {
-  if (!domain_) {
+  if (!domain_.value) {
     const DomainSeeds seeds = input_.seeds();
-    part<Domain>(domain_, domain_key(seeds),
-                 [&] { return restrict_domain(voxels(), seeds, pool_, input_.byte_limit); });
+    get<Domain>(domain_, domain_key(seeds),
+                [&] { return restrict_domain(voxels(), seeds, pool_, input_.byte_limit); });
   }
-  return *domain_;
+  return *domain_.value;
 }
 
 const Grid3<std::uint16_t>& SpaceAnalysis::distance() {
@@ -123,7 +122,7 @@ const Grid3<std::uint16_t>& SpaceAnalysis::distance() {
 }
 
 const SkeletonGraph& SpaceAnalysis::skeleton() {
-  return part<SkeletonGraph>(skeleton_, skeleton_key(), [this] {
+  return get<SkeletonGraph>(skeleton_, skeleton_key(), [this] {
     const OpeningQuery opening(distance(), pool_);
     const SpaceMaps maps{distance(), [&](Imath::V3i v) { return static_cast<int>(opening(v)); }};
     ThinningReport report;
@@ -133,8 +132,8 @@ const SkeletonGraph& SpaceAnalysis::skeleton() {
 }
 
 const FilteredSkeleton& SpaceAnalysis::filtered() {
-  return part<FilteredSkeleton>(filtered_, filtered_key(),
-                                [this] { return filter_skeleton(skeleton()); });
+  return get<FilteredSkeleton>(filtered_, filtered_key(),
+                               [this] { return filter_skeleton(skeleton()); });
 }
 
 Grid3<std::uint32_t> SpaceAnalysis::make_map(const SkeletonGraph& graph) {
@@ -146,42 +145,41 @@ Grid3<std::uint32_t> SpaceAnalysis::make_map(const SkeletonGraph& graph) {
 }
 
 const Grid3<std::uint32_t>& SpaceAnalysis::node_map() {
-  if (!node_map_) {
-    part<Grid3<std::uint32_t>>(node_map_, map_key("node_map", skeleton_key()),
-                               [this] { return make_map(skeleton()); });
-    require_map(*node_map_, domain().voxels.size(), skeleton().nodes());
+  if (!node_map_.value) {
+    get<Grid3<std::uint32_t>>(node_map_, map_key(node_map_.type, skeleton_key()),
+                              [this] { return make_map(skeleton()); });
+    require_map(*node_map_.value, domain().voxels.size(), skeleton().nodes());
   }
-  return *node_map_;
+  return *node_map_.value;
 }
 
 const Grid3<std::uint32_t>& SpaceAnalysis::filtered_map() {
-  if (!filtered_map_) {
-    part<Grid3<std::uint32_t>>(filtered_map_, map_key("filtered_map", filtered_key()),
-                               [this] { return make_map(filtered().graph); });
-    require_map(*filtered_map_, domain().voxels.size(), filtered().graph.nodes());
+  if (!filtered_map_.value) {
+    get<Grid3<std::uint32_t>>(filtered_map_, map_key(filtered_map_.type, filtered_key()),
+                              [this] { return make_map(filtered().graph); });
+    require_map(*filtered_map_.value, domain().voxels.size(), filtered().graph.nodes());
   }
-  return *filtered_map_;
+  return *filtered_map_.value;
 }
 
 const SimplifiedSkeleton& SpaceAnalysis::simplified() {
-  return part<SimplifiedSkeleton>(simplified_, simplified_key(),
-                                  [this] { return simplify_skeleton(skeleton()); });
+  return get<SimplifiedSkeleton>(simplified_, simplified_key(),
+                                 [this] { return simplify_skeleton(skeleton()); });
 }
 
 const VisibilityClusters& SpaceAnalysis::clusters() {
-  return part<VisibilityClusters>(clusters_, clusters_key(), [this] {
+  return get<VisibilityClusters>(clusters_, clusters_key(), [this] {
     return visibility_clusters(simplified(), cluster_alpha);
   });
 }
 
 const VisibilityGates& SpaceAnalysis::gates() {
-  return part<VisibilityGates>(gates_,
-                               ArtefactKey("visibility_gates", gates_version).from(clusters_key()),
-                               [this] { return visibility_gates(simplified().graph, clusters()); });
+  return get<VisibilityGates>(gates_, ArtefactKey(gates_.type, gates_version).from(clusters_key()),
+                              [this] { return visibility_gates(simplified().graph, clusters()); });
 }
 
 const RegionLabels& SpaceAnalysis::regions() {
-  return part<RegionLabels>(regions_, regions_key(), [this] {
+  return get<RegionLabels>(regions_, regions_key(), [this] {
     return forest_labels(
         opening_forest(chebyshev_distance(domain().voxels, pool_, input_.byte_limit), pool_,
                        input_.byte_limit),
@@ -190,8 +188,8 @@ const RegionLabels& SpaceAnalysis::regions() {
 }
 
 const Portals& SpaceAnalysis::portals() {
-  return part<Portals>(portals_, ArtefactKey("portals", portals_version).from(regions_key()),
-                       [this] { return find_portals(regions(), pool_, input_.byte_limit); });
+  return get<Portals>(portals_, ArtefactKey(portals_.type, portals_version).from(regions_key()),
+                      [this] { return find_portals(regions(), pool_, input_.byte_limit); });
 }
 
 std::size_t SpaceAnalysis::complex_faces() {
@@ -200,20 +198,11 @@ std::size_t SpaceAnalysis::complex_faces() {
 }
 
 void SpaceAnalysis::close() {
-  const auto note = [this](const auto& place, const char* type) {
-    if (!place) store_.not_needed(type);
+  const auto note = [this](const auto&... parts) {
+    ((parts.value ? void() : store_.not_needed(parts.type)), ...);
   };
-  note(voxels_, "voxels");
-  note(domain_, "domain");
-  note(skeleton_, "skeleton");
-  note(filtered_, "filtered_skeleton");
-  note(node_map_, "node_map");
-  note(filtered_map_, "filtered_map");
-  note(simplified_, "simplified_skeleton");
-  note(clusters_, "visibility_clusters");
-  note(gates_, "visibility_gates");
-  note(regions_, "regions");
-  note(portals_, "portals");
+  note(voxels_, domain_, skeleton_, filtered_, node_map_, filtered_map_, simplified_, clusters_,
+       gates_, regions_, portals_);
 }
 
 }  // namespace lacuna

@@ -61,10 +61,14 @@ class SpaceAnalysis {
   void close();
 
  private:
+  /// An artefact, or nothing yet, and what its type is called.
   template <class T>
-  using Part = std::shared_ptr<const T>;
+  struct Part {
+    const char* type;
+    std::shared_ptr<const T> value = {};
+  };
   template <class T>
-  const T& part(Part<T>& place, const ArtefactKey& key, const std::function<T()>& build);
+  const T& get(Part<T>& part, const ArtefactKey& key, const std::function<T()>& build);
   /// Keys name all that the bits depend on: the domain's own voxels stand for scene and seeds, so
   /// two cameras in one room share what is made from it.
   ArtefactKey voxels_key() const;
@@ -83,16 +87,16 @@ class SpaceAnalysis {
   const ThreadPool& pool_;
   std::string domain_hash_;
   std::unique_ptr<Grid3<std::uint16_t>> distance_;
-  Part<Voxels> voxels_;
-  Part<Domain> domain_;
-  Part<SkeletonGraph> skeleton_;
-  Part<FilteredSkeleton> filtered_;
-  Part<Grid3<std::uint32_t>> node_map_, filtered_map_;
-  Part<SimplifiedSkeleton> simplified_;
-  Part<VisibilityClusters> clusters_;
-  Part<VisibilityGates> gates_;
-  Part<RegionLabels> regions_;
-  Part<Portals> portals_;
+  Part<Voxels> voxels_{"voxels"};
+  Part<Domain> domain_{"domain"};
+  Part<SkeletonGraph> skeleton_{"skeleton"};
+  Part<FilteredSkeleton> filtered_{"filtered_skeleton"};
+  Part<Grid3<std::uint32_t>> node_map_{"node_map"}, filtered_map_{"filtered_map"};
+  Part<SimplifiedSkeleton> simplified_{"simplified_skeleton"};
+  Part<VisibilityClusters> clusters_{"visibility_clusters"};
+  Part<VisibilityGates> gates_{"visibility_gates"};
+  Part<RegionLabels> regions_{"regions"};
+  Part<Portals> portals_{"portals"};
 };
 
 }  // namespace lacuna

@@ -17,23 +17,22 @@ int ask_rule(CubicalComplex complex, const SpaceMaps& maps, KeptEdges& kept, Thi
 
 }  // namespace
 
-CubicalComplex thin(const BitGrid3& domain, const SpaceMaps& maps, KeptEdges& kept,
-                    ThinningReport& report, const ThreadPool* pool) {
-  report.layers = ask_rule(CubicalComplex(domain), maps, kept, report, pool);
-  report.kept_edges = kept.count();
+ThinComplex thin(const BitGrid3& domain, const SpaceMaps& maps, ThinningReport& report,
+                 const ThreadPool* pool) {
   CubicalComplex complex(domain);
+  KeptEdges kept(complex);
+  report.layers = ask_rule(complex, maps, kept, report, pool);
+  report.kept_edges = kept.count();
   collapse(complex, kept, nullptr, all_layers, pool);
-  return complex;
+  return {std::move(complex), std::move(kept)};
 }
 
 CubicalComplex curvilinear_skeleton(const BitGrid3& domain, const SpaceMaps& maps,
                                     ThinningReport& report, const ThreadPool* pool) {
-  CubicalComplex complex(domain);
-  KeptEdges kept(complex);
-  complex = thin(domain, maps, kept, report, pool);
+  auto [complex, kept] = thin(domain, maps, report, pool);
   for (;;) {
     const std::vector<Square> squares = squares_to_pierce(complex, maps.distance);
-    if (squares.empty()) return complex;
+    if (squares.empty()) return std::move(complex);
     ++report.pierce_rounds;
     report.squares_pierced += squares.size();
     for (const Square& s : squares) complex.remove(s.cell, s.type);

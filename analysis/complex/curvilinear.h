@@ -14,11 +14,16 @@ struct ThinningReport {
   std::size_t squares_pierced = 0;
 };
 
+/// A thin complex and the edges W that it was thinned with.
+struct ThinComplex {
+  CubicalComplex complex;
+  KeptEdges kept;
+};
+
 /// CurvilinearSkeleton (thesis Alg. 3): edges that live long for their place are kept, all else is
 /// collapsed. Homotopic to the closure of `domain`; may hold squares around cavities.
-/// `kept`, made for a complex of this size, receives W.
-CubicalComplex thin(const BitGrid3& domain, const SpaceMaps& maps, KeptEdges& kept,
-                    ThinningReport& report, const ThreadPool* pool = nullptr);
+ThinComplex thin(const BitGrid3& domain, const SpaceMaps& maps, ThinningReport& report,
+                 const ThreadPool* pool = nullptr);
 
 /// The same, then pierced (6.2.4) and thinned again until it is a graph: vertices and edges only.
 /// After each round the keep rule is asked again on the pierced complex, with the distances of the

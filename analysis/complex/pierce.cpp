@@ -1,11 +1,11 @@
 #include "analysis/complex/pierce.h"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 #include <unordered_map>
 
 #include "analysis/complex/complex_components.h"
+#include "analysis/geometry/disjoint_sets.h"
 
 namespace lacuna {
 namespace {
@@ -49,25 +49,6 @@ std::vector<Candidate> candidates(const CubicalComplex& thin,
   return all;
 }
 
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t n) : parent_(n) {
-    std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});
-  }
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  bool join(std::uint32_t a, std::uint32_t b) {
-    a = root(a), b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-    return a != b;
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 /// One square of each part that hangs together through edges.
 std::vector<Square> one_of_each_part(const std::vector<Candidate>& all, Imath::V3i size) {
   DisjointSets parts(all.size());
@@ -93,9 +74,9 @@ std::vector<Square> one_of_each_part(const std::vector<Candidate>& all, Imath::V
       }
     }
   }
-  std::vector<Square> chosen;  // the root of a part is its first square: the farthest
+  std::vector<Square> chosen;  // the end of a part is its first square: the farthest
   for (std::uint32_t i = 0; i < all.size(); ++i) {
-    if (parts.root(i) == i) chosen.push_back(all[i].square);
+    if (parts.end_of(i) == i) chosen.push_back(all[i].square);
   }
   return chosen;
 }

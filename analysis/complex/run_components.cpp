@@ -49,7 +49,7 @@ RunComponents::RunComponents(Imath::V3i cells, const std::function<void(int, int
   }
   label_.resize(runs_.size());
   for (std::uint32_t i = 0; i < runs_.size(); ++i) {
-    const std::uint32_t r = root(i);  // the smallest of its component
+    const std::uint32_t r = sets_.end_of(i);  // the smallest of its component
     label_[i] = r == i ? count_++ : label_[r];
   }
 }
@@ -60,7 +60,7 @@ void RunComponents::add_runs(const CellRow& row, int width) {
     const int gap = next(row.present, x, width, false);
     const int end = std::min(gap, next(row.link_x, x + 1, width, false));
     runs_.push_back({x, end});
-    parent_.push_back(static_cast<std::uint32_t>(parent_.size()));
+    sets_.add();
     x = end < gap ? end : next(row.present, end, width, true);
   }
   first_.push_back(static_cast<std::uint32_t>(runs_.size()));
@@ -72,22 +72,9 @@ void RunComponents::join_rows(std::size_t row, std::size_t other,
   while (a < first_[row + 1] && b < first_[other + 1]) {
     const int begin = std::max(runs_[a].begin, runs_[b].begin);
     const int end = std::min(runs_[a].end, runs_[b].end);
-    if (begin < end && any_in(link, begin, end)) join(a, b);
+    if (begin < end && any_in(link, begin, end)) sets_.join(a, b);
     (runs_[a].end < runs_[b].end ? a : b) += 1;
   }
-}
-
-std::uint32_t RunComponents::root(std::uint32_t run) const {
-  while (parent_[run] != run) {
-    parent_[run] = parent_[parent_[run]];
-    run = parent_[run];
-  }
-  return run;
-}
-
-void RunComponents::join(std::uint32_t a, std::uint32_t b) {
-  a = root(a), b = root(b);
-  if (a != b) parent_[std::max(a, b)] = std::min(a, b);
 }
 
 std::uint32_t RunComponents::of(Imath::V3i cell) const {

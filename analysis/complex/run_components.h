@@ -7,6 +7,8 @@
 #include <functional>
 #include <vector>
 
+#include "analysis/geometry/disjoint_sets.h"
+
 namespace lacuna {
 
 /// One row of cells along x, a bit a cell: which exist, and which are linked to the cell before
@@ -35,15 +37,13 @@ class RunComponents {
   struct Run {
     std::int32_t begin, end;  // cells
   };
-  std::uint32_t root(std::uint32_t run) const;
-  void join(std::uint32_t a, std::uint32_t b);
   void add_runs(const CellRow& row, int width);
   void join_rows(std::size_t row, std::size_t other, const std::vector<std::uint64_t>& link);
 
   Imath::V3i cells_;
   std::vector<std::uint32_t> first_;  // of a row, in runs_
   std::vector<Run> runs_;
-  mutable std::vector<std::uint32_t> parent_;
+  DisjointSets sets_{0};              // of runs
   std::vector<std::uint32_t> label_;  // of a run
   std::uint32_t count_ = 0;
 };

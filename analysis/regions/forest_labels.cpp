@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "analysis/geometry/bit_grid.h"
+#include "analysis/geometry/disjoint_sets.h"
 #include "analysis/regions/stray_pieces.h"
 #include "analysis/space/bit_rows.h"
 #include "analysis/space/sweep.h"
@@ -71,18 +72,11 @@ class Labeller {
     });
   }
 
-  std::uint32_t first_of(std::uint32_t i) {
-    while (lead_[i] != i) {
-      lead_[i] = lead_[lead_[i]];
-      i = lead_[i];
-    }
-    return i;
-  }
   void join_with(Imath::V3i v, Imath::V3i neighbour) {
     if (!is_root_.get(neighbour) || opening_(v) != opening_(neighbour)) return;
-    const std::uint32_t a = first_of(static_cast<std::uint32_t>(lead_.index(v)));
-    const std::uint32_t b = first_of(static_cast<std::uint32_t>(lead_.index(neighbour)));
-    lead_[std::max(a, b)] = std::min(a, b);
+    join_sets(static_cast<std::uint32_t>(lead_.index(v)),
+              static_cast<std::uint32_t>(lead_.index(neighbour)),
+              [this](std::uint32_t i) -> std::uint32_t& { return lead_[i]; });
   }
 
   /// Slabs of planes each by itself, then across their seams.

@@ -4,6 +4,7 @@
 #include <map>
 #include <numeric>
 
+#include "analysis/geometry/disjoint_sets.h"
 #include "analysis/space/sweep.h"
 
 namespace lacuna {
@@ -83,21 +84,12 @@ class Pieces {
     });
   }
 
-  std::uint64_t lead(std::uint64_t i) {
-    while (runs_[i].lead != i) {
-      runs_[i].lead = runs_[runs_[i].lead].lead;
-      i = runs_[i].lead;
-    }
-    return i;
-  }
-
   void join_rows(std::size_t row_a, std::size_t row_b) {
     std::uint64_t a = first_[row_a], b = first_[row_b];
     while (a < first_[row_a + 1] && b < first_[row_b + 1]) {
       const Run &p = runs_[a], &q = runs_[b];
       if (p.label == q.label && p.x0 < q.x1 && q.x0 < p.x1) {
-        const std::uint64_t i = lead(a), j = lead(b);
-        runs_[std::max(i, j)].lead = std::min(i, j);
+        join_sets(a, b, [this](std::uint64_t i) -> std::uint64_t& { return runs_[i].lead; });
       }
       if (p.x1 <= q.x1)
         ++a;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "analysis/geometry/disjoint_sets.h"
 #include "analysis/space/bit_rows.h"
 #include "analysis/space/memory_limit.h"
 #include "analysis/space/sweep.h"
@@ -10,44 +11,20 @@ namespace lacuna {
 
 namespace {
 
-/// Union-find over runs, by their index. While it is built, `component` is the index of a run of
-/// the same component that comes no later; the first run of a component is its root.
-class RunForest {
- public:
-  explicit RunForest(std::vector<ComponentRun>& runs) : runs_(runs) {}
-
-  std::uint32_t root(std::uint32_t i) {
-    while (runs_[i].component != i) {
-      runs_[i].component = runs_[runs_[i].component].component;
-      i = runs_[i].component;
-    }
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    if (a < b)
-      runs_[b].component = a;
-    else
-      runs_[a].component = b;
-  }
-
- private:
-  std::vector<ComponentRun>& runs_;
-};
-
+/// Union-find over runs, by their index: while it is built, `component` is the index of a run of
+/// the same component that comes no later.
 struct Linker {
   Components& c;
   Connectivity connectivity;
 
   /// Joins the runs of two rows that touch; `slack` 1: also by a corner.
   void join_rows(std::size_t row_a, std::size_t row_b, int slack) {
-    RunForest forest(c.runs);
+    const auto link = [this](std::uint32_t i) -> std::uint32_t& { return c.runs[i].component; };
     std::uint32_t a = c.first[row_a], b = c.first[row_b];
     const std::uint32_t a_end = c.first[row_a + 1], b_end = c.first[row_b + 1];
     while (a < a_end && b < b_end) {
       const ComponentRun &p = c.runs[a], &q = c.runs[b];
-      if (p.x0 < q.x1 + slack && q.x0 < p.x1 + slack) forest.join(a, b);
+      if (p.x0 < q.x1 + slack && q.x0 < p.x1 + slack) join_sets(a, b, link);
       // Runs of a row do not touch, so the one that ends first meets nothing further on.
       if (p.x1 <= q.x1)
         ++a;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "analysis/geometry/disjoint_sets.h"
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/terminal.h"
@@ -39,23 +40,13 @@ std::filesystem::path find_scene(const std::string& name) {
 struct GraphCounts {
   std::size_t components = 0, loops = 0;
 
-  explicit GraphCounts(const SkeletonGraph& g) {
-    std::vector<bool> seen(g.nodes());
-    std::vector<std::uint32_t> stack;
-    for (std::uint32_t i = 0; i < g.nodes(); ++i) {
-      if (seen[i]) continue;
-      ++components;
-      seen[i] = true;
-      for (stack.push_back(i); !stack.empty();) {
-        const std::uint32_t node = stack.back();
-        stack.pop_back();
-        for (const std::uint32_t other : g.of(node)) {
-          if (!seen[other]) stack.push_back(other);
-          seen[other] = true;
-        }
+  explicit GraphCounts(const SkeletonGraph& g) : components(g.nodes()) {
+    DisjointSets parts(g.nodes());
+    for (std::uint32_t node = 0; node < g.nodes(); ++node) {
+      for (const std::uint32_t other : g.of(node)) {
+        if (other < node) parts.join(node, other) ? --components : ++loops;
       }
     }
-    loops = g.edges() + components - g.nodes();
   }
 };
 
@@ -179,14 +170,19 @@ void add_analyze(CLI::App& app, int& code) {
       ->required();
   command->add_option("--camera", o->camera,
                       "whose part of the empty space counts (default: the first)");
-  command
-      ->add_option("--resolution", o->analysis.resolution,
-                   "voxels along the longest side (default: 128)")
-      ->check(CLI::Range(1, max_resolution));
-  const std::map<std::string, NodeMapping> mappings{{"geodesic", NodeMapping::geodesic},
-                                                    {"visible", NodeMapping::visible}};
-  command->add_option("--mapping", o->analysis.mapping, "geodesic (default) or visible")
-      ->transform(CLI::CheckedTransformer(mappings));
+  command->add_option("--resolution", o->analysis.resolution, "voxels along the longest side")
+      ->check(CLI::Range(1, max_resolution))
+      ->capture_default_str();
+  std::map<std::string, NodeMapping> mappings;
+  std::string names;
+  for (const auto& m : EnumTable<NodeMapping>::values) {
+    mappings.emplace(m.name, m.value);
+    names.append(names.empty() ? "" : "|").append(m.name);
+  }
+  command->add_option("--mapping", o->analysis.mapping, "the node that a voxel belongs to")
+      ->transform(CLI::CheckedTransformer(mappings).description(""))
+      ->type_name(names)
+      ->default_str(std::string(enum_name(o->analysis.mapping)));
   command->add_option(
       "--out", o->out,
       "writes skeleton, filtered, clusters, gates and portals (.glb) with the scene into DIR");
