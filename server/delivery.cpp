@@ -205,7 +205,9 @@ void Delivery::make_room() {
 void Delivery::drop(Item& item, bool given_up) {
   if (given_up) ++metrics_.given_up;
   bytes_ -= item.answer.text.size();
-  item.in->erase(item.self);  // closing takes it off epoll, too
+  // Closing takes it off epoll only where no child that is being started has the socket, too.
+  ::epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, item.answer.socket.get(), nullptr);
+  item.in->erase(item.self);
 }
 
 }  // namespace lacuna

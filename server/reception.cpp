@@ -78,7 +78,7 @@ void Reception::accept_some() {
       const bool full = errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM;
       if (full && !parked_.empty()) {
         ++metrics_.refused;
-        parked_.pop_front();
+        drop(parked_.front());
       } else if (full) {
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
       }
@@ -99,8 +99,7 @@ void Reception::receive(Parked& parked, bool is_new) {
       case State::complete:
         return hand_over(parked);
       case State::gone:
-        parked_.erase(parked.self);
-        return;
+        return drop(parked);
       case State::incomplete:
         if (is_new) watch(parked.socket.get(), &parked);
         if (is_new) make_room();
@@ -108,8 +107,21 @@ void Reception::receive(Parked& parked, bool is_new) {
   } catch (const HttpError& error) {
     refuse(parked, error);
   } catch (const std::system_error&) {
-    parked_.erase(parked.self);
+    drop(parked);
   }
+}
+
+/// Takes the socket off epoll. Closing does that only where no child that is
+/// being started has the socket, too; an event would find nobody here.
+FileHandle Reception::release(Parked& parked) const {
+  FileHandle socket = std::move(parked.socket);
+  ::epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, socket.get(), nullptr);
+  return socket;
+}
+
+void Reception::drop(Parked& parked) {
+  release(parked);
+  parked_.erase(parked.self);
 }
 
 Reception::State Reception::read(Parked& parked) {
@@ -141,10 +153,9 @@ bool Reception::is_whole(Parked& parked) {
 }
 
 void Reception::hand_over(Parked& parked) {
-  ::epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, parked.socket.get(), nullptr);
   parked.bytes.erase(0, parked.head_size);
-  Arrival arrival{std::move(parked.socket), std::move(parked.head), parked.framing,
-                  std::move(parked.bytes), PacedDeadline::Clock::now()};
+  Arrival arrival{release(parked), std::move(parked.head), parked.framing, std::move(parked.bytes),
+                  PacedDeadline::Clock::now()};
   parked_.erase(parked.self);
   if (offer_(arrival)) return;
   ++metrics_.refused;
@@ -153,8 +164,7 @@ void Reception::hand_over(Parked& parked) {
 }
 
 void Reception::refuse(Parked& parked, const HttpError& error) {
-  ::epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, parked.socket.get(), nullptr);
-  FileHandle socket = std::move(parked.socket);
+  FileHandle socket = release(parked);
   parked_.erase(parked.self);
   ++metrics_.refused;
   refuse_(std::move(socket), error);
@@ -165,7 +175,7 @@ void Reception::expire() {
     Parked& parked = *it++;
     if (!parked.deadline.over()) continue;
     if (parked.bytes.empty()) {  // such as a browser's connection in advance
-      parked_.erase(parked.self);
+      drop(parked);
       continue;
     }
     refuse(parked, HttpError(408, parked.head_size > 0 ? "The body came too slowly."

@@ -58,6 +58,8 @@ class Reception {
   void receive(Parked& parked, bool is_new);
   State read(Parked& parked);
   bool is_whole(Parked& parked);
+  FileHandle release(Parked& parked) const;
+  void drop(Parked& parked);
   void hand_over(Parked& parked);
   void refuse(Parked& parked, const HttpError& error);
   void expire();

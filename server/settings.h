@@ -59,7 +59,7 @@ struct HttpSettings {
   std::string bind = "127.0.0.1";
   int port = 8017;                                ///< 0: any free one
   std::size_t threads = 64;                       ///< requests that are worked on at a time
-  std::size_t waiting = 256;                      ///< whole requests that wait for a thread
+  std::size_t waiting = 1024;                     ///< whole requests that wait for a thread
   std::size_t parked = 1024;                      ///< connections whose request is still coming
   std::size_t delivering = 512;                   ///< answers whose clients are slow to take them
   std::size_t delivering_bytes = 64 << 20;        ///< of such answers in memory, all together

@@ -38,3 +38,17 @@ for (const kind of ["head", "body", "large body", "chunks", "reader"]) {
     assert.equal((await image.text()).length, 100000);
   });
 }
+
+// A child that is being started has every socket until it is another program: what the service has
+// closed meanwhile is not closed yet.
+test("500 slow clients while renderers are started: the service lives", async (t) => {
+  const service = await Service.start(folders(t));
+  await attack(t, service, "chunks", "/health");
+  const ids = [];
+  for (let i = 0; i < 150; i += 1) ids.push(await service.post("finish"));
+  for (let done = 0; done < 50;) {
+    ({ counts: { done } } = await service.json("/api/jobs?limit=1"));
+    await service.json(`/api/jobs/${ids[done]}`);
+  }
+  assert.equal(service.child.exitCode, null);
+});
