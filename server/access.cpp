@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <utility>
+
+#include "jobs/spec/described_json.h"
 
 namespace lacuna {
 namespace {
@@ -45,17 +46,24 @@ std::string session_id(const Request& request) {
   return {};
 }
 
+struct Login {
+  std::string token;
+};
+template <class V>
+void describe(V& v, Login& s) {
+  v("token", s.token, {.doc = "the service's token", .required = true});
+}
+
 /// The "token" of the body.
 std::string shown_token(const Request& request) {
   if (media_type(request) != "application/json") {
     throw HttpError(415, "The token is posted with Content-Type: application/json.");
   }
-  const auto json = nlohmann::json::parse(request.read_body(max_session_bytes), nullptr, false);
-  if (!json.is_object() || json.size() != 1 || !json.contains("token") ||
-      !json["token"].is_string()) {
-    throw HttpError(400, "The body must be {\"token\": \"...\"}.");
+  try {
+    return read_document<Login>(request.read_body(max_session_bytes), {max_session_bytes, 1}).token;
+  } catch (const BadJob& bad) {
+    throw HttpError(400, "The body must be {\"token\": \"...\"}.", bad.problems());
   }
-  return json["token"].get<std::string>();
 }
 
 Response cookie_answer(const Request& request, const std::string& id, const char* more) {

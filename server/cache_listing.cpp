@@ -21,7 +21,7 @@ using std::chrono::system_clock;
 struct Entry {
   std::uint64_t bytes = 0;
   system_clock::time_point used;
-  nlohmann::ordered_json json;
+  OrderedJson json;
 };
 
 Entry entry_of(const char* kind, const std::string& name, std::uint64_t bytes,
@@ -63,7 +63,7 @@ Entry artefact_entry(const CacheEntry& artefact) {
 
 }  // namespace
 
-nlohmann::ordered_json cache_listing(const DataRoot& data) {
+OrderedJson cache_listing(const DataRoot& data) {
   std::vector<Entry> entries;
   std::error_code gone;
   for (const auto& item : fs::directory_iterator(data.references(), gone)) {
@@ -77,7 +77,7 @@ nlohmann::ordered_json cache_listing(const DataRoot& data) {
   std::stable_sort(entries.begin(), entries.end(),
                    [](const Entry& a, const Entry& b) { return a.bytes > b.bytes; });
   std::uint64_t bytes = 0;
-  auto list = nlohmann::ordered_json::array();
+  auto list = OrderedJson::array();
   for (Entry& e : entries) {
     bytes += e.bytes;
     list.push_back(std::move(e.json));

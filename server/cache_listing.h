@@ -1,7 +1,6 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
-
+#include "jobs/spec/json_text.h"
 #include "jobs/store/job_folder.h"
 
 namespace lacuna {
@@ -11,6 +10,6 @@ namespace lacuna {
 /// which `name` is the type, and `file`, `key` and `label` follow, or `refused`: why it cannot be
 /// read. `used`: UTC, when it was last written or read, as far as the file system knows. Throws
 /// std::system_error.
-nlohmann::ordered_json cache_listing(const DataRoot& data);
+OrderedJson cache_listing(const DataRoot& data);
 
 }  // namespace lacuna

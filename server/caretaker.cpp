@@ -1,9 +1,8 @@
 #include "server/caretaker.h"
 
-#include <spdlog/spdlog.h>
-
 #include <chrono>
 
+#include "server/log.h"
 #include "server/retention.h"
 
 namespace lacuna {
@@ -47,7 +46,7 @@ void Caretaker::run() {
       }
       if (i % ticks_to_retention == 0) remove_old();
     } catch (const std::exception& error) {
-      spdlog::error("looking after the jobs: {}", error.what());
+      log::error("looking after the jobs: {}", error.what());
     }
   }
 }
@@ -57,9 +56,9 @@ void Caretaker::remove_old() {
        outdated(table_.all(), settings_, std::chrono::system_clock::now())) {
     try {
       queue_.remove(id);
-      spdlog::info("{}: removed, as the settings of what is kept say", id);
+      log::info("{}: removed, as the settings of what is kept say", id);
     } catch (const std::exception& error) {  // it was asked to go on, or its folder resists
-      spdlog::warn("{} is kept: {}", id, error.what());
+      log::warn("{} is kept: {}", id, error.what());
     }
   }
 }

@@ -18,8 +18,8 @@ std::optional<std::int64_t> size_of(const std::filesystem::path& file) {
   return status.st_size;
 }
 
-Json files_of(const JobFolder& folder) {
-  Json files = Json::array();
+OrderedJson files_of(const JobFolder& folder) {
+  OrderedJson files = OrderedJson::array();
   for (const FileInfo& info : job_files()) {
     if (!info.served) continue;
     if (const auto bytes = size_of(folder.file(info.name))) {
@@ -46,23 +46,23 @@ std::string list_text(const JobTable::Page& page) {
     text += '\n';
     text += entry->text;
   }
-  Json counts = Json::object();
+  OrderedJson counts = OrderedJson::object();
   for (const auto& [state, name, doc] : EnumTable<State>::values) {
     const auto found = page.counts.find(state);
     counts[std::string(name)] = found == page.counts.end() ? 0 : found->second;
   }
-  const Json next = page.next.empty() ? Json(nullptr) : Json(page.next);
+  const OrderedJson next = page.next.empty() ? OrderedJson(nullptr) : OrderedJson(page.next);
   return text + fmt::format("],\n\"total\":{},\"counts\":{},\"next\":{},\"last_event\":{}}}\n",
                             page.total, json_text(counts), json_text(next),
-                            json_text(page.last_event));
+                            json_text(OrderedJson(page.last_event)));
 }
 
-Json job_detail(const JobTable& table, const JobEntry& entry) {
+OrderedJson job_detail(const JobTable& table, const JobEntry& entry) {
   const JobFolder folder = table.folder(entry.id);
   return {{"id", entry.id},
-          {"job", Json::parse(write_job(folder.read_job()))},
+          {"job", parse_own(write_job(folder.read_job()))},
           {"state", to_json(entry.state)},
-          {"progress", entry.progress ? to_json(*entry.progress) : Json(nullptr)},
+          {"progress", entry.progress ? to_json(*entry.progress) : OrderedJson(nullptr)},
           {"priority", entry.control.priority},
           {"held", entry.control.held},
           {"files", files_of(folder)}};

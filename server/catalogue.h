@@ -15,6 +15,6 @@ EntryPtr find_job(JobTable& table, const std::string& id);
 std::string list_text(const JobTable::Page& page);
 
 /// One job: {id, job, state, progress, priority, held, files}.
-Json job_detail(const JobTable& table, const JobEntry& entry);
+OrderedJson job_detail(const JobTable& table, const JobEntry& entry);
 
 }  // namespace lacuna

@@ -10,10 +10,8 @@
 
 namespace lacuna {
 
-using Json = nlohmann::ordered_json;
-
-Response json_response(int status, const Json& json) {
-  return json_response(status, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+Response json_response(int status, const OrderedJson& json) {
+  return json_response(status, document_text(json));
 }
 
 Response json_response(int status, std::string text) {

@@ -1,15 +1,15 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 
+#include "jobs/spec/json_text.h"
 #include "server/message.h"
 
 namespace lacuna {
 
 /// A JSON answer that nobody may keep.
-Response json_response(int status, const nlohmann::ordered_json& json);
+Response json_response(int status, const OrderedJson& json);
 /// The same from JSON text.
 Response json_response(int status, std::string text);
 

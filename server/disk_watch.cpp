@@ -1,6 +1,7 @@
 #include "server/disk_watch.h"
 
-#include <spdlog/spdlog.h>
+#include "server/log.h"
+
 #include <sys/statvfs.h>
 
 #include <cerrno>
@@ -22,13 +23,13 @@ bool DiskWatch::is_low() {
     const std::uint64_t room = free_bytes();
     const bool low = room < (low_ ? floor_ + floor_ / 10 : floor_);
     if (low != low_) {
-      spdlog::warn("{}: {:.0f} MB free, the floor is {:.0f} MB: {}", folder_.string(),
-                   1e-6 * static_cast<double>(room), 1e-6 * static_cast<double>(floor_),
-                   low ? "jobs wait" : "jobs go on");
+      log::warn("{}: {:.0f} MB free, the floor is {:.0f} MB: {}", folder_.string(),
+                1e-6 * static_cast<double>(room), 1e-6 * static_cast<double>(floor_),
+                low ? "jobs wait" : "jobs go on");
     }
     low_ = low;
   } catch (const std::system_error& error) {
-    spdlog::error("{}", error.what());
+    log::error("{}", error.what());
   }
   return low_;
 }

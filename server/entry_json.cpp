@@ -6,23 +6,19 @@ namespace lacuna {
 namespace {
 
 template <class T>
-Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
+OrderedJson or_null(const std::optional<T>& value) {
+  return value ? OrderedJson(*value) : OrderedJson(nullptr);
 }
 
 }  // namespace
 
-std::string json_text(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-Json to_json(const JobState& s) {
+OrderedJson to_json(const JobState& s) {
   return {{"state", enum_name(s.state)}, {"phase", s.phase},     {"attempts", s.attempts},
           {"exit_code", s.exit_code},    {"created", s.created}, {"started", s.started},
           {"finished", s.finished},      {"error", s.error},     {"warnings", s.warnings}};
 }
 
-Json to_json(const Progress& p) {
+OrderedJson to_json(const Progress& p) {
   return {{"iteration", p.iteration},
           {"seconds", p.seconds},
           {"cpu_seconds", p.cpu_seconds},
@@ -32,15 +28,15 @@ Json to_json(const Progress& p) {
           {"error_metric", p.error_metric}};
 }
 
-Json to_json(const JobEntry& e) {
-  Json json = {{"id", e.id},
-               {"label", e.label},
-               {"scene", e.scene},
-               {"integrator", e.integrator},
-               {"priority", e.control.priority},
-               {"held", e.control.held}};
+OrderedJson to_json(const JobEntry& e) {
+  OrderedJson json = {{"id", e.id},
+                      {"label", e.label},
+                      {"scene", e.scene},
+                      {"integrator", e.integrator},
+                      {"priority", e.control.priority},
+                      {"held", e.control.held}};
   json.update(to_json(e.state));
-  json["progress"] = e.progress ? to_json(*e.progress) : Json(nullptr);
+  json["progress"] = e.progress ? to_json(*e.progress) : OrderedJson(nullptr);
   return json;
 }
 

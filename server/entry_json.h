@@ -1,21 +1,14 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
-#include <string>
-
+#include "jobs/spec/json_text.h"
 #include "jobs/store/job_folder.h"
 #include "server/job_table.h"
 
 namespace lacuna {
 
-using Json = nlohmann::ordered_json;
-
-/// One line of text; bytes that are no UTF-8 are replaced.
-std::string json_text(const Json& json);
-
-Json to_json(const JobState& state);
-Json to_json(const Progress& progress);
+OrderedJson to_json(const JobState& state);
+OrderedJson to_json(const Progress& progress);
 /// As an element of the API's list of jobs.
-Json to_json(const JobEntry& entry);
+OrderedJson to_json(const JobEntry& entry);
 
 }  // namespace lacuna

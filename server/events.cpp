@@ -159,7 +159,7 @@ class AllStream final : public Stream {
   }
   std::string text_of(const JobEvent& event) override {
     if (event.entry) return format("job", event.entry->text);
-    return format("removed", json_text({{"id", event.id}}));
+    return format("removed", json_text(OrderedJson{{"id", event.id}}));
   }
 
   const std::optional<std::uint64_t> last_;

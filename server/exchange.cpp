@@ -1,6 +1,6 @@
 #include "server/exchange.h"
 
-#include <spdlog/spdlog.h>
+#include "server/log.h"
 
 #include <algorithm>
 #include <cctype>
@@ -36,7 +36,7 @@ Response respond(const RequestHead& head, BodyReader& body,
   } catch (const HttpError& error) {
     return problem_response(error, request.path);
   } catch (const std::exception& error) {
-    spdlog::error("{} {}: {}", request.method, request.path, error.what());
+    log::error("{} {}: {}", request.method, request.path, error.what());
     return problem_response(HttpError(500, "The service failed; its log says more."), request.path);
   }
 }

@@ -1,7 +1,6 @@
 #include "server/executor_local.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <sys/eventfd.h>
 
 #include <csignal>
@@ -12,6 +11,7 @@
 #include "jobs/cli/commands.h"
 #include "jobs/spec/byte_size.h"
 #include "server/child_process.h"
+#include "server/log.h"
 #include "server/oom_kills.h"
 
 namespace lacuna {
@@ -87,8 +87,8 @@ Ending LocalExecutor::run(const JobFolder& folder, const StopSignal& stop, const
     if (!child.wait(stop.fd(), std::chrono::milliseconds(-1))) {
       child.signal(SIGTERM);
       if (!child.wait(-1, settings_.grace)) {
-        spdlog::warn("{}: its renderer did not end within {} s of being asked and is killed",
-                     folder.id(), static_cast<double>(settings_.grace.count()) / 1000);
+        log::warn("{}: its renderer did not end within {} s of being asked and is killed",
+                  folder.id(), static_cast<double>(settings_.grace.count()) / 1000);
         child.signal(SIGKILL);
         killed = true;
         child.wait(-1, std::chrono::milliseconds(-1));

@@ -1,7 +1,6 @@
 #include "server/http.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <sys/eventfd.h>
 
 #include <csignal>
@@ -12,6 +11,7 @@
 #include "server/delivery.h"
 #include "server/exchange.h"
 #include "server/listener.h"
+#include "server/log.h"
 #include "server/reception.h"
 #include "server/timed_socket.h"
 
@@ -35,7 +35,7 @@ std::string head_text(Response& response, bool to_http_1_0) {
   try {
     return answer_head(response, to_http_1_0);
   } catch (const std::logic_error& error) {
-    spdlog::error("an answer could not be made: {}", error.what());
+    log::error("an answer could not be made: {}", error.what());
     response = problem_response(HttpError(500, "The service failed; its log says more."), "");
     return answer_head(response, to_http_1_0);
   }
@@ -100,7 +100,7 @@ void HttpServer::Engine::start() {
     try {
       serve(std::move(a));
     } catch (const std::exception& error) {
-      spdlog::error("a connection failed: {}", error.what());
+      log::error("a connection failed: {}", error.what());
     }
   });
   reception_ = std::make_unique<Reception>(
@@ -152,7 +152,7 @@ void HttpServer::Engine::stream(TimedSocket& socket, const std::string& head_tex
       if (!text->empty() && !send(stream_text(*text, to_http_1_0))) return;
     }
   } catch (const std::exception& error) {
-    spdlog::error("a stream ends early: {}", error.what());
+    log::error("a stream ends early: {}", error.what());
   }
 }
 
@@ -163,7 +163,7 @@ void HttpServer::Engine::refuse(FileHandle socket, const HttpError& error) {
   Outgoing out = outgoing(response, head);
   out.socket = std::move(socket);
   out.unread_input = true;
-  spdlog::debug("refused: {} {}", error.status(), error.what());
+  log::debug("refused: {} {}", error.status(), error.what());
   delivery_->send(std::move(out));
 }
 
@@ -171,8 +171,8 @@ void HttpServer::Engine::note(const RequestHead& head, int status,
                               PacedDeadline::Clock::time_point begin) {
   const auto time = PacedDeadline::Clock::now() - begin;
   metrics_.answered(status, time);
-  spdlog::debug("{} {} {} {:.1f} ms", head.method, head.target.substr(0, head.target.find('?')),
-                status, std::chrono::duration<double, std::milli>(time).count());
+  log::debug("{} {} {} {:.1f} ms", head.method, head.target.substr(0, head.target.find('?')),
+             status, std::chrono::duration<double, std::milli>(time).count());
 }
 
 std::string HttpServer::answer(std::string_view received, const Handler& handler) {

@@ -140,22 +140,22 @@ Response JobRoutes::log(const Request& request, const std::string& id) {
 
 namespace {
 
-using Type = QueryParameter::Type;
+using QueryType = QueryParameter::Type;
 
 RouteDoc list_doc() {
   return {
       .summary = "Jobs, newest first, by pages",
-      .query = {{"state", Type::text, "any of these states, separated by commas"},
-                {"label", Type::text, "words in label, scene, integrator or id"},
-                {"limit", Type::integer,
+      .query = {{"state", QueryType::text, "any of these states, separated by commas"},
+                {"label", QueryType::text, "words in label, scene, integrator or id"},
+                {"limit", QueryType::integer,
                  fmt::format("jobs on a page; default {}", JobTable::Query{}.limit), 1, max_page},
-                {"cursor", Type::text, "`next` of the page before"}},
+                {"cursor", QueryType::text, "`next` of the page before"}},
       .answers = {{200, "{jobs, total, counts, next, last_event}"}, {304, "as you have it"}}};
 }
 
 RouteDoc post_doc() {
   return {.summary = "Queues a job; with an Idempotency-Key, once",
-          .query = {{"dry_run", Type::flag, "only check it and fill in its defaults"}},
+          .query = {{"dry_run", QueryType::flag, "only check it and fill in its defaults"}},
           .body_type = "application/json",
           .body_schema = job_schema(),
           .answers = {{201, "the job is on disk and waits"},
@@ -203,7 +203,7 @@ void JobRoutes::add_collection(Router& router) {
   });
   router.add("GET", "/api/events",
              {.summary = "What happens to all jobs, as server-sent events: job, removed, reset",
-              .query = {{"after", Type::text, "the list's last_event, or Last-Event-ID"}}},
+              .query = {{"after", QueryType::text, "the list's last_event, or Last-Event-ID"}}},
              [this](const Request& request, const Parts&) {
                const auto last = request.header("last-event-id");
                return event_stream(events_.all(last ? last : request.query.text("after")));
@@ -245,7 +245,7 @@ void JobRoutes::add_results(Router& router) {
   router.add("GET", "/api/jobs/{id}", {.summary = "One job"}, with_id(&JobRoutes::detail));
   router.add("GET", "/api/jobs/{id}/log",
              {.summary = "Its log from a byte on; header Next-Offset has the next",
-              .query = {{"offset", Type::integer, "bytes to leave out", 0, INT64_MAX}}},
+              .query = {{"offset", QueryType::integer, "bytes to leave out", 0, INT64_MAX}}},
              with_id(&JobRoutes::log));
   router.add("GET", "/api/jobs/{id}/events",
              {.summary = "Its state and progress as server-sent events, until it is over"},
@@ -253,12 +253,13 @@ void JobRoutes::add_results(Router& router) {
                const EntryPtr entry = find_job(table_, parts[0]);
                return event_stream(events_.job(entry->id, request.header("last-event-id")));
              });
-  router.add("GET", "/api/jobs/{id}/files/{name}",
-             {.summary = "A result; knows ETag, If-None-Match, Range and If-Range",
-              .query = {{"v", Type::text, "anything: another address, so that it is read anew"}}},
-             [this](const Request& request, const Parts& parts) {
-               return file(request, parts[0], parts[1]);
-             });
+  router.add(
+      "GET", "/api/jobs/{id}/files/{name}",
+      {.summary = "A result; knows ETag, If-None-Match, Range and If-Range",
+       .query = {{"v", QueryType::text, "anything: another address, so that it is read anew"}}},
+      [this](const Request& request, const Parts& parts) {
+        return file(request, parts[0], parts[1]);
+      });
 }
 
 }  // namespace lacuna

@@ -1,7 +1,5 @@
 // lacuna-server: takes jobs over HTTP and hands them to renderers.
 #include <fmt/format.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <csignal>
@@ -10,6 +8,7 @@
 #include <stdexcept>
 
 #include "jobs/spec/byte_size.h"
+#include "server/log.h"
 #include "server/service.h"
 
 namespace {
@@ -113,8 +112,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Lacuna's render service: takes jobs over HTTP and hands them to renderers."};
   define_options(app, settings);
   CLI11_PARSE(app, argc, argv);
-  spdlog::set_default_logger(spdlog::stderr_color_mt("lacuna-server"));
-  if (settings.verbose) spdlog::set_level(spdlog::level::debug);
+  log::start("lacuna-server", settings.verbose);
 
   const sigset_t ends = block_ends();
   try {
@@ -124,7 +122,7 @@ int main(int argc, char** argv) {
     std::fflush(stdout);
     int signal = 0;
     sigwait(&ends, &signal);
-    spdlog::info("ending (signal {})", signal);
+    log::info("ending (signal {})", signal);
     service.stop();
     return 0;
   } catch (const std::exception& error) {

@@ -6,6 +6,8 @@
 #include <cctype>
 #include <nlohmann/json.hpp>
 
+#include "jobs/spec/json_text.h"
+
 namespace lacuna {
 
 const char* status_title(int status) {
@@ -63,11 +65,11 @@ std::string media_type(const Request& request) {
 }
 
 Response problem_response(const HttpError& error, const std::string& path) {
-  nlohmann::ordered_json json = {{"type", "about:blank"},
-                                 {"title", status_title(error.status())},
-                                 {"status", error.status()},
-                                 {"detail", error.what()},
-                                 {"instance", path}};
+  OrderedJson json = {{"type", "about:blank"},
+                      {"title", status_title(error.status())},
+                      {"status", error.status()},
+                      {"detail", error.what()},
+                      {"instance", path}};
   for (const Problem& p : error.errors()) {
     json["errors"].push_back({{"pointer", p.pointer}, {"message", p.message}});
   }
@@ -75,7 +77,7 @@ Response problem_response(const HttpError& error, const std::string& path) {
   response.status = error.status();
   response.content_type = "application/problem+json";
   response.headers = error.headers();
-  response.body = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  response.body = document_text(json);
   return response;
 }
 

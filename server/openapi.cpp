@@ -11,8 +11,6 @@
 namespace lacuna {
 namespace {
 
-using nlohmann::ordered_json;
-
 /// The names of the parts in braces; "{}" is named after its place.
 Router::Parts named(Router::Parts pattern) {
   for (std::size_t i = 0; i < pattern.size(); ++i) {
@@ -21,8 +19,8 @@ Router::Parts named(Router::Parts pattern) {
   return pattern;
 }
 
-ordered_json path_parameters(const Router::Parts& pattern) {
-  ordered_json result = ordered_json::array();
+OrderedJson path_parameters(const Router::Parts& pattern) {
+  OrderedJson result = OrderedJson::array();
   for (const std::string& part : pattern) {
     if (!part.starts_with('{')) continue;
     result.push_back({{"name", part.substr(1, part.size() - 2)},
@@ -33,21 +31,21 @@ ordered_json path_parameters(const Router::Parts& pattern) {
   return result;
 }
 
-ordered_json schema(const QueryParameter& p) {
+OrderedJson schema(const QueryParameter& p) {
   if (p.type == QueryParameter::Type::flag) return {{"enum", {"1", "0", "true", "false"}}};
   if (p.type == QueryParameter::Type::text) return {{"type", "string"}};
-  ordered_json result = {{"type", "integer"}};
+  OrderedJson result = {{"type", "integer"}};
   if (p.min != INT64_MIN) result["minimum"] = p.min;
   if (p.max != INT64_MAX) result["maximum"] = p.max;
   return result;
 }
 
-ordered_json answers(const RouteDoc& doc) {
-  const ordered_json problem = {
+OrderedJson answers(const RouteDoc& doc) {
+  const OrderedJson problem = {
       {"application/problem+json", {{"schema", {{"$ref", "#/components/schemas/Problem"}}}}}};
-  ordered_json result = ordered_json::object();
+  OrderedJson result = OrderedJson::object();
   for (const auto& [status, text] : doc.answers) {
-    ordered_json& answer = result[std::to_string(status)];
+    OrderedJson& answer = result[std::to_string(status)];
     answer["description"] = text;
     if (status >= 400) answer["content"] = problem;
   }
@@ -55,8 +53,8 @@ ordered_json answers(const RouteDoc& doc) {
   return result;
 }
 
-ordered_json operation(const RouteDoc& doc, ordered_json parameters) {
-  ordered_json result;
+OrderedJson operation(const RouteDoc& doc, OrderedJson parameters) {
+  OrderedJson result;
   if (!doc.summary.empty()) result["summary"] = doc.summary;
   for (const QueryParameter& p : doc.query) {
     parameters.push_back(
@@ -64,20 +62,20 @@ ordered_json operation(const RouteDoc& doc, ordered_json parameters) {
   }
   if (!parameters.empty()) result["parameters"] = std::move(parameters);
   if (!doc.body_type.empty()) {
-    ordered_json content = ordered_json::object();
-    if (!doc.body_schema.empty()) content["schema"] = ordered_json::parse(doc.body_schema);
+    OrderedJson content = OrderedJson::object();
+    if (!doc.body_schema.empty()) content["schema"] = parse_own(doc.body_schema);
     result["requestBody"] = {{"required", true},
                              {"content", {{doc.body_type, std::move(content)}}}};
   }
   result["responses"] = answers(doc);
-  if (!doc.needs_token) result["security"] = ordered_json::array();
+  if (!doc.needs_token) result["security"] = OrderedJson::array();
   return result;
 }
 
 /// RFC 9457, and the places in a document.
-ordered_json problem_schema() {
-  const ordered_json text = {{"type", "string"}};
-  const ordered_json place = {
+OrderedJson problem_schema() {
+  const OrderedJson text = {{"type", "string"}};
+  const OrderedJson place = {
       {"type", "object"},
       {"required", {"pointer", "message"}},
       {"properties", {{"pointer", text}, {"message", text}}},
@@ -95,8 +93,8 @@ ordered_json problem_schema() {
 
 }  // namespace
 
-ordered_json Router::openapi(const ordered_json& info) const {
-  ordered_json paths = ordered_json::object();
+OrderedJson Router::openapi(const OrderedJson& info) const {
+  OrderedJson paths = OrderedJson::object();
   for (const Route& route : routes_) {
     const Parts pattern = named(route.pattern);
     std::string path;
@@ -110,9 +108,9 @@ ordered_json Router::openapi(const ordered_json& info) const {
           {"info", info},
           // The token is asked for only by services that have one: {} stands for those that do not.
           {"security",
-           {ordered_json::object(),
-            {{"token", ordered_json::array()}},
-            {{"session", ordered_json::array()}}}},
+           {OrderedJson::object(),
+            {{"token", OrderedJson::array()}},
+            {{"session", OrderedJson::array()}}}},
           {"paths", std::move(paths)},
           {"components",
            {{"schemas", {{"Problem", problem_schema()}}},

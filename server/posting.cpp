@@ -1,7 +1,6 @@
 #include "server/posting.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <xxhash.h>
 
 #include <algorithm>
@@ -14,6 +13,7 @@
 #include "server/catalogue.h"
 #include "server/conditional.h"
 #include "server/json_body.h"
+#include "server/log.h"
 
 namespace lacuna {
 namespace {
@@ -39,7 +39,8 @@ std::optional<std::string> key_of(const Request& request) {
 
 Response Posting::dry_run(const Request& request) const {
   const JobSpec spec = checked_spec(read_json_body(request, max_job_bytes));
-  return json_response(200, {{"job", Json::parse(write_job(spec))}, {"warnings", Json::array()}});
+  return json_response(200,
+                       {{"job", parse_own(write_job(spec))}, {"warnings", OrderedJson::array()}});
 }
 
 Response Posting::post(const Request& request) {
@@ -91,14 +92,14 @@ Response Posting::create(const JobSpec& spec, const JobControl& control) {
     try {
       return JobFolder::create(data_.jobs() / new_job_id(), spec, control);
     } catch (const std::system_error& error) {
-      spdlog::error("a job could not be stored: {}", error.what());
+      log::error("a job could not be stored: {}", error.what());
       throw HttpError(507, fmt::format("The job could not be stored: {}.", error.code().message()));
     }
   }();
   const std::string id = folder.id();
   if (!control.idempotency_key.empty()) keys_[control.idempotency_key] = id;
   const EntryPtr entry = queue_.add(id);
-  spdlog::info("{}: queued ({})", id, spec.scene);
+  log::info("{}: queued ({})", id, spec.scene);
   Response response = json_response(201, job_detail(table_, *entry));
   response.headers.emplace_back("Location", "/api/jobs/" + id);
   return response;

@@ -1,13 +1,13 @@
 #include "server/queue.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <utility>
 
 #include "jobs/spec/budget_extension.h"
 #include "jobs/spec/described_json.h"
 #include "server/child_process.h"
+#include "server/log.h"
 
 namespace lacuna {
 
@@ -16,7 +16,7 @@ Queue::Queue(Executor& executor, JobTable& table, DiskWatch& disk, QueueSettings
 
 void Queue::start() {
   for (const EntryPtr& entry : table_.all()) {
-    if (entry->damaged) spdlog::error("{} is left alone: {}", entry->id, entry->state.error);
+    if (entry->damaged) log::error("{} is left alone: {}", entry->id, entry->state.error);
     if (entry->over) continue;
     try {
       enter(entry);
@@ -285,7 +285,7 @@ void Queue::look_at_running() {
       if (work->control.cancel && !is_terminal(state.state)) state.state = State::cancelling;
       table_.set_state(id, state, false);
     } catch (const std::exception& error) {  // its runner will find out, too
-      spdlog::debug("{}: {}", id, error.what());
+      log::debug("{}: {}", id, error.what());
     }
   }
 }
@@ -300,12 +300,12 @@ void Queue::write_state(const std::string& id, const JobState& state, bool over)
   try {
     const State before = stored_state(id).state;
     if (before != state.state && !may_follow(before, state.state)) {
-      spdlog::error("{}: {} may not follow {}", id, enum_name(state.state), enum_name(before));
+      log::error("{}: {} may not follow {}", id, enum_name(state.state), enum_name(before));
     }
     table_.folder(id).write_state(state);
     unsaved_.erase(id);
   } catch (const std::exception& error) {
-    spdlog::error("{}: its state could not be saved: {}", id, error.what());
+    log::error("{}: its state could not be saved: {}", id, error.what());
     unsaved_[id] = state;
   }
   table_.set_state(id, state, over);

@@ -1,11 +1,11 @@
 // The threads that have jobs rendered.
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <csignal>
 #include <utility>
 
 #include "server/child_process.h"
+#include "server/log.h"
 #include "server/process_identity.h"
 #include "server/queue.h"
 
@@ -57,7 +57,7 @@ void Queue::run() {
 
 /// The job's folder cannot be read or written any more.
 void Queue::give_up(const std::string& id, const std::string& reason) {
-  spdlog::error("{} is given up: {}", id, reason);
+  log::error("{} is given up: {}", id, reason);
   const std::lock_guard lock(mutex_);
   forget(id);
   std::error_code ignored;
@@ -114,7 +114,7 @@ bool Queue::wait_until_free(const Work& work) {
   while (!is_free()) {
     if (!killed && Clock::now() >= patience) {
       killed = kill_group(renderer_of(work.control), SIGKILL);
-      if (killed) spdlog::warn("{}: an earlier renderer did not end and is killed", work.id);
+      if (killed) log::warn("{}: an earlier renderer did not end and is killed", work.id);
     }
     std::unique_lock lock(mutex_);
     if (changed_.wait_for(lock, look_again_at_lock, [&] { return stopping_; })) return false;
@@ -140,13 +140,13 @@ void Queue::attend(Work& work) {
       return forget(work.id);
     }
   }
-  spdlog::info("{}: a renderer is started", work.id);
+  log::info("{}: a renderer is started", work.id);
   attempt.ending = executor_.run(folder, *work.stop, [&](pid_t pid) { note_renderer(work, pid); });
-  spdlog::info("{}: {}", work.id, attempt.ending.reason);
+  log::info("{}: {}", work.id, attempt.ending.reason);
   try {
     attempt.after = folder.read_state();
   } catch (const std::runtime_error& error) {
-    spdlog::error("{}: {}", work.id, error.what());
+    log::error("{}: {}", work.id, error.what());
     attempt.after = attempt.before;
   }
   settle(work, std::move(attempt));
@@ -163,7 +163,7 @@ void Queue::note_renderer(Work& work, pid_t pid) {
   try {
     write_control(work, control);
   } catch (const std::exception& error) {
-    spdlog::warn("{}: {}", work.id, error.what());
+    log::warn("{}: {}", work.id, error.what());
   }
 }
 
@@ -183,7 +183,7 @@ void Queue::settle(Work& work, Attempt attempt) {
     try {
       write_control(work, control);
     } catch (const std::exception& error) {
-      spdlog::warn("{}: {}", work.id, error.what());
+      log::warn("{}: {}", work.id, error.what());
       work.control = control;
     }
     work.not_before = Clock::now() + back_off(control.crashes);

@@ -2,12 +2,12 @@
 
 #include <cstdint>
 #include <functional>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "jobs/spec/json_text.h"
 #include "server/message.h"
 
 namespace lacuna {
@@ -44,8 +44,8 @@ class Router {
   /// Calls the handler; throws HttpError 404, or 405 with Allow, or 400 for the query.
   Response route(const Request& request) const;
   /// The OpenAPI 3.1 document of all routes. `info`: {"title", "version", ...}. Throws
-  /// nlohmann::json::exception for a body_schema that is no JSON.
-  nlohmann::ordered_json openapi(const nlohmann::ordered_json& info) const;
+  /// std::logic_error for a body_schema that is no JSON.
+  OrderedJson openapi(const OrderedJson& info) const;
 
  private:
   struct Route {

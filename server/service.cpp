@@ -1,7 +1,6 @@
 #include "server/service.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -14,6 +13,7 @@
 #include "server/executor_local.h"
 #include "server/http.h"
 #include "server/listener.h"
+#include "server/log.h"
 #include "server/queue.h"
 #include "server/routes.h"
 #include "server/scene_uploads.h"
@@ -102,8 +102,8 @@ void allow_descriptors() {
   if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= wanted) return;
   limit.rlim_cur = std::min(wanted, limit.rlim_max);
   if (::setrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur < wanted) {
-    spdlog::warn("only {} files may be open at a time: less than {} clients can be served at once",
-                 limit.rlim_cur, wanted);
+    log::warn("only {} files may be open at a time: less than {} clients can be served at once",
+              limit.rlim_cur, wanted);
   }
 }
 

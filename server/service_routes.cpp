@@ -20,8 +20,8 @@ namespace {
 constexpr std::uint64_t max_scene_bytes = std::uint64_t{256} << 20;
 
 /// The state machine, for programs.
-Json states() {
-  Json states = Json::array(), transitions = Json::array();
+OrderedJson states() {
+  OrderedJson states = OrderedJson::array(), transitions = OrderedJson::array();
   for (const auto& [state, name, doc] : EnumTable<State>::values) {
     states.push_back({{"name", name}, {"doc", doc}, {"terminal", is_terminal(state)}});
   }
@@ -142,7 +142,7 @@ void ServiceRoutes::add_to(Router& router) {
              [this](const Request&, const Parts&) { return info(); });
   router.add("GET", "/openapi.json", {.summary = "This description"},
              [&router](const Request& request, const Parts&) {
-               const Json info = {{"title", "Lacuna"}, {"version", version()}};
+               const OrderedJson info = {{"title", "Lacuna"}, {"version", version()}};
                return with_tag(request, json_response(200, router.openapi(info)));
              });
   router.add("GET", "/api/states", {.summary = "The states of a job and what may follow what"},

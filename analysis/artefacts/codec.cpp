@@ -10,10 +10,6 @@ namespace {
 
 constexpr int largest_side = 1 << 16;
 
-void require(bool holds, const char* what) {
-  if (!holds) throw std::runtime_error(what);
-}
-
 bool is_symmetric(const SkeletonGraph& graph) {
   for (std::uint32_t node = 0; node < graph.nodes(); ++node) {
     for (const std::uint32_t other : graph.of(node)) {

@@ -26,6 +26,11 @@ namespace lacuna {
 template <class T>
 struct Codec;
 
+/// For read(): throws std::runtime_error(what) unless it holds.
+inline void require(bool holds, const char* what) {
+  if (!holds) throw std::runtime_error(what);
+}
+
 /// Every pattern of bytes is a value of T, and T has no padding: specialise it for such structs.
 template <class T>
 inline constexpr bool is_plain =

@@ -6,10 +6,6 @@
 namespace lacuna {
 namespace {
 
-void require(bool holds, const char* what) {
-  if (!holds) throw std::runtime_error(what);
-}
-
 template <class Values>
 void require_below(const Values& values, std::size_t bound, const char* what) {
   require(std::all_of(values.begin(), values.end(), [bound](auto v) { return v < bound; }), what);

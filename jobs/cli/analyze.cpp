@@ -12,6 +12,7 @@
 #include "jobs/run/clock.h"
 #include "jobs/run/overlay.h"
 #include "jobs/spec/byte_size.h"
+#include "jobs/spec/json_text.h"
 #include "jobs/store/job_folder.h"
 #include "jobs/store/machine.h"
 #include "renderer/scene/camera.h"
@@ -21,7 +22,7 @@ namespace lacuna {
 
 namespace {
 
-struct Options {
+struct AnalyzeOptions {
   std::string scene, camera;
   AnalysisSettings analysis;
   std::filesystem::path out;
@@ -50,10 +51,8 @@ struct GraphCounts {
   }
 };
 
-using Json = nlohmann::ordered_json;
-
 /// What a scene's empty space is like, in numbers.
-Json shape(const Options& o, SpaceAnalysis& space) {
+OrderedJson shape(const AnalyzeOptions& o, SpaceAnalysis& space) {
   const Voxels& v = space.voxels();
   const Imath::V3i n = v.scene.size();
   const Domain& d = space.domain();
@@ -79,8 +78,8 @@ Json shape(const Options& o, SpaceAnalysis& space) {
           {"portals", space.portals().portals.size()}};
 }
 
-Json steps(const ArtefactStore& store) {
-  Json all = Json::array();
+OrderedJson steps(const ArtefactStore& store) {
+  OrderedJson all = OrderedJson::array();
   for (const ArtefactRecord& r : store.records()) {
     const bool built = r.origin == ArtefactRecord::Origin::built;
     all.push_back({{"name", r.type},
@@ -91,16 +90,17 @@ Json steps(const ArtefactStore& store) {
   return all;
 }
 
-void print(const Json& j) {
+void print(const OrderedJson& j) {
   for (const auto& [name, value] : j.items()) {
     if (name == "steps" || name == "peak_memory_bytes" || name == "threads") continue;
     std::string label = name;
     std::replace(label.begin(), label.end(), '_', ' ');
-    fmt::print("{:<20} {}\n", label, value.is_string() ? value.get<std::string>() : value.dump());
+    fmt::print("{:<20} {}\n", label,
+               value.is_string() ? value.get<std::string>() : json_text(value));
   }
   fmt::print("\n{:<20} {:>8} {:>10} {:>12}\n", "STEP", "", "SECONDS", "ON DISK");
   double total = 0;
-  for (const Json& step : j["steps"]) {
+  for (const OrderedJson& step : j["steps"]) {
     const auto seconds = step["seconds"].get<double>();
     const auto bytes = step["disk_bytes"].get<std::uint64_t>();
     total += seconds;
@@ -109,7 +109,7 @@ void print(const Json& j) {
   }
   fmt::print("{:<20} {:>8} {:>10.3f}\n", "all", "", total);
   fmt::print("peak memory {}, {} threads\n",
-             byte_size_text(j["peak_memory_bytes"].get<std::uint64_t>()), j["threads"].dump());
+             byte_size_text(j["peak_memory_bytes"].get<std::uint64_t>()), json_text(j["threads"]));
 }
 
 void write_overlays(const std::filesystem::path& dir, const SceneData& scene,
@@ -127,7 +127,7 @@ void write_overlays(const std::filesystem::path& dir, const SceneData& scene,
   write("portals.glb", portal_overlay(space.portals(), space.regions(), grid));
 }
 
-void analyze(const Options& o) {
+void analyze(const AnalyzeOptions& o) {
   const ThreadPool pool(o.threads);
   Terminal terminal({}, false);
   const SceneData scene = load_gltf(find_scene(o.scene));
@@ -147,20 +147,20 @@ void analyze(const Options& o) {
                       store, pool);
   space.node_map();
   space.filtered_map();
-  Json result = shape(o, space);
+  OrderedJson result = shape(o, space);
   result["steps"] = steps(store);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   result["peak_memory_bytes"] = std::int64_t{usage.ru_maxrss} * 1024;
   result["threads"] = pool.threads();
-  o.json ? fmt::print("{}\n", result.dump(2)) : print(result);
+  o.json ? fmt::print("{}", document_text(result)) : print(result);
   if (!o.out.empty()) write_overlays(o.out, scene, space);
 }
 
 }  // namespace
 
 void add_analyze(CLI::App& app, int& code) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<AnalyzeOptions>();
   CLI::App* command = app.add_subcommand(
       "analyze",
       "The shape of a scene's empty space: voxels, skeleton, regions; what each step took");

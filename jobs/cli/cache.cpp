@@ -12,12 +12,12 @@ namespace lacuna {
 
 namespace {
 
-struct Options {
+struct CacheOptions {
   std::filesystem::path folder;
   double older_than = 0;  ///< days
 };
 
-std::filesystem::path folder_of(const Options& o) {
+std::filesystem::path folder_of(const CacheOptions& o) {
   return o.folder.empty() ? DataRoot::from_environment().cache() : o.folder;
 }
 
@@ -33,7 +33,7 @@ std::string count_text(std::size_t entries, std::uint64_t bytes) {
                      byte_size_text(bytes));
 }
 
-void list(const Options& o) {
+void list(const CacheOptions& o) {
   fmt::print("{:<20} {:>10}  {:<24}  {:<32}  {}\n", "TYPE", "SIZE", "LAST USED", "KEY",
              "OF  SETTINGS AND INPUTS");
   std::uint64_t bytes = 0;
@@ -47,7 +47,7 @@ void list(const Options& o) {
   fmt::print("{} in {}\n", count_text(entries.size(), bytes), folder_of(o).string());
 }
 
-int verify(const Options& o) {
+int verify(const CacheOptions& o) {
   std::size_t damaged = 0;
   std::uint64_t bytes = 0;
   const auto entries = list_cache(folder_of(o), CacheCheck::checksums);
@@ -66,7 +66,7 @@ int verify(const Options& o) {
   return exit_error;
 }
 
-void clear(const Options& o) {
+void clear(const CacheOptions& o) {
   const std::chrono::duration<double, std::ratio<86400>> unused(o.older_than);
   const CacheRemoval removed =
       clear_cache(folder_of(o), std::chrono::duration_cast<std::chrono::seconds>(unused));
@@ -77,7 +77,7 @@ void clear(const Options& o) {
 }  // namespace
 
 void add_cache(CLI::App& app, int& code) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<CacheOptions>();
   CLI::App* command = app.add_subcommand(
       "cache", "Look after what the analysis of scenes left on disk for the next job");
   command->require_subcommand(1);

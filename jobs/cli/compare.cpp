@@ -17,14 +17,14 @@ struct Crop {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-struct Options {
+struct CompareOptions {
   std::filesystem::path a, b;
   int block = 0;
   std::vector<int> crop;  ///< x, y, width, height; empty: the whole picture
 };
 
 /// Throws SceneError if the rectangle that was asked for is not in the picture.
-Crop crop_of(const Options& o, const FloatImage& image) {
+Crop crop_of(const CompareOptions& o, const FloatImage& image) {
   if (o.crop.empty()) return {0, 0, image.width, image.height};
   const Crop c{o.crop[0], o.crop[1], o.crop[2], o.crop[3]};
   if (c.x < 0 || c.y < 0 || c.width < 1 || c.height < 1 || c.x > image.width - c.width ||
@@ -53,7 +53,7 @@ double mean(const std::vector<double>& values) {
 }
 
 /// Variance of a - b as far as it is known; empty: A has no such layer.
-std::vector<double> variance_of_difference(const Options& o, const Crop& crop) {
+std::vector<double> variance_of_difference(const CompareOptions& o, const Crop& crop) {
   std::vector<double> sum;
   for (const auto& file : {o.a, o.b}) {
     try {
@@ -67,7 +67,7 @@ std::vector<double> variance_of_difference(const Options& o, const Crop& crop) {
   return sum;
 }
 
-void print_blocks(const Options& o, const Crop& crop, const std::vector<double>& a,
+void print_blocks(const CompareOptions& o, const Crop& crop, const std::vector<double>& a,
                   const std::vector<double>& b) {
   if (o.block > std::min(crop.width, crop.height)) {
     throw SceneError(fmt::format("--block {} is larger than what is compared, {} x {}", o.block,
@@ -82,7 +82,7 @@ void print_blocks(const Options& o, const Crop& crop, const std::vector<double>&
              s.z_beyond);
 }
 
-void compare(const Options& o) {
+void compare(const CompareOptions& o) {
   const FloatImage image_a = read_float_image(o.a);
   const FloatImage image_b = read_float_image(o.b);
   if (image_a.width != image_b.width || image_a.height != image_b.height) {
@@ -105,7 +105,7 @@ void compare(const Options& o) {
 }  // namespace
 
 void add_compare(CLI::App& app, int& code) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<CompareOptions>();
   CLI::App* command = app.add_subcommand(
       "compare", "Print every error of one EXR against another, and their means");
   command->add_option("A", o->a, "the estimate")->required()->check(CLI::ExistingFile);

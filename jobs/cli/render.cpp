@@ -95,12 +95,12 @@ int render(const fs::path& what, const fs::path& out, int threads, bool quiet) {
 }  // namespace
 
 void add_render(CLI::App& app, int& code) {
-  struct Options {
+  struct RenderOptions {
     fs::path job, out;
     int threads = -1;
     bool quiet = false;
   };
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<RenderOptions>();
   CLI::App* command =
       app.add_subcommand("render", "Render a job file, or go on with a job's folder");
   command->add_option("JOB", o->job, "a job file (JSON), or a job's folder")

@@ -5,10 +5,8 @@
 namespace lacuna {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json made(const ArtefactRecord& r) {
-  Json j{{"name", r.type}, {"seconds", r.seconds}};
+OrderedJson made(const ArtefactRecord& r) {
+  OrderedJson j{{"name", r.type}, {"seconds", r.seconds}};
   if (r.waited_seconds > 0) j["waited_seconds"] = r.waited_seconds;
   j["disk_bytes"] = r.disk_bytes;
   if (r.content_bytes) j["memory_bytes"] = *r.content_bytes;
@@ -18,8 +16,10 @@ Json made(const ArtefactRecord& r) {
 
 }  // namespace
 
-Json artefacts_json(const std::vector<ArtefactRecord>& records) {
-  Json j{{"built", Json::array()}, {"loaded", Json::array()}, {"left_out", Json::array()}};
+OrderedJson artefacts_json(const std::vector<ArtefactRecord>& records) {
+  OrderedJson j{{"built", OrderedJson::array()},
+                {"loaded", OrderedJson::array()},
+                {"left_out", OrderedJson::array()}};
   for (const ArtefactRecord& r : records) {
     switch (r.origin) {
       case ArtefactRecord::Origin::built:

@@ -14,14 +14,14 @@ namespace lacuna {
 namespace {
 
 // Changes with the layout of anything that is saved.
-constexpr std::string_view magic = "lacuna-checkpoint-2";
+constexpr std::string_view format_name = "lacuna-checkpoint-2";
 
 }  // namespace
 
 void write_checkpoint(const std::filesystem::path& file, const std::string& key,
                       const std::string& content) {
   ByteWriter out;
-  out.put(magic);
+  out.put(format_name);
   out.put(std::string_view(key));
   out.put(static_cast<std::uint64_t>(XXH3_64bits(content.data(), content.size())));
   out.put(std::string_view(content));
@@ -37,7 +37,7 @@ std::optional<std::string> read_checkpoint(const std::filesystem::path& file,
   const std::string bytes = read_file(file, std::numeric_limits<std::size_t>::max());
   ByteReader in(bytes);
   try {
-    if (in.get_text() != magic) refuse("not a checkpoint of this version");
+    if (in.get_text() != format_name) refuse("not a checkpoint of this version");
     if (in.get_text() != key) refuse("a checkpoint of another picture");
     const auto checksum = in.get<std::uint64_t>();
     const std::string_view content = in.get_text();

@@ -2,12 +2,11 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "jobs/run/overlay.h"
+#include "jobs/spec/json_text.h"
 #include "renderer/scene/scene_shape.h"
 
 namespace lacuna {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// A glTF document and its one buffer, in the making.
 class Document {
@@ -15,7 +14,7 @@ class Document {
   Document() {
     json_["asset"] = {{"version", "2.0"}, {"generator", "lacuna analyze"}};
     json_["scene"] = 0;
-    json_["scenes"] = {{{"nodes", Json::array()}}};
+    json_["scenes"] = {{{"nodes", OrderedJson::array()}}};
   }
 
   void add(const OverlayMesh& mesh, float alpha) {
@@ -37,11 +36,12 @@ class Document {
     const int indices = accessor(
         mesh.triangles.data(), mesh.triangles.size() * sizeof(mesh.triangles[0]),
         {{"componentType", uints}, {"count", mesh.triangles.size() * 3}, {"type", "SCALAR"}});
-    Json material = {{"name", mesh.name},
-                     {"doubleSided", true},
-                     {"pbrMetallicRoughness",
-                      {{"baseColorFactor", {mesh.colour.x, mesh.colour.y, mesh.colour.z, alpha}},
-                       {"metallicFactor", 0}}}};
+    OrderedJson material = {
+        {"name", mesh.name},
+        {"doubleSided", true},
+        {"pbrMetallicRoughness",
+         {{"baseColorFactor", {mesh.colour.x, mesh.colour.y, mesh.colour.z, alpha}},
+          {"metallicFactor", 0}}}};
     if (alpha < 1) material["alphaMode"] = "BLEND";
     json_["materials"].push_back(material);
     json_["meshes"].push_back({{"name", mesh.name},
@@ -56,7 +56,7 @@ class Document {
     json_["cameras"].push_back({{"type", "perspective"},
                                 {"name", camera.name},
                                 {"perspective", {{"yfov", camera.yfov}, {"znear", 0.01}}}});
-    Json matrix = Json::array();  // row vectors are glTF's columns
+    OrderedJson matrix = OrderedJson::array();  // row vectors are glTF's columns
     for (int row = 0; row < 4; ++row) {
       for (int column = 0; column < 4; ++column) matrix.push_back(camera.to_world[row][column]);
     }
@@ -65,7 +65,7 @@ class Document {
 
   std::string glb() {
     json_["buffers"] = {{{"byteLength", buffer_.size()}}};
-    std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string text = json_text(json_);
     text.resize((text.size() + 3) / 4 * 4, ' ');
     std::string file;
     const auto put = [&file](std::size_t value) {
@@ -81,7 +81,7 @@ class Document {
   }
 
  private:
-  int accessor(const void* data, std::size_t bytes, Json what) {
+  int accessor(const void* data, std::size_t bytes, OrderedJson what) {
     json_["bufferViews"].push_back(
         {{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", bytes}});
     buffer_.append(static_cast<const char*>(data), bytes);
@@ -89,12 +89,12 @@ class Document {
     json_["accessors"].push_back(std::move(what));
     return static_cast<int>(json_["accessors"].size()) - 1;
   }
-  void add_node(Json node) {
+  void add_node(OrderedJson node) {
     json_["nodes"].push_back(std::move(node));
     json_["scenes"][0]["nodes"].push_back(json_["nodes"].size() - 1);
   }
 
-  Json json_;
+  OrderedJson json_;
   std::string buffer_;
 };
 

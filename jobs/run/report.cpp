@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "jobs/run/artefacts_json.h"
+#include "jobs/spec/json_text.h"
 #include "jobs/spec/version.h"
 #include "jobs/store/machine.h"
 
@@ -15,19 +16,17 @@ namespace lacuna {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+OrderedJson optional(std::optional<double> v) { return v ? OrderedJson(*v) : OrderedJson(nullptr); }
 
-Json optional(std::optional<double> v) { return v ? Json(*v) : Json(nullptr); }
-
-Json seconds(const PhaseSeconds& phases, const Spent& spent) {
-  Json j;
+OrderedJson seconds(const PhaseSeconds& phases, const Spent& spent) {
+  OrderedJson j;
   for (const auto& [name, value] : phases) j[name] = value;
   j["render"] = spent.seconds;
   j["render_cpu"] = spent.cpu_seconds;
   return j;
 }
 
-Json counts(const RenderLoop& loop) {
+OrderedJson counts(const RenderLoop& loop) {
   const Counters& c = loop.counters();
   return {
       {"iterations", loop.spent().iterations}, {"samples", c.samples},   {"rays", c.rays},
@@ -35,32 +34,35 @@ Json counts(const RenderLoop& loop) {
       {"refused_rays", loop.refused_rays()}};
 }
 
-Json rates(const RenderTask& task, const Spent& spent, const Counters& c) {
+OrderedJson rates(const RenderTask& task, const Spent& spent, const Counters& c) {
   const auto rays = static_cast<double>(c.rays + c.shadow_rays);
-  const auto per = [](double n, double t) { return t > 0 ? Json(n / t) : Json(nullptr); };
+  const auto per = [](double n, double t) {
+    return t > 0 ? OrderedJson(n / t) : OrderedJson(nullptr);
+  };
   return {{"rays_per_second", per(rays, spent.seconds)},
           {"rays_per_cpu_second", per(rays, spent.cpu_seconds * task.pool.threads())},
           {"samples_per_second", per(static_cast<double>(c.samples), spent.seconds)},
           {"rays_per_sample", per(rays, static_cast<double>(c.samples))}};
 }
 
-Json scene(const Scene& s) {
+OrderedJson scene(const Scene& s) {
   const SceneData& d = s.data();
-  return {{"triangles", d.triangle_count()},
-          {"dropped_triangles", d.dropped_triangles},
-          {"emitters", s.has_emitters() ? Json(s.emitters().size()) : Json("not needed")},
-          {"textures",
-           {{"in_scene", d.textures.size()},
-            {"decoded", s.textures_decoded()},
-            {"decoded_bytes", s.texture_bytes()}}},
-          {"mask_filters", s.rays().filters()},
-          {"ray_caster_bytes", s.rays().bytes()},
-          {"content_hash", fmt::format("{:016x}", d.content_hash)},
-          {"geometry_hash", fmt::format("{:016x}", d.geometry_hash)}};
+  return {
+      {"triangles", d.triangle_count()},
+      {"dropped_triangles", d.dropped_triangles},
+      {"emitters", s.has_emitters() ? OrderedJson(s.emitters().size()) : OrderedJson("not needed")},
+      {"textures",
+       {{"in_scene", d.textures.size()},
+        {"decoded", s.textures_decoded()},
+        {"decoded_bytes", s.texture_bytes()}}},
+      {"mask_filters", s.rays().filters()},
+      {"ray_caster_bytes", s.rays().bytes()},
+      {"content_hash", fmt::format("{:016x}", d.content_hash)},
+      {"geometry_hash", fmt::format("{:016x}", d.geometry_hash)}};
 }
 
-Json errors_json(const RenderTask& task, const Curve& curve) {
-  Json j;
+OrderedJson errors_json(const RenderTask& task, const Curve& curve) {
+  OrderedJson j;
   if (curve.rows().empty()) return j;
   const CurveRow& row = curve.rows().back();
   for (const auto& metric : EnumTable<ErrorMetric>::values) {
@@ -70,13 +72,14 @@ Json errors_json(const RenderTask& task, const Curve& curve) {
   if (task.reference != nullptr) {
     j["reference"] = {
         {"name", task.reference->name},
-        {"own_rmse", task.reference->mse ? Json(std::sqrt(*task.reference->mse)) : Json(nullptr)},
+        {"own_rmse",
+         task.reference->mse ? OrderedJson(std::sqrt(*task.reference->mse)) : OrderedJson(nullptr)},
         {"at_floor", row.at_floor}};
   }
   return j;
 }
 
-Json machine(const ThreadPool& pool) {
+OrderedJson machine(const ThreadPool& pool) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return {{"processor", processor_name()},
@@ -90,7 +93,7 @@ Json machine(const ThreadPool& pool) {
 std::string write_report(const ReportInput& input) {
   const RenderTask& task = input.task;
   const RenderLoop& loop = input.loop;
-  Json j;
+  OrderedJson j;
   j["version"] = version();
   j["job"] = task.folder.id();
   j["seconds"] = seconds(task.phases, loop.spent());
@@ -101,7 +104,7 @@ std::string write_report(const ReportInput& input) {
   j["artefacts"] = artefacts_json(input.artefacts);
   j["warnings"] = input.warnings;
   j["machine"] = machine(task.pool);
-  return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return document_text(j);
 }
 
 }  // namespace lacuna

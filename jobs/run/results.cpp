@@ -6,6 +6,7 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "jobs/spec/job_json.h"
+#include "jobs/spec/json_text.h"
 #include "jobs/spec/version.h"
 #include "renderer/film/exr.h"
 #include "renderer/film/half_layers.h"
@@ -79,7 +80,7 @@ std::map<std::string, std::string> attributes(const RenderTask& task, const Rend
 void write_half_layers(const RenderTask& task, std::vector<ExrLayer> layers) {
   if (task.reference != nullptr) layers.push_back({"reference", rgb, task.reference->rgb});
   const HalfLayers packed = pack_half(layers);
-  nlohmann::ordered_json index;
+  OrderedJson index;
   index["width"] = task.spec.resolution[0];
   index["height"] = task.spec.resolution[1];
   for (const HalfLayer& l : packed.index) {
@@ -90,7 +91,7 @@ void write_half_layers(const RenderTask& task, std::vector<ExrLayer> layers) {
                                {"scale", l.scale}});
   }
   write_file_atomically(task.folder.file("layers.half"), packed.bytes);
-  write_file_atomically(task.folder.file("layers.json"), index.dump(2) + "\n");
+  write_file_atomically(task.folder.file("layers.json"), document_text(index));
 }
 
 }  // namespace

@@ -62,9 +62,10 @@ std::string default_text(const Member& member) {
   if (member.field.required) return "required";
   if (member.type.kind == Kind::object && !member.type.optional) return "";
   if (member.type.kind == Kind::choice && member.default_value.is_object()) {
-    return fmt::format("`{}`", member.default_value[std::string(variant_key)].dump());
+    return fmt::format("`{}`", json_text(member.default_value[std::string(variant_key)]));
   }
-  return member.default_value.is_null() ? "none" : fmt::format("`{}`", member.default_value.dump());
+  return member.default_value.is_null() ? "none"
+                                        : fmt::format("`{}`", json_text(member.default_value));
 }
 
 void put_names(std::string& page, const Member& member) {

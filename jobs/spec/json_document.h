@@ -6,11 +6,10 @@
 #include <string_view>
 #include <vector>
 
+#include "jobs/spec/json_text.h"
 #include "jobs/spec/problems.h"
 
 namespace lacuna {
-
-using Json = nlohmann::json;
 
 /// What a document may be before anything in it is looked at.
 struct DocumentLimits {

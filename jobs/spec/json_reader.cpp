@@ -14,8 +14,7 @@ namespace {
 /// A string as it would stand in JSON, in printable ASCII, cut where it is long.
 std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 60;
-  std::string shown =
-      Json(text.substr(0, longest)).dump(-1, ' ', true, Json::error_handler_t::replace);
+  std::string shown = json_text(Json(text.substr(0, longest)), Escape::all_but_ascii);
   if (text.size() > longest) shown += "...";
   return shown;
 }
@@ -32,9 +31,9 @@ std::string shown(const Json& value) {
     case Json::value_t::number_integer:
     case Json::value_t::number_unsigned:
     case Json::value_t::number_float:
-      return "number " + value.dump();
+      return "number " + json_text(value);
     default:
-      return value.dump();
+      return json_text(value);
   }
 }
 

@@ -6,10 +6,9 @@
 #include <variant>
 
 #include "jobs/spec/described.h"
+#include "jobs/spec/json_text.h"
 
 namespace lacuna {
-
-using OrderedJson = nlohmann::ordered_json;
 
 /// The writing visitor: an object with every key of the table, in its order.
 class ObjectWriter {
@@ -59,12 +58,6 @@ OrderedJson ObjectWriter::value_of(const T& member) {
   } else {
     return OrderedJson(member);
   }
-}
-
-/// Text of a document for files: two spaces of indent, a newline at its end. Bytes that are no
-/// UTF-8 (an error message may quote any) become U+FFFD; a number that is not finite becomes null.
-inline std::string document_text(const OrderedJson& json) {
-  return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + '\n';
 }
 
 }  // namespace lacuna

@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, 9> not_in_the_picture{
 std::string picture_key(const JobSpec& spec) {
   OrderedJson decides = ObjectWriter::value_of(spec);
   for (const std::string_view key : not_in_the_picture) decides.erase(std::string(key));
-  const std::string canonical = decides.dump(-1, ' ', true, OrderedJson::error_handler_t::replace);
+  const std::string canonical = json_text(decides, Escape::all_but_ascii);
   const XXH128_hash_t hash = XXH3_128bits(canonical.data(), canonical.size());
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <vector>
 
@@ -15,6 +17,13 @@ namespace lacuna {
 /// time share the smaller's number of threads, so each lives for one call.
 inline ThreadPool one_thread() { return ThreadPool(1); }
 inline ThreadPool four_threads() { return ThreadPool(4); }
+
+inline std::uint32_t l1(Imath::V3i d) {
+  return static_cast<std::uint32_t>(std::abs(d.x) + std::abs(d.y) + std::abs(d.z));
+}
+inline std::uint32_t chebyshev(Imath::V3i d) {
+  return static_cast<std::uint32_t>(std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}));
+}
 
 /// Every bit 1 with probability `share`.
 inline BitGrid3 random_grid(Imath::V3i size, double share, std::mt19937& rng) {

@@ -24,12 +24,6 @@ std::uint32_t distance_by_definition(const BitGrid3& domain, V3i x, Measure meas
   return least;
 }
 
-std::uint32_t l1(V3i d) {
-  return static_cast<std::uint32_t>(std::abs(d.x) + std::abs(d.y) + std::abs(d.z));
-}
-std::uint32_t chebyshev(V3i d) {
-  return static_cast<std::uint32_t>(std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}));
-}
 std::uint32_t squared(V3i d) { return static_cast<std::uint32_t>(d.dot(d)); }
 
 template <class T, class Measure>

@@ -13,9 +13,6 @@ namespace {
 
 using Imath::V3i;
 
-int chebyshev(V3i d) { return std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}); }
-int l1(V3i d) { return std::abs(d.x) + std::abs(d.y) + std::abs(d.z); }
-
 /// The largest D(y) of all balls that hold each voxel, from all pairs.
 template <class Distance>
 std::vector<std::uint16_t> opening_by_definition(const Grid3<std::uint16_t>& d, Distance distance) {

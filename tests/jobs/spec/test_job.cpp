@@ -12,7 +12,7 @@
 namespace lacuna {
 namespace {
 
-std::vector<Problem> problems(const std::string& json) {
+std::vector<Problem> job_problems(const std::string& json) {
   return problems_of([&] { parse_job(json); });
 }
 
@@ -33,9 +33,9 @@ TEST(Job, the_default_budget_is_only_for_jobs_without_any_limit) {
 }
 
 TEST(Job, a_missing_scene_is_told) {
-  expect_one(problems("{}"), "/scene", {"missing; required: glTF or GLB file"});
-  expect_one(problems("[]"), "", {"found a list of 0; allowed: an object"});
-  expect_one(problems("7"), "", {"found number 7"});
+  expect_one(job_problems("{}"), "/scene", {"missing; required: glTF or GLB file"});
+  expect_one(job_problems("[]"), "", {"found a list of 0; allowed: an object"});
+  expect_one(job_problems("7"), "", {"found number 7"});
 }
 
 TEST(Job, an_error_target_needs_a_reference_unless_it_is_an_estimate) {
@@ -43,37 +43,37 @@ TEST(Job, an_error_target_needs_a_reference_unless_it_is_an_estimate) {
     return R"({"scene": "a", "budget": {"error": {"target": 1, "metric": ")" + metric + "\"}}" +
            more + "}";
   };
-  EXPECT_TRUE(problems(job("est_rmse", "")).empty());
-  EXPECT_TRUE(problems(job("mae", R"(, "reference": "door")")).empty());
-  expect_one(problems(job("mae", "")), "/budget/error/metric",
+  EXPECT_TRUE(job_problems(job("est_rmse", "")).empty());
+  EXPECT_TRUE(job_problems(job("mae", R"(, "reference": "door")")).empty());
+  expect_one(job_problems(job("mae", "")), "/budget/error/metric",
              {"found \"mae\"", "without \"reference\"", "\"est_rmse\""});
   // A reference that is there but wrong is one problem, not two.
-  expect_one(problems(job("mae", R"(, "reference": 1)")), "/reference", {"found number 1"});
+  expect_one(job_problems(job("mae", R"(, "reference": 1)")), "/reference", {"found number 1"});
 }
 
 TEST(Job, layers_come_once) {
-  expect_one(problems(R"({"scene": "a", "layers": ["albedo", "depth", "albedo"]})"), "/layers/2",
-             {"\"albedo\" again", "each layer once"});
-  expect_one(problems(R"({"scene": "a", "layers": ["variance", "x"]})"), "/layers/1",
+  expect_one(job_problems(R"({"scene": "a", "layers": ["albedo", "depth", "albedo"]})"),
+             "/layers/2", {"\"albedo\" again", "each layer once"});
+  expect_one(job_problems(R"({"scene": "a", "layers": ["variance", "x"]})"), "/layers/1",
              {"string \"x\""});
 }
 
 TEST(Job, nested_pointers_name_the_place) {
-  expect_one(problems(R"({"scene": "a", "resolution": [1, 0]})"), "/resolution/1",
+  expect_one(job_problems(R"({"scene": "a", "resolution": [1, 0]})"), "/resolution/1",
              {"found number 0; allowed: an integer from 1 to 16384 pixels"});
   expect_one(
-      problems(R"({"scene": "a", "integrator": {"type": "path", "guide": {"type": "bdsf"}}})"),
+      job_problems(R"({"scene": "a", "integrator": {"type": "path", "guide": {"type": "bdsf"}}})"),
       "/integrator/guide/type", {"string \"bdsf\"", "did you mean \"bsdf\"?"});
 }
 
 TEST(Job, limits_of_the_document) {
   std::string deep = R"({"scene": "a", "label": )" + std::string(max_json_depth, '[') + "}";
-  const auto found = problems(deep);
+  const auto found = job_problems(deep);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_NE(found[0].message.find("too deep"), std::string::npos);
   const std::string job = R"({"scene": "a"})";
-  EXPECT_TRUE(problems(job + std::string(max_job_bytes - job.size(), ' ')).empty());
-  expect_one(problems(job + std::string(max_job_bytes - job.size() + 1, ' ')), "", {"bytes"});
+  EXPECT_TRUE(job_problems(job + std::string(max_job_bytes - job.size(), ' ')).empty());
+  expect_one(job_problems(job + std::string(max_job_bytes - job.size() + 1, ' ')), "", {"bytes"});
 }
 
 TEST(Job, what_is_written_reads_back_equal) {

@@ -9,7 +9,7 @@ namespace {
 
 AllTypes read(std::string_view json) { return read_document<AllTypes>(json, {10000, 16}); }
 
-std::vector<Problem> problems(const std::string& json) {
+std::vector<Problem> read_problems(const std::string& json) {
   return problems_of([&] { read(json); });
 }
 
@@ -44,26 +44,28 @@ TEST(Reader, reads_every_type) {
 
 TEST(Reader, null_is_none_for_what_is_optional_and_an_error_elsewhere) {
   EXPECT_EQ(read(R"({"maybe": null, "maybe_sphere": null, "maybe_shape": null})"), AllTypes{});
-  expect_one(problems(R"({"real": null})"), "/real", {"found null", "a number from -1 to 1"});
-  expect_one(problems(R"({"shape": null})"), "/shape", {"found null", "\"sphere\", \"box\""});
+  expect_one(read_problems(R"({"real": null})"), "/real", {"found null", "a number from -1 to 1"});
+  expect_one(read_problems(R"({"shape": null})"), "/shape", {"found null", "\"sphere\", \"box\""});
 }
 
 TEST(Reader, a_name_alone_is_a_variant_with_its_defaults) {
   EXPECT_EQ(read(R"({"shape": "sphere"})").shape, (AllTypes{}.shape));
   EXPECT_EQ(std::get<Sphere>(*read(R"({"maybe_shape": "sphere"})").maybe_shape), Sphere{});
-  expect_one(problems(R"({"shape": "box"})"), "/shape/maker", {"missing", "who made it"});
-  expect_one(problems(R"({"shape": "bix"})"), "/shape", {"string \"bix\"", "did you mean \"box\""});
+  expect_one(read_problems(R"({"shape": "box"})"), "/shape/maker", {"missing", "who made it"});
+  expect_one(read_problems(R"({"shape": "bix"})"), "/shape",
+             {"string \"bix\"", "did you mean \"box\""});
 }
 
 TEST(Reader, a_variant_object_needs_a_known_type) {
-  expect_one(problems(R"({"shape": {}})"), "/shape/type", {"missing", "\"sphere\"", "\"box\""});
-  expect_one(problems(R"({"shape": {"type": "cone", "radius": 0}})"), "/shape/type",
+  expect_one(read_problems(R"({"shape": {}})"), "/shape/type",
+             {"missing", "\"sphere\"", "\"box\""});
+  expect_one(read_problems(R"({"shape": {"type": "cone", "radius": 0}})"), "/shape/type",
              {"string \"cone\"", "\"sphere\", \"box\""});
-  expect_one(problems(R"({"shape": {"type": 1}})"), "/shape/type", {"number 1"});
-  expect_one(problems(R"({"shape": {"type": "sphere", "size": [1, 2, 3]}})"), "/shape/size",
+  expect_one(read_problems(R"({"shape": {"type": 1}})"), "/shape/type", {"number 1"});
+  expect_one(read_problems(R"({"shape": {"type": "sphere", "size": [1, 2, 3]}})"), "/shape/size",
              {"unknown key \"size\""});
-  expect_one(problems(R"({"maybe_shape": {"type": "sphere", "raduis": 1}})"), "/maybe_shape/raduis",
-             {"did you mean \"radius\"?"});
+  expect_one(read_problems(R"({"maybe_shape": {"type": "sphere", "raduis": 1}})"),
+             "/maybe_shape/raduis", {"did you mean \"radius\"?"});
 }
 
 struct Refused {
@@ -114,7 +116,8 @@ TEST(Reader, says_what_was_found_and_what_is_allowed) {
   };
   for (const Refused& c : cases) {
     SCOPED_TRACE(std::string(c.key) + ": " + c.value);
-    expect_one(problems("{\"" + std::string(c.key) + "\": " + c.value + "}"), c.pointer, c.parts);
+    expect_one(read_problems("{\"" + std::string(c.key) + "\": " + c.value + "}"), c.pointer,
+               c.parts);
   }
 }
 
@@ -126,7 +129,7 @@ TEST(Reader, a_number_that_is_an_integer_may_be_written_as_any_number) {
 }
 
 TEST(Reader, finds_all_problems_at_once) {
-  const auto found = problems(R"({"flag": 0, "small": 1.5, "pair": [-1, 10], "nope": 1})");
+  const auto found = read_problems(R"({"flag": 0, "small": 1.5, "pair": [-1, 10], "nope": 1})");
   std::vector<std::string> pointers;
   pointers.reserve(found.size());
   for (const Problem& p : found) pointers.push_back(p.pointer);
@@ -134,11 +137,11 @@ TEST(Reader, finds_all_problems_at_once) {
 }
 
 TEST(Reader, pointers_are_escaped) {
-  expect_one(problems(R"({"a/b~c": 1})"), "/a~1b~0c", {"unknown key \"a/b~c\""});
+  expect_one(read_problems(R"({"a/b~c": 1})"), "/a~1b~0c", {"unknown key \"a/b~c\""});
 }
 
 TEST(Reader, long_values_are_cut_in_messages) {
-  const auto found = problems("{\"word\": \"" + std::string(5000, 'x') + "\"}");
+  const auto found = read_problems("{\"word\": \"" + std::string(5000, 'x') + "\"}");
   ASSERT_EQ(found.size(), 1u);
   EXPECT_LT(found[0].message.size(), 200u);
 }
@@ -146,7 +149,7 @@ TEST(Reader, long_values_are_cut_in_messages) {
 TEST(Reader, stops_counting_out_problems_at_a_hundred) {
   std::string json = "{\"x0\": 0";
   for (int i = 1; i < 250; ++i) json += ", \"x" + std::to_string(i) + "\": 0";
-  const auto found = problems(json + "}");
+  const auto found = read_problems(json + "}");
   ASSERT_EQ(found.size(), 101u);
   EXPECT_EQ(found.back().message, "150 more problems");
 }

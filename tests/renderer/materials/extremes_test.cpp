@@ -50,7 +50,7 @@ std::vector<V3f> ordinary_directions(const V3f& ng) {
 }
 
 const V3f z(0, 0, 1);
-const V3f tilted = V3f(0.6F, 0, 0.8F);
+const V3f tilted_ns = V3f(0.6F, 0, 0.8F);
 
 /// The disk's rim would be a direction along the surface, of density 0.
 TEST(Extremes, disk_is_open) {
@@ -58,7 +58,7 @@ TEST(Extremes, disk_is_open) {
     for (const float y : numbers) {
       const V2f d = sample_disk({x, y});
       EXPECT_GT(1 - d.x * d.x - d.y * d.y, 0) << x << " " << y;
-      EXPECT_GT(dot(sample_cosine(tilted, {x, y}), tilted), 2e-4F) << x << " " << y;
+      EXPECT_GT(dot(sample_cosine(tilted_ns, {x, y}), tilted_ns), 2e-4F) << x << " " << y;
     }
   }
 }
@@ -67,7 +67,7 @@ TEST(Extremes, every_surface_at_every_corner_of_the_random_numbers) {
   for (const cases::Surface& s : cases::surfaces()) {
     SCOPED_TRACE(s.name);
     check_everywhere(s.params, ordinary_directions(z), z, z);
-    check_everywhere(s.params, ordinary_directions(z), z, tilted);
+    check_everywhere(s.params, ordinary_directions(z), z, tilted_ns);
   }
 }
 
@@ -83,7 +83,7 @@ TEST(Extremes, grazing_angles) {
   for (const cases::Surface& s : cases::surfaces()) {
     SCOPED_TRACE(s.name);
     check_everywhere(s.params, grazing, z, z);
-    check_everywhere(s.params, grazing, z, tilted);
+    check_everywhere(s.params, grazing, z, tilted_ns);
   }
 }
 
@@ -112,7 +112,7 @@ TEST(Extremes, alpha_from_smooth_to_1) {
       for (const float transmission : {0.0F, 0.5F, 1.0F}) {
         SurfaceParams p = cases::dielectric({0.9F, 0.5F, 0.1F}, alpha, 1.5F, transmission);
         p.metallic = metallic;
-        check_everywhere(p, ordinary_directions(z), z, tilted);
+        check_everywhere(p, ordinary_directions(z), z, tilted_ns);
       }
     }
   }
@@ -124,7 +124,7 @@ TEST(Extremes, index_from_1_to_enormous) {
       SCOPED_TRACE(ior);
       check_everywhere(cases::dielectric({1, 1, 1}, alpha, ior, 1), ordinary_directions(z), z, z);
       check_everywhere(cases::dielectric({1, 1, 1}, alpha, ior, 0.5F), ordinary_directions(z), z,
-                       tilted);
+                       tilted_ns);
     }
   }
 }
@@ -136,9 +136,9 @@ TEST(Extremes, base_color_black_white_and_one_channel) {
         SurfaceParams p = cases::dielectric(base, 0.2F, 1.5F, transmission);
         p.f0 *= f90;
         p.f90 = f90;
-        check_everywhere(p, ordinary_directions(z), z, tilted);
+        check_everywhere(p, ordinary_directions(z), z, tilted_ns);
         p.metallic = 0.5F;
-        check_everywhere(p, ordinary_directions(z), z, tilted);
+        check_everywhere(p, ordinary_directions(z), z, tilted_ns);
       }
     }
   }
@@ -149,7 +149,7 @@ TEST(Extremes, layer_that_reflects_everything_or_nearly) {
     for (const float alpha : {0.0F, 0.3F, 1.0F}) {
       SurfaceParams p = cases::layer(cases::lambert({1, 1, 1}), {f, f, f}, 1);
       p.alpha = alpha;
-      check_everywhere(p, ordinary_directions(z), z, tilted);
+      check_everywhere(p, ordinary_directions(z), z, tilted_ns);
     }
   }
 }

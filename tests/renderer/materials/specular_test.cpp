@@ -8,7 +8,7 @@
 namespace lacuna {
 namespace {
 
-const V3f ng = V3f(1, -2, 0.5F).normalized();
+const V3f slanted = V3f(1, -2, 0.5F).normalized();
 
 /// Everything that the lobes return for one wo, each lobe seen through its whole interval of
 /// u_lobe.
@@ -34,42 +34,42 @@ Split split(const Bsdf& bsdf, const V3f& wo) {
 }
 
 TEST(Specular, mirror_direction) {
-  const Bsdf bsdf(cases::metal({1, 1, 1}, 0), ng, ng);
+  const Bsdf bsdf(cases::metal({1, 1, 1}, 0), slanted, slanted);
   for (const float cos : {1.0F, 0.7F, 0.1F, 1e-3F, -0.4F}) {
-    const V3f wo = cases::direction(ng, cos, 1);
+    const V3f wo = cases::direction(slanted, cos, 1);
     const auto s = bsdf.sample(wo, 0.5F, {0.1F, 0.9F}, Transport::radiance);
     ASSERT_TRUE(s);
     EXPECT_TRUE(s->delta);
     EXPECT_FALSE(s->transmitted);
-    EXPECT_LT((s->wi + wo - 2 * dot(wo, ng) * ng).length(), 3e-7);
+    EXPECT_LT((s->wi + wo - 2 * dot(wo, slanted) * slanted).length(), 3e-7);
   }
 }
 
 TEST(Specular, mirror_of_a_tilted_normal) {
-  const V3f ns = cases::direction(ng, 0.95F, 1);
-  const Bsdf bsdf(cases::metal({1, 1, 1}, 0), ng, ns);
-  const V3f wo = cases::direction(ng, 0.6F, 2);
+  const V3f ns = cases::direction(slanted, 0.95F, 1);
+  const Bsdf bsdf(cases::metal({1, 1, 1}, 0), slanted, ns);
+  const V3f wo = cases::direction(slanted, 0.6F, 2);
   const auto s = bsdf.sample(wo, 0.5F, {0.1F, 0.9F}, Transport::radiance);
   ASSERT_TRUE(s);
   EXPECT_LT((s->wi - reflect(wo, ns)).length(), 1e-6);
 }
 
 TEST(Specular, mirror_into_the_surface_fails) {
-  const V3f leaning = cases::direction(ng, 0.766F, 1 + pi);
-  const V3f eye = cases::direction(ng, 0.766F, 1);
+  const V3f leaning = cases::direction(slanted, 0.766F, 1 + pi);
+  const V3f eye = cases::direction(slanted, 0.766F, 1);
   ASSERT_GT(dot(eye, leaning), 0);
-  ASSERT_LT(dot(reflect(eye, leaning), ng), 0);
-  const Bsdf bsdf(cases::metal({1, 1, 1}, 0), ng, leaning);
+  ASSERT_LT(dot(reflect(eye, leaning), slanted), 0);
+  const Bsdf bsdf(cases::metal({1, 1, 1}, 0), slanted, leaning);
   EXPECT_FALSE(bsdf.sample(eye, 0.5F, {0.1F, 0.9F}, Transport::radiance));
 }
 
 /// A flat triangle whose normals were interpolated, or point inwards, is still flat.
 TEST(Specular, normals_that_only_differ_by_rounding_or_sign_are_flat) {
-  const V3f wo = cases::direction(ng, 0.6F, 1);
-  for (const V3f& ns : {ng, -ng, (ng + V3f(1e-7F, 0, 0)).normalized()}) {
-    const Split s = split(Bsdf(cases::metal({1, 1, 1}, 0), ng, ns), wo);
+  const V3f wo = cases::direction(slanted, 0.6F, 1);
+  for (const V3f& ns : {slanted, -slanted, (slanted + V3f(1e-7F, 0, 0)).normalized()}) {
+    const Split s = split(Bsdf(cases::metal({1, 1, 1}, 0), slanted, ns), wo);
     EXPECT_NEAR(s.mirrored.share, 1, 1e-6);
-    const Bsdf diffuse(cases::lambert({1, 1, 1}), ng, ns);
+    const Bsdf diffuse(cases::lambert({1, 1, 1}), slanted, ns);
     const auto d = diffuse.sample(wo, 0.7F, {0.2F, 0.3F}, Transport::importance);
     ASSERT_TRUE(d);
     EXPECT_EQ(d->weight, Rgb(1, 1, 1));
@@ -79,30 +79,30 @@ TEST(Specular, normals_that_only_differ_by_rounding_or_sign_are_flat) {
 /// sin / sin' = n' / n, in the plane of incidence, from both sides.
 TEST(Specular, snell) {
   for (const float ior : {1.0F, 1.05F, 1.33F, 1.5F, 2.4F, 15.0F}) {
-    const Bsdf bsdf(cases::dielectric({1, 1, 1}, 0, ior, 1), ng, ng);
+    const Bsdf bsdf(cases::dielectric({1, 1, 1}, 0, ior, 1), slanted, slanted);
     for (const float cos : {0.999F, 0.8F, 0.3F, 0.01F, -0.999F, -0.9F}) {
-      const V3f wo = cases::direction(ng, cos, 1);
+      const V3f wo = cases::direction(slanted, cos, 1);
       const Outcome refracted = split(bsdf, wo).refracted;
       const float eta = cos > 0 ? ior : 1 / ior;
-      const float sin_t = cross(wo, ng).length() / eta;
+      const float sin_t = cross(wo, slanted).length() / eta;
       if (sin_t >= 1) {
         EXPECT_EQ(refracted.share, 0);
         continue;
       }
       ASSERT_GT(refracted.share, 0) << ior << " " << cos;
-      EXPECT_NEAR(cross(refracted.wi, ng).length(), sin_t, 1e-6 * std::max(1.0F, 1 / eta));
-      EXPECT_LT(dot(refracted.wi, ng) * cos, 0);
+      EXPECT_NEAR(cross(refracted.wi, slanted).length(), sin_t, 1e-6 * std::max(1.0F, 1 / eta));
+      EXPECT_LT(dot(refracted.wi, slanted) * cos, 0);
       EXPECT_NEAR(refracted.wi.length(), 1, 1e-6);
-      EXPECT_LT(std::abs(dot(cross(wo, ng), refracted.wi)), 1e-6);
+      EXPECT_LT(std::abs(dot(cross(wo, slanted), refracted.wi)), 1e-6);
     }
   }
 }
 
 /// Refract, then refract back along the found direction: the way of light can be reversed.
 TEST(Specular, refraction_reverses) {
-  const Bsdf bsdf(cases::dielectric({1, 1, 1}, 0, 1.5F, 1), ng, ng);
+  const Bsdf bsdf(cases::dielectric({1, 1, 1}, 0, 1.5F, 1), slanted, slanted);
   for (const float cos : {0.9F, 0.5F, 0.1F}) {
-    const V3f wo = cases::direction(ng, cos, 1);
+    const V3f wo = cases::direction(slanted, cos, 1);
     const Outcome there = split(bsdf, wo).refracted;
     const Outcome back = split(bsdf, there.wi).refracted;
     EXPECT_LT((back.wi - wo).length(), 2e-6);
@@ -127,9 +127,9 @@ TEST(Specular, fresnel) {
 }
 
 TEST(Specular, smooth_glass_splits_by_fresnel) {
-  const Bsdf bsdf(cases::dielectric({1, 1, 1}, 0, 1.5F, 1), ng, ng);
+  const Bsdf bsdf(cases::dielectric({1, 1, 1}, 0, 1.5F, 1), slanted, slanted);
   for (const float cos : {1.0F, 0.5F, 0.1F, -0.9F}) {
-    const Split s = split(bsdf, cases::direction(ng, cos, 1));
+    const Split s = split(bsdf, cases::direction(slanted, cos, 1));
     const double f = fresnel_dielectric(std::abs(cos), cos > 0 ? 1.5F : 1 / 1.5F).reflectance;
     EXPECT_NEAR(s.mirrored.share, f, 1e-3);
     EXPECT_NEAR(s.refracted.share, 1 - f, 1e-3);
@@ -138,8 +138,8 @@ TEST(Specular, smooth_glass_splits_by_fresnel) {
 
 TEST(Specular, total_internal_reflection) {
   for (const float alpha : {0.0F, 0.001F}) {
-    const Bsdf bsdf(cases::dielectric({1, 1, 1}, alpha, 1.5F, 1), ng, ng);
-    const V3f wo = cases::direction(ng, -0.5F, 1);  // the critical cosine is 0.745
+    const Bsdf bsdf(cases::dielectric({1, 1, 1}, alpha, 1.5F, 1), slanted, slanted);
+    const V3f wo = cases::direction(slanted, -0.5F, 1);  // the critical cosine is 0.745
     Rng random = cases::rng(1);
     for (int i = 0; i < 200; ++i) {
       const auto s = cases::sample(bsdf, wo, random, Transport::radiance);
@@ -149,18 +149,19 @@ TEST(Specular, total_internal_reflection) {
     }
   }
   // It stays whole where KHR_materials_specular takes all other reflection away.
-  const Bsdf bare(cases::layer(cases::dielectric({1, 1, 1}, 0, 1.5F, 1), {0, 0, 0}, 0), ng, ng);
-  EXPECT_NEAR(split(bare, cases::direction(ng, -0.5F, 1)).mirrored.share, 1, 1e-6);
-  EXPECT_EQ(split(bare, cases::direction(ng, 0.5F, 1)).mirrored.share, 0);
+  const Bsdf bare(cases::layer(cases::dielectric({1, 1, 1}, 0, 1.5F, 1), {0, 0, 0}, 0), slanted,
+                  slanted);
+  EXPECT_NEAR(split(bare, cases::direction(slanted, -0.5F, 1)).mirrored.share, 1, 1e-6);
+  EXPECT_EQ(split(bare, cases::direction(slanted, 0.5F, 1)).mirrored.share, 0);
 }
 
 /// An index of 1 is no interface: nothing is bent and nothing reflected, rough or not, also at
 /// grazing angles.
 TEST(Specular, ior_1_lets_everything_pass) {
   for (const float alpha : {0.0F, 0.3F, 1.0F}) {
-    const Bsdf bsdf(cases::dielectric({1, 1, 1}, alpha, 1, 1), ng, ng);
+    const Bsdf bsdf(cases::dielectric({1, 1, 1}, alpha, 1, 1), slanted, slanted);
     for (const float cos : {1.0F, 0.3F, 1e-3F, -0.2F}) {
-      const V3f wo = cases::direction(ng, cos, 1);
+      const V3f wo = cases::direction(slanted, cos, 1);
       const Split s = split(bsdf, wo);
       EXPECT_EQ(s.mirrored.share, 0);
       EXPECT_NEAR(s.refracted.share, 1, 1e-6);
@@ -172,10 +173,10 @@ TEST(Specular, ior_1_lets_everything_pass) {
 /// A rough interface whose index comes close to 1 neither jumps nor breaks down where it becomes
 /// clear.
 TEST(Specular, index_close_to_1) {
-  const V3f wo = cases::direction(ng, 0.6F, 1);
+  const V3f wo = cases::direction(slanted, 0.6F, 1);
   const float limit = 1 + ggx_min_alpha / 0.5F;
   for (const float ior : {1.00001F, limit - 2e-5F, limit + 2e-5F, 1.001F}) {
-    const Bsdf bsdf(cases::dielectric({1, 1, 1}, 0.5F, ior, 1), ng, ng);
+    const Bsdf bsdf(cases::dielectric({1, 1, 1}, 0.5F, ior, 1), slanted, slanted);
     Rng random = cases::rng(2);
     statistics::Moments passed;
     for (int i = 0; i < 2000; ++i) {
@@ -195,10 +196,10 @@ TEST(Specular, index_close_to_1) {
 /// must be drawn often enough.
 TEST(Specular, clear_interface_reflects_at_grazing_angles) {
   const SurfaceParams p = cases::dielectric({1, 1, 1}, 0.5F, 1.00015F, 1);
-  const Bsdf bsdf(p, ng, ng);
+  const Bsdf bsdf(p, slanted, slanted);
   ASSERT_TRUE(Interface(p).clear());
-  const V3f wo = cases::direction(ng, -0.035F, 1);  // the critical cosine is 0.0173
-  const V3f mirrored = reflect(wo, ng);
+  const V3f wo = cases::direction(slanted, -0.035F, 1);  // the critical cosine is 0.0173
+  const V3f mirrored = reflect(wo, slanted);
   Rng random = cases::rng(3);
   float largest = 0;
   for (int i = 0; i < 10000; ++i) {
@@ -211,7 +212,9 @@ TEST(Specular, clear_interface_reflects_at_grazing_angles) {
 }
 
 TEST(Specular, connectible) {
-  const auto connectible = [&](const SurfaceParams& p) { return Bsdf(p, ng, ng).connectible(); };
+  const auto connectible = [&](const SurfaceParams& p) {
+    return Bsdf(p, slanted, slanted).connectible();
+  };
   EXPECT_TRUE(connectible(cases::lambert({0.5F, 0.5F, 0.5F})));
   EXPECT_FALSE(connectible(cases::lambert({0, 0, 0})));
   EXPECT_FALSE(connectible(cases::metal({1, 1, 1}, 0)));

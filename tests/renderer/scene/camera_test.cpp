@@ -8,7 +8,7 @@
 namespace lacuna {
 namespace {
 
-constexpr int width = 8, height = 6;
+constexpr int columns = 8, rows = 6;
 
 CameraData straight_ahead() {
   CameraData data;
@@ -19,13 +19,13 @@ CameraData straight_ahead() {
 
 /// Where on the film of straight_ahead() a ray passes, in pixels from the upper left corner.
 Imath::V2d film_position(const Ray& ray) {
-  const double pixel = 2 * std::tan(straight_ahead().yfov / 2) / height;
+  const double pixel = 2 * std::tan(straight_ahead().yfov / 2) / rows;
   const V3d d(ray.d);
-  return {d.x / -d.z / pixel + width / 2.0, height / 2.0 - d.y / -d.z / pixel};
+  return {d.x / -d.z / pixel + columns / 2.0, rows / 2.0 - d.y / -d.z / pixel};
 }
 
 TEST(Camera, RaysPassWhereTheyShould) {
-  const Camera camera(straight_ahead(), width, height);
+  const Camera camera(straight_ahead(), columns, rows);
   for (const Imath::V2d& at : {Imath::V2d(0, 0), Imath::V2d(8, 6), Imath::V2d(2.25, 5.5)}) {
     const Ray ray = camera.ray(static_cast<float>(at.x), static_cast<float>(at.y));
     EXPECT_NEAR(ray.d.length(), 1, 1e-6);
@@ -43,7 +43,7 @@ TEST(Camera, SamplesOfAPixelFollowItsFilter) {
     return x < 0 ? (1 + x) * (1 + x) / 2 : 1 - (1 - x) * (1 - x) / 2;
   };
   const auto p_value = [&](PixelFilter filter, auto&& share) {
-    const Camera camera(straight_ahead(), width, height, filter);
+    const Camera camera(straight_ahead(), columns, rows, filter);
     std::vector<double> observed(cells * cells), expected(cells * cells);
     const auto mass = [&](int i) {
       return share(2.0 * (i + 1) / cells - 1) - share(2.0 * i / cells - 1);

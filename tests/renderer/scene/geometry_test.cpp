@@ -12,11 +12,7 @@ namespace {
 
 using test::GlbBuilder;
 using test::Json;
-
-SceneData load(const GlbBuilder& builder) {
-  const TemporaryFolder folder;
-  return load_gltf(folder.write("scene.glb", builder.glb()));
-}
+using test::load;
 
 V3f geometric_normal(const Mesh& mesh, std::size_t triangle = 0) {
   const auto& t = mesh.triangles[triangle];

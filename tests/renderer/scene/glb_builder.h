@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "renderer/core/vec.h"
+#include "renderer/scene/scene_data.h"
 #include "tests/renderer/scene/glb_frame.h"
 #include "tests/temporary_folder.h"
 
@@ -144,6 +145,12 @@ inline GlbBuilder triangle_scene() {
   const auto mesh = builder.add_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
   builder.add_node({{"mesh", mesh}, {"name", "thing"}});
   return builder;
+}
+
+/// The scene, by way of a file.
+inline SceneData load(const GlbBuilder& builder) {
+  const TemporaryFolder folder;
+  return load_gltf(folder.write("scene.glb", builder.glb()));
 }
 
 }  // namespace lacuna::test

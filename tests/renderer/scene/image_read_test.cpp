@@ -19,7 +19,7 @@ std::filesystem::path write_exr(const TemporaryFolder& folder,
   return test::write_image(folder, "image.exr", spec, pixels);
 }
 
-std::string refusal(const std::filesystem::path& file, const std::string& layer = "") {
+std::string image_refusal(const std::filesystem::path& file, const std::string& layer = "") {
   try {
     read_float_image(file, layer);
   } catch (const SceneError& e) {
@@ -44,13 +44,15 @@ TEST(ImageRead, ExrWithLayersInAnyOrder) {
   const FloatImage half = read_float_image(file, "half_a");
   EXPECT_EQ(half.at(0, 0), Rgb(10, 20, 30));
   EXPECT_EQ(half.at(1, 0), Rgb(40, 50, 60));
-  expect_contains(refusal(file, "half_b"), "lacks channel half_b.R, half_b.G, half_b.B; it has");
+  expect_contains(image_refusal(file, "half_b"),
+                  "lacks channel half_b.R, half_b.G, half_b.B; it has");
 }
 
 TEST(ImageRead, GreyAndMissingChannels) {
   const TemporaryFolder folder;
   EXPECT_EQ(read_float_image(write_exr(folder, {"Y"}, {0.5F, 7}, 1, 2)).at(0, 1), Rgb(7));
-  expect_contains(refusal(write_exr(folder, {"R", "B"}, {1, 2}, 1, 1)), "lacks channel G; it has");
+  expect_contains(image_refusal(write_exr(folder, {"R", "B"}, {1, 2}, 1, 1)),
+                  "lacks channel G; it has");
 }
 
 TEST(ImageRead, RadianceHdr) {
@@ -68,13 +70,13 @@ TEST(ImageRead, RadianceHdr) {
 
 TEST(ImageRead, OtherFilesAreRefused) {
   const TemporaryFolder folder;
-  expect_contains(refusal(folder.write("image.exr", test::encode8(1, 1, 3, {1, 2, 3}))),
+  expect_contains(image_refusal(folder.write("image.exr", test::encode8(1, 1, 3, {1, 2, 3}))),
                   "image.exr: is neither OpenEXR nor Radiance HDR");
-  expect_contains(refusal(folder.write("empty.exr", std::string())), "is neither");
-  expect_contains(refusal(folder.path() / "nothing.exr"), "nothing.exr");
-  expect_contains(refusal(folder.path()), "is not a regular file");
+  expect_contains(image_refusal(folder.write("empty.exr", std::string())), "is neither");
+  expect_contains(image_refusal(folder.path() / "nothing.exr"), "nothing.exr");
+  expect_contains(image_refusal(folder.path()), "is not a regular file");
   ASSERT_EQ(::mkfifo((folder.path() / "pipe.exr").c_str(), 0600), 0);
-  expect_contains(refusal(folder.path() / "pipe.exr"), "is not a regular file");
+  expect_contains(image_refusal(folder.path() / "pipe.exr"), "is not a regular file");
 }
 
 TEST(ImageRead, TruncatedFilesAreRefused) {
@@ -84,7 +86,7 @@ TEST(ImageRead, TruncatedFilesAreRefused) {
   const auto bytes = test::read_bytes(write_exr(folder, {"R", "G", "B"}, pixels, 64, 64));
   for (const std::size_t length : {std::size_t{5}, std::size_t{200}, bytes.size() / 2}) {
     const test::Bytes part(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length));
-    expect_contains(refusal(folder.write("part.exr", part)), "part.exr: ");
+    expect_contains(image_refusal(folder.write("part.exr", part)), "part.exr: ");
   }
 }
 
@@ -93,7 +95,7 @@ TEST(ImageRead, CropsAreRefused) {
   OIIO::ImageSpec spec(2, 2, 3, OIIO::TypeDesc::FLOAT);
   spec.full_width = 4;
   const auto file = test::write_image(folder, "crop.exr", spec, std::vector<float>(12, 1.0F));
-  expect_contains(refusal(file), "is a crop");
+  expect_contains(image_refusal(file), "is a crop");
 }
 
 TEST(ImageRead, RadianceMustBeFiniteAndNotNegative) {
@@ -118,7 +120,7 @@ std::string refusal_of_attribute_size(std::uint32_t size) {
   std::size_t at = 8;
   for (int text = 0; text < 2; ++at) text += bytes[at] == 0 ? 1 : 0;  // its name, its type
   std::memcpy(bytes.data() + at, &size, sizeof size);
-  return refusal(folder.write("lies.exr", bytes));
+  return image_refusal(folder.write("lies.exr", bytes));
 }
 
 TEST(ImageRead, AnAttributeLargerThanItsFileIsRefused) {
@@ -138,7 +140,7 @@ TEST(ImageRead, AChannelOfAnUnknownTypeIsRefused) {
   const auto found = std::search(bytes.begin(), bytes.end(), list.begin(), list.end());
   ASSERT_NE(found, bytes.end());
   found[13] = 3;
-  expect_contains(refusal(folder.write("type.exr", bytes)),
+  expect_contains(image_refusal(folder.write("type.exr", bytes)),
                   "channel \"B\" has pixel type 3; allowed: 0 to 2");
 }
 
@@ -147,7 +149,7 @@ TEST(ImageRead, AHeaderThatEndsEarlyIsRefused) {
   const auto bytes = test::read_bytes(write_exr(folder, {"R", "G", "B"}, {1, 2, 3}, 1, 1));
   for (std::size_t n = 4; n < 100; ++n) {
     const test::Bytes cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(n));
-    expect_contains(refusal(folder.write("cut.exr", cut)), "cut.exr: OpenEXR header: ");
+    expect_contains(image_refusal(folder.write("cut.exr", cut)), "cut.exr: OpenEXR header: ");
   }
 }
 

@@ -11,11 +11,7 @@ namespace {
 
 using test::GlbBuilder;
 using test::Json;
-
-SceneData load(const GlbBuilder& builder) {
-  const TemporaryFolder folder;
-  return load_gltf(folder.write("scene.glb", builder.glb()));
-}
+using test::load;
 
 /// A quad with uvs and the given material, and two textures to choose from.
 GlbBuilder quad_with(const Json& material) {
