@@ -143,7 +143,7 @@ def main():
         parser.error(f"no target {min(unknown)}; there are {', '.join(names)}")
     chosen = [t for t in TARGETS if not asked.targets or t.name in asked.targets]
     if missing := [t.name for t in chosen if not (BUILD / f"bin/fuzz_{t.name}").exists()]:
-        sys.exit(f"build/fuzz has no {', '.join(missing)}: ./dev build-tests fuzz fuzz")
+        sys.exit(f"build/fuzz has no {', '.join(missing)}: ./dev build fuzz fuzz")
     with concurrent.futures.ThreadPoolExecutor(asked.jobs) as pool:
         results = list(pool.map(lambda t: run(t, asked.seconds, asked.grow), chosen))
     print(f"{sum(results)} passed, {len(results) - sum(results)} failed")

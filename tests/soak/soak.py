@@ -28,7 +28,7 @@ def service(count):
 
 def sanitizers(preset, options):
     """All test programs under a sanitizer preset."""
-    if not run(f"{preset}: build", ["./dev", "build-tests", preset]):
+    if not run(f"{preset}: build", ["./dev", "build", preset]):
         return False
     programs = sorted((ROOT / f"build/{preset}/tests").glob("test_*"))
     results = [run(f"{preset}: {program.name}", [str(program), "--gtest_brief=1"], **options)
@@ -38,7 +38,7 @@ def sanitizers(preset, options):
 
 def fuzz(seconds):
     """Every fuzz target, going on from the corpus that earlier runs found; findings: build/fuzz/findings."""
-    return (run("fuzz: build", ["./dev", "build-tests", "fuzz", "fuzz"])
+    return (run("fuzz: build", ["./dev", "build", "fuzz", "fuzz"])
             and run(f"fuzz: {seconds} s for each target",
                     ["python3", "tests/fuzz/fuzz.py", "--grow", "--seconds", str(seconds)]))
 
