@@ -12,6 +12,8 @@ import sys
 import tempfile
 import time
 
+import shape
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = ROOT / "build/release/bin"
 SHARED = ROOT.parent / "shared/scenes"
@@ -126,8 +128,13 @@ def page(bench, _):
     node(bench, "page.mjs")
 
 
+def analysis(bench, _):
+    """The skeletons of the thesis author's grids, of scenes, and of what is hard."""
+    shape.run(bench, BIN, ROOT.parent / "shared/baselines")
+
+
 CHECKS = {"service": service, "page": page, "rays": rays, "cornell": cornell, "overhead": overhead,
-          "corridor": corridor}
+          "corridor": corridor, "analysis": analysis}
 
 
 def main():

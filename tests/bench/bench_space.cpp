@@ -2,16 +2,14 @@
 //
 //   bench_space [--scene=FILE.glb] [--grid=FILE.vox] [Google Benchmark's options]
 //
-// Grids: 512^3 random blobs; the thesis author's grid, if named (uncompressed: 3 x int32 size, then
-// a byte a voxel, 1 is scene). Triangles: a million small ones and a large wall; the scene, if
-// named.
+// Grids: 512^3 random blobs; the thesis author's grid, if named (grids.h). Triangles: a million
+// small ones and a large wall; the scene, if named.
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <random>
 #include <stdexcept>
@@ -27,12 +25,13 @@
 #include "analysis/space/opening_query.h"
 #include "analysis/space/voxelize.h"
 #include "renderer/scene/scene_data.h"
+#include "tests/bench/grids.h"
 
 namespace {
 
 using namespace lacuna;
-using Imath::V3d;
-using Imath::V3i;
+using bench::random_blobs;
+using bench::read_grid;
 
 TriangleSoup soup_of(const SceneData& scene) {
   TriangleSoup soup;
@@ -62,41 +61,6 @@ TriangleSoup small_triangles(int count) {
 TriangleSoup tilted_wall() {
   return {{{0, 0, 0.1F}, {1, 0, 0.3F}, {1, 1, 0.8F}, {0, 1, 0.6F}, {0, 0, 0}, {1, 1, 1}},
           {{0, 1, 2}, {0, 2, 3}, {4, 4, 4}, {5, 5, 5}}};
-}
-
-/// The author's grid: its empty voxels.
-BitGrid3 read_grid(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::int32_t n[3] = {};
-  in.read(reinterpret_cast<char*>(n), sizeof n);
-  BitGrid3 domain(V3i(n[0], n[1], n[2]));
-  std::vector<char> row(static_cast<std::size_t>(n[0]));
-  for (int z = 0; z < n[2]; ++z)
-    for (int y = 0; y < n[1]; ++y) {
-      if (!in.read(row.data(), n[0])) throw std::runtime_error(file + " ends early");
-      for (int x = 0; x < n[0]; ++x)
-        if (row[static_cast<std::size_t>(x)] == 0) domain.set(x, y, z);
-    }
-  return domain;
-}
-
-/// A grid of side^3 whose scene is random balls, 10 % of it: hundreds of cavities' walls.
-BitGrid3 random_blobs(int side) {
-  BitGrid3 domain = empty_voxels(BitGrid3(V3i(side)));
-  std::mt19937 rng(2);
-  std::uniform_real_distribution<double> u(0, 1);
-  const auto voxels = static_cast<double>(side) * side * side;
-  for (double filled = 0; filled < 0.105 * voxels;) {
-    const double r = side * (0.008 + 0.032 * u(rng));
-    const V3d c(u(rng) * side, u(rng) * side, u(rng) * side);
-    filled += 4.19 * r * r * r;
-    for (int z = std::max(0, static_cast<int>(c.z - r)); z < std::min<double>(side, c.z + r); ++z)
-      for (int y = std::max(0, static_cast<int>(c.y - r)); y < std::min<double>(side, c.y + r); ++y)
-        for (int x = std::max(0, static_cast<int>(c.x - r)); x < std::min<double>(side, c.x + r);
-             ++x)
-          if ((V3d(x, y, z) - c).length2() < r * r) domain.reset({x, y, z});
-  }
-  return domain;
 }
 
 /// Registers `body(pool)` for one and for two threads; time is wall time, CPU that of all threads.

@@ -6,33 +6,13 @@
 #include <set>
 
 #include "analysis/space/memory_limit.h"
+#include "tests/analysis/artefacts/rooms.h"
 #include "tests/temporary_folder.h"
 
 namespace lacuna {
 namespace {
 
-void add_wall(TriangleSoup& soup, Imath::V3f corner, Imath::V3f u, Imath::V3f v) {
-  const auto i = static_cast<std::uint32_t>(soup.positions.size());
-  for (const Imath::V3f& p : {corner, corner + u, corner + u + v, corner + v}) {
-    soup.positions.push_back(p);
-  }
-  soup.triangles.push_back({i, i + 1, i + 2});
-  soup.triangles.push_back({i, i + 2, i + 3});
-}
-
-/// Two rooms of 4 x 4 x 3, a wall with a door between them; and a closet that nothing leads into.
-TriangleSoup two_rooms() {
-  using Imath::V3f;
-  TriangleSoup soup;
-  const V3f x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-  for (const float h : {0.0F, 3.0F}) add_wall(soup, {0, 0, h}, x * 10.0F, y * 4.0F);
-  for (const float at : {0.0F, 4.0F}) add_wall(soup, {0, at, 0}, x * 10.0F, z * 3.0F);
-  for (const float at : {0.0F, 8.0F, 10.0F}) add_wall(soup, {at, 0, 0}, y * 4.0F, z * 3.0F);
-  add_wall(soup, {4, 0, 0}, y * 1.5F, z * 3.0F);
-  add_wall(soup, {4, 2.5F, 0}, y * 1.5F, z * 3.0F);
-  add_wall(soup, {4, 1.5F, 2}, y, z);
-  return soup;
-}
+using test::two_rooms;
 
 class SpaceAnalysisTest : public ::testing::Test {
  protected:

@@ -1,0 +1,95 @@
+// Seconds and memory from a grid's empty voxels to its skeleton and node map.
+//
+//   bench_shape GRID [RUNS [THREADS]]
+//
+// GRID: a file of the thesis author's (grids.h), blobs:SIDE or pebbles:NUMBER_ALONG_A_SIDE. Prints
+// one JSON object: seconds of each run and step, and the peak of the memory that the process held.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <utility>
+
+#include "analysis/complex/curvilinear.h"
+#include "analysis/skeleton/build_graph.h"
+#include "analysis/skeleton/node_map.h"
+#include "analysis/space/distance.h"
+#include "analysis/space/memory_limit.h"
+#include "analysis/space/opening_query.h"
+#include "tests/bench/grids.h"
+
+namespace {
+
+using namespace lacuna;
+
+BitGrid3 grid_of(const std::string& name) {
+  if (name.starts_with("blobs:")) return bench::random_blobs(std::stoi(name.substr(6)));
+  if (name.starts_with("pebbles:")) return bench::pebbles(std::stoi(name.substr(8)));
+  return bench::read_grid(name);
+}
+
+/// Seconds since it was last asked.
+class Watch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+std::size_t faces_of(const BitGrid3& domain) {
+  const CubicalComplex complex(domain);
+  return complex.count(0) + complex.count(1) + complex.count(2) + complex.count(3);
+}
+
+struct Seconds {
+  std::vector<double> all, distance, thinning, graph, map;
+};
+
+void run(const BitGrid3& domain, const ThreadPool& pool, Seconds& seconds, std::string& result) {
+  Watch whole, step;
+  const auto l1 = l1_distance(domain, pool, no_memory_limit);
+  const OpeningQuery opening(l1, pool);
+  seconds.distance.push_back(step.lap());
+  ThinningReport report;
+  const SpaceMaps maps{l1, [&](Imath::V3i v) { return static_cast<int>(opening(v)); }};
+  const CubicalComplex thin = curvilinear_skeleton(domain, maps, report, &pool);
+  seconds.thinning.push_back(step.lap());
+  const SkeletonGraph graph = build_graph(thin, l1, pool);
+  seconds.graph.push_back(step.lap());
+  const auto map = node_map(domain, graph, pool, no_memory_limit);
+  seconds.map.push_back(step.lap());
+  seconds.all.push_back(whole.lap());
+  result = fmt::format(R"("nodes": {}, "edges": {}, "squares_pierced": {}, "layers": {})",
+                       graph.nodes(), graph.edges(), report.squares_pierced, report.layers);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    if (argc < 2) throw std::invalid_argument("usage: bench_shape GRID [RUNS [THREADS]]");
+    const BitGrid3 domain = grid_of(argv[1]);
+    const int runs = argc > 2 ? std::stoi(argv[2]) : 1;
+    const ThreadPool pool(argc > 3 ? std::stoi(argv[3]) : 0);
+    Seconds s;
+    std::string result;
+    for (int i = 0; i < runs; ++i) run(domain, pool, s, result);
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const Imath::V3i n = domain.size();
+    fmt::print(
+        R"({{"grid": [{}, {}, {}], "faces": {}, {}, "threads": {}, "peak_bytes": {},)"
+        "\n \"seconds\": {}, \"distance\": {}, \"thinning\": {}, \"graph\": {}, \"map\": {}}}\n",
+        n.x, n.y, n.z, faces_of(domain), result, pool.threads(),
+        std::int64_t{usage.ru_maxrss} * 1024, s.all, s.distance, s.thinning, s.graph, s.map);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "bench_shape: {}\n", e.what());
+    return 1;
+  }
+}
