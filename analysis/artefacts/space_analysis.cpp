@@ -124,7 +124,8 @@ const Grid3<std::uint16_t>& SpaceAnalysis::distance() {
 const SkeletonGraph& SpaceAnalysis::skeleton() {
   return get<SkeletonGraph>(skeleton_, skeleton_key(), [this] {
     const OpeningQuery opening(distance(), pool_);
-    const SpaceMaps maps{distance(), [&](Imath::V3i v) { return static_cast<int>(opening(v)); }};
+    const SpaceMaps maps{distance(),
+                         [&](Imath::V3i v, int radius) { return opening.reaches(v, radius); }};
     ThinningReport report;
     const CubicalComplex complex = curvilinear_skeleton(domain().voxels, maps, report, &pool_);
     return build_graph(complex, distance(), pool_);

@@ -29,29 +29,32 @@ class Pass {
         dv_(complex.stride(v)) {}
 
   /// The cubes with a free square.
-  void take_cubes(std::size_t index) const { remove(index, T | U | V, U | V, Plane::zero()); }
-  void take_squares(std::size_t index) const {
+  [[gnu::always_inline]] void take_cubes(std::size_t index) const {
+    remove<T | U | V, U | V>(index, Plane::zero());
+  }
+  [[gnu::always_inline]] void take_squares(std::size_t index) const {
     const KeptEdges::Block& w = kept_.of(index);
     const ComplexBlock* x = x_ + index;
     const Plane across = x->faces[U | V];
-    remove(index, T | U, U, across | from_low<v>(across, x[-dv_].faces[U | V]) | w.edges[u]);
-    remove(index, T | V, V, across | from_low<u>(across, x[-du_].faces[U | V]) | w.edges[v]);
+    remove<T | U, U>(index, across | from_low<v>(across, x[-dv_].faces[U | V]) | w.edges[u]);
+    remove<T | V, V>(index, across | from_low<u>(across, x[-du_].faces[U | V]) | w.edges[v]);
   }
-  void take_edges(std::size_t index) const {
+  [[gnu::always_inline]] void take_edges(std::size_t index) const {
     const KeptEdges::Block& w = kept_.of(index);
     const ComplexBlock* x = x_ + index;
     const Plane eu = x->faces[U], ev = x->faces[V];
-    remove(index, T, 0,
-           eu | ev | from_low<u>(eu, x[-du_].faces[U]) | from_low<v>(ev, x[-dv_].faces[V]) |
-               w.vertices);
+    remove<T, 0>(index, eu | ev | from_low<u>(eu, x[-du_].faces[U]) |
+                            from_low<v>(ev, x[-dv_].faces[V]) | w.vertices);
   }
 
  private:
   /// Takes the pairs (f, g) of these types where g is free along t and nothing blocks it.
-  void remove(std::size_t index, FaceType f, FaceType g, Plane blocked) const {
+  /// (Called, it would pass planes through memory, which costs as much as the rest.)
+  template <FaceType f, FaceType g>
+  [[gnu::always_inline]] void remove(std::size_t index, Plane blocked) const {
     ComplexBlock* x = x_ + index;
     BorderBlock* l = l_ + index;
-    const auto fi = static_cast<std::size_t>(f), gi = static_cast<std::size_t>(g);
+    constexpr auto fi = static_cast<std::size_t>(f), gi = static_cast<std::size_t>(g);
     const Plane own = x->faces[fi], low = from_low<t>(own, x[-dt_].faces[fi]);
     if constexpr (orientation == 0) {  // g at the low side of f, both at one cell
       const Plane e = own & ~low & l->layer[fi] & ~blocked;

@@ -32,6 +32,7 @@ void KeepRule::edges(int date, std::size_t block, const std::array<Plane, 3>& pr
     if (died.any()) {
       for_each_bit(died, [&](int position) {
         const int birth = take_birth(block, edge(position));
+        if (is_kept(block, axis, position)) return;  // after piercing, nearly all are
         if (holds(complex_.corner(block) + cell_of(position), axis, birth, date)) {
           const std::lock_guard lock(keeping_);
           kept_.add(block, axis, at_position(position));
@@ -45,6 +46,11 @@ void KeepRule::edges(int date, std::size_t block, const std::array<Plane, 3>& pr
     }
     alive[a] = facets[a];
   }
+}
+
+bool KeepRule::is_kept(std::size_t block, int axis, int position) {
+  const std::lock_guard lock(keeping_);
+  return (kept_.of(block).edges[static_cast<std::size_t>(axis)] & at_position(position)).any();
 }
 
 void KeepRule::finish() {
@@ -80,13 +86,12 @@ bool KeepRule::holds(Imath::V3i cell, int axis, int birth, int death) {
   }
   const int d = *std::max_element(distance.begin(), distance.end());
   const int lifespan = death - birth;
-  if (lifespan <= birth - d) return false;  // decenterness is never below 0
-  int decenterness = 0;
+  if (lifespan <= birth - d) return false;          // decenterness is never below 0
+  const int too_decentered = lifespan - birth + d;  // > 0
   for (std::size_t i = 0; i < voxels.size(); ++i) {
     if (distance[i] == 0) continue;
     ++openings_asked_;
-    decenterness = std::max(decenterness, maps_.opening(voxels[i]) - distance[i]);
-    if (lifespan <= decenterness + birth - d) return false;
+    if (maps_.opening_reaches(voxels[i], distance[i] + too_decentered)) return false;
   }
   return true;
 }

@@ -13,9 +13,9 @@ namespace lacuna {
 struct SpaceMaps {
   /// Distance of every voxel to the scene (0 there), L1 as in the thesis.
   const Grid3<std::uint16_t>& distance;
-  /// Radius of the largest ball of that distance that holds a voxel of empty space (Omega). Safe
-  /// from several threads.
-  std::function<int(Imath::V3i)> opening;
+  /// Whether a ball of that distance with at least a radius (> 0) holds a voxel of empty space and
+  /// lies in it: Omega(voxel) >= radius. Safe from several threads.
+  std::function<bool(Imath::V3i, int)> opening_reaches;
 };
 
 /// Finds the edges that a curvilinear skeleton must keep (line 1 of thesis Alg. 3) while it watches
@@ -43,6 +43,7 @@ class KeepRule final : public LayerObserver {
     std::uint16_t edge;  // position in the block + 512 * axis
     std::uint32_t date;
   };
+  bool is_kept(std::size_t block, int axis, int position);
   int take_birth(std::size_t block, std::uint16_t edge);
   bool holds(Imath::V3i cell, int axis, int birth, int death);
 

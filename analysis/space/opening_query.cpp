@@ -55,8 +55,11 @@ struct OpeningQuery::Search {
   const OpeningQuery& query;
   Imath::V3i x;
   int best;
+  int enough = 65535;  // the search may end once `best` has come so far
 
-  bool worth(int largest, int distance) const { return largest > best && distance < largest; }
+  bool worth(int largest, int distance) const {
+    return largest > best && distance < largest && best < enough;
+  }
 
   /// Up the slope of D_1 as far as its balls hold x.
   void climb() {
@@ -72,7 +75,7 @@ struct OpeningQuery::Search {
               next = v;
             }
           }
-      if (next == at) return;
+      if (next == at || best >= enough) return;
       at = next;
     }
   }
@@ -121,6 +124,18 @@ std::uint16_t OpeningQuery::operator()(Imath::V3i voxel) const {
   search.climb();
   search.in_grid_of_tiles();
   return static_cast<std::uint16_t>(search.best);
+}
+
+bool OpeningQuery::reaches(Imath::V3i voxel, int radius) const {
+  const int own = (*l1_)(voxel);
+  if (own == 0 || own >= radius) return own != 0;
+  Search search{*this, voxel, own, radius};
+  search.climb();
+  if (search.best < radius) {
+    search.best = radius - 1;
+    search.in_grid_of_tiles();
+  }
+  return search.best >= radius;
 }
 
 }  // namespace lacuna

@@ -19,6 +19,10 @@ class OpeningQuery {
   /// `voxel`; 0 outside the domain. The voxel must lie in the grid. Safe from several threads.
   std::uint16_t operator()(Imath::V3i voxel) const;
 
+  /// Whether that radius is at least `radius` (> 0): much faster, as smaller balls are passed over
+  /// and the first that is large enough ends the search.
+  bool reaches(Imath::V3i voxel, int radius) const;
+
  private:
   struct Search;
   const Grid3<std::uint16_t>* l1_;

@@ -57,7 +57,7 @@ void run(const BitGrid3& domain, const ThreadPool& pool, Seconds& seconds, std::
   const OpeningQuery opening(l1, pool);
   seconds.distance.push_back(step.lap());
   ThinningReport report;
-  const SpaceMaps maps{l1, [&](Imath::V3i v) { return static_cast<int>(opening(v)); }};
+  const SpaceMaps maps{l1, [&](Imath::V3i v, int r) { return opening.reaches(v, r); }};
   const CubicalComplex thin = curvilinear_skeleton(domain, maps, report, &pool);
   seconds.thinning.push_back(step.lap());
   const SkeletonGraph graph = build_graph(thin, l1, pool);

@@ -29,7 +29,7 @@ struct Space {
       : domain(std::move(d)),
         distance(l1_distance(domain, ThreadPool(1), no_memory_limit)),
         opening(distance, ThreadPool(1)),
-        maps{distance, [this](Imath::V3i v) { return static_cast<int>(opening(v)); }} {}
+        maps{distance, [this](Imath::V3i v, int r) { return opening.reaches(v, r); }} {}
   Space(const Space&) = delete;
 };
 

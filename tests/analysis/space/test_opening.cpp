@@ -75,8 +75,14 @@ TEST(OpeningQuery, is_the_largest_l1_ball_over_a_voxel) {
     const auto d = l1_distance(domain, one_thread(), no_memory_limit);
     const OpeningQuery query(d, four_threads());
     const auto expected = opening_by_definition(d, l1);
-    for (std::size_t i = 0; i < d.count(); ++i)
+    for (std::size_t i = 0; i < d.count(); ++i) {
       ASSERT_EQ(query(d.voxel(i)), expected[i]) << d.voxel(i) << " of " << d.size();
+      for (const int radius : {1, expected[i] - 1, static_cast<int>(expected[i]), expected[i] + 1})
+        if (radius > 0) {
+          ASSERT_EQ(query.reaches(d.voxel(i), radius), radius <= expected[i])
+              << radius << " at " << d.voxel(i) << " of " << d.size();
+        }
+    }
   }
 }
 
@@ -93,6 +99,8 @@ TEST(OpeningQuery, finds_balls_in_other_tiles) {
     for (std::size_t j = 0; j < d.count(); ++j)
       if (d[j] > expected && l1(x - d.voxel(j)) < d[j]) expected = d[j];
     ASSERT_EQ(query(x), expected) << x;
+    ASSERT_FALSE(query.reaches(x, expected + 1)) << x;
+    ASSERT_TRUE(expected == 0 || query.reaches(x, expected)) << x;
   }
 }
 
