@@ -26,7 +26,7 @@ std::string hash128(const std::string& text) {
 /// The header's value; throws HttpError 400 if it is no key.
 std::optional<std::string> key_of(const Request& request) {
   constexpr std::size_t longest = 128;
-  const auto key = request.header("idempotency-key");
+  auto key = request.header("idempotency-key");
   const auto is_printable = [](unsigned char c) { return c > 0x20 && c < 0x7f; };
   if (key && (key->empty() || key->size() > longest ||
               !std::all_of(key->begin(), key->end(), is_printable))) {

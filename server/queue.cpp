@@ -69,7 +69,7 @@ void Queue::enter(const EntryPtr& entry) {
 }
 
 Queue::WorkPtr Queue::open(const JobEntry& entry, const JobControl& control) {
-  const auto work = std::make_shared<Work>();
+  auto work = std::make_shared<Work>();
   work->id = entry.id;
   work->created = entry.state.created;
   work->exclusive = entry.exclusive;

@@ -91,7 +91,7 @@ Queue::WorkPtr Queue::take() {
   for (;;) {
     if (stopping_) return nullptr;
     auto look_again = Clock::now() + std::chrono::hours(1);
-    if (const WorkPtr work = first_ready(look_again)) {
+    if (WorkPtr work = first_ready(look_again)) {
       leave_line(*work);
       work->stop = std::make_shared<StopSignal>();
       ++running_;

@@ -36,6 +36,7 @@ std::optional<Router::Parts> match(const Router::Parts& pattern, const Router::P
 
 void check_query(const Query& query, const std::vector<QueryParameter>& parameters) {
   std::vector<std::string> names;
+  names.reserve(parameters.size());
   for (const QueryParameter& p : parameters) names.push_back(p.name);
   query.check_known(names);
   for (const QueryParameter& p : parameters) {

@@ -14,7 +14,7 @@ bool finite(Imath::V3d v) { return std::isfinite(v.x) && std::isfinite(v.y) && s
 std::optional<Imath::V3i> SurfaceLookup::voxel(Imath::V3d x, Imath::V3d n, Imath::V3d w) const {
   if (!finite(n) || !finite(w) || n == Imath::V3d(0.0)) return {};
   const Imath::V3i size = map_->size();
-  const std::optional<Imath::V3i> s = voxel_at(transform_.to_grid(x), size);
+  std::optional<Imath::V3i> s = voxel_at(transform_.to_grid(x), size);
   if (!s || (*map_)(*s) != no_node) return s;
   if (n.dot(w) < 0) n = -n;
   for (int radius = 1; radius <= lookup_reach; ++radius) {

@@ -80,6 +80,10 @@ class Voxelizer {
   TileLists sort_into_tiles(std::uint64_t byte_limit) const;
   void fill_tile(const TileLists& lists, int tile, BitGrid3& scene) const;
   int tile_count() const { return tiles_.x * tiles_.y * tiles_.z; }
+  std::size_t tile_index(Imath::V3i t) const {
+    const int index = (t.z * tiles_.y + t.y) * tiles_.x + t.x;  // below tile_count()
+    return static_cast<std::size_t>(index);
+  }
 
  private:
   std::array<Imath::V3d, 3> corners(std::size_t triangle, double cell) const {
@@ -109,8 +113,7 @@ void Voxelizer::for_each_tile(int chunk, Visit&& visit) const {
     TriangleBox(corners(t, tile_side))
         .for_each_line({Imath::V3i(0), tiles_}, [&](int axis, Imath::V3i tile, int length) {
           for (; length > 0; --length, ++tile[axis])
-            visit(static_cast<std::size_t>((tile.z * tiles_.y + tile.y) * tiles_.x + tile.x),
-                  static_cast<std::uint32_t>(t));
+            visit(tile_index(tile), static_cast<std::uint32_t>(t));
         });
 }
 

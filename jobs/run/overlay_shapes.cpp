@@ -19,7 +19,7 @@ std::array<V3d, 2> across(const V3d& n) {
 
 class Builder {
  public:
-  Builder(const GridTransform& grid, std::string name, Rgb colour)
+  Builder(const GridTransform& grid, std::string name, const Rgb& colour)
       : grid_(grid), mesh_{std::move(name), colour, {}, {}} {}
 
   std::uint32_t vertex(const V3d& p) {
@@ -104,6 +104,7 @@ std::vector<OverlayMesh> cluster_overlay(const SimplifiedSkeleton& skeleton,
     b.octahedron(V3d(skeleton.graph.corners[i]), 2 * knot);
   }
   std::vector<OverlayMesh> meshes;
+  meshes.reserve(builders.size());
   for (Builder& b : builders) meshes.push_back(b.take());
   return meshes;
 }

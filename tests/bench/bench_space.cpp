@@ -84,7 +84,7 @@ void add_soup(const std::string& name, TriangleSoup triangles, int resolution) {
   });
 }
 
-void add_queries(const std::string& name, std::shared_ptr<BitGrid3> domain) {
+void add_queries(const std::string& name, const std::shared_ptr<BitGrid3>& domain) {
   benchmark::RegisterBenchmark((name + "/omega_1 of a voxel").c_str(),
                                [domain](benchmark::State& state) {
                                  const ThreadPool pool(1);

@@ -76,6 +76,7 @@ TEST(Processes, that_ask_at_once_build_once) {
     const TemporaryFolder tmp;
     const Shared shared;
     std::vector<Child> children;
+    children.reserve(processes);
     for (int i = 0; i < processes; ++i) {
       children.emplace_back([&] {
         TestStore mine(tmp / "cache");

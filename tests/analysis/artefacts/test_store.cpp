@@ -79,6 +79,7 @@ TEST(ArtefactStore, threads_that_ask_at_once_build_once) {
     };
     std::vector<std::shared_ptr<const Numbers>> got(threads);
     std::vector<std::thread> all;
+    all.reserve(got.size());
     for (auto& mine : got) {
       all.emplace_back([&] {
         ++asking;

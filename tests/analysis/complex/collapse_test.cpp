@@ -96,7 +96,7 @@ TEST(Collapse, KeepsWhatItMust) {
     for (std::size_t b = 0; b < whole.block_count(); ++b) {
       for (int axis = 0; axis < 3; ++axis) {
         BitBlock some;
-        for_each_bit(whole.data()[b].faces[static_cast<std::size_t>(1 << axis)], [&](int position) {
+        for_each_bit(whole.data()[b].faces[std::size_t{1} << axis], [&](int position) {
           if (random() % 50 != 0) return;
           const Imath::V3i c = cell_of(position), cell = whole.corner(b) + c;
           some.z[static_cast<std::size_t>(c.z)] |= std::uint64_t{1} << (c.y * 8 + c.x);

@@ -12,7 +12,7 @@ namespace lacuna::testing {
 class LiteralComplex {
  public:
   explicit LiteralComplex(const CubicalComplex& c) : size_(c.size() + Imath::V3i(3)) {
-    faces_.resize(static_cast<std::size_t>(size_.x * size_.y * size_.z * face_types));
+    faces_.resize(index(size_ - Imath::V3i(1), face_types - 1) + 1);
     each([&](Imath::V3i cell, FaceType m) {
       const Imath::V3i s = c.size();
       if (cell.x <= s.x && cell.y <= s.y && cell.z <= s.z) at(cell, m) = c.has(cell, m);
@@ -45,9 +45,10 @@ class LiteralComplex {
     FaceType type;
   };
   static Imath::V3i unit(int axis) { return {axis == 0, axis == 1, axis == 2}; }
-  char& at(Imath::V3i c, FaceType m) {
-    return faces_[static_cast<std::size_t>((((c.z * size_.y) + c.y) * size_.x + c.x) * face_types +
-                                           m)];
+  char& at(Imath::V3i c, FaceType m) { return faces_[index(c, m)]; }
+  std::size_t index(Imath::V3i c, FaceType m) const {
+    const int i = ((c.z * size_.y + c.y) * size_.x + c.x) * face_types + m;
+    return static_cast<std::size_t>(i);
   }
   void each(const std::function<void(Imath::V3i, FaceType)>& visit) const {
     for (int z = 0; z < size_.z - 1; ++z) {
@@ -78,8 +79,7 @@ class LiteralComplex {
       for (int up = 0; up < face_types; ++up) {
         if ((up & ~flat) != 0) continue;
         const Imath::V3i c = cell + Imath::V3i(up & 1, up >> 1 & 1, up >> 2 & 1);
-        set[static_cast<std::size_t>((((c.z * size_.y) + c.y) * size_.x + c.x) * face_types +
-                                     sub)] = 1;
+        set[index(c, sub)] = 1;
       }
     }
   }
@@ -95,10 +95,7 @@ class LiteralComplex {
   bool remove(int t, int s, int d, const std::vector<char>& border,
               const std::function<bool(Imath::V3i, FaceType)>& kept) {
     std::vector<Face> gone;
-    const auto in_border = [&](Imath::V3i c, FaceType m) {
-      return border[static_cast<std::size_t>(
-          (((c.z * size_.y) + c.y) * size_.x + c.x) * face_types + m)];
-    };
+    const auto in_border = [&](Imath::V3i c, FaceType m) { return border[index(c, m)]; };
     each([&](Imath::V3i cell, FaceType g) {
       if (!has(cell, g) || dimension(g) != d - 1 || (g & 1 << t) != 0 || kept(cell, g)) return;
       const auto above = containing(cell, g);

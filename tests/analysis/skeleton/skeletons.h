@@ -32,7 +32,8 @@ struct Space {
 inline CubicalComplex thinned(const BitGrid3& domain, const Grid3<std::uint16_t>& l1) {
   const OpeningQuery opening(l1, threads());
   ThinningReport report;
-  return curvilinear_skeleton(domain, {l1, [&](Imath::V3i v) { return int{opening(v)}; }}, report);
+  return curvilinear_skeleton(
+      domain, {l1, [&](Imath::V3i v, int radius) { return opening.reaches(v, radius); }}, report);
 }
 
 inline Space space_of(BitGrid3 domain) {
@@ -162,7 +163,7 @@ inline SkeletonGraph straight_line(int nodes, float radius) {
   std::vector<Imath::V3i> corners;
   std::vector<std::array<std::uint32_t, 2>> edges;
   for (int i = 0; i < nodes; ++i) {
-    corners.push_back({i, 0, 0});
+    corners.emplace_back(i, 0, 0);
     if (i > 0) edges.push_back({static_cast<std::uint32_t>(i - 1), static_cast<std::uint32_t>(i)});
   }
   return make_graph(std::move(corners), std::vector<float>(static_cast<std::size_t>(nodes), radius),

@@ -75,7 +75,7 @@ SkeletonGraph apart(const std::vector<float>& radii) {
   std::vector<V3i> corners;
   std::vector<std::array<std::uint32_t, 2>> edges;
   for (std::uint32_t i = 0; i < radii.size(); ++i) {
-    corners.push_back({static_cast<int>(10 * i), 0, 0});
+    corners.emplace_back(static_cast<int>(10 * i), 0, 0);
     if (i > 0) edges.push_back({i - 1, i});
   }
   return make_graph(corners, radii, edges);

@@ -30,8 +30,8 @@ SkeletonGraph square_ring(int side, float radius) {
 SkeletonGraph bent_line(int first, int second, float radius) {
   std::vector<V3i> corners;
   std::vector<std::array<std::uint32_t, 2>> edges;
-  for (int i = 0; i <= first; ++i) corners.push_back({i, 0, 0});
-  for (int i = 1; i <= second; ++i) corners.push_back({first, i, 0});
+  for (int i = 0; i <= first; ++i) corners.emplace_back(i, 0, 0);
+  for (int i = 1; i <= second; ++i) corners.emplace_back(first, i, 0);
   for (std::uint32_t i = 1; i < corners.size(); ++i) edges.push_back({i - 1, i});
   return make_graph(corners, std::vector<float>(corners.size(), radius), edges);
 }

@@ -49,6 +49,7 @@ TEST(FileLock, can_go_with_its_file_and_still_has_one_owner) {
   const TemporaryFolder tmp;
   std::atomic<int> owners = 0, taken = 0;
   std::vector<std::thread> threads;
+  threads.reserve(4);
   for (int i = 0; i < 4; ++i) {
     threads.emplace_back([&] {
       while (taken < 400) {

@@ -8,7 +8,9 @@
 namespace lacuna {
 namespace {
 
-const std::string content = "what a picture needs to go on: \0 bytes of any kind";
+using namespace std::string_literals;
+
+const std::string content = "what a picture needs to go on: \0 bytes of any kind"s;
 
 TEST(Checkpoint, ComesBack) {
   const TemporaryFolder folder;

@@ -48,7 +48,6 @@ TEST(EmitterSet, ChoosesByPower) {
   // Triangles are told by their corner; only emitters of one colour-independent measure are
   // compared.
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> expected;
-  double total = 0;
   for (std::uint32_t m = 0; m < data.meshes.size(); ++m) {
     const Material& material = data.materials[data.meshes[m].material];
     if (!material.emits()) continue;
@@ -57,7 +56,6 @@ TEST(EmitterSet, ChoosesByPower) {
                            double(TriangleShape(data.meshes[m], t).area()) *
                            (material.double_sided ? 2 : 1);
       expected[{m, t}] = power;
-      total += power;
     }
   }
   ASSERT_GT(expected.size(), 400U);

@@ -12,7 +12,6 @@ namespace {
 
 using test::render;
 using test::Rendering;
-using test::RenderSettings;
 
 PathSettings path(int max_depth, bool nee = true) {
   PathSettings s;

@@ -13,7 +13,7 @@ namespace lacuna::test {
 template <class T>
 std::filesystem::path write_image(const TemporaryFolder& folder, const std::string& name,
                                   OIIO::ImageSpec spec, const std::vector<T>& pixels) {
-  const auto file = folder.path() / name;
+  auto file = folder.path() / name;
   const auto out = OIIO::ImageOutput::create(file.string());
   spec.attribute("oiio:UnassociatedAlpha", 1);
   if (!out || !out->open(file.string(), spec) ||
