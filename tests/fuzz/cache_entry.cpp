@@ -1,6 +1,6 @@
 #include <sys/types.h>
 
-#include <cstring>
+#include <algorithm>
 
 #include "analysis/artefacts/codec.h"
 #include "analysis/artefacts/entry_file.h"
@@ -105,7 +105,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   if (size < 8 && max_size > 512) {
     std::string start = own_entry(seed % 5);
     if (seed % 2 == 0) start = "\1" + start.substr(head_bytes());
-    std::memcpy(data, start.data(), start.size());
+    std::copy(start.begin(), start.end(), data);
     size = start.size();
   }
   return LLVMFuzzerMutate(data, size, max_size);

@@ -137,7 +137,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
                                                std::size_t max_size, unsigned) {
   const std::string& own = lacuna::fuzz::ready().own;
   if (size < 16 && own.size() <= max_size) {
-    std::memcpy(data, own.data(), own.size());
+    std::copy(own.begin(), own.end(), data);
     size = own.size();
   }
   return LLVMFuzzerMutate(data, size, max_size);

@@ -41,7 +41,7 @@ class Uploads : public testing::Test {
         {.folder = folder, .renderer = renderer, .limits = {.memory_bytes = memory}});
   }
   fs::path script(const std::string& text) const {
-    const fs::path program = temp.write("renderer", "#!/bin/sh\n" + text);
+    fs::path program = temp.write("renderer", "#!/bin/sh\n" + text);
     fs::permissions(program, fs::perms::owner_all);
     return program;
   }

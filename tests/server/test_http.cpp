@@ -107,7 +107,7 @@ class HttpTest : public ::testing::Test {
     ASSERT_EQ(count, value);
   }
 
-  const Handler handler_;
+  const Handler handler_{};
   std::unique_ptr<HttpServer> server_;
 };
 
@@ -156,6 +156,7 @@ TEST_F(HttpTest, newcomers_are_served_however_many_connections_are_parked) {
   settings.parked = 4;
   start(settings);
   std::vector<Client> parked;
+  parked.reserve(6);
   for (int i = 0; i < 6; ++i) parked.emplace_back(*server_, i % 2 == 0 ? "GET / HT" : "");
   EXPECT_EQ(parked[0].status(), 503) << "the oldest goes first";
   EXPECT_EQ(parked[1].status(), 503);
@@ -183,6 +184,7 @@ TEST_F(HttpTest, slow_readers_hold_no_thread) {
   settings.threads = 1;
   start(settings);
   std::vector<Client> lazy;
+  lazy.reserve(20);
   for (int i = 0; i < 20; ++i)
     lazy.emplace_back(*server_, head(i % 2 == 0 ? "GET /large" : "GET /file"));
   EXPECT_EQ(status(head("GET /")), 200);
