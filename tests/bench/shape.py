@@ -15,7 +15,7 @@ AUTHORS = (("door_128", 0.097, 60, 0.01, None),
            ("door_512", 7.9, 1240, 0.3, 200))
 
 
-def of_grid(bench, binary, grid, runs):
+def of_grid(binary, grid, runs):
     done = subprocess.run([binary / "bench_shape", grid, str(runs)], check=True, capture_output=True, text=True)
     return json.loads(done.stdout)
 
@@ -40,11 +40,11 @@ def grids(bench, binary, baselines):
     for name, author, author_mb, bound, memory in AUTHORS:
         file = bench.folder / f"{name}.vox"
         file.write_bytes(gzip.decompress((baselines / f"{name}.vox.gz").read_bytes()))
-        told = of_grid(bench, binary, str(file), 7)
+        told = of_grid(binary, str(file), 7)
         figures(bench, name, statistics.median(told["seconds"]), bound, told["peak_bytes"], memory)
         steps = ", ".join(f"{k} {statistics.median(told[k]):.4f}" for k in ("distance", "thinning", "graph", "map"))
         print(f"  {steps}; the author's code: {author} s, {author_mb} MB")
-    told = of_grid(bench, binary, "blobs:512", 1)
+    told = of_grid(binary, "blobs:512", 1)
     figures(bench, "512^3 blobs", told["seconds"][0], 10, told["peak_bytes"], 1500)
     print(f"  {told['squares_pierced']} squares pierced, {told['layers']} layers")
 
