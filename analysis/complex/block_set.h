@@ -2,7 +2,7 @@
 
 #include <Imath/ImathVec.h>
 
-#include <atomic>
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace lacuna {
 
-/// A set of blocks of a complex, as one bit a block: small enough to be walked whole for every
-/// layer, and walked in any order of the axes.
+/// A set of blocks of a complex, as one bit a block, walked by slices across y or z. Several
+/// threads may work at it, each at slices of its own.
 class BlockSet {
  public:
   explicit BlockSet(Imath::V3i blocks)
@@ -20,49 +20,38 @@ class BlockSet {
         words_(static_cast<std::size_t>(row_words_) * static_cast<std::size_t>(blocks.y) *
                static_cast<std::size_t>(blocks.z)) {}
 
-  /// Safe from several threads.
   void insert(int bx, int by, int bz) {
-    std::atomic_ref(words_[word(bx >> 6, by, bz)])
-        .fetch_or(std::uint64_t{1} << (bx & 63), std::memory_order_relaxed);
+    words_[word(bx >> 6, by, bz)] |= std::uint64_t{1} << (bx & 63);
   }
-  void clear() { words_.assign(words_.size(), 0); }
-  bool empty() const {
-    for (const std::uint64_t w : words_) {
-      if (w != 0) return false;
+  /// The blocks from `first` to `last`, both included, along x.
+  void insert_row(int first, int last, int by, int bz) {
+    for (int bx = first; bx <= last;) {
+      const int n = std::min(last + 1, (bx | 63) + 1) - bx;
+      words_[word(bx >> 6, by, bz)] |= (~std::uint64_t{0} >> (64 - n)) << (bx & 63);
+      bx += n;
     }
-    return true;
+  }
+  bool contains(int bx, int by, int bz) const {
+    return (words_[word(bx >> 6, by, bz)] >> (bx & 63) & 1) != 0;
   }
   Imath::V3i blocks() const { return blocks_; }
 
-  /// Number of blocks in each slice across an axis, y or z.
-  std::vector<std::size_t> slices(int axis) const {
-    std::vector<std::size_t> counts(static_cast<std::size_t>(axis == 1 ? blocks_.y : blocks_.z));
-    for (int bz = 0; bz < blocks_.z; ++bz) {
-      for (int by = 0; by < blocks_.y; ++by) {
-        std::size_t n = 0;
-        for (int i = 0; i < row_words_; ++i) {
-          n += static_cast<std::size_t>(std::popcount(words_[word(i, by, bz)]));
-        }
-        counts[static_cast<std::size_t>(axis == 1 ? by : bz)] += n;
-      }
-    }
-    return counts;
-  }
-
-  /// Blocks from `low` up to and without `high`.
-  struct Range {
-    Imath::V3i low, high;
-  };
-  Range all() const { return {Imath::V3i(0), blocks_}; }
-  /// Visits the blocks (bx, by, bz) of a range along y and z (along x always all), ascending along
-  /// every axis but `descending` (-1: all ascend).
+  /// Visits the blocks (bx, by, bz) of the slice where `across` (1 y, 2 z) is `at`, ascending along
+  /// both its axes but `descending` (-1: both ascend).
   template <class F>
-  void for_each(const Range& range, int descending, const F& visit) const {
-    for (int k = range.low.z; k < range.high.z; ++k) {
-      const int bz = descending == 2 ? range.low.z + range.high.z - 1 - k : k;
-      for (int j = range.low.y; j < range.high.y; ++j) {
-        const int by = descending == 1 ? range.low.y + range.high.y - 1 - j : j;
-        descending == 0 ? row_down(by, bz, visit) : row_up(by, bz, visit);
+  void for_each(int across, int at, int descending, const F& visit) const {
+    const int along = 3 - across, n = blocks_[along];
+    for (int i = 0; i < n; ++i) {
+      const int j = descending == along ? n - 1 - i : i;
+      const int by = across == 1 ? at : j, bz = across == 1 ? j : at;
+      descending == 0 ? row_down(by, bz, visit) : row_up(by, bz, visit);
+    }
+  }
+  void clear(int across, int at) {
+    const int n = blocks_[3 - across];
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < row_words_; ++i) {
+        words_[across == 1 ? word(i, at, j) : word(i, j, at)] = 0;
       }
     }
   }

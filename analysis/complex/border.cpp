@@ -73,46 +73,38 @@ std::array<Plane, 3> find_free(const CubicalComplex& complex, std::vector<Border
   return facets;
 }
 
-void border_cubes(const CubicalComplex& complex, std::vector<BorderBlock>& border,
-                  std::size_t block) {
+Plane take_border_of(const CubicalComplex& complex, std::vector<BorderBlock>& border,
+                     std::size_t block) {
   const ComplexBlock* x = complex.data() + block;
-  const auto [sx, sy, sz] = strides(complex);
-  // A cube has a free square where one of its six neighbours is missing.
-  const Plane c = x->faces[7];
-  border[block].layer[7] = c & ~(from_low<0>(c, x[-sx].faces[7]) & from_high<0>(c, x[sx].faces[7]) &
-                                 from_low<1>(c, x[-sy].faces[7]) & from_high<1>(c, x[sy].faces[7]) &
-                                 from_low<2>(c, x[-sz].faces[7]) & from_high<2>(c, x[sz].faces[7]));
-}
-
-void border_squares(const CubicalComplex& complex, std::vector<BorderBlock>& border,
-                    std::size_t block) {
-  const auto& f = complex.data()[block].faces;
+  const auto& f = x->faces;
   BorderBlock* l = border.data() + block;
   const auto stride = strides(complex);
-  auto& layer = l->layer;
-  const Plane cubes = layer[7];
-  layer[Y | Z] = f[Y | Z] & (squares_with_free_edge<1, 2>(l, stride) | cubes |
-                             from_low<0>(cubes, l[-stride[0]].layer[7]));
-  layer[X | Z] = f[X | Z] & (squares_with_free_edge<0, 2>(l, stride) | cubes |
-                             from_low<1>(cubes, l[-stride[1]].layer[7]));
-  layer[X | Y] = f[X | Y] & (squares_with_free_edge<0, 1>(l, stride) | cubes |
-                             from_low<2>(cubes, l[-stride[2]].layer[7]));
-}
-
-Plane border_edges(const CubicalComplex& complex, std::vector<BorderBlock>& border,
-                   std::size_t block) {
-  const auto& f = complex.data()[block].faces;
-  BorderBlock* l = border.data() + block;
-  const auto [sx, sy, sz] = strides(complex);
-  auto& layer = l->layer;
-  const Plane xy = layer[X | Y], xz = layer[X | Z], yz = layer[Y | Z];
-  layer[X] = f[X] & (edges_with_free_vertex<0>(l, sx) | xy | from_low<1>(xy, l[-sy].layer[X | Y]) |
-                     xz | from_low<2>(xz, l[-sz].layer[X | Z]));
-  layer[Y] = f[Y] & (edges_with_free_vertex<1>(l, sy) | xy | from_low<0>(xy, l[-sx].layer[X | Y]) |
-                     yz | from_low<2>(yz, l[-sz].layer[Y | Z]));
-  layer[Z] = f[Z] & (edges_with_free_vertex<2>(l, sz) | xz | from_low<0>(xz, l[-sx].layer[X | Z]) |
-                     yz | from_low<1>(yz, l[-sy].layer[Y | Z]));
-  return layer[7] | xy | xz | yz | layer[X] | layer[Y] | layer[Z];
+  const auto [sx, sy, sz] = stride;
+  // A cube has a free square where one of its six neighbours is missing.
+  const Plane c = f[7];
+  const Plane cubes = c & ~(from_low<0>(c, x[-sx].faces[7]) & from_high<0>(c, x[sx].faces[7]) &
+                            from_low<1>(c, x[-sy].faces[7]) & from_high<1>(c, x[sy].faces[7]) &
+                            from_low<2>(c, x[-sz].faces[7]) & from_high<2>(c, x[sz].faces[7]));
+  l->layer(7) = cubes;
+  const Plane yz = f[Y | Z] & (squares_with_free_edge<1, 2>(l, stride) | cubes |
+                               from_low<0>(cubes, l[-sx].layer(7)));
+  const Plane xz = f[X | Z] & (squares_with_free_edge<0, 2>(l, stride) | cubes |
+                               from_low<1>(cubes, l[-sy].layer(7)));
+  const Plane xy = f[X | Y] & (squares_with_free_edge<0, 1>(l, stride) | cubes |
+                               from_low<2>(cubes, l[-sz].layer(7)));
+  l->layer(Y | Z) = yz;
+  l->layer(X | Z) = xz;
+  l->layer(X | Y) = xy;
+  l->layer(X) =
+      f[X] & (edges_with_free_vertex<0>(l, sx) | xy | from_low<1>(xy, l[-sy].layer(X | Y)) | xz |
+              from_low<2>(xz, l[-sz].layer(X | Z)));
+  l->layer(Y) =
+      f[Y] & (edges_with_free_vertex<1>(l, sy) | xy | from_low<0>(xy, l[-sx].layer(X | Y)) | yz |
+              from_low<2>(yz, l[-sz].layer(Y | Z)));
+  l->layer(Z) =
+      f[Z] & (edges_with_free_vertex<2>(l, sz) | xz | from_low<0>(xz, l[-sx].layer(X | Z)) | yz |
+              from_low<1>(yz, l[-sy].layer(Y | Z)));
+  return cubes | xy | xz | yz | l->layer(X) | l->layer(Y) | l->layer(Z);
 }
 
 Reach reach_of(const Plane& cells) {

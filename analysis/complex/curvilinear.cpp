@@ -31,7 +31,7 @@ CubicalComplex curvilinear_skeleton(const BitGrid3& domain, const SpaceMaps& map
                                     ThinningReport& report, const ThreadPool* pool) {
   auto [complex, kept] = thin(domain, maps, report, pool);
   for (;;) {
-    const std::vector<Square> squares = squares_to_pierce(complex, maps.distance);
+    const std::vector<Square> squares = squares_to_pierce(complex, maps.distance, pool);
     if (squares.empty()) return std::move(complex);
     ++report.pierce_rounds;
     report.squares_pierced += squares.size();

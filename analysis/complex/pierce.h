@@ -4,6 +4,7 @@
 
 #include "analysis/complex/cubical_complex.h"
 #include "analysis/geometry/grid.h"
+#include "analysis/parallel/thread_pool.h"
 
 namespace lacuna {
 
@@ -21,6 +22,7 @@ struct Square {
 /// cavity, it takes the square of largest distance of each connected part instead. Empty only if
 /// there is no square. Deterministic.
 std::vector<Square> squares_to_pierce(const CubicalComplex& thin,
-                                      const Grid3<std::uint16_t>& distance);
+                                      const Grid3<std::uint16_t>& distance,
+                                      const ThreadPool* pool = nullptr);
 
 }  // namespace lacuna

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <immintrin.h>
+
 #include <cstdint>
 
 #include "analysis/geometry/bit_grid.h"
@@ -29,8 +31,8 @@ struct Plane {
   }
   BitBlock bits() const { return {{lo[0], lo[1], lo[2], lo[3], hi[0], hi[1], hi[2], hi[3]}}; }
   bool any() const {
-    const Half h = lo | hi;
-    return (h[0] | h[1] | h[2] | h[3]) != 0;
+    const auto h = reinterpret_cast<__m256i>(lo | hi);
+    return _mm256_testz_si256(h, h) == 0;
   }
 };
 static_assert(sizeof(Plane) == sizeof(BitBlock) && alignof(Plane) <= alignof(BitBlock));

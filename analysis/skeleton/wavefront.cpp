@@ -114,7 +114,7 @@ void Wavefront::run(const ThreadPool& pool) {
     for (std::size_t i = 0; i < candidates_.size(); ++i)
       if (reached[i]) active_.push_back(candidates_[i]);
   }
-  label_across_planes();
+  run_parallel(pool, ringed_.z, [&](int slice) { label_across_planes(slice); });
   run_parallel(pool, labels_.size().z, [&](int z) { label_plane(z); });
 }
 
@@ -145,21 +145,25 @@ bool Wavefront::step(std::size_t block) {
   return true;
 }
 
-/// Labels the way from a voxel back to the next one that has a label.
+/// Labels the way from a voxel back to the next one that has a label. Ways meet: several threads
+/// may label a voxel, all alike.
 void Wavefront::trace(Imath::V3i voxel, std::vector<Imath::V3i>& way) {
   way.clear();
-  while (labels_(voxel) == no_node) {
+  std::uint32_t label = no_node;
+  while ((label = label_at(voxel).load(std::memory_order_relaxed)) == no_node) {
     way.push_back(voxel);
     const int code = static_cast<int>(from(voxel)) - 1;
     voxel[code / 2] += code % 2 == 0 ? -1 : 1;
   }
-  for (const Imath::V3i& v : way) labels_(v) = labels_(voxel);
+  for (const Imath::V3i& v : way) label_at(v).store(label, std::memory_order_relaxed);
 }
 
-/// Labels the voxels that were reached along z.
-void Wavefront::label_across_planes() {
+/// Labels the voxels that were reached along z, of one slice of blocks across z.
+void Wavefront::label_across_planes(int slice) {
   std::vector<Imath::V3i> way;
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+  const auto blocks = static_cast<std::size_t>(stride_[2]);
+  const std::size_t begin = static_cast<std::size_t>(slice) * blocks;
+  for (std::size_t b = begin; b < begin + blocks; ++b) {
     const auto& from = blocks_[b].from;
     const Plane along_z = Plane::of(from[2]) & (Plane::of(from[0]) ^ Plane::of(from[1]));
     if (along_z.any())

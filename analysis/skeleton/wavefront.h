@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -47,10 +48,13 @@ class Wavefront {
   }
   Imath::V3i corner(std::size_t block) const;
   unsigned from(Imath::V3i voxel) const;
+  std::atomic_ref<std::uint32_t> label_at(Imath::V3i voxel) {
+    return std::atomic_ref(labels_(voxel));
+  }
   void find_candidates();
   bool step(std::size_t block);
   void trace(Imath::V3i voxel, std::vector<Imath::V3i>& way);
-  void label_across_planes();
+  void label_across_planes(int slice);
   void label_plane(int z);
   void label_row(int y, int z);
 
