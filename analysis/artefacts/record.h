@@ -20,6 +20,7 @@ struct ArtefactRecord {
   std::uint64_t disk_bytes = 0;  ///< of its entry; 0: it has none
   std::optional<std::uint64_t> content_bytes;  ///< of what it holds, in memory; if known
   std::string remark;  ///< why an entry was refused, or none was written; empty: all is well
+  std::uint64_t peak_memory_bytes = 0;  ///< of the process, until it was there
 };
 
 }  // namespace lacuna

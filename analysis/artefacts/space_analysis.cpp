@@ -81,7 +81,10 @@ ArtefactKey SpaceAnalysis::of_domain(const char* type, std::uint32_t version,
   return ArtefactKey(type, version, std::move(settings)).from("domain", domain_hash_);
 }
 
-ArtefactKey SpaceAnalysis::skeleton_key() { return of_domain(skeleton_.type, skeleton_version); }
+ArtefactKey SpaceAnalysis::skeleton_key() {
+  return of_domain(skeleton_.type, skeleton_version,
+                   fmt::format("distance={}", enum_name(input_.settings.distance)));
+}
 ArtefactKey SpaceAnalysis::filtered_key() {
   return ArtefactKey(filtered_.type, filtered_version).from(skeleton_key());
 }
@@ -121,15 +124,23 @@ const Grid3<std::uint16_t>& SpaceAnalysis::distance() {
   return *distance_;
 }
 
-const SkeletonGraph& SpaceAnalysis::skeleton() {
-  return get<SkeletonGraph>(skeleton_, skeleton_key(), [this] {
-    const OpeningQuery opening(distance(), pool_);
-    const SpaceMaps maps{distance(),
-                         [&](Imath::V3i v, int radius) { return opening.reaches(v, radius); }};
+CubicalComplex SpaceAnalysis::thin_space() {
+  const auto thin = [this](const SpaceMaps& maps) {
     ThinningReport report;
-    const CubicalComplex complex = curvilinear_skeleton(domain().voxels, maps, report, &pool_);
-    return build_graph(complex, distance(), pool_);
-  });
+    return curvilinear_skeleton(domain().voxels, maps, report, &pool_, input_.byte_limit);
+  };
+  if (input_.settings.distance == ThinningDistance::chebyshev) {
+    const auto& openings = regions().opening;
+    return thin({chebyshev_distance(domain().voxels, pool_, input_.byte_limit),
+                 [&](Imath::V3i v, int radius) { return openings(v) >= radius; }});
+  }
+  const OpeningQuery opening(distance(), pool_);
+  return thin({distance(), [&](Imath::V3i v, int radius) { return opening.reaches(v, radius); }});
+}
+
+const SkeletonGraph& SpaceAnalysis::skeleton() {
+  return get<SkeletonGraph>(skeleton_, skeleton_key(),
+                            [this] { return build_graph(thin_space(), distance(), pool_); });
 }
 
 const FilteredSkeleton& SpaceAnalysis::filtered() {

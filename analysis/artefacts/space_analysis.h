@@ -80,6 +80,7 @@ class SpaceAnalysis {
   ArtefactKey simplified_key();
   ArtefactKey clusters_key();
   ArtefactKey regions_key();
+  CubicalComplex thin_space();
   Grid3<std::uint32_t> make_map(const SkeletonGraph& graph);
 
   SpaceInput input_;

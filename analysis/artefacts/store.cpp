@@ -15,6 +15,7 @@
 #include "analysis/artefacts/entry_file.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/file_lock.h"
+#include "analysis/storage/peak_memory.h"
 
 namespace lacuna {
 namespace {
@@ -103,6 +104,7 @@ std::shared_ptr<const void> ArtefactStore::Attempt::run() {
   const auto finish = [&](std::shared_ptr<const void> value, ArtefactRecord::Origin origin) {
     record_.origin = origin;
     record_.seconds = time.seconds() - record_.waited_seconds;
+    record_.peak_memory_bytes = peak_memory();
     return value;
   };
   if (settings_.folder.empty()) return finish(request_.build(), ArtefactRecord::Origin::built);

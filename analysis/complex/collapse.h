@@ -3,7 +3,7 @@
 #include <array>
 #include <limits>
 
-#include "analysis/complex/cubical_complex.h"
+#include "analysis/complex/border.h"
 #include "analysis/complex/kept_edges.h"
 #include "analysis/parallel/thread_pool.h"
 
@@ -19,6 +19,9 @@ class LayerObserver {
   virtual void edges(int date, std::size_t block, const std::array<Plane, 3>& present,
                      const std::array<Plane, 3>& facets) = 0;
 };
+
+/// What collapse() takes beside the complex.
+inline constexpr std::uint64_t collapse_bytes_per_block = sizeof(BorderBlock);
 
 inline constexpr int all_layers = std::numeric_limits<int>::max();
 

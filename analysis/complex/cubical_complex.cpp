@@ -2,10 +2,22 @@
 
 namespace lacuna {
 
+namespace {
+
+Imath::V3i ringed_blocks(Imath::V3i size) {
+  return (size + Imath::V3i(BitBlock::side)) / BitBlock::side + Imath::V3i(2);
+}
+
+}  // namespace
+
+std::uint64_t CubicalComplex::blocks_of(Imath::V3i size) {
+  const Imath::V3i n = ringed_blocks(size);
+  return static_cast<std::uint64_t>(n.x) * static_cast<std::uint64_t>(n.y) *
+         static_cast<std::uint64_t>(n.z);
+}
+
 CubicalComplex::CubicalComplex(const BitGrid3& voxels)
-    : size_(voxels.size()), blocks_((size_ + Imath::V3i(8)) / 8 + Imath::V3i(2)) {
-  data_.resize(static_cast<std::size_t>(blocks_.x) * static_cast<std::size_t>(blocks_.y) *
-               static_cast<std::size_t>(blocks_.z));
+    : size_(voxels.size()), blocks_(ringed_blocks(size_)), data_(blocks_of(size_)) {
   const std::ptrdiff_t sx = stride(0), sy = stride(1), sz = stride(2);
   // Ascending: the blocks below are complete when their faces are needed.
   for (int bz = 1; bz < blocks_.z - 1; ++bz) {

@@ -37,6 +37,8 @@ class CubicalComplex {
   Imath::V3i size() const { return size_; }
   /// With the ring.
   Imath::V3i blocks() const { return blocks_; }
+  /// Number of blocks, the ring's too, for a grid of that size (checked_voxels).
+  static std::uint64_t blocks_of(Imath::V3i size);
   /// Distance in memory between neighbouring blocks along an axis.
   std::ptrdiff_t stride(int axis) const {
     return axis == 0 ? 1 : axis == 1 ? blocks_.x : std::ptrdiff_t{blocks_.x} * blocks_.y;

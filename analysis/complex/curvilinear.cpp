@@ -28,7 +28,13 @@ ThinComplex thin(const BitGrid3& domain, const SpaceMaps& maps, ThinningReport& 
 }
 
 CubicalComplex curvilinear_skeleton(const BitGrid3& domain, const SpaceMaps& maps,
-                                    ThinningReport& report, const ThreadPool* pool) {
+                                    ThinningReport& report, const ThreadPool* pool,
+                                    std::uint64_t byte_limit) {
+  // The complex, its copy that the rule is asked on, and what is held of both beside them.
+  const std::uint64_t block = 2 * sizeof(ComplexBlock) + collapse_bytes_per_block +
+                              KeepRule::bytes_per_block + KeptEdges::bytes_per_block;
+  require_memory("thinning", domain.size(), CubicalComplex::blocks_of(domain.size()) * block,
+                 byte_limit);
   auto [complex, kept] = thin(domain, maps, report, pool);
   for (;;) {
     const std::vector<Square> squares = squares_to_pierce(complex, maps.distance, pool);

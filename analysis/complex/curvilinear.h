@@ -2,6 +2,7 @@
 
 #include "analysis/complex/cubical_complex.h"
 #include "analysis/complex/keep_rule.h"
+#include "analysis/space/memory_limit.h"
 
 namespace lacuna {
 
@@ -29,7 +30,10 @@ ThinComplex thin(const BitGrid3& domain, const SpaceMaps& maps, ThinningReport& 
 /// After each round the keep rule is asked again on the pierced complex, with the distances of the
 /// original voxels and the old edges kept: with the old edges alone a closed surface would shrink
 /// into the point where a curve meets it, and the space around a floating object would get no node.
+///
+/// Throws MemoryLimitError, before it allocates, if it would take more than `byte_limit` bytes.
 CubicalComplex curvilinear_skeleton(const BitGrid3& domain, const SpaceMaps& maps,
-                                    ThinningReport& report, const ThreadPool* pool = nullptr);
+                                    ThinningReport& report, const ThreadPool* pool = nullptr,
+                                    std::uint64_t byte_limit = no_memory_limit);
 
 }  // namespace lacuna

@@ -28,6 +28,10 @@ struct SpaceMaps {
 /// closed surfaces, which are never born, are not kept, or piercing would free nothing.
 class KeepRule final : public LayerObserver {
  public:
+  /// What it takes, but for the few dates that it holds.
+  static constexpr std::uint64_t bytes_per_block =
+      sizeof(std::array<Plane, 3>) + sizeof(std::vector<int>);
+
   /// All three must outlive it.
   KeepRule(const CubicalComplex& complex, const SpaceMaps& maps, KeptEdges& kept);
 

@@ -17,6 +17,9 @@ class KeptEdges {
     std::array<Plane, 3> edges{Plane::zero(), Plane::zero(), Plane::zero()};  ///< by axis
   };
 
+  /// What it takes where nothing is kept.
+  static constexpr std::uint64_t bytes_per_block = sizeof(std::uint32_t);
+
   explicit KeptEdges(const CubicalComplex& complex)
       : slots_(complex.block_count()),
         blocks_(1),

@@ -6,6 +6,20 @@
 
 namespace lacuna {
 
+inline constexpr int max_resolution = 2048;  ///< distances keep to 16 bits
+
+/// How far a voxel is from the scene, where thinning decides which curves to keep.
+enum class ThinningDistance { l1, chebyshev };
+
+template <>
+struct EnumTable<ThinningDistance> {
+  static constexpr std::array<EnumValue<ThinningDistance>, 2> values{{
+      {ThinningDistance::l1, "l1", "steps over faces (thesis 6.2.3)"},
+      {ThinningDistance::chebyshev, "chebyshev",
+       "steps over corners too: fewer short spurs where the scene is rough"},
+  }};
+};
+
 /// To which node a voxel of empty space belongs.
 enum class NodeMapping { geodesic, visible };
 
@@ -21,6 +35,7 @@ struct EnumTable<NodeMapping> {
 /// Shape analysis of the scene, for the integrators that use it.
 struct AnalysisSettings {
   int resolution = 128;
+  ThinningDistance distance = ThinningDistance::l1;
   NodeMapping mapping = NodeMapping::geodesic;
   bool operator==(const AnalysisSettings&) const = default;
 };
@@ -28,7 +43,11 @@ struct AnalysisSettings {
 template <class V>
 void describe(V& v, AnalysisSettings& s) {
   v("resolution", s.resolution,
-    {.doc = "voxels along the longest side of the scene", .min = 1, .max = 2048, .unit = "voxels"});
+    {.doc = "voxels along the longest side of the scene",
+     .min = 1,
+     .max = max_resolution,
+     .unit = "voxels"});
+  v("distance", s.distance, {.doc = "the distance that decides which curves thinning keeps"});
   v("mapping", s.mapping, {.doc = "the node that a voxel of empty space belongs to"});
 }
 

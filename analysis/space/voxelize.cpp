@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "analysis/settings/analysis_settings.h"
 #include "analysis/space/memory_limit.h"
 #include "analysis/space/sweep.h"
 #include "analysis/space/triangle_box.h"

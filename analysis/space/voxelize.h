@@ -24,8 +24,6 @@ struct GridPlan {
   std::uint64_t bytes = 0;  ///< of memory that voxelising takes, estimated: the grid and its lists
 };
 
-inline constexpr int max_resolution = 2048;  ///< voxels along a side: distances keep to 16 bits
-
 /// Lays cubic voxels over the bounding box of all triangles. `resolution`: voxels along its longest
 /// side, in [1, max_resolution], else std::invalid_argument. Triangles that all lie in one point
 /// give one voxel of side 1 around it. Throws GeometryError. Allocates nothing.

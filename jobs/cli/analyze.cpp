@@ -1,13 +1,14 @@
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "analysis/geometry/disjoint_sets.h"
+#include "analysis/storage/peak_memory.h"
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
+#include "jobs/cli/settings_options.h"
 #include "jobs/cli/terminal.h"
 #include "jobs/run/clock.h"
 #include "jobs/run/overlay.h"
@@ -85,7 +86,8 @@ OrderedJson steps(const ArtefactStore& store) {
     all.push_back({{"name", r.type},
                    {"origin", built ? "built" : "loaded"},
                    {"seconds", r.seconds},
-                   {"disk_bytes", r.disk_bytes}});
+                   {"disk_bytes", r.disk_bytes},
+                   {"peak_memory_bytes", r.peak_memory_bytes}});
   }
   return all;
 }
@@ -98,14 +100,16 @@ void print(const OrderedJson& j) {
     fmt::print("{:<20} {}\n", label,
                value.is_string() ? value.get<std::string>() : json_text(value));
   }
-  fmt::print("\n{:<20} {:>8} {:>10} {:>12}\n", "STEP", "", "SECONDS", "ON DISK");
+  fmt::print("\n{:<20} {:>8} {:>10} {:>12} {:>12}\n", "STEP", "", "SECONDS", "ON DISK",
+             "PEAK MEMORY");
   double total = 0;
   for (const OrderedJson& step : j["steps"]) {
     const auto seconds = step["seconds"].get<double>();
     const auto bytes = step["disk_bytes"].get<std::uint64_t>();
     total += seconds;
-    fmt::print("{:<20} {:>8} {:>10.3f} {:>12}\n", step["name"].get<std::string>(),
-               step["origin"].get<std::string>(), seconds, bytes > 0 ? byte_size_text(bytes) : "-");
+    fmt::print("{:<20} {:>8} {:>10.3f} {:>12} {:>12}\n", step["name"].get<std::string>(),
+               step["origin"].get<std::string>(), seconds, bytes > 0 ? byte_size_text(bytes) : "-",
+               byte_size_text(step["peak_memory_bytes"].get<std::uint64_t>()));
   }
   fmt::print("{:<20} {:>8} {:>10.3f}\n", "all", "", total);
   fmt::print("peak memory {}, {} threads\n",
@@ -149,9 +153,7 @@ void analyze(const AnalyzeOptions& o) {
   space.filtered_map();
   OrderedJson result = shape(o, space);
   result["steps"] = steps(store);
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  result["peak_memory_bytes"] = std::int64_t{usage.ru_maxrss} * 1024;
+  result["peak_memory_bytes"] = peak_memory();
   result["threads"] = pool.threads();
   o.json ? fmt::print("{}", document_text(result)) : print(result);
   if (!o.out.empty()) write_overlays(o.out, scene, space);
@@ -170,19 +172,8 @@ void add_analyze(CLI::App& app, int& code) {
       ->required();
   command->add_option("--camera", o->camera,
                       "whose part of the empty space counts (default: the first)");
-  command->add_option("--resolution", o->analysis.resolution, "voxels along the longest side")
-      ->check(CLI::Range(1, max_resolution))
-      ->capture_default_str();
-  std::map<std::string, NodeMapping> mappings;
-  std::string names;
-  for (const auto& m : EnumTable<NodeMapping>::values) {
-    mappings.emplace(m.name, m.value);
-    names.append(names.empty() ? "" : "|").append(m.name);
-  }
-  command->add_option("--mapping", o->analysis.mapping, "the node that a voxel belongs to")
-      ->transform(CLI::CheckedTransformer(mappings).description(""))
-      ->type_name(names)
-      ->default_str(std::string(enum_name(o->analysis.mapping)));
+  SettingsOptions options(*command);
+  describe(options, o->analysis);
   command->add_option(
       "--out", o->out,
       "writes skeleton, filtered, clusters, gates and portals (.glb) with the scene into DIR");

@@ -1,12 +1,12 @@
 #include "jobs/run/report.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "analysis/storage/peak_memory.h"
 #include "jobs/run/artefacts_json.h"
 #include "jobs/spec/json_text.h"
 #include "jobs/spec/version.h"
@@ -80,12 +80,10 @@ OrderedJson errors_json(const RenderTask& task, const Curve& curve) {
 }
 
 OrderedJson machine(const ThreadPool& pool) {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
   return {{"processor", processor_name()},
           {"cores", sysconf(_SC_NPROCESSORS_ONLN)},
           {"threads", pool.threads()},
-          {"peak_memory_bytes", std::int64_t{usage.ru_maxrss} * 1024}};
+          {"peak_memory_bytes", peak_memory()}};
 }
 
 }  // namespace

@@ -75,7 +75,8 @@ TEST(SettingsText, names_every_field_exactly) {
   EXPECT_EQ(settings_text(Options{}), "share=0.1 pierce=true rule=exact");
   EXPECT_EQ(settings_text(Options{1.0 / 3, false, Rule::fast}),
             "share=0.3333333333333333 pierce=false rule=fast");
-  EXPECT_EQ(settings_text(AnalysisSettings{.resolution = 64}), "resolution=64 mapping=geodesic");
+  EXPECT_EQ(settings_text(AnalysisSettings{.resolution = 64}),
+            "resolution=64 distance=l1 mapping=geodesic");
   EXPECT_NO_THROW(ArtefactKey("a", 1, settings_text(Options{})));
 }
 

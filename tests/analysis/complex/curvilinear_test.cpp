@@ -8,6 +8,7 @@
 #include "analysis/complex/invariants.h"
 #include "analysis/space/distance.h"
 #include "analysis/space/memory_limit.h"
+#include "analysis/space/opening.h"
 #include "analysis/space/opening_query.h"
 #include "tests/analysis/complex/literal_collapse.h"
 #include "tests/analysis/complex/random_voxels.h"
@@ -240,6 +241,37 @@ TEST(CurvilinearSkeleton, IsTheSameForAnyNumberOfThreads) {
       EXPECT_EQ(report.layers, alone.layers);
     }
   }
+}
+
+TEST(CurvilinearSkeleton, KeepsTheTopologyByTheOtherDistanceToo) {
+  const ThreadPool one(1);
+  std::size_t differ = 0;
+  for (const BitGrid3& domain : domains()) {
+    const auto distance = chebyshev_distance(domain, one, no_memory_limit);
+    const auto opening = opening_forest(distance, one, no_memory_limit).opening;
+    const SpaceMaps maps{distance, [&](Imath::V3i v, int r) { return opening(v) >= r; }};
+    ThinningReport report, by_l1;
+    EXPECT_EQ(topology(thin(domain, maps, report).complex), topology(CubicalComplex(domain)));
+    const CubicalComplex graph = curvilinear_skeleton(domain, maps, report);
+    EXPECT_EQ(graph.count(2) + graph.count(3), 0u);
+    const Space s(domain);
+    if (!(graph == curvilinear_skeleton(domain, s.maps, by_l1))) ++differ;
+  }
+  EXPECT_GT(differ, 5u);
+}
+
+TEST(CurvilinearSkeleton, RefusesBeforeItAllocates) {
+  const Space s(box_with_hole({31, 30, 29}, {12, 13, 14}, {15, 16, 17}));
+  ThinningReport report;
+  try {
+    curvilinear_skeleton(s.domain, s.maps, report, nullptr, 100'000);
+    FAIL() << "it allowed itself more";
+  } catch (const MemoryLimitError& e) {
+    EXPECT_NE(std::string(e.what()).find("thinning of a grid of 31 x 30 x 29 voxels"),
+              std::string::npos)
+        << e.what();
+  }
+  EXPECT_EQ(report.layers, 0);
 }
 
 TEST(CurvilinearSkeleton, OfTheSmallestSpaces) {

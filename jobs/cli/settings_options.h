@@ -1,0 +1,43 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <string>
+#include <type_traits>
+
+#include "analysis/settings/field.h"
+
+namespace lacuna {
+
+/// Gives a command an option --NAME for each field of a settings struct, from its table.
+class SettingsOptions {
+ public:
+  explicit SettingsOptions(CLI::App& command) : command_(command) {}
+
+  template <class T>
+  void operator()(std::string_view name, T& value, const Field& field) {
+    const std::string option = "--" + std::string(name), doc(field.doc);
+    if constexpr (std::is_enum_v<T>) {
+      std::map<std::string, T> values;
+      std::string names;
+      for (const auto& v : EnumTable<T>::values) {
+        values.emplace(v.name, v.value);
+        names.append(names.empty() ? "" : "|").append(v.name);
+      }
+      command_.add_option(option, value, doc)
+          ->transform(CLI::CheckedTransformer(values).description(""))
+          ->type_name(names)
+          ->default_str(std::string(enum_name(value)));
+    } else {
+      static_assert(std::is_integral_v<T>, "add what else a settings struct holds");
+      command_.add_option(option, value, doc)
+          ->check(CLI::Range(static_cast<T>(field.min), static_cast<T>(field.max)))
+          ->capture_default_str();
+    }
+  }
+
+ private:
+  CLI::App& command_;
+};
+
+}  // namespace lacuna
