@@ -36,7 +36,7 @@ function bar(title, object, show, belongs) {
 function artefactText(artefact) {
   if (artefact === null || typeof artefact !== "object") return String(artefact);
   const { name, ...rest } = artefact;
-  const more = Object.entries(rest).map(([key, value]) => quantity(value, [key]));
+  const more = Object.entries(rest).map(([key, value]) => quantity(value, [key]) + (key === "seconds" ? "" : ` ${key.split("_")[0]}`));
   return more.length > 0 ? `${name} (${more.join(", ")})` : String(name);
 }
 

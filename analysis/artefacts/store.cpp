@@ -157,7 +157,7 @@ std::optional<FileLock> ArtefactStore::Attempt::wait_for_lock(const fs::path& fi
   bool told = false;
   for (auto pause = shortest;; pause = std::min(2 * pause, longest)) {
     auto lock = FileLock::try_take(file);
-    record_.waited_seconds = seconds_since(start);
+    if (pause > shortest) record_.waited_seconds = seconds_since(start);
     if (lock) {
       lock->remove_at_end();
       lock->note(owner_text());

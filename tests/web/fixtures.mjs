@@ -38,7 +38,7 @@ export const report = {
   scene: { triangles: 36, dropped_triangles: 0, emitters: 2,
     textures: { in_scene: 3, decoded: 1, decoded_bytes: 0 }, mask_filters: 0, ray_caster_bytes: 52480,
     content_hash: "f00dcafe00112233" },
-  artefacts: { built: [{ name: "skeleton", seconds: 1.5 }], loaded: ["octree"] },
+  artefacts: { built: [{ name: "skeleton", seconds: 1.5, disk_bytes: 2048 }], loaded: ["octree"] },
   strategies: [{ type: "camera", share: 0.31 }, { type: "emitter", share: 0.69 }],
   warnings: [],
   machine: { processor: "A processor, 2 GHz", cores: 2, threads: 2, peak_memory_bytes: 183500800 },

@@ -89,7 +89,6 @@ test("a job shows its report with units, its files and its settings", async () =
   assert.match(report, /peak memory bytes\s+175\sMiB/);
   assert.match(report, /render\s+30\.0\ss/);
   assert.match(report, /rays per second\s+19\.9\sM\/s/);
-  assert.match(report, /loaded\s+octree/);
   assert.match(report, /1 type\s+camera\s+1 share\s+0\.310/);
   assert.equal(await count(".files a"), 8);
   assert.match(await page.locator("article").innerText(), /512 × 512/);
@@ -106,7 +105,7 @@ test("a job shows where its time and rays went, and what was built, loaded and l
   assert.match(effort, /Time: 42\.9\ss in all/);
   assert.match(effort, /render 30\.0\ss, 69\.9 %/);
   assert.match(effort, /shadow rays 512\s000\s000, 35\.7 %/);
-  assert.match(effort, /built\s+skeleton \(1\.50\ss\)\s+loaded\s+octree\s+left out\s+2 of 3 textures/);
+  assert.match(effort, /built\s+skeleton \(1\.50\ss, 2\.00\sKiB disk\)\s+loaded\s+octree\s+left out\s+2 of 3 textures/);
   const widths = await page.locator(".stacked-bar").first().locator("span").evaluateAll(
     (all) => all.map((piece) => piece.getBoundingClientRect().width / piece.parentElement.clientWidth));
   assert.ok(Math.abs(widths[0] - 30.02 / 42.94) < 0.01, `${widths}`);
