@@ -103,7 +103,7 @@ ArtefactKey SpaceAnalysis::map_key(const char* type, const ArtefactKey& graph) {
 
 const Voxels& SpaceAnalysis::voxels() {
   return get<Voxels>(voxels_, voxels_key(), [this] {
-    return voxelize(input_.triangles(), input_.settings.resolution, pool_, input_.byte_limit);
+    return voxelize(input_.triangles(), input_.settings.resolution, pool_, input_.byte_limit());
   });
 }
 
@@ -111,7 +111,7 @@ const Domain& SpaceAnalysis::domain() {
   if (!domain_.value) {
     const DomainSeeds seeds = input_.seeds();
     get<Domain>(domain_, domain_key(seeds),
-                [&] { return restrict_domain(voxels(), seeds, pool_, input_.byte_limit); });
+                [&] { return restrict_domain(voxels(), seeds, pool_, input_.byte_limit()); });
   }
   return *domain_.value;
 }
@@ -119,7 +119,7 @@ const Domain& SpaceAnalysis::domain() {
 const Grid3<std::uint16_t>& SpaceAnalysis::distance() {
   if (!distance_) {
     distance_ = std::make_unique<Grid3<std::uint16_t>>(
-        l1_distance(domain().voxels, pool_, input_.byte_limit));
+        l1_distance(domain().voxels, pool_, input_.byte_limit()));
   }
   return *distance_;
 }
@@ -127,11 +127,11 @@ const Grid3<std::uint16_t>& SpaceAnalysis::distance() {
 CubicalComplex SpaceAnalysis::thin_space() {
   const auto thin = [this](const SpaceMaps& maps) {
     ThinningReport report;
-    return curvilinear_skeleton(domain().voxels, maps, report, &pool_, input_.byte_limit);
+    return curvilinear_skeleton(domain().voxels, maps, report, &pool_, input_.byte_limit());
   };
   if (input_.settings.distance == ThinningDistance::chebyshev) {
     const auto& openings = regions().opening;
-    return thin({chebyshev_distance(domain().voxels, pool_, input_.byte_limit),
+    return thin({chebyshev_distance(domain().voxels, pool_, input_.byte_limit()),
                  [&](Imath::V3i v, int radius) { return openings(v) >= radius; }});
   }
   const OpeningQuery opening(distance(), pool_);
@@ -149,7 +149,7 @@ const FilteredSkeleton& SpaceAnalysis::filtered() {
 }
 
 Grid3<std::uint32_t> SpaceAnalysis::make_map(const SkeletonGraph& graph) {
-  Grid3<std::uint32_t> map = lacuna::node_map(domain().voxels, graph, pool_, input_.byte_limit);
+  Grid3<std::uint32_t> map = lacuna::node_map(domain().voxels, graph, pool_, input_.byte_limit());
   if (input_.settings.mapping == NodeMapping::visible) {
     prefer_visible_nodes(map, graph, distance(), pool_);
   }
@@ -193,21 +193,18 @@ const VisibilityGates& SpaceAnalysis::gates() {
 const RegionLabels& SpaceAnalysis::regions() {
   return get<RegionLabels>(regions_, regions_key(), [this] {
     return forest_labels(
-        opening_forest(chebyshev_distance(domain().voxels, pool_, input_.byte_limit), pool_,
-                       input_.byte_limit),
+        opening_forest(chebyshev_distance(domain().voxels, pool_, input_.byte_limit()), pool_,
+                       input_.byte_limit()),
         pool_);
   });
 }
 
 const Portals& SpaceAnalysis::portals() {
   return get<Portals>(portals_, ArtefactKey(portals_.type, portals_version).from(regions_key()),
-                      [this] { return find_portals(regions(), pool_, input_.byte_limit); });
+                      [this] { return find_portals(regions(), pool_, input_.byte_limit()); });
 }
 
-std::size_t SpaceAnalysis::complex_faces() {
-  const CubicalComplex complex(domain().voxels);
-  return complex.count(0) + complex.count(1) + complex.count(2) + complex.count(3);
-}
+std::uint64_t SpaceAnalysis::complex_faces() { return closure_faces(domain().voxels); }
 
 void SpaceAnalysis::close() {
   const auto note = [this](const auto&... parts) {

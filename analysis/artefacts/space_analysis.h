@@ -25,7 +25,8 @@ struct SpaceInput {
   std::string geometry;                     ///< hash of the triangles, lower-case hexadecimal
   std::function<DomainSeeds()> seeds;       ///< which parts of the empty space matter
   AnalysisSettings settings;
-  std::uint64_t byte_limit = 0;  ///< of memory, for any one step
+  /// Of the memory that a step may take beside what is there already; asked before each.
+  std::function<std::uint64_t()> byte_limit;
 };
 
 /// The shape of a scene's empty space. Each part is made or loaded when it is first asked for, with
@@ -56,7 +57,7 @@ class SpaceAnalysis {
   const Portals& portals();
 
   /// Of the closure of the domain: what thinning starts from, and its cost grows with.
-  std::size_t complex_faces();
+  std::uint64_t complex_faces();
   /// Notes in the store what was not asked for.
   void close();
 

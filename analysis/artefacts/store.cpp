@@ -107,14 +107,18 @@ std::shared_ptr<const void> ArtefactStore::Attempt::run() {
     record_.peak_memory_bytes = peak_memory();
     return value;
   };
-  if (settings_.folder.empty()) return finish(request_.build(), ArtefactRecord::Origin::built);
+  const auto build = [&] {
+    if (settings_.building) settings_.building(key_.type());
+    return request_.build();
+  };
+  if (settings_.folder.empty()) return finish(build(), ArtefactRecord::Origin::built);
   if (auto value = load()) return finish(std::move(value), ArtefactRecord::Origin::loaded);
   auto lock = take_lock();
   // Whoever had the lock may have made it.
   if (lock) {
     if (auto value = load()) return finish(std::move(value), ArtefactRecord::Origin::loaded);
   }
-  auto value = request_.build();
+  auto value = build();
   if (!timed_out_) keep(value.get());
   return finish(std::move(value), ArtefactRecord::Origin::built);
 }

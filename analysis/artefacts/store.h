@@ -22,9 +22,10 @@ struct StoreSettings {
   std::uint64_t byte_limit = 0;  ///< of all entries together
   double wait_seconds = 600;     ///< at most, for another process that makes the same
   std::string label;             ///< what people call the scene; stands in the entries
-  std::function<void(const std::string&)> message;  ///< what is waited for; may be empty
-  std::function<void(const std::string&)> warning;  ///< what went wrong; may be empty
-  std::function<bool()> interrupted;                ///< true ends a wait; may be empty
+  std::function<void(const std::string&)> message;        ///< what is waited for; may be empty
+  std::function<void(const std::string&)> warning;        ///< what went wrong; may be empty
+  std::function<void(const std::string&)> building = {};  ///< told the type, before; may be empty
+  std::function<bool()> interrupted;                      ///< true ends a wait; may be empty
 };
 
 /// Asked to stop while it waited for another process.

@@ -92,6 +92,29 @@ std::ptrdiff_t CubicalComplex::euler() const {
   return chi;
 }
 
+std::uint64_t closure_faces(const BitGrid3& voxels) {
+  const Imath::V3i size = voxels.size(), blocks = voxels.blocks();
+  // A face depends on voxels at its cell and before it: slice after slice, with the one before.
+  BitGrid3 pair(Imath::V3i(size.x, size.y, 2 * BitBlock::side));
+  std::uint64_t faces = 0;
+  for (int z = 0; z <= blocks.z; ++z) {
+    for (int y = 0; y < blocks.y; ++y) {
+      for (int x = 0; x < blocks.x; ++x) {
+        pair.block(x, y, 0) = pair.block(x, y, 1);
+        pair.block(x, y, 1) = z < blocks.z ? voxels.block(x, y, z) : BitBlock{};
+      }
+    }
+    const CubicalComplex complex(pair);
+    const std::size_t begin = complex.index(0, 0, 2), end = complex.index(0, 0, 3);
+    for (std::size_t b = begin; b < end; ++b) {
+      for (const Plane& p : complex.data()[b].faces) {
+        faces += static_cast<std::uint64_t>(p.bits().count());
+      }
+    }
+  }
+  return faces;
+}
+
 bool CubicalComplex::operator==(const CubicalComplex& o) const {
   if (size_ != o.size_) return false;
   for (std::size_t i = 0; i < data_.size(); ++i) {

@@ -79,6 +79,10 @@ class CubicalComplex {
   std::vector<ComplexBlock> data_;
 };
 
+/// Number of faces, of all dimensions, of the closure of the cubes of `voxels`. Takes the memory of
+/// two slices of blocks.
+std::uint64_t closure_faces(const BitGrid3& voxels);
+
 /// The bits of a plane as (position in the block, 0 to 511: x + 8 y + 64 z), ascending.
 template <class F>
 void for_each_bit(const Plane& plane, const F& visit) {

@@ -142,12 +142,13 @@ void analyze(const AnalyzeOptions& o) {
                        .label = o.scene,
                        .message = [&](const std::string& line) { terminal.milestone(line); },
                        .warning = [&](const std::string& line) { terminal.warning(line); },
+                       .building = [&](const std::string& type) { terminal.phase(type + " ..."); },
                        .interrupted = interrupt_requested()});
   SpaceAnalysis space({.triangles = [&] { return triangle_soup(scene); },
                        .geometry = geometry_key(scene),
                        .seeds = [&] { return domain_seeds(scene, camera, false); },
                        .settings = o.analysis,
-                       .byte_limit = available_memory()},
+                       .byte_limit = memory_to_take},
                       store, pool);
   space.node_map();
   space.filtered_map();

@@ -41,13 +41,14 @@ std::uint64_t file_hash(const std::filesystem::path& file) {
 void set_up_analysis(Prepared& p, const JobSpec& spec, const RunContext& context,
                      const CameraData& camera) {
   Observer& observer = context.observer;
-  p.artefacts = std::make_unique<ArtefactStore>(
-      StoreSettings{.folder = context.data.cache(),
-                    .byte_limit = context.data.cache_limit,
-                    .label = spec.scene,
-                    .message = [&observer](const std::string& line) { observer.milestone(line); },
-                    .warning = [&observer](const std::string& line) { observer.warning(line); },
-                    .interrupted = context.interrupted});
+  p.artefacts = std::make_unique<ArtefactStore>(StoreSettings{
+      .folder = context.data.cache(),
+      .byte_limit = context.data.cache_limit,
+      .label = spec.scene,
+      .message = [&observer](const std::string& line) { observer.milestone(line); },
+      .warning = [&observer](const std::string& line) { observer.warning(line); },
+      .building = [&observer](const std::string& type) { observer.milestone("building " + type); },
+      .interrupted = context.interrupted});
   const SceneData& data = p.scene->data();
   p.space = std::make_unique<SpaceAnalysis>(
       SpaceInput{.triangles = [&data] { return triangle_soup(data); },
@@ -57,7 +58,7 @@ void set_up_analysis(Prepared& p, const JobSpec& spec, const RunContext& context
                        return domain_seeds(data, camera, everywhere);
                      },
                  .settings = spec.analysis,
-                 .byte_limit = available_memory()},
+                 .byte_limit = memory_to_take},
       *p.artefacts, *p.pool);
 }
 

@@ -44,4 +44,6 @@ std::uint64_t available_memory() {
   return bytes;
 }
 
+std::uint64_t memory_to_take() { return available_memory() / 16 * 15; }
+
 }  // namespace lacuna

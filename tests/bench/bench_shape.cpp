@@ -43,11 +43,6 @@ class Watch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-std::size_t faces_of(const BitGrid3& domain) {
-  const CubicalComplex complex(domain);
-  return complex.count(0) + complex.count(1) + complex.count(2) + complex.count(3);
-}
-
 struct Seconds {
   std::vector<double> all, distance, thinning, graph, map;
 };
@@ -89,7 +84,7 @@ int main(int argc, char** argv) {
     fmt::print(
         R"({{"grid": [{}, {}, {}], "faces": {}, {}, "threads": {}, "peak_bytes": {},)"
         "\n \"seconds\": {}, \"distance\": {}, \"thinning\": {}, \"graph\": {}, \"map\": {}}}\n",
-        n.x, n.y, n.z, faces_of(domain), result, pool.threads(), peak, s.all, s.distance,
+        n.x, n.y, n.z, closure_faces(domain), result, pool.threads(), peak, s.all, s.distance,
         s.thinning, s.graph, s.map);
   } catch (const std::exception& e) {
     fmt::print(stderr, "bench_shape: {}\n", e.what());

@@ -31,7 +31,7 @@ class Chain {
                 .geometry = "00",
                 .seeds = [seeds = std::move(seeds)] { return seeds; },
                 .settings = {.resolution = resolution},
-                .byte_limit = std::uint64_t{2} << 30},
+                .byte_limit = [] { return std::uint64_t{2} << 30; }},
                store_, pool_) {}
 
   SpaceAnalysis& operator*() { return space_; }

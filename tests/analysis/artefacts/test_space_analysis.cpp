@@ -28,7 +28,7 @@ class SpaceAnalysisTest : public ::testing::Test {
                   return DomainSeeds{{{camera, std::nullopt}}, false};
                 },
             .settings = {.resolution = resolution},
-            .byte_limit = std::uint64_t{1} << 30};
+            .byte_limit = [] { return std::uint64_t{1} << 30; }};
   }
   ArtefactStore store() {
     return ArtefactStore({.folder = folder_.path(),
@@ -131,7 +131,7 @@ TEST_F(SpaceAnalysisTest, CamerasInOneRoomShareASkeleton) {
 TEST_F(SpaceAnalysisTest, RefusesWhatMemoryCannotHold) {
   ArtefactStore s = store();
   SpaceInput tight = input({2, 2, 1}, 1024);
-  tight.byte_limit = 1 << 20;
+  tight.byte_limit = [] { return std::uint64_t{1} << 20; };
   SpaceAnalysis space(std::move(tight), s, pool_);
   EXPECT_THROW(space.skeleton(), MemoryLimitError);
 }

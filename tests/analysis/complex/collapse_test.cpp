@@ -71,6 +71,14 @@ TEST(CubicalComplex, IsTheClosureOfItsCubes) {
   }
 }
 
+TEST(CubicalComplex, TellsItsFacesWithoutBeingMade) {
+  for (unsigned seed = 0; const Shape& s : shapes()) {
+    const BitGrid3 voxels = random_voxels(s.size, s.density, s.smooth, ++seed);
+    const CubicalComplex c(voxels);
+    EXPECT_EQ(closure_faces(voxels), c.count(0) + c.count(1) + c.count(2) + c.count(3));
+  }
+}
+
 TEST(Collapse, IsAlgorithm2LayerByLayer) {
   for (unsigned seed = 0; const Shape& s : shapes()) {
     const CubicalComplex whole(random_voxels(s.size, s.density, s.smooth, ++seed));
