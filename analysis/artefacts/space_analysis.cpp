@@ -103,23 +103,27 @@ ArtefactKey SpaceAnalysis::map_key(const char* type, const ArtefactKey& graph) {
 
 const Voxels& SpaceAnalysis::voxels() {
   return get<Voxels>(voxels_, voxels_key(), [this] {
-    return voxelize(input_.triangles(), input_.settings.resolution, pool_, input_.byte_limit());
+    const TriangleSoup triangles = input_.triangles();  // first: the limit is of what is left then
+    return voxelize(triangles, input_.settings.resolution, pool_, input_.byte_limit());
   });
 }
 
 const Domain& SpaceAnalysis::domain() {
   if (!domain_.value) {
     const DomainSeeds seeds = input_.seeds();
-    get<Domain>(domain_, domain_key(seeds),
-                [&] { return restrict_domain(voxels(), seeds, pool_, input_.byte_limit()); });
+    get<Domain>(domain_, domain_key(seeds), [&] {
+      const Voxels& all = voxels();
+      return restrict_domain(all, seeds, pool_, input_.byte_limit());
+    });
   }
   return *domain_.value;
 }
 
 const Grid3<std::uint16_t>& SpaceAnalysis::distance() {
   if (!distance_) {
-    distance_ = std::make_unique<Grid3<std::uint16_t>>(
-        l1_distance(domain().voxels, pool_, input_.byte_limit()));
+    const BitGrid3& space = domain().voxels;
+    distance_ =
+        std::make_unique<Grid3<std::uint16_t>>(l1_distance(space, pool_, input_.byte_limit()));
   }
   return *distance_;
 }
@@ -131,8 +135,8 @@ CubicalComplex SpaceAnalysis::thin_space() {
   };
   if (input_.settings.distance == ThinningDistance::chebyshev) {
     const auto& openings = regions().opening;
-    return thin({chebyshev_distance(domain().voxels, pool_, input_.byte_limit()),
-                 [&](Imath::V3i v, int radius) { return openings(v) >= radius; }});
+    const auto steps = chebyshev_distance(domain().voxels, pool_, input_.byte_limit());
+    return thin({steps, [&](Imath::V3i v, int radius) { return openings(v) >= radius; }});
   }
   const OpeningQuery opening(distance(), pool_);
   return thin({distance(), [&](Imath::V3i v, int radius) { return opening.reaches(v, radius); }});
@@ -192,16 +196,20 @@ const VisibilityGates& SpaceAnalysis::gates() {
 
 const RegionLabels& SpaceAnalysis::regions() {
   return get<RegionLabels>(regions_, regions_key(), [this] {
-    return forest_labels(
-        opening_forest(chebyshev_distance(domain().voxels, pool_, input_.byte_limit()), pool_,
-                       input_.byte_limit()),
-        pool_);
+    auto forest = [this] {
+      const auto distance = chebyshev_distance(domain().voxels, pool_, input_.byte_limit());
+      return opening_forest(distance, pool_, input_.byte_limit());
+    };
+    return forest_labels(forest(), pool_);
   });
 }
 
 const Portals& SpaceAnalysis::portals() {
   return get<Portals>(portals_, ArtefactKey(portals_.type, portals_version).from(regions_key()),
-                      [this] { return find_portals(regions(), pool_, input_.byte_limit()); });
+                      [this] {
+                        const RegionLabels& labels = regions();
+                        return find_portals(labels, pool_, input_.byte_limit());
+                      });
 }
 
 std::uint64_t SpaceAnalysis::complex_faces() { return closure_faces(domain().voxels); }
