@@ -137,13 +137,14 @@ void analyze(const AnalyzeOptions& o) {
   const SceneData scene = load_gltf(find_scene(o.scene));
   const CameraData camera = choose_camera(scene, o.camera, o.scene);
   const DataRoot data = DataRoot::from_environment();
-  ArtefactStore store({.folder = o.no_cache ? std::filesystem::path() : data.cache(),
-                       .byte_limit = data.cache_limit,
-                       .label = o.scene,
-                       .message = [&](const std::string& line) { terminal.milestone(line); },
-                       .warning = [&](const std::string& line) { terminal.warning(line); },
-                       .building = [&](const std::string& type) { terminal.phase(type + " ..."); },
-                       .interrupted = interrupt_requested()});
+  ArtefactStore store(
+      {.folder = o.no_cache ? std::filesystem::path() : data.cache(),
+       .byte_limit = data.cache_limit,
+       .label = o.scene,
+       .message = [&](const std::string& line) { terminal.milestone(line); },
+       .warning = [&](const std::string& line) { terminal.warning(line); },
+       .building = [&](const std::string& type) { terminal.status("building " + type); },
+       .interrupted = interrupt_requested()});
   SpaceAnalysis space({.triangles = [&] { return triangle_soup(scene); },
                        .geometry = geometry_key(scene),
                        .seeds = [&] { return domain_seeds(scene, camera, false); },
@@ -153,6 +154,7 @@ void analyze(const AnalyzeOptions& o) {
   space.node_map();
   space.filtered_map();
   OrderedJson result = shape(o, space);
+  terminal.status({});
   result["steps"] = steps(store);
   result["peak_memory_bytes"] = peak_memory();
   result["threads"] = pool.threads();

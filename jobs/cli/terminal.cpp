@@ -80,8 +80,12 @@ void Terminal::phase(const std::string& name) {
 }
 
 void Terminal::progress(const Progress& p) {
+  if (bar_) status(bar_of(p, phase_, terminal_columns()));
+}
+
+void Terminal::status(const std::string& line) {
   if (!bar_) return;
-  fmt::print(stderr, "\r\033[K{}", bar_of(p, phase_, terminal_columns()));
+  fmt::print(stderr, "\r\033[K{}", line);
   std::fflush(stderr);
   drawn_ = true;
 }

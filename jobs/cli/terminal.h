@@ -25,6 +25,8 @@ class Terminal final : public Observer {
   void milestone(const std::string& line) override;
   void warning(const std::string& line) override;
   void error(const std::string& line);
+  /// A line that the next one takes the place of; on a terminal only.
+  void status(const std::string& line);
 
  private:
   void clear_bar();
