@@ -1,10 +1,13 @@
 #include "renderer/film/preview.h"
 
+#include <png.h>
+
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
-#include "renderer/film/write_whole.h"
+#include "analysis/storage/atomic_file.h"
 
 namespace lacuna {
 
@@ -38,8 +41,18 @@ void write_preview(const std::filesystem::path& file, int width, int height,
   std::vector<unsigned char> bytes(rgb.size());
   std::transform(rgb.begin(), rgb.end(), bytes.begin(),
                  [&](double v) { return encode(v * scale); });
-  const OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-  write_whole(file, "png", spec, OIIO::TypeDesc::UINT8, bytes.data());
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = static_cast<png_uint_32>(width);
+  image.height = static_cast<png_uint_32>(height);
+  image.format = PNG_FORMAT_RGB;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+  std::string png(size, '\0');
+  if (png_image_write_to_memory(&image, png.data(), &size, 0, bytes.data(), 0, nullptr) == 0) {
+    throw std::runtime_error(file.string() + ": cannot be written: " + image.message);
+  }
+  png.resize(size);
+  write_file_atomically(file, png);
 }
 
 }  // namespace lacuna

@@ -1,29 +1,38 @@
 #include "renderer/scene/image_read.h"
 
-#include <OpenImageIO/imageio.h>
-#include <OpenImageIO/strutil.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputPart.h>
+#include <ImfIntAttribute.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfPartType.h>
+#include <ImfStringAttribute.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
 #include <memory>
-#include <optional>
 
 #include "renderer/scene/exr_guard.h"
+#include "renderer/scene/radiance_hdr.h"
 #include "renderer/scene/scene_data.h"
 
 namespace lacuna {
 namespace {
 
 constexpr int max_side = 32768;
-using ChannelIndices = std::array<int, 3>;
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
   throw SceneError(file.string() + ": " + what);
 }
 
-const char* format_of(const std::filesystem::path& file) {
+enum class Format { exr, hdr };
+
+Format format_of(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
     fail(file, error ? error.message() : "is not a regular file");
@@ -32,14 +41,9 @@ const char* format_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) fail(file, "cannot be opened");
   stream.read(magic.data(), magic.size());
-  if (magic == std::array<char, 4>{'\x76', '\x2f', '\x31', '\x01'}) return "openexr";
-  if (magic[0] == '#' && magic[1] == '?') return "hdr";
+  if (magic == std::array<char, 4>{'\x76', '\x2f', '\x31', '\x01'}) return Format::exr;
+  if (magic[0] == '#' && magic[1] == '?') return Format::hdr;
   fail(file, "is neither OpenEXR nor Radiance HDR");
-}
-
-int channel_index(const OIIO::ImageSpec& spec, const std::string& name) {
-  const auto it = std::find(spec.channelnames.begin(), spec.channelnames.end(), name);
-  return it == spec.channelnames.end() ? -1 : static_cast<int>(it - spec.channelnames.begin());
 }
 
 std::array<std::string, 3> channel_names(const std::string& layer) {
@@ -47,83 +51,114 @@ std::array<std::string, 3> channel_names(const std::string& layer) {
   return {prefix + "R", prefix + "G", prefix + "B"};
 }
 
-std::optional<ChannelIndices> find_channels(const OIIO::ImageSpec& spec, const std::string& layer) {
-  ChannelIndices rgb{};
-  const auto names = channel_names(layer);
-  std::transform(names.begin(), names.end(), rgb.begin(),
-                 [&spec](const std::string& name) { return channel_index(spec, name); });
-  if (*std::min_element(rgb.begin(), rgb.end()) >= 0) return rgb;
-  const int grey = channel_index(spec, layer.empty() ? "Y" : layer + ".Y");
-  if (grey >= 0) return ChannelIndices{grey, grey, grey};
-  return std::nullopt;
+/// The channels of a layer: three, or one that is grey; none if it is not there.
+std::vector<std::string> find_channels(const Imf::Header& header, const std::string& layer) {
+  const auto has = [&](const std::string& name) {
+    return header.channels().findChannel(name) != nullptr;
+  };
+  const auto rgb = channel_names(layer);
+  if (std::all_of(rgb.begin(), rgb.end(), has)) return {rgb.begin(), rgb.end()};
+  const std::string grey = layer.empty() ? "Y" : layer + ".Y";
+  if (has(grey)) return {grey};
+  return {};
 }
 
-[[noreturn]] void fail_for_channels(const std::filesystem::path& file, const OIIO::ImageSpec& spec,
+[[noreturn]] void fail_for_channels(const std::filesystem::path& file, const Imf::Header& header,
                                     const std::string& layer) {
-  std::string missing;
+  std::vector<std::string> missing, there;
   for (const std::string& name : channel_names(layer)) {
-    if (channel_index(spec, name) < 0) missing += (missing.empty() ? "" : ", ") + name;
+    if (header.channels().findChannel(name) == nullptr) missing.push_back(name);
   }
-  fail(file,
-       "lacks channel " + missing + "; it has " + OIIO::Strutil::join(spec.channelnames, ", "));
+  for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
+    there.emplace_back(it.name());
+  }
+  fail(file, fmt::format("lacks channel {}; it has {}", fmt::join(missing, ", "),
+                         fmt::join(there, ", ")));
 }
 
-void check_spec(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
-  if (spec.deep) fail(file, "is a deep image; allowed: flat ones");
-  if (spec.width < 1 || spec.height < 1 || spec.width > max_side || spec.height > max_side) {
-    fail(file, "is " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
-                   " pixels; allowed: up to " + std::to_string(max_side) + " a side");
+void check_header(const std::filesystem::path& file, const Imf::Header& header,
+                  const std::vector<std::string>& channels) {
+  if (header.hasType() && Imf::isDeepData(header.type())) {
+    fail(file, "is a deep image; allowed: flat ones");
   }
-  if (spec.width != spec.full_width || spec.height != spec.full_height || spec.x != spec.full_x ||
-      spec.y != spec.full_y) {
+  const Imath::Box2i& data = header.dataWindow();
+  const std::int64_t width = std::int64_t{data.max.x} - data.min.x + 1,
+                     height = std::int64_t{data.max.y} - data.min.y + 1;
+  if (width < 1 || height < 1 || width > max_side || height > max_side) {
+    fail(file, fmt::format("is {} x {} pixels; allowed: up to {} a side", width, height, max_side));
+  }
+  if (data != header.displayWindow()) {
     fail(file, "is a crop (its data window is not its display window); allowed: whole images");
   }
-  if (spec.get_int_attribute("Orientation", 1) != 1) {
+  for (const std::string& name : channels) {
+    const Imf::Channel& channel = header.channels()[name];
+    if (channel.xSampling != 1 || channel.ySampling != 1) {
+      fail(file, "has channel " + name + " at less than full resolution");
+    }
+  }
+  const auto* turned = header.findTypedAttribute<Imf::IntAttribute>("Orientation");
+  if (turned != nullptr && turned->value() != 1) {
     fail(file, "is stored turned or mirrored; allowed: top row first, left to right");
+  }
+}
+
+std::map<std::string, std::string> own_attributes(const Imf::Header& header) {
+  std::map<std::string, std::string> attributes;
+  for (auto it = header.begin(); it != header.end(); ++it) {
+    const std::string name = it.name();
+    if (!name.starts_with("lacuna:")) continue;
+    const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());
+    if (text != nullptr) attributes[name] = text->value();
+  }
+  return attributes;
+}
+
+FloatImage read_part(const std::filesystem::path& file, Imf::MultiPartInputFile& in, int part,
+                     const std::vector<std::string>& channels) {
+  const Imf::Header& header = in.header(part);
+  check_header(file, header, channels);
+  const Imath::Box2i& window = header.dataWindow();
+  const Imath::V2i size = window.max - window.min + Imath::V2i(1);
+  const auto width = static_cast<std::size_t>(size.x), height = static_cast<std::size_t>(size.y);
+  const std::size_t pixels = width * height, read = channels.size();
+  // Not set to zero: memory is used up only as pixels come, however large the header says they are.
+  const auto stored = std::make_unique_for_overwrite<float[]>(pixels * read);
+  Imf::FrameBuffer frame;
+  for (std::size_t c = 0; c < read; ++c) {
+    frame.insert(channels[c], Imf::Slice::Make(Imf::FLOAT, stored.get() + c, window,
+                                               read * sizeof(float), read * sizeof(float) * width));
+  }
+  Imf::InputPart image(in, part);
+  image.setFrameBuffer(frame);
+  image.readPixels(window.min.y, window.max.y);
+  FloatImage result{size.x, size.y, std::vector<float>(pixels * 3), own_attributes(header)};
+  for (std::size_t i = 0; i < pixels; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      result.rgb[3 * i + k] = stored[i * read + (read == 3 ? k : 0)];
+    }
+  }
+  return result;
+}
+
+FloatImage read_exr(const std::filesystem::path& file, const std::string& layer) {
+  check_exr_header(file);
+  try {
+    Imf::Header::setMaxImageSize(max_side, max_side);  // before the library makes room for rows
+    Imf::MultiPartInputFile in(file.c_str(), 0);
+    for (int part = 0; part < in.parts(); ++part) {
+      const auto channels = find_channels(in.header(part), layer);
+      if (!channels.empty()) return read_part(file, in, part, channels);
+    }
+    fail_for_channels(file, in.header(0), layer);
+  } catch (const Iex::BaseExc& e) {
+    fail(file, std::string("is corrupt: ") + e.what());
   }
 }
 
 }  // namespace
 
 FloatImage read_float_image(const std::filesystem::path& file, const std::string& layer) {
-  const std::string_view format = format_of(file);
-  if (format == "openexr") check_exr_header(file);
-  const auto in = OIIO::ImageInput::create(std::string(format));
-  OIIO::ImageSpec spec;
-  if (!in || !in->open(file.string(), spec)) {
-    fail(file, "cannot be decoded: " + (in ? in->geterror() : OIIO::geterror()));
-  }
-  int part = 0;
-  auto channels = find_channels(spec, layer);
-  while (!channels && in->seek_subimage(++part, 0)) {
-    spec = in->spec();
-    channels = find_channels(spec, layer);
-  }
-  if (!channels) fail_for_channels(file, spec, layer);
-  check_spec(file, spec);
-
-  const auto [low, high] = std::minmax_element(channels->begin(), channels->end());
-  const int channel_count = *high - *low + 1;
-  const auto read = static_cast<std::size_t>(channel_count);
-  const auto pixels = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
-  // Not set to zero: memory is used up only as pixels come, however large the header says they are.
-  const auto stored = std::make_unique_for_overwrite<float[]>(pixels * read);
-  if (!in->read_image(in->current_subimage(), 0, *low, *high + 1, OIIO::TypeDesc::FLOAT,
-                      stored.get()) ||
-      in->has_error()) {
-    fail(file, "is corrupt: " + in->geterror());
-  }
-  FloatImage image{spec.width, spec.height, std::vector<float>(pixels * 3), {}};
-  for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
-    const std::string& name = attribute.name().string();
-    if (name.starts_with("lacuna:")) image.attributes[name] = attribute.get_string();
-  }
-  for (std::size_t i = 0; i < pixels; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      image.rgb[3 * i + k] = stored[i * read + static_cast<std::size_t>((*channels)[k] - *low)];
-    }
-  }
-  return image;
+  return format_of(file) == Format::exr ? read_exr(file, layer) : read_radiance_hdr(file, max_side);
 }
 
 void require_radiance(const FloatImage& image, const std::string& label) {

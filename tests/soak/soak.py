@@ -47,9 +47,6 @@ CHECKS = {
     "kills": lambda _: kills(20),
     "service": lambda _: service(200),
     "asan": lambda _: sanitizers("asan", {
-        # libpng leaves by longjmp through OpenImageIO and leaks a few bytes of a corrupt file's state. To know
-        # it by its caller takes whole stacks, which libstdc++ without frame pointers gives to the slow unwinder only.
-        "ASAN_OPTIONS": "fast_unwind_on_malloc=0",
         "LSAN_OPTIONS": f"suppressions={ROOT}/tests/soak/lsan.txt",
     }),
     "tsan": lambda _: sanitizers("tsan", {

@@ -149,7 +149,7 @@ TEST(HostileFiles, ImagesThatCannotBeDecodedAreNamed) {
     return out;
   }();
   const Bytes png = test::encode8(64, 64, 3, noise);
-  const Bytes jpeg = test::encode8(64, 64, 3, noise, "jpg");
+  const Bytes jpeg = test::encode_jpeg(64, 64, noise);
   Bytes flipped = png;
   flipped[png.size() / 2] ^= 0xFF;
   Bytes huge = png;  // width 2^24 in IHDR

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 
@@ -14,9 +15,7 @@ namespace {
 std::filesystem::path write_exr(const TemporaryFolder& folder,
                                 const std::vector<std::string>& channels,
                                 const std::vector<float>& pixels, int width, int height) {
-  OIIO::ImageSpec spec(width, height, static_cast<int>(channels.size()), OIIO::TypeDesc::FLOAT);
-  spec.channelnames = channels;
-  return test::write_image(folder, "image.exr", spec, pixels);
+  return test::write_exr_file(folder, "image.exr", channels, pixels, width, height);
 }
 
 std::string image_refusal(const std::filesystem::path& file, const std::string& layer = "") {
@@ -55,17 +54,60 @@ TEST(ImageRead, GreyAndMissingChannels) {
                   "lacks channel G; it has");
 }
 
+constexpr const char* hdr_header = "#?RADIANCE\nEXPOSURE=2\nFORMAT=32-bit_rle_rgbe\n\n";
+
+std::filesystem::path write_hdr(const TemporaryFolder& folder, const std::string& size,
+                                const test::Bytes& pixels) {
+  return folder.write("image.hdr",
+                      hdr_header + size + "\n" + std::string(pixels.begin(), pixels.end()));
+}
+
 TEST(ImageRead, RadianceHdr) {
   const TemporaryFolder folder;
-  const auto file =
-      test::write_image(folder, "image.hdr", OIIO::ImageSpec(2, 2, 3, OIIO::TypeDesc::FLOAT),
-                        std::vector<float>{1, 0.5F, 0.25F, 1024, 512, 256, 2, 2, 2, 0, 0, 0});
-  const FloatImage image = read_float_image(file);
-  EXPECT_EQ(image.at(0, 0),
-            Rgb(1, 0.5F, 0.25F));  // exact in shared-exponent form, but for rounding
+  const FloatImage image = read_float_image(write_hdr(folder, "-Y 2 +X 2",
+                                                      {128, 64, 32, 129, 128, 64, 32, 139,  //
+                                                       128, 128, 128, 130, 9, 9, 9, 0}));
+  EXPECT_EQ(image.at(0, 0), Rgb(1, 0.5F, 0.25F));
   EXPECT_EQ(image.at(1, 0), Rgb(1024, 512, 256));
   EXPECT_EQ(image.at(0, 1), Rgb(2, 2, 2));
   EXPECT_EQ(image.at(1, 1), Rgb(0, 0, 0));
+}
+
+TEST(ImageRead, RadianceHdrInRuns) {
+  const TemporaryFolder folder;
+  // A row of nine: each channel by itself, red as 3 different and 6 alike.
+  const test::Bytes by_channel{2, 2, 0, 9, 3, 128, 64, 32, 134, 16, 137, 128, 137, 0, 137, 129};
+  FloatImage image = read_float_image(write_hdr(folder, "-Y 1 +X 9", by_channel));
+  for (int x = 0; x < 9; ++x) {
+    EXPECT_EQ(image.at(x, 0), Rgb(x == 0 ? 1 : x == 1 ? 0.5F : x == 2 ? 0.25F : 0.125F, 1, 0)) << x;
+  }
+  // The old form: a pixel, itself twice again, then 256 times more.
+  const test::Bytes old{128, 128, 128, 129, 1, 1, 1, 2, 1, 1, 1, 1};
+  image = read_float_image(write_hdr(folder, "-Y 1 +X 259", old));
+  for (int x = 0; x < 259; ++x) EXPECT_EQ(image.at(x, 0), Rgb(1, 1, 1)) << x;
+  for (std::size_t n = 0; n < by_channel.size(); ++n) {
+    const test::Bytes cut(by_channel.begin(), by_channel.begin() + static_cast<std::ptrdiff_t>(n));
+    expect_contains(image_refusal(write_hdr(folder, "-Y 1 +X 9", cut)), "it ends early");
+  }
+  expect_contains(image_refusal(write_hdr(folder, "-Y 1 +X 8", {2, 2, 0, 8, 137})),
+                  "beyond its row");
+  expect_contains(image_refusal(write_hdr(folder, "-Y 1 +X 8", {2, 2, 0, 9, 137})),
+                  "another length");
+  expect_contains(image_refusal(write_hdr(folder, "-Y 1 +X 2", {1, 1, 1, 2})), "beyond its row");
+}
+
+TEST(ImageRead, RadianceHdrOfOtherKindsIsRefused) {
+  const TemporaryFolder folder;
+  for (const char* size : {"+Y 2 +X 2", "-Y 2 +X 2 ", "-Y 2", "", "-Y 2 +X 99999999"}) {
+    expect_contains(image_refusal(write_hdr(folder, size, {})), "-Y HEIGHT +X WIDTH");
+  }
+  for (const char* size : {"-Y 0 +X 2", "-Y 2 +X 40000", "-Y 2 +X -3"}) {
+    expect_contains(image_refusal(write_hdr(folder, size, {})), "up to 32768 a side");
+  }
+  expect_contains(
+      image_refusal(folder.write("xyz.hdr", std::string("#?RGBE\nFORMAT=32-bit_rle_xyze\n"
+                                                        "\n-Y 1 +X 1\n1234"))),
+      "another FORMAT");
 }
 
 TEST(ImageRead, OtherFilesAreRefused) {
@@ -92,9 +134,8 @@ TEST(ImageRead, TruncatedFilesAreRefused) {
 
 TEST(ImageRead, CropsAreRefused) {
   const TemporaryFolder folder;
-  OIIO::ImageSpec spec(2, 2, 3, OIIO::TypeDesc::FLOAT);
-  spec.full_width = 4;
-  const auto file = test::write_image(folder, "crop.exr", spec, std::vector<float>(12, 1.0F));
+  const auto file = test::write_exr_file(folder, "crop.exr", {"R", "G", "B"},
+                                         std::vector<float>(12, 1.0F), 2, 2, {4, 2});
   expect_contains(image_refusal(file), "is a crop");
 }
 

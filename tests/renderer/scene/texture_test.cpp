@@ -98,11 +98,9 @@ TEST(Texture, GreyAndGreyAlpha) {
 }
 
 TEST(Texture, SixteenBitsAreRounded) {
-  const TemporaryFolder folder;
-  const auto file =
-      test::write_image(folder, "deep.png", OIIO::ImageSpec(1, 1, 3, OIIO::TypeDesc::UINT16),
-                        std::vector<std::uint16_t>{0, 257 * 100, 65535});
-  const Rgb c = decoded(test::read_bytes(file)).lookup({0, 0}).rgb;
+  const std::vector<std::uint16_t> pixel{0, 257 * 100, 65535};
+  const test::Bytes png = test::encode_png(1, 1, PNG_FORMAT_LINEAR_RGB, pixel.data());
+  const Rgb c = decoded(png).lookup({0, 0}).rgb;
   EXPECT_FLOAT_EQ(c.x, 0);
   EXPECT_FLOAT_EQ(c.y, 100 / 255.0F);
   EXPECT_FLOAT_EQ(c.z, 1);
@@ -110,7 +108,7 @@ TEST(Texture, SixteenBitsAreRounded) {
 
 TEST(Texture, JpegIsRead) {
   const std::vector<std::uint8_t> flat(16 * 16 * 3, 102);
-  const Texture t = decoded(encode8(16, 16, 3, flat, "jpg"));
+  const Texture t = decoded(test::encode_jpeg(16, 16, flat));
   EXPECT_NEAR(t.lookup({0.3F, 0.6F}).rgb.x, 0.4F, 0.01F);
 }
 
