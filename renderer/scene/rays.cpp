@@ -78,9 +78,11 @@ struct RayCaster::Impl {
   void check(const char* doing) const {
     const RTCError e = rtcGetDeviceError(device);
     if (e == RTC_ERROR_NONE) return;
-    // One of its tasks ran out of memory and cancelled the others, which are quicker to say so.
-    const bool cancelled = e == RTC_ERROR_UNKNOWN && said == "task cancelled";
-    if (e == RTC_ERROR_OUT_OF_MEMORY || cancelled) throw std::bad_alloc();
+    // One of its tasks ran out of memory and cancelled the others, which are quicker to say so; or
+    // there was no memory for a thread's stack.
+    const bool unnamed = e == RTC_ERROR_UNKNOWN && (said == "task cancelled" ||
+                                                    said.starts_with("pthread_create has failed"));
+    if (e == RTC_ERROR_OUT_OF_MEMORY || unnamed) throw std::bad_alloc();
     throw SceneError(fmt::format("Embree failed while {}: error {} ({})", doing, int(e), said));
   }
 
