@@ -25,10 +25,9 @@ class BlockSet {
   }
   /// The blocks from `first` to `last`, both included, along x.
   void insert_row(int first, int last, int by, int bz) {
-    for (int bx = first; bx <= last;) {
-      const int n = std::min(last + 1, (bx | 63) + 1) - bx;
-      words_[word(bx >> 6, by, bz)] |= (~std::uint64_t{0} >> (64 - n)) << (bx & 63);
-      bx += n;
+    for (int i = first >> 6; i <= last >> 6; ++i) {
+      const int low = std::max(first - 64 * i, 0), high = std::min(last - 64 * i, 63);
+      words_[word(i, by, bz)] |= (~std::uint64_t{0} << low) & (~std::uint64_t{0} >> (63 - high));
     }
   }
   bool contains(int bx, int by, int bz) const {

@@ -71,7 +71,7 @@ inline Bytes encode_jpeg(int width, int height, const std::vector<std::uint8_t>&
   unsigned long size = 0;
   const int failed = tjCompress2(jpeg, pixels.data(), width, 0, height, TJPF_RGB, &bytes, &size,
                                  TJSAMP_444, 95, 0);
-  const Bytes file(bytes, bytes + (failed == 0 ? size : 0));
+  Bytes file(bytes, bytes + (failed == 0 ? size : 0));
   tjFree(bytes);
   tjDestroy(jpeg);
   if (failed != 0) throw std::runtime_error("no JPEG was made");
