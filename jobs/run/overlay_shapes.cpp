@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -114,7 +115,8 @@ std::vector<OverlayMesh> gate_overlay(const VisibilityGates& gates, const GridTr
   for (std::size_t i = 0; i < gates.gates.size(); ++i) {
     const VisibilityGate& g = gates.gates[i];
     Builder b(grid, "gate " + std::to_string(i), false_colour(static_cast<std::uint32_t>(i), 2));
-    b.disk(V3d(g.centre), V3d(g.axis), g.radius);
+    constexpr double least = 0.25;  // voxels: one that touches the scene is seen, too
+    b.disk(V3d(g.centre), V3d(g.axis), std::max<double>(g.radius, least));
     meshes.push_back(b.take());
   }
   return meshes;

@@ -73,12 +73,6 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   p.camera =
       std::make_unique<Camera>(camera, spec.resolution[0], spec.resolution[1], spec.pixel_filter);
   p.warnings = data.warnings;
-  if (data.dropped_triangles > 0) {
-    p.warnings.push_back(
-        fmt::format("{} triangles without area or with vertices that are not finite "
-                    "were left out",
-                    data.dropped_triangles));
-  }
   p.content = fmt::format("{:016x}", data.content_hash);
 
   const SceneNeeds needs = needs_of(spec, *p.integrator);
