@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/settings/field.h"
+#include "jobs/spec/json_value.h"
 
 namespace lacuna {
 

@@ -47,6 +47,10 @@ std::string type_text(const Type& type) {
                          type_text(type.elements.front()));
     case Kind::object:
       return "object, see below";
+    case Kind::any:
+      return "any value";
+    case Kind::table:
+      return fmt::format("object of any keys, each: {}", type_text(type.elements.front()));
     case Kind::word:
     case Kind::choice:
       break;

@@ -114,6 +114,29 @@ bool check_list(const Found& found, const Limits& length) {
   return good;
 }
 
+bool check_size(const Found& found, const Limits& size) {
+  const bool good = size.allow(static_cast<double>(found.value.size()));
+  if (!good) found.refuse(with("an object", length_text(size, "keys")));
+  return good;
+}
+
+std::string any_value(const Found& found) {
+  // 4 and 4.0 are one number, and so is its text.
+  const auto plain = [](const auto& self, const Json& value) -> Json {
+    if (value.is_number_float()) {
+      const double x = value.get<double>();
+      if (x == std::trunc(x) && std::abs(x) <= max_exact_integer) {
+        return static_cast<std::int64_t>(x);
+      }
+    }
+    if (!value.is_structured()) return value;
+    Json all = value;
+    for (Json& part : all) part = self(self, part);
+    return all;
+  };
+  return json_text(plain(plain, found.value));
+}
+
 bool check_array(const Found& found, std::size_t size) {
   const bool good = found.value.is_array() && found.value.size() == size;
   if (!good) found.refuse(fmt::format("a list of exactly {}", size));

@@ -38,6 +38,10 @@ std::optional<double> read_number(const Found& found, const Limits& limits);
 std::optional<std::string> read_string(const Found& found, const Limits& length);
 bool check_object(const Found& found);
 bool check_list(const Found& found, const Limits& length);
+/// Of an object: its number of keys.
+bool check_size(const Found& found, const Limits& size);
+/// Any value, as one line of text.
+std::string any_value(const Found& found);
 bool check_array(const Found& found, std::size_t size);
 void check_keys(const Found& found, const std::vector<std::string_view>& known);
 /// The index of the name that the value is.
@@ -76,6 +80,8 @@ class ObjectReader {
   static void read_array(const Found& found, std::array<T, N>& out, const Field& field);
   template <class T>
   static void read_list(const Found& found, std::vector<T>& out, const Field& field);
+  template <class T>
+  static void read_table(const Found& found, JsonTable<T>& out, const Field& field);
   template <class... Ts>
   static void read_variant(const Found& found, std::variant<Ts...>& out);
   template <class E>
@@ -116,6 +122,10 @@ void ObjectReader::read_value(const Found& found, T& out, const Field& field) {
     } else {
       read_value(found, out.emplace(), field);
     }
+  } else if constexpr (std::is_same_v<T, JsonValue>) {
+    out.text = any_value(found);
+  } else if constexpr (is_table<T>) {
+    read_table(found, out, field);
   } else if constexpr (is_array<T>) {
     read_array(found, out, field);
   } else if constexpr (is_vector<T>) {
@@ -145,6 +155,15 @@ void ObjectReader::read_list(const Found& found, std::vector<T>& out, const Fiel
     T element{};
     read_value(found.child(std::to_string(i), found.value[i]), element, Field{});
     out.push_back(std::move(element));
+  }
+}
+
+template <class T>
+void ObjectReader::read_table(const Found& found, JsonTable<T>& out, const Field& field) {
+  if (!check_object(found) || !check_size(found, length_limits(field))) return;
+  out.clear();
+  for (const auto& [key, value] : found.value.items()) {
+    read_value(found.child(key, value), out[key], Field{});
   }
 }
 

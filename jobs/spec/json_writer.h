@@ -42,6 +42,12 @@ OrderedJson ObjectWriter::value_of(const T& member) {
     OrderedJson list = OrderedJson::array();
     for (const auto& element : member) list.push_back(value_of(element));
     return list;
+  } else if constexpr (std::is_same_v<T, JsonValue>) {
+    return parse_own(member.text);
+  } else if constexpr (is_table<T>) {
+    OrderedJson table = OrderedJson::object();
+    for (const auto& [key, value] : member) table[key] = value_of(value);
+    return table;
   } else if constexpr (is_variant<T>) {
     return std::visit(
         [](const auto& alternative) {

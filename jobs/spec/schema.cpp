@@ -98,6 +98,7 @@ std::string type_name(Kind kind) {
     case Kind::list:
       return "array";
     case Kind::object:
+    case Kind::table:
       return "object";
     default:
       return "string";
@@ -107,6 +108,7 @@ std::string type_name(Kind kind) {
 OrderedJson schema_of(const Type& type) {
   if (type.kind == Kind::choice) return choice_schema(type);
   if (type.kind == Kind::word) return enum_schema(type);
+  if (type.kind == Kind::any) return OrderedJson::object();
   OrderedJson schema;
   schema["type"] = type_name(type.kind);
   if (type.optional) schema["type"] = OrderedJson::array({type_name(type.kind), "null"});
@@ -126,6 +128,10 @@ OrderedJson schema_of(const Type& type) {
     case Kind::list:
       schema["items"] = schema_of(type.elements.front());
       put_lengths(schema, type.limits, "minItems", "maxItems");
+      break;
+    case Kind::table:
+      schema["additionalProperties"] = schema_of(type.elements.front());
+      put_lengths(schema, type.limits, "minProperties", "maxProperties");
       break;
     case Kind::object:
       put_members(schema, type);

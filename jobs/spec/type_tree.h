@@ -17,7 +17,19 @@ struct Member;
 /// A settings table as data, for what does not read or write settings but tells of them: the schema
 /// and the documentation.
 struct Type {
-  enum class Kind { boolean, integer, number, string, word, array, list, object, choice };
+  enum class Kind {
+    boolean,
+    integer,
+    number,
+    string,
+    word,
+    array,
+    list,
+    object,
+    choice,
+    any,
+    table
+  };
 
   /// A value of an enum, or an alternative of a choice.
   struct Name {
@@ -29,7 +41,7 @@ struct Type {
   Limits limits = {};     ///< of a number; of the length of a string or list
   std::size_t array_size = 0;
   std::vector<Name> names;      ///< word, choice
-  std::vector<Type> elements;   ///< array, list: one; choice: an object for each name
+  std::vector<Type> elements;   ///< array, list, table: one; choice: an object for each name
   std::vector<Member> members;  ///< object
 };
 
@@ -104,6 +116,12 @@ Type TypeReader::type_of(const T& value, const Field& field) {
     type.kind = Type::Kind::list;
     type.limits = length_limits(field);
     type.elements.push_back(type_of(typename T::value_type{}, Field{}));
+  } else if constexpr (std::is_same_v<T, JsonValue>) {
+    type.kind = Type::Kind::any;
+  } else if constexpr (is_table<T>) {
+    type.kind = Type::Kind::table;
+    type.limits = length_limits(field);
+    type.elements.push_back(type_of(typename T::mapped_type{}, Field{}));
   } else if constexpr (is_variant<T>) {
     type = choice_of(value);
   } else {

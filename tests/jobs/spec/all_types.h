@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/settings/field.h"
+#include "jobs/spec/json_value.h"
 
 namespace lacuna {
 
@@ -62,6 +63,8 @@ struct AllTypes {
   std::array<int, 2> pair{1, 2};
   std::vector<std::string> words;
   std::vector<Sphere> spheres;
+  JsonValue anything;
+  JsonTable<std::vector<int>> table;
   Sphere nested{.radius = 4};
   std::variant<Sphere, Box> shape;
   bool operator==(const AllTypes&) const = default;
@@ -82,6 +85,8 @@ void describe(V& v, AllTypes& s) {
   v("pair", s.pair, {.doc = "array", .min = 0, .max = 9});
   v("words", s.words, {.doc = "list", .max = 2});
   v("spheres", s.spheres, {.doc = "list of structs"});
+  v("anything", s.anything, {.doc = "any value"});
+  v("table", s.table, {.doc = "table of lists", .max = 2});
   v("nested", s.nested, {.doc = "struct"});
   v("shape", s.shape, {.doc = "variant"});
 }

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "jobs/spec/job_spec.h"
+#include "jobs/spec/sweep_spec.h"
+
+namespace lacuna {
+
+/// Most runs of one sweep.
+inline constexpr std::size_t max_sweep_runs = 100'000;
+
+/// One combination of the swept settings.
+struct SweepCell {
+  JsonTable<JsonValue> settings;        ///< by pointer
+  JobSpec job;                          ///< with its first seed
+  std::optional<std::size_t> baseline;  ///< the cell that it is compared against, if there is one
+};
+
+/// One job of a sweep.
+struct SweepRun {
+  std::size_t cell;
+  int replicate;     ///< 0 .. seeds - 1
+  std::string name;  ///< "0007-2": cell and replicate, from 1; safe as a file name
+};
+
+/// All runs of a sweep in the order in which they are done.
+struct SweepPlan {
+  std::vector<SweepCell> cells;
+  std::vector<SweepRun> runs;
+
+  /// The job of a run: the cell's, with its seed and a label.
+  JobSpec job_of(const SweepRun& run) const;
+};
+
+/// Parses and validates a sweep file; as parse_job(). Throws BadJob.
+SweepSpec parse_sweep(std::string_view json);
+
+/// The cells of a sweep: axes in the order of their pointers, then the zipped ones as they stand;
+/// the last varies fastest. Deterministic. Throws BadJob: a pointer that leads nowhere, a setting
+/// that is swept twice, lists of different length, values in `exclude` or `baseline` that no axis
+/// has, no cell or too many runs, and every mistake of a cell's own job, at the place in the sweep
+/// file that it comes from.
+SweepPlan expand(const SweepSpec& sweep);
+
+/// "max_depth 8, resolution [64,64]": the settings of a cell, by the last part of each pointer,
+/// longer where two end alike.
+std::string cell_text(const JsonTable<JsonValue>& settings);
+
+}  // namespace lacuna
