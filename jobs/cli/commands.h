@@ -30,5 +30,6 @@ void add_list(CLI::App& app, int& code);
 void add_compare(CLI::App& app, int& code);
 void add_cache(CLI::App& app, int& code);
 void add_analyze(CLI::App& app, int& code);
+void add_sweep(CLI::App& app, int& code);
 
 }  // namespace lacuna

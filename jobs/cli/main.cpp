@@ -35,6 +35,7 @@ int run(int argc, char** argv) {
   lacuna::add_compare(app, code);
   lacuna::add_cache(app, code);
   lacuna::add_analyze(app, code);
+  lacuna::add_sweep(app, code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

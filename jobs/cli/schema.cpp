@@ -10,15 +10,17 @@ namespace lacuna {
 
 void add_schema(CLI::App& app, int& code) {
   const auto markdown = std::make_shared<bool>(false);
+  const auto sweep = std::make_shared<bool>(false);
   const auto states = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("schema", "Print the JSON Schema of the job file");
+  command->add_flag("--sweep", *sweep, "of the sweep file instead");
   command->add_flag("--markdown", *markdown, "the settings pages for people instead");
   command->add_flag("--states", *states, "the states of a job and what may follow what instead")
-      ->excludes("--markdown");
-  command->callback([markdown, states, &code] {
+      ->excludes("--markdown", "--sweep");
+  command->callback([sweep, markdown, states, &code] {
     fmt::print("{}", *states     ? state_documentation()
-                     : *markdown ? job_documentation()
-                                 : job_schema());
+                     : *markdown ? (*sweep ? sweep_documentation() : job_documentation())
+                                 : (*sweep ? sweep_schema() : job_schema()));
     code = exit_done;
   });
 }

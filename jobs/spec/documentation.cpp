@@ -3,6 +3,7 @@
 #include <string>
 
 #include "jobs/spec/job_json.h"
+#include "jobs/spec/sweep_spec.h"
 #include "jobs/spec/type_tree.h"
 
 namespace lacuna {
@@ -114,12 +115,21 @@ void put_section(std::string& page, const Type& object, const std::string& path)
 
 }  // namespace
 
-std::string job_documentation() {
-  std::string page =
-      "# The job file\n\n"
-      "One JSON object. Keys that are left out take their defaults; unknown keys are errors.\n";
-  put_section(page, TypeReader::type_of(JobSpec{}, Field{}), "");
+namespace {
+
+template <class T>
+std::string titled_page(std::string_view title) {
+  std::string page = fmt::format(
+      "# {}\n\n"
+      "One JSON object. Keys that are left out take their defaults; unknown keys are errors.\n",
+      title);
+  put_section(page, TypeReader::type_of(T{}, Field{}), "");
   return page;
 }
+
+}  // namespace
+
+std::string job_documentation() { return titled_page<JobSpec>("The job file"); }
+std::string sweep_documentation() { return titled_page<SweepSpec>("The sweep file"); }
 
 }  // namespace lacuna

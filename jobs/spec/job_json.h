@@ -26,9 +26,13 @@ std::string write_job(const JobSpec& spec);
 /// JSON Schema 2020-12 of the job file, made from the settings tables.
 std::string job_schema();
 
+/// The same of the sweep file.
+std::string sweep_schema();
+
 /// The settings pages (Markdown), made from the settings tables: every key, type, range, default,
 /// unit.
 std::string job_documentation();
+std::string sweep_documentation();
 
 /// Hash of everything that decides the pixels of a picture (not its label, budget, threads,
 /// reference...): two jobs with the same value and iteration count have the same bits. Guards

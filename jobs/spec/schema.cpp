@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "jobs/spec/job_json.h"
+#include "jobs/spec/sweep_spec.h"
 #include "jobs/spec/type_tree.h"
 
 namespace lacuna {
@@ -146,11 +147,19 @@ OrderedJson schema_of(const Type& type) {
 
 std::string schema_text(const Type& type) { return document_text(schema_of(type)); }
 
-std::string job_schema() {
+namespace {
+
+template <class T>
+std::string titled_schema(const char* title) {
   OrderedJson schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-                        {"title", "Lacuna job"}};
-  schema.update(schema_of(TypeReader::type_of(JobSpec{}, Field{})));
+                        {"title", title}};
+  schema.update(schema_of(TypeReader::type_of(T{}, Field{})));
   return document_text(schema);
 }
+
+}  // namespace
+
+std::string job_schema() { return titled_schema<JobSpec>("Lacuna job"); }
+std::string sweep_schema() { return titled_schema<SweepSpec>("Lacuna sweep"); }
 
 }  // namespace lacuna

@@ -1,13 +1,11 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/settings/field.h"
 #include "jobs/spec/json_value.h"
-#include "renderer/settings/output_settings.h"
 
 namespace lacuna {
 
@@ -24,23 +22,6 @@ struct EnumTable<SweepOrder> {
   }};
 };
 
-/// Where curves are compared.
-struct CompareAt {
-  std::vector<double> seconds;
-  std::optional<ErrorMetric> metric;
-  std::vector<double> errors;
-  bool operator==(const CompareAt&) const = default;
-};
-template <class V>
-void describe(V& v, CompareAt& s) {
-  v("seconds", s.seconds,
-    {.doc = "error at these times; none: the whole budget and powers of two below it", .max = 32});
-  v("metric", s.metric,
-    {.doc = "which error; all but est_rmse need a reference; none: relmse where all jobs have a "
-            "reference, else est_rmse"});
-  v("errors", s.errors, {.doc = "time to these errors", .max = 32});
-}
-
 /// Many jobs that differ in some settings: the sweep file. Settings are named by JSON pointers (RFC
 /// 6901) into the job.
 struct SweepSpec {
@@ -51,7 +32,6 @@ struct SweepSpec {
   std::vector<JsonTable<JsonValue>> exclude;
   int seeds = 1;
   JsonTable<JsonValue> baseline;
-  CompareAt compare_at;
   SweepOrder order = SweepOrder::interleave;
   bool operator==(const SweepSpec&) const = default;
 };
@@ -78,7 +58,6 @@ void describe(V& v, SweepSpec& s) {
     {.doc = "what is compared against: of every cell the one that has these values and else the "
             "same",
      .max = 16});
-  v("compare_at", s.compare_at, {.doc = "where curves are compared"});
   v("order", s.order, {.doc = "in which order runs are done"});
 }
 

@@ -28,7 +28,6 @@ class Expansion {
     gather_axes();
     check_combinations(sweep_.exclude);
     check_values(sweep_.baseline, "/baseline");
-    check_compare_at();
     check_size();
     throw_if_any(problems_);
     make_cells();
@@ -111,17 +110,6 @@ class Expansion {
       if (all[i].empty()) problem(at, "would leave out everything; allowed: at least one setting");
       check_values(all[i], at);
     }
-  }
-  void check_compare_at() {
-    const auto check = [this](const char* key, const std::vector<double>& values) {
-      for (std::size_t i = 0; i < values.size(); ++i) {
-        if (values[i] > 0) continue;
-        problem(fmt::format("/compare_at/{}/{}", key, i),
-                fmt::format("found {}; allowed: above 0", number_text(values[i])));
-      }
-    };
-    check("seconds", sweep_.compare_at.seconds);
-    check("errors", sweep_.compare_at.errors);
   }
   void check_size() {
     auto runs = static_cast<std::size_t>(sweep_.seeds);

@@ -1,0 +1,67 @@
+#include "jobs/sweep/sweep_folder.h"
+
+#include <fmt/format.h>
+
+#include "analysis/storage/atomic_file.h"
+#include "jobs/spec/described_json.h"
+
+namespace lacuna {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t max_bytes = std::size_t{64} << 20;
+constexpr const char* spec_file = "sweep.json";
+
+SweepSpec read_spec(const fs::path& dir) {
+  if (!fs::exists(dir / spec_file)) {
+    throw BadJob(
+        {{"", fmt::format("{} is no sweep's folder: it has no {}", dir.string(), spec_file)}});
+  }
+  return parse_sweep(read_file(dir / spec_file, max_bytes));
+}
+
+}  // namespace
+
+SweepFolder::SweepFolder(fs::path dir, SweepSpec spec)
+    : dir_(std::move(dir)), spec_(std::move(spec)), plan_(expand(spec_)) {}
+
+SweepFolder::SweepFolder(const fs::path& dir)
+    : SweepFolder(fs::absolute(dir).lexically_normal(), read_spec(dir)) {}
+
+SweepFolder SweepFolder::preview(const fs::path& dir, const SweepSpec& spec) {
+  SweepFolder folder(fs::absolute(dir).lexically_normal(), spec);
+  if (fs::exists(dir / spec_file) && read_spec(dir) != spec) {
+    throw BadJob({{"", fmt::format("{} holds another sweep; name another folder with --out",
+                                   dir.string())}});
+  }
+  if (!fs::exists(dir / spec_file) && fs::exists(dir) && !fs::is_empty(dir)) {
+    throw BadJob({{"", fmt::format("{} is there already and is no sweep's folder", dir.string())}});
+  }
+  return folder;
+}
+
+SweepFolder SweepFolder::create(const fs::path& dir, const SweepSpec& spec) {
+  SweepFolder folder = preview(dir, spec);
+  if (!fs::exists(dir / spec_file)) {
+    fs::create_directories(dir / "runs");
+    write_file_atomically(dir / spec_file, write_document(spec));
+  }
+  return folder;
+}
+
+JobFolder SweepFolder::make_folder(const SweepRun& run) const {
+  const JobFolder job = folder(run);
+  if (fs::exists(job.file("job.json"))) return job;
+  try {
+    return JobFolder::create(job.dir(), plan_.job_of(run));
+  } catch (const std::invalid_argument&) {
+    return job;  // another process made it meanwhile
+  }
+}
+
+JobState SweepFolder::state(const SweepRun& run) const {
+  const JobFolder job = folder(run);
+  return fs::exists(job.file("state.json")) ? job.read_state() : JobState{};
+}
+
+}  // namespace lacuna

@@ -1,0 +1,55 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "analysis/storage/atomic_file.h"
+#include "jobs/sweep/sweep_folder.h"
+
+namespace lacuna {
+namespace {
+
+constexpr std::size_t max_curve_bytes = std::size_t{256} << 20;
+
+/// A field of a CSV file.
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
+/// A setting as a field: a string without its quotes.
+std::string field(const JsonValue& value) {
+  const OrderedJson v = parse_own(value.text);
+  return field(v.is_string() ? v.get<std::string>() : value.text);
+}
+
+}  // namespace
+
+std::string sweep_table(const SweepFolder& sweep) {
+  std::string header, rows;
+  for (const SweepRun& run : sweep.plan().runs) {
+    const std::filesystem::path file = sweep.folder(run).file("curve.csv");
+    if (!std::filesystem::exists(file)) continue;
+    const SweepCell& cell = sweep.plan().cells[run.cell];
+    std::string start =
+        fmt::format("{},{},{},{},{},{}", run.name, run.cell + 1,
+                    cell.baseline ? std::to_string(*cell.baseline + 1) : "", run.replicate + 1,
+                    sweep.plan().job_of(run).seed, enum_name(sweep.state(run).state));
+    for (const auto& [pointer, value] : cell.settings) start += ',' + field(value);
+    std::istringstream curve(read_file(file, max_curve_bytes));
+    std::string line;
+    std::getline(curve, line);
+    if (header.empty()) {
+      header = "run,cell,baseline,replicate,seed,state";
+      for (const auto& [pointer, value] : cell.settings) header += ',' + field(pointer);
+      header += ',' + line + '\n';
+    }
+    while (std::getline(curve, line)) rows += start + ',' + line + '\n';
+  }
+  return header + rows;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,95 @@
+// `lacuna sweep`: many jobs that differ in some settings, resumed, listed, and as array tasks.
+
+import assert from "node:assert/strict";
+import { existsSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+
+import { run, start, temporaryFolder } from "./command.mjs";
+
+const small = {
+  label: "small", seeds: 2, baseline: { "/integrator/max_depth": 2 },
+  job: { scene: "ajar.glb", camera: "room", resolution: [24, 16], budget: { iterations: 4 } },
+  axes: { "/integrator/max_depth": [2, 4], "/integrator/next_event_estimation": [true, false] },
+};
+
+function sweepFile(t, sweep = small) {
+  const folder = temporaryFolder(t);
+  writeFileSync(join(folder, "a.json"), JSON.stringify(sweep));
+  return folder;
+}
+
+const rows = (folder) => readFileSync(join(folder, "a.sweep/table.csv"), "utf8").trimEnd().split("\n");
+
+test("sweep: every run is a job's folder, and all curves are one table", async (t) => {
+  const folder = sweepFile(t);
+  const done = await run(folder, "sweep", "a.json");
+  assert.equal(done.code, 0, done.err);
+  assert.match(done.err, /^\[8\/8\] 0004-2 max_depth 4, next_event_estimation false: done$/m);
+  const names = readdirSync(join(folder, "a.sweep/runs"));
+  assert.deepEqual(names, [1, 2, 3, 4].flatMap((cell) => [`000${cell}-1`, `000${cell}-2`]));
+  const job = JSON.parse(readFileSync(join(folder, "a.sweep/runs/0003-2/job.json"), "utf8"));
+  assert.equal(job.seed, 2);
+  assert.equal(job.integrator.max_depth, 4);
+  assert.equal(job.label, "small: max_depth 4, next_event_estimation true");
+  const [header, ...instants] = rows(folder);
+  assert.match(header, /^run,cell,baseline,replicate,seed,state,\/integrator\/max_depth,\/integrator\/next_event_estimation,iteration,seconds,/);
+  assert.ok(instants.some((line) => line.startsWith("0003-2,3,1,2,2,done,4,true,4,")), instants[0]);
+  assert.ok(instants.some((line) => line.startsWith("0002-1,2,2,1,1,done,2,false,")));
+  assert.equal((await run(folder, "sweep", "a.sweep", "--missing")).out, "\n");
+});
+
+test("sweep: what is listed is not begun, and array tasks do one run each", async (t) => {
+  const folder = sweepFile(t);
+  const listed = await run(folder, "sweep", "a.json", "--list");
+  assert.match(listed.out, /^ +8 0004-2 +queued +max_depth 4, next_event_estimation false$/m);
+  assert.equal(existsSync(join(folder, "a.sweep")), false);
+  for (const index of ["3", "8"]) assert.equal((await run(folder, "sweep", "a.json", "--index", index)).code, 0);
+  assert.equal((await run(folder, "sweep", "a.json", "--missing")).out, "1-2,4-7\n");
+  const beyond = await run(folder, "sweep", "a.json", "--index", "9");
+  assert.equal(beyond.code, 2);
+  assert.match(beyond.err, /--index 9: the sweep has runs 1 to 8/);
+  assert.equal((await run(folder, "sweep", "a.sweep", "-j", "3", "-q")).code, 0);
+  assert.equal((await run(folder, "sweep", "a.json", "--missing")).out, "\n");
+});
+
+test("sweep: stopped, it goes on to the same table", async (t) => {
+  const folder = sweepFile(t);
+  assert.equal((await run(folder, "sweep", "a.json")).code, 0);
+  // Without times, which differ from run to run.
+  const values = () => rows(folder).map((line) => line.split(",").filter((_, i) => i !== 9 && i !== 10).join());
+  const last = () => values().filter((line) => line.includes(",done,") && line.split(",")[8] === "4");
+  const undisturbed = last();
+  assert.equal(undisturbed.length, 8);
+  rmSync(join(folder, "a.sweep"), { recursive: true });
+  const begun = start(folder, "sweep", "a.json");
+  while (!existsSync(join(folder, "a.sweep/runs/0002-1"))) await new Promise((wake) => setTimeout(wake, 2));
+  begun.child.kill("SIGTERM");
+  const stopped = await begun.ended;
+  assert.equal(stopped.code, 75, stopped.err);
+  assert.notEqual((await run(folder, "sweep", "a.json", "--missing")).out, "\n");
+  assert.equal((await run(folder, "sweep", "a.json")).code, 0);
+  assert.deepEqual(last(), undisturbed);
+});
+
+test("sweep: a run that fails does not stop the others", async (t) => {
+  const folder = sweepFile(t, { ...small, seeds: 1, baseline: {}, axes: { "/camera": ["room", "nowhere"], "/seed": [1, 2] } });
+  const done = await run(folder, "sweep", "a.json");
+  assert.equal(done.code, 1);
+  assert.match(done.err, /0003-1 camera nowhere, seed 1: failed: .*nowhere/);
+  assert.equal((await run(folder, "sweep", "a.json", "--missing")).out, "3-4\n");
+});
+
+test("sweep: mistakes are told before anything is done", async (t) => {
+  const folder = sweepFile(t, { ...small, axes: { "/integrator/max_depth": [2, 0] } });
+  const bad = await run(folder, "sweep", "a.json");
+  assert.equal(bad.code, 2);
+  assert.match(bad.err, /\/axes\/~1integrator~1max_depth\/1: found number 0; allowed/);
+  assert.equal(existsSync(join(folder, "a.sweep")), false);
+  writeFileSync(join(folder, "a.json"), JSON.stringify(small));
+  assert.equal((await run(folder, "sweep", "a.json", "--index", "1")).code, 0);
+  writeFileSync(join(folder, "a.json"), JSON.stringify({ ...small, seeds: 3 }));
+  const other = await run(folder, "sweep", "a.json");
+  assert.equal(other.code, 2);
+  assert.match(other.err, /holds another sweep; name another folder with --out/);
+});
