@@ -16,6 +16,7 @@ RenderProcess::RenderProcess(const JobFolder& folder, int threads) {
   std::vector<std::string> words{"lacuna", "render", folder.dir().string(), "--quiet"};
   if (threads >= 0) words.insert(words.end(), {"--threads", std::to_string(threads)});
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& w : words) arguments.push_back(w.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;

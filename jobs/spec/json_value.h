@@ -1,6 +1,5 @@
 #pragma once
 
-#include <compare>
 #include <map>
 #include <string>
 #include <vector>
@@ -11,7 +10,8 @@ namespace lacuna {
 /// equal are the same text.
 struct JsonValue {
   std::string text = "null";
-  auto operator<=>(const JsonValue&) const = default;
+  bool operator==(const JsonValue&) const = default;
+  bool operator<(const JsonValue& o) const { return text < o.text; }
 };
 
 /// A member that is an object whose keys are not known beforehand, in the order of the keys.

@@ -21,7 +21,7 @@ std::string ending(const std::vector<std::string>& tokens, std::size_t parts) {
 std::string short_name(const std::string& pointer, const JsonTable<JsonValue>& all) {
   const auto tokens = pointer_tokens(pointer);
   for (std::size_t parts = 1; parts < tokens.size(); ++parts) {
-    const std::string name = ending(tokens, parts);
+    std::string name = ending(tokens, parts);
     const auto same = [&](const auto& other) {
       return other.first != pointer && ending(pointer_tokens(other.first), parts) == name;
     };

@@ -50,7 +50,7 @@ SweepFolder SweepFolder::create(const fs::path& dir, const SweepSpec& spec) {
 }
 
 JobFolder SweepFolder::make_folder(const SweepRun& run) const {
-  const JobFolder job = folder(run);
+  JobFolder job = folder(run);
   if (fs::exists(job.file("job.json"))) return job;
   try {
     return JobFolder::create(job.dir(), plan_.job_of(run));

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "analysis/storage/atomic_file.h"
+#include "jobs/spec/json_text.h"
 #include "jobs/sweep/sweep_folder.h"
 
 namespace lacuna {
@@ -47,7 +48,8 @@ std::string sweep_table(const SweepFolder& sweep) {
       for (const auto& [pointer, value] : cell.settings) header += ',' + field(pointer);
       header += ',' + line + '\n';
     }
-    while (std::getline(curve, line)) rows += start + ',' + line + '\n';
+    while (std::getline(curve, line))
+      rows.append(start).append(1, ',').append(line).append(1, '\n');
   }
   return header + rows;
 }
