@@ -1,10 +1,9 @@
 #include <fmt/format.h>
-#include <sys/wait.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <csignal>
 #include <thread>
+#include <utility>
 
 #include "analysis/storage/atomic_file.h"
 #include "jobs/cli/commands.h"
@@ -29,11 +28,10 @@ struct SweepOptions {
 
 SweepFolder open(const SweepOptions& o) {
   if (fs::is_directory(o.what)) return SweepFolder(o.what);
-  constexpr std::size_t max_bytes = std::size_t{64} << 20;
   fs::path out = o.out.empty() ? fs::path(o.what.stem().string() + ".sweep") : o.out;
   out = fs::absolute(out).lexically_normal();
   if (!out.has_filename()) out = out.parent_path();
-  const SweepSpec spec = parse_sweep(read_file(o.what, max_bytes));
+  const SweepSpec spec = parse_sweep(read_file(o.what, max_sweep_bytes));
   return o.list || o.missing ? SweepFolder::preview(out, spec) : SweepFolder::create(out, spec);
 }
 

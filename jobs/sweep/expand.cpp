@@ -11,8 +11,6 @@
 namespace lacuna {
 namespace {
 
-constexpr std::size_t max_sweep_bytes = 4 << 20;
-
 /// Settings that change together: at each step one value for each pointer.
 struct Axis {
   JsonTable<std::vector<JsonValue>> values;

@@ -11,6 +11,8 @@
 
 namespace lacuna {
 
+/// Largest sweep file that is looked at, in bytes.
+inline constexpr std::size_t max_sweep_bytes = 4 << 20;
 /// Most runs of one sweep.
 inline constexpr std::size_t max_sweep_runs = 100'000;
 

@@ -9,7 +9,6 @@ namespace lacuna {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t max_bytes = std::size_t{64} << 20;
 constexpr const char* spec_file = "sweep.json";
 
 SweepSpec read_spec(const fs::path& dir) {
@@ -17,7 +16,7 @@ SweepSpec read_spec(const fs::path& dir) {
     throw BadJob(
         {{"", fmt::format("{} is no sweep's folder: it has no {}", dir.string(), spec_file)}});
   }
-  return parse_sweep(read_file(dir / spec_file, max_bytes));
+  return parse_sweep(read_file(dir / spec_file, max_sweep_bytes));
 }
 
 }  // namespace
