@@ -7,6 +7,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
+#include "jobs/cli/results_folder.h"
 #include "jobs/cli/terminal.h"
 #include "jobs/run/obstacle.h"
 #include "jobs/run/run_job.h"
@@ -28,11 +29,9 @@ std::string memory_limit_advice() {
 }
 
 /// The folder of a job file's results: there already with this very job, or made now.
-JobFolder folder_for(const fs::path& job_file, fs::path out) {
+JobFolder folder_for(const fs::path& job_file, const fs::path& named) {
   const JobSpec spec = parse_job(read_file(job_file, max_job_bytes));
-  if (out.empty()) out = job_file.stem().string() + ".job";
-  out = fs::absolute(out).lexically_normal();
-  if (!out.has_filename()) out = out.parent_path();
+  const fs::path out = results_folder(job_file, named, ".job");
   if (!fs::exists(out / "job.json")) {
     if (fs::exists(out) && !fs::is_empty(out)) {
       throw BadJob(

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <deque>
 #include <thread>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/render_process.h"
+#include "jobs/cli/results_folder.h"
 #include "jobs/cli/terminal.h"
 #include "jobs/spec/problems.h"
 #include "jobs/sweep/sweep_folder.h"
@@ -28,9 +30,7 @@ struct SweepOptions {
 
 SweepFolder open(const SweepOptions& o) {
   if (fs::is_directory(o.what)) return SweepFolder(o.what);
-  fs::path out = o.out.empty() ? fs::path(o.what.stem().string() + ".sweep") : o.out;
-  out = fs::absolute(out).lexically_normal();
-  if (!out.has_filename()) out = out.parent_path();
+  const fs::path out = results_folder(o.what, o.out, ".sweep");
   const SweepSpec spec = parse_sweep(read_file(o.what, max_sweep_bytes));
   return o.list || o.missing ? SweepFolder::preview(out, spec) : SweepFolder::create(out, spec);
 }
@@ -63,8 +63,8 @@ class Runner {
   Runner(const SweepFolder& sweep, const SweepOptions& o)
       : sweep_(sweep), options_(o), terminal_({}, o.quiet) {}
 
-  int run(std::vector<std::size_t> indices) {
-    left_ = std::move(indices);
+  int run(const std::vector<std::size_t>& indices) {
+    left_.assign(indices.begin(), indices.end());
     all_ = left_.size();
     const auto& interrupted = interrupt_requested();
     bool stopping = false;
@@ -97,7 +97,7 @@ class Runner {
 
   void start() {
     const std::size_t index = left_.front();
-    left_.erase(left_.begin());
+    left_.pop_front();
     running_.push_back({index, RenderProcess(sweep_.make_folder(run_at(index)), options_.threads)});
   }
 
@@ -129,7 +129,7 @@ class Runner {
 
   void show() {
     const auto now = Clock::now();
-    if (now < next_show_) return;
+    if (!terminal_.shows_status() || now < next_show_) return;
     next_show_ = now + std::chrono::milliseconds(200);
     double share = static_cast<double>(finished_);
     for (const Running& r : running_) {
@@ -145,7 +145,7 @@ class Runner {
   const SweepFolder& sweep_;
   const SweepOptions& options_;
   Terminal terminal_;
-  std::vector<std::size_t> left_;
+  std::deque<std::size_t> left_;
   std::vector<Running> running_;
   std::size_t all_ = 0, finished_ = 0, failed_ = 0;
   const Clock::time_point began_ = Clock::now();
@@ -166,7 +166,7 @@ int sweep(const SweepOptions& o) {
     throw BadJob(
         {{"", fmt::format("--index {}: the sweep has runs 1 to {}", o.index, runs.size())}});
   }
-  const int code = Runner(folder, o).run(std::move(left));
+  const int code = Runner(folder, o).run(left);
   if (o.index == 0) write_file_atomically(folder.dir() / "table.csv", sweep_table(folder));
   return code;
 }

@@ -27,6 +27,8 @@ class Terminal final : public Observer {
   void error(const std::string& line);
   /// A line that the next one takes the place of; on a terminal only.
   void status(const std::string& line);
+  /// Whether it is one: else a status need not be made.
+  bool shows_status() const { return bar_; }
 
  private:
   void clear_bar();

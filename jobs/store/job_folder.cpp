@@ -1,8 +1,6 @@
 #include "jobs/store/job_folder.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -13,6 +11,7 @@
 #include "analysis/storage/file_handle.h"
 #include "jobs/spec/described_json.h"
 #include "jobs/spec/job_json.h"
+#include "jobs/store/new_folder.h"
 
 namespace lacuna {
 namespace {
@@ -44,20 +43,6 @@ T read_own(const std::filesystem::path& path) {
   }
 }
 
-/// Puts a new folder, complete, in its place; it must not be there yet.
-void rename_folder(const std::filesystem::path& from, const std::filesystem::path& to) {
-  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return;
-  if (errno == EINVAL || errno == ENOSYS) {  // a file system without that flag
-    if (std::filesystem::exists(std::filesystem::symlink_status(to))) {
-      errno = EEXIST;
-    } else if (::rename(from.c_str(), to.c_str()) == 0) {
-      return;
-    }
-  }
-  if (errno == EEXIST) throw std::invalid_argument(fmt::format("{} is there already", to.string()));
-  throw_file_error(errno, "create", to);
-}
-
 }  // namespace
 
 const std::vector<FileInfo>& job_files() {
@@ -83,23 +68,15 @@ JobFolder JobFolder::create(const std::filesystem::path& dir, const JobSpec& spe
   const std::filesystem::path absolute = std::filesystem::absolute(dir).lexically_normal();
   const std::filesystem::path target =
       absolute.has_filename() ? absolute : absolute.parent_path();  // "jobs/x/" is "jobs/x"
-  std::filesystem::create_directories(target.parent_path());
-  const JobFolder draft(temporary_name(target));
-  if (::mkdir(draft.dir().c_str(), 0777) != 0) throw_file_error(errno, "create", target);
-  try {
+  create_folder_whole(target, [&](const std::filesystem::path& made) {
+    const JobFolder draft(made);
     draft.write_job(spec);
     JobState state;
     state.state = control.held ? State::held : State::queued;
     state.created = utc_now();
     draft.write_state(state);
     if (control != JobControl{}) draft.write_control(control);
-    rename_folder(draft.dir(), target);
-  } catch (...) {
-    std::error_code ignored;  // the first error is the one to tell
-    std::filesystem::remove_all(draft.dir(), ignored);
-    throw;
-  }
-  sync_folder(target.parent_path());
+  });
   return JobFolder(target);
 }
 

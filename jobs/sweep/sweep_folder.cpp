@@ -4,6 +4,7 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "jobs/spec/described_json.h"
+#include "jobs/store/new_folder.h"
 
 namespace lacuna {
 namespace fs = std::filesystem;
@@ -29,11 +30,13 @@ SweepFolder::SweepFolder(const fs::path& dir)
 
 SweepFolder SweepFolder::preview(const fs::path& dir, const SweepSpec& spec) {
   SweepFolder folder(fs::absolute(dir).lexically_normal(), spec);
-  if (fs::exists(dir / spec_file) && read_spec(dir) != spec) {
+  const bool occupied = fs::exists(dir) && !fs::is_empty(dir);  // first: another may make it now
+  if (fs::exists(dir / spec_file)) {
+    if (read_spec(dir) == spec) return folder;
     throw BadJob({{"", fmt::format("{} holds another sweep; name another folder with --out",
                                    dir.string())}});
   }
-  if (!fs::exists(dir / spec_file) && fs::exists(dir) && !fs::is_empty(dir)) {
+  if (occupied) {
     throw BadJob({{"", fmt::format("{} is there already and is no sweep's folder", dir.string())}});
   }
   return folder;
@@ -41,9 +44,16 @@ SweepFolder SweepFolder::preview(const fs::path& dir, const SweepSpec& spec) {
 
 SweepFolder SweepFolder::create(const fs::path& dir, const SweepSpec& spec) {
   SweepFolder folder = preview(dir, spec);
-  if (!fs::exists(dir / spec_file)) {
-    fs::create_directories(dir / "runs");
-    write_file_atomically(dir / spec_file, write_document(spec));
+  if (fs::exists(dir / spec_file)) return folder;
+  std::error_code not_empty;
+  fs::remove(folder.dir(), not_empty);
+  try {
+    create_folder_whole(folder.dir(), [&](const fs::path& draft) {
+      fs::create_directory(draft / "runs");
+      write_file_atomically(draft / spec_file, write_document(spec));
+    });
+  } catch (const std::invalid_argument&) {
+    return preview(dir, spec);  // another array task was first
   }
   return folder;
 }

@@ -53,12 +53,22 @@ test("sweep: what is listed is not begun, and array tasks do one run each", asyn
   assert.equal((await run(folder, "sweep", "a.json", "--missing")).out, "\n");
 });
 
+test("sweep: array tasks may all begin at once", async (t) => {
+  for (let round = 0; round < 6; ++round) {
+    const folder = sweepFile(t);
+    const tasks = ["1", "2", "3", "8"].map((index) => run(folder, "sweep", "a.json", "--index", index));
+    for (const { code, err } of await Promise.all(tasks)) assert.equal(code, 0, err);
+    assert.equal((await run(folder, "sweep", "a.json", "--missing")).out, "4-7\n");
+  }
+});
+
 test("sweep: stopped, it goes on to the same table", async (t) => {
-  const folder = sweepFile(t);
+  const iterations = 600;  // so that much is left when it is stopped
+  const folder = sweepFile(t, { ...small, job: { ...small.job, budget: { iterations } } });
   assert.equal((await run(folder, "sweep", "a.json")).code, 0);
   // Without times, which differ from run to run.
   const values = () => rows(folder).map((line) => line.split(",").filter((_, i) => i !== 9 && i !== 10).join());
-  const last = () => values().filter((line) => line.includes(",done,") && line.split(",")[8] === "4");
+  const last = () => values().filter((line) => line.includes(",done,") && line.split(",")[8] === `${iterations}`);
   const undisturbed = last();
   assert.equal(undisturbed.length, 8);
   rmSync(join(folder, "a.sweep"), { recursive: true });

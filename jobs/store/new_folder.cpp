@@ -1,0 +1,48 @@
+#include "jobs/store/new_folder.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <stdio.h>
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <stdexcept>
+
+#include "analysis/storage/file_handle.h"
+
+namespace lacuna {
+namespace {
+
+/// Puts a new folder, complete, in its place; it must not be there yet.
+void rename_folder(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return;
+  if (errno == EINVAL || errno == ENOSYS) {  // a file system without that flag
+    if (std::filesystem::exists(std::filesystem::symlink_status(to))) {
+      errno = EEXIST;
+    } else if (::rename(from.c_str(), to.c_str()) == 0) {
+      return;
+    }
+  }
+  if (errno == EEXIST) throw std::invalid_argument(fmt::format("{} is there already", to.string()));
+  throw_file_error(errno, "create", to);
+}
+
+}  // namespace
+
+void create_folder_whole(const std::filesystem::path& target,
+                         const std::function<void(const std::filesystem::path& draft)>& fill) {
+  std::filesystem::create_directories(target.parent_path());
+  const std::filesystem::path draft = temporary_name(target);
+  if (::mkdir(draft.c_str(), 0777) != 0) throw_file_error(errno, "create", target);
+  try {
+    fill(draft);
+    rename_folder(draft, target);
+  } catch (...) {
+    std::error_code ignored;  // the first error is the one to tell
+    std::filesystem::remove_all(draft, ignored);
+    throw;
+  }
+  sync_folder(target.parent_path());
+}
+
+}  // namespace lacuna
