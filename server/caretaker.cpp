@@ -52,8 +52,8 @@ void Caretaker::run() {
 }
 
 void Caretaker::remove_old() {
-  for (const std::string& id :
-       outdated(table_.all(), settings_, std::chrono::system_clock::now())) {
+  for (const std::string& id : outdated(table_.all(), table_.sweeps().unfinished(), settings_,
+                                        std::chrono::system_clock::now())) {
     try {
       queue_.remove(id);
       log::info("{}: removed, as the settings of what is kept say", id);

@@ -39,6 +39,15 @@ EntryPtr find_job(JobTable& table, const std::string& id) {
   return entry;
 }
 
+OrderedJson counts_json(const JobTable::Counts& counts) {
+  OrderedJson json = OrderedJson::object();
+  for (const auto& [state, name, doc] : EnumTable<State>::values) {
+    const auto found = counts.find(state);
+    json[std::string(name)] = found == counts.end() ? 0 : found->second;
+  }
+  return json;
+}
+
 std::string list_text(const JobTable::Page& page) {
   std::string text = "{\"jobs\":[";
   for (const EntryPtr& entry : page.jobs) {
@@ -46,11 +55,7 @@ std::string list_text(const JobTable::Page& page) {
     text += '\n';
     text += entry->text;
   }
-  OrderedJson counts = OrderedJson::object();
-  for (const auto& [state, name, doc] : EnumTable<State>::values) {
-    const auto found = page.counts.find(state);
-    counts[std::string(name)] = found == page.counts.end() ? 0 : found->second;
-  }
+  const OrderedJson counts = counts_json(page.counts);
   const OrderedJson next = page.next.empty() ? OrderedJson(nullptr) : OrderedJson(page.next);
   return text + fmt::format("],\n\"total\":{},\"counts\":{},\"next\":{},\"last_event\":{}}}\n",
                             page.total, json_text(counts), json_text(next),
@@ -60,6 +65,7 @@ std::string list_text(const JobTable::Page& page) {
 OrderedJson job_detail(const JobTable& table, const JobEntry& entry) {
   const JobFolder folder = table.folder(entry.id);
   return {{"id", entry.id},
+          {"sweep", sweep_json(entry)},
           {"job", parse_own(write_job(folder.read_job()))},
           {"state", to_json(entry.state)},
           {"progress", entry.progress ? to_json(*entry.progress) : OrderedJson(nullptr)},

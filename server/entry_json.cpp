@@ -28,11 +28,16 @@ OrderedJson to_json(const Progress& p) {
           {"error_metric", p.error_metric}};
 }
 
+OrderedJson sweep_json(const JobEntry& e) {
+  return e.sweep.empty() ? OrderedJson(nullptr) : OrderedJson(e.sweep);
+}
+
 OrderedJson to_json(const JobEntry& e) {
   OrderedJson json = {{"id", e.id},
                       {"label", e.label},
                       {"scene", e.scene},
                       {"integrator", e.integrator},
+                      {"sweep", sweep_json(e)},
                       {"priority", e.control.priority},
                       {"held", e.control.held}};
   json.update(to_json(e.state));

@@ -8,6 +8,8 @@ namespace lacuna {
 
 OrderedJson to_json(const JobState& state);
 OrderedJson to_json(const Progress& progress);
+/// The id of its sweep, or null.
+OrderedJson sweep_json(const JobEntry& entry);
 /// As an element of the API's list of jobs.
 OrderedJson to_json(const JobEntry& entry);
 

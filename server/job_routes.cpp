@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <system_error>
 #include <utility>
 
 #include "jobs/spec/job_json.h"
+#include "server/apply_change.h"
 #include "server/catalogue.h"
 #include "server/conditional.h"
 #include "server/file_response.h"
@@ -16,22 +16,6 @@
 
 namespace lacuna {
 namespace {
-
-/// Runs a change of a job and gives what went wrong its HTTP status.
-template <class Change>
-void apply(Change&& change) {
-  try {
-    change();
-  } catch (const Changed& error) {
-    throw HttpError(412, error.what());
-  } catch (const Conflict& error) {
-    throw HttpError(409, error.what());
-  } catch (const BadJob& bad) {
-    throw HttpError(400, "The new budget is not valid.", bad.problems());
-  } catch (const std::system_error& error) {
-    throw HttpError(507, fmt::format("This could not be stored: {}.", error.code().message()));
-  }
-}
 
 std::vector<State> states_of(const std::string& text) {
   std::vector<State> states;
@@ -70,6 +54,10 @@ Response JobRoutes::list(const Request& request) {
   query.words = request.query.text("label").value_or("");
   if (const auto limit = request.query.integer("limit", 1, max_page)) {
     query.limit = static_cast<std::size_t>(*limit);
+  }
+  query.sweep = request.query.text("sweep");
+  if (query.sweep && !query.sweep->empty() && !is_job_id(*query.sweep)) {
+    throw HttpError(400, "Query parameter sweep takes a sweep's id; empty: jobs of no sweep.");
   }
   query.after = request.query.text("cursor").value_or("");
   try {
@@ -147,6 +135,7 @@ RouteDoc list_doc() {
       .summary = "Jobs, newest first, by pages",
       .query = {{"state", QueryType::text, "any of these states, separated by commas"},
                 {"label", QueryType::text, "words in label, scene, integrator or id"},
+                {"sweep", QueryType::text, "the runs of this sweep; empty: jobs of no sweep"},
                 {"limit", QueryType::integer,
                  fmt::format("jobs on a page; default {}", JobTable::Query{}.limit), 1, max_page},
                 {"cursor", QueryType::text, "`next` of the page before"}},
@@ -210,43 +199,40 @@ void JobRoutes::add_collection(Router& router) {
              });
 }
 
-Router::Handler JobRoutes::with_id(Response (JobRoutes::*handler)(const Request&,
-                                                                  const std::string&)) {
-  return [this, handler](const Request& request, const Router::Parts& parts) {
-    return (this->*handler)(request, parts[0]);
-  };
-}
-
 void JobRoutes::add_changes(Router& router) {
   router.add(
       "PATCH", "/api/jobs/{id}",
       change_doc("Another priority; holds it or releases it", "it is over", job_change_schema()),
-      with_id(&JobRoutes::change));
+      with_id(*this, &JobRoutes::change));
   auto cancel = change_doc("Stops it for good", "it was over before");
   cancel.answers.emplace_back(202, "its renderer is asked to stop");
-  router.add("POST", "/api/jobs/{id}/cancel", std::move(cancel), with_id(&JobRoutes::cancel));
+  router.add("POST", "/api/jobs/{id}/cancel", std::move(cancel),
+             with_id(*this, &JobRoutes::cancel));
   router.add("POST", "/api/jobs/{id}/retry",
              change_doc("It goes on from its checkpoint", "it has not failed or been cancelled"),
-             with_id(&JobRoutes::retry));
+             with_id(*this, &JobRoutes::retry));
   router.add(
       "POST", "/api/jobs/{id}/extend",
       change_doc("It goes on until a larger budget is spent", "it is not over", extension_schema()),
-      with_id(&JobRoutes::extend));
-  router.add("DELETE", "/api/jobs/{id}",
-             {.summary = "Removes it and its results",
-              .answers = {{204, "it is gone"},
-                          {409, "it is not over, or is the reference of a job that is not"},
-                          {412, "it is not the job of If-Match any more"}}},
-             with_id(&JobRoutes::remove));
+      with_id(*this, &JobRoutes::extend));
+  router.add(
+      "DELETE", "/api/jobs/{id}",
+      {.summary = "Removes it and its results",
+       .answers = {{204, "it is gone"},
+                   {409,
+                    "it is not over, or is the reference of a job that is not, or a run of a "
+                    "sweep that is not"},
+                   {412, "it is not the job of If-Match any more"}}},
+      with_id(*this, &JobRoutes::remove));
 }
 
 void JobRoutes::add_results(Router& router) {
   using Parts = Router::Parts;
-  router.add("GET", "/api/jobs/{id}", {.summary = "One job"}, with_id(&JobRoutes::detail));
+  router.add("GET", "/api/jobs/{id}", {.summary = "One job"}, with_id(*this, &JobRoutes::detail));
   router.add("GET", "/api/jobs/{id}/log",
              {.summary = "Its log from a byte on; header Next-Offset has the next",
               .query = {{"offset", QueryType::integer, "bytes to leave out", 0, INT64_MAX}}},
-             with_id(&JobRoutes::log));
+             with_id(*this, &JobRoutes::log));
   router.add("GET", "/api/jobs/{id}/events",
              {.summary = "Its state and progress as server-sent events, until it is over"},
              [this](const Request& request, const Parts& parts) {

@@ -2,8 +2,8 @@
 
 #include "jobs/store/job_folder.h"
 #include "server/events.h"
+#include "server/job_posting.h"
 #include "server/job_table.h"
-#include "server/posting.h"
 #include "server/queue.h"
 #include "server/router.h"
 
@@ -19,7 +19,6 @@ class JobRoutes {
   void add_collection(Router& router);
   void add_changes(Router& router);
   void add_results(Router& router);
-  Router::Handler with_id(Response (JobRoutes::*handler)(const Request&, const std::string&));
 
   Response list(const Request& request);
   Response detail(const Request& request, const std::string& id);
@@ -34,7 +33,7 @@ class JobRoutes {
 
   JobTable& table_;
   Queue& queue_;
-  Posting posting_;
+  JobPosting posting_;
   Events events_;
 };
 

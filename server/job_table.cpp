@@ -117,6 +117,7 @@ EntryPtr JobTable::find(const std::string& id) const {
 
 EntryPtr JobTable::add(const std::string& id) {
   const auto entry = read_entry(folder(id));
+  entry->sweep = sweeps_.sweep_of(id);
   const std::lock_guard lock(mutex_);
   if (const auto place = places_.find(id); place != places_.end()) return jobs_.at(place->second);
   put(entry, JobEvent::Kind::added);
@@ -125,12 +126,44 @@ EntryPtr JobTable::add(const std::string& id) {
 
 void JobTable::remove(const std::string& id) {
   const std::lock_guard lock(mutex_);
+  if (take_out(id)) journal_.add(JobEvent::Kind::removed, id, nullptr);
+}
+
+/// Both only under the lock: all that is counted of a job.
+void JobTable::put_in(const Place& place, EntryPtr entry) {
+  ++counts_[entry->state.state];
+  Tally& tally = tallies_[entry->sweep];
+  ++tally.counts[entry->state.state];
+  if (!entry->over) tally.unfinished.insert(entry->id);
+  places_[entry->id] = place;
+  jobs_[place] = std::move(entry);
+}
+
+EntryPtr JobTable::take_out(const std::string& id) {
   const auto place = places_.find(id);
-  if (place == places_.end()) return;
-  --counts_[jobs_.at(place->second)->state.state];
-  jobs_.erase(place->second);
+  if (place == places_.end()) return nullptr;
+  const auto job = jobs_.find(place->second);
+  EntryPtr entry = job->second;
+  --counts_[entry->state.state];
+  Tally& tally = tallies_[entry->sweep];
+  --tally.counts[entry->state.state];
+  tally.unfinished.erase(id);
+  if (tally.jobs() == 0) tallies_.erase(entry->sweep);
+  jobs_.erase(job);
   places_.erase(place);
-  journal_.add(JobEvent::Kind::removed, id, nullptr);
+  return entry;
+}
+
+std::size_t JobTable::Tally::jobs() const {
+  std::size_t sum = 0;
+  for (const auto& [state, n] : counts) sum += n;
+  return sum;
+}
+
+JobTable::Tally JobTable::tally(const std::string& sweep) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = tallies_.find(sweep);
+  return found == tallies_.end() ? Tally{} : found->second;
 }
 
 /// Only under the lock.
@@ -143,15 +176,9 @@ void JobTable::put(std::shared_ptr<JobEntry> entry, JobEvent::Kind kind) {
       fmt::format("{}\n{}\n{}\n{}", entry->label, entry->scene, entry->integrator, entry->id));
   const std::string id = entry->id;
   const Place place{entry->state.created, id};
-  const auto old = places_.find(id);
-  if (old != places_.end()) {
-    --counts_[jobs_.at(old->second)->state.state];
-    jobs_.erase(old->second);
-  }
-  ++counts_[entry->state.state];
+  take_out(id);
   EntryPtr finished = std::move(entry);
-  places_[id] = place;
-  jobs_[place] = finished;
+  put_in(place, finished);
   journal_.add(kind, id, std::move(finished));
 }
 
@@ -196,10 +223,13 @@ void JobTable::reread_job(const std::string& id) {
   });
 }
 
-std::size_t JobTable::count(const std::vector<State>& states) const {
+/// How many match but for the words. Only under the lock.
+std::size_t JobTable::count(const Query& query) const {
+  const auto tally = tallies_.find(query.sweep.value_or(""));
+  if (query.sweep && tally == tallies_.end()) return 0;
   std::size_t sum = 0;
-  for (const auto& [state, n] : counts_) {
-    if (is_any_of(states, state)) sum += n;
+  for (const auto& [state, n] : query.sweep ? tally->second.counts : counts_) {
+    if (is_any_of(query.states, state)) sum += n;
   }
   return sum;
 }
@@ -213,12 +243,13 @@ JobTable::Page JobTable::list(const Query& query) const {
   page.last_event = journal_.name(journal_.last());
   // Only a search by words has to look at every job; other pages cost what they hold.
   const bool counts_known = words.empty();
-  if (counts_known) page.total = count(query.states);
+  if (counts_known) page.total = count(query);
   const bool begins_after = counts_known && !query.after.empty();
   auto it = begins_after ? std::make_reverse_iterator(jobs_.lower_bound(after)) : jobs_.rbegin();
   for (; it != jobs_.rend(); ++it) {
     const auto& [place, entry] = *it;
     if (!is_any_of(query.states, entry->state.state)) continue;
+    if (query.sweep && *query.sweep != entry->sweep) continue;
     if (entry->words.find(words) == std::string::npos) continue;
     if (!counts_known) ++page.total;
     if (!query.after.empty() && place >= after) continue;
@@ -232,8 +263,8 @@ JobTable::Page JobTable::list(const Query& query) const {
   return page;
 }
 
-std::map<State, std::size_t> JobTable::counts() const {
-  std::map<State, std::size_t> counts;
+JobTable::Counts JobTable::counts() const {
+  Counts counts;
   for (const auto& value : EnumTable<State>::values) counts[value.value] = 0;
   const std::lock_guard lock(mutex_);
   for (const auto& [state, n] : counts_) counts[state] = n;

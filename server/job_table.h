@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,12 +13,14 @@
 
 #include "jobs/store/job_folder.h"
 #include "server/journal.h"
+#include "server/sweep_table.h"
 
 namespace lacuna {
 
 /// What the service knows of one job without opening its folder.
 struct JobEntry {
   std::string id, label, scene, integrator, reference;
+  std::string sweep;  ///< that it is a run of; empty: none
   bool exclusive = false;
   std::string job_hash;  ///< of job.json
   JobState state;
@@ -38,7 +41,8 @@ using EntryPtr = std::shared_ptr<const JobEntry>;
 /// was given out never changes.
 class JobTable {
  public:
-  explicit JobTable(DataRoot data) : data_(std::move(data)) {}
+  /// `sweeps` outlives it, and knows a sweep before any of its jobs is there.
+  JobTable(DataRoot data, const SweepTable& sweeps) : data_(std::move(data)), sweeps_(sweeps) {}
 
   /// Reads every folder that is not known yet and forgets those that are gone.
   void rescan();
@@ -61,18 +65,21 @@ class JobTable {
   /// Reads job.json anew.
   void reread_job(const std::string& id);
 
+  using Counts = std::map<State, std::size_t>;
+
   /// A part of the list, newest first.
   struct Query {
-    std::vector<State> states;  ///< any of these; empty: all
-    std::string words;          ///< somewhere in label, scene, integrator or id, in any case
+    std::vector<State> states;         ///< any of these; empty: all
+    std::string words;                 ///< somewhere in label, scene, integrator or id, in any case
+    std::optional<std::string> sweep;  ///< the runs of this one only; empty: jobs of no sweep
     std::size_t limit = 100;
     std::string after;  ///< the `next` of the page before; empty: from the newest on
   };
   struct Page {
     std::vector<EntryPtr> jobs;
-    std::size_t total = 0;                ///< that match, on all pages
-    std::map<State, std::size_t> counts;  ///< of all jobs
-    std::string next;                     ///< empty: this was the last page
+    std::size_t total = 0;  ///< that match, on all pages
+    Counts counts;          ///< of all jobs
+    std::string next;       ///< empty: this was the last page
     std::string last_event;
   };
   /// Throws std::invalid_argument if `after` is no cursor.
@@ -81,25 +88,38 @@ class JobTable {
   std::vector<EntryPtr> all() const;
 
   /// How many jobs there are in each state.
-  std::map<State, std::size_t> counts() const;
+  Counts counts() const;
+
+  /// The runs of a sweep that are there as jobs.
+  struct Tally {
+    Counts counts;
+    std::set<std::string> unfinished;  ///< their ids
+    std::size_t jobs() const;
+  };
+  Tally tally(const std::string& sweep) const;
+  const SweepTable& sweeps() const { return sweeps_; }
 
   Journal& journal() { return journal_; }
   const Journal& journal() const { return journal_; }
 
  private:
   using Place = std::pair<std::string, std::string>;  // time of creation, id
-  std::size_t count(const std::vector<State>& states) const;
+  std::size_t count(const Query& query) const;
+  void put_in(const Place& place, EntryPtr entry);
+  EntryPtr take_out(const std::string& id);
   template <class Change>
   void change(const std::string& id, Change&& change);
   void put(std::shared_ptr<JobEntry> entry, JobEvent::Kind kind);
 
   const DataRoot data_;
+  const SweepTable& sweeps_;
   Journal journal_;
   mutable std::mutex mutex_;  // guards all below
   std::map<Place, EntryPtr> jobs_;
   std::map<std::string, Place, std::less<>> places_;
-  std::map<State, std::size_t> counts_;
-  std::int64_t scanned_ = -1;  // the folder's time of change when it was last read
+  Counts counts_;
+  std::map<std::string, Tally> tallies_;  // of sweeps; "": of jobs of none
+  std::int64_t scanned_ = -1;             // the folder's time of change when it was last read
 };
 
 }  // namespace lacuna

@@ -5,15 +5,9 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <system_error>
-#include <utility>
-#include <vector>
 
-#include "jobs/spec/job_json.h"
-#include "server/catalogue.h"
 #include "server/conditional.h"
 #include "server/json_body.h"
-#include "server/log.h"
 
 namespace lacuna {
 namespace {
@@ -37,98 +31,40 @@ std::optional<std::string> key_of(const Request& request) {
 
 }  // namespace
 
-Response Posting::dry_run(const Request& request) const {
-  const JobSpec spec = checked_spec(read_json_body(request, max_job_bytes));
-  return json_response(200,
-                       {{"job", parse_own(write_job(spec))}, {"warnings", OrderedJson::array()}});
+std::string Posting::read_body(const Request& request) const {
+  return read_json_body(request, max_bytes_);
 }
 
 Response Posting::post(const Request& request) {
   const auto key = key_of(request);
-  const std::string body = read_json_body(request, max_job_bytes);
-  JobControl control;
-  if (!key) return create(checked_spec(body), control);
+  const std::string body = read_body(request);
+  if (!key) return answer(201, make(body, {}));
 
-  control.idempotency_key = *key;
-  control.body_hash = hash128(body);
+  const std::string hash = hash128(body);
   const std::lock_guard lock(mutex_);
-  read_keys();
-  const auto known = keys_.find(*key);
-  if (known != keys_.end() && table_.find(known->second)) {
-    return replay(known->second, control.body_hash);
-  }
-  return create(checked_spec(body), control);
-}
-
-/// Of the jobs that are there from before the service's start.
-void Posting::read_keys() {
-  if (std::exchange(keys_read_, true)) return;
-  for (const EntryPtr& job : table_.all()) {
-    if (!job->control.idempotency_key.empty()) keys_[job->control.idempotency_key] = job->id;
-  }
-}
-
-Response Posting::replay(const std::string& id, const std::string& body_hash) const {
-  const EntryPtr entry = find_job(table_, id);
-  if (entry->control.body_hash != body_hash) {
-    throw HttpError(422,
-                    fmt::format("This Idempotency-Key stands for job {}, which was posted with "
-                                "another body.",
-                                id));
-  }
-  Response response = json_response(200, job_detail(table_, *entry));
-  response.headers.emplace_back("Location", "/api/jobs/" + id);
-  response.headers.emplace_back("Idempotent-Replayed", "true");
-  return response;
-}
-
-Response Posting::create(const JobSpec& spec, const JobControl& control) {
-  try {
-    queue_.check_room();
-  } catch (const Full& full) {
-    throw HttpError(429, full.what()).with("Retry-After", "10");
-  }
-  const JobFolder folder = [&] {
-    try {
-      return JobFolder::create(data_.jobs() / new_job_id(), spec, control);
-    } catch (const std::system_error& error) {
-      log::error("a job could not be stored: {}", error.what());
-      throw HttpError(507, fmt::format("The job could not be stored: {}.", error.code().message()));
+  if (!keys_) keys_ = stored_keys();
+  if (const auto known = keys_->find(*key); known != keys_->end()) {
+    const std::string& id = known->second;
+    if (const auto made_of = body_hash(id)) {
+      if (*made_of == hash) {
+        Response response = answer(200, id);
+        response.headers.emplace_back("Idempotent-Replayed", "true");
+        return response;
+      }
+      throw HttpError(422, fmt::format("This Idempotency-Key stands for {} {}, which was posted "
+                                       "with another body.",
+                                       noun_, id));
     }
-  }();
-  const std::string id = folder.id();
-  if (!control.idempotency_key.empty()) keys_[control.idempotency_key] = id;
-  const EntryPtr entry = queue_.add(id);
-  log::info("{}: queued ({})", id, spec.scene);
-  Response response = json_response(201, job_detail(table_, *entry));
-  response.headers.emplace_back("Location", "/api/jobs/" + id);
-  return response;
-}
-
-JobSpec Posting::checked_spec(const std::string& body) const {
-  try {
-    JobSpec spec = parse_job(body);
-    check_files(spec);
-    return spec;
-  } catch (const BadJob& bad) {
-    throw HttpError(400, "The job is not valid.", bad.problems());
   }
+  const std::string id = make(body, {*key, hash});
+  (*keys_)[*key] = id;
+  return answer(201, id);
 }
 
-/// What the job names must be there before it is taken.
-void Posting::check_files(const JobSpec& spec) const {
-  std::vector<Problem> problems;
-  const auto check = [&](const std::string& name, const std::vector<std::string_view>& extensions,
-                         const char* pointer) {
-    try {
-      scenes_.resolve(name, extensions);
-    } catch (const std::invalid_argument& error) {
-      problems.push_back({pointer, error.what()});
-    }
-  };
-  check(spec.scene, {".glb", ".gltf"}, "/scene");
-  if (spec.environment) check(spec.environment->file, {".exr", ".hdr"}, "/environment/file");
-  if (!problems.empty()) throw HttpError(400, "The job names a file that is not there.", problems);
+Response Posting::answer(int status, const std::string& id) const {
+  Response response = json_response(status, describe_made(id));
+  response.headers.emplace_back("Location", place_ + id);
+  return response;
 }
 
 }  // namespace lacuna

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "jobs/spec/budget_extension.h"
 #include "jobs/spec/described_json.h"
+#include "jobs/store/new_folder.h"
 #include "server/child_process.h"
 #include "server/log.h"
 
@@ -40,10 +42,15 @@ void Queue::stop() {
   runners_.clear();
 }
 
-void Queue::check_room() const {
+std::size_t Queue::room() const {
   const std::lock_guard lock(mutex_);
-  if (work_.size() >= settings_.max_waiting) {
-    throw Full(fmt::format("{} jobs wait or run, and there may be no more.", work_.size()));
+  return settings_.max_waiting - std::min(settings_.max_waiting, work_.size());
+}
+
+void Queue::check_room() const {
+  if (room() == 0) {
+    throw Full(
+        fmt::format("{} jobs wait or run, and there may be no more.", settings_.max_waiting));
   }
 }
 
@@ -117,6 +124,7 @@ void Queue::forget(const std::string& id) {
   if (found == work_.end()) return;
   leave_line(*found->second);
   work_.erase(found);
+  on_over_();
 }
 
 EntryPtr Queue::checked(const std::string& id, const std::string& revision) const {
@@ -243,24 +251,65 @@ Queue::Work& Queue::reopen(const EntryPtr& entry) {
   return *open(*entry, control);
 }
 
-void Queue::remove(const std::string& id, const std::string& revision) {
-  const std::lock_guard lock(mutex_);
-  const EntryPtr entry = checked(id, revision);
-  if (!entry->over) {
-    throw Conflict(fmt::format("The job is {}: only one that is over can be removed.",
-                               enum_name(entry->state.state)));
+/// What unfinished jobs measure their error against, and one of those jobs. Only under the lock.
+std::map<std::string, std::string> Queue::references() const {
+  std::map<std::string, std::string> users;
+  for (const auto& [id, work] : work_) {
+    const EntryPtr user = table_.find(id);
+    if (user && !user->reference.empty()) users.emplace(user->reference, id);
   }
-  for (const auto& [other, work] : work_) {
-    const EntryPtr user = table_.find(other);
-    if (user && user->reference == id) {
-      throw Conflict(fmt::format("Job {} measures its error against it.", other));
+  return users;
+}
+
+/// Only under the lock.
+void Queue::check_all_removable(const std::vector<std::string>& ids) const {
+  const auto in_use = references();
+  for (const std::string& id : ids) {
+    const EntryPtr entry = checked(id, {});
+    if (!entry->over) {
+      throw Conflict(fmt::format("Job {} is {}: only one that is over can be removed.", id,
+                                 enum_name(entry->state.state)));
+    }
+    if (table_.sweeps().is_unfinished(entry->sweep)) {
+      throw Conflict(fmt::format("Sweep {}, which it is a run of, is not over.", entry->sweep));
+    }
+    if (const auto user = in_use.find(id); user != in_use.end()) {
+      throw Conflict(fmt::format("Job {} measures its error against {}.", user->second, id));
     }
   }
-  const JobFolder folder = table_.folder(id);
+}
+
+void Queue::check_removable(const std::vector<std::string>& ids) const {
+  const std::lock_guard lock(mutex_);
+  check_all_removable(ids);
+}
+
+void Queue::remove(const std::string& id, const std::string& revision) {
+  const std::lock_guard lock(mutex_);
+  checked(id, revision);
+  take_away({id});
+}
+
+void Queue::remove_all(const std::vector<std::string>& ids) {
+  const std::lock_guard lock(mutex_);
+  take_away(ids);
+}
+
+/// Only under the lock.
+void Queue::take_away(const std::vector<std::string>& ids) {
+  check_all_removable(ids);
   const std::lock_guard no_forks(fork_mutex());
-  if (!folder.try_lock()) throw Conflict("A renderer still works in the job's folder.");
-  folder.remove();
-  table_.remove(id);
+  std::vector<JobFolder::Lock> taken;
+  std::vector<std::filesystem::path> folders;
+  for (const std::string& id : ids) {
+    const JobFolder folder = table_.folder(id);
+    auto lock = folder.try_lock();
+    if (!lock) throw Conflict(fmt::format("A renderer still works in the folder of {}.", id));
+    taken.push_back(std::move(*lock));
+    folders.push_back(folder.dir());
+  }
+  trash_.take(take_folders_away(folders));
+  for (const std::string& id : ids) table_.remove(id);
 }
 
 void Queue::look_at_disk() {

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -18,6 +19,7 @@
 #include "server/executor.h"
 #include "server/job_table.h"
 #include "server/settings.h"
+#include "server/trash.h"
 #include "server/verdict.h"
 
 namespace lacuna {
@@ -57,8 +59,13 @@ class Queue {
   /// Asks all renderers to stop and waits for them; their jobs go on after the next start().
   void stop();
 
-  /// Throws Full if `max_waiting` jobs wait.
+  /// How many more jobs may wait or run.
+  std::size_t room() const;
+  /// Throws Full if there is no room.
   void check_room() const;
+  /// Calls `notice` whenever a job is over: under the queue's lock, so that it may only take note.
+  /// Before start().
+  void on_over(std::function<void()> notice) { on_over_ = std::move(notice); }
   /// A new job, whose folder is complete on disk.
   EntryPtr add(const std::string& id);
 
@@ -71,8 +78,12 @@ class Queue {
   void retry(const std::string& id, const std::string& revision = {});
   /// A job that is over goes on until a larger budget is spent. Throws BadJob if it is no larger.
   void extend(const std::string& id, const Budget& budget, const std::string& revision = {});
-  /// Removes a job that is over, and its folder.
+  /// Removes a job that is over, and its folder: none of a sweep that is not over.
   void remove(const std::string& id, const std::string& revision = {});
+  /// The same of many at once: all of them or, if one cannot be, none.
+  void remove_all(const std::vector<std::string>& ids);
+  /// Throws Conflict if one of them cannot be removed.
+  void check_removable(const std::vector<std::string>& ids) const;
 
   /// While there is too little room on the disk, nothing starts and all renderers stop.
   void look_at_disk();
@@ -119,11 +130,16 @@ class Queue {
   JobState stored_state(const std::string& id) const;
   Work& reopen(const EntryPtr& entry);
   EntryPtr checked(const std::string& id, const std::string& revision) const;
+  std::map<std::string, std::string> references() const;
+  void check_all_removable(const std::vector<std::string>& ids) const;
+  void take_away(const std::vector<std::string>& ids);
 
   Executor& executor_;
   JobTable& table_;
   DiskWatch& disk_;
   const QueueSettings settings_;
+  std::function<void()> on_over_ = [] {};
+  Trash trash_;
 
   // Guards all below, and is held while a decision is written to disk, so that decisions and what
   // is stored of them have one order. Nothing else is waited for under it.

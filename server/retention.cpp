@@ -4,14 +4,17 @@
 
 namespace lacuna {
 
-std::vector<std::string> outdated(const std::vector<EntryPtr>& jobs, const CareSettings& settings,
+std::vector<std::string> outdated(const std::vector<EntryPtr>& jobs,
+                                  const std::set<std::string>& unfinished_sweeps,
+                                  const CareSettings& settings,
                                   std::chrono::system_clock::time_point now) {
   if (settings.keep_jobs == 0 && settings.keep_days == 0) return {};
   std::set<std::string> referenced;
   for (const EntryPtr& job : jobs) referenced.insert(job->reference);
   std::vector<EntryPtr> over;
   for (const EntryPtr& job : jobs) {
-    if (job->over && !job->damaged && !referenced.contains(job->id)) over.push_back(job);
+    const bool wanted = referenced.contains(job->id) || unfinished_sweeps.contains(job->sweep);
+    if (job->over && !job->damaged && !wanted) over.push_back(job);
   }
   const std::size_t surplus = settings.keep_jobs > 0 && over.size() > settings.keep_jobs
                                   ? over.size() - settings.keep_jobs

@@ -57,4 +57,13 @@ class Router {
   std::vector<Route> routes_;
 };
 
+/// A handler of an address whose first part is an id: calls `routes`, which outlives it.
+template <class Routes>
+Router::Handler with_id(Routes& routes,
+                        Response (Routes::*handler)(const Request&, const std::string&)) {
+  return [&routes, handler](const Request& request, const Router::Parts& parts) {
+    return (routes.*handler)(request, parts[0]);
+  };
+}
+
 }  // namespace lacuna

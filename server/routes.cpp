@@ -2,9 +2,14 @@
 
 namespace lacuna {
 
-Routes::Routes(const ServiceFacts& facts, JobTable& table, Queue& queue, const StaticFiles& page)
-    : page_(page), jobs_(facts.data, facts.scenes, table, queue), service_(facts) {
+Routes::Routes(const ServiceFacts& facts, JobTable& table, Queue& queue, SweepTable& sweeps,
+               SweepKeeper& keeper, const StaticFiles& page)
+    : page_(page),
+      jobs_(facts.data, facts.scenes, table, queue),
+      sweeps_(facts.scenes, sweeps, table, keeper),
+      service_(facts) {
   jobs_.add_to(router_);
+  sweeps_.add_to(router_);
   service_.add_to(router_);
 }
 

@@ -4,13 +4,15 @@
 #include "server/router.h"
 #include "server/service_routes.h"
 #include "server/static_files.h"
+#include "server/sweep_routes.h"
 
 namespace lacuna {
 
 /// The service's addresses and what each does. All references outlive it.
 class Routes {
  public:
-  Routes(const ServiceFacts& facts, JobTable& table, Queue& queue, const StaticFiles& page);
+  Routes(const ServiceFacts& facts, JobTable& table, Queue& queue, SweepTable& sweeps,
+         SweepKeeper& keeper, const StaticFiles& page);
 
   /// For HttpServer.
   Response handle(const Request& request) const;
@@ -18,6 +20,7 @@ class Routes {
  private:
   const StaticFiles& page_;
   JobRoutes jobs_;
+  SweepRoutes sweeps_;
   ServiceRoutes service_;
   Router router_;
 };

@@ -17,6 +17,8 @@
 #include "server/queue.h"
 #include "server/routes.h"
 #include "server/scene_uploads.h"
+#include "server/sweep_keeper.h"
+#include "server/sweep_table.h"
 
 namespace lacuna {
 namespace {
@@ -134,16 +136,18 @@ struct Service::Parts {
                   .scenes = scenes.roots(),
                   .grace = grace(settings),
                   .limits = settings.limits}),
-        table(data),
+        sweeps(data),
+        table(data, sweeps),
         disk(data.jobs(), settings.care.disk_floor),
         queue(executor, table, disk, queue_settings(settings)),
+        keeper(sweeps, table, queue, disk, settings.queue.max_waiting / 2),
         caretaker(table, queue, settings.care),
         files(page(settings)),
         access(settings.http.bind, settings.access,
                [this](const std::string& path) { return files.has(path); }),
         http(settings.http, [this](const Request& r) { return handle(r); }),
         routes({settings, data, scenes, table, disk, http.metrics(), uploads.get()}, table, queue,
-               files) {}
+               sweeps, keeper, files) {}
 
   Response handle(const Request& request) {
     if (auto answer = access.admit(request)) return std::move(*answer);
@@ -156,9 +160,11 @@ struct Service::Parts {
   const std::unique_ptr<SceneUploads> uploads;
   const ScenesRoots scenes;
   LocalExecutor executor;
+  SweepTable sweeps;
   JobTable table;
   DiskWatch disk;
   Queue queue;
+  SweepKeeper keeper;
   Caretaker caretaker;
   const StaticFiles files;
   Access access;
@@ -175,15 +181,18 @@ Service::~Service() { stop(); }
 
 void Service::start() {
   remove_stale_folders(parts_->data.jobs());
+  parts_->sweeps.read();
   parts_->table.rescan();
   parts_->caretaker.start();
   parts_->queue.start();
+  parts_->keeper.start();
   parts_->http.start();
 }
 
 void Service::stop() {
   if (parts_->uploads) parts_->uploads->stop();
   parts_->http.stop();
+  parts_->keeper.stop();
   parts_->queue.stop();
   parts_->caretaker.stop();
 }

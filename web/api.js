@@ -32,7 +32,7 @@ async function request(path, options = {}) {
 }
 
 /// A request that changes something; `body` is JSON, undefined: there is none.
-const send = (method, path, body) => request(path, {
+export const send = (method, path, body) => request(path, {
   method, body, headers: body === undefined ? {} : { "Content-Type": "application/json" },
 });
 const postToken = (token) => send("POST", "/api/session", JSON.stringify({ token }));
@@ -49,7 +49,7 @@ export function fileUrl(id, name, version) {
   return version === undefined ? path : `${path}?v=${encodeURIComponent(version)}`;
 }
 
-const json = async (path, signal) => (await request(path, { signal })).json();
+export const json = async (path, signal) => (await request(path, { signal })).json();
 /// A part of the list: {jobs, total, counts, next, last_event}; `wanted`: {state, label, limit, cursor}.
 export const getJobs = (wanted, signal) => json(`/api/jobs?${queryOf(wanted)}`, signal);
 export const getJob = (id, signal) => json(jobPath(id), signal);
@@ -92,15 +92,15 @@ export async function postJob(text) {
 
 const sayLink = (text) => setText(document.getElementById("link-state"), text);
 
-/// Calls `step` now and `ms` after its end, while the page can be seen, until `signal` is aborted or
-/// `step` gives false. An unanswered request is said in the head of the page and tried again. The first
-/// call's errors are thrown to the caller.
+/// Calls `step` now and `ms` (a number, or a function that gives one) after its end, while the page can be
+/// seen, until `signal` is aborted or `step` gives false. An unanswered request is said in the head of the
+/// page and tried again. The first call's errors are thrown to the caller.
 export async function poll(step, ms, signal) {
   signal.addEventListener("abort", () => sayLink(""));
   let more = await step();
   (async () => {
     while (more !== false) {
-      await new Promise((resolve) => { setTimeout(resolve, ms); });
+      await new Promise((resolve) => { setTimeout(resolve, typeof ms === "function" ? ms() : ms); });
       if (signal.aborted) return;
       if (document.hidden) continue;
       try {

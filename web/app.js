@@ -7,13 +7,17 @@ import * as compare from "./view_compare.js";
 import * as figure from "./view_figure.js";
 import * as job from "./view_job.js";
 import * as jobs from "./view_jobs.js";
-import * as create from "./view_new.js";
+
+/// A view that many never open is read when somebody does.
+const later = (file) => async (...given) => (await import(file)).show(...given);
 
 const routes = [
   { pattern: /^\/$/, show: jobs.show },
   { pattern: /^\/job\/(?<id>[^/]+)$/, show: job.show, alone: figure.show },
   { pattern: /^\/compare$/, show: compare.show, alone: figure.show },
-  { pattern: /^\/new$/, show: create.show },
+  { pattern: /^\/new$/, show: later("./view_new.js") },
+  { pattern: /^\/sweeps$/, show: later("./view_sweeps.js") },
+  { pattern: /^\/sweep\/(?<id>[^/]+)$/, show: later("./view_sweep.js") },
 ];
 
 const main = document.getElementById("main");

@@ -1,21 +1,10 @@
 // One crop of several jobs side by side, at one exposure, with each job's time and error.
 import { longest } from "./crop.js";
-import { h, note, replace, setText, warning } from "./dom.js";
+import { h, note, replace, setText } from "./dom.js";
+import { aboutTimes } from "./equal_times.js";
 import { seconds } from "./format.js";
 import { painter } from "./gl_draw.js";
 import { cut } from "./pixels.js";
-
-const mostApart = 1.05;  // times that differ by no more count as equal
-
-/// What can be said of the jobs' times: only their last pictures are kept.
-function aboutTimes(sources) {
-  const times = sources.map((s) => s.seconds ?? 0);
-  const [least, most] = [Math.min(...times), Math.max(...times)];
-  return most <= mostApart * least
-    ? note("Of equal time: the jobs' last pictures; their render times differ by at most 5 %.")
-    : warning(`Not of equal time: the jobs' last pictures, after ${seconds(least)} to ${seconds(most)} of rendering. `
-      + "Earlier ones are not kept; the table above has the errors at equal times.");
-}
 
 /// `show(state, sources, images, look, ratio)`: the state's crop of all images, where it asks for crops;
 /// `ratio` is how many of the screen's pixels make a CSS pixel.
@@ -34,7 +23,7 @@ export function cropStrip(signal) {
     canvases = sources.map(({ name }) => h("canvas", { role: "img", "aria-label": `Crop of ${name}` }));
     replace(strip, sources.map((s, i) => h("figure", canvases[i],
       h("figcaption", h("span", s.name), h("span", `${seconds(s.seconds)}, ${s.error || "no error measured"}`)))));
-    replace(times, aboutTimes(sources));
+    replace(times, aboutTimes(sources.map((s) => s.seconds ?? 0)));
   }
 
   function draw(image, crop, scale, look) {

@@ -53,10 +53,10 @@ export function errorAt(curve, x) {
   return after > 0 ? between(curve, after, "x", "y", x) : null;
 }
 
-/// The x at which the error first is at or below `y`, interpolated in log-log; null if never.
+/// The x from which on the error stays at or below `y`, interpolated in log-log; null if it ends above.
 export function reaches(curve, y) {
-  const after = curve.findIndex((p) => p.y <= y);
-  return after > 0 ? between(curve, after, "y", "x", y) : curve[after]?.x ?? null;
+  const after = curve.findLastIndex((p) => p.y > y) + 1;
+  return after > 0 && after < curve.length ? between(curve, after, "y", "x", y) : curve[after]?.x ?? null;
 }
 
 /// The instants at which curves can be compared: the last one that all of them reach, and
@@ -68,10 +68,10 @@ export function commonInstants(curves) {
   return [100, 10, 4, 2, 1].map((n) => last / n).filter((x) => x >= first);
 }
 
-/// The smallest error that all curves reach; null if there are none.
+/// The smallest error that all curves reach and keep; null if there are none.
 export function commonError(curves) {
   const filled = curves.filter((c) => c.length > 0);
-  return filled.length === 0 ? null : Math.max(...filled.map((c) => Math.min(...c.map((p) => p.y))));
+  return filled.length === 0 ? null : Math.max(...filled.map((c) => c.at(-1).y));
 }
 
 /// Two ends of the line of the given slope that lies amid the points (least squares in log-log),

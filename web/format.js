@@ -90,7 +90,7 @@ export const firstJob = (scenes) => ({
 });
 
 /// A word for the shell, quoted.
-const shellQuote = (text) => `'${text.replaceAll("'", "'\\''")}'`;
+export const shellQuote = (text) => `'${text.replaceAll("'", "'\\''")}'`;
 
 /// A job without the keys that are null, which say nothing.
 export const withoutNulls = (job) =>

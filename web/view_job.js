@@ -16,7 +16,8 @@ import { chosen } from "./view_jobs.js";
 
 const refreshMs = 2000;
 
-const jobFacts = ({ job, state, progress }) => facts([
+const jobFacts = ({ job, state, progress, sweep }) => facts([
+  ["Sweep", sweep && h("a", { href: `#/sweep/${sweep}` }, sweep)],
   ["Scene", job.scene],
   ["Camera", job.camera],
   ["Integrator", integratorName(job.integrator)],

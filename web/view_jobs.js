@@ -85,10 +85,11 @@ export async function show(main, { query, signal }) {
     }
     arrange([...rows.values()].map((row) => row.element));
     filter.count(counts);
-    tools.hidden = all === 0;
+    const none = all === 0 && !filter.active();
+    tools.hidden = none;
     setText(count, filter.active() ? `${total} of ${all}` : `${all} jobs`);
     pages.show(place, jobs.length, total, next);
-    const shown = all === 0 ? empty : total === 0 ? note("No job matches the filter.") : element;
+    const shown = none ? empty : total === 0 ? note("No job matches the filter.") : element;
     if (body.firstChild !== shown) body.replaceChildren(shown);
   }
 

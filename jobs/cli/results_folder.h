@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <string>
 
+#include "jobs/store/new_folder.h"
+
 namespace lacuna {
 
 /// Where the results of a file go: `out`, or, if that is empty, the file's name with `extension` in
@@ -10,10 +12,7 @@ namespace lacuna {
 inline std::filesystem::path results_folder(const std::filesystem::path& file,
                                             const std::filesystem::path& out,
                                             const std::string& extension) {
-  const std::filesystem::path named =
-      out.empty() ? std::filesystem::path(file.stem().string() + extension) : out;
-  std::filesystem::path folder = std::filesystem::absolute(named).lexically_normal();
-  return folder.has_filename() ? folder : folder.parent_path();
+  return folder_path(out.empty() ? std::filesystem::path(file.stem().string() + extension) : out);
 }
 
 }  // namespace lacuna

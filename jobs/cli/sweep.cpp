@@ -99,6 +99,8 @@ class Runner {
     const std::size_t index = left_.front();
     left_.pop_front();
     running_.push_back({index, RenderProcess(sweep_.make_folder(run_at(index)), options_.threads)});
+    // The next one's folder while this one loads: nobody has to wait for the disk then.
+    if (!left_.empty()) sweep_.make_folder(run_at(left_.front()));
   }
 
   /// Waits a little for one that ends.
@@ -109,7 +111,7 @@ class Runner {
       running_.erase(it);
       return;
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 
   void finish(std::size_t index) {
@@ -155,6 +157,11 @@ class Runner {
 int sweep(const SweepOptions& o) {
   const SweepFolder folder = open(o);
   const auto& runs = folder.plan().runs;
+  if (folder.is_served() && !o.list && !o.missing) {
+    throw BadJob({{"", fmt::format("{} is a sweep of a service, which does its runs; from here: "
+                                   "--list, --missing",
+                                   folder.dir().string())}});
+  }
   if (o.list) return print_runs(folder), exit_done;
   std::vector<std::size_t> left;
   for (std::size_t i = 1; i <= runs.size(); ++i) {
@@ -167,7 +174,12 @@ int sweep(const SweepOptions& o) {
         {{"", fmt::format("--index {}: the sweep has runs 1 to {}", o.index, runs.size())}});
   }
   const int code = Runner(folder, o).run(left);
-  if (o.index == 0) write_file_atomically(folder.dir() / "table.csv", sweep_table(folder));
+  if (o.index == 0) {
+    write_file_atomically(folder.dir() / "table.csv", sweep_table(folder));
+    if (!o.quiet) {
+      fmt::print(stderr, "`lacuna report {}` compares its cells\n", folder.dir().string());
+    }
+  }
   return code;
 }
 

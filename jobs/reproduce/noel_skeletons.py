@@ -2,8 +2,8 @@
 
 `surface`: the median of how far voxels beside the scene lie from their node. `his to ours`, `ours to his`: how far the
 nearest node of the other is, the median and the 90th percentile; `in ball`: which share of his nodes has one of ours
-within his node's own radius and a voxel's diagonal. All in voxels. His code keeps curves by the Chebyshev distance and does not pierce closed
-surfaces, so that the space around floating objects has no node.
+within his node's own radius and a voxel's diagonal. All in voxels. His code keeps curves by the Chebyshev distance and
+does not pierce closed surfaces, so that the space around floating objects has no node.
 """
 
 import gzip
@@ -11,11 +11,14 @@ import json
 import math
 import pathlib
 import statistics
-import subprocess
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-BASELINES = ROOT.parent / "shared/baselines"
+from harness import child
+from harness.measured import exact
+from harness.run import Table
+
+TARGETS = ("grid_skeleton",)
+BASELINES = child.ROOT.parent / "shared/baselines"
 GRIDS = ("door_128", "door_256", "door_512", "corridor_128", "corridor_256")
 CELL = 8  # voxels
 
@@ -43,37 +46,40 @@ class Nearest:
 
 
 def summary(distances):
-    return f"{statistics.median(distances):>6.1f} {statistics.quantiles(distances, n=10)[-1]:>6.1f}"
+    return statistics.median(distances), statistics.quantiles(distances, n=10)[-1]
 
 
 def skeleton(grid, what):
     """Nodes, number of edges, median distance of the surface."""
-    out = subprocess.run([ROOT / "build/release/bin/grid_skeleton", grid, what], check=True, stdout=subprocess.PIPE,
-                         text=True).stdout.splitlines()
+    out = child.call(child.BIN / "grid_skeleton", grid, what)[0].splitlines()
     numbers = out[0].split()
     return [tuple(map(int, line.split())) for line in out[1:]], int(numbers[1]), float(numbers[3])
 
 
-def main():
-    print(f"{'grid':<13} {'':<10} {'nodes':>6} {'edges':>6} {'surface':>8} {'his to ours':>13} {'ours to his':>13} "
-          f"{'in ball':>8}")
+def compare(run, name, folder):
+    """The rows of a grid: his, and ours with either distance."""
+    grid, nodes = folder / "grid", folder / "nodes"
+    grid.write_bytes(gzip.decompress((BASELINES / f"{name}.vox.gz").read_bytes()))
+    found = json.loads(gzip.decompress((BASELINES / f"{name}.skel.json.gz").read_bytes()))["nodes"]
+    his = [tuple(n["p"]) for n in found]
+    nodes.write_text("".join(f"{x} {y} {z}\n" for x, y, z in his))
+    _, _, his_surface = skeleton(grid, nodes)
+    yield (name, "his", len(his), sum(len(n["n"]) for n in found) // 2, his_surface, *[""] * 5)
+    for distance in ("l1", "chebyshev"):
+        ours, edges, surface = skeleton(grid, distance)
+        there = list(map(Nearest(ours), his))
+        back = list(map(Nearest(his), ours))
+        inside = sum(d <= n["r"] + math.sqrt(3) for d, n in zip(there, found)) / len(found)
+        yield ("", distance, len(ours), edges, surface, *summary(there), *summary(back), inside)
+        run.stands_beside(f"{name}, {distance}: surface to node", his_surface, exact(surface), "voxels")
+
+
+def measure(run):
+    if not BASELINES.is_dir():
+        raise child.Failed(f"the author's grids are not there ({BASELINES})")
+    rows = []
     with tempfile.TemporaryDirectory() as folder:
         for name in GRIDS:
-            grid, nodes = pathlib.Path(folder) / "grid", pathlib.Path(folder) / "nodes"
-            grid.write_bytes(gzip.decompress((BASELINES / f"{name}.vox.gz").read_bytes()))
-            found = json.loads(gzip.decompress((BASELINES / f"{name}.skel.json.gz").read_bytes()))["nodes"]
-            his = [tuple(n["p"]) for n in found]
-            nodes.write_text("".join(f"{x} {y} {z}\n" for x, y, z in his))
-            _, _, surface = skeleton(grid, nodes)
-            print(f"{name:<13} {'his':<10} {len(his):>6} {sum(len(n['n']) for n in found) // 2:>6} {surface:>8.1f}")
-            for distance in ("l1", "chebyshev"):
-                ours, edges, surface = skeleton(grid, distance)
-                there = list(map(Nearest(ours), his))
-                back = list(map(Nearest(his), ours))
-                inside = sum(d <= n["r"] + math.sqrt(3) for d, n in zip(there, found)) / len(found)
-                print(f"{'':<13} {distance:<10} {len(ours):>6} {edges:>6} {surface:>8.1f} {summary(there)} "
-                      f"{summary(back)} {inside:>8.3f}")
-
-
-if __name__ == "__main__":
-    main()
+            rows += compare(run, name, pathlib.Path(folder))
+    run.tables.append(Table(("grid", "", "nodes", "edges", "surface", "his to ours", "90 %", "ours to his", "90 %",
+                             "in ball"), rows))

@@ -7,25 +7,13 @@
 
 #include "jobs/run/results.h"
 #include "jobs/spec/job_json.h"
+#include "jobs/spec/reference_spec.h"
 #include "renderer/scene/image_read.h"
 #include "renderer/scene/scene_data.h"
 
 namespace lacuna {
 
 namespace {
-
-/// The integrator that a reference of `settings` is made with: converges to the same picture.
-struct PlainIntegrator {
-  IntegratorSettings operator()(const PathSettings& s) const {
-    PathSettings plain;
-    plain.max_depth = s.max_depth;
-    return plain;
-  }
-  IntegratorSettings operator()(const InspectSettings& s) const { return s; }
-};
-
-// So that no random number of a reference is one of the job's own.
-constexpr std::uint64_t reference_seed = 0x726566657265;  // below 2^53, the largest seed
 
 bool is_plain_name(const std::string& s) {
   return !s.empty() && s.front() != '.' && s.find('/') == std::string::npos &&
@@ -41,7 +29,7 @@ Reference read_reference(const std::string& name, const std::filesystem::path& i
     throw SceneError(fmt::format("reference \"{}\" has {} x {} pixels, the job {} x {}", name,
                                  file.width, file.height, resolution[0], resolution[1]));
   }
-  Reference r{name, {file.rgb.begin(), file.rgb.end()}, std::nullopt};
+  Reference r{name, {file.rgb.begin(), file.rgb.end()}, std::nullopt, image};
   for (std::size_t i = 0; i < r.rgb.size(); ++i) {
     if (std::isfinite(r.rgb[i])) continue;
     const auto pixel = i / 3;
@@ -91,17 +79,7 @@ Reference find_reference(const JobSpec& spec, const DataRoot& data, const Scenes
 }
 
 ReferenceJob auto_reference(const JobSpec& spec, const DataRoot& data, const std::string& content) {
-  JobSpec r;
-  r.scene = spec.scene;
-  r.camera = spec.camera;
-  r.label = "reference";
-  r.resolution = spec.resolution;
-  r.integrator = std::visit(PlainIntegrator{}, spec.integrator);
-  r.budget.iterations = spec.reference_iterations;
-  r.environment = spec.environment;
-  r.seed = reference_seed;
-  r.threads = spec.threads;
-  r.layers = {ImageLayer::variance, ImageLayer::halves};
+  JobSpec r = reference_spec(spec);
   const std::string name =
       fmt::format("auto-{}-{}-{}", picture_key(r), content, spec.reference_iterations);
   return {r, JobFolder(data.references() / name)};

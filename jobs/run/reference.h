@@ -12,8 +12,9 @@ namespace lacuna {
 /// What a job's error is measured against.
 struct Reference {
   std::string name;
-  std::vector<double> rgb;    ///< interleaved, top row first, of the job's resolution
-  std::optional<double> mse;  ///< its own remaining noise, if it is known
+  std::vector<double> rgb;          ///< interleaved, top row first, of the job's resolution
+  std::optional<double> mse;        ///< its own remaining noise, if it is known
+  std::filesystem::path file = {};  ///< where it was read from
 };
 
 /// Reads the picture that `spec.reference` names (not "auto" or empty): an EXR below a scenes root,
@@ -26,8 +27,7 @@ Reference find_reference(const JobSpec& spec, const DataRoot& data, const Scenes
 Reference read_reference(const std::string& name, const std::filesystem::path& image,
                          const std::array<int, 2>& resolution);
 
-/// The job that makes the "auto" reference of `spec`: the plain, unbiased integrator of the same
-/// light transport, with random numbers of its own. It has a folder of its own below the
+/// The job that makes the "auto" reference of `spec` (reference_spec()), and its folder below the
 /// references, named by what it depends on: this job, and `content` (hashes of the scene and of the
 /// environment).
 struct ReferenceJob {

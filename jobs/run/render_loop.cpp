@@ -20,6 +20,7 @@ namespace {
 constexpr double checkpoint_share = 0.01;
 constexpr double preview_share = 0.005;
 constexpr double progress_interval = 0.5;  // seconds
+constexpr double preview_interval = 1;  // seconds: what is done sooner has its picture at its end
 
 bool is_time(double t) { return std::isfinite(t) && t >= 0; }
 
@@ -45,7 +46,7 @@ RenderLoop::RenderLoop(const RenderTask& task)
       frame_(task.spec.resolution[0], task.spec.resolution[1]),
       clock_(task.pool.threads()),
       checkpoints_(task.spec.checkpoint_seconds, checkpoint_share),
-      previews_(0, preview_share),
+      previews_(preview_interval, preview_share),
       progress_(progress_interval, checkpoint_share) {}
 
 std::string RenderLoop::identity() const {

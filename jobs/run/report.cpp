@@ -72,6 +72,7 @@ OrderedJson errors_json(const RenderTask& task, const Curve& curve) {
   if (task.reference != nullptr) {
     j["reference"] = {
         {"name", task.reference->name},
+        {"file", std::filesystem::absolute(task.reference->file).string()},
         {"own_rmse",
          task.reference->mse ? OrderedJson(std::sqrt(*task.reference->mse)) : OrderedJson(nullptr)},
         {"at_floor", row.at_floor}};
@@ -79,11 +80,18 @@ OrderedJson errors_json(const RenderTask& task, const Curve& curve) {
   return j;
 }
 
-OrderedJson machine(const ThreadPool& pool) {
-  return {{"processor", processor_name()},
-          {"cores", sysconf(_SC_NPROCESSORS_ONLN)},
-          {"threads", pool.threads()},
-          {"peak_memory_bytes", peak_memory()}};
+OrderedJson machine(const ThreadPool& pool, const std::optional<Disturbance>& disturbance) {
+  OrderedJson j{{"processor", processor_name()},
+                {"cores", sysconf(_SC_NPROCESSORS_ONLN)},
+                {"threads", pool.threads()},
+                {"peak_memory_bytes", peak_memory()}};
+  if (disturbance) {
+    j["others_share"] = disturbance->others;
+    j["stolen_share"] = disturbance->stolen;
+    j["load"] = disturbance->load;
+    j["mhz"] = optional(disturbance->mhz);
+  }
+  return j;
 }
 
 }  // namespace
@@ -101,7 +109,7 @@ std::string write_report(const ReportInput& input) {
   j["scene"] = scene(task.scene);
   j["artefacts"] = artefacts_json(input.artefacts);
   j["warnings"] = input.warnings;
-  j["machine"] = machine(task.pool);
+  j["machine"] = machine(task.pool, input.disturbance);
   return document_text(j);
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "analysis/artefacts/record.h"
+#include "jobs/run/machine_watch.h"
 #include "jobs/run/render_loop.h"
 
 namespace lacuna {
@@ -12,7 +13,8 @@ struct ReportInput {
   const RenderTask& task;
   const RenderLoop& loop;
   std::vector<std::string> warnings;
-  std::vector<ArtefactRecord> artefacts = {};  ///< ArtefactStore::records()
+  std::vector<ArtefactRecord> artefacts = {};   ///< ArtefactStore::records()
+  std::optional<Disturbance> disturbance = {};  ///< while it was rendered
 };
 
 /// report.json: seconds by phase, counts, rates, what of the scene was built and what was not

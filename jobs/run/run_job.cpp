@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "analysis/storage/atomic_file.h"
+#include "jobs/run/machine_watch.h"
 #include "jobs/run/obstacle.h"
 #include "jobs/run/prepare.h"
 #include "jobs/run/reference.h"
@@ -161,7 +162,9 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
                         prepared.content};
   RenderLoop loop(task);
   loop.resume();
+  const MachineWatch watch;
   if (!loop.run()) return Outcome::interrupted;
+  const auto disturbance = watch.disturbance();
 
   running.phase("writing");
   {
@@ -172,8 +175,9 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
     running.warn(fmt::format("{} contributions were not finite and were left out",
                              loop.counters().rejected));
   }
-  write_file_atomically(folder.file("report.json"), write_report({task, loop, running.warnings(),
-                                                                  prepared.artefacts->records()}));
+  write_file_atomically(
+      folder.file("report.json"),
+      write_report({task, loop, running.warnings(), prepared.artefacts->records(), disturbance}));
   return Outcome::done;
 }
 

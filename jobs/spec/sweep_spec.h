@@ -1,11 +1,13 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/settings/field.h"
 #include "jobs/spec/json_value.h"
+#include "renderer/settings/output_settings.h"
 
 namespace lacuna {
 
@@ -22,6 +24,40 @@ struct EnumTable<SweepOrder> {
   }};
 };
 
+/// Which of a curve's two clocks counts.
+enum class SweepClock { seconds, cpu_seconds };
+
+template <>
+struct EnumTable<SweepClock> {
+  static constexpr std::array<EnumValue<SweepClock>, 2> values{{
+      {SweepClock::seconds, "seconds", "render time, wall clock"},
+      {SweepClock::cpu_seconds, "cpu_seconds",
+       "CPU seconds divided by threads: holds still on a busy machine"},
+  }};
+};
+
+/// Where the cells of a sweep are compared.
+struct CompareAt {
+  std::vector<double> seconds, errors;
+  std::optional<ErrorMetric> metric;
+  SweepClock clock = SweepClock::seconds;
+  bool operator==(const CompareAt&) const = default;
+};
+template <class V>
+void describe(V& v, CompareAt& s) {
+  v("seconds", s.seconds,
+    {.doc = "render times at which errors are compared; none: the last that all cells reach, and "
+            "a half, a quarter and a tenth of it",
+     .max = 16});
+  v("errors", s.errors,
+    {.doc = "errors to which times are compared; none: the smallest that all cells reach, and "
+            "twice that",
+     .max = 16});
+  v("metric", s.metric,
+    {.doc = "which error; none: relmse, or est_rmse where there is no reference"});
+  v("clock", s.clock, {.doc = "which time"});
+}
+
 /// Many jobs that differ in some settings: the sweep file. Settings are named by JSON pointers (RFC
 /// 6901) into the job.
 struct SweepSpec {
@@ -32,7 +68,9 @@ struct SweepSpec {
   std::vector<JsonTable<JsonValue>> exclude;
   int seeds = 1;
   JsonTable<JsonValue> baseline;
+  CompareAt compare_at;
   SweepOrder order = SweepOrder::interleave;
+  bool alone = true;
   bool operator==(const SweepSpec&) const = default;
 };
 template <class V>
@@ -58,7 +96,11 @@ void describe(V& v, SweepSpec& s) {
     {.doc = "what is compared against: of every cell the one that has these values and else the "
             "same",
      .max = 16});
+  v("compare_at", s.compare_at, {.doc = "where errors and times are compared"});
   v("order", s.order, {.doc = "in which order runs are done"});
+  v("alone", s.alone,
+    {.doc = "each run has the machine for itself, so that times can be compared; false: as many at "
+            "a time as the service or --jobs allows"});
 }
 
 }  // namespace lacuna

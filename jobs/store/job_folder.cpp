@@ -12,11 +12,10 @@
 #include "jobs/spec/described_json.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/store/new_folder.h"
+#include "jobs/store/own_document.h"
 
 namespace lacuna {
 namespace {
-
-constexpr DocumentLimits state_limits{1 << 20, 8};
 
 /// What goes into a one-line field of state.json: no control characters, of bounded length.
 std::string one_line(std::string text) {
@@ -29,18 +28,6 @@ std::string one_line(std::string text) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
   }
   return text;
-}
-
-/// A file that Lacuna itself has written. Throws std::system_error, std::runtime_error.
-template <Described T>
-T read_own(const std::filesystem::path& path) {
-  try {
-    return read_document<T>(read_file(path, state_limits.max_bytes), state_limits);
-  } catch (const BadJob& e) {
-    throw std::runtime_error(fmt::format("{} is corrupt: {}", path.string(), e.what()));
-  } catch (const std::length_error& e) {
-    throw std::runtime_error(fmt::format("{} is corrupt: {}", path.string(), e.what()));
-  }
 }
 
 }  // namespace
@@ -65,9 +52,7 @@ const std::vector<FileInfo>& job_files() {
 
 JobFolder JobFolder::create(const std::filesystem::path& dir, const JobSpec& spec,
                             const JobControl& control) {
-  const std::filesystem::path absolute = std::filesystem::absolute(dir).lexically_normal();
-  const std::filesystem::path target =
-      absolute.has_filename() ? absolute : absolute.parent_path();  // "jobs/x/" is "jobs/x"
+  const std::filesystem::path target = folder_path(dir);
   create_folder_whole(target, [&](const std::filesystem::path& made) {
     const JobFolder draft(made);
     draft.write_job(spec);
@@ -115,8 +100,7 @@ std::optional<Progress> JobFolder::read_progress() const {
   // Not synced: after a power cut it may be empty or missing, which only means that nothing is
   // known.
   try {
-    return read_document<Progress>(read_file(file("progress.json"), state_limits.max_bytes),
-                                   state_limits);
+    return read_own<Progress>(file("progress.json"));
   } catch (const std::exception&) {
     return std::nullopt;
   }
@@ -124,13 +108,6 @@ std::optional<Progress> JobFolder::read_progress() const {
 
 void JobFolder::write_progress(const Progress& p) const {
   write_file_atomically(file("progress.json"), write_document(p), false);
-}
-
-void JobFolder::remove() const {
-  const std::filesystem::path trash = temporary_name(dir_);
-  if (::rename(dir_.c_str(), trash.c_str()) != 0) throw_file_error(errno, "remove", dir_);
-  sync_folder(dir_.parent_path());
-  std::filesystem::remove_all(trash);
 }
 
 std::optional<JobFolder::Lock> JobFolder::try_lock() const {

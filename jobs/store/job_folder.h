@@ -71,10 +71,6 @@ class JobFolder {
   std::optional<Progress> read_progress() const;
   void write_progress(const Progress& p) const;
 
-  /// Removes the folder and all in it; a crash midway leaves nothing that looks like a job. Throws
-  /// std::system_error.
-  void remove() const;
-
   /// Takes the folder for this process until the object dies, so that two renderers never write
   /// into one folder. Nothing if another process has it. Whoever gets it also tidies up the
   /// temporary files of renderers that were killed. Throws std::system_error.
@@ -92,6 +88,7 @@ struct DataRoot {
   std::uint64_t cache_limit = std::uint64_t{10} << 30;  ///< bytes, of all artefacts together
 
   std::filesystem::path jobs() const { return dir / "jobs"; }
+  std::filesystem::path sweeps() const { return dir / "sweeps"; }
   std::filesystem::path references() const { return dir / "references"; }
   /// Of the artefacts.
   std::filesystem::path cache() const {
@@ -135,6 +132,12 @@ class ScenesRoots {
 std::string new_job_id();
 /// The form that new_job_id() makes; nothing else is looked up on disk.
 bool is_job_id(std::string_view s);
+/// The id of a job that is a run of a sweep: the sweep's own id, whose letters are counted on by 1
+/// + `index` (modulo 36^6). A pure function: nothing has to remember which job is which run.
+std::string run_job_id(std::string_view sweep_id, std::size_t index);
+/// The index for which run_job_id() gives `job_id`, be it one that the sweep has or not; nothing if
+/// there is none.
+std::optional<std::size_t> run_index(std::string_view sweep_id, std::string_view job_id);
 /// All jobs below `jobs`, oldest first; folders that are no jobs are left out.
 std::vector<JobFolder> list_jobs(const std::filesystem::path& jobs);
 /// A time as JobState has it: UTC, ISO 8601 with milliseconds; such texts sort by time.

@@ -13,7 +13,22 @@ namespace {
 
 /// The form of an id: 'd' a digit, 'x' a lower-case letter or digit, else itself.
 constexpr std::string_view id_form = "dddddddd-dddddd-xxxxxx";
-constexpr std::string_view id_letters = "abcdefghijklmnopqrstuvwxyz0123456789";
+/// The digits to base 36: ids of one second sort as the numbers that their letters are.
+constexpr std::string_view id_letters = "0123456789abcdefghijklmnopqrstuvwxyz";
+constexpr std::size_t id_time_size = id_form.find('x');
+
+/// The number that the letters of an id are, and how many there are of such.
+std::uint64_t letters_value(std::string_view id) {
+  std::uint64_t value = 0;
+  for (const char c : id.substr(id_time_size))
+    value = id_letters.size() * value + id_letters.find(c);
+  return value;
+}
+std::uint64_t letters_values() {
+  std::uint64_t values = 1;
+  for (std::size_t i = id_time_size; i < id_form.size(); ++i) values *= id_letters.size();
+  return values;
+}
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -40,6 +55,22 @@ bool is_job_id(std::string_view s) {
     if (form == 'x') return id_letters.find(c) != std::string_view::npos;
     return c == form;
   });
+}
+
+std::string run_job_id(std::string_view sweep_id, std::size_t index) {
+  std::uint64_t value = (letters_value(sweep_id) + 1 + index) % letters_values();
+  std::string id(sweep_id);
+  for (std::size_t i = id.size(); i-- > id_time_size; value /= id_letters.size()) {
+    id[i] = id_letters[value % id_letters.size()];
+  }
+  return id;
+}
+
+std::optional<std::size_t> run_index(std::string_view sweep_id, std::string_view job_id) {
+  if (!is_job_id(job_id)) return std::nullopt;
+  if (job_id.substr(0, id_time_size) != sweep_id.substr(0, id_time_size)) return std::nullopt;
+  const std::uint64_t all = letters_values();
+  return (letters_value(job_id) + all - letters_value(sweep_id) + all - 1) % all;
 }
 
 std::vector<JobFolder> list_jobs(const std::filesystem::path& jobs) {

@@ -29,6 +29,11 @@ void rename_folder(const std::filesystem::path& from, const std::filesystem::pat
 
 }  // namespace
 
+std::filesystem::path folder_path(const std::filesystem::path& named) {
+  std::filesystem::path folder = std::filesystem::absolute(named).lexically_normal();
+  return folder.has_filename() ? folder : folder.parent_path();  // "jobs/x/" is "jobs/x"
+}
+
 void create_folder_whole(const std::filesystem::path& target,
                          const std::function<void(const std::filesystem::path& draft)>& fill) {
   std::filesystem::create_directories(target.parent_path());
@@ -43,6 +48,23 @@ void create_folder_whole(const std::filesystem::path& target,
     throw;
   }
   sync_folder(target.parent_path());
+}
+
+std::vector<std::filesystem::path> take_folders_away(
+    const std::vector<std::filesystem::path>& folders) {
+  std::vector<std::filesystem::path> hidden;
+  for (const auto& folder : folders) {
+    hidden.push_back(temporary_name(folder));
+    if (::rename(folder.c_str(), hidden.back().c_str()) != 0) {
+      throw_file_error(errno, "remove", folder);
+    }
+  }
+  if (!folders.empty()) sync_folder(folders.front().parent_path());
+  return hidden;
+}
+
+void remove_folder_whole(const std::filesystem::path& folder) {
+  for (const auto& hidden : take_folders_away({folder})) std::filesystem::remove_all(hidden);
 }
 
 }  // namespace lacuna

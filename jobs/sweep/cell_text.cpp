@@ -30,7 +30,29 @@ std::string short_name(const std::string& pointer, const JsonTable<JsonValue>& a
   return ending(tokens, tokens.size());
 }
 
+/// All cells of `some` have the same value there.
+template <class Cells, class CellOf>
+bool agree(const Cells& some, const std::string& pointer, CellOf&& cell_of) {
+  const JsonValue& first = cell_of(*some.begin()).settings.at(pointer);
+  return std::all_of(some.begin(), some.end(),
+                     [&](const auto& c) { return cell_of(c).settings.at(pointer) == first; });
+}
+
 }  // namespace
+
+VaryingSettings settings_that_vary(const SweepPlan& plan, const std::vector<std::size_t>& cells) {
+  VaryingSettings found;
+  const auto itself = [](const SweepCell& c) -> const SweepCell& { return c; };
+  const auto numbered = [&](std::size_t c) -> const SweepCell& { return plan.cells[c]; };
+  for (const auto& [pointer, value] : plan.cells[cells.front()].settings) {
+    if (!agree(cells, pointer, numbered)) {
+      found.vary.push_back(pointer);
+    } else if (!agree(plan.cells, pointer, itself)) {
+      found.shared[pointer] = value;
+    }
+  }
+  return found;
+}
 
 std::string cell_text(const JsonTable<JsonValue>& settings) {
   std::string text;

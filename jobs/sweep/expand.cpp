@@ -20,12 +20,14 @@ struct Axis {
 
 class Expansion {
  public:
-  explicit Expansion(const SweepSpec& sweep) : sweep_(sweep) {}
+  Expansion(const SweepSpec& sweep, const JobCheck& check) : sweep_(sweep), check_(check) {}
 
   SweepPlan run() {
     gather_axes();
     check_combinations(sweep_.exclude);
     check_values(sweep_.baseline, "/baseline");
+    check_positive(sweep_.compare_at.seconds, "/compare_at/seconds");
+    check_positive(sweep_.compare_at.errors, "/compare_at/errors");
     check_size();
     throw_if_any(problems_);
     make_cells();
@@ -109,6 +111,12 @@ class Expansion {
       check_values(all[i], at);
     }
   }
+  void check_positive(const std::vector<double>& values, const std::string& at) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (values[i] > 0) continue;
+      problem(fmt::format("{}/{}", at, i), fmt::format("found {}; allowed: above 0", values[i]));
+    }
+  }
   void check_size() {
     auto runs = static_cast<std::size_t>(sweep_.seeds);
     for (const Axis& axis : axes_) {
@@ -158,12 +166,22 @@ class Expansion {
           }
         }
         cell.job = parse_job(json_text(job));
+        check_metric(cell.job);
+        if (check_) throw_if_any(check_(cell.job));
       } catch (const BadJob& bad) {
         for (const Problem& p : bad.problems()) problem(origin(p.pointer, cell), p.message);
       }
       constexpr std::size_t enough = 200;
       if (problems_.size() > enough) return;
     }
+  }
+  void check_metric(const JobSpec& job) {
+    const auto& metric = sweep_.compare_at.metric;
+    if (!metric || *metric == ErrorMetric::est_rmse || !job.reference.empty()) return;
+    problem("/compare_at/metric",
+            fmt::format("found \"{}\", and a job without \"reference\"; allowed: \"{}\", or a "
+                        "reference for all",
+                        enum_name(*metric), enum_name(ErrorMetric::est_rmse)));
   }
   /// Where in the sweep file a place of a cell's job comes from.
   std::string origin(const std::string& at, const SweepCell& cell) const {
@@ -205,6 +223,7 @@ class Expansion {
       }
     }
     for (SweepCell& cell : plan_.cells) {
+      cell.job.exclusive = cell.job.exclusive || sweep_.alone;
       const std::string settings = cell_text(cell.settings);
       cell.job.label = sweep_.label.empty() || settings.empty() ? sweep_.label + settings
                                                                 : sweep_.label + ": " + settings;
@@ -214,6 +233,7 @@ class Expansion {
   }
 
   const SweepSpec& sweep_;
+  const JobCheck& check_;
   std::vector<Axis> axes_;
   std::map<std::string, const Axis*> axis_of_;  // by pointer
   std::vector<Problem> problems_;
@@ -232,6 +252,8 @@ SweepSpec parse_sweep(std::string_view json) {
   return read_document<SweepSpec>(json, {max_sweep_bytes, max_json_depth + 4});
 }
 
-SweepPlan expand(const SweepSpec& sweep) { return Expansion(sweep).run(); }
+SweepPlan expand(const SweepSpec& sweep, const JobCheck& check) {
+  return Expansion(sweep, check).run();
+}
 
 }  // namespace lacuna

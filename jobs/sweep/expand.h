@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "jobs/spec/job_spec.h"
+#include "jobs/spec/problems.h"
 #include "jobs/spec/sweep_spec.h"
 
 namespace lacuna {
@@ -14,7 +16,7 @@ namespace lacuna {
 /// Largest sweep file that is looked at, in bytes.
 inline constexpr std::size_t max_sweep_bytes = 4 << 20;
 /// Most runs of one sweep.
-inline constexpr std::size_t max_sweep_runs = 100'000;
+inline constexpr std::size_t max_sweep_runs = 20'000;
 
 /// One combination of the swept settings.
 struct SweepCell {
@@ -42,12 +44,23 @@ struct SweepPlan {
 /// Parses and validates a sweep file; as parse_job(). Throws BadJob.
 SweepSpec parse_sweep(std::string_view json);
 
+/// What is wrong with a job beyond what it says itself, such as a file that is not there; pointers
+/// into the job.
+using JobCheck = std::function<std::vector<Problem>(const JobSpec&)>;
+
 /// The cells of a sweep: axes in the order of their pointers, then the zipped ones as they stand;
 /// the last varies fastest. Deterministic. Throws BadJob: a pointer that leads nowhere, a setting
 /// that is swept twice, lists of different length, values in `exclude` or `baseline` that no axis
-/// has, no cell or too many runs, and every mistake of a cell's own job, at the place in the sweep
-/// file that it comes from.
-SweepPlan expand(const SweepSpec& sweep);
+/// has, no cell or too many runs, and every mistake of a cell's own job (also what `check` finds in
+/// it, if it is given), at the place in the sweep file that it comes from.
+SweepPlan expand(const SweepSpec& sweep, const JobCheck& check = {});
+
+/// The settings of some cells of a plan.
+struct VaryingSettings {
+  JsonTable<JsonValue> shared;    ///< all of these cells have, and not all of the plan
+  std::vector<std::string> vary;  ///< pointers to those in which these cells differ
+};
+VaryingSettings settings_that_vary(const SweepPlan& plan, const std::vector<std::size_t>& cells);
 
 /// "max_depth 8, resolution [64,64]": the settings of a cell, by the last part of each pointer,
 /// longer where two end alike.

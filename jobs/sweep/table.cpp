@@ -6,12 +6,11 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "jobs/spec/json_text.h"
+#include "jobs/sweep/limits.h"
 #include "jobs/sweep/sweep_folder.h"
 
 namespace lacuna {
 namespace {
-
-constexpr std::size_t max_curve_bytes = std::size_t{256} << 20;
 
 /// A field of a CSV file.
 std::string field(const std::string& text) {

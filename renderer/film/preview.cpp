@@ -13,7 +13,17 @@ namespace lacuna {
 
 namespace {
 
-double exposure(std::span<const double> rgb) {
+/// The value's code in sRGB.
+unsigned char encode(double linear) {
+  if (!(linear > 0)) return 0;
+  const double v = std::min(linear, 1.0);
+  const double s = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+  return static_cast<unsigned char>(std::lround(s * 255));
+}
+
+}  // namespace
+
+double preview_exposure(std::span<const double> rgb) {
   std::vector<double> luminances;
   luminances.reserve(rgb.size() / 3);
   for (std::size_t i = 0; i + 2 < rgb.size(); i += 3) {
@@ -26,21 +36,10 @@ double exposure(std::span<const double> rgb) {
   return 0.8 / luminances[static_cast<std::size_t>(rank)];
 }
 
-unsigned char encode(double linear) {
-  if (!(linear > 0)) return 0;
-  const double v = std::min(linear, 1.0);
-  const double s = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-  return static_cast<unsigned char>(std::lround(s * 255));
-}
-
-}  // namespace
-
-void write_preview(const std::filesystem::path& file, int width, int height,
-                   std::span<const double> rgb) {
-  const double scale = exposure(rgb);
+std::string preview_png(int width, int height, std::span<const double> rgb, double exposure) {
   std::vector<unsigned char> bytes(rgb.size());
   std::transform(rgb.begin(), rgb.end(), bytes.begin(),
-                 [&](double v) { return encode(v * scale); });
+                 [&](double v) { return encode(v * exposure); });
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   image.width = static_cast<png_uint_32>(width);
@@ -49,10 +48,15 @@ void write_preview(const std::filesystem::path& file, int width, int height,
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
   std::string png(size, '\0');
   if (png_image_write_to_memory(&image, png.data(), &size, 0, bytes.data(), 0, nullptr) == 0) {
-    throw std::runtime_error(file.string() + ": cannot be written: " + image.message);
+    throw std::runtime_error(std::string("a PNG cannot be made: ") + image.message);
   }
   png.resize(size);
-  write_file_atomically(file, png);
+  return png;
+}
+
+void write_preview(const std::filesystem::path& file, int width, int height,
+                   std::span<const double> rgb) {
+  write_file_atomically(file, preview_png(width, height, rgb, preview_exposure(rgb)));
 }
 
 }  // namespace lacuna

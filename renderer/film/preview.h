@@ -2,12 +2,18 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 
 namespace lacuna {
 
-/// Writes a PNG to look at: exposed so that the 95th percentile of luminance becomes 0.8 of white,
-/// clipped, sRGB. Values below zero or not finite show as black. `rgb` is interleaved, top row
-/// first. Throws as write_exr does.
+/// The factor that takes the 95th percentile of luminance to 0.8; 1 for a picture without light.
+double preview_exposure(std::span<const double> rgb);
+
+/// The bytes of a PNG: `rgb` times `exposure`, clipped, sRGB. Values below zero or not finite show
+/// as black. `rgb` is interleaved, top row first. Throws std::runtime_error.
+std::string preview_png(int width, int height, std::span<const double> rgb, double exposure);
+
+/// Writes a PNG to look at: preview_png() with its own exposure. Throws as write_exr does.
 void write_preview(const std::filesystem::path& file, int width, int height,
                    std::span<const double> rgb);
 

@@ -1,6 +1,7 @@
 #include "renderer/materials/layer.h"
 
 #include <array>
+#include <mutex>
 
 #include "renderer/materials/ggx.h"
 
@@ -11,29 +12,12 @@ namespace {
 /// [0, 1].
 class Table {
  public:
-  Table() {
-    for (std::size_t r = 0; r < values_.size(); ++r) {
-      const float roughness = static_cast<float>(r) / (rows - 1);
-      const float alpha = roughness * roughness;
-      for (std::size_t c = 0; c < columns; ++c) {
-        const float x = static_cast<float>(c) / (columns - 1);
-        const float cos = x * x;
-        values_[r][c] =
-            alpha < ggx_min_alpha ? schlick_weight(cos) : mean(std::max(cos, 1e-4F), alpha);
-      }
-      // Integral of the interpolant times 2 cos d cos = 4 x^3 dx, exact, so that the base keeps its
-      // share.
-      double sum = 0;
-      for (std::size_t c = 0; c + 1 < columns; ++c) {
-        const double x0 = static_cast<double>(c) / (columns - 1);
-        const double x1 = static_cast<double>(c + 1) / (columns - 1);
-        const double slope = (values_[r][c + 1] - values_[r][c]) / (x1 - x0);
-        const double at_0 = values_[r][c] - slope * x0;
-        sum += at_0 * (std::pow(x1, 4) - std::pow(x0, 4)) +
-               0.8 * slope * (std::pow(x1, 5) - std::pow(x0, 5));
-      }
-      hemisphere_[r] = static_cast<float>(sum);
-    }
+  /// Makes the rows that are used at `row`, unless they are there: before at() and hemisphere().
+  /// From any thread.
+  void need(float row) {
+    const std::size_t r = split(row, rows).first;
+    std::call_once(made_[r], [&] { fill_row(r); });
+    std::call_once(made_[r + 1], [&] { fill_row(r + 1); });
   }
 
   float at(float row, float cos) const {
@@ -57,6 +41,29 @@ class Table {
     return {static_cast<std::size_t>(i), x - static_cast<float>(i)};
   }
 
+  void fill_row(std::size_t r) {
+    const float roughness = static_cast<float>(r) / (rows - 1);
+    const float alpha = roughness * roughness;
+    for (std::size_t c = 0; c < columns; ++c) {
+      const float x = static_cast<float>(c) / (columns - 1);
+      const float cos = x * x;
+      values_[r][c] =
+          alpha < ggx_min_alpha ? schlick_weight(cos) : mean(std::max(cos, 1e-4F), alpha);
+    }
+    // Integral of the interpolant times 2 cos d cos = 4 x^3 dx, exact, so that the base keeps its
+    // share.
+    double sum = 0;
+    for (std::size_t c = 0; c + 1 < columns; ++c) {
+      const double x0 = static_cast<double>(c) / (columns - 1);
+      const double x1 = static_cast<double>(c + 1) / (columns - 1);
+      const double slope = (values_[r][c + 1] - values_[r][c]) / (x1 - x0);
+      const double at_0 = values_[r][c] - slope * x0;
+      sum += at_0 * (std::pow(x1, 4) - std::pow(x0, 4)) +
+             0.8 * slope * (std::pow(x1, 5) - std::pow(x0, 5));
+    }
+    hemisphere_[r] = static_cast<float>(sum);
+  }
+
   /// Visible normals on a regular grid, each with the share of its light that is not shadowed.
   static float mean(float cos, float alpha) {
     constexpr int n = 24;
@@ -76,13 +83,15 @@ class Table {
     return static_cast<float>(weighted / total);
   }
 
-  std::array<std::array<float, columns>, rows> values_;
-  std::array<float, rows> hemisphere_;
+  std::array<std::once_flag, rows> made_;
+  std::array<std::array<float, columns>, rows> values_{};
+  std::array<float, rows> hemisphere_{};
 };
 
-/// Made when the first surface needs it: about fifteen milliseconds.
-const Table& table() {
-  static const Table result;
+/// A row is made when the first surface needs it, in half a millisecond: a scene has few
+/// roughnesses.
+Table& table() {
+  static Table result;
   return result;
 }
 
@@ -93,6 +102,7 @@ constexpr float smooth_hemisphere = 1.0F / 21;
 
 Layer::Layer(float f0, float f90, float alpha)
     : f0_(f0), f90_(f90), row_(alpha == 0 ? -1.0F : Table::row(alpha)) {
+  if (row_ >= 0) table().need(row_);
   const float mean = let_through(row_ < 0 ? smooth_hemisphere : table().hemisphere(row_));
   norm_ = mean > 0 ? 1 / mean : 0;
 }

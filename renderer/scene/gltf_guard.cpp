@@ -22,6 +22,31 @@ std::uint32_t u32_at(std::span<const std::uint8_t> bytes, std::uint64_t offset) 
   return value;
 }
 
+/// The library's own builder, but it refuses what nests too deeply. The library's callback would
+/// hear of the depth as well; with one, however, each object that ends has the whole array around
+/// it looked through, and a scene of a million nodes takes hours.
+class ShallowBuilder : public nlohmann::detail::json_sax_dom_parser<Json> {
+  using Base = nlohmann::detail::json_sax_dom_parser<Json>;
+
+ public:
+  using Base::Base;
+  bool start_object(std::size_t size) { return enter() && Base::start_object(size); }
+  bool start_array(std::size_t size) { return enter() && Base::start_array(size); }
+  bool end_object() { return leave() && Base::end_object(); }
+  bool end_array() { return leave() && Base::end_array(); }
+
+ private:
+  bool enter() {
+    if (++depth_ > max_depth) {
+      throw SceneError("JSON: nested more than " + std::to_string(max_depth) + " levels deep");
+    }
+    return true;
+  }
+  bool leave() { return depth_-- > 0; }
+
+  int depth_ = 0;
+};
+
 }  // namespace
 
 Framing check_framing(std::span<const std::uint8_t> file) {
@@ -61,17 +86,14 @@ Framing check_framing(std::span<const std::uint8_t> file) {
 }
 
 Json parse_json(std::span<const std::uint8_t> text) {
-  const auto limit_depth = [](int depth, Json::parse_event_t, Json&) {
-    if (depth > max_depth) {
-      throw SceneError("JSON: nested more than " + std::to_string(max_depth) + " levels deep");
-    }
-    return true;
-  };
+  Json json;
+  ShallowBuilder builder(json);
   try {
-    return Json::parse(text.begin(), text.end(), limit_depth);
+    Json::sax_parse(text.begin(), text.end(), &builder);
   } catch (const Json::exception& e) {
     throw SceneError(std::string("JSON: ") + e.what());
   }
+  return json;
 }
 
 }  // namespace lacuna::gltf

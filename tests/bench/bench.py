@@ -128,12 +128,17 @@ def page(bench, _):
     node(bench, "page.mjs")
 
 
+def sweeps(bench, _):
+    """What a sweep costs beside its runs, and how soon its report is seen."""
+    node(bench, "sweeps.mjs")
+
+
 def analysis(bench, _):
     """The skeletons of the thesis author's grids, of scenes, and of what is hard."""
     shape.run(bench, BIN, ROOT.parent / "shared/baselines")
 
 
-CHECKS = {"service": service, "page": page, "rays": rays, "cornell": cornell, "overhead": overhead,
+CHECKS = {"service": service, "page": page, "sweeps": sweeps, "rays": rays, "cornell": cornell, "overhead": overhead,
           "corridor": corridor, "analysis": analysis}
 
 

@@ -24,6 +24,21 @@ class Checks:
         print(f"{'ok' if good else 'FAILED':<7} {name:<44} {told}", flush=True)
 
 
+def methods(checks, _):
+    """Every registered method through every extreme: the matrix that extremes.cpp makes."""
+    last = ""
+    with subprocess.Popen([BIN / "extremes"], stdout=subprocess.PIPE, text=True) as program:
+        for last in program.stdout:
+            print(last, end="", flush=True)
+    counts = re.fullmatch(r"(\d+) passed, (\d+) failed\n", last)
+    if not counts:
+        return checks.check("methods", False, f"exit {program.returncode}, without its counts")
+    checks.passed += int(counts[1])
+    checks.failed += int(counts[2])
+    if program.returncode != (1 if int(counts[2]) else 0):
+        checks.check("methods", False, f"exit {program.returncode}")
+
+
 def resolutions(checks, folder):
     """Every power of two from one voxel on: done, or refused before memory is taken, with what it would take."""
     for scene in ("ajar.glb", "door/scene.glb", "corridor/scene.glb", "sponza/scene.glb"):
@@ -55,7 +70,7 @@ def pebbles(checks, _):
                  f"{told['peak_bytes'] / 1e6:.0f} MB")
 
 
-CHECKS = {"resolutions": resolutions, "pebbles": pebbles}
+CHECKS = {"methods": methods, "resolutions": resolutions, "pebbles": pebbles}
 
 
 def main():

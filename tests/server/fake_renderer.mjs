@@ -1,8 +1,9 @@
 #!/usr/bin/env node
 // Stands in for `lacuna render FOLDER`: keeps its contract with the service and renders nothing.
-// The job's label says what happens:
+// The job's label, up to a colon (a sweep adds the settings behind one), says what happens:
 //   finish            done at once
 //   gate NAME         done as soon as the file NAME is in the working directory
+//   turn NAME         done as soon as the file NAME is there, which it takes away
 //   stubborn          never ends, not even when asked
 //   fail              state failed, exit code 3
 //   crash             kills itself, each time
@@ -33,7 +34,7 @@ const state = (change) => write("state.json", { ...read("state.json"), ...change
 const now = () => new Date().toISOString();
 const dieNow = () => process.kill(process.pid, "SIGKILL");
 
-const [word, argument] = read("job.json").label.split(" ");
+const [word, argument] = read("job.json").label.split(":")[0].split(" ");
 const resumed = fs.existsSync(file("checkpoint.bin"));
 const stubborn = word === "stubborn";
 
@@ -110,6 +111,16 @@ switch (word) {
     break;
   case "gate":
     setInterval(() => { if (fs.existsSync(argument)) finish(); }, 10);
+    break;
+  case "turn":
+    setInterval(() => {
+      try {
+        fs.unlinkSync(argument);
+      } catch {
+        return;  // not yet
+      }
+      finish();
+    }, 5);
     break;
   case "stubborn":
     setInterval(() => {}, 1000);

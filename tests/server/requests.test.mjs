@@ -148,7 +148,7 @@ test("only a job that is over is removed, and none that another measures itself 
   }
   assert.equal((await remove(service, user)).status, 404);
   assert.deepEqual((await service.json("/api/jobs")).jobs, []);
-  assert.deepEqual(fs.readdirSync(path.dirname(service.folder(user))), [], "nothing is left");
+  await until(() => fs.readdirSync(path.dirname(service.folder(user))).length === 0, "nothing is left");
 });
 
 test("who has not seen the latest state changes nothing", async (t) => {

@@ -61,6 +61,10 @@ function rendererIn(root) {
   });
 }
 
+/// A sweep file for the fake renderer.
+export const sweepFile = (label, more = {}) =>
+  ({ label, job: { scene: "room/scene.glb" }, ...more });
+
 /// A running service.
 export class Service {
   static async start(places, args = []) {
@@ -113,6 +117,47 @@ export class Service {
     const job = await response.json();
     assert.equal(response.status, 201, JSON.stringify(job));
     return job.id;
+  }
+
+  postSweepText(body, headers = {}, query = "") {
+    return this.fetch(`/api/sweeps${query}`, {
+      method: "POST", headers: { "Content-Type": "application/json", ...headers }, body });
+  }
+
+  /// Posts a sweep for the fake renderer; gives its JSON.
+  async postSweep(label, more = {}) {
+    const response = await this.postSweepText(JSON.stringify(sweepFile(label, more)));
+    const sweep = await response.json();
+    assert.equal(response.status, 201, JSON.stringify(sweep));
+    return sweep;
+  }
+
+  sweep(id) {
+    return this.json(`/api/sweeps/${id}`);
+  }
+
+  cancelSweep(id) {
+    return this.fetch(`/api/sweeps/${id}/cancel`, { method: "POST" });
+  }
+
+  /// Waits until a sweep is in a state; gives its JSON.
+  sweepReaches(id, state, ms) {
+    return until(async () => {
+      const sweep = await this.sweep(id);
+      return sweep.state === state && sweep;
+    }, `sweep ${id} is ${state}`, ms);
+  }
+
+  /// Waits until the `index`-th run of a sweep, in its order, is in a state; gives its job's id.
+  runReaches(id, index, state) {
+    return until(async () => {
+      const run = (await this.sweep(id)).runs[index];
+      return run.state === state && run.job;
+    }, `run ${index} of sweep ${id} is ${state}`);
+  }
+
+  sweepFolder(id) {
+    return path.join(this.places.data, "sweeps", id);
   }
 
   cancel(id) {

@@ -1,6 +1,6 @@
 // The service, its renderers, or both are killed at any moment, again and again: no job that was
 // accepted is lost or doubled, none that was cancelled is rendered, no file is half-written, and the
-// pictures have the bits of jobs that nobody disturbed.
+// pictures have the bits of jobs that nobody disturbed. So with the runs of a sweep.
 // LACUNA_KILLS: rounds (10 in a quick run, 200 in a long one).
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
@@ -68,6 +68,24 @@ async function postAll(service, wishes) {
   }
 }
 
+/// A sweep whose runs are the kinds, each several times.
+const kindsSweep = {
+  job: { ...spec(0), label: "" }, alone: false,
+  zip: [{ "/seed": Array.from({ length: kinds }, (_, kind) => spec(kind).seed),
+    "/budget": Array.from({ length: kinds }, (_, kind) => spec(kind).budget) }],
+  axes: { "/threads": [1, 2, 3] },
+};
+
+/// Posts it if it has no answer yet.
+async function postSweep(service, sweep) {
+  if (sweep.id) return;
+  const answer = await ask(service, "/api/sweeps", { method: "POST", body: JSON.stringify(kindsSweep),
+    headers: { "Content-Type": "application/json", "Idempotency-Key": "sweep" } });
+  if (!answer) return;
+  assert.ok([200, 201].includes(answer.status), JSON.stringify(answer));
+  sweep.id = answer.body.id;
+}
+
 /// Cancels a job that is not over, if there is one.
 async function cancelOne(service, wishes) {
   const known = wishes.filter((w) => w.id && !w.cancelled);
@@ -117,12 +135,13 @@ test(`${rounds} rounds of kill -9`, async (t) => {
   const places = { ...folders(t), scenes };
   const wholes = references(places);
   const wishes = [];
+  const sweep = {};
   let service = await Service.start(places, options);
   let kills = 0;
   for (let i = 0; i < rounds; i += 1) {
     const more = random(3);
     for (let k = 0; k < more; k += 1) wishes.push({ key: `round-${i}-${k}`, kind: random(kinds) });
-    const posting = postAll(service, wishes);
+    const posting = Promise.all([postAll(service, wishes), postSweep(service, sweep)]);
     const cancelling = random(6) === 0 ? cancelOne(service, wishes) : null;
     await pause(random(10) < 3 ? random(30) : random(900));
     if (kill(service)) {
@@ -138,6 +157,7 @@ test(`${rounds} rounds of kill -9`, async (t) => {
     }
   }
   await postAll(service, wishes);
+  await postSweep(service, sweep);
   assert.ok(wishes.every((w) => w.id));
   const list = async () => {
     const jobs = [];
@@ -148,11 +168,15 @@ test(`${rounds} rounds of kill -9`, async (t) => {
     }
     return jobs;
   };
+  const swept = await service.sweepReaches(sweep.id, "done", 600000);
   await until(async () => (await list()).every((job) => ends.includes(job.state)),
     "every job is over", 600000);
 
   const jobs = await list();
-  assert.equal(jobs.length, wishes.length, "none is lost or doubled");
+  assert.equal(jobs.length, wishes.length + 3 * kinds, "none is lost or doubled");
+  assert.equal((await service.json("/api/sweeps")).sweeps.length, 1);
+  assert.equal(swept.counts.done, 3 * kinds);
+  for (const run of swept.runs) sameBits(service.folder(run.job), wholes[(run.cell - 1) % kinds]);
   let done = 0;
   for (const wish of wishes) {
     const job = jobs.find((j) => j.id === wish.id);

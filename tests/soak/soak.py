@@ -1,4 +1,4 @@
-"""Long checks: many kills and resumes, all tests under sanitizers, and fuzzing."""
+"""Long checks: many kills and resumes, all tests under sanitizers, fuzzing, and whether intervals hold the truth."""
 
 import argparse
 import os
@@ -52,6 +52,7 @@ CHECKS = {
     "tsan": lambda _: sanitizers("tsan", {
         "TSAN_OPTIONS": f"suppressions={ROOT}/tests/soak/tsan.txt",
     }),
+    "intervals": lambda _: run("intervals of a hundred sweeps", [sys.executable, "tests/soak/intervals.py"]),
     "fuzz": lambda asked: fuzz(asked.seconds),
 }
 

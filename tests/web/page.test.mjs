@@ -1,6 +1,6 @@
 // Every view of the page against the mock server.
 import assert from "node:assert/strict";
-import { readdirSync, statSync } from "node:fs";
+import { readFileSync, readdirSync, statSync } from "node:fs";
 import { test } from "node:test";
 
 import { frames, ready, screenshot } from "./browser.mjs";
@@ -48,10 +48,21 @@ for (const [name, path] of Object.entries(views)) {
   });
 }
 
-test("the page's own files are under 150 kB", () => {
+test("what a first visit reads is under 150 kB, and all of the page under 190", () => {
   const folder = new URL("../../web/", import.meta.url);
-  const bytes = readdirSync(folder).reduce((sum, name) => sum + statSync(new URL(name, folder)).size, 0);
-  assert.ok(bytes < 150_000, `${bytes} bytes`);
+  const sizes = new Map(readdirSync(folder).map((name) => [name, statSync(new URL(name, folder)).size]));
+  const total = (names) => [...names].reduce((sum, name) => sum + sizes.get(name), 0);
+  const read = new Set(["index.html", "style.css", "error_worker.js"]);
+  const follow = (name) => {
+    if (read.has(name)) return;
+    read.add(name);
+    const text = readFileSync(new URL(name, folder), "utf8");
+    for (const [, next] of text.matchAll(/^import (?:.* from )?"\.\/(.*)";$/gm)) follow(next);
+  };
+  follow("app.js");
+  assert.ok(read.size > 40 && !read.has("view_sweep.js"), [...read].join());
+  assert.ok(total(read) < 150_000, `${total(read)} bytes are read at first`);
+  assert.ok(total(sizes.keys()) < 190_000, `${total(sizes.keys())} bytes in all`);
 });
 
 test("every view shows names as text", async () => {

@@ -103,3 +103,40 @@ test("sweep: mistakes are told before anything is done", async (t) => {
   assert.equal(other.code, 2);
   assert.match(other.err, /holds another sweep; name another folder with --out/);
 });
+
+test("report: what the runs say of their settings, as text, as JSON, and as files", async (t) => {
+  const folder = sweepFile(t, { ...small, job: { ...small.job, reference: "auto", reference_iterations: 8,
+    budget: { iterations: 2000 } } });
+  assert.equal((await run(folder, "sweep", "a.json", "-q")).code, 0);
+  const told = await run(folder, "report", "a.sweep");
+  assert.equal(told.code, 0, told.err);
+  // Two depths, each against its own reference: two pictures, in both of which a baseline is missing or itself.
+  assert.match(told.out, /^seconds: relmse, 95 % intervals\n\nmax_depth 2\nlowest error, preparation \(cold\) included:\n/);
+  assert.match(told.out, /^ +2 +2\/2 +\(?\S+ \[\S+, \S+\]\)? .*next_event_estimation false$/m);
+  assert.ok(existsSync(join(folder, "a.sweep/report.html")));
+  rmSync(join(folder, "a.sweep/report.html"));
+  const json = await run(folder, "report", "a.sweep", "--json");
+  const answers = JSON.parse(json.out);
+  assert.deepEqual(answers.states, { done: 8 });
+  assert.deepEqual(answers.pictures.map((p) => [p.text, p.cells]), [["max_depth 2", [1, 2]], ["max_depth 4", [3, 4]]]);
+  for (const cell of answers.cells) {
+    assert.equal(cell.done, 2);
+    assert.ok(cell.efficiency.low < cell.efficiency.value && cell.efficiency.value < cell.efficiency.high);
+    assert.ok(cell.preparation.cold > 0);
+    assert.equal(cell.bias_between_runs.n, 2);
+  }
+  assert.equal(existsSync(join(folder, "a.sweep/report.html")), false, "--json writes nothing");
+  const none = await run(folder, "report", folder);
+  assert.equal(none.code, 2);
+  assert.match(none.err, /is no sweep's folder: it has no sweep\.json/);
+});
+
+test("report: where runs are compared may change afterwards", async (t) => {
+  const folder = sweepFile(t, { ...small, seeds: 1 });
+  assert.equal((await run(folder, "sweep", "a.json", "-q")).code, 0);
+  writeFileSync(join(folder, "a.json"), JSON.stringify({ ...small, seeds: 1, compare_at: { errors: [0.125] } }));
+  assert.equal((await run(folder, "sweep", "a.json", "-q")).code, 0);
+  const answers = JSON.parse((await run(folder, "report", "a.sweep", "--json")).out);
+  assert.equal(answers.metric, "est_rmse");
+  assert.deepEqual(answers.pictures[0].errors, [0.125]);
+});

@@ -16,21 +16,13 @@
 #include "renderer/film/exr.h"
 #include "renderer/scene/image_read.h"
 #include "renderer/scene/scene_data.h"
+#include "tests/jobs/run/silent_observer.h"
 #include "tests/renderer/scene/glb_builder.h"
 
 namespace lacuna {
 namespace {
 
 using nlohmann::json;
-
-class Silent final : public Observer {
- public:
-  void phase(const std::string& name) override { phases.push_back(name); }
-  void progress(const Progress&) override {}
-  void milestone(const std::string& line) override { milestones.push_back(line); }
-  void warning(const std::string& line) override { warnings.push_back(line); }
-  std::vector<std::string> phases, warnings, milestones;
-};
 
 /// A data root of one test, with the project's scenes and one folder more.
 class RunJob : public testing::Test {
@@ -59,7 +51,7 @@ class RunJob : public testing::Test {
   }
 
   TemporaryFolder temp;
-  Silent observer;
+  SilentObserver observer;
   const std::function<bool()> never = [] { return false; };
 };
 

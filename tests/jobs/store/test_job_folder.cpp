@@ -9,6 +9,7 @@
 #include "analysis/storage/file_handle.h"
 #include "jobs/spec/problems.h"
 #include "jobs/store/job_folder.h"
+#include "jobs/store/new_folder.h"
 #include "tests/child_process.h"
 #include "tests/temporary_folder.h"
 
@@ -233,9 +234,9 @@ TEST(JobFolder, what_the_service_was_asked_for_is_kept) {
 TEST(JobFolder, removed_as_a_whole_and_what_a_crash_left_is_tidied_up) {
   const TemporaryFolder temporary;
   const JobFolder f = JobFolder::create(temporary.path() / "a", some_job());
-  f.remove();
+  remove_folder_whole(f.dir());
   EXPECT_TRUE(std::filesystem::is_empty(temporary.path()));
-  EXPECT_THROW(f.remove(), std::system_error);
+  EXPECT_THROW(remove_folder_whole(f.dir()), std::system_error);
   // No process has this number; the second is our own, still at work.
   const auto dead = temporary.path() / ".b.4194305-0123456789abcdef.tmp";
   const auto ours = temporary_name(temporary.path() / "c");

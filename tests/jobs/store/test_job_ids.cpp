@@ -29,6 +29,28 @@ TEST(JobIds, nothing_else_is_looked_up) {
   }
 }
 
+TEST(JobIds, of_runs_follow_from_the_sweeps) {
+  const std::string sweep = "20260131-235959-k3x9qa";
+  EXPECT_EQ(run_job_id(sweep, 0), "20260131-235959-k3x9qb");
+  EXPECT_EQ(run_job_id(sweep, 24), "20260131-235959-k3x9qz");
+  EXPECT_EQ(run_job_id(sweep, 25), "20260131-235959-k3x9r0");
+  EXPECT_EQ(run_job_id("20260131-235959-zzzzzy", 0), "20260131-235959-zzzzzz");
+  EXPECT_EQ(run_job_id("20260131-235959-zzzzzy", 1), "20260131-235959-000000");
+  for (const std::string& id : {sweep, std::string("20260131-235959-zzzzzy"), new_job_id()}) {
+    std::string before;
+    for (const std::size_t index : {0, 1, 35, 36, 999, 99'999}) {
+      const std::string run = run_job_id(id, index);
+      EXPECT_TRUE(is_job_id(run)) << run;
+      EXPECT_EQ(run_index(id, run), index);
+      EXPECT_NE(run, before);
+      before = run;
+    }
+    EXPECT_GT(run_index(id, id).value(), std::size_t{1} << 30U) << "no run is the sweep itself";
+  }
+  EXPECT_EQ(run_index(sweep, "20260131-235958-k3x9qb"), std::nullopt) << "another second";
+  EXPECT_EQ(run_index(sweep, "20260131-235959-k3x9qB"), std::nullopt) << "no id";
+}
+
 TEST(JobIds, now_is_iso_8601_with_milliseconds) {
   std::string shape = utc_now();
   for (char& c : shape) {

@@ -55,6 +55,34 @@ TEST(Sweep, EveryCombinationTheLastAxisFastest) {
   EXPECT_EQ(plan.runs[7].name, "0002-2");
 }
 
+TEST(Sweep, RunsAreAloneUnlessItSaysOtherwise) {
+  const auto exclusive = [](const std::string& sweep, const std::string& job) {
+    return plan_of("{" + sweep + R"("job": {"scene": "a.glb")" + job + "}}").cells[0].job.exclusive;
+  };
+  EXPECT_TRUE(exclusive("", ""));
+  EXPECT_FALSE(exclusive(R"("alone": false, )", ""));
+  EXPECT_TRUE(exclusive(R"("alone": false, )", R"(, "exclusive": true)"));
+}
+
+TEST(Sweep, WhatACheckFindsIsToldWhereItComesFrom) {
+  const SweepSpec sweep = parse_sweep(R"({"job": {"label": "x"}, "seeds": 4,
+    "zip": [{"/scene": ["a.glb", "b.glb"], "/camera": ["c", "d"]}]})");
+  std::size_t checked = 0;
+  try {
+    expand(sweep, [&](const JobSpec& job) {
+      ++checked;
+      std::vector<Problem> problems{{"/label", "found nothing"}};
+      if (job.scene == "b.glb") problems.push_back({"/scene", "is not there"});
+      return problems;
+    });
+    ADD_FAILURE() << "nothing was thrown";
+  } catch (const BadJob& bad) {
+    EXPECT_EQ(bad.problems(), (std::vector<Problem>{{"/job/label", "found nothing"},
+                                                    {"/zip/0/~1scene/1", "is not there"}}));
+  }
+  EXPECT_EQ(checked, 2u) << "each cell once";
+}
+
 TEST(Sweep, InSequence) {
   const SweepPlan plan = plan_of(R"({"seeds": 3, "order": "sequence",
     "job": {"scene": "a.glb"}, "axes": {"/threads": [1, 2]}})");
@@ -154,7 +182,7 @@ TEST(Sweep, RefusesMoreRunsThanItWouldEverDo) {
   for (int i = 0; i < 1000; ++i) list += (i > 0 ? "," : "") + std::to_string(i);
   expect_problem(
       R"({"job": {"scene": "a.glb"}, "seeds": 101, "axes": {"/threads": [)" + list + "]}}",
-      ": the sweep has more than 100000 runs");
+      ": the sweep has more than 20000 runs");
 }
 
 TEST(Sweep, TheExampleIsOne) {
@@ -170,6 +198,18 @@ TEST(Sweep, TextsOfCells) {
             "max_depth 4, scene a.glb");
   EXPECT_EQ(cell_text({{"/budget/error/target", {"1"}}, {"/x/target", {"2"}}}),
             "error/target 1, x/target 2");
+}
+
+TEST(SweepProblems, WhereItIsCompared) {
+  expect_problem(R"({"job": {"scene": "a.glb"}, "compare_at": {"seconds": [1, 0]}})",
+                 "/compare_at/seconds/1: found 0; allowed: above 0");
+  expect_problem(R"({"job": {"scene": "a.glb"}, "compare_at": {"errors": [-1]}})",
+                 "/compare_at/errors/0: found -1; allowed: above 0");
+  expect_problem(R"({"job": {"scene": "a.glb"}, "compare_at": {"metric": "mse"}})",
+                 "/compare_at/metric: found \"mse\", and a job without \"reference\"; allowed: "
+                 "\"est_rmse\", or a reference for all");
+  EXPECT_EQ(problems_of(R"({"job": {"scene": "a.glb"}, "compare_at": {"metric": "est_rmse"}})"),
+            "none");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "renderer/scene/gltf_guard.h"
 #include "renderer/scene/scene_data.h"
 #include "tests/renderer/scene/glb_builder.h"
 
@@ -148,6 +149,16 @@ TEST(Framing, SixtyLevelsAreFine) {
   for (int i = 0; i < 60; ++i) deep = test::Json::array({deep});
   builder.json["extras"] = deep;
   EXPECT_EQ(load_gltf(folder.write("scene.glb", builder.glb())).triangle_count(), 1U);
+}
+
+/// A hang, were each looked at once for each that follows.
+TEST(Framing, AMillionObjectsAreParsed) {
+  std::string text = "[{}";
+  for (int i = 1; i < 1'000'000; ++i) text += ",{}";
+  text += "]";
+  const auto json =
+      gltf::parse_json(std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+  EXPECT_EQ(json.size(), 1'000'000U);
 }
 
 }  // namespace

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "jobs/report/sweep_pictures.h"
+
+namespace lacuna {
+
+/// One HTML file with everything in it, that a browser shows without a server: the answers of a
+/// sweep (as the page shows them), and crops of its pictures.
+std::string report_html(const SweepFolder& sweep, const Answers& answers,
+                        const SweepPictures& pictures);
+
+}  // namespace lacuna

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "jobs/sweep/answers.h"
+
+namespace lacuna {
+
+/// The answers in short, for a terminal: for each picture who leads when, and for each cell its
+/// error at the last common time and its time to the smallest common error, with intervals and
+/// gains.
+std::string report_text(const SweepFolder& sweep, const Answers& answers);
+
+}  // namespace lacuna

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "jobs/sweep/answers.h"
+
+namespace lacuna {
+
+/// A part of a cell's last picture.
+struct CellCrop {
+  std::size_t cell;  ///< index into plan().cells
+  double seconds;    ///< render time of the picture
+  std::string png;
+};
+
+/// The same part of the pictures of all cells that estimate one picture, at one exposure: the one
+/// (at most 96 x 96 pixels) in which the cells' median squared error is largest.
+struct PictureCrops {
+  std::size_t picture;  ///< index into Answers::pictures
+  int x = 0, y = 0, width = 0, height = 0;
+  std::optional<std::string> reference_png;
+  std::vector<CellCrop> cells;  ///< of each cell its first finished run
+};
+
+/// What only the pixels tell.
+struct SweepPictures {
+  std::vector<PictureCrops> crops;
+  /// Of each cell of the plan: the bias between its replicates (jobs/report/replicate_bias.h),
+  /// where it has two or more and a reference that is still there.
+  std::vector<std::optional<Estimate>> bias_squared;
+  std::vector<std::string> warnings;  ///< pictures that could not be read
+};
+
+/// Reads the pictures of all finished runs, one at a time.
+SweepPictures look_at_pictures(const SweepFolder& sweep, const Answers& answers);
+
+}  // namespace lacuna

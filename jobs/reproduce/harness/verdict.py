@@ -1,0 +1,66 @@
+"""What a paper claims of a quantity, and whether a measurement bears it out."""
+
+import dataclasses
+import math
+
+REACHED, MISSED, NOT_TOLD_APART, NOT_MEASURED = "reached", "missed", "not told apart", "not measured"
+
+
+@dataclasses.dataclass(frozen=True)
+class Claim:
+    """The paper's `figure` of a quantity, and which values of ours bear it out: those in [low, high]. Without bounds
+    the figure stands beside ours as information. `figure` may be absent, `unit` empty (a ratio or a count)."""
+
+    quantity: str
+    figure: float | None
+    unit: str = ""
+    low: float = -math.inf
+    high: float = math.inf
+
+    @property
+    def judged(self):
+        return math.isfinite(self.low) or math.isfinite(self.high)
+
+    def __str__(self):
+        """The figure, as ">= 1.57", "<= 0.17 s" or "0, up to 0.01"; empty without one."""
+        if self.figure is None:
+            return ""
+        relation = {self.low: ">= ", self.high: "<= "}.get(self.figure, "")
+        text = f"{relation}{self.figure:.6g}{self.unit and ' ' + self.unit}"
+        return text if relation or not self.judged else f"{text}, up to {self.high:.6g}"
+
+
+def at_least(quantity, figure, unit=""):
+    return Claim(quantity, figure, unit, low=figure)
+
+
+def at_most(quantity, figure, unit=""):
+    return Claim(quantity, figure, unit, high=figure)
+
+
+def up_to(quantity, figure, high, unit=""):
+    """A figure that ours need not meet exactly: it may be as much as `high`."""
+    return Claim(quantity, figure, unit, high=high)
+
+
+def beside(quantity, figure=None, unit=""):
+    return Claim(quantity, figure, unit)
+
+
+def verdict(claim, ours):
+    """`reached` if our whole interval lies in what the claim allows, `missed` if all of it lies outside, and
+    `not told apart` if it holds a border of the two: more runs would tell.
+
+    Also not told apart is what has no interval (one run, or a bound such as "at least 3 times, when time was up"), and
+    what the reference is too noisy for. `not measured` without a measurement; empty where nothing is claimed."""
+    if not claim.judged:
+        return ""
+    if ours is None:
+        return NOT_MEASURED
+    if ours.low is None or not ours.supported:
+        return NOT_TOLD_APART
+    if claim.low <= ours.low and ours.high <= claim.high:
+        return REACHED
+    if ours.high < claim.low or claim.high < ours.low:
+        return MISSED
+    return NOT_TOLD_APART

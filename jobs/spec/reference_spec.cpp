@@ -1,0 +1,48 @@
+#include "jobs/spec/reference_spec.h"
+
+#include <fmt/format.h>
+
+#include "jobs/spec/job_json.h"
+
+namespace lacuna {
+namespace {
+
+/// The integrator that a reference of these settings is made with: converges to the same picture.
+struct PlainIntegrator {
+  IntegratorSettings operator()(const PathSettings& s) const {
+    PathSettings plain;
+    plain.max_depth = s.max_depth;
+    return plain;
+  }
+  IntegratorSettings operator()(const InspectSettings& s) const { return s; }
+};
+
+// So that no random number of a reference is one of the job's own.
+constexpr std::uint64_t reference_seed = 0x726566657265;  // below 2^53, the largest seed
+
+}  // namespace
+
+JobSpec reference_spec(const JobSpec& spec) {
+  JobSpec r;
+  r.scene = spec.scene;
+  r.camera = spec.camera;
+  r.label = "reference";
+  r.resolution = spec.resolution;
+  r.integrator = std::visit(PlainIntegrator{}, spec.integrator);
+  r.budget.iterations = spec.reference_iterations;
+  // False colours show the analysis itself; light does not depend on it.
+  if (std::holds_alternative<InspectSettings>(spec.integrator)) r.analysis = spec.analysis;
+  r.environment = spec.environment;
+  r.seed = reference_seed;
+  r.threads = spec.threads;
+  r.layers = {ImageLayer::variance, ImageLayer::halves};
+  r.pixel_filter = spec.pixel_filter;
+  return r;
+}
+
+std::string picture_name(const JobSpec& spec) {
+  if (spec.reference.empty() || spec.reference == "auto") return picture_key(reference_spec(spec));
+  return fmt::format("{} {}x{}", spec.reference, spec.resolution[0], spec.resolution[1]);
+}
+
+}  // namespace lacuna

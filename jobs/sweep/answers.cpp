@@ -1,0 +1,234 @@
+#include "jobs/sweep/answers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "jobs/spec/job_json.h"
+#include "jobs/spec/reference_spec.h"
+#include "jobs/sweep/compare_points.h"
+#include "jobs/sweep/preparation.h"
+#include "jobs/sweep/taint.h"
+
+namespace lacuna {
+namespace {
+
+/// relmse where there is a reference to every cell, unless the sweep says which.
+ErrorMetric chosen_metric(const SweepFolder& sweep) {
+  if (const auto& asked = sweep.spec().compare_at.metric) return *asked;
+  const auto& cells = sweep.plan().cells;
+  const bool referenced = std::all_of(cells.begin(), cells.end(),
+                                      [](const SweepCell& c) { return !c.job.reference.empty(); });
+  return referenced ? ErrorMetric::relmse : ErrorMetric::est_rmse;
+}
+
+/// Artefacts of these jobs are the same.
+std::string space_name(const JobSpec& job) {
+  JobSpec only;
+  only.scene = job.scene;
+  only.camera = job.camera;
+  only.analysis = job.analysis;
+  return picture_key(only);
+}
+
+class Comparison {
+ public:
+  explicit Comparison(const SweepFolder& sweep) : sweep_(sweep), plan_(sweep.plan()) {}
+
+  Answers run() {
+    answers_.axes = {chosen_metric(sweep_), std::string(enum_name(sweep_.spec().compare_at.clock))};
+    read();
+    gather_cells();
+    gather_pictures();
+    for (PictureAnswer& p : answers_.pictures) choose_points(p);
+    for (CellAnswer& c : answers_.cells) compare(c);
+    for (CellAnswer& c : answers_.cells) prepare(c);
+    for (CellAnswer& c : answers_.cells) pay_off(c);
+    for (PictureAnswer& p : answers_.pictures) find_front(p);
+    answers_.tainted = tainted_runs(answers_.results);
+    warn();
+    return std::move(answers_);
+  }
+
+ private:
+  void read() {
+    for (const SweepRun& run : plan_.runs) {
+      answers_.results.emplace_back(read_result(sweep_.folder(run), answers_.axes));
+      ++answers_.states[answers_.results.back().state.state];
+    }
+  }
+
+  bool counts(std::size_t run) const {
+    return answers_.results[run].state.state == State::done && !answers_.results[run].curve.empty();
+  }
+
+  void gather_cells() {
+    answers_.cells.resize(plan_.cells.size());
+    curves_.resize(plan_.cells.size());
+    for (std::size_t c = 0; c < plan_.cells.size(); ++c) answers_.cells[c].cell = c;
+    for (std::size_t r = 0; r < plan_.runs.size(); ++r) {
+      CellAnswer& cell = answers_.cells[plan_.runs[r].cell];
+      cell.runs.push_back(r);
+      if (!counts(r)) continue;
+      cell.done.push_back(r);
+      curves_[cell.cell].push_back(answers_.results[r].curve);
+    }
+  }
+
+  void gather_pictures() {
+    std::map<std::string, std::size_t> known;
+    for (CellAnswer& cell : answers_.cells) {
+      const auto [found, is_new] =
+          known.emplace(picture_name(plan_.cells[cell.cell].job), answers_.pictures.size());
+      if (is_new) answers_.pictures.emplace_back();
+      cell.picture = found->second;
+      answers_.pictures[cell.picture].cells.push_back(cell.cell);
+    }
+    for (PictureAnswer& p : answers_.pictures) {
+      p.text = cell_text(settings_that_vary(plan_, p.cells).shared);
+    }
+  }
+
+  std::vector<Replicates> replicates(const PictureAnswer& p) const {
+    std::vector<Replicates> all;
+    for (const std::size_t c : p.cells) {
+      if (!curves_[c].empty()) all.emplace_back(curves_[c]);
+    }
+    return all;
+  }
+
+  void choose_points(PictureAnswer& p) {
+    const CompareAt& asked = sweep_.spec().compare_at;
+    const auto all = replicates(p);
+    p.seconds = asked.seconds.empty() ? natural_times(all) : asked.seconds;
+    p.errors = asked.errors.empty() ? natural_errors(all) : asked.errors;
+    std::sort(p.seconds.begin(), p.seconds.end());
+    std::sort(p.errors.begin(), p.errors.end(), std::greater<>());
+  }
+
+  /// The curves that a cell is compared with; empty if there are none of the same picture.
+  Replicates baseline_of(const CellAnswer& cell) const {
+    const auto base = plan_.cells[cell.cell].baseline;
+    if (!base || *base == cell.cell || answers_.cells[*base].picture != cell.picture) return {};
+    return curves_[*base];
+  }
+
+  /// One quantity of all finished runs of a cell that tell it.
+  std::vector<double> values(const CellAnswer& cell, std::optional<double> RunResult::*what) const {
+    std::vector<double> found;
+    for (const std::size_t r : cell.done) {
+      if (const auto& value = answers_.results[r].*what) found.push_back(*value);
+    }
+    return found;
+  }
+
+  void compare(CellAnswer& cell) {
+    const Replicates own = curves_[cell.cell], base = baseline_of(cell);
+    const PictureAnswer& picture = answers_.pictures[cell.picture];
+    if (own.empty()) return;
+    cell.curve = mean_curve(own);
+    for (const double t : picture.seconds) cell.at.push_back(error_at_time(own, base, t));
+    for (const double e : picture.errors) cell.to.push_back(time_to_error(own, base, e));
+    const auto efficiencies = values(cell, &RunResult::efficiency);
+    if (!efficiencies.empty()) {
+      cell.efficiency = geometric_mean(efficiencies);
+      if (!base.empty()) {
+        const CellAnswer& other = answers_.cells[*plan_.cells[cell.cell].baseline];
+        const auto others = values(other, &RunResult::efficiency);
+        if (!others.empty()) cell.efficiency_gain = Gain{ratio_of_means(efficiencies, others)};
+      }
+    }
+    const auto bias = values(cell, &RunResult::bias_squared);
+    if (!bias.empty()) cell.bias_squared = mean(bias);
+    const auto variance = values(cell, &RunResult::variance);
+    if (!variance.empty()) cell.variance = mean(variance);
+  }
+
+  std::vector<const RunResult*> finished(const CellAnswer& cell) const {
+    std::vector<const RunResult*> runs;
+    for (const std::size_t r : cell.done) runs.push_back(&answers_.results[r]);
+    return runs;
+  }
+
+  const std::vector<const RunResult*>& same_space(std::size_t cell) {
+    if (spaces_.empty()) {
+      for (const CellAnswer& c : answers_.cells) {
+        const auto runs = finished(c);
+        auto& all = spaces_[space_name(plan_.cells[c.cell].job)];
+        all.insert(all.end(), runs.begin(), runs.end());
+      }
+    }
+    return spaces_[space_name(plan_.cells[cell].job)];
+  }
+
+  void prepare(CellAnswer& cell) {
+    if (cell.done.empty()) return;
+    cell.preparation = preparation(finished(cell), same_space(cell.cell));
+  }
+
+  /// After prepare() of all.
+  void pay_off(CellAnswer& cell) {
+    const Replicates base = baseline_of(cell);
+    if (cell.done.empty() || base.empty()) return;
+    const Preparation& theirs = answers_.cells[*plan_.cells[cell.cell].baseline].preparation;
+    const auto pays = [&](std::optional<double> mine, std::optional<double> its) {
+      return mine && its ? break_even({curves_[cell.cell], *mine}, {base, *its}) : std::nullopt;
+    };
+    cell.pays = {pays(cell.preparation.cold, theirs.cold),
+                 pays(cell.preparation.warm, theirs.warm)};
+  }
+
+  /// `charge` null: nothing.
+  std::vector<FrontPart> front(const PictureAnswer& p, std::optional<double> Preparation::*charge) {
+    std::vector<Contender> contenders;
+    std::vector<std::size_t> cell_of;
+    for (const std::size_t c : p.cells) {
+      const auto cost = charge == nullptr ? 0.0 : answers_.cells[c].preparation.*charge;
+      if (!cost || curves_[c].empty()) continue;
+      contenders.push_back({curves_[c], *cost});
+      cell_of.push_back(c);
+    }
+    auto parts = pareto_front(contenders);
+    for (FrontPart& part : parts) {
+      part.best = cell_of[part.best];
+      for (std::size_t& t : part.tied) t = cell_of[t];
+    }
+    return parts;
+  }
+  void find_front(PictureAnswer& p) {
+    p.render = front(p, nullptr);
+    p.warm = front(p, &Preparation::warm);
+    p.cold = front(p, &Preparation::cold);
+  }
+
+  void warn() {
+    auto& w = answers_.warnings;
+    const auto unfinished = plan_.runs.size() - answers_.states[State::done];
+    if (unfinished > 0) {
+      w.push_back(fmt::format("{} of {} runs are not done: what follows is provisional", unfinished,
+                              plan_.runs.size()));
+    }
+    if (sweep_.spec().seeds == 1) {
+      w.emplace_back(
+          "one seed for each cell: there are no intervals; \"seeds\" 3 or more has them");
+    }
+    if (!answers_.tainted.empty()) {
+      const bool wall = sweep_.spec().compare_at.clock == SweepClock::seconds;
+      w.push_back(fmt::format("{} of {} runs were timed while the machine did something else{}",
+                              answers_.tainted.size(), plan_.runs.size(),
+                              wall ? "; compare_at.clock \"cpu_seconds\" suffers less" : ""));
+    }
+  }
+
+  const SweepFolder& sweep_;
+  const SweepPlan& plan_;
+  std::vector<std::vector<ErrorCurve>> curves_;  // of each cell's finished runs
+  std::map<std::string, std::vector<const RunResult*>> spaces_;
+  Answers answers_;
+};
+
+}  // namespace
+
+Answers answer(const SweepFolder& sweep) { return Comparison(sweep).run(); }
+
+}  // namespace lacuna

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <cstddef>
+
+namespace lacuna {
+
+/// Largest files of a run that are looked at, bytes.
+inline constexpr std::size_t max_curve_bytes = std::size_t{256} << 20;
+inline constexpr std::size_t max_report_bytes = std::size_t{4} << 20;
+
+}  // namespace lacuna

@@ -1,0 +1,178 @@
+#include "jobs/sweep/run_result.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include "analysis/storage/atomic_file.h"
+#include "jobs/spec/json_document.h"
+#include "jobs/sweep/limits.h"
+
+namespace lacuna {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A CSV file of numbers; an empty field is NaN.
+class NumberTable {
+ public:
+  explicit NumberTable(const fs::path& file) : file_(file) {
+    std::istringstream text(read_file(file, max_curve_bytes));
+    std::string line;
+    std::getline(text, line);
+    names_ = split(line);
+    while (std::getline(text, line)) add(split(line));
+  }
+
+  std::size_t rows() const { return rows_.size(); }
+  double at(std::size_t row, std::string_view column) const {
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      if (names_[i] == column) return rows_[row][i];
+    }
+    throw std::runtime_error(fmt::format("{} has no column \"{}\"", file_.string(), column));
+  }
+
+ private:
+  static std::vector<std::string> split(const std::string& line) {
+    std::vector<std::string> fields(1);
+    for (const char c : line) {
+      if (c == ',') {
+        fields.emplace_back();
+      } else if (c != '\r') {
+        fields.back() += c;
+      }
+    }
+    return fields;
+  }
+  void add(const std::vector<std::string>& fields) {
+    std::vector<double> row;
+    for (const std::string& f : fields) {
+      double value = std::nan("");
+      const auto end = f.data() + f.size();
+      if (!f.empty() && std::from_chars(f.data(), end, value).ptr != end) row.clear();
+      row.push_back(value);
+    }
+    if (row.size() != names_.size()) {
+      throw std::runtime_error(fmt::format("{}, line {}: not {} numbers", file_.string(),
+                                           rows_.size() + 2, names_.size()));
+    }
+    rows_.push_back(std::move(row));
+  }
+
+  fs::path file_;
+  std::vector<std::string> names_;
+  std::vector<std::vector<double>> rows_;
+};
+
+/// A later picture would have been finished one more iteration after the last.
+double held_until(const NumberTable& table, const std::string& clock) {
+  const std::size_t last = table.rows() - 1;
+  const double time = table.at(last, clock), iterations = table.at(last, "iteration");
+  return iterations > 0 ? time * (1 + 1 / iterations) : time;
+}
+
+ErrorCurve error_curve(const NumberTable& table, const CurveAxes& axes) {
+  std::vector<CurvePoint> points;
+  const bool referenced = axes.metric != ErrorMetric::est_rmse;
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    const CurvePoint p{table.at(i, axes.clock), table.at(i, enum_name(axes.metric)),
+                       referenced && table.at(i, "at_floor") > 0};
+    const bool later = points.empty() || p.time > points.back().time;
+    if (p.time > 0 && later && p.error > 0 && std::isfinite(p.error)) points.push_back(p);
+  }
+  if (points.empty()) return {};
+  return {std::move(points), held_until(table, axes.clock)};
+}
+
+bool is_squared(ErrorMetric m) { return m == ErrorMetric::mse || m == ErrorMetric::relmse; }
+
+std::optional<double> efficiency(const ErrorCurve& curve, ErrorMetric metric) {
+  if (curve.empty()) return {};
+  const CurvePoint& last = curve.points().back();
+  return 1 / ((is_squared(metric) ? last.error : last.error * last.error) * last.time);
+}
+
+/// A value of a JSON document, by its keys; null if it is not there.
+template <class... Keys>
+const Json* find(const Json& json, const Keys&... keys) {
+  const Json* here = &json;
+  const auto enter = [&](const char* key) {
+    if (here == nullptr) return;
+    const auto found = here->is_object() ? here->find(key) : here->end();
+    here = here->is_object() && found != here->end() ? &*found : nullptr;
+  };
+  (enter(keys), ...);
+  return here;
+}
+
+template <class... Keys>
+std::optional<double> number(const Json& json, const Keys&... keys) {
+  const Json* found = find(json, keys...);
+  return found != nullptr && found->is_number() ? std::optional(found->get<double>())
+                                                : std::nullopt;
+}
+
+std::set<std::string> artefact_names(const Json& report, const char* origin) {
+  std::set<std::string> names;
+  const Json* artefacts = find(report, "artefacts", origin);
+  if (artefacts == nullptr) return names;
+  for (const Json& a : *artefacts) {
+    const Json* name = find(a, "name");
+    if (name != nullptr && name->is_string()) names.insert(name->get<std::string>());
+  }
+  return names;
+}
+
+/// MSE = bias^2 + variance + the reference's own noise; the halves know the variance alone.
+void tell_bias(const NumberTable& table, const Json& report, RunResult& result) {
+  const std::size_t last = table.rows() - 1;
+  const double mse = table.at(last, "mse"), deviation = table.at(last, "est_rmse");
+  if (!std::isfinite(deviation)) return;
+  result.variance = deviation * deviation;
+  const auto own = number(report, "errors", "reference", "own_rmse");
+  if (std::isfinite(mse) && own) result.bias_squared = mse - *result.variance - *own * *own;
+}
+
+void read_report(const fs::path& file, Json& report) {
+  std::vector<Problem> problems;
+  try {
+    report = parse_document(read_file(file, max_report_bytes), {max_report_bytes, 64}, problems);
+  } catch (const BadJob& bad) {
+    throw std::runtime_error(fmt::format("{}: {}", file.string(), bad.what()));
+  }
+  if (!report.is_object()) throw std::runtime_error(file.string() + " holds no report");
+}
+
+}  // namespace
+
+RunResult read_result(const JobFolder& folder, const CurveAxes& axes) {
+  RunResult result;
+  if (!fs::exists(folder.file("state.json"))) return result;
+  result.state = folder.read_state();
+  Json report = Json::object();
+  if (fs::exists(folder.file("report.json"))) {
+    read_report(folder.file("report.json"), report);
+    result.preparation = {number(report, "seconds", "load").value_or(0),
+                          number(report, "seconds", "analysis").value_or(0),
+                          artefact_names(report, "built"), artefact_names(report, "loaded")};
+    const Json* file = find(report, "errors", "reference", "file");
+    if (file != nullptr && file->is_string()) result.reference_file = file->get<std::string>();
+    result.others = number(report, "machine", "others_share");
+    result.stolen = number(report, "machine", "stolen_share");
+    result.mhz = number(report, "machine", "mhz");
+  }
+  if (!fs::exists(folder.file("curve.csv"))) return result;
+  const NumberTable table(folder.file("curve.csv"));
+  if (table.rows() == 0) return result;
+  result.curve = error_curve(table, axes);
+  result.efficiency = efficiency(result.curve, axes.metric);
+  tell_bias(table, report, result);
+  return result;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "jobs/statistics/error_curve.h"
+#include "jobs/store/job_folder.h"
+#include "renderer/settings/output_settings.h"
+
+namespace lacuna {
+
+/// Which columns of a curve are compared.
+struct CurveAxes {
+  ErrorMetric metric;
+  std::string clock;  ///< "seconds" or "cpu_seconds"
+};
+
+/// What a finished run spent before its first iteration, seconds.
+struct RunPreparation {
+  double load = 0;
+  double analysis = 0;
+  std::set<std::string> built, loaded;  ///< artefacts, by type
+};
+
+/// What a run's folder says, for comparison with other runs. What it does not say is empty.
+struct RunResult {
+  JobState state;
+  ErrorCurve curve;
+  std::optional<double> efficiency;    ///< 1 / (squared error x seconds) at its end
+  std::optional<double> bias_squared;  ///< of the last row, less the reference's own noise
+  std::optional<double> variance;      ///< likewise, from the two halves
+  std::optional<RunPreparation> preparation;
+  std::optional<std::string> reference_file;
+  std::optional<double> others,
+      stolen;  ///< shares of the processors' time (jobs/run/machine_watch.h)
+  std::optional<double> mhz;
+};
+
+/// Reads curve.csv and report.json of a folder, as far as they are there. Squared errors are of the
+/// same kind as the metric (relmse and mse as they are, the others squared). Throws
+/// std::runtime_error that names a file which is damaged.
+RunResult read_result(const JobFolder& folder, const CurveAxes& axes);
+
+}  // namespace lacuna

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <list>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "jobs/sweep/sweep_folder.h"
+
+namespace lacuna {
+
+/// What the service knows of one sweep without opening its folder.
+struct SweepEntry {
+  std::string id, label;
+  SweepState state;
+  std::string error;  ///< of `failed`: what is wrong with its folder
+};
+using SweepEntryPtr = std::shared_ptr<const SweepEntry>;
+
+/// All sweeps of a service in memory. The folders are the truth: this is read from them at the
+/// start, and writes what it changes to them first. Safe from any thread; an entry that was given
+/// out never changes.
+class SweepTable {
+ public:
+  explicit SweepTable(DataRoot data) : data_(std::move(data)) {}
+
+  /// Reads every folder: once, before jobs are looked for.
+  void read();
+
+  /// Nothing if there is no such sweep.
+  SweepEntryPtr find(const std::string& id) const;
+  /// All of them, oldest first.
+  std::vector<SweepEntryPtr> all() const;
+  /// The sweep that a job is a run of; empty: none.
+  std::string sweep_of(const std::string& job_id) const;
+  /// Those that are not over: their jobs are not to be removed.
+  std::set<std::string> unfinished() const;
+  bool is_unfinished(const std::string& id) const;
+
+  /// The folder of a sweep with its plan; those asked for lately are kept. Throws what
+  /// SweepFolder() throws.
+  std::shared_ptr<const SweepFolder> open(const std::string& id);
+
+  /// A new sweep, once its folder is complete on disk. `state` says its key, if it has one. Throws
+  /// std::system_error.
+  SweepEntryPtr create(const SweepSpec& spec, SweepPlan plan, SweepState state);
+  /// Where it stands now: on disk first. Throws std::system_error.
+  void set_stage(const std::string& id, SweepStage stage);
+  /// It cannot be gone on with: told, but not stored.
+  void give_up(const std::string& id, const std::string& error);
+  /// Removes its folder, but none of its jobs. Throws std::system_error.
+  void remove(const std::string& id);
+
+ private:
+  using FolderPtr = std::shared_ptr<const SweepFolder>;
+  std::filesystem::path dir(const std::string& id) const { return data_.sweeps() / id; }
+  bool is_taken(const std::string& id, std::size_t runs) const;
+  void keep(const FolderPtr& folder);
+
+  const DataRoot data_;
+  std::mutex creating_;       // held while a sweep is made: no two choose the same ids
+  mutable std::mutex mutex_;  // guards all below
+  std::map<std::string, SweepEntryPtr> sweeps_;
+  std::list<FolderPtr> opened_;  // the latest first
+};
+
+}  // namespace lacuna

@@ -1,0 +1,82 @@
+// Every registered method through every extreme: `dev extremes`, and quickly in `dev test`.
+#include <fmt/format.h>
+
+#include <iterator>
+#include <string_view>
+
+#include "tests/extremes/matrix.h"
+#include "tests/extremes/rows.h"
+#include "tests/extremes/watchdog.h"
+
+namespace lacuna::extremes {
+namespace {
+
+/// Probability that a run with other seeds raises a false alarm; the seeds are fixed.
+constexpr double false_alarm = 1e-4;
+
+std::vector<Row> all_rows(const Effort& effort) {
+  std::vector<Row> all;
+  for (const auto& group : {scale_rows, light_rows, surface_rows, geometry_rows, accumulation_rows,
+                            space_rows, settings_rows, output_rows, budget_rows}) {
+    std::vector<Row> rows = group(effort);
+    std::move(rows.begin(), rows.end(), std::back_inserter(all));
+  }
+  return all;
+}
+
+Verdict verdict(Stage& stage, const Row& row, const Method& method) {
+  if (const std::string why = row.left_out(method); !why.empty()) {
+    return {.kind = Verdict::Kind::left_out, .why = why};
+  }
+  Check check;
+  try {
+    row.run(stage, method, check);
+  } catch (const std::exception& e) {
+    return {.kind = Verdict::Kind::red, .why = e.what()};
+  }
+  return check.verdict();
+}
+
+int run(bool quick, std::string_view wanted) {
+  const Effort effort{quick};
+  const std::vector<Method> columns = methods();
+  Matrix matrix(columns);
+  Stage stage(effort);
+  Watchdog watchdog(std::chrono::seconds(quick ? 120 : 900));
+  for (const Row& row : all_rows(effort)) {
+    if (row.name.find(wanted) == std::string::npos) continue;
+    const auto begin = std::chrono::steady_clock::now();
+    std::vector<Verdict> verdicts;
+    for (const Method& method : columns) {
+      watchdog.begin(row.name + ", " + method.name);
+      verdicts.push_back(verdict(stage, row, method));
+    }
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    fmt::print("{:<34} {:7.2f} s\n", row.name, took.count());
+    std::fflush(stdout);
+    matrix.add_row(row.name, std::move(verdicts));
+  }
+  matrix.settle(false_alarm);
+  fmt::print("\n{}{} passed, {} failed\n", matrix.text(), matrix.passed(), matrix.failed());
+  return matrix.failed() == 0 && matrix.passed() > 0 ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace lacuna::extremes
+
+int main(int argc, char** argv) {
+  bool quick = false;
+  std::string_view wanted;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    if (argument == "--quick") {
+      quick = true;
+    } else if (argument.starts_with("--row=")) {
+      wanted = argument.substr(6);
+    } else {
+      fmt::print(stderr, "extremes: \"{}\"; allowed: --quick, --row=PART_OF_ITS_NAME\n", argument);
+      return 2;
+    }
+  }
+  return lacuna::extremes::run(quick, wanted);
+}

@@ -1,0 +1,63 @@
+// Brightness, and how many lights it comes from.
+#include <fmt/format.h>
+
+#include "tests/extremes/rows.h"
+
+namespace lacuna::extremes {
+namespace {
+
+Picture lit(Stage& stage, const Method& method, double radiance) {
+  const std::string& name = stage.scene(fmt::format("room-lit-{}", radiance),
+                                        [&] { return room({.radiance = radiance}); });
+  return stage.render(stage.job(method, name));
+}
+
+/// 1: the picture shows light; 0: something else.
+int light_degree(Stage& stage, const Method& method) {
+  return degree(lit(stage, method, 2), stage.plain(method));
+}
+
+Row exactly_lit(int exponent) {
+  return {fmt::format("radiance 2^{}: same bits", exponent),
+          [=](Stage& stage, const Method& method, Check& check) {
+            const int k = light_degree(stage, method);
+            check.same_bits(lit(stage, method, std::ldexp(1.0, exponent)), stage.plain(method),
+                            std::ldexp(1.0, k * exponent));
+          }};
+}
+
+Row decimally_lit(double radiance) {
+  return {fmt::format("radiance {:g}", radiance),
+          [=](Stage& stage, const Method& method, Check& check) {
+            constexpr double rounding = 2e-6;
+            check.same_picture(lit(stage, method, radiance), stage.plain(method),
+                               std::pow(radiance, light_degree(stage, method)), rounding);
+          }};
+}
+
+/// One scene in two versions that are one to the eye: every method sees the same.
+Row the_same(const std::string& name, const Room& one, const Room& other) {
+  return {name, [=](Stage& stage, const Method& method, Check& check) {
+            const std::string& a = stage.scene(name + ", one", [&] { return room(one); });
+            const std::string& b = stage.scene(name + ", other", [&] { return room(other); });
+            constexpr double rounding = 1e-5;
+            check.same_picture(stage.render(stage.job(method, b)),
+                               stage.render(stage.job(method, a)), 1, rounding);
+          }};
+}
+
+}  // namespace
+
+std::vector<Row> light_rows(const Effort& effort) {
+  const int points = effort.quick ? 10'000 : 1'000'000;
+  const int cells = effort.quick ? 71 : 708;  // squared and doubled: as many triangles
+  return {
+      exactly_lit(-40),
+      exactly_lit(40),
+      decimally_lit(1e-12),
+      decimally_lit(1e12),
+      the_same(fmt::format("{} points of light", points), {.points = 1}, {.points = points}),
+      the_same(fmt::format("{} shining triangles", 2 * cells * cells), {}, {.panel_cells = cells})};
+}
+
+}  // namespace lacuna::extremes

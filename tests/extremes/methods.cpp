@@ -1,0 +1,73 @@
+#include "tests/extremes/methods.h"
+
+#include "tests/extremes/settings_changes.h"
+
+namespace lacuna::extremes {
+namespace {
+
+/// The method with every change that the visitor knows, one at a time.
+template <class Visitor, class... Args>
+std::vector<Method> changed(const Method& method, Args... args) {
+  std::vector<Method> all;
+  for (int i = 0;; ++i) {
+    Method next = method;
+    Visitor visitor(i, args...);
+    std::visit([&](auto& settings) { describe(visitor, settings); }, next.settings);
+    if (visitor.made().empty()) return all;
+    next.name += visitor.made();
+    all.push_back(std::move(next));
+  }
+}
+
+template <class... Ts>
+std::vector<Method> registered(const std::variant<Ts...>&) {
+  return {Method{std::string(Ts::name), Ts{}}...};
+}
+
+/// A visitor that finds the longest path, and changes it where `wanted` has a value.
+struct Depth {
+  std::optional<int> wanted = {}, found = {};
+  template <class T>
+  void operator()(std::string_view name, T& member, const Field&) {
+    if constexpr (std::is_same_v<T, int>) {
+      if (name != "max_depth") return;
+      if (wanted) member = *wanted;
+      found = member;
+    }
+  }
+};
+
+}  // namespace
+
+std::vector<Method> methods() {
+  std::vector<Method> all;
+  for (const Method& integrator : registered(IntegratorSettings{})) {
+    std::vector<Method> choices = changed<OtherChoice>(integrator);
+    choices.insert(choices.begin(), integrator);
+    for (const Method& choice : choices) {
+      all.push_back(choice);
+      for (Method& flag : changed<OtherFlag>(choice)) all.push_back(std::move(flag));
+    }
+  }
+  return all;
+}
+
+std::optional<int> max_depth(const Method& method) {
+  Depth visitor;
+  IntegratorSettings settings = method.settings;
+  std::visit([&](auto& s) { describe(visitor, s); }, settings);
+  return visitor.found;
+}
+
+Method reference_for(const Method& method) {
+  Method reference = registered(IntegratorSettings{}).front();
+  Depth visitor{.wanted = max_depth(method)};
+  std::visit([&](auto& s) { describe(visitor, s); }, reference.settings);
+  return reference;
+}
+
+std::vector<Method> with_numbers_at(const Method& method, End end) {
+  return changed<NumberAt>(method, end);
+}
+
+}  // namespace lacuna::extremes

@@ -1,0 +1,92 @@
+#include "tests/extremes/picture.h"
+
+#include <algorithm>
+
+#include "jobs/run/prepare.h"
+
+namespace lacuna::extremes {
+namespace {
+
+const std::function<bool()> never_interrupted = [] { return false; };
+
+/// Means over as nearly equal blocks as the image's pixels make.
+std::vector<double> block_means(const Image& image) {
+  const int across = std::min(Picture::most_blocks, image.width);
+  const int down = std::min(Picture::most_blocks, image.height);
+  std::vector<double> sums(std::size_t(3 * across * down)), pixels(sums.size());
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const int block = y * down / image.height * across + x * across / image.width;
+      for (int c = 0; c < 3; ++c) {
+        const auto i = static_cast<std::size_t>(3 * block + c);
+        sums[i] += double(image.at(x, y)[c]);
+        ++pixels[i];
+      }
+    }
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] /= pixels[i];
+  return sums;
+}
+
+}  // namespace
+
+RunContext Stage::context(const std::function<bool()>& interrupted) {
+  return {DataRoot{folder_ / "data"}, ScenesRoots({folder_.path()}), 2, interrupted, observer_};
+}
+
+const std::string& Stage::scene(const std::string& name, const std::function<Bytes()>& make) {
+  const auto [at, is_new] = scenes_.try_emplace(name, name + ".glb");
+  if (is_new) folder_.write(at->second, make());
+  return at->second;
+}
+
+JobSpec Stage::job(const Method& method, const std::string& scene) const {
+  JobSpec job;
+  job.scene = scene;
+  job.resolution = {effort_.side(), effort_.side()};
+  job.integrator = method.settings;
+  job.budget.iterations = effort_.iterations();
+  job.analysis.resolution = effort_.resolution();
+  return job;
+}
+
+Counters Stage::iterate(const JobSpec& job, const std::function<void(const Image&)>& see) {
+  const RunContext surroundings = context(never_interrupted);
+  const Prepared p = prepare(job, surroundings);
+  analyse(p);
+  Counters counters;
+  for (std::int64_t i = 0; i < *job.budget.iterations; ++i) {
+    Image image(job.resolution[0], job.resolution[1]);
+    counters += p.integrator->iterate(
+        {*p.scene, *p.camera, *p.pool, job.seed, static_cast<std::uint64_t>(i), never_interrupted},
+        image);
+    see(image);
+  }
+  return counters;
+}
+
+Picture Stage::render(const JobSpec& job) {
+  Picture picture;
+  picture.film = Film(job.resolution[0], job.resolution[1]);
+  picture.counters = iterate(job, [&](const Image& image) {
+    picture.film.add(picture.film.iterations(), image);
+    picture.blocks.push_back(block_means(image));
+  });
+  return picture;
+}
+
+const Picture& Stage::plain(const Method& method) {
+  const auto found = plain_.find(method.name);
+  if (found != plain_.end()) return found->second;
+  const std::string& name = scene("room", [] { return room({}); });
+  return plain_[method.name] = render(job(method, name));
+}
+
+JobFolder Stage::run(const JobSpec& job, const std::function<bool()>& interrupted) {
+  std::filesystem::remove_all(folder_ / "job");
+  JobFolder folder = JobFolder::create(folder_ / "job", job);
+  run_job(folder, context(interrupted));
+  return folder;
+}
+
+}  // namespace lacuna::extremes

@@ -1,0 +1,62 @@
+"""The list of what the papers claim, and the sweeps of what is built."""
+
+import json
+import os
+import pathlib
+import re
+import tempfile
+import unittest
+
+from harness import child
+from harness.catalogue import ENTRIES, find
+from harness.entry import SCRIPTS
+
+BUILT = [entry for entry in ENTRIES if entry.built]
+
+
+class Catalogue(unittest.TestCase):
+    def test_names_tell_entries_apart(self):
+        names = [entry.name for entry in ENTRIES]
+        self.assertEqual(len(set(names)), len(names))
+        for entry in ENTRIES:
+            self.assertRegex(entry.name, r"^(noel|nabata|kol|path)-[a-z0-9-]+$")
+            self.assertIs(find(entry.name), entry)
+            self.assertIs(find(entry.name.replace("-", "_")), entry)
+            self.assertTrue(entry.source and entry.text and entry.needs, entry.name)
+        self.assertIsNone(find("noel-table-7"))
+
+    def test_every_table_of_the_papers_is_there(self):
+        names = {entry.name for entry in ENTRIES}
+        self.assertLessEqual({f"noel-table-{n}" for n in range(1, 7)}, names)
+        self.assertLessEqual({"noel-fig-77", "nabata-table-1-2", "kol-fig-10"}, names)
+
+    def test_claims_are_told_apart_and_allow_their_own_figure(self):
+        for entry in ENTRIES:
+            quantities = [claim.quantity for claim in entry.claims]
+            self.assertEqual(len(set(quantities)), len(quantities), entry.name)
+            for claim in entry.claims:
+                if claim.figure is not None:
+                    self.assertTrue(claim.low <= claim.figure <= claim.high, (entry.name, claim))
+
+    def test_every_script_is_an_entry(self):
+        scripts = {p.stem for p in SCRIPTS.glob("*.py")} - {"__main__"}
+        self.assertEqual(scripts, {entry.script.stem for entry in BUILT})
+        for entry in BUILT:
+            self.assertTrue(callable(entry.module().measure), entry.name)
+
+
+class Sweeps(unittest.TestCase):
+    def test_sweeps_of_what_is_built_are_valid(self):
+        swept = [entry for entry in BUILT if hasattr(entry.module(), "sweep")]
+        self.assertTrue(swept)
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "sweep.json"
+            for entry in swept:
+                for full in (False, True):
+                    sweep = entry.module().sweep(full)
+                    file.write_text(json.dumps(sweep))
+                    listed = child.lacuna("sweep", file, "--list")[0].splitlines()[1:]
+                    self.assertTrue(listed, entry.name)
+                    self.assertEqual(len(listed) % sweep["seeds"], 0)
+                    self.assertTrue(all(re.match(r" +\d+ \d{4}-\d+ +queued ", line) for line in listed), listed)
+            self.assertEqual(os.listdir(folder), ["sweep.json"])

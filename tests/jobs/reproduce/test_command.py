@@ -1,0 +1,46 @@
+"""`./dev reproduce` as one types it."""
+
+import json
+import subprocess
+import sys
+import unittest
+
+from harness import child
+from harness.catalogue import ENTRIES
+
+
+def reproduce(*arguments):
+    return subprocess.run([sys.executable, child.ROOT / "jobs/reproduce", *arguments], capture_output=True, text=True,
+                          check=False)
+
+
+class Command(unittest.TestCase):
+    def test_without_a_name_it_lists_all(self):
+        done = reproduce()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"(?m)^noel-table-1 +built +Noel 2015, Table 1, p\. 86")
+        for entry in ENTRIES:
+            self.assertRegex(done.stdout, rf"(?m)^{entry.name} +{'built' if entry.built else 'not built yet'} ")
+
+    def test_the_list_as_json(self):
+        listed = json.loads(reproduce("--json").stdout)
+        self.assertEqual([(e["name"], e["built"]) for e in listed], [(e.name, e.built) for e in ENTRIES])
+
+    def test_an_unknown_name_tells_those_there_are(self):
+        done = reproduce("noel-table-7", "--full")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn('there is no "noel-table-7"; there are ', done.stderr)
+        for entry in ENTRIES:
+            self.assertIn(entry.name, done.stderr)
+
+    def test_what_is_not_built_says_what_it_needs(self):
+        entry = next((e for e in ENTRIES if not e.built), None)
+        if entry is None:
+            self.skipTest("all is built")
+        for name in (entry.name, entry.name.replace("-", "_")):
+            done = reproduce(name)
+            self.assertEqual((done.returncode, done.stdout), (1, ""))
+            self.assertEqual(done.stderr, f"reproduce: {entry.name} is not built yet; it needs {entry.needs}\n")
+
+    def test_an_unknown_option_is_refused(self):
+        self.assertEqual(reproduce("noel-table-1", "--fast").returncode, 2)
