@@ -9,7 +9,8 @@ namespace {
 
 /// The integrator that a reference of these settings is made with: converges to the same picture.
 struct PlainIntegrator {
-  IntegratorSettings operator()(const PathSettings& s) const {
+  template <class Settings>
+  IntegratorSettings operator()(const Settings& s) const {
     PathSettings plain;
     plain.max_depth = s.max_depth;
     return plain;

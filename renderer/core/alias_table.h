@@ -33,6 +33,11 @@ class AliasTable {
     std::uint32_t alias;
     float pmf;
   };
+
+ public:
+  static constexpr std::size_t bytes_each = sizeof(Bin);  ///< of memory, an index
+
+ private:
   std::vector<Bin> bins_;
 };
 

@@ -10,15 +10,6 @@ namespace lacuna {
 
 namespace {
 
-/// W/sr of a spot in direction `cos_angle` off its axis (KHR_lights_punctual: squared ramp between
-/// cones).
-float spot_falloff(const PunctualLight& light, float cos_angle) {
-  const float inner = std::cos(light.inner_cone);
-  const float outer = std::cos(light.outer_cone);
-  const float ramp = std::clamp((cos_angle - outer) / std::max(inner - outer, 1e-4F), 0.0F, 1.0F);
-  return ramp * ramp;
-}
-
 /// Luminous power; an estimate where the light's profile is not constant. It decides how often the
 /// emitter is chosen, not what it gives.
 double power(const PunctualLight& light, double scene_radius) {
@@ -37,20 +28,22 @@ double power(const PunctualLight& light, double scene_radius) {
 }  // namespace
 
 EmitterSet::EmitterSet(const SceneData& scene, std::unique_ptr<Environment> environment,
-                       float scene_radius)
+                       const Bounds& bounds)
     : scene_(&scene),
+      bounds_(bounds),
       environment_(std::move(environment)),
       first_entry_(scene.meshes.size(), none) {
+  const double radius = bounds.radius();
   std::vector<double> powers;
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) add_mesh(m, powers);
   for (std::uint32_t l = 0; l < scene.lights.size(); ++l) {
     Source source{Source::Kind::punctual};
     source.index = l;
-    add_light(source, power(scene.lights[l], scene_radius), powers);
+    add_light(source, power(scene.lights[l], radius), powers);
   }
   if (environment_ != nullptr && !environment_->black()) {
     environment_entry_ = static_cast<std::uint32_t>(entries_.size());
-    const double disk = std::numbers::pi * double(scene_radius) * double(scene_radius);
+    const double disk = std::numbers::pi * radius * radius;
     add_light({Source::Kind::environment}, environment_->integral() * disk, powers);
   }
   selection_ = AliasTable(powers);
@@ -97,74 +90,95 @@ void EmitterSet::add_mesh(std::uint32_t m, std::vector<double>& powers) {
   sources_.push_back(source);
 }
 
-EmitterSample EmitterSet::sample(std::uint32_t chosen, const V3f& x, Rng& rng) const {
+EmitterPoint EmitterSet::sample(std::uint32_t chosen, Rng& rng) const {
   const Entry& e = entries_[chosen];
   const Source& source = sources_[e.source];
-  if (source.kind == Source::Kind::mesh) return sample_triangle_of(chosen, x, rng.next2());
-  EmitterSample s = source.kind == Source::Kind::punctual
-                        ? sample_punctual(scene_->lights[source.index], x)
-                        : sample_environment(rng);
-  s.pdf = s.pdf.value * e.pdf;
-  return s;
+  if (source.kind == Source::Kind::mesh) return sample_triangle_of(chosen, rng.next2());
+  EmitterPoint p = source.kind == Source::Kind::punctual
+                       ? sample_punctual(scene_->lights[source.index])
+                       : sample_environment(rng);
+  p.pdf = p.pdf.value * e.pdf;
+  return p;
 }
 
-EmitterSample EmitterSet::sample_environment(Rng& rng) const {
+EmitterPoint EmitterSet::sample_environment(Rng& rng) const {
   const Environment::Sample d = environment_->sample(rng);
-  EmitterSample s;
-  s.x = d.w;
-  s.emission = environment_->radiance(d.w);
-  s.pdf = Pdf<Area>(d.pdf);
-  s.infinite = true;
-  return s;
+  EmitterPoint p;
+  p.kind = EmitterPoint::Kind::environment;
+  p.x = d.w;
+  p.emission = environment_->radiance(d.w);
+  p.pdf = Pdf<Area>(d.pdf);
+  p.across = across(d.w);
+  return p;
 }
 
-EmitterSample EmitterSet::sample_triangle_of(std::uint32_t chosen, const V3f& x,
-                                             const V2f& u) const {
+EmitterPoint EmitterSet::sample_triangle_of(std::uint32_t chosen, const V2f& u) const {
   const Entry& e = entries_[chosen];
   const Source& source = sources_[e.source];
   const V2f b = sample_triangle(u);
-  EmitterSample s;
-  s.x = e.at(b.x, b.y);
-  s.ng = e.ng;
-  s.extent = e.extent;
-  s.pdf = e.pdf;
-  s.emission = Rgb(0, 0, 0);
-  if (!source.both_sides && dot(x - s.x, s.ng) <= 0) return s;
-  s.emission = source.emission;
+  EmitterPoint p;
+  p.both_sides = source.both_sides;
+  p.extent = e.extent;
+  p.x = e.at(b.x, b.y);
+  p.ng = e.ng;
+  p.pdf = e.pdf;
+  p.emission = source.emission;
   if (source.textured) {
     const Mesh& mesh = scene_->meshes[source.index];
-    s.emission = emission(scene_->materials[mesh.material], scene_->textures,
-                          mesh.uvs_at(chosen - source.first_entry, b.x, b.y));
+    p.emission = lacuna::emission(scene_->materials[mesh.material], scene_->textures,
+                                  mesh.uvs_at(chosen - source.first_entry, b.x, b.y));
   }
-  return s;
+  return p;
 }
 
-EmitterSample EmitterSet::sample_punctual(const PunctualLight& light, const V3f& x) {
-  EmitterSample s;
-  s.delta = true;
-  s.pdf = Pdf<Area>(1.0F);
-  s.emission = light.intensity;
+EmitterPoint EmitterSet::sample_punctual(const PunctualLight& light) const {
+  EmitterPoint p;
+  p.pdf = Pdf<Area>(1.0F);
+  p.emission = light.intensity;
   if (light.kind == PunctualLight::Kind::directional) {
-    s.x = -light.direction;
-    s.infinite = true;
-    return s;
+    p.kind = EmitterPoint::Kind::directional;
+    p.x = -light.direction;
+    p.across = across(p.x);
+    return p;
   }
-  s.x = light.position;
+  p.kind = EmitterPoint::Kind::point;
+  p.x = light.position;
   if (light.kind == PunctualLight::Kind::spot) {
-    const V3f to_receiver = (x - light.position).normalized();
-    s.emission *= spot_falloff(light, dot(to_receiver, light.direction));
+    p.kind = EmitterPoint::Kind::spot;
+    p.ng = light.direction;
+    p.cos_inner = std::cos(light.inner_cone);
+    p.cos_outer = std::cos(light.outer_cone);
   }
-  return s;
+  return p;
+}
+
+EmitterPoint EmitterSet::hit(const Surface& s, const Rgb& radiance) const {
+  EmitterPoint p;
+  p.both_sides = s.emits_behind;
+  p.extent = s.extent;
+  p.x = s.x;
+  p.ng = s.ng;
+  p.emission = radiance;
+  p.pdf = pdf(s.mesh, s.triangle);
+  return p;
+}
+
+EmitterPoint EmitterSet::hit_background(const V3f& w) const {
+  EmitterPoint p;
+  p.kind = EmitterPoint::Kind::environment;
+  p.x = w;
+  if (environment_ == nullptr) return p;
+  p.emission = environment_->radiance(w);
+  if (environment_entry_ != none) {
+    p.pdf = environment_->pdf(w) * entries_[environment_entry_].pdf;
+  }
+  p.across = across(w);
+  return p;
 }
 
 Pdf<Area> EmitterSet::pdf(std::uint32_t mesh, std::uint32_t triangle) const {
   if (first_entry_[mesh] == none || selection_.empty()) return {};
   return entries_[first_entry_[mesh] + triangle].pdf;
-}
-
-Pdf<Area> EmitterSet::environment_pdf(const V3f& w) const {
-  if (environment_entry_ == none) return {};
-  return environment_->pdf(w) * entries_[environment_entry_].pdf;
 }
 
 Rgb EmitterSet::background(const V3f& w) const {

@@ -5,32 +5,24 @@
 #include <vector>
 
 #include "renderer/core/alias_table.h"
+#include "renderer/core/bounds.h"
+#include "renderer/emitters/emitter_point.h"
 #include "renderer/emitters/environment.h"
+#include "renderer/emitters/leaving.h"
 #include "renderer/scene/scene_data.h"
 #include "renderer/scene/surface.h"
 
 namespace lacuna {
 
-/// A point or a direction that light comes from, drawn for next event estimation.
-struct EmitterSample {
-  V3f x;             ///< position; for an infinite emitter: unit direction towards it
-  V3f ng{0, 0, 0};   ///< of an area emitter: unit normal of its front side
-  float extent = 0;  ///< of the triangle x lies on, see TriangleShape
-  Rgb emission;  ///< towards the receiver: radiance; W/sr of a point; W/m^2 of a directional light
-  Pdf<Area>
-      pdf{};  ///< selection included. Infinite: per steradian. Delta: the selection's probability
-  bool infinite = false;
-  bool delta = false;  ///< point, spot, directional: no path can hit it
-};
-
 /// All emitters of a scene; one is chosen with probability proportional to its power, so the
 /// density of any point on one is known wherever it is seen from.
 class EmitterSet {
  public:
-  /// `scene_radius` > 0 (scene units) bounds the scene: the power of infinite emitters is what
-  /// passes through its great disk. Keeps a pointer to `scene`; the emission textures must be
-  /// decoded.
-  EmitterSet(const SceneData& scene, std::unique_ptr<Environment> environment, float scene_radius);
+  /// `bounds` is the box of all triangles: the power of infinite emitters is what passes through
+  /// the great disk of its sphere, and their light paths start on its sides. Keeps a pointer to
+  /// `scene`; the emission textures must be decoded.
+  EmitterSet(const SceneData& scene, std::unique_ptr<Environment> environment,
+             const Bounds& bounds);
 
   bool empty() const { return selection_.empty(); }
   std::size_t size() const { return entries_.size(); }
@@ -42,14 +34,20 @@ class EmitterSet {
     __builtin_prefetch(&entries_[i]);
     return i;
   }
-  /// Draws a point on the emitter `chosen` for the receiver at `x`; its density includes the
-  /// choice.
-  EmitterSample sample(std::uint32_t chosen, const V3f& x, Rng& rng) const;
+  /// Draws a point on the emitter `chosen`; its density includes the choice.
+  EmitterPoint sample(std::uint32_t chosen, Rng& rng) const;
+  /// A light path's first edge from such a point.
+  std::optional<Leaving> leave(const EmitterPoint& e, Rng& rng) const {
+    return sample_leaving(e, bounds_, rng);
+  }
 
   /// Density with which sample() returns a point of triangle `triangle` of `mesh`.
   Pdf<Area> pdf(std::uint32_t mesh, std::uint32_t triangle) const;
-  /// Density with which sample() returns direction `w`, per steradian (see EmitterSample::pdf).
-  Pdf<Area> environment_pdf(const V3f& w) const;
+  /// The point of an emitting surface that a path hit, as sample() would return it; its emission,
+  /// which the caller has looked up, is `radiance`.
+  EmitterPoint hit(const Surface& s, const Rgb& radiance) const;
+  /// Direction `w` at infinity (unit), which a path ended in, as sample() would return it.
+  EmitterPoint hit_background(const V3f& w) const;
   /// Radiance that arrives from direction `w` at infinity.
   Rgb background(const V3f& w) const;
   const Environment* environment() const { return environment_.get(); }
@@ -72,11 +70,13 @@ class EmitterSet {
 
   void add_mesh(std::uint32_t mesh, std::vector<double>& powers);
   void add_light(const Source& source, double power, std::vector<double>& powers);
-  EmitterSample sample_triangle_of(std::uint32_t chosen, const V3f& x, const V2f& u) const;
-  EmitterSample sample_environment(Rng& rng) const;
-  static EmitterSample sample_punctual(const PunctualLight& light, const V3f& x);
+  EmitterPoint sample_triangle_of(std::uint32_t chosen, const V2f& u) const;
+  EmitterPoint sample_environment(Rng& rng) const;
+  EmitterPoint sample_punctual(const PunctualLight& light) const;
+  float across(const V3f& w) const { return static_cast<float>(bounds_.area_across(w)); }
 
   const SceneData* scene_;
+  Bounds bounds_;
   std::unique_ptr<Environment> environment_;
   std::vector<Source> sources_;
   HugeVector<Entry> entries_;

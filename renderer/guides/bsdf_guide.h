@@ -12,7 +12,10 @@ struct BsdfGuide {
     const float u_lobe = rng.next();
     return v.bsdf->sample(v.wp, u_lobe, rng.next2(), transport);
   }
-  static Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wi) { return v.bsdf->pdf(v.wp, wi); }
+  /// Density of `wi` for a walk of kind `transport` that arrived at `v` from `wo`.
+  static Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport) {
+    return v.bsdf->pdf(wo, wi, transport);
+  }
 };
 
 }  // namespace lacuna

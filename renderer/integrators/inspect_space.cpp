@@ -63,12 +63,10 @@ std::uint32_t SpaceView::label_of_node(std::uint32_t node) const {
 
 Rgb SpaceView::sight(const Scene& scene, const Surface& s, std::uint32_t node,
                      Counters& counters) const {
-  const V3d centre = transform_.to_world(V3d(graph_->corners[node]));
-  EmitterSample end;
-  end.x = V3f(centre);
-  end.delta = true;
+  const V3f to(transform_.to_world(V3d(graph_->corners[node])));
+  const V3f from = offset_origin(s.x, s.ng, s.extent, to - s.x);
   ++counters.shadow_rays;
-  return scene.rays().occluded(Scene::shadow_ray(s, end)) ? Rgb(1, 0, 0) : Rgb(0, 1, 0);
+  return scene.rays().occluded({from, to - from, 1.0F}) ? Rgb(1, 0, 0) : Rgb(0, 1, 0);
 }
 
 }  // namespace lacuna

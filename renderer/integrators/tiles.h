@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "renderer/integrators/integrator.h"
+#include "renderer/path/eye_batch.h"
+#include "renderer/path/splats.h"
 
 namespace lacuna {
 
@@ -27,31 +29,51 @@ struct Tile {
   V2i pixel(int i) const { return first + V2i(i % size.x, i / size.x); }
 };
 
-/// Calls `render(tile, counters)` for all tiles of `image` in parallel and adds up what they
-/// counted. Throws IterationStopped if the context asks for it.
-template <class Render>
-Counters for_each_tile(const IterationContext& context, const Image& image, Render&& render) {
-  constexpr int size = 32;  // pixels; small enough to stop quickly, large enough to be coherent
-  const int across = (image.width + size - 1) / size;
-  const int down = (image.height + size - 1) / size;
-  std::vector<Counters> counters(static_cast<std::size_t>(across) * static_cast<std::size_t>(down));
+/// Calls `work(i, counters)` for i in [0, n) in parallel and adds up what they counted. Throws
+/// IterationStopped if the context asks for it.
+template <class Work>
+Counters for_each_part(const IterationContext& context, int n, Work&& work) {
+  std::vector<Counters> counters(static_cast<std::size_t>(n));
   std::atomic<bool> stopped{false};
-  context.pool.for_each(across * down, [&](int i) {
+  context.pool.for_each(n, [&](int i) {
     if (stopped || context.stop()) {
       stopped = true;
       return;
     }
-    const V2i first = V2i(i % across, i / across) * size;
-    const Tile tile{
-        first, V2i(std::min(size, image.width - first.x), std::min(size, image.height - first.y))};
     Counters count;  // not in the shared array: neighbours would share a cache line
-    render(tile, count);
+    work(i, count);
     counters[static_cast<std::size_t>(i)] = count;
   });
   if (stopped) throw IterationStopped{};
   Counters sum;
   for (const Counters& c : counters) sum += c;
   return sum;
+}
+
+/// How an image is cut into tiles.
+class Tiling {
+ public:
+  explicit Tiling(const Image& image)
+      : width_(image.width), height_(image.height), across_((image.width + size - 1) / size) {}
+
+  int tiles() const { return across_ * ((height_ + size - 1) / size); }
+  Tile tile(int i) const {
+    const V2i first = V2i(i % across_, i / across_) * size;
+    return {first, V2i(std::min(size, width_ - first.x), std::min(size, height_ - first.y))};
+  }
+
+ private:
+  static constexpr int size =
+      32;  // pixels; small enough to stop quickly, large enough to be coherent
+  int width_, height_, across_;
+};
+
+/// Calls `render(tile, counters)` for all tiles of `image`, as for_each_part() does.
+template <class Render>
+Counters for_each_tile(const IterationContext& context, const Image& image, Render&& render) {
+  const Tiling tiling(image);
+  return for_each_part(context, tiling.tiles(),
+                       [&](int i, Counters& counters) { render(tiling.tile(i), counters); });
 }
 
 /// Where a sample of a pixel starts: its stream of random numbers, and its first ray.
@@ -63,5 +85,39 @@ struct CameraSample {
       : rng(context.seed, context.iteration, image.index(pixel.x, pixel.y)),
         ray(context.camera.sample(pixel, rng.next2())) {}
 };
+
+/// Fills `batch` with a path for each of the tile's pixels from the `first` on, as many as fit.
+inline void start_paths(const IterationContext& context, const Image& image, const Tile& tile,
+                        int first, EyeBatch& batch) {
+  batch.walkers.clear();
+  for (int i = first; i < std::min(first + int{EyeBatch::size}, tile.pixels()); ++i) {
+    const V2i pixel = tile.pixel(i);
+    const CameraSample sample(context, image, pixel);
+    batch.start(context.camera, sample.rng, sample.ray, image.index(pixel.x, pixel.y));
+  }
+}
+
+/// As for_each_part(); `work(i, counters, splats)` may also give to any pixel. What it gives is
+/// added to `image`, and handed to `arrived(splat)`, in the order of the parts.
+template <class Work, class Arrived>
+Counters for_each_splatting_part(const IterationContext& context, int n, Image& image, Work&& work,
+                                 Arrived&& arrived) {
+  constexpr int round = 128;  // parts whose splats are in memory together
+  std::vector<Splats> splats(static_cast<std::size_t>(std::min(n, round)));
+  Counters sum;
+  for (int first = 0; first < n; first += round) {
+    sum += for_each_part(context, std::min(round, n - first), [&](int i, Counters& counters) {
+      work(first + i, counters, splats[static_cast<std::size_t>(i)]);
+    });
+    for (Splats& part : splats) {
+      for (const Splat& s : part) {
+        accumulate(image.pixels[s.pixel], s.value * s.weight, sum);
+        arrived(s);
+      }
+      part.clear();
+    }
+  }
+  return sum;
+}
 
 }  // namespace lacuna

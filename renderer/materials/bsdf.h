@@ -79,6 +79,11 @@ class Bsdf {
             (!lobes_.interface.smooth() || lobes_.has_diffuse()));
   }
 
+  /// Light may pass to the other side of the surface.
+  bool transmits() const {
+    return lobes_.kind == Lobes::Kind::layered && lobes_.interface.glass > 0;
+  }
+
   /// Albedo for the denoiser layer: base colour weighted by what the surface does with it.
   Rgb albedo() const;
 

@@ -10,8 +10,6 @@ namespace lacuna {
 // Lambert's law: f = albedo / pi. Directions are drawn with density cos / pi, so that
 // f cos / pdf = albedo without any arithmetic.
 
-inline constexpr float inv_pi = 1 / pi;
-
 /// A direction with density cos / pi around unit `n` (Malley's method). Its cosine is above 3e-4.
 inline V3f sample_cosine(const V3f& n, const V2f& u) {
   const V2f d = sample_disk(u);

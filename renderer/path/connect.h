@@ -1,44 +1,113 @@
 #pragma once
 
-#include "renderer/path/vertex.h"
+#include <optional>
+
+#include "renderer/path/ends.h"
 #include "renderer/scene/scene.h"
 
 namespace lacuna {
 
-/// The edge that joins a vertex of an eye path to a point on an emitter.
+/// An edge that joins a path from the eye to one from a light, or to an emitter. Nothing is traced:
+/// the caller asks whether anything lies between.
 struct Connection {
-  Rgb contribution{0, 0, 0};  ///< unweighted: throughput f G Le / pdf, without visibility
-  V3f w{0, 0, 0};             ///< unit, from the vertex to the emitter
-  float distance2 = 0;        ///< squared length; of an infinite emitter: meaningless
+  V3f w{0, 0, 0};         ///< unit, from the eye's end to the light's
+  float distance2 = 1;    ///< squared length; 1 if the light's end is at infinity
+  bool infinite = false;  ///< the light's end is
+  Rgb contribution{0, 0,
+                   0};  ///< unweighted, without visibility: both ends' scatter() over distance2
+
+  explicit operator bool() const { return !is_black(contribution); }
 };
 
-/// Joins `v` to `e`. Nothing is traced and nothing changed; the caller asks Scene::visible for what
-/// is not black.
-inline Connection connect(const Vertex& v, const EmitterSample& e) {
+template <class End>
+constexpr bool at_infinity(const End& e) {
+  if constexpr (requires { e.infinite(); }) return e.infinite();
+  return false;
+}
+
+/// Joins the ends `eye` and `light`; false if no light passes, whatever lies between.
+template <class Eye, class Light>
+Connection connect(const Eye& eye, const Light& light) {
   Connection c;
-  if (is_black(e.emission) || !e.pdf.positive()) return c;
-  float geometry = 1;
-  if (e.infinite) {
-    c.w = e.x;
+  c.infinite = at_infinity(light);
+  if (c.infinite) {
+    c.w = light.x();
   } else {
-    const V3f edge = e.x - v.surface.x;
+    const V3f edge = light.x() - eye.x();
     c.distance2 = edge.length2();
     if (!(c.distance2 > 0)) return c;
     c.w = edge / std::sqrt(c.distance2);
-    geometry = (e.delta ? 1.0F : abs_dot(e.ng, c.w)) / c.distance2;
   }
-  const Rgb f = v.bsdf->eval(v.wp, c.w, Transport::radiance);
-  if (is_black(f)) return c;
-  c.contribution = v.throughput * f * e.emission * (geometry / e.pdf.value);
+  const Rgb emitted = light.scatter(-c.w);
+  if (is_black(emitted)) return c;
+  c.contribution = eye.scatter(c.w) * emitted / c.distance2;
   return c;
 }
 
-/// Density per area of reaching `e` by a direction drawn at `v` with density `p` (infinite: per
-/// steradian); zero for delta emitters, which no direction reaches.
-inline Pdf<Area> to_area(Pdf<SolidAngle> p, const Connection& c, const EmitterSample& e) {
-  if (e.delta) return {};
-  if (e.infinite) return Pdf<Area>(p.value);
-  return Pdf<Area>(p.value * abs_dot(e.ng, c.w) / c.distance2);
+/// The ray that meets nothing if nothing lies between the ends; both are moved off their surfaces.
+template <class Eye, class Light>
+Ray shadow_ray(const Eye& eye, const Light& light, const Connection& c) {
+  const V3f from = eye.origin(c.w);
+  if (c.infinite) return {from, c.w};
+  return {from, light.origin(-c.w) - from, 1.0F};
+}
+
+/// sum_{i != s} n_i p_i / p_s over the strategies that leave the light's end fewer vertices.
+template <class Eye, class Light>
+double fewer_of_light(const Eye& eye, const Light& light, const Connection& c,
+                      const SampleCounts& n) {
+  if (light.index == 0 && !light.prior_connectible()) return 0;
+  const double g = eye.pdf(c.w) * (c.infinite ? 1.0 : light.area_factor(c.w) / double(c.distance2));
+  const double back = light.prior() > 0 ? light.back(-c.w) : 0.0;
+  return g / light.p_fwd() *
+         prior_sum(light_side(n), light.index, light.prior_connectible(), back, light.prior());
+}
+
+/// The same over those that leave the eye's end fewer.
+template <class Eye, class Light>
+double fewer_of_eye(const Eye& eye, const Light& light, const Connection& c,
+                    const SampleCounts& n) {
+  const double h = light.pdf(-c.w) * eye.area_factor(c.w) / double(c.distance2);
+  const double back = eye.prior() > 0 ? eye.back(c.w) : 0.0;
+  return h / eye.p_fwd() *
+         prior_sum(eye_side(n), eye.index, eye.prior_connectible(), back, eye.prior());
+}
+
+/// The MIS weight of a connection of a surface with an emitter or another surface.
+template <class Eye, class Light>
+double weight(const Eye& eye, const Light& light, const Connection& c, const SampleCounts& n) {
+  const double own = n.of(light.index + 1, eye.index + 1);
+  return mis_weight(own, fewer_of_light(eye, light, c, n),
+                    n.bidirectional() ? fewer_of_eye(eye, light, c, n) : 0.0);
+}
+
+/// The MIS weight of a connection with the eye itself.
+template <class Light>
+double weight(const EyeEnd& eye, const Light& light, const Connection& c, const SampleCounts& n) {
+  return mis_weight(n.splat, fewer_of_light(eye, light, c, n), 0.0);
+}
+
+/// The point of an emitter that a walk from the eye met at `v`, if any light leaves it towards the
+/// vertex before.
+inline std::optional<EmitterPoint> emitter_at(const Scene& scene, const Vertex& v) {
+  if (v.kind == Vertex::Kind::background) {
+    const EmitterPoint e = scene.emitters().hit_background(v.surface.x);
+    return is_black(e.emission) ? std::nullopt : std::optional(e);
+  }
+  const Rgb radiance = scene.emitted(v.surface, v.wp);
+  if (is_black(radiance)) return std::nullopt;
+  return scene.emitters().hit(v.surface, radiance);
+}
+
+/// The MIS weight of a path from the eye whose vertex `index` >= 1, `v`, is point `e` of an
+/// emitter.
+inline double hit_weight(const Vertex& v, int index, const EmitterPoint& e, const SampleCounts& n) {
+  const double one_less = n.of(1, index);
+  const SideCounts side{0, one_less, one_less};
+  const double back = v.prior > 0 ? double(e.leaving_pdf(v.wp).value) : 0.0;
+  return mis_weight(n.hit, 0.0,
+                    double(e.pdf.value) / double(v.p_fwd.value) *
+                        prior_sum(side, index, v.prior_connectible, back, v.prior));
 }
 
 }  // namespace lacuna

@@ -10,21 +10,31 @@ namespace lacuna {
 
 /// One vertex of a path, wherever it came from.
 struct Vertex {
-  enum class Kind : std::uint8_t { eye, surface, background };
+  enum class Kind : std::uint8_t { eye, emitter, surface, background };
   Kind kind = Kind::eye;
-  bool delta = false;        ///< the walk left it through a delta lobe
-  Surface surface;           ///< background: only x, the unit direction to infinity
+  bool delta = false;  ///< the walk left it through a delta lobe
+  /// The strategy that joins the vertex before it to this one can make the path, as far as the
+  /// former is concerned (mis.h).
+  bool prior_connectible = true;
+  Surface surface;           ///< emitter: x, ng; background: only x, the unit direction to infinity
   V3f wp{0, 0, 0};           ///< unit, to the previous vertex
   Rgb throughput{1, 1, 1};   ///< includes every division by a density, up to here
   Pdf<Area> p_fwd{};         ///< density of this vertex on this walk; background: per steradian
+  double prior = 0;          ///< PriorSum's part that is known before the path goes on (mis.h)
   std::optional<Bsdf> bsdf;  ///< of a surface from which the path may go on
+
+  /// An edge that was not sampled may begin or end here.
+  bool connectible() const { return kind == Kind::surface ? !delta && bsdf->connectible() : true; }
 };
 
-/// Density per area at `to` of reaching it from `from` along unit `w`. The background has no area:
-/// its density stays per steradian. The only conversion between the two measures.
-inline Pdf<Area> to_area(Pdf<SolidAngle> p, const V3f& from, const V3f& w, const Vertex& to) {
+/// Density per area at `to` of reaching it from `from` along unit `w`, drawn with density `p`. The
+/// background has no area: its density stays per steradian; what comes from there is drawn per area
+/// across `w` (EmitterPoint::leaving_pdf). The only conversion between the measures.
+inline Pdf<Area> to_area(Pdf<SolidAngle> p, const Vertex& from, const V3f& w, const Vertex& to) {
   if (to.kind == Vertex::Kind::background) return Pdf<Area>(p.value);
-  return Pdf<Area>(p.value * abs_dot(to.surface.ng, w) / (to.surface.x - from).length2());
+  const float cosine = abs_dot(to.surface.ng, w);
+  if (from.kind == Vertex::Kind::background) return Pdf<Area>(p.value * cosine);
+  return Pdf<Area>(p.value * cosine / (to.surface.x - from.surface.x).length2());
 }
 
 }  // namespace lacuna

@@ -6,25 +6,32 @@
 
 #include "renderer/core/rng.h"
 #include "renderer/path/counters.h"
+#include "renderer/path/mis.h"
 #include "renderer/path/vertex.h"
 #include "renderer/scene/scene.h"
 
 namespace lacuna {
 
-/// How far a walk goes.
+/// How far a walk goes, and for whom.
 struct WalkLimits {
-  int max_depth = 1;       ///< edges
-  int roulette_depth = 1;  ///< edges that are walked before Russian roulette may end the path
+  int max_depth = 1;           ///< edges
+  bool last_scatters = false;  ///< the vertex after the last edge has a Bsdf too: it will be joined
+  int roulette_depth = 1;      ///< edges that are walked before Russian roulette may end the path
   Transport transport = Transport::radiance;
+  SideCounts counts = {};  ///< of this side's strategies; all 0: Vertex::prior is not needed
 };
 
 /// A random walk, between two of its edges.
 struct Walker {
   Rng rng;
-  Ray ray;                 ///< the next edge
-  Pdf<SolidAngle> p;       ///< density with which it was drawn
-  std::span<Vertex> path;  ///< max_depth + 1 places; path[0] is set, its throughput included
-  Rgb throughput = path[0].throughput;  ///< along `ray`
+  Ray ray;                  ///< the next edge
+  Pdf<SolidAngle> p;        ///< density with which it was drawn
+  std::span<Vertex> path;   ///< max_depth + 1 places; path[0] is set
+  Rgb throughput{1, 1, 1};  ///< along `ray`
+  /// prior_sum() of the last vertex over its density: of the first, for a path from a light whose
+  /// emitter can be hit, SideCounts::none over its density.
+  double prior = 0;
+  float roulette_scale = 1;  ///< 1 / the largest component of the first edge's throughput
   Hit hit{};
 };
 
@@ -79,15 +86,23 @@ class Walk {
       v.surface.x = w.ray.d;
     } else {
       v.surface = scene_.surface(w.hit);
-      if (depth < limits_.max_depth) scene_.prefetch_bsdf(v.surface);
+      if (scatters(depth)) scene_.prefetch_bsdf(v.surface);
     }
-    v.p_fwd = to_area(w.p, vertex(w, depth - 1).surface.x, w.ray.d, v);
+    const Vertex& before = vertex(w, depth - 1);
+    v.p_fwd = to_area(w.p, before, w.ray.d, v);
+    if (w.prior > 0) {
+      v.prior = w.prior * double(to_area(Pdf<SolidAngle>(1.0F), v, v.wp, before).value);
+    } else {
+      v.prior = 0;
+    }
+    v.prior_connectible = before.connectible();
   }
 
-  /// The last vertex needs no scattering: nothing goes on from it.
+  bool scatters(int depth) const { return limits_.last_scatters || depth < limits_.max_depth; }
+
   void scatter(Walker& w, int depth) {
     Vertex& v = vertex(w, depth);
-    if (v.kind == Vertex::Kind::background || depth == limits_.max_depth) return;
+    if (v.kind == Vertex::Kind::background || !scatters(depth)) return;
     scene_.make_bsdf(v.surface, v.bsdf);
   }
 
@@ -99,19 +114,33 @@ class Walk {
     if (!next) return false;
     w.throughput *= next->weight;
     if (depth >= limits_.roulette_depth) {
-      const float survival = std::min(1.0F, max_component(w.throughput));
+      const float survival = std::min(1.0F, max_component(w.throughput) * w.roulette_scale);
       if (w.rng.next() >= survival) return false;
       w.throughput /= survival;
     }
     v.delta = next->delta;
-    w.p = next->pdf;
+    // Deltas cancel in all ratios of densities, if both walks leave them out.
+    w.p = next->delta ? Pdf<SolidAngle>(1.0F) : next->pdf;
+    if (tracked_) w.prior = prior(v, depth, next->wi);
     w.ray = {offset_origin(v.surface.x, v.surface.ng, v.surface.extent, next->wi), next->wi};
     return true;
+  }
+
+  double prior(const Vertex& v, int depth, const V3f& wi) const {
+    const bool connectible = v.prior_connectible && v.connectible();
+    double back = 0;
+    if (v.prior > 0) {
+      const Transport other =
+          limits_.transport == Transport::radiance ? Transport::importance : Transport::radiance;
+      back = v.delta ? 1.0 : double(guide_.pdf(v, wi, v.wp, other).value);
+    }
+    return prior_sum(limits_.counts, depth, connectible, back, v.prior) / double(v.p_fwd.value);
   }
 
   const Scene& scene_;
   const Guide& guide_;
   WalkLimits limits_;
+  bool tracked_ = limits_.counts.any();
   Counters& counters_;
   std::vector<std::size_t> active_;
 };

@@ -23,7 +23,7 @@ const CameraData& choose_camera(const SceneData& scene, const std::string& name,
 }
 
 Camera::Camera(const CameraData& data, int width, int height, PixelFilter filter)
-    : filter_(filter) {
+    : width_(width), height_(height), filter_(filter) {
   const M44d& m = data.to_world;
   const V3d right(m[0][0], m[0][1], m[0][2]);
   const V3d up(m[1][0], m[1][1], m[1][2]);
@@ -31,10 +31,10 @@ Camera::Camera(const CameraData& data, int width, int height, PixelFilter filter
   position_ = V3f(V3d(m[3][0], m[3][1], m[3][2]));
   forward_ = V3f(-back);
   const double half_height = std::tan(data.yfov / 2);
-  const double pixel = 2 * half_height / height;
-  dx_ = right * pixel;
-  dy_ = up * -pixel;
-  origin_ = -back + up * half_height - right * (pixel * width / 2);
+  pixel_ = 2 * half_height / height;
+  dx_ = right * pixel_;
+  dy_ = up * -pixel_;
+  origin_ = -back + up * half_height - right * (pixel_ * width / 2);
 }
 
 Ray Camera::sample(const V2i& pixel, const V2f& u) const {
@@ -45,6 +45,26 @@ Ray Camera::sample(const V2i& pixel, const V2f& u) const {
     return x < 0.5F ? std::sqrt(2 * x) - 0.5F : 1.5F - std::sqrt(2 * (1 - x));
   };
   return ray(static_cast<float>(pixel.x) + place(u.x), static_cast<float>(pixel.y) + place(u.y));
+}
+
+Pdf<SolidAngle> Camera::density(const V3f& w) const {
+  // dA = dw / cos^3 on a plane at unit distance.
+  const double c = double(dot(w, forward_));
+  return Pdf<SolidAngle>(static_cast<float>(1 / (pixel_ * pixel_ * c * c * c)));
+}
+
+std::optional<V2f> Camera::project(const V3f& w) const {
+  const double c = double(dot(w, forward_));
+  if (!(c > 0)) return std::nullopt;
+  const V3d on_film = V3d(w) / c - origin_;
+  const double square = pixel_ * pixel_;
+  const V2f at(static_cast<float>(on_film.dot(dx_) / square),
+               static_cast<float>(on_film.dot(dy_) / square));
+  const float margin = filter_ == PixelFilter::box ? 0.0F : 0.5F;
+  const bool seen = at.x >= -margin && at.y >= -margin &&
+                    at.x < static_cast<float>(width_) + margin &&
+                    at.y < static_cast<float>(height_) + margin;
+  return seen ? std::optional(at) : std::nullopt;
 }
 
 Ray Camera::ray(float x, float y) const {

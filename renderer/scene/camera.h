@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+
+#include "renderer/core/density.h"
 #include "renderer/scene/rays.h"
 #include "renderer/scene/scene_data.h"
 #include "renderer/settings/output_settings.h"
@@ -25,13 +28,54 @@ class Camera {
   /// The ray through film position (x, y), in pixels from the upper left corner. `d` is unit.
   Ray ray(float x, float y) const;
 
+  /// Density per steradian, at unit `w` in front of the camera, of one sample a pixel spread evenly
+  /// over the film: how many pixels a steradian covers there. So it is the importance of what
+  /// arrives, too: a path from a light that ends at the eye gives density() times the weights of
+  /// splat().
+  Pdf<SolidAngle> density(const V3f& w) const;
+
+  /// The place on the film, in pixels, where light arriving against unit `w` (away from the eye) is
+  /// seen; nothing if no pixel sees it.
+  std::optional<V2f> project(const V3f& w) const;
+
+  /// Calls `pixel(index, weight)` for the pixels whose filter reaches film position `at`: index in
+  /// the film, top row first, weight > 0. The filter's integral over the film is 1.
+  template <class Pixel>
+  void splat(const V2f& at, Pixel&& pixel) const {
+    if (filter_ == PixelFilter::box) {
+      const V2i p(static_cast<int>(std::floor(at.x)), static_cast<int>(std::floor(at.y)));
+      if (inside(p)) pixel(index(p), 1.0F);
+      return;
+    }
+    const V2i first(static_cast<int>(std::floor(at.x - 0.5F)),
+                    static_cast<int>(std::floor(at.y - 0.5F)));
+    for (const V2i& p : {first, first + V2i(1, 0), first + V2i(0, 1), first + V2i(1, 1)}) {
+      const float weight =
+          tent(at.x - static_cast<float>(p.x)) * tent(at.y - static_cast<float>(p.y));
+      if (inside(p) && weight > 0) pixel(index(p), weight);
+    }
+  }
+
+  /// Of the film, in pixels.
+  int width() const { return width_; }
+  int height() const { return height_; }
   const V3f& position() const { return position_; }
   const V3f& forward() const { return forward_; }
 
  private:
+  bool inside(const V2i& p) const { return p.x >= 0 && p.y >= 0 && p.x < width_ && p.y < height_; }
+  std::uint32_t index(const V2i& p) const {
+    return static_cast<std::uint32_t>(p.y) * static_cast<std::uint32_t>(width_) +
+           static_cast<std::uint32_t>(p.x);
+  }
+  /// Of the distance from a pixel's upper left corner.
+  static float tent(float x) { return std::max(0.0F, 1 - std::abs(x - 0.5F)); }
+
+  int width_, height_;
   V3f position_;
   V3f forward_;
   PixelFilter filter_;
+  double pixel_;          // side of a pixel on the film plane at unit distance
   V3d origin_, dx_, dy_;  // the film plane at unit distance: origin_ + x dx_ + y dy_
 };
 

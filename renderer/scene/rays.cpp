@@ -66,6 +66,7 @@ struct RayCaster::Impl {
   std::atomic<std::int64_t> bytes{0};
   std::string said;  // by Embree of its latest error
   mutable std::atomic<std::uint64_t> refused{0};
+  std::vector<RecordedRay>* recorded = nullptr;
 
   Impl() = default;
   Impl(const Impl&) = delete;
@@ -143,6 +144,8 @@ RayCaster::RayCaster(RayCaster&&) noexcept = default;
 RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
 
 bool RayCaster::intersect(const Ray& ray, Hit& hit) const {
+  if (impl_->recorded != nullptr) [[unlikely]]
+    impl_->recorded->push_back({ray, false});
   if (!acceptable(ray)) [[unlikely]] {
     ++impl_->refused;
     return false;
@@ -159,6 +162,8 @@ bool RayCaster::intersect(const Ray& ray, Hit& hit) const {
 }
 
 bool RayCaster::occluded(const Ray& ray) const {
+  if (impl_->recorded != nullptr) [[unlikely]]
+    impl_->recorded->push_back({ray, true});
   if (!acceptable(ray)) [[unlikely]] {
     ++impl_->refused;
     return true;
@@ -171,6 +176,9 @@ bool RayCaster::occluded(const Ray& ray) const {
 }
 
 void RayCaster::occluded(std::span<const Ray> rays, std::span<std::uint8_t> result) const {
+  if (impl_->recorded != nullptr) [[unlikely]] {
+    for (const Ray& ray : rays) impl_->recorded->push_back({ray, true});
+  }
   constexpr std::size_t batch = 128;  // fits the first-level cache
   std::array<RTCRay, batch> queries;
   RTCIntersectContext context;
@@ -191,6 +199,7 @@ void RayCaster::occluded(std::span<const Ray> rays, std::span<std::uint8_t> resu
   }
 }
 
+void RayCaster::record(std::vector<RecordedRay>* rays) const { impl_->recorded = rays; }
 std::uint64_t RayCaster::refused_rays() const { return impl_->refused; }
 int RayCaster::filters() const { return static_cast<int>(impl_->masks.size()); }
 RTCSceneTy* RayCaster::embree_scene() const { return impl_->scene; }

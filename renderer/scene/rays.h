@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "renderer/core/vec.h"
 #include "renderer/scene/scene_data.h"
@@ -27,6 +28,12 @@ struct Hit {
   float u = 0, v = 0;
 };
 
+/// A ray that was sent, for benchmarks that send the same ones bare.
+struct RecordedRay {
+  Ray ray;
+  bool shadow;  ///< only whether anything is met was asked
+};
+
 /// The one place where Embree is called. Watertight ("robust") traversal on AVX2 kernels, the same
 /// bits for any number of threads. Embree aborts the process on rays that are not finite: they are
 /// refused here and counted.
@@ -47,6 +54,10 @@ class RayCaster {
   bool occluded(const Ray& ray) const;
   /// The same for many rays at once; `result` has as many places, 1: occluded.
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> result) const;
+
+  /// From now on adds every ray to `rays`, in the order they are sent; null: no longer. Only where
+  /// one thread sends them.
+  void record(std::vector<RecordedRay>* rays) const;
 
   std::uint64_t refused_rays() const;  ///< not finite, or of a magnitude beyond Embree's range
   int filters() const;                 ///< geometries with an alpha-mask filter

@@ -10,21 +10,14 @@ namespace lacuna {
 
 namespace {
 
-float scene_radius(const SceneData& data) {
-  V3d low(std::numeric_limits<double>::infinity());
-  V3d high = -low;
+Bounds bounds_of(const SceneData& data) {
+  Bounds box;
   for (const Mesh& mesh : data.meshes) {
     for (const auto& triangle : mesh.triangles) {
-      for (const auto i : triangle) {
-        const V3d p(mesh.positions[i]);
-        for (int k = 0; k < 3; ++k) {
-          low[k] = std::min(low[k], p[k]);
-          high[k] = std::max(high[k], p[k]);
-        }
-      }
+      for (const auto i : triangle) box.add(mesh.positions[i]);
     }
   }
-  return static_cast<float>((high - low).length() / 2);
+  return box;
 }
 
 std::unique_ptr<Environment> load_environment(const EnvironmentImage& e) {
@@ -39,13 +32,13 @@ std::unique_ptr<Environment> load_environment(const EnvironmentImage& e) {
 Scene::Scene(SceneData data, const SceneNeeds& needs,
              const std::optional<EnvironmentImage>& environment, const ThreadPool& pool)
     : data_(std::make_unique<SceneData>(std::move(data))),
-      radius_(scene_radius(*data_)),
+      bounds_(bounds_of(*data_)),
       triangles_(*data_),
       rays_((decode_textures(needs, pool), RayCaster(*data_, pool.threads()))) {
   if (needs.materials) make_uniform_lobes();
   if (needs.emission) {
     emitters_ = std::make_unique<EmitterSet>(
-        *data_, environment ? load_environment(*environment) : nullptr, radius_);
+        *data_, environment ? load_environment(*environment) : nullptr, bounds_);
   }
 }
 
@@ -81,14 +74,6 @@ std::uint64_t Scene::texture_bytes() const {
   std::uint64_t sum = 0;
   for (const auto& t : data_->textures) sum += t->bytes();
   return sum;
-}
-
-Ray Scene::shadow_ray(const Surface& a, const EmitterSample& b) {
-  if (b.infinite) return {offset_origin(a.x, a.ng, a.extent, b.x), b.x};
-  const V3f w = b.x - a.x;
-  const V3f from = offset_origin(a.x, a.ng, a.extent, w);
-  const V3f to = b.delta ? b.x : offset_origin(b.x, b.ng, b.extent, -w);
-  return {from, to - from, 1.0F};
 }
 
 }  // namespace lacuna

@@ -44,14 +44,10 @@ class Scene {
   /// Only where SceneNeeds::emission was asked for.
   const EmitterSet& emitters() const { return *emitters_; }
   bool has_emitters() const { return emitters_ != nullptr; }
-  /// Half the diagonal of the bounding box of all triangles, scene units, > 0.
-  float radius() const { return radius_; }
+  /// The box of all triangles, scene units.
+  const Bounds& bounds() const { return bounds_; }
   int textures_decoded() const { return textures_decoded_; }
   std::uint64_t texture_bytes() const;
-
-  /// The ray that meets nothing if no surface lies between `a` and `b` (or towards direction `b.x`
-  /// at infinity, if b.infinite). Both ends are moved off their surfaces.
-  static Ray shadow_ray(const Surface& a, const EmitterSample& b);
 
   /// Radiance that leaves `s` along unit `wo`.
   Rgb emitted(const Surface& s, const V3f& wo) const {
@@ -78,7 +74,7 @@ class Scene {
   void decode_textures(const SceneNeeds& needs, const ThreadPool& pool);
 
   std::unique_ptr<SceneData> data_;  // on the heap: rays and emitters point into it
-  float radius_ = 0;
+  Bounds bounds_;
   int textures_decoded_ = 0;
   TriangleTable triangles_;
   std::vector<std::optional<Lobes>> uniform_lobes_;  // of materials whose scattering has no texture

@@ -1,0 +1,130 @@
+#include "renderer/connections/importance_cache.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <numeric>
+
+#include "renderer/path/eye_batch.h"
+
+namespace lacuna {
+
+namespace {
+
+/// Throws if `bytes` would leave too little.
+void require_free(std::size_t records, std::size_t paths, double bytes) {
+  const double free = double(sysconf(_SC_AVPHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+  if (bytes < free / 2) return;
+  throw std::runtime_error(fmt::format(
+      "importance_cache: the distributions of {} records over {} light paths take {:.1f} GiB, more "
+      "than half of the {:.1f} GiB that are free; lower record_density or light_paths",
+      records, paths, bytes / 0x1p30, free / 0x1p30));
+}
+
+}  // namespace
+
+void ImportanceCacheConnections::place_records(const IterationContext& context, int longest,
+                                               Counters& counters) {
+  records_.clear();
+  const int width = context.camera.width();
+  const auto pixels =
+      static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(context.camera.height());
+  const auto paths =
+      static_cast<std::uint64_t>(std::ceil(settings_.record_density * static_cast<double>(pixels)));
+  EyeBatch batch(longest);
+  Walk<BsdfGuide> walk(context.scene, guide_,
+                       {.max_depth = longest, .last_scatters = true, .roulette_depth = longest + 1},
+                       counters);
+  for (std::uint64_t first = 0; first < paths; first += EyeBatch::size) {
+    batch.walkers.clear();
+    for (std::uint64_t j = first; j < std::min(paths, first + EyeBatch::size); ++j) {
+      Rng rng(context.seed, context.iteration, j, Rng::Purpose::integrator);
+      const std::uint64_t pixel = (std::uint64_t{rng.next_u32()} * pixels) >> 32;
+      const V2i p(static_cast<int>(pixel % static_cast<std::uint64_t>(width)),
+                  static_cast<int>(pixel / static_cast<std::uint64_t>(width)));
+      batch.start(context.camera, rng, context.camera.sample(p, rng.next2()), pixel);
+    }
+    walk.lead(
+        batch.walkers, [](std::size_t, int) {},
+        [&](std::size_t i, int depth) {
+          const Vertex& v = batch.vertex(i, depth);
+          if (v.kind == Vertex::Kind::surface && v.bsdf->connectible()) records_.push_back(v);
+        });
+  }
+}
+
+void ImportanceCacheConnections::begin(const IterationContext& context, const LightVertices& lights,
+                                       Counters& counters) {
+  place_records(context, lights.longest(), counters);
+  const double bytes = static_cast<double>(records_.size()) * static_cast<double>(lights.paths()) *
+                       lights.longest() * ResamplingTable::bytes_each;
+  require_free(records_.size(), lights.paths(), bytes);
+  std::vector<RecordTree::Place> places;
+  for (const Vertex& v : records_) places.push_back(place_of(v));
+  tree_.build(std::move(places));
+  sites_.resize(records_.size());
+  std::vector<std::uint64_t> rays(records_.size());
+  context.pool.for_each(static_cast<int>(records_.size()), [&](int i) {
+    if (context.stop()) return;
+    const auto k = static_cast<std::size_t>(i);
+    rays[k] = build(records_[k], sites_[k], context.scene, lights);
+  });
+  if (context.stop()) throw IterationStopped{};
+  counters.shadow_rays += std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
+}
+
+std::uint64_t ImportanceCacheConnections::build(const Vertex& record, Site& site,
+                                                const Scene& scene,
+                                                const LightVertices& lights) const {
+  Vertex unit = record;  // what light gives to the record, whatever the record gives to a pixel
+  unit.throughput = Rgb(1, 1, 1);
+  const SurfaceEnd<BsdfGuide> eye{unit, 1, Transport::radiance, guide_};
+  const auto finite = [](double w) { return std::isfinite(w) ? w : 0.0; };
+  std::vector<Ray> rays;
+  std::vector<std::size_t> asked;
+  std::vector<std::uint8_t> occluded;
+  std::uint64_t sent = 0;
+  for (int s = 1; s <= lights.longest(); ++s) {
+    const std::size_t n = lights.joinable(s).size();
+    std::vector<double> full(n, 0.0), unshadowed(n, 0.0), bounded(n, 0.0);
+    const std::vector<double> same(n, 1.0);
+    rays.clear();
+    asked.clear();
+    for (std::size_t i = 0; i < n; ++i) {
+      lights.with_end(lights.joinable(s)[i], s, guide_, [&](const auto& light) {
+        const Connection c = connect(eye, light);
+        if (!c) return;
+        if (settings_.bounded) bounded[i] = finite(double(luminance(light.scatter(-c.w))));
+        const double w = finite(double(luminance(c.contribution)));
+        if (settings_.unshadowed) unshadowed[i] = w;
+        if (!settings_.full) return;
+        full[i] = w;
+        asked.push_back(i);
+        rays.push_back(shadow_ray(eye, light, c));
+      });
+    }
+    occluded.resize(rays.size());
+    scene.rays().occluded(rays, occluded);
+    sent += rays.size();
+    for (std::size_t k = 0; k < asked.size(); ++k) {
+      if (occluded[k] != 0) full[asked[k]] = 0;
+    }
+    const std::array<std::span<const double>, 4> all{full, unshadowed, bounded, same};
+    site.set(s, ResamplingTable(all, settings_.combination));
+  }
+  return sent;
+}
+
+std::optional<Pick> ImportanceCacheConnections::pick_near(std::span<const std::uint32_t> near,
+                                                          const LightVertices& lights, int s,
+                                                          Rng& rng) const {
+  const auto k = static_cast<std::size_t>((std::uint64_t{rng.next_u32()} * near.size()) >> 32);
+  const ResamplingTable& drawn = sites_[near[k]].table(s);
+  if (drawn.empty()) return std::nullopt;
+  const std::uint32_t i = drawn.sample(rng);
+  float sum = 0;
+  for (const std::uint32_t r : near) sum += sites_[r].table(s).pmf(i).value;
+  return Pick{lights.joinable(s)[i], sum / static_cast<float>(near.size()), drawn.owner(i)};
+}
+
+}  // namespace lacuna

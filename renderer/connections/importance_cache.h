@@ -1,0 +1,73 @@
+#pragma once
+
+#include "renderer/connections/record_tree.h"
+#include "renderer/connections/site.h"
+#include "renderer/guides/bsdf_guide.h"
+#include "renderer/integrators/integrator.h"
+
+namespace lacuna {
+
+/// connections: importance_cache. Light paths are resampled by distributions at records, which are
+/// the vertices of a few paths from the eye, made anew in each iteration (Georgiev et al. 2012,
+/// "Importance Caching for Complex Illumination"; on bidirectional path tracing: Noel 2015, 11.5).
+class ImportanceCacheConnections {
+ public:
+  explicit ImportanceCacheConnections(const ImportanceCacheSettings& settings)
+      : settings_(settings) {}
+
+  const ResamplingSettings& resampling() const { return settings_; }
+  static constexpr std::array<std::string_view, 4> distributions{"full", "unshadowed", "bounded",
+                                                                 "uniform"};
+  static constexpr bool needs_space = false;
+
+  struct Tally {};
+  static Tally tally() { return {}; }
+  static void prepare(const PrepareContext&) {}
+  /// Places the records and builds their distributions. Throws std::runtime_error if they would
+  /// take more than half of the memory that is free.
+  void begin(const IterationContext& context, const LightVertices& lights, Counters& counters);
+  static void end(std::span<const Tally>) {}
+
+  /// Calls `use(s, pick)` for a light path of each length in [1, longest], joined to `v`. It is
+  /// drawn by one of the nearest records; its probability is the mean of theirs.
+  template <class Use>
+  void pick(const Vertex& v, int /*depth*/, const LightVertices& lights, int longest, Rng& rng,
+            Tally&, Use&& use) const {
+    std::array<std::uint32_t, max_neighbours> near;
+    const std::size_t n = tree_.nearest(
+        place_of(v), std::span(near).first(static_cast<std::size_t>(settings_.neighbours)));
+    for (int s = 1; s <= longest; ++s) {
+      const auto p = n > 0 ? pick_near(std::span(near).first(n), lights, s, rng)
+                           : pick_uniformly(lights, s, rng, uniform);
+      if (p) use(s, *p);
+    }
+  }
+
+  static void save(ByteWriter&) {}
+  static void load(ByteReader&) {}
+  std::vector<std::pair<std::string, double>> statistics() const {
+    return {{"records", static_cast<double>(records_.size())}};
+  }
+
+ private:
+  static constexpr std::uint8_t uniform = 3;  // in `distributions`
+  static constexpr std::size_t max_neighbours = 64;
+
+  static RecordTree::Place place_of(const Vertex& v) {
+    const V3f& n = v.surface.ng;
+    return {v.surface.x, dot(n, v.wp) < 0 ? -n : n};
+  }
+  std::optional<Pick> pick_near(std::span<const std::uint32_t> near, const LightVertices& lights,
+                                int s, Rng& rng) const;
+  void place_records(const IterationContext& context, int longest, Counters& counters);
+  std::uint64_t build(const Vertex& record, Site& site, const Scene& scene,
+                      const LightVertices& lights) const;
+
+  ImportanceCacheSettings settings_;
+  BsdfGuide guide_;
+  std::vector<Vertex> records_;
+  std::vector<Site> sites_;
+  RecordTree tree_;
+};
+
+}  // namespace lacuna

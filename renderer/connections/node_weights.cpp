@@ -1,0 +1,61 @@
+#include "renderer/connections/node_weights.h"
+
+namespace lacuna {
+
+namespace {
+
+double over_distance(double power, const V3f& edge, double least_distance) {
+  const double d2 = V3d(edge).length2();
+  return power / std::max(d2, least_distance * least_distance);
+}
+
+double weight_of(const EmitterPoint& e, const V3f& x, double least_distance, LightSides sides) {
+  const V3f edge = x - e.x;
+  Rgb emitted = e.emission;
+  if (sides == LightSides::facing && !e.infinite()) emitted = e.towards(edge.normalized());
+  const double power = double(luminance(emitted)) / double(e.pdf.value);
+  return e.infinite() ? power : over_distance(power, edge, least_distance);
+}
+
+double weight_of(const Vertex& y, const V3f& x, double least_distance, LightSides sides) {
+  const V3f edge = x - y.surface.x;
+  if (sides == LightSides::facing && !y.bsdf->transmits()) {
+    const bool same = (dot(edge, y.surface.ng) > 0) == (dot(y.wp, y.surface.ng) > 0);
+    if (!same) return 0;
+  }
+  return over_distance(double(luminance(y.throughput)), edge, least_distance);
+}
+
+}  // namespace
+
+std::vector<double> node_weights(const LightVertices& lights, int s, const V3f& x,
+                                 double least_distance, LightSides sides) {
+  std::vector<double> weights;
+  for (const std::uint32_t j : lights.joinable(s)) {
+    const double w = s == 1 ? weight_of(lights.emitter(j), x, least_distance, sides)
+                            : weight_of(lights.at(j, s), x, least_distance, sides);
+    weights.push_back(std::isfinite(w) ? w : 0);
+  }
+  return weights;
+}
+
+std::vector<Ray> rays_to(const LightVertices& lights, int s, const V3f& x) {
+  std::vector<Ray> rays;
+  const auto to = [&](const V3f& y, const auto& origin) {
+    const V3f end = origin((x - y).normalized());
+    rays.push_back({x, end - x, 1.0F});
+  };
+  for (const std::uint32_t j : lights.joinable(s)) {
+    if (s > 1) {
+      const Surface& y = lights.at(j, s).surface;
+      to(y.x, [&](const V3f& w) { return offset_origin(y.x, y.ng, y.extent, w); });
+    } else if (const EmitterPoint& e = lights.emitter(j); e.infinite()) {
+      rays.push_back({x, e.x});
+    } else {
+      to(e.x, [&](const V3f& w) { return EmitterEnd{e}.origin(w); });
+    }
+  }
+  return rays;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,95 @@
+#include "renderer/connections/skeleton_connections.h"
+
+#include <numeric>
+
+#include "renderer/connections/node_weights.h"
+
+namespace lacuna {
+
+void SkeletonConnections::prepare(const PrepareContext& context) {
+  const GridTransform transform = context.space.voxels().transform;
+  for (const Imath::V3i& corner : context.space.filtered().graph.corners) {
+    positions_.emplace_back(transform.to_world(V3d(corner)));
+  }
+  least_distance_ = transform.voxel_size / 2;
+  lookup_.emplace(transform, context.space.filtered_map());
+  sites_.resize(positions_.size());
+  mapped_.assign(positions_.size(), 0);
+}
+
+bool SkeletonConnections::accepted(std::size_t node) const {
+  // Noel 2015, 11.4: left out are nodes "mapping to fewer eye vertices than the mean". Its formula
+  // has <=, by which the only node of a small room would be left out, too.
+  const double mean = double(mapped_sum_) / double(mapped_.size());
+  return mapped_[node] > 0 && double(mapped_[node]) >= settings_.acceptance * mean;
+}
+
+void SkeletonConnections::begin(const IterationContext& context, const LightVertices& lights,
+                                Counters& counters) {
+  std::vector<std::size_t> used;
+  for (std::size_t n = 0; n < sites_.size(); ++n) {
+    sites_[n].clear();
+    if (accepted(n)) used.push_back(n);
+  }
+  used_ = used.size();
+  std::vector<std::uint64_t> rays(used.size());
+  context.pool.for_each(static_cast<int>(used.size()), [&](int i) {
+    if (context.stop()) return;
+    const auto k = static_cast<std::size_t>(i);
+    rays[k] = build(used[k], context.scene, lights);
+  });
+  if (context.stop()) throw IterationStopped{};
+  counters.shadow_rays += std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
+}
+
+std::uint64_t SkeletonConnections::build(std::size_t node, const Scene& scene,
+                                         const LightVertices& lights) {
+  std::uint64_t rays_sent = 0;
+  for (int s = 1; s <= lights.longest(); ++s) {
+    const std::size_t n = lights.joinable(s).size();
+    std::vector<double> weights(n, 0.0);
+    std::vector<double> seen(n, 0.0);
+    if (settings_.visible || settings_.unshadowed) {
+      weights = node_weights(lights, s, positions_[node], least_distance_, settings_.sides);
+    }
+    if (settings_.visible) {
+      const std::vector<Ray> rays = rays_to(lights, s, positions_[node]);
+      std::vector<std::uint8_t> occluded(n);
+      scene.rays().occluded(rays, occluded);
+      rays_sent += n;
+      for (std::size_t i = 0; i < n; ++i) seen[i] = occluded[i] != 0 ? 0 : weights[i];
+    }
+    if (!settings_.unshadowed) weights.assign(n, 0.0);
+    const std::vector<double> same(n, 1.0);
+    const std::array<std::span<const double>, 3> all{seen, weights, same};
+    sites_[node].set(s, ResamplingTable(all, settings_.combination));
+  }
+  return rays_sent;
+}
+
+void SkeletonConnections::end(std::span<const Tally> tallies) {
+  for (const Tally& t : tallies) {
+    for (std::size_t n = 0; n < t.size(); ++n) {
+      mapped_[n] += t[n];
+      mapped_sum_ += t[n];
+    }
+  }
+}
+
+void SkeletonConnections::save(ByteWriter& out) const { out.put(mapped_); }
+
+void SkeletonConnections::load(ByteReader& in) {
+  std::vector<std::uint64_t> mapped = in.get_vector<std::uint64_t>();
+  if (mapped.size() != mapped_.size()) {
+    throw std::runtime_error("saved node counts are of another skeleton");
+  }
+  mapped_ = std::move(mapped);
+  mapped_sum_ = std::accumulate(mapped_.begin(), mapped_.end(), std::uint64_t{0});
+}
+
+std::vector<std::pair<std::string, double>> SkeletonConnections::statistics() const {
+  return {{"nodes", static_cast<double>(positions_.size())},
+          {"nodes_used", static_cast<double>(used_)}};
+}
+
+}  // namespace lacuna

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <limits>
+
+#include "renderer/core/vec.h"
+
+namespace lacuna {
+
+/// An axis-aligned box.
+struct Bounds {
+  V3d low{std::numeric_limits<double>::infinity()};
+  V3d high{-std::numeric_limits<double>::infinity()};
+
+  void add(const V3f& p) {
+    for (int k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], double(p[k]));
+      high[k] = std::max(high[k], double(p[k]));
+    }
+  }
+  V3d size() const { return high - low; }
+  /// Half the diagonal.
+  double radius() const { return size().length() / 2; }
+
+  /// Areas of the sides that are seen from unit direction `w`, each across `w`: those of constant
+  /// x, y and z.
+  V3d sides_across(const V3f& w) const {
+    const V3d d = size();
+    return {d.y * d.z * std::abs(double(w.x)), d.z * d.x * std::abs(double(w.y)),
+            d.x * d.y * std::abs(double(w.z))};
+  }
+  /// Area of the box across `w`.
+  double area_across(const V3f& w) const {
+    const V3d s = sides_across(w);
+    return s.x + s.y + s.z;
+  }
+};
+
+}  // namespace lacuna

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "renderer/core/density.h"
+#include "renderer/core/sampling.h"
+#include "renderer/core/vec.h"
+
+namespace lacuna {
+
+/// A place that light comes from: a point on an emitter, or a direction at infinity.
+struct EmitterPoint {
+  enum class Kind : std::uint8_t { area, point, spot, directional, environment };
+  Kind kind = Kind::area;
+  bool both_sides = false;  ///< area: emits from its back too
+  float extent = 0;         ///< of the triangle x lies on, see TriangleShape
+  V3f x{0, 0, 0};           ///< position; of an infinite emitter: unit direction towards it
+  V3f ng{0, 0, 0};          ///< area: unit normal of the front; spot: unit axis
+  Rgb emission{0, 0, 0};    ///< radiance; W/sr (spot: on its axis); W/m^2 of a directional light
+  /// Density with which EmitterSet::sample() returns it, selection included. Environment: per
+  /// steradian. Delta: the selection's probability.
+  Pdf<Area> pdf{};
+  float cos_inner = 1, cos_outer = 0;  ///< of a spot's cones
+  float across = 0;  ///< infinite: area of the scene's bounding box seen from there
+
+  bool infinite() const { return kind == Kind::directional || kind == Kind::environment; }
+  /// No path can hit it.
+  bool delta() const {
+    return kind == Kind::point || kind == Kind::spot || kind == Kind::directional;
+  }
+
+  /// What leaves towards unit `w`: the emission, or less of it.
+  Rgb towards(const V3f& w) const {
+    if (kind == Kind::area && !both_sides && dot(w, ng) <= 0) return Rgb(0, 0, 0);
+    if (kind == Kind::spot) return emission * spot_falloff(dot(w, ng));
+    return emission;
+  }
+
+  /// Density with which sample_leaving() continues a light path along unit `w`. Infinite emitters:
+  /// per area across `w`, in which all places are alike.
+  Pdf<SolidAngle> leaving_pdf(const V3f& w) const {
+    switch (kind) {
+      case Kind::area: {
+        const float c = dot(w, ng);
+        if (both_sides) return Pdf<SolidAngle>(std::abs(c) * (0.5F * inv_pi));
+        return Pdf<SolidAngle>(std::max(c, 0.0F) * inv_pi);
+      }
+      case Kind::point:
+        return Pdf<SolidAngle>(0.25F * inv_pi);
+      case Kind::spot:
+        return Pdf<SolidAngle>(dot(w, ng) > cos_outer ? 1 / cone()
+                                                      : 0);  // so the cone is not empty
+      default:
+        return Pdf<SolidAngle>(across > 0 ? 1 / across : 0);
+    }
+  }
+
+  /// Solid angle of a spot's outer cone.
+  float cone() const { return 2 * pi * (1 - cos_outer); }
+
+ private:
+  /// KHR_lights_punctual: squared ramp between the cones.
+  float spot_falloff(float cos_angle) const {
+    const float ramp =
+        std::clamp((cos_angle - cos_outer) / std::max(cos_inner - cos_outer, 1e-4F), 0.0F, 1.0F);
+    return ramp * ramp;
+  }
+};
+
+}  // namespace lacuna

@@ -1,0 +1,70 @@
+#include "renderer/emitters/leaving.h"
+
+#include "renderer/core/frame.h"
+#include "renderer/materials/lambert.h"
+#include "renderer/scene/surface.h"
+
+namespace lacuna {
+
+namespace {
+
+V3f sample_around(const V3f& axis, float cos_least, const V2f& u) {
+  const float c = 1 - u.x * (1 - cos_least);
+  const float s = std::sqrt(std::max(0.0F, 1 - c * c));
+  const float phi = 2 * pi * u.y;
+  return Frame(axis).to_world({s * std::cos(phi), s * std::sin(phi), c});
+}
+
+/// A point of the sides of `box` that face unit direction `w`, uniform as seen from there.
+V3d sample_silhouette(const Bounds& box, const V3f& w, Rng& rng) {
+  const V3d sides = box.sides_across(w);
+  double u = double(rng.next()) * (sides.x + sides.y + sides.z);
+  int k = 0;
+  while (k < 2 && u >= sides[k]) u -= sides[k++];
+  V3d p;
+  const V2f at = rng.next2();
+  const int i = (k + 1) % 3;
+  const int j = (k + 2) % 3;
+  p[k] = w[k] > 0 ? box.high[k] : box.low[k];
+  p[i] = box.low[i] + double(at.x) * (box.high[i] - box.low[i]);
+  p[j] = box.low[j] + double(at.y) * (box.high[j] - box.low[j]);
+  return p;
+}
+
+Ray leaving_infinity(const V3f& to_light, const Bounds& scene, Rng& rng) {
+  // From outside the box by its own size, so that what lies on its sides is met too.
+  const V3d from = sample_silhouette(scene, to_light, rng) + V3d(to_light) * scene.radius();
+  return {V3f(from), -to_light};
+}
+
+}  // namespace
+
+std::optional<Leaving> sample_leaving(const EmitterPoint& e, const Bounds& scene, Rng& rng) {
+  Leaving l;
+  float cosine = 1;
+  switch (e.kind) {
+    case EmitterPoint::Kind::area: {
+      const bool back = e.both_sides && rng.next() < 0.5F;
+      const V3f w = sample_cosine(back ? -e.ng : e.ng, rng.next2());
+      l.ray = {offset_origin(e.x, e.ng, e.extent, w), w};
+      cosine = abs_dot(w, e.ng);
+      break;
+    }
+    case EmitterPoint::Kind::point:
+      l.ray = {e.x, sample_around(V3f(0, 0, 1), -1, rng.next2())};
+      break;
+    case EmitterPoint::Kind::spot:
+      l.ray = {e.x, sample_around(e.ng, e.cos_outer, rng.next2())};
+      break;
+    default:
+      if (!(e.across > 0)) return std::nullopt;
+      l.ray = leaving_infinity(e.x, scene, rng);
+  }
+  l.pdf = e.leaving_pdf(l.ray.d);
+  const Rgb emitted = e.towards(l.ray.d);
+  if (is_black(emitted) || !l.pdf.positive() || !e.pdf.positive()) return std::nullopt;
+  l.throughput = emitted * (cosine / l.pdf.value) / e.pdf.value;
+  return l;
+}
+
+}  // namespace lacuna

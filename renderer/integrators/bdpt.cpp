@@ -1,0 +1,269 @@
+#include "renderer/integrators/bdpt.h"
+
+#include "renderer/connections/importance_cache.h"
+#include "renderer/connections/skeleton_connections.h"
+#include "renderer/connections/uniform_connections.h"
+#include "renderer/guides/bsdf_guide.h"
+#include "renderer/integrators/light_pass.h"
+
+namespace lacuna {
+
+namespace {
+
+using Guide = BsdfGuide;
+
+/// What a strategy gives to a pixel of the tile, if nothing lies between.
+struct Contribution {
+  Rgb value;     ///< unweighted
+  float weight;  ///< MIS
+  std::uint32_t pixel;
+  std::uint16_t s, t;  ///< vertices made from the light and from the eye
+  std::uint8_t distribution;
+};
+
+/// Bidirectional path tracing (Noel 2015, 4.3 and ch. 11): everything but which light vertices an
+/// eye vertex is joined to.
+class Bdpt : public Integrator {
+ public:
+  explicit Bdpt(const BdptSettings& settings) : settings_(settings) {}
+
+ protected:
+  /// An eye path's vertices that emit: s = 0.
+  void gather_hit(const IterationContext& context, const SampleCounts& counts, EyeBatch& batch,
+                  std::size_t i, int depth) const {
+    const Vertex& v = batch.vertex(i, depth);
+    const std::optional<EmitterPoint> e = emitter_at(context.scene, v);
+    if (!e) return;
+    const auto w = static_cast<float>(hit_weight(v, depth, *e, counts));
+    batch.radiance[i] += v.throughput * e->emission * w;
+  }
+
+  /// How many vertices of a light path may meet an eye vertex `depth` edges from the eye; 0: none.
+  int longest_light_path(const Vertex& v, int depth) const {
+    if (v.kind != Vertex::Kind::surface || depth >= settings_.max_depth) return 0;
+    return v.bsdf->connectible() ? settings_.max_depth - depth : 0;
+  }
+
+  /// Joins `eye` and `light`; the sum over light paths is estimated with 1 / `samples` of it.
+  template <class Light>
+  static void join(const SurfaceEnd<Guide>& eye, const Light& light, double samples,
+                   const SampleCounts& counts, std::uint32_t pixel, std::uint8_t distribution,
+                   ShadowQueue<Contribution>& queue) {
+    const Connection c = connect(eye, light);
+    if (!c) return;
+    queue.add(shadow_ray(eye, light, c), {c.contribution / static_cast<float>(samples),
+                                          static_cast<float>(weight(eye, light, c, counts)), pixel,
+                                          static_cast<std::uint16_t>(light.index + 1),
+                                          static_cast<std::uint16_t>(eye.index + 1), distribution});
+  }
+
+  void flush(const IterationContext& context, ShadowQueue<Contribution>& queue, Image& image,
+             Counters& counters) const {
+    queue.flush(context.scene.rays(), counters, [&](const Contribution& c) {
+      accumulate(image.pixels[c.pixel], c.value * c.weight, counters);
+    });
+  }
+
+  LightPathSetting light_setting(const IterationContext& context,
+                                 const SampleCounts& counts) const {
+    return {context.scene, context.camera, settings_.max_depth, settings_.roulette_depth, counts};
+  }
+  WalkLimits eye_limits(const SampleCounts& counts) const {
+    return {.max_depth = settings_.max_depth,
+            .roulette_depth = settings_.roulette_depth,
+            .counts = eye_side(counts)};
+  }
+  static std::int64_t pixels(const Image& image) {
+    return std::int64_t{image.width} * image.height;
+  }
+
+  BdptSettings settings_;
+  Guide guide_;
+};
+
+/// connections: paired. Pixel j's path meets light path j; the points on emitters of s = 1 are
+/// drawn afresh at each vertex.
+class PairedBdpt final : public Bdpt {
+ public:
+  using Bdpt::Bdpt;
+  SceneNeeds needs() const override { return {.materials = true, .emission = true}; }
+
+  Counters iterate(const IterationContext& context, Image& image) override {
+    const bool lit = !context.scene.emitters().empty();
+    const SampleCounts counts{1, lit ? 1.0 : 0.0, lit ? 1.0 : 0.0,
+                              lit ? static_cast<double>(pixels(image)) : 0.0};
+    const LightPathSetting setting = light_setting(context, counts);
+    const Tiling tiling(image);
+    const auto work = [&](int i, Counters& counters, Splats& splats) {
+      Pairs pairs{EyeBatch(settings_.max_depth), LightBatch<Guide>(setting, guide_)};
+      Walk<Guide> walk(context.scene, guide_, eye_limits(counts), counters);
+      const Tile tile = tiling.tile(i);
+      for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
+        start_paths(context, image, tile, first, pairs.eye);
+        counters.samples += pairs.eye.walkers.size();
+        walk_light(context, pairs, counters);
+        pairs.light.splat(pairs.eye.walkers.size(), counters, splats);
+        walk_eye(context, counts, walk, pairs);
+        for (std::size_t k = 0; k < pairs.eye.walkers.size(); ++k) {
+          accumulate(image.pixels[pairs.eye.pixels[k]], pairs.eye.radiance[k], counters);
+        }
+        flush(context, pairs.queue, image, counters);
+      }
+    };
+    return for_each_splatting_part(context, tiling.tiles(), image, work, [](const Splat&) {});
+  }
+
+ private:
+  struct Pairs {
+    EyeBatch eye;
+    LightBatch<Guide> light;
+    std::vector<Rng> rngs = {};
+    std::array<std::uint32_t, EyeBatch::size> chosen = {};  // emitters of s = 1
+    ShadowQueue<Contribution> queue = {};
+  };
+
+  static void walk_light(const IterationContext& context, Pairs& pairs, Counters& counters) {
+    pairs.rngs.clear();
+    for (std::size_t k = 0; k < pairs.eye.walkers.size(); ++k) {
+      pairs.rngs.emplace_back(context.seed, context.iteration, pairs.eye.pixels[k],
+                              Rng::Purpose::light_path);
+    }
+    pairs.light.walk(pairs.rngs, counters);
+  }
+
+  void walk_eye(const IterationContext& context, const SampleCounts& counts, Walk<Guide>& walk,
+                Pairs& pairs) const {
+    const EmitterSet& lights = context.scene.emitters();
+    const auto choose = [&](std::size_t i, int depth) {
+      if (counts.nee > 0 && depth < settings_.max_depth) {
+        pairs.chosen[i] = lights.choose(pairs.eye.walkers[i].rng);
+      }
+    };
+    walk.lead(pairs.eye.walkers, choose, [&](std::size_t i, int depth) {
+      gather_hit(context, counts, pairs.eye, i, depth);
+      const Vertex& v = pairs.eye.vertex(i, depth);
+      const int longest = longest_light_path(v, depth);
+      if (longest == 0 || counts.nee == 0) return;
+      const SurfaceEnd<Guide> eye{v, depth, Transport::radiance, guide_};
+      const EmitterPoint e = lights.sample(pairs.chosen[i], pairs.eye.walkers[i].rng);
+      join(eye, EmitterEnd{e}, 1, counts, pairs.eye.pixels[i], 0, pairs.queue);
+      for (int s = 2; s <= std::min(longest, pairs.light.length(i)); ++s) {
+        if (!pairs.light.vertex(i, s - 1).bsdf->connectible()) continue;
+        join(eye, pairs.light.end(i, s - 1), 1, counts, pairs.eye.pixels[i], 0, pairs.queue);
+      }
+    });
+  }
+};
+
+/// Connections with light paths that all pixels share, resampled at each eye vertex. The first of
+/// the paths that meet the eye itself (t = 1), of which there is one for each pixel, are those that
+/// are resampled.
+template <class Connections>
+class ResampledBdpt final : public Bdpt {
+ public:
+  template <class Settings>
+  ResampledBdpt(const BdptSettings& settings, const Settings& connections)
+      : Bdpt(settings), connections_(connections) {}
+
+  SceneNeeds needs() const override {
+    return {.materials = true, .emission = true, .space = Connections::needs_space};
+  }
+  void prepare(const PrepareContext& context) override { connections_.prepare(context); }
+  void save(ByteWriter& out) const override { connections_.save(out); }
+  void load(ByteReader& in) override { connections_.load(in); }
+
+  Counters iterate(const IterationContext& context, Image& image) override {
+    const bool lit = !context.scene.emitters().empty();
+    const auto resampled = static_cast<std::size_t>(connections_.resampling().light_paths);
+    const std::int64_t paths = std::max(pixels(image), static_cast<std::int64_t>(resampled));
+    const double count = connections_.resampling().count_as == ResampledCount::paths
+                             ? static_cast<double>(resampled)
+                             : 1.0;
+    const SampleCounts counts =
+        lit ? SampleCounts{1, count, count, static_cast<double>(paths)} : SampleCounts{};
+
+    LightVertices lights(lit ? resampled : 0, std::max(1, settings_.max_depth - 1));
+    const LightPathSetting setting = light_setting(context, counts);
+    Counters counters = light_pass(
+        context, setting, guide_, lit ? paths : 0, image,
+        [&](std::size_t path, const LightBatch<Guide>& batch, std::size_t place) {
+          if (path < resampled) lights.keep(path, batch, place);
+        },
+        [](const Splat&) {});
+    lights.list();
+    connections_.begin(context, lights, counters);
+    counters += eye_pass(context, counts, lights, image);
+    return counters;
+  }
+
+ private:
+  Counters eye_pass(const IterationContext& context, const SampleCounts& counts,
+                    const LightVertices& lights, Image& image) {
+    const Tiling tiling(image);
+    std::vector<typename Connections::Tally> tallies(static_cast<std::size_t>(tiling.tiles()));
+    const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
+      auto& tally = tallies[static_cast<std::size_t>(i)] = connections_.tally();
+      EyeBatch batch(settings_.max_depth);
+      ShadowQueue<Contribution> queue;
+      Walk<Guide> walk(context.scene, guide_, eye_limits(counts), counters);
+      const Tile tile = tiling.tile(i);
+      for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
+        start_paths(context, image, tile, first, batch);
+        counters.samples += batch.walkers.size();
+        walk.lead(
+            batch.walkers, [](std::size_t, int) {},
+            [&](std::size_t k, int depth) {
+              gather_hit(context, counts, batch, k, depth);
+              join_lights(counts, lights, batch, k, depth, tally, queue);
+            });
+        for (std::size_t k = 0; k < batch.walkers.size(); ++k) {
+          accumulate(image.pixels[batch.pixels[k]], batch.radiance[k], counters);
+        }
+        flush(context, queue, image, counters);
+      }
+    });
+    connections_.end(tallies);
+    return sum;
+  }
+
+  void join_lights(const SampleCounts& counts, const LightVertices& lights, EyeBatch& batch,
+                   std::size_t k, int depth, typename Connections::Tally& tally,
+                   ShadowQueue<Contribution>& queue) const {
+    const Vertex& v = batch.vertex(k, depth);
+    const int longest = longest_light_path(v, depth);
+    if (longest == 0 || lights.paths() == 0) return;
+    const SurfaceEnd<Guide> eye{v, depth, Transport::radiance, guide_};
+    connections_.pick(
+        v, depth, lights, longest, batch.walkers[k].rng, tally, [&](int s, const Pick& pick) {
+          const double samples = static_cast<double>(lights.paths()) * double(pick.probability);
+          lights.with_end(pick.path, s, guide_, [&](const auto& light) {
+            join(eye, light, samples, counts, batch.pixels[k], pick.owner, queue);
+          });
+        });
+  }
+
+  Connections connections_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_bdpt(const BdptSettings& settings) {
+  struct Make {
+    const BdptSettings& settings;
+    std::unique_ptr<Integrator> operator()(const PairedSettings&) const {
+      return std::make_unique<PairedBdpt>(settings);
+    }
+    std::unique_ptr<Integrator> operator()(const UniformSettings& s) const {
+      return std::make_unique<ResampledBdpt<UniformConnections>>(settings, s);
+    }
+    std::unique_ptr<Integrator> operator()(const SkeletonSettings& s) const {
+      return std::make_unique<ResampledBdpt<SkeletonConnections>>(settings, s);
+    }
+    std::unique_ptr<Integrator> operator()(const ImportanceCacheSettings& s) const {
+      return std::make_unique<ResampledBdpt<ImportanceCacheConnections>>(settings, s);
+    }
+  };
+  return std::visit(Make{settings}, settings.connections);
+}
+
+}  // namespace lacuna

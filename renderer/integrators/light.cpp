@@ -1,0 +1,40 @@
+#include "renderer/integrators/light.h"
+
+#include "renderer/guides/bsdf_guide.h"
+#include "renderer/integrators/light_pass.h"
+
+namespace lacuna {
+
+namespace {
+
+/// Light tracing (Noel 2015, 4.2.5): the strategies t = 1 alone.
+class Light final : public Integrator {
+ public:
+  explicit Light(const LightSettings& settings) : settings_(settings) {}
+
+  SceneNeeds needs() const override { return {.materials = true, .emission = true}; }
+
+  Counters iterate(const IterationContext& context, Image& image) override {
+    const std::int64_t paths = settings_.light_paths > 0 ? settings_.light_paths
+                                                         : std::int64_t{image.width} * image.height;
+    const LightPathSetting setting{context.scene,
+                                   context.camera,
+                                   settings_.max_depth,
+                                   settings_.roulette_depth,
+                                   {.hit = 0, .splat = static_cast<double>(paths)}};
+    return light_pass(
+        context, setting, BsdfGuide{}, paths, image,
+        [](std::size_t, const LightBatch<BsdfGuide>&, std::size_t) {}, [](const Splat&) {});
+  }
+
+ private:
+  LightSettings settings_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_light(const LightSettings& settings) {
+  return std::make_unique<Light>(settings);
+}
+
+}  // namespace lacuna

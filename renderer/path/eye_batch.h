@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+
+#include "renderer/path/walk.h"
+#include "renderer/scene/camera.h"
+
+namespace lacuna {
+
+/// Paths from the eye, of neighbouring pixels, that are walked together, and what they meet
+/// themselves.
+struct EyeBatch {
+  static constexpr std::size_t size = 64;  // their vertices fit the second-level cache
+
+  explicit EyeBatch(int max_depth)
+      : places(static_cast<std::size_t>(max_depth) + 1), vertices(places * size) {
+    walkers.reserve(size);
+  }
+
+  /// One more path; `ray` is the camera's through `pixel`, and `rng` what it goes on with.
+  void start(const Camera& camera, const Rng& rng, const Ray& ray, std::size_t pixel) {
+    const std::size_t i = walkers.size();
+    const std::span<Vertex> path = std::span(vertices).subspan(i * places, places);
+    path[0].kind = Vertex::Kind::eye;
+    path[0].surface.x = ray.o;
+    // The eye's density and its importance cancel: the throughput is 1.
+    walkers.push_back({.rng = rng, .ray = ray, .p = camera.density(ray.d), .path = path});
+    pixels[i] = static_cast<std::uint32_t>(pixel);
+    radiance[i] = Rgb(0, 0, 0);
+  }
+
+  const Vertex& vertex(std::size_t i, int depth) const {
+    return vertices[i * places + static_cast<std::size_t>(depth)];
+  }
+
+  std::size_t places;
+  std::vector<Vertex> vertices;
+  std::vector<Walker> walkers;
+  std::array<std::uint32_t, size> pixels{};
+  std::array<Rgb, size> radiance{};
+};
+
+}  // namespace lacuna

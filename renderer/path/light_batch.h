@@ -1,0 +1,136 @@
+#pragma once
+
+#include <array>
+
+#include "renderer/path/connect.h"
+#include "renderer/path/shadow_queue.h"
+#include "renderer/path/splats.h"
+#include "renderer/path/walk.h"
+
+namespace lacuna {
+
+/// What paths from lights need to know of the picture they are for.
+struct LightPathSetting {
+  const Scene& scene;
+  const Camera& camera;
+  int max_depth;       ///< edges of whole paths, the one to the eye included
+  int roulette_depth;  ///< as WalkLimits
+  SampleCounts counts;
+};
+
+/// Paths from lights that are walked together: at most `size`, of which each keeps its place.
+template <class Guide>
+class LightBatch {
+ public:
+  static constexpr int size = 64;  // their vertices fit the second-level cache
+
+  LightBatch(const LightPathSetting& setting, const Guide& guide)
+      : setting_(setting),
+        guide_(guide),
+        places_(static_cast<std::size_t>(setting.max_depth)),
+        vertices_(places_ * size) {
+    walkers_.reserve(size);
+  }
+
+  /// Walks the paths of the given random numbers. A path without any light has length 0.
+  void walk(std::span<const Rng> rngs, Counters& counters) {
+    walkers_.clear();
+    counters.samples += rngs.size();
+    for (std::size_t i = 0; i < rngs.size(); ++i) start(i, rngs[i]);
+    const WalkLimits limits{.max_depth = setting_.max_depth - 1,
+                            .last_scatters = true,
+                            .roulette_depth = setting_.roulette_depth,
+                            .transport = Transport::importance,
+                            .counts = light_side(setting_.counts)};
+    Walk<Guide> walk(setting_.scene, guide_, limits, counters);
+    walk.lead(
+        walkers_, [](std::size_t, int) {},
+        [&](std::size_t i, int depth) {
+          if (vertex(place_[i], depth).kind == Vertex::Kind::surface)
+            length_[place_[i]] = depth + 1;
+        });
+  }
+
+  /// How many vertices the path in place `i` has, the emitter's included.
+  int length(std::size_t i) const { return length_[i]; }
+  /// Vertex 0, on an emitter.
+  const EmitterPoint& emitter(std::size_t i) const { return emitters_[i]; }
+  /// Vertex `index` in [1, length(i)).
+  const Vertex& vertex(std::size_t i, int index) const {
+    return vertices_[i * places_ + static_cast<std::size_t>(index)];
+  }
+  SurfaceEnd<Guide> end(std::size_t i, int index) const {
+    return {vertex(i, index), index, Transport::importance, guide_};
+  }
+
+  /// Joins all vertices of `paths` paths to the eye (t = 1) and adds what arrives to `splats`.
+  void splat(std::size_t paths, Counters& counters, Splats& splats) {
+    for (std::size_t i = 0; i < paths; ++i) {
+      if (length_[i] > 0 && !emitters_[i].delta()) splat_end(EmitterEnd{emitters_[i]});
+      for (int index = 1; index < length_[i]; ++index) {
+        if (vertex(i, index).bsdf->connectible()) splat_end(end(i, index));
+      }
+    }
+    queue_.flush(setting_.scene.rays(), counters, [&](const Seen& seen) {
+      setting_.camera.splat(seen.at, [&](std::uint32_t pixel, float share) {
+        splats.push_back({seen.value * share, seen.weight, pixel, seen.s});
+      });
+    });
+  }
+
+ private:
+  /// What arrives at the eye if nothing lies between.
+  struct Seen {
+    Rgb value;
+    float weight;
+    V2f at;
+    std::uint16_t s;
+  };
+
+  void start(std::size_t i, Rng rng) {
+    length_[i] = 0;
+    const EmitterSet& lights = setting_.scene.emitters();
+    if (lights.empty()) return;
+    const EmitterPoint& e = emitters_[i] = lights.sample(lights.choose(rng), rng);
+    length_[i] = 1;
+    if (setting_.max_depth == 1) return;
+    const std::optional<Leaving> leaving = lights.leave(e, rng);
+    if (!leaving) return;
+    const std::span<Vertex> path = std::span(vertices_).subspan(i * places_, places_);
+    path[0].kind = e.infinite() ? Vertex::Kind::background : Vertex::Kind::emitter;
+    path[0].surface.x = e.x;
+    path[0].surface.ng = e.ng;
+    Walker w{.rng = rng, .ray = leaving->ray, .p = leaving->pdf, .path = path};
+    w.throughput = leaving->throughput;
+    w.roulette_scale = 1 / max_component(leaving->throughput);
+    if (!e.delta()) w.prior = light_side(setting_.counts).none / double(e.pdf.value);
+    place_[walkers_.size()] = i;
+    walkers_.push_back(w);
+  }
+
+  template <class End>
+  void splat_end(const End& light) {
+    const EyeEnd eye{setting_.camera};
+    const V3f to = at_infinity(light) ? light.x() : light.x() - eye.x();
+    const std::optional<V2f> at = setting_.camera.project(to.normalized());
+    if (!at) return;
+    const Connection c = connect(eye, light);
+    if (!c) return;
+    queue_.add(shadow_ray(eye, light, c),
+               {c.contribution / static_cast<float>(setting_.counts.splat),
+                static_cast<float>(weight(eye, light, c, setting_.counts)), *at,
+                static_cast<std::uint16_t>(light.index + 1)});
+  }
+
+  const LightPathSetting& setting_;
+  const Guide& guide_;
+  std::size_t places_;
+  std::vector<Vertex> vertices_;
+  std::vector<Walker> walkers_;
+  std::array<std::size_t, size> place_{};  // of each walker
+  std::array<int, size> length_{};
+  std::array<EmitterPoint, size> emitters_{};
+  ShadowQueue<Seen> queue_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,149 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <variant>
+
+#include "analysis/settings/field.h"
+
+namespace lacuna {
+
+/// How several resampling distributions over the same light paths become one.
+enum class Combination { max, mixture };
+
+template <>
+struct EnumTable<Combination> {
+  static constexpr std::array<EnumValue<Combination>, 2> values{{
+      {Combination::max, "max",
+       "each light path only by the distribution that gives it most, all of them renormalised and "
+       "drawn from equally often (max heuristic, pre-multiplied; Noel 2015, 11.3)"},
+      {Combination::mixture, "mixture", "their mean (balance heuristic)"},
+  }};
+};
+
+/// Which light vertices a distribution that does not look at visibility takes.
+enum class LightSides { facing, both };
+
+template <>
+struct EnumTable<LightSides> {
+  static constexpr std::array<EnumValue<LightSides>, 2> values{{
+      {LightSides::facing, "facing", "those that scatter towards the node or record"},
+      {LightSides::both, "both", "all, also those that turn their back to it"},
+  }};
+};
+
+/// As how many samples the weights of multiple importance sampling count a resampled connection.
+enum class ResampledCount { paths, one };
+
+template <>
+struct EnumTable<ResampledCount> {
+  static constexpr std::array<EnumValue<ResampledCount>, 2> values{{
+      {ResampledCount::paths, "paths", "as many as paths are resampled (Noel 2015, 11.5)"},
+      {ResampledCount::one, "one", "one, which is what is traced"},
+  }};
+};
+
+/// What all choices of connections but `paired` have in common.
+struct ResamplingSettings {
+  int light_paths = 1024;
+  ResampledCount count_as = ResampledCount::paths;
+  bool operator==(const ResamplingSettings&) const = default;
+};
+
+template <class V>
+void describe_resampling(V& v, ResamplingSettings& s) {
+  v("light_paths", s.light_paths,
+    {.doc = "light paths an iteration that eye paths are joined to, shared by all pixels",
+     .min = 1,
+     .max = 1 << 22});
+  v("count_as", s.count_as, {.doc = "samples of a connection, in the weights"});
+}
+
+/// connections: paired.
+struct PairedSettings {
+  static constexpr std::string_view name = "paired";
+  static constexpr std::string_view doc =
+      "every pixel's path to a light path of its own and, at each vertex, to a fresh point on an "
+      "emitter";
+  bool operator==(const PairedSettings&) const = default;
+};
+template <class V>
+void describe(V&, PairedSettings&) {}
+
+/// connections: uniform.
+struct UniformSettings : ResamplingSettings {
+  static constexpr std::string_view name = "uniform";
+  static constexpr std::string_view doc =
+      "one of the shared light paths at random, for each length";
+  bool operator==(const UniformSettings&) const = default;
+};
+template <class V>
+void describe(V& v, UniformSettings& s) {
+  describe_resampling(v, s);
+}
+
+/// connections: skeleton.
+struct SkeletonSettings : ResamplingSettings {
+  static constexpr std::string_view name = "skeleton";
+  static constexpr std::string_view doc =
+      "light paths resampled by distributions at the skeleton's nodes (Noel 2015, ch. 11)";
+
+  double acceptance = 1;
+  bool visible = true;
+  bool unshadowed = true;
+  Combination combination = Combination::max;
+  LightSides sides = LightSides::facing;
+  bool operator==(const SkeletonSettings&) const = default;
+};
+template <class V>
+void describe(V& v, SkeletonSettings& s) {
+  describe_resampling(v, s);
+  v("acceptance", s.acceptance,
+    {.doc = "a node has distributions if more eye vertices belonged to it than this times the mean "
+            "over nodes; elsewhere light paths are drawn uniformly",
+     .min = 0,
+     .max = 1e6});
+  v("visible", s.visible,
+    {.doc = "distribution V: contribution over squared distance, of what the node sees (eq. 188)"});
+  v("unshadowed", s.unshadowed, {.doc = "distribution U: the same of all (eq. 189)"});
+  v("combination", s.combination, {.doc = "of V, U and the uniform distribution C"});
+  v("sides", s.sides, {.doc = "light vertices that V and U take"});
+}
+
+/// connections: importance_cache.
+struct ImportanceCacheSettings : ResamplingSettings {
+  static constexpr std::string_view name = "importance_cache";
+  static constexpr std::string_view doc =
+      "light paths resampled by distributions at records on surfaces (Georgiev et al. 2012)";
+
+  double record_density = 0.001;
+  int neighbours = 3;
+  bool full = true;
+  bool unshadowed = false;
+  bool bounded = false;
+  Combination combination = Combination::max;
+  bool operator==(const ImportanceCacheSettings&) const = default;
+};
+template <class V>
+void describe(V& v, ImportanceCacheSettings& s) {
+  describe_resampling(v, s);
+  v("record_density", s.record_density,
+    {.doc = "paths from the eye whose vertices become records, as a share of the pixels",
+     .min = 0,
+     .max = 1,
+     .above_min = true});
+  v("neighbours", s.neighbours,
+    {.doc = "nearest records of an eye vertex, one of which is drawn", .min = 1, .max = 64});
+  v("full", s.full, {.doc = "distribution F: the record's whole contribution, with visibility"});
+  v("unshadowed", s.unshadowed, {.doc = "distribution U: the same without visibility"});
+  v("bounded", s.bounded,
+    {.doc = "distribution B: without visibility, and without what only holds at the record: its "
+            "BSDF and the distance"});
+  v("combination", s.combination, {.doc = "of F, U, B and the uniform distribution C"});
+}
+
+/// Which light vertices meet an eye vertex.
+using ConnectionsSettings =
+    std::variant<PairedSettings, UniformSettings, SkeletonSettings, ImportanceCacheSettings>;
+
+}  // namespace lacuna
