@@ -5,6 +5,7 @@
 #include "renderer/connections/uniform_connections.h"
 #include "renderer/guides/bsdf_guide.h"
 #include "renderer/integrators/light_pass.h"
+#include "renderer/integrators/strategy_layers.h"
 
 namespace lacuna {
 
@@ -34,8 +35,10 @@ class Bdpt : public Integrator {
     const Vertex& v = batch.vertex(i, depth);
     const std::optional<EmitterPoint> e = emitter_at(context.scene, v);
     if (!e) return;
+    const Rgb value = v.throughput * e->emission;
     const auto w = static_cast<float>(hit_weight(v, depth, *e, counts));
-    batch.radiance[i] += v.throughput * e->emission * w;
+    batch.radiance[i] += value * w;
+    layers_.strategy(context.layers, 0, depth + 1, batch.pixels[i], value, w);
   }
 
   /// How many vertices of a light path may meet an eye vertex `depth` edges from the eye; 0: none.
@@ -61,7 +64,15 @@ class Bdpt : public Integrator {
              Counters& counters) const {
     queue.flush(context.scene.rays(), counters, [&](const Contribution& c) {
       accumulate(image.pixels[c.pixel], c.value * c.weight, counters);
+      layers_.strategy(context.layers, c.s, c.t, c.pixel, c.value, c.weight);
+      layers_.distribution(context.layers, c.distribution, c.pixel, c.value * c.weight);
     });
+  }
+  /// What for_each_splatting_part() hands on.
+  auto splat_layers(const IterationContext& context) const {
+    return [this, &context](const Splat& s) {
+      layers_.strategy(context.layers, s.s, 1, s.pixel, s.value, s.weight);
+    };
   }
 
   LightPathSetting light_setting(const IterationContext& context,
@@ -79,6 +90,7 @@ class Bdpt : public Integrator {
 
   BdptSettings settings_;
   Guide guide_;
+  StrategyLayers layers_;
 };
 
 /// connections: paired. Pixel j's path meets light path j; the points on emitters of s = 1 are
@@ -86,6 +98,9 @@ class Bdpt : public Integrator {
 class PairedBdpt final : public Bdpt {
  public:
   using Bdpt::Bdpt;
+  std::vector<std::string> layers(std::span<const ImageLayer> wanted) override {
+    return layers_.choose(wanted, settings_.max_depth, {});
+  }
   SceneNeeds needs() const override { return {.materials = true, .emission = true}; }
 
   Counters iterate(const IterationContext& context, Image& image) override {
@@ -110,7 +125,8 @@ class PairedBdpt final : public Bdpt {
         flush(context, pairs.queue, image, counters);
       }
     };
-    return for_each_splatting_part(context, tiling.tiles(), image, work, [](const Splat&) {});
+    return for_each_splatting_part(context, tiling.tiles(), image, work,
+                                   splat_layers(context));
   }
 
  private:
@@ -168,6 +184,9 @@ class ResampledBdpt final : public Bdpt {
   SceneNeeds needs() const override {
     return {.materials = true, .emission = true, .space = Connections::needs_space};
   }
+  std::vector<std::string> layers(std::span<const ImageLayer> wanted) override {
+    return layers_.choose(wanted, settings_.max_depth, Connections::distributions);
+  }
   void prepare(const PrepareContext& context) override { connections_.prepare(context); }
   void save(ByteWriter& out) const override { connections_.save(out); }
   void load(ByteReader& in) override { connections_.load(in); }
@@ -189,7 +208,7 @@ class ResampledBdpt final : public Bdpt {
         [&](std::size_t path, const LightBatch<Guide>& batch, std::size_t place) {
           if (path < resampled) lights.keep(path, batch, place);
         },
-        [](const Splat&) {});
+        splat_layers(context));
     lights.list();
     connections_.begin(context, lights, counters);
     counters += eye_pass(context, counts, lights, image);
