@@ -3,6 +3,7 @@
 #include "renderer/connections/importance_cache.h"
 #include "renderer/connections/skeleton_connections.h"
 #include "renderer/connections/uniform_connections.h"
+#include "renderer/core/clock_seconds.h"
 #include "renderer/guides/bsdf_guide.h"
 #include "renderer/integrators/light_pass.h"
 #include "renderer/integrators/strategy_layers.h"
@@ -20,6 +21,19 @@ struct Contribution {
   std::uint32_t pixel;
   std::uint16_t s, t;  ///< vertices made from the light and from the eye
   std::uint8_t distribution;
+};
+
+/// CPU seconds of the process since the last end().
+class PassSeconds {
+ public:
+  void end(double& sum) {
+    const double now = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
+    sum += now - start_;
+    start_ = now;
+  }
+
+ private:
+  double start_ = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
 };
 
 /// Bidirectional path tracing (Noel 2015, 4.3 and ch. 11): everything but which light vertices an
@@ -188,6 +202,13 @@ class ResampledBdpt final : public Bdpt {
     return layers_.choose(wanted, settings_.max_depth, Connections::distributions);
   }
   void prepare(const PrepareContext& context) override { connections_.prepare(context); }
+  std::vector<std::pair<std::string, double>> statistics() const override {
+    auto told = connections_.statistics();
+    told.emplace_back("light_pass_cpu_seconds", seconds_.light);
+    told.emplace_back("distributions_cpu_seconds", seconds_.distributions);
+    told.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
+    return told;
+  }
   void save(ByteWriter& out) const override { connections_.save(out); }
   void load(ByteReader& in) override { connections_.load(in); }
 
@@ -195,12 +216,12 @@ class ResampledBdpt final : public Bdpt {
     const bool lit = !context.scene.emitters().empty();
     const auto resampled = static_cast<std::size_t>(connections_.resampling().light_paths);
     const std::int64_t paths = std::max(pixels(image), static_cast<std::int64_t>(resampled));
-    const double count = connections_.resampling().count_as == ResampledCount::paths
-                             ? static_cast<double>(resampled)
-                             : 1.0;
+    const double asked = connections_.resampling().count_as;
+    const double count = asked > 0 ? asked : static_cast<double>(resampled);
     const SampleCounts counts =
         lit ? SampleCounts{1, count, count, static_cast<double>(paths)} : SampleCounts{};
 
+    PassSeconds pass;
     LightVertices lights(lit ? resampled : 0, std::max(1, settings_.max_depth - 1));
     const LightPathSetting setting = light_setting(context, counts);
     Counters counters = light_pass(
@@ -210,8 +231,11 @@ class ResampledBdpt final : public Bdpt {
         },
         splat_layers(context));
     lights.list();
+    pass.end(seconds_.light);
     connections_.begin(context, lights, counters);
+    pass.end(seconds_.distributions);
     counters += eye_pass(context, counts, lights, image);
+    pass.end(seconds_.eye);
     return counters;
   }
 
@@ -261,6 +285,10 @@ class ResampledBdpt final : public Bdpt {
         });
   }
 
+  /// CPU seconds of all threads in the parts of an iteration.
+  struct {
+    double light = 0, distributions = 0, eye = 0;
+  } seconds_;
   Connections connections_;
 };
 

@@ -61,6 +61,8 @@ class Integrator {
   virtual std::vector<std::string> layers(std::span<const ImageLayer> /*wanted*/) { return {}; }
   /// One more independent estimate of the whole picture into `image` (of the film's size, black).
   virtual Counters iterate(const IterationContext& context, Image& image) = 0;
+  /// What it did, for the report: names and numbers, of this process' iterations.
+  virtual std::vector<std::pair<std::string, double>> statistics() const { return {}; }
   /// Learned state, for the checkpoint.
   virtual void save(ByteWriter&) const {}
   virtual void load(ByteReader&) {}

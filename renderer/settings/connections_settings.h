@@ -32,21 +32,10 @@ struct EnumTable<LightSides> {
   }};
 };
 
-/// As how many samples the weights of multiple importance sampling count a resampled connection.
-enum class ResampledCount { paths, one };
-
-template <>
-struct EnumTable<ResampledCount> {
-  static constexpr std::array<EnumValue<ResampledCount>, 2> values{{
-      {ResampledCount::paths, "paths", "as many as paths are resampled (Noel 2015, 11.5)"},
-      {ResampledCount::one, "one", "one, which is what is traced"},
-  }};
-};
-
 /// What all choices of connections but `paired` have in common.
 struct ResamplingSettings {
   int light_paths = 1024;
-  ResampledCount count_as = ResampledCount::paths;
+  double count_as = 1;
   bool operator==(const ResamplingSettings&) const = default;
 };
 
@@ -56,7 +45,11 @@ void describe_resampling(V& v, ResamplingSettings& s) {
     {.doc = "light paths an iteration that eye paths are joined to, shared by all pixels",
      .min = 1,
      .max = 1 << 22});
-  v("count_as", s.count_as, {.doc = "samples of a connection, in the weights"});
+  v("count_as", s.count_as,
+    {.doc = "as how many samples of its strategy a resampled connection counts in the weights of "
+            "multiple importance sampling; 0: as many as there are light paths (Noel 2015, 11.5)",
+     .min = 0,
+     .max = 1 << 22});
 }
 
 /// connections: paired.
