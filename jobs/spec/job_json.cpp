@@ -34,6 +34,7 @@ void check_layers_of_integrator(const JobSpec& spec, std::vector<Problem>& probl
   if (!is_good(problems, "/layers") || !is_good(problems, "/integrator")) return;
   const std::vector<ImageLayer> offered = offered_layers(spec.integrator);
   std::vector<std::string_view> allowed;
+  allowed.reserve(offered.size());
   for (const ImageLayer layer : offered) allowed.push_back(enum_name(layer));
   const auto integrator = std::visit([](const auto& s) { return s.name; }, spec.integrator);
   for (std::size_t i = 0; i < spec.layers.size(); ++i) {
