@@ -219,7 +219,8 @@ class ResampledBdpt final : public Bdpt {
     const double asked = connections_.resampling().count_as;
     const double count = asked > 0 ? asked : static_cast<double>(resampled);
     const SampleCounts counts =
-        lit ? SampleCounts{1, count, count, static_cast<double>(paths)} : SampleCounts{};
+        lit ? SampleCounts{1, asked > 0 ? 1.0 : count, count, static_cast<double>(paths)}
+            : SampleCounts{};
 
     PassSeconds pass;
     LightVertices lights(lit ? resampled : 0, std::max(1, settings_.max_depth - 1));
@@ -230,7 +231,7 @@ class ResampledBdpt final : public Bdpt {
           if (path < resampled) lights.keep(path, batch, place);
         },
         splat_layers(context));
-    lights.list();
+    lights.compact();
     pass.end(seconds_.light);
     connections_.begin(context, lights, counters);
     pass.end(seconds_.distributions);
@@ -279,7 +280,7 @@ class ResampledBdpt final : public Bdpt {
     connections_.pick(
         v, depth, lights, longest, batch.walkers[k].rng, tally, [&](int s, const Pick& pick) {
           const double samples = static_cast<double>(lights.paths()) * double(pick.probability);
-          lights.with_end(pick.path, s, guide_, [&](const auto& light) {
+          lights.with_end(s, pick.index, guide_, [&](const auto& light) {
             join(eye, light, samples, counts, batch.pixels[k], pick.owner, queue);
           });
         });

@@ -9,15 +9,15 @@
 namespace lacuna {
 
 /// How several resampling distributions over the same light paths become one.
-enum class Combination { max, mixture };
+enum class Combination { mixture, max };
 
 template <>
 struct EnumTable<Combination> {
   static constexpr std::array<EnumValue<Combination>, 2> values{{
+      {Combination::mixture, "mixture", "their mean (balance heuristic)"},
       {Combination::max, "max",
        "each light path only by the distribution that gives it most, all of them renormalised and "
        "drawn from equally often (max heuristic, pre-multiplied; Noel 2015, 11.3)"},
-      {Combination::mixture, "mixture", "their mean (balance heuristic)"},
   }};
 };
 
@@ -35,7 +35,7 @@ struct EnumTable<LightSides> {
 /// What all choices of connections but `paired` have in common.
 struct ResamplingSettings {
   int light_paths = 1024;
-  double count_as = 1;
+  double count_as = 8;
   bool operator==(const ResamplingSettings&) const = default;
 };
 
@@ -46,8 +46,9 @@ void describe_resampling(V& v, ResamplingSettings& s) {
      .min = 1,
      .max = 1 << 22});
   v("count_as", s.count_as,
-    {.doc = "as how many samples of its strategy a resampled connection counts in the weights of "
-            "multiple importance sampling; 0: as many as there are light paths (Noel 2015, 11.5)",
+    {.doc = "as how many samples a connection with a resampled path of two vertices or more counts "
+            "in the weights of multiple importance sampling; one with a point on an emitter counts as "
+            "one. 0: both as many as there are light paths (Noel 2015, 11.5)",
      .min = 0,
      .max = 1 << 22});
 }
@@ -84,7 +85,7 @@ struct SkeletonSettings : ResamplingSettings {
   double acceptance = 1;
   bool visible = true;
   bool unshadowed = true;
-  Combination combination = Combination::max;
+  Combination combination = Combination::mixture;
   LightSides sides = LightSides::facing;
   bool operator==(const SkeletonSettings&) const = default;
 };
@@ -114,7 +115,7 @@ struct ImportanceCacheSettings : ResamplingSettings {
   bool full = true;
   bool unshadowed = false;
   bool bounded = false;
-  Combination combination = Combination::max;
+  Combination combination = Combination::mixture;
   bool operator==(const ImportanceCacheSettings&) const = default;
 };
 template <class V>
