@@ -205,7 +205,7 @@ test("a job is posted, and problems name their places", async () => {
   await page.getByRole("button", { name: "Post the job" }).click();
   await page.waitForSelector("article");
   assert.equal(await text("h1"), "mine");
-  assert.deepEqual(page.troubles.filter((t) => !/400/.test(t)), []);
+  assert.deepEqual(page.troubles.filter((t) => !/status of 400/.test(t)), []);
 });
 
 test("the new-job view takes a scene, or another job, and leads to the schema", async () => {
