@@ -49,9 +49,8 @@ struct EmitterPoint {
       }
       case Kind::point:
         return Pdf<SolidAngle>(0.25F * inv_pi);
-      case Kind::spot:
-        return Pdf<SolidAngle>(dot(w, ng) > cos_outer ? 1 / cone()
-                                                      : 0);  // so the cone is not empty
+      case Kind::spot:  // the cone may be empty in floats
+        return Pdf<SolidAngle>(dot(w, ng) > cos_outer && cos_outer < 1 ? 1 / cone() : 0);
       default:
         return Pdf<SolidAngle>(across > 0 ? 1 / across : 0);
     }

@@ -9,10 +9,10 @@ namespace lacuna {
 namespace {
 
 V3f sample_around(const V3f& axis, float cos_least, const V2f& u) {
-  const float c = 1 - u.x * (1 - cos_least);
-  const float s = std::sqrt(std::max(0.0F, 1 - c * c));
+  const float x = u.x * (1 - cos_least);  // 1 - cos: near the axis the cosine itself is too coarse
+  const float s = std::sqrt(x * (2 - x));
   const float phi = 2 * pi * u.y;
-  return Frame(axis).to_world({s * std::cos(phi), s * std::sin(phi), c});
+  return Frame(axis).to_world({s * std::cos(phi), s * std::sin(phi), 1 - x});
 }
 
 /// A point of the sides of `box` that face unit direction `w`, uniform as seen from there.

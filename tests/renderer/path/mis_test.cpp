@@ -1,0 +1,255 @@
+// The recursive weights of multiple importance sampling against their definition.
+
+#include "renderer/path/mis.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "renderer/guides/bsdf_guide.h"
+#include "tests/renderer/path/oracle.h"
+#include "tests/renderer/path/scenes.h"
+#include "tests/renderer/path/scripted.h"
+
+namespace lacuna {
+namespace {
+
+using test::Oracle;
+using test::PathFromEye;
+using test::PathScene;
+using test::WholePath;
+
+constexpr int side = 16;  // of the film, pixels
+constexpr int longest = 6;
+
+struct Counts {
+  const char* name;
+  SampleCounts n;
+};
+const std::vector<Counts> all_counts{{"path", {1, 1, 0, 0}},
+                                     {"light", {0, 0, 0, 100}},
+                                     {"paired", {1, 1, 1, side* side}},
+                                     {"resampled", {1, 37, 37, side* side}},
+                                     {"counted once", {1, 1, 1, 1000}}};
+
+/// Real walks from both ends, which meet in all ways.
+class Meeting {
+ public:
+  Meeting(const Scene& scene, const Camera& camera, const SampleCounts& n)
+      : scene_(scene), camera_(camera), counts_(n), eye_(longest), light_(setting_, guide_) {}
+
+  /// Calls `hit(path, weight)`, and `joined(path, s, weight, visible)`, for all that the walks of
+  /// so many rounds give.
+  template <class Hit, class Joined>
+  void meet(int rounds, const Hit& hit, const Joined& joined) {
+    for (int round = 0; round < rounds; ++round) {
+      std::vector<Rng> rngs;
+      for (std::size_t i = 0; i < EyeBatch::size; ++i) {
+        rngs.emplace_back(71, static_cast<std::uint64_t>(round), i, Rng::Purpose::light_path);
+      }
+      Counters counters;
+      light_.walk(rngs, counters);
+      eye_.walkers.clear();
+      for (std::size_t i = 0; i < EyeBatch::size; ++i) {
+        Rng rng(71, static_cast<std::uint64_t>(round), i);
+        const float x = rng.next() * side;
+        eye_.start(camera_, rng, camera_.ray(x, rng.next() * side), 0);
+        join_eye(i, joined);
+      }
+      Walk<BsdfGuide> walk(
+          scene_, guide_,
+          {.max_depth = longest, .roulette_depth = longest + 1, .counts = eye_side(counts_)},
+          counters);
+      walk.lead(
+          eye_.walkers, [](std::size_t, int) {},
+          [&](std::size_t i, int depth) {
+            meet_emitter(i, depth, hit);
+            join(i, depth, joined);
+          });
+    }
+  }
+
+ private:
+  PathFromEye from_eye(std::size_t i, int depth, bool joined) const {
+    PathFromEye path(camera_.position());
+    for (int j = 1; j <= depth; ++j) path.add(eye_.vertex(i, j), joined && j == depth);
+    return path;
+  }
+  WholePath whole(std::size_t i, int depth, const EmitterPoint& e, int s, const V3f& w) const {
+    return from_eye(i, depth, true)
+        .finish(
+            e, s, [&](int j) -> const Vertex& { return light_.vertex(i, j); }, w);
+  }
+
+  template <class Hit>
+  void meet_emitter(std::size_t i, int depth, const Hit& hit) const {
+    const Vertex& v = eye_.vertex(i, depth);
+    const auto e = emitter_at(scene_, v);
+    if (!e) return;
+    const auto none = [&](int) -> const Vertex& { return v; };
+    hit(from_eye(i, depth - 1, false).finish(*e, 1, none, -v.wp),
+        hit_weight(v, depth, *e, counts_));
+  }
+
+  /// t = 1.
+  template <class Joined>
+  void join_eye(std::size_t i, const Joined& joined) const {
+    const EyeEnd eye{camera_};
+    for (int s = 1; s <= light_.length(i); ++s) {
+      const EmitterPoint& e = light_.emitter(i);
+      const V3f& x = s == 1 ? e.x : light_.vertex(i, s - 1).surface.x;
+      const V3f w = s == 1 && e.infinite() ? x : (x - camera_.position()).normalized();
+      if (!camera_.project(w)) continue;
+      if (s == 1) {
+        if (!e.delta()) use(eye, EmitterEnd{e}, i, 0, joined);
+      } else if (light_.vertex(i, s - 1).bsdf->connectible()) {
+        use(eye, light_.end(i, s - 1), i, 0, joined);
+      }
+    }
+  }
+
+  template <class Joined>
+  void join(std::size_t i, int depth, const Joined& joined) {
+    const Vertex& v = eye_.vertex(i, depth);
+    if (v.kind != Vertex::Kind::surface || depth == longest || !v.bsdf->connectible()) return;
+    const SurfaceEnd<BsdfGuide> eye{v, depth, Transport::radiance, guide_};
+    for (int s = 1; s <= std::min(longest - depth, light_.length(i)); ++s) {
+      if (s == 1) {
+        use(eye, EmitterEnd{light_.emitter(i)}, i, depth, joined);
+      } else if (light_.vertex(i, s - 1).bsdf->connectible()) {
+        use(eye, light_.end(i, s - 1), i, depth, joined);
+      }
+    }
+  }
+
+  template <class Eye, class Light, class Joined>
+  void use(const Eye& eye, const Light& light, std::size_t i, int depth,
+           const Joined& joined) const {
+    const Connection c = connect(eye, light);
+    const int s = light.index + 1;
+    if (!c || samples(s, depth + 1) == 0) return;
+    joined(whole(i, depth, light_.emitter(i), s, c.w), s, weight(eye, light, c, counts_),
+           !scene_.rays().occluded(shadow_ray(eye, light, c)));
+  }
+  double samples(int s, int t) const {
+    if (t == 1) return counts_.splat;
+    return s == 1 ? counts_.nee : counts_.connect;
+  }
+
+  const Scene& scene_;
+  const Camera& camera_;
+  SampleCounts counts_;
+  BsdfGuide guide_;
+  EyeBatch eye_;
+  LightPathSetting setting_{scene_, camera_, longest, longest + 1, counts_};
+  LightBatch<BsdfGuide> light_;
+};
+
+class Weights : public testing::TestWithParam<PathScene> {
+ protected:
+  Weights() : data_(load(GetParam())) {}
+  SceneData data_;
+  const Camera camera_{data_.cameras.front(), side, side};
+  const Scene scene_ = test::lit_scene(std::move(data_), environment(GetParam()));
+};
+
+/// How far weights lie from what they should be.
+struct Comparison {
+  double tolerance;  ///< relative
+  double smallest;   ///< relative to this where less is expected
+  int compared = 0, apart = 0;
+  double worst = 0;
+  std::set<std::pair<int, int>> strategies = {};
+
+  void add(double found, double expected, int s, int t) {
+    ++compared;
+    strategies.insert({s, t});
+    const double off = std::abs(found - expected) / std::max(expected, smallest);
+    if (!(off <= tolerance)) ++apart;  // NaN is apart, too
+    worst = std::max(worst, off);
+  }
+};
+
+/// What a comparison must have seen to mean anything: little where only what goes straight to the
+/// eye counts.
+void expect_power(const Comparison& c, const SampleCounts& n) {
+  EXPECT_GE(c.compared, n.connect > 0 ? 90 : 1);
+  EXPECT_GE(c.strategies.size(), n.connect > 0 ? 2U : 1U);
+}
+
+// Real walks: what the renderer weighs, along the walks' own directions, so that only rounding is
+// left.
+TEST_P(Weights, AreTheirDefinition) {
+  for (const Counts& counts : all_counts) {
+    SCOPED_TRACE(counts.name);
+    Comparison c{.tolerance = 1e-5, .smallest = 1e-9};
+    int impossible = 0;
+    const auto compare = [&](const WholePath& path, int s, double weight) {
+      const double expected =
+          Oracle(scene_, camera_, path).weights(counts.n)[static_cast<std::size_t>(s)];
+      impossible += expected > 0 ? 0 : 1;
+      c.add(weight, expected, s, path.edges() + 1 - s);
+    };
+    Meeting(scene_, camera_, counts.n)
+        .meet(
+            6,
+            [&](const WholePath& path, double weight) {
+              if (counts.n.hit > 0) compare(path, 0, weight);
+            },
+            [&](const WholePath& path, int s, double weight, bool) { compare(path, s, weight); });
+    EXPECT_EQ(c.apart, 0) << "of " << c.compared << "; the worst by " << c.worst;
+    EXPECT_EQ(impossible, 0) << "were made by a strategy that cannot make them";
+    expect_power(c, counts.n);
+  }
+}
+
+// Whole paths, each made once more by every strategy: what one walk knows of the other's densities
+// is what the other has.
+TEST_P(Weights, OfAllStrategiesAddUpToOne) {
+  for (const Counts& counts : all_counts) {
+    SCOPED_TRACE(counts.name);
+    std::vector<WholePath> paths;
+    Meeting(scene_, camera_, counts.n)
+        .meet(
+            4, [&](const WholePath& path, double) { paths.push_back(path); },
+            [&](const WholePath& path, int, double, bool visible) {
+              if (visible) paths.push_back(path);
+            });
+    // Other walks meet the same triangles in slightly other places: rays start off the surface.
+    Comparison weights{.tolerance = 2e-3, .smallest = 0.01};
+    Comparison sums{.tolerance = 1e-3, .smallest = 1};
+    int tried = 0, lost = 0;
+    const std::size_t stride = paths.size() / 500 + 1;
+    for (std::size_t i = 0; i < paths.size(); i += stride) {
+      const WholePath& path = paths[i];
+      const std::vector<double> expected = Oracle(scene_, camera_, path).weights(counts.n);
+      test::Remake remake(scene_, camera_, path, counts.n);
+      double sum = 0;
+      bool complete = true;
+      for (int s = 0; s <= path.edges(); ++s) {
+        const double w = expected[static_cast<std::size_t>(s)];
+        if (w == 0) continue;
+        const std::optional<double> found = remake.weight(s);
+        complete = complete && found;
+        if (!found) continue;
+        sum += *found;
+        weights.add(*found, w, s, path.edges() + 1 - s);
+      }
+      ++tried;
+      lost += complete ? 0 : 1;
+      // Counts that leave strategies out may leave a path none.
+      if (complete && sum > 0) sums.add(sum, 1, 0, 0);
+    }
+    EXPECT_LE(weights.apart, weights.compared / 100) << "the worst by " << weights.worst;
+    EXPECT_LE(sums.apart, sums.compared / 100) << "the worst by " << sums.worst;
+    EXPECT_LE(lost, 2 + tried / 25) << "of " << tried << " paths could not be made again";
+    EXPECT_GT(sums.compared, 0);
+    expect_power(weights, counts.n);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Weights, testing::ValuesIn(test::path_scenes()),
+                         [](const auto& scene) { return scene.param.name; });
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,106 @@
+#include "tests/renderer/path/oracle.h"
+
+#include <numbers>
+
+namespace lacuna::test {
+
+namespace {
+
+double cosine(const V3f& n, const V3f& w) { return std::abs(V3d(n).dot(V3d(w))); }
+
+double squared_distance(const WholePath& p, int i) {
+  return (V3d(p.x(i + 1)) - V3d(p.x(i))).length2();
+}
+
+}  // namespace
+
+Oracle::Oracle(const Scene& scene, const Camera& camera, const WholePath& path)
+    : scene_(scene), camera_(camera), path_(path) {
+  const int k = path.edges();
+  for (int i = 0; i <= k; ++i) {
+    from_light_.push_back(i == k ? -HUGE_VAL : std::log(light_step(i)));
+    from_eye_.push_back(i == k ? 0 : std::log(eye_step(i)));
+  }
+}
+
+/// Density with which light paths leave the emitter along `w`.
+double Oracle::leaving(const V3f& w) const {
+  const EmitterPoint& e = path_.emitter;
+  const double c = V3d(e.ng).dot(V3d(w));
+  switch (e.kind) {
+    case EmitterPoint::Kind::area:
+      return e.both_sides ? std::abs(c) / (2 * std::numbers::pi)
+                          : std::max(c, 0.0) / std::numbers::pi;
+    case EmitterPoint::Kind::point:
+      return 1 / (4 * std::numbers::pi);
+    case EmitterPoint::Kind::spot:
+      return c > double(e.cos_outer) ? 1 / (2 * std::numbers::pi * (1 - double(e.cos_outer))) : 0;
+    default: {
+      // Uniform over the silhouette of the box.
+      const V3d d = scene_.bounds().size();
+      return 1 / (d.y * d.z * std::abs(double(w.x)) + d.z * d.x * std::abs(double(w.y)) +
+                  d.x * d.y * std::abs(double(w.z)));
+    }
+  }
+}
+
+/// Density per area of x_i, 0 <= i < k, of a path that comes from the light.
+double Oracle::light_step(int i) const {
+  if (i == 0) return double(path_.emitter.pdf.value);
+  const V3f& w = path_.towards_eye(i - 1);
+  const double c = cosine(path_.node(i).surface.ng, w);
+  if (i == 1 && path_.emitter.infinite()) return leaving(w) * c;
+  const double there = c / squared_distance(path_, i - 1);
+  if (i == 1) return leaving(w) * there;
+  const WholePath::Node& from = path_.node(i - 1);
+  if (from.delta) return there;
+  return double(from.bsdf->pdf(-path_.towards_eye(i - 2), w, Transport::importance).value) * there;
+}
+
+/// The same of a path that comes from the eye.
+double Oracle::eye_step(int i) const {
+  const V3f w = -path_.towards_eye(i);
+  double there = 1;  // to infinity: per steradian
+  if (i > 0) {
+    there = cosine(path_.node(i).surface.ng, w) / squared_distance(path_, i);
+  } else if (!path_.emitter.infinite()) {
+    const bool area = path_.emitter.kind == EmitterPoint::Kind::area;
+    there = (area ? cosine(path_.emitter.ng, w) : 1.0) / squared_distance(path_, 0);
+  }
+  if (i == path_.edges() - 1) return double(camera_.density(w).value) * there;
+  const WholePath::Node& from = path_.node(i + 1);
+  if (from.delta) return there;
+  return double(from.bsdf->pdf(path_.towards_eye(i + 1), w, Transport::radiance).value) * there;
+}
+
+std::vector<double> Oracle::weights(const SampleCounts& n) const {
+  const int k = path_.edges();
+  std::vector<double> logs;
+  for (int s = 0; s <= k; ++s) {
+    const int t = k + 1 - s;
+    const bool possible = s == 0 ? !path_.emitter.delta() : path_.joins(s);
+    double samples = n.connect;
+    if (s == 0) {
+      samples = n.hit;
+    } else if (t == 1) {
+      samples = n.splat;
+    } else if (s == 1) {
+      samples = n.nee;
+    }
+    double sum = possible ? std::log(samples) : -HUGE_VAL;
+    for (int i = 0; i <= k; ++i) {
+      sum +=
+          i < s ? from_light_[static_cast<std::size_t>(i)] : from_eye_[static_cast<std::size_t>(i)];
+    }
+    logs.push_back(sum);
+  }
+  const double largest = *std::max_element(logs.begin(), logs.end());
+  double all = 0;
+  std::vector<double> weights(logs.size(), 0.0);
+  if (largest == -HUGE_VAL) return weights;
+  for (const double l : logs) all += std::exp(l - largest);
+  for (std::size_t s = 0; s < logs.size(); ++s) weights[s] = std::exp(logs[s] - largest) / all;
+  return weights;
+}
+
+}  // namespace lacuna::test

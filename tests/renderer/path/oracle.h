@@ -1,0 +1,29 @@
+#pragma once
+
+#include "renderer/path/mis.h"
+#include "tests/renderer/path/whole_path.h"
+
+namespace lacuna::test {
+
+/// The definition of the weights, with nothing of the recursion in it: the density of every vertex
+/// from either end, the strategies' densities as plain products, each times its number of samples.
+class Oracle {
+ public:
+  Oracle(const Scene& scene, const Camera& camera, const WholePath& path);
+
+  /// Of strategy s = 0 ... k under the balance heuristic. All 0: no strategy makes this path.
+  std::vector<double> weights(const SampleCounts& n) const;
+
+ private:
+  double leaving(const V3f& w) const;
+  double light_step(int i) const;
+  double eye_step(int i) const;
+
+  const Scene& scene_;
+  const Camera& camera_;
+  const WholePath& path_;
+  /// [i] per area at x_i, of a walk that comes from there; in logarithms, -inf: never.
+  std::vector<double> from_light_, from_eye_;
+};
+
+}  // namespace lacuna::test

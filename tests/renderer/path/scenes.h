@@ -1,0 +1,50 @@
+#pragma once
+
+#include <ostream>
+#include <string>
+
+#include "tests/renderer/scene/scene_parts.h"
+
+namespace lacuna::test {
+
+/// A scene on which paths of all kinds are made, with its first camera.
+struct PathScene {
+  std::string name;
+  bool sky = false;  ///< lit by sky.hdr too
+  friend std::ostream& operator<<(std::ostream& out, const PathScene& s) { return out << s.name; }
+};
+
+inline std::filesystem::path scene_path(const std::string& name) {
+  return std::filesystem::path(LACUNA_SOURCE_DIR) / "jobs/scenes" / name;
+}
+
+/// A box of smooth plastic, whose every vertex scatters through a delta lobe and another, with a
+/// rough metal and a glass block in it and emitters of every kind.
+inline SceneData coated_box() {
+  SceneParts p;
+  const auto wall = p.material(plastic(Rgb(0.7F, 0.6F, 0.5F)));
+  p.box({0, 0, 0}, {3, 2, 4}, false, wall);
+  p.box({0.5F, 0, 1}, {1, 0.8F, 1.6F}, true, p.material(metal(Rgb(0.9F), 0.4F)));
+  p.box({1.8F, 0, 1.2F}, {2.4F, 0.7F, 1.7F}, true, p.material(glass(0.3F)));
+  p.quad({1, 1.9F, 1}, {1, 0, 0}, {0, 0, 1}, p.material(lamp(Rgb(3, 4, 5))));
+  p.quad({0.2F, 0.3F, 2}, {0, 0.5F, 0}, {0, 0, 0.5F}, p.material(lamp(Rgb(5, 2, 1), true)));
+  p.light(PunctualLight::Kind::point, {2.5F, 1.5F, 3}, {0, 0, -1}, Rgb(1, 1, 1));
+  p.light(PunctualLight::Kind::spot, {0.5F, 1.5F, 3}, {0.5F, -1, -0.5F}, Rgb(4, 4, 4));
+  p.eye({1.5, 1, 3.8}, {1.4, 0.8, 0}, 1.2);
+  return std::move(p.data);
+}
+
+inline SceneData load(const PathScene& s) {
+  return s.name == "coated" ? coated_box() : load_gltf(scene_path(s.name + ".glb"));
+}
+inline std::optional<EnvironmentImage> environment(const PathScene& s) {
+  return s.sky ? std::optional(EnvironmentImage{scene_path("sky.hdr"), 1, 0.7F}) : std::nullopt;
+}
+
+inline std::vector<PathScene> path_scenes() {
+  return {{"cornell"}, {"glass"},  {"mirror"}, {"furnace_sphere"}, {"many_lights"},
+          {"point"},   {"spot"},   {"sides"},  {"directional"},    {"open", true},
+          {"ajar"},    {"coated"}, {"atrium"}};
+}
+
+}  // namespace lacuna::test

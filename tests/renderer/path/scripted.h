@@ -1,0 +1,154 @@
+#pragma once
+
+#include "renderer/path/eye_batch.h"
+#include "tests/renderer/path/whole_path.h"
+
+namespace lacuna::test {
+
+/// A guide that goes where it is told, with the densities of the BSDF.
+struct ScriptedGuide {
+  struct Step {
+    V3f w;
+    bool delta;
+  };
+  const Vertex* first = nullptr;  ///< of the walk
+  std::vector<Step> steps;        ///< of its vertices 1, 2, ...
+
+  std::optional<BsdfSample> sample(const Vertex& v, Rng&, Transport transport) const {
+    const Step& step = steps[static_cast<std::size_t>(&v - first) - 1];
+    BsdfSample s;
+    s.wi = step.w;
+    s.weight = Rgb(1, 1, 1);
+    s.delta = step.delta;
+    s.pdf = v.bsdf->pdf(v.wp, step.w, transport);
+    return s;
+  }
+  static Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport) {
+    return v.bsdf->pdf(wo, wi, transport);
+  }
+};
+
+/// Makes whole paths once more, vertex by vertex, by walks from either end.
+class Remake {
+ public:
+  Remake(const Scene& scene, const Camera& camera, const WholePath& path, const SampleCounts& n)
+      : scene_(scene),
+        camera_(camera),
+        path_(path),
+        counts_(n),
+        eye_(path.edges()),
+        light_(static_cast<std::size_t>(path.edges()) + 1) {}
+
+  /// The weight of strategy s; nothing if the walks do not come to the same vertices again.
+  std::optional<double> weight(int s) {
+    const int k = path_.edges();
+    if (!walk_eye(s == 0 ? k : k - s, s == 0)) return std::nullopt;
+    if (s == 0) {
+      const Vertex& v = eye_.vertex(0, k);
+      const auto e = emitter_at(scene_, v);
+      return e ? std::optional(hit_weight(v, k, *e, counts_)) : std::nullopt;
+    }
+    if (s > 1 && !walk_light(s)) return std::nullopt;
+    if (s == 1) return joined(EmitterEnd{path_.emitter}, s);
+    return joined(SurfaceEnd<ScriptedGuide>{light_[static_cast<std::size_t>(s) - 1], s - 1,
+                                            Transport::importance, light_guide_},
+                  s);
+  }
+
+ private:
+  template <class Light>
+  double joined(const Light& light, int s) const {
+    const int depth = path_.edges() - s;
+    if (depth == 0) {
+      const EyeEnd eye{camera_};
+      return lacuna::weight(eye, light, connect(eye, light), counts_);
+    }
+    const SurfaceEnd<ScriptedGuide> eye{eye_.vertex(0, depth), depth, Transport::radiance,
+                                        eye_guide_};
+    return lacuna::weight(eye, light, connect(eye, light), counts_);
+  }
+
+  /// From x_i to x_{i + by}.
+  V3f step(int i, int by) const {
+    if (path_.emitter.infinite() && (i == 0 || i + by == 0)) {
+      return by > 0 ? path_.towards_eye(0) : -path_.towards_eye(0);
+    }
+    return (path_.x(i + by) - path_.x(i)).normalized();
+  }
+
+  /// Walks `depth` edges from the eye; the last one to the emitter itself where it is to be `hit`.
+  bool walk_eye(int depth, bool hit) {
+    const int k = path_.edges();
+    eye_.walkers.clear();
+    if (depth == 0) return true;
+    eye_guide_ = {&eye_.vertex(0, 0), {}};
+    for (int j = 1; j < depth; ++j) {
+      eye_guide_.steps.push_back({step(k - j, -1), path_.node(k - j).delta});
+    }
+    eye_.start(camera_, rng_, {camera_.position(), step(k, -1)}, 0);
+    int reached = 0;
+    lead(eye_.walkers, eye_guide_, depth, Transport::radiance, eye_side(counts_), reached);
+    if (reached != depth) return false;
+    for (int j = 1; j <= depth - (hit ? 1 : 0); ++j) {
+      if (!same(eye_.vertex(0, j), path_.node(k - j))) return false;
+    }
+    return true;
+  }
+
+  /// Walks to vertex s - 1 from the light, as LightBatch does.
+  bool walk_light(int s) {
+    const EmitterPoint& e = path_.emitter;
+    light_guide_ = {light_.data(), {}};
+    for (int j = 1; j < s - 1; ++j) {
+      light_guide_.steps.push_back({step(j, 1), path_.node(j).delta});
+    }
+    const V3f w = step(0, 1);
+    V3f from = e.kind == EmitterPoint::Kind::area ? offset_origin(e.x, e.ng, e.extent, w) : e.x;
+    if (e.infinite()) from = path_.x(1) - w * static_cast<float>(scene_.bounds().radius() * 2);
+    light_[0].kind = e.infinite() ? Vertex::Kind::background : Vertex::Kind::emitter;
+    light_[0].surface.x = e.x;
+    light_[0].surface.ng = e.ng;
+    Walker walker{.rng = rng_, .ray = {from, w}, .p = e.leaving_pdf(w), .path = light_};
+    if (!e.delta()) walker.prior = counts_.hit / double(e.pdf.value);
+    int reached = 0;
+    lead(std::span(&walker, 1), light_guide_, s - 1, Transport::importance, light_side(counts_),
+         reached);
+    if (reached != s - 1) return false;
+    for (int j = 1; j < s; ++j) {
+      if (!same(light_[static_cast<std::size_t>(j)], path_.node(j))) return false;
+    }
+    return true;
+  }
+
+  void lead(std::span<Walker> walkers, const ScriptedGuide& guide, int depth, Transport transport,
+            const SideCounts& side, int& reached) {
+    Counters counters;
+    Walk<ScriptedGuide> walk(scene_, guide,
+                             {.max_depth = depth,
+                              .last_scatters = true,
+                              .roulette_depth = depth + 1,
+                              .transport = transport,
+                              .counts = side},
+                             counters);
+    walk.lead(
+        walkers, [](std::size_t, int) {}, [&](std::size_t, int d) { reached = d; });
+  }
+
+  /// The same triangle, and nearly the same place on it.
+  static bool same(const Vertex& v, const WholePath::Node& node) {
+    return v.kind == Vertex::Kind::surface && v.surface.mesh == node.surface.mesh &&
+           v.surface.triangle == node.surface.triangle &&
+           (v.surface.x - node.surface.x).length() < 1e-4F * node.surface.extent;
+  }
+
+  const Scene& scene_;
+  const Camera& camera_;
+  const WholePath& path_;
+  SampleCounts counts_;
+  Rng rng_{1, 0, 0, Rng::Purpose::test};
+  EyeBatch eye_;
+  std::vector<Vertex> light_;
+  ScriptedGuide eye_guide_, light_guide_;
+};
+
+}  // namespace lacuna::test
