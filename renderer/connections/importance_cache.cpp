@@ -56,8 +56,11 @@ void ImportanceCacheConnections::place_records(const IterationContext& context, 
 void ImportanceCacheConnections::begin(const IterationContext& context, const LightVertices& lights,
                                        Counters& counters) {
   place_records(context, lights.longest(), counters);
-  const double bytes = static_cast<double>(records_.size()) * static_cast<double>(lights.paths()) *
-                       lights.longest() * ResamplingTable::bytes_each;
+  double bytes = 0;
+  for (int s = 1; s <= lights.longest(); ++s) {
+    bytes += static_cast<double>(records_.size()) * static_cast<double>(lights.count(s)) *
+             static_cast<double>(ResamplingTable::bytes_each);
+  }
   require_free(records_.size(), lights.paths(), bytes);
   std::vector<RecordTree::Place> places;
   for (const Vertex& v : records_) places.push_back(place_of(v));

@@ -15,9 +15,8 @@ class LightVertices {
   LightVertices(std::size_t paths, int longest)
       : paths_(paths),
         longest_(longest),
-        lengths_(paths, 0),
-        emitters_(paths),
-        vertices_(static_cast<std::size_t>(std::max(0, longest - 1)), std::vector<Vertex>(paths)) {}
+        kept_(paths),
+        vertices_(static_cast<std::size_t>(std::max(0, longest - 1))) {}
 
   std::size_t paths() const { return paths_; }
   int longest() const { return longest_; }
@@ -26,29 +25,22 @@ class LightVertices {
   /// several threads at once.
   template <class Guide>
   void keep(std::size_t path, const LightBatch<Guide>& batch, std::size_t i) {
-    lengths_[path] = std::min(batch.length(i), longest_);
-    if (lengths_[path] > 0) emitters_[path] = batch.emitter(i);
-    for (int s = 2; s <= lengths_[path]; ++s) of(s)[path] = batch.vertex(i, s - 1);
+    Path& p = kept_[path];
+    const int length = std::min(batch.length(i), longest_);
+    if (length > 0) p.emitter = batch.emitter(i);
+    for (int s = 2; s <= length; ++s) p.vertices.push_back(batch.vertex(i, s - 1));
   }
 
-  /// To be called when all paths are kept: leaves what can be joined, side by side, in the order of
-  /// the paths.
-  void compact() {
-    for (int s = 2; s <= longest_; ++s) {
-      std::vector<Vertex>& list = of(s);
-      std::size_t n = 0;
-      for (std::size_t j = 0; j < paths_; ++j) {
-        if (lengths_[j] < s || !list[j].bsdf->connectible()) continue;
-        if (n != j) list[n] = list[j];
-        ++n;
+  /// To be called when all paths are kept: leaves what can be joined, that of one length side by
+  /// side, in the order of the paths.
+  void arrange() {
+    for (Path& p : kept_) {
+      if (p.emitter) emitters_.push_back(*p.emitter);
+      for (std::size_t k = 0; k < p.vertices.size(); ++k) {
+        if (p.vertices[k].bsdf->connectible()) vertices_[k].push_back(p.vertices[k]);
       }
-      list.resize(n);
+      p.vertices = {};
     }
-    std::size_t n = 0;
-    for (std::size_t j = 0; j < paths_; ++j) {
-      if (lengths_[j] > 0) emitters_[n++] = emitters_[j];
-    }
-    emitters_.resize(n);
   }
 
   /// How many vertices `s` there are that can be the end of a connecting edge.
@@ -77,13 +69,16 @@ class LightVertices {
   }
 
  private:
-  std::vector<Vertex>& of(int s) { return vertices_[static_cast<std::size_t>(s) - 2]; }
+  struct Path {
+    std::optional<EmitterPoint> emitter;
+    std::vector<Vertex> vertices;  // from s = 2 on
+  };
 
   std::size_t paths_;
   int longest_;
-  std::vector<int> lengths_;
+  std::vector<Path> kept_;
   std::vector<EmitterPoint> emitters_;
-  std::vector<std::vector<Vertex>> vertices_;  // of s = 2 on
+  std::vector<std::vector<Vertex>> vertices_;  // from s = 2 on
 };
 
 }  // namespace lacuna

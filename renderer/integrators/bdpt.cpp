@@ -231,7 +231,7 @@ class ResampledBdpt final : public Bdpt {
           if (path < resampled) lights.keep(path, batch, place);
         },
         splat_layers(context));
-    lights.compact();
+    lights.arrange();
     pass.end(seconds_.light);
     connections_.begin(context, lights, counters);
     pass.end(seconds_.distributions);
