@@ -1,0 +1,187 @@
+// w_n(y) of Noel 2015, eq. 187, and which light vertices there are.
+
+#include "renderer/connections/node_weights.h"
+
+#include <gtest/gtest.h>
+
+#include "renderer/guides/bsdf_guide.h"
+#include "tests/renderer/path/scenes.h"
+
+namespace lacuna {
+namespace {
+
+constexpr int most_edges = 5, paths = 256;
+
+/// The light vertices of a scene, as an iteration keeps them, and the walks they come from.
+struct Lit {
+  explicit Lit(const test::PathScene& s)
+      : data(test::load(s)),
+        camera(data.cameras.front(), 8, 8),
+        scene(test::lit_scene(std::move(data), test::environment(s))) {
+    const LightPathSetting setting{scene, camera, most_edges, most_edges + 1, {1, 1, 1, 64}};
+    LightBatch<BsdfGuide> batch(setting, guide);
+    Counters counters;
+    for (std::uint64_t first = 0; first < paths; first += LightBatch<BsdfGuide>::size) {
+      std::vector<Rng> rngs;
+      for (std::uint64_t j = 0; j < LightBatch<BsdfGuide>::size; ++j) {
+        rngs.emplace_back(101, 0, first + j, Rng::Purpose::light_path);
+      }
+      batch.walk(rngs, counters);
+      for (std::size_t k = 0; k < rngs.size(); ++k) {
+        lights.keep(first + k, batch, k);
+        lengths.push_back(batch.length(k));
+      }
+    }
+    lights.list();
+  }
+
+  SceneData data;
+  Camera camera;
+  Scene scene;
+  BsdfGuide guide;
+  LightVertices lights{paths, most_edges - 1};
+  std::vector<int> lengths;
+};
+
+double lum(const Rgb& c) {
+  return 0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z);
+}
+
+/// A point in or around the scene's box, which may be flat.
+V3f place_in(const Bounds& box, Rng& rng) {
+  const V3d share(rng.next(), rng.next(), rng.next());
+  const V3d rim(box.radius() * 0.1);
+  return V3f(box.low - rim + share * (box.size() + 2.0 * rim));
+}
+
+/// Whether a connecting edge could carry anything: a mirror, smooth glass and what is black cannot.
+bool scatters_anywhere(const Vertex& v) {
+  Rng rng(104, 0, 0, Rng::Purpose::test);
+  for (int i = 0; i < 100; ++i) {
+    const V2f u = rng.next2();
+    const float z = 2 * u.x - 1, r = std::sqrt(1 - z * z);
+    const V3f w(r * std::cos(2 * pi * u.y), r * std::sin(2 * pi * u.y), z);
+    if (!is_black(v.bsdf->eval(v.wp, w, Transport::importance))) return true;
+  }
+  return false;
+}
+
+TEST(LightVertices, ListWhatCanBeJoined) {
+  for (const test::PathScene& s : test::path_scenes()) {
+    SCOPED_TRACE(s.name);
+    const Lit lit(s);
+    for (int count = 1; count <= lit.lights.longest(); ++count) {
+      std::vector<std::uint32_t> expected;
+      for (std::uint32_t j = 0; j < paths; ++j) {
+        if (lit.lengths[j] < count) continue;
+        if (count > 1 && !scatters_anywhere(lit.lights.at(j, count))) continue;
+        expected.push_back(j);
+      }
+      const auto list = lit.lights.joinable(count);
+      EXPECT_EQ(std::vector<std::uint32_t>(list.begin(), list.end()), expected) << count;
+    }
+  }
+}
+
+TEST(NodeWeights, AreWhatIsCarriedOverTheSquaredDistance) {
+  constexpr double least = 0.05;
+  Rng rng(102, 0, 0, Rng::Purpose::test);
+  int positive = 0, turned_away = 0, close = 0;
+  for (const test::PathScene& s : test::path_scenes()) {
+    SCOPED_TRACE(s.name);
+    const Lit lit(s);
+    for (int trial = 0; trial < 10; ++trial) {
+      V3f x = place_in(lit.scene.bounds(), rng);
+      for (int count = 1; count <= lit.lights.longest(); ++count) {
+        const auto list = lit.lights.joinable(count);
+        // Once in a while right beside a light vertex.
+        if (trial == 0 && count == 2 && !list.empty()) {
+          x = lit.lights.at(list[0], 2).surface.x + V3f(0.01F, 0.02F, 0.01F);
+        }
+        const auto all = node_weights(lit.lights, count, x, least, LightSides::both);
+        const auto facing = node_weights(lit.lights, count, x, least, LightSides::facing);
+        ASSERT_EQ(all.size(), list.size());
+        ASSERT_EQ(facing.size(), list.size());
+        for (std::size_t i = 0; i < list.size(); ++i) {
+          double carried = 0, d2 = 1;
+          bool faces = true;
+          if (count == 1) {
+            const EmitterPoint& e = lit.lights.emitter(list[i]);
+            const V3d to = V3d(x) - V3d(e.x);
+            carried = lum(e.emission) / double(e.pdf.value);
+            if (!e.infinite()) {
+              d2 = std::max(to.length2(), least * least);
+              close += to.length2() < least * least ? 1 : 0;
+            }
+            if (e.kind == EmitterPoint::Kind::area && !e.both_sides) {
+              faces = to.dot(V3d(e.ng)) > 0;
+            }
+            // A spot shines less beside its axis.
+            if (e.kind == EmitterPoint::Kind::spot) {
+              EXPECT_LE(facing[i], all[i]);
+              continue;
+            }
+          } else {
+            const Vertex& v = lit.lights.at(list[i], count);
+            const V3d to = V3d(x) - V3d(v.surface.x);
+            carried = lum(v.throughput);
+            d2 = std::max(to.length2(), least * least);
+            close += to.length2() < least * least ? 1 : 0;
+            const bool opaque = lit.scene.material(v.surface).transmission == 0;
+            faces = !opaque || to.dot(V3d(v.surface.ng)) * V3d(v.wp).dot(V3d(v.surface.ng)) > 0;
+          }
+          EXPECT_NEAR(all[i], carried / d2, 1e-5 * carried / d2);
+          EXPECT_NEAR(facing[i], faces ? carried / d2 : 0, 1e-5 * carried / d2);
+          ++(faces ? positive : turned_away);
+        }
+      }
+    }
+  }
+  EXPECT_GT(positive, 10000);
+  EXPECT_GT(turned_away, 1000);
+  EXPECT_GT(close, 5) << "the least distance was never of use";
+}
+
+/// Whether nothing is met within `distance` along `w`.
+bool sees(const Scene& scene, const V3f& x, const V3f& w, float distance) {
+  Hit hit;
+  return !scene.rays().intersect({x, w, distance}, hit);
+}
+
+TEST(NodeWeights, RaysLeadToTheVertices) {
+  Rng rng(103, 0, 0, Rng::Purpose::test);
+  int open = 0, blocked = 0, apart = 0;
+  for (const test::PathScene& s : test::path_scenes()) {
+    SCOPED_TRACE(s.name);
+    const Lit lit(s);
+    for (int trial = 0; trial < 10; ++trial) {
+      const V3f x = place_in(lit.scene.bounds(), rng);
+      for (int count = 1; count <= lit.lights.longest(); ++count) {
+        const std::vector<Ray> rays = rays_to(lit.lights, count, x);
+        const auto list = lit.lights.joinable(count);
+        ASSERT_EQ(rays.size(), list.size());
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          const bool clear = !lit.scene.rays().occluded(rays[i]);
+          bool expected = false;
+          if (count == 1 && lit.lights.emitter(list[i]).infinite()) {
+            expected = sees(lit.scene, x, lit.lights.emitter(list[i]).x, HUGE_VALF);
+          } else {
+            const V3f y = count == 1 ? lit.lights.emitter(list[i]).x
+                                     : lit.lights.at(list[i], count).surface.x;
+            const V3f w = (y - x).normalized();
+            expected = sees(lit.scene, x, w, (y - x).length() * 0.999F);
+          }
+          ++(expected ? open : blocked);
+          apart += clear == expected ? 0 : 1;
+        }
+      }
+    }
+  }
+  EXPECT_GT(open, 1000);
+  EXPECT_GT(blocked, 1000);
+  // What lies right in front of the vertex, or is hit edge on.
+  EXPECT_LT(apart, (open + blocked) / 200);
+}
+
+}  // namespace
+}  // namespace lacuna
