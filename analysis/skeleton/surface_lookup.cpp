@@ -19,9 +19,8 @@ std::array<Imath::V3i, neighbours> nearest_first() {
   std::array<Imath::V3i, neighbours> offsets;
   std::size_t n = 0;
   for_each_in_shell(1, [&](Imath::V3i offset) { offsets[n++] = offset; });
-  std::stable_sort(offsets.begin(), offsets.end(), [](const Imath::V3i& a, const Imath::V3i& b) {
-    return a.dot(a) < b.dot(b);
-  });
+  std::stable_sort(offsets.begin(), offsets.end(),
+                   [](const Imath::V3i& a, const Imath::V3i& b) { return a.dot(a) < b.dot(b); });
   return offsets;
 }
 

@@ -8,8 +8,8 @@
 
 namespace lacuna {
 
-/// The light paths of an iteration that eye paths of all pixels are joined to: `paths` of them, each
-/// with up to `longest` vertices. Vertices are counted by s: 1 lies on the emitter.
+/// The light paths of an iteration that eye paths of all pixels are joined to: `paths` of them,
+/// each with up to `longest` vertices. Vertices are counted by s: 1 lies on the emitter.
 class LightVertices {
  public:
   LightVertices(std::size_t paths, int longest)

@@ -31,8 +31,8 @@ class Site {
 };
 
 /// Picks in two halves, `choose(s)` and `resolve(s, chosen)`, for all s in [1, longest] of which
-/// there are vertices, and then calls `use(s, pick)`: what each step reads from memory was asked for in
-/// the step before.
+/// there are vertices, and then calls `use(s, pick)`: what each step reads from memory was asked
+/// for in the step before.
 template <class Choose, class Resolve, class Use>
 void pick_all(const LightVertices& lights, int longest, Choose&& choose, Resolve&& resolve,
               Use&& use) {

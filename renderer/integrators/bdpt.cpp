@@ -139,8 +139,7 @@ class PairedBdpt final : public Bdpt {
         flush(context, pairs.queue, image, counters);
       }
     };
-    return for_each_splatting_part(context, tiling.tiles(), image, work,
-                                   splat_layers(context));
+    return for_each_splatting_part(context, tiling.tiles(), image, work, splat_layers(context));
   }
 
  private:

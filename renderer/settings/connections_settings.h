@@ -46,9 +46,10 @@ void describe_resampling(V& v, ResamplingSettings& s) {
      .min = 1,
      .max = 1 << 16});
   v("count_as", s.count_as,
-    {.doc = "as how many samples a connection with a resampled path of two vertices or more counts "
-            "in the weights of multiple importance sampling; one with a point on an emitter counts as "
-            "one. 0: both as many as there are light paths (Noel 2015, 11.5)",
+    {.doc =
+         "as how many samples a connection with a resampled path of two vertices or more counts "
+         "in the weights of multiple importance sampling; one with a point on an emitter counts as "
+         "one. 0: both as many as there are light paths (Noel 2015, 11.5)",
      .min = 0,
      .max = 1 << 16});
 }

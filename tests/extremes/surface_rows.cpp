@@ -19,7 +19,8 @@ Row reflecting(double albedo, const std::string& text) {
 /// is, and all methods that follow light show the same.
 Row rough(const std::string& what, double roughness, const Json& material) {
   const std::string name = fmt::format("{}, roughness {:g}", what, roughness);
-  return {name, [=](Stage& stage, const Method& method, Check& check) {
+  return {name,
+          [=](Stage& stage, const Method& method, Check& check) {
             const std::string& scene =
                 stage.scene(name, [&] { return furnace({.albedo = 0, .content = material}); });
             const Picture picture = stage.render(stage.job(method, scene));

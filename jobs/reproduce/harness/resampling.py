@@ -27,7 +27,7 @@ def sweep(full, scenes, methods):
     return {
         "label": "connections of bidirectional path tracing",
         "job": {"integrator": {"type": "bdpt", "max_depth": 6}, "analysis": {"resolution": 128},
-                "budget": {"cpu_seconds": 600 if full else 20}, "reference_iterations": 4000 if full else 300},
+                "budget": {"cpu_seconds": 600 if full else 15}, "reference_iterations": 4000 if full else 100},
         "axes": {CONNECTIONS: list(methods.values())},
         "zip": [{pointer: [SCENES[s][pointer] for s in scenes] for pointer in pointers}],
         "seeds": 3,

@@ -19,9 +19,9 @@ TEST(ReferenceSpec, EstimatesTheSamePicture) {
   EXPECT_EQ(r.resolution, (std::array<int, 2>{8, 4}));
   EXPECT_EQ(r.camera, "c");
   EXPECT_NE(r.seed, 3u);
-  PathSettings plain;
+  BdptSettings plain;
   plain.max_depth = 5;
-  EXPECT_EQ(std::get<PathSettings>(r.integrator), plain);
+  EXPECT_EQ(std::get<BdptSettings>(r.integrator), plain);
   EXPECT_TRUE(r.reference.empty());
 }
 
@@ -37,6 +37,9 @@ TEST(PictureName, IsOneForMethodsOfOnePicture) {
   EXPECT_EQ(name(""), name(R"(, "integrator": {"type": "path", "next_event_estimation": false})"));
   EXPECT_EQ(name(""), name(R"(, "seed": 7, "budget": {"seconds": 3}, "threads": 2)"));
   EXPECT_NE(name(""), name(R"(, "integrator": {"type": "path", "max_depth": 3})"));
+  EXPECT_EQ(name(""), name(R"(, "integrator": {"type": "light"})"));
+  EXPECT_EQ(name(""),
+            name(R"(, "integrator": {"type": "bdpt", "connections": {"type": "skeleton"}})"));
   EXPECT_NE(name(""), name(R"(, "resolution": [8, 8])"));
   EXPECT_NE(name(""), name(R"(, "pixel_filter": "tent")"));
 }

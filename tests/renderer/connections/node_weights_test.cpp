@@ -29,10 +29,14 @@ struct Lit {
       batch.walk(rngs, counters);
       for (std::size_t k = 0; k < rngs.size(); ++k) {
         lights.keep(first + k, batch, k);
-        lengths.push_back(batch.length(k));
+        auto& walked = paths_walked.emplace_back();
+        if (batch.length(k) > 0) emitted.push_back(batch.emitter(k).x);
+        for (int i = 1; i < std::min(batch.length(k), lights.longest()); ++i) {
+          walked.push_back(batch.vertex(k, i));
+        }
       }
     }
-    lights.list();
+    lights.arrange();
   }
 
   SceneData data;
@@ -40,7 +44,8 @@ struct Lit {
   Scene scene;
   BsdfGuide guide;
   LightVertices lights{paths, most_edges - 1};
-  std::vector<int> lengths;
+  std::vector<V3f> emitted;                       // where paths start
+  std::vector<std::vector<Vertex>> paths_walked;  // without the emitter
 };
 
 double lum(const Rgb& c) {
@@ -66,19 +71,27 @@ bool scatters_anywhere(const Vertex& v) {
   return false;
 }
 
-TEST(LightVertices, ListWhatCanBeJoined) {
+TEST(LightVertices, HoldWhatCanBeJoinedInTheOrderOfThePaths) {
   for (const test::PathScene& s : test::path_scenes()) {
     SCOPED_TRACE(s.name);
     const Lit lit(s);
-    for (int count = 1; count <= lit.lights.longest(); ++count) {
-      std::vector<std::uint32_t> expected;
-      for (std::uint32_t j = 0; j < paths; ++j) {
-        if (lit.lengths[j] < count) continue;
-        if (count > 1 && !scatters_anywhere(lit.lights.at(j, count))) continue;
-        expected.push_back(j);
+    std::vector<V3f> starts;
+    for (std::size_t i = 0; i < lit.lights.count(1); ++i) {
+      starts.push_back(lit.lights.emitter(i).x);
+    }
+    EXPECT_EQ(starts, lit.emitted);
+    for (int count = 2; count <= lit.lights.longest(); ++count) {
+      std::vector<V3f> expected, held;
+      for (const std::vector<Vertex>& walked : lit.paths_walked) {
+        const auto i = static_cast<std::size_t>(count) - 2;
+        if (i < walked.size() && scatters_anywhere(walked[i])) {
+          expected.push_back(walked[i].surface.x);
+        }
       }
-      const auto list = lit.lights.joinable(count);
-      EXPECT_EQ(std::vector<std::uint32_t>(list.begin(), list.end()), expected) << count;
+      for (std::size_t i = 0; i < lit.lights.count(count); ++i) {
+        held.push_back(lit.lights.at(count, i).surface.x);
+      }
+      EXPECT_EQ(held, expected) << count;
     }
   }
 }
@@ -93,20 +106,20 @@ TEST(NodeWeights, AreWhatIsCarriedOverTheSquaredDistance) {
     for (int trial = 0; trial < 10; ++trial) {
       V3f x = place_in(lit.scene.bounds(), rng);
       for (int count = 1; count <= lit.lights.longest(); ++count) {
-        const auto list = lit.lights.joinable(count);
+        const std::size_t n = lit.lights.count(count);
         // Once in a while right beside a light vertex.
-        if (trial == 0 && count == 2 && !list.empty()) {
-          x = lit.lights.at(list[0], 2).surface.x + V3f(0.01F, 0.02F, 0.01F);
+        if (trial == 0 && count == 2 && n > 0) {
+          x = lit.lights.at(2, 0).surface.x + V3f(0.01F, 0.02F, 0.01F);
         }
         const auto all = node_weights(lit.lights, count, x, least, LightSides::both);
         const auto facing = node_weights(lit.lights, count, x, least, LightSides::facing);
-        ASSERT_EQ(all.size(), list.size());
-        ASSERT_EQ(facing.size(), list.size());
-        for (std::size_t i = 0; i < list.size(); ++i) {
+        ASSERT_EQ(all.size(), n);
+        ASSERT_EQ(facing.size(), n);
+        for (std::size_t i = 0; i < n; ++i) {
           double carried = 0, d2 = 1;
           bool faces = true;
           if (count == 1) {
-            const EmitterPoint& e = lit.lights.emitter(list[i]);
+            const EmitterPoint& e = lit.lights.emitter(i);
             const V3d to = V3d(x) - V3d(e.x);
             carried = lum(e.emission) / double(e.pdf.value);
             if (!e.infinite()) {
@@ -122,7 +135,7 @@ TEST(NodeWeights, AreWhatIsCarriedOverTheSquaredDistance) {
               continue;
             }
           } else {
-            const Vertex& v = lit.lights.at(list[i], count);
+            const Vertex& v = lit.lights.at(count, i);
             const V3d to = V3d(x) - V3d(v.surface.x);
             carried = lum(v.throughput);
             d2 = std::max(to.length2(), least * least);
@@ -158,16 +171,15 @@ TEST(NodeWeights, RaysLeadToTheVertices) {
       const V3f x = place_in(lit.scene.bounds(), rng);
       for (int count = 1; count <= lit.lights.longest(); ++count) {
         const std::vector<Ray> rays = rays_to(lit.lights, count, x);
-        const auto list = lit.lights.joinable(count);
-        ASSERT_EQ(rays.size(), list.size());
+        const std::size_t n = lit.lights.count(count);
+        ASSERT_EQ(rays.size(), n);
         for (std::size_t i = 0; i < rays.size(); ++i) {
           const bool clear = !lit.scene.rays().occluded(rays[i]);
           bool expected = false;
-          if (count == 1 && lit.lights.emitter(list[i]).infinite()) {
-            expected = sees(lit.scene, x, lit.lights.emitter(list[i]).x, HUGE_VALF);
+          if (count == 1 && lit.lights.emitter(i).infinite()) {
+            expected = sees(lit.scene, x, lit.lights.emitter(i).x, HUGE_VALF);
           } else {
-            const V3f y = count == 1 ? lit.lights.emitter(list[i]).x
-                                     : lit.lights.at(list[i], count).surface.x;
+            const V3f y = count == 1 ? lit.lights.emitter(i).x : lit.lights.at(count, i).surface.x;
             const V3f w = (y - x).normalized();
             expected = sees(lit.scene, x, w, (y - x).length() * 0.999F);
           }
