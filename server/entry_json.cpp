@@ -38,6 +38,7 @@ OrderedJson to_json(const JobEntry& e) {
                       {"scene", e.scene},
                       {"integrator", e.integrator},
                       {"sweep", sweep_json(e)},
+                      {"picture", e.pictured},
                       {"priority", e.control.priority},
                       {"held", e.control.held}};
   json.update(to_json(e.state));

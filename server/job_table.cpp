@@ -35,6 +35,11 @@ void read_spec(JobEntry& entry, const JobFolder& folder) {
   entry.job_hash = hash(write_job(spec));
 }
 
+bool has_picture(const JobFolder& folder) {
+  std::error_code unknown;
+  return std::filesystem::exists(folder.file("image.png"), unknown);
+}
+
 std::shared_ptr<JobEntry> read_entry(const JobFolder& folder) {
   auto entry = std::make_shared<JobEntry>();
   entry->id = folder.id();
@@ -43,6 +48,7 @@ std::shared_ptr<JobEntry> read_entry(const JobFolder& folder) {
     entry->state = folder.read_state();
     entry->control = folder.read_control();
     entry->progress = folder.read_progress();
+    entry->pictured = has_picture(folder);
     entry->over = is_terminal(entry->state.state);
   } catch (const std::exception& error) {  // a damaged folder hides no other job
     entry->damaged = true;
@@ -209,9 +215,11 @@ void JobTable::set_control(const std::string& id, const JobControl& control) {
 }
 
 void JobTable::set_progress(const std::string& id, const Progress& progress) {
+  const bool pictured = has_picture(folder(id));
   change(id, [&](JobEntry& entry) -> std::optional<JobEvent::Kind> {
-    if (entry.progress == progress) return std::nullopt;
+    if (entry.progress == progress && entry.pictured == pictured) return std::nullopt;
     entry.progress = progress;
+    entry.pictured = pictured;
     return JobEvent::Kind::progress;
   });
 }

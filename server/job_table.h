@@ -26,8 +26,9 @@ struct JobEntry {
   JobState state;
   JobControl control;
   std::optional<Progress> progress;
-  bool over = false;     ///< terminal, and the queue has nothing more to say about it
-  bool damaged = false;  ///< its folder cannot be read; state.error says why
+  bool pictured = false;  ///< image.png is there: the first comes after the first progress
+  bool over = false;      ///< terminal, and the queue has nothing more to say about it
+  bool damaged = false;   ///< its folder cannot be read; state.error says why
 
   // Made by the table from the above:
   std::string text;      ///< as an element of the API's list, JSON
@@ -61,6 +62,7 @@ class JobTable {
   /// nothing happens for a job that is not there.
   void set_state(const std::string& id, const JobState& state, bool over);
   void set_control(const std::string& id, const JobControl& control);
+  /// Looks for the picture, too.
   void set_progress(const std::string& id, const Progress& progress);
   /// Reads job.json anew.
   void reread_job(const std::string& id);

@@ -4,7 +4,9 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 
 #include "analysis/storage/file_lock.h"
 #include "jobs/spec/version.h"
@@ -75,13 +77,18 @@ DataRoot data_root(const ServiceSettings& settings) {
   return data;
 }
 
-/// Two services on one folder would start every job twice.
+/// Two services on one folder would start every job twice. A child that a killed service had just
+/// forked has the lock, too, until it has become a renderer: that is waited for.
 FileLock lock_data(const DataRoot& data) {
-  auto lock = FileLock::try_take(data.dir / ".lacuna-server.lock");
-  if (!lock) {
-    throw std::runtime_error(fmt::format("another lacuna-server works in {}", data.dir.string()));
+  constexpr std::chrono::seconds patience(3);
+  constexpr std::chrono::milliseconds pause(10);
+  const auto end = std::chrono::steady_clock::now() + patience;
+  for (;;) {
+    if (auto lock = FileLock::try_take(data.dir / ".lacuna-server.lock")) return std::move(*lock);
+    if (std::chrono::steady_clock::now() >= end) break;
+    std::this_thread::sleep_for(pause);
   }
-  return std::move(*lock);
+  throw std::runtime_error(fmt::format("another lacuna-server works in {}", data.dir.string()));
 }
 
 std::chrono::milliseconds grace(const ServiceSettings& settings) {

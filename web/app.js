@@ -3,7 +3,6 @@
 import { ApiError } from "./api.js";
 import { button, h, problem } from "./dom.js";
 import "./keys.js";
-import * as compare from "./view_compare.js";
 import * as figure from "./view_figure.js";
 import * as job from "./view_job.js";
 import * as jobs from "./view_jobs.js";
@@ -14,7 +13,7 @@ const later = (file) => async (...given) => (await import(file)).show(...given);
 const routes = [
   { pattern: /^\/$/, show: jobs.show },
   { pattern: /^\/job\/(?<id>[^/]+)$/, show: job.show, alone: figure.show },
-  { pattern: /^\/compare$/, show: compare.show, alone: figure.show },
+  { pattern: /^\/compare$/, show: later("./view_compare.js"), alone: figure.show },
   { pattern: /^\/new$/, show: later("./view_new.js") },
   { pattern: /^\/sweeps$/, show: later("./view_sweeps.js") },
   { pattern: /^\/sweep\/(?<id>[^/]+)$/, show: later("./view_sweep.js") },

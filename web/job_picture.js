@@ -6,10 +6,13 @@ import { picture } from "./picture.js";
 import { noViewer, viewer } from "./viewer.js";
 
 /// `update(files, version, name, over)` follows the job's files ({name: {bytes}}); `version` says when
-/// they changed, and `over` that they will no more. The viewer's state is in `query`.
+/// they changed, and `over` that they will no more. The viewer's state is in `query`; `strategies` is a place
+/// for what belongs below all else.
 export function jobPicture(id, query, signal) {
   const place = h("div");
   const note = h("p.note");
+  const strategies = h("div");
+  let pyramid = null;
   const plain = picture("The picture");
   let numbers;  // the viewer; null: it cannot be had
   let shown = null;
@@ -19,6 +22,15 @@ export function jobPicture(id, query, signal) {
     setText(note, why);
   };
 
+  /// Most jobs have none.
+  async function showStrategies(layers) {
+    strategies.hidden = !layers.names.some((name) => name.includes("."));
+    if (strategies.hidden) return;
+    pyramid ??= (await import("./strategies.js")).strategies(query, signal, numbers.open);
+    strategies.replaceChildren(pyramid.element);
+    pyramid.show(layers);
+  }
+
   async function update(files, version, name, over) {
     if (files["layers.json"]) numbers = numbers === undefined ? viewer(query, signal) : numbers;
     if (numbers && files["layers.json"]) {
@@ -26,7 +38,9 @@ export function jobPicture(id, query, signal) {
       if (shown === version) return;
       shown = version;  // at once: a job's news come faster than its layers can be read
       try {
-        await numbers.show([{ name, layers: await openLayers(id, signal) }]);
+        const layers = await openLayers(id, signal);
+        await numbers.show([{ name, layers }]);
+        await showStrategies(layers);
       } catch (error) {
         shown = null;
         throw error;
@@ -39,5 +53,5 @@ export function jobPicture(id, query, signal) {
         : "A preview: the tone-mapped image.png as last written. The values come with the end of the job.");
     plain.load(image ? fileUrl(id, "image.png", version) : null);
   }
-  return { element: h("div", place, note), update };
+  return { element: h("div", place, note), strategies, update };
 }

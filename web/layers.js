@@ -5,7 +5,8 @@ import { extent } from "./pixels.js";
 const tries = 4;
 
 /// The layers of job `id` as they stand: {width, height, names, read(...names)}; `read` gives a picture
-/// (see pixels.js) for each name, all of one generation, and the same ones when asked again.
+/// (see pixels.js) for each name, all of one generation, and the same ones when asked again, unless `forget(name)`
+/// let one go.
 export async function openLayers(id, signal) {
   async function readIndex() {
     const response = await getFile(id, "layers.json", signal);
@@ -54,5 +55,5 @@ export async function openLayers(id, signal) {
     throw new Error("These layers changed while they were read.");
   }
 
-  return { width, height, names: index.layers.map((l) => l.name), read };
+  return { width, height, names: index.layers.map((l) => l.name), read, forget: (name) => kept.delete(name) };
 }

@@ -1,6 +1,7 @@
 // What a viewer can show of a job: its layers, and its errors against its reference.
 import { errorKinds, kindOf } from "./error_picture.js";
 import { errorOf } from "./errors.js";
+import { words } from "./format.js";
 
 const reference = "reference";
 const errors = "error-";
@@ -9,7 +10,10 @@ const errors = "error-";
 export function choices(sources) {
   const shared = sources[0].layers.names.filter((name) =>
     sources.every((s) => s.layers.names.includes(name)));
-  const layers = shared.map((key) => ({ key, label: key || "picture", group: "Layers" }));
+  const layers = shared.map((key) => {
+    const [group, ...name] = key.split(".");  // "strategies.s2t3"
+    return { key, label: name.join(".") || key || "picture", group: name.length > 0 ? words(group) : "Layers" };
+  });
   if (!shared.includes(reference)) return layers;
   return [...layers, ...errorKinds.map((kind) => ({
     key: errors + kind.key, label: kind.label, group: "Error against the reference",

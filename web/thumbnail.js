@@ -5,16 +5,16 @@ import { isTerminal } from "./status.js";
 
 const refreshSeconds = 10;
 
-/// `update(entry)` says where the job stands. Its picture changes with the state, and while it runs with
-/// time; before there is progress there is none.
+/// `update(entry)` says where the job stands. Its picture, once there is one, changes with the state, and
+/// while it runs with time.
 export function thumbnail() {
   const element = h("span.thumb");
   let shown = "";
   return {
     element,
-    update({ id, state, progress }) {
-      if (!progress?.iteration) return;
-      const age = isTerminal(state) ? "" : Math.floor(progress.seconds / refreshSeconds);
+    update({ id, state, picture, progress }) {
+      if (!picture) return;
+      const age = isTerminal(state) ? "" : Math.floor((progress?.seconds ?? 0) / refreshSeconds);
       const source = fileUrl(id, "image.png", `${state} ${age}`);
       if (source === shown) return;
       shown = source;

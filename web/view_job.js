@@ -64,7 +64,7 @@ function page(id, query, signal) {
   view.element = h("article", view.title, h("p.id", id), view.notes, view.refusal,
     h("div.columns", h("div", view.image.element, view.facts),
       h("div", h("h2", "Error"), view.panel.element, view.rows, view.files)),
-    view.report, view.source, view.log.element);
+    view.image.strategies, view.report, view.source, view.log.element);
   return view;
 }
 

@@ -70,7 +70,8 @@ function listen(own, actions, signal) {
 
 /// A viewer whose state is in `query` (URLSearchParams), and in the address with it.
 /// `show(sources)` takes [{name, layers, seconds, error}] (see layers.js; how long was rendered and what
-/// the error is, in words) of one size, all shown alike. null: there is no WebGL 2 here.
+/// the error is, in words) of one size, all shown alike; `open(key)` chooses what of them (see shown.js), and
+/// takes the reader there. null: there is no WebGL 2 here.
 export function viewer(query, signal) {
   const seen = stage();
   const state = readState(query);
@@ -143,6 +144,10 @@ export function viewer(query, signal) {
       seen.setSize(own.size());
       seen.frame.ariaLabel = `Picture of ${sources.map((s) => s.name).join(" and ")}. The question mark lists its keys.`;
       return refresh();
+    },
+    open(key) {
+      actions.choose(key);
+      seen.frame.focus();
     },
   };
 }

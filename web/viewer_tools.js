@@ -3,7 +3,7 @@ import { h, labelledSelect, setText, sign, small } from "./dom.js";
 import { showKeys } from "./keys.js";
 
 /// Exposure in stops, and back to the page's own choice.
-function exposureTools(actions) {
+export function exposureTools(actions) {
   const field = h("input", { type: "number", step: "0.1", "aria-label": "Exposure in stops", oninput: () => {
     if (field.value !== "") actions.setExposure(Number(field.value));
   } });

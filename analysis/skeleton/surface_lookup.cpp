@@ -1,5 +1,7 @@
 #include "analysis/skeleton/surface_lookup.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "analysis/geometry/shell.h"
@@ -9,6 +11,37 @@ namespace {
 
 bool finite(Imath::V3d v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
+constexpr std::size_t neighbours = 26;
+
+/// The offsets of the shell of radius 1, the nearest first, then in the order of
+/// for_each_in_shell(): of equal products the first is the one to take.
+std::array<Imath::V3i, neighbours> nearest_first() {
+  std::array<Imath::V3i, neighbours> offsets;
+  std::size_t n = 0;
+  for_each_in_shell(1, [&](Imath::V3i offset) { offsets[n++] = offset; });
+  std::stable_sort(offsets.begin(), offsets.end(), [](const Imath::V3i& a, const Imath::V3i& b) {
+    return a.dot(a) < b.dot(b);
+  });
+  return offsets;
+}
+
+/// What BestAlongNormal finds in the shell of radius 1, most often at its first look into the map:
+/// eye paths ask this at every vertex.
+template <class Mapped>
+std::optional<Imath::V3i> best_neighbour(const Imath::V3i& s, const Imath::V3d& n,
+                                         Mapped&& mapped) {
+  static const std::array<Imath::V3i, neighbours> offsets = nearest_first();
+  std::array<double, neighbours> product;
+  for (std::size_t i = 0; i < neighbours; ++i) product[i] = Imath::V3d(offsets[i]).dot(n);
+  for (;;) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < neighbours; ++i) best = product[i] > product[best] ? i : best;
+    if (!(product[best] > 0)) return {};
+    if (const Imath::V3i v = s + offsets[best]; mapped(v)) return v;
+    product[best] = 0;
+  }
+}
+
 }  // namespace
 
 std::optional<Imath::V3i> SurfaceLookup::voxel(Imath::V3d x, Imath::V3d n, Imath::V3d w) const {
@@ -17,13 +50,17 @@ std::optional<Imath::V3i> SurfaceLookup::voxel(Imath::V3d x, Imath::V3d n, Imath
   std::optional<Imath::V3i> s = voxel_at(transform_.to_grid(x), size);
   if (!s || (*map_)(*s) != no_node) return s;
   if (n.dot(w) < 0) n = -n;
-  for (int radius = 1; radius <= lookup_reach; ++radius) {
+  const auto mapped = [&](const Imath::V3i& v) {
+    return in_grid(v, size) && (*map_)(v) != no_node;
+  };
+  if (const auto v = best_neighbour(*s, n, mapped)) return v;
+  for (int radius = 2; radius <= lookup_reach; ++radius) {
     BestAlongNormal best;
     for_each_in_shell(radius, [&](Imath::V3i offset) {
       const double product = Imath::V3d(offset).dot(n);
       if (!best.beaten_by(product, offset)) return;
       const Imath::V3i v = *s + offset;
-      if (in_grid(v, size) && (*map_)(v) != no_node) best.take(product, offset, v);
+      if (mapped(v)) best.take(product, offset, v);
     });
     if (best.found()) return best.voxel;
   }

@@ -38,7 +38,7 @@ std::optional<std::string> read_checkpoint(const std::filesystem::path& file,
   ByteReader in(bytes);
   try {
     if (in.get_text() != format_name) refuse("not a checkpoint of this version");
-    if (in.get_text() != key) refuse("a checkpoint of another picture");
+    if (in.get_text() != key) refuse("a checkpoint of another picture, or of other layers");
     const auto checksum = in.get<std::uint64_t>();
     const std::string_view content = in.get_text();
     if (XXH3_64bits(content.data(), content.size()) != checksum || !in.at_end()) {

@@ -1,17 +1,10 @@
 #pragma once
 
-#include <time.h>
-
 #include <algorithm>
 
-namespace lacuna {
+#include "renderer/core/clock_seconds.h"
 
-/// Seconds of a POSIX clock.
-inline double clock_seconds(clockid_t clock) {
-  timespec t{};
-  clock_gettime(clock, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
+namespace lacuna {
 
 /// Two clocks that run only while a picture is being made: wall seconds, and CPU seconds of the
 /// process divided by its threads, which hold still on a busy machine.

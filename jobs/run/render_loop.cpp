@@ -1,6 +1,7 @@
 #include "jobs/run/render_loop.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <system_error>
@@ -10,6 +11,7 @@
 #include "jobs/run/obstacle.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/version.h"
+#include "jobs/store/machine.h"
 #include "renderer/film/preview.h"
 
 namespace lacuna {
@@ -44,13 +46,16 @@ RenderLoop::RenderLoop(const RenderTask& task)
       budget_(task.spec.budget),
       film_(task.spec.resolution[0], task.spec.resolution[1]),
       frame_(task.spec.resolution[0], task.spec.resolution[1]),
+      layers_(task.integrator.layers(task.spec.layers), task.spec.resolution[0],
+              task.spec.resolution[1], memory_to_take()),
       clock_(task.pool.threads()),
       checkpoints_(task.spec.checkpoint_seconds, checkpoint_share),
       previews_(preview_interval, preview_share),
       progress_(progress_interval, checkpoint_share) {}
 
 std::string RenderLoop::identity() const {
-  return fmt::format("{} {} {}", picture_key(task_.spec), task_.content, version());
+  return fmt::format("{} {} {}{}{}", picture_key(task_.spec), task_.content, version(),
+                     layers_.names().empty() ? "" : " ", fmt::join(layers_.names(), " "));
 }
 
 void RenderLoop::resume() {
@@ -62,6 +67,7 @@ void RenderLoop::resume() {
     Film film(film_.width(), film_.height());
     film.load(in);
     completed_ = in.get<Spent>();
+    layers_.load(in, completed_.iterations);
     counters_ = in.get<Counters>();
     curve_.load(in);
     refused_before_ = in.get<std::uint64_t>();
@@ -81,6 +87,7 @@ void RenderLoop::resume() {
     std::filesystem::rename(file, task_.folder.file("checkpoint.unusable"));
     task_.observer.warning(
         fmt::format("{}; kept as checkpoint.unusable, beginning anew", e.what()));
+    layers_.clear();
     completed_ = {};
     counters_ = {};
     curve_ = {};
@@ -150,11 +157,12 @@ bool RenderLoop::iterate() {
             out_of_time(budget_, {completed_.iterations, clock_.seconds(), clock_.cpu_seconds()}));
   };
   std::fill(frame_.pixels.begin(), frame_.pixels.end(), Rgb(0, 0, 0));
+  const std::span<Image> layers = layers_.begin(task_.pool);
   clock_.start();
   try {
-    counters_ += task_.integrator.iterate(
-        {task_.scene, task_.camera, task_.pool, task_.spec.seed, completed_.iterations, stop},
-        frame_);
+    counters_ += task_.integrator.iterate({task_.scene, task_.camera, task_.pool, task_.spec.seed,
+                                           completed_.iterations, stop, layers},
+                                          frame_);
   } catch (const IterationStopped&) {
     clock_.stop();
     return false;
@@ -162,6 +170,10 @@ bool RenderLoop::iterate() {
   film_.add(completed_.iterations, frame_);
   clock_.stop();
   completed_ = {completed_.iterations + 1, clock_.seconds(), clock_.cpu_seconds()};
+  if (!layers.empty()) {
+    const ScopedSeconds timed(task_.phases["layers"]);  // no part of the estimate
+    layers_.add(task_.pool);
+  }
   return true;
 }
 
@@ -201,6 +213,7 @@ void RenderLoop::write_checkpoint_now() {
     ByteWriter out;
     film_.save(out);
     out.put(completed_);
+    layers_.save(out);
     out.put(counters_);
     curve_.save(out);
     out.put(refused_rays());

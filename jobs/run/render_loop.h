@@ -13,6 +13,7 @@
 #include "jobs/spec/job_spec.h"
 #include "jobs/store/job_folder.h"
 #include "renderer/film/film.h"
+#include "renderer/film/layer_means.h"
 #include "renderer/integrators/integrator.h"
 
 namespace lacuna {
@@ -40,6 +41,8 @@ struct RenderTask {
 /// instants, checkpoints, progress. The render clock runs only during iterations.
 class RenderLoop {
  public:
+  /// The integrator is prepared. Throws MemoryLimitError where it would fill more layers than
+  /// memory holds.
   explicit RenderLoop(const RenderTask& task);
 
   /// Goes on from the folder's checkpoint, if it has one of this picture. A damaged one is reported
@@ -51,13 +54,17 @@ class RenderLoop {
   bool run();
 
   const Film& film() const { return film_; }
+  /// What the integrator filled beside the picture.
+  const LayerMeans& layers() const { return layers_; }
   const Curve& curve() const { return curve_; }
   const Counters& counters() const { return counters_; }
   Spent spent() const { return completed_; }
   std::uint64_t refused_rays() const;  ///< as RayCaster counts them, since the job began
 
  private:
-  /// What a checkpoint must agree with to be gone on from.
+  /// What a checkpoint must agree with to be gone on from. The integrator's own layers are means
+  /// over all iterations, so they are part of it: where a job file came to ask for others, the
+  /// picture begins anew. All other layers are made at the end, and may change at any time.
   std::string identity() const;
   bool iterate();
   void add_row();
@@ -72,6 +79,7 @@ class RenderLoop {
   Budget budget_;
   Film film_;
   Image frame_;
+  LayerMeans layers_;
   Curve curve_;
   Counters counters_;
   std::uint64_t refused_before_ = 0;  // by processes before this one

@@ -105,6 +105,9 @@ std::string write_report(const ReportInput& input) {
   j["seconds"] = seconds(task.phases, loop.spent());
   j["counts"] = counts(loop);
   j["rates"] = rates(task, loop.spent(), loop.counters());
+  if (const auto told = task.integrator.statistics(); !told.empty()) {
+    for (const auto& [name, value] : told) j["integrator"][name] = value;
+  }
   j["errors"] = errors_json(task, loop.curve());
   j["scene"] = scene(task.scene);
   j["artefacts"] = artefacts_json(input.artefacts);

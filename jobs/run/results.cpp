@@ -58,6 +58,10 @@ void add_layer(const RenderTask& task, const Film& film, ImageLayer layer,
     case ImageLayer::depth:
       out.push_back({"depth", {"Z"}, every_third(first_hit(task, InspectQuantity::depth))});
       return;
+    case ImageLayer::strategies:
+    case ImageLayer::strategies_unweighted:
+    case ImageLayer::distributions:
+      return;  // the integrator's own (RenderLoop::layers())
   }
 }
 
@@ -101,6 +105,10 @@ void write_results(const RenderTask& task, const RenderLoop& loop) {
   const std::vector<double> mean = film.mean();
   std::vector<ExrLayer> layers{{"", rgb, mean}};
   for (const ImageLayer layer : task.spec.layers) add_layer(task, film, layer, layers);
+  const std::vector<std::string>& own = loop.layers().names();
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    layers.push_back({own[i], rgb, loop.layers().mean(i)});
+  }
   write_exr(task.folder.file("image.exr"), film.width(), film.height(), layers,
             task.spec.pixel_type, attributes(task, loop));
   write_half_layers(task, layers);

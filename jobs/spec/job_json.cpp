@@ -1,6 +1,7 @@
 #include "jobs/spec/job_json.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -28,7 +29,24 @@ void check_error_target(const JobSpec& spec, std::vector<Problem>& problems) {
                    enum_name(spec.budget.error->metric), enum_name(ErrorMetric::est_rmse))});
 }
 
-void check_layers(const JobSpec& spec, std::vector<Problem>& problems) {
+/// Which layers there are depends on the integrator.
+void check_layers_of_integrator(const JobSpec& spec, std::vector<Problem>& problems) {
+  if (!is_good(problems, "/layers") || !is_good(problems, "/integrator")) return;
+  const std::vector<ImageLayer> offered = offered_layers(spec.integrator);
+  std::vector<std::string_view> allowed;
+  allowed.reserve(offered.size());
+  for (const ImageLayer layer : offered) allowed.push_back(enum_name(layer));
+  const auto integrator = std::visit([](const auto& s) { return s.name; }, spec.integrator);
+  for (std::size_t i = 0; i < spec.layers.size(); ++i) {
+    if (std::find(offered.begin(), offered.end(), spec.layers[i]) != offered.end()) continue;
+    problems.push_back(
+        {fmt::format("/layers/{}", i),
+         fmt::format("found \"{}\" in a job of integrator \"{}\"; allowed there: \"{}\"",
+                     enum_name(spec.layers[i]), integrator, fmt::join(allowed, "\", \""))});
+  }
+}
+
+void check_layers_once(const JobSpec& spec, std::vector<Problem>& problems) {
   if (!is_good(problems, "/layers")) return;
   for (auto it = spec.layers.begin(); it != spec.layers.end(); ++it) {
     if (std::find(spec.layers.begin(), it, *it) == it) continue;
@@ -48,7 +66,8 @@ JobSpec parse_job(std::string_view json) {
   JobSpec spec;
   read_settings({document, "", problems}, spec);
   check_error_target(spec, problems);
-  check_layers(spec, problems);
+  check_layers_of_integrator(spec, problems);
+  check_layers_once(spec, problems);
   throw_if_any(std::move(problems));
   if (!has_limit(spec.budget)) spec.budget.seconds = Budget::default_seconds;
   return spec;

@@ -15,8 +15,8 @@ inline constexpr int max_json_depth = 32;
 /// Parses and validates a job file. Defaults are filled in. Throws BadJob with every problem found:
 /// malformed JSON (with line and column), nesting, unknown keys (with the nearest known one),
 /// duplicate keys, wrong types, values out of range, missing keys, and what no single field can
-/// know (an error target whose metric needs a reference that is not there; duplicate layers). Does
-/// not look at any other file.
+/// know (an error target whose metric needs a reference that is not there; duplicate layers;
+/// layers that the integrator does not have). Does not look at any other file.
 JobSpec parse_job(std::string_view json);
 
 /// The job with every default filled in, keys in the order of the tables, two spaces of indent.

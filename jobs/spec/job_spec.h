@@ -119,7 +119,10 @@ void describe(V& v, JobSpec& s) {
   v("environment", s.environment, {.doc = "light from all around"});
   v("seed", s.seed, {.doc = "of the random numbers", .min = 0, .max = 9007199254740991.0});
   v("threads", s.threads, {.doc = "0: one for each core", .min = 0, .max = 1024});
-  v("layers", s.layers, {.doc = "more layers for image.exr", .max = 16});
+  v("layers", s.layers,
+    {.doc =
+         "more layers for image.exr; strategies and distributions only with a method that has them",
+     .max = 16});
   v("pixel_filter", s.pixel_filter, {.doc = "how a pixel gathers the light around its centre"});
   v("pixel_type", s.pixel_type, {.doc = "precision of image.exr"});
   v("checkpoint_seconds", s.checkpoint_seconds,

@@ -18,7 +18,7 @@ constexpr std::array<std::string_view, 9> not_in_the_picture{
     "reference",             // what the estimate is compared with
     "reference_iterations",  // likewise
     "threads",               // random numbers are counted, not drawn
-    "layers",                // features of the first hit, written beside the estimate
+    "layers",                // filled beside the estimate; checkpoints tell theirs apart
     "pixel_type",            // rounds the file, not the film
     "checkpoint_seconds",    // when to save
     "exclusive"};            // what else runs meanwhile

@@ -8,10 +8,12 @@ namespace lacuna {
 namespace {
 
 /// The integrator that a reference of these settings is made with: converges to the same picture.
+/// For all that measure light it is one and the same, so that they can be compared, and the one
+/// that the fewest scenes defeat.
 struct PlainIntegrator {
   template <class Settings>
   IntegratorSettings operator()(const Settings& s) const {
-    PathSettings plain;
+    BdptSettings plain;
     plain.max_depth = s.max_depth;
     return plain;
   }

@@ -56,8 +56,11 @@ void ImportanceCacheConnections::place_records(const IterationContext& context, 
 void ImportanceCacheConnections::begin(const IterationContext& context, const LightVertices& lights,
                                        Counters& counters) {
   place_records(context, lights.longest(), counters);
-  const double bytes = static_cast<double>(records_.size()) * static_cast<double>(lights.paths()) *
-                       lights.longest() * ResamplingTable::bytes_each;
+  double bytes = 0;
+  for (int s = 1; s <= lights.longest(); ++s) {
+    bytes += static_cast<double>(records_.size()) * static_cast<double>(lights.count(s)) *
+             static_cast<double>(ResamplingTable::bytes_each);
+  }
   require_free(records_.size(), lights.paths(), bytes);
   std::vector<RecordTree::Place> places;
   for (const Vertex& v : records_) places.push_back(place_of(v));
@@ -85,13 +88,13 @@ std::uint64_t ImportanceCacheConnections::build(const Vertex& record, Site& site
   std::vector<std::uint8_t> occluded;
   std::uint64_t sent = 0;
   for (int s = 1; s <= lights.longest(); ++s) {
-    const std::size_t n = lights.joinable(s).size();
+    const std::size_t n = lights.count(s);
     std::vector<double> full(n, 0.0), unshadowed(n, 0.0), bounded(n, 0.0);
     const std::vector<double> same(n, 1.0);
     rays.clear();
     asked.clear();
     for (std::size_t i = 0; i < n; ++i) {
-      lights.with_end(lights.joinable(s)[i], s, guide_, [&](const auto& light) {
+      lights.with_end(s, i, guide_, [&](const auto& light) {
         const Connection c = connect(eye, light);
         if (!c) return;
         if (settings_.bounded) bounded[i] = finite(double(luminance(light.scatter(-c.w))));
@@ -113,18 +116,6 @@ std::uint64_t ImportanceCacheConnections::build(const Vertex& record, Site& site
     site.set(s, ResamplingTable(all, settings_.combination));
   }
   return sent;
-}
-
-std::optional<Pick> ImportanceCacheConnections::pick_near(std::span<const std::uint32_t> near,
-                                                          const LightVertices& lights, int s,
-                                                          Rng& rng) const {
-  const auto k = static_cast<std::size_t>((std::uint64_t{rng.next_u32()} * near.size()) >> 32);
-  const ResamplingTable& drawn = sites_[near[k]].table(s);
-  if (drawn.empty()) return std::nullopt;
-  const std::uint32_t i = drawn.sample(rng);
-  float sum = 0;
-  for (const std::uint32_t r : near) sum += sites_[r].table(s).pmf(i).value;
-  return Pick{lights.joinable(s)[i], sum / static_cast<float>(near.size()), drawn.owner(i)};
 }
 
 }  // namespace lacuna

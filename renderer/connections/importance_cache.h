@@ -28,19 +28,28 @@ class ImportanceCacheConnections {
   void begin(const IterationContext& context, const LightVertices& lights, Counters& counters);
   static void end(std::span<const Tally>) {}
 
-  /// Calls `use(s, pick)` for a light path of each length in [1, longest], joined to `v`. It is
-  /// drawn by one of the nearest records; its probability is the mean of theirs.
+  /// Calls `use(s, pick)` for a light path of each length in [1, longest], to be joined to `v`. All
+  /// are drawn by one of the nearest records; their probability is the mean of theirs.
   template <class Use>
   void pick(const Vertex& v, int /*depth*/, const LightVertices& lights, int longest, Rng& rng,
             Tally&, Use&& use) const {
     std::array<std::uint32_t, max_neighbours> near;
     const std::size_t n = tree_.nearest(
         place_of(v), std::span(near).first(static_cast<std::size_t>(settings_.neighbours)));
-    for (int s = 1; s <= longest; ++s) {
-      const auto p = n > 0 ? pick_near(std::span(near).first(n), lights, s, rng)
-                           : pick_uniformly(lights, s, rng, uniform);
-      if (p) use(s, *p);
+    if (n == 0) {
+      pick_uniformly(lights, longest, rng, uniform, use);
+      return;
     }
+    const Site& drawn = sites_[near[(std::uint64_t{rng.next_u32()} * n) >> 32]];
+    pick_all(
+        lights, longest, [&](int s) { return drawn.table(s).choose(rng); },
+        [&](int s, std::uint32_t chosen) {
+          const std::uint32_t i = drawn.table(s).resolve(chosen, rng).index;
+          float sum = 0;
+          for (std::size_t k = 0; k < n; ++k) sum += sites_[near[k]].table(s).pmf(i).value;
+          return Pick{i, sum / static_cast<float>(n), drawn.table(s).owner(i)};
+        },
+        use);
   }
 
   static void save(ByteWriter&) {}
@@ -57,8 +66,6 @@ class ImportanceCacheConnections {
     const V3f& n = v.surface.ng;
     return {v.surface.x, dot(n, v.wp) < 0 ? -n : n};
   }
-  std::optional<Pick> pick_near(std::span<const std::uint32_t> near, const LightVertices& lights,
-                                int s, Rng& rng) const;
   void place_records(const IterationContext& context, int longest, Counters& counters);
   std::uint64_t build(const Vertex& record, Site& site, const Scene& scene,
                       const LightVertices& lights) const;

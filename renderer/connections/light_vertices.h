@@ -1,23 +1,22 @@
 #pragma once
 
-#include <span>
+#include <immintrin.h>
+
 #include <vector>
 
 #include "renderer/path/light_batch.h"
 
 namespace lacuna {
 
-/// The light paths of an iteration that eye paths of all pixels are joined to: `paths` of them,
-/// each with up to `longest` vertices. Vertices are counted by s: 1 lies on the emitter.
+/// The light paths of an iteration that eye paths of all pixels are joined to: `paths` of them, each
+/// with up to `longest` vertices. Vertices are counted by s: 1 lies on the emitter.
 class LightVertices {
  public:
   LightVertices(std::size_t paths, int longest)
       : paths_(paths),
         longest_(longest),
-        emitters_(paths),
-        vertices_(paths * static_cast<std::size_t>(std::max(0, longest - 1))),
-        lengths_(paths, 0),
-        joinable_(static_cast<std::size_t>(longest)) {}
+        kept_(paths),
+        vertices_(static_cast<std::size_t>(std::max(0, longest - 1))) {}
 
   std::size_t paths() const { return paths_; }
   int longest() const { return longest_; }
@@ -26,48 +25,60 @@ class LightVertices {
   /// several threads at once.
   template <class Guide>
   void keep(std::size_t path, const LightBatch<Guide>& batch, std::size_t i) {
-    lengths_[path] = std::min(batch.length(i), longest_);
-    if (lengths_[path] > 0) emitters_[path] = batch.emitter(i);
-    for (int s = 2; s <= lengths_[path]; ++s) at(path, s) = batch.vertex(i, s - 1);
+    Path& p = kept_[path];
+    const int length = std::min(batch.length(i), longest_);
+    if (length > 0) p.emitter = batch.emitter(i);
+    for (int s = 2; s <= length; ++s) p.vertices.push_back(batch.vertex(i, s - 1));
   }
 
-  /// To be called when all paths are kept: lists what can be joined.
-  void list() {
-    for (int s = 1; s <= longest_; ++s) {
-      auto& list = joinable_[static_cast<std::size_t>(s) - 1];
-      list.clear();
-      for (std::uint32_t j = 0; j < paths_; ++j) {
-        if (lengths_[j] >= s && (s == 1 || at(j, s).bsdf->connectible())) list.push_back(j);
+  /// To be called when all paths are kept: leaves what can be joined, that of one length side by
+  /// side, in the order of the paths.
+  void arrange() {
+    for (Path& p : kept_) {
+      if (p.emitter) emitters_.push_back(*p.emitter);
+      for (std::size_t k = 0; k < p.vertices.size(); ++k) {
+        if (p.vertices[k].bsdf->connectible()) vertices_[k].push_back(p.vertices[k]);
       }
+      p.vertices = {};
     }
   }
 
-  /// The paths whose vertex `s` can be the end of a connecting edge, ascending.
-  std::span<const std::uint32_t> joinable(int s) const {
-    return joinable_[static_cast<std::size_t>(s) - 1];
+  /// How many vertices `s` there are that can be the end of a connecting edge.
+  std::size_t count(int s) const {
+    return s == 1 ? emitters_.size() : vertices_[static_cast<std::size_t>(s) - 2].size();
+  }
+  const EmitterPoint& emitter(std::size_t i) const { return emitters_[i]; }
+  /// Vertex `i` in [0, count(s)) of those, s >= 2.
+  const Vertex& at(int s, std::size_t i) const {
+    return vertices_[static_cast<std::size_t>(s) - 2][i];
+  }
+  /// Asks for what a connection with it will read.
+  void prefetch(int s, std::size_t i) const {
+    const char* first = s == 1 ? reinterpret_cast<const char*>(&emitters_[i])
+                               : reinterpret_cast<const char*>(&at(s, i));
+    for (std::size_t k = 0; k < (s == 1 ? sizeof(EmitterPoint) : sizeof(Vertex)); k += 64) {
+      _mm_prefetch(first + k, _MM_HINT_T0);
+    }
   }
 
-  /// Calls `use(end)` with vertex `s` of path `j`: an EmitterEnd or a SurfaceEnd.
+  /// Calls `use(end)` with vertex `i` of those: an EmitterEnd or a SurfaceEnd.
   template <class Guide, class Use>
-  decltype(auto) with_end(std::uint32_t j, int s, const Guide& guide, Use&& use) const {
-    if (s == 1) return use(EmitterEnd{emitters_[j]});
-    return use(SurfaceEnd<Guide>{at(j, s), s - 1, Transport::importance, guide});
+  decltype(auto) with_end(int s, std::size_t i, const Guide& guide, Use&& use) const {
+    if (s == 1) return use(EmitterEnd{emitters_[i]});
+    return use(SurfaceEnd<Guide>{at(s, i), s - 1, Transport::importance, guide});
   }
-  const EmitterPoint& emitter(std::uint32_t j) const { return emitters_[j]; }
-  const Vertex& at(std::size_t j, int s) const { return vertices_[index(j, s)]; }
 
  private:
-  Vertex& at(std::size_t j, int s) { return vertices_[index(j, s)]; }
-  std::size_t index(std::size_t j, int s) const {
-    return static_cast<std::size_t>(s - 2) * paths_ + j;  // those of one length side by side
-  }
+  struct Path {
+    std::optional<EmitterPoint> emitter;
+    std::vector<Vertex> vertices;  // from s = 2 on
+  };
 
   std::size_t paths_;
   int longest_;
+  std::vector<Path> kept_;
   std::vector<EmitterPoint> emitters_;
-  std::vector<Vertex> vertices_;
-  std::vector<int> lengths_;
-  std::vector<std::vector<std::uint32_t>> joinable_;
+  std::vector<std::vector<Vertex>> vertices_;  // from s = 2 on
 };
 
 }  // namespace lacuna

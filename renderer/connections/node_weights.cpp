@@ -31,9 +31,9 @@ double weight_of(const Vertex& y, const V3f& x, double least_distance, LightSide
 std::vector<double> node_weights(const LightVertices& lights, int s, const V3f& x,
                                  double least_distance, LightSides sides) {
   std::vector<double> weights;
-  for (const std::uint32_t j : lights.joinable(s)) {
-    const double w = s == 1 ? weight_of(lights.emitter(j), x, least_distance, sides)
-                            : weight_of(lights.at(j, s), x, least_distance, sides);
+  for (std::size_t i = 0; i < lights.count(s); ++i) {
+    const double w = s == 1 ? weight_of(lights.emitter(i), x, least_distance, sides)
+                            : weight_of(lights.at(s, i), x, least_distance, sides);
     weights.push_back(std::isfinite(w) ? w : 0);
   }
   return weights;
@@ -45,11 +45,11 @@ std::vector<Ray> rays_to(const LightVertices& lights, int s, const V3f& x) {
     const V3f end = origin((x - y).normalized());
     rays.push_back({x, end - x, 1.0F});
   };
-  for (const std::uint32_t j : lights.joinable(s)) {
+  for (std::size_t i = 0; i < lights.count(s); ++i) {
     if (s > 1) {
-      const Surface& y = lights.at(j, s).surface;
+      const Surface& y = lights.at(s, i).surface;
       to(y.x, [&](const V3f& w) { return offset_origin(y.x, y.ng, y.extent, w); });
-    } else if (const EmitterPoint& e = lights.emitter(j); e.infinite()) {
+    } else if (const EmitterPoint& e = lights.emitter(i); e.infinite()) {
       rays.push_back({x, e.x});
     } else {
       to(e.x, [&](const V3f& w) { return EmitterEnd{e}.origin(w); });

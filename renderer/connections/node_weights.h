@@ -5,7 +5,7 @@
 
 namespace lacuna {
 
-/// w_n(y) of Noel 2015, eq. 187, for all joinable vertices of length `s`: what the light path
+/// w_n(y) of Noel 2015, eq. 187, for all vertices LightVertices::at(s, .): what the light path
 /// carries, as luminance, over the squared distance to `x`, which is not taken smaller than
 /// `least_distance` (scene units, > 0). Of infinite emitters: without the distance. 0 where
 /// `sides` is facing and the vertex scatters nothing to the side that `x` is on.

@@ -23,8 +23,12 @@ class ResamplingTable {
 
   /// Nothing can be drawn.
   bool empty() const { return table_.empty(); }
-  std::uint32_t sample(Rng& rng) const { return table_.sample(rng); }
-  /// The probability that sample() returns `i`.
+  /// AliasTable::choose() and resolve().
+  std::uint32_t choose(Rng& rng) const { return table_.choose(rng); }
+  AliasTable::Draw resolve(std::uint32_t chosen, Rng& rng) const {
+    return table_.resolve(chosen, rng);
+  }
+  /// The probability that a draw returns `i`.
   Pdf<Count> pmf(std::uint32_t i) const { return table_.pmf(i); }
   /// Which of the distributions gives `i` most.
   std::uint8_t owner(std::uint32_t i) const { return owners_[i]; }

@@ -46,7 +46,7 @@ std::uint64_t SkeletonConnections::build(std::size_t node, const Scene& scene,
                                          const LightVertices& lights) {
   std::uint64_t rays_sent = 0;
   for (int s = 1; s <= lights.longest(); ++s) {
-    const std::size_t n = lights.joinable(s).size();
+    const std::size_t n = lights.count(s);
     std::vector<double> weights(n, 0.0);
     std::vector<double> seen(n, 0.0);
     if (settings_.visible || settings_.unshadowed) {

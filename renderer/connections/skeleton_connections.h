@@ -29,18 +29,24 @@ class SkeletonConnections {
   void begin(const IterationContext& context, const LightVertices& lights, Counters& counters);
   void end(std::span<const Tally> tallies);
 
-  /// Calls `use(s, pick)` for a light path of each length in [1, longest], joined to `v`.
+  /// Calls `use(s, pick)` for a light path of each length in [1, longest], to be joined to `v`.
   template <class Use>
   void pick(const Vertex& v, int /*depth*/, const LightVertices& lights, int longest, Rng& rng,
             Tally& tally, Use&& use) const {
     const std::uint32_t node = lookup_->node(V3d(v.surface.x), V3d(v.surface.ng), V3d(v.wp));
     if (node != no_node) ++tally[node];
-    const bool guided = node != no_node && !sites_[node].empty();
-    for (int s = 1; s <= longest; ++s) {
-      const auto p =
-          guided ? sites_[node].pick(lights, s, rng) : pick_uniformly(lights, s, rng, uniform);
-      if (p) use(s, *p);
+    if (node == no_node || sites_[node].empty()) {
+      pick_uniformly(lights, longest, rng, uniform, use);
+      return;
     }
+    const Site& site = sites_[node];
+    pick_all(
+        lights, longest, [&](int s) { return site.table(s).choose(rng); },
+        [&](int s, std::uint32_t chosen) {
+          const AliasTable::Draw d = site.table(s).resolve(chosen, rng);
+          return Pick{d.index, d.pmf.value, site.table(s).owner(d.index)};
+        },
+        use);
   }
 
   /// How many eye vertices belonged to each node, in all iterations so far.

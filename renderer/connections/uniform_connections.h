@@ -21,13 +21,11 @@ class UniformConnections {
   void begin(const IterationContext&, const LightVertices&, Counters&) {}
   void end(std::span<const Tally>) {}
 
-  /// Calls `use(s, pick)` for a light path of each length in [1, longest], joined to `v`.
+  /// Calls `use(s, pick)` for a light path of each length in [1, longest], to be joined to `v`.
   template <class Use>
   void pick(const Vertex&, int /*depth*/, const LightVertices& lights, int longest, Rng& rng,
             Tally&, Use&& use) const {
-    for (int s = 1; s <= longest; ++s) {
-      if (const auto p = pick_uniformly(lights, s, rng, 0)) use(s, *p);
-    }
+    pick_uniformly(lights, longest, rng, 0, use);
   }
 
   void save(ByteWriter&) const {}

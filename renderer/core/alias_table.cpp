@@ -27,7 +27,7 @@ AliasTable::AliasTable(std::span<const double> weights) {
   for (std::size_t i = 0; i < n; ++i) {
     const double p = weights[i] / largest / sum;
     scaled[i] = p * static_cast<double>(n);
-    bins_[i] = {1.0F, static_cast<std::uint32_t>(i), static_cast<float>(p)};
+    bins_[i] = {1.0F, static_cast<std::uint32_t>(i), static_cast<float>(p), 0};
     (scaled[i] < 1 ? small : large).push_back(static_cast<std::uint32_t>(i));
   }
   while (!small.empty() && !large.empty()) {
@@ -46,8 +46,9 @@ AliasTable::AliasTable(std::span<const double> weights) {
   const auto heaviest = static_cast<std::uint32_t>(
       std::max_element(weights.begin(), weights.end()) - weights.begin());
   for (const auto s : small) {
-    if (weights[s] == 0) bins_[s] = {0.0F, heaviest, 0.0F};
+    if (weights[s] == 0) bins_[s] = {0.0F, heaviest, 0.0F, 0.0F};
   }
+  for (Bin& b : bins_) b.alias_pmf = bins_[b.alias].pmf;
 }
 
 }  // namespace lacuna

@@ -21,9 +21,23 @@ class AliasTable {
   std::size_t size() const { return bins_.size(); }
   /// Draws an index from two random numbers. 64-bit arithmetic: 24 bits would not be enough to tell
   /// a million bins apart.
-  std::uint32_t sample(Rng& rng) const {
+  std::uint32_t sample(Rng& rng) const { return resolve(choose(rng), rng).index; }
+
+  /// An index and its probability.
+  struct Draw {
+    std::uint32_t index;
+    Pdf<Count> pmf;
+  };
+  /// The two halves of a draw: between them the bin is on its way from memory.
+  std::uint32_t choose(Rng& rng) const {
     const auto i = static_cast<std::uint32_t>((std::uint64_t{rng.next_u32()} * bins_.size()) >> 32);
-    return rng.next() < bins_[i].threshold ? i : bins_[i].alias;
+    __builtin_prefetch(&bins_[i]);
+    return i;
+  }
+  Draw resolve(std::uint32_t chosen, Rng& rng) const {
+    const Bin& b = bins_[chosen];
+    if (rng.next() < b.threshold) return {chosen, Pdf<Count>(b.pmf)};
+    return {b.alias, Pdf<Count>(b.alias_pmf)};
   }
   Pdf<Count> pmf(std::uint32_t i) const { return Pdf<Count>(bins_[i].pmf); }
 
@@ -32,6 +46,7 @@ class AliasTable {
     float threshold;  // below it: this index, else `alias`
     std::uint32_t alias;
     float pmf;
+    float alias_pmf;  // so that a draw reads one bin
   };
 
  public:

@@ -1,9 +1,8 @@
 #include "renderer/film/film.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "analysis/storage/bytes.h"
+#include "renderer/film/saved_values.h"
 
 namespace lacuna {
 
@@ -72,16 +71,8 @@ void Film::load(ByteReader& in) {
   const std::size_t size = halves_[0].mean.size();
   for (Half& h : halves_) {
     h.n = in.get<std::uint64_t>();
-    h.mean = in.get_vector<double>();
-    h.m2 = in.get_vector<double>();
-    if (h.mean.size() != size || h.m2.size() != size) {
-      throw std::runtime_error("saved film has another size");
-    }
-    const auto finite = [](double v) { return std::isfinite(v); };
-    if (!std::all_of(h.mean.begin(), h.mean.end(), finite) ||
-        !std::all_of(h.m2.begin(), h.m2.end(), finite)) {
-      throw std::runtime_error("saved film has values that are not finite");
-    }
+    h.mean = get_finite(in, size, "film");
+    h.m2 = get_finite(in, size, "film");
   }
 }
 

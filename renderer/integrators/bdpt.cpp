@@ -3,8 +3,10 @@
 #include "renderer/connections/importance_cache.h"
 #include "renderer/connections/skeleton_connections.h"
 #include "renderer/connections/uniform_connections.h"
+#include "renderer/core/clock_seconds.h"
 #include "renderer/guides/bsdf_guide.h"
 #include "renderer/integrators/light_pass.h"
+#include "renderer/integrators/strategy_layers.h"
 
 namespace lacuna {
 
@@ -21,6 +23,19 @@ struct Contribution {
   std::uint8_t distribution;
 };
 
+/// CPU seconds of the process since the last end().
+class PassSeconds {
+ public:
+  void end(double& sum) {
+    const double now = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
+    sum += now - start_;
+    start_ = now;
+  }
+
+ private:
+  double start_ = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
+};
+
 /// Bidirectional path tracing (Noel 2015, 4.3 and ch. 11): everything but which light vertices an
 /// eye vertex is joined to.
 class Bdpt : public Integrator {
@@ -34,8 +49,10 @@ class Bdpt : public Integrator {
     const Vertex& v = batch.vertex(i, depth);
     const std::optional<EmitterPoint> e = emitter_at(context.scene, v);
     if (!e) return;
+    const Rgb value = v.throughput * e->emission;
     const auto w = static_cast<float>(hit_weight(v, depth, *e, counts));
-    batch.radiance[i] += v.throughput * e->emission * w;
+    batch.radiance[i] += value * w;
+    layers_.strategy(context.layers, 0, depth + 1, batch.pixels[i], value, w);
   }
 
   /// How many vertices of a light path may meet an eye vertex `depth` edges from the eye; 0: none.
@@ -61,7 +78,15 @@ class Bdpt : public Integrator {
              Counters& counters) const {
     queue.flush(context.scene.rays(), counters, [&](const Contribution& c) {
       accumulate(image.pixels[c.pixel], c.value * c.weight, counters);
+      layers_.strategy(context.layers, c.s, c.t, c.pixel, c.value, c.weight);
+      layers_.distribution(context.layers, c.distribution, c.pixel, c.value * c.weight);
     });
+  }
+  /// What for_each_splatting_part() hands on.
+  auto splat_layers(const IterationContext& context) const {
+    return [this, &context](const Splat& s) {
+      layers_.strategy(context.layers, s.s, 1, s.pixel, s.value, s.weight);
+    };
   }
 
   LightPathSetting light_setting(const IterationContext& context,
@@ -79,6 +104,7 @@ class Bdpt : public Integrator {
 
   BdptSettings settings_;
   Guide guide_;
+  StrategyLayers layers_;
 };
 
 /// connections: paired. Pixel j's path meets light path j; the points on emitters of s = 1 are
@@ -86,6 +112,9 @@ class Bdpt : public Integrator {
 class PairedBdpt final : public Bdpt {
  public:
   using Bdpt::Bdpt;
+  std::vector<std::string> layers(std::span<const ImageLayer> wanted) override {
+    return layers_.choose(wanted, settings_.max_depth, {});
+  }
   SceneNeeds needs() const override { return {.materials = true, .emission = true}; }
 
   Counters iterate(const IterationContext& context, Image& image) override {
@@ -110,7 +139,8 @@ class PairedBdpt final : public Bdpt {
         flush(context, pairs.queue, image, counters);
       }
     };
-    return for_each_splatting_part(context, tiling.tiles(), image, work, [](const Splat&) {});
+    return for_each_splatting_part(context, tiling.tiles(), image, work,
+                                   splat_layers(context));
   }
 
  private:
@@ -168,7 +198,17 @@ class ResampledBdpt final : public Bdpt {
   SceneNeeds needs() const override {
     return {.materials = true, .emission = true, .space = Connections::needs_space};
   }
+  std::vector<std::string> layers(std::span<const ImageLayer> wanted) override {
+    return layers_.choose(wanted, settings_.max_depth, Connections::distributions);
+  }
   void prepare(const PrepareContext& context) override { connections_.prepare(context); }
+  std::vector<std::pair<std::string, double>> statistics() const override {
+    auto told = connections_.statistics();
+    told.emplace_back("light_pass_cpu_seconds", seconds_.light);
+    told.emplace_back("distributions_cpu_seconds", seconds_.distributions);
+    told.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
+    return told;
+  }
   void save(ByteWriter& out) const override { connections_.save(out); }
   void load(ByteReader& in) override { connections_.load(in); }
 
@@ -176,12 +216,13 @@ class ResampledBdpt final : public Bdpt {
     const bool lit = !context.scene.emitters().empty();
     const auto resampled = static_cast<std::size_t>(connections_.resampling().light_paths);
     const std::int64_t paths = std::max(pixels(image), static_cast<std::int64_t>(resampled));
-    const double count = connections_.resampling().count_as == ResampledCount::paths
-                             ? static_cast<double>(resampled)
-                             : 1.0;
+    const double asked = connections_.resampling().count_as;
+    const double count = asked > 0 ? asked : static_cast<double>(resampled);
     const SampleCounts counts =
-        lit ? SampleCounts{1, count, count, static_cast<double>(paths)} : SampleCounts{};
+        lit ? SampleCounts{1, asked > 0 ? 1.0 : count, count, static_cast<double>(paths)}
+            : SampleCounts{};
 
+    PassSeconds pass;
     LightVertices lights(lit ? resampled : 0, std::max(1, settings_.max_depth - 1));
     const LightPathSetting setting = light_setting(context, counts);
     Counters counters = light_pass(
@@ -189,10 +230,13 @@ class ResampledBdpt final : public Bdpt {
         [&](std::size_t path, const LightBatch<Guide>& batch, std::size_t place) {
           if (path < resampled) lights.keep(path, batch, place);
         },
-        [](const Splat&) {});
-    lights.list();
+        splat_layers(context));
+    lights.arrange();
+    pass.end(seconds_.light);
     connections_.begin(context, lights, counters);
+    pass.end(seconds_.distributions);
     counters += eye_pass(context, counts, lights, image);
+    pass.end(seconds_.eye);
     return counters;
   }
 
@@ -236,12 +280,16 @@ class ResampledBdpt final : public Bdpt {
     connections_.pick(
         v, depth, lights, longest, batch.walkers[k].rng, tally, [&](int s, const Pick& pick) {
           const double samples = static_cast<double>(lights.paths()) * double(pick.probability);
-          lights.with_end(pick.path, s, guide_, [&](const auto& light) {
+          lights.with_end(s, pick.index, guide_, [&](const auto& light) {
             join(eye, light, samples, counts, batch.pixels[k], pick.owner, queue);
           });
         });
   }
 
+  /// CPU seconds of all threads in the parts of an iteration.
+  struct {
+    double light = 0, distributions = 0, eye = 0;
+  } seconds_;
   Connections connections_;
 };
 

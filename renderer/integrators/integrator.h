@@ -3,6 +3,9 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "analysis/artefacts/space_analysis.h"
 #include "analysis/storage/bytes.h"
@@ -11,6 +14,7 @@
 #include "renderer/scene/camera.h"
 #include "renderer/scene/scene.h"
 #include "renderer/settings/integrator_settings.h"
+#include "renderer/settings/output_settings.h"
 
 namespace lacuna {
 
@@ -27,6 +31,8 @@ struct IterationContext {
   std::uint64_t iteration;  ///< < 2^32
   /// Asked between tiles, from several threads: true ends the iteration by IterationStopped.
   const std::function<bool()>& stop;
+  /// The images of Integrator::layers(), black; same size as the picture.
+  std::span<Image> layers = {};
 };
 
 /// What an integrator may look at before its first iteration. `space` builds only what it is asked
@@ -48,8 +54,15 @@ class Integrator {
   /// Called once, before everything else but needs(). What it takes from `space` is charged to the
   /// job's preparation.
   virtual void prepare(const PrepareContext&) {}
+  /// Names of the images that the integrator fills beside the picture for the layers `wanted`, as
+  /// they are called in image.exr. Called once, after prepare(), before the first iteration;
+  /// iterate() then finds one image a name in IterationContext::layers, and puts only finite values
+  /// there. The settings list the layers that this is good for (filled_layers()).
+  virtual std::vector<std::string> layers(std::span<const ImageLayer> /*wanted*/) { return {}; }
   /// One more independent estimate of the whole picture into `image` (of the film's size, black).
   virtual Counters iterate(const IterationContext& context, Image& image) = 0;
+  /// What it did, for the report: names and numbers, of this process' iterations.
+  virtual std::vector<std::pair<std::string, double>> statistics() const { return {}; }
   /// Learned state, for the checkpoint.
   virtual void save(ByteWriter&) const {}
   virtual void load(ByteReader&) {}

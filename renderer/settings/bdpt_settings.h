@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "renderer/settings/connections_settings.h"
+#include "renderer/settings/output_settings.h"
 
 namespace lacuna {
 
@@ -12,6 +13,9 @@ struct BdptSettings {
   static constexpr std::string_view doc =
       "bidirectional path tracing with all strategies (Noel 2015, 4.3), and with resampled "
       "connections (ch. 11)";
+
+  static constexpr std::array layers{ImageLayer::strategies, ImageLayer::strategies_unweighted,
+                                     ImageLayer::distributions};
 
   int max_depth = 6;
   ConnectionsSettings connections = PairedSettings{};

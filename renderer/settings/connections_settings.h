@@ -9,15 +9,15 @@
 namespace lacuna {
 
 /// How several resampling distributions over the same light paths become one.
-enum class Combination { max, mixture };
+enum class Combination { mixture, max };
 
 template <>
 struct EnumTable<Combination> {
   static constexpr std::array<EnumValue<Combination>, 2> values{{
+      {Combination::mixture, "mixture", "their mean (balance heuristic)"},
       {Combination::max, "max",
        "each light path only by the distribution that gives it most, all of them renormalised and "
        "drawn from equally often (max heuristic, pre-multiplied; Noel 2015, 11.3)"},
-      {Combination::mixture, "mixture", "their mean (balance heuristic)"},
   }};
 };
 
@@ -32,21 +32,10 @@ struct EnumTable<LightSides> {
   }};
 };
 
-/// As how many samples the weights of multiple importance sampling count a resampled connection.
-enum class ResampledCount { paths, one };
-
-template <>
-struct EnumTable<ResampledCount> {
-  static constexpr std::array<EnumValue<ResampledCount>, 2> values{{
-      {ResampledCount::paths, "paths", "as many as paths are resampled (Noel 2015, 11.5)"},
-      {ResampledCount::one, "one", "one, which is what is traced"},
-  }};
-};
-
 /// What all choices of connections but `paired` have in common.
 struct ResamplingSettings {
   int light_paths = 1024;
-  ResampledCount count_as = ResampledCount::paths;
+  double count_as = 8;
   bool operator==(const ResamplingSettings&) const = default;
 };
 
@@ -55,8 +44,13 @@ void describe_resampling(V& v, ResamplingSettings& s) {
   v("light_paths", s.light_paths,
     {.doc = "light paths an iteration that eye paths are joined to, shared by all pixels",
      .min = 1,
-     .max = 1 << 22});
-  v("count_as", s.count_as, {.doc = "samples of a connection, in the weights"});
+     .max = 1 << 16});
+  v("count_as", s.count_as,
+    {.doc = "as how many samples a connection with a resampled path of two vertices or more counts "
+            "in the weights of multiple importance sampling; one with a point on an emitter counts as "
+            "one. 0: both as many as there are light paths (Noel 2015, 11.5)",
+     .min = 0,
+     .max = 1 << 16});
 }
 
 /// connections: paired.
@@ -91,7 +85,7 @@ struct SkeletonSettings : ResamplingSettings {
   double acceptance = 1;
   bool visible = true;
   bool unshadowed = true;
-  Combination combination = Combination::max;
+  Combination combination = Combination::mixture;
   LightSides sides = LightSides::facing;
   bool operator==(const SkeletonSettings&) const = default;
 };
@@ -121,7 +115,7 @@ struct ImportanceCacheSettings : ResamplingSettings {
   bool full = true;
   bool unshadowed = false;
   bool bounded = false;
-  Combination combination = Combination::max;
+  Combination combination = Combination::mixture;
   bool operator==(const ImportanceCacheSettings&) const = default;
 };
 template <class V>

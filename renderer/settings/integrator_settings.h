@@ -1,10 +1,13 @@
 #pragma once
 
+#include <span>
 #include <variant>
+#include <vector>
 
 #include "renderer/settings/bdpt_settings.h"
 #include "renderer/settings/inspect_settings.h"
 #include "renderer/settings/light_settings.h"
+#include "renderer/settings/output_settings.h"
 #include "renderer/settings/path_settings.h"
 
 namespace lacuna {
@@ -12,5 +15,32 @@ namespace lacuna {
 /// Which integrator, and how. The order is the order in menus; the first is the default.
 /// renderer/integrators/registry.cpp makes the integrator of each alternative.
 using IntegratorSettings = std::variant<PathSettings, LightSettings, BdptSettings, InspectSettings>;
+
+/// The layers that the integrator of these settings fills itself. Its settings struct lists them as
+///
+///     static constexpr std::array layers{ImageLayer::strategies};
+///
+/// and has no such list where there are none.
+template <class... Ts>
+std::span<const ImageLayer> filled_layers(const std::variant<Ts...>& settings) {
+  return std::visit(
+      []<class S>(const S&) -> std::span<const ImageLayer> {
+        if constexpr (requires { S::layers; }) {
+          return S::layers;
+        } else {
+          return {};
+        }
+      },
+      settings);
+}
+
+/// All layers that a job of this integrator can ask for.
+template <class... Ts>
+std::vector<ImageLayer> offered_layers(const std::variant<Ts...>& settings) {
+  std::vector<ImageLayer> all(common_layers.begin(), common_layers.end());
+  const auto own = filled_layers(settings);
+  all.insert(all.end(), own.begin(), own.end());
+  return all;
+}
 
 }  // namespace lacuna

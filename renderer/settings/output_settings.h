@@ -7,19 +7,41 @@
 namespace lacuna {
 
 /// Layers beside the picture itself that can be asked for in image.exr.
-enum class ImageLayer { variance, halves, albedo, normal, depth };
+enum class ImageLayer {
+  variance,
+  halves,
+  albedo,
+  normal,
+  depth,
+  strategies,
+  strategies_unweighted,
+  distributions
+};
 
 template <>
 struct EnumTable<ImageLayer> {
-  static constexpr std::array<EnumValue<ImageLayer>, 5> values{{
+  static constexpr std::array<EnumValue<ImageLayer>, 8> values{{
       {ImageLayer::variance, "variance", "variance of the pixel's estimate (of the mean)"},
       {ImageLayer::halves, "halves",
        "means of the even and of the odd iterations, two independent estimates"},
       {ImageLayer::albedo, "albedo", "base reflectance of the first hit"},
       {ImageLayer::normal, "normal", "shading normal of the first hit, world space"},
       {ImageLayer::depth, "depth", "distance to the first hit, scene units"},
+      {ImageLayer::strategies, "strategies",
+       "what each strategy of a bidirectional method adds to the picture, weighted: one image for "
+       "each s, t"},
+      {ImageLayer::strategies_unweighted, "strategies_unweighted",
+       "the same before weighting: each an estimate of all light of its path length"},
+      {ImageLayer::distributions, "distributions",
+       "what each resampling distribution adds to the picture"},
   }};
 };
+
+/// The layers that every integrator has. Each of the others is filled by the integrators whose
+/// settings list it (filled_layers()).
+inline constexpr std::array common_layers{ImageLayer::variance, ImageLayer::halves,
+                                          ImageLayer::albedo, ImageLayer::normal,
+                                          ImageLayer::depth};
 
 /// How the light of the film's points is weighted in a pixel.
 enum class PixelFilter { box, tent };

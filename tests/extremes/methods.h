@@ -26,6 +26,9 @@ std::optional<int> max_depth(const Method& method);
 /// The first of all methods, with the same longest path: follows light, and must show the same.
 Method reference_for(const Method& method);
 
+/// Whether the method's settings say that it samples nothing from the eye.
+bool from_lights_only(const Method& method);
+
 /// Which end of a number's range.
 enum class End { below, lowest, highest, above };
 

@@ -35,11 +35,17 @@ inline double furnace_mean(double albedo, int depth) {
   return sum;
 }
 
-/// A picture of a furnace is what it has to be: known, for a method that follows light.
+/// For Row::left_out: methods that sample nothing from the eye.
+inline std::string needs_eye_paths(const Method& method) {
+  return from_lights_only(method) ? "follows nothing from the eye: mirrors are black to it" : "";
+}
+
+/// A picture of a furnace is what it has to be: known, for a method that follows light. To one that
+/// follows it from the lights alone a furnace is only noise: all of it shines, little is seen.
 inline void check_furnace(const Picture& picture, const Method& method, const Furnace& furnace,
                           Check& check) {
   check.sound(picture);
-  if (const auto depth = max_depth(method)) {
+  if (const auto depth = max_depth(method); depth && !from_lights_only(method)) {
     check.mean_is(picture, furnace.radiance * furnace_mean(furnace.albedo, *depth));
   }
 }

@@ -1,6 +1,8 @@
 // Every number of a method's tables at both ends of its range, and beyond them.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "jobs/spec/job_json.h"
 #include "tests/extremes/rows.h"
 
@@ -32,8 +34,10 @@ Row beyond(End end, const std::string& name) {
           [=](Stage& stage, const Method& method, Check& check) {
             for (const Method& m : with_numbers_at(method, end)) {
               const std::string json = write_job(stage.job(m, "any.glb"));
-              const std::string setting = m.name.substr(method.name.size() + 1);
-              check.refused([&] { parse_job(json); }, setting.substr(0, setting.find('=')));
+              std::string setting = m.name.substr(method.name.size() + 1);
+              setting.resize(setting.find('='));
+              std::replace(setting.begin(), setting.end(), '.', '/');  // as in its JSON pointer
+              check.refused([&] { parse_job(json); }, setting);
             }
           },
           needs_numbers};

@@ -29,7 +29,8 @@ Row rough(const std::string& what, double roughness, const Json& material) {
             JobSpec other = stage.job(reference_for(method), scene);
             other.seed = 2;
             check.agree(picture, stage.render(other));
-          }};
+          },
+          needs_eye_paths};
 }
 
 /// Independent pictures of the same room by every method that follows light.

@@ -20,8 +20,10 @@ namespace {
 class Still final : public Integrator {
  public:
   SceneNeeds needs() const override { return {}; }
+  std::vector<std::string> layers(std::span<const ImageLayer>) override { return {"a", "b"}; }
   Counters iterate(const IterationContext& context, Image& image) override {
     for (Rgb& p : image.pixels) p = Rgb(1, 2, static_cast<float>(context.iteration));
+    for (Image& layer : context.layers) layer.pixels = image.pixels;
     ++learned_;
     return {image.pixels.size(), image.pixels.size(), 0, 0, 0};
   }

@@ -4,7 +4,7 @@ import fs from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { folders, head, Service } from "./service.mjs";
+import { folders, head, Service, until } from "./service.mjs";
 
 test("a job is posted, stored, rendered and listed", async (t) => {
   const service = await Service.start(folders(t));
@@ -25,6 +25,12 @@ test("a job is posted, stored, rendered and listed", async (t) => {
     posted.job);
 
   const running = await service.reaches(posted.id, "running");
+  const entry = async () => (await service.json("/api/jobs")).jobs.find((j) => j.id === posted.id);
+  const begun = await until(async () => {
+    const found = await entry();
+    return found.progress && found;
+  }, "there is progress");
+  assert.equal(begun.picture, false, "progress comes before the first picture");
   assert.equal(running.state.attempts, 1);
   assert.ok(running.state.created && running.state.started && !running.state.finished);
   service.open("one");
@@ -47,6 +53,7 @@ test("a job is posted, stored, rendered and listed", async (t) => {
   assert.equal(listed.integrator, "path");
   assert.equal(listed.state, "done");
   assert.equal(listed.progress.share, 1);
+  assert.equal(listed.picture, true);
 });
 
 test("the schema is that of the job file", async (t) => {

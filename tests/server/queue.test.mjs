@@ -378,6 +378,17 @@ test("a job that is removed by hand is gone", async (t) => {
   assert.deepEqual((await service.json("/api/jobs")).jobs.map((j) => j.id).sort(), [first, third].sort());
 });
 
+test("what a killed service had just forked may have its data folder a moment longer", async (t) => {
+  const places = folders(t);
+  fs.mkdirSync(places.data);
+  const holder = spawn("flock", [path.join(places.data, ".lacuna-server.lock"), "sh", "-c", "echo held; read line"],
+    { stdio: ["pipe", "pipe", "inherit"] });
+  await new Promise((resolve) => { holder.stdout.once("data", resolve); });
+  setTimeout(() => holder.stdin.end(), 300);
+  const service = await Service.start(places);
+  assert.deepEqual(await service.json("/health"), { status: "ok" });
+});
+
 test("two services never share a data folder", async (t) => {
   const places = folders(t);
   const service = await Service.start(places);

@@ -15,6 +15,12 @@ export const launch = () => chromium.launch({
 /// What the software renderer says when a picture of the page is taken.
 const noise = /GL Driver Message.*GPU stall due to ReadPixels/;
 
+/// A message of the console, with the address it is about where it does not say it.
+function told(message) {
+  const { url } = message.location();
+  return url.startsWith("http") ? `${message.text()} (${url})` : message.text();
+}
+
 /// A page in a fresh context with `options`, or in `context`. `page.troubles` collects console errors
 /// and warnings, exceptions, and requests to other hosts than that of the last visit().
 export async function newPage(browser, { context = null, ...options } = {}) {
@@ -27,8 +33,8 @@ export async function newPage(browser, { context = null, ...options } = {}) {
   });
   page.troubles = [];
   page.on("console", (message) => {
-    const told = ["error", "warning"].includes(message.type()) && !noise.test(message.text());
-    if (told) page.troubles.push(message.text());
+    const counts = ["error", "warning"].includes(message.type()) && !noise.test(message.text());
+    if (counts) page.troubles.push(told(message));
   });
   page.on("pageerror", (error) => page.troubles.push(String(error)));
   page.on("request", (request) => {

@@ -34,6 +34,22 @@ test("the list shows every job, newest first, with pictures only where there are
   assert.equal(await text(`tr[data-job="${evil}"] .badge`), "failed");
 });
 
+test("a running job's picture is asked for once there is one, however far the job is", async () => {
+  const files = { ...mock.find(running).files };
+  delete mock.find(running).files["image.png"];
+  await open("/");
+  await page.waitForFunction(() => document.querySelectorAll(".thumb img").length === 2);
+  const thumb = page.locator(`tr[data-job="${running}"] .thumb img`);
+  assert.equal(await thumb.count(), 0);
+  while (mock.listeners.size === 0) await page.waitForTimeout(20);
+  mock.update(running, { progress: progress(6, 0.15) });
+  await page.waitForFunction((id) => document.querySelector(`tr[data-job="${id}"] progress`).value === 0.15, running);
+  mock.update(running, { files, progress: progress(8, 0.2) });
+  await thumb.waitFor();
+  assert.equal(mock.requests.filter((r) => r.includes(`${running}/files/image.png`)).length, 1);
+  assert.deepEqual(page.troubles, []);
+});
+
 test("one stream of events moves the list: progress, states, jobs that come and go", async () => {
   await open("/");
   const bar = page.locator(`tr[data-job="${running}"] progress`);
@@ -217,7 +233,7 @@ test("a done job gets a larger budget; what the service refuses is said, and the
   while (![...mock.listeners].some((l) => l.id === cornell)) await page.waitForTimeout(20);
   mock.update(cornell, { state: { state: "running" }, progress: progress(1100, 0.6) });
   await page.waitForFunction(() => document.querySelector(".title progress").value === 0.6);
-  assert.deepEqual(page.troubles.filter((t) => !/400/.test(t)), []);
+  assert.deepEqual(page.troubles.filter((t) => !/status of 400/.test(t)), []);
 });
 
 test("a job is deleted only after a question, and a refusal is said in words", async () => {

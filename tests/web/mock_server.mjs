@@ -61,8 +61,9 @@ const notFound = (response, what) => problem(response, 404, "Not found", `There 
 
 const terminal = ["done", "failed", "cancelled"];
 
-const row = ({ id, job, state, progress: p, priority = 0, held = false }) => ({
-  id, label: job.label, scene: job.scene, integrator: job.integrator.type, ...state, progress: p, priority, held,
+const row = ({ id, job, state, progress: p, files, priority = 0, held = false }) => ({
+  id, label: job.label, scene: job.scene, integrator: job.integrator.type, picture: "image.png" in files,
+  ...state, progress: p, priority, held,
 });
 
 const detail = ({ id, job, state, progress: p, files, priority = 0, held = false }) => ({

@@ -383,7 +383,7 @@ test("layers that were replaced meanwhile are all read again", async () => {
   mock.update(job, { files: { "layers.half": Buffer.alloc(10) } });
   await page.getByLabel("Show", { exact: true }).selectOption("depth");
   await page.getByText("These layers changed while they were read.").waitFor();
-  assert.deepEqual(page.troubles.filter((t) => !/416/.test(t)), []);
+  assert.deepEqual(page.troubles.filter((t) => !/status of 416/.test(t)), []);
 });
 
 test("one crop of all jobs at one exposure, chosen by a drag or by keys, and in the address", async () => {

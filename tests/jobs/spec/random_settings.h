@@ -98,6 +98,10 @@ inline JobSpec random_job(std::uint64_t seed) {
   auto& layers = spec.layers;
   std::sort(layers.begin(), layers.end());
   layers.erase(std::unique(layers.begin(), layers.end()), layers.end());
+  const std::vector<ImageLayer> offered = offered_layers(spec.integrator);
+  std::erase_if(layers, [&](ImageLayer layer) {
+    return std::find(offered.begin(), offered.end(), layer) == offered.end();
+  });
   Budget& b = spec.budget;
   if (!b.seconds && !b.cpu_seconds && !b.iterations && !b.error) b.iterations = 1;
   if (spec.reference.empty()) spec.reference = "auto";

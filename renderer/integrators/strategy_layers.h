@@ -1,0 +1,46 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "renderer/film/image.h"
+#include "renderer/settings/output_settings.h"
+
+namespace lacuna {
+
+/// The layers of a bidirectional method: what each strategy (s, t) gives, weighted and not, as the
+/// pyramid of Noel 2015, Fig. 22, and what each resampling distribution gives (Fig. 106).
+class StrategyLayers {
+ public:
+  /// Integrator::layers() for paths of up to `max_depth` edges and these distributions.
+  std::vector<std::string> choose(std::span<const ImageLayer> wanted, int max_depth,
+                                  std::span<const std::string_view> distributions);
+
+  /// Adds what strategy (s, t) gives to a pixel. `layers`: IterationContext::layers.
+  void strategy(std::span<Image> layers, int s, int t, std::uint32_t pixel, const Rgb& unweighted,
+                float weight) const {
+    if (layers.empty()) return;
+    if (weighted_ >= 0) add(layers, weighted_ + index(s, t), pixel, unweighted * weight);
+    if (unweighted_ >= 0) add(layers, unweighted_ + index(s, t), pixel, unweighted);
+  }
+  void distribution(std::span<Image> layers, int which, std::uint32_t pixel,
+                    const Rgb& value) const {
+    if (!layers.empty() && distributions_ >= 0) add(layers, distributions_ + which, pixel, value);
+  }
+
+ private:
+  /// Rows of the pyramid by length: k = s + t - 1 edges in k + 1 ways, the eye being no emitter.
+  static int index(int s, int t) {
+    const int k = s + t - 1;
+    return (k - 1) * (k + 2) / 2 + s;
+  }
+  static void add(std::span<Image> layers, int image, std::uint32_t pixel, const Rgb& value) {
+    if (is_finite(value)) layers[static_cast<std::size_t>(image)].pixels[pixel] += value;
+  }
+
+  int weighted_ = -1, unweighted_ = -1, distributions_ = -1;  // first image; -1: not wanted
+};
+
+}  // namespace lacuna

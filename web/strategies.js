@@ -1,0 +1,146 @@
+// What each strategy and each resampling distribution brought to a job's picture: the former as a pyramid, a row
+// a path length, the latter side by side, all at one exposure.
+import { h, labelledSelect, note, problem, remember, replace, setText } from "./dom.js";
+import { number, significant } from "./format.js";
+import { stripPainter } from "./gl_strip.js";
+import { exposed, lookOf } from "./look.js";
+import { reduced } from "./reduced.js";
+import { exposureTools } from "./viewer_tools.js";
+
+const style = h("link", { rel: "stylesheet", href: "/strategies.css" });
+const sets = [{ key: "strategies", label: "weighted" }, { key: "strategies_unweighted", label: "before weighting" }];
+const unweighted = sets[1].key;
+const thin = "\u202f";
+
+/// The layers that are shown here: {name, set, text}, and of strategies {s, t, edges}.
+function partsOf(names) {
+  return names.map((name) => {
+    const [, set, of, s, t] = /^(\w+)\.(s(\d+)t(\d+)$|.+)/.exec(name) ?? [];
+    if (set === "distributions") return { name, set, text: of };
+    return s && sets.some(({ key }) => key === set)
+      && { name, set, s: Number(s), t: Number(t), edges: Number(s) + Number(t) - 1, text: `s${thin}${s} t${thin}${t}` };
+  }).filter(Boolean);
+}
+
+const edgesText = (n) => `${n} edge${n === 1 ? "" : "s"}`;
+
+/// Strategies in rows of one length, which stands in front, and columns of one s.
+function pyramid(cells) {
+  const lengths = [...new Set(cells.map((c) => c.edges))].sort((a, b) => a - b);
+  const least = Math.min(...cells.map(({ s }) => s));
+  const place = (element, row, column) => {
+    Object.assign(element.style, { gridRow: row + 1, gridColumn: column + 1 });
+    return element;
+  };
+  return h("div.scroll", { tabIndex: 0, role: "group", "aria-label": "Pyramid" }, h("div.pyramid",
+    lengths.map((k, row) => place(h("span.muted", edgesText(k)), row, 0)),
+    cells.map((c) => place(c.element, lengths.indexOf(c.edges), 1 + c.s - least))));
+}
+
+/// `show(layers)` takes those of a job (see layers.js), which are read once this is in sight; `open(name)` is called
+/// with the one that the reader wants to look at. What is chosen is in `query`.
+export function strategies(query, signal, open) {
+  const paint = stripPainter(signal);
+  const [title, about, say, body] = [h("h2"), note(), h("div"), h("div")];
+  let layers = null;
+  let parts = [];
+  let cells = [];
+  let look = null;  // of the picture itself
+  let turn = 0;
+
+  function choose(key, value) {
+    if (value) query.set(key, value);
+    else query.delete(key);
+    remember(query);
+  }
+  const which = labelledSelect("Strategies", (set) => {
+    choose("strategies", set === unweighted && set);
+    build();
+  });
+  const stops = () => (query.has("stops-each") ? Number(query.get("stops-each")) || 0 : null);
+  const exposure = exposureTools({ setExposure(value) {
+    choose("stops-each", value !== null && String(value));
+    draw();
+  } });
+  const element = h("section", title, h("div.tools", which.element, exposure.element), about, say, body);
+
+  async function draw() {
+    if (look === null) return;
+    exposure.show(stops() ?? look.ev);
+    await paint(cells.filter((c) => c.image), exposed(look, { ev: stops() }), window.devicePixelRatio);
+  }
+
+  function cellOf(part) {
+    const { width, height } = layers;
+    const wide = window.innerWidth < 760 ? 92 : 132;
+    const canvas = h("canvas", { width: wide, height: Math.round(wide * height / width) || 1 });
+    const light = h("span");
+    const label = `${part.text}${part.edges ? `, ${edgesText(part.edges)}` : ""}: show it in the viewer`;
+    return { ...part, wide, canvas, light,
+      element: h("button.cell", { type: "button", "aria-label": label, onclick: () => open(part.name) },
+        canvas, h("span", part.text), light) };
+  }
+
+  /// The pictures one by one, of which only what is drawn is kept.
+  async function load(mine) {
+    const small = (image) => reduced(image, Math.floor(image.width / cells[0].wide / window.devicePixelRatio) || 1);
+    body.ariaBusy = "true";
+    try {
+      const [picture] = await layers.read("");
+      look = lookOf([picture]);
+      const whole = (await small(picture)).mean;
+      for (const cell of cells) {
+        const [picture] = await layers.read(cell.name);
+        layers.forget(cell.name);
+        const { image, mean } = await small(picture);
+        if (turn !== mine || signal.aborted) return;
+        cell.image = image;
+        setText(cell.light, cell.set === unweighted ? number(mean) : `${significant(100 * mean / whole)}${thin}%`);
+      }
+      await draw();
+      body.ariaBusy = "false";
+    } catch (error) {
+      if (turn === mine && !signal.aborted) replace(say, problem(error.message));
+    }
+  }
+
+  const seen = new IntersectionObserver(([entry]) => {
+    if (!entry.isIntersecting || signal.aborted) return;
+    seen.disconnect();
+    load(turn);
+  });
+  signal.addEventListener("abort", () => seen.disconnect());
+
+  /// One set of strategies, and the distributions.
+  function build() {
+    turn += 1;
+    const options = sets.filter(({ key }) => parts.some((p) => p.set === key));
+    const set = (options.find(({ key }) => key === query.get("strategies")) ?? options[0])?.key;
+    which.fill(options, set);
+    which.element.hidden = options.length < 2;
+    const [steps, others] = [set, "distributions"].map((of) => parts.filter((p) => p.set === of).map(cellOf));
+    cells = [...steps, ...others];
+    setText(title, set ? "Strategies" : "Resampling distributions");
+    setText(about, [set && "s vertices are made from the light, t from the eye.",
+      set === unweighted && "Each estimates all light of its path length, with its mean below: those in a row agree, but for "
+        + "noise and what a strategy cannot find.",
+      (set !== unweighted || others.length > 0) && "In %: the share of the picture's light that is added.",
+      "All at one exposure; a click shows one in the viewer."].filter(Boolean).join(" "));
+    replace(say);
+    replace(body, set && pyramid(steps), others.length > 0 && [set && h("h3", "Resampling distributions"),
+      h("div.distributions", others.map((c) => c.element))]);
+    seen.disconnect();
+    seen.observe(element);
+  }
+
+  document.head.append(style);
+  return {
+    element,
+    show(next) {
+      layers = next;
+      parts = partsOf(layers.names);
+      element.hidden = parts.length === 0;
+      if (parts.length > 0) build();
+    },
+  };
+}
