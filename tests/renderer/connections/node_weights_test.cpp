@@ -29,10 +29,12 @@ struct Lit {
       batch.walk(rngs, counters);
       for (std::size_t k = 0; k < rngs.size(); ++k) {
         lights.keep(first + k, batch, k);
-        lengths.push_back(batch.length(k));
+        std::vector<Vertex> path;
+        for (int i = 1; i < batch.length(k); ++i) path.push_back(batch.vertex(k, i));
+        walked.push_back(std::move(path));
       }
     }
-    lights.list();
+    lights.arrange();
   }
 
   SceneData data;
@@ -40,7 +42,7 @@ struct Lit {
   Scene scene;
   BsdfGuide guide;
   LightVertices lights{paths, most_edges - 1};
-  std::vector<int> lengths;
+  std::vector<std::vector<Vertex>> walked;  ///< of each path vertices 2, 3, ...
 };
 
 double lum(const Rgb& c) {
@@ -70,15 +72,19 @@ TEST(LightVertices, ListWhatCanBeJoined) {
   for (const test::PathScene& s : test::path_scenes()) {
     SCOPED_TRACE(s.name);
     const Lit lit(s);
-    for (int count = 1; count <= lit.lights.longest(); ++count) {
-      std::vector<std::uint32_t> expected;
-      for (std::uint32_t j = 0; j < paths; ++j) {
-        if (lit.lengths[j] < count) continue;
-        if (count > 1 && !scatters_anywhere(lit.lights.at(j, count))) continue;
-        expected.push_back(j);
+    EXPECT_LE(lit.lights.count(1), std::size_t{paths});
+    for (int count = 2; count <= lit.lights.longest(); ++count) {
+      std::size_t i = 0;
+      for (const auto& path : lit.walked) {
+        const auto k = static_cast<std::size_t>(count) - 2;
+        if (path.size() <= k || !scatters_anywhere(path[k])) continue;
+        ASSERT_LT(i, lit.lights.count(count));
+        const Vertex& v = lit.lights.at(count, i++);
+        EXPECT_EQ(v.surface.x, path[k].surface.x);
+        EXPECT_EQ(v.throughput, path[k].throughput);
+        EXPECT_EQ(v.prior, path[k].prior);
       }
-      const auto list = lit.lights.joinable(count);
-      EXPECT_EQ(std::vector<std::uint32_t>(list.begin(), list.end()), expected) << count;
+      EXPECT_EQ(i, lit.lights.count(count)) << "vertices " << count;
     }
   }
 }
@@ -93,20 +99,20 @@ TEST(NodeWeights, AreWhatIsCarriedOverTheSquaredDistance) {
     for (int trial = 0; trial < 10; ++trial) {
       V3f x = place_in(lit.scene.bounds(), rng);
       for (int count = 1; count <= lit.lights.longest(); ++count) {
-        const auto list = lit.lights.joinable(count);
+        const std::size_t n = lit.lights.count(count);
         // Once in a while right beside a light vertex.
-        if (trial == 0 && count == 2 && !list.empty()) {
-          x = lit.lights.at(list[0], 2).surface.x + V3f(0.01F, 0.02F, 0.01F);
+        if (trial == 0 && count == 2 && n > 0) {
+          x = lit.lights.at(2, 0).surface.x + V3f(0.01F, 0.02F, 0.01F);
         }
         const auto all = node_weights(lit.lights, count, x, least, LightSides::both);
         const auto facing = node_weights(lit.lights, count, x, least, LightSides::facing);
-        ASSERT_EQ(all.size(), list.size());
-        ASSERT_EQ(facing.size(), list.size());
-        for (std::size_t i = 0; i < list.size(); ++i) {
+        ASSERT_EQ(all.size(), n);
+        ASSERT_EQ(facing.size(), n);
+        for (std::size_t i = 0; i < n; ++i) {
           double carried = 0, d2 = 1;
           bool faces = true;
           if (count == 1) {
-            const EmitterPoint& e = lit.lights.emitter(list[i]);
+            const EmitterPoint& e = lit.lights.emitter(i);
             const V3d to = V3d(x) - V3d(e.x);
             carried = lum(e.emission) / double(e.pdf.value);
             if (!e.infinite()) {
@@ -122,7 +128,7 @@ TEST(NodeWeights, AreWhatIsCarriedOverTheSquaredDistance) {
               continue;
             }
           } else {
-            const Vertex& v = lit.lights.at(list[i], count);
+            const Vertex& v = lit.lights.at(count, i);
             const V3d to = V3d(x) - V3d(v.surface.x);
             carried = lum(v.throughput);
             d2 = std::max(to.length2(), least * least);
@@ -158,16 +164,14 @@ TEST(NodeWeights, RaysLeadToTheVertices) {
       const V3f x = place_in(lit.scene.bounds(), rng);
       for (int count = 1; count <= lit.lights.longest(); ++count) {
         const std::vector<Ray> rays = rays_to(lit.lights, count, x);
-        const auto list = lit.lights.joinable(count);
-        ASSERT_EQ(rays.size(), list.size());
+        ASSERT_EQ(rays.size(), lit.lights.count(count));
         for (std::size_t i = 0; i < rays.size(); ++i) {
           const bool clear = !lit.scene.rays().occluded(rays[i]);
           bool expected = false;
-          if (count == 1 && lit.lights.emitter(list[i]).infinite()) {
-            expected = sees(lit.scene, x, lit.lights.emitter(list[i]).x, HUGE_VALF);
+          if (count == 1 && lit.lights.emitter(i).infinite()) {
+            expected = sees(lit.scene, x, lit.lights.emitter(i).x, HUGE_VALF);
           } else {
-            const V3f y = count == 1 ? lit.lights.emitter(list[i]).x
-                                     : lit.lights.at(list[i], count).surface.x;
+            const V3f y = count == 1 ? lit.lights.emitter(i).x : lit.lights.at(count, i).surface.x;
             const V3f w = (y - x).normalized();
             expected = sees(lit.scene, x, w, (y - x).length() * 0.999F);
           }

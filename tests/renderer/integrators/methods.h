@@ -67,22 +67,22 @@ inline std::vector<Method> unusual_connections(int max_depth, int light_paths = 
   const auto add = [&]<class S>(const char* name, S, const auto& change) {
     all.push_back({name, joining(max_depth, resampled<S>(light_paths, change))});
   };
-  add("uniform, counted as one", UniformSettings{},
-      [](auto& s) { s.count_as = ResampledCount::one; });
-  add("skeleton, counted as one", Skeleton{}, [](auto& s) { s.count_as = ResampledCount::one; });
+  add("uniform, counted as one", UniformSettings{}, [](auto& s) { s.count_as = 1; });
+  add("uniform, counted as all paths", UniformSettings{}, [](auto& s) { s.count_as = 0; });
+  add("skeleton, counted as all paths", Skeleton{}, [](auto& s) { s.count_as = 0; });
   add("skeleton, every node", Skeleton{}, [](auto& s) { s.acceptance = 0; });
   add("skeleton, visible only", Skeleton{}, [](auto& s) { s.unshadowed = false; });
   add("skeleton, unshadowed only", Skeleton{}, [](auto& s) { s.visible = false; });
   add("skeleton, neither", Skeleton{}, [](auto& s) { s.visible = s.unshadowed = false; });
-  add("skeleton, mixture of both sides", Skeleton{}, [](auto& s) {
-    s.combination = Combination::mixture;
+  add("skeleton, most of both sides", Skeleton{}, [](auto& s) {
+    s.combination = Combination::max;
     s.sides = LightSides::both;
   });
-  add("cache, counted as one", Cache{}, [](auto& s) { s.count_as = ResampledCount::one; });
+  add("cache, counted as a thousand", Cache{}, [](auto& s) { s.count_as = 1000; });
   add("cache, all four", Cache{}, [](auto& s) { s.unshadowed = s.bounded = true; });
-  add("cache, mixture of all four", Cache{}, [](auto& s) {
+  add("cache, most of all four", Cache{}, [](auto& s) {
     s.unshadowed = s.bounded = true;
-    s.combination = Combination::mixture;
+    s.combination = Combination::max;
   });
   add("cache, none but uniform", Cache{}, [](auto& s) { s.full = false; });
   add("cache, bounded only, one neighbour", Cache{}, [](auto& s) {
