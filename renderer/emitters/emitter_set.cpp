@@ -72,6 +72,10 @@ void EmitterSet::add_mesh(std::uint32_t m, std::vector<double>& powers) {
                 material.emission,
                 m,
                 static_cast<std::uint32_t>(entries_.size())};
+  if (AlphaMask::needed(*scene_, mesh)) {
+    source.mask = static_cast<std::uint32_t>(masks_.size());
+    masks_.emplace_back(*scene_, mesh);
+  }
   Rgb radiance = material.emission;
   if (source.textured) {
     const auto texture = static_cast<std::size_t>(material.emission_texture.texture);
@@ -123,7 +127,9 @@ EmitterPoint EmitterSet::sample_triangle_of(std::uint32_t chosen, const V2f& u) 
   p.ng = e.ng;
   p.pdf = e.pdf;
   p.emission = source.emission;
-  if (source.textured) {
+  if (source.mask != none && !masks_[source.mask].opaque(chosen - source.first_entry, b.x, b.y)) {
+    p.emission = Rgb(0, 0, 0);
+  } else if (source.textured) {
     const Mesh& mesh = scene_->meshes[source.index];
     p.emission = lacuna::emission(scene_->materials[mesh.material], scene_->textures,
                                   mesh.uvs_at(chosen - source.first_entry, b.x, b.y));

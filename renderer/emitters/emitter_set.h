@@ -9,6 +9,7 @@
 #include "renderer/emitters/emitter_point.h"
 #include "renderer/emitters/environment.h"
 #include "renderer/emitters/leaving.h"
+#include "renderer/scene/alpha_mask.h"
 #include "renderer/scene/scene_data.h"
 #include "renderer/scene/surface.h"
 
@@ -20,7 +21,7 @@ class EmitterSet {
  public:
   /// `bounds` is the box of all triangles: the power of infinite emitters is what passes through
   /// the great disk of its sphere, and their light paths start on its sides. Keeps a pointer to
-  /// `scene`; the emission textures must be decoded.
+  /// `scene`; the emission textures and those of masks must be decoded.
   EmitterSet(const SceneData& scene, std::unique_ptr<Environment> environment,
              const Bounds& bounds);
 
@@ -53,6 +54,7 @@ class EmitterSet {
   const Environment* environment() const { return environment_.get(); }
 
  private:
+  static constexpr std::uint32_t none = ~0U;
   /// What the entries of one mesh, or the only entry of a light, have in common.
   struct Source {
     enum class Kind : std::uint8_t { mesh, punctual, environment } kind;
@@ -61,6 +63,7 @@ class EmitterSet {
     Rgb emission{0, 0, 0};    // of a mesh
     std::uint32_t index = 0;  // of the mesh or of the light
     std::uint32_t first_entry = 0;
+    std::uint32_t mask = none;  // in masks_
   };
   /// A triangle or a light; what a draw needs lies in one cache line.
   struct alignas(64) Entry : TriangleShape {
@@ -80,8 +83,8 @@ class EmitterSet {
   std::unique_ptr<Environment> environment_;
   std::vector<Source> sources_;
   HugeVector<Entry> entries_;
+  std::vector<AlphaMask> masks_;  // of meshes that have one: what is not there does not shine
   AliasTable selection_;
-  static constexpr std::uint32_t none = ~0U;
   std::vector<std::uint32_t> first_entry_;  // of each mesh; none: it does not emit
   std::uint32_t environment_entry_ = none;
 };

@@ -9,6 +9,7 @@
 #include "jobs/run/run_job.h"
 #include "renderer/film/film.h"
 #include "renderer/path/counters.h"
+#include "tests/block_means.h"
 #include "tests/extremes/methods.h"
 #include "tests/extremes/scenes.h"
 #include "tests/jobs/run/silent_observer.h"
@@ -16,13 +17,10 @@
 
 namespace lacuna::extremes {
 
-/// A picture, and each iteration's means over its blocks: independent estimates, so that a test of
-/// means needs no more than Student's.
+/// A picture, and each iteration's block_means().
 struct Picture {
-  static constexpr int most_blocks = 4;  ///< across, and down
   Film film;
   Counters counters;
-  /// [iteration][3 * block + channel], blocks row by row.
   std::vector<std::vector<double>> blocks;
 };
 

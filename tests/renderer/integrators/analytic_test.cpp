@@ -1,11 +1,11 @@
-// Integrator `path` against answers that are known exactly (jobs/scenes/README.md).
+// Integrators against answers that are known exactly (jobs/scenes/README.md).
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "tests/renderer/integrators/render.h"
-#include "tests/statistics.h"
+#include "tests/renderer/integrators/methods.h"
+#include "tests/renderer/integrators/same_picture.h"
 
 namespace lacuna {
 namespace {
@@ -36,6 +36,31 @@ TEST(Furnace, EveryDepthAndStrategy) {
       const Rendering r =
           render("furnace.glb", {.integrator = path(depth, nee), .camera = "inside"});
       expect_mean(r, 2 - std::pow(2.0, 1 - depth));
+    }
+  }
+}
+
+// Light tracing and connections: pixels of one iteration share light paths, so the noise is that of
+// whole iterations.
+TEST(Furnace, EveryDepthFromTheLight) {
+  for (const int depth : {1, 2, 3, 6, 15}) {
+    std::vector<test::Method> methods = test::connections(depth);
+    methods.push_back({"light", test::light_tracing(depth)});
+    for (const test::Method& m : methods) {
+      SCOPED_TRACE(testing::Message() << "depth " << depth << ", " << m);
+      const Rendering r = render("furnace.glb", {.integrator = m.settings,
+                                                 .width = 12,
+                                                 .height = 10,
+                                                 .iterations = m.name == "light" ? 500 : 50,
+                                                 .camera = "inside"});
+      const statistics::Moments mean = test::mean_over_iterations(r);
+      const double expected = 2 - std::pow(2.0, 1 - depth);
+      if (std::abs(mean.mean() - expected) > test::rounding * expected) {
+        EXPECT_GT(statistics::t_test(mean, expected), 1e-7)
+            << mean.mean() << ", expected " << expected;
+      }
+      EXPECT_LT(mean.standard_error(), 0.01 * expected) << "the test has no power";
+      EXPECT_EQ(r.counters.rejected, 0U);
     }
   }
 }

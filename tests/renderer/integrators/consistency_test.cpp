@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/renderer/integrators/render.h"
+#include "tests/renderer/integrators/transformed.h"
 #include "tests/statistics.h"
 
 namespace lacuna {
@@ -13,6 +14,7 @@ using test::own_scene;
 using test::render;
 using test::Rendering;
 using test::RenderSettings;
+using test::transformed;
 
 /// The means of two pictures differ by no more than their noise.
 void expect_same_mean(const Rendering& a, const Rendering& b) {
@@ -88,24 +90,6 @@ TEST(Bits, SeedsAndIterationsDiffer) {
   const Rendering b = render("cornell.glb", {.iterations = 1, .seed = 2});
   EXPECT_NE(a.film.mean(), b.film.mean());
   EXPECT_NE(render("cornell.glb", {.iterations = 2}).film.mean(), a.film.mean());
-}
-
-/// The scene under x -> scale x + offset. Radiances stay; a point's W/sr goes with the square of
-/// lengths.
-SceneData transformed(const char* name, double scale, const V3d& offset) {
-  SceneData scene = load_gltf(own_scene(name));
-  for (Mesh& mesh : scene.meshes) {
-    for (V3f& p : mesh.positions) p = V3f(V3d(p) * scale + offset);
-  }
-  for (CameraData& c : scene.cameras) {
-    for (int k = 0; k < 3; ++k) c.to_world[3][k] = c.to_world[3][k] * scale + offset[k];
-  }
-  for (PunctualLight& l : scene.lights) {
-    l.position = V3f(V3d(l.position) * scale + offset);
-    if (l.kind != PunctualLight::Kind::directional)
-      l.intensity *= static_cast<float>(scale * scale);
-  }
-  return scene;
 }
 
 // No absolute epsilon anywhere: a power of two only moves exponents, so not a bit may change.

@@ -5,8 +5,11 @@
 #include <optional>
 #include <string>
 
+#include "analysis/space/memory_limit.h"
 #include "renderer/film/film.h"
 #include "renderer/integrators/integrator.h"
+#include "renderer/scene/scene_shape.h"
+#include "tests/block_means.h"
 
 namespace lacuna::test {
 
@@ -14,6 +17,7 @@ namespace lacuna::test {
 struct Rendering {
   Film film;
   Counters counters;
+  std::vector<std::vector<double>> blocks;  ///< block_means() of each iteration
   int textures_decoded = 0, filters = 0;
   bool emitters_built = false;
 
@@ -25,7 +29,7 @@ struct Rendering {
     return sum / static_cast<double>(values.size());
   }
   /// Channels of a pixel are made from the same random numbers: their deviations add up, not their
-  /// squares.
+  /// squares. Only where pixels are made apart from one another.
   double variance_of_mean() const {
     const std::vector<double> v = film.variance_of_mean();
     double sum = 0;
@@ -46,29 +50,71 @@ struct RenderSettings {
   std::uint64_t seed = 1;
   int threads = 2;
   std::optional<EnvironmentImage> environment = {};
+  PixelFilter filter = PixelFilter::box;
+  int resolution = 24;  ///< of the analysis, voxels
 };
 
 inline std::filesystem::path own_scene(const std::string& name) {
   return std::filesystem::path(LACUNA_SOURCE_DIR) / "jobs/scenes" / name;
 }
 
+/// An integrator that is ready to iterate on a scene.
+class Session {
+ public:
+  Session(SceneData data, const RenderSettings& s)
+      : settings_(s),
+        pool_(s.threads),
+        integrator_(make_integrator(s.integrator)),
+        eye_(choose_camera(data, s.camera, "test")),
+        camera_(eye_, s.width, s.height, s.filter),
+        scene_(std::move(data), integrator_->needs(), s.environment, pool_) {
+    integrator_->prepare({scene_, pool_, space_});
+  }
+
+  /// `stop`: as IterationContext's.
+  Image iterate(
+      std::uint64_t i, const std::function<bool()>& stop = [] { return false; }) {
+    Image image(settings_.width, settings_.height);
+    counters_ += integrator_->iterate({scene_, camera_, pool_, settings_.seed, i, stop}, image);
+    return image;
+  }
+  Integrator& integrator() { return *integrator_; }
+  const Scene& scene() const { return scene_; }
+  const Counters& counters() const { return counters_; }
+
+ private:
+  RenderSettings settings_;
+  ThreadPool pool_;
+  std::unique_ptr<Integrator> integrator_;
+  CameraData eye_;
+  Camera camera_;
+  Scene scene_;
+  ArtefactStore store_{{}};
+  SpaceAnalysis space_{
+      {.triangles = [this] { return triangle_soup(scene_.data()); },
+       .geometry = geometry_key(scene_.data()),
+       .seeds =
+           [this] { return domain_seeds(scene_.data(), eye_, settings_.environment.has_value()); },
+       .settings = {.resolution = settings_.resolution},
+       .byte_limit = [] { return no_memory_limit; }},
+      store_,
+      pool_};
+  Counters counters_;
+};
+
 inline Rendering render(SceneData data, const RenderSettings& s) {
-  const ThreadPool pool(s.threads);
-  const auto integrator = make_integrator(s.integrator);
-  const Camera camera(choose_camera(data, s.camera, "test"), s.width, s.height);
-  const Scene scene(std::move(data), integrator->needs(), s.environment, pool);
+  Session session(std::move(data), s);
   Rendering r;
   r.film = Film(s.width, s.height);
-  r.textures_decoded = scene.textures_decoded();
-  r.filters = scene.rays().filters();
-  r.emitters_built = scene.has_emitters();
-  const std::function<bool()> never = [] { return false; };
+  r.textures_decoded = session.scene().textures_decoded();
+  r.filters = session.scene().rays().filters();
+  r.emitters_built = session.scene().has_emitters();
   for (int i = 0; i < s.iterations; ++i) {
-    Image image(s.width, s.height);
-    r.counters += integrator->iterate(
-        {scene, camera, pool, s.seed, static_cast<std::uint64_t>(i), never}, image);
+    const Image image = session.iterate(static_cast<std::uint64_t>(i));
     r.film.add(static_cast<std::uint64_t>(i), image);
+    r.blocks.push_back(block_means(image));
   }
+  r.counters = session.counters();
   return r;
 }
 

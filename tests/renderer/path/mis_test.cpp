@@ -30,7 +30,7 @@ const std::vector<Counts> all_counts{{"path", {1, 1, 0, 0}},
                                      {"light", {0, 0, 0, 100}},
                                      {"paired", {1, 1, 1, side* side}},
                                      {"resampled", {1, 37, 37, side* side}},
-                                     {"counted once", {1, 1, 1, 1000}}};
+                                     {"counted as eight", {1, 1, 8, 1000}}};
 
 /// Real walks from both ends, which meet in all ways.
 class Meeting {

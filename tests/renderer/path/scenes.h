@@ -19,8 +19,10 @@ inline std::filesystem::path scene_path(const std::string& name) {
 }
 
 /// A box of smooth plastic, whose every vertex scatters through a delta lobe and another, with a
-/// rough metal and a glass block in it and emitters of every kind.
-inline SceneData coated_box() {
+/// rough metal and a glass block in it, and emitters that shine from one side and from both; with
+/// `points`, from a point and a cone too, whose reflections in the plastic no path from the eye can
+/// find.
+inline SceneData coated_box(bool points) {
   SceneParts p;
   const auto wall = p.material(plastic(Rgb(0.7F, 0.6F, 0.5F)));
   p.box({0, 0, 0}, {3, 2, 4}, false, wall);
@@ -28,14 +30,18 @@ inline SceneData coated_box() {
   p.box({1.8F, 0, 1.2F}, {2.4F, 0.7F, 1.7F}, true, p.material(glass(0.3F)));
   p.quad({1, 1.9F, 1}, {1, 0, 0}, {0, 0, 1}, p.material(lamp(Rgb(3, 4, 5))));
   p.quad({0.2F, 0.3F, 2}, {0, 0.5F, 0}, {0, 0, 0.5F}, p.material(lamp(Rgb(5, 2, 1), true)));
-  p.light(PunctualLight::Kind::point, {2.5F, 1.5F, 3}, {0, 0, -1}, Rgb(1, 1, 1));
-  p.light(PunctualLight::Kind::spot, {0.5F, 1.5F, 3}, {0.5F, -1, -0.5F}, Rgb(4, 4, 4));
+  if (points) {
+    p.light(PunctualLight::Kind::point, {2.5F, 1.5F, 3}, {0, 0, -1}, Rgb(1, 1, 1));
+    p.light(PunctualLight::Kind::spot, {0.5F, 1.5F, 3}, {0.5F, -1, -0.5F}, Rgb(4, 4, 4));
+  }
   p.eye({1.5, 1, 3.8}, {1.4, 0.8, 0}, 1.2);
   return std::move(p.data);
 }
 
 inline SceneData load(const PathScene& s) {
-  return s.name == "coated" ? coated_box() : load_gltf(scene_path(s.name + ".glb"));
+  if (s.name == "coated") return coated_box(false);
+  if (s.name == "coated_points") return coated_box(true);
+  return load_gltf(scene_path(s.name + ".glb"));
 }
 inline std::optional<EnvironmentImage> environment(const PathScene& s) {
   return s.sky ? std::optional(EnvironmentImage{scene_path("sky.hdr"), 1, 0.7F}) : std::nullopt;

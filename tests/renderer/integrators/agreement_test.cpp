@@ -1,0 +1,164 @@
+// Every way to make a picture makes the same one: z-tests of its mean and of the means of its
+// blocks, with the noise of both.
+
+#include <gtest/gtest.h>
+
+#include "tests/renderer/integrators/methods.h"
+#include "tests/renderer/integrators/same_picture.h"
+#include "tests/renderer/path/scenes.h"
+
+namespace lacuna {
+namespace {
+
+using test::expect_same_picture;
+using test::mean_over_iterations;
+using test::Method;
+using test::PathScene;
+using test::Rendering;
+using test::RenderSettings;
+
+struct Agreement {
+  PathScene scene;
+  int max_depth;
+  int iterations;  ///< of each method; of the reference four times as many
+  /// Nothing is seen through mirrors or clear glass, so that light tracing sees it too.
+  bool light = true;
+  double useful = 0.01;  ///< largest standard error of the mean, relative
+  friend std::ostream& operator<<(std::ostream& out, const Agreement& a) { return out << a.scene; }
+};
+
+const std::vector<Agreement> agreements{
+    {{"cornell"}, 5, 200, true, 0.015},
+    {{"glass"}, 5, 120, false, 0.015},
+    {{"mirror"}, 4, 400, false, 0.025},
+    {{"furnace_sphere"}, 3, 200},
+    {{"many_lights"}, 4, 100, true, 0.07},
+    {{"point"}, 3, 150, true, 0.015},
+    {{"spot"}, 3, 150},
+    {{"directional"}, 3, 150, true, 0.015},
+    {{"area"}, 4, 200},
+    {{"sides"}, 4, 200},
+    {{"open", true}, 4, 250, false, 0.04},
+    {{"ajar"}, 5, 150, false, 0.07},
+    {{"atrium"}, 5, 120, true, 0.04},
+    {{"coated"}, 4, 120, false},
+    {{"bends"}, 7, 100, true, 0.07},
+};
+
+constexpr int columns = 20, rows = 12;
+
+RenderSettings small_picture(const PathScene& scene, const IntegratorSettings& integrator,
+                             int iterations) {
+  return {.integrator = integrator,
+          .width = columns,
+          .height = rows,
+          .iterations = iterations,
+          .environment = environment(scene)};
+}
+
+/// The picture that others are held against, of random numbers of its own.
+Rendering reference(const PathScene& scene, RenderSettings settings) {
+  settings.iterations *= 4;
+  settings.seed = 2;
+  return render(load(scene), settings);
+}
+
+class Agrees : public testing::TestWithParam<Agreement> {};
+
+TEST_P(Agrees, WithPathTracing) {
+  const Agreement& a = GetParam();
+  const Rendering expected =
+      reference(a.scene, small_picture(a.scene, test::path_tracing(a.max_depth), a.iterations));
+  std::vector<Method> methods = test::connections(a.max_depth);
+  if (a.light) {
+    methods.push_back({"light", test::light_tracing(a.max_depth)});
+    methods.push_back({"light, 500 paths", test::light_tracing(a.max_depth, 500)});
+  }
+  for (const Method& method : methods) {
+    SCOPED_TRACE(method.name);
+    expect_same_picture(
+        render(load(a.scene), small_picture(a.scene, method.settings, a.iterations)), expected,
+        a.useful);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Agrees, testing::ValuesIn(agreements),
+                         [](const auto& a) { return a.param.scene.name; });
+
+struct Unusual {
+  PathScene scene;
+  int iterations;
+  double useful;
+};
+
+// Flags change what is drawn how often, never what is expected.
+TEST(Agree, AllFlagsOfConnections) {
+  constexpr int max_depth = 4;
+  for (const auto& [scene, iterations, useful] :
+       {Unusual{{"coated"}, 60, 0.02}, Unusual{{"open", true}, 60, 0.12}}) {
+    const Rendering expected =
+        reference(scene, small_picture(scene, test::path_tracing(max_depth), 2 * iterations));
+    for (const Method& method : test::unusual_connections(max_depth)) {
+      SCOPED_TRACE(testing::Message() << scene << ", " << method);
+      expect_same_picture(render(load(scene), small_picture(scene, method.settings, iterations)),
+                          expected, useful);
+    }
+  }
+}
+
+// No path from the eye finds the reflection of a point of light: here bdpt agrees with itself.
+TEST(Agree, ReflectionsOfPoints) {
+  const PathScene scene{"coated_points"};
+  const std::vector<Method> methods = test::connections(4);
+  const Rendering expected = reference(scene, small_picture(scene, methods[0].settings, 50));
+  for (std::size_t i = 1; i < methods.size(); ++i) {
+    SCOPED_TRACE(methods[i]);
+    expect_same_picture(render(load(scene), small_picture(scene, methods[i].settings, 120)),
+                        expected, 0.015);
+  }
+  const Rendering without = reference(scene, small_picture(scene, test::path_tracing(4), 200));
+  EXPECT_LT(mean_over_iterations(without).mean(), 0.995 * mean_over_iterations(expected).mean());
+}
+
+TEST(Agree, ThroughATentFilter) {
+  for (const char* name : {"cornell", "sides"}) {
+    const PathScene scene{name};
+    const auto picture = [&](const IntegratorSettings& integrator) {
+      RenderSettings s = small_picture(scene, integrator, 150);
+      s.filter = PixelFilter::tent;
+      return s;
+    };
+    const Rendering expected = reference(scene, picture(test::path_tracing(4)));
+    std::vector<Method> methods = test::connections(4);
+    methods.push_back({"light", test::light_tracing(4)});
+    for (const Method& method : methods) {
+      SCOPED_TRACE(testing::Message() << name << ", " << method);
+      expect_same_picture(render(load(scene), picture(method.settings)), expected, 0.02);
+    }
+    // A tent is no box: the test sees the difference.
+    RenderSettings box = picture(test::path_tracing(4));
+    box.filter = PixelFilter::box;
+    EXPECT_NE(render(load(scene), box).film.mean(), expected.film.mean());
+  }
+}
+
+// Roulette on either walk changes nothing.
+TEST(Agree, WhereRouletteEndsWalksEarly) {
+  const PathScene scene{"cornell"};
+  const Rendering expected = reference(scene, small_picture(scene, test::path_tracing(8), 200));
+  std::vector<Method> methods = test::connections(8);
+  methods.push_back({"light", test::light_tracing(8)});
+  for (Method& method : methods) {
+    SCOPED_TRACE(method);
+    std::visit(
+        [](auto& s) {
+          if constexpr (requires { s.roulette_depth; }) s.roulette_depth = 1;
+        },
+        method.settings);
+    expect_same_picture(render(load(scene), small_picture(scene, method.settings, 200)), expected,
+                        0.02);
+  }
+}
+
+}  // namespace
+}  // namespace lacuna

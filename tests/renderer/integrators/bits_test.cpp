@@ -1,0 +1,135 @@
+// The bits of light tracing and of every choice of connections: whatever the threads, whatever
+// power of two the scene is scaled by, and after a pause.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "tests/renderer/integrators/methods.h"
+#include "tests/renderer/integrators/transformed.h"
+
+namespace lacuna {
+namespace {
+
+using test::own_scene;
+using test::Session;
+
+std::vector<test::Method> bidirectional(int max_depth) {
+  std::vector<test::Method> all = test::connections(max_depth, 100);
+  all.push_back({"light", test::light_tracing(max_depth)});
+  return all;
+}
+
+class BidirectionalBits : public testing::TestWithParam<test::Method> {};
+
+TEST_P(BidirectionalBits, DoNotDependOnThreads) {
+  for (const char* scene : {"ajar.glb", "many_lights.glb"}) {
+    test::RenderSettings s{
+        .integrator = GetParam().settings, .width = 70, .height = 45, .iterations = 3};
+    s.threads = 1;
+    const test::Rendering one = test::render(scene, s);
+    s.threads = 2;
+    const test::Rendering two = test::render(scene, s);
+    EXPECT_EQ(one.film.mean(), two.film.mean()) << scene;
+    EXPECT_EQ(one.film.variance_of_mean(), two.film.variance_of_mean()) << scene;
+    EXPECT_EQ(one.counters.rays, two.counters.rays) << scene;
+    EXPECT_EQ(one.counters.shadow_rays, two.counters.shadow_rays) << scene;
+    EXPECT_EQ(one.counters.samples, two.counters.samples) << scene;
+    EXPECT_GT(one.mean(), 0);
+  }
+}
+
+// Scaling by a power of two moves exponents only.
+TEST_P(BidirectionalBits, StayUnderScaleByPowersOfTwo) {
+  struct Lit {
+    const char* name;
+    bool sky;
+  };
+  for (const Lit& lit : {Lit{"cornell.glb", false}, Lit{"many_lights.glb", false},
+                         Lit{"atrium.glb", false}, Lit{"open.glb", true}}) {
+    test::RenderSettings s{
+        .integrator = GetParam().settings, .width = 24, .height = 20, .iterations = 3};
+    if (lit.sky) s.environment = EnvironmentImage{own_scene("sky.hdr"), 1, 0.7F};
+    const std::vector<double> expected =
+        test::render(test::transformed(lit.name, 1, V3d(0)), s).film.mean();
+    for (const double scale : {0x1p-14, 0x1p17}) {
+      const test::Rendering r = test::render(test::transformed(lit.name, scale, V3d(0)), s);
+      const std::vector<double> mean = r.film.mean();
+      std::size_t different = 0;
+      for (std::size_t i = 0; i < mean.size(); ++i) different += mean[i] != expected[i] ? 1 : 0;
+      EXPECT_EQ(different, 0U) << lit.name << " at scale " << scale;
+      EXPECT_EQ(r.counters.rejected, 0U);
+    }
+  }
+}
+
+test::RenderSettings paused_picture(const test::Method& method) {
+  return {.integrator = method.settings, .width = 24, .height = 20};
+}
+
+TEST_P(BidirectionalBits, GoOnAfterAPause) {
+  const auto start = [] {
+    return std::make_unique<Session>(load_gltf(own_scene("ajar.glb")), paused_picture(GetParam()));
+  };
+  const auto straight = start();
+  ByteWriter saved;
+  std::vector<Image> expected;
+  for (std::uint64_t i = 0; i < 7; ++i) {
+    if (i == 4) straight->integrator().save(saved);
+    expected.push_back(straight->iterate(i));
+  }
+  const auto resumed = start();
+  ByteReader in(saved.bytes());
+  resumed->integrator().load(in);
+  EXPECT_TRUE(in.at_end());
+  for (std::uint64_t i = 4; i < 7; ++i) {
+    EXPECT_EQ(resumed->iterate(i).pixels, expected[i].pixels) << "iteration " << i;
+  }
+  // What was learned is of use: without it the pictures differ.
+  const auto forgetful = start();
+  EXPECT_EQ(forgetful->iterate(4).pixels != expected[4].pixels, !saved.bytes().empty());
+}
+
+TEST_P(BidirectionalBits, AreTheSameAfterAnIterationThatWasStopped) {
+  const auto start = [] {
+    return std::make_unique<Session>(load_gltf(own_scene("ajar.glb")), paused_picture(GetParam()));
+  };
+  const auto straight = start(), stopped = start();
+  ByteWriter a, b;
+  for (std::uint64_t i = 0; i < 4; ++i) {
+    const Image expected = straight->iterate(i);
+    // Later and later, until the iteration gets through.
+    for (int after = 0;; ++after) {
+      std::atomic<int> asked{0};
+      try {
+        const Image image = stopped->iterate(i, [&] { return ++asked > after; });
+        EXPECT_EQ(image.pixels, expected.pixels) << "iteration " << i;
+        break;
+      } catch (const IterationStopped&) {
+      }
+      ASSERT_LT(after, 100000);
+    }
+  }
+  straight->integrator().save(a);
+  stopped->integrator().save(b);
+  EXPECT_EQ(a.bytes(), b.bytes());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BidirectionalBits, testing::ValuesIn(bidirectional(4)),
+                         [](const auto& m) { return m.param.name; });
+
+TEST(NodeCounts, OfAnotherSkeletonAreRefused) {
+  const test::Method skeleton{"", test::joining(3, test::resampled<SkeletonSettings>(16))};
+  Session ajar(load_gltf(own_scene("ajar.glb")), paused_picture(skeleton));
+  Session cornell(load_gltf(own_scene("cornell.glb")), paused_picture(skeleton));
+  ajar.iterate(0);
+  ByteWriter saved;
+  ajar.integrator().save(saved);
+  ByteReader in(saved.bytes());
+  EXPECT_THROW(cornell.integrator().load(in), std::runtime_error);
+  ByteReader cut(std::string_view(saved.bytes()).substr(0, saved.bytes().size() - 1));
+  EXPECT_THROW(ajar.integrator().load(cut), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "renderer/settings/integrator_settings.h"
+
+namespace lacuna::test {
+
+/// One way to make a picture.
+struct Method {
+  std::string name;
+  IntegratorSettings settings;
+  friend std::ostream& operator<<(std::ostream& out, const Method& m) { return out << m.name; }
+};
+
+inline PathSettings path_tracing(int max_depth) {
+  PathSettings s;
+  s.max_depth = max_depth;
+  return s;
+}
+inline LightSettings light_tracing(int max_depth, int paths = 0) {
+  LightSettings s;
+  s.max_depth = max_depth;
+  s.light_paths = paths;
+  return s;
+}
+inline BdptSettings joining(int max_depth, const ConnectionsSettings& connections) {
+  BdptSettings s;
+  s.max_depth = max_depth;
+  s.connections = connections;
+  return s;
+}
+
+/// `Settings` with few light paths, and changed by `change`.
+template <class Settings, class Change>
+Settings resampled(int light_paths, const Change& change) {
+  Settings s;
+  s.light_paths = light_paths;
+  if constexpr (requires { s.record_density; }) s.record_density = 0.03;  // of small pictures
+  change(s);
+  return s;
+}
+template <class Settings>
+Settings resampled(int light_paths) {
+  return resampled<Settings>(light_paths, [](Settings&) {});
+}
+
+/// Every choice of connections as it is by default.
+inline std::vector<Method> connections(int max_depth, int light_paths = 64) {
+  const int n = light_paths;
+  return {
+      {"paired", joining(max_depth, PairedSettings{})},
+      {"uniform", joining(max_depth, resampled<UniformSettings>(n))},
+      {"skeleton", joining(max_depth, resampled<SkeletonSettings>(n))},
+      {"importance_cache", joining(max_depth, resampled<ImportanceCacheSettings>(n))},
+  };
+}
+
+/// Every flag and every named value of the choices, at least once away from its default, alone and
+/// with others.
+inline std::vector<Method> unusual_connections(int max_depth, int light_paths = 64) {
+  using Skeleton = SkeletonSettings;
+  using Cache = ImportanceCacheSettings;
+  std::vector<Method> all;
+  const auto add = [&]<class S>(const char* name, S, const auto& change) {
+    all.push_back({name, joining(max_depth, resampled<S>(light_paths, change))});
+  };
+  add("uniform, counted as one", UniformSettings{}, [](auto& s) { s.count_as = 1; });
+  add("uniform, counted as all paths", UniformSettings{}, [](auto& s) { s.count_as = 0; });
+  add("skeleton, counted as all paths", Skeleton{}, [](auto& s) { s.count_as = 0; });
+  add("skeleton, every node", Skeleton{}, [](auto& s) { s.acceptance = 0; });
+  add("skeleton, visible only", Skeleton{}, [](auto& s) { s.unshadowed = false; });
+  add("skeleton, unshadowed only", Skeleton{}, [](auto& s) { s.visible = false; });
+  add("skeleton, neither", Skeleton{}, [](auto& s) { s.visible = s.unshadowed = false; });
+  add("skeleton, most of both sides", Skeleton{}, [](auto& s) {
+    s.combination = Combination::max;
+    s.sides = LightSides::both;
+  });
+  add("cache, counted as a thousand", Cache{}, [](auto& s) { s.count_as = 1000; });
+  add("cache, all four", Cache{}, [](auto& s) { s.unshadowed = s.bounded = true; });
+  add("cache, most of all four", Cache{}, [](auto& s) {
+    s.unshadowed = s.bounded = true;
+    s.combination = Combination::max;
+  });
+  add("cache, none but uniform", Cache{}, [](auto& s) { s.full = false; });
+  add("cache, bounded only, one neighbour", Cache{}, [](auto& s) {
+    s.full = false;
+    s.bounded = true;
+    s.neighbours = 1;
+  });
+  add("cache, more neighbours than records", Cache{}, [](auto& s) {
+    s.neighbours = 64;
+    s.record_density = 0.005;
+  });
+  return all;
+}
+
+}  // namespace lacuna::test
