@@ -39,7 +39,7 @@ Verdict verdict(Stage& stage, const Row& row, const Method& method) {
 
 int run(bool quick, std::string_view wanted) {
   const Effort effort{quick};
-  const std::vector<Method> columns = methods();
+  const std::vector<Method> columns = methods(!quick);
   Matrix matrix(columns);
   Stage stage(effort);
   Watchdog watchdog(std::chrono::seconds(quick ? 120 : 900));

@@ -39,13 +39,14 @@ struct Depth {
 
 }  // namespace
 
-std::vector<Method> methods() {
+std::vector<Method> methods(bool flags) {
   std::vector<Method> all;
   for (const Method& integrator : registered(IntegratorSettings{})) {
     std::vector<Method> choices = changed<OtherChoice>(integrator);
     choices.insert(choices.begin(), integrator);
     for (const Method& choice : choices) {
       all.push_back(choice);
+      if (!flags) continue;
       for (Method& flag : changed<OtherFlag>(choice)) all.push_back(std::move(flag));
     }
   }

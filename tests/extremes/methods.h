@@ -14,10 +14,10 @@ struct Method {
   IntegratorSettings settings;
 };
 
-/// Every registered integrator with every strategy that its tables offer, and each of these with
-/// every flag and named value changed, one at a time. Read from the registry and its tables alone:
-/// what is registered is here.
-std::vector<Method> methods();
+/// Every registered integrator with every strategy that its tables offer, and, if `flags`, each of
+/// these with every flag and named value changed, one at a time. Read from the registry and its
+/// tables alone: what is registered is here.
+std::vector<Method> methods(bool flags);
 
 /// The longest path in edges, where the method's table has `max_depth`: then it estimates the light
 /// that arrives along paths of at most so many edges (DESIGN, "Words").
