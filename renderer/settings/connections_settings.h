@@ -35,7 +35,7 @@ struct EnumTable<LightSides> {
 /// What all choices of connections but `paired` have in common.
 struct ResamplingSettings {
   int light_paths = 1024;
-  double count_as = 8;
+  int count_as = 8;
   bool operator==(const ResamplingSettings&) const = default;
 };
 
@@ -125,7 +125,7 @@ void describe(V& v, ImportanceCacheSettings& s) {
   v("record_density", s.record_density,
     {.doc = "paths from the eye whose vertices become records, as a share of the pixels",
      .min = 0,
-     .max = 1,
+     .max = 0.1,
      .above_min = true});
   v("neighbours", s.neighbours,
     {.doc = "nearest records of an eye vertex, one of which is drawn", .min = 1, .max = 64});
