@@ -1,4 +1,5 @@
-"""Long checks: many kills and resumes, all tests under sanitizers, fuzzing, and whether intervals hold the truth."""
+"""Long checks: many kills and resumes, all tests under sanitizers, fuzzing, whether intervals hold the truth, and
+whether the tests notice faults."""
 
 import argparse
 import os
@@ -53,6 +54,7 @@ CHECKS = {
         "TSAN_OPTIONS": f"suppressions={ROOT}/tests/soak/tsan.txt",
     }),
     "intervals": lambda _: run("intervals of a hundred sweeps", [sys.executable, "tests/soak/intervals.py"]),
+    "planted": lambda _: run("planted faults", [sys.executable, "tests/planted/planted.py"]),
     "fuzz": lambda asked: fuzz(asked.seconds),
 }
 

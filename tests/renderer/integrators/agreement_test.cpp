@@ -42,6 +42,7 @@ const std::vector<Agreement> agreements{
     {{"ajar"}, 5, 150, false, 0.07},
     {{"atrium"}, 5, 120, true, 0.04},
     {{"coated"}, 4, 120, false},
+    {{"leaning"}, 5, 200, true, 0.035},
     {{"bends"}, 7, 100, true, 0.07},
 };
 

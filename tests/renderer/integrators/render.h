@@ -52,6 +52,7 @@ struct RenderSettings {
   std::optional<EnvironmentImage> environment = {};
   PixelFilter filter = PixelFilter::box;
   int resolution = 24;  ///< of the analysis, voxels
+  std::vector<ImageLayer> layers = {};
 };
 
 inline std::filesystem::path own_scene(const std::string& name) {
@@ -69,15 +70,21 @@ class Session {
         camera_(eye_, s.width, s.height, s.filter),
         scene_(std::move(data), integrator_->needs(), s.environment, pool_) {
     integrator_->prepare({scene_, pool_, space_});
+    names_ = integrator_->layers(s.layers);
   }
 
   /// `stop`: as IterationContext's.
   Image iterate(
       std::uint64_t i, const std::function<bool()>& stop = [] { return false; }) {
     Image image(settings_.width, settings_.height);
-    counters_ += integrator_->iterate({scene_, camera_, pool_, settings_.seed, i, stop}, image);
+    layers_.assign(names_.size(), image);
+    counters_ +=
+        integrator_->iterate({scene_, camera_, pool_, settings_.seed, i, stop, layers_}, image);
     return image;
   }
+  /// The layers that the integrator fills, and those of the latest iteration.
+  const std::vector<std::string>& layer_names() const { return names_; }
+  const std::vector<Image>& layers() const { return layers_; }
   Integrator& integrator() { return *integrator_; }
   const Scene& scene() const { return scene_; }
   const Counters& counters() const { return counters_; }
@@ -99,6 +106,8 @@ class Session {
        .byte_limit = [] { return no_memory_limit; }},
       store_,
       pool_};
+  std::vector<std::string> names_;
+  std::vector<Image> layers_;
   Counters counters_;
 };
 

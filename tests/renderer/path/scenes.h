@@ -38,7 +38,24 @@ inline SceneData coated_box(bool points) {
   return std::move(p.data);
 }
 
+/// A room whose walls' shading normals all lean to one side, lit through a slab of rough glass:
+/// where light and eye scatter most differently (Veach 1997, ch. 5).
+inline SceneData leaning_room() {
+  SceneParts p;
+  p.box({-1, -1, -1}, {1, 1, 1}, false, p.material(diffuse(Rgb(0.7F, 0.6F, 0.5F))));
+  p.quad({-0.7F, -1, -0.9F}, {0, 0, 1.2F}, {0.5F, 0.9F, 0}, p.material(metal(Rgb(0.9F), 0.6F)));
+  for (Mesh& mesh : p.data.meshes) {
+    const V3f ng = TriangleShape(mesh, 0).ng;
+    mesh.normals.assign(4, (ng + V3f(0.5F, -0.3F, 0.6F)).normalized());
+  }
+  p.box({-0.6F, 0.5F, -0.6F}, {0.6F, 0.7F, 0.6F}, true, p.material(glass(0.5F)));
+  p.quad({-0.4F, 0.95F, -0.4F}, {0.8F, 0, 0}, {0, 0, 0.8F}, p.material(lamp(Rgb(6, 7, 8))));
+  p.eye({0.3, -0.1, 0.9}, {-0.1, -0.2, -1}, 1.5);
+  return std::move(p.data);
+}
+
 inline SceneData load(const PathScene& s) {
+  if (s.name == "leaning") return leaning_room();
   if (s.name == "coated") return coated_box(false);
   if (s.name == "coated_points") return coated_box(true);
   return load_gltf(scene_path(s.name + ".glb"));
@@ -50,7 +67,7 @@ inline std::optional<EnvironmentImage> environment(const PathScene& s) {
 inline std::vector<PathScene> path_scenes() {
   return {{"cornell"}, {"glass"},  {"mirror"}, {"furnace_sphere"}, {"many_lights"},
           {"point"},   {"spot"},   {"sides"},  {"directional"},    {"open", true},
-          {"ajar"},    {"coated"}, {"atrium"}};
+          {"ajar"},    {"coated"}, {"atrium"}, {"leaning"}};
 }
 
 }  // namespace lacuna::test
