@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -113,7 +114,10 @@ class NumberAt : public OneChange {
  private:
   double at_end(const Limits& limits, bool integral) const {
     const auto inside = [&](double end, double other) {
-      return integral ? end + std::copysign(1, other - end) : std::nextafter(end, other);
+      if (integral) return end + std::copysign(1, other - end);
+      // Threads that render treat denormal numbers as zero.
+      return end == 0 ? std::copysign(std::numeric_limits<double>::min(), other)
+                      : std::nextafter(end, other);
     };
     switch (end_) {
       case End::lowest:
