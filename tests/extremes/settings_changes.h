@@ -114,10 +114,7 @@ class NumberAt : public OneChange {
  private:
   double at_end(const Limits& limits, bool integral) const {
     const auto inside = [&](double end, double other) {
-      if (integral) return end + std::copysign(1, other - end);
-      // Threads that render treat denormal numbers as zero.
-      return end == 0 ? std::copysign(std::numeric_limits<double>::min(), other)
-                      : std::nextafter(end, other);
+      return integral ? end + std::copysign(1, other - end) : std::nextafter(end, other);
     };
     switch (end_) {
       case End::lowest:
@@ -125,7 +122,10 @@ class NumberAt : public OneChange {
       case End::highest:
         return limits.max;
       case End::below:
-        return limits.above_min ? limits.min : inside(limits.min, -HUGE_VAL);
+        if (limits.above_min) return limits.min;
+        // Threads that render take denormal numbers for zero.
+        if (limits.min == 0 && !integral) return -std::numeric_limits<double>::min();
+        return inside(limits.min, -HUGE_VAL);
       case End::above:
         return inside(limits.max, HUGE_VAL);
     }
