@@ -84,7 +84,6 @@ export function strategies(query, signal, open) {
   /// The pictures one by one, of which only what is drawn is kept.
   async function load(mine) {
     const small = (image) => reduced(image, Math.floor(image.width / cells[0].wide / window.devicePixelRatio) || 1);
-    body.ariaBusy = "true";
     try {
       const [picture] = await layers.read("");
       look = lookOf([picture]);
@@ -98,7 +97,7 @@ export function strategies(query, signal, open) {
         setText(cell.light, cell.set === unweighted ? number(mean) : `${significant(100 * mean / whole)}${thin}%`);
       }
       await draw();
-      body.ariaBusy = "false";
+      if (turn === mine) body.ariaBusy = "false";
     } catch (error) {
       if (turn === mine && !signal.aborted) replace(say, problem(error.message));
     }
@@ -114,6 +113,7 @@ export function strategies(query, signal, open) {
   /// One set of strategies, and the distributions.
   function build() {
     turn += 1;
+    body.ariaBusy = "true";  // until its pictures are there, which may wait for the reader to come
     const options = sets.filter(({ key }) => parts.some((p) => p.set === key));
     const set = (options.find(({ key }) => key === query.get("strategies")) ?? options[0])?.key;
     which.fill(options, set);

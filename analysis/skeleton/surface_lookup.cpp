@@ -29,6 +29,10 @@ std::array<Imath::V3i, neighbours> nearest_first() {
 template <class Mapped>
 std::optional<Imath::V3i> best_neighbour(const Imath::V3i& s, const Imath::V3d& n,
                                          Mapped&& mapped) {
+  const auto sign = [](double v) { return (v > 0) - (v < 0); };
+  // No other product is larger, and of those that are as large none is nearer.
+  const Imath::V3i ahead(sign(n.x), sign(n.y), sign(n.z));
+  if (mapped(s + ahead)) return s + ahead;
   static const std::array<Imath::V3i, neighbours> offsets = nearest_first();
   std::array<double, neighbours> product;
   for (std::size_t i = 0; i < neighbours; ++i) product[i] = Imath::V3d(offsets[i]).dot(n);

@@ -54,7 +54,7 @@ void ImportanceCacheConnections::place_records(const IterationContext& context, 
 }
 
 void ImportanceCacheConnections::begin(const IterationContext& context, const LightVertices& lights,
-                                       Counters& counters) {
+                                       const CellStatistics&, Counters& counters) {
   place_records(context, lights.longest(), counters);
   double bytes = 0;
   for (int s = 1; s <= lights.longest(); ++s) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "renderer/connections/cell_statistics.h"
 #include "renderer/connections/record_tree.h"
 #include "renderer/connections/site.h"
 #include "renderer/guides/bsdf_guide.h"
@@ -11,6 +12,8 @@ namespace lacuna {
 /// the vertices of a few paths from the eye, made anew in each iteration (Georgiev et al. 2012,
 /// "Importance Caching for Complex Illumination"; on bidirectional path tracing: Noel 2015, 11.5).
 class ImportanceCacheConnections {
+  static constexpr std::size_t max_neighbours = 64;
+
  public:
   explicit ImportanceCacheConnections(const ImportanceCacheSettings& settings)
       : settings_(settings) {}
@@ -20,47 +23,59 @@ class ImportanceCacheConnections {
                                                                  "uniform"};
   static constexpr bool needs_space = false;
 
-  struct Tally {};
-  static Tally tally() { return {}; }
   static void prepare(const PrepareContext&) {}
+  static std::size_t cells() { return 1; }  // records are new in each iteration
   /// Places the records and builds their distributions. Throws std::runtime_error if they would
   /// take more than half of the memory that is free.
-  void begin(const IterationContext& context, const LightVertices& lights, Counters& counters);
-  static void end(std::span<const Tally>) {}
+  void begin(const IterationContext& context, const LightVertices& lights, const CellStatistics&,
+             Counters& counters);
 
-  /// Calls `use(s, pick)` for a light path of each length in [1, longest], to be joined to `v`. All
-  /// are drawn by one of the nearest records; their probability is the mean of theirs.
-  template <class Use>
-  void pick(const Vertex& v, int /*depth*/, const LightVertices& lights, int longest, Rng& rng,
-            Tally&, Use&& use) const {
-    std::array<std::uint32_t, max_neighbours> near;
-    const std::size_t n = tree_.nearest(
-        place_of(v), std::span(near).first(static_cast<std::size_t>(settings_.neighbours)));
-    if (n == 0) {
-      pick_uniformly(lights, longest, rng, uniform, use);
+  /// Where connections from an eye vertex are drawn.
+  struct Place {
+    std::uint32_t cell = 0;  ///< of CellStatistics
+    std::size_t n = 0;
+    std::array<std::uint32_t, max_neighbours> near{};  // n records
+    const Site* drawn = nullptr;                       // one of them
+  };
+  Place find(const Vertex& v, Rng& rng) const {
+    Place place;
+    place.n = tree_.nearest(
+        place_of(v), std::span(place.near).first(static_cast<std::size_t>(settings_.neighbours)));
+    if (place.n > 0) {
+      place.drawn = &sites_[place.near[(std::uint64_t{rng.next_u32()} * place.n) >> 32]];
+    }
+    return place;
+  }
+
+  /// Calls `use(s, pick)` for a light path of each length in [1, longest], made with probability
+  /// `survival(s)`. All are drawn by one of the nearest records; their probability is the mean of
+  /// theirs.
+  template <class Survival, class Use>
+  void pick(const Place& place, const LightVertices& lights, int longest, Rng& rng,
+            Survival&& survival, Use&& use) const {
+    if (place.n == 0) {
+      pick_uniformly(lights, longest, rng, uniform, survival, use);
       return;
     }
-    const Site& drawn = sites_[near[(std::uint64_t{rng.next_u32()} * n) >> 32]];
     pick_all(
-        lights, longest, [&](int s) { return drawn.table(s).choose(rng); },
+        lights, longest, survival, [&](int s) { return place.drawn->table(s).choose(rng); },
         [&](int s, std::uint32_t chosen) {
-          const std::uint32_t i = drawn.table(s).resolve(chosen, rng).index;
+          const std::uint32_t i = place.drawn->table(s).resolve(chosen, rng).index;
           float sum = 0;
-          for (std::size_t k = 0; k < n; ++k) sum += sites_[near[k]].table(s).pmf(i).value;
-          return Pick{i, sum / static_cast<float>(n), drawn.table(s).owner(i)};
+          for (std::size_t k = 0; k < place.n; ++k) {
+            sum += sites_[place.near[k]].table(s).pmf(i).value;
+          }
+          return Pick{i, sum / static_cast<float>(place.n), place.drawn->table(s).owner(i)};
         },
         use);
   }
 
-  static void save(ByteWriter&) {}
-  static void load(ByteReader&) {}
   std::vector<std::pair<std::string, double>> statistics() const {
     return {{"records", static_cast<double>(records_.size())}};
   }
 
  private:
   static constexpr std::uint8_t uniform = 3;  // in `distributions`
-  static constexpr std::size_t max_neighbours = 64;
 
   static RecordTree::Place place_of(const Vertex& v) {
     const V3f& n = v.surface.ng;

@@ -10,8 +10,9 @@ namespace lacuna {
 /// A light vertex chosen for an eye vertex.
 struct Pick {
   std::uint32_t index = 0;  ///< LightVertices::at(s, index)
-  float probability = 0;    ///< of the choice, > 0
+  float probability = 0;    ///< of this one among those of its length, > 0
   std::uint8_t owner = 0;   ///< which of a site's distributions it belongs to
+  float survival = 1;       ///< probability of making it, > 0
 };
 
 /// The distributions over light vertices at one place, for each length of light paths.
@@ -32,36 +33,39 @@ class Site {
 
 /// Picks in two halves, `choose(s)` and `resolve(s, chosen)`, for all s in [1, longest] of which
 /// there are vertices, and then calls `use(s, pick)`: what each step reads from memory was asked
-/// for in the step before.
-template <class Choose, class Resolve, class Use>
-void pick_all(const LightVertices& lights, int longest, Choose&& choose, Resolve&& resolve,
-              Use&& use) {
-  constexpr int group = 8;
-  std::array<std::uint32_t, group> chosen;
+/// for in the step before. Each is made with probability `survival(s)` only; 0: not.
+template <class Survival, class Choose, class Resolve, class Use>
+void pick_all(const LightVertices& lights, int longest, Survival&& survival, Choose&& choose,
+              Resolve&& resolve, Use&& use) {
+  constexpr std::size_t group = 8;
+  struct Chosen {
+    int s;
+    float survival;
+    std::uint32_t index;
+  };
+  std::array<Chosen, group> chosen;
   std::array<Pick, group> picks;
-  for (int first = 1; first <= longest; first += group) {
-    const int n = std::min(group, longest - first + 1);
-    for (int k = 0; k < n; ++k) {
-      if (lights.count(first + k) > 0) chosen[static_cast<std::size_t>(k)] = choose(first + k);
+  for (int s = 1; s <= longest;) {
+    std::size_t n = 0;
+    for (; s <= longest && n < group; ++s) {
+      if (lights.count(s) == 0) continue;
+      if (const float p = survival(s); p > 0) chosen[n++] = {s, p, choose(s)};
     }
-    for (int k = 0; k < n; ++k) {
-      if (lights.count(first + k) == 0) continue;
-      const auto i = static_cast<std::size_t>(k);
-      picks[i] = resolve(first + k, chosen[i]);
-      lights.prefetch(first + k, picks[i].index);
+    for (std::size_t k = 0; k < n; ++k) {
+      picks[k] = resolve(chosen[k].s, chosen[k].index);
+      picks[k].survival = chosen[k].survival;
+      lights.prefetch(chosen[k].s, picks[k].index);
     }
-    for (int k = 0; k < n; ++k) {
-      if (lights.count(first + k) > 0) use(first + k, picks[static_cast<std::size_t>(k)]);
-    }
+    for (std::size_t k = 0; k < n; ++k) use(chosen[k].s, picks[k]);
   }
 }
 
 /// pick_all() of vertices that are all alike.
-template <class Use>
+template <class Survival, class Use>
 void pick_uniformly(const LightVertices& lights, int longest, Rng& rng, std::uint8_t owner,
-                    Use&& use) {
+                    Survival&& survival, Use&& use) {
   pick_all(
-      lights, longest,
+      lights, longest, survival,
       [&](int s) {
         return static_cast<std::uint32_t>((std::uint64_t{rng.next_u32()} * lights.count(s)) >> 32);
       },

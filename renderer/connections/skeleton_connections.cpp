@@ -14,22 +14,23 @@ void SkeletonConnections::prepare(const PrepareContext& context) {
   least_distance_ = transform.voxel_size / 2;
   lookup_.emplace(transform, context.space.filtered_map());
   sites_.resize(positions_.size());
-  mapped_.assign(positions_.size(), 0);
 }
 
-bool SkeletonConnections::accepted(std::size_t node) const {
+bool SkeletonConnections::accepted(std::uint64_t mapped, std::uint64_t sum) const {
   // Noel 2015, 11.4: left out are nodes "mapping to fewer eye vertices than the mean". Its formula
   // has <=, by which the only node of a small room would be left out, too.
-  const double mean = double(mapped_sum_) / double(mapped_.size());
-  return mapped_[node] > 0 && double(mapped_[node]) >= settings_.acceptance * mean;
+  const double mean = double(sum) / double(positions_.size());
+  return mapped > 0 && double(mapped) >= settings_.acceptance * mean;
 }
 
 void SkeletonConnections::begin(const IterationContext& context, const LightVertices& lights,
-                                Counters& counters) {
+                                const CellStatistics& seen, Counters& counters) {
+  std::uint64_t sum = 0;
+  for (std::size_t n = 0; n < sites_.size(); ++n) sum += seen.visits(static_cast<std::uint32_t>(n));
   std::vector<std::size_t> used;
   for (std::size_t n = 0; n < sites_.size(); ++n) {
     sites_[n].clear();
-    if (accepted(n)) used.push_back(n);
+    if (accepted(seen.visits(static_cast<std::uint32_t>(n)), sum)) used.push_back(n);
   }
   used_ = used.size();
   std::vector<std::uint64_t> rays(used.size());
@@ -65,26 +66,6 @@ std::uint64_t SkeletonConnections::build(std::size_t node, const Scene& scene,
     sites_[node].set(s, ResamplingTable(all, settings_.combination));
   }
   return rays_sent;
-}
-
-void SkeletonConnections::end(std::span<const Tally> tallies) {
-  for (const Tally& t : tallies) {
-    for (std::size_t n = 0; n < t.size(); ++n) {
-      mapped_[n] += t[n];
-      mapped_sum_ += t[n];
-    }
-  }
-}
-
-void SkeletonConnections::save(ByteWriter& out) const { out.put(mapped_); }
-
-void SkeletonConnections::load(ByteReader& in) {
-  std::vector<std::uint64_t> mapped = in.get_vector<std::uint64_t>();
-  if (mapped.size() != mapped_.size()) {
-    throw std::runtime_error("saved node counts are of another skeleton");
-  }
-  mapped_ = std::move(mapped);
-  mapped_sum_ = std::accumulate(mapped_.begin(), mapped_.end(), std::uint64_t{0});
 }
 
 std::vector<std::pair<std::string, double>> SkeletonConnections::statistics() const {

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "analysis/skeleton/surface_lookup.h"
+#include "renderer/connections/cell_statistics.h"
 #include "renderer/connections/site.h"
 #include "renderer/integrators/integrator.h"
 
@@ -19,29 +20,37 @@ class SkeletonConnections {
                                                                  "uniform"};
   static constexpr bool needs_space = true;
 
-  /// Eye vertices that belong to each node.
-  using Tally = std::vector<std::uint32_t>;
-  Tally tally() const { return Tally(positions_.size(), 0); }
-
   void prepare(const PrepareContext& context);
+  /// The nodes, and one for what belongs to none.
+  std::size_t cells() const { return positions_.size() + 1; }
   /// Builds the distributions of the nodes that enough eye vertices of the iterations before
   /// belonged to; of the first iteration none.
-  void begin(const IterationContext& context, const LightVertices& lights, Counters& counters);
-  void end(std::span<const Tally> tallies);
+  void begin(const IterationContext& context, const LightVertices& lights,
+             const CellStatistics& seen, Counters& counters);
 
-  /// Calls `use(s, pick)` for a light path of each length in [1, longest], to be joined to `v`.
-  template <class Use>
-  void pick(const Vertex& v, int /*depth*/, const LightVertices& lights, int longest, Rng& rng,
-            Tally& tally, Use&& use) const {
+  /// Where connections from an eye vertex are drawn.
+  struct Place {
+    std::uint32_t cell = 0;      ///< of CellStatistics
+    const Site* site = nullptr;  // none: uniformly
+  };
+  Place find(const Vertex& v, Rng&) const {
     const std::uint32_t node = lookup_->node(V3d(v.surface.x), V3d(v.surface.ng), V3d(v.wp));
-    if (node != no_node) ++tally[node];
-    if (node == no_node || sites_[node].empty()) {
-      pick_uniformly(lights, longest, rng, uniform, use);
+    if (node == no_node) return {static_cast<std::uint32_t>(positions_.size()), nullptr};
+    return {node, sites_[node].empty() ? nullptr : &sites_[node]};
+  }
+
+  /// Calls `use(s, pick)` for a light path of each length in [1, longest], made with probability
+  /// `survival(s)`.
+  template <class Survival, class Use>
+  void pick(const Place& place, const LightVertices& lights, int longest, Rng& rng,
+            Survival&& survival, Use&& use) const {
+    if (place.site == nullptr) {
+      pick_uniformly(lights, longest, rng, uniform, survival, use);
       return;
     }
-    const Site& site = sites_[node];
+    const Site& site = *place.site;
     pick_all(
-        lights, longest, [&](int s) { return site.table(s).choose(rng); },
+        lights, longest, survival, [&](int s) { return site.table(s).choose(rng); },
         [&](int s, std::uint32_t chosen) {
           const AliasTable::Draw d = site.table(s).resolve(chosen, rng);
           return Pick{d.index, d.pmf.value, site.table(s).owner(d.index)};
@@ -49,16 +58,12 @@ class SkeletonConnections {
         use);
   }
 
-  /// How many eye vertices belonged to each node, in all iterations so far.
-  void save(ByteWriter& out) const;
-  /// Throws std::runtime_error if they are not of this skeleton.
-  void load(ByteReader& in);
   std::vector<std::pair<std::string, double>> statistics() const;
 
  private:
   static constexpr std::uint8_t uniform = 2;  // in `distributions`
 
-  bool accepted(std::size_t node) const;
+  bool accepted(std::uint64_t mapped, std::uint64_t sum) const;
   std::uint64_t build(std::size_t node, const Scene& scene, const LightVertices& lights);
 
   SkeletonSettings settings_;
@@ -66,8 +71,6 @@ class SkeletonConnections {
   double least_distance_ = 0;
   std::optional<SurfaceLookup> lookup_;
   std::vector<Site> sites_;
-  std::vector<std::uint64_t> mapped_;
-  std::uint64_t mapped_sum_ = 0;
   std::size_t used_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "renderer/connections/cell_statistics.h"
 #include "renderer/connections/site.h"
 #include "renderer/integrators/integrator.h"
 
@@ -14,23 +15,25 @@ class UniformConnections {
   static constexpr std::array<std::string_view, 1> distributions{"uniform"};
   static constexpr bool needs_space = false;
 
-  /// What the threads of an iteration count apart and end() adds up.
-  struct Tally {};
-  Tally tally() const { return {}; }
-  void prepare(const PrepareContext&) {}
-  void begin(const IterationContext&, const LightVertices&, Counters&) {}
-  void end(std::span<const Tally>) {}
+  static void prepare(const PrepareContext&) {}
+  static std::size_t cells() { return 1; }
+  static void begin(const IterationContext&, const LightVertices&, const CellStatistics&,
+                    Counters&) {}
 
-  /// Calls `use(s, pick)` for a light path of each length in [1, longest], to be joined to `v`.
-  template <class Use>
-  void pick(const Vertex&, int /*depth*/, const LightVertices& lights, int longest, Rng& rng,
-            Tally&, Use&& use) const {
-    pick_uniformly(lights, longest, rng, 0, use);
+  /// Where connections from an eye vertex are drawn.
+  struct Place {
+    std::uint32_t cell = 0;  ///< of CellStatistics
+  };
+  static Place find(const Vertex&, Rng&) { return {}; }
+
+  /// Calls `use(s, pick)` for a light path of each length in [1, longest], made with probability
+  /// `survival(s)`.
+  template <class Survival, class Use>
+  static void pick(const Place&, const LightVertices& lights, int longest, Rng& rng,
+                   Survival&& survival, Use&& use) {
+    pick_uniformly(lights, longest, rng, 0, survival, use);
   }
-
-  void save(ByteWriter&) const {}
-  void load(ByteReader&) {}
-  std::vector<std::pair<std::string, double>> statistics() const { return {}; }
+  static std::vector<std::pair<std::string, double>> statistics() { return {}; }
 
  private:
   UniformSettings settings_;

@@ -16,11 +16,14 @@ using Guide = BsdfGuide;
 
 /// What a strategy gives to a pixel of the tile, if nothing lies between.
 struct Contribution {
-  Rgb value;     ///< unweighted
-  float weight;  ///< MIS
-  std::uint32_t pixel;
-  std::uint16_t s, t;  ///< vertices made from the light and from the eye
-  std::uint8_t distribution;
+  std::uint32_t pixel = 0;
+  std::uint8_t distribution = 0;
+  float survival = 1;          ///< probability with which it was made; `value` is divided by it
+  float throughput = 0;        ///< luminance of the eye vertex'
+  std::uint32_t cell = 0;      ///< of the eye vertex: CellStatistics
+  Rgb value{0, 0, 0};          ///< unweighted
+  float weight = 0;            ///< MIS
+  std::uint16_t s = 0, t = 0;  ///< vertices made from the light and from the eye
 };
 
 /// CPU seconds of the process since the last end().
@@ -61,23 +64,28 @@ class Bdpt : public Integrator {
     return v.bsdf->connectible() ? settings_.max_depth - depth : 0;
   }
 
-  /// Joins `eye` and `light`; the sum over light paths is estimated with 1 / `samples` of it.
+  /// Joins `eye` and `light` for a pixel; the sum over light paths is estimated with 1 / `samples`
+  /// of it. What it is not told of a contribution is taken from `known`.
   template <class Light>
   static void join(const SurfaceEnd<Guide>& eye, const Light& light, double samples,
-                   const SampleCounts& counts, std::uint32_t pixel, std::uint8_t distribution,
+                   const SampleCounts& counts, Contribution known,
                    ShadowQueue<Contribution>& queue) {
     const Connection c = connect(eye, light);
     if (!c) return;
-    queue.add(shadow_ray(eye, light, c), {c.contribution / static_cast<float>(samples),
-                                          static_cast<float>(weight(eye, light, c, counts)), pixel,
-                                          static_cast<std::uint16_t>(light.index + 1),
-                                          static_cast<std::uint16_t>(eye.index + 1), distribution});
+    known.value = c.contribution / static_cast<float>(samples);
+    known.weight = static_cast<float>(weight(eye, light, c, counts));
+    known.s = static_cast<std::uint16_t>(light.index + 1);
+    known.t = static_cast<std::uint16_t>(eye.index + 1);
+    queue.add(shadow_ray(eye, light, c), known);
   }
 
+  /// Adds what arrives to `image` and hands it to `arrived(contribution)`.
+  template <class Arrived>
   void flush(const IterationContext& context, ShadowQueue<Contribution>& queue, Image& image,
-             Counters& counters) const {
+             Counters& counters, Arrived&& arrived) const {
     queue.flush(context.scene.rays(), counters, [&](const Contribution& c) {
       accumulate(image.pixels[c.pixel], c.value * c.weight, counters);
+      arrived(c);
       layers_.strategy(context.layers, c.s, c.t, c.pixel, c.value, c.weight);
       layers_.distribution(context.layers, c.distribution, c.pixel, c.value * c.weight);
     });
@@ -136,7 +144,7 @@ class PairedBdpt final : public Bdpt {
         for (std::size_t k = 0; k < pairs.eye.walkers.size(); ++k) {
           accumulate(image.pixels[pairs.eye.pixels[k]], pairs.eye.radiance[k], counters);
         }
-        flush(context, pairs.queue, image, counters);
+        flush(context, pairs.queue, image, counters, [](const Contribution&) {});
       }
     };
     return for_each_splatting_part(context, tiling.tiles(), image, work, splat_layers(context));
@@ -175,18 +183,17 @@ class PairedBdpt final : public Bdpt {
       if (longest == 0 || counts.nee == 0) return;
       const SurfaceEnd<Guide> eye{v, depth, Transport::radiance, guide_};
       const EmitterPoint e = lights.sample(pairs.chosen[i], pairs.eye.walkers[i].rng);
-      join(eye, EmitterEnd{e}, 1, counts, pairs.eye.pixels[i], 0, pairs.queue);
+      join(eye, EmitterEnd{e}, 1, counts, {pairs.eye.pixels[i]}, pairs.queue);
       for (int s = 2; s <= std::min(longest, pairs.light.length(i)); ++s) {
         if (!pairs.light.vertex(i, s - 1).bsdf->connectible()) continue;
-        join(eye, pairs.light.end(i, s - 1), 1, counts, pairs.eye.pixels[i], 0, pairs.queue);
+        join(eye, pairs.light.end(i, s - 1), 1, counts, {pairs.eye.pixels[i]}, pairs.queue);
       }
     });
   }
 };
 
-/// Connections with light paths that all pixels share, resampled at each eye vertex. The first of
-/// the paths that meet the eye itself (t = 1), of which there is one for each pixel, are those that
-/// are resampled.
+/// Connections with light paths that all pixels share, resampled at each eye vertex: the first of
+/// the paths that meet the eye itself (t = 1).
 template <class Connections>
 class ResampledBdpt final : public Bdpt {
  public:
@@ -200,7 +207,10 @@ class ResampledBdpt final : public Bdpt {
   std::vector<std::string> layers(std::span<const ImageLayer> wanted) override {
     return layers_.choose(wanted, settings_.max_depth, Connections::distributions);
   }
-  void prepare(const PrepareContext& context) override { connections_.prepare(context); }
+  void prepare(const PrepareContext& context) override {
+    connections_.prepare(context);
+    seen_.resize(connections_.cells());
+  }
   std::vector<std::pair<std::string, double>> statistics() const override {
     auto told = connections_.statistics();
     told.emplace_back("light_pass_cpu_seconds", seconds_.light);
@@ -208,13 +218,15 @@ class ResampledBdpt final : public Bdpt {
     told.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
     return told;
   }
-  void save(ByteWriter& out) const override { connections_.save(out); }
-  void load(ByteReader& in) override { connections_.load(in); }
+  void save(ByteWriter& out) const override { seen_.save(out); }
+  void load(ByteReader& in) override { seen_.load(in); }
 
   Counters iterate(const IterationContext& context, Image& image) override {
     const bool lit = !context.scene.emitters().empty();
     const auto resampled = static_cast<std::size_t>(connections_.resampling().light_paths);
-    const std::int64_t paths = std::max(pixels(image), static_cast<std::int64_t>(resampled));
+    const double splatted = connections_.resampling().splat_paths * double(pixels(image));
+    const auto paths = std::max(static_cast<std::int64_t>(std::ceil(splatted)),
+                                static_cast<std::int64_t>(resampled));
     const double asked = connections_.resampling().count_as;
     const double count = asked > 0 ? asked : static_cast<double>(resampled);
     const SampleCounts counts =
@@ -232,7 +244,7 @@ class ResampledBdpt final : public Bdpt {
         splat_layers(context));
     lights.arrange();
     pass.end(seconds_.light);
-    connections_.begin(context, lights, counters);
+    connections_.begin(context, lights, seen_, counters);
     pass.end(seconds_.distributions);
     counters += eye_pass(context, counts, lights, image);
     pass.end(seconds_.eye);
@@ -243,46 +255,82 @@ class ResampledBdpt final : public Bdpt {
   Counters eye_pass(const IterationContext& context, const SampleCounts& counts,
                     const LightVertices& lights, Image& image) {
     const Tiling tiling(image);
-    std::vector<typename Connections::Tally> tallies(static_cast<std::size_t>(tiling.tiles()));
+    std::vector<CellStatistics::Tally> tallies(static_cast<std::size_t>(tiling.tiles()));
     const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
-      auto& tally = tallies[static_cast<std::size_t>(i)] = connections_.tally();
-      EyeBatch batch(settings_.max_depth);
-      ShadowQueue<Contribution> queue;
+      const auto index = static_cast<std::size_t>(i);
+      EyePart part{counts,
+                   lights,
+                   connections_.resampling().roulette * seen_.mean(index),
+                   EyeBatch(settings_.max_depth),
+                   {},
+                   CellStatistics::Tally(seen_.cells())};
       Walk<Guide> walk(context.scene, guide_, eye_limits(counts), counters);
       const Tile tile = tiling.tile(i);
       for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
-        start_paths(context, image, tile, first, batch);
-        counters.samples += batch.walkers.size();
+        start_paths(context, image, tile, first, part.batch);
+        counters.samples += part.batch.walkers.size();
         walk.lead(
-            batch.walkers, [](std::size_t, int) {},
+            part.batch.walkers, [](std::size_t, int) {},
             [&](std::size_t k, int depth) {
-              gather_hit(context, counts, batch, k, depth);
-              join_lights(counts, lights, batch, k, depth, tally, queue);
+              gather_hit(context, counts, part.batch, k, depth);
+              join_lights(part, k, depth);
             });
-        for (std::size_t k = 0; k < batch.walkers.size(); ++k) {
-          accumulate(image.pixels[batch.pixels[k]], batch.radiance[k], counters);
+        for (std::size_t k = 0; k < part.batch.walkers.size(); ++k) {
+          accumulate(image.pixels[part.batch.pixels[k]], part.batch.radiance[k], counters);
         }
-        flush(context, queue, image, counters);
+        flush(context, part.queue, image, counters,
+              [&](const Contribution& c) { arrived(c, part.tally); });
       }
+      part.tally.paths(static_cast<std::uint64_t>(tile.pixels()));
+      part.tally.close();
+      tallies[index] = std::move(part.tally);
     });
-    connections_.end(tallies);
+    seen_.add(tallies);
     return sum;
   }
 
-  void join_lights(const SampleCounts& counts, const LightVertices& lights, EyeBatch& batch,
-                   std::size_t k, int depth, typename Connections::Tally& tally,
-                   ShadowQueue<Contribution>& queue) const {
-    const Vertex& v = batch.vertex(k, depth);
+  /// What the eye's paths of a tile work with.
+  struct EyePart {
+    const SampleCounts& counts;
+    const LightVertices& lights;
+    double enough;  // CellStatistics::survival()
+    EyeBatch batch;
+    ShadowQueue<Contribution> queue;
+    CellStatistics::Tally tally;
+  };
+
+  static void arrived(const Contribution& c, CellStatistics::Tally& tally) {
+    const double value = double(luminance(c.value * c.weight));
+    if (!std::isfinite(value)) return;
+    tally.gathered(value);
+    if (c.throughput > 0) {
+      tally.arrived(c.cell, c.s, value * double(c.survival) / double(c.throughput),
+                    double(c.survival));
+    }
+  }
+
+  void join_lights(EyePart& part, std::size_t k, int depth) const {
+    const Vertex& v = part.batch.vertex(k, depth);
     const int longest = longest_light_path(v, depth);
-    if (longest == 0 || lights.paths() == 0) return;
+    if (longest == 0 || part.lights.paths() == 0) return;
+    Rng& rng = part.batch.walkers[k].rng;
     const SurfaceEnd<Guide> eye{v, depth, Transport::radiance, guide_};
-    connections_.pick(
-        v, depth, lights, longest, batch.walkers[k].rng, tally, [&](int s, const Pick& pick) {
-          const double samples = static_cast<double>(lights.paths()) * double(pick.probability);
-          lights.with_end(s, pick.index, guide_, [&](const auto& light) {
-            join(eye, light, samples, counts, batch.pixels[k], pick.owner, queue);
-          });
-        });
+    const auto place = connections_.find(v, rng);
+    part.tally.visit(place.cell);
+    const float throughput = luminance(v.throughput);
+    const auto survival = [&](int s) {
+      part.tally.asked(place.cell, s);
+      const float p = seen_.survival(place.cell, s, double(throughput), part.enough);
+      return p >= 1 || rng.next() < p ? p : 0.0F;
+    };
+    connections_.pick(place, part.lights, longest, rng, survival, [&](int s, const Pick& pick) {
+      const double samples = static_cast<double>(part.lights.paths()) * double(pick.probability) *
+                             double(pick.survival);
+      part.lights.with_end(s, pick.index, guide_, [&](const auto& light) {
+        join(eye, light, samples, part.counts,
+             {part.batch.pixels[k], pick.owner, pick.survival, throughput, place.cell}, part.queue);
+      });
+    });
   }
 
   /// CPU seconds of all threads in the parts of an iteration.
@@ -290,6 +338,7 @@ class ResampledBdpt final : public Bdpt {
     double light = 0, distributions = 0, eye = 0;
   } seconds_;
   Connections connections_;
+  CellStatistics seen_;
 };
 
 }  // namespace

@@ -4,11 +4,12 @@
 
 #include "renderer/settings/connections_settings.h"
 #include "renderer/settings/output_settings.h"
+#include "renderer/settings/path_lengths.h"
 
 namespace lacuna {
 
 /// integrator: bdpt.
-struct BdptSettings {
+struct BdptSettings : PathLengths {
   static constexpr std::string_view name = "bdpt";
   static constexpr std::string_view doc =
       "bidirectional path tracing with all strategies (Noel 2015, 4.3), and with resampled "
@@ -17,27 +18,15 @@ struct BdptSettings {
   static constexpr std::array layers{ImageLayer::strategies, ImageLayer::strategies_unweighted,
                                      ImageLayer::distributions};
 
-  int max_depth = 6;
   ConnectionsSettings connections = PairedSettings{};
-  int roulette_depth = 8;
 
   bool operator==(const BdptSettings&) const = default;
 };
 
 template <class V>
 void describe(V& v, BdptSettings& s) {
-  v("max_depth", s.max_depth,
-    {.doc = "longest path: 1 = emitters seen directly, 2 = direct light",
-     .min = 1,
-     .max = 1024,
-     .unit = "edges"});
+  describe_lengths(v, s);
   v("connections", s.connections, {.doc = "which light vertices meet an eye vertex"});
-  v("roulette_depth", s.roulette_depth,
-    {.doc = "paths longer than this, from the eye or a light, may end by Russian roulette on their "
-            "throughput",
-     .min = 1,
-     .max = 1024,
-     .unit = "edges"});
 }
 
 }  // namespace lacuna

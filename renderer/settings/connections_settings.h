@@ -36,6 +36,8 @@ struct EnumTable<LightSides> {
 struct ResamplingSettings {
   int light_paths = 1024;
   int count_as = 8;
+  double splat_paths = 0.25;
+  double roulette = 0.3;
   bool operator==(const ResamplingSettings&) const = default;
 };
 
@@ -45,6 +47,11 @@ void describe_resampling(V& v, ResamplingSettings& s) {
     {.doc = "light paths an iteration that eye paths are joined to, shared by all pixels",
      .min = 1,
      .max = 1 << 16});
+  v("splat_paths", s.splat_paths,
+    {.doc = "light paths an iteration that are joined to the eye, as a share of the pixels; those "
+            "that eye paths are joined to always are",
+     .min = 0,
+     .max = 16});
   v("count_as", s.count_as,
     {.doc =
          "as how many samples a connection with a resampled path of two vertices or more counts "
@@ -52,6 +59,13 @@ void describe_resampling(V& v, ResamplingSettings& s) {
          "one. 0: both as many as there are light paths (Noel 2015, 11.5)",
      .min = 0,
      .max = 1 << 16});
+  v("roulette", s.roulette,
+    {.doc =
+         "a connection is made with a probability in proportion to what those of its length gave "
+         "in its part of the empty space before; certainly, if that is this share of what all "
+         "connections of a path give in its part of the picture. 0: all are made",
+     .min = 0,
+     .max = 1});
 }
 
 /// connections: paired.

@@ -16,6 +16,14 @@ using test::Session;
 
 std::vector<test::Method> bidirectional(int max_depth) {
   std::vector<test::Method> all = test::connections(max_depth, 100);
+  for (test::Method& m : all) {  // so that what was learned is used everywhere
+    auto& connections = std::get<BdptSettings>(m.settings).connections;
+    std::visit(
+        [](auto& s) {
+          if constexpr (requires { s.roulette; }) s.roulette = 1;
+        },
+        connections);
+  }
   all.push_back({"light", test::light_tracing(max_depth)});
   return all;
 }

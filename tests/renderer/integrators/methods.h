@@ -15,20 +15,20 @@ struct Method {
   friend std::ostream& operator<<(std::ostream& out, const Method& m) { return out << m.name; }
 };
 
+/// Without roulette, which costs power where paths must be long (agreement_test.cpp has it apart).
+inline PathLengths whole_paths(int max_depth) {
+  return {.max_depth = max_depth, .roulette_depth = max_depth};
+}
 inline PathSettings path_tracing(int max_depth) {
-  PathSettings s;
-  s.max_depth = max_depth;
-  return s;
+  return {whole_paths(max_depth)};
 }
 inline LightSettings light_tracing(int max_depth, int paths = 0) {
-  LightSettings s;
-  s.max_depth = max_depth;
+  LightSettings s{whole_paths(max_depth)};
   s.light_paths = paths;
   return s;
 }
 inline BdptSettings joining(int max_depth, const ConnectionsSettings& connections) {
-  BdptSettings s;
-  s.max_depth = max_depth;
+  BdptSettings s{whole_paths(max_depth)};
   s.connections = connections;
   return s;
 }

@@ -1,0 +1,53 @@
+#include "renderer/connections/cell_statistics.h"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace lacuna {
+
+void CellStatistics::add(std::span<const Tally> tallies) {
+  tiles_.resize(std::max(tiles_.size(), tallies.size()));
+  for (std::size_t i = 0; i < tallies.size(); ++i) {
+    const Tally& t = tallies[i];
+    for (const Tally::Met& met : t.met_) {
+      Cell& sum = cells_[met.cell];
+      sum.visits += met.sums.visits;
+      for (std::size_t k = 0; k < lengths; ++k) {
+        sum.asked[k] += met.sums.asked[k];
+        sum.squares[k] += met.sums.squares[k];
+      }
+    }
+    tiles_[i].gathered += t.gathered_;
+    tiles_[i].paths += t.paths_;
+  }
+  expect();
+}
+
+void CellStatistics::expect() {
+  expected_.assign(cells_.size() * lengths, std::numeric_limits<double>::infinity());
+  for (std::size_t c = 0; c < cells_.size(); ++c) {
+    for (std::size_t k = 0; k < lengths; ++k) {
+      const double asked = static_cast<double>(cells_[c].asked[k]);
+      if (cells_[c].asked[k] < least_asked) continue;
+      expected_[c * lengths + k] = std::sqrt(cells_[c].squares[k] / asked);
+    }
+  }
+}
+
+void CellStatistics::save(ByteWriter& out) const {
+  out.put(cells_);
+  out.put(tiles_);
+}
+
+void CellStatistics::load(ByteReader& in) {
+  std::vector<Cell> cells = in.get_vector<Cell>();
+  if (cells.size() != cells_.size()) {
+    throw std::runtime_error("saved counts of eye vertices are of another skeleton");
+  }
+  cells_ = std::move(cells);
+  tiles_ = in.get_vector<TileSums>();
+  expect();
+}
+
+}  // namespace lacuna
