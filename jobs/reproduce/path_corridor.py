@@ -27,7 +27,7 @@ def sweep(full):
 
 def mean_radiance(run, cell):
     """Of the reference that the runs were compared with."""
-    report = json.loads((run.sweep_folder / "runs" / cell["runs"][0]["name"] / "report.json").read_text())
+    report = json.loads((run.runs / cell["runs"][0]["name"] / "report.json").read_text())
     reference = report["errors"]["reference"]["file"]
     lines = dict(line.split(maxsplit=1) for line in child.lacuna("compare", reference, reference)[0].splitlines())
     return float(lines["mean_b"])

@@ -55,7 +55,7 @@ void ImportanceCacheConnections::place_records(const IterationContext& context, 
 
 void ImportanceCacheConnections::begin(const IterationContext& context, const LightVertices& lights,
                                        const CellStatistics&, Counters& counters) {
-  place_records(context, lights.longest(), counters);
+  place_records(context, std::min(lights.longest(), record_depth_), counters);
   double bytes = 0;
   for (int s = 1; s <= lights.longest(); ++s) {
     bytes += static_cast<double>(records_.size()) * static_cast<double>(lights.count(s)) *

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "renderer/connections/cell_statistics.h"
 #include "renderer/connections/record_tree.h"
 #include "renderer/connections/site.h"
@@ -15,8 +17,10 @@ class ImportanceCacheConnections {
   static constexpr std::size_t max_neighbours = 64;
 
  public:
-  explicit ImportanceCacheConnections(const ImportanceCacheSettings& settings)
-      : settings_(settings) {}
+  /// Records are placed up to `record_depth` edges from the eye.
+  explicit ImportanceCacheConnections(const ImportanceCacheSettings& settings,
+                                      int record_depth = std::numeric_limits<int>::max())
+      : settings_(settings), record_depth_(record_depth) {}
 
   const ResamplingSettings& resampling() const { return settings_; }
   static constexpr std::array<std::string_view, 4> distributions{"full", "unshadowed", "bounded",
@@ -37,7 +41,7 @@ class ImportanceCacheConnections {
     std::array<std::uint32_t, max_neighbours> near{};  // n records
     const Site* drawn = nullptr;                       // one of them
   };
-  Place find(const Vertex& v, Rng& rng) const {
+  Place find(const Vertex& v, int /*depth*/, Rng& rng) const {
     Place place;
     place.n = tree_.nearest(
         place_of(v), std::span(place.near).first(static_cast<std::size_t>(settings_.neighbours)));
@@ -86,6 +90,7 @@ class ImportanceCacheConnections {
                       const LightVertices& lights) const;
 
   ImportanceCacheSettings settings_;
+  int record_depth_;
   BsdfGuide guide_;
   std::vector<Vertex> records_;
   std::vector<Site> sites_;

@@ -33,7 +33,7 @@ class SkeletonConnections {
     std::uint32_t cell = 0;      ///< of CellStatistics
     const Site* site = nullptr;  // none: uniformly
   };
-  Place find(const Vertex& v, Rng&) const {
+  Place find(const Vertex& v, int /*depth*/, Rng&) const {
     const std::uint32_t node = lookup_->node(V3d(v.surface.x), V3d(v.surface.ng), V3d(v.wp));
     if (node == no_node) return {static_cast<std::uint32_t>(positions_.size()), nullptr};
     return {node, sites_[node].empty() ? nullptr : &sites_[node]};

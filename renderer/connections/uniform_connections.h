@@ -24,7 +24,7 @@ class UniformConnections {
   struct Place {
     std::uint32_t cell = 0;  ///< of CellStatistics
   };
-  static Place find(const Vertex&, Rng&) { return {}; }
+  static Place find(const Vertex&, int /*depth*/, Rng&) { return {}; }
 
   /// Calls `use(s, pick)` for a light path of each length in [1, longest], made with probability
   /// `survival(s)`.

@@ -1,7 +1,6 @@
 #include "renderer/integrators/bdpt.h"
 
-#include "renderer/connections/importance_cache.h"
-#include "renderer/connections/skeleton_connections.h"
+#include "renderer/connections/hybrid_connections.h"
 #include "renderer/connections/uniform_connections.h"
 #include "renderer/core/clock_seconds.h"
 #include "renderer/guides/bsdf_guide.h"
@@ -315,7 +314,7 @@ class ResampledBdpt final : public Bdpt {
     if (longest == 0 || part.lights.paths() == 0) return;
     Rng& rng = part.batch.walkers[k].rng;
     const SurfaceEnd<Guide> eye{v, depth, Transport::radiance, guide_};
-    const auto place = connections_.find(v, rng);
+    const auto place = connections_.find(v, depth, rng);
     part.tally.visit(place.cell);
     const float throughput = luminance(v.throughput);
     const auto survival = [&](int s) {
@@ -357,6 +356,9 @@ std::unique_ptr<Integrator> make_bdpt(const BdptSettings& settings) {
     }
     std::unique_ptr<Integrator> operator()(const ImportanceCacheSettings& s) const {
       return std::make_unique<ResampledBdpt<ImportanceCacheConnections>>(settings, s);
+    }
+    std::unique_ptr<Integrator> operator()(const HybridSettings& s) const {
+      return std::make_unique<ResampledBdpt<HybridConnections>>(settings, s);
     }
   };
   return std::visit(Make{settings}, settings.connections);

@@ -104,14 +104,18 @@ struct SkeletonSettings : ResamplingSettings {
   LightSides sides = LightSides::facing;
   bool operator==(const SkeletonSettings&) const = default;
 };
-template <class V>
-void describe(V& v, SkeletonSettings& s) {
-  describe_resampling(v, s);
+template <class V, class S>
+void describe_acceptance(V& v, S& s) {
   v("acceptance", s.acceptance,
     {.doc = "a node has distributions if more eye vertices belonged to it than this times the mean "
             "over nodes; elsewhere light paths are drawn uniformly",
      .min = 0,
      .max = 1e6});
+}
+template <class V>
+void describe(V& v, SkeletonSettings& s) {
+  describe_resampling(v, s);
+  describe_acceptance(v, s);
   v("visible", s.visible,
     {.doc = "distribution V: contribution over squared distance, of what the node sees (eq. 188)"});
   v("unshadowed", s.unshadowed, {.doc = "distribution U: the same of all (eq. 189)"});
@@ -133,9 +137,8 @@ struct ImportanceCacheSettings : ResamplingSettings {
   Combination combination = Combination::mixture;
   bool operator==(const ImportanceCacheSettings&) const = default;
 };
-template <class V>
-void describe(V& v, ImportanceCacheSettings& s) {
-  describe_resampling(v, s);
+template <class V, class S>
+void describe_records(V& v, S& s) {
   v("record_density", s.record_density,
     {.doc = "paths from the eye whose vertices become records, as a share of the pixels",
      .min = 0,
@@ -143,6 +146,11 @@ void describe(V& v, ImportanceCacheSettings& s) {
      .above_min = true});
   v("neighbours", s.neighbours,
     {.doc = "nearest records of an eye vertex, one of which is drawn", .min = 1, .max = 64});
+}
+template <class V>
+void describe(V& v, ImportanceCacheSettings& s) {
+  describe_resampling(v, s);
+  describe_records(v, s);
   v("full", s.full, {.doc = "distribution F: the record's whole contribution, with visibility"});
   v("unshadowed", s.unshadowed, {.doc = "distribution U: the same without visibility"});
   v("bounded", s.bounded,
@@ -151,8 +159,50 @@ void describe(V& v, ImportanceCacheSettings& s) {
   v("combination", s.combination, {.doc = "of F, U, B and the uniform distribution C"});
 }
 
+/// connections: hybrid. Records are dense where the eye looks and too few elsewhere; nodes are
+/// everywhere.
+struct HybridSettings : ResamplingSettings {
+  static constexpr std::string_view name = "hybrid";
+  static constexpr std::string_view doc =
+      "as importance_cache at the first vertices of an eye's path, as skeleton beyond (Noel 2015, "
+      "11.6)";
+
+  int cached_depth = 1;
+  double record_density = ImportanceCacheSettings{}.record_density;
+  int neighbours = ImportanceCacheSettings{}.neighbours;
+  double acceptance = SkeletonSettings{}.acceptance;
+  Combination combination = Combination::mixture;
+  bool operator==(const HybridSettings&) const = default;
+
+  ImportanceCacheSettings cache() const {
+    ImportanceCacheSettings s{*this};
+    s.record_density = record_density;
+    s.neighbours = neighbours;
+    s.combination = combination;
+    return s;
+  }
+  SkeletonSettings skeleton() const {
+    SkeletonSettings s{*this};
+    s.acceptance = acceptance;
+    s.combination = combination;
+    return s;
+  }
+};
+template <class V>
+void describe(V& v, HybridSettings& s) {
+  describe_resampling(v, s);
+  v("cached_depth", s.cached_depth,
+    {.doc = "vertices up to this many edges from the eye use records",
+     .min = 1,
+     .max = 1024,
+     .unit = "edges"});
+  describe_records(v, s);
+  describe_acceptance(v, s);
+  v("combination", s.combination, {.doc = "of F and C at records, and of V, U and C at nodes"});
+}
+
 /// Which light vertices meet an eye vertex.
-using ConnectionsSettings =
-    std::variant<PairedSettings, UniformSettings, SkeletonSettings, ImportanceCacheSettings>;
+using ConnectionsSettings = std::variant<PairedSettings, UniformSettings, SkeletonSettings,
+                                         ImportanceCacheSettings, HybridSettings>;
 
 }  // namespace lacuna

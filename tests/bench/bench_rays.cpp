@@ -12,7 +12,9 @@
 #include <span>
 #include <string>
 
+#include "analysis/space/memory_limit.h"
 #include "renderer/integrators/integrator.h"
+#include "renderer/scene/scene_shape.h"
 
 namespace {
 
@@ -51,12 +53,13 @@ double median(std::vector<double> v) {
 }
 
 IntegratorSettings settings_of(const std::string& method, int max_depth) {
-  if (method == "light") return LightSettings{.max_depth = max_depth};
-  if (method == "bdpt") return BdptSettings{.max_depth = max_depth};
+  const PathLengths whole{.max_depth = max_depth, .roulette_depth = max_depth};
+  if (method == "light") return LightSettings{whole};
+  if (method == "bdpt") return BdptSettings{whole};
   if (method == "bdpt-uniform") {
-    return BdptSettings{.max_depth = max_depth, .connections = UniformSettings{}};
+    return BdptSettings{whole, UniformSettings{{.roulette = 0}}};  // the same rays every time
   }
-  if (method == "path") return PathSettings{.max_depth = max_depth};
+  if (method == "path") return PathSettings{whole};
   fmt::print(stderr, "bench_rays: no method {}\n", method);
   std::exit(2);
 }
@@ -77,7 +80,17 @@ int main(int argc, char** argv) {
   const ThreadPool pool(0);
   const auto integrator = make_integrator(settings_of(method, std::atoi(argv[4])));
   const Scene scene(load_gltf(argv[1]), integrator->needs(), std::nullopt, pool);
-  const Camera camera(scene.data().cameras.front(), size.x, size.y);
+  const CameraData& eye = scene.data().cameras.front();
+  const Camera camera(eye, size.x, size.y);
+  ArtefactStore store{{}};
+  SpaceAnalysis space{{.triangles = [&] { return triangle_soup(scene.data()); },
+                       .geometry = geometry_key(scene.data()),
+                       .seeds = [&] { return domain_seeds(scene.data(), eye, false); },
+                       .settings = {},
+                       .byte_limit = [] { return no_memory_limit; }},
+                      store,
+                      pool};
+  integrator->prepare({scene, pool, space});
   const std::function<bool()> never = [] { return false; };
   std::vector<RecordedRay> recording;
   {

@@ -36,7 +36,7 @@ class Table:
 
 class Run:
     """What the script of `entry` measures with. `full`: as the paper did, as far as this machine allows, instead of in
-    minutes. `folder` holds results from one start to the next."""
+    minutes. `folder` holds results from one start to the next, `runs` the results of the last sweep's jobs."""
 
     def __init__(self, entry, full, out):
         self.entry, self.full, self.folder = entry, full, out / entry.name
@@ -62,11 +62,14 @@ class Run:
     def note(self, text):
         self.notes.append(text)
 
-    def answers(self, sweep):
+    def answers(self, sweep, shared=None):
         """Renders what is left of a sweep (the value of its file) and gives what `lacuna report --json` says of it. Its
-        file and its folder lie in `folder`, so that the same command goes on where one was stopped. Throws Failed."""
-        self.folder.mkdir(parents=True, exist_ok=True)
-        file, runs = self.folder / f"{self.version}.json", self.sweep_folder
+        file and its folder lie in `folder`, so that the same command goes on where one was stopped, or in that of all
+        entries that measure with the `shared` sweep. Throws Failed."""
+        folder = self.folder.with_name(shared) if shared else self.folder
+        folder.mkdir(parents=True, exist_ok=True)
+        file, runs = folder / f"{self.version}.json", folder / f"{self.version}.sweep"
+        self.runs = runs / "runs"
         fresh = file.with_suffix(".new")
         fresh.write_text(json.dumps(sweep, indent=2) + "\n")
         os.replace(fresh, file)
@@ -81,10 +84,6 @@ class Run:
             raise child.Failed(f"no run is done of: {'; '.join(empty)} ({runs})")
         self.notes += answers["warnings"]
         return answers
-
-    @property
-    def sweep_folder(self):
-        return self.folder / f"{self.version}.sweep"
 
 
 def cell_with(answers, **settings):

@@ -32,7 +32,7 @@ class Runs(unittest.TestCase):
         self.assertEqual((cell["done"], cell["baseline"]), (2, 1))
         self.assertGreater(of_answer(cell["efficiency"]).low, 0)
         self.assertTrue(self.run_.complete)
-        rendered = {p: p.stat().st_mtime_ns for p in self.run_.sweep_folder.glob("runs/*/image.exr")}
+        rendered = {p: p.stat().st_mtime_ns for p in self.run_.runs.glob("*/image.exr")}
         self.assertEqual(len(rendered), 4)
         self.assertEqual(self.run_.answers(SWEEP)["cells"], answers["cells"])
         self.assertEqual({p: p.stat().st_mtime_ns for p in rendered}, rendered)

@@ -42,6 +42,15 @@ class Medians(unittest.TestCase):
         self.assertEqual(median_of([5, 3, 1, 6, 4, 2]), Measured(3.5, 1, 6, 6))
         self.assertEqual(median_of(range(1, 21)), Measured(10.5, 6, 15, 20))  # of tables of the sign test
 
+    def test_ratios_have_intervals_that_reach_as_far_as_both(self):
+        r = Measured(4, 2, 8, 6).ratio(Measured(2, 1, 4, 3))
+        self.assertAlmostEqual(r.low, 2 / 2**math.sqrt(2))
+        self.assertAlmostEqual(r.high, 2 * 2**math.sqrt(2))
+        self.assertEqual((r.value, r.n), (2, 3))
+        self.assertIsNone(Measured(4, 2, 8).ratio(Measured(2)).low)
+        self.assertIsNone(Measured(4, -1, 8).ratio(Measured(2, 1, 4)).low)
+        self.assertFalse(Measured(4, 2, 8).ratio(Measured(2, 1, 4, supported=False)).supported)
+
     def test_the_interval_holds_the_median_as_often_as_it_says(self):
         rng, trials = random.Random(1), 4000
         for n, probability in ((6, 1 - 2 / 2**6), (20, 1 - 2 * sum(math.comb(20, i) for i in range(6)) / 2**20)):

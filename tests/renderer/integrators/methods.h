@@ -19,9 +19,7 @@ struct Method {
 inline PathLengths whole_paths(int max_depth) {
   return {.max_depth = max_depth, .roulette_depth = max_depth};
 }
-inline PathSettings path_tracing(int max_depth) {
-  return {whole_paths(max_depth)};
-}
+inline PathSettings path_tracing(int max_depth) { return {whole_paths(max_depth)}; }
 inline LightSettings light_tracing(int max_depth, int paths = 0) {
   LightSettings s{whole_paths(max_depth)};
   s.light_paths = paths;
@@ -55,6 +53,7 @@ inline std::vector<Method> connections(int max_depth, int light_paths = 64) {
       {"uniform", joining(max_depth, resampled<UniformSettings>(n))},
       {"skeleton", joining(max_depth, resampled<SkeletonSettings>(n))},
       {"importance_cache", joining(max_depth, resampled<ImportanceCacheSettings>(n))},
+      {"hybrid", joining(max_depth, resampled<HybridSettings>(n))},
   };
 }
 
