@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "renderer/settings/connections_settings.h"
+#include "renderer/settings/guide_settings.h"
 #include "renderer/settings/output_settings.h"
 
 namespace lacuna {
@@ -19,6 +20,7 @@ struct BdptSettings {
 
   int max_depth = 6;
   ConnectionsSettings connections = PairedSettings{};
+  GuideSettings guide = BsdfGuideSettings{};
   int roulette_depth = 8;
 
   bool operator==(const BdptSettings&) const = default;
@@ -32,6 +34,7 @@ void describe(V& v, BdptSettings& s) {
      .max = 1024,
      .unit = "edges"});
   v("connections", s.connections, {.doc = "which light vertices meet an eye vertex"});
+  v("guide", s.guide, {.doc = "where the next ray of a path from the eye goes"});
   v("roulette_depth", s.roulette_depth,
     {.doc = "paths longer than this, from the eye or a light, may end by Russian roulette on their "
             "throughput",
