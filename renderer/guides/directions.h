@@ -13,13 +13,11 @@ namespace lacuna {
 
 /// What a walk found out about the light at one of its vertices.
 struct Learned {
-  const Vertex& v;  ///< left along `wi`, which was not drawn from a delta lobe
-  V3f wi;           ///< unit
-  /// Luminance that arrived along `wi`, estimated by the rest of the path. >= 0.
-  float radiance;
-  /// Luminance that left towards v.wp, estimated by the same: radiance times f and the cosine, over
-  /// the density with which `wi` was drawn. >= 0.
-  float scattered;
+  const Vertex& v;      ///< left along `wi`, which was not drawn from a delta lobe
+  V3f wi;               ///< unit
+  Pdf<SolidAngle> pdf;  ///< with which it was drawn
+  float radiance;       ///< luminance that arrived along `wi`, as the rest of the path estimates it
+  float given;          ///< luminance of what the pixel got from there
 };
 
 /// A distribution of directions at every point of the scene's surfaces, of what a guide knows about

@@ -35,11 +35,11 @@ class GatheredLight {
         const Vertex& v = batch_.vertex(i, depth - 1);
         const Vertex& next = batch_.vertex(i, depth);
         if (v.delta) continue;
+        const V3f wi = -next.wp;
         const Rgb arrived(over(behind.x, next.throughput.x), over(behind.y, next.throughput.y),
                           over(behind.z, next.throughput.z));
-        const Rgb scattered(over(behind.x, v.throughput.x), over(behind.y, v.throughput.y),
-                            over(behind.z, v.throughput.z));
-        guide.learn({v, -next.wp, luminance(arrived), luminance(scattered)}, tally);
+        const Pdf<SolidAngle> p(next.p_fwd / to_area(Pdf<SolidAngle>(1.0F), v, wi, next));
+        guide.learn({v, wi, p, luminance(arrived), luminance(behind)}, tally);
       }
     }
   }

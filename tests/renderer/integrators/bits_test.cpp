@@ -17,6 +17,7 @@ using test::Session;
 std::vector<test::Method> bidirectional(int max_depth) {
   std::vector<test::Method> all = test::connections(max_depth, 100);
   all.push_back({"light", test::light_tracing(max_depth)});
+  for (test::Method& m : test::guided(max_depth)) all.push_back(std::move(m));
   return all;
 }
 

@@ -33,6 +33,27 @@ inline BdptSettings joining(int max_depth, const ConnectionsSettings& connection
   return s;
 }
 
+/// Every guide as it is by default, and with all that it can learn.
+inline std::vector<std::pair<std::string, GuideSettings>> guides() {
+  SkeletonGuideSettings learning;
+  learning.strength = learning.probability = {};
+  return {{"skeleton", SkeletonGuideSettings{}}, {"learning_skeleton", learning}};
+}
+/// Path tracing and bidirectional path tracing with every guide.
+inline std::vector<Method> guided(int max_depth) {
+  std::vector<Method> all;
+  for (const auto& [name, guide] : guides()) {
+    PathSettings path = path_tracing(max_depth);
+    path.guide = guide;
+    all.push_back({"path_" + name, path});
+    BdptSettings bdpt;
+    bdpt.max_depth = max_depth;
+    bdpt.guide = guide;
+    all.push_back({"bdpt_" + name, bdpt});
+  }
+  return all;
+}
+
 /// `Settings` with few light paths, and changed by `change`.
 template <class Settings, class Change>
 Settings resampled(int light_paths, const Change& change) {
