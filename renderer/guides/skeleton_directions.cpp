@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "renderer/guides/importance_nodes.h"
+#include "renderer/guides/arriving_power.h"
 #include "renderer/guides/importance_points.h"
 
 namespace lacuna {
@@ -19,7 +19,7 @@ void SkeletonDirections::prepare(const PrepareContext& context) {
   const SkeletonGraph& graph = context.space.skeleton();
   lookup_.emplace(transform, context.space.node_map());
   const std::vector<double> importance =
-      node_importance(context.scene, *lookup_, graph.nodes(), settings_.light_rays, context.pool);
+      arriving_power(context.scene, *lookup_, graph.nodes(), settings_.light_rays, context.pool);
   importance_nodes_ = static_cast<std::size_t>(
       std::count_if(importance.begin(), importance.end(), [](double f) { return f > 0; }));
   lobes_.resize(graph.nodes());

@@ -23,14 +23,14 @@ void describe(V&, BsdfGuideSettings&) {}
 inline constexpr double most_guided = 0.95;
 
 /// Where on the visible part of a shortest path rays are sent.
-enum class ImportanceAim { tightest, last, mean };
+enum class ImportanceAim { last, tightest, mean };
 
 template <>
 struct EnumTable<ImportanceAim> {
   static constexpr std::array<EnumValue<ImportanceAim>, 3> values{{
+      {ImportanceAim::last, "last", "the last node that is seen"},
       {ImportanceAim::tightest, "tightest",
        "the node whose ball looks smallest: the bottleneck that all rays have to pass"},
-      {ImportanceAim::last, "last", "the last node that is seen"},
       {ImportanceAim::mean, "mean", "the mean of all (Noel 2015, eq. 162)"},
   }};
 };
@@ -43,7 +43,7 @@ struct SkeletonGuideSettings {
 
   AutoNumber strength{8};
   AutoNumber probability{0.5};
-  ImportanceAim aim = ImportanceAim::tightest;
+  ImportanceAim aim = ImportanceAim::last;
   int light_rays = 1 << 16;
   bool operator==(const SkeletonGuideSettings&) const = default;
 };
@@ -66,7 +66,58 @@ void describe(V& v, SkeletonGuideSettings& s) {
      .max = 1 << 26});
 }
 
+/// What guides by the regions of the opening forest labelling have in common.
+struct RegionGuideSettings {
+  double probability = 0.5;
+  int mixing = 4;
+  bool operator==(const RegionGuideSettings&) const = default;
+};
+
+template <class V>
+void describe_region_guide(V& v, RegionGuideSettings& s) {
+  v("probability", s.probability,
+    {.doc = "share of directions drawn through faces instead of from the BSDF",
+     .min = 0,
+     .max = most_guided});
+  v("mixing", s.mixing,
+    {.doc = "over how far a region's way of drawing turns into its neighbour's; 0: at once, which "
+            "shows as a border in the picture's noise",
+     .min = 0,
+     .max = 64,
+     .unit = "voxels"});
+}
+
+/// guide: portals.
+struct PortalsGuideSettings : RegionGuideSettings {
+  static constexpr std::string_view name = "portals";
+  static constexpr std::string_view doc =
+      "rays through the portals on the shortest paths to where the light arrives (Noel 2015, "
+      "10.4.1)";
+  int light_rays = 1 << 16;
+  bool operator==(const PortalsGuideSettings&) const = default;
+};
+template <class V>
+void describe(V& v, PortalsGuideSettings& s) {
+  describe_region_guide(v, s);
+  v("light_rays", s.light_rays,
+    {.doc = "rays from the lights that find the regions that are lit", .min = 1, .max = 1 << 26});
+}
+
+/// guide: face_irradiance.
+struct FaceIrradianceGuideSettings : RegionGuideSettings {
+  static constexpr std::string_view name = "face_irradiance";
+  static constexpr std::string_view doc =
+      "rays through the faces of a region's border, by the light that was seen through each (Noel "
+      "2015, 10.4.2)";
+  bool operator==(const FaceIrradianceGuideSettings&) const = default;
+};
+template <class V>
+void describe(V& v, FaceIrradianceGuideSettings& s) {
+  describe_region_guide(v, s);
+}
+
 /// Where the next ray of a path from the eye goes. A new guide is one more alternative here.
-using GuideSettings = std::variant<BsdfGuideSettings, SkeletonGuideSettings>;
+using GuideSettings = std::variant<BsdfGuideSettings, SkeletonGuideSettings, PortalsGuideSettings,
+                                   FaceIrradianceGuideSettings>;
 
 }  // namespace lacuna

@@ -36,7 +36,7 @@ std::vector<Case> cases() {
   return all;
 }
 
-constexpr std::size_t points = 6;
+constexpr std::size_t points = 4;
 
 class Density : public testing::TestWithParam<Case> {};
 

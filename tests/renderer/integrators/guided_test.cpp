@@ -37,7 +37,7 @@ const std::vector<GuidedAgreement> guided_agreements{
     {{"cornell"}, 5, 200, 0.03},     {{"glass"}, 5, 150, 0.02},  {{"many_lights"}, 4, 100, 0.2},
     {{"directional"}, 3, 150, 0.02}, {{"spot"}, 3, 150, 0.02},   {{"open", true}, 4, 250, 0.05},
     {{"ajar"}, 5, 200, 0.09},        {{"atrium"}, 5, 120, 0.05}, {{"coated"}, 4, 120, 0.02},
-    {{"leaning"}, 5, 200, 0.05},     {{"bends"}, 7, 150, 0.07},
+    {{"leaning"}, 5, 200, 0.06},     {{"bends"}, 7, 150, 0.09},
 };
 
 class Guided : public testing::TestWithParam<GuidedAgreement> {};

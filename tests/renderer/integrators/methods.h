@@ -37,15 +37,19 @@ inline BdptSettings joining(int max_depth, const ConnectionsSettings& connection
 inline std::vector<std::pair<std::string, GuideSettings>> guides() {
   SkeletonGuideSettings learning;
   learning.strength = learning.probability = {};
-  return {{"skeleton", SkeletonGuideSettings{}}, {"learning_skeleton", learning}};
+  return {{"skeleton", SkeletonGuideSettings{}},
+          {"learning_skeleton", learning},
+          {"portals", PortalsGuideSettings{}},
+          {"face_irradiance", FaceIrradianceGuideSettings{}}};
 }
-/// Path tracing and bidirectional path tracing with every guide.
+/// Path tracing with every guide, and bidirectional path tracing with some.
 inline std::vector<Method> guided(int max_depth) {
   std::vector<Method> all;
   for (const auto& [name, guide] : guides()) {
     PathSettings path = path_tracing(max_depth);
     path.guide = guide;
     all.push_back({"path_" + name, path});
+    if (name != "learning_skeleton" && name != "face_irradiance") continue;
     BdptSettings bdpt;
     bdpt.max_depth = max_depth;
     bdpt.guide = guide;

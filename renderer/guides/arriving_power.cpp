@@ -1,4 +1,4 @@
-#include "renderer/guides/importance_nodes.h"
+#include "renderer/guides/arriving_power.h"
 
 namespace lacuna {
 
@@ -8,7 +8,7 @@ namespace {
 constexpr int rays_of_part = 4096;
 
 struct Arrival {
-  std::uint32_t node;
+  std::uint32_t part;
   double power;
 };
 
@@ -22,19 +22,19 @@ std::vector<Arrival> arrivals(const Scene& scene, const SurfaceLookup& lookup, i
     Hit hit;
     if (!leaving || !scene.rays().intersect(leaving->ray, hit)) continue;
     const Surface s = scene.surface(hit);
-    const std::uint32_t node = lookup.node(V3d(s.x), V3d(s.ng), -V3d(leaving->ray.d));
+    const std::uint32_t part = lookup.node(V3d(s.x), V3d(s.ng), -V3d(leaving->ray.d));
     const auto power = double(luminance(leaving->throughput));
-    if (node != no_node && std::isfinite(power)) all.push_back({node, power});
+    if (part != no_node && std::isfinite(power)) all.push_back({part, power});
   }
   return all;
 }
 
 }  // namespace
 
-std::vector<double> node_importance(const Scene& scene, const SurfaceLookup& lookup,
-                                    std::size_t nodes, int rays, const ThreadPool& pool) {
-  std::vector<double> importance(nodes, 0.0);
-  if (scene.emitters().empty()) return importance;
+std::vector<double> arriving_power(const Scene& scene, const SurfaceLookup& lookup,
+                                   std::size_t count, int rays, const ThreadPool& pool) {
+  std::vector<double> power(count, 0.0);
+  if (scene.emitters().empty()) return power;
   const int parts = (rays + rays_of_part - 1) / rays_of_part;
   std::vector<std::vector<Arrival>> found(static_cast<std::size_t>(parts));
   pool.for_each(parts, [&](int i) {
@@ -42,9 +42,9 @@ std::vector<double> node_importance(const Scene& scene, const SurfaceLookup& loo
         arrivals(scene, lookup, i * rays_of_part, std::min(rays, (i + 1) * rays_of_part));
   });
   for (const auto& of_part : found) {
-    for (const Arrival& a : of_part) importance[a.node] += a.power / rays;
+    for (const Arrival& a : of_part) power[a.part] += a.power / rays;
   }
-  return importance;
+  return power;
 }
 
 }  // namespace lacuna

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <unordered_map>
+
+#include "analysis/regions/borders.h"
+#include "analysis/skeleton/surface_lookup.h"
+#include "renderer/core/alias_table.h"
+#include "renderer/guides/crossed_faces.h"
+#include "renderer/guides/directions.h"
+
+namespace lacuna {
+
+/// The faces of guide: face_irradiance: all of a region's border, those towards the scene and the
+/// outside too, each drawn by the light that paths from the region's surfaces found through it, in
+/// all iterations before (Noel 2015, 10.4.2). That is, summed over the paths, the radiance over the
+/// density with which its direction was drawn: an estimate of what arrives through the face at the
+/// region's surfaces, which is what its probability stands for. The thesis' thresholds, by which a
+/// point may draw from its neighbour's border, have no place here: RegionMixture does what they
+/// were for.
+class BorderFaceLight {
+ public:
+  static constexpr bool learns = true;
+  /// The faces in front of the surfaces around a point, which are the border's too, are edge-on to
+  /// it: drawing through them would be of no use.
+  static constexpr bool leaving_only = true;
+
+  void prepare(const PrepareContext& context, const SurfaceLookup&);
+  void save(ByteWriter& out) const { out.put(light_); }
+  /// Throws std::runtime_error if this is not of these borders.
+  void load(ByteReader& in);
+  std::vector<std::pair<std::string, double>> statistics() const;
+
+  /// 1 where something is known, else 0: nothing can be drawn.
+  double mass(std::uint32_t region) const { return tables_[region].empty() ? 0 : 1; }
+  /// All faces of the region's border, with the voxels on both sides.
+  const VoxelBox& box(std::uint32_t region) const { return boxes_[region]; }
+  VoxelFace draw(std::uint32_t region, Rng& rng) const {
+    return borders_.face(region, tables_[region].sample(rng));
+  }
+  /// Of a face of the region's border.
+  double probability(std::uint32_t region, const VoxelFace& face, std::uint32_t) const {
+    if (tables_[region].empty()) return 0;
+    return double(tables_[region].pmf(static_cast<std::uint32_t>(index(region, face))).value);
+  }
+
+  struct Tally final : Directions::Tally {
+    std::unordered_map<std::uint64_t, double> light;  // of the faces met, of all regions
+  };
+  static std::unique_ptr<Directions::Tally> tally() { return std::make_unique<Tally>(); }
+  void learn(std::uint32_t region, const VoxelFace& face, const Learned& what,
+             Directions::Tally& tally) const;
+  void end(std::span<const std::unique_ptr<Directions::Tally>> tallies, const ThreadPool& pool);
+
+ private:
+  std::uint64_t first(std::uint32_t region) const {
+    return borders_.first[6 * std::size_t{region}];
+  }
+  /// Of a face within its region's border.
+  std::uint64_t index(std::uint32_t region, const VoxelFace& face) const;
+  void make_table(std::uint32_t region);
+
+  Borders borders_;
+  std::vector<double> light_;  // of each face of each region
+  std::vector<AliasTable> tables_;
+  std::vector<VoxelBox> boxes_;
+};
+
+}  // namespace lacuna
