@@ -7,6 +7,7 @@ namespace lacuna {
 
 void BorderFaceLight::prepare(const PrepareContext& context, const SurfaceLookup&) {
   const RegionLabels& labels = context.space.regions();
+  label_ = &labels.label;
   borders_ = context.space.borders(BorderFaces::all);
   light_.assign(borders_.voxels.size(), 0.0);
   tables_.resize(labels.regions.size());
@@ -31,16 +32,15 @@ std::uint64_t BorderFaceLight::index(std::uint32_t region, const VoxelFace& face
 }
 
 void BorderFaceLight::learn(std::uint32_t region, const VoxelFace& face, const Learned& what,
-                            Directions::Tally& tally) const {
+                            Tally& tally) const {
   const double light = double(what.radiance) / double(what.pdf.value);
   if (!std::isfinite(light)) return;
-  static_cast<Tally&>(tally).light[first(region) + index(region, face)] += light;
+  tally.light[first(region) + index(region, face)] += light;
 }
 
-void BorderFaceLight::end(std::span<const std::unique_ptr<Directions::Tally>> tallies,
-                          const ThreadPool& pool) {
-  for (const auto& t : tallies) {
-    for (const auto& [face, light] : static_cast<const Tally&>(*t).light) light_[face] += light;
+void BorderFaceLight::end(std::span<const Tally* const> tallies, const ThreadPool& pool) {
+  for (const Tally* t : tallies) {
+    for (const auto& [face, light] : t->light) light_[face] += light;
   }
   pool.for_each(static_cast<int>(tables_.size()),
                 [this](int r) { make_table(static_cast<std::uint32_t>(r)); });

@@ -37,19 +37,19 @@ class BorderFaceLight {
   VoxelFace draw(std::uint32_t region, Rng& rng) const {
     return borders_.face(region, tables_[region].sample(rng));
   }
-  /// Of a face of the region's border.
-  double probability(std::uint32_t region, const VoxelFace& face, std::uint32_t) const {
-    if (tables_[region].empty()) return 0;
-    return double(tables_[region].pmf(static_cast<std::uint32_t>(index(region, face))).value);
+  /// Of a face that leaves region `near`.
+  double probability(std::uint32_t region, const CrossedFace& face, std::uint32_t near,
+                     std::uint32_t) const {
+    if (region != near) return 0;
+    const VoxelFace own{static_cast<std::uint32_t>(label_->index(face.from)), face.side_of_from()};
+    return double(tables_[region].pmf(static_cast<std::uint32_t>(index(region, own))).value);
   }
 
-  struct Tally final : Directions::Tally {
+  struct Tally {
     std::unordered_map<std::uint64_t, double> light;  // of the faces met, of all regions
   };
-  static std::unique_ptr<Directions::Tally> tally() { return std::make_unique<Tally>(); }
-  void learn(std::uint32_t region, const VoxelFace& face, const Learned& what,
-             Directions::Tally& tally) const;
-  void end(std::span<const std::unique_ptr<Directions::Tally>> tallies, const ThreadPool& pool);
+  void learn(std::uint32_t region, const VoxelFace& face, const Learned& what, Tally& tally) const;
+  void end(std::span<const Tally* const> tallies, const ThreadPool& pool);
 
  private:
   std::uint64_t first(std::uint32_t region) const {
@@ -59,6 +59,7 @@ class BorderFaceLight {
   std::uint64_t index(std::uint32_t region, const VoxelFace& face) const;
   void make_table(std::uint32_t region);
 
+  const Grid3<std::uint32_t>* label_ = nullptr;
   Borders borders_;
   std::vector<double> light_;  // of each face of each region
   std::vector<AliasTable> tables_;

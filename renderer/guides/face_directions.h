@@ -5,7 +5,7 @@
 #include "renderer/guides/crossed_faces.h"
 #include "renderer/guides/directions.h"
 #include "renderer/guides/region_mixture.h"
-#include "renderer/settings/guide_settings.h"
+#include "renderer/guides/tuning.h"
 
 namespace lacuna {
 
@@ -30,31 +30,41 @@ class FaceDirections final : public Directions {
     static_assert(no_region == no_node);
     lookup_.emplace(transform_, *label_);
     faces_.prepare(context, *lookup_);
+    // Faces have no strength.
+    tuning_ = Tuning({1}, settings_.probability, context.space.regions().regions.size());
   }
-  void save(ByteWriter& out) const override { faces_.save(out); }
-  void load(ByteReader& in) override { faces_.load(in); }
+  void save(ByteWriter& out) const override {
+    faces_.save(out);
+    tuning_.save(out);
+  }
+  void load(ByteReader& in) override {
+    faces_.load(in);
+    tuning_.load(in);
+  }
   std::vector<std::pair<std::string, double>> statistics() const override {
-    return faces_.statistics();
+    auto told = faces_.statistics();
+    for (auto& s : tuning_.statistics()) {
+      if (s.first != "mean_strength") told.push_back(std::move(s));
+    }
+    return told;
   }
 
   GuideSite site(const Surface& s, const V3f& w) const override {
     const std::optional<Imath::V3i> voxel = lookup_->voxel(V3d(s.x), V3d(s.ng), V3d(w));
     if (!voxel) return {};
     const auto index = static_cast<std::uint32_t>(label_->index(*voxel));
-    double drawn = 0;
-    for (const auto& share : mixture(transform_.to_grid(V3d(s.x)), index)) {
-      drawn += share.weight * faces_.mass(share.region);
-    }
-    return {static_cast<float>(settings_.probability * drawn), index};
+    const RegionMixture regions = mixture(transform_.to_grid(V3d(s.x)), index);
+    return {static_cast<float>(sum_of(regions, as_used())), index};
   }
 
   std::optional<V3f> sample(const GuideSite& site, const V3f& x, Rng& rng) const override {
     const V3d from = transform_.to_grid(V3d(x));
     const RegionMixture regions = mixture(from, site.index);
-    double left = double(rng.next()) * mass(regions);
+    const auto used = as_used();
+    double left = double(rng.next()) * sum_of(regions, used);
     std::uint32_t region = no_region;
     for (const auto& share : regions) {
-      const double part = share.weight * faces_.mass(share.region);
+      const double part = share.weight * used(share.region);
       if (!(part > 0)) continue;
       region = share.region;
       if (left < part) break;
@@ -71,11 +81,77 @@ class FaceDirections final : public Directions {
   }
 
   Pdf<SolidAngle> pdf(const GuideSite& site, const V3f& x, const V3f& w) const override {
+    return density(site.index, x, w, as_used());
+  }
+
+  bool learns() const override { return Faces::learns || tuning_.learns(); }
+  std::unique_ptr<Tally> tally() const override { return std::make_unique<Both>(); }
+  void learn(const Learned& what, Tally& tally) const override {
+    const std::uint32_t voxel = what.v.site.index;
+    if (voxel >= label_->count()) return;
+    auto& both = static_cast<Both&>(tally);
+    const std::uint32_t region = (*label_)[voxel];
+    if (tuning_.wants(region)) {
+      // As if the guide alone drew: also of regions that draw nothing at present.
+      const float p = density(voxel, what.v.surface.x, what.wi, [this](std::uint32_t r) {
+                        return faces_.mass(r);
+                      }).value;
+      tuning_.learn(what, region, std::span(&p, 1), both.tuning);
+    }
+    if constexpr (Faces::learns) {
+      // The first face through which the ray leaves the region of the point learns what came from
+      // there.
+      if (!(what.radiance > 0)) return;
+      const V3d from = transform_.to_grid(V3d(what.v.surface.x));
+      for_each_crossed_face(from, V3d(what.wi), faces_.box(region), [&](const CrossedFace& face) {
+        if (label_at(face.from) != region || label_at(face.to) == region) return true;
+        const auto index = static_cast<std::uint32_t>(label_->index(face.from));
+        faces_.learn(region, {index, face.side_of_from()}, what, both.faces);
+        return false;
+      });
+    }
+  }
+  void end(std::span<const std::unique_ptr<Tally>> tallies, const ThreadPool& pool) override {
+    std::vector<const typename Faces::Tally*> of_faces;
+    std::vector<const Tuning::Tally*> of_tuning;
+    for (const auto& t : tallies) {
+      of_faces.push_back(&static_cast<const Both&>(*t).faces);
+      of_tuning.push_back(&static_cast<const Both&>(*t).tuning);
+    }
+    faces_.end(of_faces, pool);
+    if (tuning_.learns()) tuning_.end(of_tuning);
+  }
+
+ private:
+  RegionMixture mixture(const V3d& x, std::uint32_t voxel) const {
+    return {*label_, x, voxel, settings_.mixing};
+  }
+  struct Both final : Tally {
+    typename Faces::Tally faces;
+    Tuning::Tally tuning;
+  };
+
+  /// How often a region draws.
+  auto as_used() const {
+    return [this](std::uint32_t region) {
+      return double(tuning_.probability(region)) * faces_.mass(region);
+    };
+  }
+  template <class Drawn>
+  static double sum_of(const RegionMixture& regions, const Drawn& drawn) {
+    double sum = 0;
+    for (const auto& share : regions) sum += share.weight * drawn(share.region);
+    return sum;
+  }
+  /// Of `w` at `x`, where a region draws as often as `drawn` says.
+  template <class Drawn>
+  Pdf<SolidAngle> density(std::uint32_t voxel, const V3f& x, const V3f& w,
+                          const Drawn& drawn) const {
     const V3d from = transform_.to_grid(V3d(x));
-    const RegionMixture regions = mixture(from, site.index);
+    const RegionMixture regions = mixture(from, voxel);
     VoxelBox box;
     for (const auto& share : regions) box.add(faces_.box(share.region));
-    const double all = mass(regions);
+    const double all = sum_of(regions, drawn);
     if (box.empty() || !(all > 0)) return {};
     const V3d along(w);
     double sum = 0;
@@ -84,57 +160,22 @@ class FaceDirections final : public Directions {
       if (near == far) return true;
       double p = 0;
       for (const auto& share : regions) {
-        if (share.region == near)
-          p += share.weight * outwards(near, face.from, face.side_of_from(), far);
-        if (!Faces::leaving_only && share.region == far)
-          p += share.weight * outwards(far, face.to, face.side_of_to(), near);
+        const double often = drawn(share.region);
+        if (often > 0) {
+          p += share.weight * often * faces_.probability(share.region, face, near, far);
+        }
       }
       sum += p * face.t * face.t / std::abs(along[face.axis]);
       return true;
     });
     return Pdf<SolidAngle>(static_cast<float>(sum / all));
   }
-
-  bool learns() const override { return Faces::learns; }
-  std::unique_ptr<Tally> tally() const override { return faces_.tally(); }
-  /// The first face through which the ray leaves the region of the point learns what came that way.
-  void learn(const Learned& what, Tally& tally) const override {
-    const std::uint32_t voxel = what.v.site.index;
-    if (voxel >= label_->count() || !(what.radiance > 0)) return;
-    const std::uint32_t region = (*label_)[voxel];
-    const V3d from = transform_.to_grid(V3d(what.v.surface.x));
-    for_each_crossed_face(from, V3d(what.wi), faces_.box(region), [&](const CrossedFace& face) {
-      if (label_at(face.from) != region || label_at(face.to) == region) return true;
-      const auto index = static_cast<std::uint32_t>(label_->index(face.from));
-      faces_.learn(region, {index, face.side_of_from()}, what, tally);
-      return false;
-    });
-  }
-  void end(std::span<const std::unique_ptr<Tally>> tallies, const ThreadPool& pool) override {
-    faces_.end(tallies, pool);
-  }
-
- private:
-  RegionMixture mixture(const V3d& x, std::uint32_t voxel) const {
-    return {*label_, x, voxel, settings_.mixing};
-  }
-  double mass(const RegionMixture& regions) const {
-    double sum = 0;
-    for (const auto& share : regions) sum += share.weight * faces_.mass(share.region);
-    return sum;
-  }
   std::uint32_t label_at(const Imath::V3i& v) const {
     return in_grid(v, label_->size()) ? (*label_)(v) : no_region;
   }
-  /// Probability with which `region` draws this face of its border, times its mass.
-  double outwards(std::uint32_t region, const Imath::V3i& voxel, std::uint8_t side,
-                  std::uint32_t beyond) const {
-    const VoxelFace face{static_cast<std::uint32_t>(label_->index(voxel)), side};
-    return faces_.mass(region) * faces_.probability(region, face, beyond);
-  }
-
   RegionGuideSettings settings_;
   Faces faces_;
+  Tuning tuning_;
   GridTransform transform_;
   const Grid3<std::uint32_t>* label_ = nullptr;
   std::optional<SurfaceLookup> lookup_;

@@ -38,6 +38,12 @@ std::optional<V3f> LobeSet::sample(const V3f& x, float s, Rng& rng) const {
       .to_world({sine * std::cos(phi), sine * std::sin(phi), static_cast<float>(1 - versine)});
 }
 
+std::vector<float> LobeSet::powers() {
+  std::vector<float> all;
+  for (std::size_t k = 0; k < doublings; ++k) all.push_back(static_cast<float>(1U << k));
+  return all;
+}
+
 std::array<float, LobeSet::doublings> LobeSet::pdf_of_powers(const V3f& x, const V3f& w) const {
   __m256 sums[doublings] = {};
   for_each_cosine(x, w, [&](__m256 cosine, __m256 share) {

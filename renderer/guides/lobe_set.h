@@ -44,8 +44,9 @@ class LobeSet {
   }
 
   static constexpr std::size_t doublings = 10;
-  /// The densities for strengths 1, 2, 4, ... 2^(doublings - 1): each power is the square of the
-  /// one before.
+  /// 1, 2, 4, ... 2^(doublings - 1).
+  static std::vector<float> powers();
+  /// The densities for the strengths powers(): each power is the square of the one before.
   std::array<float, doublings> pdf_of_powers(const V3f& x, const V3f& w) const;
 
  private:

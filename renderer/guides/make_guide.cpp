@@ -3,6 +3,7 @@
 #include "renderer/guides/border_faces.h"
 #include "renderer/guides/face_directions.h"
 #include "renderer/guides/portal_faces.h"
+#include "renderer/guides/sd_tree.h"
 #include "renderer/guides/skeleton_directions.h"
 
 namespace lacuna {
@@ -19,6 +20,9 @@ struct Make {
   }
   std::unique_ptr<Directions> operator()(const FaceIrradianceGuideSettings& s) const {
     return std::make_unique<FaceDirections<BorderFaceLight>>(s, BorderFaceLight());
+  }
+  std::unique_ptr<Directions> operator()(const SdTreeGuideSettings& s) const {
+    return std::make_unique<SdTree>(s);
   }
 };
 

@@ -18,6 +18,20 @@ V3d middle(const Portals& portals, const Portal& portal, const Grid3<std::uint32
   return sum / static_cast<double>(portal.faces());
 }
 
+/// The share of a portal that is seen from `eye`, in voxels, by some of its faces.
+double share_seen(const RayCaster& rays, const GridTransform& transform, const V3d& eye,
+                  const Portals& portals, const Portal& portal, const Grid3<std::uint32_t>& label) {
+  const std::uint64_t tried = std::min<std::uint64_t>(portal.faces(), 16);
+  const V3f from(transform.to_world(eye));
+  double seen = 0;
+  for (std::uint64_t k = 0; k < tried; ++k) {
+    const VoxelFace face = portals.face(portal, (2 * k + 1) * portal.faces() / (2 * tried));
+    const V3d to = transform.to_world(face.point(label.voxel(face.voxel), 0.5, 0.5));
+    seen += rays.occluded({from, V3f(to) - from, 1.0F}) ? 0 : 1;
+  }
+  return seen / static_cast<double>(tried);
+}
+
 /// The centre of each region's voxels.
 std::vector<V3d> centres_of(const RegionLabels& labels) {
   std::vector<V3d> centres(labels.regions.size(), V3d(0.0));
@@ -37,25 +51,36 @@ std::vector<V3d> centres_of(const RegionLabels& labels) {
 void PortalFaces::prepare(const PrepareContext& context, const SurfaceLookup& lookup) {
   const RegionLabels& labels = context.space.regions();
   portals_ = &context.space.portals();
-  const std::vector<double> power =
-      arriving_power(context.scene, lookup, labels.regions.size(), light_rays_, context.pool);
+  const std::vector<double> power = arriving_power(context.scene, lookup, labels.regions.size(),
+                                                   settings_.light_rays, context.pool);
   const std::vector<V3d> centres = centres_of(labels);
   for (const Portal& p : portals_->portals) {
     middles_.push_back(middle(*portals_, p, labels.label));
   }
   exits_.resize(labels.regions.size());
-  context.pool.for_each(static_cast<int>(exits_.size()), [&](int r) {
-    find_exits(static_cast<std::uint32_t>(r), centres, power, labels);
+  const GridTransform transform = context.space.voxels().transform;
+  context.pool.for_each(static_cast<int>(exits_.size()), [&](int i) {
+    const auto r = static_cast<std::uint32_t>(i);
+    const V3d eye = V3d(labels.label.voxel(labels.regions[r].root)) + V3d(0.5);
+    const auto sees = [&](const Portal& portal) {
+      return settings_.portal == PortalChoice::last &&
+             share_seen(context.scene.rays(), transform, eye, *portals_, portal, labels.label) >=
+                 0.5;
+    };
+    find_exits(r, centres, power, labels, sees);
   });
 }
 
 /// Dijkstra's algorithm over regions, from centre to portal to centre.
 void PortalFaces::find_exits(std::uint32_t region, const std::vector<V3d>& centres,
-                             const std::vector<double>& power, const RegionLabels& labels) {
+                             const std::vector<double>& power, const RegionLabels& labels,
+                             const std::function<bool(const Portal&)>& sees) {
   using Reached = std::pair<double, std::uint32_t>;
   std::priority_queue<Reached, std::vector<Reached>, std::greater<>> reached;
   std::vector<double> distance(centres.size(), HUGE_VAL);
-  std::vector<std::uint32_t> exit(centres.size(), 0);  // the first portal on the way
+  std::vector<std::uint32_t> exit(centres.size(), 0);  // the portal to aim at on the way there
+  std::vector<std::uint32_t> last(centres.size(), 0);  // the last one on the way
+  std::vector<char> seen(centres.size(), 0);           // all of them are
   distance[region] = 0;
   reached.push({0.0, region});
   const double own_size = std::max(1.0, double(labels.regions[region].opening));
@@ -65,6 +90,13 @@ void PortalFaces::find_exits(std::uint32_t region, const std::vector<V3d>& centr
     const auto [d, at] = reached.top();
     reached.pop();
     if (d > distance[at]) continue;
+    if (at != region) {
+      const Portal& portal = portals_->portals[last[at]];
+      const std::uint32_t before = portal.a == at ? portal.b : portal.a;
+      const bool first = before == region;
+      seen[at] = (first || seen[before] != 0) && sees(portal) ? 1 : 0;
+      exit[at] = first || seen[at] != 0 ? last[at] : exit[before];
+    }
     if (at != region && power[at] > 0) {
       const double length = std::max(d, own_size);
       by_portal[exit[at]] += power[at] / (length * length);
@@ -77,7 +109,7 @@ void PortalFaces::find_exits(std::uint32_t region, const std::vector<V3d>& centr
           d + (middles_[p] - centres[at]).length() + (centres[next] - middles_[p]).length();
       if (there >= distance[next]) continue;
       distance[next] = there;
-      exit[next] = at == region ? p : exit[at];
+      last[next] = p;
       reached.push({there, next});
     }
   }
@@ -87,8 +119,8 @@ void PortalFaces::find_exits(std::uint32_t region, const std::vector<V3d>& centr
   for (const auto& [p, weight] : by_portal) {
     const Portal& portal = portals_->portals[p];
     const double share = weight / elsewhere;
-    exits.exits.push_back({portal.a == region ? portal.b : portal.a, p, share,
-                           share / static_cast<double>(portal.faces())});
+    exits.exits.push_back(
+        {p, portal.a, portal.b, share, share / static_cast<double>(portal.faces())});
     for (std::uint64_t i = 0; i < portal.faces(); ++i) {
       const VoxelFace face = portals_->face(portal, i);
       const Imath::V3i voxel = labels.label.voxel(face.voxel);

@@ -9,7 +9,7 @@
 namespace lacuna {
 
 /// The faces of guide: portals. From every region shortest paths lead to the regions where light
-/// arrives; the first portal on each is drawn by what arrives there over the path's length squared,
+/// arrives; one portal on each is drawn by what arrives there over the path's length squared,
 /// as skeleton guiding does (Noel 2015, eq. 164), and its faces alike (10.4.1, where there is one
 /// light). What arrives in the region itself takes its share, and draws nothing.
 class PortalFaces {
@@ -17,7 +17,7 @@ class PortalFaces {
   static constexpr bool learns = false;
   static constexpr bool leaving_only = false;
 
-  explicit PortalFaces(const PortalsGuideSettings& settings) : light_rays_(settings.light_rays) {}
+  explicit PortalFaces(const PortalsGuideSettings& settings) : settings_(settings) {}
 
   void prepare(const PrepareContext& context, const SurfaceLookup& lookup);
   static void save(ByteWriter&) {}
@@ -29,23 +29,24 @@ class PortalFaces {
   /// All faces that it draws, with the voxels on both sides.
   const VoxelBox& box(std::uint32_t region) const { return exits_[region].box; }
   VoxelFace draw(std::uint32_t region, Rng& rng) const;
-  /// Of a face of the region's border, to region `beyond`.
-  double probability(std::uint32_t region, const VoxelFace&, std::uint32_t beyond) const {
+  /// Of a face between regions `near` and `far`.
+  double probability(std::uint32_t region, const CrossedFace&, std::uint32_t near,
+                     std::uint32_t far) const {
     for (const Exit& e : exits_[region].exits) {
-      if (e.beyond == beyond) return e.each;
+      if ((e.a == near && e.b == far) || (e.a == far && e.b == near)) return e.each;
     }
     return 0;
   }
 
-  static std::unique_ptr<Directions::Tally> tally() { return nullptr; }
-  static void learn(std::uint32_t, const VoxelFace&, const Learned&, Directions::Tally&) {}
-  static void end(std::span<const std::unique_ptr<Directions::Tally>>, const ThreadPool&) {}
+  struct Tally {};
+  static void end(std::span<const Tally* const>, const ThreadPool&) {}
 
  private:
   struct Exit {
-    std::uint32_t beyond, portal;
-    double share;  // of the region's draws; all add up to 1
-    double each;   // share of one face
+    std::uint32_t portal;
+    std::uint32_t a, b;  // the regions on its sides
+    double share;        // of the region's draws; all add up to 1
+    double each;         // share of one face
   };
   struct Exits {
     std::vector<Exit> exits;
@@ -54,9 +55,10 @@ class PortalFaces {
   };
 
   void find_exits(std::uint32_t region, const std::vector<V3d>& centres,
-                  const std::vector<double>& power, const RegionLabels& labels);
+                  const std::vector<double>& power, const RegionLabels& labels,
+                  const std::function<bool(const Portal&)>& sees);
 
-  int light_rays_;
+  PortalsGuideSettings settings_;
   const Portals* portals_ = nullptr;
   std::vector<V3d> middles_;  // of the portals, voxels
   std::vector<Exits> exits_;  // of each region

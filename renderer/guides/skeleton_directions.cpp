@@ -23,7 +23,9 @@ void SkeletonDirections::prepare(const PrepareContext& context) {
   importance_nodes_ = static_cast<std::size_t>(
       std::count_if(importance.begin(), importance.end(), [](double f) { return f > 0; }));
   lobes_.resize(graph.nodes());
-  tuning_ = LobeTuning(settings_, graph.nodes());
+  std::vector<float> strengths{static_cast<float>(settings_.strength.value.value_or(0))};
+  if (settings_.strength.is_auto()) strengths = LobeSet::powers();
+  tuning_ = Tuning(std::move(strengths), settings_.probability, graph.nodes());
   if (importance_nodes_ == 0) return;
 
   const auto position = [&](std::uint32_t node) {
@@ -51,8 +53,16 @@ void SkeletonDirections::prepare(const PrepareContext& context) {
 void SkeletonDirections::learn(const Learned& what, Tally& tally) const {
   const GuideSite& site = what.v.site;
   // A node that draws nothing from its lobes at present goes on learning.
-  if (site.index < lobes_.size() && !lobes_[site.index].empty()) {
-    tuning_.learn(what, lobes_[site.index], static_cast<LobeTuning::Tally&>(tally));
+  if (site.index >= lobes_.size() || lobes_[site.index].empty()) return;
+  if (!tuning_.wants(site.index)) return;
+  const LobeSet& lobes = lobes_[site.index];
+  const V3f& x = what.v.surface.x;
+  auto& own = static_cast<Own&>(tally).tuning;
+  if (settings_.strength.is_auto()) {
+    tuning_.learn(what, site.index, lobes.pdf_of_powers(x, what.wi), own);
+  } else {
+    const float density = lobes.pdf(x, what.wi, tuning_.strength(site.index)).value;
+    tuning_.learn(what, site.index, std::span(&density, 1), own);
   }
 }
 

@@ -2,7 +2,7 @@
 
 #include "analysis/skeleton/surface_lookup.h"
 #include "renderer/guides/lobe_set.h"
-#include "renderer/guides/lobe_tuning.h"
+#include "renderer/guides/tuning.h"
 
 namespace lacuna {
 
@@ -32,17 +32,23 @@ class SkeletonDirections final : public Directions {
   }
 
   bool learns() const override { return tuning_.learns(); }
-  std::unique_ptr<Tally> tally() const override { return std::make_unique<LobeTuning::Tally>(); }
+  std::unique_ptr<Tally> tally() const override { return std::make_unique<Own>(); }
   void learn(const Learned& what, Tally& tally) const override;
   void end(std::span<const std::unique_ptr<Tally>> tallies, const ThreadPool&) override {
-    tuning_.end(tallies);
+    std::vector<const Tuning::Tally*> own;
+    for (const auto& t : tallies) own.push_back(&static_cast<const Own&>(*t).tuning);
+    tuning_.end(own);
   }
 
  private:
+  struct Own final : Tally {
+    Tuning::Tally tuning;
+  };
+
   SkeletonGuideSettings settings_;
   std::optional<SurfaceLookup> lookup_;
   std::vector<LobeSet> lobes_;  // of each node
-  LobeTuning tuning_;
+  Tuning tuning_;
   std::size_t importance_nodes_ = 0;
 };
 

@@ -68,7 +68,7 @@ void describe(V& v, SkeletonGuideSettings& s) {
 
 /// What guides by the regions of the opening forest labelling have in common.
 struct RegionGuideSettings {
-  double probability = 0.5;
+  AutoNumber probability;
   int mixing = 4;
   bool operator==(const RegionGuideSettings&) const = default;
 };
@@ -76,7 +76,8 @@ struct RegionGuideSettings {
 template <class V>
 void describe_region_guide(V& v, RegionGuideSettings& s) {
   v("probability", s.probability,
-    {.doc = "share of directions drawn through faces instead of from the BSDF",
+    {.doc = "share of directions drawn through faces instead of from the BSDF; \"auto\": learned "
+            "for each region while rendering",
      .min = 0,
      .max = most_guided});
   v("mixing", s.mixing,
@@ -87,18 +88,31 @@ void describe_region_guide(V& v, RegionGuideSettings& s) {
      .unit = "voxels"});
 }
 
+/// Which portal on a shortest path rays are sent through.
+enum class PortalChoice { last, next };
+
+template <>
+struct EnumTable<PortalChoice> {
+  static constexpr std::array<EnumValue<PortalChoice>, 2> values{{
+      {PortalChoice::last, "last", "the last one that the region's centre sees"},
+      {PortalChoice::next, "next", "the region's own (Noel 2015, 10.4.1)"},
+  }};
+};
+
 /// guide: portals.
 struct PortalsGuideSettings : RegionGuideSettings {
   static constexpr std::string_view name = "portals";
   static constexpr std::string_view doc =
       "rays through the portals on the shortest paths to where the light arrives (Noel 2015, "
       "10.4.1)";
+  PortalChoice portal = PortalChoice::last;
   int light_rays = 1 << 16;
   bool operator==(const PortalsGuideSettings&) const = default;
 };
 template <class V>
 void describe(V& v, PortalsGuideSettings& s) {
   describe_region_guide(v, s);
+  v("portal", s.portal, {.doc = "which portal on a shortest path rays are sent through"});
   v("light_rays", s.light_rays,
     {.doc = "rays from the lights that find the regions that are lit", .min = 1, .max = 1 << 26});
 }
@@ -116,8 +130,30 @@ void describe(V& v, FaceIrradianceGuideSettings& s) {
   describe_region_guide(v, s);
 }
 
+/// guide: sd_tree.
+struct SdTreeGuideSettings {
+  static constexpr std::string_view name = "sd_tree";
+  static constexpr std::string_view doc =
+      "rays to where paths before found light, learned in a tree over places and directions "
+      "(Mueller et al. 2017)";
+  double probability = 0.5;
+  int leaf_vertices = 4000;
+  bool operator==(const SdTreeGuideSettings&) const = default;
+};
+template <class V>
+void describe(V& v, SdTreeGuideSettings& s) {
+  v("probability", s.probability,
+    {.doc = "share of directions drawn from the tree instead of the BSDF",
+     .min = 0,
+     .max = most_guided});
+  v("leaf_vertices", s.leaf_vertices,
+    {.doc = "vertices in the first iteration beyond which a place is divided",
+     .min = 1,
+     .max = 1 << 30});
+}
+
 /// Where the next ray of a path from the eye goes. A new guide is one more alternative here.
 using GuideSettings = std::variant<BsdfGuideSettings, SkeletonGuideSettings, PortalsGuideSettings,
-                                   FaceIrradianceGuideSettings>;
+                                   FaceIrradianceGuideSettings, SdTreeGuideSettings>;
 
 }  // namespace lacuna

@@ -33,14 +33,22 @@ inline BdptSettings joining(int max_depth, const ConnectionsSettings& connection
   return s;
 }
 
-/// Every guide as it is by default, and with all that it can learn.
+/// Every guide, with what it can learn given and learned.
 inline std::vector<std::pair<std::string, GuideSettings>> guides() {
   SkeletonGuideSettings learning;
   learning.strength = learning.probability = {};
+  SdTreeGuideSettings tree;
+  tree.leaf_vertices = 100;           // of small pictures
+  FaceIrradianceGuideSettings faces;  // which would learn to do nothing in small pictures
+  faces.probability = {0.5};
+  PortalsGuideSettings portals;
+  portals.probability = {0.5};
   return {{"skeleton", SkeletonGuideSettings{}},
           {"learning_skeleton", learning},
-          {"portals", PortalsGuideSettings{}},
-          {"face_irradiance", FaceIrradianceGuideSettings{}}};
+          {"portals", portals},
+          {"learning_portals", PortalsGuideSettings{}},
+          {"face_irradiance", faces},
+          {"sd_tree", tree}};
 }
 /// Path tracing with every guide, and bidirectional path tracing with some.
 inline std::vector<Method> guided(int max_depth) {
