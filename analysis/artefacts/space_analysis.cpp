@@ -212,6 +212,10 @@ const Portals& SpaceAnalysis::portals() {
                       });
 }
 
+Borders SpaceAnalysis::borders(BorderFaces which) {
+  return find_borders(regions(), which, pool_, input_.byte_limit());
+}
+
 std::uint64_t SpaceAnalysis::complex_faces() { return closure_faces(domain().voxels); }
 
 void SpaceAnalysis::close() {

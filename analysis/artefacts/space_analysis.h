@@ -7,6 +7,7 @@
 #include "analysis/artefacts/store.h"
 #include "analysis/complex/curvilinear.h"
 #include "analysis/geometry/triangle_soup.h"
+#include "analysis/regions/borders.h"
 #include "analysis/regions/forest_labels.h"
 #include "analysis/regions/portals.h"
 #include "analysis/settings/analysis_settings.h"
@@ -55,6 +56,8 @@ class SpaceAnalysis {
   /// With the opening map (thesis 10.3.1) that they come from.
   const RegionLabels& regions();
   const Portals& portals();
+  /// Of every region. Made anew at each call: reading takes as long.
+  Borders borders(BorderFaces which);
 
   /// Of the closure of the domain: what thinning starts from, and its cost grows with.
   std::uint64_t complex_faces();

@@ -39,6 +39,8 @@ std::string type_text(const Type& type) {
       return with("integer", range_text(type.limits));
     case Kind::number:
       return with("number", range_text(type.limits));
+    case Kind::auto_number:
+      return with("number", range_text(type.limits)) + fmt::format(", or `{}`", auto_name);
     case Kind::string:
       return with("string", length_text(type.limits, "characters"));
     case Kind::array:

@@ -84,6 +84,16 @@ std::optional<double> read_number(const Found& found, const Limits& limits) {
   return found.value.get<double>();
 }
 
+std::optional<AutoNumber> read_auto_number(const Found& found, const Limits& limits) {
+  const bool number = found.value.is_number() && limits.allow(found.value.get<double>());
+  if (number) return AutoNumber{found.value.get<double>()};
+  if (found.value.is_string() && found.value.get_ref<const std::string&>() == auto_name) {
+    return AutoNumber{};
+  }
+  found.refuse(with("a number", range_text(limits)) + fmt::format(", or \"{}\"", auto_name));
+  return {};
+}
+
 std::optional<std::string> read_string(const Found& found, const Limits& length) {
   const std::string allowed = with("a string", length_text(length, "characters"));
   if (!found.value.is_string()) {

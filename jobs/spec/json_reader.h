@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "analysis/settings/auto_number.h"
 #include "jobs/spec/described.h"
 #include "jobs/spec/json_document.h"
 #include "jobs/spec/limits.h"
@@ -35,6 +36,8 @@ struct Found {
 // where the value is not what is allowed.
 std::optional<std::int64_t> read_integer(const Found& found, const Limits& limits);
 std::optional<double> read_number(const Found& found, const Limits& limits);
+/// Nothing where it adds a problem.
+std::optional<AutoNumber> read_auto_number(const Found& found, const Limits& limits);
 std::optional<std::string> read_string(const Found& found, const Limits& length);
 bool check_object(const Found& found);
 bool check_list(const Found& found, const Limits& length);
@@ -112,6 +115,8 @@ void ObjectReader::read_value(const Found& found, T& out, const Field& field) {
     if (const auto v = read_integer(found, limits_of<T>(field))) out = static_cast<T>(*v);
   } else if constexpr (std::is_same_v<T, double>) {
     if (const auto v = read_number(found, limits_of<T>(field))) out = *v;
+  } else if constexpr (std::is_same_v<T, AutoNumber>) {
+    if (const auto v = read_auto_number(found, limits_of<double>(field))) out = *v;
   } else if constexpr (std::is_same_v<T, std::string>) {
     if (auto v = read_string(found, length_limits(field))) out = std::move(*v);
   } else if constexpr (NamedEnum<T>) {

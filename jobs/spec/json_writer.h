@@ -5,6 +5,7 @@
 #include <string_view>
 #include <variant>
 
+#include "analysis/settings/auto_number.h"
 #include "jobs/spec/described.h"
 #include "jobs/spec/json_text.h"
 
@@ -38,6 +39,8 @@ OrderedJson ObjectWriter::value_of(const T& member) {
     return enum_name(member);
   } else if constexpr (is_optional<T>) {
     return member ? value_of(*member) : OrderedJson();
+  } else if constexpr (std::is_same_v<T, AutoNumber>) {
+    return member.value ? OrderedJson(*member.value) : OrderedJson(auto_name);
   } else if constexpr (is_array<T> || is_vector<T>) {
     OrderedJson list = OrderedJson::array();
     for (const auto& element : member) list.push_back(value_of(element));

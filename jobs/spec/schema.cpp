@@ -87,6 +87,15 @@ OrderedJson enum_schema(const Type& type) {
   return {{"enum", names}};
 }
 
+/// A number, or the word that leaves it to the method.
+OrderedJson auto_schema(const Type& type) {
+  OrderedJson number = {{"type", "number"}};
+  put_limits(number, type);
+  OrderedJson choices = OrderedJson::array({number, {{"const", auto_name}}});
+  if (type.optional) choices.push_back({{"type", "null"}});
+  return {{"oneOf", choices}};
+}
+
 std::string type_name(Kind kind) {
   switch (kind) {
     case Kind::boolean:
@@ -109,6 +118,7 @@ std::string type_name(Kind kind) {
 OrderedJson schema_of(const Type& type) {
   if (type.kind == Kind::choice) return choice_schema(type);
   if (type.kind == Kind::word) return enum_schema(type);
+  if (type.kind == Kind::auto_number) return auto_schema(type);
   if (type.kind == Kind::any) return OrderedJson::object();
   OrderedJson schema;
   schema["type"] = type_name(type.kind);

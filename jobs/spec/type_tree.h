@@ -21,6 +21,7 @@ struct Type {
     boolean,
     integer,
     number,
+    auto_number,
     string,
     word,
     array,
@@ -99,6 +100,9 @@ Type TypeReader::type_of(const T& value, const Field& field) {
   } else if constexpr (std::is_same_v<T, double>) {
     type.kind = Type::Kind::number;
     type.limits = limits_of<T>(field);
+  } else if constexpr (std::is_same_v<T, AutoNumber>) {
+    type.kind = Type::Kind::auto_number;
+    type.limits = limits_of<double>(field);
   } else if constexpr (std::is_same_v<T, std::string>) {
     type.kind = Type::Kind::string;
     type.limits = length_limits(field);

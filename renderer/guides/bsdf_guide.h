@@ -1,6 +1,7 @@
 #pragma once
 
 #include "renderer/core/rng.h"
+#include "renderer/guides/directions.h"
 #include "renderer/path/vertex.h"
 
 namespace lacuna {
@@ -8,6 +9,20 @@ namespace lacuna {
 /// guide: bsdf. A guide draws the next direction at a vertex and knows the density of any direction
 /// there; the walk and the MIS weights take whatever density it reports.
 struct BsdfGuide {
+  static bool needs_space() { return false; }
+  static void prepare(const PrepareContext&) {}
+  static void save(ByteWriter&) {}
+  static void load(ByteReader&) {}
+  static std::vector<std::pair<std::string, double>> statistics() { return {}; }
+
+  /// There is nothing to learn.
+  struct Tally {};
+  static constexpr bool learns() { return false; }
+  static Tally tally() { return {}; }
+  static void learn(const Learned&, Tally&) {}
+  static void end(std::span<const Tally>, const ThreadPool&) {}
+
+  static void arrive(Vertex&) {}
   static std::optional<BsdfSample> sample(const Vertex& v, Rng& rng, Transport transport) {
     const float u_lobe = rng.next();
     return v.bsdf->sample(v.wp, u_lobe, rng.next2(), transport);

@@ -3,7 +3,8 @@
 #include "renderer/connections/hybrid_connections.h"
 #include "renderer/connections/uniform_connections.h"
 #include "renderer/core/clock_seconds.h"
-#include "renderer/guides/bsdf_guide.h"
+#include "renderer/guides/gathered_light.h"
+#include "renderer/guides/make_guide.h"
 #include "renderer/integrators/light_pass.h"
 #include "renderer/integrators/strategy_layers.h"
 
@@ -11,11 +12,10 @@ namespace lacuna {
 
 namespace {
 
-using Guide = BsdfGuide;
-
 /// What a strategy gives to a pixel of the tile, if nothing lies between.
 struct Contribution {
   std::uint32_t pixel = 0;
+  std::uint8_t walker = 0;  ///< of the eye's path, in its batch
   std::uint8_t distribution = 0;
   float survival = 1;          ///< probability with which it was made; `value` is divided by it
   float throughput = 0;        ///< luminance of the eye vertex'
@@ -40,20 +40,38 @@ class PassSeconds {
 
 /// Bidirectional path tracing (Noel 2015, 4.3 and ch. 11): everything but which light vertices an
 /// eye vertex is joined to.
+template <class Guide>
 class Bdpt : public Integrator {
  public:
-  explicit Bdpt(const BdptSettings& settings) : settings_(settings) {}
+  Bdpt(const BdptSettings& settings, Guide guide) : settings_(settings), guide_(std::move(guide)) {}
+
+  SceneNeeds needs() const override {
+    return {.materials = true, .emission = true, .space = guide_.needs_space()};
+  }
+  void prepare(const PrepareContext& context) override { guide_.prepare(context); }
+  std::vector<std::pair<std::string, double>> statistics() const override {
+    return guide_.statistics();
+  }
+  void save(ByteWriter& out) const override { guide_.save(out); }
+  void load(ByteReader& in) override { guide_.load(in); }
 
  protected:
+  struct EyePaths : EyeBatch {
+    using EyeBatch::EyeBatch;
+    GatheredLight gathered{*this};  // for a guide that learns
+  };
+
   /// An eye path's vertices that emit: s = 0.
-  void gather_hit(const IterationContext& context, const SampleCounts& counts, EyeBatch& batch,
+  void gather_hit(const IterationContext& context, const SampleCounts& counts, EyePaths& batch,
                   std::size_t i, int depth) const {
+    if (guide_.learns()) batch.gathered.reach(i, depth);
     const Vertex& v = batch.vertex(i, depth);
     const std::optional<EmitterPoint> e = emitter_at(context.scene, v);
     if (!e) return;
     const Rgb value = v.throughput * e->emission;
     const auto w = static_cast<float>(hit_weight(v, depth, *e, counts));
     batch.radiance[i] += value * w;
+    if (guide_.learns()) batch.gathered.add(i, depth, value * w);
     layers_.strategy(context.layers, 0, depth + 1, batch.pixels[i], value, w);
   }
 
@@ -77,17 +95,47 @@ class Bdpt : public Integrator {
     known.t = static_cast<std::uint16_t>(eye.index + 1);
     queue.add(shadow_ray(eye, light, c), known);
   }
+  /// What is known of a contribution to path `i` of `batch`, before it is joined to anything.
+  static Contribution contribution(const EyePaths& batch, std::size_t i) {
+    return {.pixel = batch.pixels[i], .walker = static_cast<std::uint8_t>(i)};
+  }
 
-  /// Adds what arrives to `image` and hands it to `arrived(contribution)`.
+  /// Adds what arrived for the paths of `batch`, hands it to `arrived(contribution)`, and tells the
+  /// guide of it.
   template <class Arrived>
-  void flush(const IterationContext& context, ShadowQueue<Contribution>& queue, Image& image,
-             Counters& counters, Arrived&& arrived) const {
+  void finish(const IterationContext& context, ShadowQueue<Contribution>& queue, EyePaths& batch,
+              Image& image, Counters& counters, typename Guide::Tally& tally,
+              Arrived&& arrived) const {
+    for (std::size_t k = 0; k < batch.walkers.size(); ++k) {
+      accumulate(image.pixels[batch.pixels[k]], batch.radiance[k], counters);
+    }
     queue.flush(context.scene.rays(), counters, [&](const Contribution& c) {
       accumulate(image.pixels[c.pixel], c.value * c.weight, counters);
       arrived(c);
+      if (guide_.learns()) batch.gathered.add(c.walker, c.t - 1, c.value * c.weight);
       layers_.strategy(context.layers, c.s, c.t, c.pixel, c.value, c.weight);
       layers_.distribution(context.layers, c.distribution, c.pixel, c.value * c.weight);
     });
+    if (guide_.learns()) batch.gathered.teach(guide_, tally);
+  }
+  /// start_paths() of the tile, and their number counted.
+  void start(const IterationContext& context, const Image& image, const Tile& tile, int first,
+             EyePaths& batch, Counters& counters) const {
+    start_paths(context, image, tile, first, batch);
+    counters.samples += batch.walkers.size();
+    if (guide_.learns()) batch.gathered.clear();
+  }
+  /// One for each tile.
+  using Tallies = std::vector<typename Guide::Tally>;
+  Tallies start_tallies(const Tiling& tiling) const {
+    Tallies tallies(static_cast<std::size_t>(tiling.tiles()));
+    if (guide_.learns()) {
+      for (auto& t : tallies) t = guide_.tally();
+    }
+    return tallies;
+  }
+  void end_tallies(const IterationContext& context, const Tallies& tallies) {
+    if (guide_.learns()) guide_.end(tallies, context.pool);
   }
   /// What for_each_splatting_part() hands on.
   auto splat_layers(const IterationContext& context) const {
@@ -116,42 +164,49 @@ class Bdpt : public Integrator {
 
 /// connections: paired. Pixel j's path meets light path j; the points on emitters of s = 1 are
 /// drawn afresh at each vertex.
-class PairedBdpt final : public Bdpt {
+template <class Guide>
+class PairedBdpt final : public Bdpt<Guide> {
+  using Base = Bdpt<Guide>;
+  using Base::guide_;
+  using Base::layers_;
+  using Base::settings_;
+  using typename Base::EyePaths;
+
  public:
-  using Bdpt::Bdpt;
+  using Base::Base;
   std::vector<std::string> layers(std::span<const ImageLayer> wanted) override {
     return layers_.choose(wanted, settings_.max_depth, {});
   }
-  SceneNeeds needs() const override { return {.materials = true, .emission = true}; }
 
   Counters iterate(const IterationContext& context, Image& image) override {
     const bool lit = !context.scene.emitters().empty();
     const SampleCounts counts{1, lit ? 1.0 : 0.0, lit ? 1.0 : 0.0,
-                              lit ? static_cast<double>(pixels(image)) : 0.0};
-    const LightPathSetting setting = light_setting(context, counts);
+                              lit ? static_cast<double>(Base::pixels(image)) : 0.0};
+    const LightPathSetting setting = Base::light_setting(context, counts);
     const Tiling tiling(image);
+    typename Base::Tallies tallies = Base::start_tallies(tiling);
     const auto work = [&](int i, Counters& counters, Splats& splats) {
-      Pairs pairs{EyeBatch(settings_.max_depth), LightBatch<Guide>(setting, guide_)};
-      Walk<Guide> walk(context.scene, guide_, eye_limits(counts), counters);
+      Pairs pairs{EyePaths(settings_.max_depth), LightBatch<Guide>(setting, guide_)};
+      Walk<Guide> walk(context.scene, guide_, Base::eye_limits(counts), counters);
       const Tile tile = tiling.tile(i);
       for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
-        start_paths(context, image, tile, first, pairs.eye);
-        counters.samples += pairs.eye.walkers.size();
+        Base::start(context, image, tile, first, pairs.eye, counters);
         walk_light(context, pairs, counters);
         pairs.light.splat(pairs.eye.walkers.size(), counters, splats);
         walk_eye(context, counts, walk, pairs);
-        for (std::size_t k = 0; k < pairs.eye.walkers.size(); ++k) {
-          accumulate(image.pixels[pairs.eye.pixels[k]], pairs.eye.radiance[k], counters);
-        }
-        flush(context, pairs.queue, image, counters, [](const Contribution&) {});
+        Base::finish(context, pairs.queue, pairs.eye, image, counters,
+                     tallies[static_cast<std::size_t>(i)], [](const Contribution&) {});
       }
     };
-    return for_each_splatting_part(context, tiling.tiles(), image, work, splat_layers(context));
+    const Counters sum =
+        for_each_splatting_part(context, tiling.tiles(), image, work, Base::splat_layers(context));
+    Base::end_tallies(context, tallies);
+    return sum;
   }
 
  private:
   struct Pairs {
-    EyeBatch eye;
+    EyePaths eye;
     LightBatch<Guide> light;
     std::vector<Rng> rngs = {};
     std::array<std::uint32_t, EyeBatch::size> chosen = {};  // emitters of s = 1
@@ -176,16 +231,17 @@ class PairedBdpt final : public Bdpt {
       }
     };
     walk.lead(pairs.eye.walkers, choose, [&](std::size_t i, int depth) {
-      gather_hit(context, counts, pairs.eye, i, depth);
+      Base::gather_hit(context, counts, pairs.eye, i, depth);
       const Vertex& v = pairs.eye.vertex(i, depth);
-      const int longest = longest_light_path(v, depth);
+      const int longest = Base::longest_light_path(v, depth);
       if (longest == 0 || counts.nee == 0) return;
       const SurfaceEnd<Guide> eye{v, depth, Transport::radiance, guide_};
       const EmitterPoint e = lights.sample(pairs.chosen[i], pairs.eye.walkers[i].rng);
-      join(eye, EmitterEnd{e}, 1, counts, {pairs.eye.pixels[i]}, pairs.queue);
+      const Contribution known = Base::contribution(pairs.eye, i);
+      Base::join(eye, EmitterEnd{e}, 1, counts, known, pairs.queue);
       for (int s = 2; s <= std::min(longest, pairs.light.length(i)); ++s) {
         if (!pairs.light.vertex(i, s - 1).bsdf->connectible()) continue;
-        join(eye, pairs.light.end(i, s - 1), 1, counts, {pairs.eye.pixels[i]}, pairs.queue);
+        Base::join(eye, pairs.light.end(i, s - 1), 1, counts, known, pairs.queue);
       }
     });
   }
@@ -193,37 +249,53 @@ class PairedBdpt final : public Bdpt {
 
 /// Connections with light paths that all pixels share, resampled at each eye vertex: the first of
 /// the paths that meet the eye itself (t = 1).
-template <class Connections>
-class ResampledBdpt final : public Bdpt {
+template <class Guide, class Connections>
+class ResampledBdpt final : public Bdpt<Guide> {
+  using Base = Bdpt<Guide>;
+  using Base::guide_;
+  using Base::layers_;
+  using Base::settings_;
+  using typename Base::EyePaths;
+
  public:
   template <class Settings>
-  ResampledBdpt(const BdptSettings& settings, const Settings& connections)
-      : Bdpt(settings), connections_(connections) {}
+  ResampledBdpt(const BdptSettings& settings, Guide guide, const Settings& connections)
+      : Base(settings, std::move(guide)), connections_(connections) {}
 
   SceneNeeds needs() const override {
-    return {.materials = true, .emission = true, .space = Connections::needs_space};
+    SceneNeeds needs = Base::needs();
+    needs.space = needs.space || Connections::needs_space;
+    return needs;
   }
   std::vector<std::string> layers(std::span<const ImageLayer> wanted) override {
     return layers_.choose(wanted, settings_.max_depth, Connections::distributions);
   }
   void prepare(const PrepareContext& context) override {
+    Base::prepare(context);
     connections_.prepare(context);
     seen_.resize(connections_.cells());
   }
   std::vector<std::pair<std::string, double>> statistics() const override {
     auto told = connections_.statistics();
+    for (auto& s : Base::statistics()) told.push_back(std::move(s));
     told.emplace_back("light_pass_cpu_seconds", seconds_.light);
     told.emplace_back("distributions_cpu_seconds", seconds_.distributions);
     told.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
     return told;
   }
-  void save(ByteWriter& out) const override { seen_.save(out); }
-  void load(ByteReader& in) override { seen_.load(in); }
+  void save(ByteWriter& out) const override {
+    seen_.save(out);
+    Base::save(out);
+  }
+  void load(ByteReader& in) override {
+    seen_.load(in);
+    Base::load(in);
+  }
 
   Counters iterate(const IterationContext& context, Image& image) override {
     const bool lit = !context.scene.emitters().empty();
     const auto resampled = static_cast<std::size_t>(connections_.resampling().light_paths);
-    const double splatted = connections_.resampling().splat_paths * double(pixels(image));
+    const double splatted = connections_.resampling().splat_paths * double(Base::pixels(image));
     const auto paths = std::max(static_cast<std::int64_t>(std::ceil(splatted)),
                                 static_cast<std::int64_t>(resampled));
     const double asked = connections_.resampling().count_as;
@@ -234,13 +306,13 @@ class ResampledBdpt final : public Bdpt {
 
     PassSeconds pass;
     LightVertices lights(lit ? resampled : 0, std::max(1, settings_.max_depth - 1));
-    const LightPathSetting setting = light_setting(context, counts);
+    const LightPathSetting setting = Base::light_setting(context, counts);
     Counters counters = light_pass(
         context, setting, guide_, lit ? paths : 0, image,
         [&](std::size_t path, const LightBatch<Guide>& batch, std::size_t place) {
           if (path < resampled) lights.keep(path, batch, place);
         },
-        splat_layers(context));
+        Base::splat_layers(context));
     lights.arrange();
     pass.end(seconds_.light);
     connections_.begin(context, lights, seen_, counters);
@@ -255,36 +327,34 @@ class ResampledBdpt final : public Bdpt {
                     const LightVertices& lights, Image& image) {
     const Tiling tiling(image);
     std::vector<CellStatistics::Tally> tallies(static_cast<std::size_t>(tiling.tiles()));
+    typename Base::Tallies guide_tallies = Base::start_tallies(tiling);
     const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
       const auto index = static_cast<std::size_t>(i);
       EyePart part{counts,
                    lights,
                    connections_.resampling().roulette * seen_.mean(index),
-                   EyeBatch(settings_.max_depth),
+                   EyePaths(settings_.max_depth),
                    {},
                    CellStatistics::Tally(seen_.cells())};
-      Walk<Guide> walk(context.scene, guide_, eye_limits(counts), counters);
+      Walk<Guide> walk(context.scene, guide_, Base::eye_limits(counts), counters);
       const Tile tile = tiling.tile(i);
       for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
-        start_paths(context, image, tile, first, part.batch);
-        counters.samples += part.batch.walkers.size();
+        Base::start(context, image, tile, first, part.batch, counters);
         walk.lead(
             part.batch.walkers, [](std::size_t, int) {},
             [&](std::size_t k, int depth) {
-              gather_hit(context, counts, part.batch, k, depth);
+              Base::gather_hit(context, counts, part.batch, k, depth);
               join_lights(part, k, depth);
             });
-        for (std::size_t k = 0; k < part.batch.walkers.size(); ++k) {
-          accumulate(image.pixels[part.batch.pixels[k]], part.batch.radiance[k], counters);
-        }
-        flush(context, part.queue, image, counters,
-              [&](const Contribution& c) { arrived(c, part.tally); });
+        Base::finish(context, part.queue, part.batch, image, counters, guide_tallies[index],
+                     [&](const Contribution& c) { arrived(c, part.tally); });
       }
       part.tally.paths(static_cast<std::uint64_t>(tile.pixels()));
       part.tally.close();
       tallies[index] = std::move(part.tally);
     });
     seen_.add(tallies);
+    Base::end_tallies(context, guide_tallies);
     return sum;
   }
 
@@ -293,7 +363,7 @@ class ResampledBdpt final : public Bdpt {
     const SampleCounts& counts;
     const LightVertices& lights;
     double enough;  // CellStatistics::survival()
-    EyeBatch batch;
+    EyePaths batch;
     ShadowQueue<Contribution> queue;
     CellStatistics::Tally tally;
   };
@@ -310,7 +380,7 @@ class ResampledBdpt final : public Bdpt {
 
   void join_lights(EyePart& part, std::size_t k, int depth) const {
     const Vertex& v = part.batch.vertex(k, depth);
-    const int longest = longest_light_path(v, depth);
+    const int longest = Base::longest_light_path(v, depth);
     if (longest == 0 || part.lights.paths() == 0) return;
     Rng& rng = part.batch.walkers[k].rng;
     const SurfaceEnd<Guide> eye{v, depth, Transport::radiance, guide_};
@@ -326,8 +396,12 @@ class ResampledBdpt final : public Bdpt {
       const double samples = static_cast<double>(part.lights.paths()) * double(pick.probability) *
                              double(pick.survival);
       part.lights.with_end(s, pick.index, guide_, [&](const auto& light) {
-        join(eye, light, samples, part.counts,
-             {part.batch.pixels[k], pick.owner, pick.survival, throughput, place.cell}, part.queue);
+        Contribution known = Base::contribution(part.batch, k);
+        known.distribution = pick.owner;
+        known.survival = pick.survival;
+        known.throughput = throughput;
+        known.cell = place.cell;
+        Base::join(eye, light, samples, part.counts, known, part.queue);
       });
     });
   }
@@ -340,28 +414,39 @@ class ResampledBdpt final : public Bdpt {
   CellStatistics seen_;
 };
 
+template <class Guide>
+struct MakeBdpt {
+  const BdptSettings& settings;
+  Guide& guide;
+
+  std::unique_ptr<Integrator> operator()(const PairedSettings&) const {
+    return std::make_unique<PairedBdpt<Guide>>(settings, std::move(guide));
+  }
+  std::unique_ptr<Integrator> operator()(const UniformSettings& s) const {
+    return resampled<UniformConnections>(s);
+  }
+  std::unique_ptr<Integrator> operator()(const SkeletonSettings& s) const {
+    return resampled<SkeletonConnections>(s);
+  }
+  std::unique_ptr<Integrator> operator()(const ImportanceCacheSettings& s) const {
+    return resampled<ImportanceCacheConnections>(s);
+  }
+  std::unique_ptr<Integrator> operator()(const HybridSettings& s) const {
+    return resampled<HybridConnections>(s);
+  }
+
+  template <class Connections, class Settings>
+  std::unique_ptr<Integrator> resampled(const Settings& s) const {
+    return std::make_unique<ResampledBdpt<Guide, Connections>>(settings, std::move(guide), s);
+  }
+};
+
 }  // namespace
 
 std::unique_ptr<Integrator> make_bdpt(const BdptSettings& settings) {
-  struct Make {
-    const BdptSettings& settings;
-    std::unique_ptr<Integrator> operator()(const PairedSettings&) const {
-      return std::make_unique<PairedBdpt>(settings);
-    }
-    std::unique_ptr<Integrator> operator()(const UniformSettings& s) const {
-      return std::make_unique<ResampledBdpt<UniformConnections>>(settings, s);
-    }
-    std::unique_ptr<Integrator> operator()(const SkeletonSettings& s) const {
-      return std::make_unique<ResampledBdpt<SkeletonConnections>>(settings, s);
-    }
-    std::unique_ptr<Integrator> operator()(const ImportanceCacheSettings& s) const {
-      return std::make_unique<ResampledBdpt<ImportanceCacheConnections>>(settings, s);
-    }
-    std::unique_ptr<Integrator> operator()(const HybridSettings& s) const {
-      return std::make_unique<ResampledBdpt<HybridConnections>>(settings, s);
-    }
-  };
-  return std::visit(Make{settings}, settings.connections);
+  return with_guide(settings.guide, [&]<class Guide>(Guide guide) {
+    return std::visit(MakeBdpt<Guide>{settings, guide}, settings.connections);
+  });
 }
 
 }  // namespace lacuna

@@ -8,6 +8,12 @@
 
 namespace lacuna {
 
+/// Where a guide (renderer/guides) found its distribution of directions at a surface.
+struct GuideSite {
+  float probability = 0;  ///< with which a direction is drawn from it, < 1; 0: there is none
+  std::uint32_t index = 0xffffffff;  ///< the guide's own; at first: nothing
+};
+
 /// One vertex of a path, wherever it came from.
 struct Vertex {
   enum class Kind : std::uint8_t { eye, emitter, surface, background };
@@ -21,6 +27,7 @@ struct Vertex {
   Rgb throughput{1, 1, 1};   ///< includes every division by a density, up to here
   Pdf<Area> p_fwd{};         ///< density of this vertex on this walk; background: per steradian
   double prior = 0;          ///< PriorSum's part that is known before the path goes on (mis.h)
+  GuideSite site;            ///< of the surface as seen from wp
   std::optional<Bsdf> bsdf;  ///< of a surface from which the path may go on
 
   /// An edge that was not sampled may begin or end here.

@@ -104,6 +104,7 @@ class Walk {
     Vertex& v = vertex(w, depth);
     if (v.kind == Vertex::Kind::background || !scatters(depth)) return;
     scene_.make_bsdf(v.surface, v.bsdf);
+    if constexpr (requires { guide_.arrive(v); }) guide_.arrive(v);
   }
 
   /// Draws the next edge; false where the walk ends.

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "renderer/settings/connections_settings.h"
+#include "renderer/settings/guide_settings.h"
 #include "renderer/settings/output_settings.h"
 #include "renderer/settings/path_lengths.h"
 
@@ -19,6 +20,7 @@ struct BdptSettings : PathLengths {
                                      ImageLayer::distributions};
 
   ConnectionsSettings connections = PairedSettings{};
+  GuideSettings guide = BsdfGuideSettings{};
 
   bool operator==(const BdptSettings&) const = default;
 };
@@ -27,6 +29,7 @@ template <class V>
 void describe(V& v, BdptSettings& s) {
   describe_lengths(v, s);
   v("connections", s.connections, {.doc = "which light vertices meet an eye vertex"});
+  v("guide", s.guide, {.doc = "where the next ray of a path from the eye goes"});
 }
 
 }  // namespace lacuna

@@ -73,7 +73,7 @@ class OtherChoice : public OneChange {
   }
 };
 
-/// Another value of a flag or of an enum.
+/// Another value of a flag or of an enum; a number that is left to the method.
 class OtherFlag : public OneChange {
  public:
   using OneChange::OneChange;
@@ -81,6 +81,8 @@ class OtherFlag : public OneChange {
   void operator()(std::string_view name, T& member, const Field& field) {
     if constexpr (std::is_same_v<T, bool>) {
       if (is_next()) member = !member, note(name, member ? "true" : "false");
+    } else if constexpr (std::is_same_v<T, AutoNumber>) {
+      if (!member.is_auto() && is_next()) member = {}, note(name, auto_name);
     } else if constexpr (NamedEnum<T>) {
       const T now = member;
       for (const auto& v : EnumTable<T>::values) {
@@ -104,6 +106,11 @@ class NumberAt : public OneChange {
         member = static_cast<T>(value);
         note(name, number_text(value));
       }
+    } else if constexpr (std::is_same_v<T, AutoNumber>) {
+      double number = member.value.value_or(0);
+      const bool before = made().empty();
+      (*this)(name, number, field);
+      if (before && !made().empty()) member = {number};
     } else if constexpr (is_array<T> || is_vector<T>) {
       for (auto& element : member) (*this)(name, element, field);
     } else {

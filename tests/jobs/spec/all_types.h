@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "analysis/settings/auto_number.h"
 #include "analysis/settings/field.h"
 #include "jobs/spec/json_value.h"
 
@@ -60,6 +61,7 @@ struct AllTypes {
   std::optional<Colour> maybe_colour;
   std::optional<Sphere> maybe_sphere;
   std::optional<std::variant<Sphere, Box>> maybe_shape;
+  AutoNumber found{4};
   std::array<int, 2> pair{1, 2};
   std::vector<std::string> words;
   std::vector<Sphere> spheres;
@@ -82,6 +84,7 @@ void describe(V& v, AllTypes& s) {
   v("maybe_colour", s.maybe_colour, {.doc = "optional enum"});
   v("maybe_sphere", s.maybe_sphere, {.doc = "optional struct"});
   v("maybe_shape", s.maybe_shape, {.doc = "optional variant"});
+  v("found", s.found, {.doc = "number or auto", .min = 0, .max = 8});
   v("pair", s.pair, {.doc = "array", .min = 0, .max = 9});
   v("words", s.words, {.doc = "list", .max = 2});
   v("spheres", s.spheres, {.doc = "list of structs"});

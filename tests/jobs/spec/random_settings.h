@@ -36,6 +36,9 @@ class RandomSettings {
       out = text(field);
     } else if constexpr (NamedEnum<T>) {
       out = EnumTable<T>::values[below(EnumTable<T>::values.size())].value;
+    } else if constexpr (std::is_same_v<T, AutoNumber>) {
+      out.value.reset();
+      if (below(2) == 0) fill(out.value.emplace(), field);
     } else if constexpr (is_optional<T>) {
       out.reset();
       if (below(2) == 0) fill(out.emplace(), field);

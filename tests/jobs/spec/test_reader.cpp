@@ -19,7 +19,7 @@ TEST(Reader, reads_every_type) {
   const AllTypes s = read(R"({
     "flag": true, "small": -2147483648, "wide": -9007199254740991, "positive": 9007199254740991,
     "real": 1, "word": "äöü", "colour": "red", "maybe": 2.5, "maybe_colour": "green",
-    "maybe_sphere": {"radius": 2}, "maybe_shape": {"type": "box", "maker": "me"}, "pair": [9, 0],
+    "maybe_sphere": {"radius": 2}, "maybe_shape": {"type": "box", "maker": "me"}, "found": "auto", "pair": [9, 0],
     "words": ["x", ""], "spheres": [{}, {"radius": 3}], "nested": {},
     "shape": {"type": "box", "size": [0, 10, 5], "maker": "you"}})");
   AllTypes e;
@@ -34,6 +34,7 @@ TEST(Reader, reads_every_type) {
   e.maybe_colour = Colour::green;
   e.maybe_sphere = Sphere{2};
   e.maybe_shape = Box{.size = {1, 2, 3}, .maker = "me"};
+  e.found = {};
   e.pair = {9, 0};
   e.words = {"x", ""};
   e.spheres = {Sphere{1}, Sphere{3}};
@@ -77,6 +78,8 @@ struct Refused {
 
 TEST(Reader, says_what_was_found_and_what_is_allowed) {
   const Refused cases[] = {
+      {"found", "9", "/found", {"found number 9", "a number from 0 to 8, or \"auto\""}},
+      {"found", "\"never\"", "/found", {"string \"never\"", "or \"auto\""}},
       {"flag", "1", "/flag", {"found number 1", "true or false"}},
       {"flag", "\"true\"", "/flag", {"found string \"true\""}},
       {"small", "1.5", "/small", {"found number 1.5", "an integer from -2147483648 to 2147483647"}},

@@ -39,8 +39,8 @@ TEST(SettingsChanges, EveryOtherAlternative) {
 
 TEST(SettingsChanges, EveryOtherFlagAndNamedValue) {
   const auto changes = all_changes<extremes::OtherFlag>();
-  EXPECT_EQ(names(changes),
-            (std::vector<std::string>{" flag=true", " colour=red", " maybe_colour=green"}));
+  EXPECT_EQ(names(changes), (std::vector<std::string>{" flag=true", " colour=red",
+                                                      " maybe_colour=green", " found=auto"}));
   EXPECT_TRUE(changes[0].second.flag);
   EXPECT_EQ(changes[0].second.colour, Colour::green) << "one at a time";
   EXPECT_EQ(changes[2].second.maybe_colour, Colour::green);
@@ -55,12 +55,13 @@ TEST(SettingsChanges, EveryNumberThatHasThatEnd) {
                                           " maybe=2",
                                           " maybe_sphere.radius=5e-324",
                                           " maybe_shape.radius=5e-324",
+                                          " found=0",
                                           " pair=0",
                                           " pair=0",
                                           " nested.radius=5e-324",
                                           " shape.radius=5e-324"};
   EXPECT_EQ(names(least), expected);
-  EXPECT_EQ(least[8].second.pair, (std::array<int, 2>{1, 0}));
+  EXPECT_EQ(least[9].second.pair, (std::array<int, 2>{1, 0}));
   const auto above = all_changes<extremes::NumberAt>(End::above);
   EXPECT_EQ(above.back().first, " pair=10") << "nothing lies above what has no end";
 }

@@ -31,6 +31,38 @@ inline BdptSettings joining(int max_depth, const ConnectionsSettings& connection
   return s;
 }
 
+/// Every guide, with what it can learn given and learned.
+inline std::vector<std::pair<std::string, GuideSettings>> guides() {
+  SkeletonGuideSettings learning;
+  learning.strength = learning.probability = {};
+  SdTreeGuideSettings tree;
+  tree.leaf_vertices = 100;           // of small pictures
+  FaceIrradianceGuideSettings faces;  // which would learn to do nothing in small pictures
+  faces.probability = {0.5};
+  PortalsGuideSettings portals;
+  portals.probability = {0.5};
+  return {{"skeleton", SkeletonGuideSettings{}},
+          {"learning_skeleton", learning},
+          {"portals", portals},
+          {"learning_portals", PortalsGuideSettings{}},
+          {"face_irradiance", faces},
+          {"sd_tree", tree}};
+}
+/// Path tracing with every guide, and bidirectional path tracing with some.
+inline std::vector<Method> guided(int max_depth) {
+  std::vector<Method> all;
+  for (const auto& [name, guide] : guides()) {
+    PathSettings path = path_tracing(max_depth);
+    path.guide = guide;
+    all.push_back({"path_" + name, path});
+    if (name != "learning_skeleton" && name != "face_irradiance") continue;
+    BdptSettings bdpt = joining(max_depth, PairedSettings{});
+    bdpt.guide = guide;
+    all.push_back({"bdpt_" + name, bdpt});
+  }
+  return all;
+}
+
 /// `Settings` with few light paths, and changed by `change`.
 template <class Settings, class Change>
 Settings resampled(int light_paths, const Change& change) {

@@ -14,8 +14,9 @@ double squared_distance(const WholePath& p, int i) {
 
 }  // namespace
 
-Oracle::Oracle(const Scene& scene, const Camera& camera, const WholePath& path)
-    : scene_(scene), camera_(camera), path_(path) {
+Oracle::Oracle(const Scene& scene, const Camera& camera, const WholePath& path,
+               const Directions* directions)
+    : scene_(scene), camera_(camera), path_(path), directions_(directions) {
   const int k = path.edges();
   for (int i = 0; i <= k; ++i) {
     from_light_.push_back(i == k ? -HUGE_VAL : std::log(light_step(i)));
@@ -70,7 +71,13 @@ double Oracle::eye_step(int i) const {
   if (i == path_.edges() - 1) return double(camera_.density(w).value) * there;
   const WholePath::Node& from = path_.node(i + 1);
   if (from.delta) return there;
-  return double(from.bsdf->pdf(path_.towards_eye(i + 1), w, Transport::radiance).value) * there;
+  const V3f& wo = path_.towards_eye(i + 1);
+  const auto bsdf = double(from.bsdf->pdf(wo, w, Transport::radiance).value);
+  if (directions_ == nullptr) return bsdf * there;
+  const GuideSite site = directions_->site(from.surface, wo);
+  const auto guided = double(directions_->pdf(site, from.surface.x, w).value);
+  const auto c = double(site.probability);
+  return (c * guided + (1 - c) * bsdf) * there;
 }
 
 std::vector<double> Oracle::weights(const SampleCounts& n) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "renderer/guides/directions.h"
 #include "renderer/path/mis.h"
 #include "tests/renderer/path/whole_path.h"
 
@@ -9,7 +10,9 @@ namespace lacuna::test {
 /// from either end, the strategies' densities as plain products, each times its number of samples.
 class Oracle {
  public:
-  Oracle(const Scene& scene, const Camera& camera, const WholePath& path);
+  /// `directions`: those of the guide of paths from the eye; null: they follow the BSDF.
+  Oracle(const Scene& scene, const Camera& camera, const WholePath& path,
+         const Directions* directions = nullptr);
 
   /// Of strategy s = 0 ... k under the balance heuristic. All 0: no strategy makes this path.
   std::vector<double> weights(const SampleCounts& n) const;
@@ -22,6 +25,7 @@ class Oracle {
   const Scene& scene_;
   const Camera& camera_;
   const WholePath& path_;
+  const Directions* directions_;
   /// [i] per area at x_i, of a walk that comes from there; in logarithms, -inf: never.
   std::vector<double> from_light_, from_eye_;
 };

@@ -1,18 +1,24 @@
 #pragma once
 
+#include "renderer/guides/mixed_guide.h"
 #include "renderer/path/eye_batch.h"
 #include "tests/renderer/path/whole_path.h"
 
 namespace lacuna::test {
 
-/// A guide that goes where it is told, with the densities of the BSDF.
+/// A guide that goes where it is told, with the densities of the BSDF or of another guide.
 struct ScriptedGuide {
   struct Step {
     V3f w;
     bool delta;
   };
-  const Vertex* first = nullptr;  ///< of the walk
-  std::vector<Step> steps;        ///< of its vertices 1, 2, ...
+  const Vertex* first = nullptr;          ///< of the walk
+  std::vector<Step> steps = {};           ///< of its vertices 1, 2, ...
+  const MixedGuide* densities = nullptr;  ///< null: of the BSDF
+
+  void arrive(Vertex& v) const {
+    if (densities != nullptr) densities->arrive(v);
+  }
 
   std::optional<BsdfSample> sample(const Vertex& v, Rng&, Transport transport) const {
     const Step& step = steps[static_cast<std::size_t>(&v - first) - 1];
@@ -20,10 +26,11 @@ struct ScriptedGuide {
     s.wi = step.w;
     s.weight = Rgb(1, 1, 1);
     s.delta = step.delta;
-    s.pdf = v.bsdf->pdf(v.wp, step.w, transport);
+    s.pdf = pdf(v, v.wp, step.w, transport);
     return s;
   }
-  static Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport) {
+  Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport) const {
+    if (densities != nullptr) return densities->pdf(v, wo, wi, transport);
     return v.bsdf->pdf(wo, wi, transport);
   }
 };
@@ -31,13 +38,17 @@ struct ScriptedGuide {
 /// Makes whole paths once more, vertex by vertex, by walks from either end.
 class Remake {
  public:
-  Remake(const Scene& scene, const Camera& camera, const WholePath& path, const SampleCounts& n)
+  /// `guide`: whose densities the walks have; null: those of the BSDF.
+  Remake(const Scene& scene, const Camera& camera, const WholePath& path, const SampleCounts& n,
+         const MixedGuide* guide = nullptr)
       : scene_(scene),
         camera_(camera),
         path_(path),
         counts_(n),
         eye_(path.edges()),
-        light_(static_cast<std::size_t>(path.edges()) + 1) {}
+        light_(static_cast<std::size_t>(path.edges()) + 1),
+        eye_guide_{.densities = guide},
+        light_guide_{.densities = guide} {}
 
   /// The weight of strategy s; nothing if the walks do not come to the same vertices again.
   std::optional<double> weight(int s) {
@@ -81,7 +92,8 @@ class Remake {
     const int k = path_.edges();
     eye_.walkers.clear();
     if (depth == 0) return true;
-    eye_guide_ = {&eye_.vertex(0, 0), {}};
+    eye_guide_.first = &eye_.vertex(0, 0);
+    eye_guide_.steps.clear();
     for (int j = 1; j < depth; ++j) {
       eye_guide_.steps.push_back({step(k - j, -1), path_.node(k - j).delta});
     }
@@ -98,7 +110,8 @@ class Remake {
   /// Walks to vertex s - 1 from the light, as LightBatch does.
   bool walk_light(int s) {
     const EmitterPoint& e = path_.emitter;
-    light_guide_ = {light_.data(), {}};
+    light_guide_.first = light_.data();
+    light_guide_.steps.clear();
     for (int j = 1; j < s - 1; ++j) {
       light_guide_.steps.push_back({step(j, 1), path_.node(j).delta});
     }

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <unordered_map>
+
+#include "analysis/regions/borders.h"
+#include "analysis/skeleton/surface_lookup.h"
+#include "renderer/core/alias_table.h"
+#include "renderer/guides/crossed_faces.h"
+#include "renderer/guides/directions.h"
+
+namespace lacuna {
+
+/// The faces of guide: face_irradiance: all of a region's border, those towards the scene and the
+/// outside too, each drawn by the light that paths from the region's surfaces found through it, in
+/// all iterations before (Noel 2015, 10.4.2). That is, summed over the paths, the radiance over the
+/// density with which its direction was drawn: an estimate of what arrives through the face at the
+/// region's surfaces, which is what its probability stands for. The thesis' thresholds, by which a
+/// point may draw from its neighbour's border, have no place here: RegionMixture does what they
+/// were for.
+class BorderFaceLight {
+ public:
+  static constexpr bool learns = true;
+  /// The faces in front of the surfaces around a point, which are the border's too, are edge-on to
+  /// it: drawing through them would be of no use.
+  static constexpr bool leaving_only = true;
+
+  void prepare(const PrepareContext& context, const SurfaceLookup&);
+  void save(ByteWriter& out) const { out.put(light_); }
+  /// Throws std::runtime_error if this is not of these borders.
+  void load(ByteReader& in);
+  std::vector<std::pair<std::string, double>> statistics() const;
+
+  /// 1 where something is known, else 0: nothing can be drawn.
+  double mass(std::uint32_t region) const { return tables_[region].empty() ? 0 : 1; }
+  /// All faces of the region's border, with the voxels on both sides.
+  const VoxelBox& box(std::uint32_t region) const { return boxes_[region]; }
+  VoxelFace draw(std::uint32_t region, Rng& rng) const {
+    return borders_.face(region, tables_[region].sample(rng));
+  }
+  /// Of a face that leaves region `near`.
+  double probability(std::uint32_t region, const CrossedFace& face, std::uint32_t near,
+                     std::uint32_t) const {
+    if (region != near) return 0;
+    const VoxelFace own{static_cast<std::uint32_t>(label_->index(face.from)), face.side_of_from()};
+    return double(tables_[region].pmf(static_cast<std::uint32_t>(index(region, own))).value);
+  }
+
+  struct Tally {
+    std::unordered_map<std::uint64_t, double> light;  // of the faces met, of all regions
+  };
+  void learn(std::uint32_t region, const VoxelFace& face, const Learned& what, Tally& tally) const;
+  void end(std::span<const Tally* const> tallies, const ThreadPool& pool);
+
+ private:
+  std::uint64_t first(std::uint32_t region) const {
+    return borders_.first[6 * std::size_t{region}];
+  }
+  /// Of a face within its region's border.
+  std::uint64_t index(std::uint32_t region, const VoxelFace& face) const;
+  void make_table(std::uint32_t region);
+
+  const Grid3<std::uint32_t>* label_ = nullptr;
+  Borders borders_;
+  std::vector<double> light_;  // of each face of each region
+  std::vector<AliasTable> tables_;
+  std::vector<VoxelBox> boxes_;
+};
+
+}  // namespace lacuna

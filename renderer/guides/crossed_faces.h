@@ -1,0 +1,87 @@
+#pragma once
+
+#include <Imath/ImathVec.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "analysis/geometry/grid.h"
+
+namespace lacuna {
+
+/// A box of voxels: [low, high).
+struct VoxelBox {
+  Imath::V3i low{0}, high{0};
+
+  bool empty() const { return low.x >= high.x || low.y >= high.y || low.z >= high.z; }
+  void add(Imath::V3i v) {
+    if (empty()) {
+      low = v;
+      high = v + Imath::V3i(1);
+      return;
+    }
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], v[a]);
+      high[a] = std::max(high[a], v[a] + 1);
+    }
+  }
+  void add(const VoxelBox& box) {
+    if (box.empty()) return;
+    add(box.low);
+    add(box.high - Imath::V3i(1));
+  }
+};
+
+/// A face between two voxels, crossed by a ray; the voxels may lie outside the grid.
+struct CrossedFace {
+  Imath::V3i from, to;
+  int axis;
+  double t;  ///< where on the ray
+
+  /// The side of `from`, as VoxelFace counts.
+  std::uint8_t side_of_from() const {
+    return static_cast<std::uint8_t>(2 * axis + (to[axis] > from[axis] ? 1 : 0));
+  }
+  std::uint8_t side_of_to() const { return side_of_from() ^ 1U; }
+};
+
+/// Walks along the ray from `x` in direction `w` (grid coordinates; w of any length but 0) through
+/// `box` and calls visit(CrossedFace) at each face between two voxels of it that the ray crosses at
+/// x + t w, t > 0, in their order, until visit returns false (Amanatides and Woo 1987). Where the
+/// ray runs through an edge, the face across the lower axis comes first.
+template <class Visit>
+void for_each_crossed_face(const Imath::V3d& x, const Imath::V3d& w, const VoxelBox& box,
+                           Visit&& visit) {
+  double enter = 0, leave = HUGE_VAL;
+  for (int a = 0; a < 3; ++a) {
+    if (w[a] == 0) {
+      if (x[a] < box.low[a] || x[a] >= box.high[a]) return;
+      continue;
+    }
+    const double first = (box.low[a] - x[a]) / w[a], second = (box.high[a] - x[a]) / w[a];
+    enter = std::max(enter, std::min(first, second));
+    leave = std::min(leave, std::max(first, second));
+  }
+  if (!(enter < leave)) return;
+  Imath::V3i here;
+  Imath::V3d next, apart;
+  for (int a = 0; a < 3; ++a) {
+    here[a] =
+        std::clamp(static_cast<int>(std::floor(x[a] + enter * w[a])), box.low[a], box.high[a] - 1);
+    next[a] = w[a] == 0 ? HUGE_VAL : (here[a] + (w[a] > 0 ? 1 : 0) - x[a]) / w[a];
+    apart[a] = w[a] == 0 ? HUGE_VAL : 1 / std::abs(w[a]);
+  }
+  for (;;) {
+    int axis = next.x <= next.y ? 0 : 1;
+    if (next.z < next[axis]) axis = 2;
+    Imath::V3i there = here;
+    there[axis] += w[axis] > 0 ? 1 : -1;
+    if (there[axis] < box.low[axis] || there[axis] >= box.high[axis]) return;
+    if (next[axis] > 0 && !visit(CrossedFace{here, there, axis, next[axis]})) return;
+    here = there;
+    next[axis] += apart[axis];
+  }
+}
+
+}  // namespace lacuna

@@ -1,0 +1,178 @@
+#include "renderer/guides/direction_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "renderer/core/sampling.h"
+
+namespace lacuna {
+
+namespace {
+
+constexpr float below_one = 1 - 0x1p-24F;
+
+V2f corner_of(std::size_t quarter) {
+  return {quarter % 2 == 1 ? 0.5F : 0.0F, quarter / 2 == 1 ? 0.5F : 0.0F};
+}
+
+}  // namespace
+
+V2f to_square(const V3f& w) {
+  const float phi = std::atan2(w.y, w.x) / (2 * pi);
+  return {std::clamp((w.z + 1) / 2, 0.0F, below_one),
+          std::clamp(phi < 0 ? phi + 1 : phi, 0.0F, below_one)};
+}
+
+V3f from_square(const V2f& p) {
+  const float z = 2 * p.x - 1, r = std::sqrt(std::max(0.0F, 1 - z * z)), phi = 2 * pi * p.y;
+  return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+std::size_t DirectionTree::quarter(V2f& p) {
+  const bool x = p.x >= 0.5F, y = p.y >= 0.5F;
+  p.x = std::min(below_one, 2 * p.x - (x ? 1.0F : 0.0F));
+  p.y = std::min(below_one, 2 * p.y - (y ? 1.0F : 0.0F));
+  return (x ? 1U : 0U) + (y ? 2U : 0U);
+}
+
+double DirectionTree::leaf_size(V2f p) const {
+  double size = 0.5;
+  std::uint32_t node = 0;
+  for (;;) {
+    node = nodes_[node].child[quarter(p)];
+    if (node == 0) return size;
+    size /= 2;
+  }
+}
+
+void DirectionTree::add(const V3f& w, double energy, bool filter) {
+  V2f p = to_square(w);
+  if (filter) {
+    const auto half = static_cast<float>(leaf_size(p) / 2);
+    const V2f low = p - V2f(half), high = p + V2f(half);
+    const double density = energy / (4 * double(half) * double(half));
+    // What reaches beyond the angle's ends comes in again at the other; beyond the poles it is
+    // lost, but for what others bring.
+    for (const float shift : {-1.0F, 0.0F, 1.0F}) {
+      spread(0, V2f(0, shift), 1, low, high, density);
+    }
+    return;
+  }
+  std::uint32_t node = 0;
+  for (;;) {
+    const std::size_t q = quarter(p);
+    if (nodes_[node].child[q] == 0) {
+      nodes_[node].energy[q] += static_cast<float>(energy);
+      return;
+    }
+    node = nodes_[node].child[q];
+  }
+}
+
+/// Adds `density` over the part of [from, to] that the square at `low` covers.
+void DirectionTree::spread(std::uint32_t node, const V2f& low, float size, const V2f& from,
+                           const V2f& to, double density) {
+  for (std::size_t q = 0; q < 4; ++q) {
+    const V2f at = low + corner_of(q) * size;
+    const float half = size / 2;
+    const float width = std::min(at.x + half, to.x) - std::max(at.x, from.x);
+    const float height = std::min(at.y + half, to.y) - std::max(at.y, from.y);
+    if (!(width > 0 && height > 0)) continue;
+    if (nodes_[node].child[q] != 0) {
+      spread(nodes_[node].child[q], at, half, from, to, density);
+    } else {
+      nodes_[node].energy[q] += static_cast<float>(density * double(width) * double(height));
+    }
+  }
+}
+
+void DirectionTree::build() { build(0); }
+
+double DirectionTree::build(std::uint32_t node) {
+  for (std::size_t q = 0; q < 4; ++q) {
+    const std::uint32_t child = nodes_[node].child[q];
+    if (child != 0) nodes_[node].energy[q] = static_cast<float>(build(child));
+  }
+  return sum(nodes_[node]);
+}
+
+V3f DirectionTree::sample(Rng& rng) const {
+  V2f low(0, 0);
+  float size = 1;
+  std::uint32_t node = 0;
+  for (;;) {
+    const Node& n = nodes_[node];
+    double left = double(rng.next()) * sum(n);
+    std::size_t q = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (!(n.energy[i] > 0)) continue;
+      q = i;  // the last one, where rounding leaves a little
+      if (left < double(n.energy[i])) break;
+      left -= double(n.energy[i]);
+    }
+    low += corner_of(q) * size;
+    size /= 2;
+    if (n.child[q] == 0) break;
+    node = n.child[q];
+  }
+  const V2f p = low + rng.next2() * size;
+  return from_square({std::min(p.x, below_one), std::min(p.y, below_one)});
+}
+
+Pdf<SolidAngle> DirectionTree::pdf(const V3f& w) const {
+  V2f p = to_square(w);
+  double density = 1 / (4 * double(pi));
+  std::uint32_t node = 0;
+  for (;;) {
+    const Node& n = nodes_[node];
+    const std::size_t q = quarter(p);
+    if (!(n.energy[q] > 0)) return {};
+    density *= 4 * double(n.energy[q]) / sum(n);
+    if (n.child[q] == 0) return Pdf<SolidAngle>(static_cast<float>(density));
+    node = n.child[q];
+  }
+}
+
+DirectionTree DirectionTree::refined(double share, int depth) const {
+  struct Task {
+    std::uint32_t to, from;  // from 0, but for the root: a leaf's quarters are alike
+    std::size_t quarter;     // of the leaf that is being divided
+    double energy;           // of the node
+    int level;
+  };
+  DirectionTree result;
+  const double all = energy();
+  std::vector<Task> tasks{{0, 0, 4, all, 1}};
+  while (!tasks.empty()) {
+    const Task t = tasks.back();
+    tasks.pop_back();
+    for (std::size_t q = 0; q < 4; ++q) {
+      const bool own = t.quarter == 4;  // the node is there already
+      const double part = own ? double(nodes_[t.from].energy[q]) : t.energy / 4;
+      if (t.level >= depth || !(part > share * all)) continue;
+      const auto child = static_cast<std::uint32_t>(result.nodes_.size());
+      result.nodes_.emplace_back();
+      result.nodes_[t.to].child[q] = child;
+      const std::uint32_t from = own ? nodes_[t.from].child[q] : 0;
+      tasks.push_back({child, from, from != 0 ? std::size_t{4} : q, part, t.level + 1});
+    }
+  }
+  return result;
+}
+
+void DirectionTree::load(ByteReader& in) {
+  nodes_ = in.get_vector<Node>();
+  bool good = !nodes_.empty();
+  for (std::size_t i = 0; i < nodes_.size() && good; ++i) {
+    for (std::size_t q = 0; q < 4; ++q) {
+      const std::uint32_t child = nodes_[i].child[q];
+      // Children come after their parents: there are no circles.
+      good = good && (child == 0 || (child > i && child < nodes_.size()));
+      good = good && nodes_[i].energy[q] >= 0 && std::isfinite(nodes_[i].energy[q]);
+    }
+  }
+  if (!good) throw std::runtime_error("saved directions are no tree");
+}
+
+}  // namespace lacuna

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "renderer/integrators/integrator.h"
+#include "renderer/path/vertex.h"
+
+namespace lacuna {
+
+/// What a walk found out about the light at one of its vertices.
+struct Learned {
+  const Vertex& v;      ///< left along `wi`, which was not drawn from a delta lobe
+  V3f wi;               ///< unit
+  Pdf<SolidAngle> pdf;  ///< with which it was drawn
+  float radiance;       ///< luminance that arrived along `wi`, as the rest of the path estimates it
+  float given;          ///< luminance of what the pixel got from there
+};
+
+/// A distribution of directions at every point of the scene's surfaces, of what a guide knows about
+/// where light comes from. MixedGuide combines it with the BSDF. Iterations read it from several
+/// threads; only end() and load() change what it draws from.
+class Directions {
+ public:
+  /// What the parts of an iteration learn apart and end() adds up in their order, so that the state
+  /// is the same for any number of threads.
+  struct Tally {
+    virtual ~Tally() = default;
+  };
+
+  virtual ~Directions() = default;
+
+  /// What is called by the integrator's functions of these names; before prepare(): needs_space().
+  virtual bool needs_space() const = 0;
+  virtual void prepare(const PrepareContext&) {}
+  virtual void save(ByteWriter&) const {}
+  /// Throws std::runtime_error if what was saved is not of this scene.
+  virtual void load(ByteReader&) {}
+  virtual std::vector<std::pair<std::string, double>> statistics() const { return {}; }
+
+  /// Where the distribution at surface `s`, as seen from the side of unit `w`, is found.
+  virtual GuideSite site(const Surface& s, const V3f& w) const = 0;
+  /// Draws a unit direction at `x`, whose site this is; nothing where the draw fails. Only where
+  /// the site's probability is above 0.
+  virtual std::optional<V3f> sample(const GuideSite& site, const V3f& x, Rng& rng) const = 0;
+  /// Density with which sample() returns unit `w`; its integral over the sphere is 1 less the
+  /// probability of failure. sample() never returns what has density 0, but for rounding.
+  virtual Pdf<SolidAngle> pdf(const GuideSite& site, const V3f& x, const V3f& w) const = 0;
+
+  /// Whether learn() and end() want to be called in the coming iteration.
+  virtual bool learns() const { return false; }
+  virtual std::unique_ptr<Tally> tally() const { return nullptr; }
+  virtual void learn(const Learned&, Tally&) const {}
+  virtual void end(std::span<const std::unique_ptr<Tally>>, const ThreadPool&) {}
+};
+
+}  // namespace lacuna

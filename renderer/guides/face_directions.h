@@ -1,0 +1,184 @@
+#pragma once
+
+#include "analysis/regions/voxel_face.h"
+#include "analysis/skeleton/surface_lookup.h"
+#include "renderer/guides/crossed_faces.h"
+#include "renderer/guides/directions.h"
+#include "renderer/guides/region_mixture.h"
+#include "renderer/guides/tuning.h"
+
+namespace lacuna {
+
+/// Directions through voxel faces: a face is drawn from a distribution that the region of the point
+/// has, then a point uniform on it. Faces hide one another, and a direction may be drawn through
+/// each that lies on its way; so its density adds up all of them, out of sight or not:
+///     p(w) = sum_faces P(face) t^2 / |cos|
+/// with t the distance in voxels, as a face has area 1 (Noel 2015, 10.4, whose pictures came out
+/// too bright). `Faces` has the distributions, PortalFaces or BorderFaceLight, and says whether
+/// faces are drawn and counted only where the ray leaves the region through them.
+template <class Faces>
+class FaceDirections final : public Directions {
+ public:
+  FaceDirections(const RegionGuideSettings& settings, Faces faces)
+      : settings_(settings), faces_(std::move(faces)) {}
+
+  bool needs_space() const override { return true; }
+  void prepare(const PrepareContext& context) override {
+    transform_ = context.space.voxels().transform;
+    label_ = &context.space.regions().label;
+    // Regions are numbered as nodes are, and what has none is marked as voxels without a node are.
+    static_assert(no_region == no_node);
+    lookup_.emplace(transform_, *label_);
+    faces_.prepare(context, *lookup_);
+    // Faces have no strength.
+    tuning_ = Tuning({1}, settings_.probability, context.space.regions().regions.size());
+  }
+  void save(ByteWriter& out) const override {
+    faces_.save(out);
+    tuning_.save(out);
+  }
+  void load(ByteReader& in) override {
+    faces_.load(in);
+    tuning_.load(in);
+  }
+  std::vector<std::pair<std::string, double>> statistics() const override {
+    auto told = faces_.statistics();
+    for (auto& s : tuning_.statistics()) {
+      if (s.first != "mean_strength") told.push_back(std::move(s));
+    }
+    return told;
+  }
+
+  GuideSite site(const Surface& s, const V3f& w) const override {
+    const std::optional<Imath::V3i> voxel = lookup_->voxel(V3d(s.x), V3d(s.ng), V3d(w));
+    if (!voxel) return {};
+    const auto index = static_cast<std::uint32_t>(label_->index(*voxel));
+    const RegionMixture regions = mixture(transform_.to_grid(V3d(s.x)), index);
+    return {static_cast<float>(sum_of(regions, as_used())), index};
+  }
+
+  std::optional<V3f> sample(const GuideSite& site, const V3f& x, Rng& rng) const override {
+    const V3d from = transform_.to_grid(V3d(x));
+    const RegionMixture regions = mixture(from, site.index);
+    const auto used = as_used();
+    double left = double(rng.next()) * sum_of(regions, used);
+    std::uint32_t region = no_region;
+    for (const auto& share : regions) {
+      const double part = share.weight * used(share.region);
+      if (!(part > 0)) continue;
+      region = share.region;
+      if (left < part) break;
+      left -= part;
+    }
+    if (region == no_region) return std::nullopt;
+    const VoxelFace face = faces_.draw(region, rng);
+    const V2f u = rng.next2();
+    const V3d d = face.point(label_->voxel(face.voxel), double(u.x), double(u.y)) - from;
+    const double ahead = d.dot(face.normal());
+    if (ahead == 0) return std::nullopt;  // a face is not seen from its own plane
+    if (Faces::leaving_only && ahead < 0) return std::nullopt;
+    return V3f(d.normalized());
+  }
+
+  Pdf<SolidAngle> pdf(const GuideSite& site, const V3f& x, const V3f& w) const override {
+    return density(site.index, x, w, as_used());
+  }
+
+  bool learns() const override { return Faces::learns || tuning_.learns(); }
+  std::unique_ptr<Tally> tally() const override { return std::make_unique<Both>(); }
+  void learn(const Learned& what, Tally& tally) const override {
+    const std::uint32_t voxel = what.v.site.index;
+    if (voxel >= label_->count()) return;
+    auto& both = static_cast<Both&>(tally);
+    const std::uint32_t region = (*label_)[voxel];
+    if (tuning_.wants(region)) {
+      // As if the guide alone drew: also of regions that draw nothing at present.
+      const float p = density(voxel, what.v.surface.x, what.wi, [this](std::uint32_t r) {
+                        return faces_.mass(r);
+                      }).value;
+      tuning_.learn(what, region, std::span(&p, 1), both.tuning);
+    }
+    if constexpr (Faces::learns) {
+      // The first face through which the ray leaves the region of the point learns what came from
+      // there.
+      if (!(what.radiance > 0)) return;
+      const V3d from = transform_.to_grid(V3d(what.v.surface.x));
+      for_each_crossed_face(from, V3d(what.wi), faces_.box(region), [&](const CrossedFace& face) {
+        if (label_at(face.from) != region || label_at(face.to) == region) return true;
+        const auto index = static_cast<std::uint32_t>(label_->index(face.from));
+        faces_.learn(region, {index, face.side_of_from()}, what, both.faces);
+        return false;
+      });
+    }
+  }
+  void end(std::span<const std::unique_ptr<Tally>> tallies, const ThreadPool& pool) override {
+    std::vector<const typename Faces::Tally*> of_faces;
+    std::vector<const Tuning::Tally*> of_tuning;
+    for (const auto& t : tallies) {
+      of_faces.push_back(&static_cast<const Both&>(*t).faces);
+      of_tuning.push_back(&static_cast<const Both&>(*t).tuning);
+    }
+    faces_.end(of_faces, pool);
+    if (tuning_.learns()) tuning_.end(of_tuning);
+  }
+
+ private:
+  RegionMixture mixture(const V3d& x, std::uint32_t voxel) const {
+    return {*label_, x, voxel, settings_.mixing};
+  }
+  struct Both final : Tally {
+    typename Faces::Tally faces;
+    Tuning::Tally tuning;
+  };
+
+  /// How often a region draws.
+  auto as_used() const {
+    return [this](std::uint32_t region) {
+      return double(tuning_.probability(region)) * faces_.mass(region);
+    };
+  }
+  template <class Drawn>
+  static double sum_of(const RegionMixture& regions, const Drawn& drawn) {
+    double sum = 0;
+    for (const auto& share : regions) sum += share.weight * drawn(share.region);
+    return sum;
+  }
+  /// Of `w` at `x`, where a region draws as often as `drawn` says.
+  template <class Drawn>
+  Pdf<SolidAngle> density(std::uint32_t voxel, const V3f& x, const V3f& w,
+                          const Drawn& drawn) const {
+    const V3d from = transform_.to_grid(V3d(x));
+    const RegionMixture regions = mixture(from, voxel);
+    VoxelBox box;
+    for (const auto& share : regions) box.add(faces_.box(share.region));
+    const double all = sum_of(regions, drawn);
+    if (box.empty() || !(all > 0)) return {};
+    const V3d along(w);
+    double sum = 0;
+    for_each_crossed_face(from, along, box, [&](const CrossedFace& face) {
+      const std::uint32_t near = label_at(face.from), far = label_at(face.to);
+      if (near == far) return true;
+      double p = 0;
+      for (const auto& share : regions) {
+        const double often = drawn(share.region);
+        if (often > 0) {
+          p += share.weight * often * faces_.probability(share.region, face, near, far);
+        }
+      }
+      sum += p * face.t * face.t / std::abs(along[face.axis]);
+      return true;
+    });
+    return Pdf<SolidAngle>(static_cast<float>(sum / all));
+  }
+  std::uint32_t label_at(const Imath::V3i& v) const {
+    return in_grid(v, label_->size()) ? (*label_)(v) : no_region;
+  }
+  RegionGuideSettings settings_;
+  Faces faces_;
+  Tuning tuning_;
+  GridTransform transform_;
+  const Grid3<std::uint32_t>* label_ = nullptr;
+  std::optional<SurfaceLookup> lookup_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,133 @@
+#include "renderer/guides/importance_points.h"
+
+#include <algorithm>
+#include <queue>
+#include <tuple>
+#include <utility>
+
+namespace lacuna {
+
+namespace {
+
+/// Points at one place become one: the mixture is the same.
+std::vector<ImportancePoint> merged(std::vector<ImportancePoint> points) {
+  const auto before = [](const ImportancePoint& a, const ImportancePoint& b) {
+    return std::tie(a.at.x, a.at.y, a.at.z) < std::tie(b.at.x, b.at.y, b.at.z);
+  };
+  std::stable_sort(points.begin(), points.end(), before);
+  std::vector<ImportancePoint> all;
+  for (const ImportancePoint& p : points) {
+    if (!all.empty() && all.back().at == p.at) {
+      all.back().weight += p.weight;
+    } else {
+      all.push_back(p);
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+ImportancePaths::ImportancePaths(const SkeletonGraph& graph, std::span<const double> importance,
+                                 ImportanceAim aim)
+    : graph_(graph), importance_(importance), aim_(aim) {
+  const std::size_t n = graph.nodes();
+  distance_.resize(n);
+  before_.resize(n);
+  last_seen_.resize(n);
+  steps_.resize(n);
+  tightest_.resize(n);
+  sum_.resize(n);
+  size_.resize(n);
+  weight_.resize(n);
+  wanted_.resize(n);
+}
+
+/// Dijkstra's algorithm; among equals the node of lower index goes first.
+void ImportancePaths::find_paths(std::uint32_t node) {
+  using Reached = std::pair<double, std::uint32_t>;
+  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> reached;
+  std::fill(distance_.begin(), distance_.end(), HUGE_VAL);
+  settled_.clear();
+  distance_[node] = 0;
+  before_[node] = node;
+  reached.push({0.0, node});
+  while (!reached.empty()) {
+    const auto [d, v] = reached.top();
+    reached.pop();
+    if (d > distance_[v]) continue;
+    settled_.push_back(v);
+    for (const std::uint32_t next : graph_.of(v)) {
+      const Imath::V3d edge(graph_.corners[next] - graph_.corners[v]);
+      const double there = d + edge.length();
+      if (there >= distance_[next]) continue;
+      distance_[next] = there;
+      before_[next] = v;
+      reached.push({there, next});
+    }
+  }
+}
+
+/// Nodes from which a shortest path leads on to an importance node, or that are one.
+void ImportancePaths::mark_wanted() {
+  for (const std::uint32_t v : settled_) wanted_[v] = importance_[v] > 0 ? 1 : 0;
+  for (std::size_t i = settled_.size(); i-- > 1;) {
+    if (wanted_[settled_[i]] != 0) wanted_[before_[settled_[i]]] = 1;
+  }
+}
+
+/// The path that `node` sees goes on to `v`.
+void ImportancePaths::follow(std::uint32_t node, std::uint32_t v) {
+  const Imath::V3d here(graph_.corners[v]);
+  weight_[v] = 0;
+  if (v == node) {
+    sum_[v] = here;
+    steps_[v] = 1;
+    size_[v] = HUGE_VAL;  // it is all around
+    tightest_[v] = v;
+    return;
+  }
+  const std::uint32_t before = before_[v];
+  sum_[v] = sum_[before] + here;
+  steps_[v] = steps_[before] + 1;
+  const double size = double(graph_.radii[v]) / (here - Imath::V3d(graph_.corners[node])).length();
+  const bool tighter = size < size_[before];
+  size_[v] = tighter ? size : size_[before];
+  tightest_[v] = tighter ? v : tightest_[before];
+}
+
+Imath::V3d ImportancePaths::aim_at(std::uint32_t v) const {
+  switch (aim_) {
+    case ImportanceAim::tightest:
+      return Imath::V3d(graph_.corners[tightest_[v]]);
+    case ImportanceAim::last:
+      return Imath::V3d(graph_.corners[v]);
+    case ImportanceAim::mean:
+      break;
+  }
+  return sum_[v] / steps_[v];
+}
+
+std::vector<ImportancePoint> ImportancePaths::points(
+    std::uint32_t node, const std::function<bool(std::uint32_t)>& sees) {
+  find_paths(node);
+  mark_wanted();
+  const double least = std::max(0.5, double(graph_.radii[node]));
+  for (const std::uint32_t v : settled_) {
+    if (wanted_[v] == 0) continue;
+    const std::uint32_t before = before_[v];
+    const bool seen = v == node || (last_seen_[before] == before && sees(v));
+    last_seen_[v] = seen ? v : last_seen_[before];
+    if (seen) follow(node, v);
+    const double d = std::max(distance_[v], least);
+    if (importance_[v] > 0) weight_[last_seen_[v]] += importance_[v] / (d * d);
+  }
+  std::vector<ImportancePoint> points;
+  for (const std::uint32_t v : settled_) {
+    if (wanted_[v] == 0 || last_seen_[v] != v || !(weight_[v] > 0)) continue;
+    points.push_back({aim_at(v), weight_[v]});
+  }
+  return merged(std::move(points));
+}
+
+}  // namespace lacuna

@@ -1,0 +1,62 @@
+#include "renderer/guides/lobe_set.h"
+
+#include "renderer/core/frame.h"
+#include "renderer/core/sampling.h"
+
+namespace lacuna {
+
+LobeSet::LobeSet(std::span<const Target> targets) {
+  std::vector<double> weights;
+  for (const Target& t : targets) {
+    points_.push_back(t.at);
+    weights.push_back(t.weight);
+  }
+  choice_ = AliasTable(weights);
+  if (choice_.empty()) return;
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    if (i % 8 == 0) blocks_.push_back({});
+    Block& b = blocks_.back();
+    b.x[i % 8] = points_[i].x;
+    b.y[i % 8] = points_[i].y;
+    b.z[i % 8] = points_[i].z;
+    b.share[i % 8] = choice_.pmf(static_cast<std::uint32_t>(i)).value;
+  }
+}
+
+std::optional<V3f> LobeSet::sample(const V3f& x, float s, Rng& rng) const {
+  const V3f& to = points_[choice_.sample(rng)];
+  const V2f u = rng.next2();
+  // cos^(s+1) is uniform. Near the axis 1 - cos tells more than the cosine.
+  const double power = std::log1p(-double(u.x)) / (double(s) + 1);
+  const double versine = -std::expm1(power);
+  const auto sine = static_cast<float>(std::sqrt(versine * (2 - versine)));
+  const float phi = 2 * pi * u.y;
+  const V3f d = to - x;
+  const float length = std::sqrt(dot(d, d));
+  if (!(length > 0)) return std::nullopt;
+  return Frame(d / length)
+      .to_world({sine * std::cos(phi), sine * std::sin(phi), static_cast<float>(1 - versine)});
+}
+
+std::vector<float> LobeSet::powers() {
+  std::vector<float> all;
+  for (std::size_t k = 0; k < doublings; ++k) all.push_back(static_cast<float>(1U << k));
+  return all;
+}
+
+std::array<float, LobeSet::doublings> LobeSet::pdf_of_powers(const V3f& x, const V3f& w) const {
+  __m256 sums[doublings] = {};
+  for_each_cosine(x, w, [&](__m256 cosine, __m256 share) {
+    for (std::size_t k = 0; k < doublings; ++k) {
+      sums[k] = _mm256_add_ps(sums[k], _mm256_mul_ps(share, cosine));
+      cosine = _mm256_mul_ps(cosine, cosine);
+    }
+  });
+  std::array<float, doublings> densities;
+  for (std::size_t k = 0; k < doublings; ++k) {
+    densities[k] = sum8(sums[k]) * static_cast<float>((1U << k) + 1) * norm;
+  }
+  return densities;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "renderer/core/alias_table.h"
+#include "renderer/core/density.h"
+#include "renderer/core/power8.h"
+#include "renderer/core/vec.h"
+
+namespace lacuna {
+
+/// A point that rays are sent around, and its weight.
+struct Target {
+  V3f at{0, 0, 0};    ///< scene units
+  double weight = 0;  ///< > 0, of any scale
+};
+
+/// Power-cosine lobes around the directions to some points, mixed by their weights (Noel 2015, eq.
+/// 163 and 167):
+///     p(w) = sum_i c_i (s + 1) / (2 pi) max(0, w_i . w)^s
+/// with w_i the direction from `x` to point i, c_i its weight over the sum of all, s the strength.
+class LobeSet {
+ public:
+  LobeSet() = default;
+  explicit LobeSet(std::span<const Target> targets);
+
+  /// Nothing can be drawn.
+  bool empty() const { return choice_.empty(); }
+  std::size_t size() const { return choice_.size(); }
+
+  /// Draws a unit direction at `x` with strength `s` >= 0; nothing where a point lies at `x`
+  /// itself.
+  std::optional<V3f> sample(const V3f& x, float s, Rng& rng) const;
+  /// Density with which sample() returns unit `w`.
+  Pdf<SolidAngle> pdf(const V3f& x, const V3f& w, float s) const {
+    __m256 sum = _mm256_setzero_ps();
+    for_each_cosine(x, w, [&](__m256 cosine, __m256 share) {
+      sum = _mm256_add_ps(sum, _mm256_mul_ps(share, power8(cosine, s)));
+    });
+    return Pdf<SolidAngle>(sum8(sum) * (s + 1) * norm);
+  }
+
+  static constexpr std::size_t doublings = 10;
+  /// 1, 2, 4, ... 2^(doublings - 1).
+  static std::vector<float> powers();
+  /// The densities for the strengths powers(): each power is the square of the one before.
+  std::array<float, doublings> pdf_of_powers(const V3f& x, const V3f& w) const;
+
+ private:
+  static constexpr float norm = 0.159154943F;  // 1 / (2 pi)
+  /// Eight lobes side by side; those beyond the last have share 0.
+  struct alignas(32) Block {
+    std::array<float, 8> x, y, z, share;
+  };
+
+  /// Calls `use(cosine, share)` for all blocks: max(0, w_i . w), and c_i.
+  template <class Use>
+  void for_each_cosine(const V3f& x, const V3f& w, const Use& use) const {
+    for (const Block& b : blocks_) {
+      const __m256 dx = _mm256_sub_ps(_mm256_load_ps(b.x.data()), _mm256_set1_ps(x.x));
+      const __m256 dy = _mm256_sub_ps(_mm256_load_ps(b.y.data()), _mm256_set1_ps(x.y));
+      const __m256 dz = _mm256_sub_ps(_mm256_load_ps(b.z.data()), _mm256_set1_ps(x.z));
+      const auto dot3 = [](__m256 ax, __m256 ay, __m256 az, __m256 bx, __m256 by, __m256 bz) {
+        return _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(ax, bx), _mm256_mul_ps(ay, by)),
+                             _mm256_mul_ps(az, bz));
+      };
+      const __m256 length = _mm256_sqrt_ps(dot3(dx, dy, dz, dx, dy, dz));
+      const __m256 along =
+          dot3(dx, dy, dz, _mm256_set1_ps(w.x), _mm256_set1_ps(w.y), _mm256_set1_ps(w.z));
+      // Of a point at x itself no direction is known: 0 / 0 becomes 0 in max(), whose second
+      // operand wins.
+      __m256 cosine = _mm256_max_ps(_mm256_div_ps(along, length), _mm256_setzero_ps());
+      cosine = _mm256_min_ps(cosine, _mm256_set1_ps(1));
+      use(cosine, _mm256_load_ps(b.share.data()));
+    }
+  }
+
+  std::vector<V3f> points_;
+  std::vector<Block> blocks_;
+  AliasTable choice_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <variant>
+
+#include "renderer/guides/mixed_guide.h"
+#include "renderer/settings/guide_settings.h"
+
+namespace lacuna {
+
+/// What the guide of these settings knows; nothing: it follows the BSDF alone.
+std::unique_ptr<Directions> make_directions(const GuideSettings& settings);
+
+/// `make(guide)` with the guide of these settings: a BsdfGuide or a MixedGuide, so that integrators
+/// are compiled for these two only.
+template <class Make>
+auto with_guide(const GuideSettings& settings, Make&& make) {
+  if (auto directions = make_directions(settings)) return make(MixedGuide(std::move(directions)));
+  return make(BsdfGuide{});
+}
+
+}  // namespace lacuna

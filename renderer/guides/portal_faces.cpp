@@ -1,0 +1,150 @@
+#include "renderer/guides/portal_faces.h"
+
+#include <map>
+#include <queue>
+
+#include "renderer/guides/arriving_power.h"
+
+namespace lacuna {
+
+namespace {
+
+V3d middle(const Portals& portals, const Portal& portal, const Grid3<std::uint32_t>& label) {
+  V3d sum(0.0);
+  for (std::uint64_t i = 0; i < portal.faces(); ++i) {
+    const VoxelFace face = portals.face(portal, i);
+    sum += face.point(label.voxel(face.voxel), 0.5, 0.5);
+  }
+  return sum / static_cast<double>(portal.faces());
+}
+
+/// The share of a portal that is seen from `eye`, in voxels, by some of its faces.
+double share_seen(const RayCaster& rays, const GridTransform& transform, const V3d& eye,
+                  const Portals& portals, const Portal& portal, const Grid3<std::uint32_t>& label) {
+  const std::uint64_t tried = std::min<std::uint64_t>(portal.faces(), 16);
+  const V3f from(transform.to_world(eye));
+  double seen = 0;
+  for (std::uint64_t k = 0; k < tried; ++k) {
+    const VoxelFace face = portals.face(portal, (2 * k + 1) * portal.faces() / (2 * tried));
+    const V3d to = transform.to_world(face.point(label.voxel(face.voxel), 0.5, 0.5));
+    seen += rays.occluded({from, V3f(to) - from, 1.0F}) ? 0 : 1;
+  }
+  return seen / static_cast<double>(tried);
+}
+
+/// The centre of each region's voxels.
+std::vector<V3d> centres_of(const RegionLabels& labels) {
+  std::vector<V3d> centres(labels.regions.size(), V3d(0.0));
+  for (std::size_t i = 0; i < labels.label.count(); ++i) {
+    if (labels.label[i] != no_region) {
+      centres[labels.label[i]] += V3d(labels.label.voxel(i)) + V3d(0.5);
+    }
+  }
+  for (std::size_t r = 0; r < centres.size(); ++r) {
+    centres[r] /= static_cast<double>(labels.regions[r].voxels);
+  }
+  return centres;
+}
+
+}  // namespace
+
+void PortalFaces::prepare(const PrepareContext& context, const SurfaceLookup& lookup) {
+  const RegionLabels& labels = context.space.regions();
+  portals_ = &context.space.portals();
+  const std::vector<double> power = arriving_power(context.scene, lookup, labels.regions.size(),
+                                                   settings_.light_rays, context.pool);
+  const std::vector<V3d> centres = centres_of(labels);
+  for (const Portal& p : portals_->portals) {
+    middles_.push_back(middle(*portals_, p, labels.label));
+  }
+  exits_.resize(labels.regions.size());
+  const GridTransform transform = context.space.voxels().transform;
+  context.pool.for_each(static_cast<int>(exits_.size()), [&](int i) {
+    const auto r = static_cast<std::uint32_t>(i);
+    const V3d eye = V3d(labels.label.voxel(labels.regions[r].root)) + V3d(0.5);
+    const auto sees = [&](const Portal& portal) {
+      return settings_.portal == PortalChoice::last &&
+             share_seen(context.scene.rays(), transform, eye, *portals_, portal, labels.label) >=
+                 0.5;
+    };
+    find_exits(r, centres, power, labels, sees);
+  });
+}
+
+/// Dijkstra's algorithm over regions, from centre to portal to centre.
+void PortalFaces::find_exits(std::uint32_t region, const std::vector<V3d>& centres,
+                             const std::vector<double>& power, const RegionLabels& labels,
+                             const std::function<bool(const Portal&)>& sees) {
+  using Reached = std::pair<double, std::uint32_t>;
+  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> reached;
+  std::vector<double> distance(centres.size(), HUGE_VAL);
+  std::vector<std::uint32_t> exit(centres.size(), 0);  // the portal to aim at on the way there
+  std::vector<std::uint32_t> last(centres.size(), 0);  // the last one on the way
+  std::vector<char> seen(centres.size(), 0);           // all of them are
+  distance[region] = 0;
+  reached.push({0.0, region});
+  const double own_size = std::max(1.0, double(labels.regions[region].opening));
+  std::map<std::uint32_t, double> by_portal;
+  double elsewhere = 0;
+  while (!reached.empty()) {
+    const auto [d, at] = reached.top();
+    reached.pop();
+    if (d > distance[at]) continue;
+    if (at != region) {
+      const Portal& portal = portals_->portals[last[at]];
+      const std::uint32_t before = portal.a == at ? portal.b : portal.a;
+      const bool first = before == region;
+      seen[at] = (first || seen[before] != 0) && sees(portal) ? 1 : 0;
+      exit[at] = first || seen[at] != 0 ? last[at] : exit[before];
+    }
+    if (at != region && power[at] > 0) {
+      const double length = std::max(d, own_size);
+      by_portal[exit[at]] += power[at] / (length * length);
+      elsewhere += power[at] / (length * length);
+    }
+    for (const std::uint32_t p : portals_->of(at)) {
+      const Portal& portal = portals_->portals[p];
+      const std::uint32_t next = portal.a == at ? portal.b : portal.a;
+      const double there =
+          d + (middles_[p] - centres[at]).length() + (centres[next] - middles_[p]).length();
+      if (there >= distance[next]) continue;
+      distance[next] = there;
+      last[next] = p;
+      reached.push({there, next});
+    }
+  }
+  if (!(elsewhere > 0)) return;
+  Exits& exits = exits_[region];
+  exits.mass = elsewhere / (elsewhere + power[region] / (own_size * own_size));
+  for (const auto& [p, weight] : by_portal) {
+    const Portal& portal = portals_->portals[p];
+    const double share = weight / elsewhere;
+    exits.exits.push_back(
+        {p, portal.a, portal.b, share, share / static_cast<double>(portal.faces())});
+    for (std::uint64_t i = 0; i < portal.faces(); ++i) {
+      const VoxelFace face = portals_->face(portal, i);
+      const Imath::V3i voxel = labels.label.voxel(face.voxel);
+      exits.box.add(voxel);
+      exits.box.add(voxel + Imath::V3i(face.normal()));
+    }
+  }
+}
+
+VoxelFace PortalFaces::draw(std::uint32_t region, Rng& rng) const {
+  const std::vector<Exit>& exits = exits_[region].exits;
+  double left = double(rng.next());
+  std::size_t i = 0;
+  while (i + 1 < exits.size() && left >= exits[i].share) left -= exits[i++].share;
+  const Portal& portal = portals_->portals[exits[i].portal];
+  return portals_->face(portal, (std::uint64_t{rng.next_u32()} * portal.faces()) >> 32);
+}
+
+std::vector<std::pair<std::string, double>> PortalFaces::statistics() const {
+  std::size_t guided = 0;
+  for (const Exits& e : exits_) guided += e.mass > 0 ? 1 : 0;
+  return {{"regions", static_cast<double>(exits_.size())},
+          {"portals", static_cast<double>(middles_.size())},
+          {"guided_regions", static_cast<double>(guided)}};
+}
+
+}  // namespace lacuna

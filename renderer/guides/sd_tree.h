@@ -1,0 +1,71 @@
+#pragma once
+
+#include "renderer/guides/direction_tree.h"
+#include "renderer/guides/directions.h"
+#include "renderer/settings/guide_settings.h"
+
+namespace lacuna {
+
+/// guide: sd_tree. Practical path guiding (Mueller, Gross and Novak 2017): a binary tree over the
+/// scene's box, whose leaves each have a quadtree of directions with the light that paths found. It
+/// learns in rounds of 1, 2, 4, ... iterations; after each, leaves that many vertices lay in are
+/// divided, and the next round draws from what the last one found. Of the improvements of Mueller
+/// 2019 it has the box filter over directions. All iterations count in the picture alike, the first
+/// ones too: the film is the mean of independent estimates.
+class SdTree final : public Directions {
+ public:
+  explicit SdTree(const SdTreeGuideSettings& settings) : settings_(settings) {}
+
+  bool needs_space() const override { return false; }
+  void prepare(const PrepareContext& context) override;
+  void save(ByteWriter& out) const override;
+  void load(ByteReader& in) override;
+  std::vector<std::pair<std::string, double>> statistics() const override;
+
+  GuideSite site(const Surface& s, const V3f&) const override {
+    const std::uint32_t leaf = leaf_at(s.x);
+    const bool known = !leaves_[leaf].drawn.empty();
+    return {known ? static_cast<float>(settings_.probability) : 0.0F, leaf};
+  }
+  std::optional<V3f> sample(const GuideSite& site, const V3f&, Rng& rng) const override {
+    return leaves_[site.index].drawn.sample(rng);
+  }
+  Pdf<SolidAngle> pdf(const GuideSite& site, const V3f&, const V3f& w) const override {
+    return leaves_[site.index].drawn.pdf(w);
+  }
+
+  bool learns() const override { return true; }
+  std::unique_ptr<Tally> tally() const override;
+  void learn(const Learned& what, Tally& tally) const override;
+  void end(std::span<const std::unique_ptr<Tally>> tallies, const ThreadPool& pool) override;
+
+ private:
+  struct Node {
+    std::array<std::uint32_t, 2> child{};  // 0: a leaf
+    std::uint32_t leaf = 0;
+  };
+  struct Leaf {
+    DirectionTree drawn, learning;
+    double vertices = 0;  // that lay in it in this round
+  };
+  /// What a vertex saw.
+  struct Seen {
+    std::uint32_t leaf;
+    V3f w;
+    float energy;
+  };
+  struct Own;
+
+  std::uint32_t leaf_at(const V3f& x) const;
+  void next_round(const ThreadPool& pool);
+  void divide(std::uint32_t node, int depth, double most);
+
+  SdTreeGuideSettings settings_;
+  V3d low_{0.0};
+  double side_ = 1;  // of the cube around the scene
+  std::vector<Node> nodes_;
+  std::vector<Leaf> leaves_;
+  std::uint64_t round_ = 0, done_ = 0;  // iterations done of 2^round_
+};
+
+}  // namespace lacuna

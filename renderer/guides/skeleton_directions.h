@@ -1,0 +1,55 @@
+#pragma once
+
+#include "analysis/skeleton/surface_lookup.h"
+#include "renderer/guides/lobe_set.h"
+#include "renderer/guides/tuning.h"
+
+namespace lacuna {
+
+/// guide: skeleton. At the surfaces that belong to a node of the skeleton, rays go around the
+/// directions to its importance points: along the shortest paths to where the light arrives, as far
+/// as the node sees them (Noel 2015, ch. 9). The thesis' unfiltered skeleton.
+class SkeletonDirections final : public Directions {
+ public:
+  explicit SkeletonDirections(const SkeletonGuideSettings& settings) : settings_(settings) {}
+
+  bool needs_space() const override { return true; }
+  void prepare(const PrepareContext& context) override;
+  void save(ByteWriter& out) const override { tuning_.save(out); }
+  void load(ByteReader& in) override { tuning_.load(in); }
+  std::vector<std::pair<std::string, double>> statistics() const override;
+
+  GuideSite site(const Surface& s, const V3f& w) const override {
+    const std::uint32_t node = lookup_->node(V3d(s.x), V3d(s.ng), V3d(w));
+    if (node == no_node || lobes_[node].empty()) return {};
+    return {tuning_.probability(node), node};
+  }
+  std::optional<V3f> sample(const GuideSite& site, const V3f& x, Rng& rng) const override {
+    return lobes_[site.index].sample(x, tuning_.strength(site.index), rng);
+  }
+  Pdf<SolidAngle> pdf(const GuideSite& site, const V3f& x, const V3f& w) const override {
+    return lobes_[site.index].pdf(x, w, tuning_.strength(site.index));
+  }
+
+  bool learns() const override { return tuning_.learns(); }
+  std::unique_ptr<Tally> tally() const override { return std::make_unique<Own>(); }
+  void learn(const Learned& what, Tally& tally) const override;
+  void end(std::span<const std::unique_ptr<Tally>> tallies, const ThreadPool&) override {
+    std::vector<const Tuning::Tally*> own;
+    for (const auto& t : tallies) own.push_back(&static_cast<const Own&>(*t).tuning);
+    tuning_.end(own);
+  }
+
+ private:
+  struct Own final : Tally {
+    Tuning::Tally tuning;
+  };
+
+  SkeletonGuideSettings settings_;
+  std::optional<SurfaceLookup> lookup_;
+  std::vector<LobeSet> lobes_;  // of each node
+  Tuning tuning_;
+  std::size_t importance_nodes_ = 0;
+};
+
+}  // namespace lacuna

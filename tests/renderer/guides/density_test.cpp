@@ -1,0 +1,134 @@
+// Every guide draws directions with the density that it reports.
+
+#include <gtest/gtest.h>
+
+#include "tests/renderer/guides/density_check.h"
+#include "tests/renderer/guides/guided_scene.h"
+#include "tests/renderer/integrators/methods.h"
+#include "tests/renderer/path/scenes.h"
+
+namespace lacuna {
+namespace {
+
+using test::DensityCheck;
+using test::GuidedScene;
+using test::PathScene;
+
+struct Case {
+  std::string name;
+  GuideSettings guide;
+  friend std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+};
+
+SkeletonGuideSettings skeleton(double strength, ImportanceAim aim) {
+  SkeletonGuideSettings s;
+  s.strength = {strength};
+  s.aim = aim;
+  return s;
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const auto& [name, guide] : test::guides()) all.push_back({name, guide});
+  all.push_back({"half_spheres", skeleton(0, ImportanceAim::tightest)});
+  all.push_back({"blunt", skeleton(1e-3, ImportanceAim::mean)});
+  all.push_back({"narrow", skeleton(100, ImportanceAim::last)});
+  return all;
+}
+
+constexpr std::size_t points = 4;
+
+class Density : public testing::TestWithParam<Case> {};
+
+TEST_P(Density, IsThatOfItsSamples) {
+  const std::vector<PathScene> scenes{{"cornell"}, {"ajar"},        {"bends"},
+                                      {"atrium"},  {"many_lights"}, {"open", true}};
+  const double level = statistics::sidak(1e-3, scenes.size() * cases().size() * points * 2);
+  std::size_t checked = 0;
+  for (const PathScene& s : scenes) {
+    const GuidedScene scene([&] { return load(s); }, GetParam().guide, 3, environment(s));
+    const Directions& directions = scene.directions();
+    for (const Vertex& v : scene.guided_vertices(points)) {
+      SCOPED_TRACE(testing::Message() << s << " at " << v.surface.x);
+      ++checked;
+      Rng rng(11, checked, 0, Rng::Purpose::test);
+      const auto draw = [&] { return directions.sample(v.site, v.surface.x, rng); };
+      const auto density = [&](const V3f& w) {
+        return directions.pdf(v.site, v.surface.x, w).value;
+      };
+      // Cells are smallest where most is drawn.
+      const std::optional<V3f> pole = draw();
+      const DensityCheck c =
+          test::density_check(draw, density, 20000, rng, pole.value_or(V3f(0, 0, 1)));
+      EXPECT_GT(c.p, level) << "integral " << c.integral << " +- " << c.integral_error << ", "
+                            << c.failed << " of the draws gave none";
+      const double off = c.integral + c.failed - 1;
+      const double error = std::hypot(c.integral_error, std::sqrt(c.failed / 20000));
+      EXPECT_LE(std::abs(off), 5 * error + 1e-4) << c.integral << " + " << c.failed;
+    }
+  }
+  EXPECT_GE(checked, scenes.size() * points / 2) << "sites are missing";
+}
+
+// The whole guide, mixed with the surface's own scattering.
+TEST_P(Density, WithTheSurfaceIsThatOfItsSamples) {
+  const std::vector<PathScene> scenes{{"coated"}, {"leaning"}, {"ajar"}};
+  const double level = statistics::sidak(1e-3, scenes.size() * cases().size() * points * 2);
+  std::uint64_t checked = 0;
+  bool learns = false;
+  for (const PathScene& s : scenes) {
+    const GuidedScene scene([&] { return load(s); }, GetParam().guide, 3, environment(s));
+    learns = learns || scene.directions().learns();
+    // As MixedGuide's own directions: those of the scene.
+    class Lent final : public Directions {
+     public:
+      explicit Lent(const Directions& d) : d_(d) {}
+      bool needs_space() const override { return d_.needs_space(); }
+      GuideSite site(const Surface& x, const V3f& w) const override { return d_.site(x, w); }
+      std::optional<V3f> sample(const GuideSite& at, const V3f& x, Rng& rng) const override {
+        return d_.sample(at, x, rng);
+      }
+      Pdf<SolidAngle> pdf(const GuideSite& at, const V3f& x, const V3f& w) const override {
+        return d_.pdf(at, x, w);
+      }
+
+     private:
+      const Directions& d_;
+    };
+    const MixedGuide guide(std::make_unique<Lent>(scene.directions()));
+    for (const Vertex& v : scene.guided_vertices(points)) {
+      SCOPED_TRACE(testing::Message() << s << " at " << v.surface.x);
+      Rng rng(13, ++checked, 0, Rng::Purpose::test);
+      std::size_t wrong = 0;
+      const auto draw = [&]() -> std::optional<V3f> {
+        const auto d = guide.sample(v, rng, Transport::radiance);
+        if (!d || d->delta) return std::nullopt;
+        const Pdf<SolidAngle> p = guide.pdf(v, v.wp, d->wi, Transport::radiance);
+        const Rgb f = v.bsdf->eval(v.wp, d->wi, Transport::radiance);
+        wrong += std::abs(d->pdf.value - p.value) > 1e-5F * p.value ? 1 : 0;
+        wrong += max_abs_component(d->weight * p.value - f) > 1e-4F * max_component(f) ? 1 : 0;
+        return d->wi;
+      };
+      // Draws below the surface give nothing, though the density has them.
+      const auto density = [&](const V3f& w) {
+        const bool scatters = !is_black(v.bsdf->eval(v.wp, w, Transport::radiance));
+        return scatters ? guide.pdf(v, v.wp, w, Transport::radiance).value : 0.0F;
+      };
+      const DensityCheck c = test::density_check(draw, density, 20000, rng, v.surface.ng);
+      EXPECT_GT(c.p, level) << "integral " << c.integral << " +- " << c.integral_error << ", "
+                            << c.failed << " of the draws gave none";
+      EXPECT_LE(c.integral, 1 + 5 * c.integral_error + 1e-4);
+      EXPECT_EQ(wrong, 0U);
+    }
+  }
+  // A guide that learns may find that the surfaces do better alone.
+  if (!learns) {
+    EXPECT_GT(checked, points);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Density, testing::ValuesIn(cases()),
+                         [](const auto& c) { return c.param.name; });
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <memory>
+
+#include "renderer/guides/make_guide.h"
+#include "renderer/path/eye_batch.h"
+#include "renderer/path/walk.h"
+#include "tests/renderer/integrators/render.h"
+
+namespace lacuna::test {
+
+/// A scene, and what a guide knows of it once path tracing has taught it.
+class GuidedScene {
+ public:
+  GuidedScene(const std::function<SceneData()>& make, const GuideSettings& guide, int iterations,
+              const std::optional<EnvironmentImage>& environment, int resolution = 24)
+      : session_(make(), settings(guide, environment, resolution)),
+        eye_(make().cameras.front()),
+        camera_(eye_, side, side),
+        scene_(make(), {.materials = true, .emission = true}, environment, pool_),
+        directions_(make_directions(guide)) {
+    space_ = std::make_unique<SpaceAnalysis>(
+        SpaceInput{.triangles = [this] { return triangle_soup(scene_.data()); },
+                   .geometry = geometry_key(scene_.data()),
+                   .seeds =
+                       [this, everywhere = environment.has_value()] {
+                         return domain_seeds(scene_.data(), eye_, everywhere);
+                       },
+                   .settings = {.resolution = resolution},
+                   .byte_limit = [] { return no_memory_limit; }},
+        store_, pool_);
+    directions_->prepare({scene_, pool_, *space_});
+    for (int i = 0; i < iterations; ++i) session_.iterate(static_cast<std::uint64_t>(i));
+    ByteWriter saved;
+    session_.integrator().save(saved);
+    ByteReader in(saved.bytes());
+    directions_->load(in);
+  }
+
+  const Directions& directions() const { return *directions_; }
+  const Scene& scene() const { return scene_; }
+
+  /// Vertices of paths from the eye that scatter and have a site from which directions are drawn;
+  /// at most `wanted`, from as many paths as it takes, up to 64. Moved one voxel and a half off
+  /// their surfaces: what voxels of the surface itself look like from there, edge-on, no histogram
+  /// resolves.
+  std::vector<Vertex> guided_vertices(std::size_t wanted) const {
+    std::vector<Vertex> found;
+    EyeBatch batch(4);
+    for (std::size_t i = 0; i < EyeBatch::size; ++i) {
+      Rng rng(5, 0, i, Rng::Purpose::test);
+      const float x = rng.next() * side;
+      batch.start(camera_, rng, camera_.ray(x, rng.next() * side), i);
+    }
+    Counters counters;
+    const BsdfGuide guide;
+    Walk<BsdfGuide> walk(scene_, guide, {.max_depth = 4, .roulette_depth = 4}, counters);
+    walk.lead(
+        batch.walkers, [](std::size_t, int) {},
+        [&](std::size_t i, int depth) {
+          Vertex v = batch.vertex(i, depth);
+          if (v.kind != Vertex::Kind::surface || depth == 4 || !v.bsdf->connectible()) return;
+          v.site = directions_->site(v.surface, v.wp);
+          if (!(v.site.probability > 0) || found.size() >= wanted) return;
+          const auto away = static_cast<float>(1.5 * space_->voxels().transform.voxel_size);
+          v.surface.x += v.surface.ng * std::copysign(away, dot(v.wp, v.surface.ng));
+          found.push_back(v);
+        });
+    return found;
+  }
+
+ private:
+  static constexpr int side = 16;
+  static RenderSettings settings(const GuideSettings& guide,
+                                 const std::optional<EnvironmentImage>& environment,
+                                 int resolution) {
+    PathSettings path;
+    path.guide = guide;
+    return {.integrator = path,
+            .width = 32,
+            .height = 32,
+            .environment = environment,
+            .resolution = resolution};
+  }
+
+  Session session_;
+  CameraData eye_;
+  Camera camera_;
+  ThreadPool pool_{2};
+  Scene scene_;
+  ArtefactStore store_{{}};
+  std::unique_ptr<SpaceAnalysis> space_;
+  std::unique_ptr<Directions> directions_;
+};
+
+}  // namespace lacuna::test

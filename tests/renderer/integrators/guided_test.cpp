@@ -1,0 +1,170 @@
+// Guided rays find the same light: agreement with path tracing, also where the guide knows nothing,
+// or leads into walls.
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/renderer/integrators/methods.h"
+#include "tests/renderer/integrators/same_picture.h"
+#include "tests/renderer/path/scenes.h"
+
+namespace lacuna {
+namespace {
+
+using test::expect_same_picture;
+using test::Method;
+using test::PathScene;
+using test::Rendering;
+using test::RenderSettings;
+using test::SceneParts;
+
+RenderSettings small_picture(const IntegratorSettings& integrator, int iterations) {
+  return {.integrator = integrator, .width = 20, .height = 12, .iterations = iterations};
+}
+
+struct GuidedAgreement {
+  PathScene scene;
+  int max_depth;
+  int iterations;
+  double useful;  ///< largest standard error of the mean, relative
+  friend std::ostream& operator<<(std::ostream& out, const GuidedAgreement& a) {
+    return out << a.scene;
+  }
+};
+
+const std::vector<GuidedAgreement> guided_agreements{
+    {{"cornell"}, 5, 200, 0.03},     {{"glass"}, 5, 150, 0.02},  {{"many_lights"}, 4, 100, 0.2},
+    {{"directional"}, 3, 150, 0.02}, {{"spot"}, 3, 150, 0.02},   {{"open", true}, 4, 250, 0.05},
+    {{"ajar"}, 5, 200, 0.09},        {{"atrium"}, 5, 120, 0.05}, {{"coated"}, 4, 120, 0.02},
+    {{"leaning"}, 5, 200, 0.06},     {{"bends"}, 7, 150, 0.09},
+};
+
+class Guided : public testing::TestWithParam<GuidedAgreement> {};
+
+TEST_P(Guided, AgreesWithPathTracing) {
+  const GuidedAgreement& a = GetParam();
+  RenderSettings plain = small_picture(test::path_tracing(a.max_depth), 4 * a.iterations);
+  plain.environment = environment(a.scene);
+  plain.seed = 2;
+  const Rendering expected = render(load(a.scene), plain);
+  for (const Method& method : test::guided(a.max_depth)) {
+    SCOPED_TRACE(method);
+    RenderSettings s = small_picture(method.settings, a.iterations);
+    s.environment = environment(a.scene);
+    expect_same_picture(render(load(a.scene), s), expected, a.useful);
+  }
+}
+
+// Emitters that are hit weigh more, and nothing else finds the light.
+TEST_P(Guided, AgreesWithoutNextEventEstimation) {
+  const GuidedAgreement& a = GetParam();
+  const std::set<std::string> large{"cornell", "glass", "coated", "leaning"};
+  if (large.count(a.scene.name) == 0) return;
+  PathSettings path = test::path_tracing(4);
+  RenderSettings plain = small_picture(path, 4 * a.iterations);
+  plain.seed = 2;
+  const Rendering expected = render(load(a.scene), plain);
+  path.next_event_estimation = false;
+  for (const auto& [name, guide] : test::guides()) {
+    SCOPED_TRACE(name);
+    path.guide = guide;
+    expect_same_picture(render(load(a.scene), small_picture(path, 8 * a.iterations)), expected,
+                        0.06);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Guided, testing::ValuesIn(guided_agreements),
+                         [](const auto& a) { return a.param.scene.name; });
+
+/// Two rooms of 2 by 2 by 2, side by side along x, with a hole in the wall between them if `open`
+/// (of a tenth of their height), the eye in the left one, and a lamp in each room that is lit.
+SceneData rooms(bool open, bool left, bool right) {
+  SceneParts p;
+  const auto wall = p.material(test::diffuse(Rgb(0.7F, 0.6F, 0.5F)));
+  p.box({-2.1F, -1, -1}, {2.1F, 1, 1}, false, wall);
+  if (open) {
+    p.box({-0.1F, -0.8F, -1}, {0.1F, 1, 1}, true, wall);
+  } else {
+    p.box({-0.1F, -1, -1}, {0.1F, 1, 1}, true, wall);
+  }
+  const auto shine = p.material(test::lamp(Rgb(30, 40, 50)));
+  if (left) p.quad({-1.5F, 0.95F, -0.4F}, {0.8F, 0, 0}, {0, 0, 0.8F}, shine);
+  if (right) p.quad({0.7F, 0.95F, -0.4F}, {0.8F, 0, 0}, {0, 0, 0.8F}, shine);
+  p.eye({-1.9, 0.3, 0.8}, {0, -0.6, -0.4}, 1.2);
+  return std::move(p.data);
+}
+
+void expect_agreement(const std::function<SceneData()>& make, int resolution, double useful) {
+  RenderSettings plain = small_picture(test::path_tracing(6), 1200);
+  plain.seed = 2;
+  const Rendering expected = render(make(), plain);
+  for (const Method& method : test::guided(6)) {
+    SCOPED_TRACE(method);
+    RenderSettings s = small_picture(method.settings, 200);
+    s.resolution = resolution;
+    expect_same_picture(render(make(), s), expected, useful);
+  }
+}
+
+TEST(GuidedExtremes, ALightThatTheCameraCannotReach) {
+  // Another component of the empty space, kept for its light: nothing leads there.
+  expect_agreement([] { return rooms(false, true, true); }, 24, 0.05);
+}
+
+TEST(GuidedExtremes, OnlyALightThatTheCameraCannotReach) {
+  for (const Method& method : test::guided(4)) {
+    const Rendering r = render(rooms(false, false, true), small_picture(method.settings, 4));
+    for (const double v : r.film.mean()) EXPECT_EQ(v, 0) << method;
+    EXPECT_EQ(r.counters.rejected, 0U);
+  }
+}
+
+TEST(GuidedExtremes, NoLight) {
+  for (const Method& method : test::guided(4)) {
+    const Rendering r = render(rooms(true, false, false), small_picture(method.settings, 3));
+    for (const double v : r.film.mean()) EXPECT_EQ(v, 0) << method;
+  }
+}
+
+TEST(GuidedExtremes, AGridSoCoarseThatTheDoorIsClosed) {
+  // Of 4 voxels along the longest side none is empty; of 12 the hole is none.
+  for (const int resolution : {1, 4, 12, 60}) {
+    SCOPED_TRACE(resolution);
+    expect_agreement([] { return rooms(true, true, true); }, resolution, 0.05);
+  }
+}
+
+TEST(GuidedExtremes, StrengthsAndProbabilities) {
+  const auto make = [] { return rooms(true, true, true); };
+  RenderSettings plain = small_picture(test::path_tracing(5), 800);
+  plain.seed = 2;
+  const Rendering expected = render(make(), plain);
+  for (const AutoNumber& strength : {AutoNumber{0}, {1e-3}, {1e4}, {}}) {
+    for (const AutoNumber& probability : {AutoNumber{0}, {most_guided}, {}}) {
+      SkeletonGuideSettings guide;
+      guide.strength = strength;
+      guide.probability = probability;
+      PathSettings path = test::path_tracing(5);
+      path.guide = guide;
+      SCOPED_TRACE(testing::Message()
+                   << strength.value.value_or(-1) << " " << probability.value.value_or(-1));
+      const bool few = probability.value.value_or(0) > 0.9;  // follow the surfaces
+      expect_same_picture(render(make(), small_picture(path, few ? 800 : 200)), expected,
+                          few ? 0.1 : 0.05);
+    }
+  }
+}
+
+TEST(GuidedExtremes, ProbabilityNoneIsPathTracingItself) {
+  SkeletonGuideSettings guide;
+  guide.probability = {0};
+  PathSettings path = test::path_tracing(5);
+  const auto make = [] { return rooms(true, true, true); };
+  const Rendering expected = render(make(), small_picture(path, 2));
+  path.guide = guide;
+  EXPECT_EQ(render(make(), small_picture(path, 2)).film.mean(), expected.film.mean());
+}
+
+}  // namespace
+}  // namespace lacuna

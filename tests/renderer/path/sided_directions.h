@@ -1,0 +1,35 @@
+#pragma once
+
+#include <numbers>
+
+#include "renderer/core/frame.h"
+#include "renderer/guides/mixed_guide.h"
+
+namespace lacuna::test {
+
+/// Directions around one of two far points, by the side of the surface that is asked for, drawn
+/// with another probability on each side: as little alike as densities from both ends can be.
+class SidedDirections final : public Directions {
+ public:
+  bool needs_space() const override { return false; }
+  GuideSite site(const Surface& s, const V3f& w) const override {
+    return dot(w, s.ng) < 0 ? GuideSite{0.7F, 1} : GuideSite{0.3F, 0};
+  }
+  std::optional<V3f> sample(const GuideSite& site, const V3f& x, Rng& rng) const override {
+    const V2f u = rng.next2();
+    const float z = std::cbrt(1 - u.x);
+    const float r = std::sqrt(std::max(0.0F, 1 - z * z)), phi = 2 * pi * u.y;
+    return Frame(axis(site, x)).to_world({r * std::cos(phi), r * std::sin(phi), z});
+  }
+  Pdf<SolidAngle> pdf(const GuideSite& site, const V3f& x, const V3f& w) const override {
+    const float c = std::max(0.0F, dot(axis(site, x), w));
+    return Pdf<SolidAngle>(3 * c * c / (2 * pi));
+  }
+
+ private:
+  static V3f axis(const GuideSite& site, const V3f& x) {
+    return ((site.index == 0 ? V3f(40, 90, -30) : V3f(-70, 20, 50)) - x).normalized();
+  }
+};
+
+}  // namespace lacuna::test
