@@ -29,10 +29,17 @@ std::array<Imath::V3i, neighbours> nearest_first() {
 template <class Mapped>
 std::optional<Imath::V3i> best_neighbour(const Imath::V3i& s, const Imath::V3d& n,
                                          Mapped&& mapped) {
-  const auto sign = [](double v) { return (v > 0) - (v < 0); };
-  // No other product is larger, and of those that are as large none is nearer.
-  const Imath::V3i ahead(sign(n.x), sign(n.y), sign(n.z));
-  if (mapped(s + ahead)) return s + ahead;
+  // The largest product is almost always that of the corner which n points to, and mapped.
+  const Imath::V3i corner(n.x < 0 ? -1 : 1, n.y < 0 ? -1 : 1, n.z < 0 ? -1 : 1);
+  const double most = Imath::V3d(corner).dot(n);
+  const auto without = [&](int a) {
+    Imath::V3i nearer = corner;
+    nearer[a] = 0;
+    return Imath::V3d(nearer).dot(n);
+  };
+  if (most > without(0) && most > without(1) && most > without(2)) {
+    if (const Imath::V3i v = s + corner; mapped(v)) return v;
+  }
   static const std::array<Imath::V3i, neighbours> offsets = nearest_first();
   std::array<double, neighbours> product;
   for (std::size_t i = 0; i < neighbours; ++i) product[i] = Imath::V3d(offsets[i]).dot(n);

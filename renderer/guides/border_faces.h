@@ -37,6 +37,9 @@ class BorderFaceLight {
   VoxelFace draw(std::uint32_t region, Rng& rng) const {
     return borders_.face(region, tables_[region].sample(rng));
   }
+  void add_parts(std::uint32_t region, double weight, FaceParts& parts) const {
+    parts.add(boxes_[region], region, weight);
+  }
   /// Of a face that leaves region `near`.
   double probability(std::uint32_t region, const CrossedFace& face, std::uint32_t near,
                      std::uint32_t) const {

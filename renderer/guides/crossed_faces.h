@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "analysis/geometry/grid.h"
 
@@ -31,6 +32,33 @@ struct VoxelBox {
     add(box.low);
     add(box.high - Imath::V3i(1));
   }
+};
+
+/// Faces that lie together, and how often any of them is drawn.
+struct FacePart {
+  const VoxelBox* box;  ///< holds the voxels on both sides of all
+  std::uint32_t index;  ///< whoever draws them knows what it is
+  double weight;
+};
+
+/// Parts without doubles.
+class FaceParts {
+ public:
+  void clear() { parts_.clear(); }
+  void add(const VoxelBox& box, std::uint32_t index, double weight) {
+    for (FacePart& p : parts_) {
+      if (p.index == index) {
+        p.weight += weight;
+        return;
+      }
+    }
+    parts_.push_back({&box, index, weight});
+  }
+  auto begin() const { return parts_.begin(); }
+  auto end() const { return parts_.end(); }
+
+ private:
+  std::vector<FacePart> parts_;
 };
 
 /// A face between two voxels, crossed by a ray; the voxels may lie outside the grid.

@@ -149,25 +149,25 @@ class FaceDirections final : public Directions {
                           const Drawn& drawn) const {
     const V3d from = transform_.to_grid(V3d(x));
     const RegionMixture regions = mixture(from, voxel);
-    VoxelBox box;
-    for (const auto& share : regions) box.add(faces_.box(share.region));
     const double all = sum_of(regions, drawn);
-    if (box.empty() || !(all > 0)) return {};
+    if (!(all > 0)) return {};
+    thread_local FaceParts parts;  // keeps its memory
+    parts.clear();
+    for (const auto& share : regions) {
+      const double often = drawn(share.region);
+      if (often > 0) faces_.add_parts(share.region, share.weight * often, parts);
+    }
     const V3d along(w);
     double sum = 0;
-    for_each_crossed_face(from, along, box, [&](const CrossedFace& face) {
-      const std::uint32_t near = label_at(face.from), far = label_at(face.to);
-      if (near == far) return true;
-      double p = 0;
-      for (const auto& share : regions) {
-        const double often = drawn(share.region);
-        if (often > 0) {
-          p += share.weight * often * faces_.probability(share.region, face, near, far);
-        }
-      }
-      sum += p * face.t * face.t / std::abs(along[face.axis]);
-      return true;
-    });
+    for (const FacePart& part : parts) {
+      for_each_crossed_face(from, along, *part.box, [&](const CrossedFace& face) {
+        const std::uint32_t near = label_at(face.from), far = label_at(face.to);
+        if (near == far) return true;
+        const double p = faces_.probability(part.index, face, near, far);
+        sum += part.weight * p * face.t * face.t / std::abs(along[face.axis]);
+        return true;
+      });
+    }
     return Pdf<SolidAngle>(static_cast<float>(sum / all));
   }
   std::uint32_t label_at(const Imath::V3i& v) const {

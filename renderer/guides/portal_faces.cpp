@@ -18,6 +18,19 @@ V3d middle(const Portals& portals, const Portal& portal, const Grid3<std::uint32
   return sum / static_cast<double>(portal.faces());
 }
 
+/// Of the voxels on both sides of its faces.
+VoxelBox box_around(const Portals& portals, const Portal& portal,
+                    const Grid3<std::uint32_t>& label) {
+  VoxelBox box;
+  for (std::uint64_t i = 0; i < portal.faces(); ++i) {
+    const VoxelFace face = portals.face(portal, i);
+    const Imath::V3i voxel = label.voxel(face.voxel);
+    box.add(voxel);
+    box.add(voxel + Imath::V3i(face.normal()));
+  }
+  return box;
+}
+
 /// The share of a portal that is seen from `eye`, in voxels, by some of its faces.
 double share_seen(const RayCaster& rays, const GridTransform& transform, const V3d& eye,
                   const Portals& portals, const Portal& portal, const Grid3<std::uint32_t>& label) {
@@ -56,6 +69,7 @@ void PortalFaces::prepare(const PrepareContext& context, const SurfaceLookup& lo
   const std::vector<V3d> centres = centres_of(labels);
   for (const Portal& p : portals_->portals) {
     middles_.push_back(middle(*portals_, p, labels.label));
+    boxes_.push_back(box_around(*portals_, p, labels.label));
   }
   exits_.resize(labels.regions.size());
   const GridTransform transform = context.space.voxels().transform;
@@ -119,14 +133,7 @@ void PortalFaces::find_exits(std::uint32_t region, const std::vector<V3d>& centr
   for (const auto& [p, weight] : by_portal) {
     const Portal& portal = portals_->portals[p];
     const double share = weight / elsewhere;
-    exits.exits.push_back(
-        {p, portal.a, portal.b, share, share / static_cast<double>(portal.faces())});
-    for (std::uint64_t i = 0; i < portal.faces(); ++i) {
-      const VoxelFace face = portals_->face(portal, i);
-      const Imath::V3i voxel = labels.label.voxel(face.voxel);
-      exits.box.add(voxel);
-      exits.box.add(voxel + Imath::V3i(face.normal()));
-    }
+    exits.exits.push_back({p, share, share / static_cast<double>(portal.faces())});
   }
 }
 

@@ -26,16 +26,16 @@ class PortalFaces {
 
   /// Share of the light that a region sees come from elsewhere, in [0, 1]; 0: nothing is drawn.
   double mass(std::uint32_t region) const { return exits_[region].mass; }
-  /// All faces that it draws, with the voxels on both sides.
-  const VoxelBox& box(std::uint32_t region) const { return exits_[region].box; }
+  void add_parts(std::uint32_t region, double weight, FaceParts& parts) const {
+    for (const Exit& e : exits_[region].exits)
+      parts.add(boxes_[e.portal], e.portal, weight * e.each);
+  }
   VoxelFace draw(std::uint32_t region, Rng& rng) const;
-  /// Of a face between regions `near` and `far`.
-  double probability(std::uint32_t region, const CrossedFace&, std::uint32_t near,
+  /// 1 of a face of `portal`, which lies between regions `near` and `far`.
+  double probability(std::uint32_t portal, const CrossedFace&, std::uint32_t near,
                      std::uint32_t far) const {
-    for (const Exit& e : exits_[region].exits) {
-      if ((e.a == near && e.b == far) || (e.a == far && e.b == near)) return e.each;
-    }
-    return 0;
+    const Portal& p = portals_->portals[portal];
+    return (p.a == near && p.b == far) || (p.a == far && p.b == near) ? 1 : 0;
   }
 
   struct Tally {};
@@ -44,14 +44,12 @@ class PortalFaces {
  private:
   struct Exit {
     std::uint32_t portal;
-    std::uint32_t a, b;  // the regions on its sides
-    double share;        // of the region's draws; all add up to 1
-    double each;         // share of one face
+    double share;  // of the region's draws; all add up to 1
+    double each;   // share of one face
   };
   struct Exits {
     std::vector<Exit> exits;
     double mass = 0;
-    VoxelBox box;
   };
 
   void find_exits(std::uint32_t region, const std::vector<V3d>& centres,
@@ -60,8 +58,9 @@ class PortalFaces {
 
   PortalsGuideSettings settings_;
   const Portals* portals_ = nullptr;
-  std::vector<V3d> middles_;  // of the portals, voxels
-  std::vector<Exits> exits_;  // of each region
+  std::vector<V3d> middles_;     // of the portals, voxels
+  std::vector<VoxelBox> boxes_;  // of the portals
+  std::vector<Exits> exits_;     // of each region
 };
 
 }  // namespace lacuna

@@ -1,0 +1,68 @@
+// Regions' ways of drawing pass into one another: no step at their borders.
+
+#include <gtest/gtest.h>
+
+#include "tests/renderer/guides/guided_scene.h"
+#include "tests/renderer/path/scenes.h"
+
+namespace lacuna {
+namespace {
+
+using test::GuidedScene;
+
+/// Total variation between what is drawn at two points, in [0, 1]; draws that fail count too.
+double difference(const Directions& d, const GuideSite& a, const V3f& xa, const GuideSite& b,
+                  const V3f& xb, Rng& rng) {
+  const int n = 400;
+  double sum = 0;
+  for (int i = 0; i < n; ++i) {
+    // Half the draws from either, so that no ratio is large.
+    const bool first = i % 2 == 0;
+    const auto w = first ? d.sample(a, xa, rng) : d.sample(b, xb, rng);
+    if (!w) continue;
+    const double pa = double(a.probability) * double(d.pdf(a, xa, *w).value);
+    const double pb = double(b.probability) * double(d.pdf(b, xb, *w).value);
+    const double drawn = pa / double(a.probability) + pb / double(b.probability);
+    if (drawn > 0) sum += std::abs(pa - pb) / drawn / n;
+  }
+  return sum;
+}
+
+TEST(RegionBorders, ShowNoStepWithMixing) {
+  PortalsGuideSettings settings;
+  settings.probability = {0.5};
+  settings.mixing = 0;
+  const auto make = [] { return load_gltf(test::own_scene("ajar.glb")); };
+  const GuidedScene sharp(make, settings, 0, std::nullopt, 48);
+  settings.mixing = 4;
+  const GuidedScene mixed(make, settings, 0, std::nullopt, 48);
+  Rng rng(31, 0, 0, Rng::Purpose::test);
+  double step_sharp = 0, step_mixed = 0;
+  int borders = 0;
+  for (const Vertex& v : sharp.guided_vertices(60)) {
+    const Directions &one = sharp.directions(), &other = mixed.directions();
+    // Along the surface, in steps of a tenth of a voxel.
+    const V3f along = cross(v.surface.ng, V3f(0.3F, 0.5F, 0.8F)).normalized() * 0.013F;
+    Surface s = v.surface, next = v.surface;
+    for (int k = 0; k < 100; ++k) {
+      s.x = next.x;
+      next.x += along;
+      const GuideSite a = one.site(s, v.wp), b = one.site(next, v.wp);
+      if (!(a.probability > 0 && b.probability > 0) || a.index == b.index) continue;
+      const double step = difference(one, a, s.x, b, next.x, rng);
+      if (step < 0.1) continue;  // no border of regions
+      const GuideSite ma = other.site(s, v.wp), mb = other.site(next, v.wp);
+      if (!(ma.probability > 0 && mb.probability > 0)) continue;
+      step_sharp += step;
+      step_mixed += difference(other, ma, s.x, mb, next.x, rng);
+      ++borders;
+    }
+  }
+  EXPECT_GE(borders, 10);
+  EXPECT_LT(step_mixed * 3, step_sharp) << step_sharp / borders << " and " << step_mixed / borders;
+  std::cout << borders << " borders, steps of " << step_sharp / borders << " and "
+            << step_mixed / borders << "\n";
+}
+
+}  // namespace
+}  // namespace lacuna
