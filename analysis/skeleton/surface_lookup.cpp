@@ -29,15 +29,17 @@ std::array<Imath::V3i, neighbours> nearest_first() {
 template <class Mapped>
 std::optional<Imath::V3i> best_neighbour(const Imath::V3i& s, const Imath::V3d& n,
                                          Mapped&& mapped) {
-  // The largest product is almost always that of the corner which n points to, and mapped.
-  const Imath::V3i corner(n.x < 0 ? -1 : 1, n.y < 0 ? -1 : 1, n.z < 0 ? -1 : 1);
+  // The largest product is almost always that of the corner, edge or face which n points to, and
+  // mapped; of those along which n has no part none is nearer.
+  const auto sign = [](double v) { return (v > 0) - (v < 0); };
+  const Imath::V3i corner(sign(n.x), sign(n.y), sign(n.z));
   const double most = Imath::V3d(corner).dot(n);
-  const auto without = [&](int a) {
+  const auto is_needed = [&](int a) {  // not lost in rounding
     Imath::V3i nearer = corner;
     nearer[a] = 0;
-    return Imath::V3d(nearer).dot(n);
+    return corner[a] == 0 || most > Imath::V3d(nearer).dot(n);
   };
-  if (most > without(0) && most > without(1) && most > without(2)) {
+  if (is_needed(0) && is_needed(1) && is_needed(2)) {
     if (const Imath::V3i v = s + corner; mapped(v)) return v;
   }
   static const std::array<Imath::V3i, neighbours> offsets = nearest_first();
