@@ -1,5 +1,7 @@
 #include "renderer/integrators/inspect.h"
 
+#include "renderer/guides/make_guide.h"
+#include "renderer/integrators/inspect_guide.h"
 #include "renderer/integrators/inspect_space.h"
 #include "renderer/integrators/tiles.h"
 
@@ -9,19 +11,22 @@ namespace {
 
 class Inspect final : public Integrator {
  public:
-  explicit Inspect(const InspectSettings& settings) : show_(settings.show) {}
+  explicit Inspect(const InspectSettings& settings) : settings_(settings), show_(settings.show) {}
 
   SceneNeeds needs() const override {
-    return {.materials = show_ == InspectQuantity::albedo,
-            .emission = show_ == InspectQuantity::emission,
-            .space = SpaceView::shows(show_)};
+    const bool guide = show_ == InspectQuantity::guide_density;
+    return {.materials = guide || show_ == InspectQuantity::albedo,
+            .emission = guide || show_ == InspectQuantity::emission,
+            .space = SpaceView::shows(show_) || (guide && guide_needs_space())};
   }
 
   void prepare(const PrepareContext& context) override {
     if (SpaceView::shows(show_)) space_.emplace(show_, context);
+    if (show_ == InspectQuantity::guide_density) guide_.emplace(settings_, context);
   }
 
   Counters iterate(const IterationContext& context, Image& image) override {
+    if (guide_) guide_->start(context, image);
     return for_each_tile(context, image, [&](const Tile& tile, Counters& counters) {
       for (int i = 0; i < tile.pixels(); ++i) {
         const V2i pixel = tile.pixel(i);
@@ -38,6 +43,10 @@ class Inspect final : public Integrator {
   }
 
  private:
+  bool guide_needs_space() const {
+    return with_guide(settings_.guide, [](const auto& guide) { return guide.needs_space(); });
+  }
+
   Rgb background(const Scene& scene, const Ray& ray) const {
     return show_ == InspectQuantity::emission ? scene.emitters().background(ray.d) : Rgb(0, 0, 0);
   }
@@ -46,6 +55,7 @@ class Inspect final : public Integrator {
                Counters& counters) const {
     const Scene& scene = context.scene;
     const Surface s = scene.surface(hit);
+    if (guide_) return guide_->colour(scene, s, ray.d, counters);
     if (space_) return space_->colour(scene, s, ray.d, context.seed, counters);
     switch (show_) {
       case InspectQuantity::normal:
@@ -65,8 +75,10 @@ class Inspect final : public Integrator {
     }
   }
 
+  InspectSettings settings_;
   InspectQuantity show_;
   std::optional<SpaceView> space_;
+  std::optional<GuideView> guide_;
 };
 
 }  // namespace

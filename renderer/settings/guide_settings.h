@@ -63,7 +63,7 @@ void describe(V& v, SkeletonGuideSettings& s) {
   v("light_rays", s.light_rays,
     {.doc = "rays from the lights that find the nodes whose surroundings are lit (eq. 176)",
      .min = 1,
-     .max = 1 << 26});
+     .max = 1 << 22});
 }
 
 /// What guides by the regions of the opening forest labelling have in common.
@@ -114,7 +114,7 @@ void describe(V& v, PortalsGuideSettings& s) {
   describe_region_guide(v, s);
   v("portal", s.portal, {.doc = "which portal on a shortest path rays are sent through"});
   v("light_rays", s.light_rays,
-    {.doc = "rays from the lights that find the regions that are lit", .min = 1, .max = 1 << 26});
+    {.doc = "rays from the lights that find the regions that are lit", .min = 1, .max = 1 << 22});
 }
 
 /// guide: face_irradiance.

@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-#include "analysis/settings/field.h"
+#include "renderer/settings/guide_settings.h"
 
 namespace lacuna {
 
@@ -18,12 +18,13 @@ enum class InspectQuantity {
   opening,
   region_labels,
   visibility_clusters,
-  nearest_node_visible
+  nearest_node_visible,
+  guide_density
 };
 
 template <>
 struct EnumTable<InspectQuantity> {
-  static constexpr std::array<EnumValue<InspectQuantity>, 10> values{{
+  static constexpr std::array<EnumValue<InspectQuantity>, 11> values{{
       {InspectQuantity::normal, "normal", "shading normal, world space, components in [-1, 1]"},
       {InspectQuantity::albedo, "albedo", "base reflectance"},
       {InspectQuantity::depth, "depth", "distance from the eye, scene units"},
@@ -40,6 +41,10 @@ struct EnumTable<InspectQuantity> {
        "the visibility cluster of the surface's node, a colour for each"},
       {InspectQuantity::nearest_node_visible, "nearest_node_visible",
        "green where the surface sees its node, red where not, black where it has none"},
+      {InspectQuantity::guide_density, "guide_density",
+       "how densely the guide sends rays to the surface from the place `from`, per steradian; "
+       "black "
+       "where it does not see it"},
   }};
 };
 
@@ -50,6 +55,8 @@ struct InspectSettings {
       "false-colour pictures of the first hit, and of the empty space in front of it";
 
   InspectQuantity show = InspectQuantity::normal;
+  GuideSettings guide = BsdfGuideSettings{};
+  std::array<double, 2> from{0.5, 0.5};
 
   bool operator==(const InspectSettings&) const = default;
 };
@@ -57,6 +64,13 @@ struct InspectSettings {
 template <class V>
 void describe(V& v, InspectSettings& s) {
   v("show", s.show, {.doc = "the quantity"});
+  v("guide", s.guide, {.doc = "the guide whose density is shown, before it has learned anything"});
+  v("from", s.from,
+    {.doc =
+         "where its rays start: the surface seen at this part of the picture's width and height, "
+         "from the upper left",
+     .min = 0,
+     .max = 1});
 }
 
 }  // namespace lacuna

@@ -127,4 +127,10 @@ FAULTS = [
     Fault("both paths of a pair have the same numbers", "renderer/integrators/bdpt.cpp",
           "pairs.eye.pixels[k],\n                              Rng::Purpose::light_path);",
           "pairs.eye.pixels[k],\n                              Rng::Purpose::eye_path);"),
+    # Guides.
+    Fault("a guide's density on the wrong side", "renderer/guides/mixed_guide.h",
+          "return mixed(v, this_side ? v.site : directions_->site(v.surface, wo), wi, bsdf);",
+          "return mixed(v, this_side || wo.x < 2 ? v.site : directions_->site(v.surface, wo), wi, bsdf);"),
+    Fault("walks from lights are guided in the weights", "renderer/guides/mixed_guide.h",
+          "if (transport == Transport::importance) return bsdf;", ""),
 ]
