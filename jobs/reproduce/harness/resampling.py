@@ -40,7 +40,7 @@ def sweep(full, methods, scenes=tuple(SCENES), seeds=3):
     return {
         "label": "connections of bidirectional path tracing",
         "job": {"analysis": {"resolution": 128}, "budget": {"cpu_seconds": 300 if full else 15},
-                "reference_iterations": 4000 if full else 200},
+                "reference_iterations": 4000 if full else 64},
         "axes": {"/integrator": list(methods.values())},
         "zip": [{pointer: [SCENES[s][pointer] for s in scenes] for pointer in SCENES["door"]}],
         "seeds": seeds,
