@@ -10,7 +10,7 @@ namespace lacuna {
 
 /// Where a guide (renderer/guides) found its distribution of directions at a surface.
 struct GuideSite {
-  float probability = 0;    ///< with which a direction is drawn from it, < 1; 0: there is none
+  float probability = 0;  ///< with which a direction is drawn from it, < 1; 0: there is none
   std::uint32_t index = 0xffffffff;  ///< the guide's own; at first: nothing
 };
 
