@@ -20,7 +20,7 @@ void describe(V&, BsdfGuideSettings&) {}
 
 /// Of directions drawn from a guide that are mixed with the BSDF's. 1 is not allowed: where the
 /// guide never looks, only the BSDF does.
-inline constexpr double most_guided = 0.95;
+inline constexpr double most_guided = 0.9;
 
 /// Where on the visible part of a shortest path rays are sent.
 enum class ImportanceAim { last, tightest, mean };
@@ -63,7 +63,7 @@ void describe(V& v, SkeletonGuideSettings& s) {
   v("light_rays", s.light_rays,
     {.doc = "rays from the lights that find the nodes whose surroundings are lit (eq. 176)",
      .min = 1,
-     .max = 1 << 22});
+     .max = 1 << 20});
 }
 
 /// What guides by the regions of the opening forest labelling have in common.
@@ -114,7 +114,7 @@ void describe(V& v, PortalsGuideSettings& s) {
   describe_region_guide(v, s);
   v("portal", s.portal, {.doc = "which portal on a shortest path rays are sent through"});
   v("light_rays", s.light_rays,
-    {.doc = "rays from the lights that find the regions that are lit", .min = 1, .max = 1 << 22});
+    {.doc = "rays from the lights that find the regions that are lit", .min = 1, .max = 1 << 20});
 }
 
 /// guide: face_irradiance.
