@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <random>
 
-#include "renderer/integrators/path.h"
+#include "renderer/guides/bsdf_guide.h"
+#include "renderer/integrators/path_tracer.h"
 #include "renderer/scene/gltf_guard.h"
 #include "tests/fuzz/input_file.h"
 #include "tests/renderer/scene/glb_frame.h"
@@ -26,11 +27,11 @@ void render(SceneData data) {
   const Camera camera(data.cameras.front(), side, side);
   PathSettings settings;
   settings.max_depth = 4;
-  const auto integrator = make_path(settings);
-  const Scene scene(std::move(data), integrator->needs(), std::nullopt, pool());
+  PathTracer<BsdfGuide> integrator(settings, {});
+  const Scene scene(std::move(data), integrator.needs(), std::nullopt, pool());
   Image image(side, side);
   const std::function<bool()> never = [] { return false; };
-  const Counters counters = integrator->iterate({scene, camera, pool(), 1, 0, never}, image);
+  const Counters counters = integrator.iterate({scene, camera, pool(), 1, 0, never}, image);
   expect(counters.samples == side * side, "every pixel is sampled");
   for (const Rgb& p : image.pixels) expect(is_finite(p), "nothing non-finite enters a picture");
 }

@@ -1,0 +1,136 @@
+#pragma once
+
+#include "renderer/guides/gathered_light.h"
+#include "renderer/integrators/tiles.h"
+#include "renderer/path/connect.h"
+#include "renderer/path/eye_batch.h"
+#include "renderer/path/shadow_queue.h"
+#include "renderer/path/walk.h"
+
+namespace lacuna {
+
+/// Path tracing (Noel 2015, 4.2): the strategies s = 0, an emitter hit by the walk, and s = 1, next
+/// event estimation at every vertex, weighted against each other.
+template <class Guide>
+class PathTracer final : public Integrator {
+ public:
+  PathTracer(const PathSettings& settings, Guide guide)
+      : settings_(settings), guide_(std::move(guide)) {}
+
+  SceneNeeds needs() const override {
+    return {.materials = true, .emission = true, .space = guide_.needs_space()};
+  }
+  void prepare(const PrepareContext& context) override { guide_.prepare(context); }
+  std::vector<std::pair<std::string, double>> statistics() const override {
+    return guide_.statistics();
+  }
+  void save(ByteWriter& out) const override { guide_.save(out); }
+  void load(ByteReader& in) override { guide_.load(in); }
+
+  Counters iterate(const IterationContext& context, Image& image) override {
+    const Tiling tiling(image);
+    std::vector<typename Guide::Tally> tallies(static_cast<std::size_t>(tiling.tiles()));
+    const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
+      render(context, image, tiling.tile(i), counters, tallies[static_cast<std::size_t>(i)]);
+    });
+    if (guide_.learns()) guide_.end(tallies, context.pool);
+    return sum;
+  }
+
+ private:
+  /// What next event estimation gives a pixel, if it sees the light.
+  struct Direct {
+    Rgb value;
+    std::uint32_t pixel;
+    std::uint16_t walker, depth;  // of the vertex that sees it
+  };
+
+  struct Batch : EyeBatch {
+    using EyeBatch::EyeBatch;
+    std::array<std::uint32_t, size> chosen{};  // the emitters of next event estimation
+    ShadowQueue<Direct> shadows;               // and what they give
+    GatheredLight gathered{*this};             // for a guide that learns
+  };
+
+  void render(const IterationContext& context, Image& image, const Tile& tile, Counters& counters,
+              typename Guide::Tally& tally) const {
+    const bool learns = guide_.learns();
+    if (learns) tally = guide_.tally();
+    Batch batch(settings_.max_depth);
+    Walk walk(context.scene, guide_,
+              {.max_depth = settings_.max_depth, .roulette_depth = settings_.roulette_depth},
+              counters);
+    const auto flush = [&] {
+      batch.shadows.flush(context.scene.rays(), counters, [&](const Direct& d) {
+        accumulate(image.pixels[d.pixel], d.value, counters);
+        if (learns) batch.gathered.add(d.walker, d.depth, d.value);
+      });
+    };
+    for (int first = 0; first < tile.pixels(); first += int{Batch::size}) {
+      start_paths(context, image, tile, first, batch);
+      counters.samples += batch.walkers.size();
+      if (learns) batch.gathered.clear();
+      estimate(context.scene, walk, batch);
+      for (std::size_t i = 0; i < batch.walkers.size(); ++i) {
+        accumulate(image.pixels[batch.pixels[i]], batch.radiance[i], counters);
+      }
+      if (learns) {
+        flush();
+        batch.gathered.teach(guide_, tally);
+      }
+    }
+    flush();
+  }
+
+  /// One sample of each pixel of `batch`, into its `radiance` and `shadows`.
+  void estimate(const Scene& scene, Walk<Guide>& walk, Batch& batch) const {
+    const auto choose_emitter = [&](std::size_t i, int depth) {
+      if (nee(scene) && depth < settings_.max_depth) {
+        batch.chosen[i] = scene.emitters().choose(batch.walkers[i].rng);
+      }
+    };
+    const auto gather = [&](std::size_t i, int depth) {
+      const Vertex& v = batch.vertex(i, depth);
+      const Rgb met = emitter_hit(scene, v, depth);
+      batch.radiance[i] += met;
+      if (guide_.learns()) {
+        batch.gathered.reach(i, depth);
+        batch.gathered.add(i, depth, met);
+      }
+      const bool goes_on = v.kind == Vertex::Kind::surface && depth < settings_.max_depth;
+      if (goes_on && nee(scene) && v.bsdf->connectible()) {
+        const EmitterPoint e = scene.emitters().sample(batch.chosen[i], batch.walkers[i].rng);
+        const SurfaceEnd<Guide> eye{v, depth, Transport::radiance, guide_};
+        const EmitterEnd light{e};
+        if (const Connection c = connect(eye, light)) {
+          const auto w = static_cast<float>(weight(eye, light, c, counts(scene)));
+          batch.shadows.add(shadow_ray(eye, light, c),
+                            {c.contribution * w, batch.pixels[i], static_cast<std::uint16_t>(i),
+                             static_cast<std::uint16_t>(depth)});
+        }
+      }
+    };
+    walk.lead(batch.walkers, choose_emitter, gather);
+  }
+
+  bool nee(const Scene& scene) const {
+    return settings_.next_event_estimation && !scene.emitters().empty();
+  }
+
+  SampleCounts counts(const Scene& scene) const {
+    return {.hit = 1, .nee = nee(scene) ? 1.0 : 0.0};
+  }
+
+  /// s = 0: what `v`, `depth` edges from the eye, itself emits.
+  Rgb emitter_hit(const Scene& scene, const Vertex& v, int depth) const {
+    const std::optional<EmitterPoint> e = emitter_at(scene, v);
+    if (!e) return Rgb(0, 0, 0);
+    const auto w = static_cast<float>(hit_weight(v, depth, *e, counts(scene)));
+    return v.throughput * e->emission * w;
+  }
+
+  PathSettings settings_;
+  Guide guide_;
+};
+
+}  // namespace lacuna
