@@ -19,9 +19,16 @@ std::vector<Method> changed(const Method& method, Args... args) {
   }
 }
 
+/// Without roulette, which costs power: its own numbers have rows.
+template <class S>
+S with_whole_paths(S settings) {
+  if constexpr (requires { settings.roulette_depth; }) settings.roulette_depth = 8;
+  return settings;
+}
+
 template <class... Ts>
 std::vector<Method> registered(const std::variant<Ts...>&) {
-  return {Method{std::string(Ts::name), Ts{}}...};
+  return {Method{std::string(Ts::name), with_whole_paths(Ts{})}...};
 }
 
 /// A visitor that finds the longest path, and changes it where `wanted` has a value.
