@@ -5,6 +5,7 @@
 #include "renderer/core/clock_seconds.h"
 #include "renderer/guides/gathered_light.h"
 #include "renderer/guides/make_guide.h"
+#include "renderer/integrators/guided_integrator.h"
 #include "renderer/integrators/light_pass.h"
 #include "renderer/integrators/strategy_layers.h"
 
@@ -41,21 +42,14 @@ class PassSeconds {
 /// Bidirectional path tracing (Noel 2015, 4.3 and ch. 11): everything but which light vertices an
 /// eye vertex is joined to.
 template <class Guide>
-class Bdpt : public Integrator {
+class Bdpt : public GuidedIntegrator<Guide> {
  public:
-  Bdpt(const BdptSettings& settings, Guide guide) : settings_(settings), guide_(std::move(guide)) {}
-
-  SceneNeeds needs() const override {
-    return {.materials = true, .emission = true, .space = guide_.needs_space()};
-  }
-  void prepare(const PrepareContext& context) override { guide_.prepare(context); }
-  std::vector<std::pair<std::string, double>> statistics() const override {
-    return guide_.statistics();
-  }
-  void save(ByteWriter& out) const override { guide_.save(out); }
-  void load(ByteReader& in) override { guide_.load(in); }
+  Bdpt(const BdptSettings& settings, Guide guide)
+      : GuidedIntegrator<Guide>(std::move(guide)), settings_(settings) {}
 
  protected:
+  using GuidedIntegrator<Guide>::guide_;
+
   struct EyePaths : EyeBatch {
     using EyeBatch::EyeBatch;
     GatheredLight gathered{*this};  // for a guide that learns
@@ -158,7 +152,6 @@ class Bdpt : public Integrator {
   }
 
   BdptSettings settings_;
-  Guide guide_;
   StrategyLayers layers_;
 };
 

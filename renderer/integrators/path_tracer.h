@@ -1,6 +1,7 @@
 #pragma once
 
 #include "renderer/guides/gathered_light.h"
+#include "renderer/integrators/guided_integrator.h"
 #include "renderer/integrators/tiles.h"
 #include "renderer/path/connect.h"
 #include "renderer/path/eye_batch.h"
@@ -12,20 +13,12 @@ namespace lacuna {
 /// Path tracing (Noel 2015, 4.2): the strategies s = 0, an emitter hit by the walk, and s = 1, next
 /// event estimation at every vertex, weighted against each other.
 template <class Guide>
-class PathTracer final : public Integrator {
+class PathTracer final : public GuidedIntegrator<Guide> {
+  using GuidedIntegrator<Guide>::guide_;
+
  public:
   PathTracer(const PathSettings& settings, Guide guide)
-      : settings_(settings), guide_(std::move(guide)) {}
-
-  SceneNeeds needs() const override {
-    return {.materials = true, .emission = true, .space = guide_.needs_space()};
-  }
-  void prepare(const PrepareContext& context) override { guide_.prepare(context); }
-  std::vector<std::pair<std::string, double>> statistics() const override {
-    return guide_.statistics();
-  }
-  void save(ByteWriter& out) const override { guide_.save(out); }
-  void load(ByteReader& in) override { guide_.load(in); }
+      : GuidedIntegrator<Guide>(std::move(guide)), settings_(settings) {}
 
   Counters iterate(const IterationContext& context, Image& image) override {
     const Tiling tiling(image);
@@ -130,7 +123,6 @@ class PathTracer final : public Integrator {
   }
 
   PathSettings settings_;
-  Guide guide_;
 };
 
 }  // namespace lacuna

@@ -35,8 +35,19 @@ struct EnumTable<ImportanceAim> {
   }};
 };
 
+/// What guides that look for where light arrives (Noel 2015, eq. 176) have in common.
+struct LightRays {
+  int light_rays = 1 << 16;
+  bool operator==(const LightRays&) const = default;
+};
+
+template <class V>
+void describe_light_rays(V& v, LightRays& s, const char* doc) {
+  v("light_rays", s.light_rays, {.doc = doc, .min = 1, .max = 1 << 20});
+}
+
 /// guide: skeleton.
-struct SkeletonGuideSettings {
+struct SkeletonGuideSettings : LightRays {
   static constexpr std::string_view name = "skeleton";
   static constexpr std::string_view doc =
       "rays towards the light along the skeleton of the empty space (Noel 2015, ch. 9)";
@@ -44,7 +55,6 @@ struct SkeletonGuideSettings {
   AutoNumber strength{8};
   AutoNumber probability{0.5};
   ImportanceAim aim = ImportanceAim::last;
-  int light_rays = 1 << 16;
   bool operator==(const SkeletonGuideSettings&) const = default;
 };
 template <class V>
@@ -60,10 +70,8 @@ void describe(V& v, SkeletonGuideSettings& s) {
      .min = 0,
      .max = most_guided});
   v("aim", s.aim, {.doc = "where rays are sent on the visible part of a shortest path"});
-  v("light_rays", s.light_rays,
-    {.doc = "rays from the lights that find the nodes whose surroundings are lit (eq. 176)",
-     .min = 1,
-     .max = 1 << 20});
+  describe_light_rays(
+      v, s, "rays from the lights that find the nodes whose surroundings are lit (eq. 176)");
 }
 
 /// What guides by the regions of the opening forest labelling have in common.
@@ -100,21 +108,19 @@ struct EnumTable<PortalChoice> {
 };
 
 /// guide: portals.
-struct PortalsGuideSettings : RegionGuideSettings {
+struct PortalsGuideSettings : RegionGuideSettings, LightRays {
   static constexpr std::string_view name = "portals";
   static constexpr std::string_view doc =
       "rays through the portals on the shortest paths to where the light arrives (Noel 2015, "
       "10.4.1)";
   PortalChoice portal = PortalChoice::last;
-  int light_rays = 1 << 16;
   bool operator==(const PortalsGuideSettings&) const = default;
 };
 template <class V>
 void describe(V& v, PortalsGuideSettings& s) {
   describe_region_guide(v, s);
   v("portal", s.portal, {.doc = "which portal on a shortest path rays are sent through"});
-  v("light_rays", s.light_rays,
-    {.doc = "rays from the lights that find the regions that are lit", .min = 1, .max = 1 << 20});
+  describe_light_rays(v, s, "rays from the lights that find the regions that are lit");
 }
 
 /// guide: face_irradiance.

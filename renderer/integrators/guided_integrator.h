@@ -1,0 +1,28 @@
+#pragma once
+
+#include "renderer/integrators/integrator.h"
+
+namespace lacuna {
+
+/// An integrator whose paths from the eye follow a guide (renderer/guides), of which its needs, its
+/// preparation and its learned state are.
+template <class Guide>
+class GuidedIntegrator : public Integrator {
+ public:
+  explicit GuidedIntegrator(Guide guide) : guide_(std::move(guide)) {}
+
+  SceneNeeds needs() const override {
+    return {.materials = true, .emission = true, .space = guide_.needs_space()};
+  }
+  void prepare(const PrepareContext& context) override { guide_.prepare(context); }
+  std::vector<std::pair<std::string, double>> statistics() const override {
+    return guide_.statistics();
+  }
+  void save(ByteWriter& out) const override { guide_.save(out); }
+  void load(ByteReader& in) override { guide_.load(in); }
+
+ protected:
+  Guide guide_;
+};
+
+}  // namespace lacuna
