@@ -70,9 +70,15 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   p.integrator = make_integrator(spec.integrator);
   SceneData data = load_gltf(resolve(context, "scene", spec.scene, {".glb", ".gltf"}));
   const CameraData camera = choose_camera(data, spec.camera, spec.scene);
-  p.camera =
-      std::make_unique<Camera>(camera, spec.resolution[0], spec.resolution[1], spec.pixel_filter);
+  std::optional<Crop> crop;
+  if (const auto& c = spec.crop) crop = Crop{{c->from[0], c->from[1]}, {c->of[0], c->of[1]}};
+  p.camera = std::make_unique<Camera>(camera, spec.resolution[0], spec.resolution[1],
+                                      spec.pixel_filter, crop);
   p.warnings = data.warnings;
+  if (biased(spec.integrator)) {
+    p.warnings.emplace_back(
+        "the integrator's settings make it biased: however long it runs, an error remains");
+  }
   p.content = fmt::format("{:016x}", data.content_hash);
 
   const SceneNeeds needs = needs_of(spec, *p.integrator);

@@ -64,6 +64,7 @@ OrderedJson scene(const Scene& s) {
 OrderedJson errors_json(const RenderTask& task, const Curve& curve) {
   OrderedJson j;
   if (curve.rows().empty()) return j;
+  j["biased"] = biased(task.spec.integrator);
   const CurveRow& row = curve.rows().back();
   for (const auto& metric : EnumTable<ErrorMetric>::values) {
     j[std::string(metric.name)] = optional(row.value(metric.value));

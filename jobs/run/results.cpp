@@ -61,6 +61,8 @@ void add_layer(const RenderTask& task, const Film& film, ImageLayer layer,
     case ImageLayer::strategies:
     case ImageLayer::strategies_unweighted:
     case ImageLayer::distributions:
+    case ImageLayer::visibility_tests:
+    case ImageLayer::negative:
       return;  // the integrator's own (RenderLoop::layers())
   }
 }

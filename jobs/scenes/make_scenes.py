@@ -13,6 +13,7 @@ sys.dont_write_bytecode = True  # no cache folder beside the scenes
 
 import rooms
 import trials
+from hairball import hairball
 from images import sky
 from validate import faults
 
@@ -21,6 +22,7 @@ ROOMS = [rooms.cornell, rooms.bends, rooms.ajar, rooms.atrium]
 TRIALS = [trials.furnace, trials.furnace_sphere, trials.mirror, trials.glass_room]
 TRIALS += [trials.many_lights, trials.sides, trials.open_air]
 TRIALS += [trials.point, trials.spot, trials.directional, trials.area]
+TRIALS += [hairball]
 
 README_HEAD = """# Scenes
 

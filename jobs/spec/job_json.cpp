@@ -56,6 +56,19 @@ void check_layers_once(const JobSpec& spec, std::vector<Problem>& problems) {
   }
 }
 
+void check_crop(const JobSpec& spec, std::vector<Problem>& problems) {
+  if (!spec.crop || !is_good(problems, "/crop") || !is_good(problems, "/resolution")) return;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const int least = spec.crop->from[k] + spec.resolution[k];
+    if (spec.crop->of[k] >= least) continue;
+    problems.push_back(
+        {fmt::format("/crop/of/{}", k),
+         fmt::format("found {} for a crop that begins with {} and has {}; allowed: "
+                     "{} or more",
+                     spec.crop->of[k], spec.crop->from[k], spec.resolution[k], least)});
+  }
+}
+
 bool has_limit(const Budget& b) { return b.seconds || b.cpu_seconds || b.iterations || b.error; }
 
 }  // namespace
@@ -68,6 +81,7 @@ JobSpec parse_job(std::string_view json) {
   check_error_target(spec, problems);
   check_layers_of_integrator(spec, problems);
   check_layers_once(spec, problems);
+  check_crop(spec, problems);
   throw_if_any(std::move(problems));
   if (!has_limit(spec.budget)) spec.budget.seconds = Budget::default_seconds;
   return spec;

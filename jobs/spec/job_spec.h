@@ -73,12 +73,34 @@ void describe(V& v, EnvironmentSettings& s) {
      .unit = "degrees"});
 }
 
+/// A part of a larger picture.
+struct CropSettings {
+  std::array<int, 2> of{0, 0};
+  std::array<int, 2> from{0, 0};
+  bool operator==(const CropSettings&) const = default;
+};
+template <class V>
+void describe(V& v, CropSettings& s) {
+  v("of", s.of,
+    {.doc = "width and height of the larger picture",
+     .min = 1,
+     .max = 65536,
+     .required = true,
+     .unit = "pixels"});
+  v("from", s.from,
+    {.doc = "its column and row, from the upper left, that the crop begins with",
+     .min = 0,
+     .max = 65535,
+     .unit = "pixels"});
+}
+
 /// One job: what is posted to the service and given to `lacuna render`.
 struct JobSpec {
   std::string scene;
   std::string camera;
   std::string label;
   std::array<int, 2> resolution{512, 512};
+  std::optional<CropSettings> crop;
   IntegratorSettings integrator;
   Budget budget;
   std::string reference;
@@ -102,6 +124,8 @@ void describe(V& v, JobSpec& s) {
   v("label", s.label, {.doc = "a few words of your own", .max = 200});
   v("resolution", s.resolution,
     {.doc = "width and height", .min = 1, .max = 16384, .unit = "pixels"});
+  v("crop", s.crop,
+    {.doc = "the picture, of `resolution`, is a part of a larger one that is not rendered"});
   v("integrator", s.integrator, {.doc = "the method"});
   v("budget", s.budget,
     {.doc = "when to stop; the first limit reached ends the job; none: 60 seconds"});

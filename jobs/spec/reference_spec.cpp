@@ -31,6 +31,7 @@ JobSpec reference_spec(const JobSpec& spec) {
   r.camera = spec.camera;
   r.label = "reference";
   r.resolution = spec.resolution;
+  r.crop = spec.crop;
   r.integrator = std::visit(PlainIntegrator{}, spec.integrator);
   r.budget.iterations = spec.reference_iterations;
   // False colours show the analysis itself; light does not depend on it.
@@ -45,7 +46,12 @@ JobSpec reference_spec(const JobSpec& spec) {
 
 std::string picture_name(const JobSpec& spec) {
   if (spec.reference.empty() || spec.reference == "auto") return picture_key(reference_spec(spec));
-  return fmt::format("{} {}x{}", spec.reference, spec.resolution[0], spec.resolution[1]);
+  std::string name =
+      fmt::format("{} {}x{}", spec.reference, spec.resolution[0], spec.resolution[1]);
+  if (const auto& c = spec.crop) {
+    name += fmt::format(" of {}x{} from {},{}", c->of[0], c->of[1], c->from[0], c->from[1]);
+  }
+  return name;
 }
 
 }  // namespace lacuna

@@ -1,27 +1,13 @@
 #include "renderer/connections/importance_cache.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <numeric>
 
+#include "renderer/core/free_memory.h"
 #include "renderer/path/eye_batch.h"
 
 namespace lacuna {
-
-namespace {
-
-/// Throws if `bytes` would leave too little.
-void require_free(std::size_t records, std::size_t paths, double bytes) {
-  const double free = double(sysconf(_SC_AVPHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
-  if (bytes < free / 2) return;
-  throw std::runtime_error(fmt::format(
-      "importance_cache: the distributions of {} records over {} light paths take {:.1f} GiB, more "
-      "than half of the {:.1f} GiB that are free; lower record_density or light_paths",
-      records, paths, bytes / 0x1p30, free / 0x1p30));
-}
-
-}  // namespace
 
 void ImportanceCacheConnections::place_records(const IterationContext& context, int longest,
                                                Counters& counters) {
@@ -61,7 +47,12 @@ void ImportanceCacheConnections::begin(const IterationContext& context, const Li
     bytes += static_cast<double>(records_.size()) * static_cast<double>(lights.count(s)) *
              static_cast<double>(ResamplingTable::bytes_each);
   }
-  require_free(records_.size(), lights.paths(), bytes);
+  require_free(bytes, [&] {
+    return fmt::format(
+        "importance_cache: the distributions of {} records over {} light paths; lower "
+        "record_density or light_paths",
+        records_.size(), lights.paths());
+  });
   std::vector<RecordTree::Place> places;
   for (const Vertex& v : records_) places.push_back(place_of(v));
   tree_.build(std::move(places));

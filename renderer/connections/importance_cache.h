@@ -81,10 +81,6 @@ class ImportanceCacheConnections {
  private:
   static constexpr std::uint8_t uniform = 3;  // in `distributions`
 
-  static RecordTree::Place place_of(const Vertex& v) {
-    const V3f& n = v.surface.ng;
-    return {v.surface.x, dot(n, v.wp) < 0 ? -n : n};
-  }
   void place_records(const IterationContext& context, int longest, Counters& counters);
   std::uint64_t build(const Vertex& record, Site& site, const Scene& scene,
                       const LightVertices& lights) const;

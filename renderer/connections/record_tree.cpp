@@ -53,8 +53,7 @@ std::size_t RecordTree::nearest(const Place& at, std::span<std::uint32_t> found)
   const std::size_t n = impl_->index.knnSearch(&at.x.x, wanted, index.data(), distance2.data());
   std::array<std::pair<float, std::uint32_t>, most_candidates> ranked;
   for (std::size_t i = 0; i < n; ++i) {
-    const V3f& normal = impl_->places.list[index[i]].n;
-    ranked[i] = {std::sqrt(distance2[i]) * (2 - dot(at.n, normal)), index[i]};
+    ranked[i] = {rank(at, impl_->places.list[index[i]]), index[i]};
   }
   const std::size_t taken = std::min(found.size(), n);
   std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(taken),

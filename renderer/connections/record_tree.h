@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "renderer/core/vec.h"
+#include "renderer/path/vertex.h"
 
 namespace lacuna {
 
@@ -23,14 +23,24 @@ class RecordTree {
 
   void build(std::vector<Place> places);
 
+  /// How far apart two places count: their distance times (2 - n . n'), scene units.
+  static float rank(const Place& a, const Place& b) {
+    return std::sqrt((a.x - b.x).length2()) * (2 - dot(a.n, b.n));
+  }
+
   /// Writes into `found` the indices of the nearest places: of twice as many nearest by distance
-  /// alone the first by distance times (2 - n . n'). Returns how many, fewer only where there are
-  /// fewer places.
+  /// alone the first by rank(). Returns how many, fewer only where there are fewer places.
   std::size_t nearest(const Place& at, std::span<std::uint32_t> found) const;
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Where a surface that an eye path met is: the normal on the side it is seen from.
+inline RecordTree::Place place_of(const Vertex& v) {
+  const V3f& n = v.surface.ng;
+  return {v.surface.x, dot(n, v.wp) < 0 ? -n : n};
+}
 
 }  // namespace lacuna

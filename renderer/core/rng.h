@@ -15,7 +15,13 @@ namespace lacuna {
 class Rng {
  public:
   /// What the path is for; two purposes never share numbers.
-  enum class Purpose : std::uint32_t { eye_path = 0, light_path = 1, integrator = 2, test = 3 };
+  enum class Purpose : std::uint32_t {
+    eye_path = 0,
+    light_path = 1,
+    integrator = 2,
+    test = 3,
+    visibility = 4
+  };
 
   /// `path` < 2^56; `iteration` < 2^32.
   Rng(std::uint64_t seed, std::uint64_t iteration, std::uint64_t path,

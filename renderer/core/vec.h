@@ -31,6 +31,10 @@ inline float max_abs_component(const V3f& v) {
   return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
 }
 /// Rec. 709 luminance, the scalar that selection probabilities are made of.
-inline float luminance(const Rgb& c) { return 0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z; }
+template <class T>
+T luminance(const T& r, const T& g, const T& b) {
+  return 0.2126F * r + 0.7152F * g + 0.0722F * b;
+}
+inline float luminance(const Rgb& c) { return luminance(c.x, c.y, c.z); }
 
 }  // namespace lacuna

@@ -2,7 +2,7 @@
 
 #include "renderer/connections/hybrid_connections.h"
 #include "renderer/connections/uniform_connections.h"
-#include "renderer/core/clock_seconds.h"
+#include "renderer/core/pass_seconds.h"
 #include "renderer/guides/gathered_light.h"
 #include "renderer/guides/make_guide.h"
 #include "renderer/integrators/guided_integrator.h"
@@ -24,19 +24,6 @@ struct Contribution {
   Rgb value{0, 0, 0};          ///< unweighted
   float weight = 0;            ///< MIS
   std::uint16_t s = 0, t = 0;  ///< vertices made from the light and from the eye
-};
-
-/// CPU seconds of the process since the last end().
-class PassSeconds {
- public:
-  void end(double& sum) {
-    const double now = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
-    sum += now - start_;
-    start_ = now;
-  }
-
- private:
-  double start_ = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
 };
 
 /// Bidirectional path tracing (Noel 2015, 4.3 and ch. 11): everything but which light vertices an

@@ -30,7 +30,7 @@ class Inspect final : public Integrator {
     return for_each_tile(context, image, [&](const Tile& tile, Counters& counters) {
       for (int i = 0; i < tile.pixels(); ++i) {
         const V2i pixel = tile.pixel(i);
-        const Ray ray = CameraSample(context, image, pixel).ray;
+        const Ray ray = CameraSample(context, image.index(pixel.x, pixel.y)).ray;
         ++counters.samples;
         ++counters.rays;
         Hit hit;

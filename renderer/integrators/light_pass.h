@@ -5,9 +5,9 @@
 
 namespace lacuna {
 
-/// Walks the light paths [0, paths) of an iteration, adds what they give at the eye (t = 1) to
-/// `image` and to `arrived(splat)`, and calls `keep(path, batch, place)` for each once it is
-/// walked, from several threads.
+/// Walks the light paths [0, paths) of an iteration, adds what they give at the eye (t = 1), if
+/// that strategy has samples, to `image` and to `arrived(splat)`, and calls `keep(path, batch,
+/// place)` for each once it is walked, from several threads.
 template <class Guide, class Keep, class Arrived>
 Counters light_pass(const IterationContext& context, const LightPathSetting& setting,
                     const Guide& guide, std::int64_t paths, Image& image, Keep&& keep,
@@ -25,7 +25,7 @@ Counters light_pass(const IterationContext& context, const LightPathSetting& set
                           Rng::Purpose::light_path);
       }
       batch.walk(rngs, counters);
-      batch.splat(rngs.size(), counters, splats);
+      if (setting.counts.splat > 0) batch.splat(rngs.size(), counters, splats);
       for (std::size_t k = 0; k < rngs.size(); ++k) {
         keep(static_cast<std::size_t>(first) + k, batch, k);
       }

@@ -3,7 +3,7 @@
 #include "renderer/guides/gathered_light.h"
 #include "renderer/integrators/guided_integrator.h"
 #include "renderer/integrators/tiles.h"
-#include "renderer/path/connect.h"
+#include "renderer/path/direct_light.h"
 #include "renderer/path/eye_batch.h"
 #include "renderer/path/shadow_queue.h"
 #include "renderer/path/walk.h"
@@ -77,49 +77,30 @@ class PathTracer final : public GuidedIntegrator<Guide> {
 
   /// One sample of each pixel of `batch`, into its `radiance` and `shadows`.
   void estimate(const Scene& scene, Walk<Guide>& walk, Batch& batch) const {
+    const DirectLight<Guide> direct(scene, guide_, settings_.next_event_estimation);
     const auto choose_emitter = [&](std::size_t i, int depth) {
-      if (nee(scene) && depth < settings_.max_depth) {
+      if (direct.draws() && depth < settings_.max_depth) {
         batch.chosen[i] = scene.emitters().choose(batch.walkers[i].rng);
       }
     };
     const auto gather = [&](std::size_t i, int depth) {
       const Vertex& v = batch.vertex(i, depth);
-      const Rgb met = emitter_hit(scene, v, depth);
+      const Rgb met = direct.met(v, depth);
       batch.radiance[i] += met;
       if (guide_.learns()) {
         batch.gathered.reach(i, depth);
         batch.gathered.add(i, depth, met);
       }
       const bool goes_on = v.kind == Vertex::Kind::surface && depth < settings_.max_depth;
-      if (goes_on && nee(scene) && v.bsdf->connectible()) {
-        const EmitterPoint e = scene.emitters().sample(batch.chosen[i], batch.walkers[i].rng);
-        const SurfaceEnd<Guide> eye{v, depth, Transport::radiance, guide_};
-        const EmitterEnd light{e};
-        if (const Connection c = connect(eye, light)) {
-          const auto w = static_cast<float>(weight(eye, light, c, counts(scene)));
-          batch.shadows.add(shadow_ray(eye, light, c),
-                            {c.contribution * w, batch.pixels[i], static_cast<std::uint16_t>(i),
-                             static_cast<std::uint16_t>(depth)});
-        }
+      if (goes_on && direct.draws() && v.bsdf->connectible()) {
+        direct.draw(v, depth, batch.chosen[i], batch.walkers[i].rng,
+                    [&](const Ray& ray, const Rgb& value) {
+                      batch.shadows.add(ray, {value, batch.pixels[i], static_cast<std::uint16_t>(i),
+                                              static_cast<std::uint16_t>(depth)});
+                    });
       }
     };
     walk.lead(batch.walkers, choose_emitter, gather);
-  }
-
-  bool nee(const Scene& scene) const {
-    return settings_.next_event_estimation && !scene.emitters().empty();
-  }
-
-  SampleCounts counts(const Scene& scene) const {
-    return {.hit = 1, .nee = nee(scene) ? 1.0 : 0.0};
-  }
-
-  /// s = 0: what `v`, `depth` edges from the eye, itself emits.
-  Rgb emitter_hit(const Scene& scene, const Vertex& v, int depth) const {
-    const std::optional<EmitterPoint> e = emitter_at(scene, v);
-    if (!e) return Rgb(0, 0, 0);
-    const auto w = static_cast<float>(hit_weight(v, depth, *e, counts(scene)));
-    return v.throughput * e->emission * w;
   }
 
   PathSettings settings_;

@@ -2,6 +2,7 @@
 #include "renderer/integrators/inspect.h"
 #include "renderer/integrators/integrator.h"
 #include "renderer/integrators/light.h"
+#include "renderer/integrators/many_lights.h"
 #include "renderer/integrators/path.h"
 
 namespace lacuna {
@@ -12,6 +13,9 @@ struct Make {
   std::unique_ptr<Integrator> operator()(const PathSettings& s) const { return make_path(s); }
   std::unique_ptr<Integrator> operator()(const LightSettings& s) const { return make_light(s); }
   std::unique_ptr<Integrator> operator()(const BdptSettings& s) const { return make_bdpt(s); }
+  std::unique_ptr<Integrator> operator()(const ManyLightsSettings& s) const {
+    return make_many_lights(s);
+  }
   std::unique_ptr<Integrator> operator()(const InspectSettings& s) const { return make_inspect(s); }
 };
 

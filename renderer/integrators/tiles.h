@@ -53,19 +53,22 @@ Counters for_each_part(const IterationContext& context, int n, Work&& work) {
 /// How an image is cut into tiles.
 class Tiling {
  public:
-  explicit Tiling(const Image& image)
-      : width_(image.width), height_(image.height), across_((image.width + size - 1) / size) {}
+  /// `size`: pixels along a side; by default small enough to stop quickly and large enough to be
+  /// coherent.
+  explicit Tiling(const Image& image, int size = 32)
+      : width_(image.width),
+        height_(image.height),
+        size_(size),
+        across_((image.width + size - 1) / size) {}
 
-  int tiles() const { return across_ * ((height_ + size - 1) / size); }
+  int tiles() const { return across_ * ((height_ + size_ - 1) / size_); }
   Tile tile(int i) const {
-    const V2i first = V2i(i % across_, i / across_) * size;
-    return {first, V2i(std::min(size, width_ - first.x), std::min(size, height_ - first.y))};
+    const V2i first = V2i(i % across_, i / across_) * size_;
+    return {first, V2i(std::min(size_, width_ - first.x), std::min(size_, height_ - first.y))};
   }
 
  private:
-  static constexpr int size =
-      32;  // pixels; small enough to stop quickly, large enough to be coherent
-  int width_, height_, across_;
+  int width_, height_, size_, across_;
 };
 
 /// Calls `render(tile, counters)` for all tiles of `image`, as for_each_part() does.
@@ -81,9 +84,15 @@ struct CameraSample {
   Rng rng;
   Ray ray;
 
-  CameraSample(const IterationContext& context, const Image& image, const V2i& pixel)
-      : rng(context.seed, context.iteration, image.index(pixel.x, pixel.y)),
-        ray(context.camera.sample(pixel, rng.next2())) {}
+  CameraSample(const IterationContext& context, std::size_t pixel)
+      : rng(context.seed, context.iteration, pixel),
+        ray(context.camera.sample(place(pixel, context.camera.width()), rng.next2())) {}
+
+ private:
+  static V2i place(std::size_t pixel, int width) {
+    const int i = static_cast<int>(pixel);
+    return {i % width, i / width};
+  }
 };
 
 /// Fills `batch` with a path for each of the tile's pixels from the `first` on, as many as fit.
@@ -91,9 +100,10 @@ inline void start_paths(const IterationContext& context, const Image& image, con
                         int first, EyeBatch& batch) {
   batch.walkers.clear();
   for (int i = first; i < std::min(first + int{EyeBatch::size}, tile.pixels()); ++i) {
-    const V2i pixel = tile.pixel(i);
-    const CameraSample sample(context, image, pixel);
-    batch.start(context.camera, sample.rng, sample.ray, image.index(pixel.x, pixel.y));
+    const V2i at = tile.pixel(i);
+    const std::size_t pixel = image.index(at.x, at.y);
+    const CameraSample sample(context, pixel);
+    batch.start(context.camera, sample.rng, sample.ray, pixel);
   }
 }
 

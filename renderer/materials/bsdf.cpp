@@ -7,7 +7,6 @@ namespace {
 
 /// Rounding of the cosine between float unit vectors: a cosine below it does not even tell the
 /// side. Only divisors are held against it.
-constexpr float cos_rounding = 0x1p-24F;
 
 /// A uniform number in [0, width) stretched to [0, 1).
 float stretch(float u, float width) { return std::clamp(u / width, 0.0F, 1 - 0x1p-24F); }
@@ -53,7 +52,7 @@ struct RefractingFacet {
 
 Rgb Bsdf::albedo() const {
   if (lobes_.kind != Lobes::Kind::layered) return lobes_.diffuse;
-  return lobes_.interface.r0 + lobes_.layer.let_through(0) * lobes_.diffuse +
+  return lobes_.interface.r0 + lobes_.layer.let_through(0.0F) * lobes_.diffuse +
          lobes_.interface.glass_color;
 }
 
@@ -172,6 +171,17 @@ Rgb Bsdf::eval_any(const V3f& wo, const V3f& wi, Transport transport) const {
   if (std::abs(side) < cos_rounding) return Rgb(0, 0, 0);
   const Seen from = seen(facing_normal(wi, side_i), wi);
   return scatter<true, false>(from, nullptr, wi, wo).f * std::abs(side_i / side);
+}
+
+std::optional<LambertLit> Bsdf::lambert_lit(const V3f& from) const {
+  if (lobes_.kind != Lobes::Kind::lambert) return std::nullopt;
+  const float side = dot(from, ng_);
+  const V3f ng = side < 0 ? -ng_ : ng_;
+  if (flat_) return LambertLit{lobes_.diffuse * inv_pi, ng, ng, 1};
+  const V3f ns = side < 0 ? -ns_ : ns_;
+  if (std::abs(side) < cos_rounding) return LambertLit{Rgb(0, 0, 0), ng, ns, 1};
+  return LambertLit{lobes_.diffuse * inv_pi, ng, ns,
+                    std::max(0.0F, dot(from, ns)) / std::abs(side)};
 }
 
 Pdf<SolidAngle> Bsdf::pdf_any(const V3f& wo, const V3f& wi, Transport transport) const {

@@ -25,6 +25,18 @@ struct BsdfSample {
   bool transmitted = false;  ///< wi lies on the other side of ng
 };
 
+/// Cosines below it are rounding noise.
+inline constexpr float cos_rounding = 0x1p-24F;
+
+/// A Lambertian surface lit from one direction: it gives f (w.side) t towards unit `w` where
+/// w.side > 0, else nothing; t is `turned` where w.ns > 0 and 1 elsewhere.
+struct LambertLit {
+  Rgb f;         ///< diffuse reflectance / pi
+  V3f side;      ///< unit; ng on the side it is lit from
+  V3f ns;        ///< unit; ns on that side
+  float turned;  ///< >= 0
+};
+
 /// Scattering at one point of a surface: a flat value, made per hit, without allocation or virtual
 /// calls. The glTF metallic-roughness model, mix(dielectric, metal, metallic):
 /// - metal: GGX, Schlick from base_color to white;
@@ -79,6 +91,15 @@ class Bsdf {
             (!lobes_.interface.smooth() || lobes_.has_diffuse()));
   }
 
+  /// eval(from, w, importance) of all w, where the surface is nothing but Lambertian.
+  std::optional<LambertLit> lambert_lit(const V3f& from) const;
+
+  /// Opaque, and with a lobe that no single direction rules: a diffuse one, or facets of at least
+  /// the width `least_alpha`.
+  bool broad(float least_alpha) const {
+    if (transmits() || !connectible()) return false;
+    return lobes_.has_diffuse() || lobes_.interface.alpha >= least_alpha;
+  }
   /// Light may pass to the other side of the surface.
   bool transmits() const {
     return lobes_.kind == Lobes::Kind::layered && lobes_.interface.glass > 0;
@@ -88,6 +109,8 @@ class Bsdf {
   Rgb albedo() const;
 
  private:
+  friend class BsdfSeen;
+
   /// Probabilities of the lobes for one wo; they add up to 1, or are all 0.
   struct Choice {
     float diffuse = 0;

@@ -14,19 +14,26 @@ namespace lacuna {
 /// be rounding noise, and are narrower than a pixel of any picture.
 inline constexpr float ggx_min_alpha = 1e-4F;
 
-/// Density of facet normals `m` around `n`, per projected area. The sine comes from a cross
-/// product: from 1 - cos^2 it would be lost for small alpha.
-inline float ggx_d(const V3f& m, const V3f& n, float alpha) {
-  const float a2 = alpha * alpha;
-  const float cos = dot(m, n);
-  const float t = cross(n, m).length2() / a2 + cos * cos;
+/// Density of facet normals, per projected area, at an angle to the mean normal whose cosine and
+/// squared sine are given; T and A are float or Float8. From 1 - cos^2 the sine would be lost for
+/// small alpha.
+template <class T, class A>
+T ggx_d(const T& cos, const T& sin2, const A& alpha) {
+  const A a2 = alpha * alpha;
+  const T t = sin2 / a2 + cos * cos;
   return 1 / (std::numbers::pi_v<float> * a2 * t * t);
+}
+/// The same for facet normals `m` around `n`.
+inline float ggx_d(const V3f& m, const V3f& n, float alpha) {
+  return ggx_d(dot(m, n), cross(n, m).length2(), alpha);
 }
 
 /// sqrt(alpha^2 + (1 - alpha^2) cos^2): what all of Smith's terms are made of.
-inline float ggx_slope_root(float cos, float alpha) {
-  const float a2 = alpha * alpha;
-  return std::sqrt(a2 + (1 - a2) * cos * cos);
+template <class T, class A>
+T ggx_slope_root(const T& cos, const A& alpha) {
+  using std::sqrt;
+  const A a2 = alpha * alpha;
+  return sqrt(a2 + (1 - a2) * cos * cos);
 }
 
 /// Masking G1(w) / cos: finite at grazing angles.
@@ -36,7 +43,8 @@ inline float ggx_g1_over_cos(float cos, float alpha) {
 
 /// Height-correlated masking and shadowing (Heitz 2014, eq. 99) over four times the first cosine:
 /// G2 / (4 cos_o).
-inline float ggx_g2_over_4cos(float cos_o, float cos_i, float alpha) {
+template <class O, class T, class A>
+T ggx_g2_over_4cos(const O& cos_o, const T& cos_i, const A& alpha) {
   return 0.5F / (ggx_slope_root(cos_o, alpha) + cos_o * ggx_slope_root(cos_i, alpha) / cos_i);
 }
 

@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "renderer/materials/ggx.h"
+#include "renderer/materials/layer_means.h"
 
 namespace lacuna {
 namespace {
@@ -27,6 +28,15 @@ class Table {
     const float high = values_[r + 1][c] + fc * (values_[r + 1][c + 1] - values_[r + 1][c]);
     return low + fr * (high - low);
   }
+  /// at() of a row, at the columns themselves.
+  template <std::size_t n>
+  void columns_at(float row, std::array<float, n>& out) const {
+    static_assert(n == columns);
+    const auto [r, fr] = split(row, rows);
+    for (std::size_t c = 0; c < n; ++c) {
+      out[c] = values_[r][c] + fr * (values_[r + 1][c] - values_[r][c]);
+    }
+  }
   float hemisphere(float row) const {
     const auto [r, fr] = split(row, rows);
     return hemisphere_[r] + fr * (hemisphere_[r + 1] - hemisphere_[r]);
@@ -34,7 +44,7 @@ class Table {
   static float row(float alpha) { return std::sqrt(alpha) * (rows - 1); }
 
  private:
-  static constexpr int rows = 17, columns = 33;
+  static constexpr int rows = 17, columns = LayerMeans::columns;
 
   static std::pair<std::size_t, float> split(float x, int n) {
     const int i = std::min(static_cast<int>(x), n - 2);
@@ -105,6 +115,19 @@ Layer::Layer(float f0, float f90, float alpha)
   if (row_ >= 0) table().need(row_);
   const float mean = let_through(row_ < 0 ? smooth_hemisphere : table().hemisphere(row_));
   norm_ = mean > 0 ? 1 / mean : 0;
+}
+
+LayerMeans::LayerMeans(const Layer& layer) : smooth_(layer.row_ < 0) {
+  if (!smooth_) table().columns_at(layer.row_, v_);
+}
+
+Float8 LayerMeans::at(Float8 cos) const {
+  if (smooth_) return schlick_weight(cos);
+  const Float8 x = sqrt(min(Float8(1), max(Float8(0), cos))) * float(columns - 1);
+  const __m256i column = _mm256_min_epi32(_mm256_cvttps_epi32(x.v), _mm256_set1_epi32(columns - 2));
+  const Float8 low(_mm256_i32gather_ps(v_.data(), column, 4));
+  const Float8 high(_mm256_i32gather_ps(v_.data() + 1, column, 4));
+  return low + (x - Float8(_mm256_cvtepi32_ps(column))) * (high - low);
 }
 
 float Layer::mean_weight(float cos) const {

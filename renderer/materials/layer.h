@@ -22,13 +22,21 @@ class Layer {
   /// Mean of Schlick's weight over the facets that reflect light to a direction with this cosine.
   float mean_weight(float cos) const;
   /// 1 - K of a direction: the share that reaches the base. In [0, 1].
-  float let_through(float mean_weight) const { return 1 - (f0_ + (f90_ - f0_) * mean_weight); }
+  template <class T>
+  T let_through(const T& mean_weight) const {
+    return 1 - (f0_ + (f90_ - f0_) * mean_weight);
+  }
   /// Scale of the base's f for the two directions' let_through().
-  float scale(float through_o, float through_i) const { return through_o * through_i * norm_; }
+  template <class T>
+  T scale(float through_o, const T& through_i) const {
+    return through_o * through_i * norm_;
+  }
   /// Nothing reaches the base.
   bool closed() const { return norm_ == 0; }
 
  private:
+  friend class LayerMeans;
+
   float f0_ = 0, f90_ = 0;
   float norm_ = 1;  // 1 / (1 - mean K)
   float row_ = -1;  // position in the table of means; negative: smooth

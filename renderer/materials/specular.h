@@ -8,9 +8,11 @@ namespace lacuna {
 // the index of refraction on the far side over the one on the side of `w`; `cos` = dot(w, m) > 0.
 
 /// Schlick's (1 - cos)^5 (Schlick 1994, eq. 15).
-inline float schlick_weight(float cos) {
-  const float x = std::max(0.0F, 1 - cos);
-  const float x2 = x * x;
+template <class T>
+T schlick_weight(const T& cos) {
+  using std::max;
+  const T x = max(T(0.0F), T(1 - cos));
+  const T x2 = x * x;
   return x2 * x2 * x;
 }
 

@@ -25,9 +25,9 @@ constexpr bool at_infinity(const End& e) {
   return false;
 }
 
-/// Joins the ends `eye` and `light`; false if no light passes, whatever lies between.
+/// The edge alone, which carries nothing yet; of two ends at one place w is 0.
 template <class Eye, class Light>
-Connection connect(const Eye& eye, const Light& light) {
+Connection edge_between(const Eye& eye, const Light& light) {
   Connection c;
   c.infinite = at_infinity(light);
   if (c.infinite) {
@@ -35,9 +35,16 @@ Connection connect(const Eye& eye, const Light& light) {
   } else {
     const V3f edge = light.x() - eye.x();
     c.distance2 = edge.length2();
-    if (!(c.distance2 > 0)) return c;
-    c.w = edge / std::sqrt(c.distance2);
+    if (c.distance2 > 0) c.w = edge / std::sqrt(c.distance2);
   }
+  return c;
+}
+
+/// Joins the ends `eye` and `light`; false if no light passes, whatever lies between.
+template <class Eye, class Light>
+Connection connect(const Eye& eye, const Light& light) {
+  Connection c = edge_between(eye, light);
+  if (!(c.distance2 > 0)) return c;
   const Rgb emitted = light.scatter(-c.w);
   if (is_black(emitted)) return c;
   c.contribution = eye.scatter(c.w) * emitted / c.distance2;

@@ -33,6 +33,10 @@ struct EyeBatch {
     return vertices[i * places + static_cast<std::size_t>(depth)];
   }
 
+  Vertex& vertex(std::size_t i, int depth) {
+    return vertices[i * places + static_cast<std::size_t>(depth)];
+  }
+
   std::size_t places;
   std::vector<Vertex> vertices;
   std::vector<Walker> walkers;

@@ -48,7 +48,7 @@ class Walk {
   /// Each vertex reached is stored in its walker's path and handed to `visit(i, depth)`, i = index
   /// of the walker and depth = edges walked, before the walk goes on from it; `before(i, depth)` is
   /// called before the ray to it is traced, for what can be drawn ahead. The densities of all
-  /// vertices are per area.
+  /// vertices are per area. A `visit` that returns bool ends the walk by false.
   template <class Before, class Visit>
   void lead(std::span<Walker> walkers, Before&& before, Visit&& visit) {
     active_.resize(walkers.size());
@@ -61,7 +61,11 @@ class Walk {
       for (const std::size_t i : active_) arrive(walkers[i], depth);
       std::erase_if(active_, [&](std::size_t i) {
         scatter(walkers[i], depth);
-        visit(i, depth);
+        if constexpr (std::is_void_v<decltype(visit(i, depth))>) {
+          visit(i, depth);
+        } else if (!visit(i, depth)) {
+          return true;
+        }
         return !leave(walkers[i], depth);
       });
     }

@@ -22,7 +22,8 @@ const CameraData& choose_camera(const SceneData& scene, const std::string& name,
                                fmt::join(names, ", ")));
 }
 
-Camera::Camera(const CameraData& data, int width, int height, PixelFilter filter)
+Camera::Camera(const CameraData& data, int width, int height, PixelFilter filter,
+               const std::optional<Crop>& crop)
     : width_(width), height_(height), filter_(filter) {
   const M44d& m = data.to_world;
   const V3d right(m[0][0], m[0][1], m[0][2]);
@@ -31,10 +32,12 @@ Camera::Camera(const CameraData& data, int width, int height, PixelFilter filter
   position_ = V3f(V3d(m[3][0], m[3][1], m[3][2]));
   forward_ = V3f(-back);
   const double half_height = std::tan(data.yfov / 2);
-  pixel_ = 2 * half_height / height;
+  const Crop film = crop.value_or(Crop{.size = {width, height}});
+  pixel_ = 2 * half_height / film.size.y;
   dx_ = right * pixel_;
   dy_ = up * -pixel_;
-  origin_ = -back + up * half_height - right * (pixel_ * width / 2);
+  origin_ = -back + up * half_height - right * (pixel_ * film.size.x / 2) +
+            dx_ * double(film.first.x) + dy_ * double(film.first.y);
 }
 
 Ray Camera::sample(const V2i& pixel, const V2f& u) const {

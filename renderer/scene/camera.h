@@ -14,11 +14,19 @@ namespace lacuna {
 const CameraData& choose_camera(const SceneData& scene, const std::string& name,
                                 const std::string& file);
 
+/// The part of a picture of `size` pixels that a film shows: from `first` on.
+struct Crop {
+  V2i first{0, 0};
+  V2i size{0, 0};
+};
+
 /// A pinhole camera with a film of `width` x `height` square pixels; the vertical field of view is
 /// the glTF camera's, the horizontal one follows from the film.
 class Camera {
  public:
-  Camera(const CameraData& data, int width, int height, PixelFilter filter = PixelFilter::box);
+  /// Where there is a `crop`, the film is that part of a larger picture of the same view.
+  Camera(const CameraData& data, int width, int height, PixelFilter filter = PixelFilter::box,
+         const std::optional<Crop>& crop = {});
 
   /// The ray of a sample of `pixel`, for `u` uniform in [0, 1)^2. The point on the film is drawn
   /// from the pixel filter itself, so all samples count alike and pixels stay independent (Ernst,

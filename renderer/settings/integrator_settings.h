@@ -7,6 +7,7 @@
 #include "renderer/settings/bdpt_settings.h"
 #include "renderer/settings/inspect_settings.h"
 #include "renderer/settings/light_settings.h"
+#include "renderer/settings/many_lights_settings.h"
 #include "renderer/settings/output_settings.h"
 #include "renderer/settings/path_settings.h"
 
@@ -14,7 +15,8 @@ namespace lacuna {
 
 /// Which integrator, and how. The order is the order in menus; the first is the default.
 /// renderer/integrators/registry.cpp makes the integrator of each alternative.
-using IntegratorSettings = std::variant<PathSettings, LightSettings, BdptSettings, InspectSettings>;
+using IntegratorSettings =
+    std::variant<PathSettings, LightSettings, BdptSettings, ManyLightsSettings, InspectSettings>;
 
 /// The layers that the integrator of these settings fills itself. Its settings struct lists them as
 ///
@@ -30,6 +32,18 @@ std::span<const ImageLayer> filled_layers(const std::variant<Ts...>& settings) {
         } else {
           return {};
         }
+      },
+      settings);
+}
+
+/// Whether the mean of many iterations is something else than the light in the scene. Settings of
+/// which that is so say so by `bool biased() const`.
+template <class... Ts>
+bool biased(const std::variant<Ts...>& settings) {
+  return std::visit(
+      []<class S>(const S& s) {
+        if constexpr (requires { s.biased(); }) return s.biased();
+        return false;
       },
       settings);
 }

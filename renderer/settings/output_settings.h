@@ -15,12 +15,14 @@ enum class ImageLayer {
   depth,
   strategies,
   strategies_unweighted,
-  distributions
+  distributions,
+  visibility_tests,
+  negative
 };
 
 template <>
 struct EnumTable<ImageLayer> {
-  static constexpr std::array<EnumValue<ImageLayer>, 8> values{{
+  static constexpr std::array<EnumValue<ImageLayer>, 10> values{{
       {ImageLayer::variance, "variance", "variance of the pixel's estimate (of the mean)"},
       {ImageLayer::halves, "halves",
        "means of the even and of the odd iterations, two independent estimates"},
@@ -34,6 +36,9 @@ struct EnumTable<ImageLayer> {
        "the same before weighting: each an estimate of all light of its path length"},
       {ImageLayer::distributions, "distributions",
        "what each resampling distribution adds to the picture"},
+      {ImageLayer::visibility_tests, "visibility_tests",
+       "share of the virtual lights whose visibility was tested by a ray"},
+      {ImageLayer::negative, "negative", "share of the iterations in which the pixel was below 0"},
   }};
 };
 

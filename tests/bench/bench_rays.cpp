@@ -1,7 +1,8 @@
 // Rays per CPU second of an integrator, as a share of what a bare loop reaches that sends the same
 // rays through Embree one by one, in the same order: what the ray caster itself was asked.
 //
-//   bench_rays SCENE.glb WIDTH HEIGHT MAX_DEPTH ROUNDS [path | light | bdpt | bdpt-uniform]
+//   bench_rays SCENE.glb WIDTH HEIGHT MAX_DEPTH ROUNDS [path | light | bdpt | bdpt-uniform |
+//   many_lights]
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
@@ -59,6 +60,7 @@ IntegratorSettings settings_of(const std::string& method, int max_depth) {
   if (method == "bdpt-uniform") {
     return BdptSettings{whole, UniformSettings{{.roulette = 0}}};  // the same rays every time
   }
+  if (method == "many_lights") return ManyLightsSettings{whole};
   if (method == "path") return PathSettings{whole};
   fmt::print(stderr, "bench_rays: no method {}\n", method);
   std::exit(2);
@@ -70,7 +72,7 @@ int main(int argc, char** argv) {
   if (argc != 6 && argc != 7) {
     fmt::print(stderr,
                "usage: bench_rays SCENE.glb WIDTH HEIGHT MAX_DEPTH ROUNDS "
-               "[path | light | bdpt | bdpt-uniform]\n");
+               "[path | light | bdpt | bdpt-uniform | many_lights]\n");
     return 2;
   }
   const V2i size(std::atoi(argv[2]), std::atoi(argv[3]));

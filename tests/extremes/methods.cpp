@@ -19,16 +19,18 @@ std::vector<Method> changed(const Method& method, Args... args) {
   }
 }
 
-/// Without roulette, which costs power: its own numbers have rows.
+/// Without roulette, which costs power: its own numbers have rows; with few lights, of which each
+/// takes the time of all pixels.
 template <class S>
-S with_whole_paths(S settings) {
+S for_small_pictures(S settings) {
+  if constexpr (std::is_same_v<S, ManyLightsSettings>) settings.light_paths = 100;
   if constexpr (requires { settings.roulette_depth; }) settings.roulette_depth = 8;
   return settings;
 }
 
 template <class... Ts>
 std::vector<Method> registered(const std::variant<Ts...>&) {
-  return {Method{std::string(Ts::name), with_whole_paths(Ts{})}...};
+  return {Method{std::string(Ts::name), for_small_pictures(Ts{})}...};
 }
 
 /// A visitor that finds the longest path, and changes it where `wanted` has a value.
@@ -61,6 +63,10 @@ std::vector<Method> methods(bool flags) {
 }
 
 std::optional<int> max_depth(const Method& method) {
+  if (biased(method.settings)) return std::nullopt;
+  const auto* lights = std::get_if<ManyLightsSettings>(&method.settings);
+  // Their variance has no bound: a mean shows nothing.
+  if (lights != nullptr && lights->clamp == Clamp::off) return {};
   Depth visitor;
   IntegratorSettings settings = method.settings;
   std::visit([&](auto& s) { describe(visitor, s); }, settings);

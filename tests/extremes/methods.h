@@ -19,8 +19,9 @@ struct Method {
 /// tables alone: what is registered is here.
 std::vector<Method> methods(bool flags);
 
-/// The longest path in edges, where the method's table has `max_depth`: then it estimates the light
-/// that arrives along paths of at most so many edges (DESIGN, "Words").
+/// The longest path in edges, where the method's table has `max_depth` and its settings are neither
+/// biased nor of unbounded variance: then it estimates the light that arrives along paths of at
+/// most so many edges (DESIGN, "Words").
 std::optional<int> max_depth(const Method& method);
 
 /// The first of all methods, with the same longest path: follows light, and must show the same.

@@ -25,7 +25,7 @@ std::vector<Row> budget_rows(const Effort& effort);
 
 /// For Row::left_out: methods that do not estimate light along paths.
 inline std::string needs_paths(const Method& method) {
-  return max_depth(method) ? "" : "does not follow light: it has no max_depth";
+  return max_depth(method) ? "" : "does not follow light, or is biased";
 }
 
 /// What a furnace shows, in units of its radiance, with paths of at most `depth` edges.

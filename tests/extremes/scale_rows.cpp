@@ -6,6 +6,13 @@
 namespace lacuna::extremes {
 namespace {
 
+/// For Row::left_out: methods with a length in the scene's own units among their settings.
+std::string needs_no_units(const Method& method) {
+  const auto* lights = std::get_if<ManyLightsSettings>(&method.settings);
+  const bool absolute = lights != nullptr && lights->clamp == Clamp::absolute;
+  return absolute ? "its bound is in the scene's own units" : "";
+}
+
 Picture scaled(Stage& stage, const Method& method, double scale) {
   const std::string& name =
       stage.scene(fmt::format("room-scaled-{}", scale), [&] { return room({.scale = scale}); });
@@ -24,17 +31,20 @@ Row exact(int exponent) {
             const int k = length_degree(stage, method);
             check.same_bits(scaled(stage, method, std::ldexp(1.0, exponent)), stage.plain(method),
                             std::ldexp(1.0, k * exponent));
-          }};
+          },
+          needs_no_units};
 }
 
 Row decimal(double scale) {
-  return {fmt::format("scale {:g}", scale), [=](Stage& stage, const Method& method, Check& check) {
+  return {fmt::format("scale {:g}", scale),
+          [=](Stage& stage, const Method& method, Check& check) {
             // Corners are rounded to 24 bits, so that a few in a million of the paths meet another
             // surface.
             constexpr double rounding = 1e-5;
             check.same_picture(scaled(stage, method, scale), stage.plain(method),
                                std::pow(scale, length_degree(stage, method)), rounding);
-          }};
+          },
+          needs_no_units};
 }
 
 /// At 1e7 the floats are 1 apart. The room is made so large that its corners are whole numbers: its
@@ -42,14 +52,16 @@ Row decimal(double scale) {
 /// their surfaces (offset_origin), here 19 units, or a 2500th of the room's height. On strips of
 /// that width along the edges of the room and of its shadows the picture may be another.
 Row far_away() {
-  return {"offset 1e7", [](Stage& stage, const Method& method, Check& check) {
+  return {"offset 1e7",
+          [](Stage& stage, const Method& method, Check& check) {
             constexpr double scale = 0x1p14;
             const double strip = 1e7 * 0x1p-19 / (2.9 * scale);
             const std::string& name =
                 stage.scene("room-far", [&] { return room({.scale = scale, .offset = 1e7}); });
             check.same_picture(stage.render(stage.job(method, name)), stage.plain(method),
                                std::pow(scale, length_degree(stage, method)), 2 * strip);
-          }};
+          },
+          needs_no_units};
 }
 
 /// The room in its own size is four to six floats wide out there: no longer the same shape, but

@@ -98,6 +98,13 @@ inline JobSpec random_job(std::uint64_t seed) {
   RandomSettings random(seed);
   JobSpec spec;
   describe(random, spec);
+  if (auto& crop = spec.crop) {  // around what is rendered
+    for (std::size_t k = 0; k < 2; ++k) {
+      crop->of[k] = std::max(crop->of[k], crop->from[k] + spec.resolution[k]);
+      crop->of[k] = std::min(crop->of[k], 65536);
+      crop->from[k] = std::min(crop->from[k], crop->of[k] - spec.resolution[k]);
+    }
+  }
   auto& layers = spec.layers;
   std::sort(layers.begin(), layers.end());
   layers.erase(std::unique(layers.begin(), layers.end()), layers.end());

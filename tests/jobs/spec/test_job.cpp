@@ -58,6 +58,17 @@ TEST(Job, layers_come_once) {
              {"string \"x\""});
 }
 
+TEST(Job, a_crop_lies_within_the_larger_picture) {
+  const auto job = [](const std::string& crop) {
+    return R"({"scene": "a", "resolution": [64, 32], "crop": )" + crop + "}";
+  };
+  EXPECT_TRUE(job_problems(job(R"({"of": [512, 32], "from": [448, 0]})")).empty());
+  EXPECT_TRUE(job_problems(job(R"({"of": [64, 32]})")).empty());
+  expect_one(job_problems(job(R"({"of": [512, 512], "from": [449, 0]})")), "/crop/of/0",
+             {"found 512", "begins with 449 and has 64", "513 or more"});
+  expect_one(job_problems(job(R"({"from": [0, 0]})")), "/crop/of", {"required"});
+}
+
 TEST(Job, nested_pointers_name_the_place) {
   expect_one(job_problems(R"({"scene": "a", "resolution": [1, 0]})"), "/resolution/1",
              {"found number 0; allowed: an integer from 1 to 16384 pixels"});

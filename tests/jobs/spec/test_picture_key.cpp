@@ -20,6 +20,10 @@ const std::map<std::string, std::function<void(JobSpec&)>> changes{
      [](JobSpec& s) {
        s.resolution = {512, 511};
      }},
+    {"crop",
+     [](JobSpec& s) {
+       s.crop = CropSettings{{1024, 1024}, {0, 0}};
+     }},
     {"integrator", [](JobSpec& s) { std::get<PathSettings>(s.integrator).max_depth = 7; }},
     {"budget", [](JobSpec& s) { s.budget.iterations = 3; }},
     {"reference", [](JobSpec& s) { s.reference.push_back('r'); }},
@@ -38,9 +42,9 @@ const std::map<std::string, std::function<void(JobSpec&)>> changes{
     {"exclusive", [](JobSpec& s) { s.exclusive = true; }},
 };
 
-const std::set<std::string> decides_the_picture{"scene",      "camera",      "resolution",
-                                                "integrator", "analysis",    "environment",
-                                                "seed",       "pixel_filter"};
+const std::set<std::string> decides_the_picture{"scene",      "camera",       "resolution",
+                                                "integrator", "analysis",     "environment",
+                                                "seed",       "pixel_filter", "crop"};
 
 TEST(PictureKey, changes_with_what_decides_the_pixels_and_with_nothing_else) {
   JobSpec base;

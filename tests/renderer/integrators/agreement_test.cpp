@@ -83,6 +83,18 @@ TEST_P(Agrees, WithPathTracing) {
   }
 }
 
+TEST_P(Agrees, ManyLights) {
+  const Agreement& a = GetParam();
+  const Rendering expected =
+      reference(a.scene, small_picture(a.scene, test::path_tracing(a.max_depth), a.iterations));
+  for (const Method& method : test::many_lights(a.max_depth)) {
+    SCOPED_TRACE(method.name);
+    expect_same_picture(
+        render(load(a.scene), small_picture(a.scene, method.settings, a.iterations)), expected,
+        3 * a.useful, method.name == "lights_probabilistic");
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Agrees, testing::ValuesIn(agreements),
                          [](const auto& a) { return a.param.scene.name; });
 

@@ -89,6 +89,34 @@ inline std::vector<Method> connections(int max_depth, int light_paths = 64) {
   };
 }
 
+/// Many-light rendering with every visibility that has the right mean.
+inline std::vector<Method> many_lights(int max_depth, int light_paths = 64) {
+  std::vector<Method> all;
+  const auto add = [&](const char* name, const VisibilitySettings& visibility, auto&& change) {
+    ManyLightsSettings s{whole_paths(max_depth)};
+    s.light_paths = light_paths;
+    s.visibility = visibility;
+    std::visit(
+        [](auto& v) {
+          if constexpr (requires { v.cache_points; }) v.cache_points = 20;  // of small pictures
+        },
+        s.visibility);
+    change(s);
+    all.push_back({name, s});
+  };
+  const auto as_it_is = [](ManyLightsSettings&) {};
+  add("lights_exact", ExactVisibilitySettings{}, as_it_is);
+  add("lights_on_emitters", ExactVisibilitySettings{},
+      [](auto& s) { s.direct = DirectLighting::lights; });
+  add("lights_mostly_path_tracing", ExactVisibilitySettings{}, [](auto& s) {
+    s.bound = 5;
+    s.direct = DirectLighting::lights;
+  });
+  add("lights_probabilistic", ProbabilisticVisibilitySettings{}, as_it_is);
+  add("lights_roulette", RouletteVisibilitySettings{}, as_it_is);
+  return all;
+}
+
 /// Every flag and every named value of the choices, at least once away from its default, alone and
 /// with others.
 inline std::vector<Method> unusual_connections(int max_depth, int light_paths = 64) {

@@ -70,6 +70,20 @@ TEST(Camera, SamplesOfAPixelFollowItsFilter) {
   EXPECT_LT(p_value(PixelFilter::tent, box), level) << "the test has no power";
 }
 
+TEST(Camera, CropIsAPartOfTheLargerPicture) {
+  const Camera whole(straight_ahead(), columns, rows);
+  const Camera part(straight_ahead(), 3, 2, PixelFilter::box, Crop{{4, 1}, {columns, rows}});
+  EXPECT_EQ(part.width(), 3);
+  const Ray a = part.ray(1.25F, 0.5F), b = whole.ray(5.25F, 1.5F);
+  EXPECT_LT((a.d - b.d).length(), 1e-6F);
+  EXPECT_FLOAT_EQ(part.density(a.d).value, whole.density(a.d).value);
+  const auto at = part.project(a.d);
+  ASSERT_TRUE(at.has_value());
+  EXPECT_NEAR(at->x, 1.25F, 1e-4F);
+  EXPECT_NEAR(at->y, 0.5F, 1e-4F);
+  EXPECT_FALSE(part.project(whole.ray(3.5F, 1.5F).d).has_value());
+}
+
 TEST(Camera, UnknownNameIsRefusedWithThoseThereAre) {
   SceneData data;
   EXPECT_THROW(choose_camera(data, "", "a.glb"), SceneError);

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <stdexcept>
+
+namespace lacuna {
+
+/// Throws std::runtime_error if `bytes` are more than half of the memory that is free; `what()`
+/// says what they are for, and what to do.
+template <class What>
+void require_free(double bytes, What&& what) {
+  const double free = double(sysconf(_SC_AVPHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+  if (bytes < free / 2) return;
+  throw std::runtime_error(
+      fmt::format("{}: {:.1f} GiB, more than half of the {:.1f} GiB that are "
+                  "free",
+                  what(), bytes / 0x1p30, free / 0x1p30));
+}
+
+}  // namespace lacuna

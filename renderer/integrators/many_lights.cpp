@@ -1,0 +1,261 @@
+#include "renderer/integrators/many_lights.h"
+
+#include "renderer/core/pass_seconds.h"
+#include "renderer/integrators/light_pass.h"
+#include "renderer/path/direct_light.h"
+#include "renderer/visibility/cached_visibility.h"
+#include "renderer/visibility/light_gather.h"
+#include "renderer/visibility/plain_visibility.h"
+#include "renderer/visibility/roulette_visibility.h"
+
+namespace lacuna {
+
+namespace {
+
+/// The bound of the geometric term, 1 / scene units^2.
+float bound_of(const ManyLightsSettings& s, double radius) {
+  switch (s.clamp) {
+    case Clamp::relative:
+      return static_cast<float>(s.bound / (radius * radius));
+    case Clamp::absolute:
+      return static_cast<float>(s.bound);
+    case Clamp::off:
+      break;
+  }
+  return std::numeric_limits<float>::infinity();
+}
+
+/// Many-light rendering (Noel 2015, 4.4): the first connectible vertex of every eye path meets all
+/// virtual lights. Path tracing goes on from there for what they cannot give.
+template <class Visibility>
+class ManyLights final : public Integrator {
+ public:
+  template <class Settings>
+  ManyLights(const ManyLightsSettings& settings, const Settings& visibility)
+      : settings_(settings),
+        least_alpha_(static_cast<float>(settings.least_roughness * settings.least_roughness)),
+        visibility_(visibility) {}
+
+  SceneNeeds needs() const override { return {.materials = true, .emission = true}; }
+
+  std::vector<std::string> layers(std::span<const ImageLayer> wanted) override {
+    std::vector<std::string> names;
+    const auto take = [&](ImageLayer layer, int& index) {
+      if (std::find(wanted.begin(), wanted.end(), layer) == wanted.end()) return;
+      index = static_cast<int>(names.size());
+      names.emplace_back(enum_name(layer));
+    };
+    take(ImageLayer::visibility_tests, tests_layer_);
+    take(ImageLayer::negative, negative_layer_);
+    return names;
+  }
+
+  std::vector<std::pair<std::string, double>> statistics() const override {
+    auto told = visibility_.statistics();
+    told.emplace_back("virtual_lights", lights_);
+    told.emplace_back("light_pass_cpu_seconds", seconds_.light);
+    told.emplace_back("visibility_cpu_seconds", seconds_.visibility);
+    told.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
+    return told;
+  }
+
+  Counters iterate(const IterationContext& context, Image& image) override {
+    PassSeconds pass;
+    VirtualLights lights(static_cast<std::size_t>(settings_.light_paths),
+                         {settings_.max_depth - 1, by_lights(), least_alpha_});
+    Counters counters;
+    if (settings_.max_depth > (by_lights() ? 1 : 2)) counters = walk_lights(context, lights, image);
+    lights.arrange();
+    lights_ = static_cast<double>(lights.size());
+    pass.end(seconds_.light);
+    const LightTerms terms(lights, bound_of(settings_, context.scene.bounds().radius()));
+    if (lights.size() > 0) {
+      counters += visibility_.begin({context, terms, settings_.max_depth, least_alpha_});
+    }
+    pass.end(seconds_.visibility);
+    const Tiling tiling(image, batch_side);
+    counters += for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
+      Part part{EyeBatch(settings_.max_depth)};
+      part.batch.walkers.clear();
+      start_paths(context, image, tiling.tile(i), 0, part.batch);
+      count.samples += part.batch.walkers.size();
+      trace(context, terms, part, count);
+      shine(context, terms, part, count);
+      add(context, terms, part, image, count);
+    });
+    pass.end(seconds_.eye);
+    return counters;
+  }
+
+ private:
+  static constexpr int batch_side = 8;  // pixels
+  static_assert(batch_side * batch_side == EyeBatch::size);
+
+  struct Direct {
+    Rgb value;
+    std::size_t walker;
+  };
+  /// A few pixels.
+  struct Part {
+    EyeBatch batch;
+    std::array<std::uint32_t, EyeBatch::size> chosen = {};  // emitters of next event estimation
+    std::array<int, EyeBatch::size> shaded = {};  // edges to the shading point; 0: none yet
+    std::array<LightSum, EyeBatch::size> sums = {};
+    ShadowQueue<Direct> shadows = {};
+  };
+
+  Counters walk_lights(const IterationContext& context, VirtualLights& lights, Image& image) const {
+    if (context.scene.emitters().empty()) return {};
+    const LightPathSetting setting{context.scene, context.camera, settings_.max_depth - 1,
+                                   settings_.roulette_depth, SampleCounts{.hit = 0}};
+    return light_pass(
+        context, setting, guide_, settings_.light_paths, image,
+        [&](std::size_t path, const LightBatch<BsdfGuide>& batch, std::size_t place) {
+          lights.keep(path, batch, place);
+        },
+        [](const Splat&) {});
+  }
+
+  /// Eye paths: what they meet, direct light, and what the lights leave to path tracing.
+  void trace(const IterationContext& context, const LightTerms& terms, Part& part,
+             Counters& counters) const {
+    const DirectLight<BsdfGuide> direct(context.scene, guide_, true);
+    Walk<BsdfGuide> walk(
+        context.scene, guide_,
+        {.max_depth = settings_.max_depth, .roulette_depth = settings_.roulette_depth}, counters);
+    const auto choose = [&](std::size_t i, int depth) {
+      if (direct.draws() && depth < settings_.max_depth) {
+        part.chosen[i] = context.scene.emitters().choose(part.batch.walkers[i].rng);
+      }
+    };
+    walk.lead(part.batch.walkers, choose, [&](std::size_t i, int depth) {
+      return visit(context.scene, terms, direct, part, i, depth);
+    });
+    part.shadows.flush(context.scene.rays(), counters,
+                       [&](const Direct& d) { part.batch.radiance[d.walker] += d.value; });
+  }
+
+  /// One vertex of an eye path; false where the path ends.
+  bool visit(const Scene& scene, const LightTerms& terms, const DirectLight<BsdfGuide>& direct,
+             Part& part, std::size_t i, int depth) const {
+    Vertex& v = part.batch.vertex(i, depth);
+    const bool first = part.shaded[i] == 0;
+    const Vertex& before = part.batch.vertex(i, depth - 1);
+    // The edge is one that lights stand for too, but for what the bound cuts off.
+    const bool shared = !first && depth == part.shaded[i] + 1 && !before.delta;
+    if (shared && by_lights()) {
+      part.batch.radiance[i] += emitted(scene, v) * missing(terms, before, v);
+    } else {
+      part.batch.radiance[i] += direct.met(v, depth);
+    }
+    if (v.kind != Vertex::Kind::surface || depth == settings_.max_depth) return false;
+    const bool lit_by_lights = v.bsdf->broad(least_alpha_);
+    if (!first && !settings_.compensation) return false;
+    if (first && lit_by_lights) {
+      part.shaded[i] = depth;
+    } else if (shared && lit_by_lights) {
+      const float weight = missing(terms, before, v);
+      if (weight == 0) return false;
+      v.throughput *= weight;
+      part.batch.walkers[i].throughput *= weight;
+    }
+    if (v.bsdf->connectible() && direct.draws() && !(first && lit_by_lights && by_lights())) {
+      direct.draw(v, depth, part.chosen[i], part.batch.walkers[i].rng,
+                  [&](const Ray& ray, const Rgb& value) {
+                    part.shadows.add(ray, {value, i});
+                  });
+    }
+    return settings_.compensation || !by_lights() || !lit_by_lights;
+  }
+
+  bool by_lights() const { return settings_.direct == DirectLighting::lights; }
+
+  /// What the bound of the geometric term cuts off of the light from `to`, as a share.
+  static float missing(const LightTerms& terms, const Vertex& at, const Vertex& to) {
+    if (to.kind == Vertex::Kind::background) return 0;
+    return 1 - terms.share(at, to, to.wp);
+  }
+  static Rgb emitted(const Scene& scene, const Vertex& v) {
+    const std::optional<EmitterPoint> e = emitter_at(scene, v);
+    return e ? v.throughput * e->emission : Rgb(0, 0, 0);
+  }
+
+  /// What the lights give to the part's shading points.
+  void shine(const IterationContext& context, const LightTerms& terms, Part& part,
+             Counters& counters) const {
+    std::vector<ShadingPoint> points;
+    std::vector<std::size_t> walkers;
+    for (std::size_t i = 0; i < part.batch.walkers.size(); ++i) {
+      const int depth = part.shaded[i];
+      if (depth == 0 || depth >= settings_.max_depth) continue;
+      points.emplace_back(part.batch.vertex(i, depth), depth, settings_.max_depth - 1 - depth,
+                          part.batch.pixels[i]);
+      walkers.push_back(i);
+    }
+    std::vector<LightSum> sums(points.size());
+    LightGather<Visibility>(context, terms, visibility_, counters).gather(points, sums);
+    for (std::size_t k = 0; k < sums.size(); ++k) part.sums[walkers[k]] = sums[k];
+  }
+
+  void add(const IterationContext& context, const LightTerms& terms, const Part& part, Image& image,
+           Counters& counters) const {
+    const double lights = static_cast<double>(std::max<std::size_t>(1, terms.lights().size()));
+    for (std::size_t i = 0; i < part.batch.walkers.size(); ++i) {
+      const std::uint32_t pixel = part.batch.pixels[i];
+      Rgb value(V3d(part.batch.radiance[i]) + part.sums[i].value);
+      const bool negative = value.x < 0 || value.y < 0 || value.z < 0;
+      if (visibility_.clamps_negative()) {
+        value = {std::max(0.0F, value.x), std::max(0.0F, value.y), std::max(0.0F, value.z)};
+      }
+      accumulate(image.pixels[pixel], value, counters);
+      if (tests_layer_ >= 0) {
+        const double share = static_cast<double>(part.sums[i].tests) / lights;
+        layer(context, tests_layer_).pixels[pixel] += Rgb(static_cast<float>(share));
+      }
+      if (negative_layer_ >= 0 && negative) {
+        layer(context, negative_layer_).pixels[pixel] += Rgb(1);
+      }
+    }
+  }
+  static Image& layer(const IterationContext& context, int index) {
+    return context.layers[static_cast<std::size_t>(index)];
+  }
+
+  BsdfGuide guide_;
+  ManyLightsSettings settings_;
+  float least_alpha_;
+  Visibility visibility_;
+  int tests_layer_ = -1, negative_layer_ = -1;
+  double lights_ = 0;
+  struct {
+    double light = 0, visibility = 0, eye = 0;
+  } seconds_;
+};
+
+struct MakeManyLights {
+  const ManyLightsSettings& settings;
+
+  std::unique_ptr<Integrator> operator()(const ExactVisibilitySettings& s) const {
+    return std::make_unique<ManyLights<ExactVisibility>>(settings, s);
+  }
+  std::unique_ptr<Integrator> operator()(const NoVisibilitySettings& s) const {
+    return std::make_unique<ManyLights<NoVisibility>>(settings, s);
+  }
+  std::unique_ptr<Integrator> operator()(const RouletteVisibilitySettings& s) const {
+    return std::make_unique<ManyLights<RouletteVisibility>>(settings, s);
+  }
+  std::unique_ptr<Integrator> operator()(const ProbabilisticVisibilitySettings& s) const {
+    return std::make_unique<ManyLights<ProbabilisticVisibility>>(settings, s);
+  }
+  std::unique_ptr<Integrator> operator()(const InterpolatedVisibilitySettings& s) const {
+    return std::make_unique<ManyLights<InterpolatedVisibility>>(settings, s);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_many_lights(const ManyLightsSettings& settings) {
+  return std::visit(MakeManyLights{settings}, settings.visibility);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,9 @@
+#pragma once
+
+#include "renderer/integrators/integrator.h"
+
+namespace lacuna {
+
+std::unique_ptr<Integrator> make_many_lights(const ManyLightsSettings& settings);
+
+}  // namespace lacuna

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "renderer/materials/bsdf.h"
+#include "renderer/materials/layer_means.h"
+
+namespace lacuna {
+
+/// An opaque BSDF as seen from one direction, evaluated for eight directions of light at once.
+class BsdfSeen {
+ public:
+  /// `bsdf` must not transmit.
+  BsdfSeen(const Bsdf& bsdf, const V3f& wo);
+
+  /// Bsdf::eval(wo, w, Transport::radiance) of unit `w`, times `factor`.
+  Float8x3 eval(const Float8x3& w) const {
+    const Float8 cos_i = w.x * n_.x + w.y * n_.y + w.z * n_.z;
+    const Float8 side = w.x * side_.x + w.y * side_.y + w.z * side_.z;
+    const Mask8 seen = side > 0 && cos_i > 0;
+    if (layered_) {
+      const Float8x3 f = keep_where(seen, layered(w, cos_i));
+      return {f.x * factor.x, f.y * factor.y, f.z * factor.z};
+    }
+    const Float8 cosine = keep_where(seen, cos_i);
+    const Rgb f = diffuse_ * factor;
+    return {f.x * cosine, f.y * cosine, f.z * cosine};
+  }
+  Rgb factor{1, 1, 1};
+
+ private:
+  Float8x3 layered(const Float8x3& w, Float8 cos_i) const;
+  Float8x3 facets(const Float8x3& w, Float8 cos_i) const;
+
+  V3f wo_, side_, n_;
+  float cos_o_;
+  Rgb diffuse_;   // over pi
+  bool layered_;  // facets lie over the base, or there are facets alone
+  Layer layer_;
+  float through_o_ = 1;  // of the layer
+  LayerMeans means_;
+  Interface interface_;
+};
+
+}  // namespace lacuna

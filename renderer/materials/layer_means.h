@@ -1,0 +1,23 @@
+#pragma once
+
+#include <array>
+
+#include "renderer/core/float8.h"
+#include "renderer/materials/layer.h"
+
+namespace lacuna {
+
+/// Layer::mean_weight() of one layer, for eight cosines at once.
+class LayerMeans {
+ public:
+  static constexpr int columns = 33;  ///< equidistant over the root of the cosine
+
+  explicit LayerMeans(const Layer& layer);
+  Float8 at(Float8 cos) const;
+
+ private:
+  bool smooth_;
+  std::array<float, columns> v_{};
+};
+
+}  // namespace lacuna

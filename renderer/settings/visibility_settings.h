@@ -1,0 +1,164 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <variant>
+
+#include "analysis/settings/field.h"
+
+namespace lacuna {
+
+/// visibility: exact.
+struct ExactVisibilitySettings {
+  static constexpr std::string_view name = "exact";
+  static constexpr std::string_view doc = "every light that could add something is tested by a ray";
+  bool operator==(const ExactVisibilitySettings&) const = default;
+};
+template <class V>
+void describe(V&, ExactVisibilitySettings&) {}
+
+/// visibility: none.
+struct NoVisibilitySettings {
+  static constexpr std::string_view name = "none";
+  static constexpr std::string_view doc =
+      "nothing is tested and all lights shine through everything (biased)";
+  static constexpr bool biased = true;
+  bool operator==(const NoVisibilitySettings&) const = default;
+};
+template <class V>
+void describe(V&, NoVisibilitySettings&) {}
+
+/// Of what the variance decides how often lights are tested.
+enum class VarianceOf { picture, point };
+
+template <>
+struct EnumTable<VarianceOf> {
+  static constexpr std::array<EnumValue<VarianceOf>, 2> values{{
+      {VarianceOf::picture, "picture",
+       "contributions anywhere in the picture: what counts is a pixel's share of its error"},
+      {VarianceOf::point, "point",
+       "contributions at the nearest cache points (Nabata et al., eq. 8); where they see no light, "
+       "every light is tested"},
+  }};
+};
+
+/// What all choices that test by chance have in common.
+struct ChanceSettings {
+  int cache_points = 2000;
+  int neighbours = 3;
+  double epsilon_probability = 0.1;
+  double term_cost = 0.03;
+  VarianceOf variance = VarianceOf::picture;
+  bool operator==(const ChanceSettings&) const = default;
+};
+
+template <class V, class S>
+void describe_cache(V& v, S& s, std::string_view what) {
+  v("cache_points", s.cache_points, {.doc = what, .min = 1, .max = 1 << 20});
+  v("neighbours", s.neighbours,
+    {.doc = "nearest cache points that a shading point takes its values from, by distance and "
+            "normal",
+     .min = 1,
+     .max = 8});
+}
+
+template <class V>
+void describe_chance(V& v, ChanceSettings& s) {
+  v("epsilon_probability", s.epsilon_probability,
+    {.doc = "least probability of a test (Nabata et al., eq. 12)",
+     .min = 0,
+     .max = 1,
+     .above_min = true});
+  v("term_cost", s.term_cost,
+    {.doc = "time of a light's contribution without its test, as a share of the time of the test; "
+            "0: only rays count (eq. 13)",
+     .min = 0,
+     .max = 1e6});
+  v("variance", s.variance, {.doc = "of what sigma^2 is the variance (eq. 8)"});
+}
+
+/// How a contribution's probability of a test follows from it.
+enum class RouletteRule { veach, derived };
+
+template <>
+struct EnumTable<RouletteRule> {
+  static constexpr std::array<EnumValue<RouletteRule>, 2> values{{
+      {RouletteRule::veach, "veach",
+       "in proportion, 1 from the threshold sigma / sqrt(n) on (Veach 1997, 10.4.1)"},
+      {RouletteRule::derived, "derived",
+       "where variance times time is least, as of probabilistic visibility"},
+  }};
+};
+
+/// visibility: roulette.
+struct RouletteVisibilitySettings : ChanceSettings {
+  static constexpr std::string_view name = "roulette";
+  static constexpr std::string_view doc =
+      "small contributions are tested seldom and then count for more: efficiency-optimised Russian "
+      "roulette (Veach 1997, 10.4.1)";
+
+  RouletteRule rule = RouletteRule::veach;
+  RouletteVisibilitySettings() { cache_points = 200, epsilon_probability = 0.001; }
+  bool operator==(const RouletteVisibilitySettings&) const = default;
+};
+template <class V>
+void describe(V& v, RouletteVisibilitySettings& s) {
+  describe_cache(v, s, "shading points at which the contributions' variance is measured");
+  describe_chance(v, s);
+  v("rule", s.rule, {.doc = "how the probability of a test follows from a contribution"});
+}
+
+/// visibility: probabilistic.
+struct ProbabilisticVisibilitySettings : ChanceSettings {
+  static constexpr std::string_view name = "probabilistic";
+  static constexpr std::string_view doc =
+      "lights are tested seldom where what nearby cache points see makes the answer likely, and "
+      "the estimate is corrected by those that are (Nabata et al.)";
+
+  double epsilon_variance = 0.1;
+  bool clamp_negative = false;
+  bool operator==(const ProbabilisticVisibilitySettings&) const = default;
+};
+
+inline constexpr std::string_view cache_points_doc =
+    "shading points at which every light's visibility is known: one for each part of the picture's "
+    "points, split by position and normal";
+
+template <class V>
+void describe(V& v, ProbabilisticVisibilitySettings& s) {
+  describe_cache(v, s, cache_points_doc);
+  describe_chance(v, s);
+  v("epsilon_variance", s.epsilon_variance,
+    {.doc = "least variance that a visibility is taken to have, also where all cache points agree "
+            "(eq. 11)",
+     .min = 0,
+     .max = 0.25,
+     .above_min = true});
+  v("clamp_negative", s.clamp_negative,
+    {.doc =
+         "an iteration's pixels below zero become black, as in the paper (section 4.2): biased"});
+}
+
+/// visibility: interpolated.
+struct InterpolatedVisibilitySettings {
+  static constexpr std::string_view name = "interpolated";
+  static constexpr std::string_view doc =
+      "nothing is tested: visibility is what nearby cache points see (biased; Nabata et al., Fig. "
+      "6)";
+  static constexpr bool biased = true;
+
+  int cache_points = ChanceSettings{}.cache_points;
+  int neighbours = ChanceSettings{}.neighbours;
+  bool operator==(const InterpolatedVisibilitySettings&) const = default;
+};
+template <class V>
+void describe(V& v, InterpolatedVisibilitySettings& s) {
+  describe_cache(v, s, cache_points_doc);
+}
+
+/// Whether a virtual light and a shading point see one another.
+using VisibilitySettings =
+    std::variant<ExactVisibilitySettings, NoVisibilitySettings, RouletteVisibilitySettings,
+                 ProbabilisticVisibilitySettings, InterpolatedVisibilitySettings>;
+
+}  // namespace lacuna

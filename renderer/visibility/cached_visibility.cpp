@@ -1,0 +1,42 @@
+#include "renderer/visibility/cached_visibility.h"
+
+namespace lacuna {
+
+Counters ProbabilisticVisibility::begin(const LightPass& pass) {
+  other_rays_ = eye_rays_per_light(pass.terms.lights());
+  return points_.build(pass);
+}
+
+ProbabilisticVisibility::At ProbabilisticVisibility::at(const ShadingPoint& point,
+                                                        const IterationContext& context) const {
+  const CachePoints::Near near = points_.near(point);
+  return {
+      near,
+      {.k = other_rays_ + static_cast<float>(settings_.term_cost),
+       .c = 1,
+       .least = static_cast<float>(settings_.epsilon_probability),
+       .over_sigma = 1 / (settings_.variance == VarianceOf::point ? points_.deviation(point, near)
+                                                                  : points_.deviation())},
+      {context.seed, context.iteration, point.pixel, Rng::Purpose::visibility}};
+}
+
+void ProbabilisticVisibility::decide(At& at, std::size_t block, const Terms& terms,
+                                     Decision& d) const {
+  points_.expected(at.near, block, d.untested);  // q
+  const auto least = static_cast<float>(settings_.epsilon_variance);
+  const TestChance chance = at.chance;
+  Keys keys;
+  for (int k = 0; k < Lanes::groups; ++k) {
+    const Float8 q = d.untested.eight(k);
+    const Float8 t = terms.luminance.eight(k);
+    keys.set(k, chance.of(t, max(least, q * (1 - q))), t);
+  }
+  d.tests = keys.draw(at.rng.next_u32());
+  for_each_bit(d.tests, [&](int i) {
+    const float x = keys.probability(i);
+    d.untested[i] *= (x - 1) / x;
+    d.gain[i] = 1 / x;
+  });
+}
+
+}  // namespace lacuna

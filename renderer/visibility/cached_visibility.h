@@ -1,0 +1,56 @@
+#pragma once
+
+#include "renderer/visibility/cache_points.h"
+#include "renderer/visibility/test_chance.h"
+
+namespace lacuna {
+
+/// visibility: probabilistic. A light whose visibility the nearest cache points agree on is seldom
+/// tested: with probability p its visibility is taken to be q, their mean, and else (v - p q) / (1
+/// - p), which has the mean v whatever q and p are (Nabata et al., eq. 6).
+class ProbabilisticVisibility {
+ public:
+  explicit ProbabilisticVisibility(const ProbabilisticVisibilitySettings& settings)
+      : settings_(settings),
+        points_(settings.cache_points, settings.neighbours, CachePoints::Keep::visibilities) {}
+
+  Counters begin(const LightPass& pass);
+  struct At {
+    CachePoints::Near near;
+    TestChance chance;
+    Rng rng;
+  };
+  At at(const ShadingPoint& point, const IterationContext& context) const;
+  void decide(At& at, std::size_t block, const Terms& terms, Decision& d) const;
+  bool clamps_negative() const { return settings_.clamp_negative; }
+  std::vector<std::pair<std::string, double>> statistics() const { return points_.statistics(); }
+
+ private:
+  ProbabilisticVisibilitySettings settings_;
+  CachePoints points_;
+  float other_rays_ = 0;
+};
+
+/// visibility: interpolated. q alone.
+class InterpolatedVisibility {
+ public:
+  explicit InterpolatedVisibility(const InterpolatedVisibilitySettings& settings)
+      : points_(settings.cache_points, settings.neighbours, CachePoints::Keep::visibilities) {}
+
+  Counters begin(const LightPass& pass) { return points_.build(pass); }
+  struct At {
+    CachePoints::Near near;
+  };
+  At at(const ShadingPoint& point, const IterationContext&) const { return {points_.near(point)}; }
+  void decide(At& at, std::size_t block, const Terms&, Decision& d) const {
+    d.tests = 0;
+    points_.expected(at.near, block, d.untested);
+  }
+  static bool clamps_negative() { return false; }
+  std::vector<std::pair<std::string, double>> statistics() const { return points_.statistics(); }
+
+ private:
+  CachePoints points_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,105 @@
+#pragma once
+
+#include "renderer/integrators/integrator.h"
+#include "renderer/path/shadow_queue.h"
+#include "renderer/visibility/decision.h"
+#include "renderer/visibility/light_terms.h"
+
+namespace lacuna {
+
+/// What virtual lights give to a shading point.
+struct LightSum {
+  V3d value{0, 0, 0};
+  std::uint64_t tests = 0;  ///< lights that a ray was sent to
+};
+
+/// Adds up what all virtual lights give to the shading points of a few pixels: lights outside,
+/// points inside, so that a block of lights is read from memory once for all of them.
+template <class Visibility>
+class LightGather {
+ public:
+  LightGather(const IterationContext& context, const LightTerms& terms,
+              const Visibility& visibility, Counters& counters)
+      : context_(context), terms_(terms), visibility_(visibility), counters_(counters) {}
+
+  /// `sums[i]` becomes that of `points[i]`. Throws IterationStopped if the context asks for it.
+  void gather(std::span<const ShadingPoint> points, std::span<LightSum> sums) {
+    std::vector<typename Visibility::At> states;
+    states.reserve(points.size());
+    std::vector<std::size_t> ends;
+    std::size_t blocks = 0;
+    for (const ShadingPoint& p : points) {
+      states.push_back(visibility_.at(p, context_));
+      ends.push_back(terms_.lights().blocks(p.edges));
+      blocks = std::max(blocks, ends.back());
+    }
+    for (std::size_t b = 0; b < blocks; ++b) {
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        if (b < ends[i]) add(points[i], states[i], b, i, sums[i]);
+      }
+      queue_tests();
+      if (waiting_ >= most_waiting) flush(sums);
+      if ((b + 1) % blocks_between_stops == 0 && context_.stop()) throw IterationStopped{};
+    }
+    flush(sums);
+  }
+
+ private:
+  /// What a light gives if it is seen.
+  struct Lit {
+    Rgb value;
+    std::uint32_t point;
+  };
+  struct Test {
+    Ray ray;
+    Lit lit;
+  };
+  static constexpr std::size_t most_waiting = 2048;  // rays; they fit the second-level cache
+  static constexpr std::size_t blocks_between_stops = 64;
+
+  void add(const ShadingPoint& at, typename Visibility::At& state, std::size_t block,
+           std::size_t point, LightSum& sum) {
+    terms_.evaluate(at, block, term_);
+    counters_.rejected += static_cast<std::uint64_t>(__builtin_popcountll(term_.rejected));
+    if (term_.lit == 0) return;
+    visibility_.decide(state, block, term_, decision_);
+    sum.value += V3d(double(sum_of_products(term_.r, decision_.untested)),
+                     double(sum_of_products(term_.g, decision_.untested)),
+                     double(sum_of_products(term_.b, decision_.untested)));
+    for_each_bit(decision_.tests, [&](int i) {
+      tests_[static_cast<std::size_t>(i)].push_back(
+          {terms_.ray(at, block, i),
+           {Rgb(term_.r[i], term_.g[i], term_.b[i]) * decision_.gain[i],
+            static_cast<std::uint32_t>(point)}});
+    });
+    const auto tests = static_cast<std::size_t>(__builtin_popcountll(decision_.tests));
+    sum.tests += tests;
+    waiting_ += tests;
+  }
+
+  /// Rays from one light to neighbouring points run together; they are traced side by side.
+  void queue_tests() {
+    for (auto& of_light : tests_) {
+      for (const Test& t : of_light) queue_.add(t.ray, t.lit);
+      of_light.clear();
+    }
+  }
+
+  void flush(std::span<LightSum> sums) {
+    queue_.flush(context_.scene.rays(), counters_,
+                 [&](const Lit& l) { sums[l.point].value += V3d(l.value); });
+    waiting_ = 0;
+  }
+
+  const IterationContext& context_;
+  const LightTerms& terms_;
+  const Visibility& visibility_;
+  Counters& counters_;
+  std::array<std::vector<Test>, Lanes::size> tests_;  // of each light of the block
+  ShadowQueue<Lit> queue_;
+  std::size_t waiting_ = 0;
+  Terms term_;
+  Decision decision_;
+};
+
+}  // namespace lacuna

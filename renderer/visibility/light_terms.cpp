@@ -1,0 +1,94 @@
+#include "renderer/visibility/light_terms.h"
+
+#include <limits>
+
+namespace lacuna {
+
+void LightTerms::evaluate(const ShadingPoint& at, std::size_t block, Terms& out) const {
+  if (const DiffuseBlock* diffuse = lights_.diffuse(block)) {
+    if (dark(at, lights_.bounds(block))) {
+      out.lit = out.rejected = 0;
+      return;
+    }
+    diffuse_terms(at, *diffuse, out);
+  } else {
+    const int count = lights_.count(block);
+    for (int i = 0; i < Lanes::size; ++i) {
+      const Rgb t = i < count ? general(at, lights_.general(block, i)) : Rgb(0, 0, 0);
+      out.r[i] = t.x, out.g[i] = t.y, out.b[i] = t.z;
+    }
+  }
+  finish(out);
+}
+
+bool LightTerms::dark(const ShadingPoint& at, const BlockBounds& bounds) {
+  const Surface& s = at.vertex->surface;
+  if (bounds.turned_from(s.x)) return true;
+  return bounds.behind(s.x, dot(at.vertex->wp, s.ng) < 0 ? -s.ng : s.ng);
+}
+
+void LightTerms::diffuse_terms(const ShadingPoint& at, const DiffuseBlock& from, Terms& out) const {
+  const V3f x = at.vertex->surface.x;
+  const V3f ng = at.vertex->surface.ng;
+  for (int k = 0; k < Lanes::groups; ++k) {
+    const Float8x3 d{from.x.eight(k) - x.x, from.y.eight(k) - x.y, from.z.eight(k) - x.z};
+    const Float8 inv = 1 / sqrt(length2(d));
+    const Float8x3 w = d * inv;
+    const Float8 cos_g = -dot(w, {from.gx.eight(k), from.gy.eight(k), from.gz.eight(k)});
+    const Float8 cos_s = -dot(w, {from.sx.eight(k), from.sy.eight(k), from.sz.eight(k)});
+    const Float8 over_d2 = cos_g * inv * inv;
+    Float8 t = over_d2 * select(cos_s > 0, from.turned.eight(k), 1);
+    const Float8 geometric = abs(w.x * ng.x + w.y * ng.y + w.z * ng.z) * over_d2;
+    const Mask8 above = geometric > bound_;
+    if (any_of(above)) t = select(above, t * bound_ / geometric, t);  // bounded_share()
+    // At the light itself nothing of this is a number, and no comparison holds.
+    t = keep_where(over_d2 > 0, t);
+    const Float8x3 f = at.seen.eval(w);
+    out.r.set(k, f.x * from.r.eight(k) * t);
+    out.g.set(k, f.y * from.g.eight(k) * t);
+    out.b.set(k, f.z * from.b.eight(k) * t);
+  }
+}
+
+Rgb LightTerms::general(const ShadingPoint& at, const GeneralLight& light) const {
+  const SurfaceEnd<BsdfGuide> eye{*at.vertex, at.depth, Transport::radiance, guide_};
+  return light.with_end(guide_, [&](const auto& end) -> Rgb {
+    const Connection c = connect(eye, end);
+    if (!c) return Rgb(0, 0, 0);
+    const Rgb t = c.contribution * lights_.share();
+    // What no path can hit, nothing could add again.
+    if (c.infinite || light.delta()) return t;
+    const double g = eye.area_factor(c.w) * end.area_factor(c.w) / double(c.distance2);
+    return t * bounded_share(static_cast<float>(g), bound_);
+  });
+}
+
+void LightTerms::finish(Terms& out) {
+  for (int k = 0; k < Lanes::groups; ++k) {
+    out.luminance.set(k, lacuna::luminance(out.r.eight(k), out.g.eight(k), out.b.eight(k)));
+  }
+  out.rejected = 0;
+  out.lit = positive(out.luminance);
+  // Infinity and what is no number stay so in the sum, which is almost always finite.
+  if (sum(out.luminance) <= std::numeric_limits<float>::max()) return;
+  for (int i = 0; i < Lanes::size; ++i) {
+    if (is_finite(V3f(out.r[i], out.g[i], out.b[i]))) continue;
+    out.r[i] = out.g[i] = out.b[i] = out.luminance[i] = 0;
+    out.rejected |= std::uint64_t{1} << i;
+  }
+  out.lit &= ~out.rejected;
+}
+
+Ray LightTerms::ray(const ShadingPoint& at, std::size_t block, int i) const {
+  const SurfaceEnd<BsdfGuide> eye{*at.vertex, at.depth, Transport::radiance, guide_};
+  if (const DiffuseBlock* from = lights_.diffuse(block)) {
+    const V3f x(from->x[i], from->y[i], from->z[i]);
+    const V3f g(from->gx[i], from->gy[i], from->gz[i]);
+    const V3f start = eye.origin(x - eye.x());
+    return {start, offset_origin(x, g, from->extent[i], g) - start, 1.0F};
+  }
+  return lights_.general(block, i).with_end(
+      guide_, [&](const auto& end) { return shadow_ray(eye, end, edge_between(eye, end)); });
+}
+
+}  // namespace lacuna

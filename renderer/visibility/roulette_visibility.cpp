@@ -1,0 +1,35 @@
+#include "renderer/visibility/roulette_visibility.h"
+
+namespace lacuna {
+
+Counters RouletteVisibility::begin(const LightPass& pass) {
+  other_rays_ = eye_rays_per_light(pass.terms.lights());
+  return points_.build(pass);
+}
+
+RouletteVisibility::At RouletteVisibility::at(const ShadingPoint& point,
+                                              const IterationContext& context) const {
+  const bool derived = settings_.rule == RouletteRule::derived;
+  const float besides = other_rays_ + static_cast<float>(settings_.term_cost);
+  return {{.k = derived ? besides : besides + 1,
+           .c = derived ? 1.0F : 0.0F,
+           .least = static_cast<float>(settings_.epsilon_probability),
+           .over_sigma = 1 / (settings_.variance == VarianceOf::point
+                                  ? points_.deviation(point, points_.near(point))
+                                  : points_.deviation())},
+          {context.seed, context.iteration, point.pixel, Rng::Purpose::visibility}};
+}
+
+void RouletteVisibility::decide(At& at, std::size_t, const Terms& terms, Decision& d) {
+  const TestChance chance = at.chance;
+  Keys keys;
+  for (int k = 0; k < Lanes::groups; ++k) {
+    const Float8 t = terms.luminance.eight(k);
+    keys.set(k, chance.of(t, 1), t);
+  }
+  d.tests = keys.draw(at.rng.next_u32());
+  d.untested.v.fill(0);
+  for_each_bit(d.tests, [&](int i) { d.gain[i] = 1 / keys.probability(i); });
+}
+
+}  // namespace lacuna

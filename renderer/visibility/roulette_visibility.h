@@ -1,0 +1,32 @@
+#pragma once
+
+#include "renderer/visibility/cache_points.h"
+#include "renderer/visibility/test_chance.h"
+
+namespace lacuna {
+
+/// visibility: roulette. What is not tested counts as unseen, what is tested for as much more. The
+/// variance of contributions is measured at a few shading points.
+class RouletteVisibility {
+ public:
+  explicit RouletteVisibility(const RouletteVisibilitySettings& settings)
+      : settings_(settings),
+        points_(settings.cache_points, settings.neighbours, CachePoints::Keep::variances) {}
+
+  Counters begin(const LightPass& pass);
+  struct At {
+    TestChance chance;
+    Rng rng;
+  };
+  At at(const ShadingPoint& point, const IterationContext& context) const;
+  static void decide(At& at, std::size_t block, const Terms& terms, Decision& d);
+  static bool clamps_negative() { return false; }
+  std::vector<std::pair<std::string, double>> statistics() const { return points_.statistics(); }
+
+ private:
+  RouletteVisibilitySettings settings_;
+  CachePoints points_;
+  float other_rays_ = 0;  // eye rays of a light
+};
+
+}  // namespace lacuna

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "renderer/path/light_batch.h"
+#include "renderer/visibility/block_bounds.h"
+#include "renderer/visibility/lanes.h"
+
+namespace lacuna {
+
+/// Lambertian surfaces that a light path met, and one-sided emitters: sixty-four lights side by
+/// side. What is missing of the sixty-four is black. Towards unit `w` with w.g > 0 each sends
+/// radiant intensity rgb (w.g) (w.s > 0 ? turned : 1).
+struct DiffuseBlock {
+  Lanes x, y, z;     ///< position
+  Lanes gx, gy, gz;  ///< unit geometric normal, on the side that shines
+  Lanes sx, sy, sz;  ///< unit shading normal on that side
+  Lanes turned;      ///< LambertLit::turned
+  Lanes r, g, b;
+  Lanes extent;  ///< of the triangle, see TriangleShape
+};
+
+/// A light of any other kind: a light path's vertex or the point on an emitter where it starts.
+struct GeneralLight {
+  std::variant<Vertex, EmitterPoint> at;
+  int index;  ///< of the vertex on its path
+
+  /// No path can hit it.
+  bool delta() const {
+    const auto* e = std::get_if<EmitterPoint>(&at);
+    return e != nullptr && e->delta();
+  }
+  /// Calls `use(end)` with the end of a connecting edge (ends.h).
+  template <class Guide, class Use>
+  decltype(auto) with_end(const Guide& guide, Use&& use) const {
+    if (const auto* e = std::get_if<EmitterPoint>(&at)) return use(EmitterEnd{*e});
+    return use(SurfaceEnd<Guide>{std::get<Vertex>(at), index, Transport::importance, guide});
+  }
+};
+
+/// The virtual point lights of an iteration, in blocks of sixty-four; those of a block lie near one
+/// another. The contribution of a light already holds 1 / the number of light paths.
+class VirtualLights {
+ public:
+  /// Which vertices of light paths are lights.
+  struct Choice {
+    int longest;        ///< of vertices 0 to `longest` - 1
+    bool emitters;      ///< vertex 0 too, the point on an emitter
+    float least_alpha;  ///< of the surfaces: Bsdf::broad()
+  };
+  VirtualLights(std::size_t paths, const Choice& choice)
+      : choice_(choice), share_(1.0F / float(paths)), kept_(paths) {}
+
+  /// Keeps the path in place `i` of `batch` as path number `path`. Different paths may be kept by
+  /// several threads at once.
+  template <class Guide>
+  void keep(std::size_t path, const LightBatch<Guide>& batch, std::size_t i) {
+    const int length = std::min(batch.length(i), choice_.longest);
+    if (length > 0 && choice_.emitters) add(kept_[path], batch.emitter(i));
+    for (int index = 1; index < length; ++index) {
+      const Vertex& v = batch.vertex(i, index);
+      if (v.bsdf->broad(choice_.least_alpha)) add(kept_[path], v, index);
+    }
+  }
+  /// To be called when all paths are kept. The order of the lights depends on the paths only.
+  void arrange();
+
+  std::size_t size() const { return size_; }
+  /// Blocks [0, blocks(edges)) hold the lights that are at most `edges` edges from their emitter.
+  std::size_t blocks(int edges) const {
+    if (edges < 0 || ends_.empty()) return 0;
+    return ends_[std::min(static_cast<std::size_t>(edges), ends_.size() - 1)];
+  }
+  std::size_t blocks() const { return blocks_.size(); }
+  /// Lights of block `b`: 64 but for a last one of its kind.
+  int count(std::size_t b) const { return blocks_[b].count; }
+  /// Of block `b`, whose lights are diffuse.
+  const BlockBounds& bounds(std::size_t b) const { return bounds_[blocks_[b].first]; }
+  /// The lights of block `b`, if they are diffuse; else null.
+  const DiffuseBlock* diffuse(std::size_t b) const {
+    return blocks_[b].diffuse ? &diffuse_[blocks_[b].first] : nullptr;
+  }
+  /// Light `i` of block `b`, which is not diffuse.
+  const GeneralLight& general(std::size_t b, int i) const {
+    return general_[blocks_[b].first + static_cast<std::size_t>(i)];
+  }
+  /// 1 / the number of light paths, which general lights do not hold.
+  float share() const { return share_; }
+
+ private:
+  struct Diffuse {
+    V3f x, ng, ns;
+    float turned;
+    Rgb rgb;
+    float extent;
+    int index;
+  };
+  struct Kept {
+    std::vector<Diffuse> diffuse;
+    std::vector<GeneralLight> general;
+  };
+  struct Block {
+    std::size_t first;  // in diffuse_ or general_
+    int count;
+    bool diffuse;
+  };
+
+  void add(Kept& path, const EmitterPoint& e) const;
+  void add(Kept& path, const Vertex& v, int index) const;
+  void arrange_diffuse(std::vector<Diffuse>& lights);
+  void arrange_general(std::vector<GeneralLight>& lights);
+
+  Choice choice_;
+  float share_;
+  std::vector<Kept> kept_;
+  std::vector<DiffuseBlock> diffuse_;
+  std::vector<BlockBounds> bounds_;  // of those
+  std::vector<GeneralLight> general_;
+  std::vector<Block> blocks_;
+  std::vector<std::size_t> ends_;  // blocks of lights up to each number of edges
+  std::size_t size_ = 0;
+};
+
+}  // namespace lacuna

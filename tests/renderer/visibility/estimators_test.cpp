@@ -1,0 +1,172 @@
+// Visibilities that test by chance have the mean of exact visibility with the same lights, whatever
+// they take the visibility to be before they test.
+
+#include "renderer/visibility/cached_visibility.h"
+#include "renderer/visibility/plain_visibility.h"
+#include "renderer/visibility/roulette_visibility.h"
+#include "tests/renderer/visibility/lit_scene.h"
+#include "tests/statistics.h"
+
+namespace lacuna {
+namespace {
+
+using statistics::Moments;
+using test::LitScene;
+
+/// What the lights give to each point, red.
+template <class Visibility>
+std::vector<double> gathered(const LitScene& lit, const IterationContext& context,
+                             const Visibility& visibility, std::span<const ShadingPoint> points,
+                             std::uint64_t* tests = nullptr) {
+  Counters counters;
+  std::vector<LightSum> sums(points.size());
+  LightGather<Visibility>(context, lit.terms(), visibility, counters).gather(points, sums);
+  std::vector<double> values;
+  for (const LightSum& s : sums) {
+    values.push_back(s.value.x);
+    if (tests != nullptr) *tests += s.tests;
+  }
+  EXPECT_EQ(counters.rejected, 0U);
+  return values;
+}
+
+/// `visibility` has the mean of exact visibility at every point, and sends fewer rays.
+template <class Visibility>
+void expect_mean_of_exact(const LitScene& lit, const Visibility& visibility,
+                          std::span<const ShadingPoint> points, bool saves) {
+  constexpr int rounds = 400;
+  std::uint64_t all = 0;
+  const ExactVisibility exact{{}};
+  const auto expected = gathered(lit, lit.context(1), exact, points, &all);
+  std::vector<Moments> means(points.size());
+  std::uint64_t tests = 0;
+  for (int r = 0; r < rounds; ++r) {
+    const IterationContext context = lit.context(static_cast<std::uint64_t>(r) + 2);
+    const auto values = gathered(lit, context, visibility, points, &tests);
+    for (std::size_t i = 0; i < values.size(); ++i) means[i].add(values[i]);
+  }
+  const double level = statistics::sidak(1e-5, 5000);
+  const double brightest = *std::max_element(expected.begin(), expected.end());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double se = means[i].standard_error();
+    if (std::abs(means[i].mean() - expected[i]) <= 2e-5 * expected[i]) continue;
+    EXPECT_GT(statistics::t_test(means[i], expected[i]), level)
+        << "point " << i << ": " << means[i].mean() << " +- " << se << ", not " << expected[i];
+    EXPECT_LT(se, 0.05 * brightest) << "the test has no power";
+  }
+  if (saves) {
+    EXPECT_LT(double(tests), 0.7 * double(all) * rounds);
+  }
+}
+
+/// Cache points of other points than those asked for, or none: q is wrong, or unknown.
+template <class Settings, class Change>
+Settings changed(const Change& change) {
+  Settings s;
+  s.cache_points = 40;
+  change(s);
+  return s;
+}
+
+class Estimators : public testing::TestWithParam<test::PathScene> {};
+
+TEST_P(Estimators, HaveTheMeanOfExact) {
+  const LitScene lit(GetParam(), 120, 2);
+  using Probabilistic = ProbabilisticVisibilitySettings;
+  const auto same = [](auto&) {};
+  const std::vector<Probabilistic> choices{
+      changed<Probabilistic>(same),
+      changed<Probabilistic>([](auto& s) { s.cache_points = 1; }),
+      changed<Probabilistic>([](auto& s) { s.neighbours = 8, s.epsilon_variance = 0.25; }),
+      changed<Probabilistic>([](auto& s) { s.term_cost = 0, s.epsilon_probability = 0.3; }),
+      changed<Probabilistic>([](auto& s) { s.epsilon_probability = 1; }),
+      changed<Probabilistic>([](auto& s) { s.variance = VarianceOf::point; }),
+  };
+  lit.with_points(400, [&](std::span<const ShadingPoint> points) {
+    ASSERT_GT(points.size(), 5U);
+    for (const Probabilistic& s : choices) {
+      SCOPED_TRACE(testing::Message() << "points " << s.cache_points << ", neighbours "
+                                      << s.neighbours << ", epsilon " << s.epsilon_probability);
+      ProbabilisticVisibility visibility(s);
+      const IterationContext context = lit.context(1);
+      visibility.begin(lit.pass(context));
+      expect_mean_of_exact(lit, visibility, points,
+                           s == choices[0] && GetParam().name == "cornell");
+    }
+    for (const RouletteRule rule : {RouletteRule::veach, RouletteRule::derived}) {
+      RouletteVisibilitySettings s = changed<RouletteVisibilitySettings>(same);
+      s.rule = rule;
+      s.epsilon_probability = 0.05;
+      RouletteVisibility visibility(s);
+      const IterationContext context = lit.context(1);
+      visibility.begin(lit.pass(context));
+      expect_mean_of_exact(lit, visibility, points, GetParam().name == "cornell");
+    }
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Estimators,
+                         testing::Values(test::PathScene{"cornell"}, test::PathScene{"ajar"},
+                                         test::PathScene{"coated"}, test::PathScene{"open", true}),
+                         [](const auto& s) { return s.param.name; });
+
+// All cache points in another room, where none of the lights is seen as from here.
+TEST(Estimators, WithCachePointsInAnotherRoom) {
+  const LitScene lit({"ajar"}, 200, 2);
+  lit.with_points(0, [&](std::span<const ShadingPoint> points) {
+    ProbabilisticVisibility visibility(changed<ProbabilisticVisibilitySettings>(
+        [](auto& s) { s.cache_points = 3, s.neighbours = 1; }));
+    // Shading points are moved to where the lights are: the cache is not.
+    const IterationContext context = lit.context(1);
+    visibility.begin(lit.pass(context));
+    std::vector<Vertex> moved;
+    for (const ShadingPoint& p : points) moved.push_back(*p.vertex);
+    const DiffuseBlock* block = lit.lights().diffuse(0);
+    ASSERT_NE(block, nullptr);
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+      const int k = static_cast<int>(i % Lanes::size);
+      moved[i].surface.x = V3f(block->x[k], block->y[k], block->z[k]) +
+                           0.05F * V3f(block->gx[k], block->gy[k], block->gz[k]);
+    }
+    std::vector<ShadingPoint> elsewhere;
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+      elsewhere.emplace_back(moved[i], 1, 3, points[i].pixel);
+    }
+    expect_mean_of_exact(lit, visibility, elsewhere, false);
+  });
+}
+
+// A cache point's own visibility is that of exact tests.
+TEST(CachePoints, KnowWhatTheySee) {
+  const LitScene lit({"ajar"}, 200, 2);
+  CachePoints cache(1 << 20, 1, CachePoints::Keep::visibilities);  // one for each pixel
+  const IterationContext context = lit.context(1);
+  cache.build(lit.pass(context));
+  lit.with_points(200, [&](std::span<const ShadingPoint> points) {
+    for (const ShadingPoint& p : points) {
+      const CachePoints::Near near = cache.near(p);
+      ASSERT_EQ(near.n, 1);
+      EXPECT_EQ(near.weight[0], 1);
+      Terms terms;
+      Lanes q;
+      double sum = 0, sum2 = 0;
+      for (std::size_t b = 0; b < lit.lights().blocks(); ++b) {
+        lit.terms().evaluate(p, b, terms);
+        cache.expected(near, b, q);
+        for (int i = 0; i < Lanes::size; ++i) {
+          const bool seen =
+              (terms.lit >> i & 1) != 0 && !lit.scene().rays().occluded(lit.terms().ray(p, b, i));
+          EXPECT_EQ(q[i], seen ? 1 : 0);
+          const double t = seen ? double(terms.luminance[i]) : 0.0;
+          sum += t, sum2 += t * t;
+        }
+      }
+      const auto n = static_cast<double>(lit.lights().size());
+      const double deviation = std::sqrt(std::max(0.0, sum2 / n - sum / n * (sum / n)));
+      EXPECT_NEAR(double(cache.deviation(p, near)), deviation, 1e-4 * deviation + 1e-12);
+    }
+  });
+}
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "renderer/integrators/light_pass.h"
+#include "renderer/visibility/light_gather.h"
+#include "renderer/visibility/shading_points.h"
+#include "tests/renderer/path/scenes.h"
+
+namespace lacuna::test {
+
+/// A scene with the virtual lights of one iteration and the shading points of a few pixels.
+class LitScene {
+ public:
+  static constexpr int max_depth = 5;
+  static constexpr float least_alpha = 0.09F;
+
+  LitScene(const PathScene& named, int light_paths, float bound, bool with_emitters = true)
+      : data_(load(named)),
+        eye_(choose_camera(data_, "", "test")),
+        camera_(eye_, 40, 30, PixelFilter::box),
+        scene_(std::move(data_), {.materials = true, .emission = true}, environment(named), pool_),
+        lights_(static_cast<std::size_t>(light_paths), {max_depth - 1, with_emitters, least_alpha}),
+        terms_(lights_, bound) {
+    const LightPathSetting setting{scene_, camera_, max_depth - 1, max_depth,
+                                   SampleCounts{.hit = 0}};
+    Image image(40, 30);
+    light_pass(
+        context(1), setting, guide_, light_paths, image,
+        [&](std::size_t path, const LightBatch<BsdfGuide>& batch, std::size_t place) {
+          lights_.keep(path, batch, place);
+          const int length = std::min(batch.length(place), max_depth - 1);
+          for (int i = 1; i < length; ++i)
+            walked_ += batch.vertex(place, i).bsdf->broad(least_alpha);
+          if (length > 0) ++emitters_;
+        },
+        [](const Splat&) {});
+    lights_.arrange();
+  }
+
+  /// With random numbers of their own for each seed; the lights stay those of seed 1.
+  IterationContext context(std::uint64_t seed) const {
+    return {scene_, camera_, pool_, seed, 0, never_};
+  }
+  const Scene& scene() const { return scene_; }
+  const VirtualLights& lights() const { return lights_; }
+  const LightTerms& terms() const { return terms_; }
+  LightPass pass(const IterationContext& context) const {
+    return {context, terms_, max_depth, least_alpha};
+  }
+  std::size_t walked() const { return walked_; }
+  std::size_t emitters() const { return emitters_; }
+
+  /// Calls `use(points)` with the shading points of the pixels `first` and the 63 after it.
+  template <class Use>
+  void with_points(std::uint32_t first, Use&& use) const {
+    const IterationContext c = context(1);
+    Counters counters;
+    ShadingPoints finder(c, max_depth, least_alpha, counters);
+    std::vector<std::uint32_t> pixels(EyeBatch::size);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      pixels[i] = (first + static_cast<std::uint32_t>(i)) % (40 * 30);
+    }
+    std::vector<ShadingPoint> points;
+    finder.find(pixels, [&](const Vertex& v, int depth, std::uint32_t pixel) {
+      points.emplace_back(v, depth, max_depth - 1 - depth, pixel);
+    });
+    use(std::span<const ShadingPoint>(points));
+  }
+
+ private:
+  ThreadPool pool_{2};
+  std::function<bool()> never_ = [] { return false; };
+  BsdfGuide guide_;
+  SceneData data_;
+  CameraData eye_;
+  Camera camera_;
+  Scene scene_;
+  VirtualLights lights_;
+  LightTerms terms_;
+  std::atomic<std::size_t> walked_{0}, emitters_{0};
+};
+
+}  // namespace lacuna::test
