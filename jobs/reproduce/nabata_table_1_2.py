@@ -13,9 +13,9 @@ def measure(run):
         how = {"probabilistic": visibility("probabilistic", points),
                "as published": visibility("probabilistic", points, term_cost=0, variance="point"),
                "Veach": visibility("roulette", points)}
-        found = many_lights.speed_up(run, scene, how, run.full, repeats=1 if run.full else 3)
+        found = many_lights.speed_up(run, scene, how, run.full)
         for key in how:
-            e = many_lights.errors(run, f"{scene}-{key}-0", f"{scene}-exact-0")
+            e = many_lights.errors(run, f"{scene}-{key}", f"{scene}-exact")
             rows.append((scene, round(found[key]["lights"]), key, str(found[key]["seconds"]), str(found[key]["speed_up"]),
                          f"{found[key]['saved'].value:.1%}", f"{e['rmse'] / e['mean_b']:.2g}", f"{e['relmse']:.2g}"))
         rows.append((scene, round(found["exact"]["lights"]), "exact", str(found["exact"]["seconds"]), "", "", "", ""))

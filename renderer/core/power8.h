@@ -48,11 +48,4 @@ inline __m256 power8(__m256 c, float s) {
   return _mm256_and_ps(power, above);
 }
 
-/// Sum of eight numbers, in a fixed order.
-inline float sum8(__m256 x) {
-  const __m128 four = _mm_add_ps(_mm256_castps256_ps128(x), _mm256_extractf128_ps(x, 1));
-  const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
-  return _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)));
-}
-
 }  // namespace lacuna

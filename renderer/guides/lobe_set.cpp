@@ -54,7 +54,7 @@ std::array<float, LobeSet::doublings> LobeSet::pdf_of_powers(const V3f& x, const
   });
   std::array<float, doublings> densities;
   for (std::size_t k = 0; k < doublings; ++k) {
-    densities[k] = sum8(sums[k]) * static_cast<float>((1U << k) + 1) * norm;
+    densities[k] = sum(Float8(sums[k])) * static_cast<float>((1U << k) + 1) * norm;
   }
   return densities;
 }

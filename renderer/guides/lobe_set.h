@@ -7,6 +7,7 @@
 
 #include "renderer/core/alias_table.h"
 #include "renderer/core/density.h"
+#include "renderer/core/float8.h"
 #include "renderer/core/power8.h"
 #include "renderer/core/vec.h"
 
@@ -40,7 +41,7 @@ class LobeSet {
     for_each_cosine(x, w, [&](__m256 cosine, __m256 share) {
       sum = _mm256_add_ps(sum, _mm256_mul_ps(share, power8(cosine, s)));
     });
-    return Pdf<SolidAngle>(sum8(sum) * (s + 1) * norm);
+    return Pdf<SolidAngle>(lacuna::sum(Float8(sum)) * (s + 1) * norm);
   }
 
   static constexpr std::size_t doublings = 10;
