@@ -1,4 +1,4 @@
-"""Small faults in the bidirectional core, each of which the tests must notice."""
+"""Small faults in the bidirectional core and in many lights, each of which the tests must notice."""
 
 from typing import NamedTuple
 
@@ -117,9 +117,8 @@ FAULTS = [
     Fault("records' probabilities are added up", "renderer/connections/importance_cache.h",
           "return Pick{i, sum / static_cast<float>(place.n), place.drawn->table(s).owner(i)};",
           "return Pick{i, sum, place.drawn->table(s).owner(i)};"),
-    Fault("records face any way", "renderer/connections/record_tree.cpp",
-          "std::sqrt(distance2[i]) * (2 - dot(at.n, normal))",
-          "std::sqrt(distance2[i]) * (2 - 0 * dot(at.n, normal))"),
+    Fault("records face any way", "renderer/connections/record_tree.h",
+          "* (2 - dot(a.n, b.n));", "* (2 - 0 * dot(a.n, b.n));"),
     Fault("node weights without bound", "renderer/connections/node_weights.cpp",
           "std::max(d2, least_distance * least_distance)", "std::max(d2, 0 * least_distance)"),
     Fault("half of the learned counts is lost", "renderer/connections/cell_statistics.cpp",
@@ -133,4 +132,24 @@ FAULTS = [
           "return mixed(v, this_side || wo.x < 2 ? v.site : directions_->site(v.surface, wo), wi, bsdf);"),
     Fault("walks from lights are guided in the weights", "renderer/guides/mixed_guide.h",
           "if (transport == Transport::importance) return bsdf;", ""),
+    # Many lights.
+    Fault("no cosine at a virtual light", "renderer/visibility/light_terms.cpp",
+          "const Float8 over_d2 = cos_g * inv * inv;", "const Float8 over_d2 = abs(cos_g) / cos_g * inv * inv;"),
+    Fault("lights without area are clamped", "renderer/visibility/light_terms.cpp",
+          "if (c.infinite || light.delta()) return t;", "if (c.infinite) return t;"),
+    Fault("what the bound cuts off is lost", "renderer/integrators/many_lights.cpp",
+          "return 1 - terms.share(at, to, to.wp);", "return 0 * terms.share(at, to, to.wp);"),
+    Fault("tests that were made count once", "renderer/visibility/cached_visibility.cpp",
+          "d.gain[i] = 1 / x;", "d.gain[i] = 1;"),
+    Fault("lights that were tested keep their guess", "renderer/visibility/cached_visibility.cpp",
+          "d.untested[i] *= (x - 1) / x;", "d.untested[i] *= 1;"),
+    Fault("roulette's tests count once", "renderer/visibility/roulette_visibility.cpp",
+          "d.gain[i] = 1 / keys.probability(i);", "d.gain[i] = 1;"),
+    Fault("cache points mix up their blocks", "renderer/visibility/cache_points.cpp",
+          "bits_[near.index[j] * blocks_ + block];", "bits_[near.index[j] * blocks_ + (block ^ 1) % blocks_];"),
+    Fault("blocks are behind when a part is", "renderer/visibility/block_bounds.h",
+          "highest += std::max(a, b);", "highest += std::min(a, b);"),
+    Fault("a block's lights of two depths", "renderer/visibility/virtual_lights.h",
+          "return ends_[std::min(static_cast<std::size_t>(edges), ends_.size() - 1)];",
+          "return ends_[std::min(static_cast<std::size_t>(edges) + 1, ends_.size() - 1)];"),
 ]
