@@ -76,7 +76,6 @@ class ManyLights final : public Integrator {
     const Tiling tiling(image, batch_side);
     counters += for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
       Part part{EyeBatch(settings_.max_depth)};
-      part.batch.walkers.clear();
       start_paths(context, image, tiling.tile(i), 0, part.batch);
       count.samples += part.batch.walkers.size();
       trace(context, terms, part, count);

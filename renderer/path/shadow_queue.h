@@ -19,6 +19,8 @@ class ShadowQueue {
     pending_.push_back(value);
   }
 
+  std::size_t size() const { return rays_.size(); }
+
   /// Traces all rays and calls `lit(value)` for each contribution that arrives; the queue is then
   /// empty.
   template <class Lit>

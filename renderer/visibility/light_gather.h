@@ -38,7 +38,7 @@ class LightGather {
         if (b < ends[i]) add(points[i], states[i], b, i, sums[i]);
       }
       queue_tests();
-      if (waiting_ >= most_waiting) flush(sums);
+      if (queue_.size() >= most_waiting) flush(sums);
       if ((b + 1) % blocks_between_stops == 0 && context_.stop()) throw IterationStopped{};
     }
     flush(sums);
@@ -72,9 +72,7 @@ class LightGather {
            {Rgb(term_.r[i], term_.g[i], term_.b[i]) * decision_.gain[i],
             static_cast<std::uint32_t>(point)}});
     });
-    const auto tests = static_cast<std::size_t>(__builtin_popcountll(decision_.tests));
-    sum.tests += tests;
-    waiting_ += tests;
+    sum.tests += static_cast<std::uint64_t>(__builtin_popcountll(decision_.tests));
   }
 
   /// Rays from one light to neighbouring points run together; they are traced side by side.
@@ -88,7 +86,6 @@ class LightGather {
   void flush(std::span<LightSum> sums) {
     queue_.flush(context_.scene.rays(), counters_,
                  [&](const Lit& l) { sums[l.point].value += V3d(l.value); });
-    waiting_ = 0;
   }
 
   const IterationContext& context_;
@@ -97,7 +94,6 @@ class LightGather {
   Counters& counters_;
   std::array<std::vector<Test>, Lanes::size> tests_;  // of each light of the block
   ShadowQueue<Lit> queue_;
-  std::size_t waiting_ = 0;
   Terms term_;
   Decision decision_;
 };

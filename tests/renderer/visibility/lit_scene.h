@@ -30,9 +30,10 @@ class LitScene {
         [&](std::size_t path, const LightBatch<BsdfGuide>& batch, std::size_t place) {
           lights_.keep(path, batch, place);
           const int length = std::min(batch.length(place), max_depth - 1);
-          for (int i = 1; i < length; ++i)
-            walked_ += batch.vertex(place, i).bsdf->broad(least_alpha);
-          if (length > 0) ++emitters_;
+          for (int i = 1; i < length; ++i) {
+            walked_[static_cast<std::size_t>(i)] += batch.vertex(place, i).bsdf->broad(least_alpha);
+          }
+          if (length > 0) ++walked_[0];
         },
         [](const Splat&) {});
     lights_.arrange();
@@ -48,8 +49,8 @@ class LitScene {
   LightPass pass(const IterationContext& context) const {
     return {context, terms_, max_depth, least_alpha};
   }
-  std::size_t walked() const { return walked_; }
-  std::size_t emitters() const { return emitters_; }
+  /// Vertices `index` of the light paths that are broad; of index 0, the emitters.
+  std::size_t walked(int index) const { return walked_[static_cast<std::size_t>(index)]; }
 
   /// Calls `use(points)` with the shading points of the pixels `first` and the 63 after it.
   template <class Use>
@@ -78,7 +79,7 @@ class LitScene {
   Scene scene_;
   VirtualLights lights_;
   LightTerms terms_;
-  std::atomic<std::size_t> walked_{0}, emitters_{0};
+  std::array<std::atomic<std::size_t>, max_depth> walked_{};
 };
 
 }  // namespace lacuna::test
