@@ -59,6 +59,18 @@ class SpaceAnalysis {
   /// Of every region. Made anew at each call: reading takes as long.
   Borders borders(BorderFaces which);
 
+  /// What others make for the nodes of filtered() and keep beside the parts: `type`, `version` and
+  /// `settings` as ArtefactKey's, `scene` a hash of all else that it is made from (lower-case
+  /// hexadecimal). `build` is told how many bytes it may take, and throws MemoryLimitError.
+  template <class T>
+  std::shared_ptr<const T> for_filtered(const char* type, std::uint32_t version,
+                                        std::string settings, const std::string& scene,
+                                        const std::function<T(std::uint64_t)>& build) {
+    const ArtefactKey key = ArtefactKey(type, version, std::move(settings)).from(filtered_key());
+    return store_.get<T>(ArtefactKey(key).from("scene", scene),
+                         [&] { return build(input_.byte_limit()); });
+  }
+
   /// Of the closure of the domain: what thinning starts from, and its cost grows with.
   std::uint64_t complex_faces();
   /// Notes in the store what was not asked for.

@@ -4,7 +4,9 @@
 #include "renderer/integrators/light_pass.h"
 #include "renderer/path/direct_light.h"
 #include "renderer/visibility/cached_visibility.h"
+#include "renderer/visibility/gate_visibility.h"
 #include "renderer/visibility/light_gather.h"
+#include "renderer/visibility/node_map_visibility.h"
 #include "renderer/visibility/plain_visibility.h"
 #include "renderer/visibility/roulette_visibility.h"
 
@@ -36,7 +38,10 @@ class ManyLights final : public Integrator {
         least_alpha_(static_cast<float>(settings.least_roughness * settings.least_roughness)),
         visibility_(visibility) {}
 
-  SceneNeeds needs() const override { return {.materials = true, .emission = true}; }
+  SceneNeeds needs() const override {
+    return {.materials = true, .emission = true, .space = Visibility::needs_space};
+  }
+  void prepare(const PrepareContext& context) override { visibility_.prepare(context); }
 
   std::vector<std::string> layers(std::span<const ImageLayer> wanted) override {
     std::vector<std::string> names;
@@ -65,7 +70,7 @@ class ManyLights final : public Integrator {
                          {settings_.max_depth - 1, by_lights(), least_alpha_});
     Counters counters;
     if (settings_.max_depth > (by_lights() ? 1 : 2)) counters = walk_lights(context, lights, image);
-    lights.arrange();
+    lights.arrange([this](const LightPlace& p) { return visibility_.group(p); });
     lights_ = static_cast<double>(lights.size());
     pass.end(seconds_.light);
     const LightTerms terms(lights, bound_of(settings_, context.scene.bounds().radius()));
@@ -234,21 +239,21 @@ class ManyLights final : public Integrator {
 struct MakeManyLights {
   const ManyLightsSettings& settings;
 
-  std::unique_ptr<Integrator> operator()(const ExactVisibilitySettings& s) const {
-    return std::make_unique<ManyLights<ExactVisibility>>(settings, s);
+  template <class Visibility>
+  std::unique_ptr<Integrator> make(const auto& s) const {
+    return std::make_unique<ManyLights<Visibility>>(settings, s);
   }
-  std::unique_ptr<Integrator> operator()(const NoVisibilitySettings& s) const {
-    return std::make_unique<ManyLights<NoVisibility>>(settings, s);
+  auto operator()(const ExactVisibilitySettings& s) const { return make<ExactVisibility>(s); }
+  auto operator()(const NoVisibilitySettings& s) const { return make<NoVisibility>(s); }
+  auto operator()(const RouletteVisibilitySettings& s) const { return make<RouletteVisibility>(s); }
+  auto operator()(const ProbabilisticVisibilitySettings& s) const {
+    return make<ProbabilisticVisibility>(s);
   }
-  std::unique_ptr<Integrator> operator()(const RouletteVisibilitySettings& s) const {
-    return std::make_unique<ManyLights<RouletteVisibility>>(settings, s);
+  auto operator()(const InterpolatedVisibilitySettings& s) const {
+    return make<InterpolatedVisibility>(s);
   }
-  std::unique_ptr<Integrator> operator()(const ProbabilisticVisibilitySettings& s) const {
-    return std::make_unique<ManyLights<ProbabilisticVisibility>>(settings, s);
-  }
-  std::unique_ptr<Integrator> operator()(const InterpolatedVisibilitySettings& s) const {
-    return std::make_unique<ManyLights<InterpolatedVisibility>>(settings, s);
-  }
+  auto operator()(const GatesVisibilitySettings& s) const { return make<GateVisibility>(s); }
+  auto operator()(const NodeMapsVisibilitySettings& s) const { return make<NodeMapVisibility>(s); }
 };
 
 }  // namespace

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "renderer/scene/alpha_mask.h"
+
 namespace lacuna {
 namespace {
 
@@ -39,6 +43,12 @@ TriangleSoup triangle_soup(const SceneData& scene) {
 
 std::string geometry_key(const SceneData& scene) {
   return fmt::format("{:016x}", scene.geometry_hash);
+}
+
+std::string occluder_key(const SceneData& scene) {
+  const bool masked = std::any_of(scene.meshes.begin(), scene.meshes.end(),
+                                  [&](const Mesh& m) { return AlphaMask::needed(scene, m); });
+  return masked ? fmt::format("{:016x}", scene.content_hash) : geometry_key(scene);
 }
 
 DomainSeeds domain_seeds(const SceneData& scene, const CameraData& camera, bool environment) {

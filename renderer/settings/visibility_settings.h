@@ -156,9 +156,66 @@ void describe(V& v, InterpolatedVisibilitySettings& s) {
   describe_cache(v, s, cache_points_doc);
 }
 
+/// How the light through a gate fades towards its rim.
+enum class GateFalloff { cosine, rim, none };
+
+template <>
+struct EnumTable<GateFalloff> {
+  static constexpr std::array<EnumValue<GateFalloff>, 3> values{{
+      {GateFalloff::cosine, "cosine",
+       "the cosine between the light's ray and the way from it to the gate's centre"},
+      {GateFalloff::rim, "rim",
+       "1 - (r / R)^2 where the ray crosses the disk at r of its radius R"},
+      {GateFalloff::none, "none", "not at all"},
+  }};
+};
+
+/// visibility: gates.
+struct GatesVisibilitySettings {
+  static constexpr std::string_view name = "gates";
+  static constexpr std::string_view doc =
+      "nothing is tested: lights shine on all points of their own visibility cluster, and on "
+      "others "
+      "through the disks between clusters (biased; Noel 2015, ch. 7)";
+  static constexpr bool biased = true;
+
+  GateFalloff falloff = GateFalloff::cosine;
+  bool operator==(const GatesVisibilitySettings&) const = default;
+};
+template <class V>
+void describe(V& v, GatesVisibilitySettings& s) {
+  v("falloff", s.falloff, {.doc = "how the light through a gate fades towards its rim"});
+}
+
+/// visibility: node_maps.
+struct NodeMapsVisibilitySettings {
+  static constexpr std::string_view name = "node_maps";
+  static constexpr std::string_view doc =
+      "nothing is tested: a light shines on what the nearest node of the filtered skeleton sees, "
+      "by "
+      "a cube map of distances around each node, kept on disk (biased; Noel 2015, ch. 8)";
+  static constexpr bool biased = true;
+
+  int map_size = 128;
+  int filter = 5;
+  bool operator==(const NodeMapsVisibilitySettings&) const = default;
+};
+template <class V>
+void describe(V& v, NodeMapsVisibilitySettings& s) {
+  v("map_size", s.map_size,
+    {.doc = "texels along the sides of a map's six faces; 2 bytes each", .min = 8, .max = 1024});
+  v("filter", s.filter,
+    {.doc =
+         "texels along the sides of the square that answers are averaged over (percentage-closer "
+         "filtering)",
+     .min = 1,
+     .max = 7});
+}
+
 /// Whether a virtual light and a shading point see one another.
 using VisibilitySettings =
     std::variant<ExactVisibilitySettings, NoVisibilitySettings, RouletteVisibilitySettings,
-                 ProbabilisticVisibilitySettings, InterpolatedVisibilitySettings>;
+                 ProbabilisticVisibilitySettings, InterpolatedVisibilitySettings,
+                 GatesVisibilitySettings, NodeMapsVisibilitySettings>;
 
 }  // namespace lacuna

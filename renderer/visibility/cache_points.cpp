@@ -120,10 +120,12 @@ void CachePoints::fill(const LightPass& pass, std::size_t point, const ShadingPo
     });
   };
   for (std::size_t b = 0; b < lights.blocks(); ++b) {
-    pass.terms.evaluate(at, b, terms);
-    for_each_bit(terms.lit, [&](int i) {
-      queue.add(pass.terms.ray(at, b, i), {b, i, terms.luminance[i]});
-    });
+    if (!pass.terms.dark(at, b)) {
+      pass.terms.evaluate(at, b, terms);
+      for_each_bit(terms.lit, [&](int i) {
+        queue.add(pass.terms.ray(at, b, i), {b, i, terms.luminance[i]});
+      });
+    }
     if (b % 16 == 15) flush();
     if (b % 1024 == 1023 && pass.context.stop()) throw IterationStopped{};
   }

@@ -1,14 +1,14 @@
 #pragma once
 
-#include "renderer/visibility/cache_points.h"
 #include "renderer/visibility/test_chance.h"
+#include "renderer/visibility/visibility_base.h"
 
 namespace lacuna {
 
 /// visibility: probabilistic. A light whose visibility the nearest cache points agree on is seldom
 /// tested: with probability p its visibility is taken to be q, their mean, and else (v - p q) / (1
 /// - p), which has the mean v whatever q and p are (Nabata et al., eq. 6).
-class ProbabilisticVisibility {
+class ProbabilisticVisibility : public VisibilityBase {
  public:
   explicit ProbabilisticVisibility(const ProbabilisticVisibilitySettings& settings)
       : settings_(settings),
@@ -32,7 +32,7 @@ class ProbabilisticVisibility {
 };
 
 /// visibility: interpolated. q alone.
-class InterpolatedVisibility {
+class InterpolatedVisibility : public VisibilityBase {
  public:
   explicit InterpolatedVisibility(const InterpolatedVisibilitySettings& settings)
       : points_(settings.cache_points, settings.neighbours, CachePoints::Keep::visibilities) {}
@@ -46,7 +46,6 @@ class InterpolatedVisibility {
     d.tests = 0;
     points_.expected(at.near, block, d.untested);
   }
-  static bool clamps_negative() { return false; }
   std::vector<std::pair<std::string, double>> statistics() const { return points_.statistics(); }
 
  private:

@@ -59,6 +59,7 @@ class LightGather {
 
   void add(const ShadingPoint& at, typename Visibility::At& state, std::size_t block,
            std::size_t point, LightSum& sum) {
+    if (terms_.dark(at, block) || visibility_.hides(state, block)) return;
     terms_.evaluate(at, block, term_);
     counters_.rejected += static_cast<std::uint64_t>(__builtin_popcountll(term_.rejected));
     if (term_.lit == 0) return;

@@ -6,11 +6,7 @@ namespace lacuna {
 
 void LightTerms::evaluate(const ShadingPoint& at, std::size_t block, Terms& out) const {
   if (const DiffuseBlock* diffuse = lights_.diffuse(block)) {
-    if (dark(at, lights_.bounds(block))) {
-      out.lit = out.rejected = 0;
-      return;
-    }
-    diffuse_terms(at, *diffuse, out);
+    diffuse_terms(at, *diffuse, lights_.count(block), out);
   } else {
     const int count = lights_.count(block);
     for (int i = 0; i < Lanes::size; ++i) {
@@ -21,16 +17,23 @@ void LightTerms::evaluate(const ShadingPoint& at, std::size_t block, Terms& out)
   finish(out);
 }
 
-bool LightTerms::dark(const ShadingPoint& at, const BlockBounds& bounds) {
+bool LightTerms::dark(const ShadingPoint& at, std::size_t block) const {
+  if (lights_.diffuse(block) == nullptr) return false;
+  const BlockBounds& bounds = lights_.bounds(block);
   const Surface& s = at.vertex->surface;
   if (bounds.turned_from(s.x)) return true;
   return bounds.behind(s.x, dot(at.vertex->wp, s.ng) < 0 ? -s.ng : s.ng);
 }
 
-void LightTerms::diffuse_terms(const ShadingPoint& at, const DiffuseBlock& from, Terms& out) const {
+void LightTerms::diffuse_terms(const ShadingPoint& at, const DiffuseBlock& from, int count,
+                               Terms& out) const {
   const V3f x = at.vertex->surface.x;
   const V3f ng = at.vertex->surface.ng;
-  for (int k = 0; k < Lanes::groups; ++k) {
+  const int used = (count + 7) / 8;
+  for (int k = used; k < Lanes::groups; ++k) {
+    for (Lanes* const channel : {&out.r, &out.g, &out.b}) channel->set(k, 0.0F);
+  }
+  for (int k = 0; k < used; ++k) {
     const Float8x3 d{from.x.eight(k) - x.x, from.y.eight(k) - x.y, from.z.eight(k) - x.z};
     const Float8 inv = 1 / sqrt(length2(d));
     const Float8x3 w = d * inv;

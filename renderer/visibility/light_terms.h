@@ -52,15 +52,15 @@ class LightTerms {
     const float cosines = abs_dot(a.surface.ng, w) * abs_dot(b.surface.ng, w);
     return bounded_share(cosines / (a.surface.x - b.surface.x).length2(), bound_);
   }
-  /// Where nothing is lit or rejected, the rest of `out` stays as it was.
+  /// The block's lights turn their backs to the point or lie behind it: evaluate() would give
+  /// nothing, and is saved.
+  bool dark(const ShadingPoint& at, std::size_t block) const;
   void evaluate(const ShadingPoint& at, std::size_t block, Terms& out) const;
   /// The ray that asks whether light `i` of `block`, which is lit, and `at` see one another.
   Ray ray(const ShadingPoint& at, std::size_t block, int i) const;
 
  private:
-  /// No light of the block can give anything.
-  static bool dark(const ShadingPoint& at, const BlockBounds& bounds);
-  void diffuse_terms(const ShadingPoint& at, const DiffuseBlock& from, Terms& out) const;
+  void diffuse_terms(const ShadingPoint& at, const DiffuseBlock& from, int count, Terms& out) const;
   Rgb general(const ShadingPoint& at, const GeneralLight& light) const;
   static void finish(Terms& out);
 

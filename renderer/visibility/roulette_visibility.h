@@ -1,13 +1,13 @@
 #pragma once
 
-#include "renderer/visibility/cache_points.h"
 #include "renderer/visibility/test_chance.h"
+#include "renderer/visibility/visibility_base.h"
 
 namespace lacuna {
 
 /// visibility: roulette. What is not tested counts as unseen, what is tested for as much more. The
 /// variance of contributions is measured at a few shading points.
-class RouletteVisibility {
+class RouletteVisibility : public VisibilityBase {
  public:
   explicit RouletteVisibility(const RouletteVisibilitySettings& settings)
       : settings_(settings),
@@ -20,7 +20,6 @@ class RouletteVisibility {
   };
   At at(const ShadingPoint& point, const IterationContext& context) const;
   static void decide(At& at, std::size_t block, const Terms& terms, Decision& d);
-  static bool clamps_negative() { return false; }
   std::vector<std::pair<std::string, double>> statistics() const { return points_.statistics(); }
 
  private:

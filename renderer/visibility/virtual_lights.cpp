@@ -19,22 +19,40 @@ std::uint64_t main_direction(const V3f& n) {
   return static_cast<std::uint64_t>(2 * axis + (n[axis] < 0 ? 1 : 0));
 }
 
-/// `lights` by the way they face, and then along a space-filling curve; as they are where they lie
-/// at one place.
-template <class Light, class Position, class Normal>
-std::vector<std::size_t> near_one_another(const std::vector<Light>& lights, Position&& position,
-                                          Normal&& normal) {
+/// A part of a list of lights: at most sixty-four of one group.
+struct Run {
+  std::uint32_t group;
+  std::vector<std::size_t> lights;
+};
+
+/// Lights by group, then by the way they face, and then along a space-filling curve; as they are
+/// where they lie at one place.
+template <class Light, class Place>
+std::vector<Run> near_one_another(const std::vector<Light>& lights, const LightGroups& groups,
+                                  Place&& place) {
   Bounds box;
-  for (const Light& l : lights) box.add(position(l));
+  for (const Light& l : lights) box.add(place(l).x);
   const MortonOrder order(box);
-  std::vector<std::pair<std::uint64_t, std::size_t>> codes(lights.size());
+  struct Key {
+    std::uint32_t group;
+    std::uint64_t code;
+    std::size_t light;
+    auto operator<=>(const Key&) const = default;
+  };
+  std::vector<Key> keys(lights.size());
   for (std::size_t i = 0; i < lights.size(); ++i) {
-    codes[i] = {main_direction(normal(lights[i])) << 61 | order(position(lights[i])) >> 2, i};
+    const LightPlace p = place(lights[i]);
+    keys[i] = {groups(p), main_direction(p.n) << 61 | order(p.x) >> 2, i};
   }
-  std::sort(codes.begin(), codes.end());
-  std::vector<std::size_t> result(lights.size());
-  for (std::size_t i = 0; i < lights.size(); ++i) result[i] = codes[i].second;
-  return result;
+  std::sort(keys.begin(), keys.end());
+  std::vector<Run> runs;
+  for (const Key& k : keys) {
+    if (runs.empty() || runs.back().group != k.group || runs.back().lights.size() == block_size) {
+      runs.push_back({k.group, {}});
+    }
+    runs.back().lights.push_back(k.light);
+  }
+  return runs;
 }
 
 }  // namespace
@@ -59,7 +77,16 @@ void VirtualLights::add(Kept& path, const Vertex& v, int index) const {
   }
 }
 
-void VirtualLights::arrange() {
+LightPlace GeneralLight::place() const {
+  if (const auto* v = std::get_if<Vertex>(&at)) {
+    const V3f ng = v->surface.ng;
+    return {v->surface.x, dot(v->wp, ng) < 0 ? -ng : ng, false};
+  }
+  const auto& e = std::get<EmitterPoint>(at);
+  return {e.x, e.infinite() ? V3f(0.0F) : e.ng, e.infinite()};
+}
+
+void VirtualLights::arrange(const LightGroups& groups) {
   for (int index = 0; index < choice_.longest; ++index) {
     std::vector<Diffuse> diffuse;
     std::vector<GeneralLight> general;
@@ -72,24 +99,23 @@ void VirtualLights::arrange() {
       }
     }
     size_ += diffuse.size() + general.size();
-    arrange_diffuse(diffuse);
-    arrange_general(general);
+    arrange_diffuse(diffuse, groups);
+    arrange_general(general, groups);
     ends_.push_back(blocks_.size());
   }
   kept_ = {};
 }
 
-void VirtualLights::arrange_diffuse(std::vector<Diffuse>& lights) {
-  const auto order = near_one_another(
-      lights, [](const Diffuse& l) { return l.x; }, [](const Diffuse& l) { return l.ng; });
-  for (std::size_t first = 0; first < lights.size(); first += block_size) {
-    const auto count = static_cast<int>(std::min(block_size, lights.size() - first));
-    blocks_.push_back({diffuse_.size(), count, true});
+void VirtualLights::arrange_diffuse(const std::vector<Diffuse>& lights, const LightGroups& groups) {
+  const auto place = [](const Diffuse& l) { return LightPlace{l.x, l.ng, false}; };
+  for (const Run& run : near_one_another(lights, groups, place)) {
+    const auto count = static_cast<int>(run.lights.size());
+    blocks_.push_back({diffuse_.size(), count, true, run.group});
     DiffuseBlock& block = diffuse_.emplace_back();
     BlockBounds& bounds = bounds_.emplace_back();
     for (int i = 0; i < Lanes::size; ++i) {
       // A missing one stands where another does, so that no geometry of it is special.
-      const Diffuse& l = lights[order[first + static_cast<std::size_t>(std::min(i, count - 1))]];
+      const Diffuse& l = lights[run.lights[static_cast<std::size_t>(std::min(i, count - 1))]];
       bounds.add(l.x, l.ng);
       const auto put = [i](const V3f& p, Lanes& x, Lanes& y, Lanes& z) {
         x[i] = p.x, y[i] = p.y, z[i] = p.z;
@@ -104,16 +130,12 @@ void VirtualLights::arrange_diffuse(std::vector<Diffuse>& lights) {
   }
 }
 
-void VirtualLights::arrange_general(std::vector<GeneralLight>& lights) {
-  const auto position = [](const GeneralLight& l) {
-    if (const auto* v = std::get_if<Vertex>(&l.at)) return v->surface.x;
-    return std::get<EmitterPoint>(l.at).x;
-  };
-  const auto order = near_one_another(lights, position, [](const auto&) { return V3f(1, 0, 0); });
-  for (std::size_t first = 0; first < lights.size(); first += block_size) {
-    const std::size_t count = std::min(block_size, lights.size() - first);
-    blocks_.push_back({general_.size(), static_cast<int>(count), false});
-    for (std::size_t i = 0; i < count; ++i) general_.push_back(lights[order[first + i]]);
+void VirtualLights::arrange_general(const std::vector<GeneralLight>& lights,
+                                    const LightGroups& groups) {
+  const auto place = [](const GeneralLight& l) { return l.place(); };
+  for (const Run& run : near_one_another(lights, groups, place)) {
+    blocks_.push_back({general_.size(), static_cast<int>(run.lights.size()), false, run.group});
+    for (const std::size_t i : run.lights) general_.push_back(lights[i]);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <variant>
 #include <vector>
 
@@ -23,11 +24,19 @@ struct DiffuseBlock {
   Lanes extent;  ///< of the triangle, see TriangleShape
 };
 
+/// Where a light stands.
+struct LightPlace {
+  V3f x;          ///< position; not of a light at infinity
+  V3f n;          ///< unit normal on the side that shines; 0 of a point light
+  bool infinite;  ///< it shines from outside the scene
+};
+
 /// A light of any other kind: a light path's vertex or the point on an emitter where it starts.
 struct GeneralLight {
   std::variant<Vertex, EmitterPoint> at;
   int index;  ///< of the vertex on its path
 
+  LightPlace place() const;
   /// No path can hit it.
   bool delta() const {
     const auto* e = std::get_if<EmitterPoint>(&at);
@@ -40,6 +49,11 @@ struct GeneralLight {
     return use(SurfaceEnd<Guide>{std::get<Vertex>(at), index, Transport::importance, guide});
   }
 };
+
+/// Lights that are treated alike have one number: the lights of a block are of one group.
+using LightGroups = std::function<std::uint32_t(const LightPlace&)>;
+/// Of a light that belongs nowhere.
+inline constexpr std::uint32_t no_group = 0xffffffff;
 
 /// The virtual point lights of an iteration, in blocks of sixty-four; those of a block lie near one
 /// another. The contribution of a light already holds 1 / the number of light paths.
@@ -65,8 +79,9 @@ class VirtualLights {
       if (v.bsdf->broad(choice_.least_alpha)) add(kept_[path], v, index);
     }
   }
-  /// To be called when all paths are kept. The order of the lights depends on the paths only.
-  void arrange();
+  /// To be called when all paths are kept. The order of the lights depends on the paths and on
+  /// `groups` only.
+  void arrange(const LightGroups& groups);
 
   std::size_t size() const { return size_; }
   /// Blocks [0, blocks(edges)) hold the lights that are at most `edges` edges from their emitter.
@@ -77,6 +92,8 @@ class VirtualLights {
   std::size_t blocks() const { return blocks_.size(); }
   /// Lights of block `b`: 64 but for a last one of its kind.
   int count(std::size_t b) const { return blocks_[b].count; }
+  /// The group that all lights of block `b` are of.
+  std::uint32_t group(std::size_t b) const { return blocks_[b].group; }
   /// Of block `b`, whose lights are diffuse.
   const BlockBounds& bounds(std::size_t b) const { return bounds_[blocks_[b].first]; }
   /// The lights of block `b`, if they are diffuse; else null.
@@ -106,12 +123,13 @@ class VirtualLights {
     std::size_t first;  // in diffuse_ or general_
     int count;
     bool diffuse;
+    std::uint32_t group;
   };
 
   void add(Kept& path, const EmitterPoint& e) const;
   void add(Kept& path, const Vertex& v, int index) const;
-  void arrange_diffuse(std::vector<Diffuse>& lights);
-  void arrange_general(std::vector<GeneralLight>& lights);
+  void arrange_diffuse(const std::vector<Diffuse>& lights, const LightGroups& groups);
+  void arrange_general(const std::vector<GeneralLight>& lights, const LightGroups& groups);
 
   Choice choice_;
   float share_;

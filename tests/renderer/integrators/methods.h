@@ -89,18 +89,26 @@ inline std::vector<Method> connections(int max_depth, int light_paths = 64) {
   };
 }
 
+/// Many-light rendering with `visibility`, in a small picture.
+inline ManyLightsSettings lit_by(int max_depth, int light_paths,
+                                 const VisibilitySettings& visibility) {
+  ManyLightsSettings s{whole_paths(max_depth)};
+  s.light_paths = light_paths;
+  s.visibility = visibility;
+  std::visit(
+      [](auto& v) {
+        if constexpr (requires { v.cache_points; }) v.cache_points = 20;
+        if constexpr (requires { v.map_size; }) v.map_size = 16;
+      },
+      s.visibility);
+  return s;
+}
+
 /// Many-light rendering with every visibility that has the right mean.
 inline std::vector<Method> many_lights(int max_depth, int light_paths = 64) {
   std::vector<Method> all;
   const auto add = [&](const char* name, const VisibilitySettings& visibility, auto&& change) {
-    ManyLightsSettings s{whole_paths(max_depth)};
-    s.light_paths = light_paths;
-    s.visibility = visibility;
-    std::visit(
-        [](auto& v) {
-          if constexpr (requires { v.cache_points; }) v.cache_points = 20;  // of small pictures
-        },
-        s.visibility);
+    ManyLightsSettings s = lit_by(max_depth, light_paths, visibility);
     change(s);
     all.push_back({name, s});
   };
@@ -115,6 +123,14 @@ inline std::vector<Method> many_lights(int max_depth, int light_paths = 64) {
   add("lights_probabilistic", ProbabilisticVisibilitySettings{}, as_it_is);
   add("lights_roulette", RouletteVisibilitySettings{}, as_it_is);
   return all;
+}
+
+/// Many-light rendering with every visibility that has not.
+inline std::vector<Method> approximate_lights(int max_depth, int light_paths = 64) {
+  return {{"lights_none", lit_by(max_depth, light_paths, NoVisibilitySettings{})},
+          {"lights_interpolated", lit_by(max_depth, light_paths, InterpolatedVisibilitySettings{})},
+          {"lights_gates", lit_by(max_depth, light_paths, GatesVisibilitySettings{})},
+          {"lights_node_maps", lit_by(max_depth, light_paths, NodeMapsVisibilitySettings{})}};
 }
 
 /// Every flag and every named value of the choices, at least once away from its default, alone and

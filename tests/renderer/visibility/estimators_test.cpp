@@ -11,24 +11,8 @@ namespace lacuna {
 namespace {
 
 using statistics::Moments;
+using test::gathered;
 using test::LitScene;
-
-/// What the lights give to each point, red.
-template <class Visibility>
-std::vector<double> gathered(const LitScene& lit, const IterationContext& context,
-                             const Visibility& visibility, std::span<const ShadingPoint> points,
-                             std::uint64_t* tests = nullptr) {
-  Counters counters;
-  std::vector<LightSum> sums(points.size());
-  LightGather<Visibility>(context, lit.terms(), visibility, counters).gather(points, sums);
-  std::vector<double> values;
-  for (const LightSum& s : sums) {
-    values.push_back(s.value.x);
-    if (tests != nullptr) *tests += s.tests;
-  }
-  EXPECT_EQ(counters.rejected, 0U);
-  return values;
-}
 
 /// `visibility` has the mean of exact visibility at every point, and sends fewer rays.
 template <class Visibility>

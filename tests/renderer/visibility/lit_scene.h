@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/space/memory_limit.h"
 #include "renderer/integrators/light_pass.h"
+#include "renderer/scene/scene_shape.h"
 #include "renderer/visibility/light_gather.h"
 #include "renderer/visibility/shading_points.h"
 #include "tests/renderer/path/scenes.h"
@@ -20,24 +22,21 @@ class LitScene {
         eye_(choose_camera(data_, "", "test")),
         camera_(eye_, 40, 30, PixelFilter::box),
         scene_(std::move(data_), {.materials = true, .emission = true}, environment(named), pool_),
-        lights_(static_cast<std::size_t>(light_paths), {max_depth - 1, with_emitters, least_alpha}),
-        terms_(lights_, bound) {
-    const LightPathSetting setting{scene_, camera_, max_depth - 1, max_depth,
-                                   SampleCounts{.hit = 0}};
-    Image image(40, 30);
-    light_pass(
-        context(1), setting, guide_, light_paths, image,
-        [&](std::size_t path, const LightBatch<BsdfGuide>& batch, std::size_t place) {
-          lights_.keep(path, batch, place);
-          const int length = std::min(batch.length(place), max_depth - 1);
-          for (int i = 1; i < length; ++i) {
-            walked_[static_cast<std::size_t>(i)] += batch.vertex(place, i).bsdf->broad(least_alpha);
-          }
-          if (length > 0) ++walked_[0];
-        },
-        [](const Splat&) {});
-    lights_.arrange();
+        light_paths_(light_paths),
+        with_emitters_(with_emitters),
+        lights_(walk([](const LightPlace&) { return 0U; })),
+        terms_(lights_, bound) {}
+
+  /// `visibility` sees the scene's empty space, and the lights in the groups that it wants.
+  template <class Visibility>
+  void prepare(Visibility& visibility) {
+    visibility.prepare({scene_, pool_, space_});
+    lights_ = walk([&](const LightPlace& p) { return visibility.group(p); });
+    const IterationContext first = context(1);
+    visibility.begin(pass(first));
   }
+  SpaceAnalysis& space() { return space_; }
+  const ThreadPool& pool() const { return pool_; }
 
   /// With random numbers of their own for each seed; the lights stay those of seed 1.
   IterationContext context(std::uint64_t seed) const {
@@ -70,6 +69,28 @@ class LitScene {
   }
 
  private:
+  VirtualLights walk(const LightGroups& groups) {
+    VirtualLights lights(static_cast<std::size_t>(light_paths_),
+                         {max_depth - 1, with_emitters_, least_alpha});
+    for (auto& n : walked_) n = 0;
+    const LightPathSetting setting{scene_, camera_, max_depth - 1, max_depth,
+                                   SampleCounts{.hit = 0}};
+    Image image(40, 30);
+    light_pass(
+        context(1), setting, guide_, light_paths_, image,
+        [&](std::size_t path, const LightBatch<BsdfGuide>& batch, std::size_t place) {
+          lights.keep(path, batch, place);
+          const int length = std::min(batch.length(place), max_depth - 1);
+          for (int i = 1; i < length; ++i) {
+            walked_[static_cast<std::size_t>(i)] += batch.vertex(place, i).bsdf->broad(least_alpha);
+          }
+          if (length > 0) ++walked_[0];
+        },
+        [](const Splat&) {});
+    lights.arrange(groups);
+    return lights;
+  }
+
   ThreadPool pool_{2};
   std::function<bool()> never_ = [] { return false; };
   BsdfGuide guide_;
@@ -77,9 +98,36 @@ class LitScene {
   CameraData eye_;
   Camera camera_;
   Scene scene_;
+  ArtefactStore store_{{}};
+  SpaceAnalysis space_{{.triangles = [this] { return triangle_soup(scene_.data()); },
+                        .geometry = geometry_key(scene_.data()),
+                        .seeds = [this] { return domain_seeds(scene_.data(), eye_, false); },
+                        .settings = {.resolution = 32},
+                        .byte_limit = [] { return no_memory_limit; }},
+                       store_,
+                       pool_};
+  std::array<std::atomic<std::size_t>, max_depth> walked_{};
+  int light_paths_;
+  bool with_emitters_;
   VirtualLights lights_;
   LightTerms terms_;
-  std::array<std::atomic<std::size_t>, max_depth> walked_{};
 };
+
+/// What the lights give to each point, red.
+template <class Visibility>
+std::vector<double> gathered(const LitScene& lit, const IterationContext& context,
+                             const Visibility& visibility, std::span<const ShadingPoint> points,
+                             std::uint64_t* tests = nullptr) {
+  Counters counters;
+  std::vector<LightSum> sums(points.size());
+  LightGather<Visibility>(context, lit.terms(), visibility, counters).gather(points, sums);
+  std::vector<double> values;
+  for (const LightSum& s : sums) {
+    values.push_back(s.value.x);
+    if (tests != nullptr) *tests += s.tests;
+  }
+  EXPECT_EQ(counters.rejected, 0U);
+  return values;
+}
 
 }  // namespace lacuna::test

@@ -1,0 +1,89 @@
+#include "renderer/visibility/gate_visibility.h"
+
+namespace lacuna {
+
+namespace {
+
+/// Where the lights of a block stand.
+struct Positions {
+  Lanes x, y, z;
+
+  Positions(const VirtualLights& lights, std::size_t block) {
+    if (const DiffuseBlock* from = lights.diffuse(block)) {
+      x = from->x, y = from->y, z = from->z;
+      return;
+    }
+    for (int i = 0; i < lights.count(block); ++i) {
+      const V3f p = lights.general(block, i).place().x;
+      x[i] = p.x, y[i] = p.y, z[i] = p.z;
+    }
+  }
+};
+
+}  // namespace
+
+void GateVisibility::prepare(const PrepareContext& context) {
+  SpaceAnalysis& space = context.space;
+  const GridTransform transform = space.voxels().transform;
+  lookup_.emplace(transform, space.node_map());
+  const VisibilityClusters& clusters = space.clusters();
+  for (const std::uint32_t n : space.simplified().parent) {
+    cluster_of_.push_back(clusters.of_node[n]);
+  }
+  const VisibilityGates& all = space.gates();
+  first_ = all.first;
+  for (const std::uint32_t i : all.by_cluster) {
+    const VisibilityGate& g = all.gates[i];
+    const double radius = double(g.radius) * transform.voxel_size;
+    gates_.push_back(
+        {V3f(transform.to_world(V3d(g.centre))), g.axis, static_cast<float>(radius * radius)});
+  }
+}
+
+/// How much light along `w`, unit length, a gate lets through.
+Float8 GateVisibility::through(const Gate& gate, const Float8x3& to_gate, const Float8x3& w) const {
+  const Float8x3 axis{gate.axis.x, gate.axis.y, gate.axis.z};
+  const Float8 t = dot(to_gate, axis) / dot(w, axis);
+  const Float8x3 from_centre = w * t + to_gate * -1.0F;
+  const Float8 r2 = length2(from_centre);
+  const Mask8 crosses = t > 0 && Float8(gate.radius2) >= r2;
+  switch (settings_.falloff) {
+    case GateFalloff::cosine:
+      return keep_where(crosses, max(0.0F, dot(w, to_gate) / sqrt(length2(to_gate))));
+    case GateFalloff::rim:
+      return keep_where(crosses, max(0.0F, 1 - r2 / gate.radius2));
+    case GateFalloff::none:
+      break;
+  }
+  return keep_where(crosses, 1.0F);
+}
+
+void GateVisibility::decide(const At& at, std::size_t block, const Terms& terms,
+                            Decision& d) const {
+  const std::uint32_t cluster = lights_->group(block);
+  if (cluster == no_group || at.cluster == no_group) return test_all(terms, d);
+  d.tests = 0;
+  if (cluster == at.cluster) {
+    d.untested.v.fill(1);
+    return;
+  }
+  const Positions lights(*lights_, block);
+  for (int k = 0; k < Lanes::groups; ++k) {
+    const Float8x3 y{lights.x.eight(k), lights.y.eight(k), lights.z.eight(k)};
+    const Float8x3 to_point{at.x.x - y.x, at.x.y - y.y, at.x.z - y.z};
+    const Float8x3 w = to_point * (1 / sqrt(length2(to_point)));
+    Float8 v = 0.0F;
+    for (std::uint32_t g = first_[cluster]; g < first_[cluster + 1]; ++g) {
+      const V3f c = gates_[g].centre;
+      v = max(v, through(gates_[g], {c.x - y.x, c.y - y.y, c.z - y.z}, w));
+    }
+    d.untested.set(k, v);
+  }
+}
+
+std::vector<std::pair<std::string, double>> GateVisibility::statistics() const {
+  return {{"visibility_clusters", static_cast<double>(first_.size()) - 1},
+          {"visibility_gates", static_cast<double>(gates_.size()) / 2}};
+}
+
+}  // namespace lacuna

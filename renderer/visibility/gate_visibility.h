@@ -1,0 +1,58 @@
+#pragma once
+
+#include <optional>
+
+#include "renderer/settings/visibility_settings.h"
+#include "renderer/visibility/skeleton_place.h"
+#include "renderer/visibility/visibility_base.h"
+
+namespace lacuna {
+
+/// visibility: gates (Noel 2015, ch. 7). A light shines on all of its own visibility cluster, and
+/// on the rest through the disks between its cluster and others, whatever stands behind them.
+/// Lights and points that belong to no cluster are tested. Decided here, where the text leaves it
+/// open:
+/// - The cone of a light and a gate has the disk as its base, seen however obliquely.
+/// - Where cones of several gates overlap, the brightest counts: V is not above 1.
+class GateVisibility : public VisibilityBase {
+ public:
+  static constexpr bool needs_space = true;
+
+  explicit GateVisibility(const GatesVisibilitySettings& settings) : settings_(settings) {}
+
+  void prepare(const PrepareContext& context);
+  std::uint32_t group(const LightPlace& light) const { return cluster(node_of(*lookup_, light)); }
+  Counters begin(const LightPass& pass) {
+    lights_ = &pass.terms.lights();
+    return {};
+  }
+  struct At {
+    V3f x;
+    std::uint32_t cluster;
+  };
+  At at(const ShadingPoint& point, const IterationContext&) const {
+    return {point.vertex->surface.x, cluster(node_of(*lookup_, point))};
+  }
+  void decide(const At& at, std::size_t block, const Terms& terms, Decision& d) const;
+  std::vector<std::pair<std::string, double>> statistics() const;
+
+ private:
+  struct Gate {
+    V3f centre, axis;  // scene units; unit length
+    float radius2;
+  };
+
+  std::uint32_t cluster(std::uint32_t node) const {
+    return node == no_node ? no_group : cluster_of_[node];
+  }
+  Float8 through(const Gate& gate, const Float8x3& to_gate, const Float8x3& w) const;
+
+  GatesVisibilitySettings settings_;
+  std::optional<SurfaceLookup> lookup_;
+  std::vector<std::uint32_t> cluster_of_;  // of each node of the skeleton
+  std::vector<std::uint32_t> first_;       // of each cluster in gates_, and the end
+  std::vector<Gate> gates_;                // each once for either side
+  const VirtualLights* lights_ = nullptr;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+
+#include "renderer/settings/visibility_settings.h"
+#include "renderer/visibility/node_maps.h"
+#include "renderer/visibility/skeleton_place.h"
+#include "renderer/visibility/visibility_base.h"
+
+namespace lacuna {
+
+/// visibility: node_maps. All lights of a node of the filtered skeleton share the node's view: what
+/// it does not see, none of them is evaluated for (Noel 2015, ch. 8, eq. 161). Lights that belong
+/// to no node are tested.
+class NodeMapVisibility : public VisibilityBase {
+ public:
+  static constexpr bool needs_space = true;
+
+  explicit NodeMapVisibility(const NodeMapsVisibilitySettings& settings) : settings_(settings) {}
+
+  void prepare(const PrepareContext& context);
+  std::uint32_t group(const LightPlace& light) const { return node_of(*lookup_, light); }
+  Counters begin(const LightPass& pass);
+  struct At {
+    V3f x, n;                 // n on the side that is seen
+    std::vector<float> seen;  // by `views_`; below 0: nobody asked
+  };
+  At at(const ShadingPoint& point, const IterationContext& context) const;
+  bool hides(At& at, std::size_t block) const {
+    const std::uint32_t view = view_of_[block];
+    if (view == no_group) return false;
+    if (at.seen[view] < 0) at.seen[view] = views_[view].seen(at.x, at.n);
+    return at.seen[view] == 0;
+  }
+  /// To be asked only where hides() says no.
+  void decide(const At& at, std::size_t block, const Terms& terms, Decision& d) const {
+    const std::uint32_t view = view_of_[block];
+    if (view == no_group) return test_all(terms, d);
+    d.tests = 0;
+    d.untested.v.fill(at.seen[view]);
+  }
+  std::vector<std::pair<std::string, double>> statistics() const;
+
+ private:
+  NodeMapsVisibilitySettings settings_;
+  std::vector<V3f> nodes_;  // scene units
+  std::optional<SurfaceLookup> lookup_;
+  std::shared_ptr<const NodeMaps> maps_;
+  std::vector<NodeView> views_;         // of the nodes that have lights
+  std::vector<std::uint32_t> view_of_;  // of each block of lights
+};
+
+}  // namespace lacuna

@@ -1,0 +1,207 @@
+#include "renderer/visibility/node_maps.h"
+
+#include <fmt/format.h>
+#include <immintrin.h>
+
+#include "analysis/space/memory_limit.h"
+#include "renderer/core/float8.h"
+
+namespace lacuna {
+
+namespace {
+
+constexpr int least_size = 8, most_size = 1024;
+/// What is nearer than 1 / 4,000,000 of the scene's size is taken to be there.
+constexpr float largest_half = 65504;
+
+/// A direction as a place on the cube around it.
+struct CubePoint {
+  int face;     // as NodeMaps::texels
+  float u, v;   // in [-1, 1]
+  float depth;  // along the face's axis
+
+  explicit CubePoint(const V3f& d) {
+    int axis = 0;
+    for (int k = 1; k < 3; ++k) {
+      if (std::abs(d[k]) > std::abs(d[axis])) axis = k;
+    }
+    face = 2 * axis + (d[axis] < 0 ? 1 : 0);
+    depth = std::abs(d[axis]);
+    u = d[(axis + 1) % 3] / depth;
+    v = d[(axis + 2) % 3] / depth;
+  }
+};
+
+/// The direction through (u, v) of a face, of length 1 along its axis.
+V3f direction(int face, float u, float v) {
+  const int axis = face / 2;
+  V3f d;
+  d[axis] = face % 2 == 1 ? -1.0F : 1.0F;
+  d[(axis + 1) % 3] = u;
+  d[(axis + 2) % 3] = v;
+  return d;
+}
+
+/// The middle of texel `i` along a side, in [-1, 1]; i may lie beyond.
+float middle(int i, int size) {
+  return (2 * static_cast<float>(i) + 1) / static_cast<float>(size) - 1;
+}
+
+/// The part of a row of texels that the filter covers.
+struct Window {
+  int first;
+  float low, high;  // in texels whose middles are whole numbers
+
+  Window(float at, int size, int filter) {
+    const float centre = (at + 1) / 2 * static_cast<float>(size) - 0.5F;
+    low = centre - static_cast<float>(filter) / 2;
+    high = centre + static_cast<float>(filter) / 2;
+    first = static_cast<int>(std::floor(low + 0.5F));
+  }
+  /// How much of texel `i` is covered.
+  float weight(int i) const {
+    const auto x = static_cast<float>(i);
+    return std::max(0.0F, std::min(x + 0.5F, high) - std::max(x - 0.5F, low));
+  }
+};
+
+/// Texels compared with a plane. A texel in whose direction the plane does not lie says nothing.
+struct Sums {
+  float seen = 0, all = 0;
+};
+
+}  // namespace
+
+NodeMaps trace_node_maps(const Scene& scene, std::span<const V3f> places, int size,
+                         const ThreadPool& pool, std::uint64_t byte_limit) {
+  NodeMaps maps;
+  maps.size = size;
+  maps.scale = static_cast<float>(2 * scene.bounds().radius() / 64);
+  const std::size_t texels = places.size() * maps.texels_of_place() + NodeMaps::margin;
+  if (const std::uint64_t bytes = texels * sizeof(maps.texels[0]); bytes > byte_limit) {
+    throw MemoryLimitError(
+        fmt::format("distance maps of {} nodes with {} x {} texels a face take {} bytes, of {} "
+                    "that are free: a smaller map_size, or an analysis of lower resolution",
+                    places.size(), size, size, bytes, byte_limit));
+  }
+  maps.texels.resize(texels);
+  const auto n = static_cast<std::size_t>(size);
+  pool.for_each(static_cast<int>(places.size()) * NodeMaps::faces, [&](int part) {
+    const V3f from = places[static_cast<std::size_t>(part / NodeMaps::faces)];
+    std::uint16_t* texel = maps.texels.data() + static_cast<std::size_t>(part) * n * n;
+    for (int j = 0; j < size; ++j) {
+      for (int i = 0; i < size; ++i, ++texel) {
+        const Ray ray{from, direction(part % NodeMaps::faces, middle(i, size), middle(j, size))};
+        Hit hit;
+        if (!scene.rays().intersect(ray, hit)) continue;
+        *texel = _cvtss_sh(std::min(maps.scale / hit.t, largest_half), _MM_FROUND_TO_NEAREST_INT);
+      }
+    }
+  });
+  return maps;
+}
+
+namespace {
+
+/// Asks a node's map around a direction.
+class Comparison {
+ public:
+  /// The plane: points p with p . n = h, seen from the node.
+  Comparison(const NodeMaps& maps, std::size_t index, const V3f& n, float h)
+      : maps_(maps),
+        texels_(maps.texels.data() + index * maps.texels_of_place()),
+        n_(n),
+        // Half a texel's width more: what is nearer to the plane than that is taken to be on it.
+        over_h_(maps.scale * (1 + 1 / static_cast<float>(maps.size)) / h) {}
+
+  Sums around(const CubePoint& p, int filter) const {
+    const Window across(p.u, maps_.size, filter), down(p.v, maps_.size, filter);
+    const auto inside = [&](int first) { return first >= 0 && first + filter < maps_.size; };
+    if (inside(across.first) && inside(down.first)) return rows(p.face, across, down, filter);
+    Sums sums;
+    for (int j = down.first; j <= down.first + filter; ++j) {
+      for (int i = across.first; i <= across.first + filter; ++i) {
+        add(direction(p.face, middle(i, maps_.size), middle(j, maps_.size)),
+            across.weight(i) * down.weight(j), sums);
+      }
+    }
+    return sums;
+  }
+
+ private:
+  const std::uint16_t* texel(int face, int i, int j) const {
+    const auto n = static_cast<std::size_t>(maps_.size);
+    return texels_ + (static_cast<std::size_t>(face) * n + static_cast<std::size_t>(j)) * n +
+           static_cast<std::size_t>(i);
+  }
+
+  /// A square within a face, up to eight texels of a row at once.
+  Sums rows(int face, const Window& across, const Window& down, int filter) const {
+    alignas(32) static constexpr std::array<float, 8> steps{0, 1, 2, 3, 4, 5, 6, 7};
+    const Float8 column = Float8::load(steps.data()) + static_cast<float>(across.first);
+    const Float8 weight =
+        max(0.0F, min(column + 0.5F, across.high) - max(column - 0.5F, across.low));
+    // 1 / depth of the plane is linear on a face.
+    const V3f start = direction(face, middle(across.first, maps_.size), 0);
+    const float du = 2 / static_cast<float>(maps_.size) * n_[(face / 2 + 1) % 3] * over_h_;
+    const Float8 first = Float8::load(steps.data()) * du + start.dot(n_) * over_h_;
+    Float8 seen = 0.0F, all = 0.0F;
+    for (int j = down.first; j <= down.first + filter; ++j) {
+      const Float8 plane = first + middle(j, maps_.size) * n_[(face / 2 + 2) % 3] * over_h_;
+      const Float8 nearest = _mm256_cvtph_ps(
+          _mm_loadu_si128(reinterpret_cast<const __m128i*>(texel(face, across.first, j))));
+      const Float8 counts = keep_where(plane > 0, weight * down.weight(j));
+      all = all + counts;
+      seen = seen + keep_where(plane >= nearest, counts);
+    }
+    return {sum(seen), sum(all)};
+  }
+
+  /// One texel in a direction which may lie beyond the face that it was made for.
+  void add(const V3f& d, float weight, Sums& sums) const {
+    const CubePoint p(d);
+    const auto place = [&](float at) {
+      const auto i = static_cast<int>((at + 1) / 2 * static_cast<float>(maps_.size));
+      return std::clamp(i, 0, maps_.size - 1);
+    };
+    const float plane = d.dot(n_) * over_h_ / p.depth;
+    if (!(plane > 0)) return;
+    sums.all += weight;
+    if (plane >= _cvtsh_ss(*texel(p.face, place(p.u), place(p.v)))) sums.seen += weight;
+  }
+
+  const NodeMaps& maps_;
+  const std::uint16_t* texels_;
+  V3f n_;
+  float over_h_;
+};
+
+}  // namespace
+
+float NodeView::seen(const V3f& x, const V3f& n) const {
+  const V3f d = x - place_;
+  const float h = d.dot(n);
+  if (!(h < 0)) return 0;  // the place lies behind the surface
+  const Sums sums = Comparison(*maps_, index_, n, h).around(CubePoint(d), filter_);
+  return sums.all > 0 ? sums.seen / sums.all : 0;
+}
+
+void Codec<NodeMaps>::write(ArtefactWriter& out, const NodeMaps& maps) {
+  encode(out, maps.size, maps.scale, maps.texels);
+}
+
+NodeMaps Codec<NodeMaps>::read(ArtefactReader& in) {
+  NodeMaps maps;
+  maps.size = decode<int>(in);
+  require(maps.size >= least_size && maps.size <= most_size, "a side has 8 to 1024 texels");
+  maps.scale = decode<float>(in);
+  require(maps.scale > 0 && maps.scale <= std::numeric_limits<float>::max(),
+          "the scale is above 0");
+  maps.texels = decode<std::vector<std::uint16_t>>(in);
+  require(maps.texels.size() >= NodeMaps::margin &&
+              (maps.texels.size() - NodeMaps::margin) % maps.texels_of_place() == 0,
+          "whole maps");
+  return maps;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "renderer/integrators/integrator.h"
+#include "renderer/visibility/cache_points.h"
+#include "renderer/visibility/decision.h"
+
+namespace lacuna {
+
+/// What a visibility is asked, with the answers of one that needs nothing. It says what is taken
+/// for V between shading points and virtual lights, and has besides
+///
+///     struct At;  At at(const ShadingPoint&, const IterationContext&) const;  of a shading point
+///     void decide(At&, std::size_t block, const Terms&, Decision&) const;     of a block of lights
+struct VisibilityBase {
+  static constexpr bool needs_space = false;  ///< the analysis of the empty space
+  /// Once, before the first iteration.
+  static void prepare(const PrepareContext&) {}
+  /// Lights of which groups it wants to meet one after another.
+  static std::uint32_t group(const LightPlace&) { return 0; }
+  /// Once the lights of an iteration are there.
+  static Counters begin(const LightPass&) { return {}; }
+  /// No light of `block` shines on the point, whatever it would give.
+  template <class At>
+  static bool hides(At&, std::size_t /*block*/) {
+    return false;
+  }
+  /// Negative pixels are to become black.
+  static bool clamps_negative() { return false; }
+  static std::vector<std::pair<std::string, double>> statistics() { return {}; }
+};
+
+/// Every light that could add something is tested.
+inline void test_all(const Terms& terms, Decision& d) {
+  d.tests = terms.lit;
+  d.untested.v.fill(0);
+  d.gain.v.fill(1);
+}
+
+}  // namespace lacuna

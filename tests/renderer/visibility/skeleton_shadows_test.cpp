@@ -1,0 +1,168 @@
+// Gates and node maps against sums of one light after another.
+
+#include "renderer/visibility/gate_visibility.h"
+#include "renderer/visibility/node_map_visibility.h"
+#include "renderer/visibility/plain_visibility.h"
+#include "tests/renderer/visibility/lit_scene.h"
+
+namespace lacuna {
+namespace {
+
+using test::gathered;
+using test::LitScene;
+
+/// The sum over all lights of what they give times `v(place)`; what is below 0 is tested by a ray.
+template <class V>
+double by_hand(const LitScene& lit, const ShadingPoint& at, V&& v) {
+  double total = 0;
+  Terms terms;
+  const VirtualLights& lights = lit.lights();
+  for (std::size_t b = 0; b < lights.blocks(at.edges); ++b) {
+    lit.terms().evaluate(at, b, terms);
+    for (int i = 0; i < lights.count(b); ++i) {
+      LightPlace place;
+      if (const DiffuseBlock* from = lights.diffuse(b)) {
+        place = {V3f(from->x[i], from->y[i], from->z[i]),
+                 V3f(from->gx[i], from->gy[i], from->gz[i]), false};
+      } else {
+        place = lights.general(b, i).place();
+      }
+      double seen = v(place);
+      if (seen < 0) seen = lit.scene().rays().occluded(lit.terms().ray(at, b, i)) ? 0 : 1;
+      if (terms.r[i] > 0) total += double(terms.r[i]) * seen;
+    }
+  }
+  return total;
+}
+
+/// `expected(at, place)`: V by its definition.
+template <class Visibility, class V>
+void expect_sums(const LitScene& lit, const Visibility& visibility, V&& expected) {
+  int compared = 0, shadowed = 0;
+  for (const std::uint32_t first : {0U, 400U, 900U}) {
+    lit.with_points(first, [&](std::span<const ShadingPoint> points) {
+      const auto values = gathered(lit, lit.context(1), visibility, points);
+      const auto all = gathered(lit, lit.context(1), NoVisibility{{}}, points);
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        const double sum = by_hand(
+            lit, points[k], [&](const LightPlace& place) { return expected(points[k], place); });
+        // A light at the rim of a gate may count or not.
+        EXPECT_NEAR(values[k], sum, 1e-4 * all[k] + 1e-12);
+        compared += all[k] > 0;
+        shadowed += all[k] > 1.05 * values[k];
+      }
+    });
+  }
+  EXPECT_GT(compared, 50);
+  EXPECT_GT(shadowed, 20) << "nothing was in shadow";
+}
+
+class SkeletonShadows : public testing::TestWithParam<test::PathScene> {};
+
+TEST_P(SkeletonShadows, OfNodeMapsAreThoseOfTheLightsNodes) {
+  LitScene lit(GetParam(), 200, 2);
+  const NodeMapsVisibilitySettings settings{.map_size = 32, .filter = 3};
+  NodeMapVisibility visibility(settings);
+  lit.prepare(visibility);
+  const GridTransform transform = lit.space().voxels().transform;
+  std::vector<V3f> nodes;
+  for (const Imath::V3i& c : lit.space().filtered().graph.corners) {
+    nodes.emplace_back(transform.to_world(V3d(c)));
+  }
+  const NodeMaps maps = trace_node_maps(lit.scene(), nodes, 32, lit.pool(), no_memory_limit);
+  const SurfaceLookup lookup(transform, lit.space().filtered_map());
+  expect_sums(lit, visibility, [&](const ShadingPoint& at, const LightPlace& place) {
+    const std::uint32_t node = node_of(lookup, place);
+    if (node == no_node) return -1.0;
+    const Vertex& v = *at.vertex;
+    const V3f n = dot(v.wp, v.surface.ng) < 0 ? -v.surface.ng : v.surface.ng;
+    return double(NodeView(maps, node, nodes[node], 3).seen(v.surface.x, n));
+  });
+}
+
+TEST_P(SkeletonShadows, OfGatesAreClustersAndCones) {
+  LitScene lit(GetParam(), 200, 2);
+  for (const GateFalloff falloff : {GateFalloff::cosine, GateFalloff::rim, GateFalloff::none}) {
+    GateVisibility visibility({.falloff = falloff});
+    lit.prepare(visibility);
+    SpaceAnalysis& space = lit.space();
+    const GridTransform transform = space.voxels().transform;
+    const SurfaceLookup lookup(transform, space.node_map());
+    const VisibilityGates& gates = space.gates();
+    const VisibilityClusters& clusters = space.clusters();
+    const SimplifiedSkeleton& simplified = space.simplified();
+    const auto cluster_of = [&](std::uint32_t node) {
+      return clusters.of_node[simplified.parent[node]];
+    };
+    expect_sums(lit, visibility, [&](const ShadingPoint& at, const LightPlace& place) {
+      const std::uint32_t from = node_of(lookup, place), to = node_of(lookup, at);
+      if (from == no_node || to == no_node) return -1.0;
+      if (cluster_of(from) == cluster_of(to)) return 1.0;
+      double most = 0;
+      for (const VisibilityGate& g : gates.gates) {
+        if (g.clusters[0] != cluster_of(from) && g.clusters[1] != cluster_of(from)) continue;
+        const V3d y(place.x), c(transform.to_world(V3d(g.centre))), a(g.axis);
+        const V3d w = (V3d(at.vertex->surface.x) - y).normalized();
+        const double t = (c - y).dot(a) / w.dot(a);
+        const double r = (y + w * t - c).length() / (double(g.radius) * transform.voxel_size);
+        if (!(t > 0 && r <= 1)) continue;
+        const double cosine = w.dot((c - y).normalized());
+        most = std::max(most, falloff == GateFalloff::cosine ? std::max(0.0, cosine)
+                              : falloff == GateFalloff::rim  ? 1 - r * r
+                                                             : 1);
+      }
+      return most;
+    });
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SkeletonShadows,
+                         testing::Values(test::PathScene{"ajar"}, test::PathScene{"bends"},
+                                         test::PathScene{"many_lights"},
+                                         test::PathScene{"open", true}),
+                         [](const auto& s) { return s.param.name; });
+
+// Groups change the order of the lights, and nothing else.
+TEST(VirtualLights, InGroupsGiveTheSame) {
+  struct ByPlace : ExactVisibility {
+    using ExactVisibility::ExactVisibility;
+    static std::uint32_t group(const LightPlace& p) {
+      if (p.infinite || p.n == V3f(0.0F)) return no_group;
+      return p.n.y > 0.5F ? 7 : p.x.x > 0 ? 3 : 0;
+    }
+  };
+  for (const test::PathScene& scene : {test::PathScene{"ajar"}, {"open", true}, {"many_lights"}}) {
+    LitScene lit(scene, 300, 2);
+    std::vector<double> expected;
+    lit.with_points(300, [&](auto points) {
+      expected = gathered(lit, lit.context(1), ExactVisibility{{}}, points);
+    });
+    const std::size_t size = lit.lights().size();
+    ByPlace grouped{{}};
+    lit.prepare(grouped);
+    EXPECT_EQ(lit.lights().size(), size);
+    for (std::size_t b = 0; b < lit.lights().blocks(); ++b) {
+      if (const DiffuseBlock* from = lit.lights().diffuse(b)) {
+        for (int i = 0; i < lit.lights().count(b); ++i) {
+          EXPECT_EQ(ByPlace::group({V3f(from->x[i], from->y[i], from->z[i]),
+                                    V3f(from->gx[i], from->gy[i], from->gz[i]), false}),
+                    lit.lights().group(b));
+        }
+      } else {
+        for (int i = 0; i < lit.lights().count(b); ++i) {
+          EXPECT_EQ(ByPlace::group(lit.lights().general(b, i).place()), lit.lights().group(b));
+        }
+      }
+    }
+    lit.with_points(300, [&](auto points) {
+      const auto values = gathered(lit, lit.context(1), grouped, points);
+      ASSERT_EQ(values.size(), expected.size());
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        EXPECT_NEAR(values[i], expected[i], 1e-5 * expected[i]);
+      }
+    });
+  }
+}
+
+}  // namespace
+}  // namespace lacuna
