@@ -4,7 +4,9 @@
 
 #include "jobs/cli/commands.h"
 #include "renderer/film/block_statistics.h"
+#include "renderer/film/display_errors.h"
 #include "renderer/film/metrics.h"
+#include "renderer/film/preview.h"
 #include "renderer/scene/image_read.h"
 #include "renderer/scene/scene_data.h"
 
@@ -99,6 +101,10 @@ void compare(const CompareOptions& o) {
   }
   fmt::print("mean_a  {:.9g}\nmean_b  {:.9g}\nmean_relative {:.6g}\n", mean(a), mean(b),
              (mean(a) - mean(b)) / mean(b));
+  const double exposure = preview_exposure(b);
+  const DisplayErrors d = display_errors(a, b, crop.width, crop.height, exposure);
+  fmt::print("exposure {:.6g}\ndisplay_mse {:.6g}\npsnr {:.6g}\nssim {:.6g}\n", exposure, d.mse,
+             d.psnr, d.ssim);
   if (o.block > 0) print_blocks(o, crop, a, b);
 }
 
@@ -106,8 +112,11 @@ void compare(const CompareOptions& o) {
 
 void add_compare(CLI::App& app, int& code) {
   const auto o = std::make_shared<CompareOptions>();
-  CLI::App* command = app.add_subcommand(
-      "compare", "Print every error of one EXR against another, and their means");
+  CLI::App* command =
+      app.add_subcommand("compare",
+                         "Print every error of one EXR against another, and their means; "
+                         "display_mse, psnr and ssim are "
+                         "of sRGB values of 0 to 255, at the exposure that B's preview has");
   command->add_option("A", o->a, "the estimate")->required()->check(CLI::ExistingFile);
   command->add_option("B", o->b, "the reference")->required()->check(CLI::ExistingFile);
   command

@@ -11,17 +11,12 @@
 
 namespace lacuna {
 
-namespace {
-
-/// The value's code in sRGB.
-unsigned char encode(double linear) {
+unsigned char display_code(double linear) {
   if (!(linear > 0)) return 0;
   const double v = std::min(linear, 1.0);
   const double s = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
   return static_cast<unsigned char>(std::lround(s * 255));
 }
-
-}  // namespace
 
 double preview_exposure(std::span<const double> rgb) {
   std::vector<double> luminances;
@@ -39,7 +34,7 @@ double preview_exposure(std::span<const double> rgb) {
 std::string preview_png(int width, int height, std::span<const double> rgb, double exposure) {
   std::vector<unsigned char> bytes(rgb.size());
   std::transform(rgb.begin(), rgb.end(), bytes.begin(),
-                 [&](double v) { return encode(v * exposure); });
+                 [&](double v) { return display_code(v * exposure); });
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   image.width = static_cast<png_uint_32>(width);

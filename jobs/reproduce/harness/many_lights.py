@@ -32,8 +32,10 @@ def job(scene, how, full, share=1.0, side=64, **more):
              "integrator": {"type": "many_lights", "max_depth": 6, "light_paths": round(s["paths"] * share),
                             "compensation": False, "visibility": how},
              "resolution": FULL if full else [side, side], **more}
-    if not full:
-        value["crop"] = {"of": FULL, "from": s["crop"]}
+    if full:
+        value.pop("crop", None)
+    else:
+        value.setdefault("crop", {"of": FULL, "from": s["crop"]})
     return value
 
 
@@ -59,10 +61,10 @@ def seconds(report):
     return report["seconds"]["render_cpu"]
 
 
-def errors(run, name, exact_name):
-    """Every error of one picture against another of the same lights."""
+def errors(run, name, exact_name, *options):
+    """Every error of one picture against another of the same lights, as `lacuna compare` prints them."""
     at = run.folder / run.version
-    lines = child.lacuna("compare", at / name / "image.exr", at / exact_name / "image.exr")[0].splitlines()
+    lines = child.lacuna("compare", at / name / "image.exr", at / exact_name / "image.exr", *options)[0].splitlines()
     return {words[0]: float(words[1]) for words in map(str.split, lines) if len(words) == 2}
 
 

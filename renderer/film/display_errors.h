@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+
+namespace lacuna {
+
+/// How far two pictures differ as they are shown: both sRGB, of 0 to 255, at one exposure.
+struct DisplayErrors {
+  double mse = 0;   ///< over pixels and channels
+  double psnr = 0;  ///< 10 log10(255^2 / mse), dB; infinite where nothing differs
+  double ssim =
+      0;  ///< structural similarity of luma, windows of 11 x 11 (Wang et al. 2004); 1: same
+};
+
+/// `estimate` and `reference`: interleaved linear RGB of `width` x `height` pixels, both above 0.
+/// `exposure`: as preview_png()'s. Throws std::invalid_argument for other sizes.
+DisplayErrors display_errors(std::span<const double> estimate, std::span<const double> reference,
+                             int width, int height, double exposure);
+
+}  // namespace lacuna
