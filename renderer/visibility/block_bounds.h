@@ -1,5 +1,6 @@
 #pragma once
 
+#include "renderer/core/float8.h"
 #include "renderer/core/vec.h"
 
 namespace lacuna {
@@ -17,36 +18,38 @@ class BlockBounds {
     }
   }
 
-  /// No light of the block lies in front of the plane through `x` with normal `n`, and rounding
-  /// does not decide it.
-  bool behind(const V3f& x, const V3f& n) const {
-    float highest = 0;
-    float size = 0;
-    for (int k = 0; k < 3; ++k) {
-      const float a = n[k] * (low_[k] - x[k]);
-      const float b = n[k] * (high_[k] - x[k]);
-      highest += std::max(a, b);
-      size += std::abs(a) + std::abs(b);
-    }
-    return highest < -rounding * size;
+  /// Of eight points `x`: no light of the block lies in front of the plane through x with normal
+  /// `n`, and rounding does not decide it.
+  Mask8 behind(const Float8x3& x, const Float8x3& n) const {
+    return below_zero(Float8x3{low_.x - x.x, low_.y - x.y, low_.z - x.z}, n, n,
+                      Float8x3{high_.x - x.x, high_.y - x.y, high_.z - x.z});
   }
-  /// No light of the block has `x` in front of it.
-  bool turned_from(const V3f& x) const {
-    float highest = 0;
-    float size = 0;
-    for (int k = 0; k < 3; ++k) {
-      const float a = x[k] - low_[k];
-      const float b = x[k] - high_[k];
-      const float a_most = std::max(a * least_[k], a * most_[k]);
-      const float b_most = std::max(b * least_[k], b * most_[k]);
-      highest += std::max(a_most, b_most);
-      size += std::abs(a) + std::abs(b);
-    }
-    return highest < -rounding * size;
+  /// Of eight points: no light of the block has x in front of it.
+  Mask8 turned_from(const Float8x3& x) const {
+    return below_zero(Float8x3{x.x - low_.x, x.y - low_.y, x.z - low_.z}, all(least_), all(most_),
+                      Float8x3{x.x - high_.x, x.y - high_.y, x.z - high_.z});
   }
 
  private:
   static constexpr float rounding = 1e-6F;  // a few units in the last place of the sums
+
+  static Float8x3 all(const V3f& v) { return {v.x, v.y, v.z}; }
+  /// Whether p . n < 0 for all p between `a` and `b` and n between `from` and `to`, by component.
+  static Mask8 below_zero(const Float8x3& a, const Float8x3& from, const Float8x3& to,
+                          const Float8x3& b) {
+    Float8 highest = 0.0F;
+    Float8 size = 0.0F;
+    const auto add = [&](Float8 p, Float8 q, Float8 n, Float8 m) {
+      const Float8 p_most = max(p * n, p * m);
+      const Float8 q_most = max(q * n, q * m);
+      highest = highest + max(p_most, q_most);
+      size = size + abs(p_most) + abs(q_most);
+    };
+    add(a.x, b.x, from.x, to.x);
+    add(a.y, b.y, from.y, to.y);
+    add(a.z, b.z, from.z, to.z);
+    return size * -rounding > highest;
+  }
 
   V3f low_{std::numeric_limits<float>::infinity()};
   V3f high_{-std::numeric_limits<float>::infinity()};

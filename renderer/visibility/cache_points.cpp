@@ -107,6 +107,8 @@ void CachePoints::fill(const LightPass& pass, std::size_t point, const ShadingPo
   const VirtualLights& lights = pass.terms.lights();
   ShadowQueue<Seen> queue;
   Terms terms;
+  PointLanes here;
+  here.add(at);
   double sum = 0;
   double sum2 = 0;
   const auto flush = [&] {
@@ -120,7 +122,7 @@ void CachePoints::fill(const LightPass& pass, std::size_t point, const ShadingPo
     });
   };
   for (std::size_t b = 0; b < lights.blocks(); ++b) {
-    if (!pass.terms.dark(at, b)) {
+    if (pass.terms.may_light(b, here) != 0) {
       pass.terms.evaluate(at, b, terms);
       for_each_bit(terms.lit, [&](int i) {
         queue.add(pass.terms.ray(at, b, i), {b, i, terms.luminance[i]});

@@ -22,21 +22,25 @@ class LightGather {
               const Visibility& visibility, Counters& counters)
       : context_(context), terms_(terms), visibility_(visibility), counters_(counters) {}
 
-  /// `sums[i]` becomes that of `points[i]`. Throws IterationStopped if the context asks for it.
+  /// `sums[i]` becomes that of `points[i]`, of which there are at most Lanes::size. Throws
+  /// IterationStopped if the context asks for it.
   void gather(std::span<const ShadingPoint> points, std::span<LightSum> sums) {
     std::vector<typename Visibility::At> states;
     states.reserve(points.size());
+    PointLanes lanes;
     std::vector<std::size_t> ends;
     std::size_t blocks = 0;
     for (const ShadingPoint& p : points) {
       states.push_back(visibility_.at(p, context_));
+      lanes.add(p);
       ends.push_back(terms_.lights().blocks(p.edges));
       blocks = std::max(blocks, ends.back());
     }
     for (std::size_t b = 0; b < blocks; ++b) {
-      for (std::size_t i = 0; i < points.size(); ++i) {
+      for_each_bit(terms_.may_light(b, lanes), [&](int bit) {
+        const auto i = static_cast<std::size_t>(bit);
         if (b < ends[i]) add(points[i], states[i], b, i, sums[i]);
-      }
+      });
       queue_tests();
       if (queue_.size() >= most_waiting) flush(sums);
       if ((b + 1) % blocks_between_stops == 0 && context_.stop()) throw IterationStopped{};
@@ -59,7 +63,7 @@ class LightGather {
 
   void add(const ShadingPoint& at, typename Visibility::At& state, std::size_t block,
            std::size_t point, LightSum& sum) {
-    if (terms_.dark(at, block) || visibility_.hides(state, block)) return;
+    if (visibility_.hides(state, block)) return;
     terms_.evaluate(at, block, term_);
     counters_.rejected += static_cast<std::uint64_t>(__builtin_popcountll(term_.rejected));
     if (term_.lit == 0) return;

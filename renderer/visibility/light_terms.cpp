@@ -17,12 +17,26 @@ void LightTerms::evaluate(const ShadingPoint& at, std::size_t block, Terms& out)
   finish(out);
 }
 
-bool LightTerms::dark(const ShadingPoint& at, std::size_t block) const {
-  if (lights_.diffuse(block) == nullptr) return false;
+void PointLanes::add(const ShadingPoint& p) {
+  const Surface& s = p.vertex->surface;
+  const V3f n = dot(p.vertex->wp, s.ng) < 0 ? -s.ng : s.ng;
+  const int i = static_cast<int>(size_++);
+  x_[i] = s.x.x, y_[i] = s.x.y, z_[i] = s.x.z;
+  nx_[i] = n.x, ny_[i] = n.y, nz_[i] = n.z;
+}
+
+std::uint64_t LightTerms::may_light(std::size_t block, const PointLanes& points) const {
+  const std::uint64_t all =
+      points.size() < 64 ? (std::uint64_t{1} << points.size()) - 1 : ~std::uint64_t{0};
+  if (lights_.diffuse(block) == nullptr) return all;
   const BlockBounds& bounds = lights_.bounds(block);
-  const Surface& s = at.vertex->surface;
-  if (bounds.turned_from(s.x)) return true;
-  return bounds.behind(s.x, dot(at.vertex->wp, s.ng) < 0 ? -s.ng : s.ng);
+  std::uint64_t dark = 0;
+  for (int k = 0; 8 * k < static_cast<int>(points.size()); ++k) {
+    const Float8x3 x{points.x_.eight(k), points.y_.eight(k), points.z_.eight(k)};
+    const Float8x3 n{points.nx_.eight(k), points.ny_.eight(k), points.nz_.eight(k)};
+    dark |= std::uint64_t{bits_of(bounds.turned_from(x)) | bits_of(bounds.behind(x, n))} << (8 * k);
+  }
+  return all & ~dark;
 }
 
 void LightTerms::diffuse_terms(const ShadingPoint& at, const DiffuseBlock& from, int count,

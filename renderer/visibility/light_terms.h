@@ -31,6 +31,19 @@ struct ShadingPoint {
   }
 };
 
+/// Where up to sixty-four shading points lie, side by side.
+class PointLanes {
+ public:
+  void add(const ShadingPoint& p);
+  std::size_t size() const { return size_; }
+
+ private:
+  friend class LightTerms;
+  std::size_t size_ = 0;
+  Lanes x_, y_, z_;
+  Lanes nx_, ny_, nz_;  // the geometric normal, on the side that is seen
+};
+
 /// What the lights of a block give to a shading point if nothing lies between: t_i of Nabata et
 /// al., section 2.2.
 struct Terms {
@@ -52,9 +65,9 @@ class LightTerms {
     const float cosines = abs_dot(a.surface.ng, w) * abs_dot(b.surface.ng, w);
     return bounded_share(cosines / (a.surface.x - b.surface.x).length2(), bound_);
   }
-  /// The block's lights turn their backs to the point or lie behind it: evaluate() would give
-  /// nothing, and is saved.
-  bool dark(const ShadingPoint& at, std::size_t block) const;
+  /// Bit i: lights of the block may give something to point i. To the others they turn their backs,
+  /// or they lie behind them: evaluate() would give nothing, and is saved.
+  std::uint64_t may_light(std::size_t block, const PointLanes& points) const;
   void evaluate(const ShadingPoint& at, std::size_t block, Terms& out) const;
   /// The ray that asks whether light `i` of `block`, which is lit, and `at` see one another.
   Ray ray(const ShadingPoint& at, std::size_t block, int i) const;

@@ -33,10 +33,13 @@ TEST(BlockBounds, LeaveOutOnlyWhatNoLightOfTheBlockReaches) {
       in_front = in_front || dot(normal, x[i] - p) > 0;
       faced = faced || dot(g[i], p - x[i]) > 0;
     }
-    EXPECT_FALSE(bounds.behind(p, normal) && in_front);
-    EXPECT_FALSE(bounds.turned_from(p) && faced);
-    behind += bounds.behind(p, normal);
-    turned += bounds.turned_from(p);
+    const auto all = [](const V3f& v) { return Float8x3{v.x, v.y, v.z}; };
+    const bool is_behind = any_of(bounds.behind(all(p), all(normal)));
+    const bool is_turned = any_of(bounds.turned_from(all(p)));
+    EXPECT_FALSE(is_behind && in_front);
+    EXPECT_FALSE(is_turned && faced);
+    behind += is_behind;
+    turned += is_turned;
   }
   EXPECT_GT(behind, 5000);
   EXPECT_GT(turned, 3000);
