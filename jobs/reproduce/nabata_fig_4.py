@@ -17,7 +17,7 @@ def layer(folder, name):
     channels = len(found["channels"])
     n = told["width"] * told["height"] * channels
     values = (folder / "layers.half").read_bytes()[found["offset"]:found["offset"] + 2 * n]
-    return struct.unpack(f"<{n}e", values)[::channels]
+    return [found["scale"] * half for half in struct.unpack(f"<{n}e", values)[::channels]]
 
 
 def measure(run):

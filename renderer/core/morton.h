@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "analysis/geometry/morton.h"
 #include "renderer/core/bounds.h"
 
 namespace lacuna {
@@ -18,23 +19,13 @@ class MortonOrder {
 
   /// `p` must lie in the box.
   std::uint64_t operator()(const V3f& p) const {
-    std::uint64_t code = 0;
-    for (int k = 0; k < 3; ++k) {
-      code |= spread(static_cast<std::uint64_t>((double(p[k]) - low_[k]) * scale_)) << k;
-    }
-    return code;
+    const auto step = [&](int k) {
+      return static_cast<std::uint64_t>((double(p[k]) - low_[k]) * scale_);
+    };
+    return morton_code(step(0), step(1), step(2));
   }
 
  private:
-  /// Bit i to bit 3 i, for 21 bits.
-  static std::uint64_t spread(std::uint64_t v) {
-    v = (v | v << 32) & 0x1f00000000ffff;
-    v = (v | v << 16) & 0x1f0000ff0000ff;
-    v = (v | v << 8) & 0x100f00f00f00f00f;
-    v = (v | v << 4) & 0x10c30c30c30c30c3;
-    return (v | v << 2) & 0x1249249249249249;
-  }
-
   V3d low_;
   double scale_;
 };

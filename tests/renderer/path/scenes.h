@@ -54,7 +54,17 @@ inline SceneData leaning_room() {
   return std::move(p.data);
 }
 
+/// A nearly black room: what a light path carries falls by eight decades at each surface.
+inline SceneData black_room() {
+  SceneParts p;
+  p.box({-1, -1, -1}, {1, 1, 1}, false, p.material(diffuse(Rgb(1e-8F))));
+  p.quad({-0.4F, 0.95F, -0.4F}, {0.8F, 0, 0}, {0, 0, 0.8F}, p.material(lamp(Rgb(6, 7, 8))));
+  p.eye({0.3, -0.1, 0.9}, {-0.1, -0.2, -1}, 1.5);
+  return std::move(p.data);
+}
+
 inline SceneData load(const PathScene& s) {
+  if (s.name == "black") return black_room();
   if (s.name == "leaning") return leaning_room();
   if (s.name == "coated") return coated_box(false);
   if (s.name == "coated_points") return coated_box(true);

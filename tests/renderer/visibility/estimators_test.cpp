@@ -120,6 +120,18 @@ TEST(Estimators, WithCachePointsInAnotherRoom) {
   });
 }
 
+TEST(Estimators, OfOneLight) {
+  const LitScene lit({"ajar"}, 1, 2, true);
+  ASSERT_LE(lit.lights().size(), 4U);
+  lit.with_points(400, [&](std::span<const ShadingPoint> points) {
+    ProbabilisticVisibility visibility(
+        changed<ProbabilisticVisibilitySettings>([](auto& s) { s.cache_points = 3; }));
+    const IterationContext context = lit.context(1);
+    visibility.begin(lit.pass(context));
+    expect_mean_of_exact(lit, visibility, points, false);
+  });
+}
+
 // A cache point's own visibility is that of exact tests.
 TEST(CachePoints, KnowWhatTheySee) {
   const LitScene lit({"ajar"}, 200, 2);
