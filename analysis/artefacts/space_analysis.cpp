@@ -4,6 +4,7 @@
 
 #include "analysis/artefacts/settings_text.h"
 #include "analysis/artefacts/space_codecs.h"
+#include "analysis/octree/surface_octree.h"
 #include "analysis/skeleton/build_graph.h"
 #include "analysis/skeleton/node_map.h"
 #include "analysis/skeleton/visible_map.h"
@@ -18,7 +19,7 @@ namespace {
 constexpr std::uint32_t voxels_version = 1, domain_version = 1, skeleton_version = 1,
                         filtered_version = 1, map_version = 1, simplified_version = 1,
                         clusters_version = 1, gates_version = 1, regions_version = 1,
-                        portals_version = 1;
+                        portals_version = 1, octree_version = 1;
 
 /// By how much a node's radius may fall short of its cluster's (thesis 7.2.2).
 constexpr double cluster_alpha = 0.2;
@@ -210,6 +211,15 @@ const Portals& SpaceAnalysis::portals() {
                         const RegionLabels& labels = regions();
                         return find_portals(labels, pool_, input_.byte_limit());
                       });
+}
+
+std::shared_ptr<const Octree> SpaceAnalysis::octree(int levels) {
+  const ArtefactKey key = ArtefactKey("octree", octree_version, fmt::format("levels={}", levels))
+                              .from("geometry", input_.geometry);
+  return store_.get<Octree>(key, [&] {
+    const TriangleSoup triangles = input_.triangles();  // first: the limit is of what is left then
+    return surface_octree(triangles, levels, pool_, input_.byte_limit());
+  });
 }
 
 Borders SpaceAnalysis::borders(BorderFaces which) {

@@ -7,6 +7,7 @@
 #include "analysis/artefacts/store.h"
 #include "analysis/complex/curvilinear.h"
 #include "analysis/geometry/triangle_soup.h"
+#include "analysis/octree/octree.h"
 #include "analysis/regions/borders.h"
 #include "analysis/regions/forest_labels.h"
 #include "analysis/regions/portals.h"
@@ -59,6 +60,8 @@ class SpaceAnalysis {
   /// Of every region. Made anew at each call: reading takes as long.
   Borders borders(BorderFaces which);
 
+  /// The scene's surfaces, `levels` in [0, Octree::most_levels] deep.
+  std::shared_ptr<const Octree> octree(int levels);
   /// What others make for the nodes of filtered() and keep beside the parts: `type`, `version` and
   /// `settings` as ArtefactKey's, `scene` a hash of all else that it is made from (lower-case
   /// hexadecimal). `build` is told how many bytes it may take, and throws MemoryLimitError.

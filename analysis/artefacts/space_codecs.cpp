@@ -189,4 +189,40 @@ Portals Codec<Portals>::read(ArtefactReader& in) {
   return p;
 }
 
+/// The octants of every inner node, from the root on: all else follows.
+void Codec<Octree>::write(ArtefactWriter& out, const Octree& tree) {
+  std::vector<std::uint8_t> octants;
+  for (const Octree::Node& n : tree.nodes) {
+    if (n.children > 0) octants.push_back(n.octants);
+  }
+  encode(out, tree.corner, tree.side, static_cast<std::uint8_t>(tree.levels()),
+         static_cast<std::uint8_t>(tree.empty() ? 0 : 1), octants);
+}
+Octree Codec<Octree>::read(ArtefactReader& in) {
+  const auto corner = decode<Imath::V3d>(in);
+  const auto side = decode<double>(in);
+  require(is_finite(Imath::V3f(corner)) && side > 0 && std::isfinite(side),
+          "the root's cube is a cube");
+  const int levels = decode<std::uint8_t>(in);
+  require(levels <= Octree::most_levels, "an octree has 12 levels or less");
+  const auto roots = decode<std::uint8_t>(in);
+  require(roots <= 1, "there is one root or none");
+  const auto octants = decode<std::vector<std::uint8_t>>(in);
+  std::vector<std::uint64_t> codes(roots, 0);
+  std::size_t node = 0;
+  for (int level = 0; level < levels; ++level) {
+    std::vector<std::uint64_t> below;
+    for (const std::uint64_t code : codes) {
+      require(node < octants.size() && octants[node] != 0, "inner nodes have children");
+      for (unsigned k = 0; k < 8; ++k) {
+        if ((octants[node] >> k & 1) != 0) below.push_back(code << 3 | k);
+      }
+      ++node;
+    }
+    codes = std::move(below);
+  }
+  require(node == octants.size(), "every inner node has a parent");
+  return build_octree(codes, levels, corner, side);
+}
+
 }  // namespace lacuna

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "analysis/artefacts/codec.h"
+#include "analysis/octree/octree.h"
 #include "analysis/regions/borders.h"
 #include "analysis/regions/forest_labels.h"
 #include "analysis/regions/portals.h"
@@ -31,6 +32,7 @@ LACUNA_DECLARE_CODEC(VisibilityClusters);
 LACUNA_DECLARE_CODEC(VisibilityGates);
 LACUNA_DECLARE_CODEC(RegionLabels);
 LACUNA_DECLARE_CODEC(Portals);
+LACUNA_DECLARE_CODEC(Octree);
 
 #undef LACUNA_DECLARE_CODEC
 

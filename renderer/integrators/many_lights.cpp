@@ -9,6 +9,7 @@
 #include "renderer/visibility/node_map_visibility.h"
 #include "renderer/visibility/plain_visibility.h"
 #include "renderer/visibility/roulette_visibility.h"
+#include "renderer/visibility/view_map_visibility.h"
 
 namespace lacuna {
 
@@ -254,6 +255,7 @@ struct MakeManyLights {
   }
   auto operator()(const GatesVisibilitySettings& s) const { return make<GateVisibility>(s); }
   auto operator()(const NodeMapsVisibilitySettings& s) const { return make<NodeMapVisibility>(s); }
+  auto operator()(const ViewMapsVisibilitySettings& s) const { return make<ViewMapVisibility>(s); }
 };
 
 }  // namespace

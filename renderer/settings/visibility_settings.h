@@ -212,10 +212,48 @@ void describe(V& v, NodeMapsVisibilitySettings& s) {
      .max = 7});
 }
 
+/// How the maps of all lights are made.
+enum class ViewMapMethod { megaviews, many_lods, per_view };
+
+template <>
+struct EnumTable<ViewMapMethod> {
+  static constexpr std::array<EnumValue<ViewMapMethod>, 3> values{{
+      {ViewMapMethod::megaviews, "megaviews",
+       "the octrees of the scene and of the lights are traversed together (Kol et al. 2018)"},
+      {ViewMapMethod::many_lods, "many_lods",
+       "the scene's octree is traversed for each light (Hollaender et al. 2011)"},
+      {ViewMapMethod::per_view, "per_view", "a ray for each texel of each light's map"},
+  }};
+};
+
+/// visibility: view_maps.
+struct ViewMapsVisibilitySettings {
+  static constexpr std::string_view name = "view_maps";
+  static constexpr std::string_view doc =
+      "nothing is tested: every light has a small map of distances to the leaves of the scene's "
+      "octree (biased; Kol et al. 2018)";
+  static constexpr bool biased = true;
+
+  ViewMapMethod method = ViewMapMethod::megaviews;
+  int map_size = 16;
+  int levels = 9;
+  bool operator==(const ViewMapsVisibilitySettings&) const = default;
+};
+template <class V>
+void describe(V& v, ViewMapsVisibilitySettings& s) {
+  v("method", s.method, {.doc = "how the maps are made"});
+  v("map_size", s.map_size,
+    {.doc = "texels along the sides of each half of a light's dual paraboloid map; 2 bytes each",
+     .min = 8,
+     .max = 256});
+  v("levels", s.levels,
+    {.doc = "of the octrees: the scene's longest side has 2^levels cubes", .min = 1, .max = 11});
+}
+
 /// Whether a virtual light and a shading point see one another.
 using VisibilitySettings =
     std::variant<ExactVisibilitySettings, NoVisibilitySettings, RouletteVisibilitySettings,
                  ProbabilisticVisibilitySettings, InterpolatedVisibilitySettings,
-                 GatesVisibilitySettings, NodeMapsVisibilitySettings>;
+                 GatesVisibilitySettings, NodeMapsVisibilitySettings, ViewMapsVisibilitySettings>;
 
 }  // namespace lacuna

@@ -21,13 +21,13 @@ class BlockBounds {
   /// Of eight points `x`: no light of the block lies in front of the plane through x with normal
   /// `n`, and rounding does not decide it.
   Mask8 behind(const Float8x3& x, const Float8x3& n) const {
-    return below_zero(Float8x3{low_.x - x.x, low_.y - x.y, low_.z - x.z}, n, n,
-                      Float8x3{high_.x - x.x, high_.y - x.y, high_.z - x.z});
+    return below_zero({low_.x - x.x, low_.y - x.y, low_.z - x.z},
+                      {high_.x - x.x, high_.y - x.y, high_.z - x.z}, n, n);
   }
   /// Of eight points: no light of the block has x in front of it.
   Mask8 turned_from(const Float8x3& x) const {
-    return below_zero(Float8x3{x.x - low_.x, x.y - low_.y, x.z - low_.z}, all(least_), all(most_),
-                      Float8x3{x.x - high_.x, x.y - high_.y, x.z - high_.z});
+    return below_zero({x.x - low_.x, x.y - low_.y, x.z - low_.z},
+                      {x.x - high_.x, x.y - high_.y, x.z - high_.z}, all(least_), all(most_));
   }
 
  private:
@@ -35,8 +35,8 @@ class BlockBounds {
 
   static Float8x3 all(const V3f& v) { return {v.x, v.y, v.z}; }
   /// Whether p . n < 0 for all p between `a` and `b` and n between `from` and `to`, by component.
-  static Mask8 below_zero(const Float8x3& a, const Float8x3& from, const Float8x3& to,
-                          const Float8x3& b) {
+  static Mask8 below_zero(const Float8x3& a, const Float8x3& b, const Float8x3& from,
+                          const Float8x3& to) {
     Float8 highest = 0.0F;
     Float8 size = 0.0F;
     const auto add = [&](Float8 p, Float8 q, Float8 n, Float8 m) {

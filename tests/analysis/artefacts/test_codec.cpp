@@ -5,6 +5,8 @@
 #include <random>
 
 #include "analysis/artefacts/codec.h"
+#include "analysis/artefacts/space_codecs.h"
+#include "analysis/octree/octree.h"
 #include "tests/analysis/artefacts/entries.h"
 
 namespace lacuna {
@@ -206,6 +208,38 @@ TEST(Codec, no_mutation_of_the_content_does_harm) {
     for (std::uint32_t node = 0; node < trip.value->nodes(); ++node) {
       for (const std::uint32_t other : trip.value->of(node)) EXPECT_LT(other, trip.value->nodes());
     }
+  }
+}
+
+TEST(Codec, an_octree_comes_back_and_hostile_ones_are_refused) {
+  const std::vector<std::uint64_t> codes{0, 3, 9, 70, 511};
+  for (const Octree& tree :
+       {build_octree(codes, 3, Imath::V3d(1, -2, 3), 8), build_octree({}, 3, Imath::V3d(0.0), 1),
+        build_octree(std::vector<std::uint64_t>{0}, 0, Imath::V3d(0.0), 1)}) {
+    const Trip<Octree> trip(tree);
+    ASSERT_TRUE(trip.value && !trip.refusal);
+    EXPECT_EQ(trip.value->first, tree.first);
+    EXPECT_EQ(trip.value->corner, tree.corner);
+    ASSERT_EQ(trip.value->nodes.size(), tree.nodes.size());
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+      EXPECT_EQ(trip.value->nodes[i].centre, tree.nodes[i].centre);
+      EXPECT_EQ(trip.value->nodes[i].octants, tree.nodes[i].octants);
+      EXPECT_EQ(trip.value->nodes[i].first_child, tree.nodes[i].first_child);
+    }
+  }
+  const auto written = [](double side, std::uint8_t levels, std::uint8_t roots,
+                          const std::vector<std::uint8_t>& octants) {
+    return bytes_of(Imath::V3d(0.0), side, levels, roots, std::uint64_t{octants.size()}) +
+           std::string(octants.begin(), octants.end());
+  };
+  EXPECT_FALSE(Trip<Octree>::of_bytes(written(1, 2, 1, {3, 1, 128})).refusal);
+  for (const std::string& hostile :
+       {written(0, 1, 1, {1}), written(std::nan(""), 1, 1, {1}), written(1, 13, 1, {1}),
+        written(1, 1, 2, {1, 1}), written(1, 1, 1, {0}), written(1, 2, 1, {3, 1}),
+        written(1, 1, 1, {1, 1}), written(1, 3, 0, {1})}) {
+    const auto trip = Trip<Octree>::of_bytes(hostile);
+    ASSERT_TRUE(trip.refusal);
+    EXPECT_EQ(trip.refusal->fault, EntryFault::undecodable);
   }
 }
 

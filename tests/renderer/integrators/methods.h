@@ -99,6 +99,7 @@ inline ManyLightsSettings lit_by(int max_depth, int light_paths,
       [](auto& v) {
         if constexpr (requires { v.cache_points; }) v.cache_points = 20;
         if constexpr (requires { v.map_size; }) v.map_size = 16;
+        if constexpr (requires { v.levels; }) v.levels = 6;
       },
       s.visibility);
   return s;
@@ -130,7 +131,8 @@ inline std::vector<Method> approximate_lights(int max_depth, int light_paths = 6
   return {{"lights_none", lit_by(max_depth, light_paths, NoVisibilitySettings{})},
           {"lights_interpolated", lit_by(max_depth, light_paths, InterpolatedVisibilitySettings{})},
           {"lights_gates", lit_by(max_depth, light_paths, GatesVisibilitySettings{})},
-          {"lights_node_maps", lit_by(max_depth, light_paths, NodeMapsVisibilitySettings{})}};
+          {"lights_node_maps", lit_by(max_depth, light_paths, NodeMapsVisibilitySettings{})},
+          {"lights_view_maps", lit_by(max_depth, light_paths, ViewMapsVisibilitySettings{})}};
 }
 
 /// Every flag and every named value of the choices, at least once away from its default, alone and

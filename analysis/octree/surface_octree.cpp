@@ -1,0 +1,102 @@
+#include "analysis/octree/surface_octree.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "analysis/geometry/morton.h"
+#include "analysis/space/memory_limit.h"
+#include "analysis/space/triangle_box.h"
+
+namespace lacuna {
+
+namespace {
+
+constexpr int chunks = 64;  // into which the triangles are cut, whatever the threads
+
+/// Calls `use(axis, first, count)` for the lines of cells that the triangles of a chunk meet.
+template <class Use>
+void for_each_line(const TriangleSoup& soup, const OctreeCube& cube, int levels, int chunk,
+                   Use&& use) {
+  const std::size_t n = soup.triangles.size();
+  const auto part = [&](int c) { return n * static_cast<std::size_t>(c) / chunks; };
+  const GridTransform cells{cube.corner, cube.side / (1 << levels)};
+  const CellBox all{Imath::V3i(0), Imath::V3i(1 << levels)};
+  for (std::size_t t = part(chunk); t < part(chunk + 1); ++t) {
+    std::array<Imath::V3d, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners[k] = cells.to_grid(Imath::V3d(soup.positions[soup.triangles[t][k]]));
+    }
+    TriangleBox(corners).for_each_line(all, use);
+  }
+}
+
+}  // namespace
+
+OctreeCube octree_cube(const TriangleSoup& soup) {
+  Imath::V3d low(std::numeric_limits<double>::infinity());
+  Imath::V3d high(-std::numeric_limits<double>::infinity());
+  for (const auto& t : soup.triangles) {
+    for (const std::uint32_t i : t) {
+      for (int a = 0; a < 3; ++a) {
+        low[a] = std::min(low[a], double(soup.positions[i][a]));
+        high[a] = std::max(high[a], double(soup.positions[i][a]));
+      }
+    }
+  }
+  if (soup.triangles.empty()) return {};
+  const Imath::V3d size = high - low;
+  double longest = std::max({size.x, size.y, size.z});
+  if (!(longest > 0)) longest = 1;
+  // Room for what rounding puts outside: no cell is cut off.
+  OctreeCube cube;
+  cube.side = longest * (1 + 0x1p-16);
+  cube.corner = (low + high) / 2 - Imath::V3d(cube.side / 2);
+  return cube;
+}
+
+Octree surface_octree(const TriangleSoup& soup, int levels, const ThreadPool& pool,
+                      std::uint64_t byte_limit) {
+  const OctreeCube cube = octree_cube(soup);
+  std::array<std::uint64_t, chunks> counts{};
+  pool.for_each(chunks, [&](int c) {
+    for_each_line(soup, cube, levels, c, [&](int, Imath::V3i, int count) {
+      counts[static_cast<std::size_t>(c)] += static_cast<std::uint64_t>(count);
+    });
+  });
+  std::uint64_t total = 0;
+  for (const std::uint64_t n : counts) total += n;
+  // The codes, twice while they are joined, and the nodes.
+  const std::uint64_t bytes = total * (2 * sizeof(std::uint64_t) + 2 * sizeof(Octree::Node));
+  if (bytes > byte_limit) {
+    throw MemoryLimitError(
+        fmt::format("an octree of {} levels would take up to {} MiB of memory; {} MiB are allowed",
+                    levels, bytes >> 20, byte_limit >> 20));
+  }
+  std::array<std::vector<std::uint64_t>, chunks> parts;
+  pool.for_each(chunks, [&](int c) {
+    auto& codes = parts[static_cast<std::size_t>(c)];
+    codes.reserve(counts[static_cast<std::size_t>(c)]);
+    for_each_line(soup, cube, levels, c, [&](int axis, Imath::V3i cell, int count) {
+      for (; count > 0; --count, ++cell[axis]) {
+        codes.push_back(morton_code(static_cast<std::uint64_t>(cell.x),
+                                    static_cast<std::uint64_t>(cell.y),
+                                    static_cast<std::uint64_t>(cell.z)));
+      }
+    });
+    std::sort(codes.begin(), codes.end());
+    codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
+  });
+  std::vector<std::uint64_t> all;
+  for (auto& codes : parts) {
+    const auto middle = static_cast<std::ptrdiff_t>(all.size());
+    all.insert(all.end(), codes.begin(), codes.end());
+    codes = {};
+    std::inplace_merge(all.begin(), all.begin() + middle, all.end());
+  }
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return build_octree(all, levels, cube.corner, cube.side);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,116 @@
+#include "renderer/visibility/view_map_visibility.h"
+
+#include "renderer/core/pass_seconds.h"
+
+namespace lacuna {
+
+namespace {
+
+/// Views stand this many radii of the octree's leaves before their surface: of a flat one, no
+/// leaf's sphere then rises above the horizon.
+constexpr float before_surface = 2;
+
+/// The places of a block's lights, in their order.
+template <class Use>
+void for_each_place(const VirtualLights& lights, std::size_t block, Use&& use) {
+  const DiffuseBlock* from = lights.diffuse(block);
+  for (int i = 0; i < lights.count(block); ++i) {
+    if (from == nullptr) {
+      use(lights.general(block, i).place());
+    } else {
+      use(LightPlace{V3f(from->x[i], from->y[i], from->z[i]),
+                     V3f(from->gx[i], from->gy[i], from->gz[i]), false});
+    }
+  }
+}
+
+}  // namespace
+
+void ViewMapVisibility::prepare(const PrepareContext& context) {
+  scene_ = context.space.octree(settings_.levels);
+  cell_ = scene_->radius(settings_.levels);
+  const Paraboloid map{settings_.map_size};
+  for (int i = 0; i < map.texels(); ++i) {
+    const V3f w = map.direction(i);
+    // Half the diagonal of a texel, as an angle.
+    const float half = std::sqrt(0.5F) / map.stretch(std::abs(w.x));
+    texels_.push_back({w, std::cos(half), std::sin(half)});
+  }
+}
+
+Counters ViewMapVisibility::begin(const LightPass& pass) {
+  PassSeconds seconds;
+  lights_ = &pass.terms.lights();
+  std::vector<View> views;
+  first_.clear();
+  for (std::size_t b = 0; b < lights_->blocks(); ++b) {
+    first_.push_back(static_cast<std::uint32_t>(views.size()));
+    if (lights_->group(b) == no_group) continue;
+    for_each_place(*lights_, b, [&](const LightPlace& p) {
+      views.push_back({p.x + p.n * (before_surface * cell_), p.n});
+    });
+  }
+  views_ = std::make_unique<ViewTree>(views, settings_.levels, scene_->corner, scene_->side);
+  seconds.end(tree_seconds_);
+  maps_.reset();
+  maps_ = std::make_unique<ViewMaps>(views_->leaf_count(), settings_.map_size,
+                                     static_cast<float>(2 * scene_->side));
+  const ThreadPool& pool = pass.context.pool;
+  if (settings_.method == ViewMapMethod::per_view) {
+    trace_views(pass.context.scene.rays(), *views_, pool, *maps_);
+  } else {
+    counts_ += render_views(
+        *scene_, *views_,
+        {.map_size = settings_.map_size, .share = settings_.method == ViewMapMethod::megaviews},
+        pool, [&](std::uint32_t leaf, std::span<const float> depths) { maps_->set(leaf, depths); });
+  }
+  seconds.end(map_seconds_);
+  if (pass.context.stop()) throw IterationStopped{};
+  return {};
+}
+
+bool ViewMapVisibility::sees(std::uint32_t leaf, const At& at) const {
+  const V3f d = at.x - views_->node(views_->first_leaf() + leaf).centre;
+  const bool rays = settings_.method == ViewMapMethod::per_view;
+  // The surface's leaves have their centres up to a radius before it.
+  const float h = -d.dot(at.n) - (rays ? 0 : cell_);
+  if (!(h > 0)) return true;
+  const int texel = maps_->map().texel(d);
+  const Texel& t = texels_[static_cast<std::size_t>(texel)];
+  const float along = -t.direction.dot(at.n);
+  // 1 / distance of the surface's plane. A ray saw it in the middle of the texel; of leaves the
+  // nearest in the whole texel counts, so that of the plane is what it is to be compared with.
+  const float nearest =
+      rays ? along * (1 + 1 / static_cast<float>(settings_.map_size))
+           : along * t.cosine + std::sqrt(std::max(0.0F, 1 - along * along)) * t.sine;
+  return maps_->scale() * nearest >= maps_->nearness(leaf, texel) * h;
+}
+
+void ViewMapVisibility::decide(const At& at, std::size_t block, const Terms& terms,
+                               Decision& d) const {
+  if (lights_->group(block) == no_group) return test_all(terms, d);
+  d.tests = 0;
+  d.untested.v.fill(0);
+  for_each_bit(terms.lit, [&](int i) {
+    const std::uint32_t leaf = views_->leaf_of(first_[block] + static_cast<std::size_t>(i));
+    d.untested[i] = sees(leaf, at) ? 1.0F : 0.0F;
+  });
+}
+
+std::vector<std::pair<std::string, double>> ViewMapVisibility::statistics() const {
+  if (!maps_) return {};
+  const auto number = [](auto n) { return static_cast<double>(n); };
+  const auto splats = number(std::max<std::uint64_t>(1, counts_.splats));
+  return {{"scene_leaves", number(scene_->leaves().size())},
+          {"view_leaves", number(views_->leaf_count())},
+          {"view_map_bytes", number(maps_->bytes())},
+          {"view_tree_cpu_seconds", tree_seconds_},
+          {"view_map_cpu_seconds", map_seconds_},
+          {"view_pairs", number(counts_.pairs)},
+          {"view_pairs_culled", number(counts_.culled)},
+          {"view_splats", number(counts_.splats)},
+          {"views_sharing_a_splat", number(counts_.sharing) / splats},
+          {"view_queue_peak_pairs", number(counts_.queue_peak())}};
+}
+
+}  // namespace lacuna

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+
+#include "renderer/settings/visibility_settings.h"
+#include "renderer/visibility/view_maps.h"
+#include "renderer/visibility/visibility_base.h"
+
+namespace lacuna {
+
+/// visibility: view_maps (Kol et al. 2018). Every light has a small map of distances, made by
+/// traversing the octrees of the scene and of the lights together. Lights at infinity are tested.
+class ViewMapVisibility : public VisibilityBase {
+ public:
+  static constexpr bool needs_space = true;
+
+  explicit ViewMapVisibility(const ViewMapsVisibilitySettings& settings) : settings_(settings) {}
+
+  void prepare(const PrepareContext& context);
+  static std::uint32_t group(const LightPlace& light) { return light.infinite ? no_group : 0; }
+  Counters begin(const LightPass& pass);
+  struct At {
+    V3f x, n;  // n on the side that is seen
+  };
+  static At at(const ShadingPoint& point, const IterationContext&) {
+    const Surface& s = point.vertex->surface;
+    return {s.x, dot(point.vertex->wp, s.ng) < 0 ? -s.ng : s.ng};
+  }
+  void decide(const At& at, std::size_t block, const Terms& terms, Decision& d) const;
+  std::vector<std::pair<std::string, double>> statistics() const;
+
+ private:
+  struct Texel {
+    V3f direction;       // through its middle
+    float cosine, sine;  // of the angle from there to its corners
+  };
+  bool sees(std::uint32_t leaf, const At& at) const;
+
+  ViewMapsVisibilitySettings settings_;
+  std::shared_ptr<const Octree> scene_;
+  float cell_ = 0;  // radius of the scene's leaves
+  std::unique_ptr<ViewTree> views_;
+  std::unique_ptr<ViewMaps> maps_;
+  std::vector<Texel> texels_;         // of a map       // of a map's texels
+  std::vector<std::uint32_t> first_;  // of each block of lights its first view
+  const VirtualLights* lights_ = nullptr;
+  ManyViewsCounts counts_;
+  double tree_seconds_ = 0, map_seconds_ = 0;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "renderer/scene/scene.h"
+#include "renderer/visibility/many_views.h"
+
+namespace lacuna {
+
+/// The finished maps of all leaves of a view tree, as half floats: a texel of 16 x 16 spans an
+/// eighth of a right angle, within which a distance is far less certain than its eleven bits.
+class ViewMaps {
+ public:
+  /// `extent`: no distance is above it, scene units. Throws std::runtime_error if the maps would
+  /// take more than half of the free memory.
+  ViewMaps(std::uint32_t leaves, int map_size, float extent);
+
+  const Paraboloid& map() const { return map_; }
+  /// Of each texel its distance, or infinity. Different leaves may be set by several threads.
+  void set(std::uint32_t leaf, std::span<const float> depths);
+  /// `scale()` over the distance; 0 where nothing is.
+  float nearness(std::uint32_t leaf, int texel) const;
+  float scale() const { return scale_; }
+  std::size_t bytes() const { return texels_.size() * sizeof(texels_[0]); }
+
+ private:
+  Paraboloid map_;
+  float scale_;
+  std::vector<std::uint16_t> texels_;
+};
+
+/// The same by a ray for each texel, from the middle of each leaf's views: one map per view.
+void trace_views(const RayCaster& rays, const ViewTree& views, const ThreadPool& pool,
+                 ViewMaps& maps);
+
+}  // namespace lacuna

@@ -1,0 +1,65 @@
+// What view maps say of lights and points, against rays.
+
+#include "renderer/visibility/view_map_visibility.h"
+#include "tests/renderer/visibility/lit_scene.h"
+
+namespace lacuna {
+namespace {
+
+using test::LitScene;
+
+struct Agreement {
+  int seen = 0, unseen = 0, wrong = 0;
+  double share() const { return double(wrong) / double(seen + unseen); }
+};
+
+Agreement against_rays(LitScene& lit, const ViewMapsVisibilitySettings& settings) {
+  ViewMapVisibility visibility(settings);
+  lit.prepare(visibility);
+  Agreement a;
+  for (const std::uint32_t first : {0U, 300U, 600U, 900U}) {
+    lit.with_points(first, [&](std::span<const ShadingPoint> points) {
+      Terms terms;
+      Decision d;
+      for (const ShadingPoint& p : points) {
+        const auto at = visibility.at(p, lit.context(1));
+        for (std::size_t b = 0; b < lit.lights().blocks(p.edges); ++b) {
+          lit.terms().evaluate(p, b, terms);
+          if (lit.lights().group(b) == no_group || terms.lit == 0) continue;
+          visibility.decide(at, b, terms, d);
+          EXPECT_EQ(d.tests, 0U);
+          for_each_bit(terms.lit, [&](int i) {
+            const bool expected = !lit.scene().rays().occluded(lit.terms().ray(p, b, i));
+            (expected ? a.seen : a.unseen) += 1;
+            a.wrong += (d.untested[i] > 0) != expected;
+          });
+        }
+      }
+    });
+  }
+  EXPECT_GT(std::min(a.seen, a.unseen), 500);
+  return a;
+}
+
+class ViewMapShadows : public testing::TestWithParam<const char*> {};
+
+TEST_P(ViewMapShadows, AreNearlyThoseOfRays) {
+  LitScene lit({GetParam()}, 200, 2);
+  using M = ViewMapMethod;
+  const Agreement fine_rays = against_rays(lit, {M::per_view, 128, 8});
+  const Agreement coarse_rays = against_rays(lit, {M::per_view, 16, 8});
+  const Agreement views = against_rays(lit, {M::megaviews, 64, 8});
+  const Agreement lods = against_rays(lit, {M::many_lods, 64, 8});
+  const double all_seen = double(views.unseen) / double(views.seen + views.unseen);
+  EXPECT_LT(fine_rays.share(), 0.08);
+  EXPECT_LT(views.share(), 0.2);
+  EXPECT_LT(views.share(), 0.7 * all_seen);
+  EXPECT_LT(fine_rays.share(), coarse_rays.share());
+  EXPECT_NEAR(views.share(), lods.share(), 0.02);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ViewMapShadows, testing::Values("ajar", "atrium", "bends"),
+                         [](const auto& s) { return std::string(s.param); });
+
+}  // namespace
+}  // namespace lacuna
