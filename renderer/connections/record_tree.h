@@ -38,9 +38,6 @@ class RecordTree {
 };
 
 /// Where a surface that an eye path met is: the normal on the side it is seen from.
-inline RecordTree::Place place_of(const Vertex& v) {
-  const V3f& n = v.surface.ng;
-  return {v.surface.x, dot(n, v.wp) < 0 ? -n : n};
-}
+inline RecordTree::Place place_of(const Vertex& v) { return {v.surface.x, v.side()}; }
 
 }  // namespace lacuna

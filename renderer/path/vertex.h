@@ -30,6 +30,8 @@ struct Vertex {
   GuideSite site;            ///< of the surface as seen from wp
   std::optional<Bsdf> bsdf;  ///< of a surface from which the path may go on
 
+  /// A surface's geometric normal on the side that the walk came from.
+  V3f side() const { return dot(surface.ng, wp) < 0 ? -surface.ng : surface.ng; }
   /// An edge that was not sampled may begin or end here.
   bool connectible() const { return kind == Kind::surface ? !delta && bsdf->connectible() : true; }
 };

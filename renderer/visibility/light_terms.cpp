@@ -18,10 +18,10 @@ void LightTerms::evaluate(const ShadingPoint& at, std::size_t block, Terms& out)
 }
 
 void PointLanes::add(const ShadingPoint& p) {
-  const Surface& s = p.vertex->surface;
-  const V3f n = dot(p.vertex->wp, s.ng) < 0 ? -s.ng : s.ng;
+  const V3f x = p.vertex->surface.x;
+  const V3f n = p.vertex->side();
   const int i = static_cast<int>(size_++);
-  x_[i] = s.x.x, y_[i] = s.x.y, z_[i] = s.x.z;
+  x_[i] = x.x, y_[i] = x.y, z_[i] = x.z;
   nx_[i] = n.x, ny_[i] = n.y, nz_[i] = n.z;
 }
 

@@ -160,8 +160,6 @@ class Traversal {
   std::vector<std::uint32_t> below_;
 };
 
-using UseMap = std::function<void(std::uint32_t, std::span<const float>)>;
-
 /// A view node that is to be rendered: what its parent left, and what it has of the parent's map.
 struct Work {
   std::uint32_t view;

@@ -33,6 +33,9 @@ struct ManyViewsSettings {
   bool cull = true;
 };
 
+/// Takes the map of a leaf, in [0, ViewTree::leaf_count()): of each texel a distance.
+using UseMap = std::function<void(std::uint32_t leaf, std::span<const float> depths)>;
+
 /// Renders a scene's octree into the leaves of a view tree by traversing both at once (Kol et al.
 /// 2018, 3.2). `use(leaf, depths)` gets each leaf's map, complete, from any thread, in any order:
 /// distances from the centre of the leaf's sphere to the centre of the nearest node behind each
@@ -44,6 +47,6 @@ struct ManyViewsSettings {
 /// root and one leaf are there at a time.
 ManyViewsCounts render_views(const Octree& scene, const ViewTree& views,
                              const ManyViewsSettings& settings, const ThreadPool& pool,
-                             const std::function<void(std::uint32_t, std::span<const float>)>& use);
+                             const UseMap& use);
 
 }  // namespace lacuna

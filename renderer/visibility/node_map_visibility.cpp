@@ -49,9 +49,7 @@ Counters NodeMapVisibility::begin(const LightPass& pass) {
 
 NodeMapVisibility::At NodeMapVisibility::at(const ShadingPoint& point,
                                             const IterationContext&) const {
-  const Surface& s = point.vertex->surface;
-  return {s.x, dot(point.vertex->wp, s.ng) < 0 ? -s.ng : s.ng,
-          std::vector<float>(views_.size(), -1.0F)};
+  return {point.vertex->surface.x, point.vertex->side(), std::vector<float>(views_.size(), -1.0F)};
 }
 
 std::vector<std::pair<std::string, double>> NodeMapVisibility::statistics() const {

@@ -5,14 +5,13 @@
 
 #include "analysis/space/memory_limit.h"
 #include "renderer/core/float8.h"
+#include "renderer/visibility/nearness.h"
 
 namespace lacuna {
 
 namespace {
 
 constexpr int least_size = 8, most_size = 1024;
-/// What is nearer than 1 / 4,000,000 of the scene's size is taken to be there.
-constexpr float largest_half = 65504;
 
 /// A direction as a place on the cube around it.
 struct CubePoint {
@@ -76,7 +75,8 @@ NodeMaps trace_node_maps(const Scene& scene, std::span<const V3f> places, int si
                          const ThreadPool& pool, std::uint64_t byte_limit) {
   NodeMaps maps;
   maps.size = size;
-  maps.scale = static_cast<float>(2 * scene.bounds().radius() / 64);
+  const auto nearness = Nearness::within(static_cast<float>(2 * scene.bounds().radius()));
+  maps.scale = nearness.scale;
   const std::size_t texels = places.size() * maps.texels_of_place() + NodeMaps::margin;
   if (const std::uint64_t bytes = texels * sizeof(maps.texels[0]); bytes > byte_limit) {
     throw MemoryLimitError(
@@ -94,7 +94,7 @@ NodeMaps trace_node_maps(const Scene& scene, std::span<const V3f> places, int si
         const Ray ray{from, direction(part % NodeMaps::faces, middle(i, size), middle(j, size))};
         Hit hit;
         if (!scene.rays().intersect(ray, hit)) continue;
-        *texel = _cvtss_sh(std::min(maps.scale / hit.t, largest_half), _MM_FROUND_TO_NEAREST_INT);
+        *texel = nearness.encode(hit.t);
       }
     }
   });
@@ -167,7 +167,7 @@ class Comparison {
     const float plane = d.dot(n_) * over_h_ / p.depth;
     if (!(plane > 0)) return;
     sums.all += weight;
-    if (plane >= _cvtsh_ss(*texel(p.face, place(p.u), place(p.v)))) sums.seen += weight;
+    if (plane >= Nearness::decode(*texel(p.face, place(p.u), place(p.v)))) sums.seen += weight;
   }
 
   const NodeMaps& maps_;

@@ -10,20 +10,6 @@ namespace {
 /// leaf's sphere then rises above the horizon.
 constexpr float before_surface = 2;
 
-/// The places of a block's lights, in their order.
-template <class Use>
-void for_each_place(const VirtualLights& lights, std::size_t block, Use&& use) {
-  const DiffuseBlock* from = lights.diffuse(block);
-  for (int i = 0; i < lights.count(block); ++i) {
-    if (from == nullptr) {
-      use(lights.general(block, i).place());
-    } else {
-      use(LightPlace{V3f(from->x[i], from->y[i], from->z[i]),
-                     V3f(from->gx[i], from->gy[i], from->gz[i]), false});
-    }
-  }
-}
-
 }  // namespace
 
 void ViewMapVisibility::prepare(const PrepareContext& context) {
@@ -46,27 +32,33 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
   for (std::size_t b = 0; b < lights_->blocks(); ++b) {
     first_.push_back(static_cast<std::uint32_t>(views.size()));
     if (lights_->group(b) == no_group) continue;
-    for_each_place(*lights_, b, [&](const LightPlace& p) {
+    for (int i = 0; i < lights_->count(b); ++i) {
+      const LightPlace p = lights_->place(b, i);
       views.push_back({p.x + p.n * (before_surface * cell_), p.n});
-    });
+    }
   }
   views_ = std::make_unique<ViewTree>(views, settings_.levels, scene_->corner, scene_->side);
   seconds.end(tree_seconds_);
   maps_.reset();
   maps_ = std::make_unique<ViewMaps>(views_->leaf_count(), settings_.map_size,
                                      static_cast<float>(2 * scene_->side));
+  Counters counters;
+  const auto take = [&](std::uint32_t leaf, std::span<const float> depths) {
+    if (pass.context.stop()) throw IterationStopped{};
+    maps_->set(leaf, depths);
+  };
   const ThreadPool& pool = pass.context.pool;
   if (settings_.method == ViewMapMethod::per_view) {
-    trace_views(pass.context.scene.rays(), *views_, pool, *maps_);
+    trace_views(pass.context.scene.rays(), *views_, maps_->map(), pool, take);
+    counters.rays += std::uint64_t{views_->leaf_count()} * texels_.size();
   } else {
     counts_ += render_views(
         *scene_, *views_,
         {.map_size = settings_.map_size, .share = settings_.method == ViewMapMethod::megaviews},
-        pool, [&](std::uint32_t leaf, std::span<const float> depths) { maps_->set(leaf, depths); });
+        pool, take);
   }
   seconds.end(map_seconds_);
-  if (pass.context.stop()) throw IterationStopped{};
-  return {};
+  return counters;
 }
 
 bool ViewMapVisibility::sees(std::uint32_t leaf, const At& at) const {
@@ -109,6 +101,7 @@ std::vector<std::pair<std::string, double>> ViewMapVisibility::statistics() cons
           {"view_pairs", number(counts_.pairs)},
           {"view_pairs_culled", number(counts_.culled)},
           {"view_splats", number(counts_.splats)},
+          {"view_splats_large", number(counts_.large)},
           {"views_sharing_a_splat", number(counts_.sharing) / splats},
           {"view_queue_peak_pairs", number(counts_.queue_peak())}};
 }

@@ -23,8 +23,7 @@ class ViewMapVisibility : public VisibilityBase {
     V3f x, n;  // n on the side that is seen
   };
   static At at(const ShadingPoint& point, const IterationContext&) {
-    const Surface& s = point.vertex->surface;
-    return {s.x, dot(point.vertex->wp, s.ng) < 0 ? -s.ng : s.ng};
+    return {point.vertex->surface.x, point.vertex->side()};
   }
   void decide(const At& at, std::size_t block, const Terms& terms, Decision& d) const;
   std::vector<std::pair<std::string, double>> statistics() const;
@@ -41,7 +40,7 @@ class ViewMapVisibility : public VisibilityBase {
   float cell_ = 0;  // radius of the scene's leaves
   std::unique_ptr<ViewTree> views_;
   std::unique_ptr<ViewMaps> maps_;
-  std::vector<Texel> texels_;         // of a map       // of a map's texels
+  std::vector<Texel> texels_;         // of a map
   std::vector<std::uint32_t> first_;  // of each block of lights its first view
   const VirtualLights* lights_ = nullptr;
   ManyViewsCounts counts_;

@@ -1,15 +1,13 @@
 #include "renderer/visibility/view_maps.h"
 
 #include <fmt/format.h>
-#include <immintrin.h>
 
 #include "renderer/core/free_memory.h"
 
 namespace lacuna {
 
 ViewMaps::ViewMaps(std::uint32_t leaves, int map_size, float extent)
-    // The far end of the scene is 1/64, well above the smallest half.
-    : map_{map_size}, scale_(extent / 64) {
+    : map_{map_size}, nearness_(Nearness::within(extent)) {
   const std::size_t texels = std::size_t{leaves} * static_cast<std::size_t>(map_.texels());
   require_free(double(texels) * sizeof(std::uint16_t), [&] {
     return fmt::format(
@@ -23,30 +21,29 @@ ViewMaps::ViewMaps(std::uint32_t leaves, int map_size, float extent)
 void ViewMaps::set(std::uint32_t leaf, std::span<const float> depths) {
   std::uint16_t* to = texels_.data() + std::size_t{leaf} * depths.size();
   for (std::size_t i = 0; i < depths.size(); ++i) {
-    to[i] = _cvtss_sh(std::min(scale_ / depths[i], 65504.0F), _MM_FROUND_TO_NEAREST_INT);
+    to[i] = nearness_.encode(depths[i]);
   }
 }
 
 float ViewMaps::nearness(std::uint32_t leaf, int texel) const {
-  return _cvtsh_ss(texels_[std::size_t{leaf} * static_cast<std::size_t>(map_.texels()) +
-                           static_cast<std::size_t>(texel)]);
+  return Nearness::decode(texels_[std::size_t{leaf} * static_cast<std::size_t>(map_.texels()) +
+                                  static_cast<std::size_t>(texel)]);
 }
 
-void trace_views(const RayCaster& rays, const ViewTree& views, const ThreadPool& pool,
-                 ViewMaps& maps) {
-  const int texels = maps.map().texels();
+void trace_views(const RayCaster& rays, const ViewTree& views, const Paraboloid& map,
+                 const ThreadPool& pool, const UseMap& use) {
   pool.for_each(static_cast<int>(views.leaf_count()), [&](int k) {
     const auto leaf = static_cast<std::uint32_t>(k);
     const V3f from = views.node(views.first_leaf() + leaf).centre;
-    std::vector<float> depths(static_cast<std::size_t>(texels),
+    std::vector<float> depths(static_cast<std::size_t>(map.texels()),
                               std::numeric_limits<float>::infinity());
-    for (int i = 0; i < texels; ++i) {
+    for (int i = 0; i < map.texels(); ++i) {
       Hit hit;
-      if (rays.intersect({from, maps.map().direction(i)}, hit)) {
+      if (rays.intersect({from, map.direction(i)}, hit)) {
         depths[static_cast<std::size_t>(i)] = hit.t;
       }
     }
-    maps.set(leaf, depths);
+    use(leaf, depths);
   });
 }
 

@@ -5,6 +5,7 @@
 
 #include "renderer/scene/scene.h"
 #include "renderer/visibility/many_views.h"
+#include "renderer/visibility/nearness.h"
 
 namespace lacuna {
 
@@ -21,17 +22,18 @@ class ViewMaps {
   void set(std::uint32_t leaf, std::span<const float> depths);
   /// `scale()` over the distance; 0 where nothing is.
   float nearness(std::uint32_t leaf, int texel) const;
-  float scale() const { return scale_; }
+  float scale() const { return nearness_.scale; }
   std::size_t bytes() const { return texels_.size() * sizeof(texels_[0]); }
 
  private:
   Paraboloid map_;
-  float scale_;
+  Nearness nearness_;
   std::vector<std::uint16_t> texels_;
 };
 
-/// The same by a ray for each texel, from the middle of each leaf's views: one map per view.
-void trace_views(const RayCaster& rays, const ViewTree& views, const ThreadPool& pool,
-                 ViewMaps& maps);
+/// What render_views() does, by a ray for each texel of `map` from the middle of each leaf's views:
+/// one map per view.
+void trace_views(const RayCaster& rays, const ViewTree& views, const Paraboloid& map,
+                 const ThreadPool& pool, const UseMap& use);
 
 }  // namespace lacuna

@@ -78,12 +78,16 @@ void VirtualLights::add(Kept& path, const Vertex& v, int index) const {
 }
 
 LightPlace GeneralLight::place() const {
-  if (const auto* v = std::get_if<Vertex>(&at)) {
-    const V3f ng = v->surface.ng;
-    return {v->surface.x, dot(v->wp, ng) < 0 ? -ng : ng, false};
-  }
+  if (const auto* v = std::get_if<Vertex>(&at)) return {v->surface.x, v->side(), false};
   const auto& e = std::get<EmitterPoint>(at);
   return {e.x, e.infinite() ? V3f(0.0F) : e.ng, e.infinite()};
+}
+
+LightPlace VirtualLights::place(std::size_t b, int i) const {
+  const DiffuseBlock* from = diffuse(b);
+  if (from == nullptr) return general(b, i).place();
+  return {V3f(from->x[i], from->y[i], from->z[i]), V3f(from->gx[i], from->gy[i], from->gz[i]),
+          false};
 }
 
 void VirtualLights::arrange(const LightGroups& groups) {

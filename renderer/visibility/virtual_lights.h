@@ -104,6 +104,8 @@ class VirtualLights {
   const GeneralLight& general(std::size_t b, int i) const {
     return general_[blocks_[b].first + static_cast<std::size_t>(i)];
   }
+  /// Where light `i` of block `b` stands.
+  LightPlace place(std::size_t b, int i) const;
   /// 1 / the number of light paths, which general lights do not hold.
   float share() const { return share_; }
 

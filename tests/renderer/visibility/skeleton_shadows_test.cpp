@@ -20,14 +20,7 @@ double by_hand(const LitScene& lit, const ShadingPoint& at, V&& v) {
   for (std::size_t b = 0; b < lights.blocks(at.edges); ++b) {
     lit.terms().evaluate(at, b, terms);
     for (int i = 0; i < lights.count(b); ++i) {
-      LightPlace place;
-      if (const DiffuseBlock* from = lights.diffuse(b)) {
-        place = {V3f(from->x[i], from->y[i], from->z[i]),
-                 V3f(from->gx[i], from->gy[i], from->gz[i]), false};
-      } else {
-        place = lights.general(b, i).place();
-      }
-      double seen = v(place);
+      double seen = v(lights.place(b, i));
       if (seen < 0) seen = lit.scene().rays().occluded(lit.terms().ray(at, b, i)) ? 0 : 1;
       if (terms.r[i] > 0) total += double(terms.r[i]) * seen;
     }
@@ -142,16 +135,8 @@ TEST(VirtualLights, InGroupsGiveTheSame) {
     lit.prepare(grouped);
     EXPECT_EQ(lit.lights().size(), size);
     for (std::size_t b = 0; b < lit.lights().blocks(); ++b) {
-      if (const DiffuseBlock* from = lit.lights().diffuse(b)) {
-        for (int i = 0; i < lit.lights().count(b); ++i) {
-          EXPECT_EQ(ByPlace::group({V3f(from->x[i], from->y[i], from->z[i]),
-                                    V3f(from->gx[i], from->gy[i], from->gz[i]), false}),
-                    lit.lights().group(b));
-        }
-      } else {
-        for (int i = 0; i < lit.lights().count(b); ++i) {
-          EXPECT_EQ(ByPlace::group(lit.lights().general(b, i).place()), lit.lights().group(b));
-        }
+      for (int i = 0; i < lit.lights().count(b); ++i) {
+        EXPECT_EQ(ByPlace::group(lit.lights().place(b, i)), lit.lights().group(b));
       }
     }
     lit.with_points(300, [&](auto points) {
