@@ -10,6 +10,8 @@ namespace {
 /// leaf's sphere then rises above the horizon.
 constexpr float before_surface = 2;
 
+constexpr std::uint32_t maps_between_stops = 256;
+
 }  // namespace
 
 void ViewMapVisibility::prepare(const PrepareContext& context) {
@@ -44,7 +46,7 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
                                      static_cast<float>(2 * scene_->side));
   Counters counters;
   const auto take = [&](std::uint32_t leaf, std::span<const float> depths) {
-    if (pass.context.stop()) throw IterationStopped{};
+    if (leaf % maps_between_stops == 0 && pass.context.stop()) throw IterationStopped{};
     maps_->set(leaf, depths);
   };
   const ThreadPool& pool = pass.context.pool;
