@@ -33,7 +33,8 @@ struct Octree {
   }
   bool empty() const { return nodes.empty(); }
   /// Of the sphere around a node's cube.
-  float radius(int level) const {
+  float radius(int level) const { return radius(side, level); }
+  static float radius(double side, int level) {
     return static_cast<float>(side) * 0.8660254F / static_cast<float>(1 << level);
   }
 };

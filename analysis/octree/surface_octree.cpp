@@ -46,6 +46,10 @@ OctreeCube octree_cube(const TriangleSoup& soup) {
     }
   }
   if (soup.triangles.empty()) return {};
+  return octree_cube(low, high);
+}
+
+OctreeCube octree_cube(const Imath::V3d& low, const Imath::V3d& high) {
   const Imath::V3d size = high - low;
   double longest = std::max({size.x, size.y, size.z});
   if (!(longest > 0)) longest = 1;

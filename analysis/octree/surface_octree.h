@@ -12,6 +12,8 @@ struct OctreeCube {
   double side = 1;
 };
 OctreeCube octree_cube(const TriangleSoup& soup);
+/// The same of their box.
+OctreeCube octree_cube(const Imath::V3d& low, const Imath::V3d& high);
 
 /// Every leaf's closed cube meets a triangle, and every cube that does is a leaf: the voxels of
 /// voxelize(), but never as a dense grid. `levels` in [0, Octree::most_levels]. The same for any

@@ -15,8 +15,10 @@ constexpr std::uint32_t maps_between_stops = 256;
 }  // namespace
 
 void ViewMapVisibility::prepare(const PrepareContext& context) {
-  scene_ = context.space.octree(settings_.levels);
-  cell_ = scene_->radius(settings_.levels);
+  const Bounds& box = context.scene.bounds();
+  cube_ = octree_cube(box.low, box.high);
+  cell_ = Octree::radius(cube_.side, settings_.levels);
+  if (settings_.method != ViewMapMethod::per_view) scene_ = context.space.octree(settings_.levels);
   const Paraboloid map{settings_.map_size};
   for (int i = 0; i < map.texels(); ++i) {
     const V3f w = map.direction(i);
@@ -39,11 +41,11 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
       views.push_back({p.x + p.n * (before_surface * cell_), p.n});
     }
   }
-  views_ = std::make_unique<ViewTree>(views, settings_.levels, scene_->corner, scene_->side);
+  views_ = std::make_unique<ViewTree>(views, settings_.levels, cube_.corner, cube_.side);
   seconds.end(tree_seconds_);
   maps_.reset();
   maps_ = std::make_unique<ViewMaps>(views_->leaf_count(), settings_.map_size,
-                                     static_cast<float>(2 * scene_->side));
+                                     static_cast<float>(2 * cube_.side));
   Counters counters;
   const auto take = [&](std::uint32_t leaf, std::span<const float> depths) {
     if (leaf % maps_between_stops == 0 && pass.context.stop()) throw IterationStopped{};
@@ -54,10 +56,12 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
     trace_views(pass.context.scene.rays(), *views_, maps_->map(), pool, take);
     counters.rays += std::uint64_t{views_->leaf_count()} * texels_.size();
   } else {
-    counts_ += render_views(
+    const ManyViewsCounts counts = render_views(
         *scene_, *views_,
         {.map_size = settings_.map_size, .share = settings_.method == ViewMapMethod::megaviews},
         pool, take);
+    queue_peak_ = std::max(queue_peak_, counts.queue_peak());
+    counts_ += counts;
   }
   seconds.end(map_seconds_);
   return counters;
@@ -95,7 +99,7 @@ std::vector<std::pair<std::string, double>> ViewMapVisibility::statistics() cons
   if (!maps_) return {};
   const auto number = [](auto n) { return static_cast<double>(n); };
   const auto splats = number(std::max<std::uint64_t>(1, counts_.splats));
-  return {{"scene_leaves", number(scene_->leaves().size())},
+  return {{"scene_leaves", number(scene_ ? scene_->leaves().size() : 0)},
           {"view_leaves", number(views_->leaf_count())},
           {"view_map_bytes", number(maps_->bytes())},
           {"view_tree_cpu_seconds", tree_seconds_},
@@ -105,7 +109,7 @@ std::vector<std::pair<std::string, double>> ViewMapVisibility::statistics() cons
           {"view_splats", number(counts_.splats)},
           {"view_splats_large", number(counts_.large)},
           {"views_sharing_a_splat", number(counts_.sharing) / splats},
-          {"view_queue_peak_pairs", number(counts_.queue_peak())}};
+          {"view_queue_peak_pairs", number(queue_peak_)}};
 }
 
 }  // namespace lacuna

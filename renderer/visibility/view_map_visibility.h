@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "analysis/octree/surface_octree.h"
 #include "renderer/settings/visibility_settings.h"
 #include "renderer/visibility/view_maps.h"
 #include "renderer/visibility/visibility_base.h"
@@ -36,14 +37,16 @@ class ViewMapVisibility : public VisibilityBase {
   bool sees(std::uint32_t leaf, const At& at) const;
 
   ViewMapsVisibilitySettings settings_;
-  std::shared_ptr<const Octree> scene_;
-  float cell_ = 0;  // radius of the scene's leaves
+  OctreeCube cube_;                      // of both octrees
+  std::shared_ptr<const Octree> scene_;  // where it is traversed
+  float cell_ = 0;                       // radius of the scene's leaves
   std::unique_ptr<ViewTree> views_;
   std::unique_ptr<ViewMaps> maps_;
   std::vector<Texel> texels_;         // of a map
   std::vector<std::uint32_t> first_;  // of each block of lights its first view
   const VirtualLights* lights_ = nullptr;
   ManyViewsCounts counts_;
+  std::uint64_t queue_peak_ = 0;  // of the iteration that has the most
   double tree_seconds_ = 0, map_seconds_ = 0;
 };
 

@@ -23,7 +23,7 @@ class ViewTree {
     V3f centre;    ///< of the sphere around them
     float radius;  ///< of it; 0 for a single view
     V3f n;         ///< the middle of their directions, unit
-    /// Cosine and sine of the widest angle between n and a direction that one of them sees: half a
+    /// Cosine and sine of the widest angle between n and a direction that one of them sees: a
     /// right angle more than their normals' cone. cosine -1: they see everything.
     float cosine, sine;
   };
