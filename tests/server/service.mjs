@@ -13,8 +13,9 @@ export const binary = path.join(bin, "lacuna-server");
 export const fakeRenderer = path.join(here, "fake_renderer.mjs");
 export const web = path.join(here, "../../web");
 
-/// Calls `check` until it gives something truthy, and gives that; fails after a while.
-export async function until(check, what, ms = 20000) {
+/// Calls `check` until it gives something truthy, and gives that. The limit finds what hangs: renderers
+/// stand back (niceness 10), and wait long for a busy machine.
+export async function until(check, what, ms = 180000) {
   const end = Date.now() + ms;
   for (;;) {
     const value = await check();
