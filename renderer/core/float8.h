@@ -52,6 +52,23 @@ inline float sum(Float8 a) {
   return _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)));
 }
 
+/// Eight whole numbers of 32 bits.
+struct Int8 {
+  __m256i v;
+
+  Int8(__m256i values) : v(values) {}  // NOLINT(google-explicit-constructor)
+  explicit Int8(int all) : v(_mm256_set1_epi32(all)) {}
+  /// To 32-byte aligned memory.
+  void store(int* to) const { _mm256_store_si256(reinterpret_cast<__m256i*>(to), v); }
+};
+inline Int8 operator+(Int8 a, Int8 b) { return _mm256_add_epi32(a.v, b.v); }
+inline Int8 operator*(Int8 a, Int8 b) { return _mm256_mullo_epi32(a.v, b.v); }
+inline Int8 min(Int8 a, Int8 b) { return _mm256_min_epi32(a.v, b.v); }
+inline Int8 max(Int8 a, Int8 b) { return _mm256_max_epi32(a.v, b.v); }
+inline Int8 keep_where(Mask8 m, Int8 a) { return _mm256_and_si256(_mm256_castps_si256(m.v), a.v); }
+/// Towards 0; of what has no such number the lowest.
+inline Int8 truncated(Float8 a) { return _mm256_cvttps_epi32(a.v); }
+
 /// Eight directions, or colours.
 struct Float8x3 {
   Float8 x, y, z;

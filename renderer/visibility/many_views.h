@@ -1,37 +1,11 @@
 #pragma once
 
-#include <array>
 #include <functional>
 
 #include "analysis/parallel/thread_pool.h"
-#include "renderer/visibility/paraboloid.h"
-#include "renderer/visibility/view_tree.h"
+#include "renderer/visibility/view_rendering.h"
 
 namespace lacuna {
-
-/// What a traversal did.
-struct ManyViewsCounts {
-  std::uint64_t pairs = 0;    ///< of a scene node and a view node that were looked at
-  std::uint64_t culled = 0;   ///< of those
-  std::uint64_t splats = 0;   ///< scene nodes that were rendered
-  std::uint64_t large = 0;    ///< of those, leaves that may fill several texels
-  std::uint64_t sharing = 0;  ///< view leaves below, summed over splats
-  /// Pairs by the number of subdivisions that led to them.
-  std::array<std::uint64_t, 2 * Octree::most_levels + 1> generations{};
-
-  /// Pairs that the paper's breadth-first queue, in which a generation lies at a time, would hold.
-  std::uint64_t queue_peak() const {
-    return *std::max_element(generations.begin(), generations.end());
-  }
-  ManyViewsCounts& operator+=(const ManyViewsCounts& o);
-};
-
-/// How the scene is rendered into many views.
-struct ManyViewsSettings {
-  int map_size = 16;  ///< texels along a side of each paraboloid
-  bool share = true;  ///< false: every view leaf by itself, ManyLoDs (Hollaender et al. 2011)
-  bool cull = true;
-};
 
 /// Takes the map of a leaf, in [0, ViewTree::leaf_count()): of each texel a distance.
 using UseMap = std::function<void(std::uint32_t leaf, std::span<const float> depths)>;

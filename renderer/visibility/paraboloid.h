@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "renderer/core/float8.h"
 #include "renderer/core/vec.h"
 
 namespace lacuna {
@@ -24,8 +25,7 @@ struct Paraboloid {
   /// `d`: of any length above 0.
   Place place(const V3f& d) const {
     const float scale = 1 / (d.length() + std::abs(d.x));
-    const float half = static_cast<float>(size) / 2;
-    return {d.x < 0 ? 1 : 0, (d.y * scale + 1) * half, (d.z * scale + 1) * half};
+    return {d.x < 0 ? 1 : 0, coordinate(d.y * scale), coordinate(d.z * scale)};
   }
   int texel(const Place& p) const {
     const auto step = [&](float at) { return std::clamp(static_cast<int>(at), 0, size - 1); };
@@ -33,24 +33,95 @@ struct Paraboloid {
   }
   int texel(const V3f& d) const { return texel(place(d)); }
   int index(int half, int i, int j) const { return (half * size + j) * size + i; }
+  /// Those of eight directions, whose lengths are `length`.
+  Int8 texel(const Float8x3& d, Float8 length) const {
+    const Float8 scale = Float8(1.0F) / (length + abs(d.x));
+    const auto step = [&](Float8 side) {
+      const Int8 at = truncated(coordinate(side * scale));
+      return min(max(at, Int8(0)), Int8(size - 1));
+    };
+    const Int8 half = keep_where(Float8(0.0F) > d.x, Int8(size));
+    return (half + step(d.z)) * Int8(size) + step(d.y);
+  }
+
+  /// From a coordinate in [-1, 1], on the paraboloid's plane, to one in texels, and back.
+  template <class F>
+  F coordinate(F at) const {
+    return (at + F(1.0F)) * F(static_cast<float>(size) / 2);
+  }
+  float on_plane(float at) const { return at * 2 / static_cast<float>(size) - 1; }
 
   /// The unit direction through the middle of a texel. Those of the squares' corners belong to the
   /// other half; nobody asks for them by place().
   V3f direction(int texel) const {
-    const int i = texel % size;
-    const int j = texel / size % size;
-    const float u = (2 * static_cast<float>(i) + 1) / static_cast<float>(size) - 1;
-    const float v = (2 * static_cast<float>(j) + 1) / static_cast<float>(size) - 1;
+    const float u = on_plane(static_cast<float>(texel % size) + 0.5F);
+    const float v = on_plane(static_cast<float>(texel / size % size) + 0.5F);
     const float r2 = u * u + v * v;
     const float x = (1 - r2) / (1 + r2);
     const float side = 2 / (1 + r2);
     return {texel < size * size ? x : -x, u * side, v * side};
   }
 
+  /// Whether place() gives a texel for some direction: all but those of the squares' corners.
+  bool asked_for(int texel) const {
+    // Of its square, the point that is nearest to the middle.
+    const auto nearest = [&](int i) {
+      const float at = on_plane(static_cast<float>(i));
+      return at < 0 ? std::min(0.0F, on_plane(static_cast<float>(i + 1))) : at;
+    };
+    const float u = nearest(texel % size);
+    const float v = nearest(texel / size % size);
+    return u * u + v * v < 1 + 1e-5F;
+  }
+
   /// Texels across the disk that a small sphere shows, at most: twice its radius over its distance
   /// times this. `cosine`: of the angle between its direction and the axis of its half, >= 0. The
   /// angle is stretched by 1 / (1 + cos) towards the rim.
   float stretch(float cosine) const { return static_cast<float>(size) / (2 * (1 + cosine)); }
+
+  /// Calls `use(first, n)` for the runs of texels whose middles lie in the cap around the unit
+  /// direction `w` whose half angle has this cosine and sine; each once, but for some of the
+  /// squares' corners.
+  template <class Use>
+  void for_each_run(const V3f& w, float cosine, float sine, Use&& use) const {
+    for (int half = 0; half < 2; ++half) {
+      run_half(half, {half == 0 ? w.x : -w.x, w.y, w.z}, cosine, sine, use);
+    }
+  }
+
+ private:
+  /// The projection is stereographic: the cap's image is the disk, or where it holds the opposite
+  /// pole all but the disk, of a (y^2 + z^2) - 2 (y w.y + z w.z) + cosine - w.x <= 0.
+  template <class Use>
+  void run_half(int half, const V3f& w, float cosine, float sine, Use&& use) const {
+    if (w.x < -sine) return;  // behind the rim
+    const float a = cosine + w.x;
+    // The first texel whose middle is at a place or after it.
+    const auto after = [&](float at) {
+      const float texel = std::ceil(coordinate(at) - 0.5F);
+      return static_cast<int>(std::clamp(texel, 0.0F, static_cast<float>(size)));
+    };
+    const bool disk = a > 1e-3F;  // else nearly half of everything, or more
+    const int from = disk ? after((w.z - sine) / a) : 0;
+    const int to = disk ? after((w.z + sine) / a) : size;
+    for (int j = from; j < to; ++j) {
+      const float z = on_plane(static_cast<float>(j) + 0.5F);
+      const float rest = a * z * z - 2 * z * w.z + cosine - w.x;
+      if (!disk) {
+        for (int i = 0; i < size; ++i) {
+          const float y = on_plane(static_cast<float>(i) + 0.5F);
+          if (a * y * y - 2 * y * w.y + rest <= 0) use(index(half, i, j), 1);
+        }
+        continue;
+      }
+      const float root2 = w.y * w.y - a * rest;
+      if (root2 < 0) continue;
+      const float root = std::sqrt(root2);
+      const int first = after((w.y - root) / a);
+      const int end = after((w.y + root) / a);
+      if (end > first) use(index(half, first, j), end - first);
+    }
+  }
 };
 
 }  // namespace lacuna

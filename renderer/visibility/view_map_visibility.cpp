@@ -19,13 +19,7 @@ void ViewMapVisibility::prepare(const PrepareContext& context) {
   cube_ = octree_cube(box.low, box.high);
   cell_ = Octree::radius(cube_.side, settings_.levels);
   if (settings_.method != ViewMapMethod::per_view) scene_ = context.space.octree(settings_.levels);
-  const Paraboloid map{settings_.map_size};
-  for (int i = 0; i < map.texels(); ++i) {
-    const V3f w = map.direction(i);
-    // Half the diagonal of a texel, as an angle.
-    const float half = std::sqrt(0.5F) / map.stretch(std::abs(w.x));
-    texels_.push_back({w, std::cos(half), std::sin(half)});
-  }
+  texels_ = map_texels({settings_.map_size});
 }
 
 Counters ViewMapVisibility::begin(const LightPass& pass) {
@@ -53,13 +47,14 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
   };
   const ThreadPool& pool = pass.context.pool;
   if (settings_.method == ViewMapMethod::per_view) {
-    trace_views(pass.context.scene.rays(), *views_, maps_->map(), pool, take);
-    counters.rays += std::uint64_t{views_->leaf_count()} * texels_.size();
+    counters.rays += trace_views(pass.context.scene.rays(), *views_, maps_->map(), pool, take);
   } else {
-    const ManyViewsCounts counts = render_views(
-        *scene_, *views_,
-        {.map_size = settings_.map_size, .share = settings_.method == ViewMapMethod::megaviews},
-        pool, take);
+    const ManyViewsCounts counts =
+        render_views(*scene_, *views_,
+                     {.map_size = settings_.map_size,
+                      .node_texels = static_cast<float>(settings_.node_texels),
+                      .share = settings_.method == ViewMapMethod::megaviews},
+                     pool, take);
     queue_peak_ = std::max(queue_peak_, counts.queue_peak());
     counts_ += counts;
   }
@@ -74,7 +69,7 @@ bool ViewMapVisibility::sees(std::uint32_t leaf, const At& at) const {
   const float h = -d.dot(at.n) - (rays ? 0 : cell_);
   if (!(h > 0)) return true;
   const int texel = maps_->map().texel(d);
-  const Texel& t = texels_[static_cast<std::size_t>(texel)];
+  const MapTexel& t = texels_[static_cast<std::size_t>(texel)];
   const float along = -t.direction.dot(at.n);
   // 1 / distance of the surface's plane. A ray saw it in the middle of the texel; of leaves the
   // nearest in the whole texel counts, so that of the plane is what it is to be compared with.

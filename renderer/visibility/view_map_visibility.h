@@ -30,10 +30,6 @@ class ViewMapVisibility : public VisibilityBase {
   std::vector<std::pair<std::string, double>> statistics() const;
 
  private:
-  struct Texel {
-    V3f direction;       // through its middle
-    float cosine, sine;  // of the angle from there to its corners
-  };
   bool sees(std::uint32_t leaf, const At& at) const;
 
   ViewMapsVisibilitySettings settings_;
@@ -42,7 +38,7 @@ class ViewMapVisibility : public VisibilityBase {
   float cell_ = 0;                       // radius of the scene's leaves
   std::unique_ptr<ViewTree> views_;
   std::unique_ptr<ViewMaps> maps_;
-  std::vector<Texel> texels_;         // of a map
+  std::vector<MapTexel> texels_;      // of a map
   std::vector<std::uint32_t> first_;  // of each block of lights its first view
   const VirtualLights* lights_ = nullptr;
   ManyViewsCounts counts_;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
+
 #include "renderer/core/free_memory.h"
 
 namespace lacuna {
@@ -20,9 +22,7 @@ ViewMaps::ViewMaps(std::uint32_t leaves, int map_size, float extent)
 
 void ViewMaps::set(std::uint32_t leaf, std::span<const float> depths) {
   std::uint16_t* to = texels_.data() + std::size_t{leaf} * depths.size();
-  for (std::size_t i = 0; i < depths.size(); ++i) {
-    to[i] = nearness_.encode(depths[i]);
-  }
+  nearness_.encode(depths, to);
 }
 
 float ViewMaps::nearness(std::uint32_t leaf, int texel) const {
@@ -30,21 +30,49 @@ float ViewMaps::nearness(std::uint32_t leaf, int texel) const {
                                   static_cast<std::size_t>(texel)]);
 }
 
-void trace_views(const RayCaster& rays, const ViewTree& views, const Paraboloid& map,
-                 const ThreadPool& pool, const UseMap& use) {
+std::vector<MapTexel> map_texels(const Paraboloid& map) {
+  std::vector<MapTexel> texels;
+  for (int i = 0; i < map.texels(); ++i) {
+    const V3f w = map.direction(i);
+    // Half the diagonal of a texel, as an angle.
+    const float half = std::sqrt(0.5F) / map.stretch(std::abs(w.x));
+    texels.push_back({w, std::cos(half), std::sin(half)});
+  }
+  return texels;
+}
+
+namespace {
+
+/// The angle from the middle of what the views see to the texel is above the sum of both cones'.
+bool unseen(const ViewTree::Node& v, const MapTexel& t) {
+  const bool narrow = v.sine * t.cosine + v.cosine * t.sine > 0;  // that sum is below pi
+  return narrow && v.n.dot(t.direction) < v.cosine * t.cosine - v.sine * t.sine;
+}
+
+}  // namespace
+
+std::uint64_t trace_views(const RayCaster& rays, const ViewTree& views, const Paraboloid& map,
+                          const ThreadPool& pool, const UseMap& use) {
+  const std::vector<MapTexel> texels = map_texels(map);
+  std::vector<char> asked_for(texels.size());
+  for (int i = 0; i < map.texels(); ++i) asked_for[std::size_t(i)] = char(map.asked_for(i));
+  std::atomic<std::uint64_t> sent = 0;
   pool.for_each(static_cast<int>(views.leaf_count()), [&](int k) {
     const auto leaf = static_cast<std::uint32_t>(k);
-    const V3f from = views.node(views.first_leaf() + leaf).centre;
-    std::vector<float> depths(static_cast<std::size_t>(map.texels()),
-                              std::numeric_limits<float>::infinity());
-    for (int i = 0; i < map.texels(); ++i) {
+    const ViewTree::Node& v = views.node(views.first_leaf() + leaf);
+    std::vector<float> depths(texels.size(), std::numeric_limits<float>::infinity());
+    std::uint64_t own = 0;
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+      const MapTexel& t = texels[i];
+      if (asked_for[i] == 0 || unseen(v, t)) continue;
       Hit hit;
-      if (rays.intersect({from, map.direction(i)}, hit)) {
-        depths[static_cast<std::size_t>(i)] = hit.t;
-      }
+      if (rays.intersect({v.centre, t.direction}, hit)) depths[i] = hit.t;
+      ++own;
     }
+    sent += own;
     use(leaf, depths);
   });
+  return sent;
 }
 
 }  // namespace lacuna

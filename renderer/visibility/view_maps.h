@@ -9,6 +9,14 @@
 
 namespace lacuna {
 
+/// A texel of a map as a cone.
+struct MapTexel {
+  V3f direction;       ///< through its middle, unit
+  float cosine, sine;  ///< of the angle from there to its corners
+};
+/// Of each texel of a map.
+std::vector<MapTexel> map_texels(const Paraboloid& map);
+
 /// The finished maps of all leaves of a view tree, as half floats: a texel of 16 x 16 spans an
 /// eighth of a right angle, within which a distance is far less certain than its eleven bits.
 class ViewMaps {
@@ -31,9 +39,9 @@ class ViewMaps {
   std::vector<std::uint16_t> texels_;
 };
 
-/// What render_views() does, by a ray for each texel of `map` from the middle of each leaf's views:
-/// one map per view.
-void trace_views(const RayCaster& rays, const ViewTree& views, const Paraboloid& map,
-                 const ThreadPool& pool, const UseMap& use);
+/// What render_views() does, by a ray from the middle of each leaf's views through each texel that
+/// one of them may see: one map per view. Tells how many rays.
+std::uint64_t trace_views(const RayCaster& rays, const ViewTree& views, const Paraboloid& map,
+                          const ThreadPool& pool, const UseMap& use);
 
 }  // namespace lacuna

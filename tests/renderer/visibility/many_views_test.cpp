@@ -80,6 +80,62 @@ TEST(Paraboloid, HasEveryDirectionOnce) {
   }
 }
 
+TEST(Paraboloid, EightAtATimeAreAsOne) {
+  for (const int size : {8, 16, 21}) {
+    const Paraboloid map{size};
+    Rng rng(2, 0, 0, Rng::Purpose::test);
+    for (int n = 0; n < 500; ++n) {
+      alignas(32) std::array<float, 8> x, y, z;
+      alignas(32) std::array<int, 8> texels;
+      for (std::size_t i = 0; i < 8; ++i) {
+        const V3f d = random_direction(rng) * (0.1F + 5 * rng.next());
+        x[i] = d.x, y[i] = d.y, z[i] = d.z;
+      }
+      const Float8x3 d{Float8::load(x.data()), Float8::load(y.data()), Float8::load(z.data())};
+      map.texel(d, sqrt(length2(d))).store(texels.data());
+      for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(texels[i], map.texel(V3f(x[i], y[i], z[i])));
+    }
+  }
+}
+
+// A texel is asked for if its square, and so not only its middle, meets the disk.
+TEST(Paraboloid, LeavesOutTheCornersOfTheSquares) {
+  for (const int size : {8, 16, 21}) {
+    const Paraboloid map{size};
+    std::vector<bool> asked(static_cast<std::size_t>(map.texels()));
+    Rng rng(3, 0, 0, Rng::Purpose::test);
+    for (int n = 0; n < 2000000; ++n)
+      asked[static_cast<std::size_t>(map.texel(random_direction(rng)))] = true;
+    int unmet = 0;  // a square that meets the disk in a tip only
+    for (int t = 0; t < map.texels(); ++t) {
+      EXPECT_LE(asked[static_cast<std::size_t>(t)], map.asked_for(t)) << t;
+      unmet += map.asked_for(t) && !asked[static_cast<std::size_t>(t)];
+    }
+    EXPECT_LE(unmet, 16) << "of " << map.texels();
+  }
+}
+
+// The texels of a cap are those whose middles lie in it, each once.
+TEST(Paraboloid, FillsCaps) {
+  const Paraboloid map{16};
+  Rng rng(4, 0, 0, Rng::Purpose::test);
+  for (int n = 0; n < 3000; ++n) {
+    const V3f w = random_direction(rng);
+    const float angle = rng.next() * pi / 2;
+    const float cosine = std::cos(angle);
+    std::vector<int> times(static_cast<std::size_t>(map.texels()), 0);
+    map.for_each_run(w, cosine, std::sin(angle), [&](int first, int count) {
+      for (int t = first; t < first + count; ++t) ++times[static_cast<std::size_t>(t)];
+    });
+    for (int t = 0; t < map.texels(); ++t) {
+      const float off = map.direction(t).dot(w) - cosine;
+      const bool corner = map.place(map.direction(t)).half != t / 256;
+      if (std::abs(off) < 1e-4F || corner) continue;
+      EXPECT_EQ(times[static_cast<std::size_t>(t)], off > 0 ? 1 : 0) << t << " " << off;
+    }
+  }
+}
+
 TEST(ViewTree, SpheresAndConesHoldAllViewsBelow) {
   for (const Facing facing : {Facing::everywhere, Facing::anywhere, Facing::alike}) {
     const auto views = random_views(300, facing, 4);
