@@ -20,7 +20,8 @@ class Rng {
     light_path = 1,
     integrator = 2,
     test = 3,
-    visibility = 4
+    visibility = 4,
+    gather = 5
   };
 
   /// `path` < 2^56; `iteration` < 2^32.

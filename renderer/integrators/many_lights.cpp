@@ -1,6 +1,7 @@
 #include "renderer/integrators/many_lights.h"
 
 #include "renderer/core/pass_seconds.h"
+#include "renderer/integrators/light_filter.h"
 #include "renderer/integrators/light_pass.h"
 #include "renderer/path/direct_light.h"
 #include "renderer/visibility/cached_visibility.h"
@@ -59,6 +60,7 @@ class ManyLights final : public Integrator {
   std::vector<std::pair<std::string, double>> statistics() const override {
     auto told = visibility_.statistics();
     told.emplace_back("virtual_lights", lights_);
+    if (random()) told.emplace_back("lights_culled", culled_);
     told.emplace_back("light_pass_cpu_seconds", seconds_.light);
     told.emplace_back("visibility_cpu_seconds", seconds_.visibility);
     told.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
@@ -79,15 +81,7 @@ class ManyLights final : public Integrator {
       counters += visibility_.begin({context, terms, settings_.max_depth, least_alpha_});
     }
     pass.end(seconds_.visibility);
-    const Tiling tiling(image, batch_side);
-    counters += for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
-      Part part{EyeBatch(settings_.max_depth)};
-      start_paths(context, image, tiling.tile(i), 0, part.batch);
-      count.samples += part.batch.walkers.size();
-      trace(context, terms, part, count);
-      shine(context, terms, part, count);
-      add(context, terms, part, image, count);
-    });
+    counters += gather(context, terms, image);
     pass.end(seconds_.eye);
     return counters;
   }
@@ -108,6 +102,49 @@ class ManyLights final : public Integrator {
     std::array<LightSum, EyeBatch::size> sums = {};
     ShadowQueue<Direct> shadows = {};
   };
+
+  /// What all parts of a picture share.
+  struct Gathering {
+    const LightTerms& terms;
+    const LightDraw* draw;  // null: all lights
+    LightFilter* filter;    // null: none
+  };
+
+  /// How lights are drawn; null: all are taken.
+  const RandomLightsSettings* random() const {
+    return std::get_if<RandomLightsSettings>(&settings_.gather);
+  }
+
+  /// Eye paths, and what the lights give to them.
+  Counters gather(const IterationContext& context, const LightTerms& terms, Image& image) {
+    std::optional<LightDraw> draw;
+    std::optional<LightFilter> filter;
+    if (random()) draw.emplace(terms, *random());
+    if (random() && random()->filter_radius > 0) filter.emplace(image, *random());
+    const Gathering with{terms, draw ? &*draw : nullptr, filter ? &*filter : nullptr};
+    const Tiling tiling(image, batch_side);
+    Counters counters = for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
+      Part part{EyeBatch(settings_.max_depth)};
+      start_paths(context, image, tiling.tile(i), 0, part.batch);
+      count.samples += part.batch.walkers.size();
+      trace(context, terms, part, count);
+      shine(context, with, part, count);
+      add(context, with, part, image, count);
+    });
+    if (draw) culled_ = draw->culled();
+    if (!filter) return counters;
+    counters += for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
+      const Tile tile = tiling.tile(i);
+      for (int k = 0; k < tile.pixels(); ++k) {
+        const V2i p = tile.pixel(k);
+        Rgb& pixel = image.at(p.x, p.y);
+        const V3d value = V3d(pixel) + filter->at(p);
+        pixel = Rgb(0, 0, 0);
+        count_negative(context, image.index(p.x, p.y), put(pixel, value, count));
+      }
+    });
+    return counters;
+  }
 
   Counters walk_lights(const IterationContext& context, VirtualLights& lights, Image& image) const {
     if (context.scene.emitters().empty()) return {};
@@ -186,7 +223,7 @@ class ManyLights final : public Integrator {
   }
 
   /// What the lights give to the part's shading points.
-  void shine(const IterationContext& context, const LightTerms& terms, Part& part,
+  void shine(const IterationContext& context, const Gathering& with, Part& part,
              Counters& counters) const {
     std::vector<ShadingPoint> points;
     std::vector<std::size_t> walkers;
@@ -198,29 +235,44 @@ class ManyLights final : public Integrator {
       walkers.push_back(i);
     }
     std::vector<LightSum> sums(points.size());
-    LightGather<Visibility>(context, terms, visibility_, counters).gather(points, sums);
-    for (std::size_t k = 0; k < sums.size(); ++k) part.sums[walkers[k]] = sums[k];
+    LightGather<Visibility>(context, with.terms, visibility_, with.draw, counters)
+        .gather(points, sums);
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+      if (with.filter != nullptr) {
+        with.filter->set(points[k], sums[k].value);
+        sums[k].value = V3d(0, 0, 0);  // until all pixels are there
+      }
+      part.sums[walkers[k]] = sums[k];
+    }
   }
 
-  void add(const IterationContext& context, const LightTerms& terms, const Part& part, Image& image,
+  void add(const IterationContext& context, const Gathering& with, const Part& part, Image& image,
            Counters& counters) const {
-    const double lights = static_cast<double>(std::max<std::size_t>(1, terms.lights().size()));
+    const double lights = static_cast<double>(std::max<std::size_t>(1, with.terms.lights().size()));
     for (std::size_t i = 0; i < part.batch.walkers.size(); ++i) {
       const std::uint32_t pixel = part.batch.pixels[i];
-      Rgb value(V3d(part.batch.radiance[i]) + part.sums[i].value);
-      const bool negative = value.x < 0 || value.y < 0 || value.z < 0;
-      if (visibility_.clamps_negative()) {
-        value = {std::max(0.0F, value.x), std::max(0.0F, value.y), std::max(0.0F, value.z)};
-      }
-      accumulate(image.pixels[pixel], value, counters);
+      const V3d value = V3d(part.batch.radiance[i]) + part.sums[i].value;
+      const bool negative = put(image.pixels[pixel], value, counters);
       if (tests_layer_ >= 0) {
         const double share = static_cast<double>(part.sums[i].tests) / lights;
         layer(context, tests_layer_).pixels[pixel] += Rgb(static_cast<float>(share));
       }
-      if (negative_layer_ >= 0 && negative) {
-        layer(context, negative_layer_).pixels[pixel] += Rgb(1);
-      }
+      count_negative(context, pixel, negative);
     }
+  }
+  /// Into a black pixel. Tells whether the value is negative.
+  bool put(Rgb& pixel, const V3d& exact, Counters& counters) const {
+    Rgb value(exact);
+    const bool negative = value.x < 0 || value.y < 0 || value.z < 0;
+    if (visibility_.clamps_negative()) {
+      value = {std::max(0.0F, value.x), std::max(0.0F, value.y), std::max(0.0F, value.z)};
+    }
+    accumulate(pixel, value, counters);
+    return negative;
+  }
+  void count_negative(const IterationContext& context, std::size_t pixel, bool negative) const {
+    if (negative_layer_ < 0 || !negative) return;
+    layer(context, negative_layer_).pixels[pixel] += Rgb(1);
   }
   static Image& layer(const IterationContext& context, int index) {
     return context.layers[static_cast<std::size_t>(index)];
@@ -231,7 +283,7 @@ class ManyLights final : public Integrator {
   float least_alpha_;
   Visibility visibility_;
   int tests_layer_ = -1, negative_layer_ = -1;
-  double lights_ = 0;
+  double lights_ = 0, culled_ = 0;
   struct {
     double light = 0, visibility = 0, eye = 0;
   } seconds_;

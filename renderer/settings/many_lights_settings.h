@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "renderer/settings/gather_settings.h"
 #include "renderer/settings/output_settings.h"
 #include "renderer/settings/path_lengths.h"
 #include "renderer/settings/visibility_settings.h"
@@ -49,6 +50,7 @@ struct ManyLightsSettings : PathLengths {
   double bound = 100;
   bool compensation = true;
   double least_roughness = 0.3;
+  GatherSettings gather = AllLightsSettings{};
   VisibilitySettings visibility = ExactVisibilitySettings{};
 
   /// The mean of many pictures is not the light in the scene.
@@ -60,7 +62,8 @@ struct ManyLightsSettings : PathLengths {
           return false;
         },
         visibility);
-    return visibility_is || !compensation;
+    const auto* random = std::get_if<RandomLightsSettings>(&gather);
+    return visibility_is || !compensation || (random != nullptr && random->biased());
   }
 
   bool operator==(const ManyLightsSettings&) const = default;
@@ -89,6 +92,7 @@ void describe(V& v, ManyLightsSettings& s) {
             "glass: in narrow lobes a light is a bright spot",
      .min = 0,
      .max = 1});
+  v("gather", s.gather, {.doc = "which of the lights a shading point meets"});
   v("visibility", s.visibility, {.doc = "whether a surface and a light see one another"});
 }
 

@@ -18,6 +18,15 @@ class BlockBounds {
     }
   }
 
+  void add(const BlockBounds& o) {
+    for (int k = 0; k < 3; ++k) {
+      low_[k] = std::min(low_[k], o.low_[k]);
+      high_[k] = std::max(high_[k], o.high_[k]);
+      least_[k] = std::min(least_[k], o.least_[k]);
+      most_[k] = std::max(most_[k], o.most_[k]);
+    }
+  }
+
   /// Of eight points `x`: no light of the block lies in front of the plane through x with normal
   /// `n`, and rounding does not decide it.
   Mask8 behind(const Float8x3& x, const Float8x3& n) const {

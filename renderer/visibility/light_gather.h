@@ -3,6 +3,7 @@
 #include "renderer/integrators/integrator.h"
 #include "renderer/path/shadow_queue.h"
 #include "renderer/visibility/decision.h"
+#include "renderer/visibility/light_draw.h"
 #include "renderer/visibility/light_terms.h"
 
 namespace lacuna {
@@ -13,37 +14,31 @@ struct LightSum {
   std::uint64_t tests = 0;  ///< lights that a ray was sent to
 };
 
-/// Adds up what all virtual lights give to the shading points of a few pixels: lights outside,
-/// points inside, so that a block of lights is read from memory once for all of them.
+/// Adds up what all virtual lights, or those that are drawn, give to the shading points of a few
+/// pixels: lights outside, points inside, so that a block of lights is read from memory once for
+/// all of them.
 template <class Visibility>
 class LightGather {
  public:
+  /// `draw`: null for all lights.
   LightGather(const IterationContext& context, const LightTerms& terms,
-              const Visibility& visibility, Counters& counters)
-      : context_(context), terms_(terms), visibility_(visibility), counters_(counters) {}
+              const Visibility& visibility, const LightDraw* draw, Counters& counters)
+      : context_(context),
+        terms_(terms),
+        visibility_(visibility),
+        draw_(draw),
+        counters_(counters) {}
 
   /// `sums[i]` becomes that of `points[i]`, of which there are at most Lanes::size. Throws
   /// IterationStopped if the context asks for it.
   void gather(std::span<const ShadingPoint> points, std::span<LightSum> sums) {
     std::vector<typename Visibility::At> states;
     states.reserve(points.size());
-    PointLanes lanes;
-    std::vector<std::size_t> ends;
-    std::size_t blocks = 0;
-    for (const ShadingPoint& p : points) {
-      states.push_back(visibility_.at(p, context_));
-      lanes.add(p);
-      ends.push_back(terms_.lights().blocks(p.edges));
-      blocks = std::max(blocks, ends.back());
-    }
-    for (std::size_t b = 0; b < blocks; ++b) {
-      for_each_bit(terms_.may_light(b, lanes), [&](int bit) {
-        const auto i = static_cast<std::size_t>(bit);
-        if (b < ends[i]) add(points[i], states[i], b, i, sums[i]);
-      });
-      queue_tests();
-      if (queue_.size() >= most_waiting) flush(sums);
-      if ((b + 1) % blocks_between_stops == 0 && context_.stop()) throw IterationStopped{};
+    for (const ShadingPoint& p : points) states.push_back(visibility_.at(p, context_));
+    if (draw_ != nullptr) {
+      gather_drawn(points, states, sums);
+    } else {
+      gather_all(points, states, sums);
     }
     flush(sums);
   }
@@ -61,10 +56,47 @@ class LightGather {
   static constexpr std::size_t most_waiting = 2048;  // rays; they fit the second-level cache
   static constexpr std::size_t blocks_between_stops = 64;
 
-  void add(const ShadingPoint& at, typename Visibility::At& state, std::size_t block,
-           std::size_t point, LightSum& sum) {
+  using States = std::vector<typename Visibility::At>;
+
+  void gather_all(std::span<const ShadingPoint> points, States& states, std::span<LightSum> sums) {
+    PointLanes lanes;
+    std::vector<std::size_t> ends;
+    std::size_t blocks = 0;
+    for (const ShadingPoint& p : points) {
+      lanes.add(p);
+      ends.push_back(terms_.lights().blocks(p.edges));
+      blocks = std::max(blocks, ends.back());
+    }
+    for (std::size_t b = 0; b < blocks; ++b) {
+      for_each_bit(terms_.may_light(b, lanes), [&](int bit) {
+        const auto i = static_cast<std::size_t>(bit);
+        if (b < ends[i]) add(points[i], states[i], {b, i, LightTerms::all_lights, 1}, sums[i]);
+      });
+      end_block(sums);
+    }
+  }
+
+  void gather_drawn(std::span<const ShadingPoint> points, States& states,
+                    std::span<LightSum> sums) {
+    const std::vector<LightDraw::Drawn> drawn = draw_->draw(points, context_);
+    for (std::size_t k = 0; k < drawn.size(); ++k) {
+      const LightDraw::Drawn& d = drawn[k];
+      add(points[d.point], states[d.point], d, sums[d.point]);
+      if (k + 1 == drawn.size() || drawn[k + 1].block != d.block) end_block(sums);
+    }
+  }
+
+  void end_block(std::span<LightSum> sums) {
+    queue_tests();
+    if (queue_.size() >= most_waiting) flush(sums);
+    if (++blocks_ % blocks_between_stops == 0 && context_.stop()) throw IterationStopped{};
+  }
+
+  void add(const ShadingPoint& at, typename Visibility::At& state, const LightDraw::Drawn& drawn,
+           LightSum& sum) {
+    const std::size_t block = drawn.block;
     if (visibility_.hides(state, block)) return;
-    terms_.evaluate(at, block, term_);
+    terms_.evaluate(at, block, term_, drawn.lights, drawn.weight);
     counters_.rejected += static_cast<std::uint64_t>(__builtin_popcountll(term_.rejected));
     if (term_.lit == 0) return;
     visibility_.decide(state, block, term_, decision_);
@@ -75,7 +107,7 @@ class LightGather {
       tests_[static_cast<std::size_t>(i)].push_back(
           {terms_.ray(at, block, i),
            {Rgb(term_.r[i], term_.g[i], term_.b[i]) * decision_.gain[i],
-            static_cast<std::uint32_t>(point)}});
+            static_cast<std::uint32_t>(drawn.point)}});
     });
     sum.tests += static_cast<std::uint64_t>(__builtin_popcountll(decision_.tests));
   }
@@ -96,7 +128,9 @@ class LightGather {
   const IterationContext& context_;
   const LightTerms& terms_;
   const Visibility& visibility_;
+  const LightDraw* draw_;
   Counters& counters_;
+  std::size_t blocks_ = 0;                            // done
   std::array<std::vector<Test>, Lanes::size> tests_;  // of each light of the block
   ShadowQueue<Lit> queue_;
   Terms term_;

@@ -4,16 +4,21 @@
 
 namespace lacuna {
 
-void LightTerms::evaluate(const ShadingPoint& at, std::size_t block, Terms& out) const {
+void LightTerms::evaluate(const ShadingPoint& at, std::size_t block, Terms& out, std::uint64_t of,
+                          float weight) const {
+  const int count = lights_.count(block);
+  const std::uint64_t there = count < Lanes::size ? (std::uint64_t{1} << count) - 1 : all_lights;
+  of &= there;
   if (const DiffuseBlock* diffuse = lights_.diffuse(block)) {
-    diffuse_terms(at, *diffuse, lights_.count(block), out);
+    diffuse_terms(at, *diffuse, of, out);
   } else {
-    const int count = lights_.count(block);
     for (int i = 0; i < Lanes::size; ++i) {
-      const Rgb t = i < count ? general(at, lights_.general(block, i)) : Rgb(0, 0, 0);
+      const bool wanted = (of >> i & 1) != 0;
+      const Rgb t = wanted ? general(at, lights_.general(block, i)) : Rgb(0, 0, 0);
       out.r[i] = t.x, out.g[i] = t.y, out.b[i] = t.z;
     }
   }
+  if (of != there || weight != 1) weigh(of, weight, out);
   finish(out);
 }
 
@@ -25,29 +30,39 @@ void PointLanes::add(const ShadingPoint& p) {
   nx_[i] = n.x, ny_[i] = n.y, nz_[i] = n.z;
 }
 
-std::uint64_t LightTerms::may_light(std::size_t block, const PointLanes& points) const {
-  const std::uint64_t all =
-      points.size() < 64 ? (std::uint64_t{1} << points.size()) - 1 : ~std::uint64_t{0};
-  if (lights_.diffuse(block) == nullptr) return all;
-  const BlockBounds& bounds = lights_.bounds(block);
+std::uint64_t PointLanes::may_be_lit(const BlockBounds& bounds) const {
   std::uint64_t dark = 0;
-  for (int k = 0; 8 * k < static_cast<int>(points.size()); ++k) {
-    const Float8x3 x{points.x_.eight(k), points.y_.eight(k), points.z_.eight(k)};
-    const Float8x3 n{points.nx_.eight(k), points.ny_.eight(k), points.nz_.eight(k)};
+  for (int k = 0; 8 * k < static_cast<int>(size_); ++k) {
+    const Float8x3 x{x_.eight(k), y_.eight(k), z_.eight(k)};
+    const Float8x3 n{nx_.eight(k), ny_.eight(k), nz_.eight(k)};
     dark |= std::uint64_t{bits_of(bounds.turned_from(x)) | bits_of(bounds.behind(x, n))} << (8 * k);
   }
-  return all & ~dark;
+  return all() & ~dark;
 }
 
-void LightTerms::diffuse_terms(const ShadingPoint& at, const DiffuseBlock& from, int count,
+/// Of those that were drawn what each stands for; the others of a group of eight become black.
+void LightTerms::weigh(std::uint64_t of, float weight, Terms& out) {
+  const __m256i lane_bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+  for (int k = 0; k < Lanes::groups; ++k) {
+    const auto bits = static_cast<int>(of >> (8 * k) & 0xff);
+    if (bits == 0) continue;  // black already
+    const __m256i drawn = _mm256_and_si256(_mm256_set1_epi32(bits), lane_bits);
+    const Mask8 mask{_mm256_castsi256_ps(_mm256_cmpeq_epi32(drawn, lane_bits))};
+    for (Lanes* const channel : {&out.r, &out.g, &out.b}) {
+      channel->set(k, keep_where(mask, channel->eight(k) * Float8(weight)));
+    }
+  }
+}
+
+void LightTerms::diffuse_terms(const ShadingPoint& at, const DiffuseBlock& from, std::uint64_t of,
                                Terms& out) const {
   const V3f x = at.vertex->surface.x;
   const V3f ng = at.vertex->surface.ng;
-  const int used = (count + 7) / 8;
-  for (int k = used; k < Lanes::groups; ++k) {
-    for (Lanes* const channel : {&out.r, &out.g, &out.b}) channel->set(k, 0.0F);
-  }
-  for (int k = 0; k < used; ++k) {
+  for (int k = 0; k < Lanes::groups; ++k) {
+    if ((of >> (8 * k) & 0xff) == 0) {
+      for (Lanes* const channel : {&out.r, &out.g, &out.b}) channel->set(k, 0.0F);
+      continue;
+    }
     const Float8x3 d{from.x.eight(k) - x.x, from.y.eight(k) - x.y, from.z.eight(k) - x.z};
     const Float8 inv = 1 / sqrt(length2(d));
     const Float8x3 w = d * inv;

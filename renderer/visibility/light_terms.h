@@ -35,10 +35,15 @@ struct ShadingPoint {
 class PointLanes {
  public:
   void add(const ShadingPoint& p);
-  std::size_t size() const { return size_; }
+  /// Bit i: there is a point i.
+  std::uint64_t all() const {
+    return size_ < 64 ? (std::uint64_t{1} << size_) - 1 : ~std::uint64_t{0};
+  }
+  /// Bit i: lights within the bounds may shine on point i. To the others they turn their backs, or
+  /// they lie behind them.
+  std::uint64_t may_be_lit(const BlockBounds& bounds) const;
 
  private:
-  friend class LightTerms;
   std::size_t size_ = 0;
   Lanes x_, y_, z_;
   Lanes nx_, ny_, nz_;  // the geometric normal, on the side that is seen
@@ -65,16 +70,24 @@ class LightTerms {
     const float cosines = abs_dot(a.surface.ng, w) * abs_dot(b.surface.ng, w);
     return bounded_share(cosines / (a.surface.x - b.surface.x).length2(), bound_);
   }
-  /// Bit i: lights of the block may give something to point i. To the others they turn their backs,
-  /// or they lie behind them: evaluate() would give nothing, and is saved.
-  std::uint64_t may_light(std::size_t block, const PointLanes& points) const;
-  void evaluate(const ShadingPoint& at, std::size_t block, Terms& out) const;
+  /// Bit i: lights of the block may give something to point i. To the others evaluate() would give
+  /// nothing, and is saved.
+  std::uint64_t may_light(std::size_t block, const PointLanes& points) const {
+    return lights_.diffuse(block) == nullptr ? points.all()
+                                             : points.may_be_lit(lights_.bounds(block));
+  }
+  static constexpr std::uint64_t all_lights = ~std::uint64_t{0};
+  /// Those of the lights in `of`, times `weight`; the others are black.
+  void evaluate(const ShadingPoint& at, std::size_t block, Terms& out,
+                std::uint64_t of = all_lights, float weight = 1) const;
   /// The ray that asks whether light `i` of `block`, which is lit, and `at` see one another.
   Ray ray(const ShadingPoint& at, std::size_t block, int i) const;
 
  private:
-  void diffuse_terms(const ShadingPoint& at, const DiffuseBlock& from, int count, Terms& out) const;
+  void diffuse_terms(const ShadingPoint& at, const DiffuseBlock& from, std::uint64_t of,
+                     Terms& out) const;
   Rgb general(const ShadingPoint& at, const GeneralLight& light) const;
+  static void weigh(std::uint64_t of, float weight, Terms& out);
   static void finish(Terms& out);
 
   const VirtualLights& lights_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "analysis/geometry/morton.h"
+#include "renderer/core/sampling.h"
 
 namespace lacuna {
 

@@ -121,6 +121,8 @@ inline std::vector<Method> many_lights(int max_depth, int light_paths = 64) {
     s.bound = 5;
     s.direct = DirectLighting::lights;
   });
+  add("lights_random", ExactVisibilitySettings{},
+      [](auto& s) { s.gather = RandomLightsSettings{.lights = 16}; });
   add("lights_probabilistic", ProbabilisticVisibilitySettings{}, as_it_is);
   add("lights_roulette", RouletteVisibilitySettings{}, as_it_is);
   return all;
@@ -128,7 +130,10 @@ inline std::vector<Method> many_lights(int max_depth, int light_paths = 64) {
 
 /// Many-light rendering with every visibility that has not.
 inline std::vector<Method> approximate_lights(int max_depth, int light_paths = 64) {
+  ManyLightsSettings filtered = lit_by(max_depth, light_paths, ExactVisibilitySettings{});
+  filtered.gather = RandomLightsSettings{.lights = 16, .filter_radius = 2};
   return {{"lights_none", lit_by(max_depth, light_paths, NoVisibilitySettings{})},
+          {"lights_filtered", filtered},
           {"lights_interpolated", lit_by(max_depth, light_paths, InterpolatedVisibilitySettings{})},
           {"lights_gates", lit_by(max_depth, light_paths, GatesVisibilitySettings{})},
           {"lights_node_maps", lit_by(max_depth, light_paths, NodeMapsVisibilitySettings{})},

@@ -117,10 +117,10 @@ class LitScene {
 template <class Visibility>
 std::vector<double> gathered(const LitScene& lit, const IterationContext& context,
                              const Visibility& visibility, std::span<const ShadingPoint> points,
-                             std::uint64_t* tests = nullptr) {
+                             std::uint64_t* tests = nullptr, const LightDraw* draw = nullptr) {
   Counters counters;
   std::vector<LightSum> sums(points.size());
-  LightGather<Visibility>(context, lit.terms(), visibility, counters).gather(points, sums);
+  LightGather<Visibility>(context, lit.terms(), visibility, draw, counters).gather(points, sums);
   std::vector<double> values;
   for (const LightSum& s : sums) {
     values.push_back(s.value.x);
