@@ -37,6 +37,7 @@ JobSpec reference_spec(const JobSpec& spec) {
   // False colours show the analysis itself; light does not depend on it.
   if (std::holds_alternative<InspectSettings>(spec.integrator)) r.analysis = spec.analysis;
   r.environment = spec.environment;
+  r.particles = spec.particles;
   r.seed = reference_seed;
   r.threads = spec.threads;
   r.layers = {ImageLayer::variance, ImageLayer::halves};

@@ -21,7 +21,8 @@ class Rng {
     integrator = 2,
     test = 3,
     visibility = 4,
-    gather = 5
+    gather = 5,
+    particles = 6
   };
 
   /// `path` < 2^56; `iteration` < 2^32.

@@ -10,16 +10,6 @@ namespace lacuna {
 
 namespace {
 
-Bounds bounds_of(const SceneData& data) {
-  Bounds box;
-  for (const Mesh& mesh : data.meshes) {
-    for (const auto& triangle : mesh.triangles) {
-      for (const auto i : triangle) box.add(mesh.positions[i]);
-    }
-  }
-  return box;
-}
-
 std::unique_ptr<Environment> load_environment(const EnvironmentImage& e) {
   FloatImage image = read_float_image(e.file);
   require_radiance(image, e.file.string());
@@ -32,7 +22,7 @@ std::unique_ptr<Environment> load_environment(const EnvironmentImage& e) {
 Scene::Scene(SceneData data, const SceneNeeds& needs,
              const std::optional<EnvironmentImage>& environment, const ThreadPool& pool)
     : data_(std::make_unique<SceneData>(std::move(data))),
-      bounds_(bounds_of(*data_)),
+      bounds_(data_->bounds()),
       triangles_(*data_),
       rays_((decode_textures(needs, pool), RayCaster(*data_, pool.threads()))) {
   if (needs.materials) make_uniform_lobes();

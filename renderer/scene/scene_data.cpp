@@ -21,4 +21,14 @@ std::size_t SceneData::triangle_count() const {
   return count;
 }
 
+Bounds SceneData::bounds() const {
+  Bounds box;
+  for (const Mesh& mesh : meshes) {
+    for (const auto& triangle : mesh.triangles) {
+      for (const auto i : triangle) box.add(mesh.positions[i]);
+    }
+  }
+  return box;
+}
+
 }  // namespace lacuna

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/core/bounds.h"
 #include "renderer/core/vec.h"
 #include "renderer/scene/texture.h"
 
@@ -124,6 +125,8 @@ struct SceneData {
   std::vector<std::string> warnings;    ///< what was left out, for the log and the report
 
   std::size_t triangle_count() const;
+  /// Of all triangles, scene units.
+  Bounds bounds() const;
 };
 
 /// Reads a .gltf or .glb. Everything it names must lie in the file's own folder.

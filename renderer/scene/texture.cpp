@@ -14,15 +14,15 @@ namespace {
 
 /// What a byte means: 256 entries for colours under an encoding, then 256 for alpha, which is
 /// always linear. One table for both lets a texel's four bytes be looked up at once.
-using Table = std::array<float, 512>;
+using ByteTable = std::array<float, 512>;
 
 /// IEC 61966-2-1.
 double srgb_to_linear(double c) {
   return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
 }
 
-Table make_table(Texture::Encoding encoding) {
-  Table table{};
+ByteTable make_table(Texture::Encoding encoding) {
+  ByteTable table{};
   for (std::size_t i = 0; i < 256; ++i) {
     const double c = static_cast<double>(i) / 255.0;
     table[i] = static_cast<float>(encoding == Texture::Encoding::srgb ? srgb_to_linear(c) : c);
@@ -31,8 +31,8 @@ Table make_table(Texture::Encoding encoding) {
   return table;
 }
 
-const Table linear_table = make_table(Texture::Encoding::linear);
-const Table srgb_table = make_table(Texture::Encoding::srgb);
+const ByteTable linear_table = make_table(Texture::Encoding::linear);
+const ByteTable srgb_table = make_table(Texture::Encoding::srgb);
 
 /// The four linear values of the texel at `p`. Four loads beat a gather on the machine this was
 /// measured on.

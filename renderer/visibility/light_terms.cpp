@@ -58,6 +58,8 @@ void LightTerms::diffuse_terms(const ShadingPoint& at, const DiffuseBlock& from,
                                Terms& out) const {
   const V3f x = at.vertex->surface.x;
   const V3f ng = at.vertex->surface.ng;
+  // What no path can hit, nothing could add again.
+  const float bound = from.points ? std::numeric_limits<float>::infinity() : bound_;
   for (int k = 0; k < Lanes::groups; ++k) {
     if ((of >> (8 * k) & 0xff) == 0) {
       for (Lanes* const channel : {&out.r, &out.g, &out.b}) channel->set(k, 0.0F);
@@ -66,13 +68,15 @@ void LightTerms::diffuse_terms(const ShadingPoint& at, const DiffuseBlock& from,
     const Float8x3 d{from.x.eight(k) - x.x, from.y.eight(k) - x.y, from.z.eight(k) - x.z};
     const Float8 inv = 1 / sqrt(length2(d));
     const Float8x3 w = d * inv;
-    const Float8 cos_g = -dot(w, {from.gx.eight(k), from.gy.eight(k), from.gz.eight(k)});
+    const Float8 cos_g = from.points
+                             ? Float8(1.0F)
+                             : -dot(w, {from.gx.eight(k), from.gy.eight(k), from.gz.eight(k)});
     const Float8 cos_s = -dot(w, {from.sx.eight(k), from.sy.eight(k), from.sz.eight(k)});
     const Float8 over_d2 = cos_g * inv * inv;
     Float8 t = over_d2 * select(cos_s > 0, from.turned.eight(k), 1);
     const Float8 geometric = abs(w.x * ng.x + w.y * ng.y + w.z * ng.z) * over_d2;
-    const Mask8 above = geometric > bound_;
-    if (any_of(above)) t = select(above, t * bound_ / geometric, t);  // bounded_share()
+    const Mask8 above = geometric > bound;
+    if (any_of(above)) t = select(above, t * bound / geometric, t);  // bounded_share()
     // At the light itself nothing of this is a number, and no comparison holds.
     t = keep_where(over_d2 > 0, t);
     const Float8x3 f = at.seen.eval(w);
@@ -117,7 +121,8 @@ Ray LightTerms::ray(const ShadingPoint& at, std::size_t block, int i) const {
     const V3f x(from->x[i], from->y[i], from->z[i]);
     const V3f g(from->gx[i], from->gy[i], from->gz[i]);
     const V3f start = eye.origin(x - eye.x());
-    return {start, offset_origin(x, g, from->extent[i], g) - start, 1.0F};
+    const V3f end = from->points ? x : offset_origin(x, g, from->extent[i], g);
+    return {start, end - start, 1.0F};
   }
   return lights_.general(block, i).with_end(
       guide_, [&](const auto& end) { return shadow_ray(eye, end, edge_between(eye, end)); });

@@ -61,6 +61,10 @@ void VirtualLights::add(Kept& path, const EmitterPoint& e) const {
   if (!e.pdf.positive()) return;
   if (e.kind == EmitterPoint::Kind::area && !e.both_sides) {
     path.diffuse.push_back({e.x, e.ng, e.ng, 1, e.emission * (share_ / e.pdf.value), e.extent, 0});
+  } else if (e.kind == EmitterPoint::Kind::point) {
+    const V3f everywhere(0.0F);
+    path.points.push_back(
+        {e.x, everywhere, everywhere, 1, e.emission * (share_ / e.pdf.value), 0, 0});
   } else {
     path.general.push_back({e, 0});
   }
@@ -92,30 +96,32 @@ LightPlace VirtualLights::place(std::size_t b, int i) const {
 
 void VirtualLights::arrange(const LightGroups& groups) {
   for (int index = 0; index < choice_.longest; ++index) {
-    std::vector<Diffuse> diffuse;
-    std::vector<GeneralLight> general;
-    for (const Kept& path : kept_) {
-      for (const Diffuse& l : path.diffuse) {
-        if (l.index == index) diffuse.push_back(l);
+    const auto all = [&](auto Kept::*kind) {
+      auto found = (Kept{}.*kind);
+      for (const Kept& path : kept_) {
+        for (const auto& l : path.*kind) {
+          if (l.index == index) found.push_back(l);
+        }
       }
-      for (const GeneralLight& l : path.general) {
-        if (l.index == index) general.push_back(l);
-      }
-    }
-    size_ += diffuse.size() + general.size();
-    arrange_diffuse(diffuse, groups);
-    arrange_general(general, groups);
+      size_ += found.size();
+      return found;
+    };
+    arrange_diffuse(all(&Kept::diffuse), false, groups);
+    arrange_diffuse(all(&Kept::points), true, groups);
+    arrange_general(all(&Kept::general), groups);
     ends_.push_back(blocks_.size());
   }
   kept_ = {};
 }
 
-void VirtualLights::arrange_diffuse(const std::vector<Diffuse>& lights, const LightGroups& groups) {
+void VirtualLights::arrange_diffuse(const std::vector<Diffuse>& lights, bool points,
+                                    const LightGroups& groups) {
   const auto place = [](const Diffuse& l) { return LightPlace{l.x, l.ng, false}; };
   for (const Run& run : near_one_another(lights, groups, place)) {
     const auto count = static_cast<int>(run.lights.size());
     blocks_.push_back({diffuse_.size(), count, true, run.group});
     DiffuseBlock& block = diffuse_.emplace_back();
+    block.points = points;
     BlockBounds& bounds = bounds_.emplace_back();
     for (int i = 0; i < Lanes::size; ++i) {
       // A missing one stands where another does, so that no geometry of it is special.

@@ -12,14 +12,15 @@
 
 namespace lacuna {
 
-/// Lambertian surfaces that a light path met, and one-sided emitters: sixty-four lights side by
-/// side. What is missing of the sixty-four is black. Towards unit `w` with w.g > 0 each sends
-/// radiant intensity rgb (w.g) (w.s > 0 ? turned : 1).
+/// Lambertian surfaces that a light path met, and one-sided emitters, or else point lights:
+/// sixty-four lights side by side. What is missing of the sixty-four is black. Towards unit `w`
+/// with w.g > 0 each sends radiant intensity rgb (w.g) (w.s > 0 ? turned : 1).
 struct DiffuseBlock {
-  Lanes x, y, z;     ///< position
-  Lanes gx, gy, gz;  ///< unit geometric normal, on the side that shines
-  Lanes sx, sy, sz;  ///< unit shading normal on that side
-  Lanes turned;      ///< LambertLit::turned
+  bool points = false;  ///< it sends rgb everywhere, and all normals are 0
+  Lanes x, y, z;        ///< position
+  Lanes gx, gy, gz;     ///< unit geometric normal, on the side that shines
+  Lanes sx, sy, sz;     ///< unit shading normal on that side
+  Lanes turned;         ///< LambertLit::turned
   Lanes r, g, b;
   Lanes extent;  ///< of the triangle, see TriangleShape
 };
@@ -118,7 +119,7 @@ class VirtualLights {
     int index;
   };
   struct Kept {
-    std::vector<Diffuse> diffuse;
+    std::vector<Diffuse> diffuse, points;
     std::vector<GeneralLight> general;
   };
   struct Block {
@@ -130,7 +131,7 @@ class VirtualLights {
 
   void add(Kept& path, const EmitterPoint& e) const;
   void add(Kept& path, const Vertex& v, int index) const;
-  void arrange_diffuse(const std::vector<Diffuse>& lights, const LightGroups& groups);
+  void arrange_diffuse(const std::vector<Diffuse>& lights, bool points, const LightGroups& groups);
   void arrange_general(const std::vector<GeneralLight>& lights, const LightGroups& groups);
 
   Choice choice_;

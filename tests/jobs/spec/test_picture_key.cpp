@@ -33,6 +33,7 @@ const std::map<std::string, std::function<void(JobSpec&)>> changes{
      [](JobSpec& s) {
        s.environment = EnvironmentSettings{"e.exr", 1, 0};
      }},
+    {"particles", [](JobSpec& s) { s.particles = ParticleSettings{.count = 9, .power = 1}; }},
     {"seed", [](JobSpec& s) { s.seed = 2; }},
     {"threads", [](JobSpec& s) { s.threads = 2; }},
     {"layers", [](JobSpec& s) { s.layers = {ImageLayer::albedo}; }},
@@ -42,9 +43,9 @@ const std::map<std::string, std::function<void(JobSpec&)>> changes{
     {"exclusive", [](JobSpec& s) { s.exclusive = true; }},
 };
 
-const std::set<std::string> decides_the_picture{"scene",      "camera",       "resolution",
-                                                "integrator", "analysis",     "environment",
-                                                "seed",       "pixel_filter", "crop"};
+const std::set<std::string> decides_the_picture{
+    "scene",       "camera", "resolution",   "integrator", "analysis",
+    "environment", "seed",   "pixel_filter", "crop",       "particles"};
 
 TEST(PictureKey, changes_with_what_decides_the_pixels_and_with_nothing_else) {
   JobSpec base;

@@ -14,11 +14,12 @@ Rgb by_hand(const ShadingPoint& at, const DiffuseBlock& from, int i, double boun
   const V3d to = x - V3d(at.vertex->surface.x);
   const double d2 = to.length2();
   const V3d w = to / std::sqrt(d2);
-  const double cos_y = -w.dot(V3d(from.gx[i], from.gy[i], from.gz[i]));
+  const double cos_y = from.points ? 1 : -w.dot(V3d(from.gx[i], from.gy[i], from.gz[i]));
   if (cos_y <= 0) return Rgb(0, 0, 0);
   const bool front = w.dot(V3d(from.sx[i], from.sy[i], from.sz[i])) < 0;
   const Rgb f =
       at.vertex->throughput * at.vertex->bsdf->eval(at.vertex->wp, V3f(w), Transport::radiance);
+  if (from.points) bound = std::numeric_limits<double>::infinity();
   const double g = std::abs(w.dot(V3d(at.vertex->surface.ng))) * cos_y / d2;
   const double scale =
       cos_y / d2 * (front ? double(from.turned[i]) : 1.0) * std::min(1.0, bound / g);
@@ -60,7 +61,8 @@ TEST_P(Terms64, AreThoseOfSingleConnections) {
 
 INSTANTIATE_TEST_SUITE_P(All, Terms64,
                          testing::Values(test::PathScene{"cornell"}, test::PathScene{"leaning"},
-                                         test::PathScene{"sides"}, test::PathScene{"ajar"}),
+                                         test::PathScene{"sides"}, test::PathScene{"ajar"},
+                                         test::PathScene{"coated_points"}),
                          [](const auto& s) { return s.param.name; });
 
 // Every vertex of the light paths is a light, whatever block it is in, but for black ones.
