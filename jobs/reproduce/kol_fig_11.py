@@ -7,7 +7,7 @@ from harness.run import Table
 
 def measure(run):
     views = 65536
-    jobs = {"one bounce": view_maps.job("Sponza", 68800, {}), "four bounces": view_maps.job("Sponza", 17500, {}, edges=6),
+    jobs = {"one bounce": view_maps.job("Sponza", 68800, {}), "four bounces": view_maps.job("Sponza", 62500, {}, edges=6),
             "random": view_maps.particles("Sponza", views, {})}
     told = {key: view_maps.statistics(run, key, value) for key, value in jobs.items()}
     run.found("time of random views / of one bounce",

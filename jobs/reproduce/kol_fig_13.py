@@ -6,7 +6,7 @@ from harness.run import Table
 
 
 def measure(run):
-    paths, at = 17500, (256, 128) if run.full else (96, 48)
+    paths, at = 62500, (256, 128) if run.full else (96, 48)
     view_maps.statistics(run, "exact", view_maps.job("Sponza", paths, {"type": "exact"}, at, edges=6))
     rows, found = [], {}
     for levels in (7, 8, 9, 10, 11):

@@ -29,8 +29,10 @@ class AliasTable {
     Pdf<Count> pmf;
   };
   /// The two halves of a draw: between them the bin is on its way from memory.
-  std::uint32_t choose(Rng& rng) const {
-    const auto i = static_cast<std::uint32_t>((std::uint64_t{rng.next_u32()} * bins_.size()) >> 32);
+  std::uint32_t choose(Rng& rng) const { return choose(rng.next_u32()); }
+  /// By 32 uniform bits.
+  std::uint32_t choose(std::uint32_t uniform) const {
+    const auto i = static_cast<std::uint32_t>((std::uint64_t{uniform} * bins_.size()) >> 32);
     __builtin_prefetch(&bins_[i]);
     return i;
   }

@@ -30,8 +30,11 @@ class EmitterSet {
 
   /// Draws an emitter, before the receiver is known: its memory is then on its way while the ray to
   /// the receiver is traced. Not to be called when empty().
-  std::uint32_t choose(Rng& rng) const {
-    const std::uint32_t i = selection_.sample(rng);
+  std::uint32_t choose(Rng& rng) const { return choose(rng.next_u32(), rng); }
+  /// By 32 uniform bits, and by one more number where two emitters share a place among them. Of as
+  /// many equal steps as there are emitters of one power, each chooses another.
+  std::uint32_t choose(std::uint32_t uniform, Rng& rng) const {
+    const std::uint32_t i = selection_.resolve(selection_.choose(uniform), rng).index;
     __builtin_prefetch(&entries_[i]);
     return i;
   }

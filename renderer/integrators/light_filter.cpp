@@ -10,14 +10,14 @@ LightFilter::LightFilter(const Image& image, const RandomLightsSettings& setting
   for (Pixel& p : pixels_) p.n = V3f(0.0F);
 }
 
-void LightFilter::set(const ShadingPoint& point, const V3d& light) {
+void LightFilter::add(const ShadingPoint& point, const V3d& light) {
   Pixel& p = pixels_[point.pixel];
   p.x = point.vertex->surface.x;
   p.n = point.vertex->side();
   p.reflected = point.vertex->throughput * point.vertex->bsdf->albedo();
   for (int k = 0; k < 3; ++k) {
     // What the surface does not reflect in the mean, it hardly reflects at all.
-    p.light[k] = p.reflected[k] > 0 ? light[k] / double(p.reflected[k]) : 0;
+    p.light[k] += p.reflected[k] > 0 ? light[k] / double(p.reflected[k]) : 0;
   }
 }
 

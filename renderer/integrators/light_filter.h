@@ -14,9 +14,9 @@ class LightFilter {
  public:
   LightFilter(const Image& image, const RandomLightsSettings& settings);
 
-  /// What lights give to a pixel by its shading point. Different pixels may be set by several
-  /// threads.
-  void set(const ShadingPoint& point, const V3d& light);
+  /// What some lights give to a pixel by its shading point, which is one for all of them. Different
+  /// pixels may be added to by several threads.
+  void add(const ShadingPoint& point, const V3d& light);
   /// The filtered light of a pixel; that of one without a shading point is 0.
   V3d at(V2i pixel) const;
 

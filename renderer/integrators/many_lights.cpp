@@ -77,11 +77,21 @@ class ManyLights final : public Integrator {
     lights_ = static_cast<double>(lights.size());
     pass.end(seconds_.light);
     const LightTerms terms(lights, bound_of(settings_, context.scene.bounds().radius()));
-    if (lights.size() > 0) {
-      counters += visibility_.begin({context, terms, settings_.max_depth, least_alpha_});
+    std::optional<LightDraw> draw;
+    std::optional<LightFilter> filter;
+    if (random()) draw.emplace(terms, *random());
+    if (random() && random()->filter_radius > 0) filter.emplace(image, *random());
+    for (const BlockRange& range : visibility_.passes(lights)) {
+      if (lights.size() > 0) {
+        counters += visibility_.begin({context, terms, settings_.max_depth, least_alpha_, range});
+      }
+      pass.end(seconds_.visibility);
+      counters += gather(
+          context, {terms, draw ? &*draw : nullptr, filter ? &*filter : nullptr, range}, image);
+      pass.end(seconds_.eye);
     }
-    pass.end(seconds_.visibility);
-    counters += gather(context, terms, image);
+    if (draw) culled_ = draw->culled();
+    if (filter) counters += add_filtered(context, *filter, image);
     pass.end(seconds_.eye);
     return counters;
   }
@@ -108,6 +118,10 @@ class ManyLights final : public Integrator {
     const LightTerms& terms;
     const LightDraw* draw;  // null: all lights
     LightFilter* filter;    // null: none
+    BlockRange range;       // of the lights of this pass
+
+    /// What does not come from the lights is added once.
+    bool is_first() const { return range.first == 0; }
   };
 
   /// How lights are drawn; null: all are taken.
@@ -116,40 +130,38 @@ class ManyLights final : public Integrator {
   }
 
   /// Eye paths, and what the lights give to them.
-  Counters gather(const IterationContext& context, const LightTerms& terms, Image& image) {
-    std::optional<LightDraw> draw;
-    std::optional<LightFilter> filter;
-    if (random()) draw.emplace(terms, *random());
-    if (random() && random()->filter_radius > 0) filter.emplace(image, *random());
-    const Gathering with{terms, draw ? &*draw : nullptr, filter ? &*filter : nullptr};
+  Counters gather(const IterationContext& context, const Gathering& with, Image& image) const {
     const Tiling tiling(image, batch_side);
-    Counters counters = for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
+    return for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
       Part part{EyeBatch(settings_.max_depth)};
       start_paths(context, image, tiling.tile(i), 0, part.batch);
-      count.samples += part.batch.walkers.size();
-      trace(context, terms, part, count);
+      if (with.is_first()) count.samples += part.batch.walkers.size();
+      trace(context, with, part, count);
       shine(context, with, part, count);
       add(context, with, part, image, count);
     });
-    if (draw) culled_ = draw->culled();
-    if (!filter) return counters;
-    counters += for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
+  }
+
+  Counters add_filtered(const IterationContext& context, const LightFilter& filter,
+                        Image& image) const {
+    const Tiling tiling(image, batch_side);
+    return for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
       const Tile tile = tiling.tile(i);
       for (int k = 0; k < tile.pixels(); ++k) {
         const V2i p = tile.pixel(k);
         Rgb& pixel = image.at(p.x, p.y);
-        const V3d value = V3d(pixel) + filter->at(p);
+        const V3d value = V3d(pixel) + filter.at(p);
         pixel = Rgb(0, 0, 0);
         count_negative(context, image.index(p.x, p.y), put(pixel, value, count));
       }
     });
-    return counters;
   }
 
   Counters walk_lights(const IterationContext& context, VirtualLights& lights, Image& image) const {
     if (context.scene.emitters().empty()) return {};
-    const LightPathSetting setting{context.scene, context.camera, settings_.max_depth - 1,
-                                   settings_.roulette_depth, SampleCounts{.hit = 0}};
+    const LightPathSetting setting{context.scene,           context.camera,
+                                   settings_.max_depth - 1, settings_.roulette_depth,
+                                   SampleCounts{.hit = 0},  true};
     return light_pass(
         context, setting, guide_, settings_.light_paths, image,
         [&](std::size_t path, const LightBatch<BsdfGuide>& batch, std::size_t place) {
@@ -159,7 +171,7 @@ class ManyLights final : public Integrator {
   }
 
   /// Eye paths: what they meet, direct light, and what the lights leave to path tracing.
-  void trace(const IterationContext& context, const LightTerms& terms, Part& part,
+  void trace(const IterationContext& context, const Gathering& with, Part& part,
              Counters& counters) const {
     const DirectLight<BsdfGuide> direct(context.scene, guide_, true);
     Walk<BsdfGuide> walk(
@@ -171,15 +183,21 @@ class ManyLights final : public Integrator {
       }
     };
     walk.lead(part.batch.walkers, choose, [&](std::size_t i, int depth) {
-      return visit(context.scene, terms, direct, part, i, depth);
+      return visit(context.scene, with, direct, part, i, depth);
     });
+    if (!with.is_first()) {
+      part.shadows = {};
+      part.batch.radiance.fill(Rgb(0, 0, 0));
+      return;
+    }
     part.shadows.flush(context.scene.rays(), counters,
                        [&](const Direct& d) { part.batch.radiance[d.walker] += d.value; });
   }
 
   /// One vertex of an eye path; false where the path ends.
-  bool visit(const Scene& scene, const LightTerms& terms, const DirectLight<BsdfGuide>& direct,
+  bool visit(const Scene& scene, const Gathering& with, const DirectLight<BsdfGuide>& direct,
              Part& part, std::size_t i, int depth) const {
+    const LightTerms& terms = with.terms;
     Vertex& v = part.batch.vertex(i, depth);
     const bool first = part.shaded[i] == 0;
     const Vertex& before = part.batch.vertex(i, depth - 1);
@@ -195,6 +213,7 @@ class ManyLights final : public Integrator {
     if (!first && !settings_.compensation) return false;
     if (first && lit_by_lights) {
       part.shaded[i] = depth;
+      if (!with.is_first()) return false;
     } else if (shared && lit_by_lights) {
       const float weight = missing(terms, before, v);
       if (weight == 0) return false;
@@ -235,11 +254,11 @@ class ManyLights final : public Integrator {
       walkers.push_back(i);
     }
     std::vector<LightSum> sums(points.size());
-    LightGather<Visibility>(context, with.terms, visibility_, with.draw, counters)
+    LightGather<Visibility>(context, with.terms, visibility_, with.draw, counters, with.range)
         .gather(points, sums);
     for (std::size_t k = 0; k < sums.size(); ++k) {
       if (with.filter != nullptr) {
-        with.filter->set(points[k], sums[k].value);
+        with.filter->add(points[k], sums[k].value);
         sums[k].value = V3d(0, 0, 0);  // until all pixels are there
       }
       part.sums[walkers[k]] = sums[k];

@@ -16,6 +16,9 @@ struct LightPathSetting {
   int max_depth;       ///< edges of whole paths, the one to the eye included
   int roulette_depth;  ///< as WalkLimits
   SampleCounts counts;
+  /// Of the paths of an iteration, each alike probable to start anywhere, the emitters are chosen
+  /// at equal steps from a random start, so that they share them evenly.
+  bool spread = false;
 };
 
 /// Paths from lights that are walked together: at most `size`, of which each keeps its place.
@@ -33,10 +36,16 @@ class LightBatch {
   }
 
   /// Walks the paths of the given random numbers. A path without any light has length 0.
-  void walk(std::span<const Rng> rngs, Counters& counters) {
+  /// `choices`: 32 bits for each, uniform, by which it chooses its emitter; empty: from `rngs`.
+  void walk(std::span<const Rng> rngs, Counters& counters,
+            std::span<const std::uint32_t> choices = {}) {
     walkers_.clear();
     counters.samples += rngs.size();
-    for (std::size_t i = 0; i < rngs.size(); ++i) start(i, rngs[i]);
+    for (std::size_t i = 0; i < rngs.size(); ++i) {
+      Rng rng = rngs[i];
+      const std::uint32_t own = rng.next_u32();
+      start(i, rng, choices.empty() ? own : choices[i]);
+    }
     const WalkLimits limits{.max_depth = setting_.max_depth - 1,
                             .last_scatters = true,
                             .roulette_depth = setting_.roulette_depth,
@@ -87,11 +96,11 @@ class LightBatch {
     std::uint16_t s;
   };
 
-  void start(std::size_t i, Rng rng) {
+  void start(std::size_t i, Rng rng, std::uint32_t choice) {
     length_[i] = 0;
     const EmitterSet& lights = setting_.scene.emitters();
     if (lights.empty()) return;
-    const EmitterPoint& e = emitters_[i] = lights.sample(lights.choose(rng), rng);
+    const EmitterPoint& e = emitters_[i] = lights.sample(lights.choose(choice, rng), rng);
     length_[i] = 1;
     if (setting_.max_depth == 1) return;
     const std::optional<Leaving> leaving = lights.leave(e, rng);

@@ -238,6 +238,7 @@ struct ViewMapsVisibilitySettings {
   int map_size = 16;
   int levels = 9;
   double node_texels = 1.75;
+  double memory = 4;
   bool operator==(const ViewMapsVisibilitySettings&) const = default;
 };
 template <class V>
@@ -256,6 +257,13 @@ void describe(V& v, ViewMapsVisibilitySettings& s) {
          "less than half, and larger maps for the same time err less. Not for per_view",
      .min = 0.25,
      .max = 4});
+  v("memory", s.memory,
+    {.doc =
+         "that the maps may take; where those of all lights would take more, the picture is made "
+         "in several passes, each with a part of the lights",
+     .min = 0.0001,
+     .max = 4096,
+     .unit = "GiB"});
 }
 
 /// Whether a virtual light and a shading point see one another.

@@ -12,6 +12,7 @@ struct LightPass {
   const LightTerms& terms;
   int max_depth;      ///< edges of an eye path
   float least_alpha;  ///< of the surfaces that lights shine on: Bsdf::broad()
+  BlockRange lights = {};
 };
 
 /// n_d / N: rays besides tests that a light's share of a shading point takes (Nabata et al., eq.

@@ -4,13 +4,8 @@
 
 namespace lacuna {
 
-namespace {
-
-constexpr std::size_t most_stretches = 1024;
-
-}  // namespace
-
-LightDraw::LightDraw(const LightTerms& terms, const RandomLightsSettings& settings)
+LightDraw::LightDraw(const LightTerms& terms, const RandomLightsSettings& settings,
+                     std::size_t most_stretches)
     : terms_(terms), settings_(settings) {
   const VirtualLights& lights = terms.lights();
   const std::size_t longest = (lights.blocks() + most_stretches - 1) / most_stretches;

@@ -16,8 +16,9 @@ namespace lacuna {
 /// left the lights are drawn at equal steps from a random start, so far apart.
 class LightDraw {
  public:
-  /// `terms` outlives it.
-  LightDraw(const LightTerms& terms, const RandomLightsSettings& settings);
+  /// `terms` outlives it. About as many stretches as `most_stretches` are made of the lights.
+  LightDraw(const LightTerms& terms, const RandomLightsSettings& settings,
+            std::size_t most_stretches = 1024);
 
   /// Lights of a block for a shading point.
   struct Drawn {

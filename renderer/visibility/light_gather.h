@@ -20,14 +20,16 @@ struct LightSum {
 template <class Visibility>
 class LightGather {
  public:
-  /// `draw`: null for all lights.
+  /// `draw`: null for all lights; of those it takes `range`.
   LightGather(const IterationContext& context, const LightTerms& terms,
-              const Visibility& visibility, const LightDraw* draw, Counters& counters)
+              const Visibility& visibility, const LightDraw* draw, Counters& counters,
+              BlockRange range = {})
       : context_(context),
         terms_(terms),
         visibility_(visibility),
         draw_(draw),
-        counters_(counters) {}
+        counters_(counters),
+        range_(range) {}
 
   /// `sums[i]` becomes that of `points[i]`, of which there are at most Lanes::size. Throws
   /// IterationStopped if the context asks for it.
@@ -67,7 +69,7 @@ class LightGather {
       ends.push_back(terms_.lights().blocks(p.edges));
       blocks = std::max(blocks, ends.back());
     }
-    for (std::size_t b = 0; b < blocks; ++b) {
+    for (std::size_t b = range_.first; b < std::min(blocks, range_.end); ++b) {
       for_each_bit(terms_.may_light(b, lanes), [&](int bit) {
         const auto i = static_cast<std::size_t>(bit);
         if (b < ends[i]) add(points[i], states[i], {b, i, LightTerms::all_lights, 1}, sums[i]);
@@ -81,6 +83,7 @@ class LightGather {
     const std::vector<LightDraw::Drawn> drawn = draw_->draw(points, context_);
     for (std::size_t k = 0; k < drawn.size(); ++k) {
       const LightDraw::Drawn& d = drawn[k];
+      if (!range_.contains(d.block)) continue;
       add(points[d.point], states[d.point], d, sums[d.point]);
       if (k + 1 == drawn.size() || drawn[k + 1].block != d.block) end_block(sums);
     }
@@ -130,6 +133,7 @@ class LightGather {
   const Visibility& visibility_;
   const LightDraw* draw_;
   Counters& counters_;
+  BlockRange range_;
   std::size_t blocks_ = 0;                            // done
   std::array<std::vector<Test>, Lanes::size> tests_;  // of each light of the block
   ShadowQueue<Lit> queue_;

@@ -22,13 +22,31 @@ void ViewMapVisibility::prepare(const PrepareContext& context) {
   texels_ = map_texels({settings_.map_size});
 }
 
+std::vector<BlockRange> ViewMapVisibility::passes(const VirtualLights& lights) const {
+  constexpr double gib = 1 << 30;
+  const double most = settings_.memory * gib / double(texels_.size() * sizeof(std::uint16_t));
+  std::vector<BlockRange> ranges{{}};
+  double views = 0;
+  for (std::size_t b = 0; b < lights.blocks(); ++b) {
+    const auto more = lights.group(b) == no_group ? 0.0 : double(lights.count(b));
+    if (views > 0 && views + more > most) {
+      ranges.back().end = b;
+      ranges.push_back({b});
+      views = 0;
+    }
+    views += more;
+  }
+  return ranges;
+}
+
 Counters ViewMapVisibility::begin(const LightPass& pass) {
   PassSeconds seconds;
   lights_ = &pass.terms.lights();
+  if (pass.lights.first == 0) leaves_ = 0, passes_ = 0;
   std::vector<View> views;
-  first_.clear();
-  for (std::size_t b = 0; b < lights_->blocks(); ++b) {
-    first_.push_back(static_cast<std::uint32_t>(views.size()));
+  first_.assign(lights_->blocks(), 0);
+  for (std::size_t b = pass.lights.first; b < std::min(pass.lights.end, lights_->blocks()); ++b) {
+    first_[b] = static_cast<std::uint32_t>(views.size());
     if (lights_->group(b) == no_group) continue;
     for (int i = 0; i < lights_->count(b); ++i) {
       const LightPlace p = lights_->place(b, i);
@@ -37,6 +55,8 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
   }
   views_ = std::make_unique<ViewTree>(views, settings_.levels, cube_.corner, cube_.side);
   seconds.end(tree_seconds_);
+  leaves_ += views_->leaf_count();
+  ++passes_;
   maps_.reset();
   maps_ = std::make_unique<ViewMaps>(views_->leaf_count(), settings_.map_size,
                                      static_cast<float>(2 * cube_.side));
@@ -95,7 +115,8 @@ std::vector<std::pair<std::string, double>> ViewMapVisibility::statistics() cons
   const auto number = [](auto n) { return static_cast<double>(n); };
   const auto splats = number(std::max<std::uint64_t>(1, counts_.splats));
   return {{"scene_leaves", number(scene_ ? scene_->leaves().size() : 0)},
-          {"view_leaves", number(views_->leaf_count())},
+          {"view_leaves", number(leaves_)},
+          {"view_passes", number(passes_)},
           {"view_map_bytes", number(maps_->bytes())},
           {"view_tree_cpu_seconds", tree_seconds_},
           {"view_map_cpu_seconds", map_seconds_},

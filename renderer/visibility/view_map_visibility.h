@@ -19,6 +19,7 @@ class ViewMapVisibility : public VisibilityBase {
 
   void prepare(const PrepareContext& context);
   static std::uint32_t group(const LightPlace& light) { return light.infinite ? no_group : 0; }
+  std::vector<BlockRange> passes(const VirtualLights& lights) const;
   Counters begin(const LightPass& pass);
   struct At {
     V3f x, n;  // n on the side that is seen
@@ -42,7 +43,9 @@ class ViewMapVisibility : public VisibilityBase {
   std::vector<std::uint32_t> first_;  // of each block of lights its first view
   const VirtualLights* lights_ = nullptr;
   ManyViewsCounts counts_;
-  std::uint64_t queue_peak_ = 0;  // of the iteration that has the most
+  std::uint64_t queue_peak_ = 0;  // of the pass that has the most
+  std::uint64_t leaves_ = 0;      // of all passes of an iteration
+  int passes_ = 0;
   double tree_seconds_ = 0, map_seconds_ = 0;
 };
 

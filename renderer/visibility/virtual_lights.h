@@ -51,6 +51,14 @@ struct GeneralLight {
   }
 };
 
+/// Blocks of lights that are treated together.
+struct BlockRange {
+  std::size_t first = 0;
+  std::size_t end = ~std::size_t{0};  ///< or the number of blocks, if that is less
+
+  bool contains(std::size_t block) const { return block >= first && block < end; }
+};
+
 /// Lights that are treated alike have one number: the lights of a block are of one group.
 using LightGroups = std::function<std::uint32_t(const LightPlace&)>;
 /// Of a light that belongs nowhere.

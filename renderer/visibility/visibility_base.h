@@ -17,7 +17,9 @@ struct VisibilityBase {
   static void prepare(const PrepareContext&) {}
   /// Lights of which groups it wants to meet one after another.
   static std::uint32_t group(const LightPlace&) { return 0; }
-  /// Once the lights of an iteration are there.
+  /// Which lights it treats at a time: all blocks, one range after another.
+  static std::vector<BlockRange> passes(const VirtualLights&) { return {{}}; }
+  /// Once the lights of an iteration are there, for each of the passes.
   static Counters begin(const LightPass&) { return {}; }
   /// No light of `block` shines on the point, whatever it would give.
   template <class At>

@@ -22,7 +22,7 @@ def job(view, paths, how, resolution=(32, 16), edges=3, **more):
 def particles(view, count, how, **more):
     """Omnidirectional views at random places."""
     return job(view, count, how, edges=2, integrator={"direct": "lights", **more.pop("integrator", {})},
-               particles={"count": count, "power": 3000, "color": [1, 0.8, 0.5], "low": [0.1, 0.02, 0.15],
+               particles={"count": count, "power": 300000, "color": [1, 0.8, 0.5], "low": [0.1, 0.02, 0.15],
                           "high": [0.9, 0.6, 0.85], "alone": True}, **more)
 
 

@@ -3,6 +3,7 @@
 #include <ostream>
 #include <string>
 
+#include "renderer/scene/particles.h"
 #include "tests/renderer/scene/scene_parts.h"
 
 namespace lacuna::test {
@@ -66,6 +67,12 @@ inline SceneData black_room() {
 inline SceneData load(const PathScene& s) {
   if (s.name == "black") return black_room();
   if (s.name == "leaning") return leaning_room();
+  if (s.name == "particles") {
+    SceneData data = load_gltf(scene_path("cornell.glb"));
+    for (Material& m : data.materials) m.emission = Rgb(0, 0, 0);
+    add_particles(data, {.count = 777, .power = 50, .alone = true});
+    return data;
+  }
   if (s.name == "coated") return coated_box(false);
   if (s.name == "coated_points") return coated_box(true);
   return load_gltf(scene_path(s.name + ".glb"));

@@ -18,8 +18,9 @@ using test::LitScene;
 using Lights = std::map<std::size_t, std::uint64_t>;  // by block
 
 /// All that may be drawn for a point.
-Lights candidates(const LitScene& lit, const ShadingPoint& point, bool cull) {
-  const LightDraw draw(lit.terms(), {.lights = 1 << 20, .cull = cull});
+Lights candidates(const LitScene& lit, const ShadingPoint& point, bool cull,
+                  std::size_t most_stretches = 1024) {
+  const LightDraw draw(lit.terms(), {.lights = 1 << 20, .cull = cull}, most_stretches);
   Lights all;
   for (const auto& d : draw.draw(std::span(&point, 1), lit.context(1))) {
     EXPECT_EQ(d.weight, 1.0F);
@@ -38,24 +39,29 @@ std::size_t count(const Lights& lights) {
 TEST(LightDraw, LeavesOutOnlyWhatIsDark) {
   for (const char* scene : {"ajar", "atrium", "cornell"}) {
     const LitScene lit({scene}, 3000, 2);
-    std::size_t all_left = 0, all = 0;
+    std::size_t fine_left = 0, coarse_left = 0, all = 0;
     lit.with_points(500, [&](std::span<const ShadingPoint> points) {
       Terms terms;
       for (const ShadingPoint& p : points) {
-        const Lights left = candidates(lit, p, true), whole = candidates(lit, p, false);
+        const Lights fine = candidates(lit, p, true), coarse = candidates(lit, p, true, 20),
+                     whole = candidates(lit, p, false);
         std::size_t lights = 0;
         for (std::size_t b = 0; b < lit.lights().blocks(p.edges); ++b) {
           lights += static_cast<std::size_t>(lit.lights().count(b));
           lit.terms().evaluate(p, b, terms);
-          const auto found = left.find(b);
-          EXPECT_EQ(terms.lit & ~(found == left.end() ? 0 : found->second), 0U);
+          for (const Lights* left : {&fine, &coarse}) {
+            const auto found = left->find(b);
+            EXPECT_EQ(terms.lit & ~(found == left->end() ? 0 : found->second), 0U);
+          }
         }
         EXPECT_EQ(count(whole), lights);
-        all_left += count(left);
+        fine_left += count(fine);
+        coarse_left += count(coarse);
         all += lights;
       }
     });
-    EXPECT_LT(all_left, all) << scene;
+    EXPECT_LT(fine_left, coarse_left) << scene;
+    EXPECT_LT(coarse_left, all) << scene;
   }
 }
 

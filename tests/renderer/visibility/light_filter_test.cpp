@@ -22,7 +22,7 @@ TEST(LightFilter, KeepsEvenLight) {
   for (const int radius : {1, 8, 32}) {
     lit.with_points(500, [&](std::span<const ShadingPoint> points) {
       LightFilter filter(Image(40, 30), {.filter_radius = radius});
-      for (const ShadingPoint& p : points) filter.set(p, reflected(p) * V3d(1, 2, 3));
+      for (const ShadingPoint& p : points) filter.add(p, reflected(p) * V3d(1, 2, 3));
       for (const ShadingPoint& p : points) {
         const V3d light = filter.at(place(p.pixel)), expected = reflected(p) * V3d(1, 2, 3);
         EXPECT_LT((light - expected).length(), 1e-6 * expected.length());
@@ -40,7 +40,7 @@ TEST(LightFilter, MixesSurfacesThatAreAlike) {
     for (std::size_t from = 0; from < points.size(); from += 7) {
       LightFilter filter(Image(40, 30), settings);
       for (std::size_t i = 0; i < points.size(); ++i) {
-        filter.set(points[i], i == from ? reflected(points[i]) : V3d(0.0));
+        filter.add(points[i], i == from ? reflected(points[i]) : V3d(0.0));
       }
       const Vertex& source = *points[from].vertex;
       for (const ShadingPoint& p : points) {
@@ -68,7 +68,7 @@ TEST(LightFilter, GivesNothingBackWhereNothingIsReflected) {
     black.throughput = Rgb(0, 0, 0);
     const ShadingPoint point(black, 1, 3, points[0].pixel);
     LightFilter filter(Image(40, 30), {.filter_radius = 4});
-    filter.set(point, V3d(0.0));
+    filter.add(point, V3d(0.0));
     EXPECT_EQ(filter.at(place(point.pixel)), V3d(0.0));
   });
 }

@@ -1,5 +1,7 @@
 // Sums of very many lights, of lights of very different power, and of none.
 
+#include <set>
+
 #include "renderer/visibility/plain_visibility.h"
 #include "tests/renderer/visibility/lit_scene.h"
 
@@ -48,6 +50,22 @@ TEST(LightSums, OfLightsOverTwentyFourDecades) {
     ASSERT_FALSE(points.empty());
     expect_exact_sums(lit, points);
   });
+}
+
+// As many light paths as there are lights of one power: each is a virtual light once.
+TEST(LightSums, HaveEachOfAlikeEmittersOnce) {
+  constexpr int n = 777;
+  const LitScene lit({"particles"}, n, 2);
+  std::set<float> met;
+  std::size_t points = 0;
+  for (std::size_t b = 0; b < lit.lights().blocks(0); ++b) {
+    const DiffuseBlock* block = lit.lights().diffuse(b);
+    ASSERT_NE(block, nullptr);
+    ASSERT_TRUE(block->points);
+    for (int i = 0; i < lit.lights().count(b); ++i, ++points) met.insert(block->x[i]);
+  }
+  EXPECT_EQ(points, n);
+  EXPECT_GT(met.size(), n - 3U);  // two may share a coordinate
 }
 
 TEST(LightSums, AreNothingWhereAllLightsLieBehind) {

@@ -73,8 +73,8 @@ class LitScene {
     VirtualLights lights(static_cast<std::size_t>(light_paths_),
                          {max_depth - 1, with_emitters_, least_alpha});
     for (auto& n : walked_) n = 0;
-    const LightPathSetting setting{scene_, camera_, max_depth - 1, max_depth,
-                                   SampleCounts{.hit = 0}};
+    const LightPathSetting setting{
+        scene_, camera_, max_depth - 1, max_depth, SampleCounts{.hit = 0}, true};
     Image image(40, 30);
     light_pass(
         context(1), setting, guide_, light_paths_, image,
