@@ -1,21 +1,21 @@
-// The plot of error curves on the page: the figure, as wide as there is room.
+// Figures on the page, as wide as there is room.
 import { points } from "./curve.js";
 import { h } from "./dom.js";
 import { figureSvg } from "./figure_svg.js";
 
 const narrowest = 280;
 
-/// A plot of `series` ([{name, rows}], see parseCurve) with the axes' keys `x` and `y`.
-/// `draw(series, x, y)` draws anew; it goes with `signal`.
-export function plot(signal) {
+/// A place for a figure. `draw(make)` shows what `make(width)` gives, an SVG element, or `empty` where it
+/// gives null; and again when the width changes. It goes with `signal`.
+export function figureBox(empty, signal) {
   const box = h("div.plot");
-  const empty = h("p.note", "No errors have been measured.");
-  let last = null;
+  const nothing = h("p.note", empty);
+  let make = null;
   let width = 0;
 
   function redraw() {
-    if (!last || width === 0) return;
-    box.replaceChildren(figureSvg(...last, Math.max(narrowest, width)) ?? empty);
+    if (!make || width === 0) return;
+    box.replaceChildren(make(Math.max(narrowest, width)) ?? nothing);
   }
   const watch = new ResizeObserver(([entry]) => {
     const now = Math.floor(entry.contentRect.width);
@@ -27,12 +27,26 @@ export function plot(signal) {
   signal.addEventListener("abort", () => watch.disconnect());
   return {
     element: h("figure", box),
-    draw(series, x, y) {
-      last = [series, x, y];
-      const curves = y ? series.map((s) => points(s.rows, x, y)) : [];
-      box.dataset.curves = curves.filter((c) => c.length > 0).length;
-      box.dataset.points = curves.flat().length;
+    /// `curves`: of how many, and `count` of how many points the figure is, for those who look for them.
+    draw(next, curves, count) {
+      make = next;
+      box.dataset.curves = curves;
+      box.dataset.points = count;
       redraw();
+    },
+  };
+}
+
+/// A plot of error curves, `series` ([{name, rows}], see parseCurve), with the axes' keys `x` and `y`:
+/// `draw(series, x, y)`.
+export function plot(signal) {
+  const figure = figureBox("No errors have been measured.", signal);
+  return {
+    element: figure.element,
+    draw(series, x, y) {
+      const curves = y ? series.map((s) => points(s.rows, x, y)) : [];
+      figure.draw((width) => figureSvg(series, x, y, width), curves.filter((c) => c.length > 0).length,
+        curves.flat().length);
     },
   };
 }

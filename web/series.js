@@ -6,13 +6,14 @@ import { isTerminal } from "./status.js";
 
 const everyMs = 5000;
 
-/// A job with its curve. One that has ended is read once.
+/// A job with its curve and its report. One that has ended is read once.
 async function readJob(id, before, signal) {
   if (before && isTerminal(before.state.state)) return before;
   const job = await getJob(id, signal);
   const has = (name) => job.files.find((f) => f.name === name);
   const rows = has("curve.csv") ? parseCurve(await getText(id, "curve.csv", signal)) : [];
-  return { ...job, rows };
+  const report = has("report.json") ? JSON.parse(await getText(id, "report.json", signal)) : null;
+  return { ...job, rows, report };
 }
 
 /// "label, integrator"; where two would read the same, with the end of the id.

@@ -4,6 +4,7 @@ import { axes, commonError, commonInstants, errorAt, metrics, points, reaches } 
 import { curvePanel } from "./curve_panel.js";
 import { append, h, note, problem, replace, table, warning } from "./dom.js";
 import { number, significant } from "./format.js";
+import { scalingPanel } from "./scaling_panel.js";
 import { followJobs, idsOf } from "./series.js";
 import { differences, doubtful } from "./settings_diff.js";
 
@@ -47,6 +48,7 @@ export async function show(main, { query, signal }) {
   let series = [];
   const pictures = comparePictures(query, signal);
   const panel = curvePanel(query, signal, drawTimes);
+  const scaling = scalingPanel(query, signal);
 
   function drawTimes() {
     replace(times, h("h2", "Error at equal time"),
@@ -62,12 +64,13 @@ export async function show(main, { query, signal }) {
       `These jobs differ in ${doubts.join(", ")}: their errors may not be comparable.`));
     panel.show(series, preferred);
     drawTimes();
+    scaling.show(jobs);
     replace(settings, h("h2", "Settings that differ"), found.length === 0 ? note("The job files are the same.")
       : table(["", ...labels], found.map((d) => [d.pointer, ...d.values])));
     pictures.show(jobs, labels).catch((error) => { if (!signal.aborted) append(notes, problem(error.message)); });
   }
 
   main.append(notes, panel.element, times,
-    h("section", h("h2", "Pictures"), pictures.element), settings);
+    h("section", h("h2", "Pictures"), pictures.element), scaling.element, settings);
   await followJobs(ids, draw, signal);
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "renderer/materials/bsdf.h"
-#include "renderer/materials/layer_means.h"
+#include "renderer/materials/mean_weights.h"
 
 namespace lacuna {
 
@@ -36,7 +36,7 @@ class BsdfSeen {
   bool layered_;  // facets lie over the base, or there are facets alone
   Layer layer_;
   float through_o_ = 1;  // of the layer
-  LayerMeans means_;
+  MeanWeights means_;
   Interface interface_;
 };
 

@@ -4,7 +4,7 @@
 #include <mutex>
 
 #include "renderer/materials/ggx.h"
-#include "renderer/materials/layer_means.h"
+#include "renderer/materials/mean_weights.h"
 
 namespace lacuna {
 namespace {
@@ -44,7 +44,7 @@ class Table {
   static float row(float alpha) { return std::sqrt(alpha) * (rows - 1); }
 
  private:
-  static constexpr int rows = 17, columns = LayerMeans::columns;
+  static constexpr int rows = 17, columns = MeanWeights::columns;
 
   static std::pair<std::size_t, float> split(float x, int n) {
     const int i = std::min(static_cast<int>(x), n - 2);
@@ -117,11 +117,11 @@ Layer::Layer(float f0, float f90, float alpha)
   norm_ = mean > 0 ? 1 / mean : 0;
 }
 
-LayerMeans::LayerMeans(const Layer& layer) : smooth_(layer.row_ < 0) {
+MeanWeights::MeanWeights(const Layer& layer) : smooth_(layer.row_ < 0) {
   if (!smooth_) table().columns_at(layer.row_, v_);
 }
 
-Float8 LayerMeans::at(Float8 cos) const {
+Float8 MeanWeights::at(Float8 cos) const {
   if (smooth_) return schlick_weight(cos);
   const Float8 x = sqrt(min(Float8(1), max(Float8(0), cos))) * float(columns - 1);
   const __m256i column = _mm256_min_epi32(_mm256_cvttps_epi32(x.v), _mm256_set1_epi32(columns - 2));

@@ -35,7 +35,7 @@ class Layer {
   bool closed() const { return norm_ == 0; }
 
  private:
-  friend class LayerMeans;
+  friend class MeanWeights;
 
   float f0_ = 0, f90_ = 0;
   float norm_ = 1;  // 1 / (1 - mean K)

@@ -48,7 +48,7 @@ for (const [name, path] of Object.entries(views)) {
   });
 }
 
-test("what a first visit reads is under 150 kB, and all of the page under 195", () => {
+test("what a first visit reads is under 150 kB, and all of the page under 205", () => {
   const folder = new URL("../../web/", import.meta.url);
   const sizes = new Map(readdirSync(folder).map((name) => [name, statSync(new URL(name, folder)).size]));
   const total = (names) => [...names].reduce((sum, name) => sum + sizes.get(name), 0);
@@ -62,7 +62,7 @@ test("what a first visit reads is under 150 kB, and all of the page under 195", 
   follow("app.js");
   assert.ok(read.size > 40 && !read.has("view_sweep.js"), [...read].join());
   assert.ok(total(read) < 150_000, `${total(read)} bytes are read at first`);
-  assert.ok(total(sizes.keys()) < 195_000, `${total(sizes.keys())} bytes in all`);
+  assert.ok(total(sizes.keys()) < 205_000, `${total(sizes.keys())} bytes in all`);
 });
 
 test("every view shows names as text", async () => {

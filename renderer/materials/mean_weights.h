@@ -8,11 +8,11 @@
 namespace lacuna {
 
 /// Layer::mean_weight() of one layer, for eight cosines at once.
-class LayerMeans {
+class MeanWeights {
  public:
   static constexpr int columns = 33;  ///< equidistant over the root of the cosine
 
-  explicit LayerMeans(const Layer& layer);
+  explicit MeanWeights(const Layer& layer);
   Float8 at(Float8 cos) const;
 
  private:
