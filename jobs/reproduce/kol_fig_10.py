@@ -17,7 +17,7 @@ def job(method, paths):
     return {"scene": "sponza/scene.glb", "camera": "atrium", "resolution": [32, 16], "budget": {"iterations": 1},
             "checkpoint_seconds": 86400,
             "integrator": {"type": "many_lights", "max_depth": 3, "light_paths": paths, "compensation": False,
-                           "visibility": {"type": "view_maps", "method": method, "levels": 11, "node_texels": 1}}}
+                           "visibility": {"type": "view_maps", "method": method, "levels": 11, "node_texels": 1, "cover": 0}}}
 
 
 def exponent(points):

@@ -44,6 +44,7 @@ inline Float8 min(Float8 a, Float8 b) { return _mm256_min_ps(a.v, b.v); }
 inline Float8 max(Float8 a, Float8 b) { return _mm256_max_ps(a.v, b.v); }
 inline Float8 sqrt(Float8 a) { return _mm256_sqrt_ps(a.v); }
 inline Float8 ceil(Float8 a) { return _mm256_ceil_ps(a.v); }
+inline Float8 floor(Float8 a) { return _mm256_floor_ps(a.v); }
 inline Float8 abs(Float8 a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0F), a.v); }
 /// The sum of all, in a fixed order.
 inline float sum(Float8 a) {

@@ -238,6 +238,7 @@ struct ViewMapsVisibilitySettings {
   int map_size = 16;
   int levels = 9;
   double node_texels = 1.75;
+  double cover = 0.82;
   double memory = 4;
   bool operator==(const ViewMapsVisibilitySettings&) const = default;
 };
@@ -257,6 +258,14 @@ void describe(V& v, ViewMapsVisibilitySettings& s) {
          "less than half, and larger maps for the same time err less. Not for per_view",
      .min = 0.25,
      .max = 4});
+  v("cover", s.cover,
+    {.doc =
+         "a node fills the texels whose middles lie within this share of the radius of its sphere, "
+         "so that what is thinner than a texel hides little; below 0.82 a wall of cubes has holes, "
+         "and yet some scenes err least near 0.65; 0: it fills the texel that its middle falls "
+         "into, whatever it covers of it (as published), and shadows are larger. Not for per_view",
+     .min = 0,
+     .max = 1});
   v("memory", s.memory,
     {.doc =
          "that the maps may take; where those of all lights would take more, the picture is made "

@@ -43,6 +43,18 @@ struct Paraboloid {
     const Int8 half = keep_where(Float8(0.0F) > d.x, Int8(size));
     return (half + step(d.z)) * Int8(size) + step(d.y);
   }
+  /// Of eight directions whose lengths are `length`: whether a sphere of this radius there covers
+  /// the middle of the texel that its own middle falls into.
+  Mask8 covers_middle(const Float8x3& d, Float8 length, float radius) const {
+    const Float8 scale = Float8(1.0F) / (length + abs(d.x));
+    const auto off = [&](Float8 side) {
+      const Float8 at = coordinate(side * scale);
+      return at - floor(at) - Float8(0.5F);
+    };
+    const Float8 u = off(d.y), v = off(d.z);
+    const Float8 across = Float8(radius * static_cast<float>(size) / 2) * scale;
+    return across * across >= u * u + v * v;
+  }
 
   /// From a coordinate in [-1, 1], on the paraboloid's plane, to one in texels, and back.
   template <class F>

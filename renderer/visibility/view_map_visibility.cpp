@@ -73,6 +73,7 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
         render_views(*scene_, *views_,
                      {.map_size = settings_.map_size,
                       .node_texels = static_cast<float>(settings_.node_texels),
+                      .cover = static_cast<float>(settings_.cover),
                       .share = settings_.method == ViewMapMethod::megaviews},
                      pool, take);
     queue_peak_ = std::max(queue_peak_, counts.queue_peak());

@@ -125,6 +125,7 @@ void ViewRendering::render(std::uint32_t view, std::span<const Siblings> waiting
   const ViewTree::Node& v = views_.node(view);
   const bool leaf = is_leaf(view);
   const float size = static_cast<float>(map_.size) / settings_.node_texels;
+  const float cover = settings_.cover;
   const int view_level = settings_.share ? views_.tree().nodes[view].level : 0;
   const auto splat = [&](int texel, float distance) {
     float& depth = depths[static_cast<std::size_t>(texel)];
@@ -146,7 +147,9 @@ void ViewRendering::render(std::uint32_t view, std::span<const Siblings> waiting
     if (same != 0) {
       e.distance.store(distances.data());
       map_.texel(e.d, e.distance).store(texels.data());
-      for_each_lane(same, [&](int i) {
+      const unsigned shown =
+          cover > 0 ? same & bits_of(map_.covers_middle(e.d, e.distance, e.radius * cover)) : same;
+      for_each_lane(shown, [&](int i) {
         splat(texels[static_cast<std::size_t>(i)], distances[static_cast<std::size_t>(i)]);
       });
     }
@@ -177,7 +180,7 @@ void ViewRendering::render(std::uint32_t view, std::span<const Siblings> waiting
   all_counts += counts;
 }
 
-/// All texels whose middle the sphere covers, and that of its centre (3.2.4).
+/// All texels whose middle the sphere covers (3.2.4); as published that of its centre, too.
 void ViewRendering::fill(const Eight& e, int lane, std::span<float> depths) const {
   alignas(32) std::array<float, 8> x, y, z, distances;
   e.d.x.store(x.data());
@@ -192,8 +195,9 @@ void ViewRendering::fill(const Eight& e, int lane, std::span<float> depths) cons
   };
   if (distance == 0) return run(0, map_.texels());
   const V3f d(x[i], y[i], z[i]);
-  run(map_.texel(d), 1);
-  const float sine = distance > e.radius ? e.radius / distance : 1;
+  if (settings_.cover == 0) run(map_.texel(d), 1);
+  const float radius = settings_.cover > 0 ? settings_.cover * e.radius : e.radius;
+  const float sine = distance > radius ? radius / distance : 1;
   const float cosine = std::sqrt(std::max(0.0F, 1 - sine * sine));
   map_.for_each_run(d / distance, cosine, sine, run);
 }

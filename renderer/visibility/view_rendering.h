@@ -31,6 +31,9 @@ struct ManyViewsSettings {
   /// What a node's sphere may show across, at most, to be rendered as one texel, > 0; 1 in the
   /// paper. A leaf's cube shows as much as its sphere over sqrt(3).
   float node_texels = 1;
+  /// In [0, 1]: a node fills the texels whose middles lie within this share of its sphere's radius;
+  /// 0: the texel that its own middle falls into, as in the paper.
+  float cover = 0;
   bool share = true;  ///< false: every view leaf by itself, ManyLoDs (Hollaender et al. 2011)
   bool cull = true;
 };

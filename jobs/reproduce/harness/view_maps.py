@@ -6,7 +6,7 @@ from harness import many_lights
 VIEWS = {"Sponza": {"scene": "sponza/scene.glb", "camera": "atrium"},
          "Hairball": {"scene": "hairball.glb", "camera": "front"},
          "Door": {"scene": "door/scene.glb", "camera": "corner"}}
-PUBLISHED = {"levels": 11, "node_texels": 1}
+PUBLISHED = {"levels": 11, "node_texels": 1, "cover": 0}
 
 
 def job(view, paths, how, resolution=(32, 16), edges=3, **more):

@@ -98,6 +98,28 @@ TEST(Paraboloid, EightAtATimeAreAsOne) {
   }
 }
 
+TEST(Paraboloid, KnowsWhatCoversTheMiddleOfATexel) {
+  const Paraboloid map{16};
+  Rng rng(5, 0, 0, Rng::Purpose::test);
+  int covered = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const V3f d = random_direction(rng) * (1 + 3 * rng.next());
+    const float radius = 0.1F * rng.next();
+    const V3f middle = map.direction(map.texel(d));
+    const float angle = std::acos(std::min(1.0F, middle.dot(d) / d.length()));
+    const float sphere = radius / d.length();  // small
+    const Float8x3 eight{d.x, d.y, d.z};
+    const bool said = bits_of(map.covers_middle(eight, Float8(d.length()), radius)) == 0xff;
+    covered += said;
+    // The map is conformal, but for its stretch, which changes a little within a texel.
+    if (std::abs(angle / sphere - 1) > 0.1F) {
+      EXPECT_EQ(said, angle < sphere) << d << " " << radius;
+    }
+  }
+  EXPECT_GT(covered, 1000);
+  EXPECT_LT(covered, 18000);
+}
+
 // A texel is asked for if its square, and so not only its middle, meets the disk.
 TEST(Paraboloid, LeavesOutTheCornersOfTheSquares) {
   for (const int size : {8, 16, 21}) {

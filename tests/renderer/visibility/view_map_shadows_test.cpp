@@ -48,9 +48,10 @@ TEST_P(ViewMapShadows, AreNearlyThoseOfRays) {
   using M = ViewMapMethod;
   const Agreement fine_rays = against_rays(lit, {M::per_view, 128, 8});
   const Agreement coarse_rays = against_rays(lit, {M::per_view, 16, 8});
-  const Agreement views = against_rays(lit, {M::megaviews, 64, 8, 1});
-  const Agreement lods = against_rays(lit, {M::many_lods, 64, 8, 1});
-  const Agreement larger = against_rays(lit, {M::megaviews, 64, 8, 1.75});
+  const Agreement views = against_rays(lit, {M::megaviews, 64, 8, 1, 0});
+  const Agreement lods = against_rays(lit, {M::many_lods, 64, 8, 1, 0});
+  const Agreement larger = against_rays(lit, {M::megaviews, 64, 8, 1.75, 0});
+  const Agreement covering = against_rays(lit, {M::megaviews, 64, 8, 1, 0.82});
   const double all_seen = double(views.unseen) / double(views.seen + views.unseen);
   EXPECT_LT(fine_rays.share(), 0.08);
   EXPECT_LT(views.share(), 0.2);
@@ -58,6 +59,7 @@ TEST_P(ViewMapShadows, AreNearlyThoseOfRays) {
   EXPECT_LT(fine_rays.share(), coarse_rays.share());
   EXPECT_NEAR(views.share(), lods.share(), 0.02);
   EXPECT_LT(larger.share(), views.share() + 0.1 * all_seen);
+  EXPECT_LT(covering.share(), views.share() + 0.05 * all_seen);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ViewMapShadows, testing::Values("ajar", "atrium", "bends"),
