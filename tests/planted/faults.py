@@ -173,7 +173,7 @@ FAULTS = [
           "if (diffuse) stretches_.back().bounds.add(lights.bounds(b));",
           "if (diffuse) stretches_.back().bounds = lights.bounds(b);"),
     Fault("point lights shine by a cosine", "renderer/visibility/light_terms.cpp",
-          "from.points ? Float8(1.0F)", "from.points ? Float8(0.5F)"),
+          "? Float8(1.0F)\n", "? Float8(0.5F)\n"),
     Fault("the filter keeps what surfaces reflect", "renderer/integrators/light_filter.cpp",
           "p.light[k] += p.reflected[k] > 0 ? light[k] / double(p.reflected[k]) : 0;", "p.light[k] += light[k];"),
     Fault("every pass adds direct light", "renderer/integrators/many_lights.cpp",
