@@ -4,7 +4,7 @@ import { leaves } from "./report.js";
 import { differences } from "./settings_diff.js";
 
 /// What replicates differ in, and what has no part in what is measured.
-const beside = ["/seed", "/label", "/threads", "/priority"];
+const beside = ["/seed", "/label", "/threads"];
 const parts = ["integrator", "seconds", "counts", "rates", "errors"];  // of a report
 
 const isPlace = (key) => key.startsWith("/");

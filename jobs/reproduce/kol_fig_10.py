@@ -3,7 +3,7 @@ texel."""
 
 import math
 
-from harness import many_lights
+from harness import view_maps
 from harness.measured import Measured, exact
 from harness.run import Table
 
@@ -11,13 +11,6 @@ PATHS = (2048, 8192, 32768, 131072, 524288, 1048576)  # lights of one bounce on 
 METHODS = ("megaviews", "many_lods", "per_view")
 MOST = {"megaviews": 1048576, "many_lods": 131072, "per_view": 1048576}  # of the quick version
 PAIR_BYTES = 8  # of a pair in the paper's queue
-
-
-def job(method, paths):
-    return {"scene": "sponza/scene.glb", "camera": "atrium", "resolution": [32, 16], "budget": {"iterations": 1},
-            "checkpoint_seconds": 86400,
-            "integrator": {"type": "many_lights", "max_depth": 3, "light_paths": paths, "compensation": False,
-                           "visibility": {"type": "view_maps", "method": method, "levels": 11, "node_texels": 1, "cover": 0}}}
 
 
 def exponent(points):
@@ -34,14 +27,14 @@ def measure(run):
         for paths in PATHS:
             if not run.full and paths > MOST[method]:
                 continue
-            i = many_lights.render(run, f"{method}-{paths}", job(method, paths))["integrator"]
+            i = view_maps.statistics(run, f"{method}-{paths}", view_maps.job("Sponza", paths, {"method": method}))
             found[method, paths] = i
             rows.append((method, round(i["virtual_lights"]), round(i["view_leaves"]), f"{i['view_tree_cpu_seconds']:.2g}",
                          f"{i['view_map_cpu_seconds']:.3g}", f"{i['views_sharing_a_splat']:.3g}",
                          f"{i['view_map_bytes'] / 2**20:.3g}", f"{i['view_queue_peak_pairs'] * PAIR_BYTES / 2**20:.3g}"))
 
     def seconds(method, paths):
-        return found[method, paths]["view_map_cpu_seconds"]
+        return view_maps.seconds(found[method, paths])
 
     first, last = PATHS[0], PATHS[-1]
     lods = max(paths for m, paths in found if m == "many_lods")

@@ -9,7 +9,7 @@ def measure(run):
     paths, at = 1048576, (256, 128) if run.full else (96, 48)
 
     def picture(name, **gather):
-        value = view_maps.job("Sponza", paths, {"levels": 9, "node_texels": 1.75, "cover": 0.82}, at, integrator={"gather": gather})
+        value = view_maps.job("Sponza", paths, view_maps.OURS, at, integrator={"gather": gather})
         return view_maps.statistics(run, name, value)
 
     picture("all", type="all")

@@ -118,10 +118,7 @@ class ManyLights final : public Integrator {
     const LightTerms& terms;
     const LightDraw* draw;  // null: all lights
     LightFilter* filter;    // null: none
-    BlockRange range;       // of the lights of this pass
-
-    /// What does not come from the lights is added once.
-    bool is_first() const { return range.first == 0; }
+    BlockRange range;       // of this pass; what does not come from lights is added in the first
   };
 
   /// How lights are drawn; null: all are taken.
@@ -135,7 +132,7 @@ class ManyLights final : public Integrator {
     return for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
       Part part{EyeBatch(settings_.max_depth)};
       start_paths(context, image, tiling.tile(i), 0, part.batch);
-      if (with.is_first()) count.samples += part.batch.walkers.size();
+      if (with.range.is_first()) count.samples += part.batch.walkers.size();
       trace(context, with, part, count);
       shine(context, with, part, count);
       add(context, with, part, image, count);
@@ -185,7 +182,7 @@ class ManyLights final : public Integrator {
     walk.lead(part.batch.walkers, choose, [&](std::size_t i, int depth) {
       return visit(context.scene, with, direct, part, i, depth);
     });
-    if (!with.is_first()) {
+    if (!with.range.is_first()) {
       part.shadows = {};
       part.batch.radiance.fill(Rgb(0, 0, 0));
       return;
@@ -213,7 +210,7 @@ class ManyLights final : public Integrator {
     if (!first && !settings_.compensation) return false;
     if (first && lit_by_lights) {
       part.shaded[i] = depth;
-      if (!with.is_first()) return false;
+      if (!with.range.is_first()) return false;
     } else if (shared && lit_by_lights) {
       const float weight = missing(terms, before, v);
       if (weight == 0) return false;

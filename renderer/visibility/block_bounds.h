@@ -9,14 +9,9 @@ namespace lacuna {
 /// shading point, or lie behind it, as a whole.
 class BlockBounds {
  public:
-  void add(const V3f& x, const V3f& ng) {
-    for (int k = 0; k < 3; ++k) {
-      low_[k] = std::min(low_[k], x[k]);
-      high_[k] = std::max(high_[k], x[k]);
-      least_[k] = std::min(least_[k], ng[k]);
-      most_[k] = std::max(most_[k], ng[k]);
-    }
-  }
+  BlockBounds() = default;
+  /// Of one light.
+  BlockBounds(const V3f& x, const V3f& ng) : low_(x), high_(x), least_(ng), most_(ng) {}
 
   void add(const BlockBounds& o) {
     for (int k = 0; k < 3; ++k) {

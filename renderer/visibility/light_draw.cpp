@@ -39,29 +39,32 @@ std::vector<LightDraw::Drawn> LightDraw::draw(std::span<const ShadingPoint> poin
     });
   }
   std::vector<Drawn> drawn;
+  std::uint64_t pairs = 0, kept = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    pairs_ += before_[terms_.lights().blocks(points[i].edges)];
-    draw_for(i, left[i], {context.seed, context.iteration, points[i].pixel, Rng::Purpose::gather},
-             drawn);
+    pairs += before_[terms_.lights().blocks(points[i].edges)];
+    kept +=
+        draw_for(i, left[i],
+                 {context.seed, context.iteration, points[i].pixel, Rng::Purpose::gather}, drawn);
   }
+  pairs_ += pairs;
+  left_ += kept;
   std::sort(drawn.begin(), drawn.end(), [](const Drawn& a, const Drawn& b) {
     return std::pair(a.block, a.point) < std::pair(b.block, b.point);
   });
   return drawn;
 }
 
-void LightDraw::draw_for(std::size_t point, std::span<const std::size_t> stretches, Rng rng,
-                         std::vector<Drawn>& drawn) const {
+std::uint64_t LightDraw::draw_for(std::size_t point, std::span<const std::size_t> stretches,
+                                  Rng rng, std::vector<Drawn>& drawn) const {
   std::uint64_t total = 0;
   for (const std::size_t s : stretches) total += lights_of(s);
-  left_ += total;
-  // Steps of 1 or more: none is drawn twice. u + k < total, as u < step.
+  // Steps of 1 or more: none is drawn twice.
   const double step = std::max(1.0, double(total) / double(settings_.lights));
   const double u = (double(rng.next_u32()) + 0.5) * 0x1p-32 * step;
   const auto draws = std::min(total, static_cast<std::uint64_t>(settings_.lights));
   std::size_t at = 0;
-  std::uint64_t passed = 0;  // lights of the stretches before that
-  std::size_t last = drawn.size();
+  std::uint64_t passed = 0;              // lights of the stretches before that
+  const std::size_t own = drawn.size();  // the first of this point
   for (std::uint64_t k = 0; k < draws; ++k) {
     const auto index =
         std::min(static_cast<std::uint64_t>(u + static_cast<double>(k) * step), total - 1);
@@ -72,11 +75,12 @@ void LightDraw::draw_for(std::size_t point, std::span<const std::size_t> stretch
     const auto end = before_.begin() + static_cast<std::ptrdiff_t>(s.end);
     const auto after = std::upper_bound(first, end, light);
     const auto block = static_cast<std::size_t>(after - before_.begin()) - 1;
-    if (last == drawn.size() || drawn.back().block != block) {
+    if (drawn.size() == own || drawn.back().block != block) {
       drawn.push_back({block, point, 0, static_cast<float>(step)});
     }
     drawn.back().lights |= std::uint64_t{1} << (light - before_[block]);
   }
+  return total;
 }
 
 double LightDraw::culled() const { return pairs_ == 0 ? 0 : 1 - double(left_) / double(pairs_); }

@@ -40,8 +40,9 @@ class LightDraw {
     bool bounded;            // else anything in it may shine anywhere
     BlockBounds bounds;
   };
-  void draw_for(std::size_t point, std::span<const std::size_t> stretches, Rng rng,
-                std::vector<Drawn>& drawn) const;
+  /// Of the lights of those stretches; tells how many they are.
+  std::uint64_t draw_for(std::size_t point, std::span<const std::size_t> stretches, Rng rng,
+                         std::vector<Drawn>& drawn) const;
   std::uint64_t lights_of(std::size_t stretch) const {
     return before_[stretches_[stretch].end] - before_[stretches_[stretch].first];
   }

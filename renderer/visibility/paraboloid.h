@@ -33,26 +33,28 @@ struct Paraboloid {
   }
   int texel(const V3f& d) const { return texel(place(d)); }
   int index(int half, int i, int j) const { return (half * size + j) * size + i; }
-  /// Those of eight directions, whose lengths are `length`.
-  Int8 texel(const Float8x3& d, Float8 length) const {
+  /// Those of eight directions.
+  struct Eight {
+    Int8 half;    ///< 0 or `size`: the square's first row
+    Float8 u, v;  ///< as Place
+    Float8 scale;
+  };
+  /// `length`: of each `d`.
+  Eight places(const Float8x3& d, Float8 length) const {
     const Float8 scale = Float8(1.0F) / (length + abs(d.x));
-    const auto step = [&](Float8 side) {
-      const Int8 at = truncated(coordinate(side * scale));
-      return min(max(at, Int8(0)), Int8(size - 1));
-    };
-    const Int8 half = keep_where(Float8(0.0F) > d.x, Int8(size));
-    return (half + step(d.z)) * Int8(size) + step(d.y);
+    return {keep_where(Float8(0.0F) > d.x, Int8(size)), coordinate(d.y * scale),
+            coordinate(d.z * scale), scale};
   }
-  /// Of eight directions whose lengths are `length`: whether a sphere of this radius there covers
-  /// the middle of the texel that its own middle falls into.
-  Mask8 covers_middle(const Float8x3& d, Float8 length, float radius) const {
-    const Float8 scale = Float8(1.0F) / (length + abs(d.x));
-    const auto off = [&](Float8 side) {
-      const Float8 at = coordinate(side * scale);
-      return at - floor(at) - Float8(0.5F);
-    };
-    const Float8 u = off(d.y), v = off(d.z);
-    const Float8 across = Float8(radius * static_cast<float>(size) / 2) * scale;
+  Int8 texel(const Eight& p) const {
+    const auto step = [&](Float8 at) { return min(max(truncated(at), Int8(0)), Int8(size - 1)); };
+    return (p.half + step(p.v)) * Int8(size) + step(p.u);
+  }
+  /// Whether small spheres of this radius at those places cover the middles of the texels that
+  /// their own middles fall into.
+  Mask8 covers_middle(const Eight& p, float radius) const {
+    const auto off = [](Float8 at) { return at - floor(at) - Float8(0.5F); };
+    const Float8 u = off(p.u), v = off(p.v);
+    const Float8 across = Float8(radius * static_cast<float>(size) / 2) * p.scale;
     return across * across >= u * u + v * v;
   }
 

@@ -42,7 +42,7 @@ std::vector<BlockRange> ViewMapVisibility::passes(const VirtualLights& lights) c
 Counters ViewMapVisibility::begin(const LightPass& pass) {
   PassSeconds seconds;
   lights_ = &pass.terms.lights();
-  if (pass.lights.first == 0) leaves_ = 0, passes_ = 0;
+  if (pass.lights.is_first()) leaves_ = 0, passes_ = 0;
   std::vector<View> views;
   first_.assign(lights_->blocks(), 0);
   for (std::size_t b = pass.lights.first; b < std::min(pass.lights.end, lights_->blocks()); ++b) {
@@ -67,7 +67,7 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
   };
   const ThreadPool& pool = pass.context.pool;
   if (settings_.method == ViewMapMethod::per_view) {
-    counters.rays += trace_views(pass.context.scene.rays(), *views_, maps_->map(), pool, take);
+    counters.rays += trace_views(pass.context.scene.rays(), *views_, texels_, pool, take);
   } else {
     const ManyViewsCounts counts =
         render_views(*scene_, *views_,

@@ -36,7 +36,7 @@ std::vector<MapTexel> map_texels(const Paraboloid& map) {
     const V3f w = map.direction(i);
     // Half the diagonal of a texel, as an angle.
     const float half = std::sqrt(0.5F) / map.stretch(std::abs(w.x));
-    texels.push_back({w, std::cos(half), std::sin(half)});
+    texels.push_back({w, std::cos(half), std::sin(half), map.asked_for(i)});
   }
   return texels;
 }
@@ -51,11 +51,9 @@ bool unseen(const ViewTree::Node& v, const MapTexel& t) {
 
 }  // namespace
 
-std::uint64_t trace_views(const RayCaster& rays, const ViewTree& views, const Paraboloid& map,
-                          const ThreadPool& pool, const UseMap& use) {
-  const std::vector<MapTexel> texels = map_texels(map);
-  std::vector<char> asked_for(texels.size());
-  for (int i = 0; i < map.texels(); ++i) asked_for[std::size_t(i)] = char(map.asked_for(i));
+std::uint64_t trace_views(const RayCaster& rays, const ViewTree& views,
+                          std::span<const MapTexel> texels, const ThreadPool& pool,
+                          const UseMap& use) {
   std::atomic<std::uint64_t> sent = 0;
   pool.for_each(static_cast<int>(views.leaf_count()), [&](int k) {
     const auto leaf = static_cast<std::uint32_t>(k);
@@ -64,7 +62,7 @@ std::uint64_t trace_views(const RayCaster& rays, const ViewTree& views, const Pa
     std::uint64_t own = 0;
     for (std::size_t i = 0; i < texels.size(); ++i) {
       const MapTexel& t = texels[i];
-      if (asked_for[i] == 0 || unseen(v, t)) continue;
+      if (!t.asked_for || unseen(v, t)) continue;
       Hit hit;
       if (rays.intersect({v.centre, t.direction}, hit)) depths[i] = hit.t;
       ++own;

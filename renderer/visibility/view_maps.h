@@ -13,6 +13,7 @@ namespace lacuna {
 struct MapTexel {
   V3f direction;       ///< through its middle, unit
   float cosine, sine;  ///< of the angle from there to its corners
+  bool asked_for;      ///< Paraboloid::asked_for()
 };
 /// Of each texel of a map.
 std::vector<MapTexel> map_texels(const Paraboloid& map);
@@ -41,7 +42,8 @@ class ViewMaps {
 
 /// What render_views() does, by a ray from the middle of each leaf's views through each texel that
 /// one of them may see: one map per view. Tells how many rays.
-std::uint64_t trace_views(const RayCaster& rays, const ViewTree& views, const Paraboloid& map,
-                          const ThreadPool& pool, const UseMap& use);
+std::uint64_t trace_views(const RayCaster& rays, const ViewTree& views,
+                          std::span<const MapTexel> texels, const ThreadPool& pool,
+                          const UseMap& use);
 
 }  // namespace lacuna

@@ -53,14 +53,14 @@ unsigned outside(const ViewTree::Node& v, const Float8x3& d, Float8 distance, fl
   return bits_of(unseen && to_rim > Float8((radius + v.radius) * (1 + 1e-5F)));
 }
 
-/// Fig. 6: a scene node shows less than a texel, or `most_texels`, to all views below, and none of
-/// them lies further from their centre than it is large: so it fills the same texel in all of them.
-/// `size`: of the map, over `most_texels`.
+/// Fig. 6: a scene node shows less than `node_texels` to all views below, and none of them lies
+/// further from their centre than it is large: so it fills the same texel in all of them. `size`:
+/// of the map, over `node_texels`.
 unsigned same_texel(float size, const ViewTree::Node& v, const Float8x3& d, Float8 distance,
                     float radius) {
   if (v.radius > radius) return 0;
   const Float8 nearest = distance - Float8(v.radius);
-  // 2 radius / nearest stretch < most_texels, without a division
+  // 2 radius / nearest Paraboloid::stretch() < node_texels, without a division
   const Float8 bound = nearest * (distance + abs(d.x));
   return bits_of(nearest > Float8(radius) && bound > Float8(radius * size) * distance);
 }
@@ -146,9 +146,10 @@ void ViewRendering::render(std::uint32_t view, std::span<const Siblings> waiting
     const unsigned same = rest & same_texel(size, v, e.d, e.distance, e.radius);
     if (same != 0) {
       e.distance.store(distances.data());
-      map_.texel(e.d, e.distance).store(texels.data());
+      const Paraboloid::Eight places = map_.places(e.d, e.distance);
+      map_.texel(places).store(texels.data());
       const unsigned shown =
-          cover > 0 ? same & bits_of(map_.covers_middle(e.d, e.distance, e.radius * cover)) : same;
+          cover > 0 ? same & bits_of(map_.covers_middle(places, e.radius * cover)) : same;
       for_each_lane(shown, [&](int i) {
         splat(texels[static_cast<std::size_t>(i)], distances[static_cast<std::size_t>(i)]);
       });
@@ -157,7 +158,7 @@ void ViewRendering::render(std::uint32_t view, std::span<const Siblings> waiting
     unsigned rendered = same;
     const bool scene_leaves = e.level == scene_.levels();
     if (leaf && scene_leaves) {
-      for_each_lane(rest, [&](int i) { fill(e, i, depths); });
+      if (rest != 0) fill(e, rest, depths);
       counts.large += static_cast<std::uint64_t>(std::popcount(rest));
       rendered |= rest;
     } else if (!leaf && (scene_leaves || e.radius / 2 < v.radius)) {  // Fig. 8
@@ -165,8 +166,7 @@ void ViewRendering::render(std::uint32_t view, std::span<const Siblings> waiting
     } else {
       for_each_lane(rest, [&](int i) { stack.push_back(e.node(i)); });
     }
-    const auto splats = static_cast<std::uint64_t>(std::popcount(rendered));
-    counts.splats += splats;
+    counts.splats += static_cast<std::uint64_t>(std::popcount(rendered));
   };
   for (const Siblings& first : waiting) {
     look(first);
@@ -181,25 +181,27 @@ void ViewRendering::render(std::uint32_t view, std::span<const Siblings> waiting
 }
 
 /// All texels whose middle the sphere covers (3.2.4); as published that of its centre, too.
-void ViewRendering::fill(const Eight& e, int lane, std::span<float> depths) const {
+void ViewRendering::fill(const Eight& e, unsigned lanes, std::span<float> depths) const {
   alignas(32) std::array<float, 8> x, y, z, distances;
   e.d.x.store(x.data());
   e.d.y.store(y.data());
   e.d.z.store(z.data());
   e.distance.store(distances.data());
-  const auto i = static_cast<std::size_t>(lane);
-  const float distance = distances[i];
-  const auto run = [&](int first, int n) {
-    float* const from = depths.data() + first;
-    for (int k = 0; k < n; ++k) from[k] = std::min(from[k], distance);
-  };
-  if (distance == 0) return run(0, map_.texels());
-  const V3f d(x[i], y[i], z[i]);
-  if (settings_.cover == 0) run(map_.texel(d), 1);
   const float radius = settings_.cover > 0 ? settings_.cover * e.radius : e.radius;
-  const float sine = distance > radius ? radius / distance : 1;
-  const float cosine = std::sqrt(std::max(0.0F, 1 - sine * sine));
-  map_.for_each_run(d / distance, cosine, sine, run);
+  for_each_lane(lanes, [&](int lane) {
+    const auto i = static_cast<std::size_t>(lane);
+    const float distance = distances[i];
+    const auto run = [&](int first, int n) {
+      float* const from = depths.data() + first;
+      for (int k = 0; k < n; ++k) from[k] = std::min(from[k], distance);
+    };
+    if (distance == 0) return run(0, map_.texels());
+    const V3f d(x[i], y[i], z[i]);
+    if (settings_.cover == 0) run(map_.texel(d), 1);
+    const float sine = distance > radius ? radius / distance : 1;
+    const float cosine = std::sqrt(std::max(0.0F, 1 - sine * sine));
+    map_.for_each_run(d / distance, cosine, sine, run);
+  });
 }
 
 void ViewRendering::hand_down(std::uint32_t parent, std::span<const float> from,

@@ -75,7 +75,7 @@ class ViewRendering {
     float radius, half_side;  // of the spheres and of the cubes
   };
   Eight eight(const Siblings& s, const ViewTree::Node& v) const;
-  void fill(const Eight& e, int lane, std::span<float> depths) const;
+  void fill(const Eight& e, unsigned lanes, std::span<float> depths) const;
 
   const Octree& scene_;
   const ViewTree& views_;

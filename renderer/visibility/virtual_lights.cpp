@@ -126,7 +126,7 @@ void VirtualLights::arrange_diffuse(const std::vector<Diffuse>& lights, bool poi
     for (int i = 0; i < Lanes::size; ++i) {
       // A missing one stands where another does, so that no geometry of it is special.
       const Diffuse& l = lights[run.lights[static_cast<std::size_t>(std::min(i, count - 1))]];
-      bounds.add(l.x, l.ng);
+      bounds.add({l.x, l.ng});
       const auto put = [i](const V3f& p, Lanes& x, Lanes& y, Lanes& z) {
         x[i] = p.x, y[i] = p.y, z[i] = p.z;
       };

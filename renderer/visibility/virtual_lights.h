@@ -57,6 +57,8 @@ struct BlockRange {
   std::size_t end = ~std::size_t{0};  ///< or the number of blocks, if that is less
 
   bool contains(std::size_t block) const { return block >= first && block < end; }
+  /// Of the ranges of all blocks, one after another, it is the first.
+  bool is_first() const { return first == 0; }
 };
 
 /// Lights that are treated alike have one number: the lights of a block are of one group.

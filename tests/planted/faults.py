@@ -176,6 +176,6 @@ FAULTS = [
           "? Float8(1.0F)\n", "? Float8(0.5F)\n"),
     Fault("the filter keeps what surfaces reflect", "renderer/integrators/light_filter.cpp",
           "p.light[k] += p.reflected[k] > 0 ? light[k] / double(p.reflected[k]) : 0;", "p.light[k] += light[k];"),
-    Fault("every pass adds direct light", "renderer/integrators/many_lights.cpp",
-          "bool is_first() const { return range.first == 0; }", "bool is_first() const { return true; }"),
+    Fault("every pass adds direct light", "renderer/visibility/virtual_lights.h",
+          "bool is_first() const { return first == 0; }", "bool is_first() const { return true; }"),
 ]

@@ -6,11 +6,12 @@ from harness import many_lights
 VIEWS = {"Sponza": {"scene": "sponza/scene.glb", "camera": "atrium"},
          "Hairball": {"scene": "hairball.glb", "camera": "front"},
          "Door": {"scene": "door/scene.glb", "camera": "corner"}}
+OURS = {"type": "view_maps"}  # its defaults
 PUBLISHED = {"levels": 11, "node_texels": 1, "cover": 0}
 
 
 def job(view, paths, how, resolution=(32, 16), edges=3, **more):
-    """Lights of edges - 2 bounces. `how`: the visibility, or the fields of view_maps."""
+    """Lights of edges - 2 bounces. `how`: the visibility, or what differs from the published view_maps."""
     visibility = how if "type" in how else {"type": "view_maps", **PUBLISHED, **how}
     value = {**VIEWS[view], "resolution": list(resolution), "budget": {"iterations": 1}, "checkpoint_seconds": 86400,
              "integrator": {"type": "many_lights", "max_depth": edges, "light_paths": paths, "compensation": False,

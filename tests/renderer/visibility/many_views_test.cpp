@@ -92,7 +92,7 @@ TEST(Paraboloid, EightAtATimeAreAsOne) {
         x[i] = d.x, y[i] = d.y, z[i] = d.z;
       }
       const Float8x3 d{Float8::load(x.data()), Float8::load(y.data()), Float8::load(z.data())};
-      map.texel(d, sqrt(length2(d))).store(texels.data());
+      map.texel(map.places(d, sqrt(length2(d)))).store(texels.data());
       for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(texels[i], map.texel(V3f(x[i], y[i], z[i])));
     }
   }
@@ -109,7 +109,8 @@ TEST(Paraboloid, KnowsWhatCoversTheMiddleOfATexel) {
     const float angle = std::acos(std::min(1.0F, middle.dot(d) / d.length()));
     const float sphere = radius / d.length();  // small
     const Float8x3 eight{d.x, d.y, d.z};
-    const bool said = bits_of(map.covers_middle(eight, Float8(d.length()), radius)) == 0xff;
+    const auto places = map.places(eight, Float8(d.length()));
+    const bool said = bits_of(map.covers_middle(places, radius)) == 0xff;
     covered += said;
     // The map is conformal, but for its stretch, which changes a little within a texel.
     if (std::abs(angle / sphere - 1) > 0.1F) {
