@@ -15,7 +15,9 @@ def measure(run):
     picture("all", type="all")
     rows, found = [], {}
     for name, gather in (("culled", {}), ("not culled", {"cull": False}), ("culled, filtered", {"filter_radius": 3}),
-                         ("culled, filtered more", {"filter_radius": 8})):
+                         ("culled, filtered more", {"filter_radius": 8}),
+                         # A sixth of the length of the atrium, and a twelfth.
+                         ("culled, cutoff 600", {"cutoff": 600}), ("culled, cutoff 300", {"cutoff": 300})):
         key = name.replace(", ", "-").replace(" ", "-")
         t = picture(key, type="random", lights=64, **gather)
         e = found[name] = many_lights.errors(run, key, "all")

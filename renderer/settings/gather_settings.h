@@ -25,12 +25,13 @@ struct RandomLightsSettings {
 
   int lights = 64;
   bool cull = true;
+  double cutoff = 0;
   int filter_radius = 0;
   double filter_normal = 32;
   double filter_slope = 0.1;
 
-  /// Neighbouring pixels' light is mixed in.
-  bool biased() const { return filter_radius > 0; }
+  /// Neighbouring pixels' light is mixed in, or far lights' is left out.
+  bool biased() const { return filter_radius > 0 || cutoff > 0; }
   bool operator==(const RandomLightsSettings&) const = default;
 };
 template <class V>
@@ -40,6 +41,12 @@ void describe(V& v, RandomLightsSettings& s) {
     {.doc =
          "none is drawn from a stretch of lights that all turn away from the point or lie behind "
          "it"});
+  v("cutoff", s.cutoff,
+    {.doc = "lights further from the point than this shine on it no more; 0: all do. Less noise, "
+            "and biased",
+     .min = 0,
+     .max = 1e15,
+     .unit = "scene units"});
   v("filter_radius", s.filter_radius,
     {.doc =
          "pixels; 0: none. What lights give, divided by what the surface reflects, becomes the "

@@ -213,16 +213,32 @@ void describe(V& v, NodeMapsVisibilitySettings& s) {
 }
 
 /// How the maps of all lights are made.
-enum class ViewMapMethod { megaviews, many_lods, per_view };
+enum class ViewMapMethod { megaviews, many_lods, per_view, per_view_splats };
 
 template <>
 struct EnumTable<ViewMapMethod> {
-  static constexpr std::array<EnumValue<ViewMapMethod>, 3> values{{
+  static constexpr std::array<EnumValue<ViewMapMethod>, 4> values{{
       {ViewMapMethod::megaviews, "megaviews",
        "the octrees of the scene and of the lights are traversed together (Kol et al. 2018)"},
       {ViewMapMethod::many_lods, "many_lods",
        "the scene's octree is traversed for each light (Hollaender et al. 2011)"},
       {ViewMapMethod::per_view, "per_view", "a ray for each texel of each light's map"},
+      {ViewMapMethod::per_view_splats, "per_view_splats",
+       "every leaf of the scene's octree that a light may see is drawn into its map"},
+  }};
+};
+
+/// In which order pairs of a node of the scene and a node of the lights are looked at.
+enum class ViewTraversal { depth_first, breadth_first };
+
+template <>
+struct EnumTable<ViewTraversal> {
+  static constexpr std::array<EnumValue<ViewTraversal>, 2> values{{
+      {ViewTraversal::depth_first, "depth_first", "branch by branch, which holds nearly none"},
+      {ViewTraversal::breadth_first, "breadth_first",
+       "by a queue of one generation after another, with a map for every node of the lights' "
+       "octree "
+       "(as published; the same picture, for the memory it takes)"},
   }};
 };
 
@@ -240,6 +256,8 @@ struct ViewMapsVisibilitySettings {
   double node_texels = 1.75;
   double cover = 0.82;
   double memory = 4;
+  bool cull = true;
+  ViewTraversal traversal = ViewTraversal::depth_first;
   bool operator==(const ViewMapsVisibilitySettings&) const = default;
 };
 template <class V>
@@ -273,6 +291,11 @@ void describe(V& v, ViewMapsVisibilitySettings& s) {
      .min = 0.0001,
      .max = 4096,
      .unit = "GiB"});
+  v("cull", s.cull,
+    {.doc = "what lies behind all lights of a node is left out of their maps: the same picture, "
+            "sooner. Not for per_view"});
+  v("traversal", s.traversal,
+    {.doc = "in which order pairs of nodes of both octrees are looked at. Not for per_view"});
 }
 
 /// Whether a virtual light and a shading point see one another.

@@ -34,6 +34,16 @@ class BlockBounds {
                       {x.x - high_.x, x.y - high_.y, x.z - high_.z}, all(least_), all(most_));
   }
 
+  /// Of eight points: no light of the block lies within `distance` of x.
+  Mask8 further_than(float distance, const Float8x3& x) const {
+    const auto off = [](Float8 p, float low, float high) {
+      return max(Float8(0.0F), max(Float8(low) - p, p - Float8(high)));
+    };
+    const Float8x3 d{off(x.x, low_.x, high_.x), off(x.y, low_.y, high_.y),
+                     off(x.z, low_.z, high_.z)};
+    return length2(d) > Float8(distance * distance * (1 + rounding));
+  }
+
  private:
   static constexpr float rounding = 1e-6F;  // a few units in the last place of the sums
 

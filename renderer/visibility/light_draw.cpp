@@ -32,8 +32,7 @@ std::vector<LightDraw::Drawn> LightDraw::draw(std::span<const ShadingPoint> poin
   for (const ShadingPoint& p : points) lanes.add(p);
   std::vector<std::vector<std::size_t>> left(points.size());
   for (std::size_t s = 0; s < stretches_.size(); ++s) {
-    const bool test = settings_.cull && stretches_[s].bounded;
-    for_each_bit(test ? lanes.may_be_lit(stretches_[s].bounds) : lanes.all(), [&](int bit) {
+    for_each_bit(may_shine(stretches_[s], lanes), [&](int bit) {
       const auto i = static_cast<std::size_t>(bit);
       if (stretches_[s].first < terms_.lights().blocks(points[i].edges)) left[i].push_back(s);
     });
@@ -43,7 +42,7 @@ std::vector<LightDraw::Drawn> LightDraw::draw(std::span<const ShadingPoint> poin
   for (std::size_t i = 0; i < points.size(); ++i) {
     pairs += before_[terms_.lights().blocks(points[i].edges)];
     kept +=
-        draw_for(i, left[i],
+        draw_for(points[i].vertex->surface.x, i, left[i],
                  {context.seed, context.iteration, points[i].pixel, Rng::Purpose::gather}, drawn);
   }
   pairs_ += pairs;
@@ -54,8 +53,23 @@ std::vector<LightDraw::Drawn> LightDraw::draw(std::span<const ShadingPoint> poin
   return drawn;
 }
 
-std::uint64_t LightDraw::draw_for(std::size_t point, std::span<const std::size_t> stretches,
-                                  Rng rng, std::vector<Drawn>& drawn) const {
+std::uint64_t LightDraw::may_shine(const Stretch& s, const PointLanes& points) const {
+  std::uint64_t left = points.all();
+  if (!s.bounded) return left;
+  if (settings_.cull) left &= points.may_be_lit(s.bounds);
+  if (settings_.cutoff > 0) left &= points.may_be_near(s.bounds, cutoff());
+  return left;
+}
+
+bool LightDraw::is_near(const V3f& x, std::size_t block, int i) const {
+  if (settings_.cutoff == 0) return true;
+  const LightPlace light = terms_.lights().place(block, i);
+  return light.infinite || (light.x - x).length2() <= cutoff() * cutoff();
+}
+
+std::uint64_t LightDraw::draw_for(const V3f& x, std::size_t point,
+                                  std::span<const std::size_t> stretches, Rng rng,
+                                  std::vector<Drawn>& drawn) const {
   std::uint64_t total = 0;
   for (const std::size_t s : stretches) total += lights_of(s);
   // Steps of 1 or more: none is drawn twice.
@@ -75,10 +89,12 @@ std::uint64_t LightDraw::draw_for(std::size_t point, std::span<const std::size_t
     const auto end = before_.begin() + static_cast<std::ptrdiff_t>(s.end);
     const auto after = std::upper_bound(first, end, light);
     const auto block = static_cast<std::size_t>(after - before_.begin()) - 1;
+    const auto i = static_cast<int>(light - before_[block]);
+    if (!is_near(x, block, i)) continue;
     if (drawn.size() == own || drawn.back().block != block) {
       drawn.push_back({block, point, 0, static_cast<float>(step)});
     }
-    drawn.back().lights |= std::uint64_t{1} << (light - before_[block]);
+    drawn.back().lights |= std::uint64_t{1} << i;
   }
   return total;
 }

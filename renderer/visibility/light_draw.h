@@ -40,9 +40,13 @@ class LightDraw {
     bool bounded;            // else anything in it may shine anywhere
     BlockBounds bounds;
   };
-  /// Of the lights of those stretches; tells how many they are.
-  std::uint64_t draw_for(std::size_t point, std::span<const std::size_t> stretches, Rng rng,
-                         std::vector<Drawn>& drawn) const;
+  /// Bit i: a light of the stretch may shine on point i.
+  std::uint64_t may_shine(const Stretch& s, const PointLanes& points) const;
+  bool is_near(const V3f& x, std::size_t block, int i) const;
+  float cutoff() const { return static_cast<float>(settings_.cutoff); }
+  /// Of the lights of those stretches for the point at x; tells how many they are.
+  std::uint64_t draw_for(const V3f& x, std::size_t point, std::span<const std::size_t> stretches,
+                         Rng rng, std::vector<Drawn>& drawn) const;
   std::uint64_t lights_of(std::size_t stretch) const {
     return before_[stretches_[stretch].end] - before_[stretches_[stretch].first];
   }

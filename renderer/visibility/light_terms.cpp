@@ -30,14 +30,27 @@ void PointLanes::add(const ShadingPoint& p) {
   nx_[i] = n.x, ny_[i] = n.y, nz_[i] = n.z;
 }
 
-std::uint64_t PointLanes::may_be_lit(const BlockBounds& bounds) const {
-  std::uint64_t dark = 0;
+template <class LeavesOut>
+std::uint64_t PointLanes::all_but(LeavesOut&& leaves_out) const {
+  std::uint64_t out = 0;
   for (int k = 0; 8 * k < static_cast<int>(size_); ++k) {
     const Float8x3 x{x_.eight(k), y_.eight(k), z_.eight(k)};
     const Float8x3 n{nx_.eight(k), ny_.eight(k), nz_.eight(k)};
-    dark |= std::uint64_t{bits_of(bounds.turned_from(x)) | bits_of(bounds.behind(x, n))} << (8 * k);
+    out |= std::uint64_t{leaves_out(x, n)} << (8 * k);
   }
-  return all() & ~dark;
+  return all() & ~out;
+}
+
+std::uint64_t PointLanes::may_be_lit(const BlockBounds& bounds) const {
+  return all_but([&](const Float8x3& x, const Float8x3& n) {
+    return bits_of(bounds.turned_from(x)) | bits_of(bounds.behind(x, n));
+  });
+}
+
+std::uint64_t PointLanes::may_be_near(const BlockBounds& bounds, float distance) const {
+  return all_but([&](const Float8x3& x, const Float8x3&) {
+    return bits_of(bounds.further_than(distance, x));
+  });
 }
 
 /// Of those that were drawn what each stands for; the others of a group of eight become black.

@@ -42,8 +42,14 @@ class PointLanes {
   /// Bit i: lights within the bounds may shine on point i. To the others they turn their backs, or
   /// they lie behind them.
   std::uint64_t may_be_lit(const BlockBounds& bounds) const;
+  /// Bit i: a light within the bounds may lie within `distance` of point i.
+  std::uint64_t may_be_near(const BlockBounds& bounds, float distance) const;
 
  private:
+  /// All but those of which `leaves_out(x, n)` tells eight at a time.
+  template <class LeavesOut>
+  std::uint64_t all_but(LeavesOut&& leaves_out) const;
+
   std::size_t size_ = 0;
   Lanes x_, y_, z_;
   Lanes nx_, ny_, nz_;  // the geometric normal, on the side that is seen

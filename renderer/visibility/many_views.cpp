@@ -4,6 +4,8 @@
 #include <memory>
 #include <mutex>
 
+#include "renderer/visibility/view_queue.h"
+
 namespace lacuna {
 
 namespace {
@@ -26,8 +28,8 @@ class Branch {
   void descend(std::uint32_t view, std::span<const Siblings> waiting, std::span<float> depths) {
     const Octree::Node& node = views_.tree().nodes[view];
     Level& below = levels_[node.level];
-    below.later.clear();
-    rendering_.render(view, waiting, depths, below.later, counts);
+    below.left.later.clear();
+    rendering_.render(view, waiting, depths, below.left, counts);
     if (node.children == 0) {
       use_(view - views_.first_leaf(), depths.first(rendering_.texels()));
       return;
@@ -36,14 +38,14 @@ class Branch {
     for (std::uint32_t c = 0; c < node.children; ++c) {
       const std::uint32_t child = node.first_child + c;
       rendering_.hand_down(view, depths, child, below.depths);
-      descend(child, below.later, below.depths);
+      descend(child, below.left.later, below.depths);
     }
   }
 
  private:
   struct Level {
-    std::vector<Siblings> later;  // for the children of the node of this level
-    std::vector<float> depths;    // of one of them
+    ViewRendering::Undecided left;  // by the node of this level, for its children
+    std::vector<float> depths;      // of one of them
   };
   const ViewRendering& rendering_;
   const ViewTree& views_;
@@ -58,6 +60,9 @@ ManyViewsCounts render_views(const Octree& scene, const ViewTree& views,
                              const UseMap& use) {
   if (views.tree().empty()) return {};
   const ViewRendering rendering(scene, views, settings);
+  if (settings.breadth_first) {
+    return render_breadth_first(rendering, views, scene.empty(), settings.share, pool, use);
+  }
   const std::vector<float> empty(rendering.map_floats(), std::numeric_limits<float>::infinity());
   const std::vector<Siblings> whole(scene.empty() ? 0 : 1, Siblings::root());
   ManyViewsCounts total;
@@ -94,8 +99,9 @@ ManyViewsCounts render_views(const Octree& scene, const ViewTree& views,
         return ManyViewsCounts{};
       }
       ManyViewsCounts counts;
-      const auto later = std::make_shared<std::vector<Siblings>>();
-      rendering.render(work.view, *work.waiting, work.depths, *later, counts);
+      ViewRendering::Undecided left;
+      rendering.render(work.view, *work.waiting, work.depths, left, counts);
+      const auto later = std::make_shared<const std::vector<Siblings>>(std::move(left.later));
       const Octree::Node& node = views.tree().nodes[work.view];
       for (std::uint32_t c = 0; c < node.children; ++c) {
         const std::uint32_t child = node.first_child + c;

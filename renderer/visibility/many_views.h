@@ -15,10 +15,10 @@ using UseMap = std::function<void(std::uint32_t leaf, std::span<const float> dep
 /// distances from the centre of the leaf's sphere to the centre of the nearest node behind each
 /// texel of Paraboloid{map_size}, infinite where nothing is. The same for any number of threads.
 ///
-/// Where the paper keeps a queue of pairs, this goes depth-first through the views: what a view
-/// node cannot decide for all its views waits in one list that its children share, and the map of a
-/// node is handed down to its children as it is (the paper's fusion), so only the maps between the
-/// root and one leaf are there at a time.
+/// Where the paper keeps a queue of pairs, this goes depth-first through the views, unless
+/// `breadth_first`: what a view node cannot decide for all its views waits in one list that its
+/// children share, and the map of a node is handed down to its children as it is (the paper's
+/// fusion), so only the maps between the root and one leaf are there at a time.
 ManyViewsCounts render_views(const Octree& scene, const ViewTree& views,
                              const ManyViewsSettings& settings, const ThreadPool& pool,
                              const UseMap& use);

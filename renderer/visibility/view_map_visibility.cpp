@@ -74,7 +74,10 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
                      {.map_size = settings_.map_size,
                       .node_texels = static_cast<float>(settings_.node_texels),
                       .cover = static_cast<float>(settings_.cover),
-                      .share = settings_.method == ViewMapMethod::megaviews},
+                      .share = settings_.method == ViewMapMethod::megaviews,
+                      .merge = settings_.method != ViewMapMethod::per_view_splats,
+                      .cull = settings_.cull,
+                      .breadth_first = settings_.traversal == ViewTraversal::breadth_first},
                      pool, take);
     queue_peak_ = std::max(queue_peak_, counts.queue_peak());
     counts_ += counts;
@@ -115,18 +118,25 @@ std::vector<std::pair<std::string, double>> ViewMapVisibility::statistics() cons
   if (!maps_) return {};
   const auto number = [](auto n) { return static_cast<double>(n); };
   const auto splats = number(std::max<std::uint64_t>(1, counts_.splats));
-  return {{"scene_leaves", number(scene_ ? scene_->leaves().size() : 0)},
-          {"view_leaves", number(leaves_)},
-          {"view_passes", number(passes_)},
-          {"view_map_bytes", number(maps_->bytes())},
-          {"view_tree_cpu_seconds", tree_seconds_},
-          {"view_map_cpu_seconds", map_seconds_},
-          {"view_pairs", number(counts_.pairs)},
-          {"view_pairs_culled", number(counts_.culled)},
-          {"view_splats", number(counts_.splats)},
-          {"view_splats_large", number(counts_.large)},
-          {"views_sharing_a_splat", number(counts_.sharing) / splats},
-          {"view_queue_peak_pairs", number(queue_peak_)}};
+  std::vector<std::pair<std::string, double>> told{
+      {"scene_leaves", number(scene_ ? scene_->leaves().size() : 0)},
+      {"view_leaves", number(leaves_)},
+      {"view_passes", number(passes_)},
+      {"view_map_bytes", number(maps_->bytes())},
+      {"view_tree_cpu_seconds", tree_seconds_},
+      {"view_map_cpu_seconds", map_seconds_},
+      {"view_pairs", number(counts_.pairs)},
+      {"view_pairs_culled", number(counts_.culled)},
+      {"view_splats", number(counts_.splats)},
+      {"view_splats_large", number(counts_.large)},
+      {"views_sharing_a_splat", number(counts_.sharing) / splats},
+      {"view_queue_peak_pairs", number(queue_peak_)}};
+  if (counts_.queue_bytes > 0) {
+    told.emplace_back("view_queue_bytes", number(counts_.queue_bytes));
+    told.emplace_back("view_unfused_bytes", number(counts_.unfused_bytes));
+    told.emplace_back("view_fusion_cpu_seconds", counts_.fusion_seconds);
+  }
+  return told;
 }
 
 }  // namespace lacuna

@@ -11,6 +11,9 @@ ManyViewsCounts& ManyViewsCounts::operator+=(const ManyViewsCounts& o) {
   sharing += o.sharing;
   large += o.large;
   for (std::size_t i = 0; i < generations.size(); ++i) generations[i] += o.generations[i];
+  queue_bytes = std::max(queue_bytes, o.queue_bytes);
+  unfused_bytes = std::max(unfused_bytes, o.unfused_bytes);
+  fusion_seconds += o.fusion_seconds;
   return *this;
 }
 
@@ -119,65 +122,98 @@ inline ViewRendering::Eight ViewRendering::eight(const Siblings& s, const ViewTr
   return e;
 }
 
-void ViewRendering::render(std::uint32_t view, std::span<const Siblings> waiting,
-                           std::span<float> depths, std::vector<Siblings>& later,
-                           ManyViewsCounts& all_counts) const {
-  const ViewTree::Node& v = views_.node(view);
-  const bool leaf = is_leaf(view);
-  const float size = static_cast<float>(map_.size) / settings_.node_texels;
-  const float cover = settings_.cover;
-  const int view_level = settings_.share ? views_.tree().nodes[view].level : 0;
-  const auto splat = [&](int texel, float distance) {
+/// What is the same for all that a view node looks at.
+struct ViewRendering::Visit {
+  const ViewTree::Node& v;
+  bool leaf;
+  int level;   // of the views' octree
+  float size;  // of the map, over node_texels
+  std::span<float> depths;
+  Undecided& left;
+  ManyViewsCounts counts = {};
+
+  void splat(int texel, float distance) const {
     float& depth = depths[static_cast<std::size_t>(texel)];
     depth = std::min(depth, distance);
-  };
-  ManyViewsCounts counts;
-  alignas(32) std::array<float, 8> distances;
-  alignas(32) std::array<int, 8> texels;
-  std::vector<std::uint32_t> stack;  // scene nodes whose children are to be looked at
-  const auto look = [&](const Siblings& siblings) {
-    const Eight e = eight(siblings, v);
-    const auto looked = static_cast<std::uint64_t>(std::popcount(e.there));
-    counts.pairs += looked;
-    counts.generations[static_cast<std::size_t>(e.level + view_level)] += looked;
-    const unsigned out = settings_.cull ? e.there & outside(v, e.d, e.distance, e.radius) : 0;
-    counts.culled += static_cast<std::uint64_t>(std::popcount(out));
-    unsigned rest = e.there & ~out;
-    const unsigned same = rest & same_texel(size, v, e.d, e.distance, e.radius);
-    if (same != 0) {
-      e.distance.store(distances.data());
-      const Paraboloid::Eight places = map_.places(e.d, e.distance);
-      map_.texel(places).store(texels.data());
-      const unsigned shown =
-          cover > 0 ? same & bits_of(map_.covers_middle(places, e.radius * cover)) : same;
-      for_each_lane(shown, [&](int i) {
-        splat(texels[static_cast<std::size_t>(i)], distances[static_cast<std::size_t>(i)]);
-      });
+  }
+};
+
+inline ViewRendering::Visit ViewRendering::visit(std::uint32_t view, std::span<float> depths,
+                                                 Undecided& left) const {
+  return {.v = views_.node(view),
+          .leaf = is_leaf(view),
+          .level = settings_.share ? views_.tree().nodes[view].level : 0,
+          .size = static_cast<float>(map_.size) / settings_.node_texels,
+          .depths = depths,
+          .left = left};
+}
+
+inline void ViewRendering::look(const Siblings& siblings, Visit& visit) const {
+  const Eight e = eight(siblings, visit.v);
+  const bool scene_leaves = e.level == scene_.levels();
+  ManyViewsCounts& counts = visit.counts;
+  const auto looked = static_cast<std::uint64_t>(std::popcount(e.there));
+  counts.pairs += looked;
+  counts.generations[static_cast<std::size_t>(e.level + visit.level)] += looked;
+  const unsigned out = settings_.cull ? e.there & outside(visit.v, e.d, e.distance, e.radius) : 0;
+  counts.culled += static_cast<std::uint64_t>(std::popcount(out));
+  unsigned rest = e.there & ~out;
+  unsigned same = 0;
+  if (settings_.merge || scene_leaves) {
+    same = rest & same_texel(visit.size, visit.v, e.d, e.distance, e.radius);
+  }
+  if (same != 0) {
+    alignas(32) std::array<float, 8> distances;
+    alignas(32) std::array<int, 8> texels;
+    e.distance.store(distances.data());
+    const Paraboloid::Eight places = map_.places(e.d, e.distance);
+    map_.texel(places).store(texels.data());
+    const float cover = settings_.cover;
+    const unsigned shown =
+        cover > 0 ? same & bits_of(map_.covers_middle(places, e.radius * cover)) : same;
+    for_each_lane(shown, [&](int i) {
+      visit.splat(texels[static_cast<std::size_t>(i)], distances[static_cast<std::size_t>(i)]);
+    });
+  }
+  rest &= ~same;
+  unsigned rendered = same;
+  if (visit.leaf && scene_leaves) {
+    if (rest != 0) fill(e, rest, visit.depths);
+    counts.large += static_cast<std::uint64_t>(std::popcount(rest));
+    rendered |= rest;
+  } else if (!visit.leaf && (scene_leaves || e.radius / 2 < visit.v.radius)) {  // Fig. 8
+    if (rest != 0) {
+      visit.left.later.push_back({siblings.parent, static_cast<std::uint8_t>(rest)});
     }
-    rest &= ~same;
-    unsigned rendered = same;
-    const bool scene_leaves = e.level == scene_.levels();
-    if (leaf && scene_leaves) {
-      if (rest != 0) fill(e, rest, depths);
-      counts.large += static_cast<std::uint64_t>(std::popcount(rest));
-      rendered |= rest;
-    } else if (!leaf && (scene_leaves || e.radius / 2 < v.radius)) {  // Fig. 8
-      if (rest != 0) later.push_back({siblings.parent, static_cast<std::uint8_t>(rest)});
-    } else {
-      for_each_lane(rest, [&](int i) { stack.push_back(e.node(i)); });
-    }
-    counts.splats += static_cast<std::uint64_t>(std::popcount(rendered));
-  };
+  } else {
+    for_each_lane(rest, [&](int i) { visit.left.here.push_back(Siblings::all_of(e.node(i))); });
+  }
+  counts.splats += static_cast<std::uint64_t>(std::popcount(rendered));
+}
+
+void ViewRendering::render(std::uint32_t view, std::span<const Siblings> waiting,
+                           std::span<float> depths, Undecided& left,
+                           ManyViewsCounts& counts) const {
+  Visit own = visit(view, depths, left);
   for (const Siblings& first : waiting) {
-    look(first);
-    while (!stack.empty()) {
-      const std::uint32_t parent = stack.back();
-      stack.pop_back();
-      look({parent, 0xff});
+    look(first, own);
+    while (!left.here.empty()) {
+      const Siblings next = left.here.back();
+      left.here.pop_back();
+      look(next, own);
     }
   }
-  counts.sharing = counts.splats * below_[view];
-  all_counts += counts;
+  own.counts.sharing = own.counts.splats * below_[view];
+  counts += own.counts;
+}
+
+void ViewRendering::render_once(std::uint32_t view, std::span<const Siblings> waiting,
+                                std::span<float> depths, Undecided& left,
+                                ManyViewsCounts& counts) const {
+  Visit own = visit(view, depths, left);
+  for (const Siblings& siblings : waiting) look(siblings, own);
+  own.counts.sharing = own.counts.splats * below_[view];
+  counts += own.counts;
 }
 
 /// All texels whose middle the sphere covers (3.2.4); as published that of its centre, too.

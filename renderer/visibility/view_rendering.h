@@ -17,8 +17,12 @@ struct ManyViewsCounts {
   std::uint64_t sharing = 0;  ///< view leaves below, summed over splats
   /// Pairs by the number of subdivisions that led to them.
   std::array<std::uint64_t, 2 * Octree::most_levels + 1> generations{};
+  /// Of a breadth-first traversal: what its queue and its maps of view nodes took at most, and the
+  /// CPU time of handing these down.
+  std::uint64_t queue_bytes = 0, unfused_bytes = 0;
+  double fusion_seconds = 0;
 
-  /// Pairs that the paper's breadth-first queue, in which a generation lies at a time, would hold.
+  /// Pairs that a breadth-first queue, in which a generation lies at a time, would hold.
   std::uint64_t queue_peak() const {
     return *std::max_element(generations.begin(), generations.end());
   }
@@ -35,7 +39,9 @@ struct ManyViewsSettings {
   /// 0: the texel that its own middle falls into, as in the paper.
   float cover = 0;
   bool share = true;  ///< false: every view leaf by itself, ManyLoDs (Hollaender et al. 2011)
+  bool merge = true;  ///< false: no node stands for the leaves below it
   bool cull = true;
+  bool breadth_first = false;  ///< by a queue, as in the paper; the same maps
 };
 
 /// Some children of a node of the scene's octree.
@@ -45,6 +51,7 @@ struct Siblings {
 
   static constexpr std::uint32_t no_parent = ~std::uint32_t{0};
   static constexpr Siblings root() { return {no_parent, 1}; }
+  static constexpr Siblings all_of(std::uint32_t parent) { return {parent, 0xff}; }
 };
 
 /// Renders nodes of a scene into the map of one view node at a time (Kol et al. 2018, 3.2): eight
@@ -59,10 +66,18 @@ class ViewRendering {
   std::size_t texels() const { return static_cast<std::size_t>(map_.texels()); }
   bool is_leaf(std::uint32_t view) const { return views_.tree().nodes[view].children == 0; }
 
-  /// Renders what waits for a view node into its map. What its children must decide is added to
-  /// `later`, in order.
+  /// Nodes of the scene that a view node leaves undecided.
+  struct Undecided {
+    std::vector<Siblings> here;   ///< for itself: their children are to be looked at
+    std::vector<Siblings> later;  ///< for the views below it
+  };
+  /// Renders what waits for a view node into its map, with all that lies below it: nothing stays
+  /// `left.here`. What its children must decide is added to `left.later`.
   void render(std::uint32_t view, std::span<const Siblings> waiting, std::span<float> depths,
-              std::vector<Siblings>& later, ManyViewsCounts& counts) const;
+              Undecided& left, ManyViewsCounts& counts) const;
+  /// The same of what waits, without what lies below it.
+  void render_once(std::uint32_t view, std::span<const Siblings> waiting, std::span<float> depths,
+                   Undecided& left, ManyViewsCounts& counts) const;
 
   /// What a child has of its parent's map (3.2.5): distances to the same places from its own
   /// centre, and so in the same texels. Both span map_floats().
@@ -74,6 +89,9 @@ class ViewRendering {
   struct LevelSize {
     float radius, half_side;  // of the spheres and of the cubes
   };
+  struct Visit;  // of a view node
+  Visit visit(std::uint32_t view, std::span<float> depths, Undecided& left) const;
+  void look(const Siblings& siblings, Visit& visit) const;
   Eight eight(const Siblings& s, const ViewTree::Node& v) const;
   void fill(const Eight& e, unsigned lanes, std::span<float> depths) const;
 

@@ -35,6 +35,21 @@ Row decimally_lit(double radiance) {
           }};
 }
 
+/// Point lights by themselves.
+Row glowing(int count, double power) {
+  return {fmt::format("{} particles of {:g} W", count, power),
+          [=](Stage& stage, const Method& method, Check& check) {
+            JobSpec job =
+                stage.job(method, stage.scene("dark room", [] { return room({.radiance = 0}); }));
+            job.particles = ParticleSettings{.count = count, .power = 1, .seed = 7};
+            const Picture one = stage.render(job);
+            job.particles->power = power;
+            constexpr double rounding = 2e-6;
+            check.same_picture(stage.render(job), one, std::pow(power, light_degree(stage, method)),
+                               rounding);
+          }};
+}
+
 /// One scene in two versions that are one to the eye: every method sees the same.
 Row the_same(const std::string& name, const Room& one, const Room& other) {
   return {name, [=](Stage& stage, const Method& method, Check& check) {
@@ -56,6 +71,8 @@ std::vector<Row> light_rows(const Effort& effort) {
       exactly_lit(40),
       decimally_lit(1e-12),
       decimally_lit(1e12),
+      glowing(1, 1e-12),
+      glowing(1000, 1e12),
       the_same(fmt::format("{} points of light", points), {.points = 1}, {.points = points}),
       the_same(fmt::format("{} shining triangles", 2 * cells * cells), {}, {.panel_cells = cells})};
 }

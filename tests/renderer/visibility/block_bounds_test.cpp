@@ -15,7 +15,7 @@ V3f direction(Rng& rng) {
 // Never left out is what one light of the block could do; often enough it is left out.
 TEST(BlockBounds, LeaveOutOnlyWhatNoLightOfTheBlockReaches) {
   Rng rng(1, 0, 0, Rng::Purpose::test);
-  int behind = 0, turned = 0;
+  int behind = 0, turned = 0, further = 0;
   for (int n = 0; n < 20000; ++n) {
     BlockBounds bounds;
     std::array<V3f, 8> x, g;
@@ -28,21 +28,27 @@ TEST(BlockBounds, LeaveOutOnlyWhatNoLightOfTheBlockReaches) {
     }
     const V3f p = direction(rng);
     const V3f normal = direction(rng);
-    bool in_front = false, faced = false;
+    const float reach = 5 * rng.next();
+    bool in_front = false, faced = false, near = false;
     for (std::size_t i = 0; i < x.size(); ++i) {
       in_front = in_front || dot(normal, x[i] - p) > 0;
       faced = faced || dot(g[i], p - x[i]) > 0;
+      near = near || (x[i] - p).length() <= reach;
     }
     const auto all = [](const V3f& v) { return Float8x3{v.x, v.y, v.z}; };
     const bool is_behind = any_of(bounds.behind(all(p), all(normal)));
     const bool is_turned = any_of(bounds.turned_from(all(p)));
     EXPECT_FALSE(is_behind && in_front);
     EXPECT_FALSE(is_turned && faced);
+    const bool is_further = any_of(bounds.further_than(reach, all(p)));
+    EXPECT_FALSE(is_further && near);
+    further += is_further;
     behind += is_behind;
     turned += is_turned;
   }
   EXPECT_GT(behind, 5000);
   EXPECT_GT(turned, 3000);
+  EXPECT_GT(further, 5000);
 }
 
 TEST(MortonOrder, KeepsEachAxisInOrder) {

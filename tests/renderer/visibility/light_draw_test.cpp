@@ -118,6 +118,29 @@ TEST(LightDraw, SumsHaveTheMeanOfAll) {
   }
 }
 
+// With a cutoff those remain that lie within it, and no others.
+TEST(LightDraw, LeavesOutWhatIsBeyondTheCutoff) {
+  const LitScene lit({"ajar"}, 2000, 2);
+  std::size_t beyond = 0;
+  lit.with_points(500, [&](std::span<const ShadingPoint> points) {
+    for (const ShadingPoint& p : points) {
+      const V3f x = p.vertex->surface.x;
+      const float reach = 0.7F;
+      const LightDraw draw(lit.terms(), {.lights = 1 << 20, .cull = false, .cutoff = reach});
+      Lights drawn;
+      for (const auto& d : draw.draw(std::span(&p, 1), lit.context(1))) drawn[d.block] = d.lights;
+      for (const auto& [block, bits] : candidates(lit, p, false)) {
+        for_each_bit(bits, [&](int i) {
+          const bool within = (lit.lights().place(block, i).x - x).length2() <= reach * reach;
+          EXPECT_EQ((drawn[block] >> i & 1) != 0, within);
+          beyond += !within;
+        });
+      }
+    }
+  });
+  EXPECT_GT(beyond, 1000U);
+}
+
 TEST(LightDraw, OfMoreThanThereAreIsAll) {
   const LitScene lit({"ajar"}, 100, 2);
   lit.with_points(400, [&](std::span<const ShadingPoint> points) {

@@ -284,6 +284,47 @@ TEST(ManyViews, CountWhatAQueueWouldHold) {
   EXPECT_EQ(counts.generations[0], 1U);
 }
 
+// The queue of the paper: the same pairs, and so the same maps bit by bit.
+TEST(ManyViews, AreTheSameBreadthFirst) {
+  const Octree scene = random_tree(2000, 6, 71);
+  const ViewTree tree(random_views(500, Facing::anywhere, 72), 6, V3d(0.0), 1);
+  for (const bool share : {true, false}) {
+    ManyViewsCounts deep, wide, wide_alone;
+    const ManyViewsSettings settings{.cover = share ? 0.8F : 0, .share = share};
+    ManyViewsSettings by_queue = settings;
+    by_queue.breadth_first = true;
+    const Maps expected = maps_of(scene, tree, settings, 2, &deep);
+    EXPECT_EQ(maps_of(scene, tree, by_queue, 2, &wide), expected);
+    EXPECT_EQ(maps_of(scene, tree, by_queue, 1, &wide_alone), expected);
+    EXPECT_EQ(wide.generations, deep.generations);
+    EXPECT_EQ(wide.sharing, deep.sharing);
+    EXPECT_EQ(wide.queue_bytes, wide_alone.queue_bytes);
+    // A generation and the next; up to eight pairs in twelve bytes.
+    EXPECT_GE(wide.queue_bytes, deep.queue_peak() * 12 / 8);
+    EXPECT_LE(wide.queue_bytes, 2 * deep.queue_peak() * 12);
+    const std::size_t maps = share ? tree.tree().nodes.size() : tree.leaf_count();
+    EXPECT_EQ(wide.unfused_bytes, maps * 512 * sizeof(float));
+    EXPECT_EQ(deep.queue_bytes + deep.unfused_bytes, 0U);
+  }
+}
+
+// No node stands for others: each leaf is in the texel that its middle falls into.
+TEST(ManyViews, WithoutMergingShowEveryLeaf) {
+  const Octree scene = random_tree(300, 5, 21);
+  const ViewTree tree(random_views(40, Facing::everywhere, 22), 5, V3d(0.0), 1);
+  const Paraboloid map{16};
+  ManyViewsCounts counts;
+  const Maps maps = maps_of(scene, tree, {.share = false, .merge = false}, 2, &counts);
+  for (std::uint32_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
+    const V3f from = tree.node(tree.first_leaf() + leaf).centre;
+    for (const Octree::Node& s : scene.leaves()) {
+      const V3f d = s.centre - from;
+      EXPECT_LE(maps[leaf][static_cast<std::size_t>(map.texel(d))], d.length() * (1 + 1e-5F));
+    }
+  }
+  EXPECT_EQ(counts.splats, scene.leaves().size() * tree.leaf_count());
+}
+
 TEST(ManyViews, AtTheirEnds) {
   const Octree empty = build_octree({}, 4, V3d(0.0), 1);
   const Octree scene = random_tree(100, 4, 61);
@@ -293,6 +334,10 @@ TEST(ManyViews, AtTheirEnds) {
     EXPECT_TRUE(std::all_of(m.begin(), m.end(), [](float d) { return d == nothing; }));
   }
   EXPECT_TRUE(maps_of(scene, ViewTree({}, 4, V3d(0.0), 1), {}).empty());
+  const ManyViewsSettings by_queue{.breadth_first = true};
+  EXPECT_EQ(maps_of(empty, ViewTree(one, 4, V3d(0.0), 1), by_queue),
+            maps_of(empty, ViewTree(one, 4, V3d(0.0), 1), {}));
+  EXPECT_TRUE(maps_of(scene, ViewTree({}, 4, V3d(0.0), 1), by_queue).empty());
   // One voxel, seen from outside, from within, from its very middle, and from a corner of cells.
   const std::vector<std::uint64_t> codes{0};
   const Octree voxel = build_octree(codes, 3, V3d(0.0), 1);
