@@ -17,7 +17,7 @@ export function differences(jobs) {
 /// What must be the same for errors to be comparable. Longer paths and another environment make
 /// another picture, so they belong here too.
 const sameForComparison = [
-  "/scene", "/camera", "/resolution", "/integrator/max_depth", "/reference", "/environment", "/particles",
+  "/scene", "/camera", "/resolution", "/integrator/max_depth", "/reference", "/environment", "/particles", "/material",
 ];
 
 /// Those of `differences` that make a comparison of errors doubtful.

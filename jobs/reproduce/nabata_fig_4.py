@@ -1,23 +1,10 @@
 """Nabata et al., Fig. 4: the share of the lights that each pixel of the hairball tests."""
 
-import json
-import struct
-
-from harness import many_lights
+from harness import layers, many_lights
 from harness.many_lights import visibility
 from harness.run import Table
 
 AT = (0.1, 0.25, 0.5, 0.75, 0.9)
-
-
-def layer(folder, name):
-    """The red values of a job's layer."""
-    told = json.loads((folder / "layers.json").read_text())
-    found = next(at for at in told["layers"] if at["name"] == name)
-    channels = len(found["channels"])
-    n = told["width"] * told["height"] * channels
-    values = (folder / "layers.half").read_bytes()[found["offset"]:found["offset"] + 2 * n]
-    return [found["scale"] * half for half in struct.unpack(f"<{n}e", values)[::channels]]
 
 
 def measure(run):
@@ -28,7 +15,7 @@ def measure(run):
                                                  term_cost=0, variance="point")),
                      ("Veach", visibility("roulette", many_lights.cached("Hairball", run.full, side)))):
         many_lights.render(run, key, many_lights.job("Hairball", how, run.full, 0.25, side, layers=["visibility_tests"]))
-        shares = sorted(layer(run.folder / run.version / key, "visibility_tests"))
+        shares = sorted(layers.channels(run.folder / run.version / key, "visibility_tests")[0])
         rows.append((key, *(f"{shares[int(q * (len(shares) - 1))]:.1%}" for q in AT)))
     run.tables.append(Table(("visibility", *(f"{q:.0%} of the pixels below" for q in AT)), rows))
     run.note(f"of all lights, those that turn away included; pictures: {run.folder / run.version}")

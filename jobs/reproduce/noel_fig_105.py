@@ -15,7 +15,7 @@ def sweep(full):
 def measure(run):
     answers = run.answers(sweep(run.full))
     cells = {name: resampling.cell(answers, "door", value) for name, value in METHODS.items()}
-    reports = {name: [resampling.of_run(run, c, seed) for seed in range(answers["seeds"])] for name, c in cells.items()}
+    reports = {name: [run.report(c, seed) for seed in range(answers["seeds"])] for name, c in cells.items()}
 
     def ratio(of, to, value):
         return median_of([value(a) / value(b) for a, b in zip(reports[of], reports[to])])

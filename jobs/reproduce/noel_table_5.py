@@ -18,7 +18,7 @@ def sweep(full):
 def measure(run):
     answers = run.answers(sweep(run.full))
     for name in ("Door", "Sponza"):
-        told = resampling.of_run(run, resampling.cell(answers, name.lower(), SKELETON))["integrator"]
+        told = run.report(resampling.cell(answers, name.lower(), SKELETON))["integrator"]
         run.found(f"{name}, nodes", exact(told["nodes"]))
         run.found(f"{name}, per iteration", exact(told["nodes_used"]))
         passes = {key: told[f"{key}_cpu_seconds"] for key in ("light_pass", "distributions", "eye_pass")}

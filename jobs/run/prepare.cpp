@@ -69,6 +69,7 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   p.pool = std::make_unique<ThreadPool>(context.threads >= 0 ? context.threads : spec.threads);
   p.integrator = make_integrator(spec.integrator);
   SceneData data = load_gltf(resolve(context, "scene", spec.scene, {".glb", ".gltf"}));
+  if (spec.material) change_material(data, *spec.material, spec.scene);
   if (spec.particles) add_particles(data, *spec.particles);
   const CameraData camera = choose_camera(data, spec.camera, spec.scene);
   std::optional<Crop> crop;

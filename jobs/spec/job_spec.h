@@ -8,6 +8,7 @@
 
 #include "analysis/settings/analysis_settings.h"
 #include "analysis/settings/field.h"
+#include "renderer/scene/material_change.h"
 #include "renderer/scene/particles.h"
 #include "renderer/settings/integrator_settings.h"
 #include "renderer/settings/output_settings.h"
@@ -109,6 +110,7 @@ struct JobSpec {
   AnalysisSettings analysis;
   std::optional<EnvironmentSettings> environment;
   std::optional<ParticleSettings> particles;
+  std::optional<MaterialChange> material;
   std::uint64_t seed = 1;
   int threads = 0;
   std::vector<ImageLayer> layers;
@@ -144,6 +146,7 @@ void describe(V& v, JobSpec& s) {
     {.doc = "shape analysis of the empty space, built only where the integrator uses it"});
   v("environment", s.environment, {.doc = "light from all around"});
   v("particles", s.particles, {.doc = "point lights besides those of the scene"});
+  v("material", s.material, {.doc = "a material of the scene with another gloss"});
   v("seed", s.seed, {.doc = "of the random numbers", .min = 0, .max = 9007199254740991.0});
   v("threads", s.threads, {.doc = "0: one for each core", .min = 0, .max = 1024});
   v("layers", s.layers,

@@ -38,6 +38,7 @@ JobSpec reference_spec(const JobSpec& spec) {
   if (std::holds_alternative<InspectSettings>(spec.integrator)) r.analysis = spec.analysis;
   r.environment = spec.environment;
   r.particles = spec.particles;
+  r.material = spec.material;
   r.seed = reference_seed;
   r.threads = spec.threads;
   r.layers = {ImageLayer::variance, ImageLayer::halves};

@@ -57,6 +57,46 @@ def rays(bench, _):
             print("  " + done.stdout.strip())
 
 
+def medians(bench, jobs, seconds, rounds=3):
+    """Of each named job the median of `seconds` of its report, the jobs one after another in each round."""
+    told = {name: [] for name in jobs}
+    for _ in range(rounds):
+        for name, spec in jobs.items():
+            told[name].append(seconds(bench.render("timed", spec)[1]))
+    return {name: sorted(values)[rounds // 2] for name, values in told.items()}
+
+
+def guides(bench, _):
+    """An iteration of guided path tracing against one of BSDF sampling; learning takes its time, too."""
+    guides = {"bsdf": {}, "skeleton": {"strength": 16}, "portals": {}, "face_irradiance": {}, "sd_tree": {}}
+    for scene, camera in (("door", "corner"), ("corridor", "far-from-light")):
+        cpu = medians(bench, {name: {"scene": f"{scene}/scene.glb", "camera": camera, "resolution": [512, 256],
+                                     "integrator": {"type": "path", "max_depth": 6, "guide": {"type": name, **more}},
+                                     "budget": {"iterations": 16}} for name, more in guides.items()},
+                      lambda report: report["seconds"]["render_cpu"])
+        for name in guides:
+            ratio = cpu[name] / cpu["bsdf"]
+            if name == "skeleton":
+                bench.figure(f"{scene}: an iteration guided by the skeleton / by the BSDF", f"{ratio:.2f}", "at most 1.5",
+                             ratio <= 1.5)
+            elif name != "bsdf":
+                print(f"  {scene}: an iteration with {name} / with bsdf: {ratio:.2f}")
+
+
+def views(bench, _):
+    """Maps of 32,768 lights of sponza, as published: through both hierarchies, through one, and by rays."""
+    def job(method):
+        return {"scene": "sponza/scene.glb", "camera": "atrium", "resolution": [32, 16], "budget": {"iterations": 1},
+                "integrator": {"type": "many_lights", "max_depth": 3, "light_paths": 32768, "compensation": False,
+                               "visibility": {"type": "view_maps", "method": method, "levels": 11, "node_texels": 1,
+                                              "cover": 0}}}
+    cpu = medians(bench, {m: job(m) for m in ("megaviews", "many_lods", "per_view")},
+                  lambda report: report["integrator"]["view_map_cpu_seconds"])
+    gain = cpu["many_lods"] / cpu["megaviews"]
+    bench.figure("sponza, 32k views: time of ManyLoDs / of MegaViews", f"{gain:.2f}", "above 1", gain > 1)
+    print(f"  rays / MegaViews: {cpu['per_view'] / cpu['megaviews']:.2f}")
+
+
 def corridor(bench, options):
     """The thesis author's own render, 63,555 samples a pixel."""
     out, report = bench.render("corridor", {
@@ -140,8 +180,8 @@ def analysis(bench, _):
     shape.run(bench, BIN, ROOT.parent / "shared/baselines")
 
 
-CHECKS = {"service": service, "page": page, "sweeps": sweeps, "rays": rays, "cornell": cornell, "overhead": overhead,
-          "corridor": corridor, "analysis": analysis}
+CHECKS = {"service": service, "page": page, "sweeps": sweeps, "rays": rays, "guides": guides, "views": views,
+          "cornell": cornell, "overhead": overhead, "corridor": corridor, "analysis": analysis}
 
 
 def main():

@@ -1,8 +1,6 @@
 """What the tables and figures of Noel 2015, chapter 11, have in common: bidirectional path tracing on the thesis' scenes
 that this project has, with every kind of connections, at the project's settings and at the thesis'."""
 
-import json
-
 from harness.measured import error_at, gain_at, speed_up_to, time_to
 from harness.run import Table, cell_with
 
@@ -56,11 +54,6 @@ def ours(run):
 
 def cell(answers, scene, integrator):
     return cell_with(answers, scene=SCENES[scene]["/scene"], integrator=integrator)
-
-
-def of_run(run, cell, seed=0):
-    """The report of one of a cell's runs."""
-    return json.loads((run.runs / cell["runs"][seed]["name"] / "report.json").read_text())
 
 
 def table(answers, scene, methods, title=""):

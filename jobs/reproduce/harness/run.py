@@ -85,6 +85,10 @@ class Run:
         self.notes += answers["warnings"]
         return answers
 
+    def report(self, cell, seed=0):
+        """The report of one of the runs of a cell of the last answers."""
+        return json.loads((self.runs / cell["runs"][seed]["name"] / "report.json").read_text())
+
 
 def cell_with(answers, **settings):
     """The cell of a sweep's answers in which the last parts of the swept pointers have these values; KeyError if there

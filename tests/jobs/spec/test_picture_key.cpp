@@ -34,6 +34,7 @@ const std::map<std::string, std::function<void(JobSpec&)>> changes{
        s.environment = EnvironmentSettings{"e.exr", 1, 0};
      }},
     {"particles", [](JobSpec& s) { s.particles = ParticleSettings{.count = 9, .power = 1}; }},
+    {"material", [](JobSpec& s) { s.material = MaterialChange{.name = "floor"}; }},
     {"seed", [](JobSpec& s) { s.seed = 2; }},
     {"threads", [](JobSpec& s) { s.threads = 2; }},
     {"layers", [](JobSpec& s) { s.layers = {ImageLayer::albedo}; }},
@@ -44,8 +45,8 @@ const std::map<std::string, std::function<void(JobSpec&)>> changes{
 };
 
 const std::set<std::string> decides_the_picture{
-    "scene",       "camera", "resolution",   "integrator", "analysis",
-    "environment", "seed",   "pixel_filter", "crop",       "particles"};
+    "scene", "camera",       "resolution", "integrator", "analysis", "environment",
+    "seed",  "pixel_filter", "crop",       "particles",  "material"};
 
 TEST(PictureKey, changes_with_what_decides_the_pixels_and_with_nothing_else) {
   JobSpec base;

@@ -1,0 +1,26 @@
+#include "renderer/scene/material_change.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <set>
+
+namespace lacuna {
+
+void change_material(SceneData& scene, const MaterialChange& change, const std::string& file) {
+  std::set<std::string> names;
+  bool found = false;
+  for (Material& m : scene.materials) {
+    if (!m.name.empty()) names.insert(m.name);
+    if (m.name != change.name) continue;
+    m.roughness = static_cast<float>(change.roughness);
+    m.metallic = static_cast<float>(change.metallic);
+    m.metallic_roughness_texture = {};
+    found = true;
+  }
+  if (found) return;
+  throw SceneError(fmt::format("scene \"{}\" has no material \"{}\"; it has \"{}\"", file,
+                               change.name, fmt::join(names, "\", \"")));
+}
+
+}  // namespace lacuna
