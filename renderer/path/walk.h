@@ -24,15 +24,15 @@ struct WalkLimits {
 /// A random walk, between two of its edges.
 struct Walker {
   Rng rng;
-  Ray ray;                  ///< the next edge
-  Pdf<SolidAngle> p;        ///< density with which it was drawn
-  std::span<Vertex> path;   ///< max_depth + 1 places; path[0] is set
-  Rgb throughput{1, 1, 1};  ///< along `ray`
+  Ray ray;                   ///< the next edge
+  Hit hit{};                 ///< of it
+  Rgb throughput{1, 1, 1};   ///< along it
+  Pdf<SolidAngle> p;         ///< density with which it was drawn
+  float roulette_scale = 1;  ///< 1 / the largest component of the first edge's throughput
+  std::span<Vertex> path;    ///< max_depth + 1 places; path[0] is set
   /// prior_sum() of the last vertex over its density: of the first, for a path from a light whose
   /// emitter can be hit, SideCounts::none over its density.
   double prior = 0;
-  float roulette_scale = 1;  ///< 1 / the largest component of the first edge's throughput
-  Hit hit{};
 };
 
 /// Leads random walks through a scene, all of them edge by edge: what a vertex needs from memory is

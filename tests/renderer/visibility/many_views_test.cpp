@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/core/rng.h"
+#include "renderer/core/sampling.h"
 
 namespace lacuna {
 namespace {
@@ -258,6 +259,28 @@ TEST(ManyViews, SharedOrNotAreAlike) {
   EXPECT_GT(double(together.sharing) / double(together.splats), 1.5);
   EXPECT_EQ(apart.sharing, apart.splats);
   EXPECT_LT(together.queue_peak(), apart.queue_peak());
+}
+
+// What is rendered for many views at once lies at each one's own distance (3.2.5).
+TEST(ManyViews, HandDownDistancesFromEachView) {
+  const std::vector<std::uint64_t> far_corner{63};
+  const Octree scene = build_octree(far_corner, 2, V3d(0.0), 1);
+  auto views = random_views(50, Facing::everywhere, 45);
+  for (View& v : views) v.x = V3f(0.1F) + 0.15F * v.x;
+  const ViewTree tree(views, 11, V3d(0.0), 1);
+  ManyViewsCounts counts;
+  const Maps maps = maps_of(scene, tree, {.map_size = 8, .node_texels = 2}, 2, &counts);
+  ASSERT_EQ(counts.splats, 1U);
+  ASSERT_EQ(counts.sharing, tree.leaf_count());
+  double off = 0, steps = 0;  // squares
+  for (std::uint32_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
+    const V3f x = tree.node(tree.first_leaf() + leaf).centre;
+    const float shown = *std::min_element(maps[leaf].begin(), maps[leaf].end());
+    off += std::pow(shown - (scene.leaves()[0].centre - x).length(), 2);
+    steps += (x - tree.node(0).centre).length2();
+  }
+  // A third would be that of the distance from their middle; what remains is a texel's width.
+  EXPECT_LT(off, 0.1 * steps);
 }
 
 TEST(ManyViews, AreTheSameForAnyNumberOfThreads) {
