@@ -44,19 +44,23 @@ class MixedGuide {
       // Light from below the surface is not scattered; the density of such draws counts all the
       // same.
       if (is_black(f)) return std::nullopt;
-      const Pdf<SolidAngle> p = mixed(v, v.site, *w, bsdf_.pdf(v, v.wp, *w, transport));
+      const Pdf<SolidAngle> bsdf = bsdf_.pdf(v, v.wp, *w, transport);
+      const Pdf<SolidAngle> p = mixed(v, v.site, *w, bsdf);
       if (!p.positive()) return std::nullopt;
       const bool transmitted = dot(*w, v.surface.ng) * dot(v.wp, v.surface.ng) < 0;
-      return BsdfSample{*w, f / p.value, p, false, transmitted};
+      const float guided = bsdf.positive() ? p / bsdf : 1;
+      return BsdfSample{*w, f / p.value, p, false, transmitted, guided};
     }
     std::optional<BsdfSample> s = bsdf_.sample(v, rng, transport);
     if (!s) return s;
     if (s->delta) {
       s->weight /= 1 - c;
+      s->guided = 1 - c;
       return s;
     }
     const Pdf<SolidAngle> p = mixed(v, v.site, s->wi, s->pdf);
-    s->weight *= s->pdf / p;
+    s->guided = p / s->pdf;
+    s->weight /= s->guided;
     s->pdf = p;
     return s;
   }

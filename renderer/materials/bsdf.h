@@ -23,6 +23,8 @@ struct BsdfSample {
   Pdf<SolidAngle> pdf;
   bool delta = false;
   bool transmitted = false;  ///< wi lies on the other side of ng
+  /// Of a draw that a guide took part in (renderer/guides): its density over the BSDF's own.
+  float guided = 1;
 };
 
 /// Cosines below it are rounding noise.

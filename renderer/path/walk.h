@@ -24,12 +24,15 @@ struct WalkLimits {
 /// A random walk, between two of its edges.
 struct Walker {
   Rng rng;
-  Ray ray;                   ///< the next edge
-  Hit hit{};                 ///< of it
-  Rgb throughput{1, 1, 1};   ///< along it
-  Pdf<SolidAngle> p;         ///< density with which it was drawn
-  float roulette_scale = 1;  ///< 1 / the largest component of the first edge's throughput
-  std::span<Vertex> path;    ///< max_depth + 1 places; path[0] is set
+  Ray ray;                  ///< the next edge
+  Hit hit{};                ///< of it
+  Rgb throughput{1, 1, 1};  ///< along it
+  Pdf<SolidAngle> p;        ///< density with which it was drawn
+  /// 1 / the largest component of the first edge's throughput, times BsdfSample::guided of all
+  /// vertices: what is left by throughput that way is what the BSDF's own draws would have left. A
+  /// guide lowers it where it sends many paths, so roulette by it alone would end just those.
+  float roulette_scale = 1;
+  std::span<Vertex> path;  ///< max_depth + 1 places; path[0] is set
   /// prior_sum() of the last vertex over its density: of the first, for a path from a light whose
   /// emitter can be hit, SideCounts::none over its density.
   double prior = 0;
@@ -118,6 +121,7 @@ class Walk {
     const std::optional<BsdfSample> next = guide_.sample(v, w.rng, limits_.transport);
     if (!next) return false;
     w.throughput *= next->weight;
+    w.roulette_scale *= next->guided;
     if (depth >= limits_.roulette_depth) {
       const float survival = std::min(1.0F, max_component(w.throughput) * w.roulette_scale);
       if (w.rng.next() >= survival) return false;

@@ -13,13 +13,6 @@ struct PathSettings : PathLengths {
   static constexpr std::string_view doc =
       "path tracing with next event estimation and multiple importance sampling (Noel 2015, 4.2)";
 
-  /// Longer whole paths than of other methods: a path that a guide sends to where light comes from
-  /// has little throughput, and ending it costs more noise than its time saves. On corridor, door
-  /// and sponza that holds for BSDF sampling, too.
-  static constexpr int whole_edges = 6;
-
-  PathSettings(PathLengths lengths = {.roulette_depth = whole_edges}) : PathLengths(lengths) {}
-
   GuideSettings guide = BsdfGuideSettings{};
   bool next_event_estimation = true;
 

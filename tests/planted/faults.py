@@ -69,6 +69,10 @@ FAULTS = [
           "back = v.delta ? 1.0 : double(", "back = v.delta ? 0.5 : double("),
     Fault("survivors of roulette carry no more", "renderer/path/walk.h",
           "w.throughput /= survival;", ""),
+    Fault("roulette ends what a guide favours", "renderer/path/walk.h",
+          "w.roulette_scale *= next->guided;", ""),
+    Fault("roulette takes the guide's draws for the BSDF's", "renderer/guides/mixed_guide.h",
+          "s->weight /= s->guided;", "s->weight /= std::exchange(s->guided, 1.0F);"),
     # Paths from lights.
     Fault("light paths carry radiance", "renderer/path/light_batch.h",
           ".transport = Transport::importance,", ".transport = Transport::radiance,"),
