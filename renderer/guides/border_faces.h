@@ -15,7 +15,7 @@ namespace lacuna {
 /// all iterations before (Noel 2015, 10.4.2). That is, summed over the paths, the radiance over the
 /// density with which its direction was drawn: an estimate of what arrives through the face at the
 /// region's surfaces, which is what its probability stands for. The thesis' thresholds, by which a
-/// point may draw from its neighbour's border, have no place here: RegionMixture does what they
+/// point may draw from its neighbour's border, have no place here: RegionLattice does what they
 /// were for.
 class BorderFaceLight {
  public:

@@ -74,20 +74,29 @@ struct CrossedFace {
   std::uint8_t side_of_to() const { return side_of_from() ^ 1U; }
 };
 
-/// Walks along the ray from `x` in direction `w` (grid coordinates; w of any length but 0) through
-/// `box` and calls visit(CrossedFace) at each face between two voxels of it that the ray crosses at
-/// x + t w, t > 0, in their order, until visit returns false (Amanatides and Woo 1987). Where the
-/// ray runs through an edge, the face across the lower axis comes first.
+/// From `x` in direction `w`, of any length but 0, in grid coordinates; for many boxes.
+struct GridRay {
+  GridRay(const Imath::V3d& from, const Imath::V3d& along)
+      : x(from), w(along), inverse(1 / along.x, 1 / along.y, 1 / along.z) {}
+
+  Imath::V3d x, w, inverse;
+};
+
+/// Walks along the ray through `box` and calls visit(CrossedFace) at each face between two voxels
+/// of it that the ray crosses at x + t w, t > 0, in their order, until visit returns false
+/// (Amanatides and Woo 1987): a face's `from` is the `to` of the one before. Where the ray runs
+/// through an edge, the face across the lower axis comes first.
 template <class Visit>
-void for_each_crossed_face(const Imath::V3d& x, const Imath::V3d& w, const VoxelBox& box,
-                           Visit&& visit) {
+void for_each_crossed_face(const GridRay& ray, const VoxelBox& box, Visit&& visit) {
+  const auto& [x, w, inverse] = ray;
   double enter = 0, leave = HUGE_VAL;
   for (int a = 0; a < 3; ++a) {
     if (w[a] == 0) {
       if (x[a] < box.low[a] || x[a] >= box.high[a]) return;
       continue;
     }
-    const double first = (box.low[a] - x[a]) / w[a], second = (box.high[a] - x[a]) / w[a];
+    const double first = (box.low[a] - x[a]) * inverse[a],
+                 second = (box.high[a] - x[a]) * inverse[a];
     enter = std::max(enter, std::min(first, second));
     leave = std::min(leave, std::max(first, second));
   }
@@ -97,8 +106,8 @@ void for_each_crossed_face(const Imath::V3d& x, const Imath::V3d& w, const Voxel
   for (int a = 0; a < 3; ++a) {
     here[a] =
         std::clamp(static_cast<int>(std::floor(x[a] + enter * w[a])), box.low[a], box.high[a] - 1);
-    next[a] = w[a] == 0 ? HUGE_VAL : (here[a] + (w[a] > 0 ? 1 : 0) - x[a]) / w[a];
-    apart[a] = w[a] == 0 ? HUGE_VAL : 1 / std::abs(w[a]);
+    next[a] = w[a] == 0 ? HUGE_VAL : (here[a] + (w[a] > 0 ? 1 : 0) - x[a]) * inverse[a];
+    apart[a] = std::abs(inverse[a]);
   }
   for (;;) {
     int axis = next.x <= next.y ? 0 : 1;

@@ -29,6 +29,7 @@ class FaceDirections final : public Directions {
     // Regions are numbered as nodes are, and what has none is marked as voxels without a node are.
     static_assert(no_region == no_node);
     lookup_.emplace(transform_, *label_);
+    lattice_ = RegionLattice(*label_, settings_.mixing);
     faces_.prepare(context, *lookup_);
     // Faces have no strength.
     tuning_ = Tuning({1}, settings_.probability, context.space.regions().regions.size());
@@ -103,7 +104,8 @@ class FaceDirections final : public Directions {
       // there.
       if (!(what.radiance > 0)) return;
       const V3d from = transform_.to_grid(V3d(what.v.surface.x));
-      for_each_crossed_face(from, V3d(what.wi), faces_.box(region), [&](const CrossedFace& face) {
+      const GridRay ray(from, V3d(what.wi));
+      for_each_crossed_face(ray, faces_.box(region), [&](const CrossedFace& face) {
         if (label_at(face.from) != region || label_at(face.to) == region) return true;
         const auto index = static_cast<std::uint32_t>(label_->index(face.from));
         faces_.learn(region, {index, face.side_of_from()}, what, both.faces);
@@ -124,7 +126,7 @@ class FaceDirections final : public Directions {
 
  private:
   RegionMixture mixture(const V3d& x, std::uint32_t voxel) const {
-    return {*label_, x, voxel, settings_.mixing};
+    return lattice_.mixture(x, (*label_)[voxel]);
   }
   struct Both final : Tally {
     typename Faces::Tally faces;
@@ -157,14 +159,16 @@ class FaceDirections final : public Directions {
       const double often = drawn(share.region);
       if (often > 0) faces_.add_parts(share.region, share.weight * often, parts);
     }
-    const V3d along(w);
+    const GridRay ray(from, V3d(w));
     double sum = 0;
     for (const FacePart& part : parts) {
-      for_each_crossed_face(from, along, *part.box, [&](const CrossedFace& face) {
-        const std::uint32_t near = label_at(face.from), far = label_at(face.to);
+      std::optional<std::uint32_t> last;
+      for_each_crossed_face(ray, *part.box, [&](const CrossedFace& face) {
+        const std::uint32_t near = last ? *last : label_at(face.from), far = label_at(face.to);
+        last = far;
         if (near == far) return true;
         const double p = faces_.probability(part.index, face, near, far);
-        sum += part.weight * p * face.t * face.t / std::abs(along[face.axis]);
+        sum += part.weight * p * face.t * face.t * std::abs(ray.inverse[face.axis]);
         return true;
       });
     }
@@ -179,6 +183,7 @@ class FaceDirections final : public Directions {
   GridTransform transform_;
   const Grid3<std::uint32_t>* label_ = nullptr;
   std::optional<SurfaceLookup> lookup_;
+  RegionLattice lattice_;
 };
 
 }  // namespace lacuna

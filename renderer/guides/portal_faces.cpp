@@ -147,11 +147,16 @@ VoxelFace PortalFaces::draw(std::uint32_t region, Rng& rng) const {
 }
 
 std::vector<std::pair<std::string, double>> PortalFaces::statistics() const {
-  std::size_t guided = 0;
-  for (const Exits& e : exits_) guided += e.mass > 0 ? 1 : 0;
-  return {{"regions", static_cast<double>(exits_.size())},
-          {"portals", static_cast<double>(middles_.size())},
-          {"guided_regions", static_cast<double>(guided)}};
+  std::size_t guided = 0, exits = 0;
+  for (const Exits& e : exits_) {
+    guided += e.mass > 0 ? 1 : 0;
+    exits += e.exits.size();
+  }
+  return {
+      {"regions", static_cast<double>(exits_.size())},
+      {"portals", static_cast<double>(middles_.size())},
+      {"guided_regions", static_cast<double>(guided)},
+      {"exits_mean", guided > 0 ? static_cast<double>(exits) / static_cast<double>(guided) : 0}};
 }
 
 }  // namespace lacuna

@@ -6,11 +6,7 @@
 
 namespace lacuna {
 
-/// Which regions' ways of drawing directions are mixed at a point, and how. Regions have sharp
-/// borders, at which the variance of what is drawn would jump (Noel 2015, 10.4: discontinuities
-/// that the thesis leaves unsolved); so within `width` of a border both sides' are mixed, by
-/// weights that change continuously from place to place: the labels at the corners of a lattice of
-/// cells of that width, interpolated, those outside all regions left out.
+/// Regions and how much each counts at a point; all weights add up to 1.
 class RegionMixture {
  public:
   struct Share {
@@ -18,38 +14,10 @@ class RegionMixture {
     double weight;
   };
 
-  /// At `x`, in voxels, in front of which lies voxel `own` of a region. `width` 0: its alone.
-  RegionMixture(const Grid3<std::uint32_t>& label, const Imath::V3d& x, std::uint32_t own,
-                int width) {
-    double sum = 0;
-    if (width > 0) {
-      const Imath::V3d at = x / width;
-      const Imath::V3d cell(std::floor(at.x), std::floor(at.y), std::floor(at.z));
-      for (int corner = 0; corner < 8; ++corner) {
-        double weight = 1;
-        Imath::V3i v;
-        for (int a = 0; a < 3; ++a) {
-          const bool high = (corner >> a & 1) != 0;
-          const double part = at[a] - cell[a];
-          weight *= high ? part : 1 - part;
-          v[a] = static_cast<int>((cell[a] + (high ? 1 : 0)) * width);
-        }
-        if (!(weight > 0) || !in_grid(v, label.size()) || label(v) == no_region) continue;
-        add(label(v), weight);
-        sum += weight;
-      }
-    }
-    if (sum == 0) {
-      add(label[own], 1);
-      return;
-    }
-    for (std::size_t i = 0; i < count_; ++i) shares_[i].weight /= sum;
-  }
-
   const Share* begin() const { return shares_.data(); }
   const Share* end() const { return shares_.data() + count_; }
 
- private:
+  /// At most eight different ones.
   void add(std::uint32_t region, double weight) {
     for (std::size_t i = 0; i < count_; ++i) {
       if (shares_[i].region == region) {
@@ -59,9 +27,87 @@ class RegionMixture {
     }
     shares_[count_++] = {region, weight};
   }
+  void scale(double by) {
+    for (std::size_t i = 0; i < count_; ++i) shares_[i].weight *= by;
+  }
 
+ private:
   std::array<Share, 8> shares_;
   std::size_t count_ = 0;
+};
+
+/// Which regions' ways of drawing directions are mixed where. Regions have sharp borders, at which
+/// the variance of what is drawn would jump (Noel 2015, 10.4: discontinuities that the thesis
+/// leaves unsolved); so within `width` of a border both sides' are mixed, by weights that change
+/// continuously from place to place: the labels at the corners of a lattice of cells of that width,
+/// interpolated, those outside all regions left out.
+class RegionLattice {
+ public:
+  RegionLattice() = default;
+  /// `width`: voxels; 0: nothing is mixed.
+  RegionLattice(const Grid3<std::uint32_t>& label, int width) : width_(width) {
+    if (width == 0) return;
+    // Cells that reach out of the grid too: every corner in it belongs to eight.
+    const Imath::V3i last = (label.size() - Imath::V3i(1)) / width;
+    cells_ = Grid3<Cell>(last + Imath::V3i(2));
+    for (std::size_t i = 0; i < cells_.count(); ++i) {
+      Cell& cell = cells_[i];
+      for (int k = 0; k < 8; ++k) {
+        const Imath::V3i v = (cells_.voxel(i) - Imath::V3i(1) + corner(k)) * width;
+        cell.at[k] = in_grid(v, label.size()) ? label(v) : no_region;
+        if (cell.at[k] == no_region) continue;
+        cell.only = cell.only == no_region || cell.only == cell.at[k] ? cell.at[k] : several;
+      }
+    }
+  }
+
+  /// At `x`, in voxels, in front of which lies region `own`.
+  RegionMixture mixture(const Imath::V3d& x, std::uint32_t own) const {
+    Imath::V3i cell;
+    Imath::V3d part;
+    for (int a = 0; a < 3 && width_ > 0; ++a) {
+      const double at = x[a] / width_, low = std::floor(at);
+      cell[a] = static_cast<int>(low) + 1;
+      part[a] = at - low;
+    }
+    if (width_ > 0 && in_grid(cell, cells_.size())) return mixture(cells_(cell), part, own);
+    RegionMixture alone;
+    alone.add(own, 1);
+    return alone;
+  }
+
+ private:
+  static constexpr std::uint32_t several = no_region - 1;
+  struct Cell {
+    std::array<std::uint32_t, 8> at;  // its corners
+    std::uint32_t only = no_region;   // the one region at them, `several`, or no_region
+  };
+  static Imath::V3i corner(int k) { return {k & 1, k >> 1 & 1, k >> 2}; }
+
+  static RegionMixture mixture(const Cell& cell, const Imath::V3d& part, std::uint32_t own) {
+    RegionMixture mixed;
+    if (cell.only != several) {
+      mixed.add(cell.only == no_region ? own : cell.only, 1);
+      return mixed;
+    }
+    double sum = 0;
+    for (int k = 0; k < 8; ++k) {
+      double weight = 1;
+      for (int a = 0; a < 3; ++a) weight *= corner(k)[a] != 0 ? part[a] : 1 - part[a];
+      if (!(weight > 0) || cell.at[k] == no_region) continue;
+      mixed.add(cell.at[k], weight);
+      sum += weight;
+    }
+    if (sum > 0) {
+      mixed.scale(1 / sum);
+    } else {
+      mixed.add(own, 1);
+    }
+    return mixed;
+  }
+
+  int width_ = 0;
+  Grid3<Cell> cells_;
 };
 
 }  // namespace lacuna

@@ -53,7 +53,7 @@ TEST(CrossedFaces, AreAllThatTheRayMeets) {
     if (round % 5 == 0) w[round / 5 % 3] = 0;
     std::set<Crossing> found;
     double before = 0;
-    for_each_crossed_face(x, w, box, [&](const CrossedFace& face) {
+    for_each_crossed_face({x, w}, box, [&](const CrossedFace& face) {
       const V3i high(std::max(face.from.x, face.to.x), std::max(face.from.y, face.to.y),
                      std::max(face.from.z, face.to.z));
       EXPECT_TRUE(found.insert({face.axis, high.x, high.y, high.z}).second);
@@ -73,7 +73,7 @@ TEST(CrossedFaces, AreAllThatTheRayMeets) {
 TEST(CrossedFaces, EndWhereTheVisitorDoes) {
   VoxelBox box{V3i(0), V3i(10)};
   int met = 0;
-  for_each_crossed_face(V3d(0.5), V3d(1, 0.1, 0.2), box,
+  for_each_crossed_face({V3d(0.5), V3d(1, 0.1, 0.2)}, box,
                         [&](const CrossedFace&) { return ++met < 3; });
   EXPECT_EQ(met, 3);
   EXPECT_TRUE(VoxelBox{}.empty());
@@ -100,12 +100,12 @@ TEST(RegionMixture, ChangesContinuouslyAndAddsUp) {
   double before = 1;
   for (double x = 0.05; x < 15.9; x += 0.1) {
     const V3d at(x, 5.3, 7.7);
-    const auto own = static_cast<std::uint32_t>(label.index(V3i(at)));
-    const RegionMixture mixed(label, at, own, 4);
+    const std::uint32_t own = label(V3i(at));
+    const RegionMixture mixed = RegionLattice(label, 4).mixture(at, own);
     EXPECT_NEAR(weight(mixed, 0) + weight(mixed, 1), 1, 1e-12);
     EXPECT_LE(std::abs(weight(mixed, 0) - before), 0.1 / 4 + 1e-9);
     before = weight(mixed, 0);
-    const RegionMixture alone(label, at, own, 0);
+    const RegionMixture alone = RegionLattice(label, 0).mixture(at, own);
     EXPECT_EQ(weight(alone, x < 8 ? 0 : 1), 1);
   }
   EXPECT_EQ(before, 0);
@@ -114,11 +114,11 @@ TEST(RegionMixture, ChangesContinuouslyAndAddsUp) {
 TEST(RegionMixture, LeavesOutWhatIsNoRegion) {
   const Grid3<std::uint32_t> label = halves();
   const V3d at(6.5, 14.6, 3);
-  const RegionMixture mixed(label, at, static_cast<std::uint32_t>(label.index(6, 14, 3)), 4);
+  const RegionLattice lattice(label, 4);
+  const RegionMixture mixed = lattice.mixture(at, label(6, 14, 3));
   EXPECT_NEAR(weight(mixed, 0) + weight(mixed, 1), 1, 1e-12);
   // Outside the grid nothing is known but the region itself.
-  const RegionMixture outside(label, V3d(-20, 3, 3),
-                              static_cast<std::uint32_t>(label.index(0, 3, 3)), 4);
+  const RegionMixture outside = lattice.mixture(V3d(-20, 3, 3), label(0, 3, 3));
   EXPECT_EQ(weight(outside, 0), 1);
 }
 
