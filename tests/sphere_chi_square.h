@@ -44,7 +44,8 @@ class SphereGrid {
   template <class Density>
   double integrate(std::size_t cell, const Density& density, double tolerance) const {
     const auto sectors = static_cast<std::size_t>(sectors_);
-    const auto ring = static_cast<double>(cell / sectors);
+    const std::size_t whole = cell / sectors;
+    const auto ring = static_cast<double>(whole);
     const auto sector = static_cast<double>(cell % sectors);
     const Piece p{ring / rings_, (ring + 1) / rings_, (sector / sectors_ - 0.5) * 2 * pi_d,
                   ((sector + 1) / sectors_ - 0.5) * 2 * pi_d};

@@ -158,7 +158,7 @@ FAULTS = [
     Fault("the tree learns radiance however it was drawn", "renderer/guides/sd_tree.cpp",
           "what.radiance / what.pdf.value", "what.radiance"),
     Fault("importance does not fall off", "renderer/guides/importance_points.cpp",
-          "importance_[v] / (d * d)", "importance_[v]"),
+          "importance_[v] / (d * d)", "importance_[v] / std::max(1.0, 0 * d)"),
     Fault("walks from lights are guided in the weights", "renderer/guides/mixed_guide.h",
           "if (transport == Transport::importance) return bsdf;", ""),
     # Many lights.

@@ -98,7 +98,8 @@ double weight(const RegionMixture& mixture, std::uint32_t region) {
 TEST(RegionMixture, ChangesContinuouslyAndAddsUp) {
   const Grid3<std::uint32_t> label = halves();
   double before = 1;
-  for (double x = 0.05; x < 15.9; x += 0.1) {
+  for (int i = 0; i < 159; ++i) {
+    const double x = 0.05 + 0.1 * i;
     const V3d at(x, 5.3, 7.7);
     const std::uint32_t own = label(V3i(at));
     const RegionMixture mixed = RegionLattice(label, 4).mixture(at, own);

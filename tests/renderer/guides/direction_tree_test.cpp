@@ -86,9 +86,9 @@ TEST(DirectionTree, WithoutEnergyNothingIsKnown) {
 TEST(GuideState, OfAnotherSceneIsRefused) {
   for (const auto& [name, guide] : test::guides()) {
     SCOPED_TRACE(name);
-    const auto session = [&](const char* scene) {
-      PathSettings path;
-      path.guide = guide;
+    PathSettings path;
+    path.guide = guide;
+    const auto session = [&path](const char* scene) {
       return std::make_unique<test::Session>(
           load_gltf(test::own_scene(scene)),
           test::RenderSettings{.integrator = path, .width = 16, .height = 12});

@@ -21,7 +21,7 @@ SkeletonGraph random_graph(std::uint32_t n, std::mt19937& random) {
   SkeletonGraph graph;
   std::uniform_int_distribution<int> place(0, 1000);
   for (std::uint32_t i = 0; i < n; ++i) {
-    graph.corners.push_back({place(random), place(random), place(random)});
+    graph.corners.emplace_back(place(random), place(random), place(random));
     graph.radii.push_back(static_cast<float>(place(random)) / 20);
   }
   const auto below = [&](std::uint32_t m) { return static_cast<std::uint32_t>(random() % m); };

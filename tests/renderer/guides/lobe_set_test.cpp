@@ -70,6 +70,7 @@ TEST(LobeSet, DrawsWithItsDensity) {
 
 TEST(LobeSet, PowersAreStrengths) {
   std::vector<Target> targets;
+  targets.reserve(19);
   for (int i = 0; i < 19; ++i) targets.push_back({V3f(float(i), 3, float(-i * i)), 1.0 + i});
   const LobeSet lobes(targets);
   Rng rng(4, 0, 0, Rng::Purpose::test);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/renderer/integrators/methods.h"
+#include "tests/renderer/integrators/render.h"
 #include "tests/renderer/path/scenes.h"
 
 namespace lacuna {
