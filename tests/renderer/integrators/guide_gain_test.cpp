@@ -13,7 +13,7 @@ namespace {
 /// Standard deviation of a pixel's estimate, mean over the picture: the root weighs bright paths
 /// that are met once less.
 double noise(const char* scene, const PathSettings& path) {
-  const test::Rendering r = render(
+  const test::Rendering r = test::render(
       test::load({scene}), {.integrator = path, .width = 24, .height = 16, .iterations = 256});
   double sum = 0;
   for (const double v : r.film.variance_of_mean()) sum += std::sqrt(v);

@@ -14,7 +14,7 @@ constexpr int longest = 8;
 /// A closed room of one grey, seen from within.
 SceneData grey_room() {
   SceneParts p;
-  p.box({-1, -1, -1}, {1, 1, 1}, false, p.material(diffuse(Rgb(0.6F))));
+  p.box({-1, -1, -1}, {1, 1, 1}, false, p.material(diffuse(Rgb(0.9F))));
   p.eye({0.3, -0.1, 0.9}, {-0.1, -0.2, -1}, 1.5);
   return std::move(p.data);
 }
