@@ -44,21 +44,12 @@ class RegionMixture {
 class RegionLattice {
  public:
   RegionLattice() = default;
-  /// `width`: voxels; 0: nothing is mixed.
-  RegionLattice(const Grid3<std::uint32_t>& label, int width) : width_(width) {
+  /// `label` is kept by reference; `width`: voxels, 0: nothing is mixed.
+  RegionLattice(const Grid3<std::uint32_t>& label, int width) : label_(&label), width_(width) {
     if (width == 0) return;
     // Cells that reach out of the grid too: every corner in it belongs to eight.
-    const Imath::V3i last = (label.size() - Imath::V3i(1)) / width;
-    cells_ = Grid3<Cell>(last + Imath::V3i(2));
-    for (std::size_t i = 0; i < cells_.count(); ++i) {
-      Cell& cell = cells_[i];
-      for (int k = 0; k < 8; ++k) {
-        const Imath::V3i v = (cells_.voxel(i) - Imath::V3i(1) + corner(k)) * width;
-        cell.at[k] = in_grid(v, label.size()) ? label(v) : no_region;
-        if (cell.at[k] == no_region) continue;
-        cell.only = cell.only == no_region || cell.only == cell.at[k] ? cell.at[k] : several;
-      }
-    }
+    only_ = Grid3<std::uint32_t>((label.size() - Imath::V3i(1)) / width + Imath::V3i(2));
+    for (std::size_t i = 0; i < only_.count(); ++i) only_[i] = only_region(only_.voxel(i));
   }
 
   /// At `x`, in voxels, in front of which lies region `own`.
@@ -70,32 +61,43 @@ class RegionLattice {
       cell[a] = static_cast<int>(low) + 1;
       part[a] = at - low;
     }
-    if (width_ > 0 && in_grid(cell, cells_.size())) return mixture(cells_(cell), part, own);
+    const bool known = width_ > 0 && in_grid(cell, only_.size());
+    const std::uint32_t only = known ? only_(cell) : own;
+    if (only == several) return mixture(cell, part, own);
     RegionMixture alone;
-    alone.add(own, 1);
+    alone.add(only == no_region ? own : only, 1);
     return alone;
   }
 
  private:
   static constexpr std::uint32_t several = no_region - 1;
-  struct Cell {
-    std::array<std::uint32_t, 8> at;  // its corners
-    std::uint32_t only = no_region;   // the one region at them, `several`, or no_region
-  };
-  static Imath::V3i corner(int k) { return {k & 1, k >> 1 & 1, k >> 2}; }
 
-  static RegionMixture mixture(const Cell& cell, const Imath::V3d& part, std::uint32_t own) {
-    RegionMixture mixed;
-    if (cell.only != several) {
-      mixed.add(cell.only == no_region ? own : cell.only, 1);
-      return mixed;
+  static Imath::V3i corner(int k) { return {k & 1, k >> 1 & 1, k >> 2}; }
+  /// What lies at corner `k` of a cell.
+  std::uint32_t at(const Imath::V3i& cell, int k) const {
+    const Imath::V3i v = (cell - Imath::V3i(1) + corner(k)) * width_;
+    return in_grid(v, label_->size()) ? (*label_)(v) : no_region;
+  }
+  /// The one region at a cell's corners, `several`, or no_region.
+  std::uint32_t only_region(const Imath::V3i& cell) const {
+    std::uint32_t only = no_region;
+    for (int k = 0; k < 8; ++k) {
+      const std::uint32_t region = at(cell, k);
+      if (region == no_region) continue;
+      only = only == no_region || only == region ? region : several;
     }
+    return only;
+  }
+
+  RegionMixture mixture(const Imath::V3i& cell, const Imath::V3d& part, std::uint32_t own) const {
+    RegionMixture mixed;
     double sum = 0;
     for (int k = 0; k < 8; ++k) {
       double weight = 1;
       for (int a = 0; a < 3; ++a) weight *= corner(k)[a] != 0 ? part[a] : 1 - part[a];
-      if (!(weight > 0) || cell.at[k] == no_region) continue;
-      mixed.add(cell.at[k], weight);
+      const std::uint32_t region = weight > 0 ? at(cell, k) : no_region;
+      if (region == no_region) continue;
+      mixed.add(region, weight);
       sum += weight;
     }
     if (sum > 0) {
@@ -106,8 +108,9 @@ class RegionLattice {
     return mixed;
   }
 
+  const Grid3<std::uint32_t>* label_ = nullptr;
   int width_ = 0;
-  Grid3<Cell> cells_;
+  Grid3<std::uint32_t> only_;  // of each cell
 };
 
 }  // namespace lacuna
