@@ -9,7 +9,7 @@ struct PathLengths {
   int max_depth = 6;
   /// Where light comes round corners, ending paths costs more noise than its time saves: at equal
   /// time on corridor, 2 has 2.7 times the squared error of 6 with `light`, 2.3 times with `path`
-  /// and, relative to the pixel, 1.5 times with `bdpt`; on door they differ by a fifth at most.
+  /// and, relative to the pixel, 1.5 times with `bdpt`; on door theirs differ by a fifth at most.
   int roulette_depth = 6;
   bool operator==(const PathLengths&) const = default;
 };

@@ -142,7 +142,7 @@ FAULTS = [
     Fault("the first face hides all others", "renderer/guides/face_directions.h",
           "std::abs(ray.inverse[face.axis]);\n        return true;",
           "std::abs(ray.inverse[face.axis]);\n        return false;"),
-    Fault("regions outside of the grid count", "renderer/guides/region_mixture.h",
+    Fault("regions at the edge of the grid draw less than all", "renderer/guides/region_mixture.h",
           "mixed.scale(1 / sum);", ""),
     Fault("one region more is taken for the only one", "renderer/guides/region_mixture.h",
           "only == no_region || only == region ? region : several",

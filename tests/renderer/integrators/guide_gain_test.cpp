@@ -12,18 +12,15 @@ namespace {
 
 /// Standard deviation of a pixel's estimate, mean over the picture: the root weighs bright paths
 /// that are met once less.
-double noise(const char* scene, const PathSettings& path) {
+double noise(const char* scene, const GuideSettings& guide, int roulette_depth = 6) {
+  PathSettings path = test::path_tracing(6);
+  path.roulette_depth = roulette_depth;
+  path.guide = guide;
   const test::Rendering r = test::render(
       test::load({scene}), {.integrator = path, .width = 24, .height = 16, .iterations = 256});
   double sum = 0;
   for (const double v : r.film.variance_of_mean()) sum += std::sqrt(v);
   return sum;
-}
-double noise(const char* scene, const GuideSettings& guide, int roulette_depth = 6) {
-  PathSettings path = test::path_tracing(6);
-  path.roulette_depth = roulette_depth;
-  path.guide = guide;
-  return noise(scene, path);
 }
 
 GuideSettings skeleton(const AutoNumber& strength, const AutoNumber& probability) {
@@ -41,9 +38,7 @@ TEST(GuideGain, RoundCorners) {
   EXPECT_LT(gain(skeleton({8}, {})), 0.65);
   EXPECT_LT(gain(skeleton({}, {})), 0.6);
   EXPECT_LT(gain(FaceIrradianceGuideSettings{}), 0.9);
-  SdTreeGuideSettings tree;
-  tree.leaf_vertices = 100;  // of small pictures
-  EXPECT_LT(gain(tree), 0.8);
+  EXPECT_LT(gain(test::small_sd_tree()), 0.8);
 }
 
 // A guided path has little throughput: roulette by it would end just what the guide is for.

@@ -31,12 +31,16 @@ inline BdptSettings joining(int max_depth, const ConnectionsSettings& connection
   return s;
 }
 
+/// That learns from small pictures.
+inline SdTreeGuideSettings small_sd_tree() {
+  SdTreeGuideSettings tree;
+  tree.leaf_vertices = 100;
+  return tree;
+}
 /// Every guide, with what it can learn given and learned.
 inline std::vector<std::pair<std::string, GuideSettings>> guides() {
   SkeletonGuideSettings learning;
   learning.strength = learning.probability = {};
-  SdTreeGuideSettings tree;
-  tree.leaf_vertices = 100;           // of small pictures
   FaceIrradianceGuideSettings faces;  // which would learn to do nothing in small pictures
   faces.probability = {0.5};
   PortalsGuideSettings portals;
@@ -46,7 +50,7 @@ inline std::vector<std::pair<std::string, GuideSettings>> guides() {
           {"portals", portals},
           {"learning_portals", PortalsGuideSettings{}},
           {"face_irradiance", faces},
-          {"sd_tree", tree}};
+          {"sd_tree", small_sd_tree()}};
 }
 /// Path tracing with every guide, and bidirectional path tracing with some.
 inline std::vector<Method> guided(int max_depth) {
