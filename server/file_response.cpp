@@ -5,40 +5,22 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <charconv>
 
 namespace lacuna {
 namespace {
 
-std::optional<std::int64_t> number(std::string_view digits) {
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size() || value < 0)
-    return std::nullopt;
-  return value;
-}
-
-/// The part that a Range header means (RFC 9110, section 14): nothing if it means the whole.
-std::optional<std::pair<std::int64_t, std::int64_t>> one_range(std::string_view value,
-                                                               std::int64_t size) {
-  constexpr std::string_view unit = "bytes=";
-  const std::size_t dash = value.find('-');
-  if (!value.starts_with(unit) || value.find(',') != std::string_view::npos ||
-      dash == std::string_view::npos) {
-    return std::nullopt;
-  }
-  const std::string_view from = value.substr(unit.size(), dash - unit.size());
-  const std::string_view to = value.substr(dash + 1);
-  const auto first = number(from), last = number(to);
-  if ((!from.empty() && !first) || (!to.empty() && !last) || (!first && !last)) return std::nullopt;
-  if (first && last && *last < *first) return std::nullopt;
-  const std::int64_t begin = first ? *first : std::max<std::int64_t>(0, size - *last);
-  const std::int64_t end = first && last && *last < size ? *last + 1 : size;
-  if (begin >= end) {
+/// The range within a file of `size` bytes: the library takes any for one within the file.
+ByteRange within(const ByteRange& asked, std::int64_t size) {
+  const bool counts_back = asked.first < 0;
+  const std::int64_t first =
+      counts_back ? std::max<std::int64_t>(0, size - asked.last) : asked.first;
+  const bool to_end = counts_back || asked.last < 0;
+  const std::int64_t last = to_end ? size - 1 : std::min(asked.last, size - 1);
+  if (first > last) {
     throw HttpError(416, fmt::format("The range is outside the file's {} bytes.", size))
         .with("Content-Range", fmt::format("bytes */{}", size));
   }
-  return std::pair(begin, end - begin);
+  return {first, last};
 }
 
 }  // namespace
@@ -73,19 +55,11 @@ Response file_response(const Request& request, const std::filesystem::path& fold
     return response;
   }
   response.content_type = media_type;
-  FilePart part{std::move(file), 0, status.st_size};
-  const auto range = request.header("range");
   const auto if_range = request.header("if-range");
-  if (range && (!if_range || *if_range == tag)) {
-    if (const auto found = one_range(*range, status.st_size)) {
-      std::tie(part.offset, part.length) = *found;
-      response.status = 206;
-      response.headers.emplace_back(
-          "Content-Range", fmt::format("bytes {}-{}/{}", part.offset, part.offset + part.length - 1,
-                                       status.st_size));
-    }
+  if (request.range && (!if_range || *if_range == tag)) {
+    response.range = within(*request.range, status.st_size);
   }
-  response.file = std::move(part);
+  response.file = FilePart{std::move(file), 0, status.st_size};
   return response;
 }
 

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "server/listener.h"
+#include "server/address.h"
 
 namespace lacuna {
 namespace {

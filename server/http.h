@@ -2,41 +2,48 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "server/http_metrics.h"
 #include "server/message.h"
+#include "server/router.h"
 #include "server/settings.h"
 
 namespace lacuna {
 
-/// An HTTP/1.1 server that holds against slow, greedy and malformed clients. No thread that answers
-/// requests waits for a client: one thread takes requests in until they are whole (Reception), one
-/// sends what clients are slow to take (Delivery). The exceptions are large bodies, which take one
-/// of a few slow seats, and event streams, whose number is limited. One request a connection: a
-/// refused body can then never be taken for the next request.
+/// An HTTP/1.1 server on cpp-httplib, which http.cpp alone includes: the library parses requests,
+/// decodes bodies and queries, matches routes, works out ranges, and writes answers, files and
+/// event streams. What it lacks is added: a waiting room, where no client holds a thread until its
+/// request has come; strict heads and chunks; deadlines, and a limited number of seats for slow
+/// bodies and slow readers. One request a connection: a refused body can then never be taken for
+/// the next request.
 class HttpServer {
  public:
-  using Handler = std::function<Response(const Request&)>;
+  /// Called before a route's handler: throws HttpError to refuse a request, or gives its answer.
+  using Admit = std::function<std::optional<Response>(const Request&)>;
 
-  /// Binds and listens; throws std::system_error or std::invalid_argument. `handler` is called on
-  /// many threads; an HttpError it throws becomes a problem+json answer, any other exception is
-  /// logged and becomes a bare 500.
-  HttpServer(const HttpSettings& settings, Handler handler);
+  /// Answers by the table of routes, on many threads. An HttpError that a handler throws becomes a
+  /// problem+json answer, any other exception is logged and becomes a bare 500. `routes` is copied,
+  /// `metrics` outlives the server.
+  HttpServer(const HttpSettings& settings, const Router& routes, HttpMetrics& metrics,
+             Admit admit = {});
   ~HttpServer();
 
+  /// Takes the address; throws std::system_error, or std::invalid_argument for what is no address.
+  void bind();
+  /// "http://127.0.0.1:8017/"; once it is bound.
   std::string url() const;
   /// Begins to serve, on threads of its own.
   void start();
   /// Refuses what comes, ends streams, and waits for answers that are under way.
   void stop();
 
-  const HttpMetrics& metrics() const;
-
   /// What a connection that sends `received` and then nothing more is answered; nothing if its head
-  /// is not whole. The same code as behind a socket, for tests. Of a stream, the first few texts.
-  static std::string answer(std::string_view received, const Handler& handler);
+  /// is not whole. The same code as behind a socket, for tests; needs no bind(). Of a stream, the
+  /// head; nothing longer than a socket's buffer.
+  std::string answer(std::string_view received) const;
 
  private:
   class Engine;

@@ -36,9 +36,8 @@ void write_metrics(PrometheusText& text, const HttpMetrics& m) {
       .value(value(m.given_up));
   text.gauge("lacuna_http_parked", "Connections whose request is still coming.")
       .value(value(m.parked));
-  text.gauge("lacuna_http_delivering", "Answers whose clients are slow to take them.")
-      .value(value(m.delivering));
-  text.gauge("lacuna_http_slow_seats", "Threads that wait for a body.").value(value(m.slow_seats));
+  text.gauge("lacuna_http_slow_seats", "Threads that wait for a body or a reader.")
+      .value(value(m.slow_seats));
   text.gauge("lacuna_http_streams", "Open streams of events.").value(value(m.streams));
 }
 

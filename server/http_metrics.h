@@ -21,9 +21,8 @@ struct HttpMetrics {
   Count accepted{0};    ///< connections
   Count refused{0};     ///< of these, answered before a handler: malformed, late or too many
   Count parked{0};      ///< now: connections whose request is still coming
-  Count delivering{0};  ///< now: answers whose clients are slow to take them
   Count given_up{0};    ///< answers that were cut off: their clients took too little
-  Count slow_seats{0};  ///< now: threads that wait for a body
+  Count slow_seats{0};  ///< now: threads that wait for a body, or for a reader
   Count streams{0};     ///< now: open streams of events
   Count bytes_out{0};   ///< to clients, heads included
   std::array<Count, 5> requests{};                 ///< answered, by the first digit of the status
@@ -31,6 +30,18 @@ struct HttpMetrics {
   Count microseconds{0};                           ///< their sum
 
   void answered(int status, std::chrono::nanoseconds time);
+};
+
+/// Keeps a gauge up for as long as it lives.
+class Counted {
+ public:
+  explicit Counted(HttpMetrics::Count& count) : count_(count) { ++count_; }
+  Counted(const Counted&) = delete;
+  Counted& operator=(const Counted&) = delete;
+  ~Counted() { --count_; }
+
+ private:
+  HttpMetrics::Count& count_;
 };
 
 /// Writes all of them as lacuna_http_...

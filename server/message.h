@@ -21,12 +21,19 @@ using Headers = std::multimap<std::string, std::string>;
 /// The value of a header that may stand only once; nothing if it is absent. Throws HttpError.
 std::optional<std::string> single_header(const Headers& headers, const std::string& name);
 
+/// First and last byte. As a client asks: -1 for a last one that is the end, or for a first one
+/// that makes `last` the number of bytes before the end (RFC 9110, section 14.1.2).
+struct ByteRange {
+  std::int64_t first = -1, last = -1;
+};
+
 /// A request as the routes see it: bounded and well formed.
 struct Request {
   std::string method;
   std::string path;  ///< as sent, without the query; nothing is decoded: no name here needs it
   Query query;       ///< what stands behind the path, decoded
   Headers headers;
+  std::optional<ByteRange> range;  ///< header Range, if it is one range
 
   /// Reads the body, at most `max_bytes` of it; throws HttpError: 413 if it is larger, 415 if it is
   /// encoded, 400 if its framing is wrong, 408 if it comes too slowly, 503 if too many clients are
@@ -59,6 +66,7 @@ struct Response {
   std::vector<std::pair<std::string, std::string>> headers;  ///< never anything a client sent
   std::string body;
   std::optional<FilePart> file;
+  std::optional<ByteRange> range;  ///< of `file`: only this goes out, and the status is 206
   /// Called again and again: gives the next text (empty: nothing new, after a short wait), or
   /// nothing at the end.
   std::function<std::optional<std::string>()> stream;

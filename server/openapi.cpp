@@ -96,6 +96,7 @@ OrderedJson problem_schema() {
 OrderedJson Router::openapi(const OrderedJson& info) const {
   OrderedJson paths = OrderedJson::object();
   for (const Route& route : routes_) {
+    if (!route.doc.for_programs) continue;
     const Parts pattern = named(route.pattern);
     std::string path;
     for (std::size_t i = 1; i < pattern.size(); ++i) path += "/" + pattern[i];

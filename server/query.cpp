@@ -4,84 +4,71 @@
 #include <fmt/ranges.h>
 
 #include <charconv>
+#include <nlohmann/json.hpp>
 
 #include "server/message.h"
 
 namespace lacuna {
 namespace {
 
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
 /// Well-formed UTF-8 without control characters (below U+0020, U+007F to U+009F).
-bool is_plain_text(std::string_view text) {
-  for (std::size_t i = 0; i < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[i]);
-    const std::size_t length = lead < 0x80   ? 1
-                               : lead < 0xc2 ? 0
-                               : lead < 0xe0 ? 2
-                               : lead < 0xf0 ? 3
-                               : lead < 0xf5 ? 4
-                                             : 0;
-    if (length == 0 || length > text.size() - i) return false;
-    std::uint32_t point = length == 1 ? lead : lead & (0x7fU >> length);
-    for (std::size_t k = 1; k < length; ++k) {
-      const auto next = static_cast<unsigned char>(text[i + k]);
-      if ((next & 0xc0U) != 0x80) return false;
-      point = point << 6U | (next & 0x3fU);
-    }
-    const bool too_long = (length == 3 && point < 0x800) || (length == 4 && point < 0x10000);
-    const bool surrogate = point >= 0xd800 && point < 0xe000;
-    const bool control = point < 0x20 || (point >= 0x7f && point < 0xa0);
-    if (too_long || surrogate || control || point > 0x10ffff) return false;
-    i += length;
+bool is_plain_text(const std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = [&](std::size_t k) { return k < text.size() ? text[k] & 0xff : 0; };
+    const bool of_two_bytes = byte(i) == 0xc2 && byte(i + 1) < 0xa0;
+    if (byte(i) < 0x20 || byte(i) == 0x7f || of_two_bytes) return false;
   }
-  return true;
+  try {
+    return !nlohmann::json(text).dump().empty();
+  } catch (const nlohmann::json::type_error&) {  // no UTF-8
+    return false;
+  }
 }
 
-std::string decode(std::string_view text) {
-  std::string result;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '+') {
-      result += ' ';
-    } else if (text[i] != '%') {
-      result += text[i];
-    } else {
-      const int high = i + 1 < text.size() ? hex_digit(text[i + 1]) : -1;
-      const int low = i + 2 < text.size() ? hex_digit(text[i + 2]) : -1;
-      if (high < 0 || low < 0) {
-        throw HttpError(400, "The query holds a % that two hexadecimal digits do not follow.");
-      }
-      result += static_cast<char>(16 * high + low);
-      i += 2;
+void check_escapes(std::string_view sent) {
+  for (std::size_t i = sent.find('%'); i < sent.size(); i = sent.find('%', i + 1)) {
+    const std::string_view digits = sent.substr(i + 1, 2);
+    if (digits.size() < 2 ||
+        digits.find_first_not_of("0123456789abcdefABCDEF") != std::string_view::npos) {
+      throw HttpError(400, "The query holds a % that two hexadecimal digits do not follow.");
     }
   }
-  if (!is_plain_text(result)) {
-    throw HttpError(400, "The query holds what is no UTF-8 text, or a control character.");
+}
+
+/// Gives the number of parameters.
+std::size_t check_parameters(std::string_view sent) {
+  std::size_t count = 0;
+  while (!sent.empty()) {
+    const std::string_view part = sent.substr(0, sent.find('&'));
+    if (part.empty() || part.front() == '=') {
+      throw HttpError(400, "The query holds a parameter without a name.");
+    }
+    if (part.find('=') != part.rfind('=')) {
+      throw HttpError(400, "The query holds a second \"=\" in a parameter: write it as %3D.");
+    }
+    sent.remove_prefix(std::min(sent.size(), part.size() + 1));
+    ++count;
   }
-  return result;
+  return count;
 }
 
 }  // namespace
 
-Query Query::parse(std::string_view text) {
-  Query query;
-  while (!text.empty()) {
-    const std::string_view part = text.substr(0, text.find('&'));
-    text.remove_prefix(std::min(text.size(), part.size() + 1));
-    const std::size_t equals = std::min(part.find('='), part.size());
-    const std::string name = decode(part.substr(0, equals));
-    if (name.empty()) throw HttpError(400, "The query holds a parameter without a name.");
-    const std::string value = decode(part.substr(std::min(equals + 1, part.size())));
-    if (!query.values_.emplace(name, value).second) {
+Query::Query(std::string_view sent, const Parameters& decoded) {
+  check_escapes(sent);
+  const std::size_t count = check_parameters(sent);
+  for (const auto& [name, value] : decoded) {
+    if (!is_plain_text(name) || !is_plain_text(value)) {
+      throw HttpError(400, "The query holds what is no UTF-8 text, or a control character.");
+    }
+    if (!values_.emplace(name, value).second) {
       throw HttpError(400, fmt::format("Query parameter \"{}\" stands more than once.", name));
     }
   }
-  return query;
+  // Of parameters that are the same to the letter the library keeps one.
+  if (values_.size() < count) {
+    throw HttpError(400, "A query parameter stands more than once.");
+  }
 }
 
 std::optional<std::string> Query::text(const std::string& name) const {

@@ -6,6 +6,10 @@
 #include <array>
 #include <cctype>
 #include <cstring>
+#include <map>
+#include <optional>
+
+#include "server/message.h"
 
 namespace lacuna {
 namespace {
@@ -33,21 +37,23 @@ std::string_view take_line(std::string_view& text) {
   return line;
 }
 
-void parse_request_line(std::string_view line, RequestHead& head) {
+void check_request_line(std::string_view line) {
   const std::size_t first = line.find(' ');
   const std::size_t last = line.rfind(' ');
   if (first == std::string_view::npos || first == last) {
     throw HttpError(400, "The request line is not \"METHOD PATH HTTP/1.1\".");
   }
-  head.method = line.substr(0, first);
-  head.target = line.substr(first + 1, last - first - 1);
+  const std::string_view method = line.substr(0, first);
+  const std::string_view target = line.substr(first + 1, last - first - 1);
   const std::string_view version = line.substr(last + 1);
-  if (!is_token(head.method)) throw HttpError(400, "The method is malformed.");
-  if (head.target.size() > max_target_bytes) throw HttpError(414, "The address is too long.");
-  if (head.target.empty() || head.target.front() != '/' ||
-      !std::all_of(head.target.begin(), head.target.end(),
-                   [](char c) { return c > ' ' && c < '\x7f'; })) {
+  if (!is_token(method)) throw HttpError(400, "The method is malformed.");
+  if (target.size() > max_target_bytes) throw HttpError(414, "The address is too long.");
+  if (!target.starts_with('/') ||
+      !std::all_of(target.begin(), target.end(), [](char c) { return c > ' ' && c < '\x7f'; })) {
     throw HttpError(400, "The address is not a path of printable ASCII, beginning with \"/\".");
+  }
+  if (target.find('?') != target.rfind('?')) {
+    throw HttpError(400, "The address holds a second \"?\": write it as %3F.");
   }
   if (version.size() != 8 || !version.starts_with("HTTP/")) {
     throw HttpError(400, "The request line is not \"METHOD PATH HTTP/1.1\".");
@@ -55,15 +61,19 @@ void parse_request_line(std::string_view line, RequestHead& head) {
   if (version != "HTTP/1.1" && version != "HTTP/1.0") {
     throw HttpError(505, "Only HTTP/1.1 and HTTP/1.0 are spoken here.");
   }
-  head.is_http_1_0 = version == "HTTP/1.0";
   constexpr std::array<std::string_view, 7> methods{"GET",   "HEAD",   "POST",   "PUT",
                                                     "PATCH", "DELETE", "OPTIONS"};
-  if (std::find(methods.begin(), methods.end(), head.method) == methods.end()) {
+  if (std::find(methods.begin(), methods.end(), method) == methods.end()) {
     throw HttpError(501, "The method is not known here.");
   }
 }
 
-void parse_header(std::string_view line, Headers& headers) {
+struct Header {
+  std::string name;  ///< in lower case
+  std::string_view value;
+};
+
+Header checked_header(std::string_view line) {
   if (line.front() == ' ' || line.front() == '\t') {
     throw HttpError(400, "A header goes on over several lines, which is out of use.");
   }
@@ -79,24 +89,84 @@ void parse_header(std::string_view line, Headers& headers) {
                   [](unsigned char c) { return (c < ' ' && c != '\t') || c == 0x7f; })) {
     throw HttpError(400, "A header holds a control character.");
   }
-  headers.emplace(lower_case(name), value);
+  if (value.empty()) {  // the library takes it for absent
+    throw HttpError(400, fmt::format("Header {} has no value.", name));
+  }
+  return {lower_case(name), value};
+}
+
+/// "bytes=A-B", "bytes=A-" or "bytes=-N", A not beyond B.
+bool is_one_range(std::string_view value) {
+  constexpr std::string_view unit = "bytes=";
+  constexpr std::size_t max_digits = 18;
+  if (!value.starts_with(unit)) return false;
+  value.remove_prefix(unit.size());
+  const std::size_t dash = value.find('-');
+  const auto is_number = [](std::string_view digits) {
+    return digits.size() <= max_digits &&
+           digits.find_first_not_of("0123456789") == std::string_view::npos;
+  };
+  if (dash == std::string_view::npos || value.size() == 1) return false;
+  const std::string first(value.substr(0, dash)), last(value.substr(dash + 1));
+  if (!is_number(first) || !is_number(last)) return false;
+  return first.empty() || last.empty() || std::stoull(first) <= std::stoull(last);
+}
+
+bool library_gets(const Header& header) {
+  if (header.name == "range") return is_one_range(header.value);
+  return header.name != "expect" && header.name != "accept-encoding";
+}
+
+/// The header's line as the library gets it.
+std::string library_line(const Header& header) {
+  constexpr std::size_t longest = 8190;  // the library's own limit
+  std::string line = header.name + ": ";
+  for (const char c : header.value) {
+    line += c;
+    if (c == '%') line += "25";
+  }
+  if (line.size() > longest) {
+    throw HttpError(431, fmt::format("Header {} is longer than {} bytes.", header.name, longest));
+  }
+  return line + "\r\n";
 }
 
 /// Headers of which two lines could be understood in two ways, whoever reads them; of others,
 /// single_header() says so when they are used.
-void check_once(const Headers& headers) {
-  for (const char* name : {"host", "content-length", "transfer-encoding", "content-type",
-                           "authorization", "origin", "expect"}) {
-    single_header(headers, name);
+bool may_stand_once(std::string_view name) {
+  constexpr std::array<std::string_view, 8> names{
+      "host",   "content-length", "transfer-encoding", "content-type", "authorization", "origin",
+      "expect", "range"};
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+using Values = std::map<std::string, std::string_view, std::less<>>;
+
+std::optional<std::string_view> value_of(const Values& values, std::string_view name) {
+  const auto found = values.find(name);
+  return found == values.end() ? std::nullopt : std::optional(found->second);
+}
+
+/// Throws HttpError 400 where the headers leave a doubt about how the body is delimited.
+void read_framing(const Values& values, bool is_http_1_0, RequestHead& head) {
+  const auto encoding = value_of(values, "transfer-encoding");
+  const auto length = value_of(values, "content-length");
+  if (encoding && length) throw HttpError(400, "Content-Length and Transfer-Encoding together.");
+  if (encoding && (lower_case(*encoding) != "chunked" || is_http_1_0)) {
+    throw HttpError(400, "Transfer-Encoding may only be \"chunked\", and only in HTTP/1.1.");
   }
+  if (length &&
+      (length->size() > 18 || length->find_first_not_of("0123456789") != std::string_view::npos)) {
+    throw HttpError(400, "Content-Length is not a number of bytes.");
+  }
+  head.chunked = encoding.has_value();
+  head.length = length ? std::stoull(std::string(*length)) : 0;
 }
 
 }  // namespace
 
-bool RequestHead::expects_continue() const { return !is_http_1_0 && headers.contains("expect"); }
-
 std::size_t find_head_end(std::string_view received, std::size_t seen) {
-  // An empty line ends the head even if its ends of lines are wrong: parse_head() says so, and the
+  // An empty line ends the head even if its ends of lines are wrong: check_head() says so, and the
   // client need not run into its deadline.
   std::size_t at = received.find('\n', seen > 2 ? seen - 2 : 0);
   for (; at != std::string_view::npos; at = received.find('\n', at + 1)) {
@@ -116,35 +186,32 @@ std::size_t find_head_end(std::string_view received, std::size_t seen) {
   return 0;
 }
 
-RequestHead parse_head(std::string_view text) {
+RequestHead check_head(std::string_view text) {
   RequestHead head;
-  parse_request_line(take_line(text), head);
+  const std::string_view request_line = take_line(text);
+  check_request_line(request_line);
+  const bool is_http_1_0 = request_line.ends_with("1.0");
+  head.text = fmt::format("{}\r\n", request_line);
+  Values values;
+  std::size_t headers = 0;
   for (std::string_view line = take_line(text); !line.empty(); line = take_line(text)) {
-    if (head.headers.size() == max_headers) {
+    if (++headers > max_headers) {
       throw HttpError(431, fmt::format("There are more than {} headers.", max_headers));
     }
-    parse_header(line, head.headers);
+    const Header header = checked_header(line);
+    if (!values.emplace(header.name, header.value).second && may_stand_once(header.name)) {
+      throw HttpError(400, fmt::format("Header {} stands more than once.", header.name));
+    }
+    if (library_gets(header)) head.text += library_line(header);
   }
-  check_once(head.headers);
-  const auto expect = single_header(head.headers, "expect");
+  head.text += "\r\n";
+  const auto expect = value_of(values, "expect");
   if (expect && lower_case(*expect) != "100-continue") {
     throw HttpError(417, "Only \"100-continue\" may be expected.");
   }
+  head.expects_continue = expect && !is_http_1_0;
+  read_framing(values, is_http_1_0, head);
   return head;
-}
-
-BodyFraming body_framing(const RequestHead& head) {
-  const auto encoding = single_header(head.headers, "transfer-encoding");
-  const auto length = single_header(head.headers, "content-length");
-  if (encoding && length) throw HttpError(400, "Content-Length and Transfer-Encoding together.");
-  if (encoding && (lower_case(*encoding) != "chunked" || head.is_http_1_0)) {
-    throw HttpError(400, "Transfer-Encoding may only be \"chunked\", and only in HTTP/1.1.");
-  }
-  if (length && (length->empty() || length->size() > 18 ||
-                 length->find_first_not_of("0123456789") != std::string::npos)) {
-    throw HttpError(400, "Content-Length is not a number of bytes.");
-  }
-  return {encoding.has_value(), length ? std::stoull(*length) : 0};
 }
 
 }  // namespace lacuna

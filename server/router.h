@@ -12,7 +12,7 @@
 
 namespace lacuna {
 
-/// A parameter behind the ? of an address. The router checks it before the handler is called.
+/// A parameter behind the ? of an address, checked before the handler is called.
 struct QueryParameter {
   enum class Type { text, integer, flag };
   std::string name;
@@ -29,33 +29,38 @@ struct RouteDoc {
   std::string body_schema = {};                           ///< JSON Schema, as text; empty: none
   std::vector<std::pair<int, std::string>> answers = {};  ///< status, and what it means
   bool needs_token = true;                                ///< where the service has one
+  bool for_programs = true;  ///< false: a file of the page, which takes any query
 };
 
 /// A table of methods and path patterns such as "/api/jobs/{id}/files/{name}"; each part in braces
-/// is one part of the path, given to the handler in order. HEAD is answered as GET.
+/// is one part of the path, given to the handler in order. The HTTP library matches them, in the
+/// order in which they were added; HEAD is answered as GET.
 class Router {
  public:
   using Parts = std::vector<std::string>;
   using Handler = std::function<Response(const Request&, const Parts&)>;
+  struct Route {
+    std::string method;
+    Parts pattern;  ///< the parts between the slashes
+    RouteDoc doc;
+    Handler handler;
+  };
 
   void add(std::string method, std::string_view pattern, RouteDoc doc, Handler handler);
   /// With no query parameters and no description.
   void add(std::string method, std::string_view pattern, Handler handler);
-  /// Calls the handler; throws HttpError 404, or 405 with Allow, or 400 for the query.
-  Response route(const Request& request) const;
-  /// The OpenAPI 3.1 document of all routes. `info`: {"title", "version", ...}. Throws
-  /// std::logic_error for a body_schema that is no JSON.
+  const std::vector<Route>& routes() const { return routes_; }
+  /// The OpenAPI 3.1 document of all routes that are for programs. `info`: {"title", "version",
+  /// ...}. Throws std::logic_error for a body_schema that is no JSON.
   OrderedJson openapi(const OrderedJson& info) const;
 
  private:
-  struct Route {
-    std::string method;
-    Parts pattern;
-    RouteDoc doc;
-    Handler handler;
-  };
   std::vector<Route> routes_;
 };
+
+/// Throws HttpError 400 for a parameter that the route does not know, or whose value it cannot
+/// have.
+void check_query(const Query& query, const RouteDoc& doc);
 
 /// A handler of an address whose first part is an id: calls `routes`, which outlives it.
 template <class Routes>

@@ -15,10 +15,9 @@ class Routes {
          SweepKeeper& keeper, const StaticFiles& page);
 
   /// For HttpServer.
-  Response handle(const Request& request) const;
+  const Router& router() const { return router_; }
 
  private:
-  const StaticFiles& page_;
   JobRoutes jobs_;
   SweepRoutes sweeps_;
   ServiceRoutes service_;

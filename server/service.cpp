@@ -11,10 +11,10 @@
 #include "analysis/storage/file_lock.h"
 #include "jobs/spec/version.h"
 #include "server/access.h"
+#include "server/address.h"
 #include "server/caretaker.h"
 #include "server/executor_local.h"
 #include "server/http.h"
-#include "server/listener.h"
 #include "server/log.h"
 #include "server/queue.h"
 #include "server/routes.h"
@@ -152,13 +152,11 @@ struct Service::Parts {
         files(page(settings)),
         access(settings.http.bind, settings.access,
                [this](const std::string& path) { return files.has(path); }),
-        http(settings.http, [this](const Request& r) { return handle(r); }),
-        routes({settings, data, scenes, table, disk, http.metrics(), uploads.get()}, table, queue,
-               sweeps, keeper, files) {}
-
-  Response handle(const Request& request) {
-    if (auto answer = access.admit(request)) return std::move(*answer);
-    return routes.handle(request);
+        routes({settings, data, scenes, table, disk, http_metrics, uploads.get()}, table, queue,
+               sweeps, keeper, files),
+        http(settings.http, routes.router(), http_metrics,
+             [this](const Request& request) { return access.admit(request); }) {
+    http.bind();
   }
 
   const ServiceSettings settings;
@@ -175,8 +173,9 @@ struct Service::Parts {
   Caretaker caretaker;
   const StaticFiles files;
   Access access;
-  HttpServer http;  // asks the routes, but not before it is started
+  HttpMetrics http_metrics;
   Routes routes;
+  HttpServer http;
 };
 
 Service::Service(const ServiceSettings& settings) {

@@ -58,19 +58,18 @@ struct AccessSettings {
 struct HttpSettings {
   std::string bind = "127.0.0.1";
   int port = 8017;                                ///< 0: any free one
-  std::size_t threads = 64;                       ///< requests that are worked on at a time
+  std::size_t threads = 160;                      ///< requests that are worked on at a time
   std::size_t waiting = 1024;                     ///< whole requests that wait for a thread
   std::size_t parked = 1024;                      ///< connections whose request is still coming
-  std::size_t delivering = 512;                   ///< answers whose clients are slow to take them
-  std::size_t delivering_bytes = 64 << 20;        ///< of such answers in memory, all together
+  std::size_t reading_bytes = 64 << 20;           ///< of answers to slow readers, all together
   std::chrono::milliseconds head_time{5'000};     ///< to send the head of a request
   std::chrono::milliseconds body_time{15'000};    ///< to send its body; a large one:
   std::size_t body_bytes = 1 << 20;               ///< this much of it, again and again
   std::chrono::milliseconds answer_time{15'000};  ///< in which a slow reader has to take
   std::size_t answer_bytes = 1 << 20;             ///< this much of a long answer, again and again
 
-  /// Threads that may wait for a body at a time. Event streams have threads, too; what is left, at
-  /// least 16 where there are threads enough, never waits for a client.
+  /// Threads that may wait for a client at a time. Event streams have threads, too; what is left,
+  /// at least 16 where there are threads enough, never waits for one.
   std::size_t slow_seats() const {
     constexpr std::size_t kept_free = max_event_streams + 16;
     return threads > kept_free ? threads - kept_free : 1;

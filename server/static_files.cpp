@@ -51,9 +51,13 @@ void StaticFiles::add(const std::string& path, const fs::path& file) {
   files_[path] = {file.parent_path(), file.filename().string(), media_type(file)};
 }
 
-Response StaticFiles::get(const Request& request) const {
-  const Entry& entry = files_.at(request.path);
-  return file_response(request, entry.folder, entry.name, entry.media_type);
+void StaticFiles::add_to(Router& router) const {
+  for (const auto& [path, entry] : files_) {
+    router.add("GET", path, {.for_programs = false},
+               [&entry = entry](const Request& request, const Router::Parts&) {
+                 return file_response(request, entry.folder, entry.name, entry.media_type);
+               });
+  }
 }
 
 }  // namespace lacuna

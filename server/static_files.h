@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "server/message.h"
+#include "server/router.h"
 
 namespace lacuna {
 
@@ -20,8 +20,8 @@ class StaticFiles {
   void add(const std::string& path, const std::filesystem::path& file);
 
   bool has(const std::string& path) const { return files_.contains(path); }
-  /// Answers a GET or HEAD of a path that is there.
-  Response get(const Request& request) const;
+  /// Adds a route for each; outlives `router`.
+  void add_to(Router& router) const;
 
  private:
   struct Entry {

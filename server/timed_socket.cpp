@@ -3,28 +3,19 @@
 #include <poll.h>
 #include <sys/socket.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
-#include <utility>
+
+#include "server/message.h"
 
 namespace lacuna {
 
-TimedSocket::TimedSocket(FileHandle socket, std::string received, int stop_fd,
-                         const HttpSettings& settings, SlowSeats& seats)
-    : socket_(std::move(socket)),
-      received_(std::move(received)),
-      stop_fd_(stop_fd),
-      settings_(settings),
-      seats_(seats),
-      body_deadline_(settings.body_time) {}
-
-void TimedSocket::begin_body(Pace pace) {
-  body_deadline_ = pace == Pace::total ? PacedDeadline(settings_.body_time)
-                                       : PacedDeadline(settings_.body_time, settings_.body_bytes);
+void TimedSocket::begin_body(Pace pace, bool invite) {
+  const HttpSettings& s = shared_.settings;
+  deadline_ =
+      pace == Pace::total ? PacedDeadline(s.body_time) : PacedDeadline(s.body_time, s.body_bytes);
   constexpr std::string_view go_on = "HTTP/1.1 100 Continue\r\n\r\n";
-  if (std::exchange(expect_continue_, false) && received_.empty()) {
+  if (invite && received_.empty()) {
     ::send(socket_.get(), go_on.data(), go_on.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
   }
 }
@@ -34,7 +25,7 @@ TimedSocket::Wait TimedSocket::wait(short events, PacedDeadline::Clock::time_poi
     const auto left =
         std::chrono::ceil<std::chrono::milliseconds>(deadline - PacedDeadline::Clock::now());
     if (left.count() <= 0) return Wait::late;
-    std::array<pollfd, 2> fds{{{socket_.get(), events, 0}, {stop_fd_, POLLIN, 0}}};
+    std::array<pollfd, 2> fds{{{socket_.get(), events, 0}, {shared_.stop_fd, POLLIN, 0}}};
     const int ready = ::poll(fds.data(), fds.size(), static_cast<int>(left.count()));
     if (ready < 0 && errno != EINTR) return Wait::failed;
     if (ready <= 0) continue;
@@ -43,14 +34,12 @@ TimedSocket::Wait TimedSocket::wait(short events, PacedDeadline::Clock::time_poi
 }
 
 void TimedSocket::wait_for_body() {
-  if (!seat_) seat_ = seats_.take();
+  if (!seat_) seat_ = shared_.seats.for_body(socket_.get());
   if (!seat_) {
     throw HttpError(503, "Too many clients send slowly at present.").with("Retry-After", "5");
   }
-  const Wait result = wait(POLLIN, body_deadline_.end());
-  if (result == Wait::late && body_deadline_.over()) {
-    throw HttpError(408, "The body came too slowly.");
-  }
+  const Wait result = wait(POLLIN, deadline_.end());
+  if (result == Wait::late && deadline_.over()) throw HttpError(408, "The body came too slowly.");
   if (result == Wait::failed) throw HttpError(503, "The service ends.");
 }
 
@@ -61,10 +50,10 @@ std::size_t TimedSocket::read(char* data, std::size_t size) {
     return n;
   }
   for (;;) {
-    if (body_deadline_.over()) throw HttpError(408, "The body came too slowly.");
+    if (deadline_.over()) throw HttpError(408, "The body came too slowly.");
     const ssize_t n = ::recv(socket_.get(), data, size, MSG_DONTWAIT);
     if (n >= 0) {
-      body_deadline_.count(static_cast<std::size_t>(n));
+      deadline_.count(static_cast<std::size_t>(n));
       return static_cast<std::size_t>(n);
     }
     if (errno == EINTR) continue;
@@ -73,16 +62,31 @@ std::size_t TimedSocket::read(char* data, std::size_t size) {
   }
 }
 
+bool TimedSocket::wait_for_reader(std::size_t bytes) {
+  if (!seat_ && !stream_) {
+    seat_ = shared_.seats.for_reader(socket_.get(), bytes);
+    deadline_ = PacedDeadline(shared_.settings.answer_time, shared_.settings.answer_bytes);
+  }
+  if (!seat_ && !stream_) return false;
+  const Wait result = wait(POLLOUT, deadline_.end());
+  return result == Wait::ready || (result == Wait::late && !deadline_.over());
+}
+
 bool TimedSocket::write(std::string_view text) {
-  PacedDeadline deadline(settings_.answer_time, settings_.answer_bytes);
+  if (stream_) deadline_ = PacedDeadline(shared_.settings.answer_time);
+  if (seat_ && !seat_->reads) seat_.reset();  // its body has come
   while (!text.empty()) {
     const ssize_t n = ::send(socket_.get(), text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
     if (n >= 0) {
-      deadline.count(static_cast<std::size_t>(n));
       text.remove_prefix(static_cast<std::size_t>(n));
+      deadline_.count(static_cast<std::size_t>(n));
+      shared_.metrics.bytes_out += static_cast<std::uint64_t>(n);
+      if (seat_) shared_.seats.moved_on(*seat_);
     } else if (errno == EAGAIN) {
-      const Wait result = wait(POLLOUT, deadline.end());
-      if (result == Wait::failed || (result == Wait::late && deadline.over())) return false;
+      if (!wait_for_reader(text.size())) {
+        ++shared_.metrics.given_up;
+        return false;
+      }
     } else if (errno != EINTR) {
       return false;
     }
@@ -90,15 +94,17 @@ bool TimedSocket::write(std::string_view text) {
   return true;
 }
 
-bool TimedSocket::stopping() const {
-  pollfd stop{stop_fd_, POLLIN, 0};
-  return ::poll(&stop, 1, 0) > 0;
-}
-
-bool TimedSocket::peer_gone() const {
+bool TimedSocket::gone() const {
+  pollfd stop{shared_.stop_fd, POLLIN, 0};
+  if (::poll(&stop, 1, 0) > 0) return true;
   char byte = 0;
   const ssize_t n = ::recv(socket_.get(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);
   return n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR);
+}
+
+FileHandle TimedSocket::release() {
+  seat_.reset();
+  return std::move(socket_);
 }
 
 }  // namespace lacuna

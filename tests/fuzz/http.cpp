@@ -7,8 +7,6 @@
 #include "jobs/spec/job_json.h"
 #include "server/access.h"
 #include "server/file_response.h"
-
-#include "server/router.h"
 #include "tests/fuzz/input_file.h"
 
 // The bytes that a client sends on one connection before it sends no more: answered by one HTTP/1.1
@@ -43,9 +41,12 @@ class Site {
       return response;
     });
   }
-  Response handle(const Request& request) {
-    if (auto answer = access_.admit(request)) return std::move(*answer);
-    return router_.route(request);
+  std::string answer(std::string_view received) {
+    if (!server_) {
+      server_.emplace(HttpSettings{}, router_, metrics_,
+                      [this](const Request& request) { return access_.admit(request); });
+    }
+    return server_->answer(received);
   }
 
  private:
@@ -59,6 +60,8 @@ class Site {
   Folder folder_;
   Router router_;
   Access access_{"127.0.0.1", {}, [](const std::string& path) { return path == "/"; }};
+  HttpMetrics metrics_;
+  std::optional<HttpServer> server_;  // once all routes are there
 };
 
 void check(std::string answer) {
@@ -84,7 +87,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace lacuna::fuzz;
   static Site site;
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  check(lacuna::HttpServer::answer(
-      bytes, [](const lacuna::Request& request) { return site.handle(request); }));
+  check(site.answer(bytes));
   return 0;
 }

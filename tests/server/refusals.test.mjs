@@ -171,6 +171,8 @@ test("what two programs could understand in two ways is refused", async (t) => {
     "no version": "GET /health\r\nHost: localhost\r\n\r\n",
     "an absolute address": "GET http://localhost/health HTTP/1.1\r\nHost: localhost\r\n\r\n",
     "an authority": "GET localhost:80 HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    "a header without a value": `${start}Idempotency-Key:\r\n\r\n`,
+    "a second question mark": "GET /health?a=1?b=2 HTTP/1.1\r\nHost: localhost\r\n\r\n",
     asterisk: "OPTIONS * HTTP/1.1\r\nHost: localhost\r\n\r\n",
     "bytes beyond ASCII": "GET /h\u00e9alth HTTP/1.1\r\nHost: localhost\r\n\r\n",
     "two lengths that agree": `${start}Content-Length: 3\r\nContent-Length: 3\r\n\r\nabc`,
@@ -226,8 +228,27 @@ test("a query must be well formed, and its parameters known", async (t) => {
     assert.match(await detail(bad), /% that two|no UTF-8/, bad);
   }
   assert.match(await detail("=1"), /without a name/);
+  assert.match(await detail("a=1&a=1"), /stands more than once/);
+  assert.match(await detail("a=b=c"), /second "="/);
   assert.equal((await service.raw(head("GET /api/scenes?"))).status, 200);
   assert.equal((await service.raw(head(`GET /api/scenes?a=${"x".repeat(1100)}`))).status, 414);
+});
+
+test("what the HTTP library would decode, pack or take apart reaches nobody", async (t) => {
+  const service = await Service.start(folders(t), ["--uploads"]);
+  const status = async (line, headers) => (await service.raw(head(line, headers))).status;
+  assert.equal(await status("GET /%68ealth"), 404, "an escape in a path");
+  assert.equal(await status("GET /health", { Host: "localhos%74" }), 403, "and in a header");
+  assert.equal(await status("GET /health", { Long: "%".repeat(3000) }), 431, "longer than it looks");
+  const json = { "Content-Type": "application/json" };
+  const keyed = async (key) => (await service.postText(good, { ...json, "Idempotency-Key": key })).status;
+  assert.deepEqual([await keyed("a%41"), await keyed("aA"), await keyed("a%41")], [201, 201, 200]);
+  const packed = await service.raw(head("GET /api/states", { "Accept-Encoding": "gzip, br" }));
+  assert.ok(!/^content-encoding/im.test(packed.head) && JSON.parse(packed.body));
+  const ranged = await service.raw(head("GET /api/states", { Range: "bytes=0-3" }));
+  assert.equal(ranged.status, 200, "a range is of a file only");
+  const parts = { "Content-Type": "multipart/form-data; boundary=a", "Content-Length": "10" };
+  assert.equal((await service.raw(`${head("PUT /api/scenes/a.glb", parts)}0123456789`)).status, 415);
 });
 
 test("other sites can neither read nor write", async (t) => {

@@ -93,11 +93,24 @@ std::string head(const std::string& line, const std::string& more = "") {
   return line + " HTTP/1.1\r\nHost: localhost\r\n" + more + "\r\n";
 }
 
+/// Everything goes to `handler`, which outlives it.
+template <class H>
+Router routes_to(const H& handler) {
+  Router router;
+  for (const std::string method : {"GET", "POST", "PUT", "PATCH", "DELETE"}) {
+    for (const char* pattern : {"/", "/{name}"}) {
+      router.add(method, pattern, {.for_programs = false},
+                 [&handler](const Request& r, const Router::Parts&) { return handler(r); });
+    }
+  }
+  return router;
+}
+
 class HttpTest : public ::testing::Test {
  protected:
   void start(const HttpSettings& settings) {
-    server_ =
-        std::make_unique<HttpServer>(settings, [this](const Request& r) { return handler_(r); });
+    server_ = std::make_unique<HttpServer>(settings, routes_to(handler_), metrics_);
+    server_->bind();
     server_->start();
   }
   int status(const std::string& text) const { return Client(*server_, text).status(); }
@@ -108,6 +121,7 @@ class HttpTest : public ::testing::Test {
   }
 
   const Handler handler_{};
+  HttpMetrics metrics_;
   std::unique_ptr<HttpServer> server_;
 };
 
@@ -117,10 +131,13 @@ TEST_F(HttpTest, methods_reach_handlers_with_their_bodies) {
     EXPECT_TRUE(Client(*server_, head(method + " /", "Content-Length: 3\r\n") + "abc")
                     .read()
                     .ends_with(method + " abc"));
-    EXPECT_TRUE(Client(*server_, head(method + " /", "Transfer-Encoding: chunked\r\n") +
-                                     "2\r\nab\r\n1\r\nc\r\n0\r\n\r\n")
-                    .read()
-                    .ends_with(method + " abc"));
+    const std::string chunked =
+        head(method + " /", "Transfer-Encoding: chunked\r\n") + "2\r\nab\r\n1\r\nc\r\n0\r\n\r\n";
+    if (method == "DELETE") {
+      EXPECT_EQ(status(chunked), 411);
+    } else {
+      EXPECT_TRUE(Client(*server_, chunked).read().ends_with(method + " abc"));
+    }
     EXPECT_TRUE(Client(*server_, head(method + " /")).read().ends_with(method + " "));
   }
 }
@@ -169,41 +186,52 @@ TEST_F(HttpTest, slow_bodies_take_a_limited_number_of_seats) {
   start(patient());
   const std::string slow = head("POST /", "Transfer-Encoding: chunked\r\n") + "3\r\na";
   const Client first(*server_, slow), second(*server_, slow);
-  reaches(server_->metrics().slow_seats, 2);
+  reaches(metrics_.slow_seats, 2);
   const std::string third = Client(*server_, slow).read();
   EXPECT_NE(third.find(" 503 "), std::string::npos);
   EXPECT_NE(third.find("\r\nRetry-After: "), std::string::npos);
   EXPECT_EQ(status(slow + "bc\r\n0\r\n\r\n"), 200) << "what has come needs no seat";
   first.send("bc\r\n0\r\n\r\n");
   EXPECT_EQ(first.status(), 200);
-  reaches(server_->metrics().slow_seats, 1);
+  reaches(metrics_.slow_seats, 1);
 }
 
-TEST_F(HttpTest, slow_readers_hold_no_thread) {
-  HttpSettings settings = patient();
-  settings.threads = 1;
-  start(settings);
+TEST_F(HttpTest, slow_readers_take_a_limited_number_of_seats) {
+  start(patient());
   std::vector<Client> lazy;
   lazy.reserve(20);
-  for (int i = 0; i < 20; ++i)
+  for (int i = 0; i < 20; ++i) {
     lazy.emplace_back(*server_, head(i % 2 == 0 ? "GET /large" : "GET /file"));
+    reaches(metrics_.slow_seats, std::min(i + 1, 2));
+    reaches(metrics_.given_up, std::max(i - 1, 0));
+  }
   EXPECT_EQ(status(head("GET /")), 200);
-  reaches(server_->metrics().delivering, 2 + 10);  // 64 MiB of texts, and the files
-  EXPECT_EQ(server_->metrics().given_up, 8U);
+  EXPECT_LT(lazy[0].read().size(), large) << "who has taken nothing for longest goes first";
   const std::string file = lazy[19].read();
   EXPECT_EQ(file.size() - file.find("\r\n\r\n") - 4, large - 1);
   EXPECT_TRUE(file.ends_with("ff"));
   const std::string text = lazy[18].read();
   EXPECT_EQ(text.size() - text.find("\r\n\r\n") - 4, large);
+  reaches(metrics_.slow_seats, 0);
+}
+
+TEST_F(HttpTest, answers_to_slow_readers_take_a_limited_amount_of_memory) {
+  HttpSettings settings = patient();
+  settings.threads = 64;
+  start(settings);
+  std::vector<Client> lazy;
+  lazy.reserve(5);
+  for (int i = 0; i < 5; ++i) lazy.emplace_back(*server_, head("GET /large"));
+  reaches(metrics_.given_up, 3);
+  EXPECT_EQ(metrics_.slow_seats, 2U) << "of 32 MiB each, in 64 MiB";
 }
 
 TEST_F(HttpTest, readers_that_take_too_little_are_given_up) {
   HttpSettings settings = patient();
   settings.answer_time = 100ms;
-  settings.delivering = 2;
   start(settings);
   const Client lazy(*server_, head("GET /file"));
-  reaches(server_->metrics().given_up, 1);
+  reaches(metrics_.given_up, 1);
   EXPECT_LT(lazy.read().size(), large);
 }
 
@@ -211,7 +239,7 @@ TEST_F(HttpTest, stopping_waits_for_no_client) {
   start(patient());
   const Client silent(*server_, ""), half(*server_, "GET /"), lazy(*server_, head("GET /file"));
   const Client body(*server_, head("POST /", "Transfer-Encoding: chunked\r\n") + "3\r\na");
-  reaches(server_->metrics().slow_seats, 1);
+  reaches(metrics_.slow_seats, 2);
   server_->stop();
   EXPECT_NE(body.status(), 200);
 }
@@ -224,13 +252,14 @@ TEST_F(HttpTest, an_answer_that_cannot_be_written_is_a_500) {
 }
 
 TEST(HttpAnswer, needs_no_socket) {
-  const auto answer = [](const std::string& text) {
-    return HttpServer::answer(text, [](const Request& request) {
-      Response response;
-      response.body = request.path + " " + request.read_body(10);
-      return response;
-    });
+  const auto echo = [](const Request& request) {
+    Response response;
+    response.body = request.path + " " + request.read_body(10);
+    return response;
   };
+  HttpMetrics metrics;
+  const HttpServer server({}, routes_to(echo), metrics);
+  const auto answer = [&](const std::string& text) { return server.answer(text); };
   EXPECT_EQ(answer("GET / HTTP/1.1\r\n"), "");
   EXPECT_TRUE(answer(head("GET /a?b")).ends_with("\r\n\r\n/a "));
   EXPECT_TRUE(answer(head("PUT /", "Content-Length: 2\r\n") + "abc").ends_with("/ ab"));

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "server/router.h"
+#include "server/http.h"
 
 namespace lacuna {
 namespace {
@@ -32,15 +32,10 @@ Router make_router() {
 
 int status(const Router& router, const std::string& method, const std::string& path,
            const std::string& query = "") {
-  Request request;
-  request.method = method;
-  request.path = path;
-  request.query = Query::parse(query);
-  try {
-    return router.route(request).status;
-  } catch (const HttpError& error) {
-    return error.status();
-  }
+  HttpMetrics metrics;
+  const HttpServer server({}, router, metrics);
+  const std::string target = query.empty() ? path : path + "?" + query;
+  return std::stoi(server.answer(method + " " + target + " HTTP/1.1\r\n\r\n").substr(9));
 }
 
 TEST(Router, refuses_what_the_route_does_not_know_before_its_handler) {
