@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "jobs/spec/byte_size.h"
-#include "server/log.h"
 #include "server/service.h"
+#include "server/telemetry/log.h"
 
 namespace {
 

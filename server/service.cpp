@@ -10,17 +10,17 @@
 
 #include "analysis/storage/file_lock.h"
 #include "jobs/spec/version.h"
-#include "server/access.h"
-#include "server/address.h"
-#include "server/caretaker.h"
-#include "server/executor_local.h"
-#include "server/http.h"
-#include "server/log.h"
-#include "server/queue.h"
-#include "server/routes.h"
-#include "server/scene_uploads.h"
-#include "server/sweep_keeper.h"
-#include "server/sweep_table.h"
+#include "server/http/access.h"
+#include "server/http/address.h"
+#include "server/http/http.h"
+#include "server/queue/caretaker.h"
+#include "server/queue/executor_local.h"
+#include "server/queue/queue.h"
+#include "server/routes/routes.h"
+#include "server/routes/scene_uploads.h"
+#include "server/sweeps/sweep_keeper.h"
+#include "server/tables/sweep_table.h"
+#include "server/telemetry/log.h"
 
 namespace lacuna {
 namespace {

@@ -1,27 +1,11 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <string>
-#include <vector>
 
-#include "server/settings.h"
+#include "server/settings/service_settings.h"
 
 namespace lacuna {
-
-/// What the command line says; paths that are empty take their defaults.
-struct ServiceSettings {
-  HttpSettings http;
-  AccessSettings access;
-  QueueSettings queue;
-  CareSettings care;
-  bool uploads = false;  ///< scenes may be put
-  bool verbose = false;  ///< every request is logged
-  double grace_seconds = 10;
-  ChildLimits limits = ExecutorSettings{}.limits;  ///< of every renderer
-  std::filesystem::path data, renderer, web;
-  std::vector<std::filesystem::path> scenes;
-};
 
 /// "lacuna-server 0.1.0"
 std::string service_version();

@@ -1,12 +1,12 @@
-#include "server/http.h"
+#include "server/http/http.h"
 
 #include <fstream>
 #include <string_view>
 #include <utility>
 
 #include "jobs/spec/job_json.h"
-#include "server/access.h"
-#include "server/file_response.h"
+#include "server/http/access.h"
+#include "server/http/file_response.h"
 #include "tests/fuzz/input_file.h"
 
 // The bytes that a client sends on one connection before it sends no more: answered by one HTTP/1.1

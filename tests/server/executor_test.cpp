@@ -4,8 +4,8 @@
 #include <csignal>
 #include <sstream>
 
-#include "server/executor_local.h"
-#include "server/process_identity.h"
+#include "server/queue/executor_local.h"
+#include "server/queue/process_identity.h"
 #include "tests/temporary_folder.h"
 
 namespace lacuna {

@@ -1,4 +1,4 @@
-#include "server/journal.h"
+#include "server/tables/journal.h"
 
 #include <gtest/gtest.h>
 

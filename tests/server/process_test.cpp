@@ -5,8 +5,8 @@
 
 #include <csignal>
 
-#include "server/oom_kills.h"
-#include "server/process_identity.h"
+#include "server/queue/oom_kills.h"
+#include "server/queue/process_identity.h"
 
 namespace lacuna {
 namespace {

@@ -1,4 +1,4 @@
-#include "server/retention.h"
+#include "server/queue/retention.h"
 
 #include <gtest/gtest.h>
 

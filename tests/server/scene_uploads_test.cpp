@@ -1,4 +1,4 @@
-#include "server/scene_uploads.h"
+#include "server/routes/scene_uploads.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,8 +1,8 @@
-#include "server/sweep_table.h"
+#include "server/tables/sweep_table.h"
 
 #include <gtest/gtest.h>
 
-#include "server/named_files.h"
+#include "server/routes/named_files.h"
 #include "tests/temporary_folder.h"
 
 namespace lacuna {

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "server/access.h"
+#include "server/http/access.h"
 #include "tests/temporary_folder.h"
 
 namespace lacuna {

@@ -8,7 +8,7 @@
 
 #include <thread>
 
-#include "server/http.h"
+#include "server/http/http.h"
 #include "tests/temporary_folder.h"
 
 namespace lacuna {

@@ -4,8 +4,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "server/http_metrics.h"
-#include "server/prometheus.h"
+#include "server/http/http_metrics.h"
+#include "server/telemetry/prometheus.h"
 
 namespace lacuna {
 namespace {

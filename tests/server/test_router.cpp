@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "server/http.h"
+#include "server/http/http.h"
 
 namespace lacuna {
 namespace {

@@ -1,4 +1,4 @@
-#include "server/verdict.h"
+#include "server/queue/verdict.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,140 @@
+#include "server/http/access.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "jobs/spec/described_json.h"
+
+namespace lacuna {
+namespace {
+
+constexpr double failures_a_second = 10;
+constexpr std::size_t max_session_bytes = 1024;
+constexpr std::string_view session_path = "/api/session";
+
+HttpError token_needed(const char* why) {
+  return HttpError(401, why).with("WWW-Authenticate", "Bearer");
+}
+
+/// The token of an Authorization header; nothing if there is none. Throws HttpError 401.
+std::optional<std::string> bearer(const Request& request) {
+  const auto value = request.header("authorization");
+  if (!value) return std::nullopt;
+  std::string scheme = value->substr(0, value->find(' '));
+  for (char& c : scheme) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (scheme != "bearer" || scheme.size() == value->size()) {
+    throw token_needed("Authorization must be \"Bearer TOKEN\".");
+  }
+  return value->substr(scheme.size() + 1);
+}
+
+/// The session's id in the request's cookies; empty if there is none.
+std::string session_id(const Request& request) {
+  const std::string cookies = request.header("cookie").value_or("");
+  for (std::size_t begin = 0; begin < cookies.size();) {
+    const std::size_t end = std::min(cookies.find(';', begin), cookies.size());
+    std::string_view cookie = std::string_view(cookies).substr(begin, end - begin);
+    cookie.remove_prefix(std::min(cookie.find_first_not_of(' '), cookie.size()));
+    const std::size_t equals = std::min(cookie.find('='), cookie.size());
+    if (cookie.substr(0, equals) == session_cookie && equals < cookie.size()) {
+      return std::string(cookie.substr(equals + 1));
+    }
+    begin = end + 1;
+  }
+  return {};
+}
+
+struct Login {
+  std::string token;
+};
+template <class V>
+void describe(V& v, Login& s) {
+  v("token", s.token, {.doc = "the service's token", .required = true});
+}
+
+/// The "token" of the body.
+std::string shown_token(const Request& request) {
+  if (media_type(request) != "application/json") {
+    throw HttpError(415, "The token is posted with Content-Type: application/json.");
+  }
+  try {
+    return read_document<Login>(request.read_body(max_session_bytes), {max_session_bytes, 1}).token;
+  } catch (const BadJob& bad) {
+    throw HttpError(400, "The body must be {\"token\": \"...\"}.", bad.problems());
+  }
+}
+
+Response cookie_answer(const Request& request, const std::string& id, const char* more) {
+  // Over TLS (a proxy's) the cookie stays there.
+  const bool secure = request.header("origin").value_or("").starts_with("https://");
+  Response response;
+  response.status = 204;
+  response.headers = {
+      {"Cache-Control", "no-store"},
+      {"Set-Cookie", fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict{}{}", session_cookie, id,
+                                 secure ? "; Secure" : "", more)}};
+  return response;
+}
+
+}  // namespace
+
+Access::Access(const std::string& bind, const AccessSettings& settings,
+               std::function<bool(const std::string&)> is_public)
+    : guard_(bind, settings.hosts),
+      token_(settings.token_file.empty() ? std::nullopt
+                                         : std::optional(Token::read(settings.token_file))),
+      is_public_(std::move(is_public)),
+      tries_(failures_a_second) {}
+
+std::optional<Response> Access::admit(const Request& request) {
+  guard_.check(request);
+  if (!token_) return std::nullopt;
+  if (request.path == session_path) return session(request);
+  if (is_safe(request) && (request.path == "/health" || is_public_(request.path))) {
+    return std::nullopt;
+  }
+  if (const auto shown = bearer(request)) {
+    check_token(*shown);
+    return std::nullopt;
+  }
+  // An id has 256 random bits: trying some is hopeless, so these tries need not be counted.
+  if (!sessions_.holds(session_id(request))) {
+    throw token_needed("A token is needed: Authorization: Bearer TOKEN.");
+  }
+  guard_.check_own_page(request);
+  return std::nullopt;
+}
+
+Response Access::session(const Request& request) {
+  if (request.method == "POST") {
+    check_token(shown_token(request));
+    return cookie_answer(request, sessions_.open(), "");
+  }
+  if (request.method == "DELETE") {
+    const std::string id = session_id(request);
+    if (!id.empty()) guard_.check_own_page(request);
+    sessions_.close(id);
+    return cookie_answer(request, "", "; Max-Age=0");
+  }
+  throw HttpError(405, "A session can be begun (POST) and ended (DELETE).")
+      .with("Allow", "POST, DELETE");
+}
+
+/// While too many wrong tokens come, none is looked at, lest one more guess be right; sessions go
+/// on.
+void Access::check_token(std::string_view shown) {
+  const std::lock_guard lock(mutex_);
+  const auto now = std::chrono::steady_clock::now();
+  const double seconds = std::chrono::duration<double>(now - std::exchange(counted_, now)).count();
+  tries_ = std::min(failures_a_second, tries_ + failures_a_second * seconds);
+  if (tries_ < 1) {
+    throw HttpError(429, "Too many wrong tokens have been shown.").with("Retry-After", "1");
+  }
+  if (token_->is(shown)) return;
+  tries_ -= 1;
+  throw token_needed("The token is wrong.");
+}
+
+}  // namespace lacuna

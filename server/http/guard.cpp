@@ -1,0 +1,95 @@
+#include "server/http/guard.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+
+#include "server/http/address.h"
+
+namespace lacuna {
+namespace {
+
+struct HostPort {
+  std::string name;  ///< in lower case; an IPv6 address in brackets
+  std::string port;  ///< may be empty
+};
+
+/// Nothing if it is not NAME or NAME:PORT.
+std::optional<HostPort> parse(std::string_view text) {
+  const std::size_t bracket = text.find(']');
+  const std::size_t colon = text.find(':', bracket == std::string_view::npos ? 0 : bracket);
+  HostPort result{std::string(text.substr(0, colon)), {}};
+  for (char& c : result.name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const bool in_brackets = result.name.starts_with('[') && result.name.ends_with(']');
+  const bool fits = std::all_of(result.name.begin(), result.name.end(), [&](unsigned char c) {
+    return c < 0x80 && (std::isalnum(c) != 0 || c == '.' || c == '-' ||
+                        (in_brackets && (c == ':' || c == '[' || c == ']')));
+  });
+  if (!fits || result.name.empty()) return std::nullopt;
+  if (colon == std::string_view::npos) return result;
+  result.port = text.substr(colon + 1);
+  const bool is_number = std::all_of(result.port.begin(), result.port.end(),
+                                     [](unsigned char c) { return std::isdigit(c) != 0; });
+  if (result.port.empty() || result.port.size() > 5 || !is_number) return std::nullopt;
+  return result;
+}
+
+}  // namespace
+
+bool is_safe(const Request& request) { return request.method == "GET" || request.method == "HEAD"; }
+
+Guard::Guard(const std::string& bind, const std::vector<std::string>& hosts)
+    : names_{"localhost", "127.0.0.1", "[::1]"} {
+  const std::string own = bind.find(':') == std::string::npos ? bind : "[" + bind + "]";
+  if (const auto host = parse(own); host && !is_loopback(bind)) names_.push_back(host->name);
+  for (const std::string& text : hosts) {
+    const auto host = parse(text);
+    if (!host) {
+      throw std::invalid_argument(
+          fmt::format("--host \"{}\" is no name of a host: give NAME or NAME:PORT", text));
+    }
+    if (host->port.empty()) {
+      names_.push_back(host->name);
+    } else {
+      with_ports_.push_back(host->name + ":" + host->port);
+    }
+  }
+}
+
+bool Guard::is_own(const std::string& host) const {
+  const auto sent = parse(host);
+  const auto holds = [](const auto& list, const std::string& s) {
+    return std::find(list.begin(), list.end(), s) != list.end();
+  };
+  return sent && (holds(names_, sent->name) || holds(with_ports_, sent->name + ":" + sent->port));
+}
+
+void Guard::check(const Request& request) const {
+  const auto host = request.header("host");
+  if (!host || host->empty()) throw HttpError(400, "Header Host is missing.");
+  if (!is_own(*host)) {
+    throw HttpError(
+        403, fmt::format("Header Host names another machine: use {}.", fmt::join(names_, ", ")));
+  }
+  const auto origin = request.header("origin");
+  // https: where a proxy that speaks TLS stands before the service.
+  const bool own = !origin || *origin == "http://" + *host || *origin == "https://" + *host;
+  if (!is_safe(request) && !own) {
+    throw HttpError(403, "Pages of other sites may not change anything here (header Origin).");
+  }
+}
+
+void Guard::check_own_page(const Request& request) const {
+  if (is_safe(request) || request.header("origin")) return;  // check() has compared it
+  if (request.header("sec-fetch-site").value_or("") == "same-origin") return;
+  throw HttpError(403,
+                  "A request with a cookie must say that it comes from a page of this service "
+                  "(header Origin or Sec-Fetch-Site).");
+}
+
+}  // namespace lacuna

@@ -1,0 +1,44 @@
+#include "server/http/http_metrics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "server/telemetry/prometheus.h"
+
+namespace lacuna {
+
+void HttpMetrics::answered(int status, std::chrono::nanoseconds time) {
+  ++requests.at(static_cast<std::size_t>(std::clamp(status / 100, 1, 5) - 1));
+  const double s = std::chrono::duration<double>(time).count();
+  const auto bucket = std::lower_bound(bounds.begin(), bounds.end(), s) - bounds.begin();
+  ++seconds.at(static_cast<std::size_t>(bucket));
+  microseconds += static_cast<std::uint64_t>(1e6 * s);
+}
+
+void write_metrics(PrometheusText& text, const HttpMetrics& m) {
+  const auto value = [](const HttpMetrics::Count& count) { return static_cast<double>(count); };
+  text.counter("lacuna_http_connections_total", "Connections that were accepted.")
+      .value(value(m.accepted));
+  text.counter("lacuna_http_refused_total",
+               "Connections that were refused before a handler: malformed, late or too many.")
+      .value(value(m.refused));
+  auto& requests = text.counter("lacuna_http_requests_total", "Answers, by class of status.");
+  for (std::size_t i = 0; i < m.requests.size(); ++i) {
+    requests.value(value(m.requests[i]), {{"status", fmt::format("{}xx", i + 1)}});
+  }
+  std::vector<std::uint64_t> counts(m.seconds.begin(), m.seconds.end());
+  text.histogram("lacuna_http_request_seconds", "From the whole request to its answer.",
+                 {m.bounds.begin(), m.bounds.end()}, counts, 1e-6 * value(m.microseconds));
+  text.counter("lacuna_http_sent_bytes_total", "Bytes sent to clients.").value(value(m.bytes_out));
+  text.counter("lacuna_http_given_up_total", "Answers cut off because the client took too little.")
+      .value(value(m.given_up));
+  text.gauge("lacuna_http_parked", "Connections whose request is still coming.")
+      .value(value(m.parked));
+  text.gauge("lacuna_http_slow_seats", "Threads that wait for a body or a reader.")
+      .value(value(m.slow_seats));
+  text.gauge("lacuna_http_streams", "Open streams of events.").value(value(m.streams));
+}
+
+}  // namespace lacuna

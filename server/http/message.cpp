@@ -1,0 +1,85 @@
+#include "server/http/message.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cctype>
+#include <nlohmann/json.hpp>
+
+#include "jobs/spec/json_text.h"
+
+namespace lacuna {
+
+const char* status_title(int status) {
+  using Pair = std::pair<int, const char*>;
+  constexpr std::array<Pair, 28> titles{{
+      {200, "OK"},
+      {201, "Created"},
+      {202, "Accepted"},
+      {204, "No content"},
+      {206, "Partial content"},
+      {304, "Not modified"},
+      {400, "Bad request"},
+      {401, "Token needed"},
+      {403, "Forbidden"},
+      {404, "Not found"},
+      {405, "Method not allowed"},
+      {408, "Too slow"},
+      {409, "Conflict"},
+      {411, "Length needed"},
+      {412, "Changed meanwhile"},
+      {413, "Too large"},
+      {414, "Address too long"},
+      {415, "Unsupported media type"},
+      {416, "Range not satisfiable"},
+      {417, "Expectation failed"},
+      {422, "Not usable"},
+      {429, "Too many"},
+      {431, "Head too large"},
+      {500, "Internal error"},
+      {501, "Unknown method"},
+      {503, "Busy"},
+      {505, "Unknown version of HTTP"},
+      {507, "Cannot store"},
+  }};
+  for (const auto& [number, text] : titles) {
+    if (number == status) return text;
+  }
+  return "Error";
+}
+
+std::optional<std::string> single_header(const Headers& headers, const std::string& name) {
+  const auto [first, last] = headers.equal_range(name);
+  if (first == last) return std::nullopt;
+  if (std::next(first) != last) {
+    throw HttpError(400, fmt::format("Header {} stands more than once.", name));
+  }
+  return first->second;
+}
+
+std::string media_type(const Request& request) {
+  std::string type = request.header("content-type").value_or("");
+  type = type.substr(0, type.find(';'));
+  type.erase(type.find_last_not_of(" \t") + 1);
+  for (char& c : type) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return type;
+}
+
+Response problem_response(const HttpError& error, const std::string& path) {
+  OrderedJson json = {{"type", "about:blank"},
+                      {"title", status_title(error.status())},
+                      {"status", error.status()},
+                      {"detail", error.what()},
+                      {"instance", path}};
+  for (const Problem& p : error.errors()) {
+    json["errors"].push_back({{"pointer", p.pointer}, {"message", p.message}});
+  }
+  Response response;
+  response.status = error.status();
+  response.content_type = "application/problem+json";
+  response.headers = error.headers();
+  response.body = document_text(json);
+  return response;
+}
+
+}  // namespace lacuna

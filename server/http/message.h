@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/storage/file_handle.h"
+#include "jobs/spec/problems.h"
+#include "server/http/query.h"
+
+namespace lacuna {
+
+/// Names are in lower case; values have no blanks around them.
+using Headers = std::multimap<std::string, std::string>;
+
+/// The value of a header that may stand only once; nothing if it is absent. Throws HttpError.
+std::optional<std::string> single_header(const Headers& headers, const std::string& name);
+
+/// First and last byte. As a client asks: -1 for a last one that is the end, or for a first one
+/// that makes `last` the number of bytes before the end (RFC 9110, section 14.1.2).
+struct ByteRange {
+  std::int64_t first = -1, last = -1;
+};
+
+/// A request as the routes see it: bounded and well formed.
+struct Request {
+  std::string method;
+  std::string path;  ///< as sent, without the query; nothing is decoded: no name here needs it
+  Query query;       ///< what stands behind the path, decoded
+  Headers headers;
+  std::optional<ByteRange> range;  ///< header Range, if it is one range
+
+  /// Reads the body, at most `max_bytes` of it; throws HttpError: 413 if it is larger, 415 if it is
+  /// encoded, 400 if its framing is wrong, 408 if it comes too slowly, 503 if too many clients are
+  /// slow. A body can be read once.
+  std::function<std::string(std::size_t max_bytes)> read_body;
+  /// The same for a large body, which goes to a file from where that stands; gives its number of
+  /// bytes. The sender has all the time it needs as long as it keeps to a least rate. Throws
+  /// std::system_error, too, when the file cannot take it.
+  std::function<std::uint64_t(int fd, std::uint64_t max_bytes)> read_body_to;
+
+  std::optional<std::string> header(const std::string& lower_case_name) const {
+    return single_header(headers, lower_case_name);
+  }
+};
+
+/// Of the body, in lower case and without parameters: "application/json"; empty if it has none.
+std::string media_type(const Request& request);
+
+/// A part of an open file.
+struct FilePart {
+  FileHandle file;
+  std::int64_t offset = 0;
+  std::int64_t length = 0;
+};
+
+/// What goes back: one of a text, a part of a file, or a stream of texts.
+struct Response {
+  int status = 200;
+  std::string content_type;
+  std::vector<std::pair<std::string, std::string>> headers;  ///< never anything a client sent
+  std::string body;
+  std::optional<FilePart> file;
+  std::optional<ByteRange> range;  ///< of `file`: only this goes out, and the status is 206
+  /// Called again and again: gives the next text (empty: nothing new, after a short wait), or
+  /// nothing at the end.
+  std::function<std::optional<std::string>()> stream;
+};
+
+/// "Not found" and the like.
+const char* status_title(int status);
+
+/// A request that is refused: becomes an application/problem+json answer.
+class HttpError : public std::runtime_error {
+ public:
+  HttpError(int status, const std::string& detail, std::vector<Problem> errors = {})
+      : std::runtime_error(detail), status_(status), errors_(std::move(errors)) {}
+  int status() const { return status_; }
+  const std::vector<Problem>& errors() const { return errors_; }
+  /// One more header of the answer, such as Allow.
+  HttpError& with(std::string name, std::string value) {
+    headers_.emplace_back(std::move(name), std::move(value));
+    return *this;
+  }
+  const std::vector<std::pair<std::string, std::string>>& headers() const { return headers_; }
+
+ private:
+  int status_;
+  std::vector<Problem> errors_;
+  std::vector<std::pair<std::string, std::string>> headers_;
+};
+
+/// The application/problem+json answer (RFC 9457) to a request for `path`.
+Response problem_response(const HttpError& error, const std::string& path);
+
+}  // namespace lacuna

@@ -1,0 +1,112 @@
+#include "server/http/query.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "server/http/message.h"
+
+namespace lacuna {
+namespace {
+
+/// Well-formed UTF-8 without control characters (below U+0020, U+007F to U+009F).
+bool is_plain_text(const std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = [&](std::size_t k) { return k < text.size() ? text[k] & 0xff : 0; };
+    const bool of_two_bytes = byte(i) == 0xc2 && byte(i + 1) < 0xa0;
+    if (byte(i) < 0x20 || byte(i) == 0x7f || of_two_bytes) return false;
+  }
+  try {
+    return !nlohmann::json(text).dump().empty();
+  } catch (const nlohmann::json::type_error&) {  // no UTF-8
+    return false;
+  }
+}
+
+void check_escapes(std::string_view sent) {
+  for (std::size_t i = sent.find('%'); i < sent.size(); i = sent.find('%', i + 1)) {
+    const std::string_view digits = sent.substr(i + 1, 2);
+    if (digits.size() < 2 ||
+        digits.find_first_not_of("0123456789abcdefABCDEF") != std::string_view::npos) {
+      throw HttpError(400, "The query holds a % that two hexadecimal digits do not follow.");
+    }
+  }
+}
+
+/// Gives the number of parameters.
+std::size_t check_parameters(std::string_view sent) {
+  std::size_t count = 0;
+  while (!sent.empty()) {
+    const std::string_view part = sent.substr(0, sent.find('&'));
+    if (part.empty() || part.front() == '=') {
+      throw HttpError(400, "The query holds a parameter without a name.");
+    }
+    if (part.find('=') != part.rfind('=')) {
+      throw HttpError(400, "The query holds a second \"=\" in a parameter: write it as %3D.");
+    }
+    sent.remove_prefix(std::min(sent.size(), part.size() + 1));
+    ++count;
+  }
+  return count;
+}
+
+}  // namespace
+
+Query::Query(std::string_view sent, const Parameters& decoded) {
+  check_escapes(sent);
+  const std::size_t count = check_parameters(sent);
+  for (const auto& [name, value] : decoded) {
+    if (!is_plain_text(name) || !is_plain_text(value)) {
+      throw HttpError(400, "The query holds what is no UTF-8 text, or a control character.");
+    }
+    if (!values_.emplace(name, value).second) {
+      throw HttpError(400, fmt::format("Query parameter \"{}\" stands more than once.", name));
+    }
+  }
+  // Of parameters that are the same to the letter the library keeps one.
+  if (values_.size() < count) {
+    throw HttpError(400, "A query parameter stands more than once.");
+  }
+}
+
+std::optional<std::string> Query::text(const std::string& name) const {
+  const auto found = values_.find(name);
+  if (found == values_.end()) return std::nullopt;
+  return found->second;
+}
+
+std::optional<std::int64_t> Query::integer(const std::string& name, std::int64_t min,
+                                           std::int64_t max) const {
+  const auto digits = text(name);
+  if (!digits) return std::nullopt;
+  std::int64_t value = 0;
+  const char* end = digits->data() + digits->size();
+  const auto [stop, error] = std::from_chars(digits->data(), end, value);
+  if (error != std::errc() || stop != end || value < min || value > max) {
+    throw HttpError(400, fmt::format("Query parameter \"{}\" is \"{}\": it must be an integer from "
+                                     "{} to {}.",
+                                     name, *digits, min, max));
+  }
+  return value;
+}
+
+bool Query::flag(const std::string& name) const {
+  const auto value = text(name);
+  if (!value || *value == "0" || *value == "false") return false;
+  if (*value == "1" || *value == "true") return true;
+  throw HttpError(
+      400, fmt::format("Query parameter \"{}\" is \"{}\": it must be 1 or 0.", name, *value));
+}
+
+void Query::check_known(const std::vector<std::string>& names) const {
+  for (const auto& [name, value] : values_) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    throw HttpError(
+        400, fmt::format("unknown query parameter \"{}\"; known: {}", name,
+                         names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+  }
+}
+
+}  // namespace lacuna

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "jobs/spec/json_text.h"
+#include "server/http/message.h"
+
+namespace lacuna {
+
+/// A parameter behind the ? of an address, checked before the handler is called.
+struct QueryParameter {
+  enum class Type { text, integer, flag };
+  std::string name;
+  Type type = Type::text;
+  std::string doc = {};
+  std::int64_t min = INT64_MIN, max = INT64_MAX;  ///< of an integer
+};
+
+/// What a route does, for people and for programs that read /openapi.json.
+struct RouteDoc {
+  std::string summary = {};
+  std::vector<QueryParameter> query = {};                 ///< others are refused
+  std::string body_type = {};                             ///< media type; empty: it takes no body
+  std::string body_schema = {};                           ///< JSON Schema, as text; empty: none
+  std::vector<std::pair<int, std::string>> answers = {};  ///< status, and what it means
+  bool needs_token = true;                                ///< where the service has one
+  bool for_programs = true;  ///< false: a file of the page, which takes any query
+};
+
+/// A table of methods and path patterns such as "/api/jobs/{id}/files/{name}"; each part in braces
+/// is one part of the path, given to the handler in order. The HTTP library matches them, in the
+/// order in which they were added; HEAD is answered as GET.
+class Router {
+ public:
+  using Parts = std::vector<std::string>;
+  using Handler = std::function<Response(const Request&, const Parts&)>;
+  struct Route {
+    std::string method;
+    Parts pattern;  ///< the parts between the slashes
+    RouteDoc doc;
+    Handler handler;
+  };
+
+  void add(std::string method, std::string_view pattern, RouteDoc doc, Handler handler);
+  /// With no query parameters and no description.
+  void add(std::string method, std::string_view pattern, Handler handler);
+  const std::vector<Route>& routes() const { return routes_; }
+  /// The OpenAPI 3.1 document of all routes that are for programs. `info`: {"title", "version",
+  /// ...}. Throws std::logic_error for a body_schema that is no JSON.
+  OrderedJson openapi(const OrderedJson& info) const;
+
+ private:
+  std::vector<Route> routes_;
+};
+
+/// Throws HttpError 400 for a parameter that the route does not know, or whose value it cannot
+/// have.
+void check_query(const Query& query, const RouteDoc& doc);
+
+/// A handler of an address whose first part is an id: calls `routes`, which outlives it.
+template <class Routes>
+Router::Handler with_id(Routes& routes,
+                        Response (Routes::*handler)(const Request&, const std::string&)) {
+  return [&routes, handler](const Request& request, const Router::Parts& parts) {
+    return (routes.*handler)(request, parts[0]);
+  };
+}
+
+}  // namespace lacuna

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "server/http/router.h"
+
+namespace lacuna {
+
+/// The page: a fixed list of files, made when the service starts.
+class StaticFiles {
+ public:
+  /// Lists the regular files directly in `folder` with the endings of web pages; `index.html` is
+  /// also "/". Throws std::invalid_argument if there is no index.html.
+  explicit StaticFiles(const std::filesystem::path& folder);
+
+  /// Serves one more file, at `path`; nothing happens if it is not there.
+  void add(const std::string& path, const std::filesystem::path& file);
+
+  bool has(const std::string& path) const { return files_.contains(path); }
+  /// Adds a route for each; outlives `router`.
+  void add_to(Router& router) const;
+
+ private:
+  struct Entry {
+    std::filesystem::path folder;
+    std::string name;
+    std::string_view media_type;
+  };
+  std::map<std::string, Entry> files_;
+};
+
+}  // namespace lacuna

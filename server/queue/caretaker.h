@@ -1,0 +1,39 @@
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "server/queue/queue.h"
+#include "server/settings/queue_settings.h"
+#include "server/tables/job_table.h"
+
+namespace lacuna {
+
+/// Looks after what changes by itself while the service runs: what renderers write, folders that
+/// come and go by other hands, room on the disk, and old jobs that need not be kept.
+class Caretaker {
+ public:
+  Caretaker(JobTable& table, Queue& queue, CareSettings settings);
+  ~Caretaker() { stop(); }
+  Caretaker(const Caretaker&) = delete;
+  Caretaker& operator=(const Caretaker&) = delete;
+
+  void start();
+  void stop();
+
+ private:
+  void run();
+  void remove_old();
+
+  JobTable& table_;
+  Queue& queue_;
+  const CareSettings settings_;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool stopping_ = false;
+  std::thread thread_;
+};
+
+}  // namespace lacuna

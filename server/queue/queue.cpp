@@ -1,0 +1,377 @@
+#include "server/queue/queue.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "jobs/spec/budget_extension.h"
+#include "jobs/spec/described_json.h"
+#include "jobs/store/new_folder.h"
+#include "server/queue/child_process.h"
+#include "server/telemetry/log.h"
+
+namespace lacuna {
+
+Queue::Queue(Executor& executor, JobTable& table, DiskWatch& disk, QueueSettings settings)
+    : executor_(executor), table_(table), disk_(disk), settings_(settings) {}
+
+void Queue::start() {
+  for (const EntryPtr& entry : table_.all()) {
+    if (entry->damaged) log::error("{} is left alone: {}", entry->id, entry->state.error);
+    if (entry->over) continue;
+    try {
+      enter(entry);
+    } catch (const std::exception& error) {
+      give_up(entry->id, error.what());
+    }
+  }
+  for (int i = 0; i < settings_.children; ++i) runners_.emplace_back([this] { run(); });
+}
+
+void Queue::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+    for (const auto& [id, work] : work_) {
+      if (work->stop) work->stop->request();
+    }
+  }
+  changed_.notify_all();
+  for (std::thread& runner : runners_) runner.join();
+  runners_.clear();
+}
+
+std::size_t Queue::room() const {
+  const std::lock_guard lock(mutex_);
+  return settings_.max_waiting - std::min(settings_.max_waiting, work_.size());
+}
+
+void Queue::check_room() const {
+  if (room() == 0) {
+    throw Full(
+        fmt::format("{} jobs wait or run, and there may be no more.", settings_.max_waiting));
+  }
+}
+
+EntryPtr Queue::add(const std::string& id) {
+  EntryPtr entry = table_.add(id);
+  if (!entry->over) enter(entry);
+  return entry;
+}
+
+/// A job that is not over comes in: new, or left by an earlier run of the service.
+void Queue::enter(const EntryPtr& entry) {
+  const std::lock_guard lock(mutex_);
+  if (work_.contains(entry->id)) return;
+  const WorkPtr work = open(*entry, entry->control);
+  if (entry->state.state == State::cancelling) work->control.cancel = true;
+  if (work->control.cancel && withdraw(*work, State::cancelled)) return;
+  if (work->control.held && withdraw(*work, State::held)) return;
+  const State state = entry->state.state;
+  // Where a renderer of an earlier service still ends, its state.json is not ours yet.
+  if (state != State::queued) withdraw(*work, State::queued);
+  // Unless that renderer has come to the end just now, and the job is over.
+  if (work_.contains(work->id)) line_up(*work);
+}
+
+Queue::WorkPtr Queue::open(const JobEntry& entry, const JobControl& control) {
+  auto work = std::make_shared<Work>();
+  work->id = entry.id;
+  work->created = entry.state.created;
+  work->exclusive = entry.exclusive;
+  work->control = control;
+  work_[work->id] = work;
+  return work;
+}
+
+void Queue::line_up(Work& work) {
+  work.place = Place{-work.control.priority, work.created, work.id};
+  line_.insert(*work.place);
+  changed_.notify_all();
+}
+
+void Queue::leave_line(Work& work) {
+  if (work.place) line_.erase(*work.place);
+  work.place.reset();
+}
+
+/// Writes the new state of a job that no runner has. False: a renderer of somebody else still holds
+/// its folder, and a runner has to wait for that.
+bool Queue::withdraw(Work& work, State how) {
+  const std::lock_guard no_forks(fork_mutex());
+  const auto free = try_folder(work);
+  if (!free) return false;
+  const JobState state = stored_state(work.id);
+  if (is_terminal(state.state)) {
+    table_.set_state(work.id, state, true);
+    forget(work.id);
+    return true;
+  }
+  if (how == State::queued) {
+    write_state(work.id, queued(state), false);
+  } else if (how == State::held) {
+    write_state(work.id, held(state), false);
+  } else {
+    write_state(work.id, ended(state, how, utc_now()), true);
+    forget(work.id);
+  }
+  return true;
+}
+
+void Queue::forget(const std::string& id) {
+  const auto found = work_.find(id);
+  if (found == work_.end()) return;
+  leave_line(*found->second);
+  work_.erase(found);
+  on_over_();
+}
+
+EntryPtr Queue::checked(const std::string& id, const std::string& revision) const {
+  EntryPtr entry = table_.find(id);
+  if (!entry) throw Conflict("The job is not there any more.");
+  if (!revision.empty() && revision != "*" && revision != entry->revision) {
+    throw Changed(
+        fmt::format("The job has changed meanwhile: its revision is {}.", entry->revision));
+  }
+  return entry;
+}
+
+void Queue::write_control(Work& work, const JobControl& control) {
+  table_.folder(work.id).write_control(control);
+  work.control = control;
+  table_.set_control(work.id, control);
+}
+
+void Queue::change(const std::string& id, std::optional<int> priority, std::optional<bool> held,
+                   const std::string& revision) {
+  const std::lock_guard lock(mutex_);
+  const EntryPtr entry = checked(id, revision);
+  const auto found = work_.find(id);
+  if (found == work_.end()) {
+    throw Conflict(
+        fmt::format("The job is {}: it waits for nothing.", enum_name(entry->state.state)));
+  }
+  Work& work = *found->second;
+  JobControl control = work.control;
+  control.priority = priority.value_or(control.priority);
+  control.held = held.value_or(control.held);
+  if (control == work.control) return;
+  if (work.control.cancel) throw Conflict("The job is being cancelled.");
+  write_control(work, control);
+  if (work.stop) {  // a runner has it and looks at what was asked when its renderer has ended
+    if (control.held) work.stop->request();
+    return;
+  }
+  leave_line(work);
+  if (!control.held) {
+    if (entry->state.state == State::held) withdraw(work, State::queued);
+  } else if (withdraw(work, State::held)) {
+    return;
+  }
+  line_up(work);
+}
+
+void Queue::cancel(const std::string& id, const std::string& revision) {
+  const std::lock_guard lock(mutex_);
+  const EntryPtr entry = checked(id, revision);
+  const auto found = work_.find(id);
+  if (found == work_.end()) {
+    if (entry->state.state == State::cancelled) return;
+    throw Conflict(fmt::format("The job is {}.", enum_name(entry->state.state)));
+  }
+  Work& work = *found->second;
+  if (!work.control.cancel) {
+    JobControl control = work.control;
+    control.cancel = true;
+    write_control(work, control);
+  }
+  JobState state = entry->state;
+  if (work.stop) {
+    work.stop->request();
+  } else {
+    leave_line(work);
+    if (withdraw(work, State::cancelled)) return;
+    line_up(work);
+  }
+  if (is_terminal(state.state)) return;
+  state.state = State::cancelling;
+  table_.set_state(id, state, false);
+}
+
+void Queue::retry(const std::string& id, const std::string& revision) {
+  const std::lock_guard lock(mutex_);
+  const EntryPtr entry = checked(id, revision);
+  const State state = entry->state.state;
+  if (!entry->over || entry->damaged || state == State::done) {
+    throw Conflict(
+        fmt::format("The job is {}: only one that failed or was cancelled is tried again.",
+                    entry->damaged ? "damaged" : enum_name(state)));
+  }
+  line_up(reopen(entry));
+}
+
+void Queue::extend(const std::string& id, const Budget& budget, const std::string& revision) {
+  const std::lock_guard lock(mutex_);
+  const EntryPtr entry = checked(id, revision);
+  if (!entry->over || entry->damaged) {
+    throw Conflict(fmt::format("The job is {}: only one that is over is extended.",
+                               entry->damaged ? "damaged" : enum_name(entry->state.state)));
+  }
+  JobSpec spec = table_.folder(id).read_job();
+  throw_if_any(extension_problems(spec.budget, budget));
+  spec.budget = budget;
+  // First the state: a crash in between leaves a job that ends at once with its old budget, and not
+  // one that says it is done and is not.
+  Work& work = reopen(entry);
+  try {
+    table_.folder(id).write_job(spec);
+  } catch (...) {
+    line_up(work);
+    throw;
+  }
+  table_.reread_job(id);
+  line_up(work);
+}
+
+/// A job that was over is open again, but not in the line yet.
+Queue::Work& Queue::reopen(const EntryPtr& entry) {
+  const JobFolder folder = table_.folder(entry->id);
+  const std::lock_guard no_forks(fork_mutex());
+  const auto free = folder.try_lock();
+  if (!free) throw Conflict("A renderer still works in the job's folder.");
+  JobControl control = entry->control;
+  control.cancel = control.held = false;
+  control.crashes = 0;
+  folder.write_control(control);
+  const JobState state = queued(folder.read_state());
+  folder.write_state(state);
+  table_.set_control(entry->id, control);
+  table_.set_state(entry->id, state, false);
+  return *open(*entry, control);
+}
+
+/// What unfinished jobs measure their error against, and one of those jobs. Only under the lock.
+std::map<std::string, std::string> Queue::references() const {
+  std::map<std::string, std::string> users;
+  for (const auto& [id, work] : work_) {
+    const EntryPtr user = table_.find(id);
+    if (user && !user->reference.empty()) users.emplace(user->reference, id);
+  }
+  return users;
+}
+
+/// Only under the lock.
+void Queue::check_all_removable(const std::vector<std::string>& ids) const {
+  const auto in_use = references();
+  for (const std::string& id : ids) {
+    const EntryPtr entry = checked(id, {});
+    if (!entry->over) {
+      throw Conflict(fmt::format("Job {} is {}: only one that is over can be removed.", id,
+                                 enum_name(entry->state.state)));
+    }
+    if (table_.sweeps().is_unfinished(entry->sweep)) {
+      throw Conflict(fmt::format("Sweep {}, which it is a run of, is not over.", entry->sweep));
+    }
+    if (const auto user = in_use.find(id); user != in_use.end()) {
+      throw Conflict(fmt::format("Job {} measures its error against {}.", user->second, id));
+    }
+  }
+}
+
+void Queue::check_removable(const std::vector<std::string>& ids) const {
+  const std::lock_guard lock(mutex_);
+  check_all_removable(ids);
+}
+
+void Queue::remove(const std::string& id, const std::string& revision) {
+  const std::lock_guard lock(mutex_);
+  checked(id, revision);
+  take_away({id});
+}
+
+void Queue::remove_all(const std::vector<std::string>& ids) {
+  const std::lock_guard lock(mutex_);
+  take_away(ids);
+}
+
+/// Only under the lock.
+void Queue::take_away(const std::vector<std::string>& ids) {
+  check_all_removable(ids);
+  const std::lock_guard no_forks(fork_mutex());
+  std::vector<JobFolder::Lock> taken;
+  std::vector<std::filesystem::path> folders;
+  for (const std::string& id : ids) {
+    const JobFolder folder = table_.folder(id);
+    auto lock = folder.try_lock();
+    if (!lock) throw Conflict(fmt::format("A renderer still works in the folder of {}.", id));
+    taken.push_back(std::move(*lock));
+    folders.push_back(folder.dir());
+  }
+  trash_.take(take_folders_away(folders));
+  for (const std::string& id : ids) table_.remove(id);
+}
+
+void Queue::look_at_disk() {
+  const bool low = disk_.is_low();
+  const std::lock_guard lock(mutex_);
+  for (const auto& [id, work] : work_) {
+    if (!low || !work->stop) continue;
+    work->stopped_for_disk = true;
+    work->stop->request();
+  }
+  changed_.notify_all();
+}
+
+void Queue::look_at_running() {
+  const std::lock_guard lock(mutex_);  // or an old state could be told after a new one
+  for (const auto& [id, work] : work_) {
+    if (!work->stop) continue;
+    const JobFolder folder = table_.folder(id);
+    try {
+      if (const auto progress = folder.read_progress()) table_.set_progress(id, *progress);
+      JobState state = stored_state(id);
+      if (work->control.cancel && !is_terminal(state.state)) state.state = State::cancelling;
+      table_.set_state(id, state, false);
+    } catch (const std::exception& error) {  // its runner will find out, too
+      log::debug("{}: {}", id, error.what());
+    }
+  }
+}
+
+/// Throws std::runtime_error if the job's folder does not say.
+JobState Queue::stored_state(const std::string& id) const {
+  const auto unsaved = unsaved_.find(id);
+  return unsaved != unsaved_.end() ? unsaved->second : table_.folder(id).read_state();
+}
+
+void Queue::write_state(const std::string& id, const JobState& state, bool over) {
+  try {
+    const State before = stored_state(id).state;
+    if (before != state.state && !may_follow(before, state.state)) {
+      log::error("{}: {} may not follow {}", id, enum_name(state.state), enum_name(before));
+    }
+    table_.folder(id).write_state(state);
+    unsaved_.erase(id);
+  } catch (const std::exception& error) {
+    log::error("{}: its state could not be saved: {}", id, error.what());
+    unsaved_[id] = state;
+  }
+  table_.set_state(id, state, over);
+}
+
+void Queue::save_pending() {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(unsaved_, [&](const auto& pending) {
+    const auto& [id, state] = pending;
+    try {
+      table_.folder(id).write_state(state);
+      return true;
+    } catch (const std::exception&) {
+      std::error_code ignored;
+      return !std::filesystem::exists(table_.folder(id).dir(), ignored);
+    }
+  });
+}
+
+}  // namespace lacuna

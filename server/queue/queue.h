@@ -1,0 +1,157 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <tuple>
+#include <vector>
+
+#include "jobs/store/job_folder.h"
+#include "server/queue/disk_watch.h"
+#include "server/queue/executor.h"
+#include "server/queue/trash.h"
+#include "server/queue/verdict.h"
+#include "server/settings/queue_settings.h"
+#include "server/tables/job_table.h"
+
+namespace lacuna {
+
+/// What is asked for is not possible for a job in its state.
+class Conflict : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+/// The job is no longer the one that the asker had seen.
+class Changed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+/// No more jobs may wait.
+class Full : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The jobs that wait and those that are rendered: by priority, then first come, first served; an
+/// exclusive job runs alone, and none overtakes it. The folders are the truth; this is what can be
+/// rebuilt from them. While a renderer runs, its job's state.json belongs to it; before and after,
+/// to the queue. What a person asks for is on disk before the call returns.
+///
+/// The calls that change a job take the `revision` that the asker has seen; empty: any. All throw
+/// Changed, Conflict, and std::system_error if the request could not be stored.
+class Queue {
+ public:
+  Queue(Executor& executor, JobTable& table, DiskWatch& disk, QueueSettings settings);
+  ~Queue() { stop(); }
+  Queue(const Queue&) = delete;
+  Queue& operator=(const Queue&) = delete;
+
+  /// Puts every unfinished job of the table in the line again, and begins.
+  void start();
+  /// Asks all renderers to stop and waits for them; their jobs go on after the next start().
+  void stop();
+
+  /// How many more jobs may wait or run.
+  std::size_t room() const;
+  /// Throws Full if there is no room.
+  void check_room() const;
+  /// Calls `notice` whenever a job is over: under the queue's lock, so that it may only take note.
+  /// Before start().
+  void on_over(std::function<void()> notice) { on_over_ = std::move(notice); }
+  /// A new job, whose folder is complete on disk.
+  EntryPtr add(const std::string& id);
+
+  /// A running job that is held is stopped, with its checkpoint.
+  void change(const std::string& id, std::optional<int> priority, std::optional<bool> held,
+              const std::string& revision = {});
+  /// Stops a job for good; nothing happens if it is cancelled already.
+  void cancel(const std::string& id, const std::string& revision = {});
+  /// A failed or cancelled job goes on from its checkpoint.
+  void retry(const std::string& id, const std::string& revision = {});
+  /// A job that is over goes on until a larger budget is spent. Throws BadJob if it is no larger.
+  void extend(const std::string& id, const Budget& budget, const std::string& revision = {});
+  /// Removes a job that is over, and its folder: none of a sweep that is not over.
+  void remove(const std::string& id, const std::string& revision = {});
+  /// The same of many at once: all of them or, if one cannot be, none.
+  void remove_all(const std::vector<std::string>& ids);
+  /// Throws Conflict if one of them cannot be removed.
+  void check_removable(const std::vector<std::string>& ids) const;
+
+  /// While there is too little room on the disk, nothing starts and all renderers stop.
+  void look_at_disk();
+  /// Takes over what the renderers have written about their jobs meanwhile.
+  void look_at_running();
+  /// Tries once more to write the states that could not be written.
+  void save_pending();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using Place = std::tuple<int, std::string, std::string>;  // -priority, creation, id
+
+  /// A job that is not over.
+  struct Work {
+    std::string id;
+    std::string created;
+    bool exclusive = false;
+    JobControl control;
+    Clock::time_point not_before{};
+    std::optional<Place> place;        // in the line
+    std::shared_ptr<StopSignal> stop;  // a runner has it
+    bool stopped_for_disk = false;
+  };
+  using WorkPtr = std::shared_ptr<Work>;
+
+  void run();
+  WorkPtr take();
+  WorkPtr first_ready(Clock::time_point& look_again) const;
+  void attend(Work& work);
+  bool wait_until_free(const Work& work);
+  void note_renderer(Work& work, pid_t pid);
+  void settle(Work& work, Attempt attempt);
+  void resume(Work& work);
+  void give_up(const std::string& id, const std::string& reason);
+  void enter(const EntryPtr& entry);
+  WorkPtr open(const JobEntry& entry, const JobControl& control);
+  void line_up(Work& work);
+  void leave_line(Work& work);
+  std::optional<JobFolder::Lock> try_folder(const Work& work) const;
+  bool withdraw(Work& work, State how);
+  void write_control(Work& work, const JobControl& control);
+  void write_state(const std::string& id, const JobState& state, bool over);
+  void forget(const std::string& id);
+  JobState stored_state(const std::string& id) const;
+  Work& reopen(const EntryPtr& entry);
+  EntryPtr checked(const std::string& id, const std::string& revision) const;
+  std::map<std::string, std::string> references() const;
+  void check_all_removable(const std::vector<std::string>& ids) const;
+  void take_away(const std::vector<std::string>& ids);
+
+  Executor& executor_;
+  JobTable& table_;
+  DiskWatch& disk_;
+  const QueueSettings settings_;
+  std::function<void()> on_over_ = [] {};
+  Trash trash_;
+
+  // Guards all below, and is held while a decision is written to disk, so that decisions and what
+  // is stored of them have one order. Nothing else is waited for under it.
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::map<std::string, WorkPtr> work_;
+  std::set<Place> line_;
+  std::map<std::string, JobState> unsaved_;  // states that could not be written (disk full)
+  int running_ = 0;
+  bool exclusive_runs_ = false;
+  bool stopping_ = false;
+  std::vector<std::thread> runners_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,42 @@
+#include "server/queue/trash.h"
+
+#include "server/telemetry/log.h"
+
+namespace lacuna {
+
+Trash::Trash() : thread_([this] { run(); }) {}
+
+void Trash::take(std::vector<std::filesystem::path> folders) {
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& folder : folders) folders_.push_back(std::move(folder));
+  }
+  changed_.notify_all();
+}
+
+void Trash::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+void Trash::run() {
+  for (;;) {
+    std::filesystem::path folder;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [&] { return stopping_ || !folders_.empty(); });
+      if (stopping_) return;
+      folder = std::move(folders_.front());
+      folders_.pop_front();
+    }
+    std::error_code error;
+    std::filesystem::remove_all(folder, error);
+    if (error) log::warn("{} is left: {}", folder.string(), error.message());
+  }
+}
+
+}  // namespace lacuna

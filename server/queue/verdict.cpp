@@ -1,0 +1,101 @@
+#include "server/queue/verdict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+
+#include "jobs/store/exit_code.h"
+
+namespace lacuna {
+namespace {
+
+Verdict failed(JobState state, const std::string& error, const std::string& now) {
+  state.error = error;
+  return {ended(std::move(state), State::failed, now)};
+}
+
+/// The code of this ending is an exit code.
+bool exited(const Ending& end) {
+  return end.kind == Ending::Kind::exited || end.kind == Ending::Kind::out_of_memory;
+}
+
+/// A renderer that could not be started may be another time: it was not its fault.
+bool may_start_later(int error) {
+  constexpr std::array passing{EAGAIN, ENOMEM, ENOSPC, EDQUOT, EMFILE, ENFILE};
+  return std::find(passing.begin(), passing.end(), error) != passing.end();
+}
+
+/// Another renderer would end likewise.
+bool is_final(const Ending& end) {
+  if (end.kind == Ending::Kind::not_started) return !may_start_later(end.code);
+  return end.kind == Ending::Kind::exited && (end.code == exit_bad_job || end.code == exit_asset);
+}
+
+bool interrupted(const Ending& end) {
+  return end.kind == Ending::Kind::exited && end.code == exit_interrupted;
+}
+
+/// Stopped by somebody else or by a full disk, but not in vain.
+bool made_progress(const Attempt& attempt) {
+  return interrupted(attempt.ending) && attempt.iteration_after > attempt.iteration_before;
+}
+
+std::string reason_of(const Attempt& attempt) {
+  const Ending& end = attempt.ending;
+  if (interrupted(end)) {
+    const std::string& said = attempt.after.error;
+    return said.empty() ? end.reason + ", unasked and without progress" : said;
+  }
+  const bool silent = end.kind == Ending::Kind::exited && end.code == exit_done;
+  return silent ? end.reason + " but left no result" : end.reason;
+}
+
+}  // namespace
+
+JobState ended(JobState state, State how, const std::string& now) {
+  state.state = how;
+  state.phase.clear();
+  if (how != State::failed) state.error.clear();
+  state.finished = now;
+  return state;
+}
+
+JobState queued(JobState state) {
+  state.state = State::queued;
+  state.phase.clear();
+  state.error.clear();
+  state.finished.clear();
+  return state;
+}
+
+JobState held(JobState state) {
+  state = queued(std::move(state));
+  state.state = State::held;
+  return state;
+}
+
+Verdict judge(const Attempt& attempt, int max_attempts, const std::string& now) {
+  JobState state = attempt.after;
+  const Ending& end = attempt.ending;
+  if (exited(end)) state.exit_code = end.code;
+  if (end.kind == Ending::Kind::killed) state.exit_code = 128 + end.code;  // as shells have it
+  if (is_terminal(state.state)) return {state};
+  const bool started = end.kind != Ending::Kind::not_started;
+  // A renderer that died early did not count itself.
+  state.attempts = std::max(state.attempts, attempt.before.attempts + (started ? 1 : 0));
+
+  if (attempt.cancel) return {ended(std::move(state), State::cancelled, now)};
+  if (attempt.hold) return {held(std::move(state))};
+  if (attempt.stopped) return {queued(std::move(state))};
+  if (is_final(end)) return failed(std::move(state), end.reason, now);
+  if (attempt.disk_low || made_progress(attempt)) return {queued(std::move(state))};
+  const int crashes = attempt.crashes + 1;
+  if (crashes < max_attempts) return {queued(std::move(state)), true};
+  const std::string reason = reason_of(attempt);
+  return failed(std::move(state),
+                crashes == 1 ? reason : fmt::format("{}, {} times", reason, crashes), now);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <system_error>
+
+#include "jobs/spec/problems.h"
+#include "server/http/message.h"
+#include "server/queue/queue.h"
+
+namespace lacuna {
+
+/// Runs a change that a person asks for and gives what went wrong its HTTP status.
+template <class Change>
+void apply(Change&& change) {
+  try {
+    change();
+  } catch (const Changed& error) {
+    throw HttpError(412, error.what());
+  } catch (const Conflict& error) {
+    throw HttpError(409, error.what());
+  } catch (const BadJob& bad) {
+    throw HttpError(400, "The new budget is not valid.", bad.problems());
+  } catch (const std::system_error& error) {
+    throw HttpError(507, fmt::format("This could not be stored: {}.", error.code().message()));
+  }
+}
+
+}  // namespace lacuna

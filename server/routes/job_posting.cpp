@@ -1,0 +1,91 @@
+#include "server/routes/job_posting.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <vector>
+
+#include "jobs/spec/job_json.h"
+#include "server/http/conditional.h"
+#include "server/routes/catalogue.h"
+#include "server/routes/named_files.h"
+#include "server/telemetry/log.h"
+
+namespace lacuna {
+
+JobPosting::JobPosting(DataRoot data, const ScenesRoots& scenes, JobTable& table, Queue& queue)
+    : Posting("job", "/api/jobs/", max_job_bytes),
+      data_(std::move(data)),
+      scenes_(scenes),
+      table_(table),
+      queue_(queue) {}
+
+Response JobPosting::dry_run(const Request& request) const {
+  const JobSpec spec = checked_spec(read_body(request));
+  return json_response(200,
+                       {{"job", parse_own(write_job(spec))}, {"warnings", OrderedJson::array()}});
+}
+
+std::map<std::string, std::string> JobPosting::stored_keys() const {
+  std::map<std::string, std::string> keys;
+  for (const EntryPtr& job : table_.all()) {
+    if (!job->control.idempotency_key.empty()) keys[job->control.idempotency_key] = job->id;
+  }
+  return keys;
+}
+
+std::optional<std::string> JobPosting::body_hash(const std::string& id) const {
+  const EntryPtr entry = table_.find(id);
+  if (!entry) return std::nullopt;
+  return entry->control.body_hash;
+}
+
+OrderedJson JobPosting::describe_made(const std::string& id) const {
+  return job_detail(table_, *find_job(table_, id));
+}
+
+/// One that will not be that of a run of some sweep.
+std::string JobPosting::new_id() const {
+  for (;;) {
+    std::string id = new_job_id();
+    if (table_.sweeps().sweep_of(id).empty()) return id;
+  }
+}
+
+std::string JobPosting::make(const std::string& body, const Key& key) {
+  const JobSpec spec = checked_spec(body);
+  JobControl control;
+  control.idempotency_key = key.name;
+  control.body_hash = key.body_hash;
+  try {
+    queue_.check_room();
+  } catch (const Full& full) {
+    throw HttpError(429, full.what()).with("Retry-After", "10");
+  }
+  const JobFolder folder = [&] {
+    try {
+      return JobFolder::create(data_.jobs() / new_id(), spec, control);
+    } catch (const std::system_error& error) {
+      log::error("a job could not be stored: {}", error.what());
+      throw HttpError(507, fmt::format("The job could not be stored: {}.", error.code().message()));
+    }
+  }();
+  queue_.add(folder.id());
+  log::info("{}: queued ({})", folder.id(), spec.scene);
+  return folder.id();
+}
+
+/// What the job names must be there, too, before it is taken.
+JobSpec JobPosting::checked_spec(const std::string& body) const {
+  try {
+    JobSpec spec = parse_job(body);
+    const auto missing = NamedFiles(scenes_).missing(spec);
+    if (missing.empty()) return spec;
+    throw HttpError(400, "The job names a file that is not there.", missing);
+  } catch (const BadJob& bad) {
+    throw HttpError(400, "The job is not valid.", bad.problems());
+  }
+}
+
+}  // namespace lacuna

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "jobs/store/job_folder.h"
+#include "server/http/router.h"
+#include "server/queue/queue.h"
+#include "server/routes/events.h"
+#include "server/routes/job_posting.h"
+#include "server/tables/job_table.h"
+
+namespace lacuna {
+
+/// The addresses below /api/jobs, and /api/events. All references outlive it.
+class JobRoutes {
+ public:
+  JobRoutes(DataRoot data, const ScenesRoots& scenes, JobTable& table, Queue& queue);
+  void add_to(Router& router);
+
+ private:
+  void add_collection(Router& router);
+  void add_changes(Router& router);
+  void add_results(Router& router);
+
+  Response list(const Request& request);
+  Response detail(const Request& request, const std::string& id);
+  Response change(const Request& request, const std::string& id);
+  Response cancel(const Request& request, const std::string& id);
+  Response retry(const Request& request, const std::string& id);
+  Response extend(const Request& request, const std::string& id);
+  Response remove(const Request& request, const std::string& id);
+  Response log(const Request& request, const std::string& id);
+  Response file(const Request& request, const std::string& id, const std::string& name);
+  Response answer(const Request& request, int status, const std::string& id);
+
+  JobTable& table_;
+  Queue& queue_;
+  JobPosting posting_;
+  Events events_;
+};
+
+}  // namespace lacuna

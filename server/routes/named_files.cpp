@@ -1,0 +1,33 @@
+#include "server/routes/named_files.h"
+
+#include <stdexcept>
+
+namespace lacuna {
+
+std::vector<Problem> NamedFiles::missing(const JobSpec& spec) {
+  std::vector<Problem> problems;
+  const auto check = [&](const std::string& name, const std::vector<std::string_view>& extensions,
+                         const char* pointer) {
+    const std::string& why = look_up(name, extensions);
+    if (!why.empty()) problems.push_back({pointer, why});
+  };
+  check(spec.scene, {".glb", ".gltf"}, "/scene");
+  if (spec.environment) check(spec.environment->file, {".exr", ".hdr"}, "/environment/file");
+  return problems;
+}
+
+/// What is wrong with a name.
+const std::string& NamedFiles::look_up(const std::string& name,
+                                       const std::vector<std::string_view>& extensions) {
+  // One name may be asked for as a scene and as an image.
+  const auto [found, fresh] = seen_.try_emplace(name + '\0' + std::string(extensions.front()));
+  if (!fresh) return found->second;
+  try {
+    scenes_.resolve(name, extensions);
+  } catch (const std::invalid_argument& error) {
+    found->second = error.what();
+  }
+  return found->second;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "server/http/router.h"
+#include "server/http/static_files.h"
+#include "server/routes/job_routes.h"
+#include "server/routes/service_routes.h"
+#include "server/routes/sweep_routes.h"
+
+namespace lacuna {
+
+/// The service's addresses and what each does. All references outlive it.
+class Routes {
+ public:
+  Routes(const ServiceFacts& facts, JobTable& table, Queue& queue, SweepTable& sweeps,
+         SweepKeeper& keeper, const StaticFiles& page);
+
+  /// For HttpServer.
+  const Router& router() const { return router_; }
+
+ private:
+  JobRoutes jobs_;
+  SweepRoutes sweeps_;
+  ServiceRoutes service_;
+  Router router_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,212 @@
+#include "server/routes/scene_uploads.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <fstream>
+#include <random>
+#include <stdexcept>
+#include <system_error>
+#include <vector>
+
+#include "jobs/spec/byte_size.h"
+#include "jobs/store/exit_code.h"
+#include "server/queue/child_process.h"
+
+namespace lacuna {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view draft_prefix = ".upload-";
+constexpr std::size_t longest_reason = 4096;
+constexpr std::uint64_t longest_output = 1 << 20;
+
+bool is_glb(const fs::path& file) {
+  std::array<char, 4> magic{};
+  std::ifstream(file, std::ios::binary).read(magic.data(), magic.size());
+  return std::string_view(magic.data(), magic.size()) == "glTF";
+}
+
+/// Two regular files with the same bytes; no link is followed for `there`.
+bool same_bytes(const fs::path& there, const fs::path& draft) {
+  if (!fs::is_regular_file(fs::symlink_status(there))) return false;
+  if (fs::file_size(there) != fs::file_size(draft)) return false;
+  std::ifstream a(there, std::ios::binary), b(draft, std::ios::binary);
+  std::vector<char> from_a(1 << 16), from_b(1 << 16);
+  do {
+    a.read(from_a.data(), static_cast<std::streamsize>(from_a.size()));
+    b.read(from_b.data(), static_cast<std::streamsize>(from_b.size()));
+    if (a.gcount() != b.gcount() ||
+        !std::equal(from_a.begin(), from_a.begin() + a.gcount(), from_b.begin())) {
+      return false;
+    }
+  } while (a && b);
+  return a.eof() && b.eof();
+}
+
+/// A file in memory that a child's output goes to.
+FileHandle output_file() {
+  FileHandle file(::memfd_create("check", MFD_CLOEXEC));
+  if (!file) throw std::system_error(errno, std::generic_category(), "memfd_create");
+  return file;
+}
+
+/// The last line of what a child said; a reason comes last.
+std::string last_line(int fd) {
+  struct stat info {};
+  if (::fstat(fd, &info) != 0) return {};
+  std::string text(longest_reason, '\0');
+  const off_t from = std::max<off_t>(0, info.st_size - static_cast<off_t>(text.size()));
+  const ssize_t n = ::pread(fd, text.data(), text.size(), from);
+  text.resize(static_cast<std::size_t>(std::max<ssize_t>(0, n)));
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  text.erase(0, text.rfind('\n') + 1);  // npos + 1: there is only one
+  return text;
+}
+
+/// `text` without "lacuna: " before it and the place where the draft happened to lie in it.
+std::string tidy(std::string text, const fs::path& draft) {
+  for (const std::string& noise : {std::string("lacuna: "), draft.string() + ": "}) {
+    if (text.starts_with(noise)) text.erase(0, noise.size());
+  }
+  return text;
+}
+
+bool is_requested(const StopSignal& stop) {
+  pollfd fd{stop.fd(), POLLIN, 0};
+  return ::poll(&fd, 1, 0) > 0;
+}
+
+std::vector<std::string> own_environment() {
+  std::vector<std::string> all;
+  for (char** p = ::environ; *p != nullptr; ++p) all.emplace_back(*p);
+  return all;
+}
+
+}  // namespace
+
+bool is_upload_name(std::string_view name) {
+  constexpr std::string_view extension = ".glb";
+  constexpr std::size_t longest = 80;
+  if (!name.ends_with(extension) || name.find("..") != std::string_view::npos) return false;
+  const std::string_view stem = name.substr(0, name.size() - extension.size());
+  const auto plain = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+  };
+  const auto allowed = [&](char c) { return plain(c) || c == '.' || c == '_' || c == '-'; };
+  return !stem.empty() && stem.size() <= longest && plain(stem.front()) &&
+         std::all_of(stem.begin(), stem.end(), allowed);
+}
+
+SceneUploads::Draft::Draft(const fs::path& folder) {
+  std::string name = (folder / draft_prefix).string() + "XXXXXX";
+  if (::mkdtemp(name.data()) == nullptr) throw_file_error(errno, "create a folder in", folder);
+  own_folder_ = name;
+  std::random_device random;
+  file_ = own_folder_ / fmt::format("{:08x}{:08x}.glb", random(), random());
+  handle_ = FileHandle(::open(file_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
+  if (handle_) return;
+  const int error = errno;
+  ::rmdir(own_folder_.c_str());
+  throw_file_error(error, "create", file_);
+}
+
+SceneUploads::Draft::~Draft() {
+  if (own_folder_.empty()) return;  // moved away
+  std::error_code ignored;          // what is left is removed at the next start
+  fs::remove_all(own_folder_, ignored);
+}
+
+void SceneUploads::Draft::finish() {
+  if (!handle_) return;
+  if (::fsync(handle_.get()) != 0) throw_file_error(errno, "sync", file_);
+  if (!handle_.close()) throw_file_error(errno, "write", file_);
+}
+
+SceneUploads::SceneUploads(SceneUploadSettings settings) : settings_(std::move(settings)) {
+  fs::create_directories(settings_.folder);
+  std::vector<fs::path> left;
+  for (const auto& entry : fs::directory_iterator(settings_.folder)) {
+    const bool folder = fs::is_directory(entry.symlink_status());
+    if (folder && entry.path().filename().string().starts_with(draft_prefix)) {
+      left.push_back(entry.path());
+    }
+  }
+  std::error_code ignored;  // it only takes space
+  for (const fs::path& folder : left) fs::remove_all(folder, ignored);
+}
+
+SceneUploads::Result SceneUploads::publish(Draft draft, const std::string& name) {
+  if (!is_upload_name(name)) {
+    throw std::invalid_argument(fmt::format(
+        "found \"{}\"; allowed: a letter or digit, then up to 79 letters, digits, '.', '_' or '-' "
+        "without \"..\", and \".glb\"",
+        name));
+  }
+  draft.finish();
+  const std::uint64_t bytes = fs::file_size(draft.file());
+  const fs::path target = settings_.folder / name;
+  const auto known = [&] {
+    return Result{same_bytes(target, draft.file()) ? Outcome::same : Outcome::conflict, bytes};
+  };
+  const std::unique_lock lock(checking_, std::try_to_lock);
+  if (!lock || is_requested(stop_)) return {Outcome::busy, bytes};
+  if (fs::exists(fs::symlink_status(target))) return known();
+  if (!is_glb(draft.file())) {
+    return {Outcome::refused, bytes, "it is no GLB: it does not begin with \"glTF\""};
+  }
+  bool stopped = false;
+  std::string reason = check(draft.file(), stopped);
+  if (stopped) return {Outcome::busy, bytes};
+  if (!reason.empty()) return {Outcome::refused, bytes, std::move(reason)};
+  // Unlike a rename, a link never replaces what is there.
+  if (::link(draft.file().c_str(), target.c_str()) != 0) {
+    if (errno == EEXIST) return known();
+    throw_file_error(errno, "create", target);
+  }
+  sync_folder(settings_.folder);
+  return {Outcome::created, bytes};
+}
+
+/// Why the scene is refused; empty: it is good.
+std::string SceneUploads::check(const fs::path& file, bool& stopped) const {
+  const FileHandle output = output_file();
+  ChildLimits limits = settings_.limits;
+  limits.file_bytes = longest_output;
+  ChildProcess child({.arguments = {settings_.renderer.string(), "check", "--scene", file.string()},
+                      .environment = own_environment(),
+                      .directory = settings_.folder,
+                      .output = {},
+                      .output_fd = output.get(),
+                      .limits = limits});
+  if (!child.wait(stop_.fd(), settings_.time)) {
+    child.signal(SIGKILL);
+    child.wait(-1, std::chrono::milliseconds(-1));
+    child.reap();
+    stopped = is_requested(stop_);
+    return fmt::format("it could not be checked within {} s",
+                       static_cast<double>(settings_.time.count()) / 1000);
+  }
+  const Ending end = child.reap();
+  const bool exited = end.kind == Ending::Kind::exited;
+  if (exited && end.code == exit_done) return {};
+  if (exited && end.code == exit_memory) {
+    return fmt::format("loading it takes more memory than is allowed{}",
+                       limits.memory_bytes > 0 ? ", " + byte_size_text(limits.memory_bytes) : "");
+  }
+  std::string said = tidy(last_line(output.get()), file);
+  if (exited && end.code == exit_asset && !said.empty()) return said;
+  return "its check failed: " + end.reason;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,177 @@
+#include "server/routes/service_routes.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "jobs/spec/job_json.h"
+#include "jobs/spec/version.h"
+#include "jobs/store/machine.h"
+#include "server/http/conditional.h"
+#include "server/routes/cache_listing.h"
+#include "server/tables/entry_json.h"
+#include "server/telemetry/prometheus.h"
+
+namespace lacuna {
+namespace {
+
+constexpr std::uint64_t max_scene_bytes = std::uint64_t{256} << 20;
+
+/// The state machine, for programs.
+OrderedJson states() {
+  OrderedJson states = OrderedJson::array(), transitions = OrderedJson::array();
+  for (const auto& [state, name, doc] : EnumTable<State>::values) {
+    states.push_back({{"name", name}, {"doc", doc}, {"terminal", is_terminal(state)}});
+  }
+  for (const Transition& t : state_transitions()) {
+    transitions.push_back(
+        {{"from", enum_name(t.from)}, {"to", enum_name(t.to)}, {"by", t.by}, {"when", t.why}});
+  }
+  return {{"states", std::move(states)}, {"transitions", std::move(transitions)}};
+}
+
+double cpu_seconds(int who) {
+  rusage usage{};
+  ::getrusage(who, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+}  // namespace
+
+Response ServiceRoutes::info() const {
+  const ServiceSettings& s = facts_.settings;
+  const auto counts = facts_.table.counts();
+  const std::chrono::duration<double> up = std::chrono::steady_clock::now() - start_;
+  return json_response(
+      200,
+      {{"version", version()},
+       {"started", started_},
+       {"uptime_seconds", up.count()},
+       {"uploads", facts_.uploads != nullptr},
+       {"settings",
+        {{"jobs", s.queue.children},
+         {"max_attempts", s.queue.max_attempts},
+         {"max_jobs", s.queue.max_waiting},
+         {"grace_seconds", s.grace_seconds},
+         {"memory_limit", s.limits.memory_bytes},
+         {"nice", s.limits.niceness},
+         {"keep_jobs", s.care.keep_jobs},
+         {"keep_days", s.care.keep_days}}},
+       {"machine",
+        {{"cpu", processor_name()},
+         {"cores", processor_threads()},
+         {"memory_bytes", memory_bytes()}}},
+       {"disk", {{"free_bytes", facts_.disk.free_bytes()}, {"floor_bytes", facts_.disk.floor()}}},
+       {"queue",
+        {{"queued", counts.at(State::queued)},
+         {"running", counts.at(State::running)},
+         {"held", counts.at(State::held)}}}});
+}
+
+Response ServiceRoutes::metrics() const {
+  PrometheusText text;
+  auto& jobs = text.gauge("lacuna_jobs", "Jobs, by state.");
+  for (const auto& [state, n] : facts_.table.counts()) {
+    jobs.value(static_cast<double>(n), {{"state", std::string(enum_name(state))}});
+  }
+  text.gauge("lacuna_disk_free_bytes", "Room where the jobs lie.")
+      .value(static_cast<double>(facts_.disk.free_bytes()));
+  text.gauge("lacuna_disk_floor_bytes", "With less room than this, jobs wait.")
+      .value(static_cast<double>(facts_.disk.floor()));
+  text.counter("lacuna_events_total", "Events of jobs since the service started.")
+      .value(static_cast<double>(facts_.table.journal().last()));
+  text.counter("lacuna_cpu_seconds_total", "CPU time, of the service and of renderers that ended.")
+      .value(cpu_seconds(RUSAGE_SELF), {{"of", "service"}})
+      .value(cpu_seconds(RUSAGE_CHILDREN), {{"of", "renderers"}});
+  write_metrics(text, facts_.http);
+  Response response;
+  response.content_type = std::string(PrometheusText::media_type);
+  response.headers = {{"Cache-Control", "no-store"}};
+  response.body = text.text();
+  return response;
+}
+
+Response ServiceRoutes::put_scene(const Request& request, const std::string& name) const {
+  if (facts_.uploads == nullptr) {
+    throw HttpError(404, "This service takes no scenes: it runs without --uploads.");
+  }
+  if (!is_upload_name(name)) {
+    throw HttpError(400,
+                    "A scene's name is a letter or digit and at most 79 letters, digits, '.', "
+                    "'_' or '-', and ends in .glb.");
+  }
+  if (media_type(request) != "model/gltf-binary") {
+    throw HttpError(415, "A scene is sent with Content-Type: model/gltf-binary.");
+  }
+  SceneUploads::Draft draft = facts_.uploads->begin();
+  request.read_body_to(draft.fd(), max_scene_bytes);
+  const SceneUploads::Result result = facts_.uploads->publish(std::move(draft), name);
+  using Outcome = SceneUploads::Outcome;
+  switch (result.outcome) {
+    case Outcome::created:
+      return json_response(201, {{"scene", name}, {"bytes", result.bytes}});
+    case Outcome::same:
+      return json_response(200, {{"scene", name}, {"bytes", result.bytes}});
+    case Outcome::conflict:
+      throw HttpError(409, fmt::format("Another scene has the name \"{}\".", name));
+    case Outcome::busy:
+      throw HttpError(503, "Another scene is being checked.").with("Retry-After", "2");
+    case Outcome::refused:
+      break;
+  }
+  throw HttpError(422, result.reason);
+}
+
+void ServiceRoutes::add_to(Router& router) {
+  using Parts = Router::Parts;
+  router.add("GET", "/health",
+             {.summary = "The service is up",
+              .answers = {{200, "{\"status\": \"ok\"}"}},
+              .needs_token = false},
+             [](const Request&, const Parts&) {
+               return json_response(200, {{"status", "ok"}});
+             });
+  router.add("GET", "/metrics", {.summary = "Counts and times, for Prometheus"},
+             [this](const Request&, const Parts&) { return metrics(); });
+  router.add("GET", "/api/info", {.summary = "Version, settings, machine, room on the disk"},
+             [this](const Request&, const Parts&) { return info(); });
+  router.add("GET", "/openapi.json", {.summary = "This description"},
+             [&router](const Request& request, const Parts&) {
+               const OrderedJson info = {{"title", "Lacuna"}, {"version", version()}};
+               return with_tag(request, json_response(200, router.openapi(info)));
+             });
+  router.add("GET", "/api/states", {.summary = "The states of a job and what may follow what"},
+             [](const Request& request, const Parts&) {
+               return with_tag(request, json_response(200, states()));
+             });
+  router.add("GET", "/api/schema/job", {.summary = "The JSON Schema of a job"},
+             [](const Request& request, const Parts&) {
+               return with_tag(request, json_response(200, job_schema()));
+             });
+  router.add("GET", "/api/scenes", {.summary = "The scenes that jobs can name"},
+             [this](const Request&, const Parts&) {
+               return json_response(200, {{"scenes", facts_.scenes.list()}});
+             });
+  router.add(
+      "PUT", "/api/scenes/{name}",
+      {.summary = "Takes a scene in, if it can be rendered; never replaces one",
+       .body_type = "model/gltf-binary",
+       .answers = {{201, "it is there now"},
+                   {200, "the very same bytes were there"},
+                   {404, "the service runs without --uploads"},
+                   {409, "another scene has that name"},
+                   {413, "it is larger than 256 MiB"},
+                   {422, "it is no scene that can be rendered"}}},
+      [this](const Request& request, const Parts& parts) { return put_scene(request, parts[0]); });
+  router.add("GET", "/api/cache", {.summary = "What is kept so that it need not be made again"},
+             [this](const Request&, const Parts&) {
+               return json_response(200, cache_listing(facts_.data));
+             });
+}
+
+}  // namespace lacuna

@@ -1,0 +1,149 @@
+#include "server/routes/sweep_routes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "jobs/spec/job_json.h"
+#include "jobs/sweep/answers.h"
+#include "server/http/conditional.h"
+#include "server/routes/apply_change.h"
+#include "server/routes/sweep_catalogue.h"
+
+namespace lacuna {
+
+SweepRoutes::SweepRoutes(const ScenesRoots& scenes, SweepTable& sweeps, const JobTable& jobs,
+                         SweepKeeper& keeper)
+    : sweeps_(sweeps), jobs_(jobs), keeper_(keeper), posting_(scenes, sweeps, jobs, keeper) {}
+
+/// Throws HttpError 409 for one whose folder cannot be read.
+std::shared_ptr<const SweepFolder> SweepRoutes::open(const SweepEntry& sweep) {
+  if (sweep.error.empty()) return sweeps_.open(sweep.id);
+  throw HttpError(409, fmt::format("Sweep {}: {}.", sweep.id, sweep.error));
+}
+
+Response SweepRoutes::list(const Request& request) const {
+  OrderedJson list = OrderedJson::array();
+  const auto sweeps = sweeps_.all();
+  std::for_each(sweeps.rbegin(), sweeps.rend(),
+                [&](const SweepEntryPtr& sweep) { list.push_back(to_json(*sweep, jobs_)); });
+  return with_tag(request, json_response(200, {{"sweeps", std::move(list)}}));
+}
+
+Response SweepRoutes::detail(const Request& request, const std::string& id) {
+  const SweepEntryPtr sweep = find_sweep(sweeps_, id);
+  const OrderedJson json =
+      sweep->error.empty() ? sweep_detail(*sweep, *open(*sweep), jobs_) : to_json(*sweep, jobs_);
+  return with_tag(request, json_response(200, json));
+}
+
+Response SweepRoutes::cancel(const Request&, const std::string& id) {
+  find_sweep(sweeps_, id);
+  apply([&] { keeper_.cancel(id); });
+  const SweepEntryPtr sweep = find_sweep(sweeps_, id);
+  return json_response(is_over(sweep->state.state) ? 200 : 202, to_json(*sweep, jobs_));
+}
+
+Response SweepRoutes::remove(const Request&, const std::string& id) {
+  find_sweep(sweeps_, id);
+  apply([&] { keeper_.remove(id); });
+  Response response;
+  response.status = 204;
+  return response;
+}
+
+Response SweepRoutes::answers(const Request& request, const std::string& id) {
+  const auto sweep = open(*find_sweep(sweeps_, id));
+  return with_tag(request, json_response(200, answers_text(*sweep, answer(*sweep))));
+}
+
+Response SweepRoutes::table(const Request& request, const std::string& id) {
+  Response response;
+  response.content_type = "text/csv";
+  response.headers = {{"Cache-Control", "no-cache"}};
+  response.body = sweep_table(*open(*find_sweep(sweeps_, id)));
+  return with_tag(request, std::move(response));
+}
+
+namespace {
+
+RouteDoc sweep_post_doc() {
+  return {.summary =
+              "Queues a sweep: many jobs that differ in some settings; with an "
+              "Idempotency-Key, once",
+          .query = {{"dry_run", QueryParameter::Type::flag, "only check it and tell its cells"}},
+          .body_type = "application/json",
+          .body_schema = sweep_schema(),
+          .answers = {{201, "the sweep is on disk; its runs become jobs, a few at a time"},
+                      {200, "dry run; or the sweep that the same key has made before"},
+                      {400, "the sweep is not valid: `errors` has every mistake"},
+                      {422, "the key stands for another body"},
+                      {507, "it could not be stored"}}};
+}
+
+}  // namespace
+
+void SweepRoutes::add_to(Router& router) {
+  add_collection(router);
+  add_one(router);
+  add_results(router);
+}
+
+void SweepRoutes::add_collection(Router& router) {
+  using Parts = Router::Parts;
+  router.add("GET", "/api/sweeps",
+             {.summary = "Sweeps, newest first", .answers = {{200, "{sweeps}"}}},
+             [this](const Request& request, const Parts&) { return list(request); });
+  router.add("POST", "/api/sweeps", sweep_post_doc(), [this](const Request& request, const Parts&) {
+    return request.query.flag("dry_run") ? posting_.dry_run(request) : posting_.post(request);
+  });
+  router.add("GET", "/api/schema/sweep", {.summary = "The JSON Schema of a sweep"},
+             [](const Request& request, const Parts&) {
+               return with_tag(request, json_response(200, sweep_schema()));
+             });
+}
+
+void SweepRoutes::add_one(Router& router) {
+  router.add("GET", "/api/sweeps/{id}",
+             {.summary = "One sweep: its file, cells and runs",
+              .answers = {{200,
+                           "{id, label, state, created, finished, error, run_count, counts, "
+                           "share, spec, cell_count, cells, runs}; only up to share if its folder "
+                           "cannot be read"},
+                          {404, "there is no such sweep"}}},
+             with_id(*this, &SweepRoutes::detail));
+  router.add("POST", "/api/sweeps/{id}/cancel",
+             {.summary = "Stops it for good, with all its runs",
+              .answers = {{200, "it is cancelled"},
+                          {202, "renderers are asked to stop"},
+                          {404, "there is no such sweep"},
+                          {409, "it was over before"}}},
+             with_id(*this, &SweepRoutes::cancel));
+  router.add("DELETE", "/api/sweeps/{id}",
+             {.summary = "Removes it, its runs' jobs and their results",
+              .answers = {{204, "it is gone"},
+                          {404, "there is no such sweep"},
+                          {409,
+                           "it is not over, or one of its jobs is not, or is the reference of "
+                           "a job that is not"}}},
+             with_id(*this, &SweepRoutes::remove));
+}
+
+/// What its runs have come to.
+void SweepRoutes::add_results(Router& router) {
+  router.add("GET", "/api/sweeps/{id}/answers",
+             {.summary = "What its finished runs say of its settings, with intervals",
+              .answers = {{200, "the answers (jobs/sweep/README.md)"},
+                          {304, "as you have it"},
+                          {404, "there is no such sweep"}}},
+             with_id(*this, &SweepRoutes::answers));
+  router.add("GET", "/api/sweeps/{id}/table.csv",
+             {.summary = "All curves as one table: a row a run and instant",
+              .answers = {{200, "the table; empty: no run has a curve yet"},
+                          {304, "as you have it"},
+                          {404, "there is no such sweep"}}},
+             with_id(*this, &SweepRoutes::table));
+}
+
+}  // namespace lacuna

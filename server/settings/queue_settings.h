@@ -1,0 +1,47 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace lacuna {
+
+/// How the service hands jobs to renderers.
+struct QueueSettings {
+  int children = 1;                   ///< renderers at a time
+  int max_attempts = 3;               ///< a renderer that crashes is started this often for one job
+  std::size_t max_waiting = 100'000;  ///< jobs that wait or run; more are refused
+  std::chrono::milliseconds grace{};  ///< between SIGTERM and SIGKILL
+};
+
+/// What the service keeps, and how much room it leaves on the disk.
+struct CareSettings {
+  std::uint64_t disk_floor = 256 << 20;  ///< bytes; with less free, jobs wait and renderers stop
+  std::size_t keep_jobs = 0;             ///< jobs that are over; 0: all
+  double keep_days = 0;                  ///< since they ended; 0: for ever
+};
+
+/// What a child process is held to, so that the service outlives it and stays quick.
+struct ChildLimits {
+  /// Of its private writable memory, RLIMIT_DATA; 0: none. Not RLIMIT_AS: that counts address space
+  /// too that is only reserved (malloc's arenas, 64 MiB a thread, Embree, TBB) and every library
+  /// and file that is mapped, so that it says little of memory and grows with the cores.
+  std::uint64_t memory_bytes = 0;
+  int niceness = 0;              ///< added to the service's own; the sum is at most 19
+  int oom_score_adj = 0;         ///< added to the service's own: the kernel takes the child first
+  std::uint64_t file_bytes = 0;  ///< of a file that it writes, RLIMIT_FSIZE; 0: no limit
+};
+
+/// How the local executor treats its children.
+struct ExecutorSettings {
+  std::filesystem::path renderer;             ///< the `lacuna` command
+  std::filesystem::path data;                 ///< working directory of the children
+  std::filesystem::path cache = {};           ///< of their artefacts; empty: below `data`
+  std::vector<std::filesystem::path> scenes;  ///< what they look scenes up in
+  std::chrono::milliseconds grace{};          ///< between SIGTERM and SIGKILL
+  ChildLimits limits{.niceness = 10, .oom_score_adj = 500};
+};
+
+}  // namespace lacuna

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "server/settings/http_settings.h"
+#include "server/settings/queue_settings.h"
+
+namespace lacuna {
+
+/// What the command line says; paths that are empty take their defaults.
+struct ServiceSettings {
+  HttpSettings http;
+  AccessSettings access;
+  QueueSettings queue;
+  CareSettings care;
+  bool uploads = false;  ///< scenes may be put
+  bool verbose = false;  ///< every request is logged
+  double grace_seconds = 10;
+  ChildLimits limits = ExecutorSettings{}.limits;  ///< of every renderer
+  std::filesystem::path data, renderer, web;
+  std::vector<std::filesystem::path> scenes;
+};
+
+}  // namespace lacuna

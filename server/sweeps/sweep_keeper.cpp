@@ -1,0 +1,193 @@
+#include "server/sweeps/sweep_keeper.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <utility>
+
+#include "server/telemetry/log.h"
+
+namespace lacuna {
+namespace {
+
+// Notices bring nearly all that happens; this finds the rest, as room on the disk, or a job that
+// somebody has removed by hand.
+constexpr std::chrono::seconds look_again{1};
+
+}  // namespace
+
+SweepKeeper::SweepKeeper(SweepTable& sweeps, JobTable& jobs, Queue& queue, DiskWatch& disk,
+                         std::size_t kept_free)
+    : sweeps_(sweeps), jobs_(jobs), queue_(queue), disk_(disk), kept_free_(kept_free) {
+  queue_.on_over([this] { notice(); });
+}
+
+void SweepKeeper::start() {
+  thread_ = std::thread([this] { run(); });
+}
+
+void SweepKeeper::stop() {
+  {
+    const std::lock_guard lock(signal_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+void SweepKeeper::notice() {
+  {
+    const std::lock_guard lock(signal_);
+    noticed_ = true;
+  }
+  changed_.notify_all();
+}
+
+bool SweepKeeper::stopping() const {
+  const std::lock_guard lock(signal_);
+  return stopping_;
+}
+
+void SweepKeeper::run() {
+  for (;;) {
+    {
+      std::unique_lock lock(signal_);
+      changed_.wait_for(lock, look_again, [&] { return stopping_ || noticed_; });
+      if (stopping_) return;
+      noticed_ = false;
+    }
+    try {
+      look_after_all();
+    } catch (const std::exception& error) {
+      log::error("looking after the sweeps: {}", error.what());
+    }
+  }
+}
+
+/// A run of each in turn, so that all sweeps come on together.
+void SweepKeeper::look_after_all() {
+  const auto unfinished = sweeps_.unfinished();
+  std::erase_if(feeds_, [&](const auto& feed) { return !unfinished.contains(feed.first); });
+  for (bool busy = true; busy;) {
+    busy = false;
+    for (const std::string& id : unfinished) {
+      if (stopping()) return;
+      busy = look_after(id) || busy;
+    }
+  }
+}
+
+/// Whether it may be worth while to look again at once.
+bool SweepKeeper::look_after(const std::string& id) {
+  const SweepEntryPtr sweep = sweeps_.find(id);
+  if (!sweep || is_over(sweep->state.state)) return false;
+  if (sweep->state.state == SweepStage::cancelling) {
+    cancel_runs(id);
+    if (jobs_.tally(id).unfinished.empty()) sweeps_.set_stage(id, SweepStage::cancelled);
+    return false;
+  }
+  Feed& feed = feeds_[id];
+  if (!feed.folder) {
+    try {
+      feed.folder = sweeps_.open(id);
+    } catch (const std::exception& error) {
+      sweeps_.give_up(id, fmt::format("the sweep's folder cannot be read: {}", error.what()));
+      return false;
+    }
+  }
+  return make_next(id, feed);
+}
+
+/// Makes the next run, if there may be one more; or ends the sweep. False: nothing can be done now.
+bool SweepKeeper::make_next(const std::string& id, Feed& feed) {
+  const std::lock_guard lock(mutex_);
+  const SweepEntryPtr sweep = sweeps_.find(id);
+  if (!sweep || sweep->state.state != SweepStage::running) return false;
+  const JobTable::Tally tally = jobs_.tally(id);
+  const auto& runs = feed.folder->plan().runs;
+  while (feed.next < runs.size() && jobs_.find(feed.folder->job_id(runs[feed.next]))) ++feed.next;
+  if (feed.next == runs.size()) {
+    if (!tally.unfinished.empty()) return false;
+    if (tally.jobs() == runs.size()) {
+      sweeps_.set_stage(id, SweepStage::done);
+      log::info("{}: done, {} runs", id, runs.size());
+      return false;
+    }
+    feed.next = 0;  // somebody has removed a run's folder: it is made anew
+    return false;
+  }
+  if (tally.unfinished.size() >= most_waiting || disk_.is_low()) return false;
+  if (queue_.room() <= kept_free_) return false;
+  make(feed, runs[feed.next]);
+  return true;
+}
+
+void SweepKeeper::make(const Feed& feed, const SweepRun& run) {
+  // The queue's order is that of creation, and of ids within one millisecond: those follow another.
+  while (utc_now() == last_created_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const std::string id = feed.folder->make_folder(run).id();
+  last_created_ = queue_.add(id)->state.created;
+  log::debug("{}: run {} of sweep {}", id, run.name, feed.folder->id());
+}
+
+SweepEntryPtr SweepKeeper::checked(const std::string& id) const {
+  SweepEntryPtr sweep = sweeps_.find(id);
+  if (!sweep) throw Conflict("The sweep is not there any more.");
+  return sweep;
+}
+
+void SweepKeeper::cancel(const std::string& id) {
+  {
+    const std::lock_guard lock(mutex_);
+    const SweepStage stage = checked(id)->state.state;
+    if (stage == SweepStage::cancelled) return;
+    if (is_over(stage)) throw Conflict(fmt::format("The sweep is {}.", enum_name(stage)));
+    sweeps_.set_stage(id, SweepStage::cancelling);
+  }
+  cancel_runs(id);
+  notice();
+}
+
+/// Those that wait first: or they would begin as those that run end.
+void SweepKeeper::cancel_runs(const std::string& id) {
+  const auto unfinished = jobs_.tally(id).unfinished;
+  for (const bool runs : {false, true}) {
+    for (const std::string& job : unfinished) {
+      const EntryPtr entry = jobs_.find(job);
+      if (!entry || entry->over || entry->control.cancel) continue;
+      if ((entry->state.state == State::running) != runs) continue;
+      try {
+        queue_.cancel(job);
+      } catch (const std::exception& error) {  // it is over just now; or tried again later
+        log::debug("{}: {}", job, error.what());
+      }
+    }
+  }
+}
+
+void SweepKeeper::remove(const std::string& id) {
+  const SweepStage stage = checked(id)->state.state;
+  if (!is_over(stage)) {
+    throw Conflict(
+        fmt::format("The sweep is {}: only one that is over can be removed.", enum_name(stage)));
+  }
+  JobTable::Query runs;
+  runs.sweep = id;
+  runs.limit = std::numeric_limits<std::size_t>::max();
+  std::vector<std::string> jobs;
+  for (const EntryPtr& entry : jobs_.list(runs).jobs) jobs.push_back(entry->id);
+  queue_.check_removable(jobs);
+  // The sweep last: a crash before leaves one that can be removed once more.
+  constexpr std::size_t at_once = 100;  // the queue stands still meanwhile
+  for (std::size_t i = 0; i < jobs.size(); i += at_once) {
+    const auto begin = jobs.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto n = std::min(at_once, jobs.size() - i);
+    queue_.remove_all({begin, begin + static_cast<std::ptrdiff_t>(n)});
+  }
+  sweeps_.remove(id);
+  log::info("{}: removed, with {} jobs", id, jobs.size());
+}
+
+}  // namespace lacuna

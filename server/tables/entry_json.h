@@ -1,0 +1,16 @@
+#pragma once
+
+#include "jobs/spec/json_text.h"
+#include "jobs/store/job_folder.h"
+#include "server/tables/job_table.h"
+
+namespace lacuna {
+
+OrderedJson to_json(const JobState& state);
+OrderedJson to_json(const Progress& progress);
+/// The id of its sweep, or null.
+OrderedJson sweep_json(const JobEntry& entry);
+/// As an element of the API's list of jobs.
+OrderedJson to_json(const JobEntry& entry);
+
+}  // namespace lacuna
