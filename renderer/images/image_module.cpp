@@ -1,6 +1,7 @@
 #include "renderer/images/image_module.h"
 
 #include <dlfcn.h>
+#include <sys/mman.h>
 
 #include <filesystem>
 #include <future>
@@ -9,7 +10,6 @@
 #include <new>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "renderer/core/clock_seconds.h"
@@ -27,9 +27,16 @@ constexpr const char* loaded_first[] = {"libgdcmMSFF.so.3.0", "libproj.so.25", "
                                         "libspatialite.so.7", "libgdal.so.32", "libavformat.so.59",
                                         "libopenvdb.so.10.0"};
 
+/// What the libraries take of the limit of memory, `ulimit -d` (measured: 101 MiB, with the stacks
+/// of threads that some of them start). Without it they do not fail but end the process.
+constexpr std::size_t needed_room = std::size_t{128} << 20;
+/// With less than this the job might take that memory while the module is being loaded.
+constexpr std::size_t plenty_of_room = std::size_t{1} << 30;
+
 struct Loaded {
   const ImageCodec* codec = nullptr;  ///< null: `error`
   std::string error;
+  bool lacks_memory = false;
   ImageModuleTimes times;
 };
 
@@ -56,6 +63,14 @@ void make_room_for_small_pieces() {
   }
 }
 
+bool has_room(std::size_t bytes) {
+  void* const room = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
+                            MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (room == MAP_FAILED) return false;
+  ::munmap(room, bytes);
+  return true;
+}
+
 void* open_library(const char* file) { return ::dlopen(file, RTLD_LAZY | RTLD_LOCAL); }
 
 void load_codec(Loaded& loaded) {
@@ -65,7 +80,10 @@ void load_codec(Loaded& loaded) {
   void* const library = open_library(file.c_str());
   void* const function = library == nullptr ? nullptr : ::dlsym(library, image_codec_symbol);
   if (function == nullptr) {
-    loaded.error = file.string() + ": images can be neither read nor written: " + ::dlerror();
+    const std::string reason = ::dlerror();
+    loaded.error = file.string() + ": images can be neither read nor written: " + reason;
+    loaded.lacks_memory = reason.find("annot allocate memory") != std::string::npos ||
+                          reason.find("failed to map segment") != std::string::npos;
     return;
   }
   loaded.codec = &reinterpret_cast<ImageCodecFunction>(function)();
@@ -76,7 +94,10 @@ Loaded load() {
   loaded.times.begun = clock_seconds(CLOCK_MONOTONIC);
   const double cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
   try {
-    load_codec(loaded);
+    loaded.lacks_memory = !has_room(needed_room);
+    if (!loaded.lacks_memory) load_codec(loaded);
+  } catch (const std::bad_alloc&) {
+    loaded.lacks_memory = true;
   } catch (const std::exception& e) {
     loaded.error = std::string(module_name) + ": " + e.what();
   }
@@ -109,17 +130,20 @@ TheLoad& the_load() {
 
 const ImageCodec& codec_of(const Loaded& loaded) {
   if (loaded.codec != nullptr) return *loaded.codec;
-  // What the dynamic linker says where a limit of memory is met.
-  for (const std::string_view text : {"annot allocate memory", "failed to map segment"}) {
-    if (loaded.error.find(text) != std::string::npos) throw std::bad_alloc();
-  }
+  if (loaded.lacks_memory) throw std::bad_alloc();
   throw std::runtime_error(loaded.error);
 }
 
 }  // namespace
 
-ImageModuleLoading::ImageModuleLoading() { the_load().begin(std::launch::async); }
-ImageModuleLoading::~ImageModuleLoading() { the_load().begin(std::launch::async).wait(); }
+ImageModuleLoading::ImageModuleLoading() {
+  if (has_room(plenty_of_room)) {
+    the_load().begin(std::launch::async);
+  } else {
+    the_load().begin(std::launch::deferred).wait();
+  }
+}
+ImageModuleLoading::~ImageModuleLoading() { the_load().begin(std::launch::deferred).wait(); }
 void ImageModuleLoading::wait() const { image_codec(); }
 
 const ImageCodec& image_codec() { return codec_of(the_load().begin(std::launch::deferred).get()); }

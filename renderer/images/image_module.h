@@ -10,8 +10,9 @@ namespace lacuna {
 // it is no part of the program but a module, `lacuna-images.so`, which is loaded once in a process,
 // when the first image is needed and never before. It lies beside the program, or in `../bin`.
 
-/// Begins to load the module on a thread of its own, unless that was done already; returns at once.
-/// While the object lives, the program must not end: its destructor waits.
+/// Begins to load the module on a thread of its own, unless that was done already, and returns at
+/// once; where a limit of memory is near, it returns when all is done. A program that ends while
+/// libraries are being loaded may crash: the destructor waits.
 class ImageModuleLoading {
  public:
   ImageModuleLoading();
