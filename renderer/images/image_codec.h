@@ -75,6 +75,6 @@ class ImageCodec {
 
 /// The name and the type of what the module exports: the one codec, which is never destroyed.
 constexpr const char* image_codec_symbol = "lacuna_image_codec";
-using ImageCodecFunction = const ImageCodec& (*)();
+using ImageCodecFunction = const ImageCodec* (*)();
 
 }  // namespace lacuna

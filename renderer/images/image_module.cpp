@@ -86,7 +86,7 @@ void load_codec(Loaded& loaded) {
                           reason.find("failed to map segment") != std::string::npos;
     return;
   }
-  loaded.codec = &reinterpret_cast<ImageCodecFunction>(function)();
+  loaded.codec = reinterpret_cast<ImageCodecFunction>(function)();
 }
 
 Loaded load() {

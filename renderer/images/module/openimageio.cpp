@@ -221,7 +221,7 @@ class OpenImageIoCodec final : public ImageCodec {
 }  // namespace lacuna
 
 // Never destroyed: a thread may still write a picture while the process ends.
-extern "C" __attribute__((visibility("default"))) const lacuna::ImageCodec& lacuna_image_codec() {
+extern "C" __attribute__((visibility("default"))) const lacuna::ImageCodec* lacuna_image_codec() {
   static const auto* const codec = new lacuna::OpenImageIoCodec;
-  return *codec;
+  return codec;
 }
