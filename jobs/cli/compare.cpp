@@ -7,7 +7,7 @@
 #include "renderer/film/display_errors.h"
 #include "renderer/film/metrics.h"
 #include "renderer/film/preview.h"
-#include "renderer/scene/image_read.h"
+#include "renderer/images/image_read.h"
 #include "renderer/scene/scene_data.h"
 
 namespace lacuna {
@@ -85,8 +85,8 @@ void print_blocks(const CompareOptions& o, const Crop& crop, const std::vector<d
 }
 
 void compare(const CompareOptions& o) {
-  const FloatImage image_a = read_float_image(o.a);
-  const FloatImage image_b = read_float_image(o.b);
+  const FloatImage image_a = read_reference_image(o.a);
+  const FloatImage image_b = read_reference_image(o.b);
   if (image_a.width != image_b.width || image_a.height != image_b.height) {
     throw SceneError(fmt::format("{} has {} x {} pixels, {} {} x {}", o.a.string(), image_a.width,
                                  image_a.height, o.b.string(), image_b.width, image_b.height));

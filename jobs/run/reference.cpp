@@ -2,18 +2,26 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include "jobs/run/results.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/reference_spec.h"
-#include "renderer/scene/image_read.h"
+#include "renderer/images/image_read.h"
 #include "renderer/scene/scene_data.h"
 
 namespace lacuna {
 
 namespace {
+
+const std::vector<std::string_view> reference_extensions{".exr", ".tif", ".tiff"};
+
+bool is_image_file(const std::string& name) {
+  return std::any_of(reference_extensions.begin(), reference_extensions.end(),
+                     [&](std::string_view e) { return name.ends_with(e); });
+}
 
 bool is_plain_name(const std::string& s) {
   return !s.empty() && s.front() != '.' && s.find('/') == std::string::npos &&
@@ -24,7 +32,7 @@ bool is_plain_name(const std::string& s) {
 
 Reference read_reference(const std::string& name, const std::filesystem::path& image,
                          const std::array<int, 2>& resolution) {
-  const FloatImage file = read_float_image(image);
+  const FloatImage file = read_reference_image(image);
   if (file.width != resolution[0] || file.height != resolution[1]) {
     throw SceneError(fmt::format("reference \"{}\" has {} x {} pixels, the job {} x {}", name,
                                  file.width, file.height, resolution[0], resolution[1]));
@@ -49,9 +57,9 @@ Reference read_reference(const std::string& name, const std::filesystem::path& i
 
 Reference find_reference(const JobSpec& spec, const DataRoot& data, const ScenesRoots& scenes) {
   const std::string& name = spec.reference;
-  if (name.ends_with(".exr")) {
+  if (is_image_file(name)) {
     try {
-      return read_reference(name, scenes.resolve(name, {".exr"}), spec.resolution);
+      return read_reference(name, scenes.resolve(name, reference_extensions), spec.resolution);
     } catch (const std::invalid_argument& e) {
       throw SceneError(fmt::format("reference \"{}\": {}", name, e.what()));
     }
@@ -71,7 +79,7 @@ Reference find_reference(const JobSpec& spec, const DataRoot& data, const Scenes
   const auto file = data.references() / name / "image.exr";
   if (!is_plain_name(name) || !std::filesystem::is_regular_file(file)) {
     throw SceneError(fmt::format(
-        "reference \"{}\": neither \"auto\", nor an .exr below a scenes root, nor a job's "
+        "reference \"{}\": neither \"auto\", nor an .exr or .tif below a scenes root, nor a job's "
         "id, nor a folder of {}",
         name, data.references().string()));
   }

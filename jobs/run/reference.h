@@ -17,9 +17,9 @@ struct Reference {
   std::filesystem::path file = {};  ///< where it was read from
 };
 
-/// Reads the picture that `spec.reference` names (not "auto" or empty): an EXR below a scenes root,
-/// a job's id, or the name of a folder below the references. Throws SceneError: not there,
-/// unfinished, or of another size.
+/// Reads the picture that `spec.reference` names (not "auto" or empty): an EXR or a TIFF of floats
+/// below a scenes root, a job's id, or the name of a folder below the references. Throws
+/// SceneError: not there, unfinished, or of another size.
 Reference find_reference(const JobSpec& spec, const DataRoot& data, const ScenesRoots& scenes);
 
 /// Reads `image` (an image.exr of ours, or anybody's EXR). Throws SceneError, also on another size

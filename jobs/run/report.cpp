@@ -11,6 +11,7 @@
 #include "jobs/spec/json_text.h"
 #include "jobs/spec/version.h"
 #include "jobs/store/machine.h"
+#include "renderer/images/image_module.h"
 
 namespace lacuna {
 
@@ -95,6 +96,16 @@ OrderedJson machine(const ThreadPool& pool, const std::optional<Disturbance>& di
   return j;
 }
 
+/// When the module of images was loaded, seconds from the job's start (below 0: before it, by
+/// another job of the process), and what that took. What the job waited for it is phase "images".
+OrderedJson image_module(double started) {
+  const auto times = image_module_times();
+  if (!times) return "not needed";
+  return {{"begun", times->begun - started},
+          {"seconds", times->seconds},
+          {"cpu_seconds", times->cpu_seconds}};
+}
+
 }  // namespace
 
 std::string write_report(const ReportInput& input) {
@@ -111,6 +122,7 @@ std::string write_report(const ReportInput& input) {
   }
   j["errors"] = errors_json(task, loop.curve());
   j["scene"] = scene(task.scene);
+  j["image_module"] = image_module(input.started);
   j["artefacts"] = artefacts_json(input.artefacts);
   j["warnings"] = input.warnings;
   j["machine"] = machine(task.pool, input.disturbance);

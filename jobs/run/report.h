@@ -15,6 +15,7 @@ struct ReportInput {
   std::vector<std::string> warnings;
   std::vector<ArtefactRecord> artefacts = {};   ///< ArtefactStore::records()
   std::optional<Disturbance> disturbance = {};  ///< while it was rendered
+  double started = 0;                           ///< when the job began, on the monotonic clock
 };
 
 /// report.json: seconds by phase, counts, rates, what of the scene was built and what was not

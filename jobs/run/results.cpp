@@ -8,9 +8,9 @@
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/json_text.h"
 #include "jobs/spec/version.h"
-#include "renderer/film/exr.h"
 #include "renderer/film/half_layers.h"
 #include "renderer/film/preview.h"
+#include "renderer/images/exr_write.h"
 
 namespace lacuna {
 

@@ -13,6 +13,7 @@
 #include "jobs/run/render_loop.h"
 #include "jobs/run/report.h"
 #include "jobs/run/results.h"
+#include "renderer/images/image_module.h"
 #include "renderer/integrators/integrator.h"
 
 namespace lacuna {
@@ -118,6 +119,10 @@ std::optional<Reference> make_auto_reference(const JobFolder& folder, const JobS
 }
 
 Outcome render(const JobFolder& folder, const RunContext& context, Running& running) {
+  const double started = clock_seconds(CLOCK_MONOTONIC);
+  // TBB loads libraries of its own when it is first used, and would wait for those of the images.
+  ThreadPool(1).for_each(1, [](int) {});
+  const ImageModuleLoading images;  // what every job writes needs it
   PhaseSeconds phases;
   running.phase("loading");
   const JobSpec spec = folder.read_job();
@@ -148,6 +153,12 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
     }
   }
 
+  {
+    // What loads must not compete with what is timed.
+    const ScopedSeconds timed(phases["images"]);
+    images.wait();
+  }
+
   running.phase("rendering");
   const RenderTask task{folder,
                         spec,
@@ -175,9 +186,9 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
     running.warn(fmt::format("{} contributions were not finite and were left out",
                              loop.counters().rejected));
   }
-  write_file_atomically(
-      folder.file("report.json"),
-      write_report({task, loop, running.warnings(), prepared.artefacts->records(), disturbance}));
+  write_file_atomically(folder.file("report.json"),
+                        write_report({task, loop, running.warnings(), prepared.artefacts->records(),
+                                      disturbance, started}));
   return Outcome::done;
 }
 

@@ -134,8 +134,8 @@ void describe(V& v, JobSpec& s) {
   v("budget", s.budget,
     {.doc = "when to stop; the first limit reached ends the job; none: 60 seconds"});
   v("reference", s.reference,
-    {.doc = "what the error is measured against: a stored reference's name, a job id, an EXR below "
-            "a scenes root, or "
+    {.doc = "what the error is measured against: a stored reference's name, a job id, an EXR or "
+            "a TIFF of floats below a scenes root, or "
             "\"auto\" (rendered once, as two independent halves, and kept); empty: none",
      .max = 1024});
   v("reference_iterations", s.reference_iterations,

@@ -1,6 +1,6 @@
 #include "renderer/film/half_layers.h"
 
-#include <half.h>
+#include <Imath/half.h>
 
 #include <algorithm>
 #include <cmath>

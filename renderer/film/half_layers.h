@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/film/exr.h"
+#include "renderer/images/exr_write.h"
 
 namespace lacuna {
 

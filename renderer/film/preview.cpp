@@ -1,13 +1,11 @@
 #include "renderer/film/preview.h"
 
-#include <png.h>
-
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <vector>
 
 #include "analysis/storage/atomic_file.h"
+#include "renderer/images/png_write.h"
 
 namespace lacuna {
 
@@ -35,18 +33,7 @@ std::string preview_png(int width, int height, std::span<const double> rgb, doub
   std::vector<unsigned char> bytes(rgb.size());
   std::transform(rgb.begin(), rgb.end(), bytes.begin(),
                  [&](double v) { return display_code(v * exposure); });
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = static_cast<png_uint_32>(width);
-  image.height = static_cast<png_uint_32>(height);
-  image.format = PNG_FORMAT_RGB;
-  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
-  std::string png(size, '\0');
-  if (png_image_write_to_memory(&image, png.data(), &size, 0, bytes.data(), 0, nullptr) == 0) {
-    throw std::runtime_error(std::string("a PNG cannot be made: ") + image.message);
-  }
-  png.resize(size);
-  return png;
+  return encode_png(width, height, bytes);
 }
 
 void write_preview(const std::filesystem::path& file, int width, int height,

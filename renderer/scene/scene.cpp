@@ -2,9 +2,9 @@
 
 #include <set>
 
+#include "renderer/images/image_read.h"
 #include "renderer/materials/gltf_material.h"
 #include "renderer/scene/alpha_mask.h"
-#include "renderer/scene/image_read.h"
 
 namespace lacuna {
 

@@ -4,22 +4,15 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "renderer/core/bounds.h"
+#include "renderer/core/scene_error.h"
 #include "renderer/core/vec.h"
 #include "renderer/scene/texture.h"
 
 namespace lacuna {
-
-/// A scene or an asset that cannot be used: the message names the file, the place in it, the value
-/// found and what is allowed. `lacuna render` ends with exit code 3.
-class SceneError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// Triangles of one material under one node, in world space.
 struct Mesh {

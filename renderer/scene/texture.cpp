@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "renderer/scene/texture_decode.h"
+#include "renderer/images/texture_decode.h"
 
 namespace lacuna {
 namespace {

@@ -35,7 +35,7 @@ function write(folder, sweep) {
 }
 
 /// Percent of the runs' own seconds.
-const overhead = (name, seconds) => figure(name, 100 * (seconds / runs - 1), "%", 5);
+const overhead = (name, seconds) => figure(name, 100 * (seconds / runs - 1), "%", 15);
 
 function fromTheShell(folder) {
   write(folder, sweepOf(runs, { seconds: 1 }));

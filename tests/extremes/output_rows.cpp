@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "renderer/scene/image_read.h"
+#include "renderer/images/image_read.h"
 #include "tests/extremes/rows.h"
 
 namespace lacuna::extremes {

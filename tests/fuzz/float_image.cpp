@@ -1,16 +1,17 @@
-#include "renderer/scene/image_read.h"
-#include "renderer/scene/scene_data.h"
+#include "renderer/core/scene_error.h"
+#include "renderer/images/image_read.h"
 #include "tests/fuzz/input_file.h"
 
-// An OpenEXR or Radiance HDR file, as references and environments are: refused, or an image of the
-// size it says, for the picture itself and for a layer.
+// An OpenEXR, Radiance HDR or TIFF file, as references and environments are: refused, or an image
+// of the size it says, for the picture itself and for a layer.
 
 namespace lacuna::fuzz {
 namespace {
 
 void read(const std::filesystem::path& file, const std::string& layer) {
   try {
-    const FloatImage image = read_float_image(file, layer);
+    const FloatImage image =
+        layer.empty() ? read_reference_image(file) : read_float_image(file, layer);
     expect(image.width > 0 && image.height > 0, "an image has pixels");
     expect(image.rgb.size() == 3 * std::size_t(image.width) * std::size_t(image.height),
            "and three values a pixel");

@@ -32,6 +32,10 @@ def float_images():
     make("float_image/attributes.exr", "--attrib", "lacuna:est_rmse", "0.25", "--attrib:type=float", "x", "3",
          **rgb, save=("-d", "half"))
     make("float_image/crop.exr", "--crop", "3x2+1+1", **rgb, save=("-d", "half"))
+    make("float_image/float.tif", **rgb, save=("-d", "float", "--compression", "none"))
+    make("float_image/zip.tif", **rgb, save=("-d", "float", "--compression", "zip"))
+    make("float_image/tiled.tif", size="17x16", channels=4, save=("-d", "float", "--compression", "lzw", "--tile", "16", "16"))
+    make("float_image/planes.tif", **rgb, save=("-d", "float", "--compression", "packbits", "--planarconfig", "separate"))
     make("float_image/flat.hdr", size="4x3", **rgb)
     make("float_image/runs.hdr", size="16x3", **rgb)
 
@@ -41,6 +45,7 @@ def textures():
         make(f"texture/{name}.png", "--ch", "R,G,B,A"[:2 * channels - 1], save=("-d", "uint8"))
         make(f"texture/{name}16.png", "--ch", "R,G,B,A"[:2 * channels - 1], save=("-d", "uint16"))
     make("texture/grey.jpg", "--ch", "R", save=("-d", "uint8"))
+    make("texture/flat.jpg", "--mulc", "0", "--addc", ".4", size="16x16", channels=3, save=("-d", "uint8"))
     make("texture/rgb.jpg", channels=3, save=("-d", "uint8"))
     make("texture/rgb_large.jpg", size="40x24", channels=3, save=("-d", "uint8", "--quality", "30"))
 

@@ -7,7 +7,7 @@ import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 
 export const root = resolve(dirname(fileURLToPath(import.meta.url)), "../../..");
-const program = join(process.env.LACUNA_BIN ?? join(root, "build/release/bin"), "lacuna");
+export const program = join(process.env.LACUNA_BIN ?? join(root, "build/release/bin"), "lacuna");
 
 /// A folder of one test, removed after it.
 export function temporaryFolder(test) {

@@ -7,7 +7,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "jobs/run/results.h"
 #include "renderer/core/rng.h"
-#include "renderer/scene/image_read.h"
+#include "renderer/images/image_read.h"
 #include "tests/jobs/run/silent_observer.h"
 #include "tests/temporary_folder.h"
 

@@ -8,10 +8,10 @@
 #include "analysis/storage/bytes.h"
 #include "renderer/core/rng.h"
 #include "renderer/film/block_statistics.h"
-#include "renderer/film/exr.h"
 #include "renderer/film/half_layers.h"
 #include "renderer/film/metrics.h"
-#include "renderer/scene/image_read.h"
+#include "renderer/images/exr_write.h"
+#include "renderer/images/image_read.h"
 #include "tests/renderer/scene/glb_builder.h"
 
 namespace lacuna {

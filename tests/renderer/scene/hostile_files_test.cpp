@@ -2,8 +2,8 @@
 #include <sys/stat.h>
 
 #include "renderer/scene/scene_data.h"
+#include "tests/renderer/images/test_images.h"
 #include "tests/renderer/scene/glb_builder.h"
-#include "tests/renderer/scene/test_images.h"
 
 namespace lacuna {
 namespace {
@@ -149,7 +149,7 @@ TEST(HostileFiles, ImagesThatCannotBeDecodedAreNamed) {
     return out;
   }();
   const Bytes png = test::encode8(64, 64, 3, noise);
-  const Bytes jpeg = test::encode_jpeg(64, 64, noise);
+  const Bytes jpeg = test::jpeg_seed("rgb_large.jpg");
   Bytes flipped = png;
   flipped[png.size() / 2] ^= 0xFF;
   Bytes huge = png;  // width 2^24 in IHDR

@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include "renderer/scene/scene_data.h"
+#include "tests/renderer/images/test_images.h"
 #include "tests/renderer/scene/glb_builder.h"
-#include "tests/renderer/scene/test_images.h"
 
 namespace lacuna {
 namespace {

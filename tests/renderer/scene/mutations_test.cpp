@@ -3,9 +3,9 @@
 #include <random>
 
 #include "renderer/scene/scene_data.h"
+#include "tests/renderer/images/test_images.h"
 #include "tests/renderer/scene/glb_builder.h"
 #include "tests/renderer/scene/scene_promises.h"
-#include "tests/renderer/scene/test_images.h"
 
 namespace lacuna {
 namespace {

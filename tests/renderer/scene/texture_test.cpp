@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "renderer/scene/scene_data.h"
-#include "tests/renderer/scene/test_images.h"
+#include "tests/renderer/images/test_images.h"
 
 namespace lacuna {
 namespace {
@@ -98,8 +98,9 @@ TEST(Texture, GreyAndGreyAlpha) {
 }
 
 TEST(Texture, SixteenBitsAreRounded) {
-  const std::vector<std::uint16_t> pixel{0, 257 * 100, 65535};
-  const test::Bytes png = test::encode_png(1, 1, PNG_FORMAT_LINEAR_RGB, pixel.data());
+  test::Bytes pixel;
+  for (const int v : {0, 257 * 100, 65535}) test::put_big(pixel, static_cast<std::uint64_t>(v), 2);
+  const test::Bytes png = test::make_png(1, 1, {.bits = 16}, {pixel});
   const Rgb c = decoded(png).lookup({0, 0}).rgb;
   EXPECT_FLOAT_EQ(c.x, 0);
   EXPECT_FLOAT_EQ(c.y, 100 / 255.0F);
@@ -107,8 +108,7 @@ TEST(Texture, SixteenBitsAreRounded) {
 }
 
 TEST(Texture, JpegIsRead) {
-  const std::vector<std::uint8_t> flat(16 * 16 * 3, 102);
-  const Texture t = decoded(test::encode_jpeg(16, 16, flat));
+  const Texture t = decoded(test::jpeg_seed("flat.jpg"));
   EXPECT_NEAR(t.lookup({0.3F, 0.6F}).rgb.x, 0.4F, 0.01F);
 }
 

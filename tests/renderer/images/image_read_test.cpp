@@ -2,12 +2,13 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
-#include "renderer/scene/image_read.h"
-#include "renderer/scene/scene_data.h"
-#include "tests/renderer/scene/test_images.h"
+#include "renderer/images/image_read.h"
+#include "tests/renderer/images/refusals.h"
+#include "tests/renderer/images/test_images.h"
 
 namespace lacuna {
 namespace {
@@ -19,17 +20,10 @@ std::filesystem::path write_exr(const TemporaryFolder& folder,
 }
 
 std::string image_refusal(const std::filesystem::path& file, const std::string& layer = "") {
-  try {
-    read_float_image(file, layer);
-  } catch (const SceneError& e) {
-    return e.what();
-  }
-  return "accepted";
+  return test::refusal_of([&] { read_float_image(file, layer); });
 }
 
-void expect_contains(const std::string& text, const std::string& part) {
-  EXPECT_NE(text.find(part), std::string::npos) << text;
-}
+using test::expect_contains;
 
 TEST(ImageRead, ExrWithLayersInAnyOrder) {
   const TemporaryFolder folder;
@@ -134,8 +128,9 @@ TEST(ImageRead, TruncatedFilesAreRefused) {
 
 TEST(ImageRead, CropsAreRefused) {
   const TemporaryFolder folder;
-  const auto file = test::write_exr_file(folder, "crop.exr", {"R", "G", "B"},
-                                         std::vector<float>(12, 1.0F), 2, 2, {4, 2});
+  const auto file =
+      test::write_exr_file(folder, "crop.exr", {"R", "G", "B"}, std::vector<float>(12, 1.0F), 2, 2,
+                           {.display_width = 4, .display_height = 2});
   expect_contains(image_refusal(file), "is a crop");
 }
 
@@ -191,6 +186,113 @@ TEST(ImageRead, AHeaderThatEndsEarlyIsRefused) {
   for (std::size_t n = 4; n < 100; ++n) {
     const test::Bytes cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(n));
     expect_contains(image_refusal(folder.write("cut.exr", cut)), "cut.exr: OpenEXR header: ");
+  }
+}
+
+TEST(ImageRead, AnExrThatSaysTooMuchIsRefused) {
+  const TemporaryFolder folder;
+  const std::vector<float> one{1, 2, 3};
+  const auto refusal = [&](int width, int height, const test::ExrKind& kind) {
+    const auto file = test::write_exr_file(folder, "a.exr", {"R", "G", "B"}, one, 1, 1, kind);
+    test::Bytes bytes = test::read_bytes(file);
+    const std::string name("dataWindow\0box2i\0\x10\0\0\0", 21);
+    const auto at = std::search(bytes.begin(), bytes.end(), name.begin(), name.end()) + 21;
+    const test::Bytes window = test::box(width, height);
+    std::copy(window.begin(), window.end(), at);
+    return image_refusal(folder.write("a.exr", bytes));
+  };
+  expect_contains(refusal(40000, 1, {}), "a.exr: is 40000 x 1 pixels; allowed: up to 32768 a side");
+  expect_contains(refusal(1, 0, {}), "a.exr: is 1 x 0 pixels");
+  const std::string tiles("\1\0\0\0\1\0\0\0\0", 9);
+  expect_contains(
+      refusal(32768, 32768, {.flags = 0x200, .attributes = {{{"tiles", "tiledesc", tiles}}}}),
+      "a.exr: is corrupt: it says that it has 1073741824 tiles");
+  expect_contains(refusal(1, 1, {.flags = 0x800}), "a.exr: is a deep image; allowed: flat ones");
+  expect_contains(refusal(1, 1, {.attributes = {{{"type", "string", "deepscanline"}}}}),
+                  "a deep image");
+  expect_contains(refusal(2, 2, {.sampling = 2}), "has channel \"B\" at less than full resolution");
+  expect_contains(
+      refusal(1, 1, {.attributes = {{{"Orientation", "int", std::string("\3\0\0\0", 4)}}}}),
+      "is stored turned or mirrored");
+}
+
+TEST(ImageRead, TheMagicDecidesAndNotTheName) {
+  const TemporaryFolder folder;
+  const auto exr = write_exr(folder, {"R", "G", "B"}, {1, 2, 3}, 1, 1);
+  EXPECT_EQ(read_float_image(folder.write("sky.hdr", test::read_bytes(exr))).at(0, 0),
+            Rgb(1, 2, 3));
+  for (const std::string text : {"GIF89a", "8BPS", "RIFF    WEBP", "DDS ", "II*", "BM"}) {
+    expect_contains(image_refusal(folder.write("video.exr", text)),
+                    "video.exr: is neither OpenEXR nor Radiance HDR");
+  }
+}
+
+TEST(ImageRead, NumbersThatAreNoneComeThrough) {
+  const TemporaryFolder folder;
+  constexpr float inf = std::numeric_limits<float>::infinity();
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  const FloatImage image =
+      read_float_image(write_exr(folder, {"R", "G", "B"}, {nan, inf, -inf, 1, -2, 1e-42F}, 2, 1));
+  EXPECT_TRUE(std::isnan(image.rgb[0]));
+  EXPECT_EQ(image.rgb[1], inf);
+  EXPECT_EQ(image.rgb[2], -inf);
+  EXPECT_EQ(image.rgb[5], 1e-42F);
+}
+
+TEST(ImageRead, IntegersAreTheirValues) {
+  const FloatImage image = read_float_image(std::filesystem::path(LACUNA_SOURCE_DIR) /
+                                            "tests/fuzz/corpus/float_image/uint.exr");
+  // oiiotool wrote 2^32 - 1 for 1 and more.
+  EXPECT_EQ(image.at(6, 0).x, 4294967296.0F);
+}
+
+std::string tiff_refusal(const TemporaryFolder& folder, const test::Bytes& bytes) {
+  return test::refusal_of([&] { read_reference_image(folder.write("a.tif", bytes)); });
+}
+
+TEST(ImageRead, TiffOfFloatsIsAReference) {
+  const TemporaryFolder folder;
+  const std::vector<float> pixels{1, 2, 3, 4e30F, -5, 6};
+  const auto file = folder.write("a.tif", test::make_tiff(2, 1, 3, pixels));
+  EXPECT_EQ(read_reference_image(file).rgb, pixels);
+  expect_contains(image_refusal(file), "a.tif: is neither OpenEXR nor Radiance HDR");
+  // Colours stay as they are beside an alpha that is not multiplied in.
+  const test::Bytes alpha = test::make_tiff(1, 1, 4, {1, 2, 3, 0.5F}, {{338, {2}}});
+  EXPECT_EQ(read_reference_image(folder.write("b.tif", alpha)).at(0, 0), Rgb(1, 2, 3));
+  const test::Bytes grey = test::make_tiff(1, 2, 1, {7, 8});
+  EXPECT_EQ(read_reference_image(folder.write("c.tif", grey)).at(0, 1), Rgb(8));
+  for (const char* name : {"float.tif", "zip.tif", "planes.tif", "tiled.tif"}) {
+    const FloatImage image = read_reference_image(std::filesystem::path(LACUNA_SOURCE_DIR) /
+                                                  "tests/fuzz/corpus/float_image" / name);
+    EXPECT_NEAR(image.at(0, 0).x, 0.1F, 1e-6F) << name;
+    EXPECT_NEAR(image.at(0, 0).z, 0.3F, 1e-6F) << name;
+  }
+}
+
+TEST(ImageRead, OtherTiffsAreRefused) {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const std::vector<test::TiffEntry>& more) {
+    return tiff_refusal(folder, test::make_tiff(2, 1, 3, {1, 2, 3, 4, 5, 6}, more));
+  };
+  expect_contains(refusal({{258, {8, 8, 8}}, {339, {1, 1, 1}}}),
+                  "a.tif: has 8-bit integers; allowed");
+  expect_contains(refusal({{258, {64, 64, 64}}}), "has 64-bit floats; allowed");
+  expect_contains(refusal({{259, {7}}}), "has compression 7; allowed: 1 (none)");
+  expect_contains(refusal({{262, {6}}}), "has photometric interpretation 6; allowed");
+  expect_contains(refusal({{256, {40000}}}), "is 40000 x 1 pixels; allowed: up to 32768 a side");
+  expect_contains(refusal({{257, {0}}}), "is 2 x 0 pixels");
+  expect_contains(refusal({{277, {5}}}), "has 5 channels; allowed: 1, 3, 4");
+  expect_contains(refusal({{278, {0}}}), "is corrupt: its blocks are");
+  expect_contains(refusal({{273, {8, 8}}}), "is corrupt: it has 2 blocks, its size asks for 1");
+  expect_contains(refusal({{273, {4000}}}), "is corrupt: it ends early");
+  expect_contains(refusal({{256, {2000}}}), "is corrupt: 24 bytes cannot hold its 2000 x 1 pixels");
+  expect_contains(refusal({{256, {30000}}, {257, {30000}}, {259, {5}}, {278, {30000}}}),
+                  "cannot hold");
+  expect_contains(refusal({{274, {3}}}), "is stored turned or mirrored");
+  const test::Bytes whole = test::make_tiff(2, 1, 3, {1, 2, 3, 4, 5, 6});
+  for (std::size_t n = 4; n < whole.size(); ++n) {
+    const test::Bytes part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n));
+    expect_contains(tiff_refusal(folder, part), "a.tif: is corrupt: it ends early");
   }
 }
 

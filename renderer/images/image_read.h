@@ -27,8 +27,12 @@ struct FloatImage {
 /// Reads an OpenEXR or Radiance HDR file, told by its magic bytes, of up to 32768 pixels a side.
 /// `layer` chooses the channels of an EXR: empty means R, G, B, or Y alone as grey; "half_a" means
 /// half_a.R, half_a.G, half_a.B. Values are kept as they are, non-finite ones too. Throws
-/// SceneError: no such file or layer, another format, corrupt, deep, or a crop of a larger image.
+/// SceneError: no such file or layer, another format, corrupt, deep, or a crop of a larger image;
+/// std::runtime_error if the module of images is missing.
 FloatImage read_float_image(const std::filesystem::path& file, const std::string& layer = "");
+
+/// The same for what a picture is compared with, which may also be a TIFF of floats.
+FloatImage read_reference_image(const std::filesystem::path& file);
 
 /// Throws SceneError with `label`, the position and the value of the first pixel that is negative
 /// or not finite: light cannot be.

@@ -1,5 +1,3 @@
-#include "renderer/scene/exr_guard.h"
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -7,16 +5,19 @@
 #include <string>
 #include <string_view>
 
-#include "renderer/scene/scene_data.h"
+#include "renderer/core/scene_error.h"
+#include "renderer/images/guards.h"
 
 namespace lacuna {
 namespace {
 
 // OpenEXR File Layout: magic, version, then for each part attributes until an empty name; where
 // there are several parts, an empty header ends them.
-constexpr std::uint32_t several_parts = 0x1000;
+constexpr std::uint32_t deep_flag = 0x800, several_parts = 0x1000;
 constexpr std::size_t longest_name = 255;
-constexpr std::uint32_t pixel_types = 3;  // unsigned int, half, float
+constexpr std::uint32_t deep = 0x70656564;  // how "deepscanline" and "deeptile" begin
+constexpr std::uintmax_t offset_bytes = 8;  // of a tile, in the table after the headers
+constexpr std::uint32_t pixel_types = 3;    // unsigned int, half, float
 
 // OpenEXR reads these without a look at the size that the file gives them: another size would let
 // it go on somewhere else than this guard.
@@ -35,14 +36,16 @@ constexpr std::array<FixedSize, 23> fixed_sizes{{
     {"v3f", 12},        {"v3d", 24},
 }};
 
-class Header {
+class ExrHeader {
  public:
-  explicit Header(const std::filesystem::path& file)
+  explicit ExrHeader(const std::filesystem::path& file)
       : file_(file), size_(std::filesystem::file_size(file)), stream_(file, std::ios::binary) {}
 
   void check() {
     integer();  // the magic
-    const bool parts = (integer() & several_parts) != 0;
+    const std::uint32_t flags = integer();
+    if ((flags & deep_flag) != 0) refuse_deep();
+    const bool parts = (flags & several_parts) != 0;
     for (bool first = true; check_attributes(first) && parts; first = false) {
     }
   }
@@ -51,6 +54,7 @@ class Header {
   /// Up to the empty name that ends a header. False if there was none before it.
   bool check_attributes(bool first) {
     bool any = false;
+    picture_ = tile_ = {};
     for (std::string name = text(); !name.empty(); name = text()) {
       any = true;
       const std::string type = text();
@@ -60,6 +64,8 @@ class Header {
         fail("attribute \"" + printable(name) + "\" (" + printable(type) + ") has " +
              std::to_string(bytes) + " bytes; the file ends after " + std::to_string(size_ - at));
       }
+      note(name, bytes);
+      stream_.seekg(static_cast<std::streamoff>(at));
       const bool sized = check_value(type, at + bytes);
       if (!sized) {
         fail("attribute \"" + printable(name) + "\" has " + std::to_string(bytes) +
@@ -68,7 +74,44 @@ class Header {
       stream_.seekg(static_cast<std::streamoff>(at + bytes));
     }
     if (first && !any) fail("there are no attributes");
+    check_tiles();
     return any;
+  }
+
+  /// What an attribute says about the pixels.
+  void note(const std::string& name, std::uint32_t bytes) {
+    if (name == "dataWindow" && bytes == 16) picture_ = read_window();
+    if (name == "tiles" && bytes == 9) tile_ = {integer(), integer()};
+    if (name == "type" && bytes >= sizeof deep && integer() == deep) refuse_deep();
+  }
+
+  struct Size {
+    std::uint64_t width = 0, height = 0;
+  };
+
+  Size read_window() {
+    const auto left = static_cast<std::int32_t>(integer()),
+               top = static_cast<std::int32_t>(integer());
+    const auto right = static_cast<std::int32_t>(integer()),
+               bottom = static_cast<std::int32_t>(integer());
+    const std::int64_t width = std::int64_t{right} - left + 1,
+                       height = std::int64_t{bottom} - top + 1;
+    if (width < 1 || height < 1 || width > max_picture_side || height > max_picture_side) {
+      refuse("is " + std::to_string(width) + " x " + std::to_string(height) +
+             " pixels; allowed: up to " + std::to_string(max_picture_side) + " a side");
+    }
+    return {static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height)};
+  }
+
+  /// The library makes room for the offset of every tile, which the file holds, too.
+  void check_tiles() const {
+    if (tile_.width == 0 || tile_.height == 0) return;
+    const std::uint64_t tiles = (picture_.width + tile_.width - 1) / tile_.width *
+                                ((picture_.height + tile_.height - 1) / tile_.height);
+    if (tiles > size_ / offset_bytes) {
+      refuse("is corrupt: it says that it has " + std::to_string(tiles) + " tiles, in " +
+             std::to_string(size_) + " bytes");
+    }
   }
 
   /// Whether a value from here to `end` can be of `type`.
@@ -104,7 +147,10 @@ class Header {
         fail("channel \"" + printable(name) + "\" has pixel type " + std::to_string(type) +
              "; allowed: 0 to " + std::to_string(pixel_types - 1));
       }
-      for (int i = 0; i < 3; ++i) integer();  // whether it is linear; its sampling
+      integer();  // whether it is linear
+      if (integer() != 1 || integer() != 1) {
+        refuse("has channel \"" + printable(name) + "\" at less than full resolution");
+      }
     }
   }
 
@@ -131,17 +177,20 @@ class Header {
     return s;
   }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw SceneError(file_.string() + ": OpenEXR header: " + what);
+  [[noreturn]] void fail(const std::string& what) const { refuse("OpenEXR header: " + what); }
+  [[noreturn]] void refuse_deep() const { refuse("is a deep image; allowed: flat ones"); }
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw SceneError(file_.string() + ": " + what);
   }
 
   const std::filesystem::path& file_;
   std::uintmax_t size_;
+  Size picture_, tile_;  // of the part that is read
   std::ifstream stream_;
 };
 
 }  // namespace
 
-void check_exr_header(const std::filesystem::path& file) { Header(file).check(); }
+void check_exr_header(const std::filesystem::path& file) { ExrHeader(file).check(); }
 
 }  // namespace lacuna

@@ -10,10 +10,12 @@ namespace lacuna {
 /// An image as its file stores it, 8 bits a channel, alpha not multiplied in, top row first.
 struct Rgba8Image {
   int width = 0, height = 0;
-  std::vector<std::uint8_t> rgba;
+  std::vector<std::uint8_t> rgba;  ///< 4 x width x height
 };
 
-/// Decodes a PNG or JPEG, told by its magic bytes. Throws SceneError with `label`.
+/// Decodes a PNG or JPEG, told by its magic bytes, of up to 16384 texels a side. 16 bits are
+/// rounded to 8, grey becomes RGB, no alpha becomes 255; gamma and profiles are left aside, as glTF
+/// asks. Throws SceneError with `label`; std::runtime_error if the module of images is missing.
 Rgba8Image decode_png_or_jpeg(std::span<const std::uint8_t> encoded, const std::string& label);
 
 }  // namespace lacuna

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lacuna {
+
+// What stands between a file that nobody vouches for and the library that decodes it. Each guard
+// walks through a file's structure, decodes nothing, and throws SceneError with the file's name:
+// cut off, of a size, depth or kind that is not read, or saying what its bytes cannot hold.
+//
+// Those of files in memory return what to decode: the same image with nothing in it but what makes
+// its pixels. Profiles, comments, thumbnails and camera data never reach the library.
+
+constexpr int max_picture_side = 32768;  ///< pixels
+constexpr int max_texture_side = 16384;  ///< texels
+
+/// Checks the headers of an OpenEXR file for what the libraries take on trust: they make room for
+/// an attribute of any size and for rows and tiles of any number before they look whether the file
+/// has them, and a channel of an unknown type ends the process. Flat parts up to max_picture_side,
+/// all channels at full resolution.
+void check_exr_header(const std::filesystem::path& file);
+
+/// A PNG of 8 or 16 bits or less, of any colour type, up to max_texture_side.
+std::vector<std::uint8_t> plain_png(std::span<const std::uint8_t> png, const std::string& label);
+
+/// A JPEG of 8 bits, grey or three colours, in at most 500 scans, up to max_texture_side.
+std::vector<std::uint8_t> plain_jpeg(std::span<const std::uint8_t> jpeg, const std::string& label);
+
+/// A Radiance picture (`32-bit_rle_rgbe`, top row first) up to max_picture_side: rows flat or
+/// channel by channel. Rows in the old run-length form, which the library does not know, come out
+/// flat. Its EXPOSURE is left aside.
+std::vector<std::uint8_t> plain_hdr(std::span<const std::uint8_t> hdr, const std::string& label);
+
+/// The first picture of a TIFF of up to 4 GiB and max_picture_side: 1, 3 or 4 channels of 16- or
+/// 32-bit floats, stored plainly or by LZW, Deflate or PackBits.
+std::vector<std::uint8_t> plain_tiff(std::span<const std::uint8_t> tiff, const std::string& label);
+
+}  // namespace lacuna

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lacuna {
+
+// What the module of images offers: `module/openimageio.cpp` implements it, `image_module.h` loads
+// it, and only the rest of this room asks it, after its own checks. All functions throw
+// std::runtime_error with a reason that names no file, and std::bad_alloc.
+
+/// The formats that are read. There is no other, and none is found by trying.
+enum class ImageFormat { openexr, png, jpeg, radiance_hdr, tiff };
+
+/// The header of one picture of a file, as the file gives it.
+struct PictureHeader {
+  int width = 0, height = 0;                 ///< pixels that are stored
+  bool cropped = false;                      ///< a part of a larger picture is stored
+  bool deep = false;                         ///< any number of samples a pixel
+  int orientation = 1;                       ///< as in TIFF; 1: top row first, left to right
+  std::vector<std::string> channels;         ///< names, e.g. "R", "even.G"
+  std::map<std::string, std::string> texts;  ///< its attributes that are text
+};
+
+/// An open file. Not thread-safe.
+class PictureFile {
+ public:
+  virtual ~PictureFile() = default;
+  virtual const std::vector<PictureHeader>& parts() const = 0;
+  /// Reads `channels` (indices into the header's) of all pixels to `out`: interleaved, top row
+  /// first, width x height x channels.size() values. Half and unsigned integer channels are
+  /// converted value by value, nothing else is changed.
+  virtual void read(std::size_t part, std::span<const int> channels, float* out) = 0;
+};
+
+/// An image of integers as its file stores it: alpha not multiplied in, no colour conversion.
+struct StoredTexels {
+  int width = 0, height = 0;
+  int channels = 0;                        ///< 1 grey, 2 grey and alpha, 3 RGB, 4 RGBA
+  int bits = 0;                            ///< of a value: 8 or 16, in the machine's byte order
+  std::unique_ptr<std::uint8_t[]> values;  ///< interleaved, top row first
+};
+
+/// What an EXR file is made of.
+struct ExrContent {
+  int width = 0, height = 0;
+  std::vector<std::string> channels;
+  bool half = false;             ///< the type of all values: half, or float
+  const void* values = nullptr;  ///< interleaved in the order of `channels`, top row first
+  std::map<std::string, std::string> texts;  ///< attributes
+};
+
+using EncodedImage = std::vector<std::uint8_t>;
+
+class ImageCodec {
+ public:
+  virtual ~ImageCodec() = default;
+  /// By the reader of `format` alone.
+  virtual std::unique_ptr<PictureFile> open(ImageFormat format, const std::string& file) const = 0;
+  /// The same from memory; `bytes` outlive what is returned.
+  virtual std::unique_ptr<PictureFile> open(ImageFormat format,
+                                            std::span<const std::uint8_t> bytes) const = 0;
+  /// Decodes a PNG or JPEG. Thread-safe.
+  virtual StoredTexels decode(ImageFormat format, std::span<const std::uint8_t> bytes) const = 0;
+  /// Scan lines in ZIP compression; equal contents give equal bytes.
+  virtual EncodedImage encode_exr(const ExrContent& content) const = 0;
+  /// `rgb`: sRGB codes, interleaved, top row first, 3 x width x height.
+  virtual EncodedImage encode_png(int width, int height,
+                                  std::span<const std::uint8_t> rgb) const = 0;
+};
+
+/// The name and the type of what the module exports: the one codec, which is never destroyed.
+constexpr const char* image_codec_symbol = "lacuna_image_codec";
+using ImageCodecFunction = const ImageCodec* (*)();
+
+}  // namespace lacuna

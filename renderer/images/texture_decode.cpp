@@ -1,0 +1,66 @@
+#include "renderer/images/texture_decode.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "renderer/core/scene_error.h"
+#include "renderer/images/guards.h"
+#include "renderer/images/image_module.h"
+
+namespace lacuna {
+namespace {
+
+/// v / 257, rounded.
+std::uint8_t to_8_bits(std::uint16_t v) {
+  return static_cast<std::uint8_t>((std::uint32_t{v} * 255 + 32895) >> 16);
+}
+
+/// Value `i` of `texels`, in 8 bits.
+std::uint8_t value_at(const StoredTexels& texels, std::size_t i) {
+  if (texels.bits == 8) return texels.values[i];
+  std::uint16_t value = 0;
+  std::memcpy(&value, texels.values.get() + 2 * i, sizeof value);
+  return to_8_bits(value);
+}
+
+Rgba8Image to_rgba(const StoredTexels& texels) {
+  const auto pixels =
+      static_cast<std::size_t>(texels.width) * static_cast<std::size_t>(texels.height);
+  const auto channels = static_cast<std::size_t>(texels.channels);
+  const bool grey = channels < 3, alpha = channels % 2 == 0;
+  Rgba8Image image{texels.width, texels.height, std::vector<std::uint8_t>(4 * pixels)};
+  for (std::size_t i = 0; i < pixels; ++i) {
+    std::uint8_t* const out = image.rgba.data() + 4 * i;
+    const std::size_t first = i * channels;
+    for (std::size_t c = 0; c < 3; ++c) out[c] = value_at(texels, first + (grey ? 0 : c));
+    out[3] = alpha ? value_at(texels, first + channels - 1) : std::uint8_t{255};
+  }
+  return image;
+}
+
+Rgba8Image decode_plain(ImageFormat format, const std::vector<std::uint8_t>& plain,
+                        const std::string& label) {
+  const ImageCodec& codec = image_codec();
+  try {
+    return to_rgba(codec.decode(format, plain));
+  } catch (const std::runtime_error& e) {
+    throw SceneError(label + ": is corrupt: " + e.what());
+  }
+}
+
+}  // namespace
+
+Rgba8Image decode_png_or_jpeg(std::span<const std::uint8_t> encoded, const std::string& label) {
+  constexpr std::array<std::uint8_t, 8> png{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+  constexpr std::array<std::uint8_t, 3> jpeg{0xFF, 0xD8, 0xFF};
+  const auto starts_with = [&encoded](const auto& magic) {
+    return encoded.size() >= magic.size() &&
+           std::equal(magic.begin(), magic.end(), encoded.begin());
+  };
+  if (starts_with(png)) return decode_plain(ImageFormat::png, plain_png(encoded, label), label);
+  if (starts_with(jpeg)) return decode_plain(ImageFormat::jpeg, plain_jpeg(encoded, label), label);
+  throw SceneError(label + ": neither a PNG nor a JPEG");
+}
+
+}  // namespace lacuna
