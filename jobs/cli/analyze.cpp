@@ -16,6 +16,7 @@
 #include "jobs/spec/json_text.h"
 #include "jobs/store/job_folder.h"
 #include "jobs/store/machine.h"
+#include "renderer/gltf/gltf_load.h"
 #include "renderer/scene/camera.h"
 #include "renderer/scene/scene_shape.h"
 

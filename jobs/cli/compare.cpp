@@ -7,8 +7,8 @@
 #include "renderer/film/display_errors.h"
 #include "renderer/film/metrics.h"
 #include "renderer/film/preview.h"
+#include "renderer/geometry/scene_data.h"
 #include "renderer/images/image_read.h"
-#include "renderer/scene/scene_data.h"
 
 namespace lacuna {
 

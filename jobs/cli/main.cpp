@@ -7,7 +7,7 @@
 #include "jobs/run/obstacle.h"
 #include "jobs/spec/problems.h"
 #include "jobs/spec/version.h"
-#include "renderer/scene/scene_data.h"
+#include "renderer/geometry/scene_data.h"
 
 namespace {
 

@@ -8,8 +8,8 @@
 #include "jobs/report/replicate_bias.h"
 #include "jobs/run/reference.h"
 #include "renderer/film/preview.h"
+#include "renderer/geometry/scene_data.h"
 #include "renderer/images/image_read.h"
-#include "renderer/scene/scene_data.h"
 
 namespace lacuna {
 namespace {

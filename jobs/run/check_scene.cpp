@@ -1,4 +1,5 @@
 #include "jobs/run/check_scene.h"
+#include "renderer/gltf/gltf_load.h"
 
 #include <optional>
 #include <utility>

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analysis/artefacts/space_analysis.h"
-#include "renderer/scene/scene_data.h"
+#include "renderer/geometry/scene_data.h"
 
 namespace lacuna {
 

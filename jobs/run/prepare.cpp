@@ -1,4 +1,7 @@
 #include "jobs/run/prepare.h"
+#include "renderer/gltf/gltf_load.h"
+#include "renderer/scene/material_change.h"
+#include "renderer/scene/particles.h"
 
 #include <fmt/format.h>
 #include <xxhash.h>

@@ -9,8 +9,8 @@
 #include "jobs/run/results.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/reference_spec.h"
+#include "renderer/geometry/scene_data.h"
 #include "renderer/images/image_read.h"
-#include "renderer/scene/scene_data.h"
 
 namespace lacuna {
 

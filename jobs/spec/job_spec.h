@@ -8,10 +8,9 @@
 
 #include "analysis/settings/analysis_settings.h"
 #include "analysis/settings/field.h"
-#include "renderer/scene/material_change.h"
-#include "renderer/scene/particles.h"
 #include "renderer/settings/integrator_settings.h"
 #include "renderer/settings/output_settings.h"
+#include "renderer/settings/scene_settings.h"
 
 namespace lacuna {
 

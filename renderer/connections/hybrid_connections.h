@@ -2,6 +2,7 @@
 
 #include "renderer/connections/importance_cache.h"
 #include "renderer/connections/skeleton_connections.h"
+#include "renderer/settings/connections_settings.h"
 
 namespace lacuna {
 

@@ -3,10 +3,11 @@
 #include <limits>
 
 #include "renderer/connections/cell_statistics.h"
-#include "renderer/connections/record_tree.h"
 #include "renderer/connections/site.h"
-#include "renderer/guides/bsdf_guide.h"
-#include "renderer/integrators/integrator.h"
+#include "renderer/path/bsdf_guide.h"
+#include "renderer/path/contexts.h"
+#include "renderer/path/record_tree.h"
+#include "renderer/settings/connections_settings.h"
 
 namespace lacuna {
 

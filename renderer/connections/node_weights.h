@@ -1,6 +1,6 @@
 #pragma once
 
-#include "renderer/connections/light_vertices.h"
+#include "renderer/path/light_vertices.h"
 #include "renderer/settings/connections_settings.h"
 
 namespace lacuna {

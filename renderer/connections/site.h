@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "renderer/connections/light_vertices.h"
 #include "renderer/connections/resampling_table.h"
+#include "renderer/path/light_vertices.h"
 
 namespace lacuna {
 

@@ -5,7 +5,8 @@
 #include "analysis/skeleton/surface_lookup.h"
 #include "renderer/connections/cell_statistics.h"
 #include "renderer/connections/site.h"
-#include "renderer/integrators/integrator.h"
+#include "renderer/path/contexts.h"
+#include "renderer/settings/connections_settings.h"
 
 namespace lacuna {
 

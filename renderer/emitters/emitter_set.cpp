@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include "renderer/core/sampling.h"
+#include "renderer/geometry/surface.h"
 #include "renderer/materials/gltf_material.h"
-#include "renderer/scene/surface.h"
 
 namespace lacuna {
 

@@ -9,9 +9,9 @@
 #include "renderer/emitters/emitter_point.h"
 #include "renderer/emitters/environment.h"
 #include "renderer/emitters/leaving.h"
-#include "renderer/scene/alpha_mask.h"
-#include "renderer/scene/scene_data.h"
-#include "renderer/scene/surface.h"
+#include "renderer/geometry/alpha_mask.h"
+#include "renderer/geometry/scene_data.h"
+#include "renderer/geometry/surface.h"
 
 namespace lacuna {
 

@@ -1,8 +1,8 @@
 #include "renderer/emitters/leaving.h"
 
 #include "renderer/core/frame.h"
+#include "renderer/geometry/surface.h"
 #include "renderer/materials/lambert.h"
-#include "renderer/scene/surface.h"
 
 namespace lacuna {
 

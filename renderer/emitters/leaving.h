@@ -5,7 +5,7 @@
 #include "renderer/core/bounds.h"
 #include "renderer/core/rng.h"
 #include "renderer/emitters/emitter_point.h"
-#include "renderer/scene/rays.h"
+#include "renderer/geometry/rays.h"
 
 namespace lacuna {
 

@@ -31,7 +31,7 @@ std::uint64_t BorderFaceLight::index(std::uint32_t region, const VoxelFace& face
   return static_cast<std::uint64_t>(at - begin) - first(region);
 }
 
-void BorderFaceLight::learn(std::uint32_t region, const VoxelFace& face, const Learned& what,
+void BorderFaceLight::learn(std::uint32_t region, const VoxelFace& face, const GuidingSample& what,
                             Tally& tally) const {
   const double light = double(what.radiance) / double(what.pdf.value);
   if (!std::isfinite(light)) return;

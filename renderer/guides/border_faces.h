@@ -51,7 +51,8 @@ class BorderFaceLight {
   struct Tally {
     std::unordered_map<std::uint64_t, double> light;  // of the faces met, of all regions
   };
-  void learn(std::uint32_t region, const VoxelFace& face, const Learned& what, Tally& tally) const;
+  void learn(std::uint32_t region, const VoxelFace& face, const GuidingSample& what,
+             Tally& tally) const;
   void end(std::span<const Tally* const> tallies, const ThreadPool& pool);
 
  private:

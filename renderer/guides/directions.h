@@ -6,19 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "renderer/integrators/integrator.h"
+#include "analysis/storage/bytes.h"
+#include "renderer/path/contexts.h"
+#include "renderer/path/guiding_sample.h"
 #include "renderer/path/vertex.h"
 
 namespace lacuna {
-
-/// What a walk found out about the light at one of its vertices.
-struct Learned {
-  const Vertex& v;      ///< left along `wi`, which was not drawn from a delta lobe
-  V3f wi;               ///< unit
-  Pdf<SolidAngle> pdf;  ///< with which it was drawn
-  float radiance;       ///< luminance that arrived along `wi`, as the rest of the path estimates it
-  float given;          ///< luminance of what the pixel got from there
-};
 
 /// A distribution of directions at every point of the scene's surfaces, of what a guide knows about
 /// where light comes from. MixedGuide combines it with the BSDF. Iterations read it from several
@@ -53,7 +46,7 @@ class Directions {
   /// Whether learn() and end() want to be called in the coming iteration.
   virtual bool learns() const { return false; }
   virtual std::unique_ptr<Tally> tally() const { return nullptr; }
-  virtual void learn(const Learned&, Tally&) const {}
+  virtual void learn(const GuidingSample&, Tally&) const {}
   virtual void end(std::span<const std::unique_ptr<Tally>>, const ThreadPool&) {}
 };
 

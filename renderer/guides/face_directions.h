@@ -6,6 +6,7 @@
 #include "renderer/guides/directions.h"
 #include "renderer/guides/region_mixture.h"
 #include "renderer/guides/tuning.h"
+#include "renderer/settings/guide_settings.h"
 
 namespace lacuna {
 
@@ -87,7 +88,7 @@ class FaceDirections final : public Directions {
 
   bool learns() const override { return Faces::learns || tuning_.learns(); }
   std::unique_ptr<Tally> tally() const override { return std::make_unique<Both>(); }
-  void learn(const Learned& what, Tally& tally) const override {
+  void learn(const GuidingSample& what, Tally& tally) const override {
     const std::uint32_t voxel = what.v.site.index;
     if (voxel >= label_->count()) return;
     auto& both = static_cast<Both&>(tally);

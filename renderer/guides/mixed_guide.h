@@ -1,7 +1,7 @@
 #pragma once
 
-#include "renderer/guides/bsdf_guide.h"
 #include "renderer/guides/directions.h"
+#include "renderer/path/bsdf_guide.h"
 
 namespace lacuna {
 
@@ -24,7 +24,7 @@ class MixedGuide {
   using Tally = std::unique_ptr<Directions::Tally>;
   bool learns() const { return directions_->learns(); }
   Tally tally() const { return directions_->tally(); }
-  void learn(const Learned& what, Tally& tally) const { directions_->learn(what, *tally); }
+  void learn(const GuidingSample& what, Tally& tally) const { directions_->learn(what, *tally); }
   void end(std::span<const Tally> tallies, const ThreadPool& pool) {
     directions_->end(tallies, pool);
   }

@@ -43,7 +43,7 @@ std::unique_ptr<Directions::Tally> SdTree::tally() const {
   return std::make_unique<Own>(leaves_.size());
 }
 
-void SdTree::learn(const Learned& what, Tally& tally) const {
+void SdTree::learn(const GuidingSample& what, Tally& tally) const {
   auto& own = static_cast<Own&>(tally);
   const std::uint32_t leaf = what.v.site.index;
   if (leaf >= leaves_.size()) return;

@@ -36,7 +36,7 @@ class SdTree final : public Directions {
 
   bool learns() const override { return true; }
   std::unique_ptr<Tally> tally() const override;
-  void learn(const Learned& what, Tally& tally) const override;
+  void learn(const GuidingSample& what, Tally& tally) const override;
   void end(std::span<const std::unique_ptr<Tally>> tallies, const ThreadPool& pool) override;
 
  private:

@@ -50,7 +50,7 @@ void SkeletonDirections::prepare(const PrepareContext& context) {
   });
 }
 
-void SkeletonDirections::learn(const Learned& what, Tally& tally) const {
+void SkeletonDirections::learn(const GuidingSample& what, Tally& tally) const {
   const GuideSite& site = what.v.site;
   // A node that draws nothing from its lobes at present goes on learning.
   if (site.index >= lobes_.size() || lobes_[site.index].empty()) return;

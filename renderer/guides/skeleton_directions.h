@@ -3,6 +3,7 @@
 #include "analysis/skeleton/surface_lookup.h"
 #include "renderer/guides/lobe_set.h"
 #include "renderer/guides/tuning.h"
+#include "renderer/settings/guide_settings.h"
 
 namespace lacuna {
 
@@ -33,7 +34,7 @@ class SkeletonDirections final : public Directions {
 
   bool learns() const override { return tuning_.learns(); }
   std::unique_ptr<Tally> tally() const override { return std::make_unique<Own>(); }
-  void learn(const Learned& what, Tally& tally) const override;
+  void learn(const GuidingSample& what, Tally& tally) const override;
   void end(std::span<const std::unique_ptr<Tally>> tallies, const ThreadPool&) override {
     std::vector<const Tuning::Tally*> own;
     for (const auto& t : tallies) own.push_back(&static_cast<const Own&>(*t).tuning);

@@ -36,10 +36,11 @@ Tuning::Tuning(std::vector<float> strengths, const AutoNumber& probability, std:
   if (learns()) moments_.assign(places * stride(), 0.0);
 }
 
-void Tuning::learn(const Learned& what, std::uint32_t place, std::span<const float> densities,
+void Tuning::learn(const GuidingSample& what, std::uint32_t place, std::span<const float> densities,
                    Tally& tally) const {
   const Vertex& v = what.v;
-  const double energy = double(what.given) * double(what.given) * double(what.pdf.value);
+  const double energy =
+      double(what.pixel_contribution) * double(what.pixel_contribution) * double(what.pdf.value);
   if (!(energy > 0) || !std::isfinite(energy)) return;
   const float bsdf = v.bsdf->pdf(v.wp, what.wi, Transport::radiance).value;
   std::vector<double>& moments = tally.moments[place];

@@ -34,7 +34,7 @@ class Tuning {
   bool wants(std::uint32_t place) const { return learns() && paths(place) < enough_paths; }
   /// Only where it wants(). `densities`: with which the guide alone would draw what.wi, for each of
   /// the strengths.
-  void learn(const Learned& what, std::uint32_t place, std::span<const float> densities,
+  void learn(const GuidingSample& what, std::uint32_t place, std::span<const float> densities,
              Tally& tally) const;
   void end(std::span<const Tally* const> tallies);
 

@@ -6,8 +6,11 @@
 #include "renderer/guides/gathered_light.h"
 #include "renderer/guides/make_guide.h"
 #include "renderer/integrators/guided_integrator.h"
-#include "renderer/integrators/light_pass.h"
 #include "renderer/integrators/strategy_layers.h"
+#include "renderer/path/light_pass.h"
+#include "renderer/settings/bdpt_settings.h"
+#include "renderer/settings/connections_settings.h"
+#include "renderer/settings/output_settings.h"
 
 namespace lacuna {
 

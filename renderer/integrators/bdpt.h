@@ -1,6 +1,7 @@
 #pragma once
 
 #include "renderer/integrators/integrator.h"
+#include "renderer/settings/bdpt_settings.h"
 
 namespace lacuna {
 

@@ -3,7 +3,8 @@
 #include "renderer/guides/make_guide.h"
 #include "renderer/integrators/inspect_guide.h"
 #include "renderer/integrators/inspect_space.h"
-#include "renderer/integrators/tiles.h"
+#include "renderer/path/tiles.h"
+#include "renderer/settings/inspect_settings.h"
 
 namespace lacuna {
 

@@ -1,6 +1,7 @@
 #include "renderer/integrators/inspect_guide.h"
 
 #include "renderer/guides/make_guide.h"
+#include "renderer/settings/inspect_settings.h"
 
 namespace lacuna {
 

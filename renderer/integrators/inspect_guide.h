@@ -5,6 +5,7 @@
 
 #include "renderer/integrators/integrator.h"
 #include "renderer/path/vertex.h"
+#include "renderer/settings/inspect_settings.h"
 
 namespace lacuna {
 

@@ -1,6 +1,7 @@
 #include "renderer/integrators/inspect_space.h"
 
 #include "renderer/core/false_colour.h"
+#include "renderer/settings/inspect_settings.h"
 
 namespace lacuna {
 

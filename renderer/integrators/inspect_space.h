@@ -5,6 +5,7 @@
 
 #include "analysis/skeleton/surface_lookup.h"
 #include "renderer/integrators/integrator.h"
+#include "renderer/settings/inspect_settings.h"
 
 namespace lacuna {
 

@@ -1,47 +1,18 @@
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "analysis/artefacts/space_analysis.h"
 #include "analysis/storage/bytes.h"
-#include "renderer/film/image.h"
+#include "renderer/path/contexts.h"
 #include "renderer/path/counters.h"
-#include "renderer/scene/camera.h"
-#include "renderer/scene/scene.h"
 #include "renderer/settings/integrator_settings.h"
 #include "renderer/settings/output_settings.h"
 
 namespace lacuna {
-
-/// Thrown out of an iteration that was told to stop; what it had done is discarded, and the
-/// iteration can be run again with the same result.
-struct IterationStopped {};
-
-/// What one iteration works with.
-struct IterationContext {
-  const Scene& scene;
-  const Camera& camera;
-  const ThreadPool& pool;
-  std::uint64_t seed;
-  std::uint64_t iteration;  ///< < 2^32
-  /// Asked between tiles, from several threads: true ends the iteration by IterationStopped.
-  const std::function<bool()>& stop;
-  /// The images of Integrator::layers(), black; same size as the picture.
-  std::span<Image> layers = {};
-};
-
-/// What an integrator may look at before its first iteration. `space` builds only what it is asked
-/// for.
-struct PrepareContext {
-  const Scene& scene;
-  const ThreadPool& pool;
-  SpaceAnalysis& space;
-};
 
 /// A rendering method. iterate() is a pure function of the scene, the settings, the seed, the
 /// iteration and of the state that save() writes; an iteration that was stopped leaves that state

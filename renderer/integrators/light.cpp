@@ -1,7 +1,8 @@
 #include "renderer/integrators/light.h"
 
-#include "renderer/guides/bsdf_guide.h"
-#include "renderer/integrators/light_pass.h"
+#include "renderer/path/bsdf_guide.h"
+#include "renderer/path/light_pass.h"
+#include "renderer/settings/light_settings.h"
 
 namespace lacuna {
 

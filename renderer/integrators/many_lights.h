@@ -1,6 +1,7 @@
 #pragma once
 
 #include "renderer/integrators/integrator.h"
+#include "renderer/settings/many_lights_settings.h"
 
 namespace lacuna {
 

@@ -2,6 +2,7 @@
 
 #include "renderer/guides/make_guide.h"
 #include "renderer/integrators/path_tracer.h"
+#include "renderer/settings/path_settings.h"
 
 namespace lacuna {
 

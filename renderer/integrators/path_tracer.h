@@ -2,11 +2,12 @@
 
 #include "renderer/guides/gathered_light.h"
 #include "renderer/integrators/guided_integrator.h"
-#include "renderer/integrators/tiles.h"
 #include "renderer/path/direct_light.h"
 #include "renderer/path/eye_batch.h"
 #include "renderer/path/shadow_queue.h"
+#include "renderer/path/tiles.h"
 #include "renderer/path/walk.h"
+#include "renderer/settings/path_settings.h"
 
 namespace lacuna {
 

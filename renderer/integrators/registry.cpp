@@ -4,6 +4,11 @@
 #include "renderer/integrators/light.h"
 #include "renderer/integrators/many_lights.h"
 #include "renderer/integrators/path.h"
+#include "renderer/settings/bdpt_settings.h"
+#include "renderer/settings/inspect_settings.h"
+#include "renderer/settings/light_settings.h"
+#include "renderer/settings/many_lights_settings.h"
+#include "renderer/settings/path_settings.h"
 
 namespace lacuna {
 

@@ -3,8 +3,8 @@
 #include <memory>
 #include <span>
 
+#include "renderer/geometry/scene_data.h"
 #include "renderer/materials/bsdf.h"
-#include "renderer/scene/scene_data.h"
 
 namespace lacuna {
 

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "renderer/core/density.h"
+#include "renderer/geometry/surface.h"
 #include "renderer/materials/bsdf.h"
-#include "renderer/scene/surface.h"
 
 namespace lacuna {
 

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "renderer/core/density.h"
-#include "renderer/scene/rays.h"
-#include "renderer/scene/scene_data.h"
+#include "renderer/geometry/rays.h"
+#include "renderer/geometry/scene_data.h"
 #include "renderer/settings/output_settings.h"
 
 namespace lacuna {

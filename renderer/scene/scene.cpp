@@ -2,9 +2,9 @@
 
 #include <set>
 
+#include "renderer/geometry/alpha_mask.h"
 #include "renderer/images/image_read.h"
 #include "renderer/materials/gltf_material.h"
-#include "renderer/scene/alpha_mask.h"
 
 namespace lacuna {
 

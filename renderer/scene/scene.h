@@ -5,10 +5,10 @@
 
 #include "analysis/parallel/thread_pool.h"
 #include "renderer/emitters/emitter_set.h"
+#include "renderer/geometry/rays.h"
+#include "renderer/geometry/scene_data.h"
+#include "renderer/geometry/surface.h"
 #include "renderer/materials/gltf_material.h"
-#include "renderer/scene/rays.h"
-#include "renderer/scene/scene_data.h"
-#include "renderer/scene/surface.h"
 
 namespace lacuna {
 

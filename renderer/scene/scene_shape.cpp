@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "renderer/scene/alpha_mask.h"
+#include "renderer/geometry/alpha_mask.h"
 
 namespace lacuna {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "analysis/geometry/triangle_soup.h"
 #include "analysis/space/domain.h"
-#include "renderer/scene/scene_data.h"
+#include "renderer/geometry/scene_data.h"
 
 namespace lacuna {
 

@@ -1,5 +1,7 @@
 #include "renderer/visibility/cached_visibility.h"
 
+#include "renderer/settings/visibility_settings.h"
+
 namespace lacuna {
 
 Counters ProbabilisticVisibility::begin(const LightPass& pass) {

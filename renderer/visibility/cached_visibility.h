@@ -1,5 +1,6 @@
 #pragma once
 
+#include "renderer/settings/visibility_settings.h"
 #include "renderer/visibility/test_chance.h"
 #include "renderer/visibility/visibility_base.h"
 

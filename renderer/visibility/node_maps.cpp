@@ -5,7 +5,7 @@
 
 #include "analysis/space/memory_limit.h"
 #include "renderer/core/float8.h"
-#include "renderer/visibility/nearness.h"
+#include "renderer/view_maps/nearness.h"
 
 namespace lacuna {
 

@@ -1,5 +1,7 @@
 #include "renderer/visibility/roulette_visibility.h"
 
+#include "renderer/settings/visibility_settings.h"
+
 namespace lacuna {
 
 Counters RouletteVisibility::begin(const LightPass& pass) {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "renderer/core/rng.h"
-#include "renderer/visibility/decision.h"
-#include "renderer/visibility/light_terms.h"
+#include "renderer/many_lights/decision.h"
+#include "renderer/many_lights/light_terms.h"
 
 namespace lacuna {
 

@@ -4,7 +4,7 @@
 
 #include "analysis/octree/surface_octree.h"
 #include "renderer/settings/visibility_settings.h"
-#include "renderer/visibility/view_maps.h"
+#include "renderer/view_maps/view_maps.h"
 #include "renderer/visibility/visibility_base.h"
 
 namespace lacuna {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "renderer/integrators/integrator.h"
-#include "renderer/visibility/cache_points.h"
-#include "renderer/visibility/decision.h"
+#include "renderer/many_lights/cache_points.h"
+#include "renderer/many_lights/decision.h"
+#include "renderer/path/contexts.h"
 
 namespace lacuna {
 

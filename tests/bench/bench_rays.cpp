@@ -14,6 +14,7 @@
 #include <string>
 
 #include "analysis/space/memory_limit.h"
+#include "renderer/gltf/gltf_load.h"
 #include "renderer/integrators/integrator.h"
 #include "renderer/scene/scene_shape.h"
 

@@ -24,7 +24,8 @@
 #include "analysis/space/opening.h"
 #include "analysis/space/opening_query.h"
 #include "analysis/space/voxelize.h"
-#include "renderer/scene/scene_data.h"
+#include "renderer/geometry/scene_data.h"
+#include "renderer/gltf/gltf_load.h"
 #include "tests/bench/grids.h"
 
 namespace {

@@ -7,7 +7,7 @@
 #include "analysis/space/memory_limit.h"
 #include "analysis/space/voxelize.h"
 #include "jobs/spec/problems.h"
-#include "renderer/scene/scene_data.h"
+#include "renderer/geometry/scene_data.h"
 
 namespace lacuna::extremes {
 namespace {

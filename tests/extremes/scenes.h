@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tests/renderer/scene/glb_builder.h"
+#include "tests/renderer/gltf/glb_builder.h"
 
 namespace lacuna::extremes {
 

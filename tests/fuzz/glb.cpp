@@ -1,12 +1,13 @@
 #include <algorithm>
 #include <random>
 
-#include "renderer/guides/bsdf_guide.h"
+#include "renderer/gltf/gltf_guard.h"
+#include "renderer/gltf/gltf_load.h"
 #include "renderer/integrators/path_tracer.h"
-#include "renderer/scene/gltf_guard.h"
+#include "renderer/path/bsdf_guide.h"
 #include "tests/fuzz/input_file.h"
-#include "tests/renderer/scene/glb_frame.h"
-#include "tests/renderer/scene/scene_promises.h"
+#include "tests/renderer/gltf/glb_frame.h"
+#include "tests/renderer/gltf/scene_promises.h"
 
 // A .glb or .gltf: refused, or a scene that keeps the promises of SceneData, is built, and gives a
 // small picture without a value that is not finite.

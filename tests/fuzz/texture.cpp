@@ -1,6 +1,6 @@
-#include "renderer/scene/texture.h"
+#include "renderer/images/texture.h"
 
-#include "renderer/scene/scene_data.h"
+#include "renderer/geometry/scene_data.h"
 #include "tests/fuzz/expect.h"
 
 // A PNG or JPEG of a scene: refused, or texels that can be looked up anywhere.

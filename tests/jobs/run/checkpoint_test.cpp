@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/storage/atomic_file.h"
-#include "tests/renderer/scene/glb_builder.h"
+#include "tests/renderer/gltf/glb_builder.h"
 
 namespace lacuna {
 namespace {

@@ -13,11 +13,11 @@
 #include "jobs/run/reference.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/problems.h"
+#include "renderer/geometry/scene_data.h"
 #include "renderer/images/exr_write.h"
 #include "renderer/images/image_read.h"
-#include "renderer/scene/scene_data.h"
 #include "tests/jobs/run/silent_observer.h"
-#include "tests/renderer/scene/glb_builder.h"
+#include "tests/renderer/gltf/glb_builder.h"
 
 namespace lacuna {
 namespace {

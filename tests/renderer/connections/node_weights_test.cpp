@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/guides/bsdf_guide.h"
+#include "renderer/path/bsdf_guide.h"
 #include "tests/renderer/path/scenes.h"
 
 namespace lacuna {

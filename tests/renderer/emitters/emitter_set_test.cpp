@@ -1,4 +1,5 @@
 #include "renderer/emitters/emitter_set.h"
+#include "renderer/gltf/gltf_load.h"
 
 #include <gtest/gtest.h>
 

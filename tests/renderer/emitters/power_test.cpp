@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "renderer/gltf/gltf_load.h"
 #include "tests/renderer/scene/scene_parts.h"
 #include "tests/statistics.h"
 

@@ -12,7 +12,7 @@
 #include "renderer/film/metrics.h"
 #include "renderer/images/exr_write.h"
 #include "renderer/images/image_read.h"
-#include "tests/renderer/scene/glb_builder.h"
+#include "tests/renderer/gltf/glb_builder.h"
 
 namespace lacuna {
 namespace {

@@ -1,6 +1,7 @@
 // The quadtree of directions, and the state that guides keep.
 
 #include "renderer/guides/direction_tree.h"
+#include "renderer/gltf/gltf_load.h"
 
 #include <gtest/gtest.h>
 

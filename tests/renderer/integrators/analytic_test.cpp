@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "renderer/gltf/gltf_load.h"
 #include "tests/renderer/integrators/methods.h"
 #include "tests/renderer/integrators/same_picture.h"
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/gltf/gltf_load.h"
 #include "tests/renderer/integrators/methods.h"
 #include "tests/renderer/integrators/same_picture.h"
 #include "tests/renderer/scene/scene_parts.h"

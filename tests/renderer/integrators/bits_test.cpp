@@ -5,6 +5,7 @@
 
 #include <atomic>
 
+#include "renderer/gltf/gltf_load.h"
 #include "tests/renderer/integrators/methods.h"
 #include "tests/renderer/integrators/transformed.h"
 

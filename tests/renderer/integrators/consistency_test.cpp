@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/gltf/gltf_load.h"
 #include "tests/renderer/integrators/render.h"
 #include "tests/renderer/integrators/transformed.h"
 #include "tests/statistics.h"

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/gltf/gltf_load.h"
 #include "tests/renderer/integrators/render.h"
 
 namespace lacuna {

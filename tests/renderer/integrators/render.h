@@ -7,6 +7,7 @@
 
 #include "analysis/space/memory_limit.h"
 #include "renderer/film/film.h"
+#include "renderer/gltf/gltf_load.h"
 #include "renderer/integrators/integrator.h"
 #include "renderer/scene/scene_shape.h"
 #include "tests/block_means.h"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "renderer/gltf/gltf_load.h"
 #include "tests/renderer/integrators/render.h"
 
 namespace lacuna::test {

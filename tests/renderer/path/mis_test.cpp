@@ -6,7 +6,7 @@
 
 #include <set>
 
-#include "renderer/guides/bsdf_guide.h"
+#include "renderer/path/bsdf_guide.h"
 #include "tests/renderer/path/oracle.h"
 #include "tests/renderer/path/scenes.h"
 #include "tests/renderer/path/scripted.h"

@@ -3,6 +3,7 @@
 #include <ostream>
 #include <string>
 
+#include "renderer/gltf/gltf_load.h"
 #include "renderer/scene/particles.h"
 #include "tests/renderer/scene/scene_parts.h"
 

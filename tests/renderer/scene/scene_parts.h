@@ -1,7 +1,7 @@
 #pragma once
 
+#include "renderer/geometry/scene_data.h"
 #include "renderer/scene/scene.h"
-#include "renderer/scene/scene_data.h"
 
 namespace lacuna::test {
 

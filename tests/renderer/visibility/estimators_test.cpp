@@ -4,7 +4,7 @@
 #include "renderer/visibility/cached_visibility.h"
 #include "renderer/visibility/plain_visibility.h"
 #include "renderer/visibility/roulette_visibility.h"
-#include "tests/renderer/visibility/lit_scene.h"
+#include "tests/renderer/many_lights/lit_scene.h"
 #include "tests/statistics.h"
 
 namespace lacuna {

@@ -3,7 +3,7 @@
 #include "renderer/visibility/gate_visibility.h"
 #include "renderer/visibility/node_map_visibility.h"
 #include "renderer/visibility/plain_visibility.h"
-#include "tests/renderer/visibility/lit_scene.h"
+#include "tests/renderer/many_lights/lit_scene.h"
 
 namespace lacuna {
 namespace {

@@ -1,7 +1,7 @@
 // What view maps say of lights and points, against rays.
 
 #include "renderer/visibility/view_map_visibility.h"
-#include "tests/renderer/visibility/lit_scene.h"
+#include "tests/renderer/many_lights/lit_scene.h"
 
 namespace lacuna {
 namespace {

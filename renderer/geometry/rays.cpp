@@ -1,0 +1,210 @@
+#include "renderer/geometry/rays.h"
+
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+#include <immintrin.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstring>
+#include <new>
+
+#include "renderer/geometry/alpha_mask.h"
+
+namespace lacuna {
+
+namespace {
+
+// Embree's own bound on coordinates (rtcore_ray checks) is 1.8e18.
+constexpr float largest_coordinate = 1e18F;
+
+bool acceptable(const Ray& ray) {
+  // The ray's o and d at once; an ordered comparison is false for NaN as well.
+  static_assert(sizeof(Ray) == 32);
+  const __m256 all = _mm256_load_ps(&ray.o.x);
+  const __m256 magnitude = _mm256_andnot_ps(_mm256_set1_ps(-0.0F), all);
+  const __m256 small = _mm256_cmp_ps(magnitude, _mm256_set1_ps(largest_coordinate), _CMP_LE_OQ);
+  return (_mm256_movemask_ps(small) & 0x3f) == 0x3f && ray.tmax >= 0.0F;
+}
+
+RTCRay to_embree(const Ray& ray) {
+  RTCRay r;
+  r.org_x = ray.o.x;
+  r.org_y = ray.o.y;
+  r.org_z = ray.o.z;
+  r.tnear = 0.0F;
+  r.dir_x = ray.d.x;
+  r.dir_y = ray.d.y;
+  r.dir_z = ray.d.z;
+  r.time = 0.0F;
+  r.tfar = ray.tmax;
+  r.mask = ~0U;
+  r.id = 0;
+  r.flags = 0;
+  return r;
+}
+
+// Called by Embree for every candidate hit on a geometry with a mask.
+void mask_filter(const RTCFilterFunctionNArguments* args) {
+  const auto& mask = *static_cast<const AlphaMask*>(args->geometryUserPtr);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] == 0) continue;
+    if (!mask.opaque(RTCHitN_primID(args->hit, args->N, i), RTCHitN_u(args->hit, args->N, i),
+                     RTCHitN_v(args->hit, args->N, i))) {
+      args->valid[i] = 0;
+    }
+  }
+}
+
+}  // namespace
+
+struct RayCaster::Impl {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  std::vector<std::unique_ptr<AlphaMask>> masks;
+  std::atomic<std::int64_t> bytes{0};
+  std::string said;  // by Embree of its latest error
+  mutable std::atomic<std::uint64_t> refused{0};
+  std::vector<RecordedRay>* recorded = nullptr;
+
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+    if (device != nullptr) rtcReleaseDevice(device);
+  }
+
+  void check(const char* doing) const {
+    const RTCError e = rtcGetDeviceError(device);
+    if (e == RTC_ERROR_NONE) return;
+    // One of its tasks ran out of memory and cancelled the others, which are quicker to say so; or
+    // there was no memory for a thread's stack.
+    const bool unnamed = e == RTC_ERROR_UNKNOWN && (said == "task cancelled" ||
+                                                    said.starts_with("pthread_create has failed"));
+    if (e == RTC_ERROR_OUT_OF_MEMORY || unnamed) throw std::bad_alloc();
+    throw SceneError(fmt::format("Embree failed while {}: error {} ({})", doing, int(e), said));
+  }
+
+  void add(const SceneData& data, std::size_t index) {
+    const Mesh& mesh = data.meshes[index];
+    RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    static_assert(sizeof(V3f) == 12 && sizeof(mesh.triangles[0]) == 12);
+    void* positions = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                              sizeof(V3f), mesh.positions.size());
+    void* triangles = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                              sizeof(mesh.triangles[0]), mesh.triangles.size());
+    if (positions == nullptr || triangles == nullptr) {
+      rtcReleaseGeometry(g);
+      check("copying triangles");
+      throw std::bad_alloc();
+    }
+    std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<V3f*>(positions));
+    std::memcpy(triangles, mesh.triangles.data(),
+                sizeof(mesh.triangles[0]) * mesh.triangles.size());
+    if (AlphaMask::needed(data, mesh)) {
+      masks.push_back(std::make_unique<AlphaMask>(data, mesh));
+      rtcSetGeometryUserData(g, masks.back().get());
+      rtcSetGeometryIntersectFilterFunction(g, mask_filter);
+      rtcSetGeometryOccludedFilterFunction(g, mask_filter);
+    }
+    rtcCommitGeometry(g);
+    rtcAttachGeometryByID(scene, g, static_cast<unsigned>(index));
+    rtcReleaseGeometry(g);
+  }
+};
+
+RayCaster::RayCaster(const SceneData& data, int threads) : impl_(std::make_unique<Impl>()) {
+  impl_->device = rtcNewDevice(fmt::format("isa=avx2,threads={},set_affinity=0", threads).c_str());
+  impl_->check("starting");
+  rtcSetDeviceErrorFunction(
+      impl_->device,
+      [](void* user, RTCError, const char* text) {
+        static_cast<Impl*>(user)->said = text == nullptr ? "" : text;
+      },
+      impl_.get());
+  rtcSetDeviceMemoryMonitorFunction(
+      impl_->device,
+      [](void* user, ssize_t bytes, bool) {
+        static_cast<Impl*>(user)->bytes += bytes;
+        return true;
+      },
+      impl_.get());
+  impl_->scene = rtcNewScene(impl_->device);
+  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
+  for (std::size_t i = 0; i < data.meshes.size(); ++i) impl_->add(data, i);
+  rtcCommitScene(impl_->scene);
+  impl_->check("building its acceleration structure");
+}
+
+RayCaster::~RayCaster() = default;
+RayCaster::RayCaster(RayCaster&&) noexcept = default;
+RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
+
+bool RayCaster::intersect(const Ray& ray, Hit& hit) const {
+  if (impl_->recorded != nullptr) [[unlikely]]
+    impl_->recorded->push_back({ray, false});
+  if (!acceptable(ray)) [[unlikely]] {
+    ++impl_->refused;
+    return false;
+  }
+  RTCRayHit query;
+  query.ray = to_embree(ray);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(impl_->scene, &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  hit = {query.ray.tfar, query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v};
+  return true;
+}
+
+bool RayCaster::occluded(const Ray& ray) const {
+  if (impl_->recorded != nullptr) [[unlikely]]
+    impl_->recorded->push_back({ray, true});
+  if (!acceptable(ray)) [[unlikely]] {
+    ++impl_->refused;
+    return true;
+  }
+  RTCRay query = to_embree(ray);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(impl_->scene, &context, &query);
+  return query.tfar < 0.0F;
+}
+
+void RayCaster::occluded(std::span<const Ray> rays, std::span<std::uint8_t> result) const {
+  if (impl_->recorded != nullptr) [[unlikely]] {
+    for (const Ray& ray : rays) impl_->recorded->push_back({ray, true});
+  }
+  constexpr std::size_t batch = 128;  // fits the first-level cache
+  std::array<RTCRay, batch> queries;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  for (std::size_t first = 0; first < rays.size(); first += batch) {
+    const std::size_t n = std::min(batch, rays.size() - first);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Ray& ray = rays[first + i];
+      const bool good = acceptable(ray);
+      queries[i] = to_embree(good ? ray : Ray{V3f(0, 0, 0), V3f(0, 0, 1), 0});
+      if (!good) {
+        ++impl_->refused;
+        queries[i].tfar = -1;  // inactive, and reads as occluded
+      }
+    }
+    rtcOccluded1M(impl_->scene, &context, queries.data(), static_cast<unsigned>(n), sizeof(RTCRay));
+    for (std::size_t i = 0; i < n; ++i) result[first + i] = queries[i].tfar < 0.0F ? 1 : 0;
+  }
+}
+
+void RayCaster::record(std::vector<RecordedRay>* rays) const { impl_->recorded = rays; }
+std::uint64_t RayCaster::refused_rays() const { return impl_->refused; }
+int RayCaster::filters() const { return static_cast<int>(impl_->masks.size()); }
+RTCSceneTy* RayCaster::embree_scene() const { return impl_->scene; }
+std::uint64_t RayCaster::bytes() const {
+  return static_cast<std::uint64_t>(std::max<std::int64_t>(0, impl_->bytes));
+}
+
+}  // namespace lacuna

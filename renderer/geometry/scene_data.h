@@ -1,0 +1,125 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "renderer/core/bounds.h"
+#include "renderer/core/scene_error.h"
+#include "renderer/core/vec.h"
+#include "renderer/images/texture.h"
+
+namespace lacuna {
+
+/// Triangles of one material under one node, in world space.
+struct Mesh {
+  std::string name;
+  std::vector<V3f> positions;
+  std::vector<V3f> normals;             ///< unit shading normals, one a position; empty: flat
+  std::array<std::vector<V2f>, 2> uvs;  ///< TEXCOORD_0 and _1; each empty or one a position
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices below positions.size()
+  std::uint32_t material = 0;
+
+  /// Both texture coordinates at barycentric (u, v) of a triangle; (0, 0) where the mesh has none.
+  std::array<V2f, 2> uvs_at(std::uint32_t triangle, float u, float v) const {
+    std::array<V2f, 2> result{V2f(0, 0), V2f(0, 0)};
+    const auto& t = triangles[triangle];
+    for (std::size_t set = 0; set < 2; ++set) {
+      if (uvs[set].empty()) continue;
+      result[set] = (1 - u - v) * uvs[set][t[0]] + u * uvs[set][t[1]] + v * uvs[set][t[2]];
+    }
+    return result;
+  }
+};
+
+/// A texture as a material uses it: which image, which coordinates, KHR_texture_transform.
+struct TextureRef {
+  int texture = -1;  ///< index into SceneData::textures; -1: none, the factor stands alone
+  int uv_set = 0;
+  V2f offset{0, 0};
+  V2f scale{1, 1};
+  float rotation = 0;  ///< radians, counter-clockwise as glTF defines it
+
+  bool used() const { return texture >= 0; }
+  V2f transform(const V2f& uv) const;
+};
+
+/// glTF 2.0 metallic-roughness with KHR_materials_emissive_strength, _ior, _specular and
+/// _transmission. Factors are linear and multiply their texture.
+struct Material {
+  std::string name;
+  Rgb base_color{1, 1, 1};
+  float alpha = 1;
+  TextureRef base_color_texture;  ///< sRGB; its A is the alpha
+  float metallic = 1;
+  float roughness = 1;                    ///< perceptual: GGX alpha is its square
+  TextureRef metallic_roughness_texture;  ///< linear; G roughness, B metallic
+  Rgb emission{0, 0, 0};                  ///< radiance: emissiveFactor x emissiveStrength
+  TextureRef emission_texture;            ///< sRGB
+  float ior = 1.5F;                       ///< 0 means F0 = 1 (KHR_materials_ior)
+  float specular = 1;
+  TextureRef specular_texture;  ///< A
+  Rgb specular_color{1, 1, 1};
+  TextureRef specular_color_texture;  ///< sRGB
+  float transmission = 0;
+  TextureRef transmission_texture;  ///< R
+  bool mask = false;                ///< alphaMode MASK: a hit with alpha < cutoff is no hit
+  float alpha_cutoff = 0.5F;
+  bool double_sided = false;  ///< emits from both sides; all surfaces scatter on both
+
+  bool emits() const { return !is_black(emission); }
+
+  /// Calls `f` with each texture that scattering depends on.
+  template <class F>
+  void for_each_scattering_texture(F&& f) const {
+    for (const TextureRef* t : {&base_color_texture, &metallic_roughness_texture, &specular_texture,
+                                &specular_color_texture, &transmission_texture}) {
+      if (t->used()) f(*t);
+    }
+  }
+};
+
+/// A perspective camera. Looks along -z of `to_world`, x right, y up.
+struct CameraData {
+  std::string name;
+  M44d to_world;  ///< Imath convention: row vectors, p_world = p * to_world; orthonormal 3x3 part
+  double yfov = 0.8;  ///< vertical field of view, radians, in (0, pi)
+};
+
+/// A light of KHR_lights_punctual. `intensity` is read 1:1 as W/sr (point, spot) or W/m^2
+/// (directional).
+struct PunctualLight {
+  enum class Kind { point, spot, directional };
+  Kind kind = Kind::point;
+  std::string name;
+  Rgb intensity{1, 1, 1};  ///< colour x intensity
+  V3f position{0, 0, 0};
+  V3f direction{0, 0, -1};  ///< unit, the way the light travels
+  float inner_cone = 0;     ///< radians, half angle; 0 <= inner < outer <= pi/2
+  float outer_cone = 0.785398F;
+};
+
+/// Everything a glTF file says that Lacuna uses, validated: indices in range, coordinates and
+/// factors finite and inside the ranges of glTF, no degenerate triangles. Nothing is decoded or
+/// built yet.
+struct SceneData {
+  std::vector<Mesh> meshes;
+  std::vector<Material> materials;  ///< the last one is glTF's default material
+  std::vector<std::unique_ptr<Texture>> textures;
+  std::vector<CameraData> cameras;
+  std::vector<PunctualLight> lights;
+
+  std::uint64_t content_hash = 0;       ///< of all bytes read: the file, its buffers and its images
+  std::uint64_t geometry_hash = 0;      ///< of world-space positions and indices only
+  std::uint64_t dropped_triangles = 0;  ///< zero area or non-finite vertices
+  std::vector<std::string> warnings;    ///< what was left out, for the log and the report
+
+  std::size_t triangle_count() const;
+  /// Of all triangles, scene units.
+  Bounds bounds() const;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,145 @@
+#pragma once
+
+#include <immintrin.h>
+
+#include <vector>
+
+#include "renderer/core/huge_pages.h"
+#include "renderer/geometry/rays.h"
+#include "renderer/geometry/scene_data.h"
+
+namespace lacuna {
+
+/// Where a triangle lies.
+struct TriangleShape {
+  V3f p{0, 0, 0};                ///< first corner
+  V3f e1{0, 0, 0}, e2{0, 0, 0};  ///< edges to the second and the third
+  V3f ng{0, 0, 0};               ///< unit, towards the front (counter-clockwise)
+  float extent =
+      0;  ///< the size that rounding errors on it are relative to: largest coordinate or edge
+
+  TriangleShape() = default;
+  TriangleShape(const Mesh& mesh, std::uint32_t triangle);
+  double area() const { return V3d(e1).cross(V3d(e2)).length() / 2; }
+  /// The point at barycentric (u, v); in double, so that the error across the plane is the last
+  /// rounding.
+  V3f at(float u, float v) const {
+    // p, e1, e2 and ng lie side by side: the fourth lane of each load is a neighbour's and is left
+    // out.
+    const __m256d base = _mm256_cvtps_pd(_mm_loadu_ps(&p.x));
+    const __m256d along_1 = _mm256_cvtps_pd(_mm_loadu_ps(&e1.x));
+    const __m256d along_2 = _mm256_cvtps_pd(_mm_loadu_ps(&e2.x));
+    const __m256d x =
+        _mm256_add_pd(_mm256_add_pd(base, _mm256_mul_pd(_mm256_set1_pd(double(u)), along_1)),
+                      _mm256_mul_pd(_mm256_set1_pd(double(v)), along_2));
+    const __m128 rounded = _mm256_cvtpd_ps(x);
+    V3f result;
+    _mm_storel_pi(reinterpret_cast<__m64*>(&result.x), rounded);
+    _mm_store_ss(&result.z, _mm_movehl_ps(rounded, rounded));
+    return result;
+  }
+};
+
+/// What a hit needs of a triangle, in one cache line.
+struct alignas(64) TriangleRecord : TriangleShape {
+  bool smooth = false;    ///< has interpolated normals
+  bool textured = false;  ///< has texture coordinates that its material uses
+  bool two_uv_sets = false;
+  bool emits : 1 = false;
+  bool emits_behind : 1 = false;
+  std::uint32_t material = 0;
+
+  TriangleRecord(const SceneData& scene, std::uint32_t mesh, std::uint32_t triangle);
+};
+static_assert(sizeof(TriangleRecord) == 64);
+
+/// What a hit needs besides where a triangle is textured or smooth, in one more cache line.
+struct alignas(64) TriangleAttributes {
+  std::array<V2f, 3> uv0;  ///< TEXCOORD_0 of the corners
+  std::array<V3f, 3> normals;
+};
+
+/// The records of all triangles of a scene, and the attributes of those that have any.
+class TriangleTable {
+ public:
+  explicit TriangleTable(const SceneData& scene);
+  const TriangleRecord& at(std::uint32_t mesh, std::uint32_t triangle) const {
+    return records_[first_[mesh].record + triangle];
+  }
+  /// Only of a triangle that is smooth or textured.
+  const TriangleAttributes& attributes(std::uint32_t mesh, std::uint32_t triangle) const {
+    return attributes_[first_[mesh].attributes + triangle];
+  }
+  /// Asks for what at() and attributes() will read.
+  void prefetch(std::uint32_t mesh, std::uint32_t triangle) const {
+    const First& first = first_[mesh];
+    _mm_prefetch(reinterpret_cast<const char*>(&records_[first.record + triangle]), _MM_HINT_T0);
+    if (first.attributes == none) return;
+    _mm_prefetch(reinterpret_cast<const char*>(&attributes_[first.attributes + triangle]),
+                 _MM_HINT_T0);
+  }
+  std::uint64_t bytes() const {
+    return records_.size() * sizeof(TriangleRecord) +
+           attributes_.size() * sizeof(TriangleAttributes);
+  }
+
+ private:
+  static constexpr std::size_t none = ~std::size_t{0};
+  struct First {
+    std::size_t record;
+    std::size_t attributes;  // or none
+  };
+  std::vector<First> first_;  // of each mesh
+  HugeVector<TriangleRecord> records_;
+  HugeVector<TriangleAttributes> attributes_;
+};
+
+/// Where a ray's origin must lie so that it does not meet the surface it leaves: `x` moved along
+/// `ng` to the side of `w`, by a few rounding errors of numbers of size `extent`. Everything scales
+/// with the scene.
+inline V3f offset_origin(const V3f& x, const V3f& ng, float extent, const V3f& w) {
+  constexpr float few_roundings = 0x1p-19F;
+  return x + ng * std::copysign(extent * few_roundings, dot(w, ng));
+}
+
+/// Geometry of a hit. `ng` is unit and points to the front of the triangle.
+struct Surface {
+  V3f x{0, 0, 0};
+  V3f ng{0, 0, 0};
+  V3f ns{0, 0, 0};   ///< unit; interpolated normals, or ng
+  float extent = 0;  ///< see TriangleShape
+  std::array<V2f, 2> uv{V2f(0, 0), V2f(0, 0)};
+  std::uint32_t mesh = 0;
+  std::uint32_t triangle = 0;
+  std::uint32_t material = 0;
+  bool emits = false, emits_behind = false;
+
+  Surface() = default;
+  // In the header: it is filled in place, once a hit.
+  Surface(const SceneData& scene, const TriangleTable& table, const Hit& hit)
+      : mesh(hit.mesh), triangle(hit.triangle) {
+    const TriangleRecord& r = table.at(hit.mesh, hit.triangle);
+    x = r.at(hit.u, hit.v);
+    ng = r.ng;
+    ns = r.ng;
+    extent = r.extent;
+    material = r.material;
+    emits = r.emits;
+    emits_behind = r.emits_behind;
+    if (!r.textured && !r.smooth) return;
+    const TriangleAttributes& a = table.attributes(hit.mesh, hit.triangle);
+    const float w = 1 - hit.u - hit.v;
+    if (r.textured) {
+      uv[0] = w * a.uv0[0] + hit.u * a.uv0[1] + hit.v * a.uv0[2];
+      if (r.two_uv_sets) uv = scene.meshes[hit.mesh].uvs_at(hit.triangle, hit.u, hit.v);
+    }
+    if (r.smooth) {
+      const V3f n = w * a.normals[0] + hit.u * a.normals[1] + hit.v * a.normals[2];
+      const float length2 = n.length2();
+      // Opposite normals can cancel; what is left has no direction.
+      if (length2 > 0.0F) ns = n / std::sqrt(length2);
+    }
+  }
+};
+
+}  // namespace lacuna

@@ -1,0 +1,122 @@
+#include "renderer/gltf/gltf_cameras.h"
+
+#include <numbers>
+
+#include "renderer/gltf/gltf_limits.h"
+
+namespace lacuna::gltf {
+namespace {
+
+V3d axis(const M44d& m, int i) { return {m[i][0], m[i][1], m[i][2]}; }
+
+/// The same view without scale or shear; a mirrored one stays mirrored.
+M44d orthonormal(const PlacedNode& node) {
+  const M44d& m = node.to_world;
+  const V3d z = axis(m, 2).normalized();
+  const V3d x = (axis(m, 0) - z * z.dot(axis(m, 0))).normalized();
+  const V3d y = z.cross(x) * (node.determinant < 0 ? -1.0 : 1.0);
+  const V3d origin = axis(m, 3);
+  return {x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, origin.x, origin.y, origin.z, 1};
+}
+
+V3f position_of(const PlacedNode& node) {
+  const V3d origin = axis(node.to_world, 3);
+  for (int i = 0; i < 3; ++i) {
+    if (!(std::abs(origin[i]) <= max_coordinate))
+      node.place.refuse("its position", origin[i], coordinate_rule);
+  }
+  return V3f(origin);
+}
+
+CameraData read_camera(const Place& camera, const PlacedNode& node) {
+  const auto lens = camera.object("perspective");
+  if (!lens) camera.fail("perspective is missing");
+  CameraData out;
+  out.name = camera.string("name", node.place.string("name", ""));
+  out.yfov = lens->number("yfov", Range{0, std::numbers::pi});
+  if (out.yfov == 0 || out.yfov == std::numbers::pi) {
+    lens->refuse("yfov", out.yfov, "radians above 0 and below pi");
+  }
+  position_of(node);
+  out.to_world = orthonormal(node);
+  return out;
+}
+
+void read_cone(const Place& light, PunctualLight& out) {
+  const auto spot = light.object("spot");
+  if (!spot) light.fail("spot is missing");
+  const Range angle{0, std::numbers::pi_v<float> / 2};  // what pi/2 is when written as a float
+  out.inner_cone = static_cast<float>(spot->number("innerConeAngle", 0, angle));
+  out.outer_cone = static_cast<float>(spot->number("outerConeAngle", std::numbers::pi / 4, angle));
+  if (!(out.inner_cone < out.outer_cone)) {
+    spot->fail("innerConeAngle " + std::to_string(out.inner_cone) +
+               " is not below outerConeAngle " + std::to_string(out.outer_cone));
+  }
+}
+
+PunctualLight read_light(const Place& light, const PlacedNode& node, Warnings& warnings) {
+  PunctualLight out;
+  out.name = light.string("name", node.place.string("name", ""));
+  const auto color = light.numbers<3>("color", unit_interval).value_or(std::array{1.0, 1.0, 1.0});
+  const double intensity = light.number("intensity", 1, non_negative);
+  out.intensity =
+      Rgb(static_cast<float>(color[0] * intensity), static_cast<float>(color[1] * intensity),
+          static_cast<float>(color[2] * intensity));
+  const std::string type = light.string("type");
+  if (type == "point") {
+    out.kind = PunctualLight::Kind::point;
+  } else if (type == "directional") {
+    out.kind = PunctualLight::Kind::directional;
+  } else if (type == "spot") {
+    out.kind = PunctualLight::Kind::spot;
+    read_cone(light, out);
+  } else {
+    light.refuse("type", type, "\"point\", \"spot\" or \"directional\"");
+  }
+  if (light.has("range"))
+    warnings.once(
+        "the range of punctual lights is left out: light falls off with the square of distance");
+  out.position = position_of(node);
+  out.direction = V3f(-axis(node.to_world, 2).normalized());
+  return out;
+}
+
+}  // namespace
+
+std::vector<CameraData> read_cameras(const Place& root, const std::vector<PlacedNode>& nodes,
+                                     Warnings& warnings) {
+  std::vector<CameraData> out;
+  const auto cameras = root.objects("cameras");
+  for (const PlacedNode& node : nodes) {
+    const auto index = node.place.index("camera", cameras.size(), "cameras");
+    if (!index) continue;
+    const Place& camera = cameras[*index];
+    const std::string type = camera.string("type");
+    if (type != "perspective" && type != "orthographic") {
+      camera.refuse("type", type, "\"perspective\" or \"orthographic\"");
+    }
+    if (type == "perspective") {
+      out.push_back(read_camera(camera, node));
+    } else {
+      warnings.once(camera.label() + " is orthographic, which is not supported; it is left out");
+    }
+  }
+  return out;
+}
+
+std::vector<PunctualLight> read_lights(const Place& root, const std::vector<PlacedNode>& nodes,
+                                       Warnings& warnings) {
+  std::vector<PunctualLight> out;
+  const auto extension = root.extension("KHR_lights_punctual");
+  const auto lights = extension ? extension->objects("lights") : std::vector<Place>{};
+  for (const PlacedNode& node : nodes) {
+    const auto reference = node.place.extension("KHR_lights_punctual");
+    if (!reference) continue;
+    const auto index =
+        reference->index("light", lights.size(), "extensions.KHR_lights_punctual.lights");
+    if (index) out.push_back(read_light(lights[*index], node, warnings));
+  }
+  return out;
+}
+
+}  // namespace lacuna::gltf

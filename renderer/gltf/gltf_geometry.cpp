@@ -1,0 +1,256 @@
+#include "renderer/gltf/gltf_geometry.h"
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "renderer/gltf/gltf_accessors.h"
+#include "renderer/gltf/gltf_limits.h"
+#include "renderer/gltf/gltf_triangles.h"
+
+namespace lacuna::gltf {
+namespace {
+
+constexpr std::size_t max_triangles = std::size_t{1} << 27;
+
+struct Counts {
+  Dropped dropped;
+  std::uint64_t normals = 0;
+};
+
+bool is_drawn(const tinygltf::Primitive& primitive) {
+  return is_triangle_mode(primitive.mode) && primitive.attributes.contains("POSITION");
+}
+
+/// One primitive under one node.
+struct Source {
+  const tinygltf::Model& model;
+  const tinygltf::Primitive& primitive;
+  const PlacedNode& node;
+  std::string place;
+
+  /// The accessor of an attribute with as many elements as POSITION has; -1 if there is none.
+  int attribute(const std::string& name) const {
+    const auto it = primitive.attributes.find(name);
+    return it == primitive.attributes.end() ? -1 : it->second;
+  }
+  AccessorView view(const std::string& name, int type,
+                    std::initializer_list<int> components) const {
+    const std::string use = name + " of " + place;
+    AccessorView out(model, attribute(name), type, components, use);
+    const auto vertices =
+        model.accessors[static_cast<std::size_t>(primitive.attributes.at("POSITION"))].count;
+    if (out.size() != vertices) {
+      throw SceneError(use + ": " + std::to_string(out.size()) + " elements for " +
+                       std::to_string(vertices) + " vertices");
+    }
+    return out;
+  }
+};
+
+std::vector<V3f> world_positions(const Source& source, const AccessorView& local,
+                                 const std::vector<std::uint32_t>& kept) {
+  std::vector<V3f> out(kept.size());
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const auto p = local.floats<3>(kept[i]);
+    const V3f x(p[0], p[1], p[2]);
+    if (!is_finite(x)) {
+      out[i] = x;  // its triangles are dropped
+      continue;
+    }
+    const V3d world = V3d(x) * source.node.to_world;
+    for (int k = 0; k < 3; ++k) {
+      if (!(std::abs(world[k]) <= max_coordinate)) {
+        throw SceneError(source.place + ": vertex " + std::to_string(kept[i]) + " lies at " +
+                         std::to_string(world[k]) + "; allowed: " + coordinate_rule);
+      }
+    }
+    out[i] = V3f(world);
+  }
+  return out;
+}
+
+/// Normals go with the inverse transpose, which is the matrix of cofactors over the determinant.
+std::vector<V3f> world_normals(const Source& source, const std::vector<std::uint32_t>& kept) {
+  std::vector<V3f> out(kept.size());
+  const AccessorView local =
+      source.view("NORMAL", TINYGLTF_TYPE_VEC3, {TINYGLTF_COMPONENT_TYPE_FLOAT});
+  const M44d& m = source.node.to_world;
+  const double sign = source.node.determinant < 0 ? -1 : 1;
+  const V3d cofactors[3] = {row(m, 1).cross(row(m, 2)) * sign, row(m, 2).cross(row(m, 0)) * sign,
+                            row(m, 0).cross(row(m, 1)) * sign};
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const auto n = local.floats<3>(kept[i]);
+    const V3d world = cofactors[0] * n[0] + cofactors[1] * n[1] + cofactors[2] * n[2];
+    const double length = world.length();
+    out[i] = std::isnormal(length) ? V3f(world / length) : V3f(0, 0, 0);
+  }
+  return out;
+}
+
+/// Gives every vertex without a usable normal the geometric one of the first triangle that uses it.
+std::uint64_t mend_normals(Mesh& mesh) {
+  std::uint64_t mended = 0;
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t v : t) {
+      if (mesh.normals[v] != V3f(0, 0, 0)) continue;
+      const V3d a(mesh.positions[t[0]]);
+      const V3d ng = (V3d(mesh.positions[t[1]]) - a).cross(V3d(mesh.positions[t[2]]) - a);
+      mesh.normals[v] = V3f(ng.normalized());
+      ++mended;
+    }
+  }
+  return mended;
+}
+
+/// Which of TEXCOORD_0 and _1 the material's textures read.
+std::array<bool, 2> uv_sets_used(const Material& m) {
+  std::array<bool, 2> used{};
+  for (const TextureRef* ref :
+       {&m.base_color_texture, &m.metallic_roughness_texture, &m.emission_texture,
+        &m.specular_texture, &m.specular_color_texture, &m.transmission_texture}) {
+    if (ref->used()) used[static_cast<std::size_t>(ref->uv_set)] = true;
+  }
+  return used;
+}
+
+void read_uvs(const Source& source, const std::vector<std::uint32_t>& kept,
+              const Material& material, Mesh& mesh, Warnings& warnings) {
+  const auto used = uv_sets_used(material);
+  for (std::size_t set = 0; set < used.size(); ++set) {
+    if (!used[set]) continue;
+    const std::string name = "TEXCOORD_" + std::to_string(set);
+    if (source.attribute(name) < 0) {
+      warnings.once(source.place + " has no " + name + ", which material \"" + material.name +
+                    "\" needs: its textures are read at (0, 0)");
+      continue;
+    }
+    const AccessorView view =
+        source.view(name, TINYGLTF_TYPE_VEC2,
+                    {TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE,
+                     TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT});
+    mesh.uvs[set].reserve(kept.size());
+    for (const std::uint32_t v : kept) {
+      const auto uv = view.floats<2>(v);
+      mesh.uvs[set].emplace_back(uv[0], uv[1]);
+    }
+  }
+}
+
+void warn_of_rest(const tinygltf::Primitive& primitive, Warnings& warnings) {
+  if (!primitive.targets.empty()) {
+    warnings.once("morph targets are left out: meshes keep their base shape");
+  }
+  for (const auto& [name, accessor] : primitive.attributes) {
+    if (name == "POSITION" || name == "NORMAL" || name == "TEXCOORD_0" || name == "TEXCOORD_1") {
+      continue;
+    }
+    warnings.once("vertex attribute " + name + " is left out");
+  }
+}
+
+Mesh build_mesh(const Source& source, const SceneData& scene, Counts& counts, Warnings& warnings) {
+  Mesh mesh;
+  mesh.material = source.primitive.material >= 0
+                      ? static_cast<std::uint32_t>(source.primitive.material)
+                      : static_cast<std::uint32_t>(scene.materials.size() - 1);
+  const AccessorView local =
+      source.view("POSITION", TINYGLTF_TYPE_VEC3, {TINYGLTF_COMPONENT_TYPE_FLOAT});
+  mesh.triangles = assemble_triangles(source.model, source.primitive, local.size(),
+                                      source.node.determinant < 0, source.place);
+  auto kept = compact(mesh.triangles, local.size());
+  mesh.positions = world_positions(source, local, kept);
+  const Dropped dropped = drop_unusable(mesh.triangles, mesh.positions);
+  if (dropped.total() > 0) {
+    counts.dropped.non_finite += dropped.non_finite;
+    counts.dropped.degenerate += dropped.degenerate;
+    std::vector<std::uint32_t> remaining = compact(mesh.triangles, kept.size());
+    for (std::size_t i = 0; i < remaining.size(); ++i) {
+      mesh.positions[i] = mesh.positions[remaining[i]];
+      remaining[i] = kept[remaining[i]];
+    }
+    mesh.positions.resize(remaining.size());
+    kept = std::move(remaining);
+  }
+  if (source.attribute("NORMAL") >= 0) {
+    mesh.normals = world_normals(source, kept);
+    counts.normals += mend_normals(mesh);
+  }
+  read_uvs(source, kept, scene.materials[mesh.material], mesh, warnings);
+  warn_of_rest(source.primitive, warnings);
+  return mesh;
+}
+
+/// What a node's primitive is called in errors.
+std::string place_of(const PlacedNode& node, std::size_t mesh, std::size_t primitive) {
+  return "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) +
+         "] under " + node.place.label();
+}
+
+std::optional<std::size_t> mesh_of(const tinygltf::Model& model, const PlacedNode& node) {
+  return node.place.index("mesh", model.meshes.size(), "meshes");
+}
+
+/// A file of a few kilobytes can place one mesh a million times: count before anything is built.
+void check_total(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes) {
+  std::size_t total = 0;
+  for (const PlacedNode& node : nodes) {
+    const auto mesh = mesh_of(model, node);
+    if (!mesh) continue;
+    for (const auto& primitive : model.meshes[*mesh].primitives) {
+      if (is_drawn(primitive)) total += count_triangles(model, primitive);
+      if (total > max_triangles) {
+        node.place.fail("more than " + std::to_string(max_triangles) +
+                        " triangles in all down to here");
+      }
+    }
+  }
+}
+
+void add_node(const tinygltf::Model& model, const PlacedNode& node, std::size_t mesh_index,
+              SceneData& scene, Counts& counts, Warnings& warnings) {
+  const tinygltf::Mesh& mesh = model.meshes[mesh_index];
+  for (std::size_t k = 0; k < mesh.primitives.size(); ++k) {
+    const tinygltf::Primitive& primitive = mesh.primitives[k];
+    if (!is_drawn(primitive)) {
+      warnings.once("primitives of points or lines, or without POSITION, are left out");
+      continue;
+    }
+    Mesh built = build_mesh({model, primitive, node, place_of(node, mesh_index, k)}, scene, counts,
+                            warnings);
+    built.name = mesh.name.empty() ? node.place.string("name", node.place.path()) : mesh.name;
+    if (!built.triangles.empty()) scene.meshes.push_back(std::move(built));
+  }
+}
+
+}  // namespace
+
+void build_meshes(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes,
+                  SceneData& scene, Warnings& warnings) {
+  check_total(model, nodes);
+  Counts counts;
+  for (const PlacedNode& node : nodes) {
+    const auto mesh = mesh_of(model, node);
+    if (node.place.has("skin")) warnings.once("skins are left out: meshes keep their bind pose");
+    if (mesh) add_node(model, node, *mesh, scene, counts, warnings);
+  }
+  scene.dropped_triangles = counts.dropped.total();
+  const std::string dropped = std::to_string(counts.dropped.degenerate) + " of zero area, " +
+                              std::to_string(counts.dropped.non_finite) +
+                              " with a vertex that is not finite";
+  if (scene.meshes.empty())
+    throw SceneError("the scene has no triangles (dropped: " + dropped + ")");
+  if (scene.dropped_triangles > 0) warnings.once("triangles dropped: " + dropped);
+  if (counts.normals > 0) {
+    warnings.once(std::to_string(counts.normals) +
+                  " normals were zero or not finite and were replaced by geometric ones");
+  }
+  Hasher hasher;
+  for (const Mesh& mesh : scene.meshes) {
+    hasher.add(std::span(mesh.positions));
+    hasher.add(std::span(mesh.triangles));
+  }
+  scene.geometry_hash = hasher.digest();
+}
+
+}  // namespace lacuna::gltf

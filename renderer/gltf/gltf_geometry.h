@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "renderer/gltf/gltf_model.h"
+#include "renderer/gltf/gltf_nodes.h"
+#include "renderer/gltf/gltf_warnings.h"
+
+namespace lacuna::gltf {
+
+/// Fills `scene.meshes` (one for each primitive of each placed node, in world space),
+/// `dropped_triangles` and `geometry_hash`. Reads `scene.materials`. Throws SceneError.
+void build_meshes(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes,
+                  SceneData& scene, Warnings& warnings);
+
+}  // namespace lacuna::gltf

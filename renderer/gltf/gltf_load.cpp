@@ -1,0 +1,61 @@
+#include <nlohmann/json.hpp>
+
+#include "renderer/gltf/gltf_cameras.h"
+#include "renderer/gltf/gltf_geometry.h"
+#include "renderer/gltf/gltf_guard.h"
+#include "renderer/gltf/gltf_load.h"
+#include "renderer/gltf/gltf_materials.h"
+#include "renderer/gltf/gltf_nodes.h"
+
+namespace lacuna {
+namespace {
+
+using namespace gltf;
+
+void warn_of_rest(const Place& root, Warnings& warnings) {
+  if (root.array_size("animations") > 0) {
+    warnings.once("animations are left out: the scene stands still in its rest pose");
+  }
+  for (const std::string& name : root.strings("extensionsUsed")) {
+    if (!extension_supported(name)) warnings.once(unsupported_extension(name));
+  }
+}
+
+SceneData load(const std::filesystem::path& file) {
+  SceneFolder folder(file);
+  const Bytes bytes = folder.read_main();
+  const Framing framing = check_framing(bytes);
+  const Json json = parse_json(framing.json);
+  const Place root(json, "");
+  check_structure(root, framing);
+
+  SceneData scene;
+  Warnings warnings;
+  TextureTable textures(root, warnings);
+  scene.materials = read_materials(root, textures, warnings);
+  const auto nodes = place_nodes(root);
+  scene.cameras = read_cameras(root, nodes, warnings);
+  scene.lights = read_lights(root, nodes, warnings);
+
+  Hasher content;
+  content.add(std::span<const std::uint8_t>(bytes));
+  const tinygltf::Model model = parse_model(bytes, framing, root, folder, content);
+  build_meshes(model, nodes, scene, warnings);
+  scene.textures = textures.build(model, folder, content);
+  scene.content_hash = content.digest();
+  warn_of_rest(root, warnings);
+  scene.warnings = warnings.take();
+  return scene;
+}
+
+}  // namespace
+
+SceneData load_gltf(const std::filesystem::path& file) {
+  try {
+    return load(file);
+  } catch (const SceneError& e) {
+    throw SceneError(file.string() + ": " + e.what());
+  }
+}
+
+}  // namespace lacuna

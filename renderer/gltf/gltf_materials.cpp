@@ -1,0 +1,105 @@
+#include "renderer/gltf/gltf_materials.h"
+
+namespace lacuna::gltf {
+namespace {
+
+using Encoding = Texture::Encoding;
+
+Rgb to_rgb(const std::array<double, 3>& a) {
+  return {static_cast<float>(a[0]), static_cast<float>(a[1]), static_cast<float>(a[2])};
+}
+
+float read(const Place& from, std::string_view key, float fallback, Range allowed) {
+  return static_cast<float>(from.number(key, fallback, allowed));
+}
+
+void read_metallic_roughness(const Place& material, TextureTable& textures, Material& out) {
+  const auto pbr = material.object("pbrMetallicRoughness");
+  if (!pbr) return;
+  if (const auto c = pbr->numbers<4>("baseColorFactor", unit_interval)) {
+    out.base_color = to_rgb({(*c)[0], (*c)[1], (*c)[2]});
+    out.alpha = static_cast<float>((*c)[3]);
+  }
+  out.metallic = read(*pbr, "metallicFactor", out.metallic, unit_interval);
+  out.roughness = read(*pbr, "roughnessFactor", out.roughness, unit_interval);
+  out.base_color_texture = textures.reference(*pbr, "baseColorTexture", Encoding::srgb, true);
+  out.metallic_roughness_texture = textures.reference(
+      *pbr, "metallicRoughnessTexture", Encoding::linear, out.metallic > 0 || out.roughness > 0);
+}
+
+void read_emission(const Place& material, TextureTable& textures, Material& out) {
+  if (const auto factor = material.numbers<3>("emissiveFactor", unit_interval)) {
+    out.emission = to_rgb(*factor);
+  }
+  if (const auto strength = material.extension("KHR_materials_emissive_strength")) {
+    out.emission *= read(*strength, "emissiveStrength", 1, non_negative);
+  }
+  out.emission_texture =
+      textures.reference(material, "emissiveTexture", Encoding::srgb, out.emits());
+}
+
+void read_specular(const Place& material, TextureTable& textures, Material& out) {
+  if (const auto ior = material.extension("KHR_materials_ior")) {
+    out.ior = read(*ior, "ior", out.ior, non_negative);
+    if (out.ior != 0 && out.ior < 1) ior->refuse("ior", out.ior, "0, or a number, at least 1");
+  }
+  if (const auto specular = material.extension("KHR_materials_specular")) {
+    out.specular = read(*specular, "specularFactor", out.specular, unit_interval);
+    if (const auto color = specular->numbers<3>("specularColorFactor", non_negative)) {
+      out.specular_color = to_rgb(*color);
+    }
+    const bool seen = out.specular > 0;
+    out.specular_texture = textures.reference(*specular, "specularTexture", Encoding::linear, seen);
+    out.specular_color_texture = textures.reference(
+        *specular, "specularColorTexture", Encoding::srgb, seen && !is_black(out.specular_color));
+  }
+  if (const auto transmission = material.extension("KHR_materials_transmission")) {
+    out.transmission = read(*transmission, "transmissionFactor", out.transmission, unit_interval);
+    out.transmission_texture = textures.reference(*transmission, "transmissionTexture",
+                                                  Encoding::linear, out.transmission > 0);
+  }
+}
+
+void read_alpha(const Place& material, Warnings& warnings, Material& out) {
+  const std::string mode = material.string("alphaMode", "OPAQUE");
+  if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND") {
+    material.refuse("alphaMode", mode, "\"OPAQUE\", \"MASK\" or \"BLEND\"");
+  }
+  if (mode == "BLEND") warnings.once("alphaMode BLEND is not supported: such materials are opaque");
+  out.mask = mode == "MASK";
+  out.alpha_cutoff = read(material, "alphaCutoff", out.alpha_cutoff, non_negative);
+  out.double_sided = material.boolean("doubleSided", out.double_sided);
+}
+
+void warn_of_rest(const Place& material, Warnings& warnings) {
+  if (material.has("normalTexture")) warnings.once("normal maps are not supported and left out");
+  if (material.has("occlusionTexture")) {
+    warnings.once("occlusion maps are left out: occlusion is what is being computed");
+  }
+  const auto extensions = material.object("extensions");
+  if (!extensions) return;
+  for (const std::string& name : extensions->keys()) {
+    if (!extension_supported(name)) warnings.once(unsupported_extension(name));
+  }
+}
+
+}  // namespace
+
+std::vector<Material> read_materials(const Place& root, TextureTable& textures,
+                                     Warnings& warnings) {
+  std::vector<Material> materials;
+  for (const Place& material : root.objects("materials")) {
+    Material out;
+    out.name = material.string("name", material.path());
+    read_metallic_roughness(material, textures, out);
+    read_emission(material, textures, out);
+    read_specular(material, textures, out);
+    read_alpha(material, warnings, out);
+    warn_of_rest(material, warnings);
+    materials.push_back(std::move(out));
+  }
+  materials.emplace_back().name = "default";
+  return materials;
+}
+
+}  // namespace lacuna::gltf

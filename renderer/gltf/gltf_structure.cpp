@@ -1,0 +1,241 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "renderer/gltf/gltf_guard.h"
+
+namespace lacuna::gltf {
+namespace {
+
+constexpr std::uint64_t max_bytes = (std::uint64_t{1} << 32) - 1;
+
+constexpr std::array<std::string_view, 6> supported_extensions{
+    "KHR_lights_punctual",    "KHR_materials_emissive_strength", "KHR_materials_ior",
+    "KHR_materials_specular", "KHR_materials_transmission",      "KHR_texture_transform"};
+
+struct Sizes {
+  explicit Sizes(const Place& root)
+      : buffers(root.array_size("buffers")),
+        buffer_views(root.array_size("bufferViews")),
+        accessors(root.array_size("accessors")),
+        images(root.array_size("images")),
+        textures(root.array_size("textures")),
+        samplers(root.array_size("samplers")),
+        materials(root.array_size("materials")),
+        meshes(root.array_size("meshes")),
+        cameras(root.array_size("cameras")),
+        nodes(root.array_size("nodes")),
+        scenes(root.array_size("scenes")) {}
+  std::size_t buffers, buffer_views, accessors, images, textures, samplers, materials, meshes,
+      cameras, nodes, scenes;
+};
+
+void check_asset(const Place& root) {
+  const auto asset = root.object("asset");
+  if (!asset) root.fail("asset is missing; required: an object with the glTF version");
+  const std::string version = asset->string("version");
+  const std::string needed = asset->string("minVersion", version);
+  if (!version.starts_with("2.") || (asset->has("minVersion") && needed != "2.0")) {
+    asset->refuse(asset->has("minVersion") ? "minVersion" : "version",
+                  asset->has("minVersion") ? needed : version, "glTF 2.0");
+  }
+  for (const std::string& name : root.strings("extensionsRequired")) {
+    if (extension_supported(name)) continue;
+    std::string allowed;
+    for (const auto known : supported_extensions) {
+      allowed.append(allowed.empty() ? "" : ", ").append(known);
+    }
+    root.refuse("extensionsRequired", name, allowed);
+  }
+}
+
+void check_buffers(const Place& root, const Framing& framing) {
+  std::size_t i = 0;
+  for (const Place& buffer : root.objects("buffers")) {
+    const std::uint64_t bytes = buffer.integer("byteLength", 1, max_bytes);
+    if (buffer.has("uri")) {
+      buffer.string("uri");
+    } else if (!framing.binary || i != 0) {
+      buffer.fail("uri is missing; only the first buffer of a GLB has none");
+    } else if (bytes > framing.bin_bytes) {
+      buffer.fail("byteLength is " + std::to_string(bytes) + "; the BIN chunk has " +
+                  std::to_string(framing.bin_bytes) + " bytes");
+    }
+    ++i;
+  }
+}
+
+void check_buffer_views(const Place& root, const Sizes& sizes) {
+  const auto buffers = root.objects("buffers");
+  for (const Place& view : root.objects("bufferViews")) {
+    const auto buffer = view.index("buffer", sizes.buffers, "buffers");
+    if (!buffer) view.fail("buffer is missing");
+    const std::uint64_t offset = view.integer("byteOffset", 0, 0, max_bytes);
+    const std::uint64_t length = view.integer("byteLength", 1, max_bytes);
+    const std::uint64_t held = buffers[*buffer].integer("byteLength", 1, max_bytes);
+    if (offset + length > held) {
+      view.fail("bytes " + std::to_string(offset) + " to " + std::to_string(offset + length) +
+                " are outside of buffers[" + std::to_string(*buffer) + "], which has " +
+                std::to_string(held));
+    }
+    const std::uint64_t stride = view.integer("byteStride", 4, 4, 252);
+    if (stride % 4 != 0) view.refuse("byteStride", static_cast<double>(stride), "a multiple of 4");
+  }
+}
+
+std::uint64_t element_bytes(const Place& accessor) {
+  static constexpr std::array<std::pair<std::uint64_t, std::uint64_t>, 6> component_bytes{
+      {{5120, 1}, {5121, 1}, {5122, 2}, {5123, 2}, {5125, 4}, {5126, 4}}};
+  static constexpr std::array<std::pair<std::string_view, std::uint64_t>, 7> component_counts{
+      {{"SCALAR", 1},
+       {"VEC2", 2},
+       {"VEC3", 3},
+       {"VEC4", 4},
+       {"MAT2", 4},
+       {"MAT3", 9},
+       {"MAT4", 16}}};
+  const std::uint64_t component = accessor.integer("componentType", 5120, 5126);
+  const std::string type = accessor.string("type");
+  const auto bytes = std::find_if(component_bytes.begin(), component_bytes.end(),
+                                  [&](const auto& entry) { return entry.first == component; });
+  const auto count = std::find_if(component_counts.begin(), component_counts.end(),
+                                  [&](const auto& entry) { return entry.first == type; });
+  if (bytes == component_bytes.end()) {
+    accessor.refuse("componentType", static_cast<double>(component),
+                    "5120, 5121, 5122, 5123, 5125 or 5126");
+  }
+  if (count == component_counts.end()) {
+    accessor.refuse("type", type, "SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3 or MAT4");
+  }
+  return bytes->second * count->second;
+}
+
+void check_accessors(const Place& root, const Sizes& sizes) {
+  const auto views = root.objects("bufferViews");
+  for (const Place& accessor : root.objects("accessors")) {
+    const std::uint64_t element = element_bytes(accessor);
+    const std::uint64_t count = accessor.integer("count", 1, max_bytes);
+    const std::uint64_t offset = accessor.integer("byteOffset", 0, 0, max_bytes);
+    accessor.boolean("normalized", false);
+    accessor.object("sparse");
+    const auto view = accessor.index("bufferView", sizes.buffer_views, "bufferViews");
+    if (!view) continue;
+    const std::uint64_t stride = views[*view].integer("byteStride", element, 4, 252);
+    if (stride < element) {
+      accessor.fail("elements of " + std::to_string(element) + " bytes do not fit the byteStride " +
+                    std::to_string(stride) + " of bufferViews[" + std::to_string(*view) + "]");
+    }
+    const std::uint64_t held = views[*view].integer("byteLength", 1, max_bytes);
+    const std::uint64_t end = offset + stride * (count - 1) + element;
+    if (end > held) {
+      accessor.fail(std::to_string(count) + " elements end at byte " + std::to_string(end) +
+                    " of bufferViews[" + std::to_string(*view) + "], which has " +
+                    std::to_string(held));
+    }
+  }
+}
+
+void check_images(const Place& root, const Sizes& sizes) {
+  for (const Place& image : root.objects("images")) {
+    if (image.has("uri") == image.has("bufferView")) {
+      image.fail("exactly one of uri and bufferView must be there");
+    }
+    if (image.has("uri")) image.string("uri");
+    image.index("bufferView", sizes.buffer_views, "bufferViews");
+    image.string("mimeType", "");
+  }
+  for (const Place& texture : root.objects("textures")) {
+    texture.index("source", sizes.images, "images");
+    texture.index("sampler", sizes.samplers, "samplers");
+  }
+  for (const Place& sampler : root.objects("samplers")) {
+    for (const char* key : {"wrapS", "wrapT"}) {
+      constexpr std::uint64_t clamp = 33071, mirrored = 33648, repeat = 10497;
+      const std::uint64_t wrap = sampler.integer(key, repeat, 0, 65535);
+      if (wrap != clamp && wrap != mirrored && wrap != repeat) {
+        sampler.refuse(key, static_cast<double>(wrap),
+                       "33071 (clamp), 33648 (mirrored) or 10497 (repeat)");
+      }
+    }
+    sampler.integer("magFilter", 9729, 9728, 9729);
+    sampler.integer("minFilter", 9729, 9728, 9987);
+  }
+}
+
+void check_attributes(const Place& attributes, const Sizes& sizes) {
+  for (const std::string& name : attributes.keys()) {
+    attributes.index(name, sizes.accessors, "accessors");
+  }
+}
+
+void check_meshes(const Place& root, const Sizes& sizes) {
+  for (const Place& mesh : root.objects("meshes")) {
+    const auto primitives = mesh.objects("primitives");
+    if (primitives.empty()) mesh.fail("primitives is missing or empty");
+    for (const Place& primitive : primitives) {
+      const auto attributes = primitive.object("attributes");
+      if (!attributes) primitive.fail("attributes is missing");
+      check_attributes(*attributes, sizes);
+      for (const Place& target : primitive.objects("targets")) {
+        check_attributes(target, sizes);
+      }
+      primitive.index("indices", sizes.accessors, "accessors");
+      primitive.index("material", sizes.materials, "materials");
+      primitive.integer("mode", 4, 0, 6);
+    }
+  }
+}
+
+void check_nodes(const Place& root, const Sizes& sizes) {
+  for (const Place& node : root.objects("nodes")) {
+    node.index("mesh", sizes.meshes, "meshes");
+    node.index("camera", sizes.cameras, "cameras");
+    node.indices("children", sizes.nodes, "nodes");
+    const Range any{};
+    const auto matrix = node.numbers<16>("matrix", any);
+    const auto rotation = node.numbers<4>("rotation", {-1.001, 1.001});
+    const auto scale = node.numbers<3>("scale", any);
+    const auto translation = node.numbers<3>("translation", any);
+    if (matrix && (rotation || scale || translation)) {
+      node.fail("matrix stands beside translation, rotation or scale; allowed: one or the other");
+    }
+    if (matrix &&
+        ((*matrix)[3] != 0 || (*matrix)[7] != 0 || (*matrix)[11] != 0 || (*matrix)[15] != 1)) {
+      node.fail("the fourth row of matrix is not 0 0 0 1");
+    }
+    if (rotation) {
+      const double norm = std::hypot(std::hypot((*rotation)[0], (*rotation)[1]),
+                                     std::hypot((*rotation)[2], (*rotation)[3]));
+      // Written with few digits, a unit quaternion is off by some thousandths.
+      if (!(std::abs(norm - 1) < 0.01))
+        node.fail("rotation has length " + std::to_string(norm) + "; allowed: 1");
+    }
+  }
+  for (const Place& scene : root.objects("scenes")) scene.indices("nodes", sizes.nodes, "nodes");
+  root.index("scene", sizes.scenes, "scenes");
+}
+
+}  // namespace
+
+bool extension_supported(std::string_view name) {
+  return std::find(supported_extensions.begin(), supported_extensions.end(), name) !=
+         supported_extensions.end();
+}
+
+std::string unsupported_extension(std::string_view name) {
+  return "extension " + std::string(name) + " is not supported and left out";
+}
+
+void check_structure(const Place& root, const Framing& framing) {
+  const Sizes sizes(root);
+  check_asset(root);
+  check_buffers(root, framing);
+  check_buffer_views(root, sizes);
+  check_accessors(root, sizes);
+  check_images(root, sizes);
+  check_meshes(root, sizes);
+  check_nodes(root, sizes);
+}
+
+}  // namespace lacuna::gltf

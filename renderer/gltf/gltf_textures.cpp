@@ -1,0 +1,99 @@
+#include "renderer/gltf/gltf_textures.h"
+
+#include <algorithm>
+
+namespace lacuna::gltf {
+namespace {
+
+Texture::Wrap wrap_mode(const Place* sampler, const char* key) {
+  constexpr std::uint64_t repeat = TINYGLTF_TEXTURE_WRAP_REPEAT;
+  switch (sampler == nullptr ? repeat : sampler->integer(key, repeat, 0, 65535)) {
+    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+      return Texture::Wrap::clamp;
+    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+      return Texture::Wrap::mirrored;
+    default:
+      return Texture::Wrap::repeat;
+  }
+}
+
+V2f to_v2f(const std::array<double, 2>& a) {
+  return {static_cast<float>(a[0]), static_cast<float>(a[1])};
+}
+
+constexpr std::uint64_t last_uv_set = 1;
+
+Bytes encoded_bytes(const Place& image, const tinygltf::Image& parsed, const tinygltf::Model& model,
+                    SceneFolder& folder) {
+  if (parsed.bufferView >= 0) {
+    const auto& view = model.bufferViews[static_cast<std::size_t>(parsed.bufferView)];
+    const auto& data = model.buffers[static_cast<std::size_t>(view.buffer)].data;
+    const auto* first = data.data() + view.byteOffset;
+    return {first, first + view.byteLength};
+  }
+  if (!parsed.image.empty()) return parsed.image;
+  return folder.read(image.string("uri"), image.label());
+}
+
+}  // namespace
+
+TextureTable::TextureTable(const Place& root, Warnings& warnings)
+    : warnings_(warnings),
+      textures_(root.objects("textures")),
+      images_(root.objects("images")),
+      samplers_(root.objects("samplers")) {}
+
+TextureRef TextureTable::reference(const Place& owner, std::string_view key,
+                                   Texture::Encoding encoding, bool needed) {
+  TextureRef ref;
+  const auto info = owner.object(key);
+  if (!info) return ref;
+  const auto index = info->index("index", textures_.size(), "textures");
+  if (!index) info->fail("index is missing");
+  ref.uv_set = static_cast<int>(info->integer("texCoord", 0, 0, last_uv_set));
+  if (const auto transform = info->extension("KHR_texture_transform")) {
+    if (const auto offset = transform->numbers<2>("offset", any_float))
+      ref.offset = to_v2f(*offset);
+    if (const auto scale = transform->numbers<2>("scale", any_float)) ref.scale = to_v2f(*scale);
+    ref.rotation = static_cast<float>(transform->number("rotation", 0, any_float));
+    ref.uv_set = static_cast<int>(
+        transform->integer("texCoord", static_cast<std::uint64_t>(ref.uv_set), 0, last_uv_set));
+  }
+  if (needed) ref.texture = enter(textures_[*index], encoding);
+  return ref;
+}
+
+int TextureTable::enter(const Place& texture, Texture::Encoding encoding) {
+  const auto source = texture.index("source", images_.size(), "images");
+  if (!source) texture.fail("source is missing: it has no PNG or JPEG image");
+  const auto sampler = texture.index("sampler", samplers_.size(), "samplers");
+  const Place* used = sampler ? &samplers_[*sampler] : nullptr;
+  constexpr std::uint64_t nearest = TINYGLTF_TEXTURE_FILTER_NEAREST;
+  if (used != nullptr && used->has("magFilter") &&
+      used->integer("magFilter", 0, 65535) == nearest) {
+    warnings_.once("samplers with magFilter NEAREST are read with bilinear interpolation");
+  }
+  const Entry entry{*source, encoding, wrap_mode(used, "wrapS"), wrap_mode(used, "wrapT")};
+  const auto found = std::find(entries_.begin(), entries_.end(), entry);
+  const auto index = found - entries_.begin();
+  if (found == entries_.end()) entries_.push_back(entry);
+  return static_cast<int>(index);
+}
+
+std::vector<std::unique_ptr<Texture>> TextureTable::build(const tinygltf::Model& model,
+                                                          SceneFolder& folder,
+                                                          Hasher& content) const {
+  std::vector<std::unique_ptr<Texture>> built;
+  std::vector<bool> hashed(images_.size());
+  for (const Entry& entry : entries_) {
+    const Place& image = images_[entry.image];
+    Bytes bytes = encoded_bytes(image, model.images[entry.image], model, folder);
+    if (!hashed[entry.image]) content.add(std::span<const std::uint8_t>(bytes));
+    hashed[entry.image] = true;
+    built.push_back(std::make_unique<Texture>(image.label(), std::move(bytes), entry.encoding,
+                                              entry.wrap_s, entry.wrap_t));
+  }
+  return built;
+}
+
+}  // namespace lacuna::gltf

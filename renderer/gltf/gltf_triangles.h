@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "renderer/core/vec.h"
+#include "renderer/gltf/gltf_model.h"
+
+namespace lacuna::gltf {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// True for the primitive modes that are made of triangles.
+bool is_triangle_mode(int mode);
+
+/// The triangles of a list, strip or fan; every index is below `vertices`. `mirrored` swaps the
+/// winding, so that the front stays the front. Throws SceneError with `place`.
+std::vector<Triangle> assemble_triangles(const tinygltf::Model& model,
+                                         const tinygltf::Primitive& primitive, std::size_t vertices,
+                                         bool mirrored, const std::string& place);
+
+/// How many triangles the primitive has, before any is read.
+std::size_t count_triangles(const tinygltf::Model& model, const tinygltf::Primitive& primitive);
+
+/// Renumbers `triangles` to the vertices they use, in the old order; returns the old numbers.
+std::vector<std::uint32_t> compact(std::vector<Triangle>& triangles, std::size_t vertices);
+
+/// The three corners lie on one line as far as single precision can tell, at whatever scale: the
+/// direction of the normal would be noise.
+bool is_degenerate(const V3f& a, const V3f& b, const V3f& c);
+
+struct Dropped {
+  std::uint64_t non_finite = 0;
+  std::uint64_t degenerate = 0;
+  std::uint64_t total() const { return non_finite + degenerate; }
+};
+
+/// Removes what cannot be hit: triangles with a vertex that is not finite, and degenerate ones.
+Dropped drop_unusable(std::vector<Triangle>& triangles, const std::vector<V3f>& positions);
+
+}  // namespace lacuna::gltf

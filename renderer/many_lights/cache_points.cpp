@@ -1,0 +1,183 @@
+#include "renderer/many_lights/cache_points.h"
+
+#include "renderer/core/free_memory.h"
+#include "renderer/many_lights/shading_points.h"
+#include "renderer/many_lights/split_points.h"
+#include "renderer/path/shadow_queue.h"
+
+namespace lacuna {
+
+namespace {
+
+constexpr int part = EyeBatch::size;  // pixels
+
+/// Eight bits as eight floats.
+struct ByteTable {
+  alignas(32) std::array<std::array<float, 8>, 256> of;
+  ByteTable() {
+    for (std::size_t byte = 0; byte < 256; ++byte) {
+      for (std::size_t bit = 0; bit < 8; ++bit)
+        of[byte][bit] = (byte >> bit & 1) != 0 ? 1.0F : 0.0F;
+    }
+  }
+};
+const ByteTable bytes;
+
+}  // namespace
+
+std::vector<std::uint32_t> CachePoints::choose(const LightPass& pass, Counters& counters) {
+  const IterationContext& context = pass.context;
+  const int pixels = context.camera.width() * context.camera.height();
+  std::vector<RecordTree::Place> places(static_cast<std::size_t>(pixels));
+  std::vector<std::uint8_t> found(places.size(), 0);
+  counters += for_each_part(context, (pixels + part - 1) / part, [&](int i, Counters& count) {
+    ShadingPoints points(context, pass.max_depth, pass.least_alpha, count);
+    std::vector<std::uint32_t> asked;
+    for (int p = i * part; p < std::min(pixels, (i + 1) * part); ++p) {
+      asked.push_back(static_cast<std::uint32_t>(p));
+    }
+    points.find(asked, [&](const Vertex& v, int, std::uint32_t pixel) {
+      places[pixel] = place_of(v);
+      found[pixel] = 1;
+    });
+  });
+  std::vector<RecordTree::Place> there;
+  std::vector<std::uint32_t> at;
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    if (found[p] == 0) continue;
+    there.push_back(places[p]);
+    at.push_back(static_cast<std::uint32_t>(p));
+  }
+  const auto groups =
+      split_points(there, wanted_, static_cast<float>(context.scene.bounds().radius()));
+  std::vector<std::uint32_t> chosen;
+  weights_.clear();
+  Rng rng(context.seed, context.iteration, 0, Rng::Purpose::integrator);
+  for (const auto& group : groups) {
+    chosen.push_back(at[group[(std::uint64_t{rng.next_u32()} * group.size()) >> 32]]);
+    weights_.push_back(static_cast<double>(group.size()) / static_cast<double>(there.size()));
+  }
+  return chosen;
+}
+
+Counters CachePoints::build(const LightPass& pass) {
+  Counters counters;
+  const std::vector<std::uint32_t> pixels = choose(pass, counters);
+  places_.assign(pixels.size(), {V3f(0, 0, 0), V3f(0, 0, 0)});
+  variances_.assign(pixels.size(), 0.0);
+  scales_.assign(pixels.size(), 0.0);
+  blocks_ = pass.terms.lights().blocks();
+  if (keep_ == Keep::visibilities) {
+    require_free(double(pixels.size()) * double(blocks_) * sizeof(std::uint64_t), [&] {
+      return fmt::format(
+          "many_lights: the visibility of {} lights at {} cache points; lower "
+          "cache_points or light_paths",
+          pass.terms.lights().size(), pixels.size());
+    });
+    bits_.assign(pixels.size() * blocks_, 0);
+  }
+  constexpr std::size_t together = 16;
+  const int parts = static_cast<int>((pixels.size() + together - 1) / together);
+  counters += for_each_part(pass.context, parts, [&](int i, Counters& count) {
+    ShadingPoints points(pass.context, pass.max_depth, pass.least_alpha, count);
+    const std::size_t first = static_cast<std::size_t>(i) * together;
+    for (std::size_t k = first; k < std::min(pixels.size(), first + together); ++k) {
+      points.find(std::span(pixels).subspan(k, 1),
+                  [&](const Vertex& v, int depth, std::uint32_t pixel) {
+                    places_[k] = place_of(v);
+                    fill(pass, k, {v, depth, pass.max_depth, pixel}, count);
+                  });
+    }
+  });
+  tree_.build(places_);
+  picture_variance_ = 0;
+  for (std::size_t i = 0; i < variances_.size(); ++i) {
+    picture_variance_ += weights_[i] * variances_[i] * scales_[i] * scales_[i];
+  }
+  return counters;
+}
+
+void CachePoints::fill(const LightPass& pass, std::size_t point, const ShadingPoint& at,
+                       Counters& counters) {
+  struct Seen {
+    std::size_t block;
+    int light;
+    float value;
+  };
+  const VirtualLights& lights = pass.terms.lights();
+  ShadowQueue<Seen> queue;
+  Terms terms;
+  PointLanes here;
+  here.add(at);
+  double sum = 0;
+  double sum2 = 0;
+  const auto flush = [&] {
+    queue.flush(pass.context.scene.rays(), counters, [&](const Seen& s) {
+      const double t = double(s.value) / double(at.scale);
+      sum += t;
+      sum2 += t * t;
+      if (keep_ == Keep::visibilities) {
+        bits_[point * blocks_ + s.block] |= std::uint64_t{1} << s.light;
+      }
+    });
+  };
+  for (std::size_t b = 0; b < lights.blocks(); ++b) {
+    if (pass.terms.may_light(b, here) != 0) {
+      pass.terms.evaluate(at, b, terms);
+      for_each_bit(terms.lit, [&](int i) {
+        queue.add(pass.terms.ray(at, b, i), {b, i, terms.luminance[i]});
+      });
+    }
+    if (b % 16 == 15) flush();
+    if (b % 1024 == 1023 && pass.context.stop()) throw IterationStopped{};
+  }
+  flush();
+  const auto n = static_cast<double>(std::max<std::size_t>(1, lights.size()));
+  const double mean = sum / n;
+  variances_[point] = at.scale > 0 ? std::max(0.0, sum2 / n - mean * mean) : 0.0;
+  scales_[point] = double(at.scale);
+}
+
+CachePoints::Near CachePoints::near(const ShadingPoint& at) const {
+  Near near;
+  const RecordTree::Place place = place_of(*at.vertex);
+  near.n = static_cast<int>(
+      tree_.nearest(place, std::span(near.index).first(static_cast<std::size_t>(neighbours_))));
+  // The closer and the more alike the normal, the more it counts (Clarberg and Akenine-Moeller
+  // 2008): inversely to what the tree ranks by.
+  std::array<float, max_neighbours> rank{};
+  float farthest = 0;
+  const auto n = static_cast<std::size_t>(near.n);
+  for (std::size_t j = 0; j < n; ++j) {
+    rank[j] = RecordTree::rank(place, places_[near.index[j]]);
+    farthest = std::max(farthest, rank[j]);
+  }
+  float total = 0;
+  for (std::size_t j = 0; j < n; ++j) {
+    near.weight[j] = farthest > 0 ? farthest / std::max(rank[j], 1e-3F * farthest) : 1.0F;
+    total += near.weight[j];
+  }
+  for (std::size_t j = 0; j < n; ++j) near.weight[j] /= total;
+  return near;
+}
+
+float CachePoints::deviation(const ShadingPoint& at, const Near& near) const {
+  double variance = 0;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(near.n); ++j) {
+    variance += double(near.weight[j]) * variances_[near.index[j]];
+  }
+  return static_cast<float>(std::sqrt(variance) * double(at.scale));
+}
+
+void CachePoints::expected(const Near& near, std::size_t block, Lanes& q) const {
+  for (int k = 0; k < Lanes::size / 8; ++k) {
+    Float8 sum;
+    for (std::size_t j = 0; j < static_cast<std::size_t>(near.n); ++j) {
+      const std::uint64_t word = bits_[near.index[j] * blocks_ + block];
+      sum = sum + near.weight[j] * Float8::load(bytes.of[word >> (8 * k) & 0xff].data());
+    }
+    q.set(k, sum);
+  }
+}
+
+}  // namespace lacuna

@@ -1,0 +1,104 @@
+#include "renderer/many_lights/light_draw.h"
+
+#include <algorithm>
+
+namespace lacuna {
+
+LightDraw::LightDraw(const LightTerms& terms, const RandomLightsSettings& settings,
+                     std::size_t most_stretches)
+    : terms_(terms), settings_(settings) {
+  const VirtualLights& lights = terms.lights();
+  const std::size_t longest = (lights.blocks() + most_stretches - 1) / most_stretches;
+  before_.push_back(0);
+  int edges = 0;
+  for (std::size_t b = 0; b < lights.blocks(); ++b) {
+    const bool diffuse = lights.diffuse(b) != nullptr;
+    bool starts = stretches_.empty();  // or it goes on, with lights of one kind and length of path
+    for (; b >= lights.blocks(edges); ++edges) starts = true;
+    if (!starts) {
+      const Stretch& s = stretches_.back();
+      starts = s.bounded != diffuse || s.end - s.first == longest;
+    }
+    if (starts) stretches_.push_back({b, b, diffuse, {}});
+    if (diffuse) stretches_.back().bounds.add(lights.bounds(b));
+    stretches_.back().end = b + 1;
+    before_.push_back(before_.back() + static_cast<std::uint64_t>(lights.count(b)));
+  }
+}
+
+std::vector<LightDraw::Drawn> LightDraw::draw(std::span<const ShadingPoint> points,
+                                              const IterationContext& context) const {
+  PointLanes lanes;
+  for (const ShadingPoint& p : points) lanes.add(p);
+  std::vector<std::vector<std::size_t>> left(points.size());
+  for (std::size_t s = 0; s < stretches_.size(); ++s) {
+    for_each_bit(may_shine(stretches_[s], lanes), [&](int bit) {
+      const auto i = static_cast<std::size_t>(bit);
+      if (stretches_[s].first < terms_.lights().blocks(points[i].edges)) left[i].push_back(s);
+    });
+  }
+  std::vector<Drawn> drawn;
+  std::uint64_t pairs = 0, kept = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    pairs += before_[terms_.lights().blocks(points[i].edges)];
+    kept +=
+        draw_for(points[i].vertex->surface.x, i, left[i],
+                 {context.seed, context.iteration, points[i].pixel, Rng::Purpose::gather}, drawn);
+  }
+  pairs_ += pairs;
+  left_ += kept;
+  std::sort(drawn.begin(), drawn.end(), [](const Drawn& a, const Drawn& b) {
+    return std::pair(a.block, a.point) < std::pair(b.block, b.point);
+  });
+  return drawn;
+}
+
+std::uint64_t LightDraw::may_shine(const Stretch& s, const PointLanes& points) const {
+  std::uint64_t left = points.all();
+  if (!s.bounded) return left;
+  if (settings_.cull) left &= points.may_be_lit(s.bounds);
+  if (settings_.cutoff > 0) left &= points.may_be_near(s.bounds, cutoff());
+  return left;
+}
+
+bool LightDraw::is_near(const V3f& x, std::size_t block, int i) const {
+  if (settings_.cutoff == 0) return true;
+  const LightPlace light = terms_.lights().place(block, i);
+  return light.infinite || (light.x - x).length2() <= cutoff() * cutoff();
+}
+
+std::uint64_t LightDraw::draw_for(const V3f& x, std::size_t point,
+                                  std::span<const std::size_t> stretches, Rng rng,
+                                  std::vector<Drawn>& drawn) const {
+  std::uint64_t total = 0;
+  for (const std::size_t s : stretches) total += lights_of(s);
+  // Steps of 1 or more: none is drawn twice.
+  const double step = std::max(1.0, double(total) / double(settings_.lights));
+  const double u = (double(rng.next_u32()) + 0.5) * 0x1p-32 * step;
+  const auto draws = std::min(total, static_cast<std::uint64_t>(settings_.lights));
+  std::size_t at = 0;
+  std::uint64_t passed = 0;              // lights of the stretches before that
+  const std::size_t own = drawn.size();  // the first of this point
+  for (std::uint64_t k = 0; k < draws; ++k) {
+    const auto index =
+        std::min(static_cast<std::uint64_t>(u + static_cast<double>(k) * step), total - 1);
+    while (index >= passed + lights_of(stretches[at])) passed += lights_of(stretches[at++]);
+    const Stretch& s = stretches_[stretches[at]];
+    const std::uint64_t light = before_[s.first] + index - passed;
+    const auto first = before_.begin() + static_cast<std::ptrdiff_t>(s.first);
+    const auto end = before_.begin() + static_cast<std::ptrdiff_t>(s.end);
+    const auto after = std::upper_bound(first, end, light);
+    const auto block = static_cast<std::size_t>(after - before_.begin()) - 1;
+    const auto i = static_cast<int>(light - before_[block]);
+    if (!is_near(x, block, i)) continue;
+    if (drawn.size() == own || drawn.back().block != block) {
+      drawn.push_back({block, point, 0, static_cast<float>(step)});
+    }
+    drawn.back().lights |= std::uint64_t{1} << i;
+  }
+  return total;
+}
+
+double LightDraw::culled() const { return pairs_ == 0 ? 0 : 1 - double(left_) / double(pairs_); }
+
+}  // namespace lacuna

@@ -1,0 +1,144 @@
+#pragma once
+
+#include "renderer/many_lights/decision.h"
+#include "renderer/many_lights/light_draw.h"
+#include "renderer/many_lights/light_terms.h"
+#include "renderer/path/contexts.h"
+#include "renderer/path/shadow_queue.h"
+
+namespace lacuna {
+
+/// What virtual lights give to a shading point.
+struct LightSum {
+  V3d value{0, 0, 0};
+  std::uint64_t tests = 0;  ///< lights that a ray was sent to
+};
+
+/// Adds up what all virtual lights, or those that are drawn, give to the shading points of a few
+/// pixels: lights outside, points inside, so that a block of lights is read from memory once for
+/// all of them.
+template <class Visibility>
+class LightGather {
+ public:
+  /// `draw`: null for all lights; of those it takes `range`.
+  LightGather(const IterationContext& context, const LightTerms& terms,
+              const Visibility& visibility, const LightDraw* draw, Counters& counters,
+              BlockRange range = {})
+      : context_(context),
+        terms_(terms),
+        visibility_(visibility),
+        draw_(draw),
+        counters_(counters),
+        range_(range) {}
+
+  /// `sums[i]` becomes that of `points[i]`, of which there are at most Lanes::size. Throws
+  /// IterationStopped if the context asks for it.
+  void gather(std::span<const ShadingPoint> points, std::span<LightSum> sums) {
+    std::vector<typename Visibility::At> states;
+    states.reserve(points.size());
+    for (const ShadingPoint& p : points) states.push_back(visibility_.at(p, context_));
+    if (draw_ != nullptr) {
+      gather_drawn(points, states, sums);
+    } else {
+      gather_all(points, states, sums);
+    }
+    flush(sums);
+  }
+
+ private:
+  /// What a light gives if it is seen.
+  struct Lit {
+    Rgb value;
+    std::uint32_t point;
+  };
+  struct Test {
+    Ray ray;
+    Lit lit;
+  };
+  static constexpr std::size_t most_waiting = 2048;  // rays; they fit the second-level cache
+  static constexpr std::size_t blocks_between_stops = 64;
+
+  using States = std::vector<typename Visibility::At>;
+
+  void gather_all(std::span<const ShadingPoint> points, States& states, std::span<LightSum> sums) {
+    PointLanes lanes;
+    std::vector<std::size_t> ends;
+    std::size_t blocks = 0;
+    for (const ShadingPoint& p : points) {
+      lanes.add(p);
+      ends.push_back(terms_.lights().blocks(p.edges));
+      blocks = std::max(blocks, ends.back());
+    }
+    for (std::size_t b = range_.first; b < std::min(blocks, range_.end); ++b) {
+      for_each_bit(terms_.may_light(b, lanes), [&](int bit) {
+        const auto i = static_cast<std::size_t>(bit);
+        if (b < ends[i]) add(points[i], states[i], {b, i, LightTerms::all_lights, 1}, sums[i]);
+      });
+      end_block(sums);
+    }
+  }
+
+  void gather_drawn(std::span<const ShadingPoint> points, States& states,
+                    std::span<LightSum> sums) {
+    const std::vector<LightDraw::Drawn> drawn = draw_->draw(points, context_);
+    for (std::size_t k = 0; k < drawn.size(); ++k) {
+      const LightDraw::Drawn& d = drawn[k];
+      if (!range_.contains(d.block)) continue;
+      add(points[d.point], states[d.point], d, sums[d.point]);
+      if (k + 1 == drawn.size() || drawn[k + 1].block != d.block) end_block(sums);
+    }
+  }
+
+  void end_block(std::span<LightSum> sums) {
+    queue_tests();
+    if (queue_.size() >= most_waiting) flush(sums);
+    if (++blocks_ % blocks_between_stops == 0 && context_.stop()) throw IterationStopped{};
+  }
+
+  void add(const ShadingPoint& at, typename Visibility::At& state, const LightDraw::Drawn& drawn,
+           LightSum& sum) {
+    const std::size_t block = drawn.block;
+    if (visibility_.hides(state, block)) return;
+    terms_.evaluate(at, block, term_, drawn.lights, drawn.weight);
+    counters_.rejected += static_cast<std::uint64_t>(__builtin_popcountll(term_.rejected));
+    if (term_.lit == 0) return;
+    visibility_.decide(state, block, term_, decision_);
+    sum.value += V3d(double(sum_of_products(term_.r, decision_.untested)),
+                     double(sum_of_products(term_.g, decision_.untested)),
+                     double(sum_of_products(term_.b, decision_.untested)));
+    for_each_bit(decision_.tests, [&](int i) {
+      tests_[static_cast<std::size_t>(i)].push_back(
+          {terms_.ray(at, block, i),
+           {Rgb(term_.r[i], term_.g[i], term_.b[i]) * decision_.gain[i],
+            static_cast<std::uint32_t>(drawn.point)}});
+    });
+    sum.tests += static_cast<std::uint64_t>(__builtin_popcountll(decision_.tests));
+  }
+
+  /// Rays from one light to neighbouring points run together; they are traced side by side.
+  void queue_tests() {
+    for (auto& of_light : tests_) {
+      for (const Test& t : of_light) queue_.add(t.ray, t.lit);
+      of_light.clear();
+    }
+  }
+
+  void flush(std::span<LightSum> sums) {
+    queue_.flush(context_.scene.rays(), counters_,
+                 [&](const Lit& l) { sums[l.point].value += V3d(l.value); });
+  }
+
+  const IterationContext& context_;
+  const LightTerms& terms_;
+  const Visibility& visibility_;
+  const LightDraw* draw_;
+  Counters& counters_;
+  BlockRange range_;
+  std::size_t blocks_ = 0;                            // done
+  std::array<std::vector<Test>, Lanes::size> tests_;  // of each light of the block
+  ShadowQueue<Lit> queue_;
+  Terms term_;
+  Decision decision_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "renderer/many_lights/light_terms.h"
+#include "renderer/path/tiles.h"
+
+namespace lacuna {
+
+/// The shading points of a picture's pixels in an iteration, without what light reaches them:
+/// walks paths from the eye on to the first surface that is broad enough for them.
+class ShadingPoints {
+ public:
+  ShadingPoints(const IterationContext& context, int max_depth, float least_alpha,
+                Counters& counters)
+      : context_(context),
+        max_depth_(max_depth),
+        least_alpha_(least_alpha),
+        batch_(max_depth),
+        walk_(context.scene, guide_,
+              {.max_depth = max_depth, .last_scatters = true, .roulette_depth = max_depth + 1},
+              counters) {}
+
+  /// Calls `use(vertex, depth, pixel)` for those of `pixels`, at most EyeBatch::size, that have a
+  /// shading point less than max_depth edges from the eye. The vertices live until the next call.
+  template <class Use>
+  void find(std::span<const std::uint32_t> pixels, Use&& use) {
+    batch_.walkers.clear();
+    for (const std::uint32_t pixel : pixels) {
+      const CameraSample sample(context_, pixel);
+      batch_.start(context_.camera, sample.rng, sample.ray, pixel);
+    }
+    walk_.lead(
+        batch_.walkers, [](std::size_t, int) {},
+        [&](std::size_t i, int depth) {
+          const Vertex& v = batch_.vertex(i, depth);
+          if (v.kind != Vertex::Kind::surface || depth == max_depth_) return false;
+          if (!v.bsdf->broad(least_alpha_)) return true;
+          use(v, depth, batch_.pixels[i]);
+          return false;
+        });
+  }
+
+ private:
+  const IterationContext& context_;
+  int max_depth_;
+  float least_alpha_;
+  BsdfGuide guide_;
+  EyeBatch batch_;
+  Walk<BsdfGuide> walk_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,152 @@
+#include "renderer/many_lights/virtual_lights.h"
+
+#include <algorithm>
+
+#include "renderer/core/morton.h"
+
+namespace lacuna {
+
+namespace {
+
+constexpr auto block_size = static_cast<std::size_t>(Lanes::size);
+
+/// The axis that `n` is nearest to, and its sign: 0 to 5.
+std::uint64_t main_direction(const V3f& n) {
+  int axis = 0;
+  for (int k = 1; k < 3; ++k) {
+    if (std::abs(n[k]) > std::abs(n[axis])) axis = k;
+  }
+  return static_cast<std::uint64_t>(2 * axis + (n[axis] < 0 ? 1 : 0));
+}
+
+/// A part of a list of lights: at most sixty-four of one group.
+struct Run {
+  std::uint32_t group;
+  std::vector<std::size_t> lights;
+};
+
+/// Lights by group, then by the way they face, and then along a space-filling curve; as they are
+/// where they lie at one place.
+template <class Light, class Place>
+std::vector<Run> near_one_another(const std::vector<Light>& lights, const LightGroups& groups,
+                                  Place&& place) {
+  Bounds box;
+  for (const Light& l : lights) box.add(place(l).x);
+  const MortonOrder order(box);
+  struct Key {
+    std::uint32_t group;
+    std::uint64_t code;
+    std::size_t light;
+    auto operator<=>(const Key&) const = default;
+  };
+  std::vector<Key> keys(lights.size());
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const LightPlace p = place(lights[i]);
+    keys[i] = {groups(p), main_direction(p.n) << 61 | order(p.x) >> 2, i};
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<Run> runs;
+  for (const Key& k : keys) {
+    if (runs.empty() || runs.back().group != k.group || runs.back().lights.size() == block_size) {
+      runs.push_back({k.group, {}});
+    }
+    runs.back().lights.push_back(k.light);
+  }
+  return runs;
+}
+
+}  // namespace
+
+void VirtualLights::add(Kept& path, const EmitterPoint& e) const {
+  if (!e.pdf.positive()) return;
+  if (e.kind == EmitterPoint::Kind::area && !e.both_sides) {
+    path.diffuse.push_back({e.x, e.ng, e.ng, 1, e.emission * (share_ / e.pdf.value), e.extent, 0});
+  } else if (e.kind == EmitterPoint::Kind::point) {
+    const V3f everywhere(0.0F);
+    path.points.push_back(
+        {e.x, everywhere, everywhere, 1, e.emission * (share_ / e.pdf.value), 0, 0});
+  } else {
+    path.general.push_back({e, 0});
+  }
+}
+
+void VirtualLights::add(Kept& path, const Vertex& v, int index) const {
+  if (const std::optional<LambertLit> lit = v.bsdf->lambert_lit(v.wp)) {
+    const Rgb rgb = v.throughput * lit->f * share_;
+    if (is_black(rgb)) return;
+    path.diffuse.push_back(
+        {v.surface.x, lit->side, lit->ns, lit->turned, rgb, v.surface.extent, index});
+  } else {
+    path.general.push_back({v, index});
+  }
+}
+
+LightPlace GeneralLight::place() const {
+  if (const auto* v = std::get_if<Vertex>(&at)) return {v->surface.x, v->side(), false};
+  const auto& e = std::get<EmitterPoint>(at);
+  return {e.x, e.infinite() ? V3f(0.0F) : e.ng, e.infinite()};
+}
+
+LightPlace VirtualLights::place(std::size_t b, int i) const {
+  const DiffuseBlock* from = diffuse(b);
+  if (from == nullptr) return general(b, i).place();
+  return {V3f(from->x[i], from->y[i], from->z[i]), V3f(from->gx[i], from->gy[i], from->gz[i]),
+          false};
+}
+
+void VirtualLights::arrange(const LightGroups& groups) {
+  for (int index = 0; index < choice_.longest; ++index) {
+    const auto all = [&](auto Kept::*kind) {
+      auto found = (Kept{}.*kind);
+      for (const Kept& path : kept_) {
+        for (const auto& l : path.*kind) {
+          if (l.index == index) found.push_back(l);
+        }
+      }
+      size_ += found.size();
+      return found;
+    };
+    arrange_diffuse(all(&Kept::diffuse), false, groups);
+    arrange_diffuse(all(&Kept::points), true, groups);
+    arrange_general(all(&Kept::general), groups);
+    ends_.push_back(blocks_.size());
+  }
+  kept_ = {};
+}
+
+void VirtualLights::arrange_diffuse(const std::vector<Diffuse>& lights, bool points,
+                                    const LightGroups& groups) {
+  const auto place = [](const Diffuse& l) { return LightPlace{l.x, l.ng, false}; };
+  for (const Run& run : near_one_another(lights, groups, place)) {
+    const auto count = static_cast<int>(run.lights.size());
+    blocks_.push_back({diffuse_.size(), count, true, run.group});
+    DiffuseBlock& block = diffuse_.emplace_back();
+    block.points = points;
+    BlockBounds& bounds = bounds_.emplace_back();
+    for (int i = 0; i < Lanes::size; ++i) {
+      // A missing one stands where another does, so that no geometry of it is special.
+      const Diffuse& l = lights[run.lights[static_cast<std::size_t>(std::min(i, count - 1))]];
+      bounds.add({l.x, l.ng});
+      const auto put = [i](const V3f& p, Lanes& x, Lanes& y, Lanes& z) {
+        x[i] = p.x, y[i] = p.y, z[i] = p.z;
+      };
+      put(l.x, block.x, block.y, block.z);
+      put(l.ng, block.gx, block.gy, block.gz);
+      put(l.ns, block.sx, block.sy, block.sz);
+      put(i < count ? l.rgb : Rgb(0, 0, 0), block.r, block.g, block.b);
+      block.turned[i] = l.turned;
+      block.extent[i] = l.extent;
+    }
+  }
+}
+
+void VirtualLights::arrange_general(const std::vector<GeneralLight>& lights,
+                                    const LightGroups& groups) {
+  const auto place = [](const GeneralLight& l) { return l.place(); };
+  for (const Run& run : near_one_another(lights, groups, place)) {
+    blocks_.push_back({general_.size(), static_cast<int>(run.lights.size()), false, run.group});
+    for (const std::size_t i : run.lights) general_.push_back(lights[i]);
+  }
+}
+
+}  // namespace lacuna

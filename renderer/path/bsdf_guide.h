@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/storage/bytes.h"
+#include "renderer/core/rng.h"
+#include "renderer/path/contexts.h"
+#include "renderer/path/guiding_sample.h"
+
+namespace lacuna {
+
+/// guide: bsdf. A guide draws the next direction at a vertex and knows the density of any direction
+/// there; the walk and the MIS weights take whatever density it reports.
+struct BsdfGuide {
+  static bool needs_space() { return false; }
+  static void prepare(const PrepareContext&) {}
+  static void save(ByteWriter&) {}
+  static void load(ByteReader&) {}
+  static std::vector<std::pair<std::string, double>> statistics() { return {}; }
+
+  /// There is nothing to learn.
+  struct Tally {};
+  static constexpr bool learns() { return false; }
+  static Tally tally() { return {}; }
+  static void learn(const GuidingSample&, Tally&) {}
+  static void end(std::span<const Tally>, const ThreadPool&) {}
+
+  static void arrive(Vertex&) {}
+  static std::optional<BsdfSample> sample(const Vertex& v, Rng& rng, Transport transport) {
+    const float u_lobe = rng.next();
+    return v.bsdf->sample(v.wp, u_lobe, rng.next2(), transport);
+  }
+  /// Density of `wi` for a walk of kind `transport` that arrived at `v` from `wo`.
+  static Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport) {
+    return v.bsdf->pdf(wo, wi, transport);
+  }
+};
+
+}  // namespace lacuna

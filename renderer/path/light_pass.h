@@ -1,0 +1,48 @@
+#pragma once
+
+#include "renderer/path/light_batch.h"
+#include "renderer/path/tiles.h"
+
+namespace lacuna {
+
+/// Walks the light paths [0, paths) of an iteration, adds what they give at the eye (t = 1), if
+/// that strategy has samples, to `image` and to `arrived(splat)`, and calls `keep(path, batch,
+/// place)` for each once it is walked, from several threads.
+template <class Guide, class Keep, class Arrived>
+Counters light_pass(const IterationContext& context, const LightPathSetting& setting,
+                    const Guide& guide, std::int64_t paths, Image& image, Keep&& keep,
+                    Arrived&& arrived) {
+  using Batch = LightBatch<Guide>;
+  constexpr std::int64_t part = 16 * Batch::size;  // small enough to stop quickly
+  constexpr std::uint64_t no_path = (std::uint64_t{1} << 56) - 1;
+  const std::uint32_t start =
+      Rng(context.seed, context.iteration, no_path, Rng::Purpose::light_path).next_u32();
+  const auto choice = [&](std::int64_t j) {  // modulo 2^32
+    return start + static_cast<std::uint32_t>((static_cast<std::uint64_t>(j) << 32) /
+                                              static_cast<std::uint64_t>(paths));
+  };
+  const auto work = [&](int i, Counters& counters, Splats& splats) {
+    Batch batch(setting, guide);
+    std::vector<Rng> rngs;
+    std::vector<std::uint32_t> choices;
+    const std::int64_t end = std::min(paths, (i + 1) * part);
+    for (std::int64_t first = i * part; first < end; first += Batch::size) {
+      rngs.clear();
+      choices.clear();
+      for (std::int64_t j = first; j < std::min(end, first + Batch::size); ++j) {
+        rngs.emplace_back(context.seed, context.iteration, static_cast<std::uint64_t>(j),
+                          Rng::Purpose::light_path);
+        if (setting.spread) choices.push_back(choice(j));
+      }
+      batch.walk(rngs, counters, choices);
+      if (setting.counts.splat > 0) batch.splat(rngs.size(), counters, splats);
+      for (std::size_t k = 0; k < rngs.size(); ++k) {
+        keep(static_cast<std::size_t>(first) + k, batch, k);
+      }
+    }
+  };
+  return for_each_splatting_part(context, static_cast<int>((paths + part - 1) / part), image, work,
+                                 arrived);
+}
+
+}  // namespace lacuna

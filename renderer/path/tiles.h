@@ -1,0 +1,133 @@
+#pragma once
+
+#include <atomic>
+#include <vector>
+
+#include "renderer/path/contexts.h"
+#include "renderer/path/eye_batch.h"
+#include "renderer/path/splats.h"
+
+namespace lacuna {
+
+/// Adds a contribution to a pixel. One that is not finite is dropped and counted: nothing
+/// non-finite enters a film.
+inline void accumulate(Rgb& pixel, const Rgb& value, Counters& counters) {
+  if (!is_finite(value)) [[unlikely]] {
+    ++counters.rejected;
+    return;
+  }
+  if (value.x < 0 || value.y < 0 || value.z < 0) ++counters.negative;
+  pixel += value;
+}
+
+/// A rectangle of an image, rendered by one thread.
+struct Tile {
+  V2i first{0, 0};
+  V2i size{0, 0};
+
+  int pixels() const { return size.x * size.y; }
+  V2i pixel(int i) const { return first + V2i(i % size.x, i / size.x); }
+};
+
+/// Calls `work(i, counters)` for i in [0, n) in parallel and adds up what they counted. Throws
+/// IterationStopped if the context asks for it.
+template <class Work>
+Counters for_each_part(const IterationContext& context, int n, Work&& work) {
+  std::vector<Counters> counters(static_cast<std::size_t>(n));
+  std::atomic<bool> stopped{false};
+  context.pool.for_each(n, [&](int i) {
+    if (stopped || context.stop()) {
+      stopped = true;
+      return;
+    }
+    Counters count;  // not in the shared array: neighbours would share a cache line
+    work(i, count);
+    counters[static_cast<std::size_t>(i)] = count;
+  });
+  if (stopped) throw IterationStopped{};
+  Counters sum;
+  for (const Counters& c : counters) sum += c;
+  return sum;
+}
+
+/// How an image is cut into tiles.
+class Tiling {
+ public:
+  /// `size`: pixels along a side; by default small enough to stop quickly and large enough to be
+  /// coherent.
+  explicit Tiling(const Image& image, int size = 32)
+      : width_(image.width),
+        height_(image.height),
+        size_(size),
+        across_((image.width + size - 1) / size) {}
+
+  int tiles() const { return across_ * ((height_ + size_ - 1) / size_); }
+  Tile tile(int i) const {
+    const V2i first = V2i(i % across_, i / across_) * size_;
+    return {first, V2i(std::min(size_, width_ - first.x), std::min(size_, height_ - first.y))};
+  }
+
+ private:
+  int width_, height_, size_, across_;
+};
+
+/// Calls `render(tile, counters)` for all tiles of `image`, as for_each_part() does.
+template <class Render>
+Counters for_each_tile(const IterationContext& context, const Image& image, Render&& render) {
+  const Tiling tiling(image);
+  return for_each_part(context, tiling.tiles(),
+                       [&](int i, Counters& counters) { render(tiling.tile(i), counters); });
+}
+
+/// Where a sample of a pixel starts: its stream of random numbers, and its first ray.
+struct CameraSample {
+  Rng rng;
+  Ray ray;
+
+  CameraSample(const IterationContext& context, std::size_t pixel)
+      : rng(context.seed, context.iteration, pixel),
+        ray(context.camera.sample(place(pixel, context.camera.width()), rng.next2())) {}
+
+ private:
+  static V2i place(std::size_t pixel, int width) {
+    const int i = static_cast<int>(pixel);
+    return {i % width, i / width};
+  }
+};
+
+/// Fills `batch` with a path for each of the tile's pixels from the `first` on, as many as fit.
+inline void start_paths(const IterationContext& context, const Image& image, const Tile& tile,
+                        int first, EyeBatch& batch) {
+  batch.walkers.clear();
+  for (int i = first; i < std::min(first + int{EyeBatch::size}, tile.pixels()); ++i) {
+    const V2i at = tile.pixel(i);
+    const std::size_t pixel = image.index(at.x, at.y);
+    const CameraSample sample(context, pixel);
+    batch.start(context.camera, sample.rng, sample.ray, pixel);
+  }
+}
+
+/// As for_each_part(); `work(i, counters, splats)` may also give to any pixel. What it gives is
+/// added to `image`, and handed to `arrived(splat)`, in the order of the parts.
+template <class Work, class Arrived>
+Counters for_each_splatting_part(const IterationContext& context, int n, Image& image, Work&& work,
+                                 Arrived&& arrived) {
+  constexpr int round = 128;  // parts whose splats are in memory together
+  std::vector<Splats> splats(static_cast<std::size_t>(std::min(n, round)));
+  Counters sum;
+  for (int first = 0; first < n; first += round) {
+    sum += for_each_part(context, std::min(round, n - first), [&](int i, Counters& counters) {
+      work(first + i, counters, splats[static_cast<std::size_t>(i)]);
+    });
+    for (Splats& part : splats) {
+      for (const Splat& s : part) {
+        accumulate(image.pixels[s.pixel], s.value * s.weight, sum);
+        arrived(s);
+      }
+      part.clear();
+    }
+  }
+  return sum;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+
+#include "analysis/parallel/thread_pool.h"
+#include "renderer/view_maps/view_rendering.h"
+
+namespace lacuna {
+
+/// Takes the map of a leaf, in [0, ViewTree::leaf_count()): of each texel a distance.
+using UseMap = std::function<void(std::uint32_t leaf, std::span<const float> depths)>;
+
+/// Renders a scene's octree into the leaves of a view tree by traversing both at once (Kol et al.
+/// 2018, 3.2). `use(leaf, depths)` gets each leaf's map, complete, from any thread, in any order:
+/// distances from the centre of the leaf's sphere to the centre of the nearest node behind each
+/// texel of Paraboloid{map_size}, infinite where nothing is. The same for any number of threads.
+///
+/// Where the paper keeps a queue of pairs, this goes depth-first through the views, unless
+/// `breadth_first`: what a view node cannot decide for all its views waits in one list that its
+/// children share, and the map of a node is handed down to its children as it is (the paper's
+/// fusion), so only the maps between the root and one leaf are there at a time.
+ManyViewsCounts render_views(const Octree& scene, const ViewTree& views,
+                             const ManyViewsSettings& settings, const ThreadPool& pool,
+                             const UseMap& use);
+
+}  // namespace lacuna

@@ -1,0 +1,76 @@
+#include "renderer/view_maps/view_maps.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+
+#include "renderer/core/free_memory.h"
+
+namespace lacuna {
+
+ViewMaps::ViewMaps(std::uint32_t leaves, int map_size, float extent)
+    : map_{map_size}, nearness_(Nearness::within(extent)) {
+  const std::size_t texels = std::size_t{leaves} * static_cast<std::size_t>(map_.texels());
+  require_free(double(texels) * sizeof(std::uint16_t), [&] {
+    return fmt::format(
+        "view_maps: maps of 2 x {0} x {0} texels of {1} views; lower map_size, levels "
+        "or light_paths",
+        map_size, leaves);
+  });
+  texels_.resize(texels);
+}
+
+void ViewMaps::set(std::uint32_t leaf, std::span<const float> depths) {
+  std::uint16_t* to = texels_.data() + std::size_t{leaf} * depths.size();
+  nearness_.encode(depths, to);
+}
+
+float ViewMaps::nearness(std::uint32_t leaf, int texel) const {
+  return Nearness::decode(texels_[std::size_t{leaf} * static_cast<std::size_t>(map_.texels()) +
+                                  static_cast<std::size_t>(texel)]);
+}
+
+std::vector<MapTexel> map_texels(const Paraboloid& map) {
+  std::vector<MapTexel> texels;
+  for (int i = 0; i < map.texels(); ++i) {
+    const V3f w = map.direction(i);
+    // Half the diagonal of a texel, as an angle.
+    const float half = std::sqrt(0.5F) / map.stretch(std::abs(w.x));
+    texels.push_back({w, std::cos(half), std::sin(half), map.asked_for(i)});
+  }
+  return texels;
+}
+
+namespace {
+
+/// The angle from the middle of what the views see to the texel is above the sum of both cones'.
+bool unseen(const ViewTree::Node& v, const MapTexel& t) {
+  const bool narrow = v.sine * t.cosine + v.cosine * t.sine > 0;  // that sum is below pi
+  return narrow && v.n.dot(t.direction) < v.cosine * t.cosine - v.sine * t.sine;
+}
+
+}  // namespace
+
+std::uint64_t trace_views(const RayCaster& rays, const ViewTree& views,
+                          std::span<const MapTexel> texels, const ThreadPool& pool,
+                          const UseMap& use) {
+  std::atomic<std::uint64_t> sent = 0;
+  pool.for_each(static_cast<int>(views.leaf_count()), [&](int k) {
+    const auto leaf = static_cast<std::uint32_t>(k);
+    const ViewTree::Node& v = views.node(views.first_leaf() + leaf);
+    std::vector<float> depths(texels.size(), std::numeric_limits<float>::infinity());
+    std::uint64_t own = 0;
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+      const MapTexel& t = texels[i];
+      if (!t.asked_for || unseen(v, t)) continue;
+      Hit hit;
+      if (rays.intersect({v.centre, t.direction}, hit)) depths[i] = hit.t;
+      ++own;
+    }
+    sent += own;
+    use(leaf, depths);
+  });
+  return sent;
+}
+
+}  // namespace lacuna

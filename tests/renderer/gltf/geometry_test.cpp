@@ -1,0 +1,324 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+#include "renderer/geometry/scene_data.h"
+#include "tests/renderer/gltf/expect_near.h"
+#include "tests/renderer/gltf/glb_builder.h"
+
+namespace lacuna {
+namespace {
+
+using test::GlbBuilder;
+using test::Json;
+using test::load;
+
+V3f geometric_normal(const Mesh& mesh, std::size_t triangle = 0) {
+  const auto& t = mesh.triangles[triangle];
+  const V3f& a = mesh.positions[t[0]];
+  return (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a).normalized();
+}
+
+/// The z = 0 triangle facing +z, with its normals, under a chain of nodes (outermost first).
+SceneData under(const std::vector<Json>& chain, const V3f& normal = {0, 0, 1}) {
+  GlbBuilder b;
+  const auto mesh =
+      b.add_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, -1, {normal, normal, normal});
+  b.add_node(chain.front());
+  for (std::size_t i = 1; i < chain.size(); ++i) {
+    b.json["nodes"].push_back(chain[i]);
+    b.json["nodes"][i - 1]["children"] = {i};
+  }
+  b.json["nodes"].back()["mesh"] = mesh;
+  return load(b);
+}
+
+TEST(Transforms, TranslationRotationScaleInGltfOrder) {
+  const double h = std::numbers::sqrt2 / 2;  // a quarter turn about z
+  const auto scene =
+      under({{{"translation", {10, 20, 30}}, {"rotation", {0, 0, h, h}}, {"scale", {2, 3, 4}}}});
+  const auto& p = scene.meshes.at(0).positions;
+  expect_near(p[0], {10, 20, 30});
+  expect_near(p[1], {10, 22, 30}, 1e-5F);  // (1,0,0) -> scaled (2,0,0) -> turned (0,2,0)
+  expect_near(p[2], {7, 20, 30}, 1e-5F);   // (0,1,0) -> (0,3,0) -> (-3,0,0)
+}
+
+TEST(Transforms, MatrixIsColumnMajorAndParentsComeLast) {
+  const Json shear{{"matrix", {1, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 1, 0, 7, 8, 9, 1}}};
+  const auto scene = under({{{"scale", {2, 2, 2}}}, shear});
+  const auto& p = scene.meshes.at(0).positions;
+  expect_near(p[0], {14, 16, 18});
+  expect_near(p[2], {15, 18, 18});  // (0,1,0) -> (0.5,1,0) + (7,8,9), doubled
+}
+
+TEST(Transforms, AMirroredNodeKeepsItsFrontAndItsNormals) {
+  for (const Json& scale : {Json{1, 1, 1}, Json{-1, 1, 1}, Json{-1, -2, 1}, Json{-1, -2, -3}}) {
+    const auto scene = under({{{"scale", scale}}});
+    const Mesh& mesh = scene.meshes.at(0);
+    const float front = scale[2].get<float>() < 0 ? -1.0F : 1.0F;
+    expect_near(geometric_normal(mesh), {0, 0, front});
+    for (const V3f& n : mesh.normals) expect_near(n, {0, 0, front});
+  }
+}
+
+TEST(Transforms, NormalsGoWithTheInverseTranspose) {
+  // The plane x + z = 0 stretched twofold along z becomes 2x + z = 0.
+  GlbBuilder b;
+  const V3f n = V3f(1, 0, 1).normalized();
+  const auto mesh = b.add_mesh({{0, 0, 0}, {0, 1, 0}, {-1, 0, 1}}, {{0, 1, 2}}, -1, {n, n, n});
+  b.add_node({{"mesh", mesh}, {"scale", {1, 1, 2}}});
+  const auto scene = load(b);
+  expect_near(scene.meshes.at(0).normals[0], V3f(2, 0, 1).normalized());
+  expect_near(geometric_normal(scene.meshes[0]), V3f(2, 0, 1).normalized());
+}
+
+TEST(Transforms, ExtremeScalesKeepNormalsAndTriangles) {
+  for (const double s : {1e-12, 1e-4, 1e5, 1e14}) {
+    const auto scene = under({{{"scale", {s, s, s}}}});
+    EXPECT_EQ(scene.triangle_count(), 1U) << s;
+    expect_near(scene.meshes.at(0).normals[0], {0, 0, 1});
+  }
+}
+
+TEST(Transforms, CamerasAndLightsLoseScaleButNotDirection) {
+  GlbBuilder b = test::triangle_scene();
+  const double h = std::numbers::sqrt2 / 2;  // a quarter turn about y: -z becomes -x
+  b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+  b.add_node({{"camera", 0},
+              {"name", "cam"},
+              {"rotation", {0, h, 0, h}},
+              {"scale", {5, 6, 7}},
+              {"translation", {1, 2, 3}}});
+  b.add_light(
+      {{"type", "spot"}, {"intensity", 4}, {"color", {1, 0.5, 0}}, {"spot", Json::object()}},
+      {{"rotation", {0, h, 0, h}}, {"scale", {5, 6, 7}}, {"translation", {1, 2, 3}}});
+  const auto scene = load(b);
+  const CameraData& camera = scene.cameras.at(0);
+  EXPECT_EQ(camera.name, "cam");
+  const auto row = [&camera](int i) {
+    return V3f(V3d(camera.to_world[i][0], camera.to_world[i][1], camera.to_world[i][2]));
+  };
+  expect_near(row(0), {0, 0, -1});
+  expect_near(row(1), {0, 1, 0});
+  expect_near(row(2), {1, 0, 0});
+  expect_near(row(3), {1, 2, 3});
+  const PunctualLight& light = scene.lights.at(0);
+  expect_near(light.direction, {-1, 0, 0});
+  expect_near(light.position, {1, 2, 3});
+  EXPECT_EQ(light.intensity, Rgb(4, 2, 0));
+  EXPECT_EQ(light.inner_cone, 0.0F);
+  EXPECT_NEAR(light.outer_cone, std::numbers::pi / 4, 1e-6);
+}
+
+/// Five points of a zigzag; the strip's triangles all face +z.
+const std::vector<V3f> zigzag{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 2, 0}};
+
+TEST(Primitives, StripsAndFansKeepTheirWinding) {
+  GlbBuilder b;
+  const auto strip = b.add_mesh(zigzag, {});
+  b.json["meshes"][strip]["primitives"][0]["mode"] = 5;
+  const auto fan = b.add_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {});
+  b.json["meshes"][fan]["primitives"][0]["mode"] = 6;
+  b.add_node({{"mesh", strip}});
+  b.add_node({{"mesh", fan}});
+  const auto scene = load(b);
+  ASSERT_EQ(scene.meshes.size(), 2U);
+  EXPECT_EQ(scene.meshes[0].triangles.size(), 3U);
+  EXPECT_EQ(scene.meshes[1].triangles.size(), 2U);
+  for (const Mesh& mesh : scene.meshes) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      expect_near(geometric_normal(mesh, t), {0, 0, 1});
+    }
+  }
+}
+
+TEST(Primitives, EveryIndexTypeReadsTheSame) {
+  const auto with = [](auto type, int component) {
+    using Index = decltype(type);
+    GlbBuilder b;
+    const auto mesh = b.add_mesh(zigzag, {});
+    b.json["meshes"][mesh]["primitives"][0]["indices"] =
+        b.add_accessor(std::vector<Index>{0, 1, 2, 2, 1, 3}, component, "SCALAR");
+    b.add_node({{"mesh", mesh}});
+    return load(b);
+  };
+  const auto u8 = with(std::uint8_t{}, 5121);
+  const auto u16 = with(std::uint16_t{}, 5123);
+  const auto u32 = with(std::uint32_t{}, 5125);
+  ASSERT_EQ(u8.triangle_count(), 2U);
+  EXPECT_EQ(u8.meshes[0].positions.size(), 4U) << "the vertex nobody uses is left out";
+  EXPECT_EQ(u8.meshes[0].triangles[1], (std::array<std::uint32_t, 3>{2, 1, 3}));
+  EXPECT_EQ(u8.geometry_hash, u16.geometry_hash);
+  EXPECT_EQ(u8.geometry_hash, u32.geometry_hash);
+}
+
+TEST(Primitives, OutOfRangeIndicesAreRefused) {
+  GlbBuilder b;
+  b.add_node({{"mesh", b.add_mesh(zigzag, {{0, 1, 2}, {1, 5, 3}})}, {"name", "n"}});
+  try {
+    load(b);
+    FAIL();
+  } catch (const SceneError& e) {
+    EXPECT_NE(
+        std::string(e.what()).find("meshes[0].primitives[0] under nodes[0] \"n\": indices[4] is "
+                                   "5; allowed: below 5"),
+        std::string::npos)
+        << e.what();
+  }
+}
+
+TEST(Primitives, InterleavedAndNormalisedAttributes) {
+  GlbBuilder b;
+  struct Vertex {
+    V3f position;
+    std::array<std::uint8_t, 4> uv;
+  };
+  const auto view = b.add_view(std::vector<Vertex>{
+      {{0, 0, 0}, {0, 255, 0, 0}}, {{1, 0, 0}, {51, 0, 0, 0}}, {{0, 1, 0}, {255, 102, 0, 0}}});
+  b.json["bufferViews"][view]["byteStride"] = 16;
+  b.json["accessors"] = {
+      {{"bufferView", view}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}},
+      {{"bufferView", view},
+       {"byteOffset", 12},
+       {"componentType", 5121},
+       {"count", 3},
+       {"type", "VEC2"},
+       {"normalized", true}}};
+  b.json["textures"] = {{{"source", 0}}};
+  b.json["images"] = {{{"bufferView", view}}};
+  b.add_material(
+      {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"texCoord", 1}}}}}});
+  b.json["meshes"] = {
+      {{"primitives", {{{"attributes", {{"POSITION", 0}, {"TEXCOORD_1", 1}}}, {"material", 0}}}}}};
+  b.add_node({{"mesh", 0}});
+  const auto scene = load(b);
+  const Mesh& mesh = scene.meshes.at(0);
+  EXPECT_TRUE(mesh.uvs[0].empty());
+  ASSERT_EQ(mesh.uvs[1].size(), 3U);
+  EXPECT_EQ(mesh.uvs[1][0], V2f(0, 1));
+  EXPECT_EQ(mesh.uvs[1][1], V2f(0.2F, 0));
+  EXPECT_EQ(mesh.uvs[1][2], V2f(1, 0.4F));
+}
+
+TEST(Dropping, NonFiniteVerticesTakeOnlyTheirTriangles) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float inf = std::numeric_limits<float>::infinity();
+  GlbBuilder b;
+  const auto mesh = b.add_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {nan, 0, 0}, {0, inf, 0}},
+                               {{0, 1, 3}, {0, 1, 2}, {4, 1, 2}});
+  b.add_node({{"mesh", mesh}});
+  const auto scene = load(b);
+  EXPECT_EQ(scene.triangle_count(), 1U);
+  EXPECT_EQ(scene.dropped_triangles, 2U);
+  EXPECT_EQ(scene.meshes.at(0).positions.size(), 3U);
+  ASSERT_EQ(scene.warnings.size(), 1U);
+  EXPECT_EQ(scene.warnings[0],
+            "triangles dropped: 0 of zero area, 2 with a vertex that is not finite");
+}
+
+/// A repeated corner, three points on a line, and a sliver thinner than floats; then a needle, a
+/// sliver that floats can tell from a line, and a plain triangle, which stay.
+TEST(Dropping, ZeroAreaAtEveryScaleAndPlace) {
+  const std::vector<V3f> points{{0, 0, 0},     {1, 0, 0},     {0, 1, 0},    {2, 0, 0},
+                                {2, 1e-8F, 0}, {0, 0, 1e-6F}, {2, 3e-6F, 0}};
+  const test::Triangles triangles{{0, 0, 1}, {0, 1, 3}, {0, 1, 4}, {0, 1, 5}, {0, 1, 6}, {0, 1, 2}};
+  for (const double s : {1e-4, 1.0, 1e5}) {
+    GlbBuilder b;
+    b.add_node({{"mesh", b.add_mesh(points, triangles)}, {"scale", {s, s, s}}});
+    const auto scene = load(b);
+    EXPECT_EQ(scene.dropped_triangles, 3U) << "scale " << s;
+    EXPECT_EQ(scene.triangle_count(), 3U) << "scale " << s;
+  }
+}
+
+TEST(Dropping, NothingLeftIsRefused) {
+  GlbBuilder b;
+  b.add_node({{"mesh", b.add_mesh({{0, 0, 0}, {1, 1, 1}}, {{0, 1, 0}})}});
+  try {
+    load(b);
+    FAIL();
+  } catch (const SceneError& e) {
+    EXPECT_NE(std::string(e.what()).find("no triangles (dropped: 1 of zero area"),
+              std::string::npos)
+        << e.what();
+  }
+}
+
+TEST(Normals, UnusableOnesBecomeGeometric) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const V3f& bad : {V3f(0, 0, 0), V3f(nan, 0, 1)}) {
+    GlbBuilder b;
+    const V3f tilted = V3f(0, 0.6F, 0.8F);
+    const auto mesh =
+        b.add_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, -1, {tilted * 5, bad, tilted});
+    b.add_node({{"mesh", mesh}, {"scale", {1, 1, -1}}});
+    const auto scene = load(b);
+    const auto& n = scene.meshes.at(0).normals;
+    expect_near(n[0], {0, 0.6F, -0.8F});
+    expect_near(n[1], {0, 0, -1});
+    ASSERT_EQ(scene.warnings.size(), 1U);
+    EXPECT_EQ(scene.warnings[0].substr(0, 9), "1 normals");
+  }
+}
+
+TEST(Scenes, DefaultFirstOrAllRoots) {
+  GlbBuilder b = test::triangle_scene();
+  b.json["nodes"].push_back({{"mesh", 0}});
+  b.json["nodes"].push_back({{"mesh", 0}});
+  b.json["scenes"].push_back({{"nodes", {1, 2}}});
+  EXPECT_EQ(load(b).triangle_count(), 1U);
+  b.json["scene"] = 1;
+  EXPECT_EQ(load(b).triangle_count(), 2U);
+  b.json.erase("scene");
+  EXPECT_EQ(load(b).triangle_count(), 1U);
+  b.json.erase("scenes");
+  EXPECT_EQ(load(b).triangle_count(), 3U);
+}
+
+TEST(Scenes, WhatIsLeftOutIsSaidOnce) {
+  GlbBuilder b = test::triangle_scene();
+  Json& primitives = b.json["meshes"][0]["primitives"];
+  Json primitive = primitives[0];
+  primitive["attributes"]["COLOR_0"] = 0;
+  primitive["targets"] = {{{"POSITION", 0}}};
+  Json lines = primitive;
+  lines["mode"] = 1;
+  primitives = {primitive, lines, primitive};
+  b.json["extensionsUsed"] = {"KHR_materials_clearcoat", "KHR_materials_ior"};
+  b.json["skins"] = {{{"joints", {0}}}};
+  b.add_node({{"mesh", 0}, {"skin", 0}});
+  b.json["cameras"] = {{{"type", "orthographic"},
+                        {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0}, {"zfar", 1}}}}};
+  b.add_node({{"camera", 0}});
+  b.json["animations"] = {{{"channels", {{{"sampler", 0}, {"target", {{"path", "scale"}}}}}},
+                           {"samplers", {{{"input", 0}, {"output", 0}}}}}};
+  const auto scene = load(b);
+  EXPECT_EQ(scene.triangle_count(), 4U);
+  EXPECT_TRUE(scene.cameras.empty());
+  for (const std::string what : {"COLOR_0", "morph targets", "points or lines", "skins",
+                                 "KHR_materials_clearcoat", "orthographic", "animations"}) {
+    EXPECT_EQ(
+        std::count_if(scene.warnings.begin(), scene.warnings.end(),
+                      [&](const std::string& w) { return w.find(what) != std::string::npos; }),
+        1)
+        << what;
+  }
+  EXPECT_EQ(scene.warnings.size(), 7U);
+}
+
+TEST(Hashes, GeometryChangesWithPositionsAndIndicesOnly) {
+  GlbBuilder b = test::triangle_scene();
+  const auto before = load(b);
+  b.add_material({{"emissiveFactor", {1, 1, 1}}});
+  b.json["meshes"][0]["primitives"][0]["material"] = 0;
+  const auto painted = load(b);
+  EXPECT_EQ(before.geometry_hash, painted.geometry_hash);
+  EXPECT_NE(before.content_hash, painted.content_hash);
+  b.json["nodes"][0]["translation"] = {0, 0, 1};
+  EXPECT_NE(load(b).geometry_hash, painted.geometry_hash);
+}
+
+}  // namespace
+}  // namespace lacuna

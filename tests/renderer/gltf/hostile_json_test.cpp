@@ -1,0 +1,255 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+#include "renderer/geometry/scene_data.h"
+#include "renderer/gltf/gltf_load.h"
+#include "tests/renderer/gltf/glb_builder.h"
+
+namespace lacuna {
+namespace {
+
+using test::GlbBuilder;
+using test::Json;
+
+/// One thing wrong with an otherwise good scene: a triangle with a material, a camera and a light.
+struct HostileCase {
+  std::string name;
+  std::function<void(GlbBuilder&)> spoil;
+  std::vector<std::string> message;  ///< each must occur in the error
+};
+
+std::ostream& operator<<(std::ostream& out, const HostileCase& c) { return out << c.name; }
+
+GlbBuilder good_scene() {
+  GlbBuilder builder = test::triangle_scene();
+  builder.add_material({{"name", "paint"}, {"pbrMetallicRoughness", Json::object()}});
+  builder.json["meshes"][0]["primitives"][0]["material"] = 0;
+  builder.add_camera("eye", {0, 0, 5}, 0.8);
+  builder.add_light({{"type", "spot"}, {"name", "lamp"}, {"spot", Json::object()}});
+  return builder;
+}
+
+/// A case that sets the value at a JSON pointer.
+HostileCase set(std::string name, const std::string& pointer, const Json& value,
+                std::vector<std::string> message) {
+  return {std::move(name),
+          [pointer, value](GlbBuilder& b) { b.json[Json::json_pointer(pointer)] = value; },
+          std::move(message)};
+}
+
+const char* const light = "/extensions/KHR_lights_punctual/lights/0";
+const char* const primitive = "/meshes/0/primitives/0";
+
+std::vector<HostileCase> structure_cases() {
+  const std::string p = primitive;
+  return {
+      set("NoVersion", "/asset", Json::object(), {"asset: version is missing"}),
+      set("VersionOne", "/asset/version", "1.0", {"asset: version is \"1.0\""}),
+      set("RequiredExtension", "/extensionsRequired", {"KHR_draco_mesh_compression"},
+          {"extensionsRequired is \"KHR_draco_mesh_compression\"", "KHR_materials_ior"}),
+      set("BuffersNotAnArray", "/accessors", 7, {"accessors is 7; allowed: an array"}),
+      set("AccessorNotAnObject", "/accessors/0", 7, {"accessors[0] is 7; allowed: an object"}),
+      set("NegativeOffset", "/bufferViews/0/byteOffset", -4,
+          {"bufferViews[0]: byteOffset is -4; allowed: an integer from 0"}),
+      set("FractionalOffset", "/bufferViews/0/byteOffset", 0.5,
+          {"bufferViews[0]: byteOffset is 0.5"}),
+      set("OffsetAsString", "/accessors/0/byteOffset", "0", {"accessors[0]: byteOffset is \"0\""}),
+      set("ViewOutsideBuffer", "/bufferViews/1/byteLength", 1000, {"bufferViews[1]", "buffers[0]"}),
+      set("ViewOffsetWraps", "/bufferViews/0/byteOffset", 4294967295,
+          {"bufferViews[0]", "buffers[0]"}),
+      set("ViewWithoutBuffer", "/bufferViews/0/buffer", 3,
+          {"bufferViews[0]: buffer is 3; allowed: an index below 1 (buffers)"}),
+      set("BadStride", "/bufferViews/0/byteStride", 6, {"bufferViews[0]: byteStride is 6"}),
+      set("StrideBelowElement", "/bufferViews/0/byteStride", 8, {"accessors[0]", "byteStride 8"}),
+      set("AccessorOutsideView", "/accessors/0/count", 4,
+          {"accessors[0]: 4 elements end at byte 48 of bufferViews[0], which has 36"}),
+      set("AccessorOneByteOutside", "/accessors/0/byteOffset", 1,
+          {"accessors[0]: 3 elements end at byte 37 of bufferViews[0], which has 36"}),
+      set("ViewOneByteOutside", "/bufferViews/1/byteLength", 13,
+          {"bufferViews[1]: bytes 36 to 49 are outside of buffers[0], which has 48"}),
+      set("CountTwoToThe32", "/accessors/0/count", 4294967296,
+          {"accessors[0]: count is 4294967296"}),
+      set("CountNearlyTwoToThe32", "/accessors/0/count", 4294967295, {"accessors[0]"}),
+      set("CountMinusOne", "/accessors/0/count", -1, {"accessors[0]: count is -1"}),
+      set("CountZero", "/accessors/0/count", 0, {"accessors[0]: count is 0"}),
+      set("ComponentDouble", "/accessors/0/componentType", 5130,
+          {"accessors[0]: componentType is 5130"}),
+      set("ComponentInt", "/accessors/0/componentType", 5124,
+          {"accessors[0]: componentType is 5124"}),
+      set("TypeUnknown", "/accessors/0/type", "VEC9", {"accessors[0]: type is \"VEC9\""}),
+      set("NoBufferView", "/accessors/0", {{"componentType", 5126}, {"count", 3}, {"type", "VEC3"}},
+          {"accessors[0]", "no bufferView"}),
+      set("Sparse", "/accessors/0/sparse",
+          {{"count", 1},
+           {"indices", {{"bufferView", 1}, {"componentType", 5125}}},
+           {"values", {{"bufferView", 0}}}},
+          {"accessors[0]", "sparse"}),
+      set("PositionsAsShorts", "/accessors/0/componentType", 5123,
+          {"accessors[0], used as POSITION of meshes[0].primitives[0]"}),
+      set("IndicesAsFloats", "/accessors/1/componentType", 5126, {"accessors[1], used as indices"}),
+      set("NoPrimitives", "/meshes/0/primitives", Json::array(), {"meshes[0]: primitives"}),
+      set("AttributeOutOfRange", p + "/attributes/POSITION", 99,
+          {"meshes[0].primitives[0].attributes: POSITION is 99; allowed: an index below 2"}),
+      set("ModeSeven", p + "/mode", 7, {"meshes[0].primitives[0]: mode is 7"}),
+      set("MaterialOutOfRange", p + "/material", 5, {"meshes[0].primitives[0]: material is 5"}),
+      set("NormalsOfAnotherCount", p + "/attributes/NORMAL", 1, {"accessors[1], used as NORMAL"}),
+      set("MeshOutOfRange", "/nodes/0/mesh", 1, {"nodes[0] \"thing\": mesh is 1"}),
+      set("NegativeMesh", "/nodes/0/mesh", -1, {"nodes[0] \"thing\": mesh is -1"}),
+      set("SceneOutOfRange", "/scene", 1, {"scene is 1; allowed: an index below 1 (scenes)"}),
+      set("SceneNodeTwice", "/scenes/0/nodes", {0, 0},
+          {"scenes[0]: lists nodes[0] \"thing\" twice"}),
+      set("OwnChild", "/nodes/0/children", {0}, {"nodes[0] \"thing\"", "its own ancestor"}),
+      set("ChildOutOfRange", "/nodes/0/children", {17}, {"nodes[0] \"thing\": children[0] is 17"}),
+      set("BadRotation", "/nodes/0/rotation", {0, 0, 0, 0},
+          {"nodes[0] \"thing\": rotation has length"}),
+      set("ShortMatrix", "/nodes/0/matrix", {1, 2, 3},
+          {"nodes[0] \"thing\": matrix", "16 numbers"}),
+      set("ProjectiveMatrix", "/nodes/0/matrix", {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
+          {"nodes[0] \"thing\"", "fourth row"}),
+      set("SingularScale", "/nodes/0/scale", {1, 0, 1}, {"nodes[0] \"thing\"", "singular"}),
+      set("SingularMatrix", "/nodes/0/matrix", {1, 2, 3, 0, 2, 4, 6, 0, 0, 0, 1, 0, 0, 0, 0, 1},
+          {"nodes[0] \"thing\"", "singular"}),
+      set("OverflowingScale", "/nodes/0/scale", {1e300, 1e300, 1e300},
+          {"nodes[0] \"thing\"", "singular or not finite"}),
+      set("FarAway", "/nodes/0/translation", {0, 1e16, 0},
+          {"nodes[0] \"thing\"", "vertex 0", "1e15"}),
+      set("PointsOnly", p + "/mode", 0, {"the scene has no triangles"}),
+      set("NoNodes", "/scenes/0/nodes", Json::array(), {"the scene has no triangles"}),
+  };
+}
+
+std::vector<HostileCase> value_cases() {
+  const std::string l = light;
+  return {
+      set("YfovZero", "/cameras/0/perspective/yfov", 0, {"cameras[0].perspective: yfov is 0"}),
+      set("YfovPi", "/cameras/0/perspective/yfov", 3.15, {"cameras[0].perspective: yfov is 3.15"}),
+      set("CameraType", "/cameras/0/type", "fisheye", {"cameras[0] \"eye\": type is \"fisheye\""}),
+      set("LightType", l + "/type", "area", {"lights[0] \"lamp\": type is \"area\""}),
+      set("LightIntensity", l + "/intensity", -1, {"lights[0] \"lamp\": intensity is -1"}),
+      set("LightIntensityHuge", l + "/intensity", 1e39, {"lights[0] \"lamp\": intensity is 1e+39"}),
+      set("LightColor", l + "/color", {1, 1}, {"lights[0] \"lamp\": color", "3 numbers"}),
+      set("ConesReversed", l + "/spot/innerConeAngle", 1, {"lights[0].spot", "innerConeAngle"}),
+      set("ConeTooWide", l + "/spot/outerConeAngle", 1.6,
+          {"lights[0].spot: outerConeAngle is 1.6"}),
+      set("LightIndex", "/nodes/2/extensions/KHR_lights_punctual/light", 1,
+          {"nodes[2].extensions.KHR_lights_punctual: light is 1"}),
+      set("ExtensionsNotAnObject", "/nodes/2/extensions", 5, {"nodes[2].extensions is 5"}),
+      set("BaseColor", "/materials/0/pbrMetallicRoughness/baseColorFactor", {1, 1, 1.5, 1},
+          {"materials[0].pbrMetallicRoughness: baseColorFactor[2] is 1.5"}),
+      set("BaseColorNull", "/materials/0/pbrMetallicRoughness/baseColorFactor", {1, 1, nullptr, 1},
+          {"baseColorFactor[2] is null"}),
+      set("Roughness", "/materials/0/pbrMetallicRoughness/roughnessFactor", -0.1,
+          {"materials[0].pbrMetallicRoughness: roughnessFactor is -0.1", "from 0 to 1"}),
+      set("EmissiveFactor", "/materials/0/emissiveFactor", "white",
+          {"materials[0] \"paint\": emissiveFactor is \"white\""}),
+      set("EmissiveStrengthString",
+          "/materials/0/extensions/KHR_materials_emissive_strength/emissiveStrength", "5",
+          {"materials[0].extensions.KHR_materials_emissive_strength: emissiveStrength is \"5\""}),
+      set("Ior", "/materials/0/extensions/KHR_materials_ior/ior", 0.5,
+          {"materials[0].extensions.KHR_materials_ior: ior is 0.5; allowed: 0"}),
+      set("Specular", "/materials/0/extensions/KHR_materials_specular/specularFactor", 2,
+          {"KHR_materials_specular: specularFactor is 2"}),
+      set("Transmission", "/materials/0/extensions/KHR_materials_transmission/transmissionFactor",
+          true, {"KHR_materials_transmission: transmissionFactor is true"}),
+      set("AlphaMode", "/materials/0/alphaMode", "HASH",
+          {"materials[0] \"paint\": alphaMode is \"HASH\""}),
+      set("DoubleSided", "/materials/0/doubleSided", 1,
+          {"materials[0] \"paint\": doubleSided is 1"}),
+      set("TextureOutOfRange", "/materials/0/emissiveTexture/index", 0,
+          {"materials[0].emissiveTexture: index is 0; allowed: an index below 0 (textures)"}),
+  };
+}
+
+std::vector<HostileCase> graph_cases() {
+  return {
+      {"Cycle",
+       [](GlbBuilder& b) {
+         b.json["nodes"][0]["children"] = {3};
+         b.json["nodes"].push_back({{"name", "inner"}, {"children", {0}}});
+       },
+       {"its own ancestor"}},
+      {"CycleOutsideOfTheScene",
+       [](GlbBuilder& b) {
+         b.json["nodes"].push_back({{"name", "x"}, {"children", {4}}});
+         b.json["nodes"].push_back({{"name", "y"}, {"children", {3}}});
+       },
+       {"nodes[3] \"x\"", "its own ancestor"}},
+      {"TwoParents",
+       [](GlbBuilder& b) {
+         b.json["nodes"].push_back({{"name", "child"}});
+         b.json["nodes"][0]["children"] = {3};
+         b.json["nodes"][1]["children"] = {3};
+       },
+       {"nodes[3] \"child\": has two parents", "nodes[0] \"thing\"", "nodes[1]"}},
+      {"SceneListsAChild",
+       [](GlbBuilder& b) { b.json["nodes"][0]["children"] = {1}; },
+       {"scenes[0]: lists nodes[1], which is a child of nodes[0] \"thing\""}},
+      {"TooDeep",
+       [](GlbBuilder& b) {
+         for (int i = 0; i < 300; ++i) {
+           b.json["nodes"].push_back({{"children", {i + 4}}});
+         }
+         b.json["nodes"].push_back({{"name", "bottom"}});
+         b.json["scenes"][0]["nodes"].push_back(3);
+       },
+       {"more than 256 levels deep"}},
+      {"SingularAncestor",
+       [](GlbBuilder& b) {
+         b.json["nodes"].push_back({{"name", "flat"}, {"scale", {0, 0, 0}}, {"children", {0}}});
+         b.json["scenes"][0]["nodes"] = {3};
+       },
+       {"nodes[3] \"flat\"", "singular", "nodes[0] \"thing\""}},
+      {"TooManyTriangles",
+       [](GlbBuilder& b) {
+         // 4,000 nodes share one fan of 40,000 triangles: small on disk, 160 million in memory.
+         const std::vector<V3f> points(40002, V3f(1, 2, 3));
+         b.json["meshes"][0]["primitives"][0] = {
+             {"mode", 6}, {"attributes", {{"POSITION", b.add_accessor(points, 5126, "VEC3")}}}};
+         for (int i = 0; i < 4000; ++i) b.add_node({{"mesh", 0}});
+       },
+       {"triangles in all"}},
+  };
+}
+
+class HostileJson : public testing::TestWithParam<HostileCase> {};
+
+TEST_P(HostileJson, IsRefusedWithItsPlace) {
+  const TemporaryFolder folder;
+  GlbBuilder builder = good_scene();
+  GetParam().spoil(builder);
+  const auto file = folder.write("scene.glb", builder.glb());
+  try {
+    load_gltf(file);
+    FAIL() << "was accepted";
+  } catch (const SceneError& e) {
+    for (const auto& part : GetParam().message) {
+      EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
+    }
+  }
+}
+
+const auto case_name = [](const auto& c) { return c.param.name; };
+INSTANTIATE_TEST_SUITE_P(Structure, HostileJson, testing::ValuesIn(structure_cases()), case_name);
+INSTANTIATE_TEST_SUITE_P(Values, HostileJson, testing::ValuesIn(value_cases()), case_name);
+INSTANTIATE_TEST_SUITE_P(Graph, HostileJson, testing::ValuesIn(graph_cases()), case_name);
+
+TEST(HostileJsonBase, TheUnspoiltSceneLoads) {
+  const TemporaryFolder folder;
+  const SceneData scene = load_gltf(folder.write("scene.glb", good_scene().glb()));
+  EXPECT_EQ(scene.triangle_count(), 1U);
+  EXPECT_EQ(scene.cameras.size(), 1U);
+  EXPECT_EQ(scene.lights.size(), 1U);
+  EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(HostileJsonBase, ASingularNodeThatCarriesNothingIsFine) {
+  const TemporaryFolder folder;
+  GlbBuilder builder = good_scene();
+  builder.add_node({{"name", "empty"}, {"scale", {0, 0, 0}}});
+  EXPECT_EQ(load_gltf(folder.write("scene.glb", builder.glb())).triangle_count(), 1U);
+}
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,169 @@
+// Drawing a few of all virtual lights: which, how often, and what the sums of those come to.
+
+#include "renderer/many_lights/light_draw.h"
+
+#include <map>
+
+#include "renderer/visibility/plain_visibility.h"
+#include "tests/renderer/many_lights/lit_scene.h"
+#include "tests/statistics.h"
+
+namespace lacuna {
+namespace {
+
+using statistics::Moments;
+using test::gathered;
+using test::LitScene;
+
+using Lights = std::map<std::size_t, std::uint64_t>;  // by block
+
+/// All that may be drawn for a point.
+Lights candidates(const LitScene& lit, const ShadingPoint& point, bool cull,
+                  std::size_t most_stretches = 1024) {
+  const LightDraw draw(lit.terms(), {.lights = 1 << 20, .cull = cull}, most_stretches);
+  Lights all;
+  for (const auto& d : draw.draw(std::span(&point, 1), lit.context(1))) {
+    EXPECT_EQ(d.weight, 1.0F);
+    EXPECT_EQ(all.count(d.block), 0U);
+    all[d.block] = d.lights;
+  }
+  return all;
+}
+
+std::size_t count(const Lights& lights) {
+  std::size_t n = 0;
+  for (const auto& [block, bits] : lights) n += static_cast<std::size_t>(std::popcount(bits));
+  return n;
+}
+
+TEST(LightDraw, LeavesOutOnlyWhatIsDark) {
+  for (const char* scene : {"ajar", "atrium", "cornell"}) {
+    const LitScene lit({scene}, 3000, 2);
+    std::size_t fine_left = 0, coarse_left = 0, all = 0;
+    lit.with_points(500, [&](std::span<const ShadingPoint> points) {
+      Terms terms;
+      for (const ShadingPoint& p : points) {
+        const Lights fine = candidates(lit, p, true), coarse = candidates(lit, p, true, 20),
+                     whole = candidates(lit, p, false);
+        std::size_t lights = 0;
+        for (std::size_t b = 0; b < lit.lights().blocks(p.edges); ++b) {
+          lights += static_cast<std::size_t>(lit.lights().count(b));
+          lit.terms().evaluate(p, b, terms);
+          for (const Lights* left : {&fine, &coarse}) {
+            const auto found = left->find(b);
+            EXPECT_EQ(terms.lit & ~(found == left->end() ? 0 : found->second), 0U);
+          }
+        }
+        EXPECT_EQ(count(whole), lights);
+        fine_left += count(fine);
+        coarse_left += count(coarse);
+        all += lights;
+      }
+    });
+    EXPECT_LT(fine_left, coarse_left) << scene;
+    EXPECT_LT(coarse_left, all) << scene;
+  }
+}
+
+// Each candidate is drawn with one probability, never twice, and counts by its inverse.
+TEST(LightDraw, DrawsAllAlike) {
+  const LitScene lit({"ajar"}, 60, 2);
+  constexpr int rounds = 4000;
+  lit.with_points(500, [&](std::span<const ShadingPoint> points) {
+    const ShadingPoint& point = points[0];
+    const Lights all = candidates(lit, point, true);
+    const auto n = static_cast<double>(count(all));
+    ASSERT_GT(n, 40);
+    const LightDraw draw(lit.terms(), {.lights = 16});
+    std::map<std::pair<std::size_t, int>, int> times;
+    for (int r = 0; r < rounds; ++r) {
+      std::size_t drawn = 0;
+      for (const auto& d :
+           draw.draw(std::span(&point, 1), lit.context(static_cast<std::uint64_t>(r)))) {
+        drawn += static_cast<std::size_t>(std::popcount(d.lights));
+        EXPECT_NEAR(d.weight, n / 16, 1e-5 * n);
+        EXPECT_EQ(d.lights & ~all.at(d.block), 0U);
+        for_each_bit(d.lights, [&](int i) { ++times[{d.block, i}]; });
+      }
+      ASSERT_EQ(drawn, 16U);
+    }
+    EXPECT_EQ(times.size(), count(all));
+    const double p = 16 / n;
+    const double sd = std::sqrt(rounds * p * (1 - p));
+    for (const auto& [light, k] : times) EXPECT_NEAR(k, rounds * p, 5.5 * sd);
+  });
+}
+
+TEST(LightDraw, SumsHaveTheMeanOfAll) {
+  for (const char* scene : {"ajar", "atrium", "coated_points"}) {
+    const LitScene lit({scene}, 200, 2);
+    lit.with_points(400, [&](std::span<const ShadingPoint> points) {
+      const ExactVisibility exact{{}};
+      const auto expected = gathered(lit, lit.context(1), exact, points);
+      for (const bool cull : {true, false}) {
+        const LightDraw draw(lit.terms(), {.lights = 20, .cull = cull});
+        std::vector<Moments> means(points.size());
+        for (std::uint64_t r = 0; r < 600; ++r) {
+          const auto values = gathered(lit, lit.context(r + 2), exact, points, nullptr, &draw);
+          for (std::size_t i = 0; i < values.size(); ++i) means[i].add(values[i]);
+        }
+        const double level = statistics::sidak(1e-5, 6 * points.size());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+          if (std::abs(means[i].mean() - expected[i]) <= 1e-6 * expected[i]) continue;
+          EXPECT_GT(statistics::t_test(means[i], expected[i]), level)
+              << scene << ", point " << i << ": " << means[i].mean() << ", not " << expected[i];
+        }
+      }
+    });
+  }
+}
+
+// With a cutoff those remain that lie within it, and no others.
+TEST(LightDraw, LeavesOutWhatIsBeyondTheCutoff) {
+  const LitScene lit({"ajar"}, 2000, 2);
+  std::size_t beyond = 0;
+  lit.with_points(500, [&](std::span<const ShadingPoint> points) {
+    for (const ShadingPoint& p : points) {
+      const V3f x = p.vertex->surface.x;
+      const float reach = 0.7F;
+      const LightDraw draw(lit.terms(), {.lights = 1 << 20, .cull = false, .cutoff = reach});
+      Lights drawn;
+      for (const auto& d : draw.draw(std::span(&p, 1), lit.context(1))) drawn[d.block] = d.lights;
+      for (const auto& [block, bits] : candidates(lit, p, false)) {
+        for_each_bit(bits, [&](int i) {
+          const bool within = (lit.lights().place(block, i).x - x).length2() <= reach * reach;
+          EXPECT_EQ((drawn[block] >> i & 1) != 0, within);
+          beyond += !within;
+        });
+      }
+    }
+  });
+  EXPECT_GT(beyond, 1000U);
+}
+
+TEST(LightDraw, OfMoreThanThereAreIsAll) {
+  const LitScene lit({"ajar"}, 100, 2);
+  lit.with_points(400, [&](std::span<const ShadingPoint> points) {
+    const ExactVisibility exact{{}};
+    const LightDraw draw(lit.terms(), {.lights = 1 << 20});
+    const auto all = gathered(lit, lit.context(1), exact, points);
+    const auto drawn = gathered(lit, lit.context(1), exact, points, nullptr, &draw);
+    for (std::size_t i = 0; i < all.size(); ++i) EXPECT_NEAR(drawn[i], all[i], 1e-12 * all[i]);
+    EXPECT_GT(draw.culled(), 0);
+    EXPECT_LT(draw.culled(), 1);
+  });
+}
+
+TEST(LightDraw, OfNoLightsIsNothing) {
+  const LitScene lit({"ajar"}, 1, 2, false);
+  lit.with_points(400, [&](std::span<const ShadingPoint> points) {
+    const VirtualLights none(1, {1, false, 0.1F});
+    const LightTerms terms(none, 2);
+    const LightDraw draw(terms, {});
+    EXPECT_TRUE(draw.draw(points, lit.context(1)).empty());
+    EXPECT_EQ(draw.culled(), 0);
+  });
+}
+
+}  // namespace
+}  // namespace lacuna

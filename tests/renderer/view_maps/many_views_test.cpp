@@ -1,0 +1,389 @@
+// Rendering a scene's octree into many views at once, against each view by itself and against brute
+// force.
+
+#include "renderer/view_maps/many_views.h"
+
+#include <gtest/gtest.h>
+
+#include "renderer/core/rng.h"
+#include "renderer/core/sampling.h"
+
+namespace lacuna {
+namespace {
+
+constexpr float nothing = std::numeric_limits<float>::infinity();
+
+V3f random_direction(Rng& rng) {
+  return V3f(rng.next() - 0.5F, rng.next() - 0.5F, rng.next() - 0.5F).normalized();
+}
+
+/// An octree of `n` random leaves in the unit cube.
+Octree random_tree(int n, int levels, std::uint32_t seed) {
+  Rng rng(seed, 0, 0, Rng::Purpose::test);
+  std::vector<std::uint64_t> codes;
+  for (int i = 0; i < n; ++i) codes.push_back(rng.next_u32() % (std::uint64_t{1} << (3 * levels)));
+  std::sort(codes.begin(), codes.end());
+  codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
+  return build_octree(codes, levels, V3d(0.0), 1);
+}
+
+enum class Facing { everywhere, anywhere, alike };
+
+std::vector<View> random_views(int n, Facing facing, std::uint32_t seed) {
+  Rng rng(seed, 0, 0, Rng::Purpose::test);
+  std::vector<View> views;
+  const V3f common = random_direction(rng);
+  for (int i = 0; i < n; ++i) {
+    const V3f x(rng.next(), rng.next(), rng.next());
+    const V3f own = random_direction(rng);
+    views.push_back({x, facing == Facing::everywhere ? V3f(0.0F)
+                        : facing == Facing::anywhere ? own
+                                                     : (common + 0.3F * own).normalized()});
+  }
+  return views;
+}
+
+using Maps = std::vector<std::vector<float>>;
+
+Maps maps_of(const Octree& scene, const ViewTree& views, const ManyViewsSettings& settings,
+             int threads = 2, ManyViewsCounts* counts = nullptr) {
+  Maps maps(views.leaf_count());
+  const auto told = render_views(scene, views, settings, ThreadPool(threads),
+                                 [&](std::uint32_t leaf, std::span<const float> depths) {
+                                   maps[leaf].assign(depths.begin(), depths.end());
+                                 });
+  if (counts != nullptr) *counts = told;
+  for (const auto& m : maps) {
+    EXPECT_EQ(m.size(), std::size_t{2} * static_cast<std::size_t>(settings.map_size) *
+                            static_cast<std::size_t>(settings.map_size));
+  }
+  return maps;
+}
+
+TEST(Paraboloid, HasEveryDirectionOnce) {
+  const Paraboloid map{16};
+  Rng rng(1, 0, 0, Rng::Purpose::test);
+  for (int n = 0; n < 20000; ++n) {
+    const V3f d = random_direction(rng) * (0.1F + 5 * rng.next());
+    const int texel = map.texel(d);
+    ASSERT_TRUE(texel >= 0 && texel < map.texels());
+    // Not further from the texel's middle than half its diagonal, by the map's own measure.
+    const V3f w = map.direction(texel);
+    const float angle = std::acos(std::min(1.0F, w.dot(d.normalized())));
+    EXPECT_LT(angle * map.stretch(std::abs(w.x)), std::sqrt(0.5F) * 1.1F) << d;
+  }
+  for (int t = 0; t < map.texels(); ++t) {
+    EXPECT_NEAR(map.direction(t).length(), 1, 1e-6);
+    const auto place = map.place(map.direction(t));
+    if (place.half == t / 256) {
+      EXPECT_EQ(map.texel(map.direction(t)), t);
+    }
+  }
+}
+
+TEST(Paraboloid, EightAtATimeAreAsOne) {
+  for (const int size : {8, 16, 21}) {
+    const Paraboloid map{size};
+    Rng rng(2, 0, 0, Rng::Purpose::test);
+    for (int n = 0; n < 500; ++n) {
+      alignas(32) std::array<float, 8> x, y, z;
+      alignas(32) std::array<int, 8> texels;
+      for (std::size_t i = 0; i < 8; ++i) {
+        const V3f d = random_direction(rng) * (0.1F + 5 * rng.next());
+        x[i] = d.x, y[i] = d.y, z[i] = d.z;
+      }
+      const Float8x3 d{Float8::load(x.data()), Float8::load(y.data()), Float8::load(z.data())};
+      map.texel(map.places(d, sqrt(length2(d)))).store(texels.data());
+      for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(texels[i], map.texel(V3f(x[i], y[i], z[i])));
+    }
+  }
+}
+
+TEST(Paraboloid, KnowsWhatCoversTheMiddleOfATexel) {
+  const Paraboloid map{16};
+  Rng rng(5, 0, 0, Rng::Purpose::test);
+  int covered = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const V3f d = random_direction(rng) * (1 + 3 * rng.next());
+    const float radius = 0.1F * rng.next();
+    const V3f middle = map.direction(map.texel(d));
+    const float angle = std::acos(std::min(1.0F, middle.dot(d) / d.length()));
+    const float sphere = radius / d.length();  // small
+    const Float8x3 eight{d.x, d.y, d.z};
+    const auto places = map.places(eight, Float8(d.length()));
+    const bool said = bits_of(map.covers_middle(places, radius)) == 0xff;
+    covered += said;
+    // The map is conformal, but for its stretch, which changes a little within a texel.
+    if (std::abs(angle / sphere - 1) > 0.1F) {
+      EXPECT_EQ(said, angle < sphere) << d << " " << radius;
+    }
+  }
+  EXPECT_GT(covered, 1000);
+  EXPECT_LT(covered, 18000);
+}
+
+// A texel is asked for if its square, and so not only its middle, meets the disk.
+TEST(Paraboloid, LeavesOutTheCornersOfTheSquares) {
+  for (const int size : {8, 16, 21}) {
+    const Paraboloid map{size};
+    std::vector<bool> asked(static_cast<std::size_t>(map.texels()));
+    Rng rng(3, 0, 0, Rng::Purpose::test);
+    for (int n = 0; n < 2000000; ++n)
+      asked[static_cast<std::size_t>(map.texel(random_direction(rng)))] = true;
+    int unmet = 0;  // a square that meets the disk in a tip only
+    for (int t = 0; t < map.texels(); ++t) {
+      EXPECT_LE(asked[static_cast<std::size_t>(t)], map.asked_for(t)) << t;
+      unmet += map.asked_for(t) && !asked[static_cast<std::size_t>(t)];
+    }
+    EXPECT_LE(unmet, 16) << "of " << map.texels();
+  }
+}
+
+// The texels of a cap are those whose middles lie in it, each once.
+TEST(Paraboloid, FillsCaps) {
+  const Paraboloid map{16};
+  Rng rng(4, 0, 0, Rng::Purpose::test);
+  for (int n = 0; n < 3000; ++n) {
+    const V3f w = random_direction(rng);
+    const float angle = rng.next() * pi / 2;
+    const float cosine = std::cos(angle);
+    std::vector<int> times(static_cast<std::size_t>(map.texels()), 0);
+    map.for_each_run(w, cosine, std::sin(angle), [&](int first, int count) {
+      for (int t = first; t < first + count; ++t) ++times[static_cast<std::size_t>(t)];
+    });
+    for (int t = 0; t < map.texels(); ++t) {
+      const float off = map.direction(t).dot(w) - cosine;
+      const bool corner = map.place(map.direction(t)).half != t / 256;
+      if (std::abs(off) < 1e-4F || corner) continue;
+      EXPECT_EQ(times[static_cast<std::size_t>(t)], off > 0 ? 1 : 0) << t << " " << off;
+    }
+  }
+}
+
+TEST(ViewTree, SpheresAndConesHoldAllViewsBelow) {
+  for (const Facing facing : {Facing::everywhere, Facing::anywhere, Facing::alike}) {
+    const auto views = random_views(300, facing, 4);
+    const ViewTree tree(views, 4, V3d(0.0), 1);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      // The leaf, and all above it.
+      std::uint32_t node = tree.first_leaf() + tree.leaf_of(i);
+      for (;;) {
+        const ViewTree::Node& v = tree.node(node);
+        EXPECT_LE((views[i].x - v.centre).length(), v.radius + 1e-6F);
+        if (views[i].n == V3f(0.0F)) {
+          EXPECT_EQ(v.cosine, -1);
+        } else if (v.cosine > -1) {
+          const float own = std::acos(std::clamp(v.n.dot(views[i].n), -1.0F, 1.0F));
+          EXPECT_GE(std::acos(v.cosine), own + pi / 2);
+        }
+        if (node == 0) break;
+        std::uint32_t parent = 0;
+        while (node < tree.tree().nodes[parent].first_child ||
+               node >= tree.tree().nodes[parent].first_child + tree.tree().nodes[parent].children) {
+          ++parent;
+        }
+        node = parent;
+      }
+    }
+  }
+}
+
+// What a view may see is never culled, whatever node it is culled for.
+TEST(ManyViews, CullOnlyWhatNoViewSees) {
+  for (const Facing facing : {Facing::anywhere, Facing::alike, Facing::everywhere}) {
+    const Octree scene = random_tree(400, 4, 11);
+    const auto views = random_views(60, facing, 12);
+    const ViewTree tree(views, 4, V3d(0.0), 1);
+    ManyViewsCounts counts;
+    const Maps culled = maps_of(scene, tree, {.cull = true}, 2, &counts);
+    const Maps all = maps_of(scene, tree, {.cull = false});
+    const Paraboloid map{16};
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      const std::uint32_t leaf = tree.leaf_of(i);
+      for (int t = 0; t < map.texels(); ++t) {
+        if (map.direction(t).dot(views[i].n) < 0) continue;
+        EXPECT_EQ(culled[leaf][static_cast<std::size_t>(t)],
+                  all[leaf][static_cast<std::size_t>(t)]);
+      }
+    }
+    EXPECT_EQ(counts.culled > 0, facing != Facing::everywhere);
+  }
+}
+
+// Each view by itself: the nearest leaf of those whose centre falls into a texel, within what the
+// traversal may be off: a texel, and a node that shows less than one.
+TEST(ManyViews, SeeTheNearestLeaf) {
+  const Octree scene = random_tree(300, 5, 21);
+  const auto views = random_views(40, Facing::everywhere, 22);
+  const ViewTree tree(views, 5, V3d(0.0), 1);
+  const Paraboloid map{16};
+  for (const bool share : {false, true}) {
+    const Maps maps = maps_of(scene, tree, {.share = share});
+    std::size_t compared = 0, wrong = 0;
+    for (std::uint32_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
+      const V3f from = tree.node(tree.first_leaf() + leaf).centre;
+      for (const Octree::Node& s : scene.leaves()) {
+        const V3f d = s.centre - from;
+        // Its own texel shows it or something as near, up to the size of its largest stand-in.
+        const float shown = maps[leaf][static_cast<std::size_t>(map.texel(d))];
+        ++compared;
+        wrong += !(shown <= d.length() * 1.15F + 2 * scene.radius(5));
+      }
+    }
+    EXPECT_GT(compared, 9000U);
+    // Across a texel's border a stand-in, or a shared place, may fall into the next texel.
+    EXPECT_LT(double(wrong), (share ? 0.12 : 0.08) * double(compared)) << share;
+  }
+}
+
+TEST(ManyViews, SharedOrNotAreAlike) {
+  const Octree scene = random_tree(3000, 6, 31);
+  // Views near one another, which share much.
+  auto views = random_views(400, Facing::alike, 32);
+  for (View& v : views) v.x = V3f(0.4F) + v.x * 0.1F;
+  const ViewTree tree(views, 7, V3d(0.0), 1);
+  ManyViewsCounts together, apart;
+  const Maps a = maps_of(scene, tree, {.share = true}, 2, &together);
+  const Maps b = maps_of(scene, tree, {.share = false}, 2, &apart);
+  std::size_t texels = 0, different = 0;
+  for (std::size_t leaf = 0; leaf < a.size(); ++leaf) {
+    for (std::size_t t = 0; t < a[leaf].size(); ++t) {
+      const float x = a[leaf][t], y = b[leaf][t];
+      if (x == nothing && y == nothing) continue;
+      ++texels;
+      different += !(std::abs(x - y) <= 0.05F * y);
+    }
+  }
+  EXPECT_LT(double(different), 0.3 * double(texels)) << different << " of " << texels;
+  EXPECT_LT(together.splats, apart.splats);
+  EXPECT_GT(double(together.sharing) / double(together.splats), 1.5);
+  EXPECT_EQ(apart.sharing, apart.splats);
+  EXPECT_LT(together.queue_peak(), apart.queue_peak());
+}
+
+// What is rendered for many views at once lies at each one's own distance (3.2.5).
+TEST(ManyViews, HandDownDistancesFromEachView) {
+  const std::vector<std::uint64_t> far_corner{63};
+  const Octree scene = build_octree(far_corner, 2, V3d(0.0), 1);
+  auto views = random_views(50, Facing::everywhere, 45);
+  for (View& v : views) v.x = V3f(0.1F) + 0.15F * v.x;
+  const ViewTree tree(views, 11, V3d(0.0), 1);
+  ManyViewsCounts counts;
+  const Maps maps = maps_of(scene, tree, {.map_size = 8, .node_texels = 2}, 2, &counts);
+  ASSERT_EQ(counts.splats, 1U);
+  ASSERT_EQ(counts.sharing, tree.leaf_count());
+  double off = 0, steps = 0;  // squares
+  for (std::uint32_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
+    const V3f x = tree.node(tree.first_leaf() + leaf).centre;
+    const float shown = *std::min_element(maps[leaf].begin(), maps[leaf].end());
+    off += std::pow(shown - (scene.leaves()[0].centre - x).length(), 2);
+    steps += (x - tree.node(0).centre).length2();
+  }
+  // A third would be that of the distance from their middle; what remains is a texel's width.
+  EXPECT_LT(off, 0.1 * steps);
+}
+
+TEST(ManyViews, AreTheSameForAnyNumberOfThreads) {
+  const Octree scene = random_tree(500, 5, 41);
+  const ViewTree tree(random_views(700, Facing::anywhere, 42), 5, V3d(0.0), 1);
+  for (const bool share : {true, false}) {
+    ManyViewsCounts one, two;
+    EXPECT_EQ(maps_of(scene, tree, {.share = share}, 1, &one),
+              maps_of(scene, tree, {.share = share}, 2, &two));
+    EXPECT_EQ(one.pairs, two.pairs);
+    EXPECT_EQ(one.generations, two.generations);
+  }
+}
+
+// The pairs of a breadth-first traversal, a generation after another.
+TEST(ManyViews, CountWhatAQueueWouldHold) {
+  const Octree scene = random_tree(50, 3, 51);
+  const ViewTree tree(random_views(30, Facing::anywhere, 52), 3, V3d(0.0), 1);
+  ManyViewsCounts counts;
+  maps_of(scene, tree, {}, 1, &counts);
+  std::uint64_t sum = 0;
+  for (const std::uint64_t n : counts.generations) sum += n;
+  EXPECT_EQ(sum, counts.pairs);
+  EXPECT_EQ(counts.generations[0], 1U);
+}
+
+// The queue of the paper: the same pairs, and so the same maps bit by bit.
+TEST(ManyViews, AreTheSameBreadthFirst) {
+  const Octree scene = random_tree(2000, 6, 71);
+  const ViewTree tree(random_views(500, Facing::anywhere, 72), 6, V3d(0.0), 1);
+  for (const bool share : {true, false}) {
+    ManyViewsCounts deep, wide, wide_alone;
+    const ManyViewsSettings settings{.cover = share ? 0.8F : 0, .share = share};
+    ManyViewsSettings by_queue = settings;
+    by_queue.breadth_first = true;
+    const Maps expected = maps_of(scene, tree, settings, 2, &deep);
+    EXPECT_EQ(maps_of(scene, tree, by_queue, 2, &wide), expected);
+    EXPECT_EQ(maps_of(scene, tree, by_queue, 1, &wide_alone), expected);
+    EXPECT_EQ(wide.generations, deep.generations);
+    EXPECT_EQ(wide.sharing, deep.sharing);
+    EXPECT_EQ(wide.queue_bytes, wide_alone.queue_bytes);
+    // A generation and the next; up to eight pairs in twelve bytes.
+    EXPECT_GE(wide.queue_bytes, deep.queue_peak() * 12 / 8);
+    EXPECT_LE(wide.queue_bytes, 2 * deep.queue_peak() * 12);
+    const std::size_t maps = share ? tree.tree().nodes.size() : tree.leaf_count();
+    EXPECT_EQ(wide.unfused_bytes, maps * 512 * sizeof(float));
+    EXPECT_EQ(deep.queue_bytes + deep.unfused_bytes, 0U);
+  }
+}
+
+// No node stands for others: each leaf is in the texel that its middle falls into.
+TEST(ManyViews, WithoutMergingShowEveryLeaf) {
+  const Octree scene = random_tree(300, 5, 21);
+  const ViewTree tree(random_views(40, Facing::everywhere, 22), 5, V3d(0.0), 1);
+  const Paraboloid map{16};
+  ManyViewsCounts counts;
+  const Maps maps = maps_of(scene, tree, {.share = false, .merge = false}, 2, &counts);
+  for (std::uint32_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
+    const V3f from = tree.node(tree.first_leaf() + leaf).centre;
+    for (const Octree::Node& s : scene.leaves()) {
+      const V3f d = s.centre - from;
+      EXPECT_LE(maps[leaf][static_cast<std::size_t>(map.texel(d))], d.length() * (1 + 1e-5F));
+    }
+  }
+  EXPECT_EQ(counts.splats, scene.leaves().size() * tree.leaf_count());
+}
+
+TEST(ManyViews, AtTheirEnds) {
+  const Octree empty = build_octree({}, 4, V3d(0.0), 1);
+  const Octree scene = random_tree(100, 4, 61);
+  const std::vector<View> one{{V3f(0.3F, 0.3F, 0.3F), V3f(0, 0, 1)}};
+  // No scene, no view.
+  for (const auto& m : maps_of(empty, ViewTree(one, 4, V3d(0.0), 1), {})) {
+    EXPECT_TRUE(std::all_of(m.begin(), m.end(), [](float d) { return d == nothing; }));
+  }
+  EXPECT_TRUE(maps_of(scene, ViewTree({}, 4, V3d(0.0), 1), {}).empty());
+  const ManyViewsSettings by_queue{.breadth_first = true};
+  EXPECT_EQ(maps_of(empty, ViewTree(one, 4, V3d(0.0), 1), by_queue),
+            maps_of(empty, ViewTree(one, 4, V3d(0.0), 1), {}));
+  EXPECT_TRUE(maps_of(scene, ViewTree({}, 4, V3d(0.0), 1), by_queue).empty());
+  // One voxel, seen from outside, from within, from its very middle, and from a corner of cells.
+  const std::vector<std::uint64_t> codes{0};
+  const Octree voxel = build_octree(codes, 3, V3d(0.0), 1);
+  for (const V3f& x : {V3f(0.9F), V3f(0.1F, 0.05F, 0.02F), V3f(0.0625F), V3f(0.5F), V3f(0.125F)}) {
+    const std::vector<View> view{{x, V3f(0.0F)}};
+    for (const auto& m : maps_of(voxel, ViewTree(view, 3, V3d(0.0), 1), {})) {
+      for (const float d : m) EXPECT_FALSE(std::isnan(d));
+      EXPECT_TRUE(x == V3f(0.0625F) ||
+                  std::any_of(m.begin(), m.end(), [](float d) { return d < nothing; }));
+    }
+  }
+  // All views at one point.
+  const std::vector<View> same(1000, one[0]);
+  EXPECT_EQ(maps_of(scene, ViewTree(same, 11, V3d(0.0), 1), {}),
+            maps_of(scene, ViewTree(one, 11, V3d(0.0), 1), {}));
+  // Distances over six decades.
+  const Octree deep = random_tree(200, 11, 62);
+  const std::vector<View> near{{V3f(deep.leaves()[0].centre) + V3f(1e-6F, 0, 0), V3f(0.0F)}};
+  for (const auto& m : maps_of(deep, ViewTree(near, 11, V3d(0.0), 1), {})) {
+    EXPECT_LT(*std::min_element(m.begin(), m.end()), 1e-5F);
+    for (const float d : m) EXPECT_FALSE(std::isnan(d));
+  }
+}
+
+}  // namespace
+}  // namespace lacuna
