@@ -20,7 +20,6 @@ enum class ImageFormat { openexr, png, jpeg, radiance_hdr, tiff };
 struct PictureHeader {
   int width = 0, height = 0;                 ///< pixels that are stored
   bool cropped = false;                      ///< a part of a larger picture is stored
-  bool deep = false;                         ///< any number of samples a pixel
   int orientation = 1;                       ///< as in TIFF; 1: top row first, left to right
   std::vector<std::string> channels;         ///< names, e.g. "R", "even.G"
   std::map<std::string, std::string> texts;  ///< its attributes that are text

@@ -61,7 +61,6 @@ PictureHeader header_of(const OIIO::ImageSpec& spec) {
   header.height = spec.height;
   header.cropped = spec.x != spec.full_x || spec.y != spec.full_y ||
                    spec.width != spec.full_width || spec.height != spec.full_height;
-  header.deep = spec.deep;
   header.orientation = spec.get_int_attribute("Orientation", 1);
   header.channels = spec.channelnames;
   for (const OIIO::ParamValue& value : spec.extra_attribs) {
@@ -114,7 +113,7 @@ class OpenPicture final : public PictureFile {
     reader_->geterror();  // that there are no more is no error
   }
 
-  void read_range(std::size_t part, int first, int end, OIIO::TypeDesc type, void* out,
+  void read_range(std::size_t part, int first, int end, const OIIO::TypeDesc& type, void* out,
                   OIIO::stride_t stride) {
     const bool read = reader_->read_image(static_cast<int>(part), 0, first, end, type, out, stride);
     require_clean(*reader_, read);

@@ -60,8 +60,7 @@ TEST(ExrWrite, TheHeaderHoldsWhatItIsToldAndNothingElse) {
   EXPECT_EQ(texts, (std::map<std::string, std::string>{{"Software", "lacuna"},
                                                        {"lacuna:job", "j-1"},
                                                        {"lacuna:seed", "18446744073709551615"},
-                                                       {"lacuna:spec", "{\n}\n"},
-                                                       {"type", "scanlineimage"}}));
+                                                       {"lacuna:spec", "{\n}\n"}}));
   EXPECT_EQ(others, (std::set<std::string>{"channels", "compression", "dataWindow", "displayWindow",
                                            "lineOrder", "pixelAspectRatio", "screenWindowCenter",
                                            "screenWindowWidth"}));
@@ -103,7 +102,7 @@ TEST(PngWrite, CodesComeBackAndEqualPicturesAreEqualFiles) {
   for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = static_cast<std::uint8_t>(i * 7919 >> 4);
   const std::string png = encode_png(40, 30, rgb);
   EXPECT_EQ(png, encode_png(40, 30, rgb));
-  for (const char* varies : {"tIME", "tEXt", "iTXt"}) {
+  for (const char* varies : {"tIME", "DateTime", "OpenImageIO"}) {
     EXPECT_EQ(png.find(varies), std::string::npos) << varies;
   }
   const Rgba8Image back = decode_png_or_jpeg(Bytes(png.begin(), png.end()), "back");
