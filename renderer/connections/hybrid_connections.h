@@ -2,13 +2,14 @@
 
 #include "renderer/connections/importance_cache.h"
 #include "renderer/connections/skeleton_connections.h"
+#include "renderer/path/strategy.h"
 #include "renderer/settings/connections_settings.h"
 
 namespace lacuna {
 
 /// connections: hybrid. Importance caching at the first vertices of an eye's path, where records
 /// are near; the skeleton beyond (Noel 2015, 11.6).
-class HybridConnections {
+class HybridConnections : public StrategyBase {
  public:
   explicit HybridConnections(const HybridSettings& settings)
       : settings_(settings),
@@ -19,7 +20,7 @@ class HybridConnections {
   static constexpr std::array<std::string_view, 7> distributions{
       "cache_full", "cache_unshadowed", "cache_bounded", "cache_uniform",
       "visible",    "unshadowed",       "uniform"};
-  static constexpr bool needs_space = true;
+  static constexpr bool needs_space() { return true; }
 
   void prepare(const PrepareContext& context) { skeleton_.prepare(context); }
   /// The skeleton's, and one for all vertices that use records.

@@ -5,8 +5,8 @@
 #include "renderer/connections/cell_statistics.h"
 #include "renderer/connections/site.h"
 #include "renderer/path/bsdf_guide.h"
-#include "renderer/path/contexts.h"
 #include "renderer/path/record_tree.h"
+#include "renderer/path/strategy.h"
 #include "renderer/settings/connections_settings.h"
 
 namespace lacuna {
@@ -14,7 +14,7 @@ namespace lacuna {
 /// connections: importance_cache. Light paths are resampled by distributions at records, which are
 /// the vertices of a few paths from the eye, made anew in each iteration (Georgiev et al. 2012,
 /// "Importance Caching for Complex Illumination"; on bidirectional path tracing: Noel 2015, 11.5).
-class ImportanceCacheConnections {
+class ImportanceCacheConnections : public StrategyBase {
   static constexpr std::size_t max_neighbours = 64;
 
  public:
@@ -26,9 +26,7 @@ class ImportanceCacheConnections {
   const ResamplingSettings& resampling() const { return settings_; }
   static constexpr std::array<std::string_view, 4> distributions{"full", "unshadowed", "bounded",
                                                                  "uniform"};
-  static constexpr bool needs_space = false;
 
-  static void prepare(const PrepareContext&) {}
   static std::size_t cells() { return 1; }  // records are new in each iteration
   /// Places the records and builds their distributions. Throws std::runtime_error if they would
   /// take more than half of the memory that is free.

@@ -5,21 +5,21 @@
 #include "analysis/skeleton/surface_lookup.h"
 #include "renderer/connections/cell_statistics.h"
 #include "renderer/connections/site.h"
-#include "renderer/path/contexts.h"
+#include "renderer/path/strategy.h"
 #include "renderer/settings/connections_settings.h"
 
 namespace lacuna {
 
 /// connections: skeleton. Light paths are resampled by distributions at the nodes of the filtered
 /// skeleton, which see much of what the eye vertices around them see (Noel 2015, 11.2-11.4).
-class SkeletonConnections {
+class SkeletonConnections : public StrategyBase {
  public:
   explicit SkeletonConnections(const SkeletonSettings& settings) : settings_(settings) {}
 
   const ResamplingSettings& resampling() const { return settings_; }
   static constexpr std::array<std::string_view, 3> distributions{"visible", "unshadowed",
                                                                  "uniform"};
-  static constexpr bool needs_space = true;
+  static constexpr bool needs_space() { return true; }
 
   void prepare(const PrepareContext& context);
   /// The nodes, and one for what belongs to none.

@@ -2,21 +2,19 @@
 
 #include "renderer/connections/cell_statistics.h"
 #include "renderer/connections/site.h"
-#include "renderer/path/contexts.h"
+#include "renderer/path/strategy.h"
 #include "renderer/settings/connections_settings.h"
 
 namespace lacuna {
 
 /// connections: uniform. The control of all resampling: no guidance at all.
-class UniformConnections {
+class UniformConnections : public StrategyBase {
  public:
   explicit UniformConnections(const UniformSettings& settings) : settings_(settings) {}
 
   const ResamplingSettings& resampling() const { return settings_; }
   static constexpr std::array<std::string_view, 1> distributions{"uniform"};
-  static constexpr bool needs_space = false;
 
-  static void prepare(const PrepareContext&) {}
   static std::size_t cells() { return 1; }
   static void begin(const IterationContext&, const LightVertices&, const CellStatistics&,
                     Counters&) {}
@@ -34,7 +32,6 @@ class UniformConnections {
                    Survival&& survival, Use&& use) {
     pick_uniformly(lights, longest, rng, 0, survival, use);
   }
-  static std::vector<std::pair<std::string, double>> statistics() { return {}; }
 
  private:
   UniformSettings settings_;

@@ -7,6 +7,7 @@
 #include "renderer/core/alias_table.h"
 #include "renderer/guides/crossed_faces.h"
 #include "renderer/guides/directions.h"
+#include "renderer/settings/guide_settings.h"
 
 namespace lacuna {
 
@@ -24,6 +25,7 @@ class BorderFaceLight {
   /// it: drawing through them would be of no use.
   static constexpr bool leaving_only = true;
 
+  explicit BorderFaceLight(const FaceIrradianceGuideSettings&) {}
   void prepare(const PrepareContext& context, const SurfaceLookup&);
   void save(ByteWriter& out) const { out.put(light_); }
   /// Throws std::runtime_error if this is not of these borders.

@@ -13,6 +13,16 @@
 
 namespace lacuna {
 
+/// A vertex of which a path is to go on, or could have: all that a distribution may depend on.
+struct GuidedVertex {
+  const Surface& surface;
+  const Bsdf& bsdf;
+  const V3f& wo;          ///< unit, to where the path came from
+  const GuideSite& site;  ///< of the surface as seen from `wo`
+
+  const V3f& x() const { return surface.x; }
+};
+
 /// A distribution of directions at every point of the scene's surfaces, of what a guide knows about
 /// where light comes from. MixedGuide combines it with the BSDF. Iterations read it from several
 /// threads; only end() and load() change what it draws from.
@@ -36,12 +46,12 @@ class Directions {
 
   /// Where the distribution at surface `s`, as seen from the side of unit `w`, is found.
   virtual GuideSite site(const Surface& s, const V3f& w) const = 0;
-  /// Draws a unit direction at `x`, whose site this is; nothing where the draw fails. Only where
-  /// the site's probability is above 0.
-  virtual std::optional<V3f> sample(const GuideSite& site, const V3f& x, Rng& rng) const = 0;
+  /// Draws a unit direction; nothing where the draw fails. Only where the site's probability is
+  /// above 0.
+  virtual std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const = 0;
   /// Density with which sample() returns unit `w`; its integral over the sphere is 1 less the
   /// probability of failure. sample() never returns what has density 0, but for rounding.
-  virtual Pdf<SolidAngle> pdf(const GuideSite& site, const V3f& x, const V3f& w) const = 0;
+  virtual Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const = 0;
 
   /// Whether learn() and end() want to be called in the coming iteration.
   virtual bool learns() const { return false; }

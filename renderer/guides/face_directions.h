@@ -20,8 +20,9 @@ namespace lacuna {
 template <class Faces>
 class FaceDirections final : public Directions {
  public:
-  FaceDirections(const RegionGuideSettings& settings, Faces faces)
-      : settings_(settings), faces_(std::move(faces)) {}
+  /// The settings of the guide, which Faces is made of, too.
+  template <class Settings>
+  explicit FaceDirections(const Settings& settings) : settings_(settings), faces_(settings) {}
 
   bool needs_space() const override { return true; }
   void prepare(const PrepareContext& context) override {
@@ -59,9 +60,9 @@ class FaceDirections final : public Directions {
     return {static_cast<float>(sum_of(regions, as_used())), index};
   }
 
-  std::optional<V3f> sample(const GuideSite& site, const V3f& x, Rng& rng) const override {
-    const V3d from = transform_.to_grid(V3d(x));
-    const RegionMixture regions = mixture(from, site.index);
+  std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const override {
+    const V3d from = transform_.to_grid(V3d(at.x()));
+    const RegionMixture regions = mixture(from, at.site.index);
     const auto used = as_used();
     double left = double(rng.next()) * sum_of(regions, used);
     std::uint32_t region = no_region;
@@ -82,8 +83,8 @@ class FaceDirections final : public Directions {
     return V3f(d.normalized());
   }
 
-  Pdf<SolidAngle> pdf(const GuideSite& site, const V3f& x, const V3f& w) const override {
-    return density(site.index, x, w, as_used());
+  Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const override {
+    return density(at.site.index, at.x(), w, as_used());
   }
 
   bool learns() const override { return Faces::learns || tuning_.learns(); }

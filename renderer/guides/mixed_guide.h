@@ -38,14 +38,14 @@ class MixedGuide {
     const float c = v.site.probability;
     if (transport == Transport::importance || c == 0) return bsdf_.sample(v, rng, transport);
     if (rng.next() < c) {
-      const std::optional<V3f> w = directions_->sample(v.site, v.surface.x, rng);
+      const std::optional<V3f> w = directions_->sample({v.surface, *v.bsdf, v.wp, v.site}, rng);
       if (!w) return std::nullopt;
       const Rgb f = v.bsdf->eval(v.wp, *w, transport);
       // Light from below the surface is not scattered; the density of such draws counts all the
       // same.
       if (is_black(f)) return std::nullopt;
       const Pdf<SolidAngle> bsdf = bsdf_.pdf(v, v.wp, *w, transport);
-      const Pdf<SolidAngle> p = mixed(v, v.site, *w, bsdf);
+      const Pdf<SolidAngle> p = mixed(v, v.wp, v.site, *w, bsdf);
       if (!p.positive()) return std::nullopt;
       const bool transmitted = dot(*w, v.surface.ng) * dot(v.wp, v.surface.ng) < 0;
       const float guided = bsdf.positive() ? p / bsdf : 1;
@@ -58,7 +58,7 @@ class MixedGuide {
       s->guided = 1 - c;
       return s;
     }
-    const Pdf<SolidAngle> p = mixed(v, v.site, s->wi, s->pdf);
+    const Pdf<SolidAngle> p = mixed(v, v.wp, v.site, s->wi, s->pdf);
     s->guided = p / s->pdf;
     s->weight /= s->guided;
     s->pdf = p;
@@ -70,15 +70,15 @@ class MixedGuide {
     const Pdf<SolidAngle> bsdf = bsdf_.pdf(v, wo, wi, transport);
     if (transport == Transport::importance) return bsdf;
     const bool this_side = (dot(wo, v.surface.ng) < 0) == (dot(v.wp, v.surface.ng) < 0);
-    return mixed(v, this_side ? v.site : directions_->site(v.surface, wo), wi, bsdf);
+    return mixed(v, wo, this_side ? v.site : directions_->site(v.surface, wo), wi, bsdf);
   }
 
  private:
-  Pdf<SolidAngle> mixed(const Vertex& v, const GuideSite& site, const V3f& wi,
+  Pdf<SolidAngle> mixed(const Vertex& v, const V3f& wo, const GuideSite& site, const V3f& wi,
                         Pdf<SolidAngle> bsdf) const {
     const float c = site.probability;
     if (c == 0) return bsdf;
-    return c * directions_->pdf(site, v.surface.x, wi) + (1 - c) * bsdf;
+    return c * directions_->pdf({v.surface, *v.bsdf, wo, site}, wi) + (1 - c) * bsdf;
   }
 
   std::unique_ptr<Directions> directions_;

@@ -27,11 +27,11 @@ class SdTree final : public Directions {
     const bool known = !leaves_[leaf].drawn.empty();
     return {known ? static_cast<float>(settings_.probability) : 0.0F, leaf};
   }
-  std::optional<V3f> sample(const GuideSite& site, const V3f&, Rng& rng) const override {
-    return leaves_[site.index].drawn.sample(rng);
+  std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const override {
+    return leaves_[at.site.index].drawn.sample(rng);
   }
-  Pdf<SolidAngle> pdf(const GuideSite& site, const V3f&, const V3f& w) const override {
-    return leaves_[site.index].drawn.pdf(w);
+  Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const override {
+    return leaves_[at.site.index].drawn.pdf(w);
   }
 
   bool learns() const override { return true; }

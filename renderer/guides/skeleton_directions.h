@@ -25,11 +25,11 @@ class SkeletonDirections final : public Directions {
     if (node == no_node || lobes_[node].empty()) return {};
     return {tuning_.probability(node), node};
   }
-  std::optional<V3f> sample(const GuideSite& site, const V3f& x, Rng& rng) const override {
-    return lobes_[site.index].sample(x, tuning_.strength(site.index), rng);
+  std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const override {
+    return lobes_[at.site.index].sample(at.x(), tuning_.strength(at.site.index), rng);
   }
-  Pdf<SolidAngle> pdf(const GuideSite& site, const V3f& x, const V3f& w) const override {
-    return lobes_[site.index].pdf(x, w, tuning_.strength(site.index));
+  Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const override {
+    return lobes_[at.site.index].pdf(at.x(), w, tuning_.strength(at.site.index));
   }
 
   bool learns() const override { return tuning_.learns(); }

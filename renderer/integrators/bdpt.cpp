@@ -1,7 +1,6 @@
 #include "renderer/integrators/bdpt.h"
 
-#include "renderer/connections/hybrid_connections.h"
-#include "renderer/connections/uniform_connections.h"
+#include "renderer/connections/registry.h"
 #include "renderer/core/pass_seconds.h"
 #include "renderer/guides/gathered_light.h"
 #include "renderer/guides/make_guide.h"
@@ -232,7 +231,7 @@ class PairedBdpt final : public Bdpt<Guide> {
 
 /// Connections with light paths that all pixels share, resampled at each eye vertex: the first of
 /// the paths that meet the eye itself (t = 1).
-template <class Guide, class Connections>
+template <class Guide, SharedConnections Choice>
 class ResampledBdpt final : public Bdpt<Guide> {
   using Base = Bdpt<Guide>;
   using Base::guide_;
@@ -247,11 +246,11 @@ class ResampledBdpt final : public Bdpt<Guide> {
 
   SceneNeeds needs() const override {
     SceneNeeds needs = Base::needs();
-    needs.space = needs.space || Connections::needs_space;
+    needs.space = needs.space || connections_.needs_space();
     return needs;
   }
   std::vector<std::string> layers(std::span<const ImageLayer> wanted) override {
-    return layers_.choose(wanted, settings_.max_depth, Connections::distributions);
+    return layers_.choose(wanted, settings_.max_depth, Choice::distributions);
   }
   void prepare(const PrepareContext& context) override {
     Base::prepare(context);
@@ -268,10 +267,12 @@ class ResampledBdpt final : public Bdpt<Guide> {
   }
   void save(ByteWriter& out) const override {
     seen_.save(out);
+    connections_.save(out);
     Base::save(out);
   }
   void load(ByteReader& in) override {
     seen_.load(in);
+    connections_.load(in);
     Base::load(in);
   }
 
@@ -393,42 +394,24 @@ class ResampledBdpt final : public Bdpt<Guide> {
   struct {
     double light = 0, distributions = 0, eye = 0;
   } seconds_;
-  Connections connections_;
+  Choice connections_;
   CellStatistics seen_;
-};
-
-template <class Guide>
-struct MakeBdpt {
-  const BdptSettings& settings;
-  Guide& guide;
-
-  std::unique_ptr<Integrator> operator()(const PairedSettings&) const {
-    return std::make_unique<PairedBdpt<Guide>>(settings, std::move(guide));
-  }
-  std::unique_ptr<Integrator> operator()(const UniformSettings& s) const {
-    return resampled<UniformConnections>(s);
-  }
-  std::unique_ptr<Integrator> operator()(const SkeletonSettings& s) const {
-    return resampled<SkeletonConnections>(s);
-  }
-  std::unique_ptr<Integrator> operator()(const ImportanceCacheSettings& s) const {
-    return resampled<ImportanceCacheConnections>(s);
-  }
-  std::unique_ptr<Integrator> operator()(const HybridSettings& s) const {
-    return resampled<HybridConnections>(s);
-  }
-
-  template <class Connections, class Settings>
-  std::unique_ptr<Integrator> resampled(const Settings& s) const {
-    return std::make_unique<ResampledBdpt<Guide, Connections>>(settings, std::move(guide), s);
-  }
 };
 
 }  // namespace
 
 std::unique_ptr<Integrator> make_bdpt(const BdptSettings& settings) {
   return with_guide(settings.guide, [&]<class Guide>(Guide guide) {
-    return std::visit(MakeBdpt<Guide>{settings, guide}, settings.connections);
+    return ConnectionsRegistry::visit(
+        settings.connections,
+        [&]<Connections C>(const auto& connections) -> std::unique_ptr<Integrator> {
+          if constexpr (std::is_same_v<C, PairedConnections>) {
+            return std::make_unique<PairedBdpt<Guide>>(settings, std::move(guide));
+          } else {
+            return std::make_unique<ResampledBdpt<Guide, C>>(settings, std::move(guide),
+                                                             connections);
+          }
+        });
   });
 }
 

@@ -9,12 +9,7 @@
 #include "renderer/settings/many_lights_settings.h"
 #include "renderer/settings/output_settings.h"
 #include "renderer/settings/visibility_settings.h"
-#include "renderer/visibility/cached_visibility.h"
-#include "renderer/visibility/gate_visibility.h"
-#include "renderer/visibility/node_map_visibility.h"
-#include "renderer/visibility/plain_visibility.h"
-#include "renderer/visibility/roulette_visibility.h"
-#include "renderer/visibility/view_map_visibility.h"
+#include "renderer/visibility/registry.h"
 
 namespace lacuna {
 
@@ -35,7 +30,7 @@ float bound_of(const ManyLightsSettings& s, double radius) {
 
 /// Many-light rendering (Noel 2015, 4.4): the first connectible vertex of every eye path meets all
 /// virtual lights. Path tracing goes on from there for what they cannot give.
-template <class Visibility>
+template <Visibility V>
 class ManyLights final : public Integrator {
  public:
   template <class Settings>
@@ -45,9 +40,11 @@ class ManyLights final : public Integrator {
         visibility_(visibility) {}
 
   SceneNeeds needs() const override {
-    return {.materials = true, .emission = true, .space = Visibility::needs_space};
+    return {.materials = true, .emission = true, .space = visibility_.needs_space()};
   }
   void prepare(const PrepareContext& context) override { visibility_.prepare(context); }
+  void save(ByteWriter& out) const override { visibility_.save(out); }
+  void load(ByteReader& in) override { visibility_.load(in); }
 
   std::vector<std::string> layers(std::span<const ImageLayer> wanted) override {
     std::vector<std::string> names;
@@ -255,7 +252,7 @@ class ManyLights final : public Integrator {
       walkers.push_back(i);
     }
     std::vector<LightSum> sums(points.size());
-    LightGather<Visibility>(context, with.terms, visibility_, with.draw, counters, with.range)
+    LightGather<V>(context, with.terms, visibility_, with.draw, counters, with.range)
         .gather(points, sums);
     for (std::size_t k = 0; k < sums.size(); ++k) {
       if (with.filter != nullptr) {
@@ -301,7 +298,7 @@ class ManyLights final : public Integrator {
   BsdfGuide guide_;
   ManyLightsSettings settings_;
   float least_alpha_;
-  Visibility visibility_;
+  V visibility_;
   int tests_layer_ = -1, negative_layer_ = -1;
   double lights_ = 0, culled_ = 0;
   struct {
@@ -309,31 +306,14 @@ class ManyLights final : public Integrator {
   } seconds_;
 };
 
-struct MakeManyLights {
-  const ManyLightsSettings& settings;
-
-  template <class Visibility>
-  std::unique_ptr<Integrator> make(const auto& s) const {
-    return std::make_unique<ManyLights<Visibility>>(settings, s);
-  }
-  auto operator()(const ExactVisibilitySettings& s) const { return make<ExactVisibility>(s); }
-  auto operator()(const NoVisibilitySettings& s) const { return make<NoVisibility>(s); }
-  auto operator()(const RouletteVisibilitySettings& s) const { return make<RouletteVisibility>(s); }
-  auto operator()(const ProbabilisticVisibilitySettings& s) const {
-    return make<ProbabilisticVisibility>(s);
-  }
-  auto operator()(const InterpolatedVisibilitySettings& s) const {
-    return make<InterpolatedVisibility>(s);
-  }
-  auto operator()(const GatesVisibilitySettings& s) const { return make<GateVisibility>(s); }
-  auto operator()(const NodeMapsVisibilitySettings& s) const { return make<NodeMapVisibility>(s); }
-  auto operator()(const ViewMapsVisibilitySettings& s) const { return make<ViewMapVisibility>(s); }
-};
-
 }  // namespace
 
 std::unique_ptr<Integrator> make_many_lights(const ManyLightsSettings& settings) {
-  return std::visit(MakeManyLights{settings}, settings.visibility);
+  return VisibilityRegistry::visit(
+      settings.visibility,
+      [&]<Visibility V>(const auto& visibility) -> std::unique_ptr<Integrator> {
+        return std::make_unique<ManyLights<V>>(settings, visibility);
+      });
 }
 
 }  // namespace lacuna

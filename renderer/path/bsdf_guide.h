@@ -2,26 +2,16 @@
 
 #include <optional>
 #include <span>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "analysis/storage/bytes.h"
 #include "renderer/core/rng.h"
-#include "renderer/path/contexts.h"
 #include "renderer/path/guiding_sample.h"
+#include "renderer/path/strategy.h"
 
 namespace lacuna {
 
 /// guide: bsdf. A guide draws the next direction at a vertex and knows the density of any direction
 /// there; the walk and the MIS weights take whatever density it reports.
-struct BsdfGuide {
-  static bool needs_space() { return false; }
-  static void prepare(const PrepareContext&) {}
-  static void save(ByteWriter&) {}
-  static void load(ByteReader&) {}
-  static std::vector<std::pair<std::string, double>> statistics() { return {}; }
-
+struct BsdfGuide : StrategyBase {
   /// There is nothing to learn.
   struct Tally {};
   static constexpr bool learns() { return false; }

@@ -16,7 +16,7 @@ namespace lacuna {
 /// - Where cones of several gates overlap, the brightest counts: V is not above 1.
 class GateVisibility : public VisibilityBase {
  public:
-  static constexpr bool needs_space = true;
+  static constexpr bool needs_space() { return true; }
 
   explicit GateVisibility(const GatesVisibilitySettings& settings) : settings_(settings) {}
 

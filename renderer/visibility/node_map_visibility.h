@@ -14,7 +14,7 @@ namespace lacuna {
 /// to no node are tested.
 class NodeMapVisibility : public VisibilityBase {
  public:
-  static constexpr bool needs_space = true;
+  static constexpr bool needs_space() { return true; }
 
   explicit NodeMapVisibility(const NodeMapsVisibilitySettings& settings) : settings_(settings) {}
 

@@ -13,7 +13,7 @@ namespace lacuna {
 /// traversing the octrees of the scene and of the lights together. Lights at infinity are tested.
 class ViewMapVisibility : public VisibilityBase {
  public:
-  static constexpr bool needs_space = true;
+  static constexpr bool needs_space() { return true; }
 
   explicit ViewMapVisibility(const ViewMapsVisibilitySettings& settings) : settings_(settings) {}
 

@@ -2,19 +2,12 @@
 
 #include "renderer/many_lights/cache_points.h"
 #include "renderer/many_lights/decision.h"
-#include "renderer/path/contexts.h"
+#include "renderer/path/strategy.h"
 
 namespace lacuna {
 
-/// What a visibility is asked, with the answers of one that needs nothing. It says what is taken
-/// for V between shading points and virtual lights, and has besides
-///
-///     struct At;  At at(const ShadingPoint&, const IterationContext&) const;  of a shading point
-///     void decide(At&, std::size_t block, const Terms&, Decision&) const;     of a block of lights
-struct VisibilityBase {
-  static constexpr bool needs_space = false;  ///< the analysis of the empty space
-  /// Once, before the first iteration.
-  static void prepare(const PrepareContext&) {}
+/// The answers of a visibility that treats all lights alike (see the concept Visibility).
+struct VisibilityBase : StrategyBase {
   /// Lights of which groups it wants to meet one after another.
   static std::uint32_t group(const LightPlace&) { return 0; }
   /// Which lights it treats at a time: all blocks, one range after another.
@@ -28,7 +21,6 @@ struct VisibilityBase {
   }
   /// Negative pixels are to become black.
   static bool clamps_negative() { return false; }
-  static std::vector<std::pair<std::string, double>> statistics() { return {}; }
 };
 
 /// Every light that could add something is tested.

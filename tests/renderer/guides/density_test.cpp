@@ -38,6 +38,8 @@ std::vector<Case> cases() {
 
 constexpr std::size_t points = 4;
 
+GuidedVertex guided(const Vertex& v) { return {v.surface, *v.bsdf, v.wp, v.site}; }
+
 class Density : public testing::TestWithParam<Case> {};
 
 TEST_P(Density, IsThatOfItsSamples) {
@@ -52,10 +54,8 @@ TEST_P(Density, IsThatOfItsSamples) {
       SCOPED_TRACE(testing::Message() << s << " at " << v.surface.x);
       ++checked;
       Rng rng(11, checked, 0, Rng::Purpose::test);
-      const auto draw = [&] { return directions.sample(v.site, v.surface.x, rng); };
-      const auto density = [&](const V3f& w) {
-        return directions.pdf(v.site, v.surface.x, w).value;
-      };
+      const auto draw = [&] { return directions.sample(guided(v), rng); };
+      const auto density = [&](const V3f& w) { return directions.pdf(guided(v), w).value; };
       // Cells are smallest where most is drawn.
       const std::optional<V3f> pole = draw();
       const DensityCheck c =
@@ -85,11 +85,11 @@ TEST_P(Density, WithTheSurfaceIsThatOfItsSamples) {
       explicit Lent(const Directions& d) : d_(d) {}
       bool needs_space() const override { return d_.needs_space(); }
       GuideSite site(const Surface& x, const V3f& w) const override { return d_.site(x, w); }
-      std::optional<V3f> sample(const GuideSite& at, const V3f& x, Rng& rng) const override {
-        return d_.sample(at, x, rng);
+      std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const override {
+        return d_.sample(at, rng);
       }
-      Pdf<SolidAngle> pdf(const GuideSite& at, const V3f& x, const V3f& w) const override {
-        return d_.pdf(at, x, w);
+      Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const override {
+        return d_.pdf(at, w);
       }
 
      private:

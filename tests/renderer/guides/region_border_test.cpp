@@ -12,18 +12,17 @@ namespace {
 using test::GuidedScene;
 
 /// Total variation between what is drawn at two points, in [0, 1]; draws that fail count too.
-double difference(const Directions& d, const GuideSite& a, const V3f& xa, const GuideSite& b,
-                  const V3f& xb, Rng& rng) {
+double difference(const Directions& d, const GuidedVertex& a, const GuidedVertex& b, Rng& rng) {
   const int n = 400;
   double sum = 0;
   for (int i = 0; i < n; ++i) {
     // Half the draws from either, so that no ratio is large.
     const bool first = i % 2 == 0;
-    const auto w = first ? d.sample(a, xa, rng) : d.sample(b, xb, rng);
+    const auto w = d.sample(first ? a : b, rng);
     if (!w) continue;
-    const double pa = double(a.probability) * double(d.pdf(a, xa, *w).value);
-    const double pb = double(b.probability) * double(d.pdf(b, xb, *w).value);
-    const double drawn = pa / double(a.probability) + pb / double(b.probability);
+    const double pa = double(a.site.probability) * double(d.pdf(a, *w).value);
+    const double pb = double(b.site.probability) * double(d.pdf(b, *w).value);
+    const double drawn = pa / double(a.site.probability) + pb / double(b.site.probability);
     if (drawn > 0) sum += std::abs(pa - pb) / drawn / n;
   }
   return sum;
@@ -50,12 +49,12 @@ TEST(RegionBorders, ShowNoStepWithMixing) {
       next.x += along;
       const GuideSite a = one.site(s, v.wp), b = one.site(next, v.wp);
       if (!(a.probability > 0 && b.probability > 0) || a.index == b.index) continue;
-      const double step = difference(one, a, s.x, b, next.x, rng);
+      const double step = difference(one, {s, *v.bsdf, v.wp, a}, {next, *v.bsdf, v.wp, b}, rng);
       if (step < 0.1) continue;  // no border of regions
       const GuideSite ma = other.site(s, v.wp), mb = other.site(next, v.wp);
       if (!(ma.probability > 0 && mb.probability > 0)) continue;
       step_sharp += step;
-      step_mixed += difference(other, ma, s.x, mb, next.x, rng);
+      step_mixed += difference(other, {s, *v.bsdf, v.wp, ma}, {next, *v.bsdf, v.wp, mb}, rng);
       ++borders;
     }
   }

@@ -75,7 +75,7 @@ double Oracle::eye_step(int i) const {
   const auto bsdf = double(from.bsdf->pdf(wo, w, Transport::radiance).value);
   if (directions_ == nullptr) return bsdf * there;
   const GuideSite site = directions_->site(from.surface, wo);
-  const auto guided = double(directions_->pdf(site, from.surface.x, w).value);
+  const auto guided = double(directions_->pdf({from.surface, *from.bsdf, wo, site}, w).value);
   const auto c = double(site.probability);
   return (c * guided + (1 - c) * bsdf) * there;
 }

@@ -15,14 +15,14 @@ class SidedDirections final : public Directions {
   GuideSite site(const Surface& s, const V3f& w) const override {
     return dot(w, s.ng) < 0 ? GuideSite{0.7F, 1} : GuideSite{0.3F, 0};
   }
-  std::optional<V3f> sample(const GuideSite& site, const V3f& x, Rng& rng) const override {
+  std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const override {
     const V2f u = rng.next2();
     const float z = std::cbrt(1 - u.x);
     const float r = std::sqrt(std::max(0.0F, 1 - z * z)), phi = 2 * pi * u.y;
-    return Frame(axis(site, x)).to_world({r * std::cos(phi), r * std::sin(phi), z});
+    return Frame(axis(at.site, at.x())).to_world({r * std::cos(phi), r * std::sin(phi), z});
   }
-  Pdf<SolidAngle> pdf(const GuideSite& site, const V3f& x, const V3f& w) const override {
-    const float c = std::max(0.0F, dot(axis(site, x), w));
+  Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const override {
+    const float c = std::max(0.0F, dot(axis(at.site, at.x()), w));
     return Pdf<SolidAngle>(3 * c * c / (2 * pi));
   }
 

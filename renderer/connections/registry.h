@@ -1,0 +1,19 @@
+#pragma once
+
+#include "renderer/connections/connections.h"
+#include "renderer/connections/hybrid_connections.h"
+#include "renderer/connections/uniform_connections.h"
+
+namespace lacuna {
+
+/// All choices of connections. A new one is a row here and an alternative of ConnectionsSettings.
+using ConnectionsRegistry =
+    Registry<Entry<PairedSettings, PairedConnections>, Entry<UniformSettings, UniformConnections>,
+             Entry<SkeletonSettings, SkeletonConnections>,
+             Entry<ImportanceCacheSettings, ImportanceCacheConnections>,
+             Entry<HybridSettings, HybridConnections>>;
+
+static_assert(std::is_same_v<ConnectionsRegistry::Settings, ConnectionsSettings>,
+              "the registry and the settings list the same choices in the same order");
+
+}  // namespace lacuna
