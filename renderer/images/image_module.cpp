@@ -3,8 +3,6 @@
 #include <dlfcn.h>
 #include <sys/mman.h>
 
-#include <algorithm>
-#include <cstdint>
 #include <filesystem>
 #include <future>
 #include <memory>
@@ -62,14 +60,6 @@ void make_room_for_small_pieces() {
   room.reserve(pieces);
   for (std::size_t i = 0; i < pieces; ++i) {
     room.push_back(std::make_unique_for_overwrite<char[]>(piece));
-  }
-  // Mostly one after the other; a page of 2 MiB is got as quickly as one of 4 KiB.
-  const auto [low, high] = std::minmax_element(room.begin(), room.end());
-  constexpr std::uintptr_t huge = std::uintptr_t{2} << 20;
-  const auto begin = (reinterpret_cast<std::uintptr_t>(low->get()) + huge - 1) / huge * huge;
-  const auto end = reinterpret_cast<std::uintptr_t>(high->get()) / huge * huge;
-  if (begin < end && end - begin <= piece * pieces) {
-    ::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
   }
 }
 
