@@ -51,7 +51,9 @@ TEST(ExrWrite, TheHeaderHoldsWhatItIsToldAndNothingElse) {
     }
     if (name == "channels") {  // name, then type 1 (half), linearity, sampling 1 x 1
       const std::string half("\0\1\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0", 17);
-      EXPECT_EQ(value, "B" + half + "G" + half + "R" + half + "depth.Z" + half + '\0');
+      std::string list;
+      for (const char* channel : {"B", "G", "R", "depth.Z"}) list.append(channel).append(half);
+      EXPECT_EQ(value, list.append(1, '\0'));
     }
     if (name == "compression") {
       EXPECT_EQ(value, "\3") << "ZIP, 16 lines";

@@ -111,6 +111,7 @@ inline Bytes make_png(int width, int height, const PngKind& kind, const std::vec
 inline Bytes encode8(int width, int height, int channels, const std::vector<std::uint8_t>& pixels) {
   constexpr std::array<int, 4> colour_types{0, 4, 2, 6};
   std::vector<Bytes> rows;
+  rows.reserve(static_cast<std::size_t>(height));
   const auto stride = static_cast<std::ptrdiff_t>(width) * channels;
   for (int y = 0; y < height; ++y) {
     rows.emplace_back(pixels.begin() + y * stride, pixels.begin() + (y + 1) * stride);

@@ -86,15 +86,15 @@ TEST(TextureDecode, JpegsOfOneAndThreeChannels) {
 }
 
 TEST(TextureDecode, OtherFormatsAreRefusedUnseen) {
-  const std::vector<std::string> files{"GIF89a\1\0\1\0",
-                                       "8BPS\0\1",
+  const std::vector<std::string> files{"GIF89a",
+                                       "8BPS",
                                        std::string("RIFF\x1a\0\0\0WEBPVP8 ", 16),
-                                       "DDS |\0\0\0",
+                                       "DDS |",
                                        std::string("\0\0\0\x18"
                                                    "ftypmp42",
                                                    12),
                                        "BM",
-                                       "II*\0\x8",
+                                       "II*",
                                        "\x76\x2f\x31\x01",
                                        "#?RADIANCE\n",
                                        ""};
