@@ -19,7 +19,9 @@ class MixedGuide {
   void prepare(const PrepareContext& context) { directions_->prepare(context); }
   void save(ByteWriter& out) const { directions_->save(out); }
   void load(ByteReader& in) { directions_->load(in); }
-  auto statistics() const { return directions_->statistics(); }
+  std::vector<std::pair<std::string, double>> statistics() const {
+    return directions_->statistics();
+  }
 
   using Tally = std::unique_ptr<Directions::Tally>;
   bool learns() const { return directions_->learns(); }
@@ -84,5 +86,6 @@ class MixedGuide {
   std::unique_ptr<Directions> directions_;
   BsdfGuide bsdf_;
 };
+static_assert(Guide<MixedGuide>);
 
 }  // namespace lacuna

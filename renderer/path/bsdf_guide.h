@@ -1,16 +1,10 @@
 #pragma once
 
-#include <optional>
-#include <span>
-
-#include "renderer/core/rng.h"
-#include "renderer/path/guiding_sample.h"
-#include "renderer/path/strategy.h"
+#include "renderer/path/guide.h"
 
 namespace lacuna {
 
-/// guide: bsdf. A guide draws the next direction at a vertex and knows the density of any direction
-/// there; the walk and the MIS weights take whatever density it reports.
+/// guide: bsdf. The BSDF's own directions.
 struct BsdfGuide : StrategyBase {
   /// There is nothing to learn.
   struct Tally {};
@@ -29,5 +23,6 @@ struct BsdfGuide : StrategyBase {
     return v.bsdf->pdf(wo, wi, transport);
   }
 };
+static_assert(Guide<BsdfGuide>);
 
 }  // namespace lacuna

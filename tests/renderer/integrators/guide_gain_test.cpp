@@ -38,7 +38,7 @@ TEST(GuideGain, RoundCorners) {
   EXPECT_LT(gain(skeleton({8}, {})), 0.65);
   EXPECT_LT(gain(skeleton({}, {})), 0.6);
   EXPECT_LT(gain(FaceIrradianceGuideSettings{}), 0.9);
-  EXPECT_LT(gain(test::small_sd_tree()), 0.8);
+  EXPECT_LT(gain(test::in_small_pictures(SdTreeGuideSettings{})), 0.8);
 }
 
 // A guided path has little throughput: roulette by it would end just what the guide is for.

@@ -2,6 +2,7 @@
 
 #include <ostream>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "renderer/settings/integrator_settings.h"
@@ -31,35 +32,47 @@ inline BdptSettings joining(int max_depth, const ConnectionsSettings& connection
   return s;
 }
 
-/// That learns from small pictures.
-inline SdTreeGuideSettings small_sd_tree() {
-  SdTreeGuideSettings tree;
-  tree.leaf_vertices = 100;
-  return tree;
+/// `use(S{})` for each alternative of a variant of settings, that is for each row of a registry.
+template <class... Ts, class Use>
+void for_each_choice(const std::variant<Ts...>&, Use&& use) {
+  (use(Ts{}), ...);
 }
-/// Every guide, with what it can learn given and learned.
+
+/// A guide that does something in small pictures: where it could learn to do nothing it is told.
+template <class S>
+S in_small_pictures(S s) {
+  if constexpr (requires { s.leaf_vertices; }) s.leaf_vertices = 100;
+  if constexpr (requires { s.probability = AutoNumber{0.5}; }) s.probability = AutoNumber{0.5};
+  return s;
+}
+
+/// Every guide of the registry but the BSDF's own, with what it can learn given and, where that can
+/// show in small pictures, learned.
 inline std::vector<std::pair<std::string, GuideSettings>> guides() {
-  SkeletonGuideSettings learning;
-  learning.strength = learning.probability = {};
-  FaceIrradianceGuideSettings faces;  // which would learn to do nothing in small pictures
-  faces.probability = {0.5};
-  PortalsGuideSettings portals;
-  portals.probability = {0.5};
-  return {{"skeleton", SkeletonGuideSettings{}},
-          {"learning_skeleton", learning},
-          {"portals", portals},
-          {"learning_portals", PortalsGuideSettings{}},
-          {"face_irradiance", faces},
-          {"sd_tree", small_sd_tree()}};
+  std::vector<std::pair<std::string, GuideSettings>> all;
+  for_each_choice(GuideSettings{}, [&]<class S>(const S& s) {
+    if constexpr (std::is_same_v<S, BsdfGuideSettings>) return;
+    all.emplace_back(S::name, in_small_pictures(s));
+    constexpr bool needs_many_paths = std::is_same_v<S, FaceIrradianceGuideSettings>;
+    if constexpr (requires(S x) { x.probability = AutoNumber{}; } && !needs_many_paths) {
+      S learning = s;
+      learning.probability = AutoNumber{};
+      if constexpr (requires { learning.strength = AutoNumber{}; })
+        learning.strength = AutoNumber{};
+      all.emplace_back("learning_" + std::string(S::name), learning);
+    }
+  });
+  return all;
 }
-/// Path tracing with every guide, and bidirectional path tracing with some.
+/// Path tracing with every guide, and bidirectional path tracing with each once.
 inline std::vector<Method> guided(int max_depth) {
   std::vector<Method> all;
   for (const auto& [name, guide] : guides()) {
     PathSettings path = path_tracing(max_depth);
     path.guide = guide;
     all.push_back({"path_" + name, path});
-    if (name != "learning_skeleton" && name != "face_irradiance") continue;
+    // Portals walk as faces do; of the skeleton, what learns.
+    if (name == "portals" || name == "learning_portals" || name == "skeleton") continue;
     BdptSettings bdpt = joining(max_depth, PairedSettings{});
     bdpt.guide = guide;
     all.push_back({"bdpt_" + name, bdpt});
@@ -81,16 +94,17 @@ Settings resampled(int light_paths) {
   return resampled<Settings>(light_paths, [](Settings&) {});
 }
 
-/// Every choice of connections as it is by default.
+/// Every choice of connections of the registry as it is by default.
 inline std::vector<Method> connections(int max_depth, int light_paths = 64) {
-  const int n = light_paths;
-  return {
-      {"paired", joining(max_depth, PairedSettings{})},
-      {"uniform", joining(max_depth, resampled<UniformSettings>(n))},
-      {"skeleton", joining(max_depth, resampled<SkeletonSettings>(n))},
-      {"importance_cache", joining(max_depth, resampled<ImportanceCacheSettings>(n))},
-      {"hybrid", joining(max_depth, resampled<HybridSettings>(n))},
-  };
+  std::vector<Method> all;
+  for_each_choice(ConnectionsSettings{}, [&]<class S>(const S& s) {
+    if constexpr (requires { s.light_paths; }) {
+      all.push_back({std::string(S::name), joining(max_depth, resampled<S>(light_paths))});
+    } else {
+      all.push_back({std::string(S::name), joining(max_depth, s)});
+    }
+  });
+  return all;
 }
 
 /// Many-light rendering with `visibility`, in a small picture.
@@ -112,13 +126,17 @@ inline ManyLightsSettings lit_by(int max_depth, int light_paths,
 /// Many-light rendering with every visibility that has the right mean.
 inline std::vector<Method> many_lights(int max_depth, int light_paths = 64) {
   std::vector<Method> all;
-  const auto add = [&](const char* name, const VisibilitySettings& visibility, auto&& change) {
+  const auto add = [&](const std::string& name, const VisibilitySettings& visibility,
+                       auto&& change) {
     ManyLightsSettings s = lit_by(max_depth, light_paths, visibility);
     change(s);
     all.push_back({name, s});
   };
-  const auto as_it_is = [](ManyLightsSettings&) {};
-  add("lights_exact", ExactVisibilitySettings{}, as_it_is);
+  for_each_choice(VisibilitySettings{}, [&]<class S>(const S& s) {
+    if constexpr (!requires { S::biased; }) {
+      add("lights_" + std::string(S::name), s, [](ManyLightsSettings&) {});
+    }
+  });
   add("lights_on_emitters", ExactVisibilitySettings{},
       [](auto& s) { s.direct = DirectLighting::lights; });
   add("lights_mostly_path_tracing", ExactVisibilitySettings{}, [](auto& s) {
@@ -127,8 +145,6 @@ inline std::vector<Method> many_lights(int max_depth, int light_paths = 64) {
   });
   add("lights_random", ExactVisibilitySettings{},
       [](auto& s) { s.gather = RandomLightsSettings{.lights = 16}; });
-  add("lights_probabilistic", ProbabilisticVisibilitySettings{}, as_it_is);
-  add("lights_roulette", RouletteVisibilitySettings{}, as_it_is);
   return all;
 }
 
@@ -136,12 +152,13 @@ inline std::vector<Method> many_lights(int max_depth, int light_paths = 64) {
 inline std::vector<Method> approximate_lights(int max_depth, int light_paths = 64) {
   ManyLightsSettings filtered = lit_by(max_depth, light_paths, ExactVisibilitySettings{});
   filtered.gather = RandomLightsSettings{.lights = 16, .filter_radius = 2};
-  return {{"lights_none", lit_by(max_depth, light_paths, NoVisibilitySettings{})},
-          {"lights_filtered", filtered},
-          {"lights_interpolated", lit_by(max_depth, light_paths, InterpolatedVisibilitySettings{})},
-          {"lights_gates", lit_by(max_depth, light_paths, GatesVisibilitySettings{})},
-          {"lights_node_maps", lit_by(max_depth, light_paths, NodeMapsVisibilitySettings{})},
-          {"lights_view_maps", lit_by(max_depth, light_paths, ViewMapsVisibilitySettings{})}};
+  std::vector<Method> all{{"lights_filtered", filtered}};
+  for_each_choice(VisibilitySettings{}, [&]<class S>(const S& s) {
+    if constexpr (requires { S::biased; }) {
+      all.push_back({"lights_" + std::string(S::name), lit_by(max_depth, light_paths, s)});
+    }
+  });
+  return all;
 }
 
 /// Every flag and every named value of the choices, at least once away from its default, alone and
