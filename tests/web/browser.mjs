@@ -37,8 +37,24 @@ function told(message) {
   return url.startsWith("http") ? `${message.text()} (${url})` : message.text();
 }
 
+/// A function that gives for how many ms the page's own thread has computed since it was last asked: a time that
+/// other work of a busy machine adds nothing to.
+async function computingTime(page) {
+  const session = await page.context().newCDPSession(page);
+  await session.send("Performance.enable", { timeDomain: "threadTicks" });
+  let before = 0;
+  return async () => {
+    const { metrics } = await session.send("Performance.getMetrics");
+    const now = 1000 * metrics.find((m) => m.name === "TaskDuration").value;
+    const passed = now - before;
+    before = now;
+    return Math.round(passed);
+  };
+}
+
 /// A page in a fresh context with `options`, or in `context`. `page.troubles` collects console errors
-/// and warnings, exceptions, and requests to other hosts than that of the last visit().
+/// and warnings, exceptions, and requests to other hosts than that of the last visit(); `page.computed` is
+/// its computingTime().
 export async function newPage(browser, { context = null, ...options } = {}) {
   const own = context ?? await browser.newContext({ viewport: { width: 1280, height: 900 }, ...options });
   const page = await own.newPage();
@@ -48,6 +64,7 @@ export async function newPage(browser, { context = null, ...options } = {}) {
     new PerformanceObserver((list) => window.longTasks.push(...list.getEntries().map((task) => task.duration)))
       .observe({ type: "longtask", buffered: true });
   });
+  page.computed = await computingTime(page);
   page.troubles = [];
   page.on("console", (message) => {
     const counts = ["error", "warning"].includes(message.type()) && !noise.test(message.text());
