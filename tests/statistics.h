@@ -134,6 +134,13 @@ inline double t_test(const Moments& m, double expected) {
   const double t = z_score(m.mean() - expected, m.standard_error());
   return std::isfinite(t) ? student_two_sided_p(t, static_cast<double>(m.count() - 1)) : 0;
 }
+/// Is the mean of a few normal samples at least `bound`? One-sided: what shows that it is below.
+inline double t_test_at_least(const Moments& m, double bound) {
+  const double t = z_score(m.mean() - bound, m.standard_error());
+  if (!std::isfinite(t)) return t > 0 ? 1 : 0;
+  const double beyond = student_two_sided_p(t, static_cast<double>(m.count() - 1)) / 2;
+  return t > 0 ? 1 - beyond : beyond;
+}
 /// Do a few normal samples of each kind have the same mean? Welch's test.
 inline double t_test(const Moments& a, const Moments& b) {
   const double va = a.standard_error() * a.standard_error();

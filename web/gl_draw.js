@@ -67,9 +67,7 @@ function link(gl) {
     gl.attachShader(program, shader);
   }
   gl.linkProgram(program);
-  if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) {
-    throw new Error(gl.getProgramInfoLog(program));
-  }
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
   return program;
 }
 
@@ -97,6 +95,19 @@ function uploadPicture(gl, { width, height, channels, data }) {
     : upload(gl, width, height, [one ? gl.R16F : gl.RGB16F, format, gl.HALF_FLOAT], new Uint16Array(data.buffer));
 }
 
+/// What `make()` gives; null where the context is lost, before or meanwhile: all it says then is beside the
+/// point, be it an error.
+function unlessLost(gl, make) {
+  if (gl.isContextLost()) return null;
+  try {
+    const made = make();
+    return gl.isContextLost() ? null : made;
+  } catch (error) {
+    if (gl.isContextLost()) return null;
+    throw error;
+  }
+}
+
 /// What one context holds; made anew when the context was lost.
 function resources(gl) {
   const program = link(gl);
@@ -112,15 +123,17 @@ function resources(gl) {
 
 /// A painter on `canvas`; null where the browser has no WebGL 2. `draw(parts, place)` paints: a part
 /// is {image, look, gain, offset, map, from, to}, with `from` and `to` in [0, 1] its share of the
-/// canvas's width; `place` is {x, y, pace}, see the shader's `corner` and `pace`.
+/// canvas's width; `place` is {x, y, pace}, see the shader's `corner` and `pace`. A machine may take the
+/// context away at any moment: `draw` then does nothing and gives false, and `onrestored` asks for it again.
 export function painter(canvas, onrestored) {
   const gl = canvas.getContext("webgl2", { antialias: false, depth: false, premultipliedAlpha: true });
   if (!gl) return null;
-  let held = resources(gl);
+  let held = unlessLost(gl, () => resources(gl));
+  // Without this the browser would not give the context back.
   canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
   canvas.addEventListener("webglcontextrestored", () => {
-    held = resources(gl);
-    onrestored();
+    held = unlessLost(gl, () => resources(gl));
+    if (held) onrestored();
   });
 
   /// Those that are kept go together when they are too many.
@@ -148,19 +161,21 @@ export function painter(canvas, onrestored) {
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 
+  function drawAll(parts, { x, y, pace }) {
+    gl.viewport(0, 0, canvas.width, canvas.height);
+    gl.disable(gl.SCISSOR_TEST);
+    gl.clearColor(0, 0, 0, 0);
+    gl.clear(gl.COLOR_BUFFER_BIT);
+    gl.enable(gl.SCISSOR_TEST);
+    gl.uniform2f(held.uniform.corner, x, y);
+    gl.uniform1f(held.uniform.pace, pace);
+    gl.uniform1f(held.uniform.height, canvas.height);
+    parts.forEach(drawPart);
+    return true;
+  }
+
   return {
-    draw(parts, { x, y, pace }) {
-      if (gl.isContextLost()) return;
-      gl.viewport(0, 0, canvas.width, canvas.height);
-      gl.disable(gl.SCISSOR_TEST);
-      gl.clearColor(0, 0, 0, 0);
-      gl.clear(gl.COLOR_BUFFER_BIT);
-      gl.enable(gl.SCISSOR_TEST);
-      gl.uniform2f(held.uniform.corner, x, y);
-      gl.uniform1f(held.uniform.pace, pace);
-      gl.uniform1f(held.uniform.height, canvas.height);
-      parts.forEach(drawPart);
-    },
+    draw: (parts, place) => held !== null && unlessLost(gl, () => drawAll(parts, place)) !== null,
     release() {
       gl.getExtension("WEBGL_lose_context")?.loseContext();
     },

@@ -3,7 +3,8 @@ import { painter } from "./gl_draw.js";
 
 /// A function that draws `pictures`, [{image, canvas, wide}], alike (see look.js): each `wide` CSS pixels wide,
 /// of which one has `ratio` of the screen's. One a frame, fetched in the next, because many at once, or
-/// waiting for one, would be a pause. The next call ends the one before.
+/// waiting for one, would be a pause. The next call ends the one before; one that lost its context is made again
+/// with a new one.
 export function stripPainter(signal) {
   const hidden = new OffscreenCanvas(1, 1);
   let paint = null;
@@ -17,7 +18,7 @@ export function stripPainter(signal) {
     for (const { image, canvas, wide } of pictures) {
       const [width, height] = [wide, wide * image.height / image.width].map((n) => Math.round(n * ratio) || 1);
       Object.assign(hidden, { width, height });
-      paint.draw([{ ...look, image, from: 0, to: 1 }], { x: 0, y: 0, pace: image.width / width });
+      if (!paint.draw([{ ...look, image, from: 0, to: 1 }], { x: 0, y: 0, pace: image.width / width })) return;
       await new Promise(requestAnimationFrame);
       if (last !== given) return;
       Object.assign(canvas, { width, height });

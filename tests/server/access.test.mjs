@@ -1,4 +1,4 @@
-// With a token file: who may do what. (Every rule is tested in test_access.cpp; here, that they hold
+// With a token file: who may do what. (Every rule is tested in access_test.cpp; here, that they hold
 // in the service, and what its log says.)
 import assert from "node:assert/strict";
 import fs from "node:fs";

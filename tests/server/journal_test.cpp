@@ -13,7 +13,7 @@ void fill(Journal& journal, int n) {
   for (int i = 0; i < n; ++i) journal.add(JobEvent::Kind::state, std::to_string(i), nullptr);
 }
 
-TEST(Journal, gives_what_came_after) {
+TEST(Journal, GivesWhatCameAfter) {
   Journal journal;
   EXPECT_EQ(journal.last(), 0U);
   fill(journal, 3);
@@ -25,7 +25,7 @@ TEST(Journal, gives_what_came_after) {
   EXPECT_TRUE(journal.since(3, 0ms)->empty());
 }
 
-TEST(Journal, says_when_it_has_forgotten) {
+TEST(Journal, SaysWhenItHasForgotten) {
   Journal journal;
   fill(journal, 9000);
   EXPECT_FALSE(journal.since(0, 0ms));
@@ -34,7 +34,7 @@ TEST(Journal, says_when_it_has_forgotten) {
   EXPECT_EQ(events->size(), 1U);
 }
 
-TEST(Journal, waits_for_news) {
+TEST(Journal, WaitsForNews) {
   Journal journal;
   std::thread other([&] { fill(journal, 1); });
   const auto events = journal.since(0, 1h);
@@ -43,7 +43,7 @@ TEST(Journal, waits_for_news) {
   EXPECT_EQ(events->size(), 1U);
 }
 
-TEST(Journal, knows_its_own_names_only) {
+TEST(Journal, KnowsItsOwnNamesOnly) {
   Journal journal;
   fill(journal, 2);
   EXPECT_EQ(journal.number(journal.name(2)), 2U);

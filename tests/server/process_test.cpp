@@ -47,7 +47,7 @@ class Sleeper {
   pid_t pid_ = 0;
 };
 
-TEST(ProcessIdentity, is_found_whatever_the_name) {
+TEST(ProcessIdentity, IsFoundWhateverTheName) {
   for (const char* name : {"plain", "a b) R 1 1 (c", ")", "((", "two\nlines"}) {
     const Sleeper sleeper(name);
     const auto identity = identity_of(sleeper.pid());
@@ -58,7 +58,7 @@ TEST(ProcessIdentity, is_found_whatever_the_name) {
   }
 }
 
-TEST(ProcessIdentity, another_process_of_the_same_number_is_another) {
+TEST(ProcessIdentity, AnotherProcessOfTheSameNumberIsAnother) {
   const Sleeper sleeper("mine");
   const ProcessIdentity earlier{sleeper.pid(), identity_of(sleeper.pid())->start_ticks - 1};
   EXPECT_FALSE(is_alive(earlier));
@@ -66,7 +66,7 @@ TEST(ProcessIdentity, another_process_of_the_same_number_is_another) {
   EXPECT_TRUE(is_alive(*identity_of(sleeper.pid()))) << "it got no signal";
 }
 
-TEST(ProcessIdentity, an_ended_process_is_not_alive_before_its_status_is_taken_either) {
+TEST(ProcessIdentity, AnEndedProcessIsNotAliveBeforeItsStatusIsTakenEither) {
   const Sleeper sleeper("zombie");
   const ProcessIdentity identity = *identity_of(sleeper.pid());
   sleeper.end();
@@ -74,13 +74,13 @@ TEST(ProcessIdentity, an_ended_process_is_not_alive_before_its_status_is_taken_e
   EXPECT_FALSE(kill_group(identity, SIGKILL));
 }
 
-TEST(ProcessIdentity, nobody_has_a_number_that_is_not_given) {
+TEST(ProcessIdentity, NobodyHasANumberThatIsNotGiven) {
   EXPECT_FALSE(identity_of(0));
   EXPECT_FALSE(identity_of(-1));
   EXPECT_FALSE(identity_of(1 << 30));
 }
 
-TEST(ProcessIdentity, the_whole_group_gets_the_signal) {
+TEST(ProcessIdentity, TheWholeGroupGetsTheSignal) {
   const Sleeper leader("leader");
   const Sleeper member("member", false);
   ASSERT_EQ(::setpgid(member.pid(), leader.pid()), 0);
@@ -93,13 +93,13 @@ TEST(ProcessIdentity, the_whole_group_gets_the_signal) {
   }
 }
 
-TEST(ProcessIdentity, text_that_is_no_stat_is_refused) {
+TEST(ProcessIdentity, TextThatIsNoStatIsRefused) {
   for (const char* text : {"", "1 (a", "1 (a) S", "1 (a) S 1 1 1 1", "1 (a) S x 1 1 1 1 1"}) {
     EXPECT_FALSE(parse_process_stat(text)) << text;
   }
 }
 
-TEST(OomKills, are_read_from_either_file_of_the_kernel) {
+TEST(OomKills, AreReadFromEitherFileOfTheKernel) {
   EXPECT_EQ(parse_oom_kills("low 0\nhigh 1\nmax 2\noom 3\noom_kill 4\noom_group_kill 5\n"), 4u);
   EXPECT_EQ(parse_oom_kills("nr_free_pages 7\noom_kill 0\n"), 0u);
   EXPECT_FALSE(parse_oom_kills("oom_killer 4\n"));

@@ -26,24 +26,24 @@ CareSettings keep(std::size_t jobs, double days) {
   return settings;
 }
 
-TEST(Retention, keeps_everything_unless_asked) {
+TEST(Retention, KeepsEverythingUnlessAsked) {
   EXPECT_EQ(outdated({job("a", 9000), job("b", 1)}, {}, {}, now), Ids{});
 }
 
-TEST(Retention, the_oldest_go_when_there_are_more) {
+TEST(Retention, TheOldestGoWhenThereAreMore) {
   const std::vector<EntryPtr> jobs{job("a", 4), job("b", 3), job("c", 0, false), job("d", 1)};
   EXPECT_EQ(outdated(jobs, {}, keep(2, 0), now), Ids{"a"}) << "what runs does not count";
   EXPECT_EQ(outdated(jobs, {}, keep(1, 0), now), (Ids{"a", "b"}));
   EXPECT_EQ(outdated(jobs, {}, keep(3, 0), now), Ids{});
 }
 
-TEST(Retention, those_that_ended_long_ago_go) {
+TEST(Retention, ThoseThatEndedLongAgoGo) {
   const std::vector<EntryPtr> jobs{job("a", 4), job("b", 3), job("c", 1)};
   EXPECT_EQ(outdated(jobs, {}, keep(0, 2.5), now), (Ids{"a", "b"}));
   EXPECT_EQ(outdated(jobs, {}, keep(0, 5), now), Ids{});
 }
 
-TEST(Retention, never_a_reference_nor_a_damaged_one) {
+TEST(Retention, NeverAReferenceNorADamagedOne) {
   auto damaged = std::make_shared<JobEntry>(*job("d", 100));
   damaged->damaged = true;
   const std::vector<EntryPtr> jobs{job("a", 100), job("b", 90, true, "a"), damaged};
@@ -51,7 +51,7 @@ TEST(Retention, never_a_reference_nor_a_damaged_one) {
   EXPECT_EQ(outdated({jobs[0]}, {}, keep(0, 1), now), Ids{"a"}) << "once nothing names it";
 }
 
-TEST(Retention, no_run_of_a_sweep_that_is_not_over) {
+TEST(Retention, NoRunOfASweepThatIsNotOver) {
   auto run = std::make_shared<JobEntry>(*job("a", 100));
   run->sweep = "s";
   const std::vector<EntryPtr> jobs{run, job("b", 90), job("c", 80)};

@@ -24,7 +24,7 @@ const Ending crash{Kind::killed, SIGSEGV, "renderer ended by signal 11 (Segmenta
 const Ending interruption{Kind::exited, 75, "renderer ended with exit code 75"};
 const Ending no_memory{Kind::out_of_memory, 71, "renderer ran out of memory (limit 4.0 GiB)"};
 
-TEST(Verdict, a_crash_is_retried_until_there_were_enough) {
+TEST(Verdict, ACrashIsRetriedUntilThereWereEnough) {
   Attempt a = attempt(crash);
   Verdict v = judged(a);
   EXPECT_EQ(v.state.state, State::queued);
@@ -36,7 +36,7 @@ TEST(Verdict, a_crash_is_retried_until_there_were_enough) {
   EXPECT_EQ(v.state.exit_code, 128 + SIGSEGV);
 }
 
-TEST(Verdict, want_of_memory_counts_as_a_crash_and_names_itself) {
+TEST(Verdict, WantOfMemoryCountsAsACrashAndNamesItself) {
   Attempt a = attempt(no_memory, State::interrupted);
   a.after.error = "out of memory";
   Verdict v = judged(a);
@@ -50,7 +50,7 @@ TEST(Verdict, want_of_memory_counts_as_a_crash_and_names_itself) {
   EXPECT_EQ(v.state.error, "renderer ran out of memory (limit 4.0 GiB), 2 times");
 }
 
-TEST(Verdict, an_interruption_that_nobody_asked_for_is_a_crash_unless_the_job_came_on) {
+TEST(Verdict, AnInterruptionThatNobodyAskedForIsACrashUnlessTheJobCameOn) {
   Attempt a = attempt(interruption, State::interrupted);
   a.iteration_before = a.iteration_after = 40;
   Verdict v = judged(a);
@@ -66,13 +66,13 @@ TEST(Verdict, an_interruption_that_nobody_asked_for_is_a_crash_unless_the_job_ca
   EXPECT_FALSE(v.crashed);
 }
 
-TEST(Verdict, a_crash_is_one_even_if_the_job_came_on) {
+TEST(Verdict, ACrashIsOneEvenIfTheJobCameOn) {
   Attempt a = attempt(crash);
   a.iteration_after = 41;
   EXPECT_TRUE(judged(a).crashed);
 }
 
-TEST(Verdict, nothing_is_counted_while_the_disk_is_low) {
+TEST(Verdict, NothingIsCountedWhileTheDiskIsLow) {
   for (const Ending& ending : {crash, interruption, no_memory}) {
     Attempt a = attempt(ending);
     a.disk_low = true;
@@ -83,13 +83,13 @@ TEST(Verdict, nothing_is_counted_while_the_disk_is_low) {
   }
 }
 
-TEST(Verdict, a_low_disk_does_not_make_a_bad_job_good) {
+TEST(Verdict, ALowDiskDoesNotMakeABadJobGood) {
   Attempt a = attempt({Kind::exited, 2, "renderer ended with exit code 2"});
   a.disk_low = true;
   EXPECT_EQ(judged(a).state.state, State::failed);
 }
 
-TEST(Verdict, asked_to_stop_it_is_cancelled_held_or_queued_in_this_order) {
+TEST(Verdict, AskedToStopItIsCancelledHeldOrQueuedInThisOrder) {
   for (const Ending& ending : {crash, interruption, no_memory}) {
     Attempt a = attempt(ending, State::interrupted);
     a.after.error = "out of memory";
@@ -109,13 +109,13 @@ TEST(Verdict, asked_to_stop_it_is_cancelled_held_or_queued_in_this_order) {
   }
 }
 
-TEST(Verdict, what_the_renderer_finished_stands) {
+TEST(Verdict, WhatTheRendererFinishedStands) {
   Attempt a = attempt({Kind::exited, 0, "renderer ended with exit code 0"}, State::done);
   a.cancel = a.hold = a.stopped = a.disk_low = true;
   EXPECT_EQ(judged(a).state.state, State::done);
 }
 
-TEST(Verdict, a_renderer_that_cannot_be_started_fails_its_job_unless_that_may_pass) {
+TEST(Verdict, ARendererThatCannotBeStartedFailsItsJobUnlessThatMayPass) {
   Attempt a = attempt({Kind::not_started, ENOENT, "renderer could not be started"}, State::queued);
   a.after.attempts = 0;
   EXPECT_EQ(judged(a).state.state, State::failed);

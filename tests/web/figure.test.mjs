@@ -74,20 +74,23 @@ test("a figure without values, and one of a job that is not there", async () => 
 
 test("twenty curves are laid over one another without a pause", async () => {
   mock.jobs = manyJobs(20, 40);
+  await page?.computed();
   const began = performance.now();
   await open(`/#/compare?jobs=${mock.jobs.map((j) => j.id).join(",")}`);
   await page.waitForSelector(".plot[data-curves='20'] svg");
   const shown = performance.now() - began;
   const loading = await longestTask(page, true);
+  const busyLoading = await page.computed();
   await page.getByLabel("against", { exact: true }).selectOption("iteration");
   const switching = await longestTask(page, true);
+  const busy = await page.computed();
   await page.waitForSelector(".stage[data-shown]");
   await page.getByLabel("Pictures", { exact: true }).selectOption("crops");
   await page.waitForFunction(() => document.querySelectorAll(".crops canvas").length === 20);
   const crops = await longestTask(page);
   console.log(`# 20 curves of 40 points: shown ${shown.toFixed(0)} ms after the browser was asked; longest task ${loading} ms `
-    + `while loading, ${switching} ms for another axis, ${crops} ms for 20 crops (0: none above 50)`);
-  assert.ok(Math.max(loading, switching) < 1000);
+    + `while loading, ${switching} ms for another axis, ${crops} ms for 20 crops (0: none above 50); the page computed ${busyLoading} ms and ${busy} ms for the first two`);
+  assert.ok(Math.max(busyLoading, busy) < 1000);
   assert.equal(await page.locator(".plot svg .curve").count(), 20);
   const looks = await page.locator(".curve").evaluateAll((all) => all.map((g) => {
     const mark = g.children[1];

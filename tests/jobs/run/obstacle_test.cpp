@@ -12,7 +12,7 @@ namespace {
 
 std::system_error error(int number) { return {number, std::generic_category(), "cannot write x"}; }
 
-TEST(Obstacle, a_write_that_another_time_may_bring) {
+TEST(Obstacle, AWriteThatAnotherTimeMayBring) {
   for (const int number : {ENOSPC, EDQUOT, EFBIG, EROFS, EIO, EACCES}) {
     EXPECT_EQ(obstacle_of(error(number)), Obstacle::storage) << number;
   }
@@ -21,14 +21,14 @@ TEST(Obstacle, a_write_that_another_time_may_bring) {
   }
 }
 
-TEST(Obstacle, want_of_memory_however_it_is_told) {
+TEST(Obstacle, WantOfMemoryHoweverItIsTold) {
   EXPECT_EQ(obstacle_of(std::bad_alloc()), Obstacle::memory);
   EXPECT_EQ(obstacle_of(std::bad_array_new_length()), Obstacle::memory);
   EXPECT_EQ(obstacle_of(error(ENOMEM)), Obstacle::memory);
   EXPECT_EQ(reason_of(std::bad_alloc()), "out of memory");
 }
 
-TEST(Obstacle, all_else_would_fail_again) {
+TEST(Obstacle, AllElseWouldFailAgain) {
   EXPECT_EQ(obstacle_of(std::runtime_error("no")), Obstacle::none);
   EXPECT_EQ(reason_of(std::runtime_error("no")), "no");
 }

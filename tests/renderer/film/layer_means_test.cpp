@@ -116,16 +116,16 @@ TEST(LayerMeans, TakeNothingWhereNobodyAskedAndNoMoreThanAllowed) {
   ByteWriter out;
   none.save(out);
   EXPECT_TRUE(out.bytes().empty());
-  // A picture of 512 by 512 with 27 of them: a colour of 12 bytes, and three times 24 of its sum.
+  // A picture of 64 by 64 with 27 of them: a colour of 12 bytes, and three times 24 of its sum.
   const std::vector<std::string> names(27, "strategies.s0t2");
-  constexpr std::uint64_t bytes = 27ULL * 512 * 512 * (12 + 3 * 24);
-  EXPECT_NO_THROW(LayerMeans(names, 512, 512, bytes));
+  constexpr std::uint64_t bytes = 27ULL * 64 * 64 * (12 + 3 * 24);
+  EXPECT_NO_THROW(LayerMeans(names, 64, 64, bytes));
   try {
-    const LayerMeans refused(names, 512, 512, bytes - 1);
+    const LayerMeans refused(names, 64, 64, bytes - 1);
     FAIL();
   } catch (const MemoryLimitError& e) {
     const std::string said = e.what();
-    for (const char* part : {"27 images", "512 x 512", "strategies.s0t2", "594542592"}) {
+    for (const char* part : {"27 images", "64 x 64", "strategies.s0t2", "9289728"}) {
       EXPECT_NE(said.find(part), std::string::npos) << said;
     }
   }

@@ -1,27 +1,79 @@
 // What guides are for: less noise where light comes round corners, and little more where it does
-// not. The bounds lie between what was seen and what faults in learning make of it.
+// not. The bounds lie between what was seen and what faults in learning make of it; that a gain is
+// beyond its bound must be significant over pairs of pictures of the same seed.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/renderer/integrators/methods.h"
 #include "tests/renderer/integrators/render.h"
 #include "tests/renderer/path/scenes.h"
+#include "tests/statistics.h"
 
 namespace lacuna {
 namespace {
 
+using statistics::Moments;
+
+/// Probability that a gain just at its bound is taken for one beyond it.
+constexpr double level = 0.01;
+
+/// What is compared: pictures of as many seeds, of so many iterations each.
+struct Pictures {
+  const char* scene;
+  int seeds, iterations;
+  int roulette_depth = 6;
+};
+
 /// Standard deviation of a pixel's estimate, mean over the picture: the root weighs bright paths
 /// that are met once less.
-double noise(const char* scene, const GuideSettings& guide, int roulette_depth = 6) {
+double noise(const Pictures& p, const GuideSettings& guide, int seed) {
   PathSettings path = test::path_tracing(6);
-  path.roulette_depth = roulette_depth;
+  path.roulette_depth = p.roulette_depth;
   path.guide = guide;
-  const test::Rendering r = test::render(
-      test::load({scene}), {.integrator = path, .width = 24, .height = 16, .iterations = 256});
+  const test::Rendering r =
+      test::render(test::load({p.scene}), {.integrator = path,
+                                           .width = 24,
+                                           .height = 16,
+                                           .iterations = p.iterations,
+                                           .seed = static_cast<std::uint64_t>(seed)});
   double sum = 0;
   for (const double v : r.film.variance_of_mean()) sum += std::sqrt(v);
   return sum;
 }
+
+/// Noise beside that of BSDFs alone, seed by seed.
+class Gain {
+ public:
+  explicit Gain(const Pictures& pictures) : pictures_(pictures) {
+    for (int i = 1; i <= pictures.seeds; ++i)
+      plain_.push_back(noise(pictures, BsdfGuideSettings{}, i));
+  }
+  void expect_below(double bound, const GuideSettings& guide) const {
+    const Moments m = logarithms(guide);
+    EXPECT_LT(statistics::t_test_at_least(m, std::log(bound)), level) << told(m, bound);
+  }
+  void expect_above(double bound, const GuideSettings& guide) const {
+    const Moments m = logarithms(guide);
+    EXPECT_GT(statistics::t_test_at_least(m, std::log(bound)), 1 - level) << told(m, bound);
+  }
+
+ private:
+  Moments logarithms(const GuideSettings& guide) const {
+    Moments m;
+    for (int i = 1; i <= pictures_.seeds; ++i) {
+      m.add(std::log(noise(pictures_, guide, i) / plain_[static_cast<std::size_t>(i) - 1]));
+    }
+    return m;
+  }
+  std::string told(const Moments& m, double bound) const {
+    return fmt::format("{}: {:.3f}, bound {}; {:.2f} % of standard error", pictures_.scene,
+                       std::exp(m.mean()), bound, 100 * m.standard_error());
+  }
+
+  Pictures pictures_;
+  std::vector<double> plain_;
+};
 
 GuideSettings skeleton(const AutoNumber& strength, const AutoNumber& probability) {
   SkeletonGuideSettings s;
@@ -31,31 +83,29 @@ GuideSettings skeleton(const AutoNumber& strength, const AutoNumber& probability
 }
 
 TEST(GuideGain, RoundCorners) {
-  const double plain = noise("bends", BsdfGuideSettings{});
-  const auto gain = [&](const GuideSettings& guide) { return noise("bends", guide) / plain; };
-  EXPECT_LT(gain(skeleton({8}, {0.5})), 0.65);
-  EXPECT_LT(gain(skeleton({}, {0.5})), 0.6);
-  EXPECT_LT(gain(skeleton({8}, {})), 0.65);
-  EXPECT_LT(gain(skeleton({}, {})), 0.6);
-  EXPECT_LT(gain(FaceIrradianceGuideSettings{}), 0.9);
-  EXPECT_LT(gain(test::in_small_pictures(SdTreeGuideSettings{})), 0.8);
+  const Gain gain({"bends", 12, 160});
+  gain.expect_below(0.72, skeleton({8}, {0.5}));
+  gain.expect_below(0.68, skeleton({}, {0.5}));
+  gain.expect_below(0.73, skeleton({8}, {}));
+  gain.expect_below(0.72, skeleton({}, {}));
+  gain.expect_below(1, FaceIrradianceGuideSettings{});
+  gain.expect_below(0.95, test::in_small_pictures(SdTreeGuideSettings{}));
 }
 
 // A guided path has little throughput: roulette by it would end just what the guide is for.
 TEST(GuideGain, IsNotLostToRoulette) {
-  const double plain = noise("bends", BsdfGuideSettings{}, 2);
-  EXPECT_LT(noise("bends", skeleton({8}, {0.5}), 2) / plain, 0.85);
+  const Gain gain({"bends", 12, 160, 2});
+  gain.expect_below(0.85, skeleton({8}, {0.5}));
 }
 
 // With the lamp in sight lobes can only cost.
 TEST(GuideGain, WhatIsLearnedDoesNoHarm) {
   for (const char* scene : {"cornell", "atrium"}) {
-    SCOPED_TRACE(scene);
-    const double plain = noise(scene, BsdfGuideSettings{});
-    EXPECT_GT(noise(scene, skeleton({32}, {0.5})) / plain, 1.1) << "the test has no power";
-    EXPECT_LT(noise(scene, skeleton({}, {})) / plain, 1.05);
-    EXPECT_LT(noise(scene, PortalsGuideSettings{}) / plain, 1.02);
-    EXPECT_LT(noise(scene, FaceIrradianceGuideSettings{}) / plain, 1.05);
+    const Gain gain({scene, 5, 64});
+    gain.expect_above(1.1, skeleton({32}, {0.5}));  // or the test has no power
+    gain.expect_below(1.05, skeleton({}, {}));
+    gain.expect_below(1.02, PortalsGuideSettings{});
+    gain.expect_below(1.05, FaceIrradianceGuideSettings{});
   }
 }
 

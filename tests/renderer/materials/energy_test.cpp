@@ -33,7 +33,7 @@ class Energy : public testing::TestWithParam<std::size_t> {
 /// Where ns = ng importance is scattered without the factor that refraction gives radiance. Where
 /// it is not, the adjoint of shading normals may gain energy (Veach 1997, sec. 5.3.3), so that only
 /// radiance is bounded there, and only if nothing refracts.
-TEST_P(Energy, is_not_created) {
+TEST_P(Energy, IsNotCreated) {
   const double level = statistics::sidak(1e-3, surfaces().size() * views().size() * 3);
   std::uint64_t stream = 1000 + GetParam() * 100;
   for (const cases::View& v : views()) {
@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, Energy, testing::Range(std::size_t{0}, surfac
                          [](const auto& instance) { return surfaces()[instance.param].name; });
 
 /// Every single weight is 1: these lose nothing and have no variance.
-TEST(Energy, white_lambert_and_mirror_return_every_sample_whole) {
+TEST(Energy, WhiteLambertAndMirrorReturnEverySampleWhole) {
   const cases::View v = views()[1];
   for (const SurfaceParams& p :
        {cases::lambert({1, 1, 1}), cases::layer(cases::lambert({0, 0, 0}), {1, 1, 1}, 1)}) {
@@ -74,7 +74,7 @@ TEST(Energy, white_lambert_and_mirror_return_every_sample_whole) {
 
 /// Reflected plus refracted is 1, on both sides and under total reflection; to rounding, and for
 /// every sample.
-TEST(Energy, smooth_glass_returns_every_sample_whole) {
+TEST(Energy, SmoothGlassReturnsEverySampleWhole) {
   for (const float ior : {1.0F, 1.33F, 1.5F, 15.0F}) {
     const SurfaceParams params = cases::dielectric({1, 1, 1}, 0, ior, 1);
     for (const cases::View& v : views()) {
@@ -92,7 +92,7 @@ TEST(Energy, smooth_glass_returns_every_sample_whole) {
 }
 
 /// Radiance shrinks by 1 / ior^2 on its way out to the eye, and grows by as much on its way in.
-TEST(Energy, refraction_scales_radiance_by_the_squared_indices) {
+TEST(Energy, RefractionScalesRadianceByTheSquaredIndices) {
   const cases::View v = views()[1];
   const Bsdf bsdf(cases::dielectric({1, 1, 1}, 0, 1.5F, 1), v.ng, v.ng);
   Rng random = cases::rng(9);
@@ -109,7 +109,7 @@ TEST(Energy, refraction_scales_radiance_by_the_squared_indices) {
 
 /// A white base under a smooth layer gives back all that the layer lets through, also at grazing
 /// angles.
-TEST(Energy, layer_over_white_loses_nothing) {
+TEST(Energy, LayerOverWhiteLosesNothing) {
   const V3f ng = views()[0].ng;
   for (const float cos : {1.0F, 0.5F, 0.2F, 0.02F}) {
     const Bsdf bsdf(cases::dielectric({1, 1, 1}, 0, 1.5F, 0), ng, ng);
@@ -120,7 +120,7 @@ TEST(Energy, layer_over_white_loses_nothing) {
 
 /// The layer's means against GGX itself: with F = 1 the facets reflect the one, with Schlick's
 /// weight alone the other.
-TEST(Energy, layer_knows_the_mean_fresnel_factor_of_rough_facets) {
+TEST(Energy, LayerKnowsTheMeanFresnelFactorOfRoughFacets) {
   const V3f ng = views()[0].ng;
   for (const float alpha : {0.01F, 0.2F, 0.55F, 1.0F}) {
     const auto facets = [&](float f0) {
@@ -142,7 +142,7 @@ TEST(Energy, layer_knows_the_mean_fresnel_factor_of_rough_facets) {
 
 /// What enters a layer evenly from all around comes out again: no energy is lost between its two
 /// passages.
-TEST(Energy, layer_scale_is_normalised) {
+TEST(Energy, LayerScaleIsNormalised) {
   for (const float alpha : {0.0F, 0.01F, 0.2F, 0.55F, 1.0F}) {
     const Layer layer(0.04F, 1, alpha);
     constexpr int n = 10000;
@@ -156,7 +156,7 @@ TEST(Energy, layer_scale_is_normalised) {
 }
 
 /// Half a smooth mirror, half Lambert: the shares are those of the mix.
-TEST(Energy, metallic_mixes_by_its_share) {
+TEST(Energy, MetallicMixesByItsShare) {
   const cases::View v = views()[1];
   SurfaceParams params = cases::mixed(cases::lambert({1, 1, 1}), 0.25F);
   params.alpha = 0;

@@ -53,7 +53,7 @@ const V3f z(0, 0, 1);
 const V3f tilted_ns = V3f(0.6F, 0, 0.8F);
 
 /// The disk's rim would be a direction along the surface, of density 0.
-TEST(Extremes, disk_is_open) {
+TEST(Extremes, DiskIsOpen) {
   for (const float x : numbers) {
     for (const float y : numbers) {
       const V2f d = sample_disk({x, y});
@@ -63,7 +63,7 @@ TEST(Extremes, disk_is_open) {
   }
 }
 
-TEST(Extremes, every_surface_at_every_corner_of_the_random_numbers) {
+TEST(Extremes, EverySurfaceAtEveryCornerOfTheRandomNumbers) {
   for (const cases::Surface& s : cases::surfaces()) {
     SCOPED_TRACE(s.name);
     check_everywhere(s.params, ordinary_directions(z), z, z);
@@ -71,7 +71,7 @@ TEST(Extremes, every_surface_at_every_corner_of_the_random_numbers) {
   }
 }
 
-TEST(Extremes, grazing_angles) {
+TEST(Extremes, GrazingAngles) {
   std::vector<V3f> grazing;
   for (const float cos : {1e-3F, 1e-5F, 1e-7F, 1e-12F, 1e-20F, 1e-30F, 1e-38F, 1e-42F, 0.0F}) {
     for (const float side : {1.0F, -1.0F}) {
@@ -87,7 +87,7 @@ TEST(Extremes, grazing_angles) {
   }
 }
 
-TEST(Extremes, shading_normal_in_the_surface) {
+TEST(Extremes, ShadingNormalInTheSurface) {
   const V3f flat_out(1, 0, 0);
   for (const cases::Surface& s : cases::surfaces()) {
     SCOPED_TRACE(s.name);
@@ -97,7 +97,7 @@ TEST(Extremes, shading_normal_in_the_surface) {
   }
 }
 
-TEST(Extremes, opposite_and_equal_directions) {
+TEST(Extremes, OppositeAndEqualDirections) {
   const V3f w = V3f(0.3F, -0.2F, 0.5F).normalized();
   for (const cases::Surface& s : cases::surfaces()) {
     SCOPED_TRACE(s.name);
@@ -105,7 +105,7 @@ TEST(Extremes, opposite_and_equal_directions) {
   }
 }
 
-TEST(Extremes, alpha_from_smooth_to_1) {
+TEST(Extremes, AlphaFromSmoothTo1) {
   for (const float alpha :
        {0.0F, 1e-30F, 1e-5F, 0.9999F * ggx_min_alpha, ggx_min_alpha, 1e-3F, 1.0F}) {
     for (const float metallic : {0.0F, 0.5F, 1.0F}) {
@@ -118,7 +118,7 @@ TEST(Extremes, alpha_from_smooth_to_1) {
   }
 }
 
-TEST(Extremes, index_from_1_to_enormous) {
+TEST(Extremes, IndexFrom1ToEnormous) {
   for (const float ior : {1.0F, 1.0000001F, 1.0001F, 1.5F, 15.0F, 1e4F, 1e8F, 1e15F}) {
     for (const float alpha : {0.0F, ggx_min_alpha, 0.3F, 1.0F}) {
       SCOPED_TRACE(ior);
@@ -129,7 +129,7 @@ TEST(Extremes, index_from_1_to_enormous) {
   }
 }
 
-TEST(Extremes, base_color_black_white_and_one_channel) {
+TEST(Extremes, BaseColorBlackWhiteAndOneChannel) {
   for (const Rgb& base : {Rgb(0, 0, 0), Rgb(1, 1, 1), Rgb(0, 0, 1), Rgb(1e-38F, 0, 0)}) {
     for (const float transmission : {0.0F, 0.3F, 1.0F}) {
       for (const float f90 : {0.0F, 1e-30F, 1.0F}) {
@@ -144,7 +144,7 @@ TEST(Extremes, base_color_black_white_and_one_channel) {
   }
 }
 
-TEST(Extremes, layer_that_reflects_everything_or_nearly) {
+TEST(Extremes, LayerThatReflectsEverythingOrNearly) {
   for (const float f : {1.0F, 0.9999999F, 0.99F}) {
     for (const float alpha : {0.0F, 0.3F, 1.0F}) {
       SurfaceParams p = cases::layer(cases::lambert({1, 1, 1}), {f, f, f}, 1);
@@ -154,7 +154,7 @@ TEST(Extremes, layer_that_reflects_everything_or_nearly) {
   }
 }
 
-TEST(Extremes, random_surfaces_and_directions) {
+TEST(Extremes, RandomSurfacesAndDirections) {
   Rng random = cases::rng(1);
   const auto edge = [&] {
     const float u = random.next();

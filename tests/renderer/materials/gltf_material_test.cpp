@@ -65,7 +65,7 @@ class GltfTextures : public testing::Test {
   std::vector<std::unique_ptr<Texture>> textures_;
 };
 
-TEST(GltfMaterial, defaults_are_those_of_the_specification) {
+TEST(GltfMaterial, DefaultsAreThoseOfTheSpecification) {
   const SurfaceParams p = surface_params(Material{}, {}, uv);
   EXPECT_EQ(p.base_color, Rgb(1, 1, 1));
   EXPECT_EQ(p.metallic, 1);
@@ -79,13 +79,13 @@ TEST(GltfMaterial, defaults_are_those_of_the_specification) {
   EXPECT_EQ(SurfaceParams{}.ior, p.ior);
 }
 
-TEST(GltfMaterial, roughness_is_squared) {
+TEST(GltfMaterial, RoughnessIsSquared) {
   Material m;
   m.roughness = 0.3F;
   EXPECT_FLOAT_EQ(surface_params(m, {}, uv).alpha, 0.09F);
 }
 
-TEST(GltfMaterial, ior_sets_the_reflectance) {
+TEST(GltfMaterial, IorSetsTheReflectance) {
   Material m;
   for (const float ior : {1.0F, 1.33F, 2.4F, 15.0F}) {
     m.ior = ior;
@@ -95,7 +95,7 @@ TEST(GltfMaterial, ior_sets_the_reflectance) {
   }
 }
 
-TEST(GltfMaterial, ior_0_reflects_everything) {
+TEST(GltfMaterial, Ior0ReflectsEverything) {
   Material m;
   m.ior = 0;
   const SurfaceParams p = surface_params(m, {}, uv);
@@ -105,7 +105,7 @@ TEST(GltfMaterial, ior_0_reflects_everything) {
   EXPECT_EQ(surface_params(m, {}, uv).f0, Rgb(0.5F, 0.25F, 1));
 }
 
-TEST(GltfMaterial, specular_dims_and_tints) {
+TEST(GltfMaterial, SpecularDimsAndTints) {
   Material m;
   m.specular = 0.5F;
   m.specular_color = Rgb(1, 2, 100);
@@ -117,7 +117,7 @@ TEST(GltfMaterial, specular_dims_and_tints) {
 }
 
 /// specularFactor = 0 turns the dielectric into Lambert's law itself.
-TEST(GltfMaterial, without_specular_it_is_lambert) {
+TEST(GltfMaterial, WithoutSpecularItIsLambert) {
   Material m;
   m.metallic = 0;
   m.specular = 0;
@@ -130,7 +130,7 @@ TEST(GltfMaterial, without_specular_it_is_lambert) {
   EXPECT_EQ(bsdf.albedo(), m.base_color);
 }
 
-TEST(GltfMaterial, albedo_of_metal_and_glass_is_their_base_color) {
+TEST(GltfMaterial, AlbedoOfMetalAndGlassIsTheirBaseColor) {
   const V3f n(0, 0, 1);
   Material m;
   m.base_color = Rgb(0.2F, 0.4F, 0.6F);
@@ -142,7 +142,7 @@ TEST(GltfMaterial, albedo_of_metal_and_glass_is_their_base_color) {
   EXPECT_NEAR(Bsdf(surface_params(m, {}, uv), n, n).albedo().x, 0.04 + 0.96 * 0.2, 1e-6);
 }
 
-TEST_F(GltfTextures, multiply_their_factors_from_the_right_channels) {
+TEST_F(GltfTextures, MultiplyTheirFactorsFromTheRightChannels) {
   Material m;
   m.base_color = Rgb(0.5F, 1, 1);
   m.base_color_texture = add({{{255, 188, 0, 10}}}, Texture::Encoding::srgb);
@@ -176,7 +176,7 @@ TEST_F(GltfTextures, multiply_their_factors_from_the_right_channels) {
 }
 
 /// The set of coordinates and KHR_texture_transform belong to the reference, not to the material.
-TEST_F(GltfTextures, use_their_own_coordinates) {
+TEST_F(GltfTextures, UseTheirOwnCoordinates) {
   const std::vector<Pixel> red_green{{{255, 0, 0, 255}}, {{0, 255, 0, 255}}};
   Material m;
   m.base_color_texture = add(red_green, Texture::Encoding::linear);

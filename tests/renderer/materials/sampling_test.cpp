@@ -65,7 +65,7 @@ bool too_thin_for_floats(const SurfaceParams& p, const cases::View& v) {
 
 constexpr Transport both_transports[] = {Transport::radiance, Transport::importance};
 
-TEST_P(Sampling, follows_pdf) {
+TEST_P(Sampling, FollowsPdf) {
   const double level = statistics::sidak(1e-3, surfaces().size() * views().size() * 2);
   std::uint64_t stream = GetParam() * 100;
   for (const cases::View& v : views()) {
@@ -89,7 +89,7 @@ TEST_P(Sampling, follows_pdf) {
   }
 }
 
-TEST_P(Sampling, weight_is_eval_over_pdf) {
+TEST_P(Sampling, WeightIsEvalOverPdf) {
   std::uint64_t stream = GetParam();
   for (const cases::View& v : views()) {
     SCOPED_TRACE(v.name);
@@ -114,7 +114,7 @@ TEST_P(Sampling, weight_is_eval_over_pdf) {
 
 /// A direction that pdf() never returns must not reflect either, or light is lost: checked in both
 /// modes.
-TEST_P(Sampling, covers_all_that_scatters) {
+TEST_P(Sampling, CoversAllThatScatters) {
   std::uint64_t stream = GetParam();
   for (const cases::View& v : views()) {
     const Bsdf bsdf(surface_.params, v.ng, v.ns);
@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, Sampling, testing::Range(std::size_t{0}, surf
                          [](const auto& instance) { return surfaces()[instance.param].name; });
 
 /// The harness itself: a density without its cosine, and a lobe one percent too wide, are caught.
-TEST(SphereChiSquare, rejects_wrong_densities) {
+TEST(SphereChiSquare, RejectsWrongDensities) {
   const cases::View v = views()[1];
   const auto p_value = [&](const SurfaceParams& params, const auto& density) {
     const Bsdf bsdf(params, v.ng, v.ns);

@@ -33,7 +33,7 @@ Split split(const Bsdf& bsdf, const V3f& wo) {
   return result;
 }
 
-TEST(Specular, mirror_direction) {
+TEST(Specular, MirrorDirection) {
   const Bsdf bsdf(cases::metal({1, 1, 1}, 0), slanted, slanted);
   for (const float cos : {1.0F, 0.7F, 0.1F, 1e-3F, -0.4F}) {
     const V3f wo = cases::direction(slanted, cos, 1);
@@ -45,7 +45,7 @@ TEST(Specular, mirror_direction) {
   }
 }
 
-TEST(Specular, mirror_of_a_tilted_normal) {
+TEST(Specular, MirrorOfATiltedNormal) {
   const V3f ns = cases::direction(slanted, 0.95F, 1);
   const Bsdf bsdf(cases::metal({1, 1, 1}, 0), slanted, ns);
   const V3f wo = cases::direction(slanted, 0.6F, 2);
@@ -54,7 +54,7 @@ TEST(Specular, mirror_of_a_tilted_normal) {
   EXPECT_LT((s->wi - reflect(wo, ns)).length(), 1e-6);
 }
 
-TEST(Specular, mirror_into_the_surface_fails) {
+TEST(Specular, MirrorIntoTheSurfaceFails) {
   const V3f leaning = cases::direction(slanted, 0.766F, 1 + pi);
   const V3f eye = cases::direction(slanted, 0.766F, 1);
   ASSERT_GT(dot(eye, leaning), 0);
@@ -64,7 +64,7 @@ TEST(Specular, mirror_into_the_surface_fails) {
 }
 
 /// A flat triangle whose normals were interpolated, or point inwards, is still flat.
-TEST(Specular, normals_that_only_differ_by_rounding_or_sign_are_flat) {
+TEST(Specular, NormalsThatOnlyDifferByRoundingOrSignAreFlat) {
   const V3f wo = cases::direction(slanted, 0.6F, 1);
   for (const V3f& ns : {slanted, -slanted, (slanted + V3f(1e-7F, 0, 0)).normalized()}) {
     const Split s = split(Bsdf(cases::metal({1, 1, 1}, 0), slanted, ns), wo);
@@ -77,7 +77,7 @@ TEST(Specular, normals_that_only_differ_by_rounding_or_sign_are_flat) {
 }
 
 /// sin / sin' = n' / n, in the plane of incidence, from both sides.
-TEST(Specular, snell) {
+TEST(Specular, Snell) {
   for (const float ior : {1.0F, 1.05F, 1.33F, 1.5F, 2.4F, 15.0F}) {
     const Bsdf bsdf(cases::dielectric({1, 1, 1}, 0, ior, 1), slanted, slanted);
     for (const float cos : {0.999F, 0.8F, 0.3F, 0.01F, -0.999F, -0.9F}) {
@@ -99,7 +99,7 @@ TEST(Specular, snell) {
 }
 
 /// Refract, then refract back along the found direction: the way of light can be reversed.
-TEST(Specular, refraction_reverses) {
+TEST(Specular, RefractionReverses) {
   const Bsdf bsdf(cases::dielectric({1, 1, 1}, 0, 1.5F, 1), slanted, slanted);
   for (const float cos : {0.9F, 0.5F, 0.1F}) {
     const V3f wo = cases::direction(slanted, cos, 1);
@@ -112,7 +112,7 @@ TEST(Specular, refraction_reverses) {
 
 /// Born and Wolf, sec. 1.5: 4 % at normal incidence for 1.5; nothing of one polarisation at
 /// Brewster's angle; everything beyond the critical angle.
-TEST(Specular, fresnel) {
+TEST(Specular, Fresnel) {
   EXPECT_NEAR(fresnel_dielectric(1, 1.5F).reflectance, 0.04, 1e-7);
   EXPECT_NEAR(fresnel_dielectric(1, 1 / 1.5F).reflectance, 0.04, 1e-7);
   EXPECT_NEAR(fresnel_dielectric(1, 15).reflectance, 0.765625, 1e-6);
@@ -126,7 +126,7 @@ TEST(Specular, fresnel) {
   EXPECT_NEAR(fresnel_dielectric(in.cos_t, 1 / 1.5F).reflectance, in.reflectance, 1e-6);
 }
 
-TEST(Specular, smooth_glass_splits_by_fresnel) {
+TEST(Specular, SmoothGlassSplitsByFresnel) {
   const Bsdf bsdf(cases::dielectric({1, 1, 1}, 0, 1.5F, 1), slanted, slanted);
   for (const float cos : {1.0F, 0.5F, 0.1F, -0.9F}) {
     const Split s = split(bsdf, cases::direction(slanted, cos, 1));
@@ -136,7 +136,7 @@ TEST(Specular, smooth_glass_splits_by_fresnel) {
   }
 }
 
-TEST(Specular, total_internal_reflection) {
+TEST(Specular, TotalInternalReflection) {
   for (const float alpha : {0.0F, 0.001F}) {
     const Bsdf bsdf(cases::dielectric({1, 1, 1}, alpha, 1.5F, 1), slanted, slanted);
     const V3f wo = cases::direction(slanted, -0.5F, 1);  // the critical cosine is 0.745
@@ -157,7 +157,7 @@ TEST(Specular, total_internal_reflection) {
 
 /// An index of 1 is no interface: nothing is bent and nothing reflected, rough or not, also at
 /// grazing angles.
-TEST(Specular, ior_1_lets_everything_pass) {
+TEST(Specular, Ior1LetsEverythingPass) {
   for (const float alpha : {0.0F, 0.3F, 1.0F}) {
     const Bsdf bsdf(cases::dielectric({1, 1, 1}, alpha, 1, 1), slanted, slanted);
     for (const float cos : {1.0F, 0.3F, 1e-3F, -0.2F}) {
@@ -172,7 +172,7 @@ TEST(Specular, ior_1_lets_everything_pass) {
 
 /// A rough interface whose index comes close to 1 neither jumps nor breaks down where it becomes
 /// clear.
-TEST(Specular, index_close_to_1) {
+TEST(Specular, IndexCloseTo1) {
   const V3f wo = cases::direction(slanted, 0.6F, 1);
   const float limit = 1 + ggx_min_alpha / 0.5F;
   for (const float ior : {1.00001F, limit - 2e-5F, limit + 2e-5F, 1.001F}) {
@@ -194,7 +194,7 @@ TEST(Specular, index_close_to_1) {
 
 /// The mean facet hardly reflects, but those turned towards grazing light do, even totally: they
 /// must be drawn often enough.
-TEST(Specular, clear_interface_reflects_at_grazing_angles) {
+TEST(Specular, ClearInterfaceReflectsAtGrazingAngles) {
   const SurfaceParams p = cases::dielectric({1, 1, 1}, 0.5F, 1.00015F, 1);
   const Bsdf bsdf(p, slanted, slanted);
   ASSERT_TRUE(Interface(p).clear());
@@ -211,7 +211,7 @@ TEST(Specular, clear_interface_reflects_at_grazing_angles) {
   EXPECT_LT(largest, 2);
 }
 
-TEST(Specular, connectible) {
+TEST(Specular, Connectible) {
   const auto connectible = [&](const SurfaceParams& p) {
     return Bsdf(p, slanted, slanted).connectible();
   };

@@ -9,7 +9,7 @@
 namespace lacuna::statistics {
 namespace {
 
-TEST(Statistics, incomplete_gamma) {
+TEST(Statistics, IncompleteGamma) {
   EXPECT_EQ(gamma_q(2.5, 0), 1);
   // Q(1, x) = exp(-x); Q(1/2, x) = erfc(sqrt x); Q(3, x) = exp(-x) (1 + x + x^2 / 2).
   for (const double x : {1e-3, 0.5, 1.0, 3.0, 20.0, 200.0}) {
@@ -23,7 +23,7 @@ TEST(Statistics, incomplete_gamma) {
 
 /// Abramowitz and Stegun, tables 26.8 and 26.10: points that are exceeded with the given
 /// probability.
-TEST(Statistics, tables) {
+TEST(Statistics, Tables) {
   EXPECT_NEAR(chi_square_p(3.841459, 1), 0.05, 1e-7);
   EXPECT_NEAR(chi_square_p(18.30704, 10), 0.05, 1e-6);
   EXPECT_NEAR(chi_square_p(135.807, 100), 0.01, 1e-6);
@@ -36,12 +36,12 @@ TEST(Statistics, tables) {
   EXPECT_NEAR(student_two_sided_p(2, 1e7), two_sided_p(2), 1e-7);
 }
 
-TEST(Statistics, sidak) {
+TEST(Statistics, Sidak) {
   EXPECT_DOUBLE_EQ(sidak(0.05, 1), 0.05);
   EXPECT_NEAR(1 - std::pow(1 - sidak(0.05, 20), 20), 0.05, 1e-12);
 }
 
-TEST(Statistics, moments) {
+TEST(Statistics, Moments) {
   Moments m;
   for (const double x : {1.0, 2.0, 4.0, 9.0}) m.add(1e9 + x);
   EXPECT_EQ(m.count(), 4U);
@@ -51,7 +51,7 @@ TEST(Statistics, moments) {
 }
 
 /// A constant has no noise: it is right or it is wrong.
-TEST(Statistics, constants) {
+TEST(Statistics, Constants) {
   Moments ones;
   for (int i = 0; i < 10; ++i) ones.add(1);
   EXPECT_EQ(z_test(ones, 1), 1);
@@ -63,7 +63,7 @@ TEST(Statistics, constants) {
   EXPECT_EQ(z_test_at_most(ones, 1.001), 1);
 }
 
-TEST(Statistics, chi_square_pools_small_cells) {
+TEST(Statistics, ChiSquarePoolsSmallCells) {
   const std::vector<double> expected{50, 1, 1, 1, 1, 1, 45};
   const std::vector<double> observed{50, 5, 0, 0, 0, 0, 45};
   const ChiSquare r = chi_square_test(observed, expected);
@@ -72,7 +72,7 @@ TEST(Statistics, chi_square_pools_small_cells) {
   EXPECT_EQ(r.p, 1);
 }
 
-TEST(Statistics, chi_square_refuses_the_impossible) {
+TEST(Statistics, ChiSquareRefusesTheImpossible) {
   const std::vector<double> expected{50, 0, 50};
   EXPECT_EQ(chi_square_test(std::vector<double>{50, 1, 49}, expected).p, 0);
   EXPECT_GT(chi_square_test(std::vector<double>{50, 0, 50}, expected).p, 0.9);
@@ -82,7 +82,7 @@ TEST(Statistics, chi_square_refuses_the_impossible) {
 }
 
 /// p-values of right hypotheses are uniform: tested by the same test one level up.
-TEST(Statistics, p_values_are_uniform) {
+TEST(Statistics, PValuesAreUniform) {
   Rng random(1, 0, 0, Rng::Purpose::test);
   constexpr int bins = 10, repeats = 2000;
   std::vector<double> chi(bins), z(bins), t(bins);

@@ -18,7 +18,7 @@ class Symmetry : public testing::TestWithParam<std::size_t> {
 
 /// f(a, b) / n_b^2 = f(b, a) / n_a^2 with n the index of refraction on the direction's side, where
 /// ns = ng (Veach 1997, eq. 5.14).
-TEST_P(Symmetry, reciprocal) {
+TEST_P(Symmetry, Reciprocal) {
   const V3f ng = views()[0].ng;
   const Bsdf bsdf(surface_.params, ng, ng);
   Rng random = cases::rng(GetParam());
@@ -60,7 +60,7 @@ TEST_P(Symmetry, reciprocal) {
 ///   integral of g(e) F(e, l) h(l) |e.ng| de dl   over the sphere.
 /// A mode that draws where the other does not, or a wrong factor for shading normals or refraction,
 /// tells them apart.
-TEST_P(Symmetry, radiance_and_importance_measure_the_same_light) {
+TEST_P(Symmetry, RadianceAndImportanceMeasureTheSameLight) {
   const double level = statistics::sidak(1e-3, surfaces().size() * 3);
   const V3f ng = views()[0].ng;
   const V3f towards_eye = V3f(0.3F, 0.2F, -0.9F).normalized();
@@ -88,7 +88,7 @@ TEST_P(Symmetry, radiance_and_importance_measure_the_same_light) {
 }
 
 /// The same, pointwise.
-TEST_P(Symmetry, eval_is_its_own_adjoint) {
+TEST_P(Symmetry, EvalIsItsOwnAdjoint) {
   for (const cases::View& v : views()) {
     const Bsdf bsdf(surface_.params, v.ng, v.ns);
     Rng random = cases::rng(GetParam());
@@ -105,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, Symmetry, testing::Range(std::size_t{0}, surf
                          [](const auto& instance) { return surfaces()[instance.param].name; });
 
 /// Light never passes an opaque surface, whatever its shading normal says.
-TEST(Symmetry, opaque_surfaces_do_not_leak) {
+TEST(Symmetry, OpaqueSurfacesDoNotLeak) {
   for (const cases::Surface& surface : surfaces()) {
     if (!surface.opaque()) continue;
     for (const cases::View& v : views()) {
@@ -126,7 +126,7 @@ TEST(Symmetry, opaque_surfaces_do_not_leak) {
 }
 
 /// An eye behind ns sees the surface as if it were flat, not black.
-TEST(Symmetry, eyes_behind_the_shading_normal_see_the_flat_surface) {
+TEST(Symmetry, EyesBehindTheShadingNormalSeeTheFlatSurface) {
   const V3f ng = views()[0].ng;
   const V3f ns = cases::direction(ng, 0.3F, 0);
   const V3f eye = cases::direction(ng, 0.2F, pi);
@@ -141,7 +141,7 @@ TEST(Symmetry, eyes_behind_the_shading_normal_see_the_flat_surface) {
 }
 
 /// The normals of some files point inwards: they say how the surface bends, not which side is out.
-TEST(Symmetry, inverted_shading_normal_is_turned) {
+TEST(Symmetry, InvertedShadingNormalIsTurned) {
   const cases::View v = views()[6];
   const SurfaceParams params = cases::metal({1, 1, 1}, 0.3F);
   const Bsdf given(params, v.ng, v.ns), inverted(params, v.ng, -v.ns);
