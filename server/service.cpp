@@ -13,8 +13,8 @@
 #include "server/http/access.h"
 #include "server/http/address.h"
 #include "server/http/http.h"
-#include "server/queue/caretaker.h"
 #include "server/queue/executor_local.h"
+#include "server/queue/maintenance_thread.h"
 #include "server/queue/queue.h"
 #include "server/routes/routes.h"
 #include "server/routes/scene_uploads.h"
@@ -148,7 +148,7 @@ struct Service::Parts {
         disk(data.jobs(), settings.care.disk_floor),
         queue(executor, table, disk, queue_settings(settings)),
         keeper(sweeps, table, queue, disk, settings.queue.max_waiting / 2),
-        caretaker(table, queue, settings.care),
+        maintenance(table, queue, settings.care),
         files(page(settings)),
         access(settings.http.bind, settings.access,
                [this](const std::string& path) { return files.has(path); }),
@@ -170,7 +170,7 @@ struct Service::Parts {
   DiskWatch disk;
   Queue queue;
   SweepKeeper keeper;
-  Caretaker caretaker;
+  MaintenanceThread maintenance;
   const StaticFiles files;
   Access access;
   HttpMetrics http_metrics;
@@ -189,7 +189,7 @@ void Service::start() {
   remove_stale_folders(parts_->data.jobs());
   parts_->sweeps.read();
   parts_->table.rescan();
-  parts_->caretaker.start();
+  parts_->maintenance.start();
   parts_->queue.start();
   parts_->keeper.start();
   parts_->http.start();
@@ -200,7 +200,7 @@ void Service::stop() {
   parts_->http.stop();
   parts_->keeper.stop();
   parts_->queue.stop();
-  parts_->caretaker.stop();
+  parts_->maintenance.stop();
 }
 
 std::string Service::url() const { return parts_->http.url(); }

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "renderer/connections/cell_statistics.h"
-#include "renderer/connections/site.h"
+#include "renderer/connections/resampling_cell.h"
 #include "renderer/path/strategy.h"
 #include "renderer/settings/connections_settings.h"
 
@@ -27,9 +27,9 @@ struct PairedConnections : StrategyBase {
 /// struct
 ///   with a member `cell` < cells().
 /// - pick(): draws a light vertex for each s in [1, longest] that has any, each with probability
-///   `survival(s)`, and calls `use(s, pick)`. Pick::probability is the probability of this vertex
-///   among those of its s: the exact one, > 0, or the method is biased. Every vertex that can
-///   contribute has a probability above 0.
+///   `survival(s)`, and calls `use(s, pick)`. VertexSample::probability is the probability of this
+///   vertex among those of its s: the exact one, > 0, or the method is biased. Every vertex that
+///   can contribute has a probability above 0.
 ///
 /// find() and pick() are const and are called by many threads; they draw from the given generator
 /// only, so that the bits do not depend on the threads.
@@ -43,7 +43,7 @@ concept SharedConnections = Strategy<C> &&
   c.begin(context, lights, seen, counters);
   { k.find(v, 1, rng).cell } -> std::convertible_to<std::uint32_t>;
   k.pick(
-      k.find(v, 1, rng), lights, 1, rng, [](int) { return 1.0F; }, [](int, const Pick&) {});
+      k.find(v, 1, rng), lights, 1, rng, [](int) { return 1.0F; }, [](int, const VertexSample&) {});
 };
 
 template <class C>

@@ -60,7 +60,7 @@ class HybridConnections : public StrategyBase {
       cache_.pick(place.records, lights, longest, rng, survival, use);
       return;
     }
-    skeleton_.pick(place.node, lights, longest, rng, survival, [&](int s, Pick pick) {
+    skeleton_.pick(place.node, lights, longest, rng, survival, [&](int s, VertexSample pick) {
       pick.owner =
           static_cast<std::uint8_t>(pick.owner + ImportanceCacheConnections::distributions.size());
       use(s, pick);

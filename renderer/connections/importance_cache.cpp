@@ -30,7 +30,7 @@ void ImportanceCacheConnections::place_records(const IterationContext& context, 
                   static_cast<int>(pixel / static_cast<std::uint64_t>(width)));
       batch.start(context.camera, rng, context.camera.sample(p, rng.next2()), pixel);
     }
-    walk.lead(
+    walk.trace_paths(
         batch.walkers, [](std::size_t, int) {},
         [&](std::size_t i, int depth) {
           const Vertex& v = batch.vertex(i, depth);
@@ -67,12 +67,12 @@ void ImportanceCacheConnections::begin(const IterationContext& context, const Li
   counters.shadow_rays += std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
 }
 
-std::uint64_t ImportanceCacheConnections::build(const Vertex& record, Site& site,
+std::uint64_t ImportanceCacheConnections::build(const Vertex& record, ResamplingCell& site,
                                                 const Scene& scene,
                                                 const LightVertices& lights) const {
   Vertex unit = record;  // what light gives to the record, whatever the record gives to a pixel
   unit.throughput = Rgb(1, 1, 1);
-  const SurfaceEnd<BsdfGuide> eye{unit, 1, Transport::radiance, guide_};
+  const SurfaceEndpoint<BsdfGuide> eye{unit, 1, Transport::radiance, guide_};
   const auto finite = [](double w) { return std::isfinite(w) ? w : 0.0; };
   std::vector<Ray> rays;
   std::vector<std::size_t> asked;

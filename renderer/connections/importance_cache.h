@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "renderer/connections/cell_statistics.h"
-#include "renderer/connections/site.h"
+#include "renderer/connections/resampling_cell.h"
 #include "renderer/path/bsdf_guide.h"
 #include "renderer/path/record_tree.h"
 #include "renderer/path/strategy.h"
@@ -38,7 +38,7 @@ class ImportanceCacheConnections : public StrategyBase {
     std::uint32_t cell = 0;  ///< of CellStatistics
     std::size_t n = 0;
     std::array<std::uint32_t, max_neighbours> near{};  // n records
-    const Site* drawn = nullptr;                       // one of them
+    const ResamplingCell* drawn = nullptr;             // one of them
   };
   Place find(const Vertex& v, int /*depth*/, Rng& rng) const {
     Place place;
@@ -57,10 +57,10 @@ class ImportanceCacheConnections : public StrategyBase {
   void pick(const Place& place, const LightVertices& lights, int longest, Rng& rng,
             Survival&& survival, Use&& use) const {
     if (place.n == 0) {
-      pick_uniformly(lights, longest, rng, uniform, survival, use);
+      sample_uniformly(lights, longest, rng, uniform, survival, use);
       return;
     }
-    pick_all(
+    sample_connections(
         lights, longest, survival, [&](int s) { return place.drawn->table(s).choose(rng); },
         [&](int s, std::uint32_t chosen) {
           const std::uint32_t i = place.drawn->table(s).resolve(chosen, rng).index;
@@ -68,7 +68,7 @@ class ImportanceCacheConnections : public StrategyBase {
           for (std::size_t k = 0; k < place.n; ++k) {
             sum += sites_[place.near[k]].table(s).pmf(i).value;
           }
-          return Pick{i, sum / static_cast<float>(place.n), place.drawn->table(s).owner(i)};
+          return VertexSample{i, sum / static_cast<float>(place.n), place.drawn->table(s).owner(i)};
         },
         use);
   }
@@ -81,14 +81,14 @@ class ImportanceCacheConnections : public StrategyBase {
   static constexpr std::uint8_t uniform = 3;  // in `distributions`
 
   void place_records(const IterationContext& context, int longest, Counters& counters);
-  std::uint64_t build(const Vertex& record, Site& site, const Scene& scene,
+  std::uint64_t build(const Vertex& record, ResamplingCell& site, const Scene& scene,
                       const LightVertices& lights) const;
 
   ImportanceCacheSettings settings_;
   int record_depth_;
   BsdfGuide guide_;
   std::vector<Vertex> records_;
-  std::vector<Site> sites_;
+  std::vector<ResamplingCell> sites_;
   RecordTree tree_;
 };
 

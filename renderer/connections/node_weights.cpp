@@ -52,7 +52,7 @@ std::vector<Ray> rays_to(const LightVertices& lights, int s, const V3f& x) {
     } else if (const EmitterPoint& e = lights.emitter(i); e.infinite()) {
       rays.push_back({x, e.x});
     } else {
-      to(e.x, [&](const V3f& w) { return EmitterEnd{e}.origin(w); });
+      to(e.x, [&](const V3f& w) { return EmitterEndpoint{e}.origin(w); });
     }
   }
   return rays;

@@ -9,7 +9,7 @@ namespace lacuna {
 /// All choices of connections. A new one is a row here and an alternative of ConnectionsSettings.
 using ConnectionsRegistry =
     Registry<Entry<PairedSettings, PairedConnections>, Entry<UniformSettings, UniformConnections>,
-             Entry<SkeletonSettings, SkeletonConnections>,
+             Entry<SkeletonConnectionsSettings, SkeletonConnections>,
              Entry<ImportanceCacheSettings, ImportanceCacheConnections>,
              Entry<HybridSettings, HybridConnections>>;
 

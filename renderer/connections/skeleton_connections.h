@@ -4,7 +4,7 @@
 
 #include "analysis/skeleton/surface_lookup.h"
 #include "renderer/connections/cell_statistics.h"
-#include "renderer/connections/site.h"
+#include "renderer/connections/resampling_cell.h"
 #include "renderer/path/strategy.h"
 #include "renderer/settings/connections_settings.h"
 
@@ -14,7 +14,7 @@ namespace lacuna {
 /// skeleton, which see much of what the eye vertices around them see (Noel 2015, 11.2-11.4).
 class SkeletonConnections : public StrategyBase {
  public:
-  explicit SkeletonConnections(const SkeletonSettings& settings) : settings_(settings) {}
+  explicit SkeletonConnections(const SkeletonConnectionsSettings& settings) : settings_(settings) {}
 
   const ResamplingSettings& resampling() const { return settings_; }
   static constexpr std::array<std::string_view, 3> distributions{"visible", "unshadowed",
@@ -31,8 +31,8 @@ class SkeletonConnections : public StrategyBase {
 
   /// Where connections from an eye vertex are drawn.
   struct Place {
-    std::uint32_t cell = 0;      ///< of CellStatistics
-    const Site* site = nullptr;  // none: uniformly
+    std::uint32_t cell = 0;                ///< of CellStatistics
+    const ResamplingCell* site = nullptr;  // none: uniformly
   };
   Place find(const Vertex& v, int /*depth*/, Rng&) const {
     const std::uint32_t node = lookup_->node(V3d(v.surface.x), V3d(v.surface.ng), V3d(v.wp));
@@ -46,15 +46,15 @@ class SkeletonConnections : public StrategyBase {
   void pick(const Place& place, const LightVertices& lights, int longest, Rng& rng,
             Survival&& survival, Use&& use) const {
     if (place.site == nullptr) {
-      pick_uniformly(lights, longest, rng, uniform, survival, use);
+      sample_uniformly(lights, longest, rng, uniform, survival, use);
       return;
     }
-    const Site& site = *place.site;
-    pick_all(
+    const ResamplingCell& site = *place.site;
+    sample_connections(
         lights, longest, survival, [&](int s) { return site.table(s).choose(rng); },
         [&](int s, std::uint32_t chosen) {
           const AliasTable::Draw d = site.table(s).resolve(chosen, rng);
-          return Pick{d.index, d.pmf.value, site.table(s).owner(d.index)};
+          return VertexSample{d.index, d.pmf.value, site.table(s).owner(d.index)};
         },
         use);
   }
@@ -67,11 +67,11 @@ class SkeletonConnections : public StrategyBase {
   bool accepted(std::uint64_t mapped, std::uint64_t sum) const;
   std::uint64_t build(std::size_t node, const Scene& scene, const LightVertices& lights);
 
-  SkeletonSettings settings_;
+  SkeletonConnectionsSettings settings_;
   std::vector<V3f> positions_;  // of the nodes, scene units
   double least_distance_ = 0;
   std::optional<SurfaceLookup> lookup_;
-  std::vector<Site> sites_;
+  std::vector<ResamplingCell> sites_;
   std::size_t used_ = 0;
 };
 

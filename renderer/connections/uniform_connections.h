@@ -1,7 +1,7 @@
 #pragma once
 
 #include "renderer/connections/cell_statistics.h"
-#include "renderer/connections/site.h"
+#include "renderer/connections/resampling_cell.h"
 #include "renderer/path/strategy.h"
 #include "renderer/settings/connections_settings.h"
 
@@ -30,7 +30,7 @@ class UniformConnections : public StrategyBase {
   template <class Survival, class Use>
   static void pick(const Place&, const LightVertices& lights, int longest, Rng& rng,
                    Survival&& survival, Use&& use) {
-    pick_uniformly(lights, longest, rng, 0, survival, use);
+    sample_uniformly(lights, longest, rng, 0, survival, use);
   }
 
  private:

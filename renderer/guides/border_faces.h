@@ -6,7 +6,7 @@
 #include "analysis/skeleton/surface_lookup.h"
 #include "renderer/core/alias_table.h"
 #include "renderer/guides/crossed_faces.h"
-#include "renderer/guides/directions.h"
+#include "renderer/guides/guiding_distribution.h"
 #include "renderer/settings/guide_settings.h"
 
 namespace lacuna {

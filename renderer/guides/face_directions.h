@@ -3,22 +3,22 @@
 #include "analysis/regions/voxel_face.h"
 #include "analysis/skeleton/surface_lookup.h"
 #include "renderer/guides/crossed_faces.h"
-#include "renderer/guides/directions.h"
+#include "renderer/guides/guiding_distribution.h"
 #include "renderer/guides/region_mixture.h"
 #include "renderer/guides/tuning.h"
 #include "renderer/settings/guide_settings.h"
 
 namespace lacuna {
 
-/// Directions through voxel faces: a face is drawn from a distribution that the region of the point
-/// has, then a point uniform on it. Faces hide one another, and a direction may be drawn through
-/// each that lies on its way; so its density adds up all of them, out of sight or not:
+/// GuidingDistribution through voxel faces: a face is drawn from a distribution that the region of
+/// the point has, then a point uniform on it. Faces hide one another, and a direction may be drawn
+/// through each that lies on its way; so its density adds up all of them, out of sight or not:
 ///     p(w) = sum_faces P(face) t^2 / |cos|
 /// with t the distance in voxels, as a face has area 1 (Noel 2015, 10.4, whose pictures came out
 /// too bright). `Faces` has the distributions, PortalFaces or BorderFaceLight, and says whether
 /// faces are drawn and counted only where the ray leaves the region through them.
 template <class Faces>
-class FaceDirections final : public Directions {
+class FaceDirections final : public GuidingDistribution {
  public:
   /// The settings of the guide, which Faces is made of, too.
   template <class Settings>
@@ -52,7 +52,7 @@ class FaceDirections final : public Directions {
     return told;
   }
 
-  GuideSite site(const Surface& s, const V3f& w) const override {
+  GuidingCell site(const Surface& s, const V3f& w) const override {
     const std::optional<Imath::V3i> voxel = lookup_->voxel(V3d(s.x), V3d(s.ng), V3d(w));
     if (!voxel) return {};
     const auto index = static_cast<std::uint32_t>(label_->index(*voxel));

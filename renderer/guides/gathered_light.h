@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "renderer/guides/directions.h"
+#include "renderer/guides/guiding_distribution.h"
 #include "renderer/path/eye_batch.h"
 
 namespace lacuna {

@@ -4,15 +4,16 @@
 
 namespace lacuna {
 
-std::unique_ptr<Directions> make_directions(const GuideSettings& settings) {
-  return GuideRegistry::visit(settings, []<class G>(const auto& s) -> std::unique_ptr<Directions> {
-    if constexpr (std::derived_from<G, Directions>) {
-      return std::make_unique<G>(s);
-    } else {
-      static_assert(std::is_same_v<G, BsdfGuide>);
-      return nullptr;
-    }
-  });
+std::unique_ptr<GuidingDistribution> make_guiding_distribution(const GuideSettings& settings) {
+  return GuideRegistry::visit(settings,
+                              []<class G>(const auto& s) -> std::unique_ptr<GuidingDistribution> {
+                                if constexpr (std::derived_from<G, GuidingDistribution>) {
+                                  return std::make_unique<G>(s);
+                                } else {
+                                  static_assert(std::is_same_v<G, BsdfGuide>);
+                                  return nullptr;
+                                }
+                              });
 }
 
 }  // namespace lacuna

@@ -10,13 +10,14 @@
 namespace lacuna {
 
 /// What the guide of these settings knows; nothing: it follows the BSDF alone.
-std::unique_ptr<Directions> make_directions(const GuideSettings& settings);
+std::unique_ptr<GuidingDistribution> make_guiding_distribution(const GuideSettings& settings);
 
 /// `make(guide)` with the guide of these settings: a BsdfGuide or a MixedGuide, so that integrators
 /// are compiled for these two only.
 template <class Make>
 auto with_guide(const GuideSettings& settings, Make&& make) {
-  if (auto directions = make_directions(settings)) return make(MixedGuide(std::move(directions)));
+  if (auto directions = make_guiding_distribution(settings))
+    return make(MixedGuide(std::move(directions)));
   return make(BsdfGuide{});
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "renderer/guides/directions.h"
+#include "renderer/guides/guiding_distribution.h"
 #include "renderer/path/bsdf_guide.h"
 
 namespace lacuna {
@@ -12,7 +12,7 @@ namespace lacuna {
 /// for the transport that it is asked for, so each knows the other's densities.
 class MixedGuide {
  public:
-  explicit MixedGuide(std::unique_ptr<Directions> directions)
+  explicit MixedGuide(std::unique_ptr<GuidingDistribution> directions)
       : directions_(std::move(directions)) {}
 
   bool needs_space() const { return directions_->needs_space(); }
@@ -23,7 +23,7 @@ class MixedGuide {
     return directions_->statistics();
   }
 
-  using Tally = std::unique_ptr<Directions::Tally>;
+  using Tally = std::unique_ptr<GuidingDistribution::Tally>;
   bool learns() const { return directions_->learns(); }
   Tally tally() const { return directions_->tally(); }
   void learn(const GuidingSample& what, Tally& tally) const { directions_->learn(what, *tally); }
@@ -33,7 +33,7 @@ class MixedGuide {
 
   /// Looks up what directions and densities at `v`, as seen from v.wp, need.
   void arrive(Vertex& v) const {
-    v.site = v.bsdf->connectible() ? directions_->site(v.surface, v.wp) : GuideSite{};
+    v.site = v.bsdf->connectible() ? directions_->site(v.surface, v.wp) : GuidingCell{};
   }
 
   std::optional<BsdfSample> sample(const Vertex& v, Rng& rng, Transport transport) const {
@@ -50,19 +50,19 @@ class MixedGuide {
       const Pdf<SolidAngle> p = mixed(v, v.wp, v.site, *w, bsdf);
       if (!p.positive()) return std::nullopt;
       const bool transmitted = dot(*w, v.surface.ng) * dot(v.wp, v.surface.ng) < 0;
-      const float guided = bsdf.positive() ? p / bsdf : 1;
-      return BsdfSample{*w, f / p.value, p, false, transmitted, guided};
+      const float pdf_ratio = bsdf.positive() ? p / bsdf : 1;
+      return BsdfSample{*w, f / p.value, p, false, transmitted, pdf_ratio};
     }
     std::optional<BsdfSample> s = bsdf_.sample(v, rng, transport);
     if (!s) return s;
     if (s->delta) {
       s->weight /= 1 - c;
-      s->guided = 1 - c;
+      s->pdf_ratio = 1 - c;
       return s;
     }
     const Pdf<SolidAngle> p = mixed(v, v.wp, v.site, s->wi, s->pdf);
-    s->guided = p / s->pdf;
-    s->weight /= s->guided;
+    s->pdf_ratio = p / s->pdf;
+    s->weight /= s->pdf_ratio;
     s->pdf = p;
     return s;
   }
@@ -76,14 +76,14 @@ class MixedGuide {
   }
 
  private:
-  Pdf<SolidAngle> mixed(const Vertex& v, const V3f& wo, const GuideSite& site, const V3f& wi,
+  Pdf<SolidAngle> mixed(const Vertex& v, const V3f& wo, const GuidingCell& site, const V3f& wi,
                         Pdf<SolidAngle> bsdf) const {
     const float c = site.probability;
     if (c == 0) return bsdf;
     return c * directions_->pdf({v.surface, *v.bsdf, wo, site}, wi) + (1 - c) * bsdf;
   }
 
-  std::unique_ptr<Directions> directions_;
+  std::unique_ptr<GuidingDistribution> directions_;
   BsdfGuide bsdf_;
 };
 static_assert(Guide<MixedGuide>);

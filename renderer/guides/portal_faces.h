@@ -3,7 +3,7 @@
 #include "analysis/regions/portals.h"
 #include "analysis/skeleton/surface_lookup.h"
 #include "renderer/guides/crossed_faces.h"
-#include "renderer/guides/directions.h"
+#include "renderer/guides/guiding_distribution.h"
 #include "renderer/settings/guide_settings.h"
 
 namespace lacuna {

@@ -39,7 +39,7 @@ std::uint32_t SdTree::leaf_at(const V3f& x) const {
   return nodes_[node].leaf;
 }
 
-std::unique_ptr<Directions::Tally> SdTree::tally() const {
+std::unique_ptr<GuidingDistribution::Tally> SdTree::tally() const {
   return std::make_unique<Own>(leaves_.size());
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "renderer/guides/direction_tree.h"
-#include "renderer/guides/directions.h"
+#include "renderer/guides/guiding_distribution.h"
 #include "renderer/settings/guide_settings.h"
 
 namespace lacuna {
@@ -12,7 +12,7 @@ namespace lacuna {
 /// divided, and the next round draws from what the last one found. Of the improvements of Mueller
 /// 2019 it has the box filter over directions. All iterations count in the picture alike, the first
 /// ones too: the film is the mean of independent estimates.
-class SdTree final : public Directions {
+class SdTree final : public GuidingDistribution {
  public:
   explicit SdTree(const SdTreeGuideSettings& settings) : settings_(settings) {}
 
@@ -22,7 +22,7 @@ class SdTree final : public Directions {
   void load(ByteReader& in) override;
   std::vector<std::pair<std::string, double>> statistics() const override;
 
-  GuideSite site(const Surface& s, const V3f&) const override {
+  GuidingCell site(const Surface& s, const V3f&) const override {
     const std::uint32_t leaf = leaf_at(s.x);
     const bool known = !leaves_[leaf].drawn.empty();
     return {known ? static_cast<float>(settings_.probability) : 0.0F, leaf};

@@ -51,7 +51,7 @@ void SkeletonDirections::prepare(const PrepareContext& context) {
 }
 
 void SkeletonDirections::learn(const GuidingSample& what, Tally& tally) const {
-  const GuideSite& site = what.v.site;
+  const GuidingCell& site = what.v.site;
   // A node that draws nothing from its lobes at present goes on learning.
   if (site.index >= lobes_.size() || lobes_[site.index].empty()) return;
   if (!tuning_.wants(site.index)) return;

@@ -10,7 +10,7 @@ namespace lacuna {
 /// guide: skeleton. At the surfaces that belong to a node of the skeleton, rays go around the
 /// directions to its importance points: along the shortest paths to where the light arrives, as far
 /// as the node sees them (Noel 2015, ch. 9). The thesis' unfiltered skeleton.
-class SkeletonDirections final : public Directions {
+class SkeletonDirections final : public GuidingDistribution {
  public:
   explicit SkeletonDirections(const SkeletonGuideSettings& settings) : settings_(settings) {}
 
@@ -20,7 +20,7 @@ class SkeletonDirections final : public Directions {
   void load(ByteReader& in) override { tuning_.load(in); }
   std::vector<std::pair<std::string, double>> statistics() const override;
 
-  GuideSite site(const Surface& s, const V3f& w) const override {
+  GuidingCell site(const Surface& s, const V3f& w) const override {
     const std::uint32_t node = lookup_->node(V3d(s.x), V3d(s.ng), V3d(w));
     if (node == no_node || lobes_[node].empty()) return {};
     return {tuning_.probability(node), node};

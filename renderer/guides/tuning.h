@@ -3,7 +3,7 @@
 #include <array>
 #include <unordered_map>
 
-#include "renderer/guides/directions.h"
+#include "renderer/guides/guiding_distribution.h"
 #include "renderer/settings/guide_settings.h"
 
 namespace lacuna {

@@ -67,7 +67,7 @@ class Bdpt : public GuidedIntegrator<Guide> {
   /// Joins `eye` and `light` for a pixel; the sum over light paths is estimated with 1 / `samples`
   /// of it. What it is not told of a contribution is taken from `known`.
   template <class Light>
-  static void join(const SurfaceEnd<Guide>& eye, const Light& light, double samples,
+  static void join(const SurfaceEndpoint<Guide>& eye, const Light& light, double samples,
                    const SampleCounts& counts, Contribution known,
                    ShadowQueue<Contribution>& queue) {
     const Connection c = connect(eye, light);
@@ -212,15 +212,15 @@ class PairedBdpt final : public Bdpt<Guide> {
         pairs.chosen[i] = lights.choose(pairs.eye.walkers[i].rng);
       }
     };
-    walk.lead(pairs.eye.walkers, choose, [&](std::size_t i, int depth) {
+    walk.trace_paths(pairs.eye.walkers, choose, [&](std::size_t i, int depth) {
       Base::gather_hit(context, counts, pairs.eye, i, depth);
       const Vertex& v = pairs.eye.vertex(i, depth);
       const int longest = Base::longest_light_path(v, depth);
       if (longest == 0 || counts.nee == 0) return;
-      const SurfaceEnd<Guide> eye{v, depth, Transport::radiance, guide_};
+      const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
       const EmitterPoint e = lights.sample(pairs.chosen[i], pairs.eye.walkers[i].rng);
       const Contribution known = Base::contribution(pairs.eye, i);
-      Base::join(eye, EmitterEnd{e}, 1, counts, known, pairs.queue);
+      Base::join(eye, EmitterEndpoint{e}, 1, counts, known, pairs.queue);
       for (int s = 2; s <= std::min(longest, pairs.light.length(i)); ++s) {
         if (!pairs.light.vertex(i, s - 1).bsdf->connectible()) continue;
         Base::join(eye, pairs.light.end(i, s - 1), 1, counts, known, pairs.queue);
@@ -324,7 +324,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
       const Tile tile = tiling.tile(i);
       for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
         Base::start(context, image, tile, first, part.batch, counters);
-        walk.lead(
+        walk.trace_paths(
             part.batch.walkers, [](std::size_t, int) {},
             [&](std::size_t k, int depth) {
               Base::gather_hit(context, counts, part.batch, k, depth);
@@ -367,7 +367,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
     const int longest = Base::longest_light_path(v, depth);
     if (longest == 0 || part.lights.paths() == 0) return;
     Rng& rng = part.batch.walkers[k].rng;
-    const SurfaceEnd<Guide> eye{v, depth, Transport::radiance, guide_};
+    const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
     const auto place = connections_.find(v, depth, rng);
     part.tally.visit(place.cell);
     const float throughput = luminance(v.throughput);
@@ -376,18 +376,19 @@ class ResampledBdpt final : public Bdpt<Guide> {
       const float p = seen_.survival(place.cell, s, double(throughput), part.enough);
       return p >= 1 || rng.next() < p ? p : 0.0F;
     };
-    connections_.pick(place, part.lights, longest, rng, survival, [&](int s, const Pick& pick) {
-      const double samples = static_cast<double>(part.lights.paths()) * double(pick.probability) *
-                             double(pick.survival);
-      part.lights.with_end(s, pick.index, guide_, [&](const auto& light) {
-        Contribution known = Base::contribution(part.batch, k);
-        known.distribution = pick.owner;
-        known.survival = pick.survival;
-        known.throughput = throughput;
-        known.cell = place.cell;
-        Base::join(eye, light, samples, part.counts, known, part.queue);
-      });
-    });
+    connections_.pick(place, part.lights, longest, rng, survival,
+                      [&](int s, const VertexSample& pick) {
+                        const double samples = static_cast<double>(part.lights.paths()) *
+                                               double(pick.probability) * double(pick.survival);
+                        part.lights.with_end(s, pick.index, guide_, [&](const auto& light) {
+                          Contribution known = Base::contribution(part.batch, k);
+                          known.distribution = pick.owner;
+                          known.survival = pick.survival;
+                          known.throughput = throughput;
+                          known.cell = place.cell;
+                          Base::join(eye, light, samples, part.counts, known, part.queue);
+                        });
+                      });
   }
 
   /// CPU seconds of all threads in the parts of an iteration.

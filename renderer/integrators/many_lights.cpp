@@ -70,14 +70,14 @@ class ManyLights final : public Integrator {
 
   Counters iterate(const IterationContext& context, Image& image) override {
     PassSeconds pass;
-    VirtualLights lights(static_cast<std::size_t>(settings_.light_paths),
-                         {settings_.max_depth - 1, by_lights(), least_alpha_});
+    VplSet lights(static_cast<std::size_t>(settings_.light_paths),
+                  {settings_.max_depth - 1, by_lights(), least_alpha_});
     Counters counters;
     if (settings_.max_depth > (by_lights() ? 1 : 2)) counters = walk_lights(context, lights, image);
     lights.arrange([this](const LightPlace& p) { return visibility_.group(p); });
     lights_ = static_cast<double>(lights.size());
     pass.end(seconds_.light);
-    const LightTerms terms(lights, bound_of(settings_, context.scene.bounds().radius()));
+    const VplContributions terms(lights, bound_of(settings_, context.scene.bounds().radius()));
     std::optional<LightDraw> draw;
     std::optional<LightFilter> filter;
     if (random()) draw.emplace(terms, *random());
@@ -116,7 +116,7 @@ class ManyLights final : public Integrator {
 
   /// What all parts of a picture share.
   struct Gathering {
-    const LightTerms& terms;
+    const VplContributions& terms;
     const LightDraw* draw;  // null: all lights
     LightFilter* filter;    // null: none
     BlockRange range;       // of this pass; what does not come from lights is added in the first
@@ -155,7 +155,7 @@ class ManyLights final : public Integrator {
     });
   }
 
-  Counters walk_lights(const IterationContext& context, VirtualLights& lights, Image& image) const {
+  Counters walk_lights(const IterationContext& context, VplSet& lights, Image& image) const {
     if (context.scene.emitters().empty()) return {};
     const LightPathSetting setting{context.scene,           context.camera,
                                    settings_.max_depth - 1, settings_.roulette_depth,
@@ -180,7 +180,7 @@ class ManyLights final : public Integrator {
         part.chosen[i] = context.scene.emitters().choose(part.batch.walkers[i].rng);
       }
     };
-    walk.lead(part.batch.walkers, choose, [&](std::size_t i, int depth) {
+    walk.trace_paths(part.batch.walkers, choose, [&](std::size_t i, int depth) {
       return visit(context.scene, with, direct, part, i, depth);
     });
     if (!with.range.is_first()) {
@@ -195,7 +195,7 @@ class ManyLights final : public Integrator {
   /// One vertex of an eye path; false where the path ends.
   bool visit(const Scene& scene, const Gathering& with, const DirectLight<BsdfGuide>& direct,
              Part& part, std::size_t i, int depth) const {
-    const LightTerms& terms = with.terms;
+    const VplContributions& terms = with.terms;
     Vertex& v = part.batch.vertex(i, depth);
     const bool first = part.shaded[i] == 0;
     const Vertex& before = part.batch.vertex(i, depth - 1);
@@ -207,7 +207,7 @@ class ManyLights final : public Integrator {
       part.batch.radiance[i] += direct.met(v, depth);
     }
     if (v.kind != Vertex::Kind::surface || depth == settings_.max_depth) return false;
-    const bool lit_by_lights = v.bsdf->broad(least_alpha_);
+    const bool lit_by_lights = v.bsdf->is_vpl_receiver(least_alpha_);
     if (!first && !settings_.compensation) return false;
     if (first && lit_by_lights) {
       part.shaded[i] = depth;
@@ -230,7 +230,7 @@ class ManyLights final : public Integrator {
   bool by_lights() const { return settings_.direct == DirectLighting::lights; }
 
   /// What the bound of the geometric term cuts off of the light from `to`, as a share.
-  static float missing(const LightTerms& terms, const Vertex& at, const Vertex& to) {
+  static float missing(const VplContributions& terms, const Vertex& at, const Vertex& to) {
     if (to.kind == Vertex::Kind::background) return 0;
     return 1 - terms.share(at, to, to.wp);
   }

@@ -101,7 +101,7 @@ class PathTracer final : public GuidedIntegrator<Guide> {
                     });
       }
     };
-    walk.lead(batch.walkers, choose_emitter, gather);
+    walk.trace_paths(batch.walkers, choose_emitter, gather);
   }
 
   PathSettings settings_;

@@ -104,7 +104,7 @@ void CachePoints::fill(const LightPass& pass, std::size_t point, const ShadingPo
     int light;
     float value;
   };
-  const VirtualLights& lights = pass.terms.lights();
+  const VplSet& lights = pass.terms.lights();
   ShadowQueue<Seen> queue;
   Terms terms;
   PointLanes here;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "renderer/many_lights/light_terms.h"
+#include "renderer/many_lights/vpl_contributions.h"
 #include "renderer/path/contexts.h"
 #include "renderer/path/record_tree.h"
 
@@ -9,15 +9,15 @@ namespace lacuna {
 /// What a visibility sees of an iteration before its picture is made.
 struct LightPass {
   const IterationContext& context;
-  const LightTerms& terms;
+  const VplContributions& terms;
   int max_depth;      ///< edges of an eye path
-  float least_alpha;  ///< of the surfaces that lights shine on: Bsdf::broad()
+  float least_alpha;  ///< of the surfaces that lights shine on: Bsdf::is_vpl_receiver()
   BlockRange lights = {};
 };
 
 /// n_d / N: rays besides tests that a light's share of a shading point takes (Nabata et al., eq.
 /// 13), one from the eye.
-inline float eye_rays_per_light(const VirtualLights& lights) {
+inline float eye_rays_per_light(const VplSet& lights) {
   return 1 / static_cast<float>(std::max<std::size_t>(1, lights.size()));
 }
 

@@ -4,10 +4,10 @@
 
 namespace lacuna {
 
-LightDraw::LightDraw(const LightTerms& terms, const RandomLightsSettings& settings,
+LightDraw::LightDraw(const VplContributions& terms, const RandomLightsSettings& settings,
                      std::size_t most_stretches)
     : terms_(terms), settings_(settings) {
-  const VirtualLights& lights = terms.lights();
+  const VplSet& lights = terms.lights();
   const std::size_t longest = (lights.blocks() + most_stretches - 1) / most_stretches;
   before_.push_back(0);
   int edges = 0;

@@ -2,7 +2,7 @@
 
 #include <atomic>
 
-#include "renderer/many_lights/light_terms.h"
+#include "renderer/many_lights/vpl_contributions.h"
 #include "renderer/path/contexts.h"
 #include "renderer/settings/gather_settings.h"
 
@@ -17,7 +17,7 @@ namespace lacuna {
 class LightDraw {
  public:
   /// `terms` outlives it. About as many stretches as `most_stretches` are made of the lights.
-  LightDraw(const LightTerms& terms, const RandomLightsSettings& settings,
+  LightDraw(const VplContributions& terms, const RandomLightsSettings& settings,
             std::size_t most_stretches = 1024);
 
   /// Lights of a block for a shading point.
@@ -51,7 +51,7 @@ class LightDraw {
     return before_[stretches_[stretch].end] - before_[stretches_[stretch].first];
   }
 
-  const LightTerms& terms_;
+  const VplContributions& terms_;
   RandomLightsSettings settings_;
   std::vector<Stretch> stretches_;
   std::vector<std::uint64_t> before_;  // of each block the lights before it, and of all

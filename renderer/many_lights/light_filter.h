@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "renderer/many_lights/light_terms.h"
+#include "renderer/many_lights/vpl_contributions.h"
 #include "renderer/path/contexts.h"
 #include "renderer/settings/gather_settings.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "renderer/many_lights/decision.h"
 #include "renderer/many_lights/light_draw.h"
-#include "renderer/many_lights/light_terms.h"
+#include "renderer/many_lights/visibility_estimate.h"
+#include "renderer/many_lights/vpl_contributions.h"
 #include "renderer/path/contexts.h"
 #include "renderer/path/shadow_queue.h"
 
@@ -21,7 +21,7 @@ template <class Visibility>
 class LightGather {
  public:
   /// `draw`: null for all lights; of those it takes `range`.
-  LightGather(const IterationContext& context, const LightTerms& terms,
+  LightGather(const IterationContext& context, const VplContributions& terms,
               const Visibility& visibility, const LightDraw* draw, Counters& counters,
               BlockRange range = {})
       : context_(context),
@@ -72,7 +72,8 @@ class LightGather {
     for (std::size_t b = range_.first; b < std::min(blocks, range_.end); ++b) {
       for_each_bit(terms_.may_light(b, lanes), [&](int bit) {
         const auto i = static_cast<std::size_t>(bit);
-        if (b < ends[i]) add(points[i], states[i], {b, i, LightTerms::all_lights, 1}, sums[i]);
+        if (b < ends[i])
+          add(points[i], states[i], {b, i, VplContributions::all_lights, 1}, sums[i]);
       });
       end_block(sums);
     }
@@ -129,7 +130,7 @@ class LightGather {
   }
 
   const IterationContext& context_;
-  const LightTerms& terms_;
+  const VplContributions& terms_;
   const Visibility& visibility_;
   const LightDraw* draw_;
   Counters& counters_;
@@ -138,7 +139,7 @@ class LightGather {
   std::array<std::vector<Test>, Lanes::size> tests_;  // of each light of the block
   ShadowQueue<Lit> queue_;
   Terms term_;
-  Decision decision_;
+  VisibilityEstimate decision_;
 };
 
 }  // namespace lacuna

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "renderer/many_lights/light_terms.h"
+#include "renderer/many_lights/vpl_contributions.h"
 #include "renderer/path/tiles.h"
 
 namespace lacuna {
@@ -28,12 +28,12 @@ class ShadingPoints {
       const CameraSample sample(context_, pixel);
       batch_.start(context_.camera, sample.rng, sample.ray, pixel);
     }
-    walk_.lead(
+    walk_.trace_paths(
         batch_.walkers, [](std::size_t, int) {},
         [&](std::size_t i, int depth) {
           const Vertex& v = batch_.vertex(i, depth);
           if (v.kind != Vertex::Kind::surface || depth == max_depth_) return false;
-          if (!v.bsdf->broad(least_alpha_)) return true;
+          if (!v.bsdf->is_vpl_receiver(least_alpha_)) return true;
           use(v, depth, batch_.pixels[i]);
           return false;
         });

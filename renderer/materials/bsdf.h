@@ -24,19 +24,19 @@ struct BsdfSample {
   bool delta = false;
   bool transmitted = false;  ///< wi lies on the other side of ng
   /// Of a draw that a guide took part in (renderer/guides): its density over the BSDF's own.
-  float guided = 1;
+  float pdf_ratio = 1;
 };
 
 /// Cosines below it are rounding noise.
 inline constexpr float cos_rounding = 0x1p-24F;
 
 /// A Lambertian surface lit from one direction: it gives f (w.side) t towards unit `w` where
-/// w.side > 0, else nothing; t is `turned` where w.ns > 0 and 1 elsewhere.
+/// w.side > 0, else nothing; t is `shading_cosine_ratio` where w.ns > 0 and 1 elsewhere.
 struct LambertLit {
-  Rgb f;         ///< diffuse reflectance / pi
-  V3f side;      ///< unit; ng on the side it is lit from
-  V3f ns;        ///< unit; ns on that side
-  float turned;  ///< >= 0
+  Rgb f;                       ///< diffuse reflectance / pi
+  V3f side;                    ///< unit; ng on the side it is lit from
+  V3f ns;                      ///< unit; ns on that side
+  float shading_cosine_ratio;  ///< >= 0
 };
 
 /// Scattering at one point of a surface: a flat value, made per hit, without allocation or virtual
@@ -98,7 +98,7 @@ class Bsdf {
 
   /// Opaque, and with a lobe that no single direction rules: a diffuse one, or facets of at least
   /// the width `least_alpha`.
-  bool broad(float least_alpha) const {
+  bool is_vpl_receiver(float least_alpha) const {
     if (transmits() || !connectible()) return false;
     return lobes_.has_diffuse() || lobes_.interface.alpha >= least_alpha;
   }

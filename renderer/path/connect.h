@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "renderer/path/ends.h"
+#include "renderer/path/endpoints.h"
 #include "renderer/scene/scene.h"
 
 namespace lacuna {
@@ -61,37 +61,39 @@ Ray shadow_ray(const Eye& eye, const Light& light, const Connection& c) {
 
 /// sum_{i != s} n_i p_i / p_s over the strategies that leave the light's end fewer vertices.
 template <class Eye, class Light>
-double fewer_of_light(const Eye& eye, const Light& light, const Connection& c,
+double light_side_sum(const Eye& eye, const Light& light, const Connection& c,
                       const SampleCounts& n) {
   if (light.index == 0 && !light.prior_connectible()) return 0;
   const double g = eye.pdf(c.w) * (c.infinite ? 1.0 : light.area_factor(c.w) / double(c.distance2));
-  const double back = light.prior() > 0 ? light.back(-c.w) : 0.0;
+  const double back = light.mis_partial() > 0 ? light.back(-c.w) : 0.0;
   return g / light.p_fwd() *
-         prior_sum(light_side(n), light.index, light.prior_connectible(), back, light.prior());
+         mis_partial_sum(light_side(n), light.index, light.prior_connectible(), back,
+                         light.mis_partial());
 }
 
 /// The same over those that leave the eye's end fewer.
 template <class Eye, class Light>
-double fewer_of_eye(const Eye& eye, const Light& light, const Connection& c,
+double eye_side_sum(const Eye& eye, const Light& light, const Connection& c,
                     const SampleCounts& n) {
   const double h = light.pdf(-c.w) * eye.area_factor(c.w) / double(c.distance2);
-  const double back = eye.prior() > 0 ? eye.back(c.w) : 0.0;
+  const double back = eye.mis_partial() > 0 ? eye.back(c.w) : 0.0;
   return h / eye.p_fwd() *
-         prior_sum(eye_side(n), eye.index, eye.prior_connectible(), back, eye.prior());
+         mis_partial_sum(eye_side(n), eye.index, eye.prior_connectible(), back, eye.mis_partial());
 }
 
 /// The MIS weight of a connection of a surface with an emitter or another surface.
 template <class Eye, class Light>
 double weight(const Eye& eye, const Light& light, const Connection& c, const SampleCounts& n) {
   const double own = n.of(light.index + 1, eye.index + 1);
-  return mis_weight(own, fewer_of_light(eye, light, c, n),
-                    n.bidirectional() ? fewer_of_eye(eye, light, c, n) : 0.0);
+  return mis_weight(own, light_side_sum(eye, light, c, n),
+                    n.bidirectional() ? eye_side_sum(eye, light, c, n) : 0.0);
 }
 
 /// The MIS weight of a connection with the eye itself.
 template <class Light>
-double weight(const EyeEnd& eye, const Light& light, const Connection& c, const SampleCounts& n) {
-  return mis_weight(n.splat, fewer_of_light(eye, light, c, n), 0.0);
+double weight(const EyeEndpoint& eye, const Light& light, const Connection& c,
+              const SampleCounts& n) {
+  return mis_weight(n.splat, light_side_sum(eye, light, c, n), 0.0);
 }
 
 /// The point of an emitter that a walk from the eye met at `v`, if any light leaves it towards the
@@ -110,11 +112,11 @@ inline std::optional<EmitterPoint> emitter_at(const Scene& scene, const Vertex& 
 /// emitter.
 inline double hit_weight(const Vertex& v, int index, const EmitterPoint& e, const SampleCounts& n) {
   const double one_less = n.of(1, index);
-  const SideCounts side{0, one_less, one_less};
-  const double back = v.prior > 0 ? double(e.leaving_pdf(v.wp).value) : 0.0;
+  const TechniqueCounts side{0, one_less, one_less};
+  const double back = v.mis_partial > 0 ? double(e.leaving_pdf(v.wp).value) : 0.0;
   return mis_weight(n.hit, 0.0,
                     double(e.pdf.value) / double(v.p_fwd.value) *
-                        prior_sum(side, index, v.prior_connectible, back, v.prior));
+                        mis_partial_sum(side, index, v.prior_connectible, back, v.mis_partial));
 }
 
 }  // namespace lacuna

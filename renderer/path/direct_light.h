@@ -31,8 +31,8 @@ class DirectLight {
   template <class Add>
   void draw(const Vertex& v, int depth, std::uint32_t chosen, Rng& rng, Add&& add) const {
     const EmitterPoint e = scene_.emitters().sample(chosen, rng);
-    const SurfaceEnd<Guide> eye{v, depth, Transport::radiance, guide_};
-    const EmitterEnd light{e};
+    const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
+    const EmitterEndpoint light{e};
     if (const Connection c = connect(eye, light)) {
       const auto w = static_cast<float>(weight(eye, light, c, counts_));
       add(shadow_ray(eye, light, c), c.contribution * w);

@@ -39,7 +39,7 @@ struct EyeBatch {
 
   std::size_t places;
   std::vector<Vertex> vertices;
-  std::vector<Walker> walkers;
+  std::vector<PathState> walkers;
   std::array<std::uint32_t, size> pixels{};
   std::array<Rgb, size> radiance{};
 };

@@ -52,7 +52,7 @@ class LightBatch {
                             .transport = Transport::importance,
                             .counts = light_side(setting_.counts)};
     Walk<Guide> walk(setting_.scene, guide_, limits, counters);
-    walk.lead(
+    walk.trace_paths(
         walkers_, [](std::size_t, int) {},
         [&](std::size_t i, int depth) {
           if (vertex(place_[i], depth).kind == Vertex::Kind::surface)
@@ -68,14 +68,14 @@ class LightBatch {
   const Vertex& vertex(std::size_t i, int index) const {
     return vertices_[i * places_ + static_cast<std::size_t>(index)];
   }
-  SurfaceEnd<Guide> end(std::size_t i, int index) const {
+  SurfaceEndpoint<Guide> end(std::size_t i, int index) const {
     return {vertex(i, index), index, Transport::importance, guide_};
   }
 
   /// Joins all vertices of `paths` paths to the eye (t = 1) and adds what arrives to `splats`.
   void splat(std::size_t paths, Counters& counters, Splats& splats) {
     for (std::size_t i = 0; i < paths; ++i) {
-      if (length_[i] > 0 && !emitters_[i].delta()) splat_end(EmitterEnd{emitters_[i]});
+      if (length_[i] > 0 && !emitters_[i].delta()) splat_end(EmitterEndpoint{emitters_[i]});
       for (int index = 1; index < length_[i]; ++index) {
         if (vertex(i, index).bsdf->connectible()) splat_end(end(i, index));
       }
@@ -109,17 +109,17 @@ class LightBatch {
     path[0].kind = e.infinite() ? Vertex::Kind::background : Vertex::Kind::emitter;
     path[0].surface.x = e.x;
     path[0].surface.ng = e.ng;
-    Walker w{.rng = rng, .ray = leaving->ray, .p = leaving->pdf, .path = path};
+    PathState w{.rng = rng, .ray = leaving->ray, .p = leaving->pdf, .path = path};
     w.throughput = leaving->throughput;
     w.roulette_scale = 1 / max_component(leaving->throughput);
-    if (!e.delta()) w.prior = light_side(setting_.counts).none / double(e.pdf.value);
+    if (!e.delta()) w.mis_partial = light_side(setting_.counts).none / double(e.pdf.value);
     place_[walkers_.size()] = i;
     walkers_.push_back(w);
   }
 
   template <class End>
   void splat_end(const End& light) {
-    const EyeEnd eye{setting_.camera};
+    const EyeEndpoint eye{setting_.camera};
     const V3f to = at_infinity(light) ? light.x() : light.x() - eye.x();
     const std::optional<V2f> at = setting_.camera.project(to.normalized());
     if (!at) return;
@@ -135,7 +135,7 @@ class LightBatch {
   const Guide& guide_;
   std::size_t places_;
   std::vector<Vertex> vertices_;
-  std::vector<Walker> walkers_;
+  std::vector<PathState> walkers_;
   std::array<std::size_t, size> place_{};  // of each walker
   std::array<int, size> length_{};
   std::array<EmitterPoint, size> emitters_{};

@@ -61,11 +61,11 @@ class LightVertices {
     }
   }
 
-  /// Calls `use(end)` with vertex `i` of those: an EmitterEnd or a SurfaceEnd.
+  /// Calls `use(end)` with vertex `i` of those: an EmitterEndpoint or a SurfaceEndpoint.
   template <class Guide, class Use>
   decltype(auto) with_end(int s, std::size_t i, const Guide& guide, Use&& use) const {
-    if (s == 1) return use(EmitterEnd{emitters_[i]});
-    return use(SurfaceEnd<Guide>{at(s, i), s - 1, Transport::importance, guide});
+    if (s == 1) return use(EmitterEndpoint{emitters_[i]});
+    return use(SurfaceEndpoint<Guide>{at(s, i), s - 1, Transport::importance, guide});
   }
 
  private:

@@ -31,23 +31,23 @@ struct SampleCounts {
 };
 
 /// The counts as one end of a path sees them: of the strategy that leaves it `vertices` vertices.
-struct SideCounts {
+struct TechniqueCounts {
   double none = 0, one = 0, more = 0;
   constexpr bool any() const { return none > 0 || one > 0 || more > 0; }
   constexpr double of(int vertices) const {
     return vertices == 0 ? none : vertices == 1 ? one : more;
   }
 };
-constexpr SideCounts light_side(const SampleCounts& n) { return {n.hit, n.nee, n.connect}; }
+constexpr TechniqueCounts light_side(const SampleCounts& n) { return {n.hit, n.nee, n.connect}; }
 /// The eye is a point that nothing hits: no strategy leaves it without a vertex.
-constexpr SideCounts eye_side(const SampleCounts& n) { return {0, n.splat, n.connect}; }
+constexpr TechniqueCounts eye_side(const SampleCounts& n) { return {0, n.splat, n.connect}; }
 
 /// n_j c_j + sum_{i < j} n_i p_i / p_j at vertex `j` of a walk: `connectible` is c_j, `back` the
-/// density, per steradian, with which the other end's walk goes on from j to j - 1, and `prior`
-/// what the walk knew when it arrived (Walk).
-constexpr double prior_sum(const SideCounts& side, int j, bool connectible, double back,
-                           double prior) {
-  return (connectible ? side.of(j) : 0.0) + back * prior;
+/// density, per steradian, with which the other end's walk goes on from j to j - 1, and
+/// `mis_partial` what the walk knew when it arrived (Walk).
+constexpr double mis_partial_sum(const TechniqueCounts& side, int j, bool connectible, double back,
+                                 double mis_partial) {
+  return (connectible ? side.of(j) : 0.0) + back * mis_partial;
 }
 
 /// The balance heuristic: share of the strategy with `own` samples, where the others' densities

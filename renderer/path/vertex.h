@@ -9,7 +9,7 @@
 namespace lacuna {
 
 /// Where a guide (renderer/guides) found its distribution of directions at a surface.
-struct GuideSite {
+struct GuidingCell {
   float probability = 0;  ///< with which a direction is drawn from it, < 1; 0: there is none
   std::uint32_t index = 0xffffffff;  ///< the guide's own; at first: nothing
 };
@@ -22,12 +22,13 @@ struct Vertex {
   /// The strategy that joins the vertex before it to this one can make the path, as far as the
   /// former is concerned (mis.h).
   bool prior_connectible = true;
-  Surface surface;           ///< emitter: x, ng; background: only x, the unit direction to infinity
-  V3f wp{0, 0, 0};           ///< unit, to the previous vertex
-  Rgb throughput{1, 1, 1};   ///< includes every division by a density, up to here
-  Pdf<Area> p_fwd{};         ///< density of this vertex on this walk; background: per steradian
-  double prior = 0;          ///< PriorSum's part that is known before the path goes on (mis.h)
-  GuideSite site;            ///< of the surface as seen from wp
+  Surface surface;          ///< emitter: x, ng; background: only x, the unit direction to infinity
+  V3f wp{0, 0, 0};          ///< unit, to the previous vertex
+  Rgb throughput{1, 1, 1};  ///< includes every division by a density, up to here
+  Pdf<Area> p_fwd{};        ///< density of this vertex on this walk; background: per steradian
+  double mis_partial =
+      0;  ///< The part of mis_partial_sum() that is known before the path goes on (mis.h)
+  GuidingCell site;          ///< of the surface as seen from wp
   std::optional<Bsdf> bsdf;  ///< of a surface from which the path may go on
 
   /// A surface's geometric normal on the side that the walk came from.

@@ -18,24 +18,25 @@ struct WalkLimits {
   bool last_scatters = false;  ///< the vertex after the last edge has a Bsdf too: it will be joined
   int roulette_depth = 1;      ///< edges that are walked before Russian roulette may end the path
   Transport transport = Transport::radiance;
-  SideCounts counts = {};  ///< of this side's strategies; all 0: Vertex::prior is not needed
+  TechniqueCounts counts =
+      {};  ///< of this side's strategies; all 0: Vertex::mis_partial is not needed
 };
 
 /// A random walk, between two of its edges.
-struct Walker {
+struct PathState {
   Rng rng;
   Ray ray;                  ///< the next edge
   Hit hit{};                ///< of it
   Rgb throughput{1, 1, 1};  ///< along it
   Pdf<SolidAngle> p;        ///< density with which it was drawn
-  /// 1 / the largest component of the first edge's throughput, times BsdfSample::guided of all
+  /// 1 / the largest component of the first edge's throughput, times BsdfSample::pdf_ratio of all
   /// vertices: what is left by throughput that way is what the BSDF's own draws would have left. A
   /// guide lowers it where it sends many paths, so roulette by it alone would end just those.
   float roulette_scale = 1;
   std::span<Vertex> path;  ///< max_depth + 1 places; path[0] is set
-  /// prior_sum() of the last vertex over its density: of the first, for a path from a light whose
-  /// emitter can be hit, SideCounts::none over its density.
-  double prior = 0;
+  /// mis_partial_sum() of the last vertex over its density: of the first, for a path from a light
+  /// whose emitter can be hit, TechniqueCounts::none over its density.
+  double mis_partial = 0;
 };
 
 /// Leads random walks through a scene, all of them edge by edge: what a vertex needs from memory is
@@ -53,7 +54,7 @@ class Walk {
   /// called before the ray to it is traced, for what can be drawn ahead. The densities of all
   /// vertices are per area. A `visit` that returns bool ends the walk by false.
   template <class Before, class Visit>
-  void lead(std::span<Walker> walkers, Before&& before, Visit&& visit) {
+  void trace_paths(std::span<PathState> walkers, Before&& before, Visit&& visit) {
     active_.resize(walkers.size());
     std::iota(active_.begin(), active_.end(), std::size_t{0});
     for (int depth = 1; depth <= limits_.max_depth && !active_.empty(); ++depth) {
@@ -75,16 +76,16 @@ class Walk {
   }
 
  private:
-  static Vertex& vertex(Walker& w, int depth) { return w.path[static_cast<std::size_t>(depth)]; }
+  static Vertex& vertex(PathState& w, int depth) { return w.path[static_cast<std::size_t>(depth)]; }
 
-  void trace(Walker& w, int depth) {
+  void trace(PathState& w, int depth) {
     ++counters_.rays;
     const bool met = scene_.rays().intersect(w.ray, w.hit);
     vertex(w, depth).kind = met ? Vertex::Kind::surface : Vertex::Kind::background;
     if (met) scene_.prefetch(w.hit);
   }
 
-  void arrive(Walker& w, int depth) {
+  void arrive(PathState& w, int depth) {
     Vertex& v = vertex(w, depth);
     v.delta = false;
     v.wp = -w.ray.d;
@@ -97,17 +98,17 @@ class Walk {
     }
     const Vertex& before = vertex(w, depth - 1);
     v.p_fwd = to_area(w.p, before, w.ray.d, v);
-    if (w.prior > 0) {
-      v.prior = w.prior * double(to_area(Pdf<SolidAngle>(1.0F), v, v.wp, before).value);
+    if (w.mis_partial > 0) {
+      v.mis_partial = w.mis_partial * double(to_area(Pdf<SolidAngle>(1.0F), v, v.wp, before).value);
     } else {
-      v.prior = 0;
+      v.mis_partial = 0;
     }
     v.prior_connectible = before.connectible();
   }
 
   bool scatters(int depth) const { return limits_.last_scatters || depth < limits_.max_depth; }
 
-  void scatter(Walker& w, int depth) {
+  void scatter(PathState& w, int depth) {
     Vertex& v = vertex(w, depth);
     if (v.kind == Vertex::Kind::background || !scatters(depth)) return;
     scene_.make_bsdf(v.surface, v.bsdf);
@@ -115,13 +116,13 @@ class Walk {
   }
 
   /// Draws the next edge; false where the walk ends.
-  bool leave(Walker& w, int depth) {
+  bool leave(PathState& w, int depth) {
     Vertex& v = vertex(w, depth);
     if (v.kind == Vertex::Kind::background || depth == limits_.max_depth) return false;
     const std::optional<BsdfSample> next = guide_.sample(v, w.rng, limits_.transport);
     if (!next) return false;
     w.throughput *= next->weight;
-    w.roulette_scale *= next->guided;
+    w.roulette_scale *= next->pdf_ratio;
     if (depth >= limits_.roulette_depth) {
       const float survival = std::min(1.0F, max_component(w.throughput) * w.roulette_scale);
       if (w.rng.next() >= survival) return false;
@@ -130,20 +131,21 @@ class Walk {
     v.delta = next->delta;
     // Deltas cancel in all ratios of densities, if both walks leave them out.
     w.p = next->delta ? Pdf<SolidAngle>(1.0F) : next->pdf;
-    if (tracked_) w.prior = prior(v, depth, next->wi);
+    if (tracked_) w.mis_partial = mis_partial(v, depth, next->wi);
     w.ray = {offset_origin(v.surface.x, v.surface.ng, v.surface.extent, next->wi), next->wi};
     return true;
   }
 
-  double prior(const Vertex& v, int depth, const V3f& wi) const {
+  double mis_partial(const Vertex& v, int depth, const V3f& wi) const {
     const bool connectible = v.prior_connectible && v.connectible();
     double back = 0;
-    if (v.prior > 0) {
+    if (v.mis_partial > 0) {
       const Transport other =
           limits_.transport == Transport::radiance ? Transport::importance : Transport::radiance;
       back = v.delta ? 1.0 : double(guide_.pdf(v, wi, v.wp, other).value);
     }
-    return prior_sum(limits_.counts, depth, connectible, back, v.prior) / double(v.p_fwd.value);
+    return mis_partial_sum(limits_.counts, depth, connectible, back, v.mis_partial) /
+           double(v.p_fwd.value);
   }
 
   const Scene& scene_;

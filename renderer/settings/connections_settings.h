@@ -92,7 +92,7 @@ void describe(V& v, UniformSettings& s) {
 }
 
 /// connections: skeleton.
-struct SkeletonSettings : ResamplingSettings {
+struct SkeletonConnectionsSettings : ResamplingSettings {
   static constexpr std::string_view name = "skeleton";
   static constexpr std::string_view doc =
       "light paths resampled by distributions at the skeleton's nodes (Noel 2015, ch. 11)";
@@ -102,7 +102,7 @@ struct SkeletonSettings : ResamplingSettings {
   bool unshadowed = true;
   Combination combination = Combination::mixture;
   LightSides sides = LightSides::facing;
-  bool operator==(const SkeletonSettings&) const = default;
+  bool operator==(const SkeletonConnectionsSettings&) const = default;
 };
 template <class V, class S>
 void describe_acceptance(V& v, S& s) {
@@ -113,7 +113,7 @@ void describe_acceptance(V& v, S& s) {
      .max = 1e6});
 }
 template <class V>
-void describe(V& v, SkeletonSettings& s) {
+void describe(V& v, SkeletonConnectionsSettings& s) {
   describe_resampling(v, s);
   describe_acceptance(v, s);
   v("visible", s.visible,
@@ -170,7 +170,7 @@ struct HybridSettings : ResamplingSettings {
   int cached_depth = 1;
   double record_density = ImportanceCacheSettings{}.record_density;
   int neighbours = ImportanceCacheSettings{}.neighbours;
-  double acceptance = SkeletonSettings{}.acceptance;
+  double acceptance = SkeletonConnectionsSettings{}.acceptance;
   Combination combination = Combination::mixture;
   bool operator==(const HybridSettings&) const = default;
 
@@ -181,8 +181,8 @@ struct HybridSettings : ResamplingSettings {
     s.combination = combination;
     return s;
   }
-  SkeletonSettings skeleton() const {
-    SkeletonSettings s{*this};
+  SkeletonConnectionsSettings skeleton() const {
+    SkeletonConnectionsSettings s{*this};
     s.acceptance = acceptance;
     s.combination = combination;
     return s;
@@ -202,7 +202,8 @@ void describe(V& v, HybridSettings& s) {
 }
 
 /// Which light vertices meet an eye vertex.
-using ConnectionsSettings = std::variant<PairedSettings, UniformSettings, SkeletonSettings,
-                                         ImportanceCacheSettings, HybridSettings>;
+using ConnectionsSettings =
+    std::variant<PairedSettings, UniformSettings, SkeletonConnectionsSettings,
+                 ImportanceCacheSettings, HybridSettings>;
 
 }  // namespace lacuna

@@ -23,11 +23,11 @@ ProbabilisticVisibility::At ProbabilisticVisibility::at(const ShadingPoint& poin
 }
 
 void ProbabilisticVisibility::decide(At& at, std::size_t block, const Terms& terms,
-                                     Decision& d) const {
+                                     VisibilityEstimate& d) const {
   points_.expected(at.near, block, d.untested);  // q
   const auto least = static_cast<float>(settings_.epsilon_variance);
-  const TestChance chance = at.chance;
-  Keys keys;
+  const TestProbability chance = at.chance;
+  SystematicSampler keys;
   for (int k = 0; k < Lanes::groups; ++k) {
     const Float8 q = d.untested.eight(k);
     const Float8 t = terms.luminance.eight(k);

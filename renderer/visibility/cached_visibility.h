@@ -1,7 +1,7 @@
 #pragma once
 
 #include "renderer/settings/visibility_settings.h"
-#include "renderer/visibility/test_chance.h"
+#include "renderer/visibility/test_probability.h"
 #include "renderer/visibility/visibility_base.h"
 
 namespace lacuna {
@@ -18,11 +18,11 @@ class ProbabilisticVisibility : public VisibilityBase {
   Counters begin(const LightPass& pass);
   struct At {
     CachePoints::Near near;
-    TestChance chance;
+    TestProbability chance;
     Rng rng;
   };
   At at(const ShadingPoint& point, const IterationContext& context) const;
-  void decide(At& at, std::size_t block, const Terms& terms, Decision& d) const;
+  void decide(At& at, std::size_t block, const Terms& terms, VisibilityEstimate& d) const;
   bool clamps_negative() const { return settings_.clamp_negative; }
   std::vector<std::pair<std::string, double>> statistics() const { return points_.statistics(); }
 
@@ -43,7 +43,7 @@ class InterpolatedVisibility : public VisibilityBase {
     CachePoints::Near near;
   };
   At at(const ShadingPoint& point, const IterationContext&) const { return {points_.near(point)}; }
-  void decide(At& at, std::size_t block, const Terms&, Decision& d) const {
+  void decide(At& at, std::size_t block, const Terms&, VisibilityEstimate& d) const {
     d.tests = 0;
     points_.expected(at.near, block, d.untested);
   }

@@ -8,7 +8,7 @@ namespace {
 struct Positions {
   Lanes x, y, z;
 
-  Positions(const VirtualLights& lights, std::size_t block) {
+  Positions(const VplSet& lights, std::size_t block) {
     if (const DiffuseBlock* from = lights.diffuse(block)) {
       x = from->x, y = from->y, z = from->z;
       return;
@@ -59,7 +59,7 @@ Float8 GateVisibility::through(const Gate& gate, const Float8x3& to_gate, const 
 }
 
 void GateVisibility::decide(const At& at, std::size_t block, const Terms& terms,
-                            Decision& d) const {
+                            VisibilityEstimate& d) const {
   const std::uint32_t cluster = lights_->group(block);
   if (cluster == no_group || at.cluster == no_group) return test_all(terms, d);
   d.tests = 0;

@@ -33,7 +33,7 @@ class GateVisibility : public VisibilityBase {
   At at(const ShadingPoint& point, const IterationContext&) const {
     return {point.vertex->surface.x, cluster(node_of(*lookup_, point))};
   }
-  void decide(const At& at, std::size_t block, const Terms& terms, Decision& d) const;
+  void decide(const At& at, std::size_t block, const Terms& terms, VisibilityEstimate& d) const;
   std::vector<std::pair<std::string, double>> statistics() const;
 
  private:
@@ -52,7 +52,7 @@ class GateVisibility : public VisibilityBase {
   std::vector<std::uint32_t> cluster_of_;  // of each node of the skeleton
   std::vector<std::uint32_t> first_;       // of each cluster in gates_, and the end
   std::vector<Gate> gates_;                // each once for either side
-  const VirtualLights* lights_ = nullptr;
+  const VplSet* lights_ = nullptr;
 };
 
 }  // namespace lacuna

@@ -31,7 +31,7 @@ void NodeMapVisibility::prepare(const PrepareContext& context) {
 }
 
 Counters NodeMapVisibility::begin(const LightPass& pass) {
-  const VirtualLights& lights = pass.terms.lights();
+  const VplSet& lights = pass.terms.lights();
   std::vector<std::uint32_t> view_of_node(nodes_.size(), no_group);
   views_.clear();
   view_of_.assign(lights.blocks(), no_group);

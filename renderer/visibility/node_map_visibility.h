@@ -33,7 +33,7 @@ class NodeMapVisibility : public VisibilityBase {
     return at.seen[view] == 0;
   }
   /// To be asked only where hides() says no.
-  void decide(const At& at, std::size_t block, const Terms& terms, Decision& d) const {
+  void decide(const At& at, std::size_t block, const Terms& terms, VisibilityEstimate& d) const {
     const std::uint32_t view = view_of_[block];
     if (view == no_group) return test_all(terms, d);
     d.tests = 0;

@@ -10,7 +10,9 @@ struct ExactVisibility : VisibilityBase {
   explicit ExactVisibility(const ExactVisibilitySettings&) {}
   struct At {};
   static At at(const ShadingPoint&, const IterationContext&) { return {}; }
-  static void decide(At&, std::size_t, const Terms& terms, Decision& d) { test_all(terms, d); }
+  static void decide(At&, std::size_t, const Terms& terms, VisibilityEstimate& d) {
+    test_all(terms, d);
+  }
 };
 
 /// visibility: none.
@@ -18,7 +20,7 @@ struct NoVisibility : VisibilityBase {
   explicit NoVisibility(const NoVisibilitySettings&) {}
   struct At {};
   static At at(const ShadingPoint&, const IterationContext&) { return {}; }
-  static void decide(At&, std::size_t, const Terms&, Decision& d) {
+  static void decide(At&, std::size_t, const Terms&, VisibilityEstimate& d) {
     d.tests = 0;
     d.untested.v.fill(1);
   }

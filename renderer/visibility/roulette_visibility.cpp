@@ -22,9 +22,9 @@ RouletteVisibility::At RouletteVisibility::at(const ShadingPoint& point,
           {context.seed, context.iteration, point.pixel, Rng::Purpose::visibility}};
 }
 
-void RouletteVisibility::decide(At& at, std::size_t, const Terms& terms, Decision& d) {
-  const TestChance chance = at.chance;
-  Keys keys;
+void RouletteVisibility::decide(At& at, std::size_t, const Terms& terms, VisibilityEstimate& d) {
+  const TestProbability chance = at.chance;
+  SystematicSampler keys;
   for (int k = 0; k < Lanes::groups; ++k) {
     const Float8 t = terms.luminance.eight(k);
     keys.set(k, chance.of(t, 1), t);

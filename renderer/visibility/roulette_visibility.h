@@ -1,7 +1,7 @@
 #pragma once
 
 #include "renderer/settings/visibility_settings.h"
-#include "renderer/visibility/test_chance.h"
+#include "renderer/visibility/test_probability.h"
 #include "renderer/visibility/visibility_base.h"
 
 namespace lacuna {
@@ -16,11 +16,11 @@ class RouletteVisibility : public VisibilityBase {
 
   Counters begin(const LightPass& pass);
   struct At {
-    TestChance chance;
+    TestProbability chance;
     Rng rng;
   };
   At at(const ShadingPoint& point, const IterationContext& context) const;
-  static void decide(At& at, std::size_t block, const Terms& terms, Decision& d);
+  static void decide(At& at, std::size_t block, const Terms& terms, VisibilityEstimate& d);
   std::vector<std::pair<std::string, double>> statistics() const { return points_.statistics(); }
 
  private:

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "analysis/skeleton/surface_lookup.h"
-#include "renderer/many_lights/light_terms.h"
+#include "renderer/many_lights/vpl_contributions.h"
 
 namespace lacuna {
 

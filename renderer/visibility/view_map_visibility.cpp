@@ -22,7 +22,7 @@ void ViewMapVisibility::prepare(const PrepareContext& context) {
   texels_ = map_texels({settings_.map_size});
 }
 
-std::vector<BlockRange> ViewMapVisibility::passes(const VirtualLights& lights) const {
+std::vector<BlockRange> ViewMapVisibility::passes(const VplSet& lights) const {
   constexpr double gib = 1 << 30;
   const double most = settings_.memory * gib / double(texels_.size() * sizeof(std::uint16_t));
   std::vector<BlockRange> ranges{{}};
@@ -104,7 +104,7 @@ bool ViewMapVisibility::sees(std::uint32_t leaf, const At& at) const {
 }
 
 void ViewMapVisibility::decide(const At& at, std::size_t block, const Terms& terms,
-                               Decision& d) const {
+                               VisibilityEstimate& d) const {
   if (lights_->group(block) == no_group) return test_all(terms, d);
   d.tests = 0;
   d.untested.v.fill(0);

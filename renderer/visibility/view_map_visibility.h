@@ -19,7 +19,7 @@ class ViewMapVisibility : public VisibilityBase {
 
   void prepare(const PrepareContext& context);
   static std::uint32_t group(const LightPlace& light) { return light.infinite ? no_group : 0; }
-  std::vector<BlockRange> passes(const VirtualLights& lights) const;
+  std::vector<BlockRange> passes(const VplSet& lights) const;
   Counters begin(const LightPass& pass);
   struct At {
     V3f x, n;  // n on the side that is seen
@@ -27,7 +27,7 @@ class ViewMapVisibility : public VisibilityBase {
   static At at(const ShadingPoint& point, const IterationContext&) {
     return {point.vertex->surface.x, point.vertex->side()};
   }
-  void decide(const At& at, std::size_t block, const Terms& terms, Decision& d) const;
+  void decide(const At& at, std::size_t block, const Terms& terms, VisibilityEstimate& d) const;
   std::vector<std::pair<std::string, double>> statistics() const;
 
  private:
@@ -41,7 +41,7 @@ class ViewMapVisibility : public VisibilityBase {
   std::unique_ptr<ViewMaps> maps_;
   std::vector<MapTexel> texels_;      // of a map
   std::vector<std::uint32_t> first_;  // of each block of lights its first view
-  const VirtualLights* lights_ = nullptr;
+  const VplSet* lights_ = nullptr;
   ManyViewsCounts counts_;
   std::uint64_t queue_peak_ = 0;  // of the pass that has the most
   std::uint64_t leaves_ = 0;      // of all passes of an iteration

@@ -22,8 +22,8 @@ namespace lacuna {
 template <class V>
 concept Visibility = Strategy<V> &&
     requires(V v, const V& k, const ShadingPoint& point, const Terms& terms,
-             const IterationContext& context, Decision& d, typename V::At& at,
-             const LightPlace& place, const VirtualLights& lights, const LightPass& pass) {
+             const IterationContext& context, VisibilityEstimate& d, typename V::At& at,
+             const LightPlace& place, const VplSet& lights, const LightPass& pass) {
   { k.at(point, context) } -> std::same_as<typename V::At>;
   k.decide(at, std::size_t{}, terms, d);
   { k.hides(at, std::size_t{}) } -> std::same_as<bool>;

@@ -82,7 +82,7 @@ TEST(LightVertices, ListWhatCanBeJoined) {
         const Vertex& v = lit.lights.at(count, i++);
         EXPECT_EQ(v.surface.x, path[k].surface.x);
         EXPECT_EQ(v.throughput, path[k].throughput);
-        EXPECT_EQ(v.prior, path[k].prior);
+        EXPECT_EQ(v.mis_partial, path[k].mis_partial);
       }
       EXPECT_EQ(i, lit.lights.count(count)) << "vertices " << count;
     }

@@ -49,7 +49,7 @@ TEST_P(Density, IsThatOfItsSamples) {
   std::size_t checked = 0;
   for (const PathScene& s : scenes) {
     const GuidedScene scene([&] { return load(s); }, GetParam().guide, 3, environment(s));
-    const Directions& directions = scene.directions();
+    const GuidingDistribution& directions = scene.directions();
     for (const Vertex& v : scene.guided_vertices(points)) {
       SCOPED_TRACE(testing::Message() << s << " at " << v.surface.x);
       ++checked;
@@ -80,11 +80,11 @@ TEST_P(Density, WithTheSurfaceIsThatOfItsSamples) {
     const GuidedScene scene([&] { return load(s); }, GetParam().guide, 3, environment(s));
     learns = learns || scene.directions().learns();
     // As MixedGuide's own directions: those of the scene.
-    class Lent final : public Directions {
+    class Lent final : public GuidingDistribution {
      public:
-      explicit Lent(const Directions& d) : d_(d) {}
+      explicit Lent(const GuidingDistribution& d) : d_(d) {}
       bool needs_space() const override { return d_.needs_space(); }
-      GuideSite site(const Surface& x, const V3f& w) const override { return d_.site(x, w); }
+      GuidingCell site(const Surface& x, const V3f& w) const override { return d_.site(x, w); }
       std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const override {
         return d_.sample(at, rng);
       }
@@ -93,7 +93,7 @@ TEST_P(Density, WithTheSurfaceIsThatOfItsSamples) {
       }
 
      private:
-      const Directions& d_;
+      const GuidingDistribution& d_;
     };
     const MixedGuide guide(std::make_unique<Lent>(scene.directions()));
     for (const Vertex& v : scene.guided_vertices(points)) {

@@ -18,7 +18,7 @@ class GuidedScene {
         eye_(make().cameras.front()),
         camera_(eye_, side, side),
         scene_(make(), {.materials = true, .emission = true}, environment, pool_),
-        directions_(make_directions(guide)) {
+        directions_(make_guiding_distribution(guide)) {
     space_ = std::make_unique<SpaceAnalysis>(
         SpaceInput{.triangles = [this] { return triangle_soup(scene_.data()); },
                    .geometry = geometry_key(scene_.data()),
@@ -37,7 +37,7 @@ class GuidedScene {
     directions_->load(in);
   }
 
-  const Directions& directions() const { return *directions_; }
+  const GuidingDistribution& directions() const { return *directions_; }
   const Scene& scene() const { return scene_; }
 
   /// Vertices of paths from the eye that scatter and have a site from which directions are drawn;
@@ -55,7 +55,7 @@ class GuidedScene {
     Counters counters;
     const BsdfGuide guide;
     Walk<BsdfGuide> walk(scene_, guide, {.max_depth = 4, .roulette_depth = 4}, counters);
-    walk.lead(
+    walk.trace_paths(
         batch.walkers, [](std::size_t, int) {},
         [&](std::size_t i, int depth) {
           Vertex v = batch.vertex(i, depth);
@@ -90,7 +90,7 @@ class GuidedScene {
   Scene scene_;
   ArtefactStore store_{{}};
   std::unique_ptr<SpaceAnalysis> space_;
-  std::unique_ptr<Directions> directions_;
+  std::unique_ptr<GuidingDistribution> directions_;
 };
 
 }  // namespace lacuna::test

@@ -12,7 +12,8 @@ namespace {
 using test::GuidedScene;
 
 /// Total variation between what is drawn at two points, in [0, 1]; draws that fail count too.
-double difference(const Directions& d, const GuidedVertex& a, const GuidedVertex& b, Rng& rng) {
+double difference(const GuidingDistribution& d, const GuidedVertex& a, const GuidedVertex& b,
+                  Rng& rng) {
   const int n = 400;
   double sum = 0;
   for (int i = 0; i < n; ++i) {
@@ -40,18 +41,18 @@ TEST(RegionBorders, ShowNoStepWithMixing) {
   double step_sharp = 0, step_mixed = 0;
   int borders = 0;
   for (const Vertex& v : sharp.guided_vertices(60)) {
-    const Directions &one = sharp.directions(), &other = mixed.directions();
+    const GuidingDistribution &one = sharp.directions(), &other = mixed.directions();
     // Along the surface, in steps of a tenth of a voxel.
     const V3f along = cross(v.surface.ng, V3f(0.3F, 0.5F, 0.8F)).normalized() * 0.013F;
     Surface s = v.surface, next = v.surface;
     for (int k = 0; k < 100; ++k) {
       s.x = next.x;
       next.x += along;
-      const GuideSite a = one.site(s, v.wp), b = one.site(next, v.wp);
+      const GuidingCell a = one.site(s, v.wp), b = one.site(next, v.wp);
       if (!(a.probability > 0 && b.probability > 0) || a.index == b.index) continue;
       const double step = difference(one, {s, *v.bsdf, v.wp, a}, {next, *v.bsdf, v.wp, b}, rng);
       if (step < 0.1) continue;  // no border of regions
-      const GuideSite ma = other.site(s, v.wp), mb = other.site(next, v.wp);
+      const GuidingCell ma = other.site(s, v.wp), mb = other.site(next, v.wp);
       if (!(ma.probability > 0 && mb.probability > 0)) continue;
       step_sharp += step;
       step_mixed += difference(other, {s, *v.bsdf, v.wp, ma}, {next, *v.bsdf, v.wp, mb}, rng);

@@ -131,7 +131,8 @@ INSTANTIATE_TEST_SUITE_P(All, BidirectionalBits, testing::ValuesIn(bidirectional
                          [](const auto& m) { return m.param.name; });
 
 TEST(NodeCounts, OfAnotherSkeletonAreRefused) {
-  const test::Method skeleton{"", test::joining(3, test::resampled<SkeletonSettings>(16))};
+  const test::Method skeleton{"",
+                              test::joining(3, test::resampled<SkeletonConnectionsSettings>(16))};
   Session ajar(load_gltf(own_scene("ajar.glb")), paused_picture(skeleton));
   Session cornell(load_gltf(own_scene("cornell.glb")), paused_picture(skeleton));
   ajar.iterate(0);

@@ -164,7 +164,7 @@ inline std::vector<Method> approximate_lights(int max_depth, int light_paths = 6
 /// Every flag and every named value of the choices, at least once away from its default, alone and
 /// with others.
 inline std::vector<Method> unusual_connections(int max_depth, int light_paths = 64) {
-  using Skeleton = SkeletonSettings;
+  using Skeleton = SkeletonConnectionsSettings;
   using Cache = ImportanceCacheSettings;
   std::vector<Method> all;
   const auto add = [&]<class S>(const char* name, S, const auto& change) {

@@ -157,8 +157,8 @@ TEST(LightDraw, OfMoreThanThereAreIsAll) {
 TEST(LightDraw, OfNoLightsIsNothing) {
   const LitScene lit({"ajar"}, 1, 2, false);
   lit.with_points(400, [&](std::span<const ShadingPoint> points) {
-    const VirtualLights none(1, {1, false, 0.1F});
-    const LightTerms terms(none, 2);
+    const VplSet none(1, {1, false, 0.1F});
+    const VplContributions terms(none, 2);
     const LightDraw draw(terms, {});
     EXPECT_TRUE(draw.draw(points, lit.context(1)).empty());
     EXPECT_EQ(draw.culled(), 0);

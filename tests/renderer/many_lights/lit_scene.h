@@ -43,8 +43,8 @@ class LitScene {
     return {scene_, camera_, pool_, seed, 0, never_};
   }
   const Scene& scene() const { return scene_; }
-  const VirtualLights& lights() const { return lights_; }
-  const LightTerms& terms() const { return terms_; }
+  const VplSet& lights() const { return lights_; }
+  const VplContributions& terms() const { return terms_; }
   LightPass pass(const IterationContext& context) const {
     return {context, terms_, max_depth, least_alpha};
   }
@@ -69,9 +69,9 @@ class LitScene {
   }
 
  private:
-  VirtualLights walk(const LightGroups& groups) {
-    VirtualLights lights(static_cast<std::size_t>(light_paths_),
-                         {max_depth - 1, with_emitters_, least_alpha});
+  VplSet walk(const LightGroups& groups) {
+    VplSet lights(static_cast<std::size_t>(light_paths_),
+                  {max_depth - 1, with_emitters_, least_alpha});
     for (auto& n : walked_) n = 0;
     const LightPathSetting setting{
         scene_, camera_, max_depth - 1, max_depth, SampleCounts{.hit = 0}, true};
@@ -82,7 +82,8 @@ class LitScene {
           lights.keep(path, batch, place);
           const int length = std::min(batch.length(place), max_depth - 1);
           for (int i = 1; i < length; ++i) {
-            walked_[static_cast<std::size_t>(i)] += batch.vertex(place, i).bsdf->broad(least_alpha);
+            walked_[static_cast<std::size_t>(i)] +=
+                batch.vertex(place, i).bsdf->is_vpl_receiver(least_alpha);
           }
           if (length > 0) ++walked_[0];
         },
@@ -109,8 +110,8 @@ class LitScene {
   std::array<std::atomic<std::size_t>, max_depth> walked_{};
   int light_paths_;
   bool with_emitters_;
-  VirtualLights lights_;
-  LightTerms terms_;
+  VplSet lights_;
+  VplContributions terms_;
 };
 
 /// What the lights give to each point, red.

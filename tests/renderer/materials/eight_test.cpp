@@ -66,7 +66,7 @@ TEST_P(Eight, LitFromOneSide) {
       const auto lit = bsdf.lambert_lit(from);
       if (!lit) return;
       const float cos = dot(w, lit->side);
-      const float t = dot(w, lit->ns) > 0 ? lit->turned : 1.0F;
+      const float t = dot(w, lit->ns) > 0 ? lit->shading_cosine_ratio : 1.0F;
       const Rgb f = cos > 0 ? lit->f * (cos * t) : Rgb(0, 0, 0);
       const Rgb expected = bsdf.eval(from, w, Transport::importance);
       ASSERT_NEAR(f.x, expected.x, 1e-5F * expected.x + 1e-7F);

@@ -1,4 +1,4 @@
-// Directions follow the density that pdf() reports, and weights are eval / pdf.
+// GuidingDistribution follow the density that pdf() reports, and weights are eval / pdf.
 
 #include <gtest/gtest.h>
 

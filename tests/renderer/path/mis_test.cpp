@@ -67,7 +67,7 @@ class Meeting {
           scene_, guide_,
           {.max_depth = longest, .roulette_depth = longest + 1, .counts = eye_side(counts_)},
           counters);
-      walk.lead(
+      walk.trace_paths(
           eye_.walkers, [](std::size_t, int) {},
           [&](std::size_t i, int depth) {
             meet_emitter(i, depth, hit);
@@ -101,14 +101,14 @@ class Meeting {
   /// t = 1.
   template <class Joined>
   void join_eye(std::size_t i, const Joined& joined) const {
-    const EyeEnd eye{camera_};
+    const EyeEndpoint eye{camera_};
     for (int s = 1; s <= light_.length(i); ++s) {
       const EmitterPoint& e = light_.emitter(i);
       const V3f& x = s == 1 ? e.x : light_.vertex(i, s - 1).surface.x;
       const V3f w = s == 1 && e.infinite() ? x : (x - camera_.position()).normalized();
       if (!camera_.project(w)) continue;
       if (s == 1) {
-        if (!e.delta()) use(eye, EmitterEnd{e}, i, 0, joined);
+        if (!e.delta()) use(eye, EmitterEndpoint{e}, i, 0, joined);
       } else if (light_.vertex(i, s - 1).bsdf->connectible()) {
         use(eye, light_.end(i, s - 1), i, 0, joined);
       }
@@ -119,10 +119,10 @@ class Meeting {
   void join(std::size_t i, int depth, const Joined& joined) {
     const Vertex& v = eye_.vertex(i, depth);
     if (v.kind != Vertex::Kind::surface || depth == longest || !v.bsdf->connectible()) return;
-    const SurfaceEnd<Guide> eye{v, depth, Transport::radiance, guide_};
+    const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
     for (int s = 1; s <= std::min(longest - depth, light_.length(i)); ++s) {
       if (s == 1) {
-        use(eye, EmitterEnd{light_.emitter(i)}, i, depth, joined);
+        use(eye, EmitterEndpoint{light_.emitter(i)}, i, depth, joined);
       } else if (light_.vertex(i, s - 1).bsdf->connectible()) {
         use(eye, light_.end(i, s - 1), i, depth, joined);
       }
@@ -161,7 +161,7 @@ void for_both_guides(const Test& test) {
     test(BsdfGuide{}, nullptr, nullptr);
   }
   auto own = std::make_unique<test::SidedDirections>();
-  const Directions* directions = own.get();
+  const GuidingDistribution* directions = own.get();
   const MixedGuide guide(std::move(own));
   SCOPED_TRACE("guided");
   test(guide, &guide, directions);
@@ -171,10 +171,10 @@ class Weights : public testing::TestWithParam<PathScene> {
  protected:
   Weights() : data_(load(GetParam())) {}
   template <class Guide>
-  void are_their_definition(const Guide& guide, const Directions* directions) const;
+  void are_their_definition(const Guide& guide, const GuidingDistribution* directions) const;
   template <class Guide>
   void add_up_to_one(const Guide& guide, const MixedGuide* mixed,
-                     const Directions* directions) const;
+                     const GuidingDistribution* directions) const;
 
   SceneData data_;
   const Camera camera_{data_.cameras.front(), side, side};
@@ -208,13 +208,15 @@ void expect_power(const Comparison& c, const SampleCounts& n) {
 // Real walks: what the renderer weighs, along the walks' own directions, so that only rounding is
 // left.
 TEST_P(Weights, AreTheirDefinition) {
-  for_both_guides([this](const auto& guide, const MixedGuide*, const Directions* directions) {
-    are_their_definition(guide, directions);
-  });
+  for_both_guides(
+      [this](const auto& guide, const MixedGuide*, const GuidingDistribution* directions) {
+        are_their_definition(guide, directions);
+      });
 }
 
 template <class Guide>
-void Weights::are_their_definition(const Guide& guide, const Directions* directions) const {
+void Weights::are_their_definition(const Guide& guide,
+                                   const GuidingDistribution* directions) const {
   for (const Counts& counts : all_counts) {
     SCOPED_TRACE(counts.name);
     Comparison c{.tolerance = 1e-5, .smallest = 1e-9};
@@ -241,14 +243,15 @@ void Weights::are_their_definition(const Guide& guide, const Directions* directi
 // Whole paths, each made once more by every strategy: what one walk knows of the other's densities
 // is what the other has.
 TEST_P(Weights, OfAllStrategiesAddUpToOne) {
-  for_both_guides([this](const auto& guide, const MixedGuide* mixed, const Directions* directions) {
-    add_up_to_one(guide, mixed, directions);
-  });
+  for_both_guides(
+      [this](const auto& guide, const MixedGuide* mixed, const GuidingDistribution* directions) {
+        add_up_to_one(guide, mixed, directions);
+      });
 }
 
 template <class Guide>
 void Weights::add_up_to_one(const Guide& guide, const MixedGuide* mixed,
-                            const Directions* directions) const {
+                            const GuidingDistribution* directions) const {
   for (const Counts& counts : all_counts) {
     SCOPED_TRACE(counts.name);
     std::vector<WholePath> paths;

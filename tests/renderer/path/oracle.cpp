@@ -15,7 +15,7 @@ double squared_distance(const WholePath& p, int i) {
 }  // namespace
 
 Oracle::Oracle(const Scene& scene, const Camera& camera, const WholePath& path,
-               const Directions* directions)
+               const GuidingDistribution* directions)
     : scene_(scene), camera_(camera), path_(path), directions_(directions) {
   const int k = path.edges();
   for (int i = 0; i <= k; ++i) {
@@ -74,7 +74,7 @@ double Oracle::eye_step(int i) const {
   const V3f& wo = path_.towards_eye(i + 1);
   const auto bsdf = double(from.bsdf->pdf(wo, w, Transport::radiance).value);
   if (directions_ == nullptr) return bsdf * there;
-  const GuideSite site = directions_->site(from.surface, wo);
+  const GuidingCell site = directions_->site(from.surface, wo);
   const auto guided = double(directions_->pdf({from.surface, *from.bsdf, wo, site}, w).value);
   const auto c = double(site.probability);
   return (c * guided + (1 - c) * bsdf) * there;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "renderer/guides/directions.h"
+#include "renderer/guides/guiding_distribution.h"
 #include "renderer/path/mis.h"
 #include "tests/renderer/path/whole_path.h"
 
@@ -12,7 +12,7 @@ class Oracle {
  public:
   /// `directions`: those of the guide of paths from the eye; null: they follow the BSDF.
   Oracle(const Scene& scene, const Camera& camera, const WholePath& path,
-         const Directions* directions = nullptr);
+         const GuidingDistribution* directions = nullptr);
 
   /// Of strategy s = 0 ... k under the balance heuristic. All 0: no strategy makes this path.
   std::vector<double> weights(const SampleCounts& n) const;
@@ -25,7 +25,7 @@ class Oracle {
   const Scene& scene_;
   const Camera& camera_;
   const WholePath& path_;
-  const Directions* directions_;
+  const GuidingDistribution* directions_;
   /// [i] per area at x_i, of a walk that comes from there; in logarithms, -inf: never.
   std::vector<double> from_light_, from_eye_;
 };

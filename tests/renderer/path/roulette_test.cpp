@@ -39,11 +39,11 @@ TEST(Roulette, GoesByWhatTheBsdfWouldHaveLeft) {
   Walk<MixedGuide> walk(scene, guide, {.max_depth = longest, .roulette_depth = 1}, counters);
   int told = 0;
   float least = 1;
-  walk.lead(
+  walk.trace_paths(
       batch.walkers, [](std::size_t, int) {},
       [&](std::size_t i, int depth) {
         if (depth < 2) return;
-        const Walker& w = batch.walkers[i];
+        const PathState& w = batch.walkers[i];
         const float carried = max_component(w.throughput);
         EXPECT_NEAR(carried * w.roulette_scale, 1.0F, 1e-4F);
         least = std::min(least, carried);

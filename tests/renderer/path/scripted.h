@@ -60,9 +60,9 @@ class Remake {
       return e ? std::optional(hit_weight(v, k, *e, counts_)) : std::nullopt;
     }
     if (s > 1 && !walk_light(s)) return std::nullopt;
-    if (s == 1) return joined(EmitterEnd{path_.emitter}, s);
-    return joined(SurfaceEnd<ScriptedGuide>{light_[static_cast<std::size_t>(s) - 1], s - 1,
-                                            Transport::importance, light_guide_},
+    if (s == 1) return joined(EmitterEndpoint{path_.emitter}, s);
+    return joined(SurfaceEndpoint<ScriptedGuide>{light_[static_cast<std::size_t>(s) - 1], s - 1,
+                                                 Transport::importance, light_guide_},
                   s);
   }
 
@@ -71,11 +71,11 @@ class Remake {
   double joined(const Light& light, int s) const {
     const int depth = path_.edges() - s;
     if (depth == 0) {
-      const EyeEnd eye{camera_};
+      const EyeEndpoint eye{camera_};
       return lacuna::weight(eye, light, connect(eye, light), counts_);
     }
-    const SurfaceEnd<ScriptedGuide> eye{eye_.vertex(0, depth), depth, Transport::radiance,
-                                        eye_guide_};
+    const SurfaceEndpoint<ScriptedGuide> eye{eye_.vertex(0, depth), depth, Transport::radiance,
+                                             eye_guide_};
     return lacuna::weight(eye, light, connect(eye, light), counts_);
   }
 
@@ -99,7 +99,7 @@ class Remake {
     }
     eye_.start(camera_, rng_, {camera_.position(), step(k, -1)}, 0);
     int reached = 0;
-    lead(eye_.walkers, eye_guide_, depth, Transport::radiance, eye_side(counts_), reached);
+    trace_paths(eye_.walkers, eye_guide_, depth, Transport::radiance, eye_side(counts_), reached);
     if (reached != depth) return false;
     for (int j = 1; j <= depth - (hit ? 1 : 0); ++j) {
       if (!same(eye_.vertex(0, j), path_.node(k - j))) return false;
@@ -121,10 +121,10 @@ class Remake {
     light_[0].kind = e.infinite() ? Vertex::Kind::background : Vertex::Kind::emitter;
     light_[0].surface.x = e.x;
     light_[0].surface.ng = e.ng;
-    Walker walker{.rng = rng_, .ray = {from, w}, .p = e.leaving_pdf(w), .path = light_};
-    if (!e.delta()) walker.prior = counts_.hit / double(e.pdf.value);
+    PathState walker{.rng = rng_, .ray = {from, w}, .p = e.leaving_pdf(w), .path = light_};
+    if (!e.delta()) walker.mis_partial = counts_.hit / double(e.pdf.value);
     int reached = 0;
-    lead(std::span(&walker, 1), light_guide_, s - 1, Transport::importance, light_side(counts_),
+    trace_paths(std::span(&walker, 1), light_guide_, s - 1, Transport::importance, light_side(counts_),
          reached);
     if (reached != s - 1) return false;
     for (int j = 1; j < s; ++j) {
@@ -133,8 +133,8 @@ class Remake {
     return true;
   }
 
-  void lead(std::span<Walker> walkers, const ScriptedGuide& guide, int depth, Transport transport,
-            const SideCounts& side, int& reached) {
+  void trace_paths(std::span<PathState> walkers, const ScriptedGuide& guide, int depth,
+                   Transport transport, const TechniqueCounts& side, int& reached) {
     Counters counters;
     Walk<ScriptedGuide> walk(scene_, guide,
                              {.max_depth = depth,
@@ -143,7 +143,7 @@ class Remake {
                               .transport = transport,
                               .counts = side},
                              counters);
-    walk.lead(
+    walk.trace_paths(
         walkers, [](std::size_t, int) {}, [&](std::size_t, int d) { reached = d; });
   }
 

@@ -7,13 +7,13 @@
 
 namespace lacuna::test {
 
-/// Directions around one of two far points, by the side of the surface that is asked for, drawn
-/// with another probability on each side: as little alike as densities from both ends can be.
-class SidedDirections final : public Directions {
+/// GuidingDistribution around one of two far points, by the side of the surface that is asked for,
+/// drawn with another probability on each side: as little alike as densities from both ends can be.
+class SidedDirections final : public GuidingDistribution {
  public:
   bool needs_space() const override { return false; }
-  GuideSite site(const Surface& s, const V3f& w) const override {
-    return dot(w, s.ng) < 0 ? GuideSite{0.7F, 1} : GuideSite{0.3F, 0};
+  GuidingCell site(const Surface& s, const V3f& w) const override {
+    return dot(w, s.ng) < 0 ? GuidingCell{0.7F, 1} : GuidingCell{0.3F, 0};
   }
   std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const override {
     const V2f u = rng.next2();
@@ -27,7 +27,7 @@ class SidedDirections final : public Directions {
   }
 
  private:
-  static V3f axis(const GuideSite& site, const V3f& x) {
+  static V3f axis(const GuidingCell& site, const V3f& x) {
     return ((site.index == 0 ? V3f(40, 90, -30) : V3f(-70, 20, 50)) - x).normalized();
   }
 };

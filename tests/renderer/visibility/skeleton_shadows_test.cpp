@@ -16,7 +16,7 @@ template <class V>
 double by_hand(const LitScene& lit, const ShadingPoint& at, V&& v) {
   double total = 0;
   Terms terms;
-  const VirtualLights& lights = lit.lights();
+  const VplSet& lights = lit.lights();
   for (std::size_t b = 0; b < lights.blocks(at.edges); ++b) {
     lit.terms().evaluate(at, b, terms);
     for (int i = 0; i < lights.count(b); ++i) {
@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(All, SkeletonShadows,
                          [](const auto& s) { return s.param.name; });
 
 // Groups change the order of the lights, and nothing else.
-TEST(VirtualLights, InGroupsGiveTheSame) {
+TEST(VplSet, InGroupsGiveTheSame) {
   struct ByPlace : ExactVisibility {
     using ExactVisibility::ExactVisibility;
     static std::uint32_t group(const LightPlace& p) {

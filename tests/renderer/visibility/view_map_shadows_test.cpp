@@ -20,7 +20,7 @@ Agreement against_rays(LitScene& lit, const ViewMapsVisibilitySettings& settings
   for (const std::uint32_t first : {0U, 300U, 600U, 900U}) {
     lit.with_points(first, [&](std::span<const ShadingPoint> points) {
       Terms terms;
-      Decision d;
+      VisibilityEstimate d;
       for (const ShadingPoint& p : points) {
         const auto at = visibility.at(p, lit.context(1));
         for (std::size_t b = 0; b < lit.lights().blocks(p.edges); ++b) {

@@ -13,7 +13,7 @@ namespace lacuna {
 
 /// A surface that a walk reached, which is vertex `index` of its path.
 template <class Guide>
-struct SurfaceEnd {
+struct SurfaceEndpoint {
   const Vertex& v;
   int index;
   Transport transport;
@@ -35,7 +35,7 @@ struct SurfaceEnd {
   /// area_factor over the squared distance.
   double area_factor(const V3f& w) const { return double(abs_dot(v.surface.ng, w)); }
   double p_fwd() const { return double(v.p_fwd.value); }
-  double prior() const { return v.prior; }
+  double mis_partial() const { return v.mis_partial; }
   bool prior_connectible() const { return v.prior_connectible; }
   /// Where a ray along `w` starts.
   V3f origin(const V3f& w) const {
@@ -44,7 +44,7 @@ struct SurfaceEnd {
 };
 
 /// A point on an emitter: vertex 0 of a light's path, whether the path goes on or not.
-struct EmitterEnd {
+struct EmitterEndpoint {
   const EmitterPoint& e;
   static constexpr int index = 0;
 
@@ -61,7 +61,7 @@ struct EmitterEnd {
     return e.kind == EmitterPoint::Kind::area ? double(abs_dot(e.ng, w)) : 1.0;
   }
   double p_fwd() const { return double(e.pdf.value); }
-  static double prior() { return 0; }
+  static double mis_partial() { return 0; }
   /// An eye's path can meet it.
   bool prior_connectible() const { return !e.delta(); }
   V3f origin(const V3f& w) const {
@@ -70,7 +70,7 @@ struct EmitterEnd {
 };
 
 /// The eye, a point.
-struct EyeEnd {
+struct EyeEndpoint {
   const Camera& camera;
   static constexpr int index = 0;
 

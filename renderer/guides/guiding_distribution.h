@@ -17,8 +17,8 @@ namespace lacuna {
 struct GuidedVertex {
   const Surface& surface;
   const Bsdf& bsdf;
-  const V3f& wo;          ///< unit, to where the path came from
-  const GuideSite& site;  ///< of the surface as seen from `wo`
+  const V3f& wo;            ///< unit, to where the path came from
+  const GuidingCell& site;  ///< of the surface as seen from `wo`
 
   const V3f& x() const { return surface.x; }
 };
@@ -26,7 +26,7 @@ struct GuidedVertex {
 /// A distribution of directions at every point of the scene's surfaces, of what a guide knows about
 /// where light comes from. MixedGuide combines it with the BSDF. Iterations read it from several
 /// threads; only end() and load() change what it draws from.
-class Directions {
+class GuidingDistribution {
  public:
   /// What the parts of an iteration learn apart and end() adds up in their order, so that the state
   /// is the same for any number of threads.
@@ -34,7 +34,7 @@ class Directions {
     virtual ~Tally() = default;
   };
 
-  virtual ~Directions() = default;
+  virtual ~GuidingDistribution() = default;
 
   /// What is called by the integrator's functions of these names; before prepare(): needs_space().
   virtual bool needs_space() const = 0;
@@ -45,7 +45,7 @@ class Directions {
   virtual std::vector<std::pair<std::string, double>> statistics() const { return {}; }
 
   /// Where the distribution at surface `s`, as seen from the side of unit `w`, is found.
-  virtual GuideSite site(const Surface& s, const V3f& w) const = 0;
+  virtual GuidingCell site(const Surface& s, const V3f& w) const = 0;
   /// Draws a unit direction; nothing where the draw fails. Only where the site's probability is
   /// above 0.
   virtual std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const = 0;

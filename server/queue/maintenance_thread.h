@@ -12,12 +12,12 @@ namespace lacuna {
 
 /// Looks after what changes by itself while the service runs: what renderers write, folders that
 /// come and go by other hands, room on the disk, and old jobs that need not be kept.
-class Caretaker {
+class MaintenanceThread {
  public:
-  Caretaker(JobTable& table, Queue& queue, CareSettings settings);
-  ~Caretaker() { stop(); }
-  Caretaker(const Caretaker&) = delete;
-  Caretaker& operator=(const Caretaker&) = delete;
+  MaintenanceThread(JobTable& table, Queue& queue, CareSettings settings);
+  ~MaintenanceThread() { stop(); }
+  MaintenanceThread(const MaintenanceThread&) = delete;
+  MaintenanceThread& operator=(const MaintenanceThread&) = delete;
 
   void start();
   void stop();

@@ -1,7 +1,7 @@
 // The probability of a test, at and beyond the ends of what it is made of, and the drawing of
 // tests.
 
-#include "renderer/visibility/test_chance.h"
+#include "renderer/visibility/test_probability.h"
 
 #include <gtest/gtest.h>
 
@@ -14,21 +14,21 @@ namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
-float of(const TestChance& chance, float t, float var) {
+float of(const TestProbability& chance, float t, float var) {
   return _mm256_cvtss_f32(chance.of(t, var).v);
 }
 std::uint32_t key(float probability, float lit = 1) {
-  Keys keys;
+  SystematicSampler keys;
   keys.set(3, probability, lit);
   return keys.v[24];
 }
 
 // Nabata et al., eq. 9: variance times time, by search.
-TEST(TestChance, IsWhereVarianceTimesTimeIsLeast) {
+TEST(TestProbability, IsWhereVarianceTimesTimeIsLeast) {
   for (const float t : {0.1F, 0.5F, 1.0F, 2.5F}) {
     for (const float k : {0.001F, 0.05F, 0.3F}) {
       const float var = 0.15F;
-      const TestChance chance{.k = k, .c = 1, .least = 1e-4F, .over_sigma = 1};
+      const TestProbability chance{.k = k, .c = 1, .least = 1e-4F, .over_sigma = 1};
       const double a = double(t) * double(t) * double(var);
       double best = 1;
       double least = std::numeric_limits<double>::infinity();
@@ -41,37 +41,37 @@ TEST(TestChance, IsWhereVarianceTimesTimeIsLeast) {
   }
 }
 
-TEST(TestChance, AtItsEnds) {
-  const TestChance chance{.k = 0.03F, .c = 1, .least = 0.1F, .over_sigma = 1};
+TEST(TestProbability, AtItsEnds) {
+  const TestProbability chance{.k = 0.03F, .c = 1, .least = 0.1F, .over_sigma = 1};
   EXPECT_EQ(of(chance, 0, 0.25F), 0.1F);
   EXPECT_EQ(of(chance, 2, 0.25F), 1.0F) << "A = sigma^2";
   EXPECT_EQ(of(chance, 3, 0.25F), 1.0F) << "A > sigma^2";
   EXPECT_EQ(of(chance, 1e30F, 0.25F), 1.0F);
   EXPECT_EQ(of(chance, 1e-30F, 0.25F), 0.1F);
-  const TestChance constant{.k = 0.03F, .c = 1, .least = 0.1F, .over_sigma = infinite};
+  const TestProbability constant{.k = 0.03F, .c = 1, .least = 0.1F, .over_sigma = infinite};
   EXPECT_EQ(of(constant, 1, 0.1F), 1.0F) << "sigma^2 = 0";
   EXPECT_EQ(of(constant, 0, 0.1F), 1.0F);
-  const TestChance free{.k = 0, .c = 1, .least = 0.1F, .over_sigma = 1};
+  const TestProbability free{.k = 0, .c = 1, .least = 0.1F, .over_sigma = 1};
   EXPECT_EQ(of(free, 1, 0.1F), 0.1F) << "n_0 = 1";
-  const TestChance veach{.k = 1, .c = 0, .least = 0.001F, .over_sigma = 1};
+  const TestProbability veach{.k = 1, .c = 0, .least = 0.001F, .over_sigma = 1};
   EXPECT_FLOAT_EQ(of(veach, 0.4F, 1), 0.4F);
   EXPECT_EQ(of(veach, 1e20F, 1), 1.0F);
 }
 
-TEST(Keys, HoldTheirEnds) {
-  EXPECT_EQ(key(1), Keys::one);
+TEST(SystematicSampler, HoldTheirEnds) {
+  EXPECT_EQ(key(1), SystematicSampler::one);
   EXPECT_EQ(key(1e-9F), 1U) << "never impossible";
   EXPECT_EQ(key(1, 0), 0U) << "gives nothing";
 }
 
 // Each light is drawn with its own probability, whatever those beside it have.
-TEST(Keys, DrawEachWithItsProbability) {
-  Keys keys{};
+TEST(SystematicSampler, DrawEachWithItsProbability) {
+  SystematicSampler keys{};
   Rng rng(1, 2, 3, Rng::Purpose::test);
   for (int i = 0; i < Lanes::size; ++i) {
     keys.v[static_cast<std::size_t>(i)] = i % 7 == 0 ? 0 : key(rng.next());
   }
-  keys.v[5] = Keys::one;
+  keys.v[5] = SystematicSampler::one;
   keys.v[11] = 1;
   constexpr int draws = 200000;
   std::array<int, Lanes::size> drawn{};
@@ -80,7 +80,7 @@ TEST(Keys, DrawEachWithItsProbability) {
     for (int i = 0; i < Lanes::size; ++i) drawn[static_cast<std::size_t>(i)] += bits >> i & 1;
   }
   for (int i = 0; i < Lanes::size; ++i) {
-    const double p = double(keys.v[static_cast<std::size_t>(i)]) / Keys::one;
+    const double p = double(keys.v[static_cast<std::size_t>(i)]) / SystematicSampler::one;
     const double sd = std::sqrt(draws * p * (1 - p));
     EXPECT_NEAR(drawn[static_cast<std::size_t>(i)], draws * p, 5 * sd) << i;
   }

@@ -8,7 +8,7 @@
 namespace lacuna {
 
 /// A light vertex chosen for an eye vertex.
-struct Pick {
+struct VertexSample {
   std::uint32_t index = 0;  ///< LightVertices::at(s, index)
   float probability = 0;    ///< of this one among those of its length, > 0
   std::uint8_t owner = 0;   ///< which of a site's distributions it belongs to
@@ -16,7 +16,7 @@ struct Pick {
 };
 
 /// The distributions over light vertices at one place, for each length of light paths.
-class Site {
+class ResamplingCell {
  public:
   /// Over the vertices LightVertices::at(s, .).
   void set(int s, ResamplingTable table) {
@@ -35,8 +35,8 @@ class Site {
 /// there are vertices, and then calls `use(s, pick)`: what each step reads from memory was asked
 /// for in the step before. Each is made with probability `survival(s)` only; 0: not.
 template <class Survival, class Choose, class Resolve, class Use>
-void pick_all(const LightVertices& lights, int longest, Survival&& survival, Choose&& choose,
-              Resolve&& resolve, Use&& use) {
+void sample_connections(const LightVertices& lights, int longest, Survival&& survival,
+                        Choose&& choose, Resolve&& resolve, Use&& use) {
   constexpr std::size_t group = 8;
   struct Chosen {
     int s;
@@ -44,7 +44,7 @@ void pick_all(const LightVertices& lights, int longest, Survival&& survival, Cho
     std::uint32_t index;
   };
   std::array<Chosen, group> chosen;
-  std::array<Pick, group> picks;
+  std::array<VertexSample, group> picks;
   for (int s = 1; s <= longest;) {
     std::size_t n = 0;
     for (; s <= longest && n < group; ++s) {
@@ -60,17 +60,17 @@ void pick_all(const LightVertices& lights, int longest, Survival&& survival, Cho
   }
 }
 
-/// pick_all() of vertices that are all alike.
+/// sample_connections() of vertices that are all alike.
 template <class Survival, class Use>
-void pick_uniformly(const LightVertices& lights, int longest, Rng& rng, std::uint8_t owner,
-                    Survival&& survival, Use&& use) {
-  pick_all(
+void sample_uniformly(const LightVertices& lights, int longest, Rng& rng, std::uint8_t owner,
+                      Survival&& survival, Use&& use) {
+  sample_connections(
       lights, longest, survival,
       [&](int s) {
         return static_cast<std::uint32_t>((std::uint64_t{rng.next_u32()} * lights.count(s)) >> 32);
       },
       [&](int s, std::uint32_t i) {
-        return Pick{i, 1 / static_cast<float>(lights.count(s)), owner};
+        return VertexSample{i, 1 / static_cast<float>(lights.count(s)), owner};
       },
       use);
 }

@@ -1,11 +1,11 @@
-#include "renderer/many_lights/light_terms.h"
+#include "renderer/many_lights/vpl_contributions.h"
 
 #include <limits>
 
 namespace lacuna {
 
-void LightTerms::evaluate(const ShadingPoint& at, std::size_t block, Terms& out, std::uint64_t of,
-                          float weight) const {
+void VplContributions::evaluate(const ShadingPoint& at, std::size_t block, Terms& out,
+                                std::uint64_t of, float weight) const {
   const int count = lights_.count(block);
   const std::uint64_t there = count < Lanes::size ? (std::uint64_t{1} << count) - 1 : all_lights;
   of &= there;
@@ -54,7 +54,7 @@ std::uint64_t PointLanes::may_be_near(const BlockBounds& bounds, float distance)
 }
 
 /// Of those that were drawn what each stands for; the others of a group of eight become black.
-void LightTerms::weigh(std::uint64_t of, float weight, Terms& out) {
+void VplContributions::weigh(std::uint64_t of, float weight, Terms& out) {
   const __m256i lane_bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
   for (int k = 0; k < Lanes::groups; ++k) {
     const auto bits = static_cast<int>(of >> (8 * k) & 0xff);
@@ -67,8 +67,8 @@ void LightTerms::weigh(std::uint64_t of, float weight, Terms& out) {
   }
 }
 
-void LightTerms::diffuse_terms(const ShadingPoint& at, const DiffuseBlock& from, std::uint64_t of,
-                               Terms& out) const {
+void VplContributions::diffuse_terms(const ShadingPoint& at, const DiffuseBlock& from,
+                                     std::uint64_t of, Terms& out) const {
   const V3f x = at.vertex->surface.x;
   const V3f ng = at.vertex->surface.ng;
   // What no path can hit, nothing could add again.
@@ -86,7 +86,7 @@ void LightTerms::diffuse_terms(const ShadingPoint& at, const DiffuseBlock& from,
                              : -dot(w, {from.gx.eight(k), from.gy.eight(k), from.gz.eight(k)});
     const Float8 cos_s = -dot(w, {from.sx.eight(k), from.sy.eight(k), from.sz.eight(k)});
     const Float8 over_d2 = cos_g * inv * inv;
-    Float8 t = over_d2 * select(cos_s > 0, from.turned.eight(k), 1);
+    Float8 t = over_d2 * select(cos_s > 0, from.shading_cosine_ratio.eight(k), 1);
     const Float8 geometric = abs(w.x * ng.x + w.y * ng.y + w.z * ng.z) * over_d2;
     const Mask8 above = geometric > bound;
     if (any_of(above)) t = select(above, t * bound / geometric, t);  // bounded_share()
@@ -99,8 +99,8 @@ void LightTerms::diffuse_terms(const ShadingPoint& at, const DiffuseBlock& from,
   }
 }
 
-Rgb LightTerms::general(const ShadingPoint& at, const GeneralLight& light) const {
-  const SurfaceEnd<BsdfGuide> eye{*at.vertex, at.depth, Transport::radiance, guide_};
+Rgb VplContributions::general(const ShadingPoint& at, const GeneralLight& light) const {
+  const SurfaceEndpoint<BsdfGuide> eye{*at.vertex, at.depth, Transport::radiance, guide_};
   return light.with_end(guide_, [&](const auto& end) -> Rgb {
     const Connection c = connect(eye, end);
     if (!c) return Rgb(0, 0, 0);
@@ -112,7 +112,7 @@ Rgb LightTerms::general(const ShadingPoint& at, const GeneralLight& light) const
   });
 }
 
-void LightTerms::finish(Terms& out) {
+void VplContributions::finish(Terms& out) {
   for (int k = 0; k < Lanes::groups; ++k) {
     out.luminance.set(k, lacuna::luminance(out.r.eight(k), out.g.eight(k), out.b.eight(k)));
   }
@@ -128,8 +128,8 @@ void LightTerms::finish(Terms& out) {
   out.lit &= ~out.rejected;
 }
 
-Ray LightTerms::ray(const ShadingPoint& at, std::size_t block, int i) const {
-  const SurfaceEnd<BsdfGuide> eye{*at.vertex, at.depth, Transport::radiance, guide_};
+Ray VplContributions::ray(const ShadingPoint& at, std::size_t block, int i) const {
+  const SurfaceEndpoint<BsdfGuide> eye{*at.vertex, at.depth, Transport::radiance, guide_};
   if (const DiffuseBlock* from = lights_.diffuse(block)) {
     const V3f x(from->x[i], from->y[i], from->z[i]);
     const V3f g(from->gx[i], from->gy[i], from->gz[i]);

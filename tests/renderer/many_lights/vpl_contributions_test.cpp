@@ -22,7 +22,7 @@ Rgb by_hand(const ShadingPoint& at, const DiffuseBlock& from, int i, double boun
   if (from.points) bound = std::numeric_limits<double>::infinity();
   const double g = std::abs(w.dot(V3d(at.vertex->surface.ng))) * cos_y / d2;
   const double scale =
-      cos_y / d2 * (front ? double(from.turned[i]) : 1.0) * std::min(1.0, bound / g);
+      cos_y / d2 * (front ? double(from.shading_cosine_ratio[i]) : 1.0) * std::min(1.0, bound / g);
   return f * Rgb(from.r[i], from.g[i], from.b[i]) * static_cast<float>(scale);
 }
 
@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(All, Terms64,
                          [](const auto& s) { return s.param.name; });
 
 // Every vertex of the light paths is a light, whatever block it is in, but for black ones.
-TEST(VirtualLights, AreTheVerticesOfTheLightPaths) {
+TEST(VplSet, AreTheVerticesOfTheLightPaths) {
   for (const test::PathScene& scene :
        {test::PathScene{"cornell"}, {"glass"}, {"coated"}, {"open", true}, {"spot"}}) {
     for (const bool emitters : {true, false}) {
@@ -88,7 +88,7 @@ TEST(VirtualLights, AreTheVerticesOfTheLightPaths) {
 }
 
 // A light at the shading point itself gives nothing rather than infinity.
-TEST(LightTerms, OfALightAtThePoint) {
+TEST(VplContributions, OfALightAtThePoint) {
   const LitScene lit({"cornell"}, 50, std::numeric_limits<float>::infinity());
   lit.with_points(0, [&](std::span<const ShadingPoint> points) {
     const DiffuseBlock* block = nullptr;

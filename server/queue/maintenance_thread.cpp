@@ -1,4 +1,4 @@
-#include "server/queue/caretaker.h"
+#include "server/queue/maintenance_thread.h"
 
 #include <chrono>
 
@@ -15,14 +15,14 @@ constexpr int ticks_to_folders = 4, ticks_to_disk = 4, ticks_to_retention = 240;
 
 }  // namespace
 
-Caretaker::Caretaker(JobTable& table, Queue& queue, CareSettings settings)
+MaintenanceThread::MaintenanceThread(JobTable& table, Queue& queue, CareSettings settings)
     : table_(table), queue_(queue), settings_(settings) {}
 
-void Caretaker::start() {
+void MaintenanceThread::start() {
   thread_ = std::thread([this] { run(); });
 }
 
-void Caretaker::stop() {
+void MaintenanceThread::stop() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
@@ -31,7 +31,7 @@ void Caretaker::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-void Caretaker::run() {
+void MaintenanceThread::run() {
   for (int i = 1;; ++i) {
     {
       std::unique_lock lock(mutex_);
@@ -51,7 +51,7 @@ void Caretaker::run() {
   }
 }
 
-void Caretaker::remove_old() {
+void MaintenanceThread::remove_old() {
   for (const std::string& id : outdated(table_.all(), table_.sweeps().unfinished(), settings_,
                                         std::chrono::system_clock::now())) {
     try {

@@ -1,4 +1,4 @@
-#include "renderer/many_lights/virtual_lights.h"
+#include "renderer/many_lights/vpl_set.h"
 
 #include <algorithm>
 
@@ -57,7 +57,7 @@ std::vector<Run> near_one_another(const std::vector<Light>& lights, const LightG
 
 }  // namespace
 
-void VirtualLights::add(Kept& path, const EmitterPoint& e) const {
+void VplSet::add(Kept& path, const EmitterPoint& e) const {
   if (!e.pdf.positive()) return;
   if (e.kind == EmitterPoint::Kind::area && !e.both_sides) {
     path.diffuse.push_back({e.x, e.ng, e.ng, 1, e.emission * (share_ / e.pdf.value), e.extent, 0});
@@ -70,12 +70,12 @@ void VirtualLights::add(Kept& path, const EmitterPoint& e) const {
   }
 }
 
-void VirtualLights::add(Kept& path, const Vertex& v, int index) const {
+void VplSet::add(Kept& path, const Vertex& v, int index) const {
   if (const std::optional<LambertLit> lit = v.bsdf->lambert_lit(v.wp)) {
     const Rgb rgb = v.throughput * lit->f * share_;
     if (is_black(rgb)) return;
     path.diffuse.push_back(
-        {v.surface.x, lit->side, lit->ns, lit->turned, rgb, v.surface.extent, index});
+        {v.surface.x, lit->side, lit->ns, lit->shading_cosine_ratio, rgb, v.surface.extent, index});
   } else {
     path.general.push_back({v, index});
   }
@@ -87,14 +87,14 @@ LightPlace GeneralLight::place() const {
   return {e.x, e.infinite() ? V3f(0.0F) : e.ng, e.infinite()};
 }
 
-LightPlace VirtualLights::place(std::size_t b, int i) const {
+LightPlace VplSet::place(std::size_t b, int i) const {
   const DiffuseBlock* from = diffuse(b);
   if (from == nullptr) return general(b, i).place();
   return {V3f(from->x[i], from->y[i], from->z[i]), V3f(from->gx[i], from->gy[i], from->gz[i]),
           false};
 }
 
-void VirtualLights::arrange(const LightGroups& groups) {
+void VplSet::arrange(const LightGroups& groups) {
   for (int index = 0; index < choice_.longest; ++index) {
     const auto all = [&](auto Kept::*kind) {
       auto found = (Kept{}.*kind);
@@ -114,8 +114,8 @@ void VirtualLights::arrange(const LightGroups& groups) {
   kept_ = {};
 }
 
-void VirtualLights::arrange_diffuse(const std::vector<Diffuse>& lights, bool points,
-                                    const LightGroups& groups) {
+void VplSet::arrange_diffuse(const std::vector<Diffuse>& lights, bool points,
+                             const LightGroups& groups) {
   const auto place = [](const Diffuse& l) { return LightPlace{l.x, l.ng, false}; };
   for (const Run& run : near_one_another(lights, groups, place)) {
     const auto count = static_cast<int>(run.lights.size());
@@ -134,14 +134,13 @@ void VirtualLights::arrange_diffuse(const std::vector<Diffuse>& lights, bool poi
       put(l.ng, block.gx, block.gy, block.gz);
       put(l.ns, block.sx, block.sy, block.sz);
       put(i < count ? l.rgb : Rgb(0, 0, 0), block.r, block.g, block.b);
-      block.turned[i] = l.turned;
+      block.shading_cosine_ratio[i] = l.shading_cosine_ratio;
       block.extent[i] = l.extent;
     }
   }
 }
 
-void VirtualLights::arrange_general(const std::vector<GeneralLight>& lights,
-                                    const LightGroups& groups) {
+void VplSet::arrange_general(const std::vector<GeneralLight>& lights, const LightGroups& groups) {
   const auto place = [](const GeneralLight& l) { return l.place(); };
   for (const Run& run : near_one_another(lights, groups, place)) {
     blocks_.push_back({general_.size(), static_cast<int>(run.lights.size()), false, run.group});

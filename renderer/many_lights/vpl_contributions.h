@@ -1,6 +1,6 @@
 #pragma once
 
-#include "renderer/many_lights/virtual_lights.h"
+#include "renderer/many_lights/vpl_set.h"
 #include "renderer/materials/bsdf_seen.h"
 #include "renderer/path/bsdf_guide.h"
 #include "renderer/path/connect.h"
@@ -11,7 +11,7 @@ namespace lacuna {
 inline float bounded_share(float g, float bound) { return g > bound ? bound / g : 1.0F; }
 
 /// A place of the picture that virtual lights shine on: the first vertex of an eye path that is
-/// broad enough (Bsdf::broad()), and so opaque.
+/// broad enough (Bsdf::is_vpl_receiver()), and so opaque.
 struct ShadingPoint {
   const Vertex* vertex = nullptr;
   int depth = 0;   ///< edges from the eye
@@ -65,12 +65,12 @@ struct Terms {
 };
 
 /// The contributions of virtual lights, with the geometric term bounded.
-class LightTerms {
+class VplContributions {
  public:
   /// `bound`: of the geometric term, 1 / scene units^2; may be infinite.
-  LightTerms(const VirtualLights& lights, float bound) : lights_(lights), bound_(bound) {}
+  VplContributions(const VplSet& lights, float bound) : lights_(lights), bound_(bound) {}
 
-  const VirtualLights& lights() const { return lights_; }
+  const VplSet& lights() const { return lights_; }
   /// Of the light that goes straight between two surfaces the share that the bound leaves.
   float share(const Vertex& a, const Vertex& b, const V3f& w) const {
     const float cosines = abs_dot(a.surface.ng, w) * abs_dot(b.surface.ng, w);
@@ -96,7 +96,7 @@ class LightTerms {
   static void weigh(std::uint64_t of, float weight, Terms& out);
   static void finish(Terms& out);
 
-  const VirtualLights& lights_;
+  const VplSet& lights_;
   float bound_;
   BsdfGuide guide_;
 };

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "renderer/core/rng.h"
-#include "renderer/many_lights/decision.h"
-#include "renderer/many_lights/light_terms.h"
+#include "renderer/many_lights/visibility_estimate.h"
+#include "renderer/many_lights/vpl_contributions.h"
 
 namespace lacuna {
 
@@ -15,7 +15,7 @@ namespace lacuna {
 /// visibility is taken to have; at least `least`. It is 1 where A reaches sigma^2 (4.1). Veach's
 /// threshold, t sqrt(n) / sigma, is the same with k = n, c = 0 (Veach 1997, 10.4.1). Scaled by
 /// sigma throughout, so that any brightness is as good as another.
-struct TestChance {
+struct TestProbability {
   float k = 0;
   float c = 1;
   float least = 1;
@@ -32,7 +32,7 @@ struct TestChance {
 };
 
 /// Probabilities as integers, so that every light is drawn with exactly the one it is divided by.
-struct Keys {
+struct SystematicSampler {
   static constexpr int bits = 20;
   static constexpr std::uint32_t one = 1U << bits;
   alignas(32) std::array<std::uint32_t, Lanes::size> v;

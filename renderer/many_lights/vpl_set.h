@@ -14,13 +14,13 @@ namespace lacuna {
 
 /// Lambertian surfaces that a light path met, and one-sided emitters, or else point lights:
 /// sixty-four lights side by side. What is missing of the sixty-four is black. Towards unit `w`
-/// with w.g > 0 each sends radiant intensity rgb (w.g) (w.s > 0 ? turned : 1).
+/// with w.g > 0 each sends radiant intensity rgb (w.g) (w.s > 0 ? shading_cosine_ratio : 1).
 struct DiffuseBlock {
-  bool points = false;  ///< it sends rgb everywhere, and all normals are 0
-  Lanes x, y, z;        ///< position
-  Lanes gx, gy, gz;     ///< unit geometric normal, on the side that shines
-  Lanes sx, sy, sz;     ///< unit shading normal on that side
-  Lanes turned;         ///< LambertLit::turned
+  bool points = false;         ///< it sends rgb everywhere, and all normals are 0
+  Lanes x, y, z;               ///< position
+  Lanes gx, gy, gz;            ///< unit geometric normal, on the side that shines
+  Lanes sx, sy, sz;            ///< unit shading normal on that side
+  Lanes shading_cosine_ratio;  ///< LambertLit::shading_cosine_ratio
   Lanes r, g, b;
   Lanes extent;  ///< of the triangle, see TriangleShape
 };
@@ -46,8 +46,8 @@ struct GeneralLight {
   /// Calls `use(end)` with the end of a connecting edge (ends.h).
   template <class Guide, class Use>
   decltype(auto) with_end(const Guide& guide, Use&& use) const {
-    if (const auto* e = std::get_if<EmitterPoint>(&at)) return use(EmitterEnd{*e});
-    return use(SurfaceEnd<Guide>{std::get<Vertex>(at), index, Transport::importance, guide});
+    if (const auto* e = std::get_if<EmitterPoint>(&at)) return use(EmitterEndpoint{*e});
+    return use(SurfaceEndpoint<Guide>{std::get<Vertex>(at), index, Transport::importance, guide});
   }
 };
 
@@ -68,15 +68,15 @@ inline constexpr std::uint32_t no_group = 0xffffffff;
 
 /// The virtual point lights of an iteration, in blocks of sixty-four; those of a block lie near one
 /// another. The contribution of a light already holds 1 / the number of light paths.
-class VirtualLights {
+class VplSet {
  public:
   /// Which vertices of light paths are lights.
   struct Choice {
     int longest;        ///< of vertices 0 to `longest` - 1
     bool emitters;      ///< vertex 0 too, the point on an emitter
-    float least_alpha;  ///< of the surfaces: Bsdf::broad()
+    float least_alpha;  ///< of the surfaces: Bsdf::is_vpl_receiver()
   };
-  VirtualLights(std::size_t paths, const Choice& choice)
+  VplSet(std::size_t paths, const Choice& choice)
       : choice_(choice), share_(1.0F / float(paths)), kept_(paths) {}
 
   /// Keeps the path in place `i` of `batch` as path number `path`. Different paths may be kept by
@@ -87,7 +87,7 @@ class VirtualLights {
     if (length > 0 && choice_.emitters) add(kept_[path], batch.emitter(i));
     for (int index = 1; index < length; ++index) {
       const Vertex& v = batch.vertex(i, index);
-      if (v.bsdf->broad(choice_.least_alpha)) add(kept_[path], v, index);
+      if (v.bsdf->is_vpl_receiver(choice_.least_alpha)) add(kept_[path], v, index);
     }
   }
   /// To be called when all paths are kept. The order of the lights depends on the paths and on
@@ -123,7 +123,7 @@ class VirtualLights {
  private:
   struct Diffuse {
     V3f x, ng, ns;
-    float turned;
+    float shading_cosine_ratio;
     Rgb rgb;
     float extent;
     int index;
