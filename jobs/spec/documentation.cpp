@@ -92,9 +92,12 @@ void put_parts(std::string& page, const Member& member, const std::string& path)
   }
   for (std::size_t i = 0; member.type.kind == Kind::choice && i < member.type.names.size(); ++i) {
     const Type::Name& name = member.type.names[i];
+    const std::size_t start = page.size();
     page += fmt::format("\n## {}: {}\n\n`{{\"type\": \"{}\"}}`. {}\n", path, name.name, name.name,
                         sentence(name.doc));
     put_section(page, member.type.elements[i], path);
+    // Integrators share their choices of a guide: one section each.
+    if (page.find(page.substr(start)) < start) page.resize(start);
   }
 }
 

@@ -80,8 +80,8 @@ test("the service's documentation holds the state machine as it is", async (t) =
   const states = await run(temporaryFolder(t), "schema", "--states");
   assert.equal(states.code, 0);
   assert.match(states.out, /\| `held` \| `queued` \| person \|/);
-  const page = readFileSync(new URL("../../../server/README.md", import.meta.url), "utf8");
-  assert.ok(page.endsWith(states.out), "server/README.md ends with what `lacuna schema --states` prints");
+  const page = readFileSync(new URL("../../../docs/service.md", import.meta.url), "utf8");
+  assert.ok(page.endsWith(states.out), "docs/service.md ends with what `lacuna schema --states` prints");
 });
 
 test("compare: equal pictures, different ones, other sizes", async (t) => {
