@@ -1,5 +1,6 @@
 // 500 slow clients of each kind: another client is answered all the same. The limit here only tells
-// "is served" from "waits for the slow ones" (seconds); tests/bench/slow_clients.mjs measures.
+// "is served" from "waits for the slow ones", which have at least 5 s to send a head;
+// tests/bench/slow_clients.mjs measures.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import fs from "node:fs";
@@ -31,7 +32,7 @@ for (const kind of ["head", "body", "large body", "chunks", "reader"]) {
       times.push(performance.now() - begin);
     }
     times.sort((a, b) => a - b);
-    assert.ok(times[44] < 1000, `nine of ten are answered in ${times[44]} ms`);
+    assert.ok(times[44] < 2500, `nine of ten are answered in ${times[44]} ms`);
     const other = await service.post("finish");
     await service.reaches(other, "done");
     const image = await service.fetch(`/api/jobs/${other}/files/image.exr`);
