@@ -1,5 +1,6 @@
 // 500 slow clients of each kind: another client is answered all the same. The limit here only tells
-// "is served" from "waits for the slow ones" (at least the 5 s in which a head must come); tests/bench/slow_clients.mjs measures.
+// "is served" from "waits for the slow ones", which have at least 5 s to send a head;
+// tests/bench/slow_clients.mjs measures.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import fs from "node:fs";

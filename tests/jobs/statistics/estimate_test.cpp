@@ -51,18 +51,21 @@ TEST(GeometricMean, ByHand) {
   EXPECT_NEAR(e.interval->high, 2 * std::exp(half), 1e-6);
 }
 
-/// How often, of `trials`, the interval of small groups holds the truth; and the p-value of the
-/// hypothesis that it does with the probability it says.
+/// How often, of `trials`, the interval of small groups holds the truth; and p-values of the
+/// hypotheses that it does with the probability it says, and with one above or below `share`.
 struct Coverage {
   int trials = 0, held = 0;
   void count(const std::optional<Interval>& i, double truth) {
     ++trials;
     held += i->low <= truth && truth <= i->high ? 1 : 0;
   }
-  double p() const {
-    const double share = held / static_cast<double>(trials);
-    return statistics::two_sided_p((share - confidence) /
-                                   std::sqrt(confidence * (1 - confidence) / trials));
+  double p() const { return statistics::two_sided_p(beyond(confidence)); }
+  double at_least_p(double share) const { return statistics::upper_p(-beyond(share)); }
+  double at_most_p(double share) const { return statistics::upper_p(beyond(share)); }
+
+ private:
+  double beyond(double share) const {
+    return (held / static_cast<double>(trials) - share) / std::sqrt(share * (1 - share) / trials);
   }
 };
 
@@ -84,12 +87,12 @@ TEST(Intervals, HoldTheTruthAsOftenAsTheySay) {
     for (const double v : group(4, 0, 1)) logs.push_back(std::log(v));
     of_plain.count(mean(logs).interval, 0);
   }
-  const double level = statistics::sidak(1e-4, 2);
+  const double level = statistics::sidak(1e-4, 4);
   EXPECT_GT(of_means.p(), level) << of_means.held << " of " << of_means.trials;
   EXPECT_GT(of_plain.p(), level) << of_plain.held << " of " << of_plain.trials;
   // Welch's interval is approximate, and on the safe side for groups of three.
-  EXPECT_GE(of_equal_spread.held, 0.945 * of_equal_spread.trials);
-  EXPECT_LE(of_equal_spread.held, 0.985 * of_equal_spread.trials);
+  EXPECT_GT(of_equal_spread.at_least_p(confidence), level) << of_equal_spread.held;
+  EXPECT_GT(of_equal_spread.at_most_p(0.98), level) << of_equal_spread.held;
 }
 
 TEST(RatioOfMeans, WithVeryDifferentSpread) {
