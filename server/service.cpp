@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "analysis/storage/file_lock.h"
+#include "jobs/spec/page_tables.h"
 #include "jobs/spec/version.h"
 #include "server/http/access.h"
 #include "server/http/address.h"
@@ -123,7 +124,9 @@ QueueSettings queue_settings(const ServiceSettings& settings) {
 }
 
 StaticFiles page(const ServiceSettings& settings) {
-  return StaticFiles(settings.web.empty() ? find_web() : fs::canonical(settings.web));
+  StaticFiles files(settings.web.empty() ? find_web() : fs::canonical(settings.web));
+  files.add_made("/job_tables.js", page_tables_module());
+  return files;
 }
 
 }  // namespace

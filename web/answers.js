@@ -1,4 +1,4 @@
-// What a sweep's answers (jobs/sweep/README.md) say in words and columns: arithmetic and text only.
+// What a sweep's answers (docs/sweeps-and-reports.md) say in words and columns: arithmetic and text only.
 import { number, significant } from "./format.js";
 
 const thin = "\u202f";

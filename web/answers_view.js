@@ -3,8 +3,9 @@
 import { bandPoints, cellNames, charges, count, frontParts, settingNames } from "./answers.js";
 import { answersTable, tables } from "./answers_table.js";
 import { bandFigure } from "./band_figure.js";
-import { axes, metrics } from "./curve.js";
+import { axes } from "./curve.js";
 import { h, labelledSelect, note, replace, warning } from "./dom.js";
+import { metrics } from "./job_tables.js";
 import { colours } from "./palette.js";
 
 const narrowest = 280;

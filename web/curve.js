@@ -1,21 +1,12 @@
-// Convergence curves: reading curve.csv, choosing axes, and comparing at equal time or equal error.
+// Convergence curves: reading curve.csv, choosing axes, and comparing at equal time or equal error. What the y
+// axis can show, `metrics`, is the program's own table.
+import { metrics } from "./job_tables.js";
 
 /// What the x axis can show.
 export const axes = [
   { key: "seconds", label: "render time", unit: "s" },
   { key: "cpu_seconds", label: "CPU time / threads", unit: "s" },
   { key: "iteration", label: "iterations", unit: "" },
-];
-
-/// What the y axis can show, the preferred first; radiance is in the scene's own unit. A Monte Carlo
-/// estimate's error falls as x^slope: squared errors with the samples, the others with their root.
-export const metrics = [
-  { key: "rmse", label: "RMSE", unit: "radiance", slope: -0.5 },
-  { key: "relmse", label: "relMSE", unit: "", slope: -1 },
-  { key: "mse", label: "MSE", unit: "radiance²", slope: -1 },
-  { key: "mae", label: "MAE", unit: "radiance", slope: -0.5 },
-  { key: "smape", label: "SMAPE", unit: "", slope: -0.5 },
-  { key: "est_rmse", label: "estimated RMSE", unit: "radiance", slope: -0.5 },
 ];
 
 export const slopeName = (slope) => (slope === -1 ? "−1" : "−1/2");
@@ -31,11 +22,12 @@ export const presentMetrics = (rows) =>
   metrics.filter((m) => rows.some((row) => Number.isFinite(row[m.key])));
 
 /// The points of a curve that log axes can show, in order of x. `floor`: the reference's own noise
-/// is reached there (it says nothing about est_rmse, which needs no reference).
+/// is reached there (it says nothing about a metric that needs none).
 export function points(rows, x, y) {
+  const referenced = metrics.find((m) => m.key === y)?.reference;
   return rows
     .filter((row) => row[x] > 0 && row[y] > 0)
-    .map((row) => ({ x: row[x], y: row[y], floor: y !== "est_rmse" && Boolean(row.at_floor) }))
+    .map((row) => ({ x: row[x], y: row[y], floor: Boolean(referenced && row.at_floor) }))
     .sort((a, b) => a.x - b.x);
 }
 

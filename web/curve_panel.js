@@ -1,8 +1,9 @@
 // The error plot with its switches, as the job view, the comparison and the figure alone show it.
-import { axes, metrics, presentMetrics } from "./curve.js";
+import { axes, presentMetrics } from "./curve.js";
 import { addressOf, h, labelledSelect, remember, small } from "./dom.js";
 import { saveFigure } from "./figure_file.js";
 import { figureSvg } from "./figure_svg.js";
+import { metrics } from "./job_tables.js";
 import { plot } from "./plot.js";
 
 /// A plot and its switches. `query` (URLSearchParams) holds the choice, `x` and `y`; the switches change

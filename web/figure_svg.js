@@ -1,6 +1,7 @@
 // Error curves as an SVG whose colours are the page's (see figure_file.js for one that needs nothing else).
-import { axes, metrics, points, slopeLine, slopeName } from "./curve.js";
+import { axes, points, slopeLine, slopeName } from "./curve.js";
 import { number } from "./format.js";
+import { metrics } from "./job_tables.js";
 import { logAxis } from "./log_axis.js";
 import { curveColour } from "./palette.js";
 import { axisTitle, frame, legend, line, mark, muted, size, svg } from "./svg_parts.js";

@@ -20,7 +20,7 @@ export function stripPainter(signal) {
       Object.assign(hidden, { width, height });
       if (!paint.draw([{ ...look, image, from: 0, to: 1 }], { x: 0, y: 0, pace: image.width / width })) return;
       await new Promise(requestAnimationFrame);
-      if (last !== given) return;
+      if (last !== given || signal.aborted) return;
       Object.assign(canvas, { width, height });
       canvas.style.width = `${wide}px`;
       canvas.getContext("bitmaprenderer").transferFromImageBitmap(hidden.transferToImageBitmap());

@@ -1,4 +1,5 @@
 // What differs between job files.
+import { inTheLight, notInAReference } from "./job_tables.js";
 import { leaves } from "./report.js";
 
 /// "/integrator/max_depth" -> 6, ... for every value of a job file.
@@ -14,12 +15,9 @@ export function differences(jobs) {
     .filter(({ values }) => values.some((value) => value !== values[0]));
 }
 
-/// What must be the same for errors to be comparable. Longer paths and another environment make
-/// another picture, so they belong here too.
-const sameForComparison = [
-  "/scene", "/camera", "/resolution", "/integrator/max_depth", "/reference", "/environment", "/particles", "/material",
-];
+/// Whether jobs that differ there may estimate different pictures. A setting that this page has never heard of
+/// counts: left out is only what the program's table names.
+const isOfThePicture = (pointer) => inTheLight.includes(pointer) || !notInAReference.includes(pointer.split("/")[1]);
 
 /// Those of `differences` that make a comparison of errors doubtful.
-export const doubtful = (found) => found.map((d) => d.pointer).filter((pointer) =>
-  sameForComparison.some((p) => pointer === p || pointer.startsWith(`${p}/`)));
+export const doubtful = (found) => found.map((d) => d.pointer).filter(isOfThePicture);

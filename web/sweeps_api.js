@@ -8,7 +8,7 @@ const path = (id) => `/api/sweeps/${encodeURIComponent(id)}`;
 export const getSweeps = async (signal) => (await json("/api/sweeps", signal)).sweeps;
 /// One with its file, cells and runs.
 export const getSweep = (id, signal) => json(path(id), signal);
-/// What its finished runs say (jobs/sweep/README.md).
+/// What its finished runs say (docs/sweeps-and-reports.md).
 export const getAnswers = (id, signal) => json(`${path(id)}/answers`, signal);
 export const tableUrl = (id) => `${path(id)}/table.csv`;
 export const cancelSweep = (id) => send("POST", `${path(id)}/cancel`);

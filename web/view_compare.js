@@ -1,9 +1,10 @@
 // Several jobs over one another: curves, error at equal time, time to equal error, pictures.
 import { comparePictures } from "./compare_pictures.js";
-import { axes, commonError, commonInstants, errorAt, metrics, points, reaches } from "./curve.js";
+import { axes, commonError, commonInstants, errorAt, points, reaches } from "./curve.js";
 import { curvePanel } from "./curve_panel.js";
 import { append, h, note, problem, replace, table, warning } from "./dom.js";
 import { number, significant } from "./format.js";
+import { metrics } from "./job_tables.js";
 import { scalingPanel } from "./scaling_panel.js";
 import { followJobs, idsOf } from "./series.js";
 import { differences, doubtful } from "./settings_diff.js";

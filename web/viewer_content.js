@@ -1,9 +1,9 @@
 // What a viewer's state asks for, read and computed.
 import { settleCrop } from "./crop.js";
-import { metrics } from "./curve.js";
 import { kindOf } from "./error_picture.js";
 import { errorOf } from "./errors.js";
 import { number, significant } from "./format.js";
+import { metrics } from "./job_tables.js";
 import { lookOf } from "./look.js";
 import { valuesAt } from "./pixels.js";
 import { choices, pictureOf } from "./shown.js";

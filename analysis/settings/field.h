@@ -28,8 +28,8 @@ struct Field {
 };
 
 /// Name and one-line documentation of each value of an enum that appears in settings: specialise
-/// with `static constexpr std::array<EnumValue<E>, N> values`. The only place where the names
-/// stand.
+/// with `static constexpr std::array<EnumValue<E>, N> values`, or rows that have more columns. The
+/// only place where the names stand.
 template <class E>
 struct EnumTable;
 

@@ -95,9 +95,9 @@ void compare(const CompareOptions& o) {
   const std::vector<double> a = in_double(image_a, crop);
   const std::vector<double> b = in_double(image_b, crop);
   const Errors e = errors(a, b);
-  for (const auto& metric : EnumTable<ErrorMetric>::values) {
-    if (metric.value == ErrorMetric::est_rmse) continue;
-    fmt::print("{:<7} {:.9g}\n", metric.name, value_of(e, metric.value));
+  for (const ErrorMetricRow& metric : error_metrics) {
+    if (!needs_reference(metric.value)) continue;
+    fmt::print("{:<7} {:.9g}\n", metric.name, e[metric.value]);
   }
   fmt::print("mean_a  {:.9g}\nmean_b  {:.9g}\nmean_relative {:.6g}\n", mean(a), mean(b),
              (mean(a) - mean(b)) / mean(b));

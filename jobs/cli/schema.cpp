@@ -4,6 +4,7 @@
 
 #include "jobs/cli/commands.h"
 #include "jobs/spec/job_json.h"
+#include "jobs/spec/page_tables.h"
 #include "jobs/store/state.h"
 
 namespace lacuna {
@@ -12,13 +13,17 @@ void add_schema(CLI::App& app, int& code) {
   const auto markdown = std::make_shared<bool>(false);
   const auto sweep = std::make_shared<bool>(false);
   const auto states = std::make_shared<bool>(false);
+  const auto page = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("schema", "Print the JSON Schema of the job file");
   command->add_flag("--sweep", *sweep, "of the sweep file instead");
   command->add_flag("--markdown", *markdown, "the settings pages for people instead");
   command->add_flag("--states", *states, "the states of a job and what may follow what instead")
       ->excludes("--markdown", "--sweep");
-  command->callback([sweep, markdown, states, &code] {
-    fmt::print("{}", *states     ? state_documentation()
+  command->add_flag("--page", *page, "the module /job_tables.js of the page instead")
+      ->excludes("--markdown", "--sweep", "--states");
+  command->callback([sweep, markdown, states, page, &code] {
+    fmt::print("{}", *page       ? page_tables_module()
+                     : *states   ? state_documentation()
                      : *markdown ? (*sweep ? sweep_documentation() : job_documentation())
                                  : (*sweep ? sweep_schema() : job_schema()));
     code = exit_done;

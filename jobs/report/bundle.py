@@ -3,19 +3,21 @@
     bundle.py OUT.cpp WEB_FOLDER ENTRY STYLE...
 
 Each module becomes a function that returns its exports, so that no two share a name. What this knows of the language is
-what the page's modules use: named imports from "./FILE.js", and exported functions, classes and constants."""
+what the page's modules use: named imports from "./FILE.js", and exported functions, classes and constants. What the
+service makes itself (GIVEN) is not bundled: report_html.cpp puts it before the script."""
 
 import pathlib
 import re
 import sys
 
 IMPORT = re.compile(r'^import \{(?P<names>[^}]*)\} from "\./(?P<file>[^"]+)";\n', re.MULTILINE)
+GIVEN = {"job_tables.js"}
 EXPORT = re.compile(r"^export (?P<kind>async function|function|class|const|let) (?P<name>\w+)", re.MULTILINE)
 
 
 def bundled(folder, entry, done):
     """The text of a module behind those that it needs; `done` has those that are there already."""
-    if entry in done:
+    if entry in done | GIVEN:
         return ""
     done.add(entry)
     text = (folder / entry).read_text(encoding="utf-8")

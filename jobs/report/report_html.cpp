@@ -7,6 +7,7 @@
 
 #include "jobs/report/page_files.h"
 #include "jobs/spec/json_text.h"
+#include "jobs/spec/page_tables.h"
 #include "jobs/spec/version.h"
 #include "jobs/store/job_folder.h"
 
@@ -92,9 +93,10 @@ std::string report_html(const SweepFolder& sweep, const Answers& answers,
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"color-scheme\" content=\"light dark\">\n<title>{} · Lacuna</title>\n"
       "<style>\n{}</style>\n</head>\n<body>\n<main id=\"main\"></main>\n"
-      "<script type=\"application/json\" id=\"data\">{}</script>\n<script>\n{}</script>\n"
+      "<script type=\"application/json\" id=\"data\">{}</script>\n"
+      "<script>\nconst module_job_tables = {};\n{}</script>\n"
       "</body>\n</html>\n",
-      in_markup(title), report_style, in_script(data), report_script);
+      in_markup(title), report_style, in_script(data), in_script(page_tables()), report_script);
 }
 
 }  // namespace lacuna

@@ -45,17 +45,14 @@ void Curve::add(const CurveRow& row) {
 }
 
 std::string Curve::csv() const {
-  std::string text =
-      "iteration,seconds,cpu_seconds,samples,rays,shadow_rays,mae,rmse,mse,relmse,smape,est_rmse,"
-      "negative,rejected,at_floor\n";
+  std::string text = "iteration,seconds,cpu_seconds,samples,rays,shadow_rays,";
+  for (const ErrorMetricRow& metric : error_metrics) text += fmt::format("{},", metric.name);
+  text += "negative,rejected,at_floor\n";
   for (const CurveRow& r : rows_) {
-    const auto error = [&](ErrorMetric m) { return number(r.value(m)); };
-    text += fmt::format(
-        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.iteration, number(r.seconds),
-        number(r.cpu_seconds), r.counters.samples, r.counters.rays, r.counters.shadow_rays,
-        error(ErrorMetric::mae), error(ErrorMetric::rmse), error(ErrorMetric::mse),
-        error(ErrorMetric::relmse), error(ErrorMetric::smape), error(ErrorMetric::est_rmse),
-        r.counters.negative, r.counters.rejected, r.at_floor ? 1 : 0);
+    text += fmt::format("{},{},{},{},{},{},", r.iteration, number(r.seconds), number(r.cpu_seconds),
+                        r.counters.samples, r.counters.rays, r.counters.shadow_rays);
+    for (const ErrorMetricRow& metric : error_metrics) text += number(r.value(metric.value)) + ',';
+    text += fmt::format("{},{},{}\n", r.counters.negative, r.counters.rejected, r.at_floor ? 1 : 0);
   }
   return text;
 }

@@ -23,8 +23,8 @@ struct CurveRow {
 
   /// The value of `metric` in this row, if it has one.
   std::optional<double> value(ErrorMetric metric) const {
-    if (metric == ErrorMetric::est_rmse) return est_rmse;
-    return errors ? std::optional(value_of(*errors, metric)) : std::nullopt;
+    if (!needs_reference(metric)) return est_rmse;
+    return errors ? std::optional((*errors)[metric]) : std::nullopt;
   }
 };
 

@@ -9,7 +9,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "jobs/run/checkpoint.h"
 #include "jobs/run/obstacle.h"
-#include "jobs/spec/job_json.h"
+#include "jobs/spec/identity.h"
 #include "jobs/spec/version.h"
 #include "jobs/store/machine.h"
 #include "renderer/film/preview.h"
@@ -191,19 +191,21 @@ void RenderLoop::add_row() {
                  false};
     if (task_.reference != nullptr) {
       row.errors = errors(film_.mean(), task_.reference->rgb);
-      row.at_floor = task_.reference->mse && *task_.reference->mse > row.errors->mse / 2;
+      row.at_floor =
+          task_.reference->mse && *task_.reference->mse > (*row.errors)[ErrorMetric::mse] / 2;
     }
     curve_.add(row);
     write_file_atomically(task_.folder.file("curve.csv"), curve_.csv(), false);
   }
   task_.phases["evaluate"] += cost;
   if (previews_.due()) write_preview_now();
-  const auto error = curve_.rows().back().errors;
-  const auto est = curve_.rows().back().est_rmse;
-  task_.observer.milestone(fmt::format(
-      "iteration {}, {:.1f} s{}{}", completed_.iterations, completed_.seconds,
-      error ? fmt::format(", rmse {:.4g}, relmse {:.4g}", error->rmse, error->relmse) : "",
-      est ? fmt::format(", est. rmse {:.4g}", *est) : ""));
+  std::string line =
+      fmt::format("iteration {}, {:.1f} s", completed_.iterations, completed_.seconds);
+  for (const ErrorMetric m : {ErrorMetric::rmse, ErrorMetric::relmse, ErrorMetric::est_rmse}) {
+    const auto error = curve_.rows().back().value(m);
+    if (error) line += fmt::format(", {} {:.4g}", enum_name(m), *error);
+  }
+  task_.observer.milestone(line);
 }
 
 void RenderLoop::write_checkpoint_now() {
@@ -248,7 +250,7 @@ void RenderLoop::report_progress() {
     if (p.share > 0) p.remaining_seconds = completed_.seconds * (1 - p.share) / p.share;
     if (!curve_.rows().empty()) {
       const CurveRow& row = curve_.rows().back();
-      const ErrorMetric metric = row.errors ? ErrorMetric::relmse : ErrorMetric::est_rmse;
+      const ErrorMetric metric = usual_metric(row.errors.has_value());
       p.error = row.value(metric);
       p.error_metric = enum_name(metric);
     }

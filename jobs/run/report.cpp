@@ -67,10 +67,11 @@ OrderedJson errors_json(const RenderTask& task, const Curve& curve) {
   if (curve.rows().empty()) return j;
   j["biased"] = biased(task.spec.integrator);
   const CurveRow& row = curve.rows().back();
-  for (const auto& metric : EnumTable<ErrorMetric>::values) {
+  for (const ErrorMetricRow& metric : error_metrics) {
     j[std::string(metric.name)] = optional(row.value(metric.value));
   }
-  if (row.errors && row.errors->mse > 0) j["efficiency"] = 1 / (row.errors->mse * row.seconds);
+  const double mse = row.value(ErrorMetric::mse).value_or(0);
+  if (mse > 0) j["efficiency"] = 1 / (mse * row.seconds);
   if (task.reference != nullptr) {
     j["reference"] = {
         {"name", task.reference->name},

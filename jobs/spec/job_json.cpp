@@ -19,7 +19,7 @@ bool is_good(const std::vector<Problem>& problems, const std::string& at) {
 }
 
 void check_error_target(const JobSpec& spec, std::vector<Problem>& problems) {
-  if (!spec.budget.error || spec.budget.error->metric == ErrorMetric::est_rmse) return;
+  if (!spec.budget.error || !needs_reference(spec.budget.error->metric)) return;
   if (!spec.reference.empty()) return;
   if (!is_good(problems, "/budget/error") || !is_good(problems, "/reference")) return;
   problems.push_back(

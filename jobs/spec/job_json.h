@@ -34,9 +34,4 @@ std::string sweep_schema();
 std::string job_documentation();
 std::string sweep_documentation();
 
-/// Hash of everything that decides the pixels of a picture (not its label, budget, threads,
-/// reference...): two jobs with the same value and iteration count have the same bits. Guards
-/// checkpoints.
-std::string picture_key(const JobSpec& spec);
-
 }  // namespace lacuna

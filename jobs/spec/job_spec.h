@@ -8,6 +8,7 @@
 
 #include "analysis/settings/analysis_settings.h"
 #include "analysis/settings/field.h"
+#include "renderer/settings/error_metrics.h"
 #include "renderer/settings/integrator_settings.h"
 #include "renderer/settings/output_settings.h"
 #include "renderer/settings/scene_settings.h"

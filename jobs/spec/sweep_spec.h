@@ -7,7 +7,7 @@
 
 #include "analysis/settings/field.h"
 #include "jobs/spec/json_value.h"
-#include "renderer/settings/output_settings.h"
+#include "renderer/settings/error_metrics.h"
 
 namespace lacuna {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "jobs/spec/job_json.h"
+#include "jobs/spec/identity.h"
 #include "jobs/spec/reference_spec.h"
 #include "jobs/sweep/compare_points.h"
 #include "jobs/sweep/preparation.h"
@@ -13,22 +13,13 @@
 namespace lacuna {
 namespace {
 
-/// relmse where there is a reference to every cell, unless the sweep says which.
+/// The usual metric of cells that all have a reference, or do not, unless the sweep says which.
 ErrorMetric chosen_metric(const SweepFolder& sweep) {
   if (const auto& asked = sweep.spec().compare_at.metric) return *asked;
   const auto& cells = sweep.plan().cells;
   const bool referenced = std::all_of(cells.begin(), cells.end(),
                                       [](const SweepCell& c) { return !c.job.reference.empty(); });
-  return referenced ? ErrorMetric::relmse : ErrorMetric::est_rmse;
-}
-
-/// Artefacts of these jobs are the same.
-std::string space_name(const JobSpec& job) {
-  JobSpec only;
-  only.scene = job.scene;
-  only.camera = job.camera;
-  only.analysis = job.analysis;
-  return picture_key(only);
+  return usual_metric(referenced);
 }
 
 class Comparison {
@@ -154,11 +145,11 @@ class Comparison {
     if (spaces_.empty()) {
       for (const CellAnswer& c : answers_.cells) {
         const auto runs = finished(c);
-        auto& all = spaces_[space_name(plan_.cells[c.cell].job)];
+        auto& all = spaces_[preparation_key(plan_.cells[c.cell].job)];
         all.insert(all.end(), runs.begin(), runs.end());
       }
     }
-    return spaces_[space_name(plan_.cells[cell].job)];
+    return spaces_[preparation_key(plan_.cells[cell].job)];
   }
 
   void prepare(CellAnswer& cell) {

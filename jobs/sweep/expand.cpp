@@ -177,7 +177,7 @@ class Expansion {
   }
   void check_metric(const JobSpec& job) {
     const auto& metric = sweep_.compare_at.metric;
-    if (!metric || *metric == ErrorMetric::est_rmse || !job.reference.empty()) return;
+    if (!metric || !needs_reference(*metric) || !job.reference.empty()) return;
     problem("/compare_at/metric",
             fmt::format("found \"{}\", and a job without \"reference\"; allowed: \"{}\", or a "
                         "reference for all",

@@ -78,7 +78,7 @@ double held_until(const NumberTable& table, const std::string& clock) {
 
 ErrorCurve error_curve(const NumberTable& table, const CurveAxes& axes) {
   std::vector<CurvePoint> points;
-  const bool referenced = axes.metric != ErrorMetric::est_rmse;
+  const bool referenced = needs_reference(axes.metric);
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const CurvePoint p{table.at(i, axes.clock), table.at(i, enum_name(axes.metric)),
                        referenced && table.at(i, "at_floor") > 0};
@@ -89,12 +89,10 @@ ErrorCurve error_curve(const NumberTable& table, const CurveAxes& axes) {
   return {std::move(points), held_until(table, axes.clock)};
 }
 
-bool is_squared(ErrorMetric m) { return m == ErrorMetric::mse || m == ErrorMetric::relmse; }
-
 std::optional<double> efficiency(const ErrorCurve& curve, ErrorMetric metric) {
   if (curve.empty()) return {};
   const CurvePoint& last = curve.points().back();
-  return 1 / ((is_squared(metric) ? last.error : last.error * last.error) * last.time);
+  return 1 / ((row_of(metric).squared ? last.error : last.error * last.error) * last.time);
 }
 
 /// A value of a JSON document, by its keys; null if it is not there.
@@ -131,7 +129,8 @@ std::set<std::string> artefact_names(const Json& report, const char* origin) {
 /// MSE = bias^2 + variance + the reference's own noise; the halves know the variance alone.
 void tell_bias(const NumberTable& table, const Json& report, RunResult& result) {
   const std::size_t last = table.rows() - 1;
-  const double mse = table.at(last, "mse"), deviation = table.at(last, "est_rmse");
+  const double mse = table.at(last, enum_name(ErrorMetric::mse)),
+               deviation = table.at(last, enum_name(ErrorMetric::est_rmse));
   if (!std::isfinite(deviation)) return;
   result.variance = deviation * deviation;
   const auto own = number(report, "errors", "reference", "own_rmse");

@@ -7,7 +7,7 @@
 
 #include "jobs/statistics/error_curve.h"
 #include "jobs/store/job_folder.h"
-#include "renderer/settings/output_settings.h"
+#include "renderer/settings/error_metrics.h"
 
 namespace lacuna {
 
@@ -39,7 +39,7 @@ struct RunResult {
 };
 
 /// Reads curve.csv and report.json of a folder, as far as they are there. Squared errors are of the
-/// same kind as the metric (relmse and mse as they are, the others squared). Throws
+/// same kind as the metric (a squared metric as it is, the others squared). Throws
 /// std::runtime_error that names a file which is damaged.
 RunResult read_result(const JobFolder& folder, const CurveAxes& axes);
 

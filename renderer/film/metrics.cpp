@@ -2,8 +2,26 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 namespace lacuna {
+namespace {
+
+/// Adds a pair of values to the sum of every metric. Unrolled over the table, so that each term is
+/// inlined.
+template <std::size_t... M>
+void add_terms(Errors& sums, double x, double r, std::index_sequence<M...>) {
+  ((sums.values[M] += error_metrics[M].term(x, r)), ...);
+}
+
+}  // namespace
+
+double Errors::operator[](ErrorMetric metric) const {
+  if (needs_reference(metric)) return values[static_cast<std::size_t>(metric)];
+  throw std::invalid_argument(std::string(enum_name(metric)) +
+                              " is not measured against a reference");
+}
 
 Errors errors(std::span<const double> estimate, std::span<const double> reference) {
   if (estimate.size() != reference.size()) {
@@ -11,25 +29,18 @@ Errors errors(std::span<const double> estimate, std::span<const double> referenc
   }
   Errors e;
   for (std::size_t i = 0; i < estimate.size(); ++i) {
-    const double x = estimate[i];
-    const double r = reference[i];
-    const double d = x - r;
-    e.mae += std::abs(d);
-    e.mse += d * d;
-    e.relmse += d * d / (r * r + 0.01);
-    e.smape += std::abs(d) / ((std::abs(x) + std::abs(r)) / 2 + 0.01);
+    add_terms(e, estimate[i], reference[i], std::make_index_sequence<reference_metrics>());
   }
   const auto n = static_cast<double>(estimate.size());
-  e.mae /= n;
-  e.mse /= n;
-  e.relmse /= n;
-  e.smape /= n;
-  e.rmse = std::sqrt(e.mse);
+  for (std::size_t m = 0; m < reference_metrics; ++m) {
+    e.values[m] /= n;
+    if (error_metrics[m].root) e.values[m] = std::sqrt(e.values[m]);
+  }
   return e;
 }
 
 double mse_from_halves(std::span<const double> a, double na, std::span<const double> b, double nb) {
-  return errors(a, b).mse * na * nb / ((na + nb) * (na + nb));
+  return errors(a, b)[ErrorMetric::mse] * na * nb / ((na + nb) * (na + nb));
 }
 
 std::optional<double> estimated_rmse(const Film& film) {
@@ -37,24 +48,6 @@ std::optional<double> estimated_rmse(const Film& film) {
   const auto odd = static_cast<double>(film.half_iterations(1));
   if (even == 0 || odd == 0) return std::nullopt;
   return std::sqrt(mse_from_halves(film.half_mean(0), even, film.half_mean(1), odd));
-}
-
-double value_of(const Errors& e, ErrorMetric metric) {
-  switch (metric) {
-    case ErrorMetric::mae:
-      return e.mae;
-    case ErrorMetric::rmse:
-      return e.rmse;
-    case ErrorMetric::mse:
-      return e.mse;
-    case ErrorMetric::relmse:
-      return e.relmse;
-    case ErrorMetric::smape:
-      return e.smape;
-    case ErrorMetric::est_rmse:
-      break;
-  }
-  throw std::invalid_argument("est_rmse is not measured against a reference");
 }
 
 }  // namespace lacuna

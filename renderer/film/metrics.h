@@ -1,21 +1,25 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 
 #include "renderer/film/film.h"
-#include "renderer/settings/output_settings.h"
+#include "renderer/settings/error_metrics.h"
 
 namespace lacuna {
 
-/// Every error of an estimate against a reference, over pixels and channels (DESIGN, "A job's
-/// folder"). In double, of unclamped values: the only place where they are defined.
+/// The errors of an estimate against a reference: of each metric that needs one
+/// (renderer/settings/error_metrics.h) its value, in the table's order.
 struct Errors {
-  double mae = 0, rmse = 0, mse = 0, relmse = 0, smape = 0;
+  std::array<double, reference_metrics> values{};
+
+  /// Throws std::invalid_argument for a metric that needs no reference.
+  double operator[](ErrorMetric metric) const;
 };
 
-/// `estimate` and `reference` have the same size. A value that is not finite makes the errors it
-/// enters not finite.
+/// In double, of unclamped values. `estimate` and `reference` have the same size. A value that is
+/// not finite makes the errors it enters not finite.
 Errors errors(std::span<const double> estimate, std::span<const double> reference);
 
 /// Mean squared error of the mean of all `na` + `nb` samples, estimated from the means `a` and `b`
@@ -24,8 +28,5 @@ double mse_from_halves(std::span<const double> a, double na, std::span<const dou
 
 /// RMSE of the film's mean, from its halves; nothing before both have an iteration.
 std::optional<double> estimated_rmse(const Film& film);
-
-/// The error that `metric` names; est_rmse is not among them.
-double value_of(const Errors& e, ErrorMetric metric);
 
 }  // namespace lacuna

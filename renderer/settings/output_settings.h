@@ -70,21 +70,4 @@ struct EnumTable<PixelType> {
   }};
 };
 
-/// Error against a reference r of an estimate x, over pixels and channels (DESIGN, "A job's
-/// folder").
-enum class ErrorMetric { mae, rmse, mse, relmse, smape, est_rmse };
-
-template <>
-struct EnumTable<ErrorMetric> {
-  static constexpr std::array<EnumValue<ErrorMetric>, 6> values{{
-      {ErrorMetric::mae, "mae", "mean |x - r|"},
-      {ErrorMetric::rmse, "rmse", "square root of mse"},
-      {ErrorMetric::mse, "mse", "mean (x - r)^2"},
-      {ErrorMetric::relmse, "relmse", "mean (x - r)^2 / (r^2 + 0.01)"},
-      {ErrorMetric::smape, "smape", "mean |x - r| / ((|x| + |r|) / 2 + 0.01)"},
-      {ErrorMetric::est_rmse, "est_rmse",
-       "rmse estimated from two independent halves; needs no reference"},
-  }};
-};
-
 }  // namespace lacuna

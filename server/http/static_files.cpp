@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "server/http/conditional.h"
 #include "server/http/file_response.h"
 
 namespace lacuna {
@@ -51,7 +52,21 @@ void StaticFiles::add(const std::string& path, const fs::path& file) {
   files_[path] = {file.parent_path(), file.filename().string(), media_type(file)};
 }
 
+void StaticFiles::add_made(const std::string& path, std::string text) {
+  made_[path] = std::move(text);
+  files_.erase(path);
+}
+
 void StaticFiles::add_to(Router& router) const {
+  for (const auto& [path, text] : made_) {
+    router.add("GET", path, {.for_programs = false},
+               [&path = path, &text = text](const Request& request, const Router::Parts&) {
+                 Response response;
+                 response.content_type = media_type(path);
+                 response.body = text;
+                 return with_tag(request, std::move(response));
+               });
+  }
   for (const auto& [path, entry] : files_) {
     router.add("GET", path, {.for_programs = false},
                [&entry = entry](const Request& request, const Router::Parts&) {

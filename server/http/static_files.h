@@ -19,7 +19,10 @@ class StaticFiles {
   /// Serves one more file, at `path`; nothing happens if it is not there.
   void add(const std::string& path, const std::filesystem::path& file);
 
-  bool has(const std::string& path) const { return files_.contains(path); }
+  /// Serves a file of the page that the program makes itself, in place of any at `path`.
+  void add_made(const std::string& path, std::string text);
+
+  bool has(const std::string& path) const { return files_.contains(path) || made_.contains(path); }
   /// Adds a route for each; outlives `router`.
   void add_to(Router& router) const;
 
@@ -30,6 +33,7 @@ class StaticFiles {
     std::string_view media_type;
   };
   std::map<std::string, Entry> files_;
+  std::map<std::string, std::string> made_;  ///< texts
 };
 
 }  // namespace lacuna

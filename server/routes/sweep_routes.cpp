@@ -134,7 +134,7 @@ void SweepRoutes::add_one(Router& router) {
 void SweepRoutes::add_results(Router& router) {
   router.add("GET", "/api/sweeps/{id}/answers",
              {.summary = "What its finished runs say of its settings, with intervals",
-              .answers = {{200, "the answers (jobs/sweep/README.md)"},
+              .answers = {{200, "the answers (docs/sweeps-and-reports.md)"},
                           {304, "as you have it"},
                           {404, "there is no such sweep"}}},
              with_id(*this, &SweepRoutes::answers));

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "jobs/spec/identity.h"
 #include "jobs/spec/problems.h"
 #include "tests/fuzz/expect.h"
 

@@ -1,11 +1,13 @@
 // A stand-in for lacuna-server with fixed jobs, which a test changes by hand. By itself
 // (`node mock_server.mjs [PORT [JOBS]]`) it serves the page for work on it, with one job that moves on.
+import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
 import { readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { extname } from "node:path";
 import { fileURLToPath } from "node:url";
 
+import { lacuna } from "../server/real_service.mjs";
 import { curve, makeJobs, manyJobs, progress, scenes, schema } from "./fixtures.mjs";
 
 const web = new URL("../../web/", import.meta.url);
@@ -28,9 +30,12 @@ function send(response, status, type, body, headers = {}) {
 
 const pageFiles = new Map();
 
-/// A file of the page as it was when it was first asked for.
-function pageFile(name) {
-  if (!pageFiles.has(name)) pageFiles.set(name, readFileSync(new URL(name, web)));
+/// A file of the page as it was when it was first asked for. One of them is the program's to make.
+export function pageFile(name) {
+  if (!pageFiles.has(name)) {
+    pageFiles.set(name, name === "job_tables.js" ? execFileSync(lacuna, ["schema", "--page"])
+      : readFileSync(new URL(name, web)));
+  }
   return pageFiles.get(name);
 }
 

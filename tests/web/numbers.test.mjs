@@ -111,7 +111,31 @@ test("only settings that differ are listed, and those that change the picture ar
     { scene: "b", seed: 2, budget: { seconds: 5 }, resolution: [2, 2], extra: true }];
   const found = await call("/settings_diff.js", "differences", jobs);
   assert.deepEqual(found.map((d) => d.pointer), ["/scene", "/seed", "/extra"]);
-  assert.deepEqual(await call("/settings_diff.js", "doubtful", found), ["/scene"]);
+  assert.deepEqual(await call("/settings_diff.js", "doubtful", found), ["/scene", "/extra"]);
+});
+
+test("what the page does not know of a job counts; only how it is estimated, and for whom, does not", async () => {
+  const doubts = (a, b) => page.evaluate(async (jobs) => {
+    const { differences, doubtful } = await import("/settings_diff.js");
+    return doubtful(differences(jobs));
+  }, [a, b]);
+  const job = { scene: "a", label: "", integrator: { type: "path", max_depth: 6, roulette_depth: 6 },
+    budget: { seconds: 5, error: null }, reference: "auto", environment: null, seed: 1, layers: [] };
+  const other = { ...job, label: "b", integrator: { type: "bdpt", max_depth: 6, roulette_depth: 2, guide: { type: "bsdf" } },
+    budget: { seconds: 6, error: { metric: "mse", target: 1 } }, seed: 2, layers: ["albedo"] };
+  assert.deepEqual(await doubts(job, other), []);
+  for (const [key, value] of Object.entries({ scene: "b", reference: "r.exr", unheard_of: 1 })) {
+    assert.deepEqual(await doubts(job, { ...other, [key]: value }), [`/${key}`]);
+  }
+  assert.deepEqual(await doubts(job, { ...other, integrator: { ...other.integrator, max_depth: 7 } }),
+    ["/integrator/max_depth"]);
+  assert.deepEqual(await doubts(job, { ...other, unheard_of: { deep: { er: 1 } } }), ["/unheard_of/deep/er"]);
+});
+
+test("the page's pictures of errors are those of metrics that there are", async () => {
+  const [kinds, metrics] = await page.evaluate(async () => [(await import("/error_picture.js")).errorKinds.map((k) => k.metric),
+    (await import("/job_tables.js")).metrics.map((m) => m.key)]);
+  assert.deepEqual(kinds.filter((key) => key && !metrics.includes(key)), []);
 });
 
 test("crops lie within the picture, in whole pixels", async () => {

@@ -160,6 +160,24 @@ TEST_F(SweepAnswers, ColdIsNotKnownIfNoRunBuilt) {
   EXPECT_EQ(a.pictures[0].warm.size(), 1u);
 }
 
+TEST_F(SweepAnswers, ColdIsNotThatOfAnotherPreparation) {
+  constexpr const char* skeleton = R"({"name": "skeleton"})";
+  const auto cold = [&](const char* name, const std::string& axis) {
+    const SweepFolder sweep = finish_all(
+        SweepFolder::create(temp.path() / name,
+                            parse_sweep(R"({"job": {"scene": "a.glb", "reference": "r.exr"},
+                                            "axes": {)" +
+                                        axis + "}}")),
+        {{16, prepared(9, skeleton, "")}, {16, prepared(0.5, "", skeleton)}});
+    return answer(sweep).cells[1].preparation.cold;
+  };
+  EXPECT_EQ(cold("seed", R"("/seed": [1, 2])"), 10);
+  EXPECT_FALSE(cold("environment", R"("/environment": [null, {"file": "sky.exr"}])"));
+  EXPECT_FALSE(cold("particles", R"("/particles": [null, {"count": 9, "power": 1}])"));
+  EXPECT_FALSE(cold("material", R"("/material": [null, {"name": "floor", "roughness": 0.1}])"));
+  EXPECT_FALSE(cold("threads", R"("/threads": [1, 2])"));
+}
+
 TEST_F(SweepAnswers, BusyMachinesTaint) {
   const std::string busy = R"({"machine": {"others_share": 0.3, "stolen_share": 0, "mhz": 3000}})";
   const std::string stolen =

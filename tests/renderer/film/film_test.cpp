@@ -107,14 +107,15 @@ TEST(Metrics, ByHand) {
   const std::vector<double> x{1, 2, -1};
   const std::vector<double> r{1, 1, 0};
   const Errors e = errors(x, r);
-  EXPECT_DOUBLE_EQ(e.mae, 2.0 / 3);
-  EXPECT_DOUBLE_EQ(e.mse, 2.0 / 3);
-  EXPECT_DOUBLE_EQ(e.rmse, std::sqrt(2.0 / 3));
-  EXPECT_DOUBLE_EQ(e.relmse, (1 / 1.01 + 1 / 0.01) / 3);
-  EXPECT_DOUBLE_EQ(e.smape, (1 / 1.51 + 1 / 0.51) / 3);
+  EXPECT_DOUBLE_EQ(e[ErrorMetric::mae], 2.0 / 3);
+  EXPECT_DOUBLE_EQ(e[ErrorMetric::mse], 2.0 / 3);
+  EXPECT_DOUBLE_EQ(e[ErrorMetric::rmse], std::sqrt(2.0 / 3));
+  EXPECT_DOUBLE_EQ(e[ErrorMetric::relmse], (1 / 1.01 + 1 / 0.01) / 3);
+  EXPECT_DOUBLE_EQ(e[ErrorMetric::smape], (1 / 1.51 + 1 / 0.51) / 3);
+  EXPECT_THROW(e[ErrorMetric::est_rmse], std::invalid_argument);
   EXPECT_THROW(errors(x, std::vector<double>{1}), std::invalid_argument);
   const std::vector<double> nan{1, std::nan(""), 0};
-  EXPECT_TRUE(std::isnan(errors(nan, r).mse));
+  EXPECT_TRUE(std::isnan(errors(nan, r)[ErrorMetric::mse]));
 }
 
 TEST(Metrics, HalvesPredictTheError) {
@@ -133,7 +134,7 @@ TEST(Metrics, HalvesPredictTheError) {
         for (Rgb& p : image.pixels) p = Rgb(rng.next(), rng.next(), rng.next());
         film.add(static_cast<std::uint64_t>(i), image);
       }
-      measured += errors(film.mean(), std::vector<double>(60, 0.5)).mse;
+      measured += errors(film.mean(), std::vector<double>(60, 0.5))[ErrorMetric::mse];
       const double rmse = estimated_rmse(film).value();
       predicted += rmse * rmse;
     }

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+
+#include "analysis/settings/field.h"
+
+namespace lacuna {
+
+/// Error of an estimate x against a reference r, over pixels and channels. The smaller, the better.
+enum class ErrorMetric { mae, rmse, mse, relmse, smape, est_rmse };
+
+/// All that there is to say of an error metric. Film, curve.csv, reports, comparisons, the schema
+/// and the page take names and definitions from this table and have none of their own.
+struct ErrorMetricRow {
+  ErrorMetric value;
+  std::string_view name;   ///< in files
+  std::string_view doc;    ///< what it is
+  std::string_view label;  ///< in tables and figures
+  std::string_view unit = {};
+  bool squared = false;  ///< falls with the samples; the others with their square root
+  /// The error is the mean of this over pixels and channels; null: it needs no reference.
+  double (*term)(double x, double r) = nullptr;
+  bool root = false;  ///< the square root of that mean instead
+};
+
+/// In the order of the enumerators, which is the order of the columns of curve.csv.
+template <>
+struct EnumTable<ErrorMetric> {
+  static constexpr std::array<ErrorMetricRow, 6> values{{
+      {.value = ErrorMetric::mae,
+       .name = "mae",
+       .doc = "mean |x - r|",
+       .label = "MAE",
+       .unit = "radiance",
+       .term = [](double x, double r) { return std::abs(x - r); }},
+      {.value = ErrorMetric::rmse,
+       .name = "rmse",
+       .doc = "square root of mse",
+       .label = "RMSE",
+       .unit = "radiance",
+       .term = [](double x, double r) { return (x - r) * (x - r); },
+       .root = true},
+      {.value = ErrorMetric::mse,
+       .name = "mse",
+       .doc = "mean (x - r)^2",
+       .label = "MSE",
+       .unit = "radiance²",
+       .squared = true,
+       .term = [](double x, double r) { return (x - r) * (x - r); }},
+      {.value = ErrorMetric::relmse,
+       .name = "relmse",
+       .doc = "mean (x - r)^2 / (r^2 + 0.01)",
+       .label = "relMSE",
+       .squared = true,
+       .term = [](double x, double r) { return (x - r) * (x - r) / (r * r + 0.01); }},
+      {.value = ErrorMetric::smape,
+       .name = "smape",
+       .doc = "mean |x - r| / ((|x| + |r|) / 2 + 0.01)",
+       .label = "SMAPE",
+       .term = [](double x,
+                  double r) { return std::abs(x - r) / ((std::abs(x) + std::abs(r)) / 2 + 0.01); }},
+      {.value = ErrorMetric::est_rmse,
+       .name = "est_rmse",
+       .doc = "rmse estimated from two independent halves; needs no reference",
+       .label = "estimated RMSE",
+       .unit = "radiance"},
+  }};
+};
+
+inline constexpr auto& error_metrics = EnumTable<ErrorMetric>::values;
+
+constexpr const ErrorMetricRow& row_of(ErrorMetric metric) {
+  return error_metrics[static_cast<std::size_t>(metric)];
+}
+
+constexpr bool needs_reference(ErrorMetric metric) { return row_of(metric).term != nullptr; }
+
+/// Those that need a reference come first.
+inline constexpr std::size_t reference_metrics = static_cast<std::size_t>(std::ranges::count_if(
+    error_metrics, [](const ErrorMetricRow& row) { return row.term != nullptr; }));
+
+static_assert([] {
+  for (std::size_t i = 0; i < error_metrics.size(); ++i) {
+    if (static_cast<std::size_t>(error_metrics[i].value) != i) return false;
+    if ((error_metrics[i].term != nullptr) != (i < reference_metrics)) return false;
+  }
+  return true;
+}());
+
+/// The error that is shown unless another is asked for.
+constexpr ErrorMetric usual_metric(bool has_reference) {
+  return has_reference ? ErrorMetric::relmse : ErrorMetric::est_rmse;
+}
+
+}  // namespace lacuna
