@@ -88,7 +88,7 @@ class SpaceAnalysis {
   };
   template <class T>
   const T& get(Part<T>& part, const ArtefactKey& key, const std::function<T()>& build);
-  /// SystematicSampler name all that the bits depend on: the domain's own voxels stand for scene
+  /// Keys name all that the bits depend on: the domain's own voxels stand for scene
   /// and seeds, so two cameras in one room share what is made from it.
   ArtefactKey voxels_key() const;
   ArtefactKey domain_key(const DomainSeeds& seeds) const;

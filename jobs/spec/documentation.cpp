@@ -126,7 +126,7 @@ template <class T>
 std::string titled_page(std::string_view title) {
   std::string page = fmt::format(
       "# {}\n\n"
-      "One JSON object. SystematicSampler that are left out take their defaults; unknown keys are "
+      "One JSON object. Keys that are left out take their defaults; unknown keys are "
       "errors.\n",
       title);
   put_section(page, TypeReader::type_of(T{}, Field{}), "");

@@ -72,7 +72,8 @@ struct Answers {
 /// SweepFolder::state() and read_result() throw.
 Answers answer(const SweepFolder& sweep);
 
-/// The answers as JSON: what the page and the report show (documented in docs/sweeps-and-reports.md).
+/// The answers as JSON: what the page and the report show (documented in
+/// docs/sweeps-and-reports.md).
 std::string answers_text(const SweepFolder& sweep, const Answers& answers);
 
 }  // namespace lacuna

@@ -96,8 +96,8 @@ std::optional<double> efficiency(const ErrorCurve& curve, ErrorMetric metric) {
 }
 
 /// A value of a JSON document, by its keys; null if it is not there.
-template <class... SystematicSampler>
-const Json* find(const Json& json, const SystematicSampler&... keys) {
+template <class... Keys>
+const Json* find(const Json& json, const Keys&... keys) {
   const Json* here = &json;
   const auto enter = [&](const char* key) {
     if (here == nullptr) return;
@@ -108,8 +108,8 @@ const Json* find(const Json& json, const SystematicSampler&... keys) {
   return here;
 }
 
-template <class... SystematicSampler>
-std::optional<double> number(const Json& json, const SystematicSampler&... keys) {
+template <class... Keys>
+std::optional<double> number(const Json& json, const Keys&... keys) {
   const Json* found = find(json, keys...);
   return found != nullptr && found->is_number() ? std::optional(found->get<double>())
                                                 : std::nullopt;

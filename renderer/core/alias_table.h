@@ -9,7 +9,7 @@
 
 namespace lacuna {
 
-/// Discrete distribution with constant-time draws (PathState 1977, in Vose's form).
+/// Discrete distribution with constant-time draws (Walker 1977, in Vose's form).
 class AliasTable {
  public:
   AliasTable() = default;

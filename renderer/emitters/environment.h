@@ -8,7 +8,7 @@
 namespace lacuna {
 
 /// Light from infinitely far away, given by an equirectangular image: bilinear in the image, y up,
-/// its centre column along -z. GuidingDistribution are drawn by texel, with the exact integral of
+/// its centre column along -z. Directions are drawn by texel, with the exact integral of
 /// the bilinear radiance over each row-weighted texel as its weight, so that none that shines is
 /// left out.
 class Environment {

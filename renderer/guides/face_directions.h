@@ -10,7 +10,7 @@
 
 namespace lacuna {
 
-/// GuidingDistribution through voxel faces: a face is drawn from a distribution that the region of
+/// Directions through voxel faces: a face is drawn from a distribution that the region of
 /// the point has, then a point uniform on it. Faces hide one another, and a direction may be drawn
 /// through each that lies on its way; so its density adds up all of them, out of sight or not:
 ///     p(w) = sum_faces P(face) t^2 / |cos|

@@ -7,7 +7,7 @@
 
 namespace lacuna {
 
-// Lambert's law: f = albedo / pi. GuidingDistribution are drawn with density cos / pi, so that
+// Lambert's law: f = albedo / pi. Directions are drawn with density cos / pi, so that
 // f cos / pdf = albedo without any arithmetic.
 
 /// A direction with density cos / pi around unit `n` (Malley's method). Its cosine is above 3e-4.

@@ -9,7 +9,7 @@
 
 namespace lacuna {
 
-/// GuidingDistribution as texels of a dual paraboloid map (Brabec et al. 2002): two squares of
+/// Directions as texels of a dual paraboloid map (Brabec et al. 2002): two squares of
 /// `size` x `size` texels for the half spaces of positive and of negative x. All maps are turned
 /// the same way, so that those of views near one another can share texels (Kol et al. 2018, 3.1.3).
 struct Paraboloid {

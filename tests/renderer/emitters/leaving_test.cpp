@@ -51,7 +51,7 @@ double width_for(double angle) {
   return low;
 }
 
-/// GuidingDistribution of `e` against leaving_pdf() of `claimed`; `angle` is where either jumps.
+/// Directions of `e` against leaving_pdf() of `claimed`; `angle` is where either jumps.
 statistics::ChiSquare directions(const EmitterPoint& e, double angle, const EmitterPoint& claimed) {
   const statistics::SphereGrid grid(e.ng, width_for(angle));
   Rng rng(31, 0, 0, Rng::Purpose::test);

@@ -1,4 +1,4 @@
-// GuidingDistribution follow the density that pdf() reports, and weights are eval / pdf.
+// Directions follow the density that pdf() reports, and weights are eval / pdf.
 
 #include <gtest/gtest.h>
 

@@ -124,8 +124,8 @@ class Remake {
     PathState walker{.rng = rng_, .ray = {from, w}, .p = e.leaving_pdf(w), .path = light_};
     if (!e.delta()) walker.mis_partial = counts_.hit / double(e.pdf.value);
     int reached = 0;
-    trace_paths(std::span(&walker, 1), light_guide_, s - 1, Transport::importance, light_side(counts_),
-         reached);
+    trace_paths(std::span(&walker, 1), light_guide_, s - 1, Transport::importance,
+                light_side(counts_), reached);
     if (reached != s - 1) return false;
     for (int j = 1; j < s; ++j) {
       if (!same(light_[static_cast<std::size_t>(j)], path_.node(j))) return false;

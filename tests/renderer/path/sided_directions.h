@@ -7,7 +7,7 @@
 
 namespace lacuna::test {
 
-/// GuidingDistribution around one of two far points, by the side of the surface that is asked for,
+/// Directions around one of two far points, by the side of the surface that is asked for,
 /// drawn with another probability on each side: as little alike as densities from both ends can be.
 class SidedDirections final : public GuidingDistribution {
  public:
