@@ -15,19 +15,6 @@ namespace lacuna {
 
 namespace {
 
-/// The bound of the geometric term, 1 / scene units^2.
-float bound_of(const ManyLightsSettings& s, double radius) {
-  switch (s.clamp) {
-    case Clamp::relative:
-      return static_cast<float>(s.bound / (radius * radius));
-    case Clamp::absolute:
-      return static_cast<float>(s.bound);
-    case Clamp::off:
-      break;
-  }
-  return std::numeric_limits<float>::infinity();
-}
-
 /// Many-light rendering (Noel 2015, 4.4): the first connectible vertex of every eye path meets all
 /// virtual lights. Path tracing goes on from there for what they cannot give.
 template <Visibility V>
@@ -100,6 +87,19 @@ class ManyLights final : public Integrator {
  private:
   static constexpr int batch_side = 8;  // pixels
   static_assert(batch_side * batch_side == EyeBatch::size);
+
+  /// The bound of the geometric term, 1 / scene units^2.
+  static float bound_of(const ManyLightsSettings& s, double radius) {
+    switch (s.clamp) {
+      case Clamp::relative:
+        return static_cast<float>(s.bound / (radius * radius));
+      case Clamp::absolute:
+        return static_cast<float>(s.bound);
+      case Clamp::off:
+        break;
+    }
+    return std::numeric_limits<float>::infinity();
+  }
 
   struct Direct {
     Rgb value;
