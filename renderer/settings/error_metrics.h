@@ -13,6 +13,8 @@ namespace lacuna {
 /// Error of an estimate x against a reference r, over pixels and channels. The smaller, the better.
 enum class ErrorMetric { mae, rmse, mse, relmse, smape, est_rmse };
 
+constexpr double squared_error(double x, double r) { return (x - r) * (x - r); }
+
 /// All that there is to say of an error metric. Film, curve.csv, reports, comparisons, the schema
 /// and the page take names and definitions from this table and have none of their own.
 struct ErrorMetricRow {
@@ -42,7 +44,7 @@ struct EnumTable<ErrorMetric> {
        .doc = "square root of mse",
        .label = "RMSE",
        .unit = "radiance",
-       .term = [](double x, double r) { return (x - r) * (x - r); },
+       .term = squared_error,
        .root = true},
       {.value = ErrorMetric::mse,
        .name = "mse",
@@ -50,13 +52,13 @@ struct EnumTable<ErrorMetric> {
        .label = "MSE",
        .unit = "radiance²",
        .squared = true,
-       .term = [](double x, double r) { return (x - r) * (x - r); }},
+       .term = squared_error},
       {.value = ErrorMetric::relmse,
        .name = "relmse",
        .doc = "mean (x - r)^2 / (r^2 + 0.01)",
        .label = "relMSE",
        .squared = true,
-       .term = [](double x, double r) { return (x - r) * (x - r) / (r * r + 0.01); }},
+       .term = [](double x, double r) { return squared_error(x, r) / (r * r + 0.01); }},
       {.value = ErrorMetric::smape,
        .name = "smape",
        .doc = "mean |x - r| / ((|x| + |r|) / 2 + 0.01)",

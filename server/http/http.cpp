@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cctype>
-#include <csignal>
 #include <cstring>
 #include <ctime>
 #include <map>
@@ -41,9 +40,9 @@ const httplib::Headers headers_of_every_answer{
 /// One request and its answer, as the library reads and writes them.
 class Connection final : public httplib::Stream {
  public:
-  /// The references outlive it.
-  Connection(const RequestHead& head, TimedSocket& socket)
-      : head_(head), socket_(&socket), left_(head.length) {}
+  /// `socket` outlives it.
+  Connection(RequestHead head, TimedSocket& socket)
+      : head_(std::move(head)), socket_(&socket), left_(head_.length) {}
   /// The answer to what is no request; it goes to text().
   explicit Connection(const HttpError& refusal)
       : head_{.text = "GET / HTTP/1.1\r\n\r\n"}, refusal_(&refusal) {}
@@ -119,14 +118,12 @@ std::string path_as_sent(const httplib::Request& sent) {
   return sent.target.substr(0, sent.target.find('?'));
 }
 
-/// Names in lower case, without those that the library adds.
+/// As check_head() wrote them, in lower case: without those that the library adds.
 Headers headers_of(const httplib::Request& sent) {
   Headers headers;
   for (const auto& [name, value] : sent.headers) {
     if (name.starts_with("REMOTE_") || name.starts_with("LOCAL_")) continue;
-    std::string lower = name;
-    for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    headers.emplace(std::move(lower), value);
+    headers.emplace(name, value);
   }
   return headers;
 }
@@ -196,7 +193,7 @@ Request request_of(const httplib::Request& sent, const httplib::ContentReader* r
 }
 
 /// The library drops what holds a line's end and lets other control characters pass.
-bool is_writable(const Response& response) {
+bool headers_are_plain(const Response& response) {
   const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
   return std::none_of(response.headers.begin(), response.headers.end(), [&](const auto& header) {
     return std::any_of(header.second.begin(), header.second.end(), is_control);
@@ -243,7 +240,7 @@ void put_file(Response response, httplib::Response& out) {
 }
 
 void put(Response response, httplib::Response& out) {
-  if (!is_writable(response)) {
+  if (!headers_are_plain(response)) {
     log::error("an answer could not be made: a header would hold a control character");
     response = problem_response(HttpError(500, "The service failed; its log says more."), "");
   }
@@ -497,7 +494,7 @@ bool HttpServer::Engine::offer(Arrival& arrival) {
 void HttpServer::Engine::serve(Arrival arrival) {
   const bool more_came = !arrival.head.chunked && arrival.body.size() > arrival.head.length;
   TimedSocket socket(std::move(arrival.socket), std::move(arrival.body), shared_);
-  Connection connection(arrival.head, socket);
+  Connection connection(std::move(arrival.head), socket);
   connection.on_answer = [&](int status) {
     const auto time = PacedDeadline::Clock::now() - arrival.time;
     metrics_.answered(status, time);
@@ -530,9 +527,8 @@ std::string HttpServer::Engine::answer(std::string_view received) {
   try {
     const std::size_t size = find_head_end(received, 0);
     if (size == 0) return {};
-    const RequestHead head = check_head(received.substr(0, size));
     TimedSocket socket(std::move(here), std::string(received.substr(size)), shared_);
-    Connection connection(head, socket);
+    Connection connection(check_head(received.substr(0, size)), socket);
     library_.answer(connection);
     ::shutdown(socket.release().get(), SHUT_WR);
   } catch (const HttpError& error) {

@@ -62,10 +62,14 @@ std::size_t TimedSocket::read(char* data, std::size_t size) {
   }
 }
 
+PacedDeadline TimedSocket::answer_deadline() const {
+  return PacedDeadline(shared_.settings.answer_time, shared_.settings.answer_bytes);
+}
+
 bool TimedSocket::wait_for_reader(std::size_t bytes) {
   if (!seat_ && !stream_) {
     seat_ = shared_.seats.for_reader(socket_.get(), bytes);
-    deadline_ = PacedDeadline(shared_.settings.answer_time, shared_.settings.answer_bytes);
+    deadline_ = answer_deadline();
   }
   if (!seat_ && !stream_) return false;
   const Wait result = wait(POLLOUT, deadline_.end());
@@ -73,8 +77,8 @@ bool TimedSocket::wait_for_reader(std::size_t bytes) {
 }
 
 bool TimedSocket::write(std::string_view text) {
-  if (stream_) deadline_ = PacedDeadline(shared_.settings.answer_time);
-  if (seat_ && !seat_->reads) seat_.reset();  // its body has come
+  if (stream_) deadline_ = answer_deadline();  // of each text anew
+  if (seat_ && !seat_->reads) seat_.reset();   // its body has come
   while (!text.empty()) {
     const ssize_t n = ::send(socket_.get(), text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
     if (n >= 0) {

@@ -50,6 +50,7 @@ class TimedSocket {
   enum class Wait { ready, late, failed };
   Wait wait(short events, PacedDeadline::Clock::time_point deadline) const;
   void wait_for_body();
+  PacedDeadline answer_deadline() const;
   bool wait_for_reader(std::size_t bytes);
 
   FileHandle socket_;
