@@ -6,12 +6,12 @@
 
 #include "analysis/geometry/disjoint_sets.h"
 #include "analysis/storage/peak_memory.h"
+#include "jobs/analyze/overlay.h"
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/settings_options.h"
 #include "jobs/cli/terminal.h"
 #include "jobs/run/clock.h"
-#include "jobs/run/overlay.h"
 #include "jobs/spec/byte_size.h"
 #include "jobs/spec/json_text.h"
 #include "jobs/store/job_folder.h"

@@ -71,7 +71,7 @@ void read_alpha(const Place& material, Warnings& warnings, Material& out) {
   out.double_sided = material.boolean("doubleSided", out.double_sided);
 }
 
-void warn_of_rest(const Place& material, Warnings& warnings) {
+void warn_of_unread_extensions(const Place& material, Warnings& warnings) {
   if (material.has("normalTexture")) warnings.once("normal maps are not supported and left out");
   if (material.has("occlusionTexture")) {
     warnings.once("occlusion maps are left out: occlusion is what is being computed");
@@ -95,7 +95,7 @@ std::vector<Material> read_materials(const Place& root, TextureTable& textures,
     read_emission(material, textures, out);
     read_specular(material, textures, out);
     read_alpha(material, warnings, out);
-    warn_of_rest(material, warnings);
+    warn_of_unread_extensions(material, warnings);
     materials.push_back(std::move(out));
   }
   materials.emplace_back().name = "default";

@@ -1,4 +1,4 @@
-#include "jobs/run/run_job.h"
+#include "jobs/render/run_job.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

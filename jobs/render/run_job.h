@@ -32,8 +32,4 @@ class FolderBusy : public std::runtime_error {
 /// is done is left as it is. Throws FolderBusy.
 Outcome run_job(const JobFolder& folder, const RunContext& context);
 
-/// Loads all that the job needs and throws what run_job would, without rendering: `lacuna check`.
-/// Returns warnings.
-std::vector<std::string> check_job(const JobSpec& spec, const RunContext& context);
-
 }  // namespace lacuna

@@ -1,4 +1,4 @@
-#include "jobs/run/report.h"
+#include "jobs/results/report.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "analysis/storage/peak_memory.h"
-#include "jobs/run/artefacts_json.h"
+#include "jobs/results/artefacts_json.h"
 #include "jobs/spec/json_text.h"
 #include "jobs/spec/version.h"
 #include "jobs/store/machine.h"

@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "jobs/run/run_job.h"
+#include "jobs/render/run_job.h"
 #include "renderer/integrators/integrator.h"
 
 namespace lacuna {

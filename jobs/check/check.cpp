@@ -1,4 +1,6 @@
-#include "jobs/run/check_scene.h"
+#include "jobs/check/check.h"
+#include "jobs/render/prepare.h"
+#include "jobs/run/reference.h"
 #include "renderer/gltf/gltf_load.h"
 
 #include <optional>
@@ -7,6 +9,14 @@
 #include "renderer/scene/scene.h"
 
 namespace lacuna {
+
+std::vector<std::string> check_job(const JobSpec& spec, const RunContext& context) {
+  Prepared prepared = prepare(spec, context);
+  if (!spec.reference.empty() && spec.reference != "auto") {
+    find_reference(spec, context.data, context.scenes);
+  }
+  return prepared.warnings;
+}
 
 SceneCounts check_scene(const std::filesystem::path& file, const ThreadPool& pool) {
   SceneData data = load_gltf(file);

@@ -5,8 +5,12 @@
 #include <vector>
 
 #include "analysis/parallel/thread_pool.h"
+#include "jobs/render/run_job.h"
 
 namespace lacuna {
+
+/// Loads all that the job needs and throws what run_job would, without rendering. Returns warnings.
+std::vector<std::string> check_job(const JobSpec& spec, const RunContext& context);
 
 /// What a scene holds.
 struct SceneCounts {

@@ -5,7 +5,7 @@
 
 #include "analysis/space/memory_limit.h"
 #include "analysis/storage/atomic_file.h"
-#include "jobs/run/results.h"
+#include "jobs/results/results.h"
 #include "renderer/core/rng.h"
 #include "renderer/images/image_read.h"
 #include "tests/jobs/run/silent_observer.h"

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "jobs/run/overlay.h"
+#include "jobs/analyze/overlay.h"
 #include "renderer/core/false_colour.h"
 
 namespace lacuna {

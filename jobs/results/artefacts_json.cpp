@@ -1,4 +1,4 @@
-#include "jobs/run/artefacts_json.h"
+#include "jobs/results/artefacts_json.h"
 
 #include <nlohmann/json.hpp>
 

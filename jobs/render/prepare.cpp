@@ -1,4 +1,4 @@
-#include "jobs/run/prepare.h"
+#include "jobs/render/prepare.h"
 #include "renderer/gltf/gltf_load.h"
 #include "renderer/scene/material_change.h"
 #include "renderer/scene/particles.h"

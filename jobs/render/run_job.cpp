@@ -1,4 +1,4 @@
-#include "jobs/run/run_job.h"
+#include "jobs/render/run_job.h"
 
 #include <fmt/format.h>
 
@@ -6,13 +6,13 @@
 #include <thread>
 
 #include "analysis/storage/atomic_file.h"
+#include "jobs/render/prepare.h"
+#include "jobs/results/report.h"
+#include "jobs/results/results.h"
 #include "jobs/run/machine_watch.h"
 #include "jobs/run/obstacle.h"
-#include "jobs/run/prepare.h"
 #include "jobs/run/reference.h"
 #include "jobs/run/render_loop.h"
-#include "jobs/run/report.h"
-#include "jobs/run/results.h"
 #include "renderer/images/image_module.h"
 #include "renderer/integrators/integrator.h"
 
@@ -209,14 +209,6 @@ Outcome run_job(const JobFolder& folder, const RunContext& context) {
     running.stop(e);
     throw;
   }
-}
-
-std::vector<std::string> check_job(const JobSpec& spec, const RunContext& context) {
-  Prepared prepared = prepare(spec, context);
-  if (!spec.reference.empty() && spec.reference != "auto") {
-    find_reference(spec, context.data, context.scenes);
-  }
-  return prepared.warnings;
 }
 
 }  // namespace lacuna

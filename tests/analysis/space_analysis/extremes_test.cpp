@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/artefacts/space_analysis.h"
 #include "analysis/space/components.h"
 #include "analysis/space/memory_limit.h"
-#include "tests/analysis/artefacts/rooms.h"
+#include "analysis/space_analysis/space_analysis.h"
+#include "tests/analysis/space_analysis/rooms.h"
 #include "tests/temporary_folder.h"
 
 namespace lacuna {

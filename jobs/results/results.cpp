@@ -1,4 +1,4 @@
-#include "jobs/run/results.h"
+#include "jobs/results/results.h"
 
 #include <fmt/format.h>
 

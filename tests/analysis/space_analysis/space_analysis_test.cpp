@@ -1,4 +1,4 @@
-#include "analysis/artefacts/space_analysis.h"
+#include "analysis/space_analysis/space_analysis.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <set>
 
 #include "analysis/space/memory_limit.h"
-#include "tests/analysis/artefacts/rooms.h"
+#include "tests/analysis/space_analysis/rooms.h"
 #include "tests/temporary_folder.h"
 
 namespace lacuna {

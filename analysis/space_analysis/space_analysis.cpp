@@ -1,9 +1,8 @@
-#include "analysis/artefacts/space_analysis.h"
+#include "analysis/space_analysis/space_analysis.h"
 
 #include <fmt/format.h>
 
 #include "analysis/artefacts/settings_text.h"
-#include "analysis/artefacts/space_codecs.h"
 #include "analysis/octree/surface_octree.h"
 #include "analysis/skeleton/build_graph.h"
 #include "analysis/skeleton/node_map.h"
@@ -11,6 +10,7 @@
 #include "analysis/space/distance.h"
 #include "analysis/space/opening.h"
 #include "analysis/space/opening_query.h"
+#include "analysis/space_analysis/space_codecs.h"
 
 namespace lacuna {
 namespace {

@@ -1,4 +1,4 @@
-#include "analysis/artefacts/space_codecs.h"
+#include "analysis/space_analysis/space_codecs.h"
 
 #include <algorithm>
 #include <cmath>

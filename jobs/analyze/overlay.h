@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/artefacts/space_analysis.h"
+#include "analysis/space_analysis/space_analysis.h"
 #include "renderer/geometry/scene_data.h"
 
 namespace lacuna {

@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/storage/atomic_file.h"
-#include "jobs/run/overlay.h"
+#include "jobs/analyze/overlay.h"
 #include "jobs/spec/json_text.h"
 #include "renderer/scene/scene_shape.h"
 
