@@ -2,7 +2,7 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "jobs/analyze/overlay.h"
-#include "jobs/spec/json_text.h"
+#include "analysis/json/json_text.h"
 #include "renderer/scene/scene_shape.h"
 
 namespace lacuna {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "analysis/artefacts/record.h"
-#include "jobs/spec/json_text.h"
+#include "analysis/json/json_text.h"
 
 namespace lacuna {
 

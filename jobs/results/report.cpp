@@ -8,7 +8,7 @@
 
 #include "analysis/storage/peak_memory.h"
 #include "jobs/results/artefacts_json.h"
-#include "jobs/spec/json_text.h"
+#include "analysis/json/json_text.h"
 #include "jobs/spec/version.h"
 #include "jobs/store/machine.h"
 #include "renderer/images/image_module.h"

@@ -6,7 +6,7 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "jobs/spec/job_json.h"
-#include "jobs/spec/json_text.h"
+#include "analysis/json/json_text.h"
 #include "jobs/spec/version.h"
 #include "renderer/film/half_layers.h"
 #include "renderer/film/preview.h"

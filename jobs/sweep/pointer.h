@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "jobs/spec/json_text.h"
+#include "analysis/json/json_text.h"
 
 namespace lacuna {
 

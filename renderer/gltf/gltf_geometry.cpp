@@ -218,7 +218,7 @@ void add_node(const tinygltf::Model& model, const PlacedNode& node, std::size_t 
     }
     Mesh built = build_mesh({model, primitive, node, place_of(node, mesh_index, k)}, scene, counts,
                             warnings);
-    built.name = mesh.name.empty() ? node.place.string("name", node.place.path()) : mesh.name;
+    built.name = mesh.name.empty() ? node.place.string("name", node.place.label()) : mesh.name;
     if (!built.triangles.empty()) scene.meshes.push_back(std::move(built));
   }
 }

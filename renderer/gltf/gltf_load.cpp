@@ -11,7 +11,7 @@ namespace lacuna {
 namespace gltf {
 namespace {
 
-void warn_of_unread_parts(const Place& root, Warnings& warnings) {
+void warn_of_unread_parts(const GltfObject& root, Warnings& warnings) {
   if (root.array_size("animations") > 0) {
     warnings.once("animations are left out: the scene stands still in its rest pose");
   }
@@ -25,7 +25,8 @@ SceneData load(const std::filesystem::path& file) {
   const Bytes bytes = folder.read_main();
   const Framing framing = check_framing(bytes);
   const Json json = parse_json(framing.json);
-  const Place root(json, "");
+  GltfProblems problems(json);
+  const GltfObject root(json, problems);
   check_structure(root, framing);
 
   SceneData scene;

@@ -6,7 +6,7 @@
 #include <cctype>
 #include <nlohmann/json.hpp>
 
-#include "jobs/spec/json_text.h"
+#include "analysis/json/json_text.h"
 
 namespace lacuna {
 

@@ -1,4 +1,4 @@
-#include "jobs/spec/limits.h"
+#include "analysis/json/limits.h"
 
 #include <fmt/format.h>
 

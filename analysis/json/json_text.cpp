@@ -1,4 +1,4 @@
-#include "jobs/spec/json_text.h"
+#include "analysis/json/json_text.h"
 
 #include <nlohmann/json.hpp>
 #include <stdexcept>
