@@ -1,4 +1,4 @@
-#include "jobs/sweep/pointer.h"
+#include "jobs/plan/pointer.h"
 
 #include <fmt/format.h>
 

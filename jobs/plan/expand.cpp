@@ -1,12 +1,12 @@
-#include "jobs/sweep/expand.h"
+#include "jobs/plan/expand.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "jobs/plan/pointer.h"
 #include "jobs/spec/described_json.h"
 #include "jobs/spec/job_json.h"
-#include "jobs/sweep/pointer.h"
 
 namespace lacuna {
 namespace {

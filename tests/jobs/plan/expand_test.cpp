@@ -5,10 +5,10 @@
 #include <set>
 #include <sstream>
 
+#include "jobs/plan/expand.h"
 #include "jobs/spec/described_json.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/problems.h"
-#include "jobs/sweep/expand.h"
 
 namespace lacuna {
 namespace {

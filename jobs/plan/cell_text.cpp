@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "jobs/sweep/expand.h"
-#include "jobs/sweep/pointer.h"
+#include "jobs/plan/expand.h"
+#include "jobs/plan/pointer.h"
 
 namespace lacuna {
 namespace {
