@@ -28,6 +28,11 @@ std::string range_text(const Limits& limits) {
   return text;
 }
 
+std::string meaning_text(const Field& field) {
+  if (field.published.empty()) return std::string(field.doc);
+  return fmt::format("{}; as published: `{}`", field.doc, field.published);
+}
+
 std::string length_text(const Limits& limits, std::string_view things) {
   const bool low = limits.min > 0;
   const bool high = std::isfinite(limits.max);

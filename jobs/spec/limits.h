@@ -48,6 +48,8 @@ inline Limits length_limits(const Field& field) {
 std::string number_text(double x);
 /// "from 1 to 1024 edges", "above 0, at most 10000000 s", "at least 1"; empty: no limit.
 std::string range_text(const Limits& limits);
+/// What a field is about, and the value as published if it has one.
+std::string meaning_text(const Field& field);
 /// "of 1 to 1024 characters", "of at most 16 elements"; empty: no limit.
 std::string length_text(const Limits& limits, std::string_view things);
 

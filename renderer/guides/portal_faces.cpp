@@ -34,7 +34,9 @@ VoxelBox box_around(const Portals& portals, const Portal& portal,
 /// The share of a portal that is seen from `eye`, in voxels, by some of its faces.
 double share_seen(const RayCaster& rays, const GridTransform& transform, const V3d& eye,
                   const Portals& portals, const Portal& portal, const Grid3<std::uint32_t>& label) {
-  const std::uint64_t tried = std::min<std::uint64_t>(portal.faces(), 16);
+  // Only whether half of it is seen is asked, once for each region and portal.
+  constexpr std::uint64_t most_tried = 16;
+  const std::uint64_t tried = std::min(portal.faces(), most_tried);
   const V3f from(transform.to_world(eye));
   double seen = 0;
   for (std::uint64_t k = 0; k < tried; ++k) {
