@@ -111,7 +111,7 @@ void put_section(std::string& page, const Type& object, const std::string& path)
   page += "\n| key | value | default | meaning |\n| --- | --- | --- | --- |\n";
   for (const Member& m : object.members) {
     page += fmt::format("| `{}` | {} | {} | {} |\n", m.name, cell(type_text(m.type)),
-                        cell(default_text(m)), cell(m.field.doc));
+                        cell(default_text(m)), cell(meaning_text(m.field)));
   }
   for (const Member& m : object.members) put_names(page, m);
   for (const Member& m : object.members) {

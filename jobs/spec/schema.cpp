@@ -13,7 +13,7 @@ OrderedJson schema_of(const Type& type);
 
 /// The key's own line, its unit, and what each name means.
 std::string description(const Member& member) {
-  std::string text(member.field.doc);
+  std::string text = meaning_text(member.field);
   if (!member.field.unit.empty()) text += fmt::format(" [{}]", member.field.unit);
   const Type& named =
       member.type.kind == Type::Kind::list ? member.type.elements.front() : member.type;

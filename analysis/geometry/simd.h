@@ -2,9 +2,11 @@
 
 #include <immintrin.h>
 
+#include <cstdint>
+
 namespace lacuna {
 
-// Eight floats in a register. In long loops GCC 12 calls a function wherever
+// Eight numbers in a register. In long loops GCC 12 calls a function wherever
 // std::experimental::simd broadcasts a scalar, which cost a whole picture with probabilistic
 // visibility a third of its time more.
 
@@ -13,9 +15,15 @@ struct Mask8 {
   __m256 v;
 };
 inline Mask8 operator&&(Mask8 a, Mask8 b) { return {_mm256_and_ps(a.v, b.v)}; }
-inline bool any_of(Mask8 m) { return _mm256_movemask_ps(m.v) != 0; }
+inline bool any(Mask8 m) { return _mm256_movemask_ps(m.v) != 0; }
 /// Bit i: element i.
-inline unsigned bits_of(Mask8 m) { return static_cast<unsigned>(_mm256_movemask_ps(m.v)); }
+inline unsigned movemask(Mask8 m) { return static_cast<unsigned>(_mm256_movemask_ps(m.v)); }
+/// The inverse, from the lowest eight bits.
+inline Mask8 mask_from_bits(unsigned bits) {
+  const __m256i lane = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+  const __m256i set = _mm256_and_si256(_mm256_set1_epi32(static_cast<int>(bits)), lane);
+  return {_mm256_castsi256_ps(_mm256_cmpeq_epi32(set, lane))};
+}
 
 struct Float8 {
   __m256 v;
@@ -26,6 +34,15 @@ struct Float8 {
   /// From 32-byte aligned memory.
   static Float8 load(const float* from) { return _mm256_load_ps(from); }
   void store(float* to) const { _mm256_store_ps(to, v); }
+  static Float8 load_unaligned(const float* from) { return _mm256_loadu_ps(from); }
+  void store_unaligned(float* to) const { _mm256_storeu_ps(to, v); }
+  /// From and to eight half floats at any address, rounded to the nearest.
+  static Float8 load_half(const std::uint16_t* from) {
+    return _mm256_cvtph_ps(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from)));
+  }
+  void store_half(std::uint16_t* to) const {
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(to), _mm256_cvtps_ph(v, _MM_FROUND_TO_NEAREST_INT));
+  }
 };
 
 inline Float8 operator+(Float8 a, Float8 b) { return _mm256_add_ps(a.v, b.v); }
@@ -46,14 +63,17 @@ inline Float8 sqrt(Float8 a) { return _mm256_sqrt_ps(a.v); }
 inline Float8 ceil(Float8 a) { return _mm256_ceil_ps(a.v); }
 inline Float8 floor(Float8 a) { return _mm256_floor_ps(a.v); }
 inline Float8 abs(Float8 a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0F), a.v); }
+inline Float8 round(Float8 a) {
+  return _mm256_round_ps(a.v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+}
 /// The sum of all, in a fixed order.
-inline float sum(Float8 a) {
+inline float reduce_add(Float8 a) {
   const __m128 four = _mm_add_ps(_mm256_castps256_ps128(a.v), _mm256_extractf128_ps(a.v, 1));
   const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
   return _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)));
 }
 
-/// Eight whole numbers of 32 bits.
+/// Eight whole numbers of 32 bits, which wrap around.
 struct Int8 {
   __m256i v;
 
@@ -61,14 +81,35 @@ struct Int8 {
   explicit Int8(int all) : v(_mm256_set1_epi32(all)) {}
   /// To 32-byte aligned memory.
   void store(int* to) const { _mm256_store_si256(reinterpret_cast<__m256i*>(to), v); }
+  static Int8 load_unaligned(const std::uint32_t* from) {
+    return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+  }
+  void store_unaligned(std::uint32_t* to) const {
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), v);
+  }
 };
 inline Int8 operator+(Int8 a, Int8 b) { return _mm256_add_epi32(a.v, b.v); }
+inline Int8 operator-(Int8 a, Int8 b) { return _mm256_sub_epi32(a.v, b.v); }
+inline Int8 operator<<(Int8 a, int bits) { return _mm256_slli_epi32(a.v, bits); }
+inline Int8 operator>>(Int8 a, int bits) { return _mm256_srai_epi32(a.v, bits); }
 inline Int8 operator*(Int8 a, Int8 b) { return _mm256_mullo_epi32(a.v, b.v); }
 inline Int8 min(Int8 a, Int8 b) { return _mm256_min_epi32(a.v, b.v); }
 inline Int8 max(Int8 a, Int8 b) { return _mm256_max_epi32(a.v, b.v); }
+inline Int8 min_unsigned(Int8 a, Int8 b) { return _mm256_min_epu32(a.v, b.v); }
+inline Int8 max_unsigned(Int8 a, Int8 b) { return _mm256_max_epu32(a.v, b.v); }
+inline bool all_equal(Int8 a, Int8 b) {
+  return _mm256_movemask_epi8(_mm256_cmpeq_epi32(a.v, b.v)) == -1;
+}
 inline Int8 keep_where(Mask8 m, Int8 a) { return _mm256_and_si256(_mm256_castps_si256(m.v), a.v); }
 /// Towards 0; of what has no such number the lowest.
-inline Int8 truncated(Float8 a) { return _mm256_cvttps_epi32(a.v); }
+inline Int8 truncate(Float8 a) { return _mm256_cvttps_epi32(a.v); }
+inline Int8 round_to_int(Float8 a) { return _mm256_cvtps_epi32(a.v); }
+inline Float8 to_float(Int8 a) { return _mm256_cvtepi32_ps(a.v); }
+/// The same bits.
+inline Int8 as_int(Float8 a) { return _mm256_castps_si256(a.v); }
+inline Float8 as_float(Int8 a) { return _mm256_castsi256_ps(a.v); }
+/// from[i] for each of eight indices.
+inline Float8 gather(const float* from, Int8 i) { return _mm256_i32gather_ps(from, i.v, 4); }
 
 /// Eight directions, or colours.
 struct Float8x3 {

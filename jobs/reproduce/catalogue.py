@@ -1,9 +1,15 @@
 """Everything that the three papers claim of their methods, and what is compared beside it."""
 
-from harness import kol, nabata, noel_paths, noel_shape, noel_shadows, references
+import kol
+import nabata
+import noel_connections
+import noel_guides
+import noel_shadows
+import noel_shape
+import references
 
-ENTRIES = (*references.ENTRIES, *noel_shape.ENTRIES, *noel_shadows.ENTRIES, *noel_paths.ENTRIES, *nabata.ENTRIES,
-           *kol.ENTRIES)
+ENTRIES = (*references.ENTRIES, *noel_shape.ENTRIES, *noel_shadows.ENTRIES, *noel_guides.ENTRIES,
+           *noel_connections.ENTRIES, *nabata.ENTRIES, *kol.ENTRIES)
 
 
 def find(name):
