@@ -63,11 +63,11 @@ Ray shadow_ray(const Eye& eye, const Light& light, const Connection& c) {
 template <class Eye, class Light>
 double light_side_sum(const Eye& eye, const Light& light, const Connection& c,
                       const SampleCounts& n) {
-  if (light.index == 0 && !light.prior_connectible()) return 0;
+  if (light.index == 0 && !light.prev_connectible()) return 0;
   const double g = eye.pdf(c.w) * (c.infinite ? 1.0 : light.area_factor(c.w) / double(c.distance2));
-  const double back = light.mis_partial() > 0 ? light.back(-c.w) : 0.0;
+  const double pdf_rev = light.mis_partial() > 0 ? light.pdf_rev(-c.w) : 0.0;
   return g / light.p_fwd() *
-         mis_partial_sum(light_side(n), light.index, light.prior_connectible(), back,
+         mis_partial_sum(light_side(n), light.index, light.prev_connectible(), pdf_rev,
                          light.mis_partial());
 }
 
@@ -76,9 +76,10 @@ template <class Eye, class Light>
 double eye_side_sum(const Eye& eye, const Light& light, const Connection& c,
                     const SampleCounts& n) {
   const double h = light.pdf(-c.w) * eye.area_factor(c.w) / double(c.distance2);
-  const double back = eye.mis_partial() > 0 ? eye.back(c.w) : 0.0;
+  const double pdf_rev = eye.mis_partial() > 0 ? eye.pdf_rev(c.w) : 0.0;
   return h / eye.p_fwd() *
-         mis_partial_sum(eye_side(n), eye.index, eye.prior_connectible(), back, eye.mis_partial());
+         mis_partial_sum(eye_side(n), eye.index, eye.prev_connectible(), pdf_rev,
+                         eye.mis_partial());
 }
 
 /// The MIS weight of a connection of a surface with an emitter or another surface.
@@ -113,10 +114,10 @@ inline std::optional<EmitterPoint> emitter_at(const Scene& scene, const Vertex& 
 inline double hit_weight(const Vertex& v, int index, const EmitterPoint& e, const SampleCounts& n) {
   const double one_less = n.of(1, index);
   const TechniqueCounts side{0, one_less, one_less};
-  const double back = v.mis_partial > 0 ? double(e.leaving_pdf(v.wp).value) : 0.0;
+  const double pdf_rev = v.mis_partial > 0 ? double(e.leaving_pdf(v.wp).value) : 0.0;
   return mis_weight(n.hit, 0.0,
                     double(e.pdf.value) / double(v.p_fwd.value) *
-                        mis_partial_sum(side, index, v.prior_connectible, back, v.mis_partial));
+                        mis_partial_sum(side, index, v.prev_connectible, pdf_rev, v.mis_partial));
 }
 
 }  // namespace lacuna

@@ -26,7 +26,7 @@ struct SurfaceEndpoint {
   /// Density of the walk's going on along `w`.
   double pdf(const V3f& w) const { return guide.pdf(v, v.wp, w, transport).value; }
   /// Density with which the other walk, arriving from `w`, would go on to the vertex before.
-  double back(const V3f& w) const {
+  double pdf_rev(const V3f& w) const {
     const Transport other =
         transport == Transport::radiance ? Transport::importance : Transport::radiance;
     return guide.pdf(v, w, v.wp, other).value;
@@ -36,7 +36,7 @@ struct SurfaceEndpoint {
   double area_factor(const V3f& w) const { return double(abs_dot(v.surface.ng, w)); }
   double p_fwd() const { return double(v.p_fwd.value); }
   double mis_partial() const { return v.mis_partial; }
-  bool prior_connectible() const { return v.prior_connectible; }
+  bool prev_connectible() const { return v.prev_connectible; }
   /// Where a ray along `w` starts.
   V3f origin(const V3f& w) const {
     return offset_origin(v.surface.x, v.surface.ng, v.surface.extent, w);
@@ -56,14 +56,14 @@ struct EmitterEndpoint {
     return e.towards(w) * (cosine / e.pdf.value);
   }
   double pdf(const V3f& w) const { return double(e.leaving_pdf(w).value); }
-  static double back(const V3f&) { return 0; }
+  static double pdf_rev(const V3f&) { return 0; }
   double area_factor(const V3f& w) const {
     return e.kind == EmitterPoint::Kind::area ? double(abs_dot(e.ng, w)) : 1.0;
   }
   double p_fwd() const { return double(e.pdf.value); }
   static double mis_partial() { return 0; }
   /// An eye's path can meet it.
-  bool prior_connectible() const { return !e.delta(); }
+  bool prev_connectible() const { return !e.delta(); }
   V3f origin(const V3f& w) const {
     return e.kind == EmitterPoint::Kind::area ? offset_origin(e.x, e.ng, e.extent, w) : e.x;
   }

@@ -42,12 +42,12 @@ constexpr TechniqueCounts light_side(const SampleCounts& n) { return {n.hit, n.n
 /// The eye is a point that nothing hits: no strategy leaves it without a vertex.
 constexpr TechniqueCounts eye_side(const SampleCounts& n) { return {0, n.splat, n.connect}; }
 
-/// n_j c_j + sum_{i < j} n_i p_i / p_j at vertex `j` of a walk: `connectible` is c_j, `back` the
+/// n_j c_j + sum_{i < j} n_i p_i / p_j at vertex `j` of a walk: `connectible` is c_j, `pdf_rev` the
 /// density, per steradian, with which the other end's walk goes on from j to j - 1, and
 /// `mis_partial` what the walk knew when it arrived (Walk).
-constexpr double mis_partial_sum(const TechniqueCounts& side, int j, bool connectible, double back,
-                                 double mis_partial) {
-  return (connectible ? side.of(j) : 0.0) + back * mis_partial;
+constexpr double mis_partial_sum(const TechniqueCounts& side, int j, bool connectible,
+                                 double pdf_rev, double mis_partial) {
+  return (connectible ? side.of(j) : 0.0) + pdf_rev * mis_partial;
 }
 
 /// The balance heuristic: share of the strategy with `own` samples, where the others' densities

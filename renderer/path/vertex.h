@@ -21,7 +21,7 @@ struct Vertex {
   bool delta = false;  ///< the walk left it through a delta lobe
   /// The strategy that joins the vertex before it to this one can make the path, as far as the
   /// former is concerned (mis.h).
-  bool prior_connectible = true;
+  bool prev_connectible = true;
   Surface surface;          ///< emitter: x, ng; background: only x, the unit direction to infinity
   V3f wp{0, 0, 0};          ///< unit, to the previous vertex
   Rgb throughput{1, 1, 1};  ///< includes every division by a density, up to here

@@ -103,7 +103,7 @@ class Walk {
     } else {
       v.mis_partial = 0;
     }
-    v.prior_connectible = before.connectible();
+    v.prev_connectible = before.connectible();
   }
 
   bool scatters(int depth) const { return limits_.last_scatters || depth < limits_.max_depth; }
@@ -137,14 +137,14 @@ class Walk {
   }
 
   double mis_partial(const Vertex& v, int depth, const V3f& wi) const {
-    const bool connectible = v.prior_connectible && v.connectible();
-    double back = 0;
+    const bool connectible = v.prev_connectible && v.connectible();
+    double pdf_rev = 0;
     if (v.mis_partial > 0) {
       const Transport other =
           limits_.transport == Transport::radiance ? Transport::importance : Transport::radiance;
-      back = v.delta ? 1.0 : double(guide_.pdf(v, wi, v.wp, other).value);
+      pdf_rev = v.delta ? 1.0 : double(guide_.pdf(v, wi, v.wp, other).value);
     }
-    return mis_partial_sum(limits_.counts, depth, connectible, back, v.mis_partial) /
+    return mis_partial_sum(limits_.counts, depth, connectible, pdf_rev, v.mis_partial) /
            double(v.p_fwd.value);
   }
 
