@@ -6,15 +6,15 @@
 
 namespace lacuna {
 
-void CellStatistics::add(std::span<const Tally> tallies) {
-  tiles_.resize(std::max(tiles_.size(), tallies.size()));
-  for (std::size_t i = 0; i < tallies.size(); ++i) {
-    const Tally& t = tallies[i];
-    for (const Tally::Met& met : t.met_) {
+void CellStatistics::add(std::span<const Accumulator> accumulators) {
+  tiles_.resize(std::max(tiles_.size(), accumulators.size()));
+  for (std::size_t i = 0; i < accumulators.size(); ++i) {
+    const Accumulator& t = accumulators[i];
+    for (const Accumulator::Met& met : t.met_) {
       Cell& sum = cells_[met.cell];
       sum.visits += met.sums.visits;
       for (std::size_t k = 0; k < lengths; ++k) {
-        sum.asked[k] += met.sums.asked[k];
+        sum.attempts[k] += met.sums.attempts[k];
         sum.squares[k] += met.sums.squares[k];
       }
     }
@@ -28,9 +28,9 @@ void CellStatistics::expect() {
   expected_.assign(cells_.size() * lengths, std::numeric_limits<double>::infinity());
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     for (std::size_t k = 0; k < lengths; ++k) {
-      const double asked = static_cast<double>(cells_[c].asked[k]);
-      if (cells_[c].asked[k] < least_asked) continue;
-      expected_[c * lengths + k] = std::sqrt(cells_[c].squares[k] / asked);
+      const double attempts = static_cast<double>(cells_[c].attempts[k]);
+      if (cells_[c].attempts[k] < min_attempts) continue;
+      expected_[c * lengths + k] = std::sqrt(cells_[c].squares[k] / attempts);
     }
   }
 }

@@ -19,27 +19,27 @@ class CellStatistics {
   static constexpr int lengths = 8;
 
   struct Cell {
-    std::uint64_t visits = 0;                    ///< eye vertices
-    std::array<std::uint64_t, lengths> asked{};  ///< of those, how many could be joined
-    std::array<double, lengths> squares{};       ///< sum over `asked` of what arrived, squared
+    std::uint64_t visits = 0;                       ///< eye vertices
+    std::array<std::uint64_t, lengths> attempts{};  ///< of those, how many could be joined
+    std::array<double, lengths> squares{};  ///< sum over `attempts` of what arrived, squared
   };
 
   /// What one tile saw in one iteration: the cells that it met, in the order of meeting.
-  class Tally {
+  class Accumulator {
    public:
-    Tally() = default;
-    explicit Tally(std::size_t cells) : place_(cells, none) {}
+    Accumulator() = default;
+    explicit Accumulator(std::size_t cells) : place_(cells, none) {}
 
     void visit(std::uint32_t cell) { ++at(cell).visits; }
-    void asked(std::uint32_t cell, int s) { ++at(cell).asked[index(s)]; }
+    void attempt(std::uint32_t cell, int s) { ++at(cell).attempts[index(s)]; }
     /// `value`: per unit of the eye vertex' throughput, if the connection had been made for
     /// certain; it was made with probability `survival`.
-    void arrived(std::uint32_t cell, int s, double value, double survival) {
+    void add_contribution(std::uint32_t cell, int s, double value, double survival) {
       at(cell).squares[index(s)] += value * value / survival;
     }
     /// What the connections of a path gave to its pixel.
-    void gathered(double value) { gathered_ += value; }
-    void paths(std::uint64_t n) { paths_ += n; }
+    void add_path_sum(double value) { gathered_ += value; }
+    void add_paths(std::uint64_t n) { paths_ += n; }
     /// To be called when the tile is done: leaves what add() reads.
     void close() { place_ = {}; }
 
@@ -72,13 +72,13 @@ class CellStatistics {
 
   /// Probability with which to make a connection of an eye vertex in `cell`, of the given
   /// throughput, with a light path of `s` vertices: the root of the mean square of what such ones
-  /// gave, over `enough`, but at least least_survival. 1 if `enough` is 0, or while too few were
+  /// gave, over `enough`, but at least min_survival. 1 if `enough` is 0, or while too few were
   /// asked for.
   float survival(std::uint32_t cell, int s, double throughput, double enough) const {
     if (!(enough > 0) || expected_.empty()) return 1;
     const double expected = expected_[cell * std::size_t{lengths} + index(s)];
     const double p = throughput * expected / enough;
-    return p < 1 ? static_cast<float>(std::max(p, least_survival)) : 1.0F;
+    return p < 1 ? static_cast<float>(std::max(p, min_survival)) : 1.0F;
   }
   /// Mean of what all connections of a path give in tile `i`; 0 while it is not known.
   double mean(std::size_t i) const {
@@ -87,16 +87,16 @@ class CellStatistics {
                : 0;
   }
 
-  /// One iteration's tallies, one for each tile, in the tiles' order.
-  void add(std::span<const Tally> tallies);
+  /// One iteration's accumulators, one for each tile, in the tiles' order.
+  void add(std::span<const Accumulator> accumulators);
 
   void save(ByteWriter& out) const;
   /// Throws std::runtime_error if they are of other cells.
   void load(ByteReader& in);
 
  private:
-  static constexpr double least_survival = 0.05;
-  static constexpr std::uint64_t least_asked = 32;
+  static constexpr double min_survival = 0.05;
+  static constexpr std::uint64_t min_attempts = 32;
 
   static std::size_t index(int s) { return static_cast<std::size_t>(std::min(s, lengths) - 1); }
   void expect();

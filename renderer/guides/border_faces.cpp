@@ -31,15 +31,16 @@ std::uint64_t BorderFaceLight::index(std::uint32_t region, const VoxelFace& face
   return static_cast<std::uint64_t>(at - begin) - first(region);
 }
 
-void BorderFaceLight::learn(std::uint32_t region, const VoxelFace& face, const GuidingSample& what,
-                            Tally& tally) const {
+void BorderFaceLight::accumulate(std::uint32_t region, const VoxelFace& face,
+                                 const GuidingSample& what, Accumulator& accumulator) const {
   const double light = double(what.radiance) / double(what.pdf.value);
   if (!std::isfinite(light)) return;
-  tally.light[first(region) + index(region, face)] += light;
+  accumulator.light[first(region) + index(region, face)] += light;
 }
 
-void BorderFaceLight::end(std::span<const Tally* const> tallies, const ThreadPool& pool) {
-  for (const Tally* t : tallies) {
+void BorderFaceLight::update(std::span<const Accumulator* const> accumulators,
+                             const ThreadPool& pool) {
+  for (const Accumulator* t : accumulators) {
     for (const auto& [face, light] : t->light) light_[face] += light;
   }
   pool.for_each(static_cast<int>(tables_.size()),

@@ -50,12 +50,12 @@ class BorderFaceLight {
     return double(tables_[region].pmf(static_cast<std::uint32_t>(index(region, own))).value);
   }
 
-  struct Tally {
+  struct Accumulator {
     std::unordered_map<std::uint64_t, double> light;  // of the faces met, of all regions
   };
-  void learn(std::uint32_t region, const VoxelFace& face, const GuidingSample& what,
-             Tally& tally) const;
-  void end(std::span<const Tally* const> tallies, const ThreadPool& pool);
+  void accumulate(std::uint32_t region, const VoxelFace& face, const GuidingSample& what,
+                  Accumulator& accumulator) const;
+  void update(std::span<const Accumulator* const> accumulators, const ThreadPool& pool);
 
  private:
   std::uint64_t first(std::uint32_t region) const {

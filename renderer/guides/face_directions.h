@@ -88,18 +88,18 @@ class FaceDirections final : public GuidingDistribution {
   }
 
   bool learns() const override { return Faces::learns || tuning_.learns(); }
-  std::unique_ptr<Tally> tally() const override { return std::make_unique<Both>(); }
-  void learn(const GuidingSample& what, Tally& tally) const override {
+  std::unique_ptr<Accumulator> accumulator() const override { return std::make_unique<Both>(); }
+  void accumulate(const GuidingSample& what, Accumulator& accumulator) const override {
     const std::uint32_t voxel = what.v.site.index;
     if (voxel >= label_->count()) return;
-    auto& both = static_cast<Both&>(tally);
+    auto& both = static_cast<Both&>(accumulator);
     const std::uint32_t region = (*label_)[voxel];
     if (tuning_.wants(region)) {
       // As if the guide alone drew: also of regions that draw nothing at present.
       const float p = density(voxel, what.v.surface.x, what.wi, [this](std::uint32_t r) {
                         return faces_.mass(r);
                       }).value;
-      tuning_.learn(what, region, std::span(&p, 1), both.tuning);
+      tuning_.accumulate(what, region, std::span(&p, 1), both.tuning);
     }
     if constexpr (Faces::learns) {
       // The first face through which the ray leaves the region of the point learns what came from
@@ -110,29 +110,30 @@ class FaceDirections final : public GuidingDistribution {
       for_each_crossed_face(ray, faces_.box(region), [&](const CrossedFace& face) {
         if (label_at(face.from) != region || label_at(face.to) == region) return true;
         const auto index = static_cast<std::uint32_t>(label_->index(face.from));
-        faces_.learn(region, {index, face.side_of_from()}, what, both.faces);
+        faces_.accumulate(region, {index, face.side_of_from()}, what, both.faces);
         return false;
       });
     }
   }
-  void end(std::span<const std::unique_ptr<Tally>> tallies, const ThreadPool& pool) override {
-    std::vector<const typename Faces::Tally*> of_faces;
-    std::vector<const Tuning::Tally*> of_tuning;
-    for (const auto& t : tallies) {
+  void update(std::span<const std::unique_ptr<Accumulator>> accumulators,
+              const ThreadPool& pool) override {
+    std::vector<const typename Faces::Accumulator*> of_faces;
+    std::vector<const Tuning::Accumulator*> of_tuning;
+    for (const auto& t : accumulators) {
       of_faces.push_back(&static_cast<const Both&>(*t).faces);
       of_tuning.push_back(&static_cast<const Both&>(*t).tuning);
     }
-    faces_.end(of_faces, pool);
-    if (tuning_.learns()) tuning_.end(of_tuning);
+    faces_.update(of_faces, pool);
+    if (tuning_.learns()) tuning_.update(of_tuning);
   }
 
  private:
   RegionMixture mixture(const V3d& x, std::uint32_t voxel) const {
     return lattice_.mixture(x, (*label_)[voxel]);
   }
-  struct Both final : Tally {
-    typename Faces::Tally faces;
-    Tuning::Tally tuning;
+  struct Both final : Accumulator {
+    typename Faces::Accumulator faces;
+    Tuning::Accumulator tuning;
   };
 
   /// How often a region draws.

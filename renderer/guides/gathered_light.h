@@ -27,7 +27,7 @@ class GatheredLight {
 
   /// Tells `guide` of every edge that did not leave through a delta lobe.
   template <class Guide>
-  void teach(const Guide& guide, typename Guide::Tally& tally) const {
+  void record(const Guide& guide, typename Guide::Accumulator& accumulator) const {
     for (std::size_t i = 0; i < batch_.walkers.size(); ++i) {
       Rgb behind(0, 0, 0);
       for (int depth = length_[i]; depth > 1; --depth) {
@@ -39,7 +39,7 @@ class GatheredLight {
         const Rgb arrived(over(behind.x, next.throughput.x), over(behind.y, next.throughput.y),
                           over(behind.z, next.throughput.z));
         const Pdf<SolidAngle> p(next.p_fwd / to_area(Pdf<SolidAngle>(1.0F), v, wi, next));
-        guide.learn({v, wi, p, luminance(arrived), luminance(behind)}, tally);
+        guide.accumulate({v, wi, p, luminance(arrived), luminance(behind)}, accumulator);
       }
     }
   }

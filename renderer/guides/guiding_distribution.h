@@ -30,8 +30,8 @@ class GuidingDistribution {
  public:
   /// What the parts of an iteration learn apart and end() adds up in their order, so that the state
   /// is the same for any number of threads.
-  struct Tally {
-    virtual ~Tally() = default;
+  struct Accumulator {
+    virtual ~Accumulator() = default;
   };
 
   virtual ~GuidingDistribution() = default;
@@ -55,9 +55,9 @@ class GuidingDistribution {
 
   /// Whether learn() and end() want to be called in the coming iteration.
   virtual bool learns() const { return false; }
-  virtual std::unique_ptr<Tally> tally() const { return nullptr; }
-  virtual void learn(const GuidingSample&, Tally&) const {}
-  virtual void end(std::span<const std::unique_ptr<Tally>>, const ThreadPool&) {}
+  virtual std::unique_ptr<Accumulator> accumulator() const { return nullptr; }
+  virtual void accumulate(const GuidingSample&, Accumulator&) const {}
+  virtual void update(std::span<const std::unique_ptr<Accumulator>>, const ThreadPool&) {}
 };
 
 }  // namespace lacuna

@@ -23,12 +23,14 @@ class MixedGuide {
     return directions_->statistics();
   }
 
-  using Tally = std::unique_ptr<GuidingDistribution::Tally>;
+  using Accumulator = std::unique_ptr<GuidingDistribution::Accumulator>;
   bool learns() const { return directions_->learns(); }
-  Tally tally() const { return directions_->tally(); }
-  void learn(const GuidingSample& what, Tally& tally) const { directions_->learn(what, *tally); }
-  void end(std::span<const Tally> tallies, const ThreadPool& pool) {
-    directions_->end(tallies, pool);
+  Accumulator accumulator() const { return directions_->accumulator(); }
+  void accumulate(const GuidingSample& what, Accumulator& accumulator) const {
+    directions_->accumulate(what, *accumulator);
+  }
+  void update(std::span<const Accumulator> accumulators, const ThreadPool& pool) {
+    directions_->update(accumulators, pool);
   }
 
   /// Looks up what directions and densities at `v`, as seen from v.wp, need.

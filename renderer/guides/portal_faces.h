@@ -38,8 +38,8 @@ class PortalFaces {
     return (p.a == near && p.b == far) || (p.a == far && p.b == near) ? 1 : 0;
   }
 
-  struct Tally {};
-  static void end(std::span<const Tally* const>, const ThreadPool&) {}
+  struct Accumulator {};
+  static void update(std::span<const Accumulator* const>, const ThreadPool&) {}
 
  private:
   struct Exit {

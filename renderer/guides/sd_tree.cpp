@@ -13,7 +13,7 @@ constexpr std::size_t most_leaves = std::size_t{1} << 18;
 
 }  // namespace
 
-struct SdTree::Own final : Tally {
+struct SdTree::Own final : Accumulator {
   explicit Own(std::size_t leaves) : vertices(leaves, 0) {}
   std::vector<std::uint32_t> vertices;  // of each leaf
   std::vector<Seen> seen;
@@ -39,12 +39,12 @@ std::uint32_t SdTree::leaf_at(const V3f& x) const {
   return nodes_[node].leaf;
 }
 
-std::unique_ptr<GuidingDistribution::Tally> SdTree::tally() const {
+std::unique_ptr<GuidingDistribution::Accumulator> SdTree::accumulator() const {
   return std::make_unique<Own>(leaves_.size());
 }
 
-void SdTree::learn(const GuidingSample& what, Tally& tally) const {
-  auto& own = static_cast<Own&>(tally);
+void SdTree::accumulate(const GuidingSample& what, Accumulator& accumulator) const {
+  auto& own = static_cast<Own&>(accumulator);
   const std::uint32_t leaf = what.v.site.index;
   if (leaf >= leaves_.size()) return;
   ++own.vertices[leaf];
@@ -52,10 +52,11 @@ void SdTree::learn(const GuidingSample& what, Tally& tally) const {
   if (energy > 0 && std::isfinite(energy)) own.seen.push_back({leaf, what.wi, energy});
 }
 
-void SdTree::end(std::span<const std::unique_ptr<Tally>> tallies, const ThreadPool& pool) {
-  // By leaf, each in the order of the tallies: leaves can then learn side by side.
+void SdTree::update(std::span<const std::unique_ptr<Accumulator>> accumulators,
+                    const ThreadPool& pool) {
+  // By leaf, each in the order of the accumulators: leaves can then learn side by side.
   std::vector<std::size_t> first(leaves_.size() + 1, 0);
-  for (const auto& t : tallies) {
+  for (const auto& t : accumulators) {
     const auto& own = static_cast<const Own&>(*t);
     for (std::size_t l = 0; l < leaves_.size(); ++l) leaves_[l].vertices += own.vertices[l];
     for (const Seen& s : own.seen) ++first[s.leaf + 1];
@@ -63,7 +64,7 @@ void SdTree::end(std::span<const std::unique_ptr<Tally>> tallies, const ThreadPo
   for (std::size_t l = 0; l < leaves_.size(); ++l) first[l + 1] += first[l];
   std::vector<const Seen*> sorted(first.back());
   std::vector<std::size_t> next(first.begin(), first.end() - 1);
-  for (const auto& t : tallies) {
+  for (const auto& t : accumulators) {
     for (const Seen& s : static_cast<const Own&>(*t).seen) sorted[next[s.leaf]++] = &s;
   }
   pool.for_each(static_cast<int>(leaves_.size()), [&](int i) {

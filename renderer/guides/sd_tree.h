@@ -35,9 +35,10 @@ class SdTree final : public GuidingDistribution {
   }
 
   bool learns() const override { return true; }
-  std::unique_ptr<Tally> tally() const override;
-  void learn(const GuidingSample& what, Tally& tally) const override;
-  void end(std::span<const std::unique_ptr<Tally>> tallies, const ThreadPool& pool) override;
+  std::unique_ptr<Accumulator> accumulator() const override;
+  void accumulate(const GuidingSample& what, Accumulator& accumulator) const override;
+  void update(std::span<const std::unique_ptr<Accumulator>> accumulators,
+              const ThreadPool& pool) override;
 
  private:
   struct Node {

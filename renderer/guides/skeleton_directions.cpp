@@ -50,19 +50,19 @@ void SkeletonDirections::prepare(const PrepareContext& context) {
   });
 }
 
-void SkeletonDirections::learn(const GuidingSample& what, Tally& tally) const {
+void SkeletonDirections::accumulate(const GuidingSample& what, Accumulator& accumulator) const {
   const GuidingCell& site = what.v.site;
   // A node that draws nothing from its lobes at present goes on learning.
   if (site.index >= lobes_.size() || lobes_[site.index].empty()) return;
   if (!tuning_.wants(site.index)) return;
   const LobeSet& lobes = lobes_[site.index];
   const V3f& x = what.v.surface.x;
-  auto& own = static_cast<Own&>(tally).tuning;
+  auto& own = static_cast<Own&>(accumulator).tuning;
   if (settings_.strength.is_auto()) {
-    tuning_.learn(what, site.index, lobes.pdf_of_powers(x, what.wi), own);
+    tuning_.accumulate(what, site.index, lobes.pdf_of_powers(x, what.wi), own);
   } else {
     const float density = lobes.pdf(x, what.wi, tuning_.strength(site.index)).value;
-    tuning_.learn(what, site.index, std::span(&density, 1), own);
+    tuning_.accumulate(what, site.index, std::span(&density, 1), own);
   }
 }
 

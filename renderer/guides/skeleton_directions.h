@@ -33,17 +33,18 @@ class SkeletonDirections final : public GuidingDistribution {
   }
 
   bool learns() const override { return tuning_.learns(); }
-  std::unique_ptr<Tally> tally() const override { return std::make_unique<Own>(); }
-  void learn(const GuidingSample& what, Tally& tally) const override;
-  void end(std::span<const std::unique_ptr<Tally>> tallies, const ThreadPool&) override {
-    std::vector<const Tuning::Tally*> own;
-    for (const auto& t : tallies) own.push_back(&static_cast<const Own&>(*t).tuning);
-    tuning_.end(own);
+  std::unique_ptr<Accumulator> accumulator() const override { return std::make_unique<Own>(); }
+  void accumulate(const GuidingSample& what, Accumulator& accumulator) const override;
+  void update(std::span<const std::unique_ptr<Accumulator>> accumulators,
+              const ThreadPool&) override {
+    std::vector<const Tuning::Accumulator*> own;
+    for (const auto& t : accumulators) own.push_back(&static_cast<const Own&>(*t).tuning);
+    tuning_.update(own);
   }
 
  private:
-  struct Own final : Tally {
-    Tuning::Tally tuning;
+  struct Own final : Accumulator {
+    Tuning::Accumulator tuning;
   };
 
   SkeletonGuideSettings settings_;

@@ -36,14 +36,14 @@ Tuning::Tuning(std::vector<float> strengths, const AutoNumber& probability, std:
   if (learns()) moments_.assign(places * stride(), 0.0);
 }
 
-void Tuning::learn(const GuidingSample& what, std::uint32_t place, std::span<const float> densities,
-                   Tally& tally) const {
+void Tuning::accumulate(const GuidingSample& what, std::uint32_t place,
+                        std::span<const float> densities, Accumulator& accumulator) const {
   const Vertex& v = what.v;
   const double energy =
       double(what.pixel_contribution) * double(what.pixel_contribution) * double(what.pdf.value);
   if (!(energy > 0) || !std::isfinite(energy)) return;
   const float bsdf = v.bsdf->pdf(v.wp, what.wi, Transport::radiance).value;
-  std::vector<double>& moments = tally.moments[place];
+  std::vector<double>& moments = accumulator.moments[place];
   moments.resize(stride());
   std::size_t i = 0;
   for (const float density : densities) {
@@ -55,9 +55,9 @@ void Tuning::learn(const GuidingSample& what, std::uint32_t place, std::span<con
   moments[i + 1] += 1;
 }
 
-void Tuning::end(std::span<const Tally* const> tallies) {
+void Tuning::update(std::span<const Accumulator* const> accumulators) {
   std::vector<char> met(chosen_.size(), 0);
-  for (const Tally* t : tallies) {
+  for (const Accumulator* t : accumulators) {
     for (const auto& [place, moments] : t->moments) {
       met[place] = 1;
       double* const all = moments_.data() + place * stride();

@@ -27,16 +27,16 @@ class Tuning {
   float strength(std::size_t place) const { return strengths_[chosen_[place] / count()]; }
   float probability(std::size_t place) const { return probabilities_[chosen_[place] % count()]; }
 
-  struct Tally {
+  struct Accumulator {
     std::unordered_map<std::uint32_t, std::vector<double>> moments;  // of the places met, as below
   };
   /// Places that enough paths have told of learn nothing more: learning costs a density each.
   bool wants(std::uint32_t place) const { return learns() && paths(place) < enough_paths; }
   /// Only where it wants(). `densities`: with which the guide alone would draw what.wi, for each of
   /// the strengths.
-  void learn(const GuidingSample& what, std::uint32_t place, std::span<const float> densities,
-             Tally& tally) const;
-  void end(std::span<const Tally* const> tallies);
+  void accumulate(const GuidingSample& what, std::uint32_t place, std::span<const float> densities,
+                  Accumulator& accumulator) const;
+  void update(std::span<const Accumulator* const> accumulators);
 
   /// Nothing where nothing is learned.
   void save(ByteWriter& out) const {

@@ -87,7 +87,7 @@ class Bdpt : public GuidedIntegrator<Guide> {
   /// guide of it.
   template <class Arrived>
   void finish(const IterationContext& context, ShadowQueue<Contribution>& queue, EyePaths& batch,
-              Image& image, Counters& counters, typename Guide::Tally& tally,
+              Image& image, Counters& counters, typename Guide::Accumulator& accumulator,
               Arrived&& arrived) const {
     for (std::size_t k = 0; k < batch.walkers.size(); ++k) {
       accumulate(image.pixels[batch.pixels[k]], batch.radiance[k], counters);
@@ -99,7 +99,7 @@ class Bdpt : public GuidedIntegrator<Guide> {
       layers_.strategy(context.layers, c.s, c.t, c.pixel, c.value, c.weight);
       layers_.distribution(context.layers, c.distribution, c.pixel, c.value * c.weight);
     });
-    if (guide_.learns()) batch.gathered.teach(guide_, tally);
+    if (guide_.learns()) batch.gathered.record(guide_, accumulator);
   }
   /// start_paths() of the tile, and their number counted.
   void start(const IterationContext& context, const Image& image, const Tile& tile, int first,
@@ -109,16 +109,16 @@ class Bdpt : public GuidedIntegrator<Guide> {
     if (guide_.learns()) batch.gathered.clear();
   }
   /// One for each tile.
-  using Tallies = std::vector<typename Guide::Tally>;
-  Tallies start_tallies(const Tiling& tiling) const {
-    Tallies tallies(static_cast<std::size_t>(tiling.tiles()));
+  using Accumulators = std::vector<typename Guide::Accumulator>;
+  Accumulators start_accumulators(const Tiling& tiling) const {
+    Accumulators accumulators(static_cast<std::size_t>(tiling.tiles()));
     if (guide_.learns()) {
-      for (auto& t : tallies) t = guide_.tally();
+      for (auto& t : accumulators) t = guide_.accumulator();
     }
-    return tallies;
+    return accumulators;
   }
-  void end_tallies(const IterationContext& context, const Tallies& tallies) {
-    if (guide_.learns()) guide_.end(tallies, context.pool);
+  void update_guide(const IterationContext& context, const Accumulators& accumulators) {
+    if (guide_.learns()) guide_.update(accumulators, context.pool);
   }
   /// What for_each_splatting_part() hands on.
   auto splat_layers(const IterationContext& context) const {
@@ -166,7 +166,7 @@ class PairedBdpt final : public Bdpt<Guide> {
                               lit ? static_cast<double>(Base::pixels(image)) : 0.0};
     const LightPathSetting setting = Base::light_setting(context, counts);
     const Tiling tiling(image);
-    typename Base::Tallies tallies = Base::start_tallies(tiling);
+    typename Base::Accumulators accumulators = Base::start_accumulators(tiling);
     const auto work = [&](int i, Counters& counters, Splats& splats) {
       Pairs pairs{EyePaths(settings_.max_depth), LightBatch<Guide>(setting, guide_)};
       Walk<Guide> walk(context.scene, guide_, Base::eye_limits(counts), counters);
@@ -177,12 +177,12 @@ class PairedBdpt final : public Bdpt<Guide> {
         pairs.light.splat(pairs.eye.walkers.size(), counters, splats);
         walk_eye(context, counts, walk, pairs);
         Base::finish(context, pairs.queue, pairs.eye, image, counters,
-                     tallies[static_cast<std::size_t>(i)], [](const Contribution&) {});
+                     accumulators[static_cast<std::size_t>(i)], [](const Contribution&) {});
       }
     };
     const Counters sum =
         for_each_splatting_part(context, tiling.tiles(), image, work, Base::splat_layers(context));
-    Base::end_tallies(context, tallies);
+    Base::update_guide(context, accumulators);
     return sum;
   }
 
@@ -310,8 +310,8 @@ class ResampledBdpt final : public Bdpt<Guide> {
   Counters eye_pass(const IterationContext& context, const SampleCounts& counts,
                     const LightVertices& lights, Image& image) {
     const Tiling tiling(image);
-    std::vector<CellStatistics::Tally> tallies(static_cast<std::size_t>(tiling.tiles()));
-    typename Base::Tallies guide_tallies = Base::start_tallies(tiling);
+    std::vector<CellStatistics::Accumulator> accumulators(static_cast<std::size_t>(tiling.tiles()));
+    typename Base::Accumulators guide_accumulators = Base::start_accumulators(tiling);
     const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
       const auto index = static_cast<std::size_t>(i);
       EyePart part{counts,
@@ -319,7 +319,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
                    connections_.resampling().roulette * seen_.mean(index),
                    EyePaths(settings_.max_depth),
                    {},
-                   CellStatistics::Tally(seen_.cells())};
+                   CellStatistics::Accumulator(seen_.cells())};
       Walk<Guide> walk(context.scene, guide_, Base::eye_limits(counts), counters);
       const Tile tile = tiling.tile(i);
       for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
@@ -330,15 +330,15 @@ class ResampledBdpt final : public Bdpt<Guide> {
               Base::gather_hit(context, counts, part.batch, k, depth);
               join_lights(part, k, depth);
             });
-        Base::finish(context, part.queue, part.batch, image, counters, guide_tallies[index],
-                     [&](const Contribution& c) { arrived(c, part.tally); });
+        Base::finish(context, part.queue, part.batch, image, counters, guide_accumulators[index],
+                     [&](const Contribution& c) { arrived(c, part.accumulator); });
       }
-      part.tally.paths(static_cast<std::uint64_t>(tile.pixels()));
-      part.tally.close();
-      tallies[index] = std::move(part.tally);
+      part.accumulator.add_paths(static_cast<std::uint64_t>(tile.pixels()));
+      part.accumulator.close();
+      accumulators[index] = std::move(part.accumulator);
     });
-    seen_.add(tallies);
-    Base::end_tallies(context, guide_tallies);
+    seen_.add(accumulators);
+    Base::update_guide(context, guide_accumulators);
     return sum;
   }
 
@@ -349,16 +349,16 @@ class ResampledBdpt final : public Bdpt<Guide> {
     double enough;  // CellStatistics::survival()
     EyePaths batch;
     ShadowQueue<Contribution> queue;
-    CellStatistics::Tally tally;
+    CellStatistics::Accumulator accumulator;
   };
 
-  static void arrived(const Contribution& c, CellStatistics::Tally& tally) {
+  static void arrived(const Contribution& c, CellStatistics::Accumulator& accumulator) {
     const double value = double(luminance(c.value * c.weight));
     if (!std::isfinite(value)) return;
-    tally.gathered(value);
+    accumulator.add_path_sum(value);
     if (c.throughput > 0) {
-      tally.arrived(c.cell, c.s, value * double(c.survival) / double(c.throughput),
-                    double(c.survival));
+      accumulator.add_contribution(c.cell, c.s, value * double(c.survival) / double(c.throughput),
+                                   double(c.survival));
     }
   }
 
@@ -369,10 +369,10 @@ class ResampledBdpt final : public Bdpt<Guide> {
     Rng& rng = part.batch.walkers[k].rng;
     const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
     const auto place = connections_.find(v, depth, rng);
-    part.tally.visit(place.cell);
+    part.accumulator.visit(place.cell);
     const float throughput = luminance(v.throughput);
     const auto survival = [&](int s) {
-      part.tally.asked(place.cell, s);
+      part.accumulator.attempt(place.cell, s);
       const float p = seen_.survival(place.cell, s, double(throughput), part.enough);
       return p >= 1 || rng.next() < p ? p : 0.0F;
     };

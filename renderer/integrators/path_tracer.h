@@ -23,11 +23,11 @@ class PathTracer final : public GuidedIntegrator<Guide> {
 
   Counters iterate(const IterationContext& context, Image& image) override {
     const Tiling tiling(image);
-    std::vector<typename Guide::Tally> tallies(static_cast<std::size_t>(tiling.tiles()));
+    std::vector<typename Guide::Accumulator> accumulators(static_cast<std::size_t>(tiling.tiles()));
     const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
-      render(context, image, tiling.tile(i), counters, tallies[static_cast<std::size_t>(i)]);
+      render(context, image, tiling.tile(i), counters, accumulators[static_cast<std::size_t>(i)]);
     });
-    if (guide_.learns()) guide_.end(tallies, context.pool);
+    if (guide_.learns()) guide_.update(accumulators, context.pool);
     return sum;
   }
 
@@ -47,9 +47,9 @@ class PathTracer final : public GuidedIntegrator<Guide> {
   };
 
   void render(const IterationContext& context, Image& image, const Tile& tile, Counters& counters,
-              typename Guide::Tally& tally) const {
+              typename Guide::Accumulator& accumulator) const {
     const bool learns = guide_.learns();
-    if (learns) tally = guide_.tally();
+    if (learns) accumulator = guide_.accumulator();
     Batch batch(settings_.max_depth);
     Walk walk(context.scene, guide_,
               {.max_depth = settings_.max_depth, .roulette_depth = settings_.roulette_depth},
@@ -70,7 +70,7 @@ class PathTracer final : public GuidedIntegrator<Guide> {
       }
       if (learns) {
         flush();
-        batch.gathered.teach(guide_, tally);
+        batch.gathered.record(guide_, accumulator);
       }
     }
     flush();

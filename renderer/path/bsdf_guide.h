@@ -7,11 +7,11 @@ namespace lacuna {
 /// guide: bsdf. The BSDF's own directions.
 struct BsdfGuide : StrategyBase {
   /// There is nothing to learn.
-  struct Tally {};
+  struct Accumulator {};
   static constexpr bool learns() { return false; }
-  static Tally tally() { return {}; }
-  static void learn(const GuidingSample&, Tally&) {}
-  static void end(std::span<const Tally>, const ThreadPool&) {}
+  static Accumulator accumulator() { return {}; }
+  static void accumulate(const GuidingSample&, Accumulator&) {}
+  static void update(std::span<const Accumulator>, const ThreadPool&) {}
 
   static void arrive(Vertex&) {}
   static std::optional<BsdfSample> sample(const Vertex& v, Rng& rng, Transport transport) {

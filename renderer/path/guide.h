@@ -21,7 +21,8 @@ namespace lacuna {
 ///   a walk that came from unit `wo`, for any `wo` and `wi`: weights ask it for the reverse walk,
 ///   too. Over the sphere it integrates to 1 less the probability of failure. Where the BSDF is not
 ///   zero it is above 0.
-/// - learns(), tally(), learn(), end(): parts of an iteration learn apart into tallies, which end()
+/// - learns(), accumulator(), learn(), end(): parts of an iteration learn apart into accumulators,
+/// which end()
 ///   adds up in the order of the parts, so that the state is the same bits for any number of
 ///   threads.
 ///
@@ -29,15 +30,15 @@ namespace lacuna {
 template <class G>
 concept Guide = Strategy<G> &&
     requires(G g, const G& k, Vertex& v, const V3f& w, Rng& rng, Transport transport,
-             const GuidingSample& sample, typename G::Tally& tally,
-             std::span<const typename G::Tally> tallies, const ThreadPool& pool) {
+             const GuidingSample& sample, typename G::Accumulator& accumulator,
+             std::span<const typename G::Accumulator> accumulators, const ThreadPool& pool) {
   k.arrive(v);
   { k.sample(v, rng, transport) } -> std::same_as<std::optional<BsdfSample>>;
   { k.pdf(v, w, w, transport) } -> std::same_as<Pdf<SolidAngle>>;
   { k.learns() } -> std::same_as<bool>;
-  { k.tally() } -> std::same_as<typename G::Tally>;
-  k.learn(sample, tally);
-  g.end(tallies, pool);
+  { k.accumulator() } -> std::same_as<typename G::Accumulator>;
+  k.accumulate(sample, accumulator);
+  g.update(accumulators, pool);
 };
 
 }  // namespace lacuna
