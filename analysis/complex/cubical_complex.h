@@ -65,11 +65,11 @@ class CubicalComplex {
   bool operator==(const CubicalComplex& o) const;
 
  private:
-  struct Place {
+  struct BitAddress {
     std::size_t block;
     int lane, bit;
   };
-  Place place(Imath::V3i cell) const {
+  BitAddress address_of(Imath::V3i cell) const {
     return {index((cell.x >> 3) + 1, (cell.y >> 3) + 1, (cell.z >> 3) + 1), cell.z & 7,
             (cell.y & 7) * 8 + (cell.x & 7)};
   }

@@ -10,21 +10,21 @@ void CellStatistics::add(std::span<const Accumulator> accumulators) {
   tiles_.resize(std::max(tiles_.size(), accumulators.size()));
   for (std::size_t i = 0; i < accumulators.size(); ++i) {
     const Accumulator& t = accumulators[i];
-    for (const Accumulator::Met& met : t.met_) {
-      Cell& sum = cells_[met.cell];
-      sum.visits += met.sums.visits;
+    for (const Accumulator::Visited& visited : t.visited_) {
+      Cell& sum = cells_[visited.cell];
+      sum.visits += visited.sums.visits;
       for (std::size_t k = 0; k < lengths; ++k) {
-        sum.attempts[k] += met.sums.attempts[k];
-        sum.squares[k] += met.sums.squares[k];
+        sum.attempts[k] += visited.sums.attempts[k];
+        sum.squares[k] += visited.sums.squares[k];
       }
     }
     tiles_[i].gathered += t.gathered_;
     tiles_[i].paths += t.paths_;
   }
-  expect();
+  update_expected();
 }
 
-void CellStatistics::expect() {
+void CellStatistics::update_expected() {
   expected_.assign(cells_.size() * lengths, std::numeric_limits<double>::infinity());
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     for (std::size_t k = 0; k < lengths; ++k) {
@@ -47,7 +47,7 @@ void CellStatistics::load(ByteReader& in) {
   }
   cells_ = std::move(cells);
   tiles_ = in.get_vector<TileSums>();
-  expect();
+  update_expected();
 }
 
 }  // namespace lacuna

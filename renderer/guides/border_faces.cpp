@@ -32,8 +32,8 @@ std::uint64_t BorderFaceLight::index(std::uint32_t region, const VoxelFace& face
 }
 
 void BorderFaceLight::accumulate(std::uint32_t region, const VoxelFace& face,
-                                 const GuidingSample& what, Accumulator& accumulator) const {
-  const double light = double(what.radiance) / double(what.pdf.value);
+                                 const GuidingSample& sample, Accumulator& accumulator) const {
+  const double light = double(sample.radiance) / double(sample.pdf.value);
   if (!std::isfinite(light)) return;
   accumulator.light[first(region) + index(region, face)] += light;
 }

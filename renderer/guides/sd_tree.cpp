@@ -13,10 +13,10 @@ constexpr std::size_t most_leaves = std::size_t{1} << 18;
 
 }  // namespace
 
-struct SdTree::Own final : Accumulator {
-  explicit Own(std::size_t leaves) : vertices(leaves, 0) {}
+struct SdTree::SampleAccumulator final : Accumulator {
+  explicit SampleAccumulator(std::size_t leaves) : vertices(leaves, 0) {}
   std::vector<std::uint32_t> vertices;  // of each leaf
-  std::vector<Seen> seen;
+  std::vector<EnergySample> samples;
 };
 
 void SdTree::prepare(const PrepareContext& context) {
@@ -40,37 +40,38 @@ std::uint32_t SdTree::leaf_at(const V3f& x) const {
 }
 
 std::unique_ptr<GuidingDistribution::Accumulator> SdTree::accumulator() const {
-  return std::make_unique<Own>(leaves_.size());
+  return std::make_unique<SampleAccumulator>(leaves_.size());
 }
 
-void SdTree::accumulate(const GuidingSample& what, Accumulator& accumulator) const {
-  auto& own = static_cast<Own&>(accumulator);
-  const std::uint32_t leaf = what.v.site.index;
+void SdTree::accumulate(const GuidingSample& sample, Accumulator& accumulator) const {
+  auto& own = static_cast<SampleAccumulator&>(accumulator);
+  const std::uint32_t leaf = sample.v.guiding_cell.index;
   if (leaf >= leaves_.size()) return;
   ++own.vertices[leaf];
-  const float energy = what.radiance / what.pdf.value;
-  if (energy > 0 && std::isfinite(energy)) own.seen.push_back({leaf, what.wi, energy});
+  const float energy = sample.radiance / sample.pdf.value;
+  if (energy > 0 && std::isfinite(energy)) own.samples.push_back({leaf, sample.wi, energy});
 }
 
 void SdTree::update(std::span<const std::unique_ptr<Accumulator>> accumulators,
                     const ThreadPool& pool) {
-  // By leaf, each in the order of the accumulators: leaves can then learn side by side.
+  // By leaf, each in the order of the accumulators: leaves can then be filled in parallel.
   std::vector<std::size_t> first(leaves_.size() + 1, 0);
   for (const auto& t : accumulators) {
-    const auto& own = static_cast<const Own&>(*t);
+    const auto& own = static_cast<const SampleAccumulator&>(*t);
     for (std::size_t l = 0; l < leaves_.size(); ++l) leaves_[l].vertices += own.vertices[l];
-    for (const Seen& s : own.seen) ++first[s.leaf + 1];
+    for (const EnergySample& s : own.samples) ++first[s.leaf + 1];
   }
   for (std::size_t l = 0; l < leaves_.size(); ++l) first[l + 1] += first[l];
-  std::vector<const Seen*> sorted(first.back());
+  std::vector<const EnergySample*> sorted(first.back());
   std::vector<std::size_t> next(first.begin(), first.end() - 1);
   for (const auto& t : accumulators) {
-    for (const Seen& s : static_cast<const Own&>(*t).seen) sorted[next[s.leaf]++] = &s;
+    for (const EnergySample& s : static_cast<const SampleAccumulator&>(*t).samples)
+      sorted[next[s.leaf]++] = &s;
   }
   pool.for_each(static_cast<int>(leaves_.size()), [&](int i) {
     const auto l = static_cast<std::size_t>(i);
     for (std::size_t k = first[l]; k < first[l + 1]; ++k) {
-      leaves_[l].learning.add(sorted[k]->w, double(sorted[k]->energy), true);
+      leaves_[l].building.add(sorted[k]->w, double(sorted[k]->energy), true);
     }
   });
   if (++done_ == std::uint64_t{1} << round_) next_round(pool);
@@ -83,10 +84,10 @@ void SdTree::next_round(const ThreadPool& pool) {
   divide(0, 0, most);
   pool.for_each(static_cast<int>(leaves_.size()), [&](int i) {
     Leaf& leaf = leaves_[static_cast<std::size_t>(i)];
-    leaf.learning.build();
+    leaf.building.build();
     // Where nothing was found this round, what was known stays.
-    if (!leaf.learning.empty()) leaf.drawn = std::move(leaf.learning);
-    leaf.learning = leaf.drawn.refined(leaf_share, deepest_directions);
+    if (!leaf.building.empty()) leaf.sampling = std::move(leaf.building);
+    leaf.building = leaf.sampling.refined(leaf_share, deepest_directions);
     leaf.vertices = 0;
   });
   ++round_;
@@ -117,8 +118,8 @@ void SdTree::save(ByteWriter& out) const {
   out.put(nodes_);
   out.put(static_cast<std::uint64_t>(leaves_.size()));
   for (const Leaf& l : leaves_) {
-    l.drawn.save(out);
-    l.learning.save(out);
+    l.sampling.save(out);
+    l.building.save(out);
     out.put(l.vertices);
   }
 }
@@ -128,8 +129,8 @@ void SdTree::load(ByteReader& in) {
   std::vector<Node> nodes = in.get_vector<Node>();
   std::vector<Leaf> leaves(in.get_length(sizeof(std::uint64_t)));
   for (Leaf& l : leaves) {
-    l.drawn.load(in);
-    l.learning.load(in);
+    l.sampling.load(in);
+    l.building.load(in);
     l.vertices = in.get<double>();
   }
   bool good = round < 63 && done < std::uint64_t{1} << round && !nodes.empty();
@@ -149,7 +150,7 @@ void SdTree::load(ByteReader& in) {
 
 std::vector<std::pair<std::string, double>> SdTree::statistics() const {
   double nodes = 0;
-  for (const Leaf& l : leaves_) nodes += static_cast<double>(l.drawn.nodes());
+  for (const Leaf& l : leaves_) nodes += static_cast<double>(l.sampling.nodes());
   return {{"sd_leaves", static_cast<double>(leaves_.size())},
           {"sd_direction_nodes", nodes},
           {"sd_rounds", static_cast<double>(round_)}};

@@ -18,7 +18,7 @@ namespace {
 /// What a strategy gives to a pixel of the tile, if nothing lies between.
 struct Contribution {
   std::uint32_t pixel = 0;
-  std::uint8_t walker = 0;  ///< of the eye's path, in its batch
+  std::uint8_t path = 0;  ///< of the eye's path, in its batch
   std::uint8_t distribution = 0;
   float survival = 1;          ///< probability with which it was made; `value` is divided by it
   float throughput = 0;        ///< luminance of the eye vertex'
@@ -80,7 +80,7 @@ class Bdpt : public GuidedIntegrator<Guide> {
   }
   /// What is known of a contribution to path `i` of `batch`, before it is joined to anything.
   static Contribution contribution(const EyePaths& batch, std::size_t i) {
-    return {.pixel = batch.pixels[i], .walker = static_cast<std::uint8_t>(i)};
+    return {.pixel = batch.pixels[i], .path = static_cast<std::uint8_t>(i)};
   }
 
   /// Adds what arrived for the paths of `batch`, hands it to `arrived(contribution)`, and tells the
@@ -89,13 +89,13 @@ class Bdpt : public GuidedIntegrator<Guide> {
   void finish(const IterationContext& context, ShadowQueue<Contribution>& queue, EyePaths& batch,
               Image& image, Counters& counters, typename Guide::Accumulator& accumulator,
               Arrived&& arrived) const {
-    for (std::size_t k = 0; k < batch.walkers.size(); ++k) {
+    for (std::size_t k = 0; k < batch.states.size(); ++k) {
       accumulate(image.pixels[batch.pixels[k]], batch.radiance[k], counters);
     }
     queue.flush(context.scene.rays(), counters, [&](const Contribution& c) {
       accumulate(image.pixels[c.pixel], c.value * c.weight, counters);
       arrived(c);
-      if (guide_.learns()) batch.gathered.add(c.walker, c.t - 1, c.value * c.weight);
+      if (guide_.learns()) batch.gathered.add(c.path, c.t - 1, c.value * c.weight);
       layers_.strategy(context.layers, c.s, c.t, c.pixel, c.value, c.weight);
       layers_.distribution(context.layers, c.distribution, c.pixel, c.value * c.weight);
     });
@@ -105,7 +105,7 @@ class Bdpt : public GuidedIntegrator<Guide> {
   void start(const IterationContext& context, const Image& image, const Tile& tile, int first,
              EyePaths& batch, Counters& counters) const {
     start_paths(context, image, tile, first, batch);
-    counters.samples += batch.walkers.size();
+    counters.samples += batch.states.size();
     if (guide_.learns()) batch.gathered.clear();
   }
   /// One for each tile.
@@ -174,7 +174,7 @@ class PairedBdpt final : public Bdpt<Guide> {
       for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
         Base::start(context, image, tile, first, pairs.eye, counters);
         walk_light(context, pairs, counters);
-        pairs.light.splat(pairs.eye.walkers.size(), counters, splats);
+        pairs.light.splat(pairs.eye.states.size(), counters, splats);
         walk_eye(context, counts, walk, pairs);
         Base::finish(context, pairs.queue, pairs.eye, image, counters,
                      accumulators[static_cast<std::size_t>(i)], [](const Contribution&) {});
@@ -197,7 +197,7 @@ class PairedBdpt final : public Bdpt<Guide> {
 
   static void walk_light(const IterationContext& context, Pairs& pairs, Counters& counters) {
     pairs.rngs.clear();
-    for (std::size_t k = 0; k < pairs.eye.walkers.size(); ++k) {
+    for (std::size_t k = 0; k < pairs.eye.states.size(); ++k) {
       pairs.rngs.emplace_back(context.seed, context.iteration, pairs.eye.pixels[k],
                               Rng::Purpose::light_path);
     }
@@ -209,16 +209,16 @@ class PairedBdpt final : public Bdpt<Guide> {
     const EmitterSet& lights = context.scene.emitters();
     const auto choose = [&](std::size_t i, int depth) {
       if (counts.nee > 0 && depth < settings_.max_depth) {
-        pairs.chosen[i] = lights.choose(pairs.eye.walkers[i].rng);
+        pairs.chosen[i] = lights.choose(pairs.eye.states[i].rng);
       }
     };
-    walk.trace_paths(pairs.eye.walkers, choose, [&](std::size_t i, int depth) {
+    walk.trace_paths(pairs.eye.states, choose, [&](std::size_t i, int depth) {
       Base::gather_hit(context, counts, pairs.eye, i, depth);
       const Vertex& v = pairs.eye.vertex(i, depth);
       const int longest = Base::longest_light_path(v, depth);
       if (longest == 0 || counts.nee == 0) return;
       const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
-      const EmitterPoint e = lights.sample(pairs.chosen[i], pairs.eye.walkers[i].rng);
+      const EmitterPoint e = lights.sample(pairs.chosen[i], pairs.eye.states[i].rng);
       const Contribution known = Base::contribution(pairs.eye, i);
       Base::join(eye, EmitterEndpoint{e}, 1, counts, known, pairs.queue);
       for (int s = 2; s <= std::min(longest, pairs.light.length(i)); ++s) {
@@ -255,23 +255,23 @@ class ResampledBdpt final : public Bdpt<Guide> {
   void prepare(const PrepareContext& context) override {
     Base::prepare(context);
     connections_.prepare(context);
-    seen_.resize(connections_.cells());
+    cell_statistics_.resize(connections_.cells());
   }
   std::vector<std::pair<std::string, double>> statistics() const override {
-    auto told = connections_.statistics();
-    for (auto& s : Base::statistics()) told.push_back(std::move(s));
-    told.emplace_back("light_pass_cpu_seconds", seconds_.light);
-    told.emplace_back("distributions_cpu_seconds", seconds_.distributions);
-    told.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
-    return told;
+    auto stats = connections_.statistics();
+    for (auto& s : Base::statistics()) stats.push_back(std::move(s));
+    stats.emplace_back("light_pass_cpu_seconds", seconds_.light);
+    stats.emplace_back("distributions_cpu_seconds", seconds_.distributions);
+    stats.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
+    return stats;
   }
   void save(ByteWriter& out) const override {
-    seen_.save(out);
+    cell_statistics_.save(out);
     connections_.save(out);
     Base::save(out);
   }
   void load(ByteReader& in) override {
-    seen_.load(in);
+    cell_statistics_.load(in);
     connections_.load(in);
     Base::load(in);
   }
@@ -282,10 +282,10 @@ class ResampledBdpt final : public Bdpt<Guide> {
     const double splatted = connections_.resampling().splat_paths * double(Base::pixels(image));
     const auto paths = std::max(static_cast<std::int64_t>(std::ceil(splatted)),
                                 static_cast<std::int64_t>(resampled));
-    const double asked = connections_.resampling().count_as;
-    const double count = asked > 0 ? asked : static_cast<double>(resampled);
+    const double count_as = connections_.resampling().count_as;
+    const double count = count_as > 0 ? count_as : static_cast<double>(resampled);
     const SampleCounts counts =
-        lit ? SampleCounts{1, asked > 0 ? 1.0 : count, count, static_cast<double>(paths)}
+        lit ? SampleCounts{1, count_as > 0 ? 1.0 : count, count, static_cast<double>(paths)}
             : SampleCounts{};
 
     PassSeconds pass;
@@ -299,7 +299,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
         Base::splat_layers(context));
     lights.arrange();
     pass.end(seconds_.light);
-    connections_.begin(context, lights, seen_, counters);
+    connections_.begin(context, lights, cell_statistics_, counters);
     pass.end(seconds_.distributions);
     counters += eye_pass(context, counts, lights, image);
     pass.end(seconds_.eye);
@@ -316,16 +316,16 @@ class ResampledBdpt final : public Bdpt<Guide> {
       const auto index = static_cast<std::size_t>(i);
       EyePart part{counts,
                    lights,
-                   connections_.resampling().roulette * seen_.mean(index),
+                   connections_.resampling().roulette * cell_statistics_.mean(index),
                    EyePaths(settings_.max_depth),
                    {},
-                   CellStatistics::Accumulator(seen_.cells())};
+                   CellStatistics::Accumulator(cell_statistics_.cells())};
       Walk<Guide> walk(context.scene, guide_, Base::eye_limits(counts), counters);
       const Tile tile = tiling.tile(i);
       for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
         Base::start(context, image, tile, first, part.batch, counters);
         walk.trace_paths(
-            part.batch.walkers, [](std::size_t, int) {},
+            part.batch.states, [](std::size_t, int) {},
             [&](std::size_t k, int depth) {
               Base::gather_hit(context, counts, part.batch, k, depth);
               join_lights(part, k, depth);
@@ -337,7 +337,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
       part.accumulator.close();
       accumulators[index] = std::move(part.accumulator);
     });
-    seen_.add(accumulators);
+    cell_statistics_.add(accumulators);
     Base::update_guide(context, guide_accumulators);
     return sum;
   }
@@ -346,7 +346,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
   struct EyePart {
     const SampleCounts& counts;
     const LightVertices& lights;
-    double enough;  // CellStatistics::survival()
+    double threshold;  // CellStatistics::survival()
     EyePaths batch;
     ShadowQueue<Contribution> queue;
     CellStatistics::Accumulator accumulator;
@@ -366,29 +366,29 @@ class ResampledBdpt final : public Bdpt<Guide> {
     const Vertex& v = part.batch.vertex(k, depth);
     const int longest = Base::longest_light_path(v, depth);
     if (longest == 0 || part.lights.paths() == 0) return;
-    Rng& rng = part.batch.walkers[k].rng;
+    Rng& rng = part.batch.states[k].rng;
     const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
-    const auto place = connections_.find(v, depth, rng);
-    part.accumulator.visit(place.cell);
+    const auto lookup = connections_.find(v, depth, rng);
+    part.accumulator.visit(lookup.cell);
     const float throughput = luminance(v.throughput);
     const auto survival = [&](int s) {
-      part.accumulator.attempt(place.cell, s);
-      const float p = seen_.survival(place.cell, s, double(throughput), part.enough);
+      part.accumulator.attempt(lookup.cell, s);
+      const float p = cell_statistics_.survival(lookup.cell, s, double(throughput), part.threshold);
       return p >= 1 || rng.next() < p ? p : 0.0F;
     };
-    connections_.pick(place, part.lights, longest, rng, survival,
-                      [&](int s, const VertexSample& pick) {
-                        const double samples = static_cast<double>(part.lights.paths()) *
-                                               double(pick.probability) * double(pick.survival);
-                        part.lights.with_end(s, pick.index, guide_, [&](const auto& light) {
-                          Contribution known = Base::contribution(part.batch, k);
-                          known.distribution = pick.owner;
-                          known.survival = pick.survival;
-                          known.throughput = throughput;
-                          known.cell = place.cell;
-                          Base::join(eye, light, samples, part.counts, known, part.queue);
+    connections_.sample(lookup, part.lights, longest, rng, survival,
+                        [&](int s, const VertexSample& drawn) {
+                          const double samples = static_cast<double>(part.lights.paths()) *
+                                                 double(drawn.probability) * double(drawn.survival);
+                          part.lights.with_end(s, drawn.index, guide_, [&](const auto& light) {
+                            Contribution known = Base::contribution(part.batch, k);
+                            known.distribution = drawn.distribution;
+                            known.survival = drawn.survival;
+                            known.throughput = throughput;
+                            known.cell = lookup.cell;
+                            Base::join(eye, light, samples, part.counts, known, part.queue);
+                          });
                         });
-                      });
   }
 
   /// CPU seconds of all threads in the parts of an iteration.
@@ -396,7 +396,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
     double light = 0, distributions = 0, eye = 0;
   } seconds_;
   Choice connections_;
-  CellStatistics seen_;
+  CellStatistics cell_statistics_;
 };
 
 }  // namespace

@@ -10,7 +10,7 @@ GuideView::GuideView(const InspectSettings& settings, const PrepareContext& cont
   with_guide(settings.guide, [&]<class Guide>(Guide guide) {
     guide.prepare(context);
     const auto shared = std::make_shared<const Guide>(std::move(guide));
-    arrive_ = [shared](Vertex& v) { shared->arrive(v); };
+    on_hit_ = [shared](Vertex& v) { shared->on_hit(v); };
     density_ = [shared](const Vertex& v, const V3f& w) {
       return shared->pdf(v, v.wp, w, Transport::radiance).value;
     };
@@ -27,7 +27,7 @@ void GuideView::start(const IterationContext& context, const Image& image) {
   place_.surface = context.scene.surface(hit);
   place_.wp = -ray.d;
   context.scene.make_bsdf(place_.surface, place_.bsdf);
-  arrive_(place_);
+  on_hit_(place_);
 }
 
 Rgb GuideView::colour(const Scene& scene, const Surface& s, const V3f& d,

@@ -23,7 +23,7 @@ class GuideView {
 
  private:
   std::array<double, 2> from_;
-  std::function<void(Vertex&)> arrive_;
+  std::function<void(Vertex&)> on_hit_;
   std::function<float(const Vertex&, const V3f&)> density_;
   Vertex place_;  // without Bsdf: nothing is seen there
 };

@@ -46,13 +46,13 @@ class ManyLights final : public Integrator {
   }
 
   std::vector<std::pair<std::string, double>> statistics() const override {
-    auto told = visibility_.statistics();
-    told.emplace_back("virtual_lights", lights_);
-    if (random()) told.emplace_back("lights_culled", culled_);
-    told.emplace_back("light_pass_cpu_seconds", seconds_.light);
-    told.emplace_back("visibility_cpu_seconds", seconds_.visibility);
-    told.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
-    return told;
+    auto stats = visibility_.statistics();
+    stats.emplace_back("virtual_lights", lights_);
+    if (random()) stats.emplace_back("lights_culled", culled_);
+    stats.emplace_back("light_pass_cpu_seconds", seconds_.light);
+    stats.emplace_back("visibility_cpu_seconds", seconds_.visibility);
+    stats.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
+    return stats;
   }
 
   Counters iterate(const IterationContext& context, Image& image) override {
@@ -61,7 +61,7 @@ class ManyLights final : public Integrator {
                   {settings_.max_depth - 1, by_lights(), least_alpha_});
     Counters counters;
     if (settings_.max_depth > (by_lights() ? 1 : 2)) counters = walk_lights(context, lights, image);
-    lights.arrange([this](const LightPlace& p) { return visibility_.group(p); });
+    lights.arrange([this](const VplGeometry& p) { return visibility_.group(p); });
     lights_ = static_cast<double>(lights.size());
     pass.end(seconds_.light);
     const VplContributions terms(lights, bound_of(settings_, context.scene.bounds().radius()));
@@ -103,7 +103,7 @@ class ManyLights final : public Integrator {
 
   struct Direct {
     Rgb value;
-    std::size_t walker;
+    std::size_t path;
   };
   /// A few pixels.
   struct Part {
@@ -133,7 +133,7 @@ class ManyLights final : public Integrator {
     return for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
       Part part{EyeBatch(settings_.max_depth)};
       start_paths(context, image, tiling.tile(i), 0, part.batch);
-      if (with.range.is_first()) count.samples += part.batch.walkers.size();
+      if (with.range.is_first()) count.samples += part.batch.states.size();
       trace(context, with, part, count);
       shine(context, with, part, count);
       add(context, with, part, image, count);
@@ -177,10 +177,10 @@ class ManyLights final : public Integrator {
         {.max_depth = settings_.max_depth, .roulette_depth = settings_.roulette_depth}, counters);
     const auto choose = [&](std::size_t i, int depth) {
       if (direct.draws() && depth < settings_.max_depth) {
-        part.chosen[i] = context.scene.emitters().choose(part.batch.walkers[i].rng);
+        part.chosen[i] = context.scene.emitters().choose(part.batch.states[i].rng);
       }
     };
-    walk.trace_paths(part.batch.walkers, choose, [&](std::size_t i, int depth) {
+    walk.trace_paths(part.batch.states, choose, [&](std::size_t i, int depth) {
       return visit(context.scene, with, direct, part, i, depth);
     });
     if (!with.range.is_first()) {
@@ -189,7 +189,7 @@ class ManyLights final : public Integrator {
       return;
     }
     part.shadows.flush(context.scene.rays(), counters,
-                       [&](const Direct& d) { part.batch.radiance[d.walker] += d.value; });
+                       [&](const Direct& d) { part.batch.radiance[d.path] += d.value; });
   }
 
   /// One vertex of an eye path; false where the path ends.
@@ -216,10 +216,10 @@ class ManyLights final : public Integrator {
       const float weight = missing(terms, before, v);
       if (weight == 0) return false;
       v.throughput *= weight;
-      part.batch.walkers[i].throughput *= weight;
+      part.batch.states[i].throughput *= weight;
     }
     if (v.bsdf->connectible() && direct.draws() && !(first && lit_by_lights && by_lights())) {
-      direct.draw(v, depth, part.chosen[i], part.batch.walkers[i].rng,
+      direct.draw(v, depth, part.chosen[i], part.batch.states[i].rng,
                   [&](const Ray& ray, const Rgb& value) {
                     part.shadows.add(ray, {value, i});
                   });
@@ -243,13 +243,13 @@ class ManyLights final : public Integrator {
   void shine(const IterationContext& context, const Gathering& with, Part& part,
              Counters& counters) const {
     std::vector<ShadingPoint> points;
-    std::vector<std::size_t> walkers;
-    for (std::size_t i = 0; i < part.batch.walkers.size(); ++i) {
+    std::vector<std::size_t> paths;
+    for (std::size_t i = 0; i < part.batch.states.size(); ++i) {
       const int depth = part.shaded[i];
       if (depth == 0 || depth >= settings_.max_depth) continue;
       points.emplace_back(part.batch.vertex(i, depth), depth, settings_.max_depth - 1 - depth,
                           part.batch.pixels[i]);
-      walkers.push_back(i);
+      paths.push_back(i);
     }
     std::vector<LightSum> sums(points.size());
     LightGather<V>(context, with.terms, visibility_, with.draw, counters, with.range)
@@ -259,14 +259,14 @@ class ManyLights final : public Integrator {
         with.filter->add(points[k], sums[k].value);
         sums[k].value = V3d(0, 0, 0);  // until all pixels are there
       }
-      part.sums[walkers[k]] = sums[k];
+      part.sums[paths[k]] = sums[k];
     }
   }
 
   void add(const IterationContext& context, const Gathering& with, const Part& part, Image& image,
            Counters& counters) const {
     const double lights = static_cast<double>(std::max<std::size_t>(1, with.terms.lights().size()));
-    for (std::size_t i = 0; i < part.batch.walkers.size(); ++i) {
+    for (std::size_t i = 0; i < part.batch.states.size(); ++i) {
       const std::uint32_t pixel = part.batch.pixels[i];
       const V3d value = V3d(part.batch.radiance[i]) + part.sums[i].value;
       const bool negative = put(image.pixels[pixel], value, counters);

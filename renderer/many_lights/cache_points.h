@@ -69,7 +69,7 @@ class CachePoints {
   int neighbours_;
   Keep keep_;
   RecordTree tree_;
-  std::vector<RecordTree::Place> places_;
+  std::vector<SurfacePoint> points_;
   std::vector<double> variances_;  // of contributions over ShadingPoint::scale
   std::vector<double> scales_;     // ShadingPoint::scale
   std::vector<double> weights_;    // share of the picture's points that each stands for

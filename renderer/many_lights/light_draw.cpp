@@ -63,7 +63,7 @@ std::uint64_t LightDraw::may_shine(const Stretch& s, const PointLanes& points) c
 
 bool LightDraw::is_near(const V3f& x, std::size_t block, int i) const {
   if (settings_.cutoff == 0) return true;
-  const LightPlace light = terms_.lights().place(block, i);
+  const VplGeometry light = terms_.lights().geometry(block, i);
   return light.infinite || (light.x - x).length2() <= cutoff() * cutoff();
 }
 

@@ -23,13 +23,13 @@ class ShadingPoints {
   /// shading point less than max_depth edges from the eye. The vertices live until the next call.
   template <class Use>
   void find(std::span<const std::uint32_t> pixels, Use&& use) {
-    batch_.walkers.clear();
+    batch_.states.clear();
     for (const std::uint32_t pixel : pixels) {
       const CameraSample sample(context_, pixel);
       batch_.start(context_.camera, sample.rng, sample.ray, pixel);
     }
     walk_.trace_paths(
-        batch_.walkers, [](std::size_t, int) {},
+        batch_.states, [](std::size_t, int) {},
         [&](std::size_t i, int depth) {
           const Vertex& v = batch_.vertex(i, depth);
           if (v.kind != Vertex::Kind::surface || depth == max_depth_) return false;

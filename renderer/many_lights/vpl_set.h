@@ -26,7 +26,7 @@ struct DiffuseBlock {
 };
 
 /// Where a light stands.
-struct LightPlace {
+struct VplGeometry {
   V3f x;          ///< position; not of a light at infinity
   V3f n;          ///< unit normal on the side that shines; 0 of a point light
   bool infinite;  ///< it shines from outside the scene
@@ -37,7 +37,7 @@ struct GeneralLight {
   std::variant<Vertex, EmitterPoint> at;
   int index;  ///< of the vertex on its path
 
-  LightPlace place() const;
+  VplGeometry geometry() const;
   /// No path can hit it.
   bool delta() const {
     const auto* e = std::get_if<EmitterPoint>(&at);
@@ -62,7 +62,7 @@ struct BlockRange {
 };
 
 /// Lights that are treated alike have one number: the lights of a block are of one group.
-using LightGroups = std::function<std::uint32_t(const LightPlace&)>;
+using LightGroups = std::function<std::uint32_t(const VplGeometry&)>;
 /// Of a light that belongs nowhere.
 inline constexpr std::uint32_t no_group = 0xffffffff;
 
@@ -116,7 +116,7 @@ class VplSet {
     return general_[blocks_[b].first + static_cast<std::size_t>(i)];
   }
   /// Where light `i` of block `b` stands.
-  LightPlace place(std::size_t b, int i) const;
+  VplGeometry geometry(std::size_t b, int i) const;
   /// 1 / the number of light paths, which general lights do not hold.
   float share() const { return share_; }
 

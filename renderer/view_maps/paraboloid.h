@@ -18,40 +18,40 @@ struct Paraboloid {
   int texels() const { return 2 * size * size; }
 
   /// A place on the squares, in texels whose corners are whole numbers.
-  struct Place {
+  struct TexelCoord {
     int half;    ///< 0: x >= 0
     float u, v;  ///< in [0, size]
   };
   /// `d`: of any length above 0.
-  Place place(const V3f& d) const {
+  TexelCoord coord(const V3f& d) const {
     const float scale = 1 / (d.length() + std::abs(d.x));
     return {d.x < 0 ? 1 : 0, coordinate(d.y * scale), coordinate(d.z * scale)};
   }
-  int texel(const Place& p) const {
+  int texel(const TexelCoord& p) const {
     const auto step = [&](float at) { return std::clamp(static_cast<int>(at), 0, size - 1); };
     return index(p.half, step(p.u), step(p.v));
   }
-  int texel(const V3f& d) const { return texel(place(d)); }
+  int texel(const V3f& d) const { return texel(coord(d)); }
   int index(int half, int i, int j) const { return (half * size + j) * size + i; }
   /// Those of eight directions.
-  struct Eight {
+  struct TexelCoord8 {
     Int8 half;    ///< 0 or `size`: the square's first row
-    Float8 u, v;  ///< as Place
+    Float8 u, v;  ///< as TexelCoord
     Float8 scale;
   };
   /// `length`: of each `d`.
-  Eight places(const Float8x3& d, Float8 length) const {
+  TexelCoord8 coords(const Float8x3& d, Float8 length) const {
     const Float8 scale = Float8(1.0F) / (length + abs(d.x));
     return {keep_where(Float8(0.0F) > d.x, Int8(size)), coordinate(d.y * scale),
             coordinate(d.z * scale), scale};
   }
-  Int8 texel(const Eight& p) const {
+  Int8 texel(const TexelCoord8& p) const {
     const auto step = [&](Float8 at) { return min(max(truncated(at), Int8(0)), Int8(size - 1)); };
     return (p.half + step(p.v)) * Int8(size) + step(p.u);
   }
   /// Whether small spheres of this radius at those places cover the middles of the texels that
   /// their own middles fall into.
-  Mask8 covers_middle(const Eight& p, float radius) const {
+  Mask8 covers_middle(const TexelCoord8& p, float radius) const {
     const auto off = [](Float8 at) { return at - floor(at) - Float8(0.5F); };
     const Float8 u = off(p.u), v = off(p.v);
     const Float8 across = Float8(radius * static_cast<float>(size) / 2) * p.scale;
@@ -66,7 +66,7 @@ struct Paraboloid {
   float on_plane(float at) const { return at * 2 / static_cast<float>(size) - 1; }
 
   /// The unit direction through the middle of a texel. Those of the squares' corners belong to the
-  /// other half; nobody asks for them by place().
+  /// other half; nobody asks for them by coord().
   V3f direction(int texel) const {
     const float u = on_plane(static_cast<float>(texel % size) + 0.5F);
     const float v = on_plane(static_cast<float>(texel / size % size) + 0.5F);
@@ -76,8 +76,8 @@ struct Paraboloid {
     return {texel < size * size ? x : -x, u * side, v * side};
   }
 
-  /// Whether place() gives a texel for some direction: all but those of the squares' corners.
-  bool asked_for(int texel) const {
+  /// Whether coord() gives a texel for some direction: all but those of the squares' corners.
+  bool reachable(int texel) const {
     // Of its square, the point that is nearest to the middle.
     const auto nearest = [&](int i) {
       const float at = on_plane(static_cast<float>(i));

@@ -36,7 +36,7 @@ std::vector<MapTexel> map_texels(const Paraboloid& map) {
     const V3f w = map.direction(i);
     // Half the diagonal of a texel, as an angle.
     const float half = std::sqrt(0.5F) / map.stretch(std::abs(w.x));
-    texels.push_back({w, std::cos(half), std::sin(half), map.asked_for(i)});
+    texels.push_back({w, std::cos(half), std::sin(half), map.reachable(i)});
   }
   return texels;
 }
@@ -62,7 +62,7 @@ std::uint64_t trace_views(const RayCaster& rays, const ViewTree& views,
     std::uint64_t own = 0;
     for (std::size_t i = 0; i < texels.size(); ++i) {
       const MapTexel& t = texels[i];
-      if (!t.asked_for || unseen(v, t)) continue;
+      if (!t.reachable || unseen(v, t)) continue;
       Hit hit;
       if (rays.intersect({v.centre, t.direction}, hit)) depths[i] = hit.t;
       ++own;

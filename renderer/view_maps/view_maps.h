@@ -13,7 +13,7 @@ namespace lacuna {
 struct MapTexel {
   V3f direction;       ///< through its middle, unit
   float cosine, sine;  ///< of the angle from there to its corners
-  bool asked_for;      ///< Paraboloid::asked_for()
+  bool reachable;      ///< Paraboloid::reachable()
 };
 /// Of each texel of a map.
 std::vector<MapTexel> map_texels(const Paraboloid& map);

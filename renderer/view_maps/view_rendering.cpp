@@ -166,11 +166,11 @@ inline void ViewRendering::look(const Siblings& siblings, Visit& visit) const {
     alignas(32) std::array<float, 8> distances;
     alignas(32) std::array<int, 8> texels;
     e.distance.store(distances.data());
-    const Paraboloid::Eight places = map_.places(e.d, e.distance);
-    map_.texel(places).store(texels.data());
+    const Paraboloid::TexelCoord8 coords = map_.coords(e.d, e.distance);
+    map_.texel(coords).store(texels.data());
     const float cover = settings_.cover;
     const unsigned shown =
-        cover > 0 ? same & bits_of(map_.covers_middle(places, e.radius * cover)) : same;
+        cover > 0 ? same & bits_of(map_.covers_middle(coords, e.radius * cover)) : same;
     for_each_lane(shown, [&](int i) {
       visit.splat(texels[static_cast<std::size_t>(i)], distances[static_cast<std::size_t>(i)]);
     });

@@ -14,7 +14,7 @@ struct Positions {
       return;
     }
     for (int i = 0; i < lights.count(block); ++i) {
-      const V3f p = lights.place(block, i).x;
+      const V3f p = lights.geometry(block, i).x;
       x[i] = p.x, y[i] = p.y, z[i] = p.z;
     }
   }

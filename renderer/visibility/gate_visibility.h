@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "renderer/settings/visibility_settings.h"
-#include "renderer/visibility/skeleton_place.h"
+#include "renderer/visibility/skeleton_node.h"
 #include "renderer/visibility/visibility_base.h"
 
 namespace lacuna {
@@ -21,7 +21,7 @@ class GateVisibility : public VisibilityBase {
   explicit GateVisibility(const GatesVisibilitySettings& settings) : settings_(settings) {}
 
   void prepare(const PrepareContext& context);
-  std::uint32_t group(const LightPlace& light) const { return cluster(node_of(*lookup_, light)); }
+  std::uint32_t group(const VplGeometry& light) const { return cluster(node_of(*lookup_, light)); }
   Counters begin(const LightPass& pass) {
     lights_ = &pass.terms.lights();
     return {};

@@ -4,7 +4,7 @@
 
 #include "renderer/settings/visibility_settings.h"
 #include "renderer/visibility/node_maps.h"
-#include "renderer/visibility/skeleton_place.h"
+#include "renderer/visibility/skeleton_node.h"
 #include "renderer/visibility/visibility_base.h"
 
 namespace lacuna {
@@ -19,7 +19,7 @@ class NodeMapVisibility : public VisibilityBase {
   explicit NodeMapVisibility(const NodeMapsVisibilitySettings& settings) : settings_(settings) {}
 
   void prepare(const PrepareContext& context);
-  std::uint32_t group(const LightPlace& light) const { return node_of(*lookup_, light); }
+  std::uint32_t group(const VplGeometry& light) const { return node_of(*lookup_, light); }
   Counters begin(const LightPass& pass);
   struct At {
     V3f x, n;                 // n on the side that is seen

@@ -18,7 +18,7 @@ class ViewMapVisibility : public VisibilityBase {
   explicit ViewMapVisibility(const ViewMapsVisibilitySettings& settings) : settings_(settings) {}
 
   void prepare(const PrepareContext& context);
-  static std::uint32_t group(const LightPlace& light) { return light.infinite ? no_group : 0; }
+  static std::uint32_t group(const VplGeometry& light) { return light.infinite ? no_group : 0; }
   std::vector<BlockRange> passes(const VplSet& lights) const;
   Counters begin(const LightPass& pass);
   struct At {

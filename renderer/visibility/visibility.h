@@ -23,11 +23,11 @@ template <class V>
 concept Visibility = Strategy<V> &&
     requires(V v, const V& k, const ShadingPoint& point, const Terms& terms,
              const IterationContext& context, VisibilityEstimate& d, typename V::At& at,
-             const LightPlace& place, const VplSet& lights, const LightPass& pass) {
+             const VplGeometry& light, const VplSet& lights, const LightPass& pass) {
   { k.at(point, context) } -> std::same_as<typename V::At>;
   k.decide(at, std::size_t{}, terms, d);
   { k.hides(at, std::size_t{}) } -> std::same_as<bool>;
-  { k.group(place) } -> std::same_as<std::uint32_t>;
+  { k.group(light) } -> std::same_as<std::uint32_t>;
   { k.passes(lights) } -> std::same_as<std::vector<BlockRange>>;
   { v.begin(pass) } -> std::same_as<Counters>;
   { k.clamps_negative() } -> std::same_as<bool>;

@@ -9,7 +9,7 @@ namespace lacuna {
 /// The answers of a visibility that treats all lights alike (see the concept Visibility).
 struct VisibilityBase : StrategyBase {
   /// Lights of which groups it wants to meet one after another.
-  static std::uint32_t group(const LightPlace&) { return 0; }
+  static std::uint32_t group(const VplGeometry&) { return 0; }
   /// Which lights it treats at a time: all blocks, one range after another.
   static std::vector<BlockRange> passes(const VplSet&) { return {{}}; }
   /// Once the lights of an iteration are there, for each of the passes.

@@ -132,8 +132,8 @@ TEST(Paraboloid, LeavesOutTheCornersOfTheSquares) {
       asked[static_cast<std::size_t>(map.texel(random_direction(rng)))] = true;
     int unmet = 0;  // a square that meets the disk in a tip only
     for (int t = 0; t < map.texels(); ++t) {
-      EXPECT_LE(asked[static_cast<std::size_t>(t)], map.asked_for(t)) << t;
-      unmet += map.asked_for(t) && !asked[static_cast<std::size_t>(t)];
+      EXPECT_LE(asked[static_cast<std::size_t>(t)], map.reachable(t)) << t;
+      unmet += map.reachable(t) && !asked[static_cast<std::size_t>(t)];
     }
     EXPECT_LE(unmet, 16) << "of " << map.texels();
   }

@@ -6,7 +6,7 @@
 namespace lacuna {
 
 /// The node that a light belongs to, or no_node: of one at infinity, and where no space is near.
-inline std::uint32_t node_of(const SurfaceLookup& lookup, const LightPlace& light) {
+inline std::uint32_t node_of(const SurfaceLookup& lookup, const VplGeometry& light) {
   if (light.infinite) return no_node;
   // A point light lies in empty space: whatever way it faces, that is where it is looked up.
   const V3d n(light.n == V3f(0.0F) ? V3f(0, 0, 1) : light.n);
