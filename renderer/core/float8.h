@@ -4,17 +4,17 @@
 
 namespace lacuna {
 
-// Eight floats in a register. In long loops GCC 12 calls a function wherever
-// std::experimental::simd broadcasts a scalar, which cost a whole picture with probabilistic
-// visibility a third of its time more.
+// Eight floats in a register. std::experimental::simd is not used: in long loops GCC 12 calls a
+// function wherever it broadcasts a scalar, and a picture with probabilistic visibility takes a
+// third more time.
 
-/// What a comparison of eight floats says of each.
+/// The result of a comparison of eight floats.
 struct Mask8 {
   __m256 v;
 };
 inline Mask8 operator&&(Mask8 a, Mask8 b) { return {_mm256_and_ps(a.v, b.v)}; }
 inline bool any_of(Mask8 m) { return _mm256_movemask_ps(m.v) != 0; }
-/// Bit i: element i.
+/// Bit i is element i.
 inline unsigned bits_of(Mask8 m) { return static_cast<unsigned>(_mm256_movemask_ps(m.v)); }
 
 struct Float8 {
@@ -33,7 +33,7 @@ inline Float8 operator-(Float8 a, Float8 b) { return _mm256_sub_ps(a.v, b.v); }
 inline Float8 operator*(Float8 a, Float8 b) { return _mm256_mul_ps(a.v, b.v); }
 inline Float8 operator/(Float8 a, Float8 b) { return _mm256_div_ps(a.v, b.v); }
 inline Float8 operator-(Float8 a) { return _mm256_xor_ps(a.v, _mm256_set1_ps(-0.0F)); }
-// A comparison with what is no number is false.
+// A comparison with NaN is false.
 inline Mask8 operator>(Float8 a, Float8 b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_GT_OQ)}; }
 inline Mask8 operator>=(Float8 a, Float8 b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_GE_OQ)}; }
 /// Where `m` holds `a`, else `b`.
@@ -46,7 +46,7 @@ inline Float8 sqrt(Float8 a) { return _mm256_sqrt_ps(a.v); }
 inline Float8 ceil(Float8 a) { return _mm256_ceil_ps(a.v); }
 inline Float8 floor(Float8 a) { return _mm256_floor_ps(a.v); }
 inline Float8 abs(Float8 a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0F), a.v); }
-/// The sum of all, in a fixed order.
+/// The sum of all elements, in a fixed order.
 inline float sum(Float8 a) {
   const __m128 four = _mm_add_ps(_mm256_castps256_ps128(a.v), _mm256_extractf128_ps(a.v, 1));
   const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
@@ -67,7 +67,7 @@ inline Int8 operator*(Int8 a, Int8 b) { return _mm256_mullo_epi32(a.v, b.v); }
 inline Int8 min(Int8 a, Int8 b) { return _mm256_min_epi32(a.v, b.v); }
 inline Int8 max(Int8 a, Int8 b) { return _mm256_max_epi32(a.v, b.v); }
 inline Int8 keep_where(Mask8 m, Int8 a) { return _mm256_and_si256(_mm256_castps_si256(m.v), a.v); }
-/// Towards 0; of what has no such number the lowest.
+/// Rounded towards 0; the lowest integer where the result is out of range or NaN.
 inline Int8 truncated(Float8 a) { return _mm256_cvttps_epi32(a.v); }
 
 /// Eight directions, or colours.

@@ -18,7 +18,7 @@ std::vector<Arrival> arrivals(const Scene& scene, const SurfaceLookup& lookup, i
   for (int i = first; i < end; ++i) {
     Rng rng(0, 0, static_cast<std::uint64_t>(i), Rng::Purpose::integrator);
     const EmitterPoint e = lights.sample(lights.choose(rng), rng);
-    const std::optional<Leaving> leaving = lights.leave(e, rng);
+    const std::optional<Leaving> leaving = lights.sample_first_edge(e, rng);
     Hit hit;
     if (!leaving || !scene.rays().intersect(leaving->ray, hit)) continue;
     const Surface s = scene.surface(hit);

@@ -15,21 +15,21 @@ namespace lacuna {
 
 namespace {
 
-/// What a strategy gives to a pixel of the tile, if nothing lies between.
+/// A contribution of a strategy to a pixel of the tile, pending its shadow ray.
 struct Contribution {
   std::uint32_t pixel = 0;
   std::uint8_t path = 0;  ///< of the eye's path, in its batch
   std::uint8_t distribution = 0;
-  float survival = 1;          ///< probability with which it was made; `value` is divided by it
-  float throughput = 0;        ///< luminance of the eye vertex'
-  std::uint32_t cell = 0;      ///< of the eye vertex: CellStatistics
+  float survival = 1;          ///< probability of making the connection; `value` is divided by it
+  float throughput = 0;        ///< luminance of the eye vertex' throughput
+  std::uint32_t cell = 0;      ///< of the eye vertex, for CellStatistics
   Rgb value{0, 0, 0};          ///< unweighted
   float weight = 0;            ///< MIS
-  std::uint16_t s = 0, t = 0;  ///< vertices made from the light and from the eye
+  std::uint16_t s = 0, t = 0;  ///< vertices sampled from the light and from the eye
 };
 
-/// Bidirectional path tracing (Noel 2015, 4.3 and ch. 11): everything but which light vertices an
-/// eye vertex is joined to.
+/// Bidirectional path tracing (Noel 2015, 4.3 and ch. 11), apart from the choice of the light
+/// vertices that an eye vertex is connected to.
 template <class Guide>
 class Bdpt : public GuidedIntegrator<Guide> {
  public:
@@ -44,7 +44,7 @@ class Bdpt : public GuidedIntegrator<Guide> {
     GatheredLight gathered{*this};  // for a guide that learns
   };
 
-  /// An eye path's vertices that emit: s = 0.
+  /// Adds the emission at a vertex of an eye path (s = 0).
   void gather_hit(const IterationContext& context, const SampleCounts& counts, EyePaths& batch,
                   std::size_t i, int depth) const {
     if (guide_.learns()) batch.gathered.reach(i, depth);
@@ -58,14 +58,15 @@ class Bdpt : public GuidedIntegrator<Guide> {
     layers_.strategy(context.layers, 0, depth + 1, batch.pixels[i], value, w);
   }
 
-  /// How many vertices of a light path may meet an eye vertex `depth` edges from the eye; 0: none.
+  /// Largest s of connections to an eye vertex `depth` edges from the eye; 0: none.
   int longest_light_path(const Vertex& v, int depth) const {
     if (v.kind != Vertex::Kind::surface || depth >= settings_.max_depth) return 0;
     return v.bsdf->connectible() ? settings_.max_depth - depth : 0;
   }
 
-  /// Joins `eye` and `light` for a pixel; the sum over light paths is estimated with 1 / `samples`
-  /// of it. What it is not told of a contribution is taken from `known`.
+  /// Connects `eye` and `light` and queues the contribution divided by `samples`, the expected
+  /// number of samples of this light vertex. The fields of the contribution that the connection
+  /// does not determine are copied from `known`.
   template <class Light>
   static void join(const SurfaceEndpoint<Guide>& eye, const Light& light, double samples,
                    const SampleCounts& counts, Contribution known,
@@ -78,13 +79,13 @@ class Bdpt : public GuidedIntegrator<Guide> {
     known.t = static_cast<std::uint16_t>(eye.index + 1);
     queue.add(shadow_ray(eye, light, c), known);
   }
-  /// What is known of a contribution to path `i` of `batch`, before it is joined to anything.
+  /// A contribution with the pixel and index of path `i` of `batch`.
   static Contribution contribution(const EyePaths& batch, std::size_t i) {
     return {.pixel = batch.pixels[i], .path = static_cast<std::uint8_t>(i)};
   }
 
-  /// Adds what arrived for the paths of `batch`, hands it to `arrived(contribution)`, and tells the
-  /// guide of it.
+  /// Traces the queued shadow rays of `batch`, adds the unoccluded contributions to the image and
+  /// to the layers, passes each to `arrived(contribution)`, and records samples for the guide.
   template <class Arrived>
   void finish(const IterationContext& context, ShadowQueue<Contribution>& queue, EyePaths& batch,
               Image& image, Counters& counters, typename Guide::Accumulator& accumulator,
@@ -101,14 +102,14 @@ class Bdpt : public GuidedIntegrator<Guide> {
     });
     if (guide_.learns()) batch.gathered.record(guide_, accumulator);
   }
-  /// start_paths() of the tile, and their number counted.
+  /// Starts the paths of the tile from pixel `first` on, and counts them.
   void start(const IterationContext& context, const Image& image, const Tile& tile, int first,
              EyePaths& batch, Counters& counters) const {
     start_paths(context, image, tile, first, batch);
     counters.samples += batch.states.size();
     if (guide_.learns()) batch.gathered.clear();
   }
-  /// One for each tile.
+  /// One accumulator for each tile.
   using Accumulators = std::vector<typename Guide::Accumulator>;
   Accumulators start_accumulators(const Tiling& tiling) const {
     Accumulators accumulators(static_cast<std::size_t>(tiling.tiles()));
@@ -120,7 +121,7 @@ class Bdpt : public GuidedIntegrator<Guide> {
   void update_guide(const IterationContext& context, const Accumulators& accumulators) {
     if (guide_.learns()) guide_.update(accumulators, context.pool);
   }
-  /// What for_each_splatting_part() hands on.
+  /// The callback of for_each_splatting_part() that adds splats to the layers.
   auto splat_layers(const IterationContext& context) const {
     return [this, &context](const Splat& s) {
       layers_.strategy(context.layers, s.s, 1, s.pixel, s.value, s.weight);
@@ -144,8 +145,8 @@ class Bdpt : public GuidedIntegrator<Guide> {
   StrategyLayers layers_;
 };
 
-/// connections: paired. Pixel j's path meets light path j; the points on emitters of s = 1 are
-/// drawn afresh at each vertex.
+/// connections: paired. The eye path of pixel j is connected to light path j; for s = 1 a new point
+/// on an emitter is sampled at each vertex.
 template <class Guide>
 class PairedBdpt final : public Bdpt<Guide> {
   using Base = Bdpt<Guide>;
@@ -229,8 +230,8 @@ class PairedBdpt final : public Bdpt<Guide> {
   }
 };
 
-/// Connections with light paths that all pixels share, resampled at each eye vertex: the first of
-/// the paths that meet the eye itself (t = 1).
+/// Connections to light paths that all pixels share, resampled at each eye vertex. The shared paths
+/// are the first of those connected to the eye (t = 1).
 template <class Guide, SharedConnections Choice>
 class ResampledBdpt final : public Bdpt<Guide> {
   using Base = Bdpt<Guide>;
@@ -342,7 +343,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
     return sum;
   }
 
-  /// What the eye's paths of a tile work with.
+  /// The state of a tile's eye paths.
   struct EyePart {
     const SampleCounts& counts;
     const LightVertices& lights;

@@ -32,11 +32,11 @@ class PathTracer final : public GuidedIntegrator<Guide> {
   }
 
  private:
-  /// What next event estimation gives a pixel, if it sees the light.
+  /// A contribution of next event estimation, pending its shadow ray.
   struct Direct {
     Rgb value;
     std::uint32_t pixel;
-    std::uint16_t path, depth;  // of the vertex that sees it
+    std::uint16_t path, depth;  // of the vertex
   };
 
   struct Batch : EyeBatch {

@@ -5,8 +5,8 @@
 
 namespace lacuna {
 
-/// The shading points of a picture's pixels in an iteration, without what light reaches them:
-/// walks paths from the eye on to the first surface that is broad enough for them.
+/// Finds the shading points of an iteration's pixels: traces eye paths to the first vertex that
+/// Bsdf::is_vpl_receiver() accepts.
 class ShadingPoints {
  public:
   ShadingPoints(const IterationContext& context, int max_depth, float least_alpha,
@@ -19,7 +19,7 @@ class ShadingPoints {
               {.max_depth = max_depth, .last_scatters = true, .roulette_depth = max_depth + 1},
               counters) {}
 
-  /// Calls `use(vertex, depth, pixel)` for those of `pixels`, at most EyeBatch::size, that have a
+  /// Calls `use(vertex, depth, pixel)` for each of at most EyeBatch::size `pixels` that has a
   /// shading point less than max_depth edges from the eye. The vertices live until the next call.
   template <class Use>
   void find(std::span<const std::uint32_t> pixels, Use&& use) {

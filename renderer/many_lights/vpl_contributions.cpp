@@ -43,7 +43,7 @@ std::uint64_t PointLanes::all_but(LeavesOut&& leaves_out) const {
 
 std::uint64_t PointLanes::may_be_lit(const BlockBounds& bounds) const {
   return all_but([&](const Float8x3& x, const Float8x3& n) {
-    return bits_of(bounds.turned_from(x)) | bits_of(bounds.behind(x, n));
+    return bits_of(bounds.facing_away(x)) | bits_of(bounds.behind(x, n));
   });
 }
 

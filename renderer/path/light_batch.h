@@ -104,7 +104,7 @@ class LightBatch {
     const EmitterPoint& e = emitters_[i] = lights.sample(lights.choose(choice, rng), rng);
     length_[i] = 1;
     if (setting_.max_depth == 1) return;
-    const std::optional<Leaving> leaving = lights.leave(e, rng);
+    const std::optional<Leaving> leaving = lights.sample_first_edge(e, rng);
     if (!leaving) return;
     const std::span<Vertex> path = std::span(vertices_).subspan(i * places_, places_);
     path[0].kind = e.infinite() ? Vertex::Kind::background : Vertex::Kind::emitter;

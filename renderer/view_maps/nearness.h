@@ -8,17 +8,17 @@
 
 namespace lacuna {
 
-/// Distances in sixteen bits: 1 / distance as half floats, of which what is nearer than 1/4,000,000
-/// of the scene's size is taken to be there.
+/// Distances in sixteen bits: scale / distance as a half float. Distances below 1/4,000,000 of the
+/// scene's size are stored as that.
 struct Nearness {
-  float scale = 0;  ///< codes stand for scale / distance; 0: infinitely far
+  float scale = 0;  ///< a code is scale / distance; code 0: infinitely far
 
-  /// `extent`: no distance is above it. The far end is 1/64 or more, well above the smallest half.
+  /// `extent`: the largest distance. Its code is 1/64, well above the smallest half float.
   static Nearness within(float extent) { return {extent / 64}; }
   std::uint16_t encode(float distance) const {
     return _cvtss_sh(std::min(scale / distance, 65504.0F), _MM_FROUND_TO_NEAREST_INT);
   }
-  /// The same of many distances. `to`: as many codes.
+  /// Encodes all `distances` to the array `to`.
   void encode(std::span<const float> distances, std::uint16_t* to) const {
     const __m256 most = _mm256_set1_ps(65504.0F);
     std::size_t i = 0;

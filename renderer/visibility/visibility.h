@@ -4,18 +4,18 @@
 
 namespace lacuna {
 
-/// What is taken for V between shading points and virtual lights.
+/// Estimates the visibility V between shading points and virtual lights.
 ///
-/// - At, at(): what it knows of one shading point; made once for each point and pass.
-/// - decide(at, block, terms, d): for the lights of a block (Lanes::size of them, of which
-///   `terms.lit` would give something): d.tests, those that a ray is sent to; d.untested, the V
-///   taken for the others; d.gain, by which the answer of a ray counts. With E the probability of a
-///   test, an unbiased choice has E[tests] gain V + (1 - E[tests]) untested = V.
-/// - hides(): the point gets nothing from a block, whatever its lights would give.
-/// - group(), passes(), begin(): the order of the lights, how many are treated at a time, and what
-/// is
-///   built for them in each iteration.
-/// - clamps_negative(): pixels below zero become black, which is biased.
+/// - At, at(): its data of one shading point, made once for each point and pass.
+/// - decide(at, block, terms, d): the estimate for the lights of a block (Lanes::size of them;
+///   `terms.lit` marks those with a contribution). d.tests: the lights that a shadow ray tests;
+///   d.untested: added to the estimate of every light; d.gain: weight of an unoccluded shadow ray.
+///   The estimate of a light is untested + (tested ? gain V : 0); its expectation must be V for an
+///   unbiased strategy.
+/// - hides(): no light of a block illuminates the point.
+/// - group(), passes(), begin(): the order of the lights, the passes they are divided into, and the
+///   preparation of each pass.
+/// - clamps_negative(): negative pixels become black, which is biased.
 ///
 /// at(), decide() and hides() are const and are called by many threads; what is random in them
 /// comes from the context's counter-based generator, so that the bits do not depend on the threads.

@@ -82,7 +82,7 @@ TEST_P(NodeMapsIn, SeeWhatRaysSee) {
     if (places.back() == from) places.push_back(eye);
   }
   const NodeMaps maps = maps_of(scene, places, 128);
-  ASSERT_EQ(maps.places(), places.size());
+  ASSERT_EQ(maps_.points(), places.size());
   int seen = 0, unseen = 0, wrong = 0;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const NodeView view(maps, k, places[k], 1);
