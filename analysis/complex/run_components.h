@@ -11,8 +11,8 @@
 
 namespace lacuna {
 
-/// One row of cells along x, a bit a cell: which exist, and which are linked to the cell before
-/// them along x, y and z (where both exist).
+/// One row of cells along x, one bit per cell: which exist, and which are linked to the preceding
+/// cell along x, y and z (where both exist).
 struct CellRow {
   std::vector<std::uint64_t> present, link_x, link_y, link_z;
   explicit CellRow(int width)
@@ -20,17 +20,17 @@ struct CellRow {
   static std::size_t words(int width) { return (static_cast<std::size_t>(width) + 63) / 64; }
 };
 
-/// Connected components of linked cells, by runs along x: cost and memory go with the number of
-/// runs, not of cells.
+/// Connected components of linked cells, by runs along x: time and memory are proportional to the
+/// number of runs, not of cells.
 class RunComponents {
  public:
-  /// `fill(y, z, row)` fills in the row; bits beyond the width must be 0. Rows are asked for once,
+  /// `fill(y, z, row)` fills in the row; bits beyond the width must be 0. Called once for each row,
   /// y fastest.
   RunComponents(Imath::V3i cells, const std::function<void(int, int, CellRow&)>& fill);
 
   /// Number of components.
   std::uint32_t count() const { return count_; }
-  /// The component of a cell, 0 to count - 1, by first appearance; the cell must exist.
+  /// The component of an existing cell, 0 to count - 1, numbered by their first cells.
   std::uint32_t of(Imath::V3i cell) const;
 
  private:

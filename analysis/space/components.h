@@ -10,7 +10,7 @@ namespace lacuna {
 
 enum class Connectivity { faces, corners };  ///< 6: through shared faces; 26: shared corners
 
-/// A component that means: the voxel's bit is 0.
+/// The component of voxels whose bit is 0.
 inline constexpr std::uint32_t no_component = 0xffffffff;
 
 /// Voxels [x0, x1) of one line along x, all in one component.
@@ -20,7 +20,7 @@ struct ComponentRun {
 };
 
 /// The connected components of the 1 bits of a grid, as runs along x: never larger than a label for
-/// every voxel, and mostly far smaller. Components are numbered by their first voxel, x fastest.
+/// every voxel, and usually far smaller. Components are numbered by their first voxel, x fastest.
 struct Components {
   Imath::V3i size{0};
   std::vector<std::uint32_t> first;  ///< rows + 1 offsets into `runs`; row (y, z) is z * size.y + y

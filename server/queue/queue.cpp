@@ -86,14 +86,14 @@ Queue::WorkPtr Queue::open(const JobEntry& entry, const JobControl& control) {
 }
 
 void Queue::line_up(Work& work) {
-  work.place = Place{-work.control.priority, work.created, work.id};
-  line_.insert(*work.place);
+  work.queue_key = QueueKey{-work.control.priority, work.created, work.id};
+  line_.insert(*work.queue_key);
   changed_.notify_all();
 }
 
 void Queue::leave_line(Work& work) {
-  if (work.place) line_.erase(*work.place);
-  work.place.reset();
+  if (work.queue_key) line_.erase(*work.queue_key);
+  work.queue_key.reset();
 }
 
 /// Writes the new state of a job that no runner has. False: a renderer of somebody else still holds

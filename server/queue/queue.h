@@ -17,8 +17,8 @@
 #include "jobs/store/job_folder.h"
 #include "server/queue/disk_watch.h"
 #include "server/queue/executor.h"
+#include "server/queue/exit_classification.h"
 #include "server/queue/trash.h"
-#include "server/queue/verdict.h"
 #include "server/settings/queue_settings.h"
 #include "server/tables/job_table.h"
 
@@ -94,7 +94,7 @@ class Queue {
 
  private:
   using Clock = std::chrono::steady_clock;
-  using Place = std::tuple<int, std::string, std::string>;  // -priority, creation, id
+  using QueueKey = std::tuple<int, std::string, std::string>;  // -priority, creation, id
 
   /// A job that is not over.
   struct Work {
@@ -103,8 +103,8 @@ class Queue {
     bool exclusive = false;
     JobControl control;
     Clock::time_point not_before{};
-    std::optional<Place> place;        // in the line
-    std::shared_ptr<StopSignal> stop;  // a runner has it
+    std::optional<QueueKey> queue_key;  // in the line
+    std::shared_ptr<StopSignal> stop;   // a runner has it
     bool stopped_for_disk = false;
   };
   using WorkPtr = std::shared_ptr<Work>;
@@ -146,7 +146,7 @@ class Queue {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::map<std::string, WorkPtr> work_;
-  std::set<Place> line_;
+  std::set<QueueKey> line_;
   std::map<std::string, JobState> unsaved_;  // states that could not be written (disk full)
   int running_ = 0;
   bool exclusive_runs_ = false;

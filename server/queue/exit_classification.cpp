@@ -1,4 +1,4 @@
-#include "server/queue/verdict.h"
+#include "server/queue/exit_classification.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 namespace lacuna {
 namespace {
 
-Verdict failed(JobState state, const std::string& error, const std::string& now) {
+ExitClassification failed(JobState state, const std::string& error, const std::string& now) {
   state.error = error;
   return {ended(std::move(state), State::failed, now)};
 }
@@ -76,7 +76,7 @@ JobState held(JobState state) {
   return state;
 }
 
-Verdict judge(const Attempt& attempt, int max_attempts, const std::string& now) {
+ExitClassification classify_exit(const Attempt& attempt, int max_attempts, const std::string& now) {
   JobState state = attempt.after;
   const Ending& end = attempt.ending;
   if (exited(end)) state.exit_code = end.code;
