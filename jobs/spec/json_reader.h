@@ -18,7 +18,7 @@
 
 namespace lacuna {
 
-/// One value of a document, where it stands, and where its problems go.
+/// One value of a document, its pointer, and the list for its problems.
 struct Found {
   const Json& value;
   std::string at;
@@ -32,30 +32,30 @@ struct Found {
   }
 };
 
-// The parts of the reader that no type changes. Each adds a problem and returns nothing, or false,
-// where the value is not what is allowed.
+// The parts of the reader that do not depend on a type. Each adds a problem and returns nothing, or
+// false, if the value is not allowed.
 std::optional<std::int64_t> read_integer(const Found& found, const Limits& limits);
 std::optional<double> read_number(const Found& found, const Limits& limits);
-/// Nothing where it adds a problem.
+/// None if it adds a problem.
 std::optional<AutoNumber> read_auto_number(const Found& found, const Limits& limits);
 std::optional<std::string> read_string(const Found& found, const Limits& length);
 bool check_object(const Found& found);
 bool check_list(const Found& found, const Limits& length);
-/// Of an object: its number of keys.
+/// Checks the number of keys of an object.
 bool check_size(const Found& found, const Limits& size);
 /// Any value, as one line of text.
 std::string any_value(const Found& found);
 bool check_array(const Found& found, std::size_t size);
 void check_keys(const Found& found, const std::vector<std::string_view>& known);
-/// The index of the name that the value is.
+/// The index of the value in `names`.
 std::optional<std::size_t> read_name(const Found& found, std::span<const std::string_view> names);
-/// The index of the alternative that {"type": NAME, ...} or "NAME" asks for.
+/// The index of the alternative that {"type": NAME, ...} or "NAME" selects.
 std::optional<std::size_t> read_alternative(const Found& found,
                                             std::span<const std::string_view> names);
 void refuse_missing(const Found& parent, std::string_view key, const Field& field);
 
-/// The reading visitor: fills settings from an object of a document. A key that is not there leaves
-/// the member's default; every problem is noted and the reading goes on.
+/// The reading visitor: fills settings from an object of a document. A missing key leaves the
+/// member's default; a problem is recorded and reading continues.
 class ObjectReader {
  public:
   explicit ObjectReader(const Found& object) : object_(object) {}
@@ -71,7 +71,7 @@ class ObjectReader {
     }
   }
 
-  /// A key that is known without being a member.
+  /// Accepts a key that is not a member.
   void know(std::string_view key) { known_.push_back(key); }
   void refuse_unknown_keys() const { check_keys(object_, known_); }
 

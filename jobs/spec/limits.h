@@ -11,12 +11,12 @@
 
 namespace lacuna {
 
-/// Largest magnitude of an integer in a document, 2^53 - 1: beyond it JSON readers that hold every
-/// number in a double (the page's JavaScript among them) change it silently.
+/// Largest magnitude of an integer in a document, 2^53 - 1. JSON readers that store all numbers as
+/// doubles, such as the page's JavaScript, silently change larger ones.
 inline constexpr double max_exact_integer = 9007199254740991.0;
 
-/// What a number, or the length of a string or list, may be. Both ends included, but for `min`
-/// where `above_min` is set.
+/// The range of a number, or of the length of a string or list. Both ends are included, except
+/// `min` if `above_min` is set.
 struct Limits {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
@@ -26,7 +26,7 @@ struct Limits {
   bool allow(double x) const { return (above_min ? x > min : x >= min) && x <= max; }
 };
 
-/// The limits of a field for a number of type T: the table's, and the type's own.
+/// The limits of a field for a number of type T: the table's and the type's.
 template <class T>
 Limits limits_of(const Field& field) {
   Limits limits{field.min, field.max, field.above_min, field.unit};

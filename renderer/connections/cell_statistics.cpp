@@ -43,7 +43,7 @@ void CellStatistics::save(ByteWriter& out) const {
 void CellStatistics::load(ByteReader& in) {
   std::vector<Cell> cells = in.get_vector<Cell>();
   if (cells.size() != cells_.size()) {
-    throw std::runtime_error("saved counts of eye vertices are of another skeleton");
+    throw std::runtime_error("saved statistics of connections belong to another skeleton");
   }
   cells_ = std::move(cells);
   tiles_ = in.get_vector<TileSums>();

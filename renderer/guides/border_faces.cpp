@@ -54,7 +54,7 @@ void BorderFaceLight::make_table(std::uint32_t region) {
 void BorderFaceLight::load(ByteReader& in) {
   std::vector<double> light = in.get_vector<double>();
   if (light.size() != light_.size()) {
-    throw std::runtime_error("saved face irradiance is of other borders");
+    throw std::runtime_error("saved face irradiance belongs to other borders");
   }
   light_ = std::move(light);
   for (std::uint32_t r = 0; r < tables_.size(); ++r) make_table(r);

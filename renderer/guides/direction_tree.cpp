@@ -172,7 +172,7 @@ void DirectionTree::load(ByteReader& in) {
       good = good && nodes_[i].energy[q] >= 0 && std::isfinite(nodes_[i].energy[q]);
     }
   }
-  if (!good) throw std::runtime_error("saved directions are no tree");
+  if (!good) throw std::runtime_error("saved directions are not a valid tree");
 }
 
 }  // namespace lacuna

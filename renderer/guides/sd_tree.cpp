@@ -141,7 +141,7 @@ void SdTree::load(ByteReader& in) {
     good = leaf ? nodes[i].leaf < leaves.size()
                 : std::min(child[0], child[1]) > i && std::max(child[0], child[1]) < nodes.size();
   }
-  if (!good) throw std::runtime_error("saved guide is no tree");
+  if (!good) throw std::runtime_error("saved guide is not a valid tree");
   round_ = round;
   done_ = done;
   nodes_ = std::move(nodes);

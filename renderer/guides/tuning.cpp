@@ -7,9 +7,9 @@ namespace lacuna {
 
 namespace {
 
-/// What a cell uses until it has learned something: the thesis' values.
+/// The values of a cell that has not learned yet: those of the thesis.
 constexpr float first_strength = 8, first_probability = 0.5F;
-/// Fewer paths than this have not told a cell anything.
+/// Paths below which a cell keeps its initial values.
 constexpr double min_paths = 8;
 
 std::uint32_t nearest(const std::vector<float>& values, float wanted) {
@@ -87,7 +87,7 @@ void Tuning::load(ByteReader& in) {
   if (!learns()) return;
   std::vector<double> moments = in.get_vector<double>();
   if (moments.size() != moments_.size()) {
-    throw std::runtime_error("saved strengths are of another scene");
+    throw std::runtime_error("saved strengths belong to another scene");
   }
   moments_ = std::move(moments);
   for (std::size_t cell = 0; cell < chosen_.size(); ++cell) choose(cell);

@@ -46,7 +46,7 @@ std::string reason_of(const Attempt& attempt) {
   const Ending& end = attempt.ending;
   if (interrupted(end)) {
     const std::string& said = attempt.after.error;
-    return said.empty() ? end.reason + ", unasked and without progress" : said;
+    return said.empty() ? end.reason + ", without a request and without progress" : said;
   }
   const bool silent = end.kind == Ending::Kind::exited && end.code == exit_done;
   return silent ? end.reason + " but left no result" : end.reason;

@@ -60,7 +60,7 @@ TEST(ExitClassification, AnInterruptionThatNobodyAskedForIsACrashUnlessTheJobCam
   EXPECT_TRUE(v.crashed);
   a.crashes = 1;
   EXPECT_EQ(classified(a).state.error,
-            interruption.reason + ", unasked and without progress, 2 times");
+            interruption.reason + ", without a request and without progress, 2 times");
   a.after.error = "cannot write x: No space left on device";
   EXPECT_EQ(classified(a).state.error, a.after.error + ", 2 times") << "what the renderer said";
   a.iteration_after = 41;
