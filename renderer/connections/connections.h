@@ -25,7 +25,7 @@ struct PairedConnections : StrategyBase {
 ///   the distributions of the iteration.
 /// - find(): looks up the distributions for an eye vertex, `depth` edges from the eye: a struct
 ///   with a member `cell` < cells().
-/// - sample(): samples one light vertex for each s in [1, longest] that has any, each with
+/// - sample(): samples one light vertex for each s of the LightRange that has any, each with
 ///   probability `survival(s)`, and calls `use(s, drawn)`. VertexSample::probability is the exact
 ///   probability, > 0, of this vertex among those of its s; otherwise the method is biased. Every
 ///   vertex that can contribute has a probability above 0.
@@ -43,7 +43,8 @@ concept SharedConnections = Strategy<C> &&
   c.begin(context, lights, statistics, counters);
   { k.find(v, 1, rng).cell } -> std::convertible_to<std::uint32_t>;
   k.sample(
-      k.find(v, 1, rng), lights, 1, rng, [](int) { return 1.0F; }, [](int, const VertexSample&) {});
+      k.find(v, 1, rng), LightRange{lights, 1}, rng, [](int) { return 1.0F; },
+      [](int, const VertexSample&) {});
 };
 
 template <class C>

@@ -53,13 +53,13 @@ class HybridConnections : public StrategyBase {
 
   /// SharedConnections::sample().
   template <class Survival, class Use>
-  void sample(const CellLookup& lookup, const LightVertices& lights, int longest, Rng& rng,
-              Survival&& survival, Use&& use) const {
+  void sample(const CellLookup& lookup, const LightRange& range, Rng& rng, Survival&& survival,
+              Use&& use) const {
     if (lookup.cached) {
-      cache_.sample(lookup.records, lights, longest, rng, survival, use);
+      cache_.sample(lookup.records, range, rng, survival, use);
       return;
     }
-    skeleton_.sample(lookup.node, lights, longest, rng, survival, [&](int s, VertexSample drawn) {
+    skeleton_.sample(lookup.node, range, rng, survival, [&](int s, VertexSample drawn) {
       drawn.distribution = static_cast<std::uint8_t>(
           drawn.distribution + ImportanceCacheConnections::distributions.size());
       use(s, drawn);

@@ -55,14 +55,14 @@ class ImportanceCacheConnections : public StrategyBase {
   /// SharedConnections::sample(). One of the n nearest records, chosen uniformly, samples all light
   /// vertices; the probability of a vertex is the mean of its probabilities at the n records.
   template <class Survival, class Use>
-  void sample(const CellLookup& lookup, const LightVertices& lights, int longest, Rng& rng,
-              Survival&& survival, Use&& use) const {
+  void sample(const CellLookup& lookup, const LightRange& range, Rng& rng, Survival&& survival,
+              Use&& use) const {
     if (lookup.n == 0) {
-      sample_uniformly(lights, longest, rng, uniform, survival, use);
+      sample_uniformly(range, rng, uniform, survival, use);
       return;
     }
     sample_connections(
-        lights, longest, survival, [&](int s) { return lookup.drawn->table(s).choose(rng); },
+        range, survival, [&](int s) { return lookup.drawn->table(s).choose(rng); },
         [&](int s, std::uint32_t chosen) {
           const std::uint32_t i = lookup.drawn->table(s).resolve(chosen, rng).index;
           float sum = 0;

@@ -31,12 +31,19 @@ class ResamplingCell {
   std::vector<ResamplingTable> tables_;
 };
 
-/// Samples a light vertex for each s in [1, longest] that has vertices, with probability
+/// The light vertices with s in [1, longest].
+struct LightRange {
+  const LightVertices& lights;
+  int longest;
+};
+
+/// Samples a light vertex for each s of the range that has vertices, with probability
 /// `survival(s)`, and calls `use(s, drawn)`. Sampling is split into `choose(s)` and
 /// `resolve(s, chosen)`: each step prefetches what the next one reads.
 template <class Survival, class Choose, class Resolve, class Use>
-void sample_connections(const LightVertices& lights, int longest, Survival&& survival,
-                        Choose&& choose, Resolve&& resolve, Use&& use) {
+void sample_connections(const LightRange& range, Survival&& survival, Choose&& choose,
+                        Resolve&& resolve, Use&& use) {
+  const auto& [lights, longest] = range;
   constexpr std::size_t group = 8;
   struct Chosen {
     int s;
@@ -62,15 +69,16 @@ void sample_connections(const LightVertices& lights, int longest, Survival&& sur
 
 /// sample_connections() with equal probabilities for all vertices.
 template <class Survival, class Use>
-void sample_uniformly(const LightVertices& lights, int longest, Rng& rng, std::uint8_t distribution,
+void sample_uniformly(const LightRange& range, Rng& rng, std::uint8_t distribution,
                       Survival&& survival, Use&& use) {
   sample_connections(
-      lights, longest, survival,
+      range, survival,
       [&](int s) {
-        return static_cast<std::uint32_t>((std::uint64_t{rng.next_u32()} * lights.count(s)) >> 32);
+        return static_cast<std::uint32_t>((std::uint64_t{rng.next_u32()} * range.lights.count(s)) >>
+                                          32);
       },
       [&](int s, std::uint32_t i) {
-        return VertexSample{i, 1 / static_cast<float>(lights.count(s)), distribution};
+        return VertexSample{i, 1 / static_cast<float>(range.lights.count(s)), distribution};
       },
       use);
 }

@@ -43,15 +43,15 @@ class SkeletonConnections : public StrategyBase {
 
   /// SharedConnections::sample().
   template <class Survival, class Use>
-  void sample(const CellLookup& lookup, const LightVertices& lights, int longest, Rng& rng,
-              Survival&& survival, Use&& use) const {
+  void sample(const CellLookup& lookup, const LightRange& range, Rng& rng, Survival&& survival,
+              Use&& use) const {
     if (lookup.distributions == nullptr) {
-      sample_uniformly(lights, longest, rng, uniform, survival, use);
+      sample_uniformly(range, rng, uniform, survival, use);
       return;
     }
     const ResamplingCell& cell = *lookup.distributions;
     sample_connections(
-        lights, longest, survival, [&](int s) { return cell.table(s).choose(rng); },
+        range, survival, [&](int s) { return cell.table(s).choose(rng); },
         [&](int s, std::uint32_t chosen) {
           const AliasTable::Draw d = cell.table(s).resolve(chosen, rng);
           return VertexSample{d.index, d.pmf.value, cell.table(s).distribution(d.index)};

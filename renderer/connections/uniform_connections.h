@@ -28,9 +28,9 @@ class UniformConnections : public StrategyBase {
 
   /// SharedConnections::sample().
   template <class Survival, class Use>
-  static void sample(const CellLookup&, const LightVertices& lights, int longest, Rng& rng,
-                     Survival&& survival, Use&& use) {
-    sample_uniformly(lights, longest, rng, 0, survival, use);
+  static void sample(const CellLookup&, const LightRange& range, Rng& rng, Survival&& survival,
+                     Use&& use) {
+    sample_uniformly(range, rng, 0, survival, use);
   }
 
  private:

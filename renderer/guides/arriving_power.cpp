@@ -4,7 +4,7 @@ namespace lacuna {
 
 namespace {
 
-/// Rays of one part; parts are added up in their order.
+/// Rays of one part; the parts are summed in order.
 constexpr int rays_of_part = 4096;
 
 struct Arrival {

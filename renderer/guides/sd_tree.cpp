@@ -78,14 +78,14 @@ void SdTree::update(std::span<const std::unique_ptr<Accumulator>> accumulators,
 }
 
 void SdTree::next_round(const ThreadPool& pool) {
-  // The paper's c sqrt(2^k): leaves hold the more vertices, the more there are.
+  // The paper's c sqrt(2^k): the limit grows with the number of samples.
   const double most =
       double(settings_.leaf_vertices) * std::sqrt(std::ldexp(1.0, static_cast<int>(round_)));
   divide(0, 0, most);
   pool.for_each(static_cast<int>(leaves_.size()), [&](int i) {
     Leaf& leaf = leaves_[static_cast<std::size_t>(i)];
     leaf.building.build();
-    // Where nothing was found this round, what was known stays.
+    // Without samples in this round, the old tree stays.
     if (!leaf.building.empty()) leaf.sampling = std::move(leaf.building);
     leaf.building = leaf.sampling.refined(leaf_share, deepest_directions);
     leaf.vertices = 0;
@@ -137,7 +137,7 @@ void SdTree::load(ByteReader& in) {
   for (std::size_t i = 0; i < nodes.size() && good; ++i) {
     const auto& child = nodes[i].child;
     const bool leaf = child[0] == 0 && child[1] == 0;
-    // Children come after their parents: there are no circles.
+    // Children come after their parents, so there are no cycles.
     good = leaf ? nodes[i].leaf < leaves.size()
                 : std::min(child[0], child[1]) > i && std::max(child[0], child[1]) < nodes.size();
   }

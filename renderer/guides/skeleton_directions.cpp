@@ -9,7 +9,7 @@ namespace lacuna {
 
 namespace {
 
-/// Nodes whose paths are found with one set of arrays.
+/// Nodes of one task, which share the arrays of ImportancePaths.
 constexpr std::uint32_t nodes_of_part = 16;
 
 }  // namespace
@@ -52,7 +52,7 @@ void SkeletonDirections::prepare(const PrepareContext& context) {
 
 void SkeletonDirections::accumulate(const GuidingSample& sample, Accumulator& accumulator) const {
   const GuidingCell& cell = sample.v.guiding_cell;
-  // A node that draws nothing from its lobes at present goes on learning.
+  // A node whose probability is 0 at present keeps learning.
   if (cell.index >= lobes_.size() || lobes_[cell.index].empty()) return;
   if (!tuning_.wants(cell.index)) return;
   const LobeSet& lobes = lobes_[cell.index];

@@ -377,7 +377,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
       const float p = cell_statistics_.survival(lookup.cell, s, double(throughput), part.threshold);
       return p >= 1 || rng.next() < p ? p : 0.0F;
     };
-    connections_.sample(lookup, part.lights, longest, rng, survival,
+    connections_.sample(lookup, LightRange{part.lights, longest}, rng, survival,
                         [&](int s, const VertexSample& drawn) {
                           const double samples = static_cast<double>(part.lights.paths()) *
                                                  double(drawn.probability) * double(drawn.survival);

@@ -15,8 +15,8 @@ namespace lacuna {
 
 namespace {
 
-/// Many-light rendering (Noel 2015, 4.4): the first connectible vertex of every eye path meets all
-/// virtual lights. Path tracing goes on from there for what they cannot give.
+/// Many-light rendering (Noel 2015, 4.4): the first connectible vertex of every eye path gathers
+/// all virtual lights. Path tracing continues from there for the light that they lack.
 template <Visibility V>
 class ManyLights final : public Integrator {
  public:
@@ -114,7 +114,7 @@ class ManyLights final : public Integrator {
     ShadowQueue<Direct> shadows = {};
   };
 
-  /// What all parts of a picture share.
+  /// The data that all parts of a picture share.
   struct Gathering {
     const VplContributions& terms;
     const LightDraw* draw;  // null: all lights
@@ -122,12 +122,12 @@ class ManyLights final : public Integrator {
     BlockRange range;       // of this pass; what does not come from lights is added in the first
   };
 
-  /// How lights are drawn; null: all are taken.
+  /// Samples the lights; null: all lights are gathered.
   const RandomLightsSettings* random() const {
     return std::get_if<RandomLightsSettings>(&settings_.gather);
   }
 
-  /// Eye paths, and what the lights give to them.
+  /// Traces eye paths and gathers the lights at their shading points.
   Counters gather(const IterationContext& context, const Gathering& with, Image& image) const {
     const Tiling tiling(image, batch_side);
     return for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
@@ -168,7 +168,8 @@ class ManyLights final : public Integrator {
         [](const Splat&) {});
   }
 
-  /// Eye paths: what they meet, direct light, and what the lights leave to path tracing.
+  /// Traces eye paths: emission, direct light, and the light that virtual lights leave to path
+  /// tracing.
   void trace(const IterationContext& context, const Gathering& with, Part& part,
              Counters& counters) const {
     const DirectLight<BsdfGuide> direct(context.scene, guide_, true);
@@ -199,7 +200,7 @@ class ManyLights final : public Integrator {
     Vertex& v = part.batch.vertex(i, depth);
     const bool first = part.shaded[i] == 0;
     const Vertex& before = part.batch.vertex(i, depth - 1);
-    // The edge is one that lights stand for too, but for what the bound cuts off.
+    // Virtual lights also sample this edge, except for the part above the bound.
     const bool shared = !first && depth == part.shaded[i] + 1 && !before.delta;
     if (shared && by_lights()) {
       part.batch.radiance[i] += emitted(scene, v) * missing(terms, before, v);
@@ -229,7 +230,7 @@ class ManyLights final : public Integrator {
 
   bool by_lights() const { return settings_.direct == DirectLighting::lights; }
 
-  /// What the bound of the geometric term cuts off of the light from `to`, as a share.
+  /// The share of the light from `to` that the bound of the geometric term removes.
   static float missing(const VplContributions& terms, const Vertex& at, const Vertex& to) {
     if (to.kind == Vertex::Kind::background) return 0;
     return 1 - terms.share(at, to, to.wp);
@@ -239,7 +240,7 @@ class ManyLights final : public Integrator {
     return e ? v.throughput * e->emission : Rgb(0, 0, 0);
   }
 
-  /// What the lights give to the part's shading points.
+  /// Gathers the lights at the part's shading points.
   void shine(const IterationContext& context, const Gathering& with, Part& part,
              Counters& counters) const {
     std::vector<ShadingPoint> points;
@@ -277,7 +278,7 @@ class ManyLights final : public Integrator {
       count_negative(context, pixel, negative);
     }
   }
-  /// Into a black pixel. Tells whether the value is negative.
+  /// Writes a black pixel. Returns whether the value is negative.
   bool put(Rgb& pixel, const V3d& exact, Counters& counters) const {
     Rgb value(exact);
     const bool negative = value.x < 0 || value.y < 0 || value.z < 0;

@@ -143,8 +143,8 @@ CachePoints::Near CachePoints::near(const ShadingPoint& at) const {
   const SurfacePoint point = surface_point(*at.vertex);
   near.n = static_cast<int>(
       tree_.nearest(point, std::span(near.index).first(static_cast<std::size_t>(neighbours_))));
-  // The closer and the more alike the normal, the more it counts (Clarberg and Akenine-Moeller
-  // 2008): inversely to what the tree ranks by.
+  // Weights are inversely proportional to RecordTree::rank() (Clarberg and Akenine-Moeller
+  // 2008).
   std::array<float, max_neighbours> rank{};
   float farthest = 0;
   const auto n = static_cast<std::size_t>(near.n);

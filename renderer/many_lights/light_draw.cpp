@@ -72,7 +72,7 @@ std::uint64_t LightDraw::draw_for(const V3f& x, std::size_t point,
                                   std::vector<Drawn>& drawn) const {
   std::uint64_t total = 0;
   for (const std::size_t s : stretches) total += lights_of(s);
-  // Steps of 1 or more: none is drawn twice.
+  // Steps are at least 1, so no light is sampled twice.
   const double step = std::max(1.0, double(total) / double(settings_.lights));
   const double u = (double(rng.next_u32()) + 0.5) * 0x1p-32 * step;
   const auto draws = std::min(total, static_cast<std::uint64_t>(settings_.lights));

@@ -13,7 +13,7 @@ namespace {
 struct Group {
   std::size_t first, last;
   std::size_t size() const { return last - first; }
-  /// Largest first; of equals the one that comes first in the list.
+  /// Largest first; among equals the first in the list.
   bool operator<(const Group& o) const {
     return size() != o.size() ? size() < o.size() : first > o.first;
   }

@@ -25,8 +25,8 @@ struct Run {
   std::vector<std::size_t> lights;
 };
 
-/// Lights by group, then by the way they face, and then along a space-filling curve; as they are
-/// where they lie at one place.
+/// Sorts lights by group, by the direction of their normal, and along a space-filling curve; keeps
+/// the order of lights at equal positions.
 template <class Light, class Geometry>
 std::vector<Run> near_one_another(const std::vector<Light>& lights, const LightGroups& groups,
                                   Geometry&& geometry) {
@@ -124,7 +124,7 @@ void VplSet::arrange_diffuse(const std::vector<Diffuse>& lights, bool points,
     block.points = points;
     BlockBounds& bounds = bounds_.emplace_back();
     for (int i = 0; i < Lanes::size; ++i) {
-      // A missing one stands where another does, so that no geometry of it is special.
+      // An unused lane copies the geometry of a light, to avoid special values.
       const Diffuse& l = lights[run.lights[static_cast<std::size_t>(std::min(i, count - 1))]];
       bounds.add({l.x, l.ng});
       const auto put = [i](const V3f& p, Lanes& x, Lanes& y, Lanes& z) {

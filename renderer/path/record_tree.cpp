@@ -13,7 +13,7 @@ constexpr std::size_t most_candidates = 128;  // of a query
 }  // namespace
 
 struct RecordTree::Impl {
-  /// What nanoflann reads.
+  /// The interface that nanoflann reads.
   struct Places {
     std::vector<SurfacePoint> list;
     std::size_t kdtree_get_point_count() const { return list.size(); }

@@ -43,7 +43,7 @@ std::vector<MapTexel> map_texels(const Paraboloid& map) {
 
 namespace {
 
-/// The angle from the middle of what the views see to the texel is above the sum of both cones'.
+/// The angle between the axis of the views' cone and the texel exceeds the sum of both half angles.
 bool unseen(const ViewTree::Node& v, const MapTexel& t) {
   const bool narrow = v.sine * t.cosine + v.cosine * t.sine > 0;  // that sum is below pi
   return narrow && v.n.dot(t.direction) < v.cosine * t.cosine - v.sine * t.sine;

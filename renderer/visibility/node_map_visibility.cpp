@@ -8,7 +8,7 @@ namespace lacuna {
 
 namespace {
 
-/// Raised when the same inputs give other bits.
+/// Increased when the same inputs give other bits.
 constexpr std::uint32_t node_maps_version = 1;
 
 }  // namespace

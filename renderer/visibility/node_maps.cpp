@@ -41,7 +41,7 @@ V3f direction(int face, float u, float v) {
   return d;
 }
 
-/// The middle of texel `i` along a side, in [-1, 1]; i may lie beyond.
+/// The centre of texel `i` along a side, in [-1, 1]; i may lie outside.
 float middle(int i, int size) {
   return (2 * static_cast<float>(i) + 1) / static_cast<float>(size) - 1;
 }
@@ -57,14 +57,14 @@ struct Window {
     high = centre + static_cast<float>(filter) / 2;
     first = static_cast<int>(std::floor(low + 0.5F));
   }
-  /// How much of texel `i` is covered.
+  /// The covered share of texel `i`.
   float weight(int i) const {
     const auto x = static_cast<float>(i);
     return std::max(0.0F, std::min(x + 0.5F, high) - std::max(x - 0.5F, low));
   }
 };
 
-/// Texels compared with a plane. A texel in whose direction the plane does not lie says nothing.
+/// Texels compared with a plane. Texels whose direction does not meet the plane are ignored.
 struct Sums {
   float seen = 0, all = 0;
 };
@@ -103,7 +103,7 @@ NodeMaps trace_node_maps(const Scene& scene, std::span<const V3f> points, int si
 
 namespace {
 
-/// Asks a node's map around a direction.
+/// Evaluates a node's map around a direction.
 class Comparison {
  public:
   /// The plane: points p with p . n = h, seen from the node.
@@ -111,7 +111,7 @@ class Comparison {
       : maps_(maps),
         texels_(maps.texels.data() + index * maps.texels_of_point()),
         n_(n),
-        // Half a texel's width more: what is nearer to the plane than that is taken to be on it.
+        // Plus half a texel's width: points closer to the plane count as on it.
         over_h_(maps.scale * (1 + 1 / static_cast<float>(maps.size)) / h) {}
 
   Sums around(const CubePoint& p, int filter) const {

@@ -6,7 +6,7 @@ namespace lacuna {
 
 namespace {
 
-/// Views stand this many radii of the octree's leaves before their surface: of a flat one, no
+/// Views are this many radii of the octree's leaves in front of their surface: on a flat one, no
 /// leaf's sphere then rises above the horizon.
 constexpr float before_surface = 2;
 
