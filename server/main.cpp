@@ -44,11 +44,10 @@ void define_options(CLI::App& app, ServiceSettings& s) {
                  "address to listen on; beyond loopback only with --token-file")
       ->capture_default_str();
   app.add_option("--token-file", s.access.token_file,
-                 "file with the token that callers must show: one line of 16 to 256 characters, "
+                 "file with the token that clients must send: one line of 16 to 256 characters, "
                  "mode 0600");
   app.add_option("--host", s.access.hosts,
-                 "NAME or NAME:PORT of this service in header Host, beside its address; may be "
-                 "repeated")
+                 "further NAME or NAME:PORT of this service in the Host header; may be repeated")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_flag("--verbose", s.verbose, "log every request");
   app.add_option("--data", s.data, "folder of the jobs; default: $LACUNA_DATA or lacuna-data");
@@ -59,7 +58,7 @@ void define_options(CLI::App& app, ServiceSettings& s) {
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
   app.add_option("--max-attempts", s.queue.max_attempts,
-                 "how often a renderer that crashes is started for one job")
+                 "how often the renderer of a job is started if it crashes")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   app.add_option("--grace", s.grace_seconds, "seconds between SIGTERM and SIGKILL")
@@ -68,28 +67,30 @@ void define_options(CLI::App& app, ServiceSettings& s) {
   app.add_option_function<std::string>(
          "--memory-limit",
          [&s](const std::string& text) { s.limits.memory_bytes = memory_limit(text); },
-         "memory a renderer may use, as 4G or 512M; 0: no limit")
+         "memory limit of a renderer, for example 4G or 512M; 0: no limit")
       ->default_str("0");
-  app.add_option("--nice", s.limits.niceness, "how far renderers stand back for all else")
+  app.add_option("--nice", s.limits.niceness,
+                 "niceness of renderers: how far they yield to other processes")
       ->check(CLI::Range(0, 19))
       ->capture_default_str();
-  app.add_option("--max-jobs", s.queue.max_waiting, "jobs that may wait or run; more are refused")
+  app.add_option("--max-jobs", s.queue.max_waiting,
+                 "limit of jobs that wait or run; more are refused")
       ->check(CLI::Range(1, 10'000'000))
       ->capture_default_str();
   app.add_option_function<std::string>(
          "--disk-floor",
          [&s](const std::string& text) { s.care.disk_floor = byte_size("--disk-floor", text); },
-         "room to leave on the disk, as 1G; with less, jobs wait and renderers stop")
+         "free disk space to keep, for example 1G; with less, jobs wait and renderers stop")
       ->default_str(byte_size_text(s.care.disk_floor));
   app.add_option("--keep-jobs", s.care.keep_jobs,
-                 "remove the oldest jobs that are over when there are more; 0: keep all")
+                 "finished jobs to keep; the oldest are removed; 0: keep all")
       ->check(CLI::Range(0, 10'000'000))
       ->capture_default_str();
   app.add_option("--keep-days", s.care.keep_days,
-                 "remove jobs this long after they ended; 0: keep all")
+                 "remove jobs this many days after they ended; 0: keep all")
       ->check(CLI::Range(0.0, 36'500.0))
       ->capture_default_str();
-  app.add_flag("--uploads", s.uploads, "take scenes in over HTTP (PUT /api/scenes/NAME.glb)");
+  app.add_flag("--uploads", s.uploads, "accept scenes over HTTP (PUT /api/scenes/NAME.glb)");
   app.add_option("--renderer", s.renderer, "the renderer; default: lacuna beside this program");
   app.add_option("--web", s.web, "folder of the page; default: web of the source tree");
 }

@@ -10,7 +10,7 @@ namespace lacuna {
 /// "lacuna-server 0.1.0"
 std::string service_version();
 
-/// The whole service, put together.
+/// The whole service.
 class Service {
  public:
   /// Throws std::exception with a message for a person: an address that is no loopback, a data

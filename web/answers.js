@@ -70,7 +70,7 @@ export function paysText(pays, known) {
 export function biasText(cell) {
   const bias = cell.bias_between_runs ?? cell.bias_squared;
   if (!bias) return "—";
-  if (bias.low === undefined) return "one run cannot tell";
+  if (bias.low === undefined) return "needs several runs";
   return bias.low > 0 ? `biased: ${estimateText(bias)}` : `none seen (below ${significant(Math.max(bias.high, 0))})`;
 }
 
@@ -86,7 +86,7 @@ export const frontParts = (front, names) => front.map((part) => ({
   text: `${significant(part.from)} to ${significant(part.to)}${thin}s`,
   name: names.get(part.cell),
   doubts: [
-    part.tied.length > 0 && `not told apart from ${someOf(part.tied, names)}`,
+    part.tied.length > 0 && `tied with ${someOf(part.tied, names)}`,
     !part.supported && "at the reference's own noise: not supported",
   ].filter(Boolean).join("; "),
 }));

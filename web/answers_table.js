@@ -15,7 +15,7 @@ const told = (text, supported) => (supported ? text : h("span.muted",
   { title: "At the reference's own noise: not supported" }, `(${text})`));
 
 const gainCell = (gain, supported = true) =>
-  h("span", { className: verdict(gain), title: verdict(gain) === "" && gain ? "Not told apart from 1" : "" },
+  h("span", { className: verdict(gain), title: verdict(gain) === "" && gain ? "Not significantly different from 1" : "" },
     told(gainText(gain), supported));
 
 function timeColumns(picture) {

@@ -26,7 +26,7 @@ export function answersView(query, remember, pictures) {
   const figure = h("div.plot");
   const table = h("div");
   const crops = h("section");
-  const several = note("Only cells that estimate one picture are compared: of one scene, camera and resolution, "
+  const several = note("Only cells that estimate the same picture are compared: of one scene, camera and resolution, "
     + "against one reference.");
   const choose = (key) => (value) => {
     query.set(key, value);
@@ -61,7 +61,7 @@ export function answersView(query, remember, pictures) {
   function drawFront(picture, names, how) {
     const parts = frontParts(picture.front[how.key], names);
     replace(front, h("h2", "Lowest error"), parts.length === 0
-      ? note(how.key === "render" ? "No run is done yet." : "No run shows what its preparation takes.")
+      ? note(how.key === "render" ? "No run is done yet." : "No run measured its preparation.")
       : h("ol.front", parts.map((part) => h("li", `${part.text}: `, h("strong", part.name),
         part.doubts && h("span.muted", ` (${part.doubts})`)))));
   }
@@ -117,7 +117,7 @@ export function answersView(query, remember, pictures) {
       front, h("figure", figure),
       h("h2", "All cells"), h("div.switches", which.element), table,
       note("Means are geometric, over the seeds; in parentheses 95 % intervals (Student's t of the logarithms, "
-        + "Welch's for ratios). A ratio whose interval holds 1 is not told apart from no difference."), crops),
+        + "Welch's for ratios). A ratio whose interval contains 1 is not significant."), crops),
     show(next) {
       answers = next;
       draw();

@@ -53,7 +53,7 @@ async function route() {
   shown = true;
   window.scrollTo(0, 0);
   try {
-    if (!match) throw new ApiError(404, { title: "No such view", detail: `#${path} leads nowhere.` });
+    if (!match) throw new ApiError(404, { title: "No such view", detail: `There is no view #${path}.` });
     await (alone || match.show)(main, { params: match.pattern.exec(path).groups ?? {}, query, signal });
   } catch (error) {
     if (signal.aborted) return;

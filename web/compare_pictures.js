@@ -30,7 +30,7 @@ export function comparePictures(query, signal) {
   function showApart(entries) {
     for (const { id, name, image, layers } of entries) {
       const why = numbers === null ? noViewer
-        : `${layers ? "Not of the first's size" : "No layers.json"}: image.png, each as bright as it chose.`;
+        : `${layers ? "Size differs from the first" : "No layers.json"}: image.png, each at its own exposure.`;
       if (!plain.has(id)) plain.set(id, picture(`Picture of ${name}`, [h("a", { href: `#/job/${id}` }, name), why]));
       plain.get(id).load(image);
     }

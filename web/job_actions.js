@@ -13,7 +13,7 @@ export const doubled = (budget) => Object.fromEntries(Object.entries(budget)
 function askBudget(id, { budget }) {
   const field = h("input", { value: JSON.stringify(doubled(budget)), spellcheck: false, required: true });
   return ask("Extend this job", [
-    h("p", "It goes on where it stopped. The whole new budget, no limit smaller than before:"),
+    h("p", "The job continues where it stopped. Enter the new total budget; no limit may be smaller than before:"),
     h("label", h("span", "Budget "), field)], "Extend",
   () => tell(id, "extend", JSON.stringify({ budget: JSON.parse(field.value) })));
 }
@@ -40,7 +40,7 @@ export function jobActions(id, { changed, gone, failed }) {
     extend: button("Extend …", act(() => askBudget(id, job.job))),
     cancel: button("Cancel job", act(() => ask("Cancel this job?", "What it has rendered so far is kept.",
       "Cancel job", () => tell(id, "cancel"))), { className: "danger" }),
-    delete: button("Delete …", act(() => ask("Delete this job?", "Its pictures, its curve and its report go with it.",
+    delete: button("Delete …", act(() => ask("Delete this job?", "This also deletes its pictures, curve and report.",
       "Delete for good", () => remove(id)), gone), { className: "danger" }),
   };
   return {

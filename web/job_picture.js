@@ -49,8 +49,8 @@ export function jobPicture(id, query, signal) {
     }
     const image = files["image.png"];
     put(plain.element, !image ? "" : numbers === null ? noViewer
-      : over ? "This job has no layers.json, which newer versions write: its tone-mapped image.png is shown."
-        : "A preview: the tone-mapped image.png as last written. The values come with the end of the job.");
+      : over ? "This job has no layers.json (written by newer versions); its tone-mapped image.png is shown."
+        : "Preview: the latest tone-mapped image.png. Pixel values are available when the job ends.");
     plain.load(image ? fileUrl(id, "image.png", version) : null);
   }
   return { element: h("div", place, note), strategies, update };

@@ -10,7 +10,7 @@ const first = "seconds render_cpu";
 /// A figure and its switches; `query` holds the choice, `sx` and `sy`. `show(jobs)` draws jobs with their
 /// reports; the panel is hidden while there is nothing in which they differ.
 export function scalingPanel(query, signal) {
-  const figure = figureBox("No report has both numbers.", signal);
+  const figure = figureBox("No report contains both quantities.", signal);
   const choose = (key) => (value) => {
     query.set(key, value);
     draw();
@@ -21,7 +21,7 @@ export function scalingPanel(query, signal) {
   const save = (kind) => small(`Save scaling as ${kind}`, () => saveFigure(make(), `lacuna-scaling.${kind.toLowerCase()}`));
   const element = h("section", h("h2", "Scaling"),
     h("div.switches", y.element, x.element, h("span.tools", save("SVG"), save("PNG"))), figure.element,
-    note("Of each curve the exponent of a power of x, fitted to its logarithms."));
+    note("The exponent of a power law of x, fitted to the logarithms of each curve."));
   let jobs = [];
   let make = () => null;
 

@@ -6,8 +6,8 @@ let asking = null;
 
 function askToken(post) {
   const field = h("input", { type: "password", required: true, autocomplete: "off" });
-  return ask("This service asks for its token", [
-    h("p", "It stands in the file that lacuna-server was given as --token-file."),
+  return ask("This service requires a token", [
+    h("p", "The token is in the file passed to lacuna-server as --token-file."),
     h("label", "Token ", field)], "Go on", () => post(field.value));
 }
 

@@ -121,10 +121,10 @@ export function strategies(query, signal, open) {
     const [steps, others] = [set, "distributions"].map((of) => parts.filter((p) => p.set === of).map(cellOf));
     cells = [...steps, ...others];
     setText(title, set ? "Strategies" : "Resampling distributions");
-    setText(about, [set && "s vertices are made from the light, t from the eye.",
-      set === unweighted && "Each estimates all light of its path length, with its mean below: those in a row agree, but for "
-        + "noise and what a strategy cannot find.",
-      (set !== unweighted || others.length > 0) && "In %: the share of the picture's light that is added.",
+    setText(about, [set && "s vertices are sampled from the light, t from the eye.",
+      set === unweighted && "Each image estimates all light of its path length, with its mean below. Images in a row agree, except for "
+        + "noise and paths that a strategy cannot sample.",
+      (set !== unweighted || others.length > 0) && "In %: its share of the picture's light.",
       "All at one exposure; a click shows one in the viewer."].filter(Boolean).join(" "));
     replace(say);
     replace(body, set && pyramid(steps), others.length > 0 && [set && h("h3", "Resampling distributions"),

@@ -29,7 +29,7 @@ function equalTimes(series, axis, metric) {
   return [
     table(heads, rows, true),
     note(`${metric.label}, interpolated in log-log. `,
-      instants.length === 0 && "The curves share no instant. ",
+      instants.length === 0 && "The curves have no common time. ",
       `${number(target)} is the smallest error that all of them reach.`),
   ];
 }

@@ -89,7 +89,7 @@ function fileReader(id, view, signal) {
     }
     if (changed("report.json")) {
       const report = JSON.parse(await getText(id, "report.json", signal));
-      replace(view.report, h("h2", "Where time and rays went"), effortView(report),
+      replace(view.report, h("h2", "Time and rays"), effortView(report),
         h("h2", "Report"), reportView(report));
     }
     versions = next;

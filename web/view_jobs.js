@@ -21,13 +21,13 @@ async function noJobs(signal) {
     h("p", "Post the first from a shell, or from ", h("a", { href: "#/new" }, "New job"), ":"),
     h("pre", { tabIndex: 0 }, command), copyButton(() => command),
     scenes.length === 0 && problem(
-      "The server sees no scenes: start it with LACUNA_SCENES set to a folder that has some."));
+      "The server has no scenes: start it with LACUNA_SCENES set to a folder of scenes."));
 }
 
 /// The buttons of the choice.
 function choice(redraw) {
   const compare = button("Compare", () => { location.hash = `#/compare?jobs=${[...chosen].join(",")}`; });
-  const clear = button("Clear the choice", () => {
+  const clear = button("Clear the selection", () => {
     chosen.clear();
     redraw();
     show();

@@ -55,9 +55,9 @@ export async function show(main, { query, signal }) {
     },
   },
   h("p", h("label", { htmlFor: "scene" }, "Scene "), scene,
-    scenes.length === 0 && h("span.problem", " the server sees no scenes")),
-  h("p", h("label", { htmlFor: "job" }, "Job file (JSON); keys that are left out take their defaults. "),
-    h("a", { href: "/api/schema/job" }, "Every key, with what it allows")),
+    scenes.length === 0 && h("span.problem", " the server has no scenes")),
+  h("p", h("label", { htmlFor: "job" }, "Job file (JSON); missing keys have their defaults. "),
+    h("a", { href: "/api/schema/job" }, "All keys and their allowed values")),
   text, errors, submit);
 
   main.append(h("h1", "New job"), form);

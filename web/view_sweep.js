@@ -63,7 +63,7 @@ export async function show(main, { params, query, signal }) {
   };
   const cancel = button("Cancel sweep", act("Cancel this sweep?", "What its runs have rendered so far is kept.",
     "Cancel sweep", () => cancelSweep(id), () => step().catch((e) => say(e.message))), { className: "danger" });
-  const remove = button("Delete …", act("Delete this sweep?", "All its jobs go with it: pictures, curves, reports.",
+  const remove = button("Delete …", act("Delete this sweep?", "This also deletes all its jobs, with their pictures, curves and reports.",
     "Delete for good", () => removeSweep(id), () => { location.hash = "#/sweeps"; }), { className: "danger" });
   const view = answersView(query, () => remember(query), cellPictures(query, signal, say));
   main.append(

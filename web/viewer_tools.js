@@ -28,7 +28,7 @@ export function viewerTools(actions) {
       h("span.tools",
         sign("−", "Zoom out", () => actions.zoomBy(0.5)), sign("+", "Zoom in", () => actions.zoomBy(2)),
         sign("Fit", "Show the whole picture", actions.fit),
-        sign("1:1", "One pixel of the picture on one of the screen", actions.oneToOne), level),
+        sign("1:1", "One picture pixel per screen pixel", actions.oneToOne), level),
       small("Keys", showKeys)),
     /// `stops` null: what is shown has no exposure.
     show({ options, chosen, stops, zoom }) {

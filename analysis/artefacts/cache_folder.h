@@ -15,17 +15,17 @@ struct CacheEntry {
   std::filesystem::path file;
   std::uint64_t bytes = 0;
   std::chrono::system_clock::time_point used;  ///< when it was last written or loaded
-  EntryHeader header;                          ///< what could be read of it
-  std::optional<EntryRefusal> refusal;         ///< nothing: all is well, as far as was looked
+  EntryHeader header;                          ///< as far as it could be read
+  std::optional<EntryRefusal> refusal;         ///< none: the entry passed the check
 };
 
 enum class CacheCheck {
-  headers,    ///< only what an entry says of itself
-  checksums,  ///< every byte
+  headers,    ///< read the header only
+  checksums,  ///< read and verify every byte
 };
 
-/// The entries of `folder`, the last used first; other files are left out. A folder that is not
-/// there has none. Throws std::system_error.
+/// The entries of `folder`, most recently used first, without other files. A missing folder has no
+/// entries. Throws std::system_error.
 std::vector<CacheEntry> list_cache(const std::filesystem::path& folder, CacheCheck check);
 
 /// What was removed.
@@ -34,16 +34,17 @@ struct CacheRemoval {
   std::uint64_t bytes = 0;
 };
 
-/// Removes the entries that nobody has used for `unused`, and what processes that were killed left.
-/// Throws std::system_error for one that cannot be removed.
+/// Removes the entries that were not used for `unused`, and temporary files of killed processes.
+/// Throws std::system_error if an entry cannot be removed.
 CacheRemoval clear_cache(const std::filesystem::path& folder, std::chrono::seconds unused);
 
-/// Removes the entries that were not used for the longest time until the rest has `byte_limit` or
-/// less; never `keep`, nor one that somebody makes anew meanwhile. What cannot be removed stays.
+/// Removes the least recently used entries until the rest takes at most `byte_limit` bytes. Never
+/// removes `keep`, or an entry that another process is writing. Entries that cannot be removed
+/// stay.
 CacheRemoval trim_cache(const std::filesystem::path& folder, std::uint64_t byte_limit,
                         const std::filesystem::path& keep);
 
-/// The file that whoever makes `entry` has locked.
+/// The lock file that a process holds while it makes `entry`.
 std::filesystem::path entry_lock_file(const std::filesystem::path& entry);
 
 }  // namespace lacuna

@@ -16,17 +16,17 @@
 
 namespace lacuna {
 
-/// How an artefact becomes bytes and is read back: specialise with
+/// The serialisation of an artefact: specialise with
 ///
 ///     static void write(ArtefactWriter& out, const T& value);
 ///     static T read(ArtefactReader& in);
 ///
-/// read() trusts nothing: it throws std::runtime_error for what write() cannot have written, and
-/// allocates no more than the bytes that remain can fill.
+/// read() validates its input: it throws std::runtime_error for data that write() cannot have
+/// written, and allocates no more than the remaining bytes can fill.
 template <class T>
 struct Codec;
 
-/// For read(): throws std::runtime_error(what) unless it holds.
+/// For read(): throws std::runtime_error(what) unless `holds`.
 inline void require(bool holds, const char* what) {
   if (!holds) throw std::runtime_error(what);
 }
@@ -42,7 +42,7 @@ inline constexpr bool is_plain<Imath::Vec3<T>> = is_plain<T>;
 template <class T, std::size_t n>
 inline constexpr bool is_plain<std::array<T, n>> = is_plain<T>;
 
-/// One after the other.
+/// Writes all values in order.
 template <class... T>
 void encode(ArtefactWriter& out, const T&... values) {
   (Codec<T>::write(out, values), ...);
@@ -85,8 +85,8 @@ struct Codec<std::string> {
   static std::string read(ArtefactReader& in) { return in.get_string(); }
 };
 
-/// The size of a grid, each side in [0, 65536]; it is refused if `in` does not hold `bytes` for
-/// each of its units of `side` x `side` x `side` voxels.
+/// Reads the size of a grid, each side in [0, 65536]. Throws std::runtime_error if the remaining
+/// input is shorter than `bytes` for each of its blocks of `side` x `side` x `side` voxels.
 Imath::V3i read_grid_size(ArtefactReader& in, int side, std::size_t bytes);
 
 template <class T>

@@ -82,7 +82,7 @@ void ArtefactReader::read(void* to, std::size_t n) {
 void ArtefactReader::finish() {
   char more = 0;
   if (remaining_ > 0 || unpack(&more, 1) > 0 || packed_left_ > 0 || used_ < block_.size()) {
-    throw std::runtime_error("its content is longer than what is read of it");
+    throw std::runtime_error("its content has extra bytes at its end");
   }
   if (!frame_ended_) throw_early_end();
 }

@@ -11,7 +11,7 @@ struct ZSTD_DCtx_s;
 
 namespace lacuna {
 
-/// Compresses what is put into it (zstd), and appends the result to a string.
+/// Compresses its input (zstd) and appends the result to a string.
 class ArtefactWriter : public PutsValues<ArtefactWriter> {
  public:
   /// `packed` outlives the writer.
@@ -19,9 +19,9 @@ class ArtefactWriter : public PutsValues<ArtefactWriter> {
   ~ArtefactWriter();
 
   void append(const void* from, std::size_t n);
-  /// How many bytes were put in.
+  /// Number of input bytes so far.
   std::uint64_t written() const { return written_; }
-  /// No more follows.
+  /// Call after the last input.
   void finish() { compress(nullptr, 0, true); }
 
  private:
@@ -33,26 +33,26 @@ class ArtefactWriter : public PutsValues<ArtefactWriter> {
   std::uint64_t written_ = 0;
 };
 
-/// Gives back what an ArtefactWriter was told, a block of the file at a time. Trusts no byte:
-/// throws std::runtime_error where they are none of a writer's, or end early.
+/// Decompresses the output of an ArtefactWriter, one block of the file at a time. Throws
+/// std::runtime_error for invalid or truncated data.
 class ArtefactReader : public GetsValues<ArtefactReader> {
  public:
-  /// `fd`: an open file, in which `packed_bytes` lie at `offset`. They say that they hold
-  /// `content_bytes`.
+  /// `fd`: an open file with `packed_bytes` of compressed data at `offset`, whose header claims
+  /// `content_bytes` of content.
   ArtefactReader(int fd, std::uint64_t offset, std::uint64_t packed_bytes,
                  std::uint64_t content_bytes);
   ~ArtefactReader();
 
   void read(void* to, std::size_t n);
-  /// Bytes of the content that were not read yet.
+  /// Bytes of content not yet read.
   std::uint64_t remaining() const { return remaining_; }
-  /// All of it was read, and nothing follows.
+  /// Throws unless all content was read and no data follows.
   void finish();
 
  private:
-  /// More of the file, if there is more of it.
+  /// Reads the next block of the file, if any.
   void refill();
-  /// At most `n` bytes; returns how many.
+  /// Decompresses at most `n` bytes; returns how many.
   std::size_t unpack(void* to, std::size_t n);
 
   std::unique_ptr<ZSTD_DCtx_s, std::size_t (*)(ZSTD_DCtx_s*)> context_;
@@ -63,8 +63,8 @@ class ArtefactReader : public GetsValues<ArtefactReader> {
   bool frame_ended_ = false;
 };
 
-/// More content than this never comes out of so many packed bytes: a block of zstd has four bytes
-/// or more, and holds 128 KiB at most.
+/// Upper bound of the content of `packed_bytes`: a zstd block has at least four bytes and at most
+/// 128 KiB of content.
 constexpr std::uint64_t most_content(std::uint64_t packed_bytes) {
   return (packed_bytes / 4 + 1) << 17;
 }

@@ -10,8 +10,8 @@
 
 namespace lacuna {
 
-/// Writes a settings struct by its table as "resolution=128 method=fast", for an artefact's key:
-/// every field, also those with their default value, numbers so that they read back to the same.
+/// Writes a settings struct as "resolution=128 method=fast", for an artefact's key: all fields,
+/// including those with default values; numbers read back to the same value.
 class SettingsText {
  public:
   template <class T>

@@ -20,48 +20,47 @@ namespace lacuna {
 struct StoreSettings {
   std::filesystem::path folder;  ///< of the entries; made when needed; empty: no cache
   std::uint64_t byte_limit = 0;  ///< of all entries together
-  double wait_seconds = 600;     ///< at most, for another process that makes the same
-  std::string label;             ///< what people call the scene; stands in the entries
-  std::function<void(const std::string&)> message;        ///< what is waited for; may be empty
-  std::function<void(const std::string&)> warning;        ///< what went wrong; may be empty
-  std::function<void(const std::string&)> building = {};  ///< told the type, before; may be empty
+  double wait_seconds = 600;     ///< longest wait for another process that builds the same artefact
+  std::string label;             ///< readable name of the scene, stored in the entries
+  std::function<void(const std::string&)> message;        ///< reports waits; may be empty
+  std::function<void(const std::string&)> warning;        ///< reports problems; may be empty
+  std::function<void(const std::string&)> building = {};  ///< gets the type before; may be empty
   std::function<bool()> interrupted;                      ///< true ends a wait; may be empty
 };
 
-/// Asked to stop while it waited for another process.
+/// StoreSettings::interrupted returned true during a wait for another process.
 class WaitInterrupted : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The artefacts of a scene: each is made at most once, whoever asks for it, and kept on disk for
-/// the next job. Whatever is wrong with the cache (a damaged entry, a full disk, a process that
-/// hangs) costs time only: it is reported, and the artefact is built. Safe to use from many
-/// threads.
+/// The artefacts of a scene: each is built at most once among all processes, and cached on disk for
+/// the next job. A problem with the cache (a damaged entry, a full disk, a process that hangs)
+/// costs time only: it is reported, and the artefact is built. Thread-safe.
 class ArtefactStore {
  public:
   explicit ArtefactStore(StoreSettings settings) : settings_(std::move(settings)) {}
 
-  /// The artefact of `key`: the one that somebody in this process still holds, or its entry in the
-  /// cache, or what `build` returns, which is then kept. `Codec<T>` says how. While another process
-  /// or thread makes it, waits. Throws what `build` throws, and WaitInterrupted.
+  /// The artefact of `key`: the object still in use in this process, or its cache entry, or the
+  /// result of `build`, which is then cached by Codec<T>. Waits while another process or thread
+  /// builds it. Throws the exceptions of `build`, and WaitInterrupted.
   template <class T>
   std::shared_ptr<const T> get(const ArtefactKey& key, const std::function<T()>& build);
 
-  /// Notes that nobody asked for an artefact of this type.
+  /// Records that no artefact of this type was requested.
   void not_needed(const std::string& type);
-  /// What became of every request so far, in the order in which they ended.
+  /// The outcomes of all requests so far, in the order in which they ended.
   std::vector<ArtefactRecord> records() const;
 
  private:
-  /// A request without its type.
+  /// A type-erased request.
   struct Request {
     std::type_index type;
     std::function<std::shared_ptr<const void>()> build;
     std::function<void(ArtefactWriter&, const void*)> encode;
     std::function<std::shared_ptr<const void>(ArtefactReader&)> decode;
   };
-  /// What this process has of a key. `busy` is held by the thread that gets it.
+  /// The artefact of a key in this process. `busy` is held by the thread that gets it.
   struct Slot {
     explicit Slot(std::type_index t) : type(t) {}
     const std::type_index type;
@@ -76,7 +75,7 @@ class ArtefactStore {
   void add(ArtefactRecord record);
 
   const StoreSettings settings_;
-  mutable std::mutex mutex_;  // of what follows
+  mutable std::mutex mutex_;  // guards the members below
   std::map<std::string, Slot> slots_;
   std::vector<ArtefactRecord> records_;
 };

@@ -11,8 +11,8 @@
 
 namespace lacuna {
 
-/// A set of blocks of a complex, as one bit a block, walked by slices across y or z. Several
-/// threads may work at it, each at slices of its own.
+/// A set of blocks of a complex, one bit per block, traversed by slices of constant y or z. Several
+/// threads may use it at once, each on different slices.
 class BlockSet {
  public:
   explicit BlockSet(Imath::V3i blocks)

@@ -5,8 +5,8 @@ namespace {
 
 constexpr FaceType X = 1, Y = 2, Z = 4;
 
-/// Cells with exactly one of the bits, and with none.
-struct Tally {
+/// Counts bits per cell: `one` has the cells with at least one, `more` those with several.
+struct ContactCount {
   Plane one, more;
 
   void add(Plane p) {
@@ -23,7 +23,7 @@ Plane free_edges(const ComplexBlock* x, const std::array<std::ptrdiff_t, 3>& str
   constexpr int b = (a + 1) % 3, c = (a + 2) % 3;
   constexpr FaceType A = 1 << a, AB = A | 1 << b, AC = A | 1 << c;
   const Plane ab = x->faces[AB], ac = x->faces[AC];
-  Tally n{ab, Plane::zero()};
+  ContactCount n{ab, Plane::zero()};
   n.add(from_low<b>(ab, x[-stride[b]].faces[AB]));
   n.add(ac);
   n.add(from_low<c>(ac, x[-stride[c]].faces[AC]));
@@ -32,7 +32,7 @@ Plane free_edges(const ComplexBlock* x, const std::array<std::ptrdiff_t, 3>& str
 }
 
 template <int a>
-void add_edges_at_vertex(Tally& n, const ComplexBlock* x, std::ptrdiff_t stride) {
+void add_edges_at_vertex(ContactCount& n, const ComplexBlock* x, std::ptrdiff_t stride) {
   const Plane e = x->faces[1 << a];
   n.add(e);
   n.add(from_low<a>(e, x[-stride].faces[1 << a]));
@@ -65,7 +65,7 @@ std::array<Plane, 3> find_free(const CubicalComplex& complex, std::vector<Border
   std::array<Plane, 3> facets;
   l.free_edges = {free_edges<0>(x, stride, facets[0]), free_edges<1>(x, stride, facets[1]),
                   free_edges<2>(x, stride, facets[2])};
-  Tally n{Plane::zero(), Plane::zero()};
+  ContactCount n{Plane::zero(), Plane::zero()};
   add_edges_at_vertex<0>(n, x, stride[0]);
   add_edges_at_vertex<1>(n, x, stride[1]);
   add_edges_at_vertex<2>(n, x, stride[2]);

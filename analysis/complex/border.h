@@ -9,7 +9,7 @@
 
 namespace lacuna {
 
-/// What a collapse holds of a block beside the complex.
+/// The data of a block that a collapse needs besides the complex.
 struct alignas(64) BorderBlock {
   std::array<Plane, 3> free_edges;  ///< by axis: edges that exactly one square contains
   Plane free_vertices;              ///< vertices that exactly one edge contains
@@ -27,13 +27,13 @@ std::array<Plane, 3> find_free(const CubicalComplex& complex, std::vector<Border
                                std::size_t block);
 
 /// Fills in the layer L of a block, the closure of all faces that belong to a free pair, and
-/// returns the cells where it has any. Needs the L of the blocks below along each axis, and the
-/// free edges and vertices of those above.
+/// returns the cells that have such faces. Requires the L of the preceding blocks along each axis,
+/// and the free edges and vertices of the following ones.
 Plane take_border_of(const CubicalComplex& complex, std::vector<BorderBlock>& border,
                      std::size_t block);
 
-/// The neighbouring blocks, as steps from `low` to `high` along each axis, that what lies within
-/// two cells of the given cells reaches into.
+/// The neighbouring blocks, as offsets from `low` to `high` along each axis, that contain cells
+/// within two cells of the given ones.
 struct Reach {
   Imath::V3i low, high;
 };

@@ -5,8 +5,9 @@
 
 namespace lacuna {
 
-/// The complement of a complex as components of missing cubes, two of them linked where the square
-/// between them is missing; the grid has one cell more on every side, which belong to the outside.
+/// The connected components of the complement of a complex: missing cubes, adjacent where the
+/// square between them is missing. The grid is extended by one cell on every side, which is
+/// outside.
 class ComplementComponents {
  public:
   explicit ComplementComponents(const CubicalComplex& complex,
@@ -14,9 +15,9 @@ class ComplementComponents {
 
   /// Cavities and the outside.
   std::uint32_t count() const { return static_cast<std::uint32_t>(components_.count()); }
-  /// Of the missing cube at `cell`, in [-1, size].
+  /// The component of the missing cube at `cell`, in [-1, size].
   std::uint32_t of(Imath::V3i cell) const { return components_.at(cell + Imath::V3i(1)); }
-  /// What everything outside the grid belongs to.
+  /// The component of the outside of the grid.
   std::uint32_t outside() const { return of(Imath::V3i(-1)); }
 
  private:

@@ -50,13 +50,13 @@ Imath::V3i CubicalComplex::corner(std::size_t block) const {
 }
 
 bool CubicalComplex::has(Imath::V3i cell, FaceType type) const {
-  const Place p = place(cell);
+  const BitAddress p = address_of(cell);
   const BitBlock b = data_[p.block].faces[static_cast<std::size_t>(type)].bits();
   return (b.z[static_cast<std::size_t>(p.lane)] >> p.bit & 1) != 0;
 }
 
 void CubicalComplex::add(Imath::V3i cell, FaceType type) {
-  const Place p = place(cell);
+  const BitAddress p = address_of(cell);
   Plane& plane = data_[p.block].faces[static_cast<std::size_t>(type)];
   BitBlock b = plane.bits();
   b.z[static_cast<std::size_t>(p.lane)] |= std::uint64_t{1} << p.bit;
@@ -64,7 +64,7 @@ void CubicalComplex::add(Imath::V3i cell, FaceType type) {
 }
 
 void CubicalComplex::remove(Imath::V3i cell, FaceType type) {
-  const Place p = place(cell);
+  const BitAddress p = address_of(cell);
   Plane& plane = data_[p.block].faces[static_cast<std::size_t>(type)];
   BitBlock b = plane.bits();
   b.z[static_cast<std::size_t>(p.lane)] &= ~(std::uint64_t{1} << p.bit);

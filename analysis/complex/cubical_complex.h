@@ -34,24 +34,24 @@ class CubicalComplex {
   /// k).
   explicit CubicalComplex(const BitGrid3& voxels);
 
-  /// Of the grid, in voxels: faces lie in cells [0, size].
+  /// Size of the grid in voxels; faces lie in cells [0, size].
   Imath::V3i size() const { return size_; }
-  /// With the ring.
+  /// Number of blocks along each axis, including the ring.
   Imath::V3i blocks() const { return blocks_; }
-  /// Number of blocks, the ring's too, for a grid of that size (checked_voxels).
+  /// Total number of blocks, including the ring, for a grid of that size (checked_voxels).
   static std::uint64_t blocks_of(Imath::V3i size);
   /// Distance in memory between neighbouring blocks along an axis.
   std::ptrdiff_t stride(int axis) const {
     return axis == 0 ? 1 : axis == 1 ? blocks_.x : std::ptrdiff_t{blocks_.x} * blocks_.y;
   }
-  /// Of the block with that position in the ring's coordinates.
+  /// Index of the block at a position in coordinates that include the ring.
   std::size_t index(int bx, int by, int bz) const {
     return static_cast<std::size_t>(bx + stride(1) * by + stride(2) * bz);
   }
   ComplexBlock* data() { return data_.data(); }
   const ComplexBlock* data() const { return data_.data(); }
   std::size_t block_count() const { return data_.size(); }
-  /// The cell where a block begins.
+  /// The lowest cell of a block.
   Imath::V3i corner(std::size_t block) const;
 
   /// Whether the face of that type at `cell` (in [0, size]) is in the complex.
@@ -66,11 +66,11 @@ class CubicalComplex {
   bool operator==(const CubicalComplex& o) const;
 
  private:
-  struct Place {
+  struct BitAddress {
     std::size_t block;
     int lane, bit;
   };
-  Place place(Imath::V3i cell) const {
+  BitAddress address_of(Imath::V3i cell) const {
     return {index((cell.x >> 3) + 1, (cell.y >> 3) + 1, (cell.z >> 3) + 1), cell.z & 7,
             (cell.y & 7) * 8 + (cell.x & 7)};
   }

@@ -6,7 +6,7 @@
 
 namespace lacuna {
 
-/// What was done to get a skeleton.
+/// Counts of the computation of a skeleton.
 struct ThinningReport {
   int layers = 0;              ///< of the first collapse: how deep the space is
   std::size_t kept_edges = 0;  ///< edges of W before piercing
@@ -21,15 +21,16 @@ struct ThinComplex {
   KeptEdges kept;
 };
 
-/// CurvilinearSkeleton (thesis Alg. 3): edges that live long for their place are kept, all else is
-/// collapsed. Homotopic to the closure of `domain`; may hold squares around cavities.
+/// CurvilinearSkeleton (thesis Alg. 3): keeps the edges of KeepRule and collapses the rest.
+/// Homotopic to the closure of `domain`; may contain squares around cavities.
 ThinComplex thin(const BitGrid3& domain, const SpaceMaps& maps, ThinningReport& report,
                  const ThreadPool* pool = nullptr);
 
-/// The same, then pierced (6.2.4) and thinned again until it is a graph: vertices and edges only.
-/// After each round the keep rule is asked again on the pierced complex, with the distances of the
-/// original voxels and the old edges kept: with the old edges alone a closed surface would shrink
-/// into the point where a curve meets it, and the space around a floating object would get no node.
+/// thin(), then pierced (6.2.4) and thinned again until it is a graph of vertices and edges only.
+/// After each round the keep rule is evaluated again on the pierced complex, with the distances of
+/// the original voxels, and the old edges stay kept. With the old edges alone a closed surface
+/// would shrink to the point where a curve meets it, and the space around a floating object would
+/// have no node.
 ///
 /// Throws MemoryLimitError, before it allocates, if it would take more than `byte_limit` bytes.
 CubicalComplex curvilinear_skeleton(const BitGrid3& domain, const SpaceMaps& maps,

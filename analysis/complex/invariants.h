@@ -6,7 +6,7 @@
 
 namespace lacuna {
 
-/// What thinning must not change.
+/// The topological invariants of a complex, which thinning preserves.
 struct Topology {
   std::ptrdiff_t euler = 0;       ///< Euler characteristic
   std::ptrdiff_t components = 0;  ///< b0
@@ -15,9 +15,9 @@ struct Topology {
   bool operator==(const Topology&) const = default;
 };
 
-/// Counted without any thinning: components and cavities (components of the complement but the
-/// outside) by union-find over runs of cells, the Euler characteristic by counting faces, tunnels
-/// from the three by Euler and Poincare: b0 - b1 + b2 = chi.
+/// Computed without thinning: components and cavities (components of the complement except the
+/// outside) by union-find over runs of cells, the Euler characteristic chi by counting faces, and
+/// tunnels from b0 - b1 + b2 = chi (Euler and Poincare).
 Topology topology(const CubicalComplex& complex);
 
 }  // namespace lacuna

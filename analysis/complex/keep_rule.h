@@ -9,26 +9,26 @@
 
 namespace lacuna {
 
-/// The empty space as the rule sees it.
+/// The maps of the empty space that the rule uses.
 struct SpaceMaps {
   /// Distance of every voxel to the scene (0 there), L1 as in the thesis.
   const Grid3<std::uint16_t>& distance;
-  /// Whether a ball of that distance with at least a radius (> 0) holds a voxel of empty space and
-  /// lies in it: Omega(voxel) >= radius. Safe from several threads.
+  /// opening_reaches(voxel, radius), radius > 0: whether some ball of at least that radius, in that
+  /// distance, lies in the empty space and contains the voxel: Omega(voxel) >= radius. Thread-safe.
   std::function<bool(Imath::V3i, int)> opening_reaches;
 };
 
-/// Finds the edges that a curvilinear skeleton must keep (line 1 of thesis Alg. 3) while it watches
-/// a collapse without constraint: those with
+/// Finds the edges that a curvilinear skeleton must keep (line 1 of thesis Alg. 3) by observing an
+/// unconstrained collapse: those with
 ///
 ///     Lifespan > decenterness + Birth - D
 ///
-/// and those that never die. Dates are held only of edges that outlive a layer as facets: of all
-/// others Birth = Death, and every edge has Birth >= D in the closure of its voxels. Edges of
-/// closed surfaces, which are never born, are not kept, or piercing would free nothing.
+/// and those that never die. Dates are stored only for edges that stay facets for a whole layer:
+/// for all others Birth = Death, and every edge has Birth >= D in the closure of its voxels. Edges
+/// of closed surfaces, which are never born, are not kept; otherwise piercing would free nothing.
 class KeepRule final : public LayerObserver {
  public:
-  /// What it takes, but for the few dates that it holds.
+  /// Memory per block, without the few dates.
   static constexpr std::uint64_t bytes_per_block =
       sizeof(std::array<Plane, 3>) + sizeof(std::vector<int>);
 
@@ -37,9 +37,9 @@ class KeepRule final : public LayerObserver {
 
   void edges(int date, std::size_t block, const std::array<Plane, 3>& present,
              const std::array<Plane, 3>& facets) override;
-  /// After the last layer: what was born and is still there never dies.
+  /// Call after the last layer: edges that were born and are still present never die.
   void finish();
-  /// How often a ball had to be looked for.
+  /// Number of calls of opening_reaches.
   std::size_t openings_asked() const { return openings_asked_; }
 
  private:
@@ -57,7 +57,7 @@ class KeepRule final : public LayerObserver {
   std::vector<std::array<Plane, 3>> alive_;  // edges that are facets, by block and axis
   std::vector<std::vector<Birth>> births_;   // of these
   std::atomic<std::size_t> openings_asked_ = 0;
-  std::mutex keeping_;  // of kept_
+  std::mutex keeping_;  // guards kept_
 };
 
 }  // namespace lacuna

@@ -8,8 +8,8 @@
 
 namespace lacuna {
 
-/// The constraint set W of Alg. 2: edges that thinning must not remove, closed by their vertices
-/// (left open, curves would be eaten from their ends). Few blocks hold any.
+/// The constraint set W of Alg. 2: edges that thinning must not remove, and their vertices (without
+/// them, curves would be removed from their ends). Few blocks contain any.
 class KeptEdges {
  public:
   struct Block {
@@ -17,7 +17,7 @@ class KeptEdges {
     std::array<Plane, 3> edges{Plane::zero(), Plane::zero(), Plane::zero()};  ///< by axis
   };
 
-  /// What it takes where nothing is kept.
+  /// Memory per block without kept edges.
   static constexpr std::uint64_t bytes_per_block = sizeof(std::uint32_t);
 
   explicit KeptEdges(const CubicalComplex& complex)
@@ -25,7 +25,7 @@ class KeptEdges {
         blocks_(1),
         strides_{1, complex.stride(1), complex.stride(2)} {}
 
-  /// The edges along `axis` at the set cells of one block.
+  /// Adds the edges along `axis` at the set cells of one block.
   void add(std::size_t block, int axis, const Plane& edges) {
     Block& b = at(block);
     b.edges[static_cast<std::size_t>(axis)] |= edges;
@@ -38,7 +38,7 @@ class KeptEdges {
           .vertices |= over;
     }
   }
-  /// What is kept of a block; empty planes where nothing is.
+  /// The kept faces of a block; empty planes if there are none.
   const Block& of(std::size_t block) const { return blocks_[slots_[block]]; }
   /// Number of edges.
   std::size_t count() const {

@@ -6,7 +6,7 @@
 
 namespace lacuna {
 
-/// What a pass took of a block along its axis: cubes, both kinds of squares, edges.
+/// The faces that a pass removed from a block along its axis: cubes, both kinds of squares, edges.
 using TakenFaces = std::array<Plane, 4>;
 
 /// One axis t and orientation of a layer (thesis Alg. 2, lines 5 to 8), for a block: takes its free

@@ -8,9 +8,9 @@
 
 namespace lacuna {
 
-/// Union-find over indices, with the links wherever the caller has them: `link(i)` is a reference
-/// to the index that `i` follows, which is `i` itself at the end of its set. All that follow one
-/// another end at the smallest index of their set. Shortens the chain it walks.
+/// Union-find over indices with the parent links stored by the caller: `link(i)` is a reference to
+/// the parent of `i`, which is `i` itself at the root. Returns the root of the set of `i`, its
+/// smallest index. Halves the path.
 template <class Index, class Link>
 Index end_of_set(Index i, const Link& link) {
   while (link(i) != i) {
@@ -20,7 +20,7 @@ Index end_of_set(Index i, const Link& link) {
   return i;
 }
 
-/// Makes one set of those of `a` and `b`; false if they were one already.
+/// Merges the sets of `a` and `b`; false if they were the same set.
 template <class Index, class Link>
 bool join_sets(Index a, Index b, const Link& link) {
   a = end_of_set(a, link);
@@ -29,7 +29,7 @@ bool join_sets(Index a, Index b, const Link& link) {
   return a != b;
 }
 
-/// The same with links of its own: 0 .. n - 1, each a set at first.
+/// Union-find with its own links: 0 .. n - 1, each a set at first.
 class DisjointSets {
   std::vector<std::uint32_t> links_;
   auto link() {
@@ -40,7 +40,7 @@ class DisjointSets {
   explicit DisjointSets(std::size_t n) : links_(n) {
     std::iota(links_.begin(), links_.end(), std::uint32_t{0});
   }
-  /// One more, which is a set of its own; returns it.
+  /// Adds an index as a set of its own, and returns it.
   std::uint32_t add() {
     links_.push_back(static_cast<std::uint32_t>(links_.size()));
     return links_.back();

@@ -15,7 +15,7 @@ template <class T>
 class Grid3 {
  public:
   Grid3() = default;
-  /// Values are not initialised: whoever makes a grid writes all of it.
+  /// Values are not initialised: the caller must write all of them.
   explicit Grid3(Imath::V3i size)
       : size_(size), cells_(std::make_unique_for_overwrite<T[]>(count())) {}
 
@@ -59,9 +59,8 @@ inline bool in_grid(Imath::V3i v, Imath::V3i size) {
   return v.x >= 0 && v.y >= 0 && v.z >= 0 && v.x < size.x && v.y < size.y && v.z < size.z;
 }
 
-/// The voxel that a point, in grid coordinates, belongs to: up to half a voxel outside the grid,
-/// where rounding may bring it, one of the outermost; further out, or where it is not a number,
-/// none.
+/// The voxel that contains a point in grid coordinates. Points up to half a voxel outside the grid,
+/// by rounding, belong to the outermost voxels; none for points further out and NaN.
 inline std::optional<Imath::V3i> voxel_at(Imath::V3d point, Imath::V3i size) {
   constexpr double rim = 0.5;
   Imath::V3i v;

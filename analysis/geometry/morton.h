@@ -13,9 +13,9 @@ constexpr std::uint64_t spread_bits(std::uint64_t v) {
   return (v | v << 2) & 0x1249249249249249;
 }
 
-/// The place of a cell along a curve that fills a cube of 2^21 cells along each side: cells that
-/// follow one another lie near one another, and the three highest bits of a code of 3 n bits name
-/// an eighth of the cube (Morton 1966). Coordinates in [0, 2^21).
+/// The Morton code of a cell of a cube of 2^21 cells along each side: cells with similar codes are
+/// close to one another, and the three highest bits of a code of 3 n bits are an octant of the cube
+/// (Morton 1966). Coordinates in [0, 2^21).
 constexpr std::uint64_t morton_code(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
   return spread_bits(x) | spread_bits(y) << 1 | spread_bits(z) << 2;
 }

@@ -17,16 +17,15 @@ void for_each_in_shell(int radius, Visit&& visit) {
     }
 }
 
-/// The best of the voxels of a shell on the side that a normal points to (Noel 2015, eq. 154): the
-/// one with the largest product of offset and normal, which is to be above 0; among equals the
-/// nearest, then the first offered.
+/// Finds the voxel of a shell that lies furthest along a normal (Noel 2015, eq. 154): the one with
+/// the largest dot product > 0 of offset and normal; among equals the nearest, then the first.
 struct BestAlongNormal {
   double product = 0;
   int length2 = 0;
   Imath::V3i voxel{0};
 
   bool found() const { return length2 > 0; }
-  /// Whether a voxel at `offset` would be taken.
+  /// Whether a voxel at `offset` with dot product `p` is better.
   bool beaten_by(double p, Imath::V3i offset) const {
     return p > product || (found() && p == product && offset.dot(offset) < length2);
   }

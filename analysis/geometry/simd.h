@@ -6,17 +6,17 @@
 
 namespace lacuna {
 
-// Eight numbers in a register. In long loops GCC 12 calls a function wherever
-// std::experimental::simd broadcasts a scalar, which cost a whole picture with probabilistic
-// visibility a third of its time more.
+// Eight numbers in a register. std::experimental::simd is not used: in long loops GCC 12 calls a
+// function wherever it broadcasts a scalar, and a picture with probabilistic visibility takes a
+// third more time.
 
-/// What a comparison of eight floats says of each.
+/// The result of a comparison of eight floats.
 struct Mask8 {
   __m256 v;
 };
 inline Mask8 operator&&(Mask8 a, Mask8 b) { return {_mm256_and_ps(a.v, b.v)}; }
 inline bool any(Mask8 m) { return _mm256_movemask_ps(m.v) != 0; }
-/// Bit i: element i.
+/// Bit i is element i.
 inline unsigned movemask(Mask8 m) { return static_cast<unsigned>(_mm256_movemask_ps(m.v)); }
 /// The inverse, from the lowest eight bits.
 inline Mask8 mask_from_bits(unsigned bits) {
@@ -50,7 +50,7 @@ inline Float8 operator-(Float8 a, Float8 b) { return _mm256_sub_ps(a.v, b.v); }
 inline Float8 operator*(Float8 a, Float8 b) { return _mm256_mul_ps(a.v, b.v); }
 inline Float8 operator/(Float8 a, Float8 b) { return _mm256_div_ps(a.v, b.v); }
 inline Float8 operator-(Float8 a) { return _mm256_xor_ps(a.v, _mm256_set1_ps(-0.0F)); }
-// A comparison with what is no number is false.
+// A comparison with NaN is false.
 inline Mask8 operator>(Float8 a, Float8 b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_GT_OQ)}; }
 inline Mask8 operator>=(Float8 a, Float8 b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_GE_OQ)}; }
 /// Where `m` holds `a`, else `b`.
@@ -66,7 +66,7 @@ inline Float8 abs(Float8 a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0F), a.v
 inline Float8 round(Float8 a) {
   return _mm256_round_ps(a.v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
 }
-/// The sum of all, in a fixed order.
+/// The sum of all elements, in a fixed order.
 inline float reduce_add(Float8 a) {
   const __m128 four = _mm_add_ps(_mm256_castps256_ps128(a.v), _mm256_extractf128_ps(a.v, 1));
   const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
@@ -101,7 +101,7 @@ inline bool all_equal(Int8 a, Int8 b) {
   return _mm256_movemask_epi8(_mm256_cmpeq_epi32(a.v, b.v)) == -1;
 }
 inline Int8 keep_where(Mask8 m, Int8 a) { return _mm256_and_si256(_mm256_castps_si256(m.v), a.v); }
-/// Towards 0; of what has no such number the lowest.
+/// Rounded towards 0; the lowest integer where the result is out of range or NaN.
 inline Int8 truncate(Float8 a) { return _mm256_cvttps_epi32(a.v); }
 inline Int8 round_to_int(Float8 a) { return _mm256_cvtps_epi32(a.v); }
 inline Float8 to_float(Int8 a) { return _mm256_cvtepi32_ps(a.v); }

@@ -8,9 +8,8 @@
 
 namespace lacuna {
 
-/// The only thing the analysis floor knows of a scene: world-space triangles without any order.
-/// Every index is below `positions.size()` and every coordinate is finite (the scene loader sees to
-/// it).
+/// The input of the analysis: the triangles of a scene in world space, in any order. Every index is
+/// below `positions.size()` and every coordinate is finite (the scene loader ensures it).
 struct TriangleSoup {
   std::vector<Imath::V3f> positions;                    ///< scene units
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< three indices into `positions`

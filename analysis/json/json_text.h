@@ -9,20 +9,21 @@ namespace lacuna {
 using Json = nlohmann::json;                 // keys in alphabetical order: documents that are read
 using OrderedJson = nlohmann::ordered_json;  // keys as they were put: documents that are written
 
-// Text from JSON and back, compiled in one place: writer and parser cost seconds in each source.
+// Converts JSON to text and back. In one source, because the library's writer and parser cost
+// seconds of compilation in each.
 
 enum class Escape { as_needed, all_but_ascii };
 
-/// One line of text. Bytes that are no UTF-8 (an error message may quote any) become U+FFFD; a
+/// JSON as one line of text. Invalid UTF-8 (an error message may quote any bytes) becomes U+FFFD; a
 /// number that is not finite becomes null.
 std::string json_text(const Json& json, Escape escape = Escape::as_needed);
 std::string json_text(const OrderedJson& json, Escape escape = Escape::as_needed);
 
-/// Text of a document for files: two spaces of indent, a newline at its end; else the same.
+/// JSON as text for files: json_text() with an indent of two spaces and a final newline.
 std::string document_text(const OrderedJson& json);
 
-/// JSON that the project itself has written. Throws std::logic_error for anything else; what comes
-/// from outside is read by parse_document().
+/// Parses JSON that the project itself has written. Throws std::logic_error for anything else;
+/// input from outside is parsed by parse_document().
 OrderedJson parse_own(std::string_view text);
 
 }  // namespace lacuna

@@ -11,15 +11,15 @@
 
 namespace lacuna {
 
-/// A sparse voxel octree (Kol et al. 2018, 3.1): only cubes that hold something have a node.
+/// A sparse voxel octree (Kol et al. 2018, 3.1): only occupied cubes have a node.
 struct Octree {
   static constexpr int most_levels = 12;  ///< below the root; TriangleBox is exact to there
 
   struct Node {
     Imath::V3f centre;              ///< of its cube, scene units
-    std::uint32_t first_child = 0;  ///< the others follow it
-    std::uint8_t octants = 0;       ///< bit i: there is a child in eighth i (x + 2 y + 4 z)
-    std::uint8_t children = 0;      ///< how many; 0: a leaf
+    std::uint32_t first_child = 0;  ///< the other children follow it
+    std::uint8_t octants = 0;       ///< bit i: there is a child in octant i (x + 2 y + 4 z)
+    std::uint8_t children = 0;      ///< number of children; 0: a leaf
     std::uint8_t level = 0;         ///< of the root 0
   };
 
@@ -33,7 +33,7 @@ struct Octree {
     return {nodes.data() + first[first.size() - 2], nodes.data() + nodes.size()};
   }
   bool empty() const { return nodes.empty(); }
-  /// Of the sphere around a node's cube.
+  /// Radius of the bounding sphere of a node's cube.
   float radius(int level) const { return radius(side, level); }
   static float radius(double side, int level) {
     constexpr float half_diagonal = std::numbers::sqrt3_v<float> / 2;  // of a cube of side 1

@@ -6,18 +6,19 @@
 
 namespace lacuna {
 
-/// The cube that a scene's octree fills: around the box of all triangles, with room to spare.
+/// The cube of a scene's octree: contains the bounding box of all triangles with a margin.
 struct OctreeCube {
   Imath::V3d corner{0.0};
   double side = 1;
 };
 OctreeCube octree_cube(const TriangleSoup& soup);
-/// The same of their box.
+/// The cube for a bounding box.
 OctreeCube octree_cube(const Imath::V3d& low, const Imath::V3d& high);
 
-/// Every leaf's closed cube meets a triangle, and every cube that does is a leaf: the voxels of
-/// voxelize(), but never as a dense grid. `levels` in [0, Octree::most_levels]. The same for any
-/// number of threads. Throws MemoryLimitError if it would take more than `byte_limit` bytes.
+/// The octree of a scene's surfaces: a cube is a leaf if and only if its closure meets a triangle,
+/// like the voxels of voxelize(), but without a dense grid. `levels` in [0, Octree::most_levels].
+/// The same for any number of threads. Throws MemoryLimitError if it would take more than
+/// `byte_limit` bytes.
 Octree surface_octree(const TriangleSoup& soup, int levels, const ThreadPool& pool,
                       std::uint64_t byte_limit);
 

@@ -10,13 +10,13 @@
 
 namespace lacuna {
 
-/// What a region's border is made of.
+/// Which faces a region's border includes.
 enum class BorderFaces {
   portals,  ///< faces to other regions only
   all       ///< also faces to the scene and to the outside of the grid (Noel 2015, 10.4.2)
 };
 
-/// The opening border of every region: its faces, seen from inside.
+/// The opening border of every region: its faces, with normals that leave the region.
 struct Borders {
   /// 6 * regions + 1 offsets into `voxels`: faces of region r at side s are
   /// [first[6 r + s], first[6 r + s + 1]).

@@ -9,7 +9,7 @@
 
 namespace lacuna {
 
-/// A region that means: the voxel is not in the domain.
+/// The label of voxels outside the domain.
 inline constexpr std::uint32_t no_region = 0xffffffff;
 
 /// One region of the opening forest labelling.
@@ -25,12 +25,12 @@ struct RegionLabels {
   Grid3<std::uint32_t> label;    ///< the region of every voxel, or no_region
   Grid3<std::uint16_t> opening;  ///< the opening map that they come from
   std::vector<Region> regions;
-  std::uint64_t pieces_joined = 0;  ///< cut off from their root: see join_stray_pieces()
+  std::uint64_t pieces_joined = 0;  ///< see join_stray_pieces()
 };
 
-/// Labels every voxel by the root of its tree; roots of equal opening that touch through faces are
-/// one (def. 10.8, 10.9). Then makes every region 6-connected by join_stray_pieces(). The forest's
-/// memory becomes the labels'; runs along x are added for a time.
+/// Labels every voxel by the root of its tree; roots of equal opening that share faces are one
+/// region (def. 10.8, 10.9). Then makes every region 6-connected by join_stray_pieces(). Reuses the
+/// memory of the forest for the labels, and temporarily needs runs along x.
 RegionLabels forest_labels(OpeningForest forest, const ThreadPool& pool);
 
 }  // namespace lacuna

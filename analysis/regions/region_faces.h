@@ -8,7 +8,7 @@
 
 namespace lacuna {
 
-/// Faces around the voxels of one plane that leave a region: where portals and borders come from.
+/// Enumerates the faces of a plane's voxels that leave a region, for portals and borders.
 class RegionFaces {
  public:
   explicit RegionFaces(const Grid3<std::uint32_t>& label) : label_(label), size_(label.size()) {}

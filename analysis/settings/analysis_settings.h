@@ -8,27 +8,27 @@ namespace lacuna {
 
 inline constexpr int max_resolution = 2048;  ///< distances keep to 16 bits
 
-/// How far a voxel is from the scene, where thinning decides which curves to keep.
+/// The distance of a voxel to the scene by which thinning decides which curves to keep.
 enum class ThinningDistance { l1, chebyshev };
 
 template <>
 struct EnumTable<ThinningDistance> {
   static constexpr std::array<EnumValue<ThinningDistance>, 2> values{{
-      {ThinningDistance::l1, "l1", "steps over faces (thesis 6.2.3)"},
+      {ThinningDistance::l1, "l1", "steps across voxel faces (thesis 6.2.3)"},
       {ThinningDistance::chebyshev, "chebyshev",
-       "steps over corners too: fewer short spurs where the scene is rough"},
+       "steps across faces, edges and corners: fewer short spurs where the scene is rough"},
   }};
 };
 
-/// To which node a voxel of empty space belongs.
+/// The skeleton node that a voxel of empty space belongs to.
 enum class NodeMapping { geodesic, visible };
 
 template <>
 struct EnumTable<NodeMapping> {
   static constexpr std::array<EnumValue<NodeMapping>, 2> values{{
-      {NodeMapping::geodesic, "geodesic", "the nearest node, through empty space (thesis Alg. 5)"},
+      {NodeMapping::geodesic, "geodesic", "the geodesically nearest node (thesis Alg. 5)"},
       {NodeMapping::visible, "visible",
-       "the nearest node that the voxel sees, where it sees one near by"},
+       "the nearest node that the voxel sees, if there is one nearby"},
   }};
 };
 
@@ -48,7 +48,7 @@ void describe(V& v, AnalysisSettings& s) {
      .max = max_resolution,
      .unit = "voxels"});
   v("distance", s.distance, {.doc = "the distance that decides which curves thinning keeps"});
-  v("mapping", s.mapping, {.doc = "the node that a voxel of empty space belongs to"});
+  v("mapping", s.mapping, {.doc = "the skeleton node that a voxel of empty space belongs to"});
 }
 
 }  // namespace lacuna

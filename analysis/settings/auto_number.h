@@ -5,11 +5,11 @@
 
 namespace lacuna {
 
-/// How a document says that a number is left to the method.
+/// The value in a document for a number that the method determines itself.
 inline constexpr std::string_view auto_name = "auto";
 
-/// A number in settings that the method may find by itself: a document holds a number within the
-/// field's range, or "auto".
+/// A number in settings that the method can determine itself: a document contains a number within
+/// the field's range, or "auto".
 struct AutoNumber {
   std::optional<double> value;  ///< none: "auto"
 

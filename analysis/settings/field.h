@@ -5,7 +5,7 @@
 
 namespace lacuna {
 
-/// What a settings table says about one field besides its name, its type and its default.
+/// The description of a settings field besides its name, type and default.
 ///
 /// Every settings struct has member initialisers (the defaults) and one function
 ///
@@ -13,7 +13,7 @@ namespace lacuna {
 ///       v("max_depth", s.max_depth, {.doc = "longest path, in edges", .min = 1, .max = 128});
 ///     }
 ///
-/// from which the JSON reader, the JSON writer, the schema and the settings pages are all made
+/// from which the JSON reader, the JSON writer, the schema and the settings pages follow
 /// (jobs/spec). A struct that is one of several choices ({"type": NAME, ...}) also has
 /// `static constexpr std::string_view name, doc`; the choice is a std::variant of such structs.
 struct Field {
@@ -30,8 +30,8 @@ struct Field {
 };
 
 /// Name and one-line documentation of each value of an enum that appears in settings: specialise
-/// with `static constexpr std::array<EnumValue<E>, N> values`, or rows that have more columns. The
-/// only place where the names stand.
+/// with `static constexpr std::array<EnumValue<E>, N> values`, or rows that have more columns.
+/// Names are defined nowhere else.
 template <class E>
 struct EnumTable;
 

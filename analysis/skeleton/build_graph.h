@@ -9,11 +9,11 @@
 
 namespace lacuna {
 
-/// The graph of a complex of vertices and edges (Noel 2015, 6.2.5), as curvilinear_skeleton() gives
-/// it: a node for each vertex, x fastest, then y, then z. Radii are Euclidean, in voxels, from the
-/// corner to the nearest closed cube that is not in the domain, what lies outside the grid included
+/// The graph of a complex of vertices and edges (Noel 2015, 6.2.5), such as the result of
+/// curvilinear_skeleton(): a node for each vertex, x fastest, then y, then z. Radii are Euclidean,
+/// in voxels, from the corner to the nearest closed cube outside the domain or the grid
 /// (squared_ball_radius()). `l1` is l1_distance() of the domain. Throws std::invalid_argument if
-/// the complex holds squares or cubes, or is not of the size of `l1`.
+/// the complex contains squares or cubes, or differs from `l1` in size.
 SkeletonGraph build_graph(const CubicalComplex& skeleton, const Grid3<std::uint16_t>& l1,
                           const ThreadPool& pool);
 

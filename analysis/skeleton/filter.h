@@ -7,22 +7,22 @@
 
 namespace lacuna {
 
-/// A sparser skeleton, and which of its nodes stands for each node of the one it came from.
+/// A sparser skeleton, and the filtered node that represents each node of the original skeleton.
 struct FilteredSkeleton {
   SkeletonGraph graph;
-  std::vector<std::uint32_t>
-      source;  ///< of each filtered node its node in the first graph, ascending
-  std::vector<std::uint32_t> parent;  ///< of each node of the first graph its filtered node
+  std::vector<std::uint32_t> source;  ///< original node of each filtered node, ascending
+  std::vector<std::uint32_t> parent;  ///< filtered node of each original node
 };
 
-/// Noel 2015, 6.3, Alg. 4: nodes in the maximal ball of a larger one are removed: few nodes stay
-/// where the space is wide, many where it is narrow. Decided here, where the text leaves it open:
+/// Noel 2015, 6.3, Alg. 4: removes nodes that lie in the maximal ball of a larger one, so few nodes
+/// remain where the space is wide and many where it is narrow. The thesis leaves open what is
+/// decided here:
 /// - Nodes of equal radius are taken in the order of their indices.
-/// - A node is accessible from another (line 6) if the graph leads there through nodes that lie in
-///   the ball and belong to no other node yet. So each filtered node stands for a connected part
-///   of the graph, the filtered graph is the graph with these parts contracted, and its components
-///   are the graph's. This takes linear time, after sorting.
-/// - A node that others belong to is never given to another (line 7 alone would allow it where a
+/// - A node is accessible from another (line 6) if a path of nodes that lie in the ball and belong
+///   to no other node yet leads to it. So each filtered node represents a connected part of the
+///   graph, the filtered graph is the graph with these parts contracted, and both have the same
+///   components. This takes linear time, after sorting.
+/// - A node that others belong to is never assigned to another (line 7 alone would allow it where a
 ///   ball reaches around a wall, and leave grandchildren).
 FilteredSkeleton filter_skeleton(const SkeletonGraph& graph);
 

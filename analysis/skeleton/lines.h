@@ -11,12 +11,12 @@ namespace lacuna {
 /// each is a neighbour of the next. The extrema may be the same node.
 using SkeletonLine = std::vector<std::uint32_t>;
 
-/// Marks the nodes that lines end at: those of degree other than two, and in a ring without any the
-/// node of largest radius (the first among equals).
+/// Marks the ends of lines: the nodes of degree other than two, and in a ring without such a node
+/// the node of largest radius (the first among equals).
 std::vector<bool> topology_nodes(const SkeletonGraph& graph);
 
-/// All lines between the nodes that are marked as ends, each once. Every ring of the graph must
-/// hold an end, and every node that is no end must have two neighbours.
+/// All lines between the nodes marked as ends, each once. Every ring of the graph must contain an
+/// end, and all other nodes must have two neighbours.
 std::vector<SkeletonLine> skeleton_lines(const SkeletonGraph& graph, const std::vector<bool>& ends);
 
 }  // namespace lacuna

@@ -9,16 +9,16 @@
 
 namespace lacuna {
 
-/// The node mapping grid (Noel 2015, 6.4, Alg. 5): of each voxel of the domain the nearest node,
+/// The node mapping grid (Noel 2015, 6.4, Alg. 5): the nearest node of each voxel of the domain,
 /// along paths of voxels that share faces; no_node outside the domain. The same for any number of
-/// threads. Decided here, where the text leaves it open:
-/// - Among nodes equally near, a voxel takes that of a neighbour one step nearer: of the first of
-///   them in the order -x, +x, -y, +y, -z, +z. Only in such ties can it differ from the thesis'
-///   queue, where the order of the nodes decides.
-/// - A node starts from all voxels of the domain that touch its lattice corner, at distance 0: the
-///   corner may be all that joins them. A voxel of several nodes is that of the first.
-/// - Domains are connected through shared edges and corners of voxels. What paths over faces do not
-///   reach is entered last, over an edge or a corner, and filled from there.
+/// threads. The thesis leaves open what is decided here:
+/// - Among equally near nodes, a voxel takes the node of a neighbour one step nearer: of the first
+///   in the order -x, +x, -y, +y, -z, +z. Only such ties can differ from the thesis' queue, where
+///   the order of the nodes decides.
+/// - A node starts from all voxels of the domain that touch its lattice corner, at distance 0, even
+///   if the corner alone connects them. A voxel that touches several nodes belongs to the first.
+/// - Domains are connected through shared edges and corners of voxels. Voxels that paths over faces
+///   do not reach are entered last, over an edge or a corner, and filled from there.
 /// Only a component of the domain without any node keeps no_node. Linear time. Throws
 /// std::invalid_argument if a node's corner lies outside the grid, MemoryLimitError if it would
 /// take more than `byte_limit` bytes.

@@ -14,13 +14,13 @@ enum class NodeKind : std::uint8_t {
   coverage,   ///< lies in the ball of neither of its extrema
 };
 
-/// The simplified skeleton: the nodes that hold the shape, joined along the lines between them.
+/// The simplified skeleton: the nodes that define the shape, connected along the lines between
+/// them.
 struct SimplifiedSkeleton {
   SkeletonGraph graph;
   std::vector<NodeKind> kinds;        ///< of each node
-  std::vector<std::uint32_t> source;  ///< of each node its node in the first graph, ascending
-  std::vector<std::uint32_t>
-      parent;  ///< s(n): of each node of the first graph the nearest extremum
+  std::vector<std::uint32_t> source;  ///< original node of each node, ascending
+  std::vector<std::uint32_t> parent;  ///< s(n): the nearest extremum of each original node
 };
 
 /// Noel 2015, 7.2.1. It has as many components and as many independent loops as `graph`, and every

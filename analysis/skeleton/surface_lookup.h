@@ -10,13 +10,13 @@
 
 namespace lacuna {
 
-/// How far from its own voxel a surface point looks for a mapped one, in voxels.
+/// Largest distance, in voxels, from a surface point's own voxel to its mapped voxel.
 inline constexpr int lookup_reach = 4;
 
-/// From a surface point to the skeleton's node that it belongs to (Noel 2015, eq. 151-155).
+/// Finds the skeleton node that a surface point belongs to (Noel 2015, eq. 151-155).
 class SurfaceLookup {
  public:
-  /// `map` is a node mapping grid; it is kept by reference and must outlive the look-up.
+  /// `map` is a node mapping grid; it is held by reference and must outlive the lookup.
   SurfaceLookup(const GridTransform& transform, const Grid3<std::uint32_t>& map)
       : transform_(transform), map_(&map) {}
 

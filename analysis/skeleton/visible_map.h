@@ -8,14 +8,14 @@
 
 namespace lacuna {
 
-/// What the visibility-aware map changed, in voxels.
+/// The effect of the visibility-aware map, in voxels.
 struct SightReport {
   std::uint64_t mapped = 0;       ///< voxels with a node
-  std::uint64_t seen_before = 0;  ///< of these, those that see their nearest node
-  std::uint64_t seen_after = 0;   ///< of these, those that see the node they have now
+  std::uint64_t seen_before = 0;  ///< voxels that see their geodesically nearest node
+  std::uint64_t seen_after = 0;   ///< voxels that see their node of the new map
 };
 
-/// How many nodes besides its own a voxel may try.
+/// Number of nodes besides its own that a voxel tests.
 inline constexpr int sight_candidates = 32;
 
 /// The visibility-aware variant of the node mapping grid (Noel 2015, 7.4.2.1 asks for one): turns

@@ -11,28 +11,28 @@
 
 namespace lacuna {
 
-/// A point from which light starts or is seen: a camera, or a point of a light with the normal of
-/// the side that emits (a light that emits on both sides has two seeds).
+/// A point that emits or receives light: a camera, or a point of a light with the normal of the
+/// emitting side (a light that emits on both sides has two seeds).
 struct Seed {
   Imath::V3d position;               ///< scene units
   std::optional<Imath::V3d> normal;  ///< any length but 0
 };
 
-/// What of the empty space matters.
+/// The seeds that select the relevant part of the empty space.
 struct DomainSeeds {
   std::vector<Seed> points;
-  bool from_infinity = false;  ///< there is light from all around or from a direction
+  bool from_infinity = false;  ///< there is an environment or a directional light
 };
 
-/// The part of the empty space that light can matter in.
+/// The part of the empty space that light can reach.
 struct Domain {
   BitGrid3 voxels;                                            ///< 1: in the domain
   std::uint64_t components_kept = 0, components_dropped = 0;  ///< 26-components of empty voxels
   std::uint64_t voxels_kept = 0, voxels_dropped = 0;          ///< empty voxels
-  std::uint64_t seeds_buried = 0;  ///< points that have no empty voxel near: they select nothing
+  std::uint64_t seeds_buried = 0;  ///< points without an empty voxel nearby, which select nothing
 };
 
-/// How far from its own voxel a seed looks for an empty one, in voxels.
+/// Largest distance, in voxels, from a seed's own voxel to the empty voxel that it selects.
 inline constexpr int seed_reach = 8;
 
 /// Keeps the 26-components of the empty voxels (their cubical complex is connected through shared

@@ -9,8 +9,8 @@
 
 namespace lacuna {
 
-/// A step of the analysis would take more memory than its caller allows. It has allocated nothing
-/// of that size; the message names the step, the grid, what it would take and what is allowed.
+/// A step of the analysis would take more memory than its caller allows; it has not allocated it.
+/// The message names the step, the grid, the memory needed and the limit.
 class MemoryLimitError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -21,10 +21,10 @@ inline constexpr std::uint64_t no_memory_limit = std::numeric_limits<std::uint64
 /// The longest side of a grid that coordinates of 16 bits reach.
 inline constexpr int max_grid_side = 65535;
 
-/// How many voxels a grid has. Throws std::invalid_argument on a side outside [0, max_grid_side].
+/// Number of voxels of a grid. Throws std::invalid_argument on a side outside [0, max_grid_side].
 std::uint64_t checked_voxels(Imath::V3i size);
 
-/// Throws MemoryLimitError if `bytes` passes `byte_limit`. `step` is what would be built.
+/// Throws MemoryLimitError if `bytes` exceeds `byte_limit`. `step` names what would be built.
 void require_memory(std::string_view step, Imath::V3i size, std::uint64_t bytes,
                     std::uint64_t byte_limit);
 

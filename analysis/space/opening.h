@@ -7,7 +7,7 @@
 
 namespace lacuna {
 
-/// A voxel index that means: not in the domain.
+/// The index for voxels outside the domain.
 inline constexpr std::uint32_t no_voxel = 0xffffffff;
 
 /// The opening map of the 26-distance and one of its opening forests (Noel 2015, 10.3.1 to 10.3.3).

@@ -8,19 +8,19 @@
 
 namespace lacuna {
 
-/// Omega_1 of single voxels (Noel 2015, 6.2.2), for which no map is built: thinning asks for it at
-/// few voxels only. Holds the largest D_1 of each block of 8^3 and of 64^3 voxels.
+/// Evaluates Omega_1 of single voxels (Noel 2015, 6.2.2) without a map: thinning needs it at few
+/// voxels only. Stores the largest D_1 of each block of 8^3 and of 64^3 voxels.
 class OpeningQuery {
  public:
-  /// `l1` is what l1_distance() gives; it is kept by reference and must outlive the query.
+  /// `l1` is the result of l1_distance(), held by reference; it must outlive the query.
   OpeningQuery(const Grid3<std::uint16_t>& l1, const ThreadPool& pool);
 
   /// max { D_1(y) : |x - y|_1 < D_1(y) }: the radius of the largest ball in the domain that holds
   /// `voxel`; 0 outside the domain. The voxel must lie in the grid. Safe from several threads.
   std::uint16_t operator()(Imath::V3i voxel) const;
 
-  /// Whether that radius is at least `radius` (> 0): much faster, as smaller balls are passed over
-  /// and the first that is large enough ends the search.
+  /// Whether that radius is at least `radius` (> 0). Much faster: smaller balls are skipped, and
+  /// the first large enough one ends the search.
   bool reaches(Imath::V3i voxel, int radius) const;
 
  private:

@@ -10,8 +10,8 @@
 
 namespace lacuna {
 
-/// Triangles that no grid can be laid over: there are none, or their coordinates are not finite or
-/// span too little.
+/// The triangles cannot be voxelised: there are none, or their coordinates are not finite or span
+/// too little.
 class GeometryError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -21,15 +21,15 @@ class GeometryError : public std::runtime_error {
 struct GridPlan {
   Imath::V3i size{0};       ///< voxels, each side at least 1
   GridTransform transform;  ///< its origin is the corner of the triangles' bounding box
-  std::uint64_t bytes = 0;  ///< of memory that voxelising takes, estimated: the grid and its lists
+  std::uint64_t bytes = 0;  ///< estimated memory of voxelisation: the grid and its lists
 };
 
-/// Lays cubic voxels over the bounding box of all triangles. `resolution`: voxels along its longest
-/// side, in [1, max_resolution], else std::invalid_argument. Triangles that all lie in one point
-/// give one voxel of side 1 around it. Throws GeometryError. Allocates nothing.
+/// Covers the bounding box of all triangles with cubic voxels. `resolution`: voxels along its
+/// longest side, in [1, max_resolution], else std::invalid_argument. Triangles that all lie in one
+/// point give one voxel of side 1 around it. Throws GeometryError. Allocates nothing.
 GridPlan plan_grid(const TriangleSoup& soup, int resolution);
 
-/// The digital scene (Noel 2015, 6.1.2): a bit for every voxel that holds surface.
+/// The digital scene (Noel 2015, 6.1.2): a bit for every voxel that contains surface.
 struct Voxels {
   GridTransform transform;
   BitGrid3 scene;

@@ -21,50 +21,50 @@
 
 namespace lacuna {
 
-/// What is analysed.
+/// The inputs of the analysis.
 struct SpaceInput {
-  std::function<TriangleSoup()> triangles;  ///< called only if the scene is voxelised now
+  std::function<TriangleSoup()> triangles;  ///< called only if the scene has to be voxelised
   std::string geometry;                     ///< hash of the triangles, lower-case hexadecimal
   std::function<DomainSeeds()> seeds;       ///< which parts of the empty space matter
   AnalysisSettings settings;
-  /// Of the memory that a step may take beside what is there already; asked before each.
+  /// Additional memory that a step may allocate; called before each step.
   std::function<std::uint64_t()> byte_limit;
 };
 
-/// The shape of a scene's empty space. Each part is made or loaded when it is first asked for, with
-/// all that it is made from, and then stays: what nobody asks for is never built. Not for use by
-/// several threads at once; what was returned may be read by all. Every call may throw what
-/// voxelize() throws, MemoryLimitError and WaitInterrupted.
+/// The shape of a scene's empty space. Each artefact is built or loaded on its first request,
+/// together with its inputs, and then stays in memory; artefacts that are never requested are never
+/// built. Not thread-safe; the returned objects may be read by all threads. Every call may throw
+/// the exceptions of voxelize(), MemoryLimitError and WaitInterrupted.
 class SpaceAnalysis {
  public:
-  /// `store` and `pool` outlive it.
+  /// `store` and `pool` must outlive it.
   SpaceAnalysis(SpaceInput input, ArtefactStore& store, const ThreadPool& pool);
 
   const Voxels& voxels();
-  /// What of the empty space the seeds reach.
+  /// The part of the empty space that the seeds reach.
   const Domain& domain();
-  /// L1 distance to all that is not in the domain. Not kept on disk: reading takes as long.
+  /// L1 distance to the complement of the domain. Not cached on disk: loading would take as long.
   const Grid3<std::uint16_t>& distance();
   const SkeletonGraph& skeleton();
   const FilteredSkeleton& filtered();
-  /// Of every voxel of the domain its node of skeleton() (or filtered().graph), as
-  /// AnalysisSettings::mapping says.
+  /// The node of skeleton() (or filtered().graph) of every voxel of the domain, by
+  /// AnalysisSettings::mapping.
   const Grid3<std::uint32_t>& node_map();
   const Grid3<std::uint32_t>& filtered_map();
   const SimplifiedSkeleton& simplified();
   const VisibilityClusters& clusters();
   const VisibilityGates& gates();
-  /// With the opening map (thesis 10.3.1) that they come from.
+  /// The regions, with the opening map (thesis 10.3.1) that they are computed from.
   const RegionLabels& regions();
   const Portals& portals();
-  /// Of every region. Made anew at each call: reading takes as long.
+  /// The borders of all regions. Computed at each call: loading would take as long.
   Borders borders(BorderFaces which);
 
-  /// The scene's surfaces, `levels` in [0, Octree::most_levels] deep.
+  /// The octree of the scene's surfaces with `levels` in [0, Octree::most_levels].
   std::shared_ptr<const Octree> octree(int levels);
-  /// What others make for the nodes of filtered() and keep beside the parts: `type`, `version` and
-  /// `settings` as ArtefactKey's, `scene` a hash of all else that it is made from (lower-case
-  /// hexadecimal). `build` is told how many bytes it may take, and throws MemoryLimitError.
+  /// An artefact of another module, computed for the nodes of filtered(). `type`, `version` and
+  /// `settings`: as for ArtefactKey; `scene`: a hash (lower-case hexadecimal) of all its other
+  /// inputs. `build(byte_limit)` computes it and throws MemoryLimitError.
   template <class T>
   std::shared_ptr<const T> for_filtered(const char* type, std::uint32_t version,
                                         std::string settings, const std::string& scene,
@@ -74,13 +74,14 @@ class SpaceAnalysis {
                          [&] { return build(input_.byte_limit()); });
   }
 
-  /// Of the closure of the domain: what thinning starts from, and its cost grows with.
+  /// Number of faces of the closure of the domain, from which thinning starts; its cost is
+  /// proportional to it.
   std::uint64_t complex_faces();
-  /// Notes in the store what was not asked for.
+  /// Records in the store the artefacts that were not requested.
   void close();
 
  private:
-  /// An artefact, or nothing yet, and what its type is called.
+  /// An artefact, null until requested, and the name of its type.
   template <class T>
   struct Part {
     const char* type;

@@ -12,9 +12,8 @@
 #include "analysis/space/domain.h"
 #include "analysis/space/voxelize.h"
 
-/// How the artefacts of shape analysis are kept on disk. Every index that is read back lies in
-/// what it points into within the same artefact; what points into another artefact (a map into its
-/// graph) is checked by whoever holds both.
+/// The codecs of the artefacts of shape analysis. read() checks all indices into the same artefact;
+/// indices into another artefact (of a map into its graph) are checked where both are loaded.
 namespace lacuna {
 
 #define LACUNA_DECLARE_CODEC(T)                         \

@@ -167,24 +167,26 @@ void analyze(const AnalyzeOptions& o) {
 
 void add_analyze(CLI::App& app, int& code) {
   const auto o = std::make_shared<AnalyzeOptions>();
-  CLI::App* command = app.add_subcommand(
-      "analyze",
-      "The shape of a scene's empty space: voxels, skeleton, regions; what each step took");
+  CLI::App* command = app.add_subcommand("analyze",
+                                         "Analyse the shape of a scene's empty space (voxels, "
+                                         "skeleton, regions) and print the time and "
+                                         "memory of each step");
   command
       ->add_option("SCENE", o->scene,
-                   "a scene (.glb, .gltf): a file, or a name below the scenes roots")
+                   "a scene (.glb, .gltf): a file, or a name below a scenes root")
       ->required();
   command->add_option("--camera", o->camera,
-                      "whose part of the empty space counts (default: the first)");
+                      "camera that selects the part of the empty space (default: the first)");
   SettingsOptions options(*command);
   describe(options, o->analysis);
   command->add_option(
       "--out", o->out,
-      "writes skeleton, filtered, clusters, gates and portals (.glb) with the scene into DIR");
-  command->add_option("--threads", o->threads, "0: one for each core (default)")
+      "write skeleton, filtered, clusters, gates and portals (.glb), each with the scene, to DIR");
+  command->add_option("--threads", o->threads, "number of threads; 0: one per core (default)")
       ->check(CLI::NonNegativeNumber);
-  command->add_flag("--no-cache", o->no_cache, "builds everything anew and keeps nothing");
-  command->add_flag("--json", o->json, "prints JSON, for scripts");
+  command->add_flag("--no-cache", o->no_cache,
+                    "build everything anew and store nothing in the cache");
+  command->add_flag("--json", o->json, "print JSON, for scripts");
   command->callback([o, &code] {
     analyze(*o);
     code = exit_done;

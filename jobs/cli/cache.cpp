@@ -79,7 +79,7 @@ void clear(const CacheOptions& o) {
 void add_cache(CLI::App& app, int& code) {
   const auto o = std::make_shared<CacheOptions>();
   CLI::App* command = app.add_subcommand(
-      "cache", "Look after what the analysis of scenes left on disk for the next job");
+      "cache", "List, verify and clear the cache of artefacts, the results of scene analysis");
   command->require_subcommand(1);
   const auto add = [&](const char* name, const char* doc, const std::function<int()>& action) {
     CLI::App* sub = command->add_subcommand(name, doc);
@@ -88,18 +88,18 @@ void add_cache(CLI::App& app, int& code) {
     sub->callback([action, &code] { code = action(); });
     return sub;
   };
-  add("list", "List the artefacts, the last used first", [o] {
+  add("list", "List the artefacts, most recently used first", [o] {
     list(*o);
     return exit_done;
   });
-  add("verify", "Read all of every artefact; exit code 1 if one is not whole",
+  add("verify", "Read and verify every artefact; exit code 1 if one is damaged",
       [o] { return verify(*o); });
-  add("clear", "Remove the artefacts; running jobs go on without harm",
+  add("clear", "Remove the artefacts; running jobs are not affected",
       [o] {
         clear(*o);
         return exit_done;
       })
-      ->add_option("--older-than", o->older_than, "only those not used for so many days")
+      ->add_option("--older-than", o->older_than, "only artefacts not used for this many days")
       ->check(CLI::Range(0.0, 36'500.0));
 }
 

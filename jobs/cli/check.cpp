@@ -36,11 +36,12 @@ void check_scene_file(const std::filesystem::path& file) {
 void add_check(CLI::App& app, int& code) {
   const auto job = std::make_shared<std::filesystem::path>();
   const auto scene = std::make_shared<std::filesystem::path>();
-  CLI::App* command = app.add_subcommand(
-      "check",
-      "Validate a job file and load all it names, without rendering; prints it with its defaults");
+  CLI::App* command = app.add_subcommand("check",
+                                         "Validate a job file, load everything it names without "
+                                         "rendering, and print it with defaults");
   command->add_option("JOB", *job, "a job file (JSON)")->check(CLI::ExistingFile);
-  command->add_option("--scene", *scene, "a scene (.glb, .gltf) instead; prints what it holds")
+  command
+      ->add_option("--scene", *scene, "check a scene (.glb, .gltf) instead and print its contents")
       ->check(CLI::ExistingFile);
   command->require_option(1);
   command->callback([job, scene, &code] {

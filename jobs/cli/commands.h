@@ -10,10 +10,10 @@ class App;
 
 namespace lacuna {
 
-/// The one place that knows which exception ends the program with which code.
+/// The exit code for an exception that ends the program.
 ExitCode exit_code_of(const std::exception& e);
 
-/// Each adds one subcommand; what it returns from its callback is put into `code`.
+/// Each function adds one subcommand, whose callback sets `code` to the exit code.
 void add_render(CLI::App& app, int& code);
 void add_check(CLI::App& app, int& code);
 void add_schema(CLI::App& app, int& code);

@@ -25,7 +25,7 @@ struct CompareOptions {
   std::vector<int> crop;  ///< x, y, width, height; empty: the whole picture
 };
 
-/// Throws SceneError if the rectangle that was asked for is not in the picture.
+/// Throws SceneError if the requested rectangle is not inside the picture.
 Crop crop_of(const CompareOptions& o, const FloatImage& image) {
   if (o.crop.empty()) return {0, 0, image.width, image.height};
   const Crop c{o.crop[0], o.crop[1], o.crop[2], o.crop[3]};
@@ -112,17 +112,17 @@ void compare(const CompareOptions& o) {
 
 void add_compare(CLI::App& app, int& code) {
   const auto o = std::make_shared<CompareOptions>();
-  CLI::App* command =
-      app.add_subcommand("compare",
-                         "Print every error of one EXR against another, and their means; "
-                         "display_mse, psnr and ssim are "
-                         "of sRGB values of 0 to 255, at the exposure that B's preview has");
+  CLI::App* command = app.add_subcommand(
+      "compare",
+      "Print all errors of one EXR against another, and their means; display_mse, "
+      "psnr and ssim compare sRGB values of 0 to 255, at the exposure of B's "
+      "preview");
   command->add_option("A", o->a, "the estimate")->required()->check(CLI::ExistingFile);
   command->add_option("B", o->b, "the reference")->required()->check(CLI::ExistingFile);
   command
       ->add_option("--block", o->block,
-                   "compare the means of square blocks of this many pixels too; with the layer "
-                   "\"variance\" in A (and in B), also as z-scores")
+                   "also compare the means of square blocks with sides of this many pixels; with a "
+                   "layer \"variance\" in A (and in B), also as z-scores")
       ->check(CLI::Range(1, 16384));
   command
       ->add_option("--crop", o->crop, "compare only this rectangle, in pixels from the upper left")

@@ -31,7 +31,7 @@ void print_scenes() {
 void add_list(CLI::App& app, int& code) {
   const auto scenes = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("list", "List the jobs of the data folder, oldest first");
-  command->add_flag("--scenes", *scenes, "the scenes that jobs can name instead");
+  command->add_flag("--scenes", *scenes, "list the scenes that jobs can name instead");
   command->callback([scenes, &code] {
     if (*scenes) {
       print_scenes();

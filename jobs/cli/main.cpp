@@ -15,12 +15,12 @@ constexpr const char* about =
     "Lacuna renders light transport in occluded scenes and measures error against time.";
 constexpr const char* footer =
     "Exit codes: 0 done, 1 other error, 2 bad job or command line, 3 scene or other asset,\n"
-    "71 out of memory, 75 interrupted or disk full (the same command goes on from the "
+    "71 out of memory, 75 interrupted or disk full (the same command continues from the "
     "checkpoint).\n"
-    "Environment: LACUNA_SCENES, folders that scenes are looked up in (separated by ':');\n"
-    "LACUNA_DATA, the folder of jobs, references and cache (default: lacuna-data);\n"
-    "LACUNA_CACHE, another folder for the cache of artefacts; LACUNA_CACHE_LIMIT, its size, as 4G\n"
-    "(default: 10G).";
+    "Environment: LACUNA_SCENES, folders of scenes (separated by ':');\n"
+    "LACUNA_DATA, folder of jobs, references and cache (default: lacuna-data);\n"
+    "LACUNA_CACHE, another folder for the cache of artefacts; LACUNA_CACHE_LIMIT, its size limit,\n"
+    "for example 4G (default: 10G).";
 
 int run(int argc, char** argv) {
   CLI::App app(about, "lacuna");

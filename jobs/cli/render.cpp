@@ -34,8 +34,7 @@ JobFolder folder_for(const fs::path& job_file, const fs::path& named) {
   const fs::path out = results_folder(job_file, named, ".job");
   if (!fs::exists(out / "job.json")) {
     if (fs::exists(out) && !fs::is_empty(out)) {
-      throw BadJob(
-          {{"", fmt::format("--out {}: is there already and is no job's folder", out.string())}});
+      throw BadJob({{"", fmt::format("--out {}: exists and is not a job's folder", out.string())}});
     }
     if (fs::exists(out)) fs::remove(out);
     fs::create_directories(out.parent_path());
@@ -79,7 +78,7 @@ int render(const fs::path& what, const fs::path& out, int threads, bool quiet) {
       return exit_done;
     }
     if (run_job(folder, context) == Outcome::interrupted) {
-      terminal.milestone("interrupted; the same command goes on from here");
+      terminal.milestone("interrupted; the same command continues from here");
       return exit_interrupted;
     }
   } catch (const std::exception& e) {
@@ -100,13 +99,14 @@ void add_render(CLI::App& app, int& code) {
     bool quiet = false;
   };
   const auto o = std::make_shared<RenderOptions>();
-  CLI::App* command =
-      app.add_subcommand("render", "Render a job file, or go on with a job's folder");
+  CLI::App* command = app.add_subcommand("render", "Render a job file, or continue a job's folder");
   command->add_option("JOB", o->job, "a job file (JSON), or a job's folder")
       ->required()
       ->check(CLI::ExistingPath);
   command->add_option("-o,--out", o->out, "folder for the results (default: NAME.job)");
-  command->add_option("-t,--threads", o->threads, "in place of the job's own number; 0: one a core")
+  command
+      ->add_option("-t,--threads", o->threads,
+                   "number of threads instead of the job's; 0: one per core")
       ->check(CLI::Range(0, 1024));
   command->add_flag("-q,--quiet", o->quiet, "show warnings and errors only");
   command->callback([o, &code] { code = render(o->job, o->out, o->threads, o->quiet); });

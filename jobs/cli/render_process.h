@@ -6,15 +6,15 @@
 
 namespace lacuna {
 
-/// A `lacuna render` of its own on a job's folder: what ends it ends nothing else.
+/// Runs `lacuna render` on a job's folder as a child process, so that a crash ends nothing else.
 class RenderProcess {
  public:
   /// `threads` -1: the job's own number. Throws std::system_error.
   RenderProcess(const JobFolder& folder, int threads);
 
-  /// Asks it to stop soon.
+  /// Sends SIGTERM.
   void terminate() const;
-  /// Whether it has ended; how it did stands in the job's state. Once true, not to be asked again.
+  /// Whether it has ended; the job's state says how. Must not be called again once true.
   bool ended() const;
 
  private:

@@ -43,8 +43,8 @@ void add_report(CLI::App& app, int& code) {
       ->required()
       ->check(CLI::ExistingDirectory);
   command->add_option("-o,--out", o->out, "the HTML file (default: DIR/report.html)");
-  command->add_flag("--json", o->json, "prints the answers as JSON, and writes nothing");
-  command->add_flag("-q,--quiet", o->quiet, "prints nothing");
+  command->add_flag("--json", o->json, "print the answers as JSON and write no files");
+  command->add_flag("-q,--quiet", o->quiet, "print nothing");
   command->callback([o, &code] {
     report(*o);
     code = exit_done;

@@ -7,8 +7,8 @@
 
 namespace lacuna {
 
-/// Where the results of a file go: `out`, or, if that is empty, the file's name with `extension` in
-/// the working directory. Absolute, without a '/' at its end.
+/// The folder for the results of a file: `out` or, if empty, the file's name with `extension` in
+/// the working directory. Absolute, without a trailing '/'.
 inline std::filesystem::path results_folder(const std::filesystem::path& file,
                                             const std::filesystem::path& out,
                                             const std::string& extension) {

@@ -14,12 +14,13 @@ void add_schema(CLI::App& app, int& code) {
   const auto sweep = std::make_shared<bool>(false);
   const auto states = std::make_shared<bool>(false);
   const auto page = std::make_shared<bool>(false);
-  CLI::App* command = app.add_subcommand("schema", "Print the JSON Schema of the job file");
-  command->add_flag("--sweep", *sweep, "of the sweep file instead");
-  command->add_flag("--markdown", *markdown, "the settings pages for people instead");
-  command->add_flag("--states", *states, "the states of a job and what may follow what instead")
+  CLI::App* command =
+      app.add_subcommand("schema", "Print the JSON Schema of the job file, or other documentation");
+  command->add_flag("--sweep", *sweep, "the JSON Schema of the sweep file");
+  command->add_flag("--markdown", *markdown, "documentation of all settings (Markdown)");
+  command->add_flag("--states", *states, "the states of a job and the allowed changes (Markdown)")
       ->excludes("--markdown", "--sweep");
-  command->add_flag("--page", *page, "the module /job_tables.js of the page instead")
+  command->add_flag("--page", *page, "the module /job_tables.js of the page")
       ->excludes("--markdown", "--sweep", "--states");
   command->callback([sweep, markdown, states, page, &code] {
     fmt::print("{}", *page       ? page_tables_module()

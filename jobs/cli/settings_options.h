@@ -9,7 +9,7 @@
 
 namespace lacuna {
 
-/// Gives a command an option --NAME for each field of a settings struct, from its table.
+/// Adds an option --NAME to a command for each field of a settings struct.
 class SettingsOptions {
  public:
   explicit SettingsOptions(CLI::App& command) : command_(command) {}

@@ -81,7 +81,7 @@ class Runner {
     }
     terminal_.status({});
     if (interrupted()) {
-      terminal_.milestone("interrupted; the same command goes on from here");
+      terminal_.milestone("interrupted; the same command continues from here");
       return exit_interrupted;
     }
     return failed_ == 0 ? exit_done : exit_error;
@@ -188,22 +188,26 @@ int sweep(const SweepOptions& o) {
 void add_sweep(CLI::App& app, int& code) {
   const auto o = std::make_shared<SweepOptions>();
   CLI::App* command = app.add_subcommand(
-      "sweep", "Render all jobs of a sweep file that are not done; results: runs/, table.csv");
+      "sweep", "Render all runs of a sweep file that are not done; results: runs/, table.csv");
   command->add_option("SWEEP", o->what, "a sweep file (JSON), or a sweep's folder")
       ->required()
       ->check(CLI::ExistingPath);
   command->add_option("-o,--out", o->out, "folder for the results (default: NAME.sweep)");
   command
-      ->add_option("-j,--jobs", o->jobs, "runs at a time; more than one disturb each other's times")
+      ->add_option("-j,--jobs", o->jobs,
+                   "runs at a time; more than one disturb each other's timings")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
-  command->add_option("-t,--threads", o->threads, "in place of the jobs' own number; 0: one a core")
+  command
+      ->add_option("-t,--threads", o->threads,
+                   "number of threads instead of the jobs'; 0: one per core")
       ->check(CLI::Range(0, 1024));
   command->add_option("--index", o->index, "only this run, from 1: for array tasks")
       ->check(CLI::PositiveNumber);
-  command->add_flag("--list", o->list, "prints all runs, their states and settings, and ends");
+  command->add_flag("--list", o->list, "print all runs with their states and settings, and exit");
   command
-      ->add_flag("--missing", o->missing, "prints the indices of runs not done, as 1,4-7, and ends")
+      ->add_flag("--missing", o->missing,
+                 "print the indices of runs that are not done, such as 1,4-7, and exit")
       ->excludes("--list");
   command->add_flag("-q,--quiet", o->quiet, "show warnings and errors only");
   command->callback([o, &code] { code = sweep(*o); });

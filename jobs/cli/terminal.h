@@ -12,8 +12,8 @@ class logger;
 
 namespace lacuna {
 
-/// Shows a job on standard error, a progress bar on a terminal and a line per milestone otherwise,
-/// and logs to a file (unless standard error already goes there).
+/// Shows a job's progress on standard error: a progress bar on a terminal, otherwise a line per
+/// milestone. Also logs to a file, unless standard error is that file.
 class Terminal final : public Observer {
  public:
   /// `log` empty: no file. `quiet`: nothing but warnings and errors on standard error.
@@ -25,9 +25,9 @@ class Terminal final : public Observer {
   void milestone(const std::string& line) override;
   void warning(const std::string& line) override;
   void error(const std::string& line);
-  /// A line that the next one takes the place of; on a terminal only.
+  /// Shows a line that the next one replaces; on a terminal only.
   void status(const std::string& line);
-  /// Whether it is one: else a status need not be made.
+  /// Whether status() shows anything.
   bool shows_status() const { return bar_; }
 
  private:

@@ -13,7 +13,7 @@
 
 namespace lacuna {
 
-/// Largest sweep file that is looked at, in bytes.
+/// Size limit of a sweep file, in bytes.
 inline constexpr std::size_t max_sweep_bytes = 4 << 20;
 /// Most runs of one sweep.
 inline constexpr std::size_t max_sweep_runs = 20'000;
@@ -22,7 +22,7 @@ inline constexpr std::size_t max_sweep_runs = 20'000;
 struct SweepCell {
   JsonTable<JsonValue> settings;        ///< by pointer
   JobSpec job;                          ///< with its first seed
-  std::optional<std::size_t> baseline;  ///< the cell that it is compared against, if there is one
+  std::optional<std::size_t> baseline;  ///< the cell that it is compared with, if any
 };
 
 /// One job of a sweep.
@@ -32,7 +32,7 @@ struct SweepRun {
   std::string name;  ///< "0007-2": cell and replicate, from 1; safe as a file name
 };
 
-/// All runs of a sweep in the order in which they are done.
+/// All runs of a sweep, in their order.
 struct SweepPlan {
   std::vector<SweepCell> cells;
   std::vector<SweepRun> runs;
@@ -44,15 +44,14 @@ struct SweepPlan {
 /// Parses and validates a sweep file; as parse_job(). Throws BadJob.
 SweepSpec parse_sweep(std::string_view json);
 
-/// What is wrong with a job beyond what it says itself, such as a file that is not there; pointers
-/// into the job.
+/// Checks a job beyond its own text, for example for missing files; pointers are into the job.
 using JobCheck = std::function<std::vector<Problem>(const JobSpec&)>;
 
-/// The cells of a sweep: axes in the order of their pointers, then the zipped ones as they stand;
-/// the last varies fastest. Deterministic. Throws BadJob: a pointer that leads nowhere, a setting
-/// that is swept twice, lists of different length, values in `exclude` or `baseline` that no axis
-/// has, no cell or too many runs, and every mistake of a cell's own job (also what `check` finds in
-/// it, if it is given), at the place in the sweep file that it comes from.
+/// Expands a sweep into its cells: axes in the order of their pointers, then the zipped axes in
+/// file order; the last varies fastest. Deterministic. Throws BadJob for a pointer to no setting, a
+/// setting swept twice, lists of different length, values in `exclude` or `baseline` that no axis
+/// has, no cells or too many runs, and every problem of a cell's job (including those of `check`),
+/// at the position in the sweep file that it comes from.
 SweepPlan expand(const SweepSpec& sweep, const JobCheck& check = {});
 
 /// The settings of some cells of a plan.

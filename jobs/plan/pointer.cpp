@@ -51,7 +51,7 @@ std::optional<std::string> set_at(Json& document, const Json& defaults, std::str
                         token.find_first_not_of("0123456789") == std::string::npos &&
                         (token.size() == 1 || token[0] != '0');
     if (!here->is_array() || !number || std::stoul(token) >= here->size()) {
-      return fmt::format("leads nowhere: there is no \"{}\" in {}", token, json_text(*here));
+      return fmt::format("points to no setting: there is no \"{}\" in {}", token, json_text(*here));
     }
     here = &(*here)[std::stoul(token)];
   }

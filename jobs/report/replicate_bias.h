@@ -9,9 +9,9 @@
 
 namespace lacuna {
 
-/// Tells the bias of independent pictures of one method from their variance: the products of the
-/// errors of two different ones have the bias squared as their mean, and no variance in it. Also
-/// finds a bias that the two halves of one run share, as of a cache that a run makes once.
+/// Separates the bias of independent pictures of one method from their variance: the product of the
+/// errors of two different pictures has the squared bias as its mean, without variance. Also
+/// detects a bias that the two halves of one run share, such as that of a cache built once per run.
 class ReplicateBias {
  public:
   /// `reference`: interleaved RGB of `width` columns.
@@ -20,10 +20,10 @@ class ReplicateBias {
   void add(std::span<const double> picture);
 
   std::size_t pictures() const { return n_; }
-  /// Mean over pixels and channels of the bias squared, less the reference's own noise
-  /// `reference_mse` if that is known; may be negative by chance. Its interval comes from the
-  /// scatter of blocks of 16 x 16 pixels, which are taken to be independent. Nothing for less than
-  /// two pictures.
+  /// Mean of the squared bias over pixels and channels, minus the reference's own noise
+  /// `reference_mse` if known; may be negative by chance. Its interval follows from the scatter of
+  /// blocks of 16 x 16 pixels, which are assumed to be independent. None for fewer than two
+  /// pictures.
   std::optional<Estimate> bias_squared(std::optional<double> reference_mse) const;
 
  private:

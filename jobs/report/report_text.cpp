@@ -50,7 +50,7 @@ std::string front_text(const SweepFolder& sweep, const PictureAnswer& p) {
   for (const FrontPart& part : p.cold) {
     text +=
         fmt::format("  {:.3g} to {:.3g} s: {}", part.from, part.to, name_of(sweep, p, part.best));
-    if (!part.tied.empty()) text += fmt::format(" (not told apart from {} more)", part.tied.size());
+    if (!part.tied.empty()) text += fmt::format(" (tied with {} more)", part.tied.size());
     text += part.at_floor ? ", at the reference's noise\n" : "\n";
   }
   return text;

@@ -8,15 +8,15 @@
 
 namespace lacuna {
 
-/// A part of a cell's last picture.
+/// A crop of a cell's last picture.
 struct CellCrop {
   std::size_t cell;  ///< index into plan().cells
   double seconds;    ///< render time of the picture
   std::string png;
 };
 
-/// The same part of the pictures of all cells that estimate one picture, at one exposure: the one
-/// (at most 96 x 96 pixels) in which the cells' median squared error is largest.
+/// The same crop, at the same exposure, of all cells that estimate one picture: the region (at most
+/// 96 x 96 pixels) in which the cells' median squared error is largest.
 struct PictureCrops {
   std::size_t picture;  ///< index into Answers::pictures
   int x = 0, y = 0, width = 0, height = 0;
@@ -24,11 +24,11 @@ struct PictureCrops {
   std::vector<CellCrop> cells;  ///< of each cell its first finished run
 };
 
-/// What only the pixels tell.
+/// Results that need the pixels.
 struct SweepPictures {
   std::vector<PictureCrops> crops;
-  /// Of each cell of the plan: the bias between its replicates (jobs/report/replicate_bias.h),
-  /// where it has two or more and a reference that is still there.
+  /// For each cell of the plan the bias between its replicates (jobs/report/replicate_bias.h), if
+  /// it has two or more and its reference still exists.
   std::vector<std::optional<Estimate>> bias_squared;
   std::vector<std::string> warnings;  ///< pictures that could not be read
 };

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "analysis/json/json_text.h"
 #include "analysis/storage/peak_memory.h"
 #include "jobs/results/artefacts_json.h"
-#include "analysis/json/json_text.h"
 #include "jobs/spec/version.h"
 #include "jobs/store/machine.h"
 #include "renderer/images/image_module.h"
@@ -118,8 +118,8 @@ std::string write_report(const ReportInput& input) {
   j["seconds"] = seconds(task.phases, loop.spent());
   j["counts"] = counts(loop);
   j["rates"] = rates(task, loop.spent(), loop.counters());
-  if (const auto told = task.integrator.statistics(); !told.empty()) {
-    for (const auto& [name, value] : told) j["integrator"][name] = value;
+  if (const auto stats = task.integrator.statistics(); !stats.empty()) {
+    for (const auto& [name, value] : stats) j["integrator"][name] = value;
   }
   j["errors"] = errors_json(task, loop.curve());
   j["scene"] = scene(task.scene);

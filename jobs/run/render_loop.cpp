@@ -29,7 +29,7 @@ bool is_time(double t) { return std::isfinite(t) && t >= 0; }
 /// Throws std::runtime_error where the parts of a checkpoint contradict each other: its checksum
 /// knows damage, not what another program wrote.
 void check_saved(const Film& film, const Spent& spent, const ByteReader& in) {
-  if (!in.at_end()) throw std::runtime_error("saved state goes on after its end");
+  if (!in.at_end()) throw std::runtime_error("saved state has extra bytes at its end");
   if (film.iterations() != spent.iterations ||
       film.half_iterations(0) != spent.iterations - spent.iterations / 2) {
     throw std::runtime_error("saved film has another number of iterations");
@@ -79,7 +79,7 @@ void RenderLoop::resume() {
     clock_.set(completed_.seconds, completed_.cpu_seconds);
     saved_ = completed_.iterations;
     report_progress();
-    task_.observer.milestone(fmt::format("going on from iteration {} ({:.1f} s)",
+    task_.observer.milestone(fmt::format("continuing from iteration {} ({:.1f} s)",
                                          completed_.iterations, completed_.seconds));
   } catch (const std::system_error&) {
     throw;  // the checkpoint may be good

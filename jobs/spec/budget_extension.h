@@ -7,9 +7,9 @@
 
 namespace lacuna {
 
-/// What keeps `larger` from being more of the same than `old`: each limit that both have may be no
-/// smaller, an error target no larger and of the same metric, and at least one limit must grow (an
-/// error target: fall) or go; one must be left. Pointers are those of a job ("/budget/seconds").
+/// The reasons why `larger` is not an extension of `old`. A limit that both have may not shrink; an
+/// error target may not grow or change its metric; at least one limit must grow (an error target:
+/// shrink) or be removed; at least one must remain. Pointers are into a job ("/budget/seconds").
 std::vector<Problem> extension_problems(const Budget& old, const Budget& larger);
 
 }  // namespace lacuna

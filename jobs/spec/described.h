@@ -13,7 +13,7 @@
 
 namespace lacuna {
 
-/// Accepts any member: only there so that Described can ask for a table.
+/// Accepts any member: used by Described to detect a settings table.
 struct ProbeVisitor {
   template <class T>
   void operator()(std::string_view, T&, const Field&) {}
@@ -54,7 +54,8 @@ inline constexpr bool is_variant = false;
 template <class... Ts>
 inline constexpr bool is_variant<std::variant<Ts...>> = true;
 
-/// For the last branch of a dispatch on types: a member that no visitor knows does not compile.
+/// For static_assert in the last branch of a dispatch on types: unknown member types do not
+/// compile.
 template <class>
 inline constexpr bool unsupported_type = false;
 

@@ -10,7 +10,7 @@
 
 namespace lacuna {
 
-/// Throws BadJob with what was found, if anything: the first hundred, and how many more there are.
+/// Throws BadJob if there are problems: the first hundred, and the number of the rest.
 inline void throw_if_any(std::vector<Problem> problems) {
   constexpr std::size_t most = 100;
   if (problems.empty()) return;
@@ -22,7 +22,7 @@ inline void throw_if_any(std::vector<Problem> problems) {
   throw BadJob(std::move(problems));
 }
 
-/// A document that is one described struct. Throws BadJob.
+/// Reads a document that is one described struct. Throws BadJob.
 template <Described T>
 T read_document(std::string_view text, DocumentLimits limits) {
   std::vector<Problem> problems;

@@ -14,8 +14,8 @@
 
 namespace lacuna {
 
-// What identifies a picture, a reference and a cold preparation: each is the whole job without a
-// list of keys. A key that is new in the job's table is part of all three until it is listed here.
+// The identities of a picture, a reference and a cold preparation: each is the whole job without a
+// list of keys. A new key in the job's table is part of all three until it is listed here.
 
 /// Names of keys of a table.
 using KeyList = std::span<const std::string_view>;
@@ -33,8 +33,8 @@ inline constexpr auto not_in_the_picture = std::to_array<std::string_view>({
     "exclusive",             // what else runs meanwhile
 });
 
-/// The keys that do not change what a job estimates, and so its reference. `reference` itself is
-/// not among them: errors against different references cannot be compared.
+/// The keys that do not change the quantity that a job estimates, and so its reference. `reference`
+/// itself is not among them: errors against different references cannot be compared.
 inline constexpr auto not_in_a_reference = std::to_array<std::string_view>({
     "label",                 // for people
     "integrator",            // how light is estimated; its path lengths count (LightLengths)
@@ -54,9 +54,9 @@ inline constexpr auto not_in_the_light = std::to_array<std::string_view>({
     "roulette_depth",  // ends paths at random, and weights those that go on
 });
 
-/// The keys that change neither which artefacts the analysis of space makes from the same needs nor
-/// how long that takes. `threads` is not among them, nor what moves the seeds of the domain:
-/// camera, environment, particles.
+/// The keys that change neither the artefacts of the analysis of space, given the same needs, nor
+/// the time they take. `threads` is not among them, nor are the keys that move the seeds of the
+/// domain: camera, environment, particles.
 inline constexpr auto not_in_a_preparation = std::to_array<std::string_view>({
     "label",                 // for people
     "resolution",            // of the picture; that of the analysis counts
@@ -73,7 +73,7 @@ inline constexpr auto not_in_a_preparation = std::to_array<std::string_view>({
     "exclusive",             // whoever shares the machine is reported as such (taint.h)
 });
 
-/// Hash of what a written job says under all other keys: 32 hexadecimal digits.
+/// Hash of a written job without the keys `left_out`: 32 hexadecimal digits.
 std::string hash_without(OrderedJson job, KeyList left_out);
 
 /// Identifies the pixels: two jobs with the same value and iteration count have the same bits.
@@ -83,8 +83,7 @@ std::string picture_key(const Job& job) {
   return hash_without(ObjectWriter::value_of(job), not_in_the_picture);
 }
 
-/// Identifies a cold preparation: jobs with the same value make the same artefacts, where they need
-/// artefacts of the same names.
+/// Identifies a cold preparation: jobs with the same value build equal artefacts of the same names.
 template <std::derived_from<JobSpec> Job>
 std::string preparation_key(const Job& job) {
   return hash_without(ObjectWriter::value_of(job), not_in_a_preparation);

@@ -8,15 +8,15 @@
 
 namespace lacuna {
 
-/// Largest job file that is looked at, in bytes, and deepest nesting of its JSON.
+/// Size limit of a job file, in bytes, and nesting limit of its JSON.
 inline constexpr std::size_t max_job_bytes = 1 << 20;
 inline constexpr int max_json_depth = 32;
 
 /// Parses and validates a job file. Defaults are filled in. Throws BadJob with every problem found:
 /// malformed JSON (with line and column), nesting, unknown keys (with the nearest known one),
-/// duplicate keys, wrong types, values out of range, missing keys, and what no single field can
-/// know (an error target whose metric needs a reference that is not there; duplicate layers;
-/// layers that the integrator does not have). Does not look at any other file.
+/// duplicate keys, wrong types, values out of range, missing keys, and conflicts between fields (an
+/// error target whose metric needs a missing reference; duplicate layers; layers that the
+/// integrator does not have). Reads no other file.
 JobSpec parse_job(std::string_view json);
 
 /// The job with every default filled in, keys in the order of the tables, two spaces of indent.
@@ -26,7 +26,7 @@ std::string write_job(const JobSpec& spec);
 /// JSON Schema 2020-12 of the job file, made from the settings tables.
 std::string job_schema();
 
-/// The same of the sweep file.
+/// JSON Schema 2020-12 of the sweep file.
 std::string sweep_schema();
 
 /// The settings pages (Markdown), made from the settings tables: every key, type, range, default,

@@ -24,9 +24,12 @@ struct ErrorTarget {
 template <class V>
 void describe(V& v, ErrorTarget& s) {
   v("metric", s.metric,
-    {.doc = "which error; all but est_rmse need a reference", .required = true});
+    {.doc = "the error metric; all but est_rmse need a reference", .required = true});
   v("target", s.target,
-    {.doc = "stop at or below this", .min = 0, .above_min = true, .required = true});
+    {.doc = "stop when the error is at or below this",
+     .min = 0,
+     .above_min = true,
+     .required = true});
 }
 
 /// When to stop: the first limit reached ends the job. With no limit at all, 60 seconds.
@@ -43,17 +46,17 @@ void describe(V& v, Budget& s) {
   v("seconds", s.seconds,
     {.doc = "render time, wall clock", .min = 0, .max = 1e7, .above_min = true, .unit = "s"});
   v("cpu_seconds", s.cpu_seconds,
-    {.doc = "render time, CPU seconds divided by threads: holds still on a busy machine",
+    {.doc = "render time, CPU seconds divided by threads: independent of other load on the machine",
      .min = 0,
      .max = 1e7,
      .above_min = true,
      .unit = "s"});
   v("iterations", s.iterations,
-    {.doc = "estimates of the whole image", .min = 1, .max = 4294967295.0});
-  v("error", s.error, {.doc = "stop when the picture is good enough"});
+    {.doc = "iterations, each an estimate of the whole image", .min = 1, .max = 4294967295.0});
+  v("error", s.error, {.doc = "stop when the error has reached a target"});
 }
 
-/// Light from all around, from an equirectangular image.
+/// An environment light, from an equirectangular image.
 struct EnvironmentSettings {
   std::string file;
   double scale = 1;
@@ -63,13 +66,13 @@ struct EnvironmentSettings {
 template <class V>
 void describe(V& v, EnvironmentSettings& s) {
   v("file", s.file,
-    {.doc = "equirectangular EXR or HDR, below a scenes root; its centre lies along -z, y is up",
+    {.doc = "equirectangular EXR or HDR, below a scenes root; its centre is along -z, y is up",
      .min = 1,
      .max = 1024,
      .required = true});
-  v("scale", s.scale, {.doc = "multiplies its radiance", .min = 0, .max = 1e12});
+  v("scale", s.scale, {.doc = "factor of its radiance", .min = 0, .max = 1e12});
   v("rotation", s.rotation,
-    {.doc = "turns it about the y axis, counter-clockwise from above",
+    {.doc = "rotation about the y axis, counter-clockwise from above",
      .min = -360,
      .max = 360,
      .unit = "degrees"});
@@ -90,7 +93,7 @@ void describe(V& v, CropSettings& s) {
      .required = true,
      .unit = "pixels"});
   v("from", s.from,
-    {.doc = "its column and row, from the upper left, that the crop begins with",
+    {.doc = "its column and row, from the upper left, at which the crop begins",
      .min = 0,
      .max = 65535,
      .unit = "pixels"});
@@ -125,43 +128,44 @@ void describe(V& v, JobSpec& s) {
   v("scene", s.scene,
     {.doc = "glTF or GLB file, below a scenes root", .min = 1, .max = 1024, .required = true});
   v("camera", s.camera, {.doc = "name of a glTF camera; empty: the first", .max = 1024});
-  v("label", s.label, {.doc = "a few words of your own", .max = 200});
+  v("label", s.label, {.doc = "a description of your own", .max = 200});
   v("resolution", s.resolution,
     {.doc = "width and height", .min = 1, .max = 16384, .unit = "pixels"});
-  v("crop", s.crop,
-    {.doc = "the picture, of `resolution`, is a part of a larger one that is not rendered"});
-  v("integrator", s.integrator, {.doc = "the method"});
+  v("crop", s.crop, {.doc = "render only a part, of size `resolution`, of a larger picture"});
+  v("integrator", s.integrator, {.doc = "the rendering method"});
   v("budget", s.budget,
     {.doc = "when to stop; the first limit reached ends the job; none: 60 seconds"});
   v("reference", s.reference,
-    {.doc = "what the error is measured against: a stored reference's name, a job id, an EXR or "
-            "a TIFF of floats below a scenes root, or "
-            "\"auto\" (rendered once, as two independent halves, and kept); empty: none",
+    {.doc = "the picture that errors are measured against: a stored reference's name, a job id, an "
+            "EXR or a TIFF of floats below a scenes root, or \"auto\" (rendered once, as two "
+            "independent halves, and stored); empty: none",
      .max = 1024});
   v("reference_iterations", s.reference_iterations,
     {.doc = "iterations of an \"auto\" reference, both halves together",
      .min = 2,
      .max = 100000000});
   v("analysis", s.analysis,
-    {.doc = "shape analysis of the empty space, built only where the integrator uses it"});
-  v("environment", s.environment, {.doc = "light from all around"});
-  v("particles", s.particles, {.doc = "point lights besides those of the scene"});
-  v("material", s.material, {.doc = "a material of the scene with another gloss"});
-  v("seed", s.seed, {.doc = "of the random numbers", .min = 0, .max = 9007199254740991.0});
-  v("threads", s.threads, {.doc = "0: one for each core", .min = 0, .max = 1024});
+    {.doc = "shape analysis of the empty space, computed only if the integrator uses it"});
+  v("environment", s.environment, {.doc = "environment light"});
+  v("particles", s.particles, {.doc = "point lights in addition to those of the scene"});
+  v("material", s.material, {.doc = "change the roughness of one of the scene's materials"});
+  v("seed", s.seed, {.doc = "seed of the random numbers", .min = 0, .max = 9007199254740991.0});
+  v("threads", s.threads, {.doc = "number of threads; 0: one per core", .min = 0, .max = 1024});
   v("layers", s.layers,
     {.doc =
-         "more layers for image.exr; strategies and distributions only with a method that has them",
+         "additional layers of image.exr; strategies and distributions only with a method that has "
+         "them",
      .max = 16});
-  v("pixel_filter", s.pixel_filter, {.doc = "how a pixel gathers the light around its centre"});
+  v("pixel_filter", s.pixel_filter, {.doc = "reconstruction filter of a pixel"});
   v("pixel_type", s.pixel_type, {.doc = "precision of image.exr"});
   v("checkpoint_seconds", s.checkpoint_seconds,
-    {.doc = "time between checkpoints; longer where writing one is slow",
+    {.doc = "time between checkpoints; longer if writing one is slow",
      .min = 0.05,
      .max = 86400,
      .unit = "s"});
   v("exclusive", s.exclusive,
-    {.doc = "run alone: the service renders no other job meanwhile, so that its times hold"});
+    {.doc = "run alone: the service renders no other job at the same time, so that measured times "
+            "are valid"});
 }
 
 }  // namespace lacuna

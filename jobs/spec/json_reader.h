@@ -31,25 +31,25 @@ class ProblemList final : public JsonProblems {
   std::vector<Problem>& problems_;
 };
 
-// What JsonCursor does not read. Each adds a problem and returns nothing, or false, where the value
-// is not what is allowed.
+// What JsonCursor does not read. Each adds a problem and returns nothing, or false, if the value is
+// not allowed.
 std::optional<AutoNumber> read_auto_number(const JsonCursor& found, const Limits& limits);
 /// No U+0000; `length` in code points.
 std::optional<std::string> read_string(const JsonCursor& found, const Limits& length);
-/// Of an object: its number of keys.
+/// Checks the number of keys of an object.
 bool check_size(const JsonCursor& found, const Limits& size);
 /// Any value, as one line of text.
 std::string any_value(const JsonCursor& found);
 void check_keys(const JsonCursor& found, const std::vector<std::string_view>& known);
-/// The index of the name that the value is.
+/// The index of the value in `names`.
 std::optional<std::size_t> read_name(const JsonCursor& found,
                                      std::span<const std::string_view> names);
-/// The index of the alternative that {"type": NAME, ...} or "NAME" asks for.
+/// The index of the alternative that {"type": NAME, ...} or "NAME" selects.
 std::optional<std::size_t> read_alternative(const JsonCursor& found,
                                             std::span<const std::string_view> names);
 
-/// The reading visitor: fills settings from an object of a document. A key that is not there leaves
-/// the member's default; every problem is noted and the reading goes on.
+/// The reading visitor: fills settings from an object of a document. A missing key leaves the
+/// member's default; a problem is recorded and reading continues.
 class ObjectReader {
  public:
   explicit ObjectReader(const JsonCursor& object) : object_(object) {}
@@ -64,7 +64,7 @@ class ObjectReader {
     }
   }
 
-  /// A key that is known without being a member.
+  /// Accepts a key that is not a member.
   void know(std::string_view key) { known_.push_back(key); }
   void refuse_unknown_keys() const { check_keys(object_, known_); }
 

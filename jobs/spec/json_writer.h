@@ -19,8 +19,8 @@ class ObjectWriter {
     json_[std::string(key)] = value_of(member);
   }
 
-  /// What JSON has in place of a member: an optional without a value is null, a variant an object
-  /// with its name under "type".
+  /// The JSON of a member: an empty optional is null, a variant is an object with its name under
+  /// "type".
   template <class T>
   static OrderedJson value_of(const T& member);
 

@@ -9,7 +9,7 @@
 
 namespace lacuna {
 
-/// The limits of a field for a number of type T: the table's, and the type's own.
+/// The limits of a field for a number of type T: the table's and the type's.
 template <class T>
 Limits limits_of(const Field& field) {
   Limits limits{field.min, field.max, field.above_min, field.unit};

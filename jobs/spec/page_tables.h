@@ -6,7 +6,7 @@
 
 namespace lacuna {
 
-/// What the page takes from the program's own tables:
+/// The program's tables that the page uses:
 ///
 ///     metrics         [{key, label, unit, slope, reference}], as error_metrics; a Monte Carlo
 ///                     estimate's error falls as samples^slope; reference: it needs one
@@ -14,7 +14,7 @@ namespace lacuna {
 ///     inTheLight      pointers to the settings below "integrator" that change the light
 OrderedJson page_tables();
 
-/// The same as the ES module /job_tables.js, which exports each under its name.
+/// page_tables() as the ES module /job_tables.js, which exports each table under its name.
 std::string page_tables_module();
 
 }  // namespace lacuna

@@ -6,15 +6,15 @@
 
 namespace lacuna {
 
-/// One thing that is wrong with a document: where, and what. `pointer` is a JSON pointer (RFC 6901)
-/// into it; `message` says what was found and what is allowed.
+/// One error in a document. `pointer`: its position, a JSON pointer (RFC 6901); `message`: what was
+/// found and what is allowed.
 struct Problem {
   std::string pointer;
   std::string message;
   bool operator==(const Problem&) const = default;
 };
 
-/// A document with one or more problems, all that could be found at once. Exit code 2; HTTP 400.
+/// A document with problems: all that could be found at once. Exit code 2; HTTP 400.
 class BadJob : public std::runtime_error {
  public:
   explicit BadJob(std::vector<Problem> problems);

@@ -15,16 +15,16 @@ void describe(V& v, LightLengths& s) {
   describe_lengths(v, s);
 }
 
-/// The integrator that a reference is made with: converges to the same picture. For all that
-/// measure light it is one and the same, so that they can be compared, and the one that the fewest
-/// scenes defeat. Has the path lengths of `integrator` but for `not_in_the_light`.
+/// The integrator for a reference, which converges to the same picture. It is the same for all
+/// integrators that estimate light, so that they can be compared: the most robust one. It has the
+/// path lengths of `integrator`, except those of `not_in_the_light`.
 IntegratorSettings reference_integrator(const IntegratorSettings& integrator);
 
-/// The seed of references: no random number of one is the job's own.
+/// The seed of references, so that a reference and a job share no random numbers.
 inline constexpr std::uint64_t reference_seed = 0x726566657265;  // below 2^53, the largest seed
 
-/// The job that makes the "auto" reference of `job`: the same but for the keys
-/// `not_in_a_reference`, of which a reference has its own.
+/// The job that renders the "auto" reference of `job`: the same except for the keys
+/// `not_in_a_reference`, which have values of their own.
 template <std::derived_from<JobSpec> Job>
 Job reference_spec(const Job& job) {
   Job r = without(job, not_in_a_reference);
@@ -40,9 +40,9 @@ Job reference_spec(const Job& job) {
   return r;
 }
 
-/// Names what a job's error is measured against. Jobs of one text estimate one picture: only their
-/// errors can be compared. Against a named reference, path lengths are part of the method: they
-/// trade bias for speed.
+/// Identifies the picture that a job's error is measured against: only errors of jobs with the same
+/// text can be compared. Against a named reference, path lengths are part of the method: they trade
+/// bias for speed.
 template <std::derived_from<JobSpec> Job>
 std::string picture_name(const Job& job) {
   if (job.reference.empty() || job.reference == "auto") return picture_key(reference_spec(job));

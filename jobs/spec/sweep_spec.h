@@ -11,7 +11,7 @@
 
 namespace lacuna {
 
-/// In which order the runs of a sweep are done.
+/// The order of the runs of a sweep.
 enum class SweepOrder { interleave, sequence };
 
 template <>
@@ -24,7 +24,7 @@ struct EnumTable<SweepOrder> {
   }};
 };
 
-/// Which of a curve's two clocks counts.
+/// Which of a curve's two clocks is used.
 enum class SweepClock { seconds, cpu_seconds };
 
 template <>
@@ -36,7 +36,7 @@ struct EnumTable<SweepClock> {
   }};
 };
 
-/// Where the cells of a sweep are compared.
+/// The times and errors at which the cells of a sweep are compared.
 struct CompareAt {
   std::vector<double> seconds, errors;
   std::optional<ErrorMetric> metric;
@@ -46,16 +46,15 @@ struct CompareAt {
 template <class V>
 void describe(V& v, CompareAt& s) {
   v("seconds", s.seconds,
-    {.doc = "render times at which errors are compared; none: the last that all cells reach, and "
-            "a half, a quarter and a tenth of it",
+    {.doc = "render times at which errors are compared; none: the last time that all cells reach, "
+            "and a half, a quarter and a tenth of it",
      .max = 16});
   v("errors", s.errors,
-    {.doc = "errors to which times are compared; none: the smallest that all cells reach, and "
-            "twice that",
+    {.doc = "errors for which times are compared; none: the smallest error that all cells reach, "
+            "and twice that",
      .max = 16});
-  v("metric", s.metric,
-    {.doc = "which error; none: relmse, or est_rmse where there is no reference"});
-  v("clock", s.clock, {.doc = "which time"});
+  v("metric", s.metric, {.doc = "the error metric; none: relmse, or est_rmse without a reference"});
+  v("clock", s.clock, {.doc = "the clock of render times"});
 }
 
 /// Many jobs that differ in some settings: the sweep file. Settings are named by JSON pointers (RFC
@@ -75,32 +74,32 @@ struct SweepSpec {
 };
 template <class V>
 void describe(V& v, SweepSpec& s) {
-  v("label", s.label, {.doc = "a few words of your own", .max = 200});
+  v("label", s.label, {.doc = "a description of your own", .max = 200});
   v("job", s.job,
-    {.doc = "what all runs share: a job file, in which axes may be missing", .required = true});
+    {.doc = "the job file that all runs share; settings of axes may be missing", .required = true});
   v("axes", s.axes,
-    {.doc = "settings and the values that each takes, in every combination: "
+    {.doc = "settings and their values, which are combined in all ways: "
             "{\"/integrator/max_depth\": [4, 8]}",
      .max = 16});
   v("zip", s.zip,
-    {.doc = "settings that change together, as one axis: lists of equal length, as of a scene and "
-            "its camera",
+    {.doc = "settings that change together, as one axis: lists of equal length, for example of "
+            "scenes and their cameras",
      .max = 16});
   v("exclude", s.exclude,
-    {.doc = "combinations to leave out: all cells that have each of these values", .max = 1000});
+    {.doc = "combinations to leave out: all cells with all values of an entry", .max = 1000});
   v("seeds", s.seeds,
-    {.doc = "runs of each cell, which differ in their seed: the job's own, and those after it",
+    {.doc = "runs of each cell, with the job's seed and the seeds that follow it",
      .min = 1,
      .max = 1000});
   v("baseline", s.baseline,
-    {.doc = "what is compared against: of every cell the one that has these values and else the "
-            "same",
+    {.doc = "values of the baseline: each cell is compared with the cell that has these values and "
+            "otherwise the same",
      .max = 16});
-  v("compare_at", s.compare_at, {.doc = "where errors and times are compared"});
-  v("order", s.order, {.doc = "in which order runs are done"});
+  v("compare_at", s.compare_at, {.doc = "times and errors at which cells are compared"});
+  v("order", s.order, {.doc = "order of the runs"});
   v("alone", s.alone,
-    {.doc = "each run has the machine for itself, so that times can be compared; false: as many at "
-            "a time as the service or --jobs allows"});
+    {.doc = "one run at a time on the machine, so that times can be compared; false: as many at a "
+            "time as the service or --jobs allows"});
 }
 
 }  // namespace lacuna

@@ -14,8 +14,7 @@ namespace lacuna {
 
 struct Member;
 
-/// A settings table as data, for what does not read or write settings but tells of them: the schema
-/// and the documentation.
+/// A settings table as data, for the schema and the documentation.
 struct Type {
   enum class Kind {
     boolean,

@@ -7,7 +7,8 @@
 
 namespace lacuna {
 
-/// queue.json: what the service was asked for and has to remember about a job. It alone writes it.
+/// queue.json: clients' requests for a job that the service must remember. Only the service writes
+/// it.
 struct JobControl {
   int priority = 0;
   bool held = false;

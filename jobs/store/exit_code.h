@@ -5,11 +5,11 @@ namespace lacuna {
 /// Exit codes of `lacuna`, printed by --help.
 enum ExitCode : int {
   exit_done = 0,
-  exit_error = 1,    ///< something else went wrong
-  exit_bad_job = 2,  ///< the job file or the command line
-  exit_asset = 3,    ///< a scene, texture, reference or environment
-  exit_memory = 71,  ///< out of memory; with more, the same command goes on
-  /// Stopped with a checkpoint, or the disk is full; the same command goes on.
+  exit_error = 1,    ///< any other error
+  exit_bad_job = 2,  ///< invalid job file or command line
+  exit_asset = 3,    ///< a scene, texture, reference or environment cannot be used
+  exit_memory = 71,  ///< out of memory; with more memory, the same command continues
+  /// Stopped with a checkpoint, or the disk is full; the same command continues.
   exit_interrupted = 75
 };
 

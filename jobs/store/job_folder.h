@@ -14,7 +14,7 @@
 
 namespace lacuna {
 
-/// progress.json: what a watcher wants to know several times a second. Written without fsync.
+/// progress.json: progress for display, updated several times a second. Written without fsync.
 struct Progress {
   std::int64_t iteration = 0;
   double seconds = 0;      ///< render time so far, wall clock
@@ -36,8 +36,7 @@ void describe(V& v, Progress& s) {
   v("error_metric", s.error_metric, {.doc = "which error"});
 }
 
-/// The names of the files in a job's folder: this list is the manifest, nothing else is ever
-/// served.
+/// The files of a job's folder: this list is the manifest; no other file is served.
 struct FileInfo {
   std::string_view name;
   std::string_view media_type;
@@ -81,7 +80,7 @@ class JobFolder {
   std::filesystem::path dir_;
 };
 
-/// Where the data of a service or of a person lies, and the folders below it.
+/// The data folder of a service or a user, and the folders below it.
 struct DataRoot {
   std::filesystem::path dir;
   std::filesystem::path cache_folder = {};              ///< empty: `cache` below `dir`
@@ -112,10 +111,9 @@ class ScenesRoots {
   static ScenesRoots from_environment();
   const std::vector<std::filesystem::path>& roots() const { return roots_; }
 
-  /// The regular file that `name` means. A name is relative, with '/' between parts; it may not
-  /// leave its root in any spelling, nor through a symbolic link. `extensions` have their dot
-  /// (".glb"); case does not matter. Throws std::invalid_argument saying why not and which names
-  /// are there.
+  /// The regular file named `name`: a relative path with '/' between parts that does not leave its
+  /// root in any spelling, nor through a symbolic link. `extensions` include the dot (".glb"); case
+  /// does not matter. Throws std::invalid_argument with the reason and the available names.
   std::filesystem::path resolve(std::string_view name,
                                 const std::vector<std::string_view>& extensions) const;
 
@@ -130,13 +128,13 @@ class ScenesRoots {
 /// A new job id: UTC time and random letters ("20260131-235959-k3x9qa"): sorts by time, safe as a
 /// file name.
 std::string new_job_id();
-/// The form that new_job_id() makes; nothing else is looked up on disk.
+/// Whether `s` has the form of new_job_id(); no other name is looked up on disk.
 bool is_job_id(std::string_view s);
-/// The id of a job that is a run of a sweep: the sweep's own id, whose letters are counted on by 1
-/// + `index` (modulo 36^6). A pure function: nothing has to remember which job is which run.
+/// The id of the job of a sweep's run: the sweep's id with its letters, a number in base 36,
+/// increased by 1 + `index` (modulo 36^6). A pure function, so the mapping need not be stored.
 std::string run_job_id(std::string_view sweep_id, std::size_t index);
-/// The index for which run_job_id() gives `job_id`, be it one that the sweep has or not; nothing if
-/// there is none.
+/// The inverse of run_job_id(), for any index, whether or not the sweep has such a run; none if
+/// `job_id` is not of that form.
 std::optional<std::size_t> run_index(std::string_view sweep_id, std::string_view job_id);
 /// All jobs below `jobs`, oldest first; folders that are no jobs are left out.
 std::vector<JobFolder> list_jobs(const std::filesystem::path& jobs);

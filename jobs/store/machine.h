@@ -5,16 +5,17 @@
 
 namespace lacuna {
 
-/// The model name in /proc/cpuinfo; "unknown" if it does not say.
+/// The model name in /proc/cpuinfo; "unknown" if it is missing.
 std::string processor_name();
 /// Hardware threads; at least 1.
 int processor_threads();
 /// Main memory, bytes.
 std::uint64_t memory_bytes();
-/// How much of it this process may still take: what is available now, or less where a limit on its
-/// address space says so, bytes.
+/// Memory that this process can still allocate, bytes: the available memory, or less by a limit of
+/// its address space.
 std::uint64_t available_memory();
-/// What a step may plan to take of it: the rest, a sixteenth, is for what no estimate knows of.
+/// The part of it that a step may plan to use, 15/16; the rest is for allocations outside
+/// estimates.
 std::uint64_t memory_to_take();
 
 }  // namespace lacuna

@@ -6,22 +6,20 @@
 
 namespace lacuna {
 
-/// The folder that is meant: absolute, without '.', '..' and a '/' at its end.
+/// Normalises a folder's path: absolute, without '.', '..' and a trailing '/'.
 std::filesystem::path folder_path(const std::filesystem::path& named);
 
-/// Makes a folder that is there as a whole or not at all, also after a power cut: `fill` puts what
-/// it holds into a draft beside it (synced), which is then renamed. Folders above it are made where
-/// they lack. Throws std::system_error, and std::invalid_argument if `target` is there already; no
-/// draft is left.
+/// Creates a folder as a whole or not at all, even after a power cut: `fill` writes its contents
+/// (synced) into a draft beside it, which is then renamed. Creates missing parent folders. Throws
+/// std::system_error, and std::invalid_argument if `target` exists; no draft is left.
 void create_folder_whole(const std::filesystem::path& target,
                          const std::function<void(const std::filesystem::path& draft)>& fill);
 
-/// Takes folders that lie beside each other away, synced: they get hidden names, which are given
-/// back, to be removed when there is time. After a crash remove_stale_folders() does that. Throws
-/// std::system_error.
+/// Renames sibling folders to hidden names, synced, and returns these names, to be removed later.
+/// After a crash remove_stale_folders() removes them. Throws std::system_error.
 std::vector<std::filesystem::path> take_folders_away(
     const std::vector<std::filesystem::path>& folders);
-/// Removes a folder and all in it; a crash midway leaves nothing that has its name. Throws
+/// Removes a folder with its contents; after a crash midway, nothing has its name. Throws
 /// std::system_error.
 void remove_folder_whole(const std::filesystem::path& folder);
 

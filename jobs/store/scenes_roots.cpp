@@ -58,7 +58,7 @@ std::string_view fault_of(std::string_view name, const Extensions& extensions) {
     if (part.empty()) return "it has an empty part";
     if (part == "." || part == "..") return "it has a part \".\" or \"..\"";
   }
-  if (!has_extension(name, extensions)) return "it is no file of this kind";
+  if (!has_extension(name, extensions)) return "it is not a file of this kind";
   return {};
 }
 

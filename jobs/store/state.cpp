@@ -38,7 +38,7 @@ constexpr Transition transitions[] = {
     {State::interrupted, State::cancelling, person, "cancels it just then"},
     {State::interrupted, State::cancelled, service,
      "its renderer has ended after it was cancelled"},
-    {State::interrupted, State::failed, service, "it was interrupted too often without coming on"},
+    {State::interrupted, State::failed, service, "it was interrupted too often without progress"},
     {State::failed, State::queued, person, "retries or extends it"},
     {State::cancelled, State::queued, person, "retries or extends it"},
     {State::done, State::queued, person, "extends its budget"},

@@ -11,7 +11,7 @@
 
 namespace lacuna {
 
-/// Where a job stands. state_transitions() says what may follow what.
+/// The state of a job. state_transitions() lists the allowed changes.
 enum class State { queued, running, held, cancelling, interrupted, done, failed, cancelled };
 
 template <>
@@ -29,18 +29,18 @@ struct EnumTable<State> {
   }};
 };
 
-/// done, failed, cancelled: nothing happens any more, unless a person asks for it.
+/// done, failed, cancelled: the state changes only at a user's request.
 bool is_terminal(State s);
 
-/// One change of state that there is.
+/// An allowed change of state.
 struct Transition {
   State from, to;
   std::string_view by;   ///< who makes it: "service", "renderer", "person"
   std::string_view why;  ///< when
 };
-/// The state machine: every change of state there is, and no other.
+/// The state machine: all allowed changes of state.
 std::span<const Transition> state_transitions();
-/// A job may go from `from` to `to`; staying is no change.
+/// Whether a job may change from `from` to `to`; staying is always allowed.
 bool may_follow(State from, State to);
 /// The state machine as a page of Markdown.
 std::string state_documentation();

@@ -11,19 +11,19 @@
 
 namespace lacuna {
 
-/// Seconds before the first iteration. Cold: everything is built. Warm: what analysis finds lies in
-/// the cache. Nothing: no run of the sweep shows it.
+/// Seconds before the first iteration. Cold: all artefacts are built. Warm: they are loaded from
+/// the cache. None: no run of the sweep measured it.
 struct Preparation {
   std::optional<double> cold, warm;
 };
 
-/// When a preparation has paid against the baseline's; nothing: not within the measured times, or
-/// not known.
+/// The time at which a cell's preparation has paid off against the baseline; none: not within the
+/// measured times, or unknown.
 struct BreakEvens {
   std::optional<BreakEven> cold, warm;
 };
 
-/// What the runs of a cell say.
+/// The results of a cell's runs.
 struct CellAnswer {
   std::size_t cell = 0;                 ///< index into plan().cells
   std::size_t picture = 0;              ///< index into Answers::pictures
@@ -33,31 +33,31 @@ struct CellAnswer {
   std::vector<TimeToError> to;
   std::optional<Estimate> efficiency;  ///< 1 / (squared error x seconds), at the end of each run
   std::optional<Gain> efficiency_gain;
-  /// Plain means over the runs: of the squared error what is not variance, and what is.
+  /// Means over the runs of the two parts of the squared error: bias squared, and variance.
   std::optional<Estimate> bias_squared, variance;
-  /// The same from the runs' pictures together, where somebody has looked at them (jobs/report).
+  /// The squared bias from the runs' pictures together, if they were read (jobs/report).
   std::optional<Estimate> bias_between_runs;
   Preparation preparation;
   BreakEvens pays;
 };
 
-/// Cells that estimate one picture: only their errors can be compared.
+/// The cells that estimate one picture, whose errors can be compared.
 struct PictureAnswer {
-  std::string text;                     ///< the settings that tell it from the other pictures
+  std::string text;                     ///< the settings that differ from the other pictures
   std::vector<std::size_t> cells;       ///< indices into Answers::cells
   std::vector<double> seconds, errors;  ///< where its cells are compared
-  /// Who has the lowest error when: of render time, and with preparation. `best` and `tied` are
-  /// indices into plan().cells.
+  /// The cells of lowest error over time: by render time, and with warm and cold preparation.
+  /// `best` and `tied` are indices into plan().cells.
   std::vector<FrontPart> render, warm, cold;
 };
 
-/// A run whose times say little about its method.
+/// A run whose times were disturbed by other load on the machine.
 struct Tainted {
   std::size_t run;
   std::string why;
 };
 
-/// Everything a sweep says so far.
+/// All results of a sweep so far.
 struct Answers {
   CurveAxes axes;
   std::vector<RunResult> results;  ///< as plan().runs
@@ -68,8 +68,8 @@ struct Answers {
   std::vector<std::string> warnings;
 };
 
-/// Reads every run and compares. Runs that are not done take no part. Throws what
-/// SweepFolder::state() and read_result() throw.
+/// Reads and compares all runs that are done. Throws the exceptions of SweepFolder::state() and
+/// read_result().
 Answers answer(const SweepFolder& sweep);
 
 /// The answers as JSON: what the page and the report show (documented in

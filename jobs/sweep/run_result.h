@@ -11,20 +11,20 @@
 
 namespace lacuna {
 
-/// Which columns of a curve are compared.
+/// The columns of a curve that are compared.
 struct CurveAxes {
   ErrorMetric metric;
   std::string clock;  ///< "seconds" or "cpu_seconds"
 };
 
-/// What a finished run spent before its first iteration, seconds.
+/// The time of a finished run before its first iteration, seconds.
 struct RunPreparation {
   double load = 0;
   double analysis = 0;
   std::set<std::string> built, loaded;  ///< artefacts, by type
 };
 
-/// What a run's folder says, for comparison with other runs. What it does not say is empty.
+/// The results in a run's folder, for comparison with other runs; missing values are empty.
 struct RunResult {
   JobState state;
   ErrorCurve curve;
@@ -38,9 +38,9 @@ struct RunResult {
   std::optional<double> mhz;
 };
 
-/// Reads curve.csv and report.json of a folder, as far as they are there. Squared errors are of the
-/// same kind as the metric (a squared metric as it is, the others squared). Throws
-/// std::runtime_error that names a file which is damaged.
+/// Reads curve.csv and report.json of a folder, if they exist. Squared errors are those of the
+/// metric (squared metrics as they are, others squared). Throws std::runtime_error that names a
+/// damaged file.
 RunResult read_result(const JobFolder& folder, const CurveAxes& axes);
 
 }  // namespace lacuna

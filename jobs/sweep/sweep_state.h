@@ -8,7 +8,7 @@
 
 namespace lacuna {
 
-/// Where a sweep of a service stands.
+/// The state of a sweep of a service.
 enum class SweepStage { running, cancelling, done, cancelled, failed };
 
 template <>
@@ -22,7 +22,7 @@ struct EnumTable<SweepStage> {
   }};
 };
 
-/// done, cancelled, failed: no run is made any more.
+/// done, cancelled, failed: no more runs are started.
 inline bool is_over(SweepStage s) {
   return s != SweepStage::running && s != SweepStage::cancelling;
 }

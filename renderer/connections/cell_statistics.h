@@ -10,58 +10,59 @@
 
 namespace lacuna {
 
-/// What connections gave in the iterations so far, by the cell of space that the eye vertex lies in
-/// and by the length of the light path; and what all of a path's connections gave together, by
-/// tile. Learned state: the same for any number of threads.
+/// The second moment of the contributions of connections in the iterations so far, by the cell of
+/// the eye vertex and the length of the light path; and the mean contribution of all connections of
+/// a path, by tile. Learned state: the same for any number of threads.
 class CellStatistics {
  public:
-  /// Light paths are told apart by up to so many vertices; longer ones count as the longest.
+  /// Lengths of light paths, in vertices, that are counted separately; longer ones count as this.
   static constexpr int lengths = 8;
 
   struct Cell {
-    std::uint64_t visits = 0;                    ///< eye vertices
-    std::array<std::uint64_t, lengths> asked{};  ///< of those, how many could be joined
-    std::array<double, lengths> squares{};       ///< sum over `asked` of what arrived, squared
+    std::uint64_t visits = 0;  ///< eye vertices
+    std::array<std::uint64_t, lengths>
+        attempts{};                         ///< eye vertices with light paths of this length
+    std::array<double, lengths> squares{};  ///< sum over `attempts` of the squared contributions
   };
 
-  /// What one tile saw in one iteration: the cells that it met, in the order of meeting.
-  class Tally {
+  /// The statistics of one tile in one iteration: the visited cells, in the order of first visits.
+  class Accumulator {
    public:
-    Tally() = default;
-    explicit Tally(std::size_t cells) : place_(cells, none) {}
+    Accumulator() = default;
+    explicit Accumulator(std::size_t cells) : slot_(cells, none) {}
 
     void visit(std::uint32_t cell) { ++at(cell).visits; }
-    void asked(std::uint32_t cell, int s) { ++at(cell).asked[index(s)]; }
-    /// `value`: per unit of the eye vertex' throughput, if the connection had been made for
-    /// certain; it was made with probability `survival`.
-    void arrived(std::uint32_t cell, int s, double value, double survival) {
+    void attempt(std::uint32_t cell, int s) { ++at(cell).attempts[index(s)]; }
+    /// Adds the contribution of one connection. `value` is per unit of the eye vertex' throughput
+    /// and not divided by `survival`, the probability with which the connection was made.
+    void add_contribution(std::uint32_t cell, int s, double value, double survival) {
       at(cell).squares[index(s)] += value * value / survival;
     }
-    /// What the connections of a path gave to its pixel.
-    void gathered(double value) { gathered_ += value; }
-    void paths(std::uint64_t n) { paths_ += n; }
-    /// To be called when the tile is done: leaves what add() reads.
-    void close() { place_ = {}; }
+    /// Adds the contributions of a path's connections to its pixel.
+    void add_path_sum(double value) { gathered_ += value; }
+    void add_paths(std::uint64_t n) { paths_ += n; }
+    /// Call when the tile is done: frees what add() does not read.
+    void close() { slot_ = {}; }
 
    private:
     friend class CellStatistics;
     static constexpr std::uint32_t none = ~0U;
 
     Cell& at(std::uint32_t cell) {
-      std::uint32_t& place = place_[cell];
-      if (place == none) {
-        place = static_cast<std::uint32_t>(met_.size());
-        met_.push_back({cell, {}});
+      std::uint32_t& slot = slot_[cell];
+      if (slot == none) {
+        slot = static_cast<std::uint32_t>(visited_.size());
+        visited_.push_back({cell, {}});
       }
-      return met_[place].sums;
+      return visited_[slot].sums;
     }
 
-    struct Met {
+    struct Visited {
       std::uint32_t cell;
       Cell sums;
     };
-    std::vector<std::uint32_t> place_;  // of each cell in met_
-    std::vector<Met> met_;
+    std::vector<std::uint32_t> slot_;  // of each cell, its index in visited_
+    std::vector<Visited> visited_;
     double gathered_ = 0;
     std::uint64_t paths_ = 0;
   };
@@ -70,40 +71,39 @@ class CellStatistics {
   std::size_t cells() const { return cells_.size(); }
   std::uint64_t visits(std::uint32_t cell) const { return cells_[cell].visits; }
 
-  /// Probability with which to make a connection of an eye vertex in `cell`, of the given
-  /// throughput, with a light path of `s` vertices: the root of the mean square of what such ones
-  /// gave, over `enough`, but at least least_survival. 1 if `enough` is 0, or while too few were
-  /// asked for.
-  float survival(std::uint32_t cell, int s, double throughput, double enough) const {
-    if (!(enough > 0) || expected_.empty()) return 1;
+  /// Probability of making a connection between an eye vertex in `cell`, of the given throughput,
+  /// and a light path of `s` vertices: throughput sqrt(E[contribution^2]) / threshold, clamped to
+  /// [min_survival, 1]. 1 if `threshold` is 0, or with fewer than min_attempts attempts.
+  float survival(std::uint32_t cell, int s, double throughput, double threshold) const {
+    if (!(threshold > 0) || expected_.empty()) return 1;
     const double expected = expected_[cell * std::size_t{lengths} + index(s)];
-    const double p = throughput * expected / enough;
-    return p < 1 ? static_cast<float>(std::max(p, least_survival)) : 1.0F;
+    const double p = throughput * expected / threshold;
+    return p < 1 ? static_cast<float>(std::max(p, min_survival)) : 1.0F;
   }
-  /// Mean of what all connections of a path give in tile `i`; 0 while it is not known.
+  /// Mean contribution of all connections of a path in tile `i`; 0 before the first iteration.
   double mean(std::size_t i) const {
     return i < tiles_.size() && tiles_[i].paths > 0
                ? tiles_[i].gathered / static_cast<double>(tiles_[i].paths)
                : 0;
   }
 
-  /// One iteration's tallies, one for each tile, in the tiles' order.
-  void add(std::span<const Tally> tallies);
+  /// One iteration's accumulators, one for each tile, in the tiles' order.
+  void add(std::span<const Accumulator> accumulators);
 
   void save(ByteWriter& out) const;
-  /// Throws std::runtime_error if they are of other cells.
+  /// Throws std::runtime_error if the saved number of cells differs.
   void load(ByteReader& in);
 
  private:
-  /// What survives counts 1 / survival times: no connection counts more than twentyfold, however
-  /// wrong the expectation of its cell is.
-  static constexpr double least_survival = 0.05;
-  /// The mean square of so many is known to 1 / sqrt(32), a sixth, of the spread of one; before,
-  /// all are made.
-  static constexpr std::uint64_t least_asked = 32;
+  /// A connection that roulette keeps is weighted by 20 at most, however wrong the expectation of
+  /// its cell is.
+  static constexpr double min_survival = 0.05;
+  /// Attempts after which a mean square is trusted: it is then known to 1 / sqrt(32), a sixth, of
+  /// the spread of one. Before, all connections are made.
+  static constexpr std::uint64_t min_attempts = 32;
 
   static std::size_t index(int s) { return static_cast<std::size_t>(std::min(s, lengths) - 1); }
-  void expect();
+  void update_expected();
 
   struct TileSums {
     double gathered = 0;
@@ -111,7 +111,7 @@ class CellStatistics {
   };
   std::vector<Cell> cells_;
   std::vector<TileSums> tiles_;
-  std::vector<double> expected_;  // of each cell and length; infinite: not known yet
+  std::vector<double> expected_;  // sqrt(mean square) of each cell and length; infinite: unknown
 };
 
 }  // namespace lacuna

@@ -10,40 +10,41 @@
 
 namespace lacuna {
 
-/// connections: paired. Each eye path meets a light path of its own (integrators/bdpt.cpp): the one
-/// choice that resamples nothing.
+/// connections: paired. Each eye path is joined to a light path of its own (integrators/bdpt.cpp):
+/// the one choice without resampling.
 struct PairedConnections : StrategyBase {
   explicit PairedConnections(const PairedSettings&) {}
 };
 
-/// How light vertices that all pixels share are drawn for an eye vertex.
+/// Samples light vertices, shared by all pixels, for an eye vertex.
 ///
-/// - resampling(): the settings that all such choices have in common.
-/// - distributions: their names, for the layers `distributions.NAME`.
-/// - cells(): how many parts the eye vertices fall into, for CellStatistics; known after prepare().
-/// - begin(): called once the light vertices of an iteration are there. It may change what the
-///   iteration draws from, and nothing else may.
-/// - find(): where the connections of an eye vertex, `depth` edges from the eye, are drawn: a
-/// struct
+/// - resampling(): the settings that all such strategies have in common.
+/// - distributions: the names of the distributions, for the layers `distributions.NAME`.
+/// - cells(): number of cells that CellStatistics distinguishes; known after prepare().
+/// - begin(): called when the light vertices of an iteration are complete. Only begin() may change
+///   the distributions of the iteration.
+/// - find(): looks up the distributions for an eye vertex, `depth` edges from the eye: a struct
 ///   with a member `cell` < cells().
-/// - pick(): draws a light vertex for each s in [1, longest] that has any, each with probability
-///   `survival(s)`, and calls `use(s, pick)`. VertexSample::probability is the probability of this
-///   vertex among those of its s: the exact one, > 0, or the method is biased. Every vertex that
-///   can contribute has a probability above 0.
+/// - sample(): samples one light vertex for each s of the LightRange that has any, each with
+///   probability `survival(s)`, and calls `use(s, drawn)`. VertexSample::probability is the exact
+///   probability, > 0, of this vertex among those of its s; otherwise the method is biased. Every
+///   vertex that can contribute has a probability above 0.
 ///
-/// find() and pick() are const and are called by many threads; they draw from the given generator
-/// only, so that the bits do not depend on the threads.
+/// find() and sample() are const and are called by many threads; they use the given generator only,
+/// so that the bits do not depend on the threads.
 template <class C>
 concept SharedConnections = Strategy<C> &&
     requires(C c, const C& k, const IterationContext& context, Counters& counters,
-             const LightVertices& lights, const CellStatistics& seen, const Vertex& v, Rng& rng) {
+             const LightVertices& lights, const CellStatistics& statistics, const Vertex& v,
+             Rng& rng) {
   { k.resampling() } -> std::convertible_to<const ResamplingSettings&>;
   { C::distributions.size() } -> std::convertible_to<std::size_t>;
   { k.cells() } -> std::convertible_to<std::size_t>;
-  c.begin(context, lights, seen, counters);
+  c.begin(context, lights, statistics, counters);
   { k.find(v, 1, rng).cell } -> std::convertible_to<std::uint32_t>;
-  k.pick(
-      k.find(v, 1, rng), lights, 1, rng, [](int) { return 1.0F; }, [](int, const VertexSample&) {});
+  k.sample(
+      k.find(v, 1, rng), LightRange{lights, 1}, rng, [](int) { return 1.0F; },
+      [](int, const VertexSample&) {});
 };
 
 template <class C>

@@ -7,8 +7,8 @@
 
 namespace lacuna {
 
-/// connections: hybrid. Importance caching at the first vertices of an eye's path, where records
-/// are near; the skeleton beyond (Noel 2015, 11.6).
+/// connections: hybrid. Importance caching at the first vertices of an eye path, where records are
+/// near; the skeleton at later vertices (Noel 2015, 11.6).
 class HybridConnections : public StrategyBase {
  public:
   explicit HybridConnections(const HybridSettings& settings)
@@ -23,54 +23,53 @@ class HybridConnections : public StrategyBase {
   static constexpr bool needs_space() { return true; }
 
   void prepare(const PrepareContext& context) { skeleton_.prepare(context); }
-  /// The skeleton's, and one for all vertices that use records.
+  /// The cells of the skeleton, and one for all vertices that use records.
   std::size_t cells() const { return skeleton_.cells() + 1; }
   void begin(const IterationContext& context, const LightVertices& lights,
-             const CellStatistics& seen, Counters& counters) {
-    cache_.begin(context, lights, seen, counters);
-    skeleton_.begin(context, lights, seen, counters);
+             const CellStatistics& statistics, Counters& counters) {
+    cache_.begin(context, lights, statistics, counters);
+    skeleton_.begin(context, lights, statistics, counters);
   }
 
-  /// Where connections from an eye vertex are drawn.
-  struct Place {
+  /// The distributions that an eye vertex is connected by.
+  struct CellLookup {
     std::uint32_t cell = 0;  ///< of CellStatistics
     bool cached = false;
-    ImportanceCacheConnections::Place records{};
-    SkeletonConnections::Place node{};
+    ImportanceCacheConnections::CellLookup records{};
+    SkeletonConnections::CellLookup node{};
   };
-  Place find(const Vertex& v, int depth, Rng& rng) const {
-    Place place;
-    place.cached = depth <= settings_.cached_depth;
-    if (place.cached) {
-      place.records = cache_.find(v, depth, rng);
-      place.cell = static_cast<std::uint32_t>(skeleton_.cells());
+  CellLookup find(const Vertex& v, int depth, Rng& rng) const {
+    CellLookup lookup;
+    lookup.cached = depth <= settings_.cached_depth;
+    if (lookup.cached) {
+      lookup.records = cache_.find(v, depth, rng);
+      lookup.cell = static_cast<std::uint32_t>(skeleton_.cells());
     } else {
-      place.node = skeleton_.find(v, depth, rng);
-      place.cell = place.node.cell;
+      lookup.node = skeleton_.find(v, depth, rng);
+      lookup.cell = lookup.node.cell;
     }
-    return place;
+    return lookup;
   }
 
-  /// Calls `use(s, pick)` for a light path of each length in [1, longest], made with probability
-  /// `survival(s)`.
+  /// SharedConnections::sample().
   template <class Survival, class Use>
-  void pick(const Place& place, const LightVertices& lights, int longest, Rng& rng,
-            Survival&& survival, Use&& use) const {
-    if (place.cached) {
-      cache_.pick(place.records, lights, longest, rng, survival, use);
+  void sample(const CellLookup& lookup, const LightRange& range, Rng& rng, Survival&& survival,
+              Use&& use) const {
+    if (lookup.cached) {
+      cache_.sample(lookup.records, range, rng, survival, use);
       return;
     }
-    skeleton_.pick(place.node, lights, longest, rng, survival, [&](int s, VertexSample pick) {
-      pick.owner =
-          static_cast<std::uint8_t>(pick.owner + ImportanceCacheConnections::distributions.size());
-      use(s, pick);
+    skeleton_.sample(lookup.node, range, rng, survival, [&](int s, VertexSample drawn) {
+      drawn.distribution = static_cast<std::uint8_t>(
+          drawn.distribution + ImportanceCacheConnections::distributions.size());
+      use(s, drawn);
     });
   }
 
   std::vector<std::pair<std::string, double>> statistics() const {
-    auto told = cache_.statistics();
-    for (auto& more : skeleton_.statistics()) told.push_back(std::move(more));
-    return told;
+    auto stats = cache_.statistics();
+    for (auto& more : skeleton_.statistics()) stats.push_back(std::move(more));
+    return stats;
   }
 
  private:

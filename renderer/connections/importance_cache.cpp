@@ -22,7 +22,7 @@ void ImportanceCacheConnections::place_records(const IterationContext& context, 
                        {.max_depth = longest, .last_scatters = true, .roulette_depth = longest + 1},
                        counters);
   for (std::uint64_t first = 0; first < paths; first += EyeBatch::size) {
-    batch.walkers.clear();
+    batch.states.clear();
     for (std::uint64_t j = first; j < std::min(paths, first + EyeBatch::size); ++j) {
       Rng rng(context.seed, context.iteration, j, Rng::Purpose::integrator);
       const std::uint64_t pixel = (std::uint64_t{rng.next_u32()} * pixels) >> 32;
@@ -31,7 +31,7 @@ void ImportanceCacheConnections::place_records(const IterationContext& context, 
       batch.start(context.camera, rng, context.camera.sample(p, rng.next2()), pixel);
     }
     walk.trace_paths(
-        batch.walkers, [](std::size_t, int) {},
+        batch.states, [](std::size_t, int) {},
         [&](std::size_t i, int depth) {
           const Vertex& v = batch.vertex(i, depth);
           if (v.kind == Vertex::Kind::surface && v.bsdf->connectible()) records_.push_back(v);
@@ -53,21 +53,21 @@ void ImportanceCacheConnections::begin(const IterationContext& context, const Li
         "record_density or light_paths",
         records_.size(), lights.paths());
   });
-  std::vector<RecordTree::Place> places;
-  for (const Vertex& v : records_) places.push_back(place_of(v));
-  tree_.build(std::move(places));
-  sites_.resize(records_.size());
+  std::vector<SurfacePoint> points;
+  for (const Vertex& v : records_) points.push_back(surface_point(v));
+  tree_.build(std::move(points));
+  cells_of_records_.resize(records_.size());
   std::vector<std::uint64_t> rays(records_.size());
   context.pool.for_each(static_cast<int>(records_.size()), [&](int i) {
     if (context.stop()) return;
     const auto k = static_cast<std::size_t>(i);
-    rays[k] = build(records_[k], sites_[k], context.scene, lights);
+    rays[k] = build(records_[k], cells_of_records_[k], context.scene, lights);
   });
   if (context.stop()) throw IterationStopped{};
   counters.shadow_rays += std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
 }
 
-std::uint64_t ImportanceCacheConnections::build(const Vertex& record, ResamplingCell& site,
+std::uint64_t ImportanceCacheConnections::build(const Vertex& record, ResamplingCell& cell,
                                                 const Scene& scene,
                                                 const LightVertices& lights) const {
   Vertex unit = record;  // what light gives to the record, whatever the record gives to a pixel
@@ -75,7 +75,7 @@ std::uint64_t ImportanceCacheConnections::build(const Vertex& record, Resampling
   const SurfaceEndpoint<BsdfGuide> eye{unit, 1, Transport::radiance, guide_};
   const auto finite = [](double w) { return std::isfinite(w) ? w : 0.0; };
   std::vector<Ray> rays;
-  std::vector<std::size_t> asked;
+  std::vector<std::size_t> traced;
   std::vector<std::uint8_t> occluded;
   std::uint64_t sent = 0;
   for (int s = 1; s <= lights.longest(); ++s) {
@@ -83,7 +83,7 @@ std::uint64_t ImportanceCacheConnections::build(const Vertex& record, Resampling
     std::vector<double> full(n, 0.0), unshadowed(n, 0.0), bounded(n, 0.0);
     const std::vector<double> same(n, 1.0);
     rays.clear();
-    asked.clear();
+    traced.clear();
     for (std::size_t i = 0; i < n; ++i) {
       lights.with_end(s, i, guide_, [&](const auto& light) {
         const Connection c = connect(eye, light);
@@ -93,18 +93,18 @@ std::uint64_t ImportanceCacheConnections::build(const Vertex& record, Resampling
         if (settings_.unshadowed) unshadowed[i] = w;
         if (!settings_.full) return;
         full[i] = w;
-        asked.push_back(i);
+        traced.push_back(i);
         rays.push_back(shadow_ray(eye, light, c));
       });
     }
     occluded.resize(rays.size());
     scene.rays().occluded(rays, occluded);
     sent += rays.size();
-    for (std::size_t k = 0; k < asked.size(); ++k) {
-      if (occluded[k] != 0) full[asked[k]] = 0;
+    for (std::size_t k = 0; k < traced.size(); ++k) {
+      if (occluded[k] != 0) full[traced[k]] = 0;
     }
     const std::array<std::span<const double>, 4> all{full, unshadowed, bounded, same};
-    site.set(s, ResamplingTable(all, settings_.combination));
+    cell.set(s, ResamplingTable(all, settings_.combination));
   }
   return sent;
 }

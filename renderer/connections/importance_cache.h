@@ -11,8 +11,8 @@
 
 namespace lacuna {
 
-/// connections: importance_cache. Light paths are resampled by distributions at records, which are
-/// the vertices of a few paths from the eye, made anew in each iteration (Georgiev et al. 2012,
+/// connections: importance_cache. Light vertices are resampled by distributions at records. Records
+/// are the vertices of a few eye paths, traced anew in each iteration (Georgiev et al. 2012,
 /// "Importance Caching for Complex Illumination"; on bidirectional path tracing: Noel 2015, 11.5).
 class ImportanceCacheConnections : public StrategyBase {
   static constexpr std::size_t max_neighbours = 64;
@@ -28,47 +28,49 @@ class ImportanceCacheConnections : public StrategyBase {
                                                                  "uniform"};
 
   static std::size_t cells() { return 1; }  // records are new in each iteration
-  /// Places the records and builds their distributions. Throws std::runtime_error if they would
-  /// take more than half of the memory that is free.
+  /// Traces the records and builds their distributions. Throws std::runtime_error if they would
+  /// take more than half of the free memory.
   void begin(const IterationContext& context, const LightVertices& lights, const CellStatistics&,
              Counters& counters);
 
-  /// Where connections from an eye vertex are drawn.
-  struct Place {
+  /// The records that an eye vertex is connected by.
+  struct CellLookup {
     std::uint32_t cell = 0;  ///< of CellStatistics
     std::size_t n = 0;
-    std::array<std::uint32_t, max_neighbours> near{};  // n records
-    const ResamplingCell* drawn = nullptr;             // one of them
+    std::array<std::uint32_t, max_neighbours> near{};  // the nearest n records
+    const ResamplingCell* drawn = nullptr;             // of one of them, chosen at random
   };
-  Place find(const Vertex& v, int /*depth*/, Rng& rng) const {
-    Place place;
-    place.n = tree_.nearest(
-        place_of(v), std::span(place.near).first(static_cast<std::size_t>(settings_.neighbours)));
-    if (place.n > 0) {
-      place.drawn = &sites_[place.near[(std::uint64_t{rng.next_u32()} * place.n) >> 32]];
+  CellLookup find(const Vertex& v, int /*depth*/, Rng& rng) const {
+    CellLookup lookup;
+    lookup.n =
+        tree_.nearest(surface_point(v),
+                      std::span(lookup.near).first(static_cast<std::size_t>(settings_.neighbours)));
+    if (lookup.n > 0) {
+      lookup.drawn =
+          &cells_of_records_[lookup.near[(std::uint64_t{rng.next_u32()} * lookup.n) >> 32]];
     }
-    return place;
+    return lookup;
   }
 
-  /// Calls `use(s, pick)` for a light path of each length in [1, longest], made with probability
-  /// `survival(s)`. All are drawn by one of the nearest records; their probability is the mean of
-  /// theirs.
+  /// SharedConnections::sample(). One of the n nearest records, chosen uniformly, samples all light
+  /// vertices; the probability of a vertex is the mean of its probabilities at the n records.
   template <class Survival, class Use>
-  void pick(const Place& place, const LightVertices& lights, int longest, Rng& rng,
-            Survival&& survival, Use&& use) const {
-    if (place.n == 0) {
-      sample_uniformly(lights, longest, rng, uniform, survival, use);
+  void sample(const CellLookup& lookup, const LightRange& range, Rng& rng, Survival&& survival,
+              Use&& use) const {
+    if (lookup.n == 0) {
+      sample_uniformly(range, rng, uniform, survival, use);
       return;
     }
     sample_connections(
-        lights, longest, survival, [&](int s) { return place.drawn->table(s).choose(rng); },
+        range, survival, [&](int s) { return lookup.drawn->table(s).choose(rng); },
         [&](int s, std::uint32_t chosen) {
-          const std::uint32_t i = place.drawn->table(s).resolve(chosen, rng).index;
+          const std::uint32_t i = lookup.drawn->table(s).resolve(chosen, rng).index;
           float sum = 0;
-          for (std::size_t k = 0; k < place.n; ++k) {
-            sum += sites_[place.near[k]].table(s).pmf(i).value;
+          for (std::size_t k = 0; k < lookup.n; ++k) {
+            sum += cells_of_records_[lookup.near[k]].table(s).pmf(i).value;
           }
-          return VertexSample{i, sum / static_cast<float>(place.n), place.drawn->table(s).owner(i)};
+          return VertexSample{i, sum / static_cast<float>(lookup.n),
+                              lookup.drawn->table(s).distribution(i)};
         },
         use);
   }
@@ -81,14 +83,14 @@ class ImportanceCacheConnections : public StrategyBase {
   static constexpr std::uint8_t uniform = 3;  // in `distributions`
 
   void place_records(const IterationContext& context, int longest, Counters& counters);
-  std::uint64_t build(const Vertex& record, ResamplingCell& site, const Scene& scene,
+  std::uint64_t build(const Vertex& record, ResamplingCell& cell, const Scene& scene,
                       const LightVertices& lights) const;
 
   ImportanceCacheSettings settings_;
   int record_depth_;
   BsdfGuide guide_;
   std::vector<Vertex> records_;
-  std::vector<ResamplingCell> sites_;
+  std::vector<ResamplingCell> cells_of_records_;
   RecordTree tree_;
 };
 

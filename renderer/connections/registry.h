@@ -6,7 +6,7 @@
 
 namespace lacuna {
 
-/// All choices of connections. A new one is a row here and an alternative of ConnectionsSettings.
+/// All connection strategies. A new one is a row here and an alternative of ConnectionsSettings.
 using ConnectionsRegistry =
     Registry<Entry<PairedSettings, PairedConnections>, Entry<UniformSettings, UniformConnections>,
              Entry<SkeletonConnectionsSettings, SkeletonConnections>,

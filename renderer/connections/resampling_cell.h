@@ -7,18 +7,18 @@
 
 namespace lacuna {
 
-/// A light vertex chosen for an eye vertex.
+/// A light vertex sampled for an eye vertex.
 struct VertexSample {
-  std::uint32_t index = 0;  ///< LightVertices::at(s, index)
-  float probability = 0;    ///< of this one among those of its length, > 0
-  std::uint8_t owner = 0;   ///< which of a site's distributions it belongs to
-  float survival = 1;       ///< probability of making it, > 0
+  std::uint32_t index = 0;        ///< LightVertices::at(s, index)
+  float probability = 0;          ///< of this one among those of its length, > 0
+  std::uint8_t distribution = 0;  ///< which of a site's distributions it belongs to
+  float survival = 1;             ///< probability of making it, > 0
 };
 
-/// The distributions over light vertices at one place, for each length of light paths.
+/// The distributions over light vertices at one node or record, one for each length of light paths.
 class ResamplingCell {
  public:
-  /// Over the vertices LightVertices::at(s, .).
+  /// Sets the distribution over the vertices LightVertices::at(s, .).
   void set(int s, ResamplingTable table) {
     if (tables_.size() < static_cast<std::size_t>(s)) tables_.resize(static_cast<std::size_t>(s));
     tables_[static_cast<std::size_t>(s) - 1] = std::move(table);
@@ -31,12 +31,19 @@ class ResamplingCell {
   std::vector<ResamplingTable> tables_;
 };
 
-/// Picks in two halves, `choose(s)` and `resolve(s, chosen)`, for all s in [1, longest] of which
-/// there are vertices, and then calls `use(s, pick)`: what each step reads from memory was asked
-/// for in the step before. Each is made with probability `survival(s)` only; 0: not.
+/// The light vertices with s in [1, longest].
+struct LightRange {
+  const LightVertices& lights;
+  int longest;
+};
+
+/// Samples a light vertex for each s of the range that has vertices, with probability
+/// `survival(s)`, and calls `use(s, drawn)`. Sampling is split into `choose(s)` and
+/// `resolve(s, chosen)`: each step prefetches what the next one reads.
 template <class Survival, class Choose, class Resolve, class Use>
-void sample_connections(const LightVertices& lights, int longest, Survival&& survival,
-                        Choose&& choose, Resolve&& resolve, Use&& use) {
+void sample_connections(const LightRange& range, Survival&& survival, Choose&& choose,
+                        Resolve&& resolve, Use&& use) {
+  const auto& [lights, longest] = range;
   constexpr std::size_t group = 8;
   struct Chosen {
     int s;
@@ -44,7 +51,7 @@ void sample_connections(const LightVertices& lights, int longest, Survival&& sur
     std::uint32_t index;
   };
   std::array<Chosen, group> chosen;
-  std::array<VertexSample, group> picks;
+  std::array<VertexSample, group> samples;
   for (int s = 1; s <= longest;) {
     std::size_t n = 0;
     for (; s <= longest && n < group; ++s) {
@@ -52,25 +59,26 @@ void sample_connections(const LightVertices& lights, int longest, Survival&& sur
       if (const float p = survival(s); p > 0) chosen[n++] = {s, p, choose(s)};
     }
     for (std::size_t k = 0; k < n; ++k) {
-      picks[k] = resolve(chosen[k].s, chosen[k].index);
-      picks[k].survival = chosen[k].survival;
-      lights.prefetch(chosen[k].s, picks[k].index);
+      samples[k] = resolve(chosen[k].s, chosen[k].index);
+      samples[k].survival = chosen[k].survival;
+      lights.prefetch(chosen[k].s, samples[k].index);
     }
-    for (std::size_t k = 0; k < n; ++k) use(chosen[k].s, picks[k]);
+    for (std::size_t k = 0; k < n; ++k) use(chosen[k].s, samples[k]);
   }
 }
 
-/// sample_connections() of vertices that are all alike.
+/// sample_connections() with equal probabilities for all vertices.
 template <class Survival, class Use>
-void sample_uniformly(const LightVertices& lights, int longest, Rng& rng, std::uint8_t owner,
+void sample_uniformly(const LightRange& range, Rng& rng, std::uint8_t distribution,
                       Survival&& survival, Use&& use) {
   sample_connections(
-      lights, longest, survival,
+      range, survival,
       [&](int s) {
-        return static_cast<std::uint32_t>((std::uint64_t{rng.next_u32()} * lights.count(s)) >> 32);
+        return static_cast<std::uint32_t>((std::uint64_t{rng.next_u32()} * range.lights.count(s)) >>
+                                          32);
       },
       [&](int s, std::uint32_t i) {
-        return VertexSample{i, 1 / static_cast<float>(lights.count(s)), owner};
+        return VertexSample{i, 1 / static_cast<float>(range.lights.count(s)), distribution};
       },
       use);
 }

@@ -24,7 +24,7 @@ ResamplingTable::ResamplingTable(std::span<const std::span<const double>> weight
   }
   if (in_use == 0) return;
 
-  owners_.resize(n);
+  distributions_.resize(n);
   std::vector<double> kept(weights.size(), 0.0);  // what the max heuristic leaves of each
   std::vector<double> combined(n, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
@@ -35,15 +35,15 @@ ResamplingTable::ResamplingTable(std::span<const std::span<const double>> weight
       all += p;
       if (p > most) {
         most = p;
-        owners_[i] = static_cast<std::uint8_t>(k);
+        distributions_[i] = static_cast<std::uint8_t>(k);
       }
     }
-    kept[owners_[i]] += most;
+    kept[distributions_[i]] += most;
     combined[i] = combination == Combination::max ? most : all;
   }
   if (combination == Combination::max) {
     for (std::size_t i = 0; i < n; ++i) {
-      if (combined[i] > 0) combined[i] /= kept[owners_[i]];
+      if (combined[i] > 0) combined[i] /= kept[distributions_[i]];
     }
   }
   table_ = AliasTable(combined);

@@ -9,33 +9,33 @@
 
 namespace lacuna {
 
-/// One discrete distribution made of several over the same things (Noel 2015, 11.3): drawing one
-/// of several distributions, then from it, is drawing from one.
+/// One discrete distribution combined from several over the same vertices (Noel 2015, 11.3):
+/// sampling one of several distributions at random and then from it is sampling from their mixture.
 class ResamplingTable {
  public:
   ResamplingTable() = default;
 
-  /// `weights`: of each distribution its weights, >= 0, all spans of one length; a distribution
-  /// whose weights are all 0 takes no part. The result is positive wherever one of them is.
+  /// `weights`: the weights of each distribution, >= 0, all spans of one length; a distribution
+  /// whose weights are all 0 is left out. The result is positive wherever one of them is.
   ResamplingTable(std::span<const std::span<const double>> weights, Combination combination);
 
-  static constexpr std::size_t bytes_each = AliasTable::bytes_each + 1;  ///< of memory, a thing
+  static constexpr std::size_t bytes_each = AliasTable::bytes_each + 1;  ///< memory per vertex
 
-  /// Nothing can be drawn.
+  /// Nothing can be sampled.
   bool empty() const { return table_.empty(); }
   /// AliasTable::choose() and resolve().
   std::uint32_t choose(Rng& rng) const { return table_.choose(rng); }
   AliasTable::Draw resolve(std::uint32_t chosen, Rng& rng) const {
     return table_.resolve(chosen, rng);
   }
-  /// The probability that a draw returns `i`.
+  /// The probability of sampling `i`.
   Pdf<Count> pmf(std::uint32_t i) const { return table_.pmf(i); }
-  /// Which of the distributions gives `i` most.
-  std::uint8_t owner(std::uint32_t i) const { return owners_[i]; }
+  /// The distribution that gives `i` the highest probability.
+  std::uint8_t distribution(std::uint32_t i) const { return distributions_[i]; }
 
  private:
   AliasTable table_;
-  std::vector<std::uint8_t> owners_;
+  std::vector<std::uint8_t> distributions_;
 };
 
 }  // namespace lacuna

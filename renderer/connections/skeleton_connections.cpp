@@ -13,7 +13,7 @@ void SkeletonConnections::prepare(const PrepareContext& context) {
   }
   least_distance_ = transform.voxel_size / 2;
   lookup_.emplace(transform, context.space.filtered_map());
-  sites_.resize(positions_.size());
+  cells_of_nodes_.resize(positions_.size());
 }
 
 bool SkeletonConnections::accepted(std::uint64_t mapped, std::uint64_t sum) const {
@@ -24,13 +24,14 @@ bool SkeletonConnections::accepted(std::uint64_t mapped, std::uint64_t sum) cons
 }
 
 void SkeletonConnections::begin(const IterationContext& context, const LightVertices& lights,
-                                const CellStatistics& seen, Counters& counters) {
+                                const CellStatistics& statistics, Counters& counters) {
   std::uint64_t sum = 0;
-  for (std::size_t n = 0; n < sites_.size(); ++n) sum += seen.visits(static_cast<std::uint32_t>(n));
+  for (std::size_t n = 0; n < cells_of_nodes_.size(); ++n)
+    sum += statistics.visits(static_cast<std::uint32_t>(n));
   std::vector<std::size_t> used;
-  for (std::size_t n = 0; n < sites_.size(); ++n) {
-    sites_[n].clear();
-    if (accepted(seen.visits(static_cast<std::uint32_t>(n)), sum)) used.push_back(n);
+  for (std::size_t n = 0; n < cells_of_nodes_.size(); ++n) {
+    cells_of_nodes_[n].clear();
+    if (accepted(statistics.visits(static_cast<std::uint32_t>(n)), sum)) used.push_back(n);
   }
   used_ = used.size();
   std::vector<std::uint64_t> rays(used.size());
@@ -49,7 +50,7 @@ std::uint64_t SkeletonConnections::build(std::size_t node, const Scene& scene,
   for (int s = 1; s <= lights.longest(); ++s) {
     const std::size_t n = lights.count(s);
     std::vector<double> weights(n, 0.0);
-    std::vector<double> seen(n, 0.0);
+    std::vector<double> visible(n, 0.0);
     if (settings_.visible || settings_.unshadowed) {
       weights = node_weights(lights, s, positions_[node], least_distance_, settings_.sides);
     }
@@ -58,12 +59,12 @@ std::uint64_t SkeletonConnections::build(std::size_t node, const Scene& scene,
       std::vector<std::uint8_t> occluded(n);
       scene.rays().occluded(rays, occluded);
       rays_sent += n;
-      for (std::size_t i = 0; i < n; ++i) seen[i] = occluded[i] != 0 ? 0 : weights[i];
+      for (std::size_t i = 0; i < n; ++i) visible[i] = occluded[i] != 0 ? 0 : weights[i];
     }
     if (!settings_.unshadowed) weights.assign(n, 0.0);
     const std::vector<double> same(n, 1.0);
-    const std::array<std::span<const double>, 3> all{seen, weights, same};
-    sites_[node].set(s, ResamplingTable(all, settings_.combination));
+    const std::array<std::span<const double>, 3> all{visible, weights, same};
+    cells_of_nodes_[node].set(s, ResamplingTable(all, settings_.combination));
   }
   return rays_sent;
 }

@@ -10,8 +10,9 @@
 
 namespace lacuna {
 
-/// connections: skeleton. Light paths are resampled by distributions at the nodes of the filtered
-/// skeleton, which see much of what the eye vertices around them see (Noel 2015, 11.2-11.4).
+/// connections: skeleton. Light vertices are resampled by distributions at the nodes of the
+/// filtered skeleton. A node sees much of what the eye vertices around it see (Noel
+/// 2015, 11.2-11.4).
 class SkeletonConnections : public StrategyBase {
  public:
   explicit SkeletonConnections(const SkeletonConnectionsSettings& settings) : settings_(settings) {}
@@ -22,39 +23,38 @@ class SkeletonConnections : public StrategyBase {
   static constexpr bool needs_space() { return true; }
 
   void prepare(const PrepareContext& context);
-  /// The nodes, and one for what belongs to none.
+  /// One cell for each node, and one for eye vertices that belong to no node.
   std::size_t cells() const { return positions_.size() + 1; }
-  /// Builds the distributions of the nodes that enough eye vertices of the iterations before
-  /// belonged to; of the first iteration none.
+  /// Builds the distributions of the nodes to which enough eye vertices of earlier iterations
+  /// belonged; in the first iteration, of no node.
   void begin(const IterationContext& context, const LightVertices& lights,
-             const CellStatistics& seen, Counters& counters);
+             const CellStatistics& statistics, Counters& counters);
 
-  /// Where connections from an eye vertex are drawn.
-  struct Place {
-    std::uint32_t cell = 0;                ///< of CellStatistics
-    const ResamplingCell* site = nullptr;  // none: uniformly
+  /// The node that an eye vertex is connected by.
+  struct CellLookup {
+    std::uint32_t cell = 0;                         ///< of CellStatistics
+    const ResamplingCell* distributions = nullptr;  // null: sample uniformly
   };
-  Place find(const Vertex& v, int /*depth*/, Rng&) const {
+  CellLookup find(const Vertex& v, int /*depth*/, Rng&) const {
     const std::uint32_t node = lookup_->node(V3d(v.surface.x), V3d(v.surface.ng), V3d(v.wp));
     if (node == no_node) return {static_cast<std::uint32_t>(positions_.size()), nullptr};
-    return {node, sites_[node].empty() ? nullptr : &sites_[node]};
+    return {node, cells_of_nodes_[node].empty() ? nullptr : &cells_of_nodes_[node]};
   }
 
-  /// Calls `use(s, pick)` for a light path of each length in [1, longest], made with probability
-  /// `survival(s)`.
+  /// SharedConnections::sample().
   template <class Survival, class Use>
-  void pick(const Place& place, const LightVertices& lights, int longest, Rng& rng,
-            Survival&& survival, Use&& use) const {
-    if (place.site == nullptr) {
-      sample_uniformly(lights, longest, rng, uniform, survival, use);
+  void sample(const CellLookup& lookup, const LightRange& range, Rng& rng, Survival&& survival,
+              Use&& use) const {
+    if (lookup.distributions == nullptr) {
+      sample_uniformly(range, rng, uniform, survival, use);
       return;
     }
-    const ResamplingCell& site = *place.site;
+    const ResamplingCell& cell = *lookup.distributions;
     sample_connections(
-        lights, longest, survival, [&](int s) { return site.table(s).choose(rng); },
+        range, survival, [&](int s) { return cell.table(s).choose(rng); },
         [&](int s, std::uint32_t chosen) {
-          const AliasTable::Draw d = site.table(s).resolve(chosen, rng);
-          return VertexSample{d.index, d.pmf.value, site.table(s).owner(d.index)};
+          const AliasTable::Draw d = cell.table(s).resolve(chosen, rng);
+          return VertexSample{d.index, d.pmf.value, cell.table(s).distribution(d.index)};
         },
         use);
   }
@@ -71,7 +71,7 @@ class SkeletonConnections : public StrategyBase {
   std::vector<V3f> positions_;  // of the nodes, scene units
   double least_distance_ = 0;
   std::optional<SurfaceLookup> lookup_;
-  std::vector<ResamplingCell> sites_;
+  std::vector<ResamplingCell> cells_of_nodes_;
   std::size_t used_ = 0;
 };
 

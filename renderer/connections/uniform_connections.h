@@ -7,7 +7,8 @@
 
 namespace lacuna {
 
-/// connections: uniform. The control of all resampling: no guidance at all.
+/// connections: uniform. Samples all light vertices with equal probability: the baseline that the
+/// other resampling strategies are compared with.
 class UniformConnections : public StrategyBase {
  public:
   explicit UniformConnections(const UniformSettings& settings) : settings_(settings) {}
@@ -19,18 +20,17 @@ class UniformConnections : public StrategyBase {
   static void begin(const IterationContext&, const LightVertices&, const CellStatistics&,
                     Counters&) {}
 
-  /// Where connections from an eye vertex are drawn.
-  struct Place {
+  /// All eye vertices are one cell.
+  struct CellLookup {
     std::uint32_t cell = 0;  ///< of CellStatistics
   };
-  static Place find(const Vertex&, int /*depth*/, Rng&) { return {}; }
+  static CellLookup find(const Vertex&, int /*depth*/, Rng&) { return {}; }
 
-  /// Calls `use(s, pick)` for a light path of each length in [1, longest], made with probability
-  /// `survival(s)`.
+  /// SharedConnections::sample().
   template <class Survival, class Use>
-  static void pick(const Place&, const LightVertices& lights, int longest, Rng& rng,
-                   Survival&& survival, Use&& use) {
-    sample_uniformly(lights, longest, rng, 0, survival, use);
+  static void sample(const CellLookup&, const LightRange& range, Rng& rng, Survival&& survival,
+                     Use&& use) {
+    sample_uniformly(range, rng, 0, survival, use);
   }
 
  private:

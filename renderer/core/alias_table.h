@@ -9,7 +9,7 @@
 
 namespace lacuna {
 
-/// Discrete distribution with constant-time draws (Walker 1977, in Vose's form).
+/// A discrete distribution sampled in constant time (Walker 1977, in Vose's form).
 class AliasTable {
  public:
   AliasTable() = default;
@@ -19,8 +19,8 @@ class AliasTable {
 
   bool empty() const { return bins_.empty(); }
   std::size_t size() const { return bins_.size(); }
-  /// Draws an index from two random numbers. 64-bit arithmetic: 24 bits would not be enough to tell
-  /// a million bins apart.
+  /// Samples an index from two random numbers. The bin is chosen by 32 bits in 64-bit arithmetic:
+  /// 24 bits would not resolve a million bins.
   std::uint32_t sample(Rng& rng) const { return resolve(choose(rng), rng).index; }
 
   /// An index and its probability.
@@ -28,9 +28,9 @@ class AliasTable {
     std::uint32_t index;
     Pdf<Count> pmf;
   };
-  /// The two halves of a draw: between them the bin is on its way from memory.
+  /// sample() in two steps: choose() prefetches the bin, resolve() reads it.
   std::uint32_t choose(Rng& rng) const { return choose(rng.next_u32()); }
-  /// By 32 uniform bits.
+  /// choose() by 32 uniform bits.
   std::uint32_t choose(std::uint32_t uniform) const {
     const auto i = static_cast<std::uint32_t>((std::uint64_t{uniform} * bins_.size()) >> 32);
     __builtin_prefetch(&bins_[i]);
@@ -45,14 +45,14 @@ class AliasTable {
 
  private:
   struct Bin {
-    float threshold;  // below it: this index, else `alias`
+    float threshold;  // probability of this index; else `alias`
     std::uint32_t alias;
     float pmf;
-    float alias_pmf;  // so that a draw reads one bin
+    float alias_pmf;  // stored here too, so that a sample reads one bin
   };
 
  public:
-  static constexpr std::size_t bytes_each = sizeof(Bin);  ///< of memory, an index
+  static constexpr std::size_t bytes_each = sizeof(Bin);  ///< memory per index
 
  private:
   std::vector<Bin> bins_;

@@ -21,14 +21,13 @@ struct Bounds {
   /// Half the diagonal.
   double radius() const { return size().length() / 2; }
 
-  /// Areas of the sides that are seen from unit direction `w`, each across `w`: those of constant
-  /// x, y and z.
+  /// Projected areas, along unit direction `w`, of the visible sides of constant x, y and z.
   V3d sides_across(const V3f& w) const {
     const V3d d = size();
     return {d.y * d.z * std::abs(double(w.x)), d.z * d.x * std::abs(double(w.y)),
             d.x * d.y * std::abs(double(w.z))};
   }
-  /// Area of the box across `w`.
+  /// Projected area of the box along `w`.
   double area_across(const V3f& w) const {
     const V3d s = sides_across(w);
     return s.x + s.y + s.z;

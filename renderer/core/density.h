@@ -2,8 +2,8 @@
 
 namespace lacuna {
 
-// Measures. A density carries the measure it is taken in; two densities of different measures can
-// be neither added nor compared, and only renderer/path/vertex.h converts between them.
+// Measures. A density carries its measure in its type; densities of different measures can be
+// neither added nor compared, and only renderer/path/vertex.h converts between them.
 struct Area;        ///< scene units^-2
 struct SolidAngle;  ///< sr^-1
 struct Count;       ///< a probability

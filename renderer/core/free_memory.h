@@ -7,8 +7,8 @@
 
 namespace lacuna {
 
-/// Throws std::runtime_error if `bytes` are more than half of the memory that is free; `what()`
-/// says what they are for, and what to do.
+/// Throws std::runtime_error if `bytes` exceed half of the free memory; `what()` returns what they
+/// are for and how to need less.
 template <class What>
 void require_free(double bytes, What&& what) {
   const double free = double(sysconf(_SC_AVPHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));

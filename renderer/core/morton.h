@@ -7,8 +7,8 @@
 
 namespace lacuna {
 
-/// The place of a point along a curve that fills a box, in 2^21 steps along each axis: points that
-/// follow one another lie near one another (Morton 1966).
+/// The Morton code of a point in a box, with 2^21 steps along each axis: points with similar codes
+/// are close to one another (Morton 1966).
 class MortonOrder {
  public:
   explicit MortonOrder(const Bounds& box) : low_(box.low) {

@@ -9,12 +9,12 @@
 
 namespace lacuna {
 
-/// Counted random numbers: Philox4x32-10 (Salmon et al. 2011, "Parallel random numbers: as easy as
-/// 1, 2, 3"). The stream is a pure function of (seed, iteration, path, purpose), so an image does
-/// not depend on threads, on their order, or on a kill and a resume.
+/// A counter-based random number generator: Philox4x32-10 (Salmon et al. 2011, "Parallel random
+/// numbers: as easy as 1, 2, 3"). The stream is a pure function of (seed, iteration, path,
+/// purpose), so an image does not depend on threads, on their order, or on a kill and a resume.
 class Rng {
  public:
-  /// What the path is for; two purposes never share numbers.
+  /// The use of a stream; the streams of different purposes are independent.
   enum class Purpose : std::uint32_t {
     eye_path = 0,
     light_path = 1,

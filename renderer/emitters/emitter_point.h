@@ -10,28 +10,28 @@
 
 namespace lacuna {
 
-/// A place that light comes from: a point on an emitter, or a direction at infinity.
+/// A point on an emitter, or a direction towards an emitter at infinity.
 struct EmitterPoint {
   enum class Kind : std::uint8_t { area, point, spot, directional, environment };
   Kind kind = Kind::area;
-  bool both_sides = false;  ///< area: emits from its back too
+  bool both_sides = false;  ///< area: emits from its back side too
   float extent = 0;         ///< of the triangle x lies on, see TriangleShape
   V3f x{0, 0, 0};           ///< position; of an infinite emitter: unit direction towards it
   V3f ng{0, 0, 0};          ///< area: unit normal of the front; spot: unit axis
   Rgb emission{0, 0, 0};    ///< radiance; W/sr (spot: on its axis); W/m^2 of a directional light
-  /// Density with which EmitterSet::sample() returns it, selection included. Environment: per
-  /// steradian. Delta: the selection's probability.
+  /// Density with which EmitterSet::sample() returns the point, including the selection of the
+  /// emitter. Environment: per steradian. Delta: the selection probability.
   Pdf<Area> pdf{};
   float cos_inner = 1, cos_outer = 0;  ///< of a spot's cones
-  float across = 0;  ///< infinite: area of the scene's bounding box seen from there
+  float across = 0;  ///< infinite: projected area of the scene's bounding box from that direction
 
   bool infinite() const { return kind == Kind::directional || kind == Kind::environment; }
-  /// No path can hit it.
+  /// Paths cannot hit it.
   bool delta() const {
     return kind == Kind::point || kind == Kind::spot || kind == Kind::directional;
   }
 
-  /// What leaves towards unit `w`: the emission, or less of it.
+  /// The emission towards unit `w`.
   Rgb towards(const V3f& w) const {
     if (kind == Kind::area && !both_sides && dot(w, ng) <= 0) return Rgb(0, 0, 0);
     if (kind == Kind::spot) return emission * spot_falloff(dot(w, ng));
@@ -39,7 +39,7 @@ struct EmitterPoint {
   }
 
   /// Density with which sample_leaving() continues a light path along unit `w`. Infinite emitters:
-  /// per area across `w`, in which all places are alike.
+  /// uniform per area across `w`.
   Pdf<SolidAngle> leaving_pdf(const V3f& w) const {
     switch (kind) {
       case Kind::area: {

@@ -10,8 +10,8 @@ namespace lacuna {
 
 namespace {
 
-/// Luminous power; an estimate where the light's profile is not constant. It decides how often the
-/// emitter is chosen, not what it gives.
+/// Luminous power; an estimate where the light's profile is not constant. It determines the
+/// emitter's selection probability, not its contribution.
 double power(const PunctualLight& light, double scene_radius) {
   const double i = luminance(light.intensity);
   switch (light.kind) {

@@ -7,10 +7,10 @@
 
 namespace lacuna {
 
-/// Light from infinitely far away, given by an equirectangular image: bilinear in the image, y up,
-/// its centre column along -z. Directions are drawn by texel, with the exact integral of
-/// the bilinear radiance over each row-weighted texel as its weight, so that none that shines is
-/// left out.
+/// An environment light at infinity, given by an equirectangular image: bilinear in the image, y
+/// up, its centre column along -z. Directions are sampled by texel. The weight of a texel is the
+/// exact integral of the bilinear radiance over it, times its row's solid angle, so every direction
+/// that emits has a density above 0.
 class Environment {
  public:
   /// `rgb`: width x height x 3 radiances, top row first, finite and >= 0. `rotation` in radians,

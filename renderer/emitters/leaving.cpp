@@ -15,7 +15,7 @@ V3f sample_around(const V3f& axis, float cos_least, const V2f& u) {
   return Frame(axis).to_world({s * std::cos(phi), s * std::sin(phi), 1 - x});
 }
 
-/// A point of the sides of `box` that face unit direction `w`, uniform as seen from there.
+/// A point on the sides of `box` that face unit direction `w`, uniform in projected area.
 V3d sample_silhouette(const Bounds& box, const V3f& w, Rng& rng) {
   const V3d sides = box.sides_across(w);
   double u = double(rng.next()) * (sides.x + sides.y + sides.z);

@@ -13,13 +13,13 @@ namespace lacuna {
 struct Leaving {
   Ray ray;
   Pdf<SolidAngle> pdf{};    ///< EmitterPoint::leaving_pdf() of the ray's direction
-  Rgb throughput{0, 0, 0};  ///< emission, with its cosine, over the densities of point and ray
+  Rgb throughput{0, 0, 0};  ///< emission times cosine over the densities of point and direction
 };
 
-/// Draws the ray along which a light path leaves `e`: with density cos / pi from an area, uniform
-/// in directions from a point and in the cone of a spot, uniform over the silhouette of the scene's
-/// bounding box from infinity: no ray of a directional light passes the scene by. Nothing where no
-/// light leaves.
+/// Samples the first ray of a light path from `e`: with density cos / pi from an area light,
+/// uniform over directions from a point light, uniform in the cone of a spot light, and uniform
+/// over the silhouette of the scene's bounding box from infinity, so that every ray of a
+/// directional light enters the box. Nothing where `e` emits no light.
 std::optional<Leaving> sample_leaving(const EmitterPoint& e, const Bounds& scene, Rng& rng);
 
 }  // namespace lacuna

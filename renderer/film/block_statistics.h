@@ -4,20 +4,20 @@
 
 namespace lacuna {
 
-/// Two pictures compared by the means of square blocks: what remains of a difference after its
-/// noise has been averaged away.
+/// Compares two pictures by the means of square blocks, which average out noise and keep systematic
+/// differences.
 struct BlockStatistics {
-  int blocks = 0;  ///< whole blocks, the rest of the picture is left out
+  int blocks = 0;  ///< whole blocks; the rest of the picture is left out
   double largest_relative =
       0;  ///< largest |mean a - mean b| / mean b of a block, over RGB together
   int worst_x = 0, worst_y = 0;  ///< upper left pixel of that block
-  /// z = (mean a - mean b) / sqrt(variance of the means), a channel of a block each. Pure noise has
-  /// mean 0, standard deviation 1 and 5 % beyond 1.96.
+  /// Statistics of z = (mean a - mean b) / sqrt(variance of the means) over all blocks and
+  /// channels. Pure noise has mean 0, standard deviation 1 and 5 % of |z| beyond 1.96.
   double z_mean = 0, z_deviation = 0, z_beyond = 0;
 };
 
-/// `a`, `b`: interleaved RGB of `width` x `height`; `variance` of the estimates a - b (empty: no
-/// z). `size` is the side of a block in pixels, at most the picture's.
+/// `a`, `b`: interleaved RGB of `width` x `height`; `variance` of a - b (empty: no z). `size` is
+/// the side of a block in pixels, at most the picture's.
 BlockStatistics block_statistics(std::span<const double> a, std::span<const double> b,
                                  std::span<const double> variance, int width, int height, int size);
 

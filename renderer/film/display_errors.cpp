@@ -23,7 +23,7 @@ Channel luma(std::span<const double> codes) {
   return y;
 }
 
-/// A Gaussian of deviation 1.5 pixels over 11 x 11; at the borders over what is there.
+/// A Gaussian of deviation 1.5 pixels over 11 x 11 pixels, cut off at the picture's borders.
 class Blur {
  public:
   Blur(int width, int height) : width_(width), height_(height) {

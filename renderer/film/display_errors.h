@@ -4,10 +4,10 @@
 
 namespace lacuna {
 
-/// How far two pictures differ as they are shown: both sRGB, of 0 to 255, at one exposure.
+/// The difference of two pictures as displayed: sRGB codes of 0 to 255, at one exposure.
 struct DisplayErrors {
   double mse = 0;   ///< over pixels and channels
-  double psnr = 0;  ///< 10 log10(255^2 / mse), dB; infinite where nothing differs
+  double psnr = 0;  ///< 10 log10(255^2 / mse), dB; infinite for equal pictures
   double ssim =
       0;  ///< structural similarity of luma, windows of 11 x 11 (Wang et al. 2004); 1: same
 };

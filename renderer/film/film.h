@@ -9,8 +9,8 @@
 namespace lacuna {
 
 /// Accumulates iterations, each an independent estimate of the picture: mean and sum of squared
-/// deviations a channel in double (Welford 1962), apart for even and odd iterations, so that the
-/// two halves estimate the error without a reference.
+/// deviations of each channel in double (Welford 1962), separately for even and odd iterations, so
+/// that the two halves estimate the error without a reference.
 class Film {
  public:
   Film() = default;

@@ -7,17 +7,17 @@
 
 namespace lacuna {
 
-/// Where a layer lies in a file of half floats.
+/// The position of a layer in a file of half floats.
 struct HalfLayer {
   std::string name;
   std::vector<std::string> channels;
   std::size_t offset = 0, bytes = 0;
-  double scale = 1;  ///< a power of two; a value is its half times this
+  double scale = 1;  ///< a power of two; value = half float * scale
 };
 
 /// Layers for a viewer that reads no EXR: little-endian IEEE halves, interleaved, top row first,
-/// one layer after the other. Each is scaled so that its largest magnitude lies in [2^14, 2^15):
-/// nothing overflows, and what is up to 2^28 times darker keeps all 11 bits.
+/// one layer after the other. Each layer is scaled so that its largest magnitude lies in [2^14,
+/// 2^15): nothing overflows, and values up to 2^28 times smaller keep all 11 bits.
 struct HalfLayers {
   std::vector<HalfLayer> index;
   std::string bytes;

@@ -6,7 +6,7 @@
 
 namespace lacuna {
 
-/// One estimate of the whole picture: what an iteration makes. Linear RGB, top row first.
+/// One estimate of the whole picture, the result of an iteration. Linear RGB, top row first.
 struct Image {
   int width = 0, height = 0;
   std::vector<Rgb> pixels;

@@ -10,8 +10,8 @@
 
 namespace lacuna {
 
-/// `size` values of a saved `what`. Throws std::runtime_error on another number of them, and on
-/// values that are not finite.
+/// Reads `size` values; `what` names them in errors. Throws std::runtime_error on another number of
+/// values, and on values that are not finite.
 inline std::vector<double> get_finite(ByteReader& in, std::size_t size, const std::string& what) {
   std::vector<double> values = in.get_vector<double>();
   if (values.size() != size) throw std::runtime_error("saved " + what + " has another size");

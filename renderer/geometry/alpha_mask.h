@@ -4,11 +4,11 @@
 
 namespace lacuna {
 
-/// alphaMode MASK of one mesh: which points of its triangles are there.
+/// alphaMode MASK of one mesh: which points of its triangles are opaque.
 class AlphaMask {
  public:
-  /// A mask that can reject something: the material has one, and its alpha is not simply above the
-  /// cutoff.
+  /// Whether the mask can reject a hit: the material has one, and its alpha is textured or below
+  /// the cutoff.
   static bool needed(const SceneData& scene, const Mesh& mesh) {
     const Material& m = scene.materials[mesh.material];
     return m.mask && (m.base_color_texture.used() || m.alpha < m.alpha_cutoff);

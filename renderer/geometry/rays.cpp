@@ -77,7 +77,7 @@ struct RayCaster::Impl {
   void check(const char* doing) const {
     const RTCError e = rtcGetDeviceError(device);
     if (e == RTC_ERROR_NONE) return;
-    // One of its tasks ran out of memory and cancelled the others, which are quicker to say so; or
+    // One of its tasks ran out of memory and cancelled the others, which report it first; or
     // there was no memory for a thread's stack.
     const bool unnamed = e == RTC_ERROR_UNKNOWN && (said == "task cancelled" ||
                                                     said.starts_with("pthread_create has failed"));

@@ -18,8 +18,8 @@ namespace lacuna {
 struct Mesh {
   std::string name;
   std::vector<V3f> positions;
-  std::vector<V3f> normals;             ///< unit shading normals, one a position; empty: flat
-  std::array<std::vector<V2f>, 2> uvs;  ///< TEXCOORD_0 and _1; each empty or one a position
+  std::vector<V3f> normals;             ///< unit shading normals, one per position; empty: flat
+  std::array<std::vector<V2f>, 2> uvs;  ///< TEXCOORD_0 and _1; each empty or one per position
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices below positions.size()
   std::uint32_t material = 0;
 
@@ -35,9 +35,9 @@ struct Mesh {
   }
 };
 
-/// A texture as a material uses it: which image, which coordinates, KHR_texture_transform.
+/// A material's reference to a texture: image, coordinates and KHR_texture_transform.
 struct TextureRef {
-  int texture = -1;  ///< index into SceneData::textures; -1: none, the factor stands alone
+  int texture = -1;  ///< index into SceneData::textures; -1: none, the factor alone
   int uv_set = 0;
   V2f offset{0, 0};
   V2f scale{1, 1};
@@ -97,14 +97,13 @@ struct PunctualLight {
   std::string name;
   Rgb intensity{1, 1, 1};  ///< colour x intensity
   V3f position{0, 0, 0};
-  V3f direction{0, 0, -1};  ///< unit, the way the light travels
+  V3f direction{0, 0, -1};  ///< unit, in which the light travels
   float inner_cone = 0;     ///< radians, half angle; 0 <= inner < outer <= pi/2
   float outer_cone = 0.785398F;
 };
 
-/// Everything a glTF file says that Lacuna uses, validated: indices in range, coordinates and
-/// factors finite and inside the ranges of glTF, no degenerate triangles. Nothing is decoded or
-/// built yet.
+/// The contents of a glTF file that Lacuna uses, validated: indices in range, coordinates and
+/// factors finite and within the ranges of glTF, no degenerate triangles. Textures are not decoded.
 struct SceneData {
   std::vector<Mesh> meshes;
   std::vector<Material> materials;  ///< the last one is glTF's default material
@@ -115,10 +114,10 @@ struct SceneData {
   std::uint64_t content_hash = 0;       ///< of all bytes read: the file, its buffers and its images
   std::uint64_t geometry_hash = 0;      ///< of world-space positions and indices only
   std::uint64_t dropped_triangles = 0;  ///< zero area or non-finite vertices
-  std::vector<std::string> warnings;    ///< what was left out, for the log and the report
+  std::vector<std::string> warnings;    ///< parts of the file that were left out
 
   std::size_t triangle_count() const;
-  /// Of all triangles, scene units.
+  /// The bounding box of all triangles, scene units.
   Bounds bounds() const;
 };
 

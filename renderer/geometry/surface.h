@@ -10,7 +10,7 @@
 
 namespace lacuna {
 
-/// Where a triangle lies.
+/// The geometry of a triangle.
 struct TriangleShape {
   V3f p{0, 0, 0};                ///< first corner
   V3f e1{0, 0, 0}, e2{0, 0, 0};  ///< edges to the second and the third
@@ -40,7 +40,7 @@ struct TriangleShape {
   }
 };
 
-/// What a hit needs of a triangle, in one cache line.
+/// The data of a triangle that every hit reads, in one cache line.
 struct alignas(64) TriangleRecord : TriangleShape {
   bool smooth = false;    ///< has interpolated normals
   bool textured = false;  ///< has texture coordinates that its material uses
@@ -53,7 +53,7 @@ struct alignas(64) TriangleRecord : TriangleShape {
 };
 static_assert(sizeof(TriangleRecord) == 64);
 
-/// What a hit needs besides where a triangle is textured or smooth, in one more cache line.
+/// The data that a hit on a textured or smooth triangle reads too, in one more cache line.
 struct alignas(64) TriangleAttributes {
   std::array<V2f, 3> uv0;  ///< TEXCOORD_0 of the corners
   std::array<V3f, 3> normals;
@@ -66,11 +66,11 @@ class TriangleTable {
   const TriangleRecord& at(std::uint32_t mesh, std::uint32_t triangle) const {
     return records_[first_[mesh].record + triangle];
   }
-  /// Only of a triangle that is smooth or textured.
+  /// Requires a triangle that is smooth or textured.
   const TriangleAttributes& attributes(std::uint32_t mesh, std::uint32_t triangle) const {
     return attributes_[first_[mesh].attributes + triangle];
   }
-  /// Asks for what at() and attributes() will read.
+  /// Prefetches what at() and attributes() read.
   void prefetch(std::uint32_t mesh, std::uint32_t triangle) const {
     const First& first = first_[mesh];
     _mm_prefetch(reinterpret_cast<const char*>(&records_[first.record + triangle]), _MM_HINT_T0);
@@ -94,9 +94,8 @@ class TriangleTable {
   HugeVector<TriangleAttributes> attributes_;
 };
 
-/// Where a ray's origin must lie so that it does not meet the surface it leaves: `x` moved along
-/// `ng` to the side of `w`, by a few rounding errors of numbers of size `extent`. Everything scales
-/// with the scene.
+/// The origin of a ray along `w` that does not hit its own surface: `x` offset along `ng` to the
+/// side of `w` by a few rounding errors of numbers of size `extent`, so it scales with the scene.
 inline V3f offset_origin(const V3f& x, const V3f& ng, float extent, const V3f& w) {
   constexpr float few_roundings = 0x1p-19F;
   return x + ng * std::copysign(extent * few_roundings, dot(w, ng));
@@ -115,7 +114,7 @@ struct Surface {
   bool emits = false, emits_behind = false;
 
   Surface() = default;
-  // In the header: it is filled in place, once a hit.
+  // Inline, because every hit constructs one in place.
   Surface(const SceneData& scene, const TriangleTable& table, const Hit& hit)
       : mesh(hit.mesh), triangle(hit.triangle) {
     const TriangleRecord& r = table.at(hit.mesh, hit.triangle);
@@ -136,7 +135,7 @@ struct Surface {
     if (r.smooth) {
       const V3f n = w * a.normals[0] + hit.u * a.normals[1] + hit.v * a.normals[2];
       const float length2 = n.length2();
-      // Opposite normals can cancel; what is left has no direction.
+      // Opposite normals can cancel and leave no direction.
       if (length2 > 0.0F) ns = n / std::sqrt(length2);
     }
   }

@@ -181,7 +181,7 @@ Mesh build_mesh(const Source& source, const SceneData& scene, Counts& counts, Wa
   return mesh;
 }
 
-/// What a node's primitive is called in errors.
+/// The name of a node's primitive in errors.
 std::string place_of(const PlacedNode& node, std::size_t mesh, std::size_t primitive) {
   return "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) +
          "] under " + node.place.label();

@@ -22,9 +22,9 @@ std::uint32_t u32_at(std::span<const std::uint8_t> bytes, std::uint64_t offset) 
   return value;
 }
 
-/// The library's own builder, but it refuses what nests too deeply. The library's callback would
-/// hear of the depth as well; with one, however, each object that ends has the whole array around
-/// it looked through, and a scene of a million nodes takes hours.
+/// The library's own builder with a limit of nesting. The library's callback would
+/// get the depth as well; with a callback, however, each end of an object searches the whole array
+/// around it, and a scene of a million nodes takes hours.
 class ShallowBuilder : public nlohmann::detail::json_sax_dom_parser<Json> {
   using Base = nlohmann::detail::json_sax_dom_parser<Json>;
 

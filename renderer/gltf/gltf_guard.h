@@ -7,7 +7,7 @@
 
 namespace lacuna::gltf {
 
-/// The parts of a .gltf or .glb file, checked before anyone else parses them.
+/// The parts of a .gltf or .glb file, validated before they are parsed.
 struct Framing {
   bool binary = false;  ///< a GLB
   std::span<const std::uint8_t> json;
@@ -21,7 +21,7 @@ Framing check_framing(std::span<const std::uint8_t> file);
 /// Parses the JSON, at most 64 levels deep (tinygltf recurses). Throws SceneError.
 Json parse_json(std::span<const std::uint8_t> text);
 
-/// Checks everything that tinygltf takes on trust: types, ranges and indices of buffers,
+/// Validates everything that tinygltf does not: types, ranges and indices of buffers,
 /// bufferViews, accessors, images, textures, samplers, meshes, nodes and scenes; offsets and
 /// lengths against what holds them; required extensions by name. Materials, cameras and lights are
 /// checked by their readers. Throws SceneError.

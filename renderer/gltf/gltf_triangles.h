@@ -20,13 +20,13 @@ std::vector<Triangle> assemble_triangles(const tinygltf::Model& model,
                                          const tinygltf::Primitive& primitive, std::size_t vertices,
                                          bool mirrored, const std::string& place);
 
-/// How many triangles the primitive has, before any is read.
+/// Number of triangles of the primitive, without reading them.
 std::size_t count_triangles(const tinygltf::Model& model, const tinygltf::Primitive& primitive);
 
 /// Renumbers `triangles` to the vertices they use, in the old order; returns the old numbers.
 std::vector<std::uint32_t> compact(std::vector<Triangle>& triangles, std::size_t vertices);
 
-/// The three corners lie on one line as far as single precision can tell, at whatever scale: the
+/// Whether the three corners are collinear within single precision, at any scale, so that the
 /// direction of the normal would be noise.
 bool is_degenerate(const V3f& a, const V3f& b, const V3f& c);
 
@@ -36,7 +36,7 @@ struct Dropped {
   std::uint64_t total() const { return non_finite + degenerate; }
 };
 
-/// Removes what cannot be hit: triangles with a vertex that is not finite, and degenerate ones.
+/// Removes triangles that cannot be hit: with a vertex that is not finite, and degenerate ones.
 Dropped drop_unusable(std::vector<Triangle>& triangles, const std::vector<V3f>& positions);
 
 }  // namespace lacuna::gltf

@@ -8,7 +8,7 @@
 
 namespace lacuna::gltf {
 
-/// What was left out of a scene, each thing said once however often it occurs.
+/// Warnings about parts of a scene that were left out, each message once.
 class Warnings {
  public:
   void once(const std::string& message) {

@@ -112,7 +112,7 @@ Bytes SceneFolder::read_regular(const std::filesystem::path& file, const std::st
     const ssize_t got = ::read(fd.get(), bytes.data() + done, bytes.size() - done);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail(std::string("cannot be read: ") + std::strerror(errno));
-    if (got == 0) fail("became shorter while it was read");
+    if (got == 0) fail("was truncated while it was read");
     done += static_cast<std::size_t>(got);
   }
   bytes_left_ -= size;

@@ -4,7 +4,7 @@ namespace lacuna {
 
 namespace {
 
-/// Rays of one part; parts are added up in their order.
+/// Rays of one part; the parts are summed in order.
 constexpr int rays_of_part = 4096;
 
 struct Arrival {
@@ -18,7 +18,7 @@ std::vector<Arrival> arrivals(const Scene& scene, const SurfaceLookup& lookup, i
   for (int i = first; i < end; ++i) {
     Rng rng(0, 0, static_cast<std::uint64_t>(i), Rng::Purpose::integrator);
     const EmitterPoint e = lights.sample(lights.choose(rng), rng);
-    const std::optional<Leaving> leaving = lights.leave(e, rng);
+    const std::optional<Leaving> leaving = lights.sample_first_edge(e, rng);
     Hit hit;
     if (!leaving || !scene.rays().intersect(leaving->ray, hit)) continue;
     const Surface s = scene.surface(hit);

@@ -8,10 +8,10 @@
 
 namespace lacuna {
 
-/// Of each of `count` parts of the empty space the emitted power (its luminance) that arrives,
-/// without being scattered on its way, at the surfaces that belong to it, estimated by `rays` rays
-/// that leave the lights (Noel 2015, eq. 172-176). `lookup` is into a grid of the parts' numbers,
-/// as a node mapping grid is. The same for any number of threads.
+/// The luminance of the emitted power that arrives unscattered at the surfaces of each of `count`
+/// parts of the empty space, estimated by `rays` rays from the emitters (Noel 2015, eq. 172-176).
+/// `lookup` maps a surface to the number of its part, as a node map does. The result is the same
+/// for any number of threads.
 std::vector<double> arriving_power(const Scene& scene, const SurfaceLookup& lookup,
                                    std::size_t count, int rays, const ThreadPool& pool);
 

@@ -31,15 +31,16 @@ std::uint64_t BorderFaceLight::index(std::uint32_t region, const VoxelFace& face
   return static_cast<std::uint64_t>(at - begin) - first(region);
 }
 
-void BorderFaceLight::learn(std::uint32_t region, const VoxelFace& face, const GuidingSample& what,
-                            Tally& tally) const {
-  const double light = double(what.radiance) / double(what.pdf.value);
+void BorderFaceLight::accumulate(std::uint32_t region, const VoxelFace& face,
+                                 const GuidingSample& sample, Accumulator& accumulator) const {
+  const double light = double(sample.radiance) / double(sample.pdf.value);
   if (!std::isfinite(light)) return;
-  tally.light[first(region) + index(region, face)] += light;
+  accumulator.light[first(region) + index(region, face)] += light;
 }
 
-void BorderFaceLight::end(std::span<const Tally* const> tallies, const ThreadPool& pool) {
-  for (const Tally* t : tallies) {
+void BorderFaceLight::update(std::span<const Accumulator* const> accumulators,
+                             const ThreadPool& pool) {
+  for (const Accumulator* t : accumulators) {
     for (const auto& [face, light] : t->light) light_[face] += light;
   }
   pool.for_each(static_cast<int>(tables_.size()),
@@ -53,7 +54,7 @@ void BorderFaceLight::make_table(std::uint32_t region) {
 void BorderFaceLight::load(ByteReader& in) {
   std::vector<double> light = in.get_vector<double>();
   if (light.size() != light_.size()) {
-    throw std::runtime_error("saved face irradiance is of other borders");
+    throw std::runtime_error("saved face irradiance belongs to other borders");
   }
   light_ = std::move(light);
   for (std::uint32_t r = 0; r < tables_.size(); ++r) make_table(r);

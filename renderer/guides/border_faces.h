@@ -11,30 +11,28 @@
 
 namespace lacuna {
 
-/// The faces of guide: face_irradiance: all of a region's border, those towards the scene and the
-/// outside too, each drawn by the light that paths from the region's surfaces found through it, in
-/// all iterations before (Noel 2015, 10.4.2). That is, summed over the paths, the radiance over the
-/// density with which its direction was drawn: an estimate of what arrives through the face at the
-/// region's surfaces, which is what its probability stands for. The thesis' thresholds, by which a
-/// point may draw from its neighbour's border, have no place here: RegionLattice does what they
-/// were for.
+/// The faces of guide: face_irradiance: the whole border of a region, including the faces towards
+/// surfaces and the outside. A face is sampled in proportion to the light that paths from the
+/// region's surfaces found through it in all earlier iterations (Noel 2015, 10.4.2): the sum over
+/// paths of radiance / pdf, which estimates the light that arrives through the face. The thesis'
+/// thresholds, by which a point may use its neighbour's border, are replaced by RegionLattice.
 class BorderFaceLight {
  public:
   static constexpr bool learns = true;
-  /// The faces in front of the surfaces around a point, which are the border's too, are edge-on to
-  /// it: drawing through them would be of no use.
+  /// Sample and count faces only where the ray leaves the region. The border includes faces in
+  /// front of the surfaces around a point, which the point sees edge-on.
   static constexpr bool leaving_only = true;
 
   explicit BorderFaceLight(const FaceIrradianceGuideSettings&) {}
   void prepare(const PrepareContext& context, const SurfaceLookup&);
   void save(ByteWriter& out) const { out.put(light_); }
-  /// Throws std::runtime_error if this is not of these borders.
+  /// Throws std::runtime_error if the state was saved for other borders.
   void load(ByteReader& in);
   std::vector<std::pair<std::string, double>> statistics() const;
 
-  /// 1 where something is known, else 0: nothing can be drawn.
+  /// 1 where light was found through some face of the region; 0: nothing can be sampled.
   double mass(std::uint32_t region) const { return tables_[region].empty() ? 0 : 1; }
-  /// All faces of the region's border, with the voxels on both sides.
+  /// The bounds of the voxels on both sides of the region's border.
   const VoxelBox& box(std::uint32_t region) const { return boxes_[region]; }
   VoxelFace draw(std::uint32_t region, Rng& rng) const {
     return borders_.face(region, tables_[region].sample(rng));
@@ -42,7 +40,7 @@ class BorderFaceLight {
   void add_parts(std::uint32_t region, double weight, FaceParts& parts) const {
     parts.add(boxes_[region], region, weight);
   }
-  /// Of a face that leaves region `near`.
+  /// Probability of sampling `face`, through which the ray leaves region `near`.
   double probability(std::uint32_t region, const CrossedFace& face, std::uint32_t near,
                      std::uint32_t) const {
     if (region != near) return 0;
@@ -50,18 +48,18 @@ class BorderFaceLight {
     return double(tables_[region].pmf(static_cast<std::uint32_t>(index(region, own))).value);
   }
 
-  struct Tally {
-    std::unordered_map<std::uint64_t, double> light;  // of the faces met, of all regions
+  struct Accumulator {
+    std::unordered_map<std::uint64_t, double> light;  // by face, over all regions
   };
-  void learn(std::uint32_t region, const VoxelFace& face, const GuidingSample& what,
-             Tally& tally) const;
-  void end(std::span<const Tally* const> tallies, const ThreadPool& pool);
+  void accumulate(std::uint32_t region, const VoxelFace& face, const GuidingSample& sample,
+                  Accumulator& accumulator) const;
+  void update(std::span<const Accumulator* const> accumulators, const ThreadPool& pool);
 
  private:
   std::uint64_t first(std::uint32_t region) const {
     return borders_.first[6 * std::size_t{region}];
   }
-  /// Of a face within its region's border.
+  /// Index of a face in its region's border.
   std::uint64_t index(std::uint32_t region, const VoxelFace& face) const;
   void make_table(std::uint32_t region);
 

@@ -34,14 +34,14 @@ struct VoxelBox {
   }
 };
 
-/// Faces that lie together, and how often any of them is drawn.
+/// A group of faces and its probability.
 struct FacePart {
-  const VoxelBox* box;  ///< holds the voxels on both sides of all
-  std::uint32_t index;  ///< whoever draws them knows what it is
+  const VoxelBox* box;  ///< bounds of the voxels on both sides of the faces
+  std::uint32_t index;  ///< the region or portal, as Faces::add_parts() numbers it
   double weight;
 };
 
-/// Parts without doubles.
+/// Groups of faces, each index once.
 class FaceParts {
  public:
   void clear() { parts_.clear(); }
@@ -65,7 +65,7 @@ class FaceParts {
 struct CrossedFace {
   Imath::V3i from, to;
   int axis;
-  double t;  ///< where on the ray
+  double t;  ///< ray parameter of the crossing
 
   /// The side of `from`, as VoxelFace counts.
   std::uint8_t side_of_from() const {
@@ -73,7 +73,7 @@ struct CrossedFace {
   }
 };
 
-/// From `x` in direction `w`, of any length but 0, in grid coordinates; for many boxes.
+/// A ray from `x` along `w` (of any length above 0) in grid coordinates, with 1 / w precomputed.
 struct GridRay {
   GridRay(const Imath::V3d& from, const Imath::V3d& along)
       : x(from), w(along), inverse(1 / along.x, 1 / along.y, 1 / along.z) {}
@@ -81,10 +81,10 @@ struct GridRay {
   Imath::V3d x, w, inverse;
 };
 
-/// Walks along the ray through `box` and calls visit(CrossedFace) at each face between two voxels
-/// of it that the ray crosses at x + t w, t > 0, in their order, until visit returns false
-/// (Amanatides and Woo 1987): a face's `from` is the `to` of the one before. Where the ray runs
-/// through an edge, the face across the lower axis comes first.
+/// Traverses the voxels of `box` along the ray (Amanatides and Woo 1987) and calls
+/// visit(CrossedFace) at each face between two of them that the ray crosses at x + t w, t > 0, in
+/// ascending t, until visit returns false. The `from` of a face is the `to` of the previous one.
+/// Where the ray runs through an edge, the face across the lower axis comes first.
 template <class Visit>
 void for_each_crossed_face(const GridRay& ray, const VoxelBox& box, Visit&& visit) {
   const auto& [x, w, inverse] = ray;

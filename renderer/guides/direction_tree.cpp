@@ -52,8 +52,8 @@ void DirectionTree::add(const V3f& w, double energy, bool filter) {
     const auto half = static_cast<float>(leaf_size(p) / 2);
     const V2f low = p - V2f(half), high = p + V2f(half);
     const double density = energy / (4 * double(half) * double(half));
-    // What reaches beyond the angle's ends comes in again at the other; beyond the poles it is
-    // lost, but for what others bring.
+    // The azimuth wraps around at its ends; energy beyond the poles is
+    // lost.
     for (const float shift : {-1.0F, 0.0F, 1.0F}) {
       spread(0, V2f(0, shift), 1, low, high, density);
     }
@@ -167,12 +167,12 @@ void DirectionTree::load(ByteReader& in) {
   for (std::size_t i = 0; i < nodes_.size() && good; ++i) {
     for (std::size_t q = 0; q < 4; ++q) {
       const std::uint32_t child = nodes_[i].child[q];
-      // Children come after their parents: there are no circles.
+      // Children come after their parents, so there are no cycles.
       good = good && (child == 0 || (child > i && child < nodes_.size()));
       good = good && nodes_[i].energy[q] >= 0 && std::isfinite(nodes_[i].energy[q]);
     }
   }
-  if (!good) throw std::runtime_error("saved directions are no tree");
+  if (!good) throw std::runtime_error("saved directions are not a valid tree");
 }
 
 }  // namespace lacuna

@@ -13,39 +13,39 @@
 
 namespace lacuna {
 
-/// A direction as a point of the unit square, by the cylinder's map: z and the angle around it.
-/// Area-preserving up to the factor 4 pi.
+/// The cylindrical map of a direction to the unit square: z and the azimuth. It preserves areas up
+/// to the factor 4 pi.
 V2f to_square(const V3f& w);
 V3f from_square(const V2f& p);
 
-/// A quadtree over the square of directions, with the energy that came from each part (Mueller et
+/// A quadtree over the square of directions that stores the energy from each quarter (Mueller et
 /// al. 2017, section 3).
 class DirectionTree {
  public:
-  /// One quarter of the square in each node at first.
+  /// A tree of one node, whose four leaves are the quarters of the square.
   DirectionTree() : nodes_(1) {}
 
-  /// Adds `energy` >= 0 that came along unit `w`; with `filter`, spread over a square of the size
-  /// of its leaf around `w`, so that noise is smoothed where the tree is coarse (Mueller 2019, box
-  /// filter).
+  /// Adds `energy` >= 0 from unit direction `w`. With `filter`, it is spread over a square around
+  /// `w` of the size of its leaf, so that noise is smoothed where the tree is coarse (Mueller 2019,
+  /// box filter).
   void add(const V3f& w, double energy, bool filter);
-  /// Sums up what was added.
+  /// Sums the energies of the leaves up to the root; call after the last add().
   void build();
   double energy() const { return sum(nodes_[0]); }
-  /// Nothing can be drawn.
+  /// Nothing can be sampled.
   bool empty() const { return !(energy() > 0); }
 
-  /// Only where it is not empty.
+  /// Requires a tree that is not empty().
   V3f sample(Rng& rng) const;
   Pdf<SolidAngle> pdf(const V3f& w) const;
 
-  /// The same tree without energy, with leaves divided that hold more than `share` of it, and
-  /// joined where they do not; at most `depth` levels.
+  /// The tree of the next round, without energy: nodes with more than `share` of all energy are
+  /// divided, the others are leaves; at most `depth` levels.
   DirectionTree refined(double share, int depth) const;
 
   std::size_t nodes() const { return nodes_.size(); }
   void save(ByteWriter& out) const { out.put(nodes_); }
-  /// Throws std::runtime_error if it is no tree.
+  /// Throws std::runtime_error if the data is not a tree.
   void load(ByteReader& in);
 
  private:
@@ -56,7 +56,7 @@ class DirectionTree {
   static double sum(const Node& n) {
     return double(n.energy[0]) + double(n.energy[1]) + double(n.energy[2]) + double(n.energy[3]);
   }
-  /// Which quarter `p` lies in, and `p` within it.
+  /// Returns the quarter that contains `p` and makes `p` relative to it.
   static std::size_t quarter(V2f& p);
   double leaf_size(V2f p) const;
   void spread(std::uint32_t node, const V2f& low, float size, const V2f& from, const V2f& to,

@@ -10,17 +10,17 @@
 
 namespace lacuna {
 
-/// Directions through voxel faces: a face is drawn from a distribution that the region of
-/// the point has, then a point uniform on it. Faces hide one another, and a direction may be drawn
-/// through each that lies on its way; so its density adds up all of them, out of sight or not:
+/// Directions through voxel faces: samples a face from the distribution of the point's region, then
+/// a point uniformly on the face. A direction can be sampled through every face on its way,
+/// occluded or not, so its density is the sum over all of them:
 ///     p(w) = sum_faces P(face) t^2 / |cos|
-/// with t the distance in voxels, as a face has area 1 (Noel 2015, 10.4, whose pictures came out
-/// too bright). `Faces` has the distributions, PortalFaces or BorderFaceLight, and says whether
-/// faces are drawn and counted only where the ray leaves the region through them.
+/// with t the distance in voxels; a face has area 1 (Noel 2015, 10.4, whose pictures came out too
+/// bright). `Faces` holds the distributions: PortalFaces or BorderFaceLight. Faces::leaving_only
+/// says whether faces are sampled and counted only where the ray leaves the region through them.
 template <class Faces>
 class FaceDirections final : public GuidingDistribution {
  public:
-  /// The settings of the guide, which Faces is made of, too.
+  /// `settings`: of the guide; Faces is constructed from them too.
   template <class Settings>
   explicit FaceDirections(const Settings& settings) : settings_(settings), faces_(settings) {}
 
@@ -28,7 +28,7 @@ class FaceDirections final : public GuidingDistribution {
   void prepare(const PrepareContext& context) override {
     transform_ = context.space.voxels().transform;
     label_ = &context.space.regions().label;
-    // Regions are numbered as nodes are, and what has none is marked as voxels without a node are.
+    // SurfaceLookup works on region labels as on node labels: both mark unlabelled voxels alike.
     static_assert(no_region == no_node);
     lookup_.emplace(transform_, *label_);
     lattice_ = RegionLattice(*label_, settings_.mixing);
@@ -45,14 +45,14 @@ class FaceDirections final : public GuidingDistribution {
     tuning_.load(in);
   }
   std::vector<std::pair<std::string, double>> statistics() const override {
-    auto told = faces_.statistics();
+    auto stats = faces_.statistics();
     for (auto& s : tuning_.statistics()) {
-      if (s.first != "mean_strength") told.push_back(std::move(s));
+      if (s.first != "mean_strength") stats.push_back(std::move(s));
     }
-    return told;
+    return stats;
   }
 
-  GuidingCell site(const Surface& s, const V3f& w) const override {
+  GuidingCell cell(const Surface& s, const V3f& w) const override {
     const std::optional<Imath::V3i> voxel = lookup_->voxel(V3d(s.x), V3d(s.ng), V3d(w));
     if (!voxel) return {};
     const auto index = static_cast<std::uint32_t>(label_->index(*voxel));
@@ -62,7 +62,7 @@ class FaceDirections final : public GuidingDistribution {
 
   std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const override {
     const V3d from = transform_.to_grid(V3d(at.x()));
-    const RegionMixture regions = mixture(from, at.site.index);
+    const RegionMixture regions = mixture(from, at.cell.index);
     const auto used = as_used();
     double left = double(rng.next()) * sum_of(regions, used);
     std::uint32_t region = no_region;
@@ -84,58 +84,60 @@ class FaceDirections final : public GuidingDistribution {
   }
 
   Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const override {
-    return density(at.site.index, at.x(), w, as_used());
+    return density(at.cell.index, at.x(), w, as_used());
   }
 
   bool learns() const override { return Faces::learns || tuning_.learns(); }
-  std::unique_ptr<Tally> tally() const override { return std::make_unique<Both>(); }
-  void learn(const GuidingSample& what, Tally& tally) const override {
-    const std::uint32_t voxel = what.v.site.index;
+  std::unique_ptr<Accumulator> accumulator() const override {
+    return std::make_unique<FaceAccumulator>();
+  }
+  void accumulate(const GuidingSample& sample, Accumulator& accumulator) const override {
+    const std::uint32_t voxel = sample.v.guiding_cell.index;
     if (voxel >= label_->count()) return;
-    auto& both = static_cast<Both&>(tally);
+    auto& both = static_cast<FaceAccumulator&>(accumulator);
     const std::uint32_t region = (*label_)[voxel];
     if (tuning_.wants(region)) {
-      // As if the guide alone drew: also of regions that draw nothing at present.
-      const float p = density(voxel, what.v.surface.x, what.wi, [this](std::uint32_t r) {
+      // The density of the guide alone, including regions whose probability is 0 at present.
+      const float p = density(voxel, sample.v.surface.x, sample.wi, [this](std::uint32_t r) {
                         return faces_.mass(r);
                       }).value;
-      tuning_.learn(what, region, std::span(&p, 1), both.tuning);
+      tuning_.accumulate(sample, region, std::span(&p, 1), both.tuning);
     }
     if constexpr (Faces::learns) {
-      // The first face through which the ray leaves the region of the point learns what came from
-      // there.
-      if (!(what.radiance > 0)) return;
-      const V3d from = transform_.to_grid(V3d(what.v.surface.x));
-      const GridRay ray(from, V3d(what.wi));
+      // The sample is credited to the first face through which the ray leaves the point's region.
+      if (!(sample.radiance > 0)) return;
+      const V3d from = transform_.to_grid(V3d(sample.v.surface.x));
+      const GridRay ray(from, V3d(sample.wi));
       for_each_crossed_face(ray, faces_.box(region), [&](const CrossedFace& face) {
         if (label_at(face.from) != region || label_at(face.to) == region) return true;
         const auto index = static_cast<std::uint32_t>(label_->index(face.from));
-        faces_.learn(region, {index, face.side_of_from()}, what, both.faces);
+        faces_.accumulate(region, {index, face.side_of_from()}, sample, both.faces);
         return false;
       });
     }
   }
-  void end(std::span<const std::unique_ptr<Tally>> tallies, const ThreadPool& pool) override {
-    std::vector<const typename Faces::Tally*> of_faces;
-    std::vector<const Tuning::Tally*> of_tuning;
-    for (const auto& t : tallies) {
-      of_faces.push_back(&static_cast<const Both&>(*t).faces);
-      of_tuning.push_back(&static_cast<const Both&>(*t).tuning);
+  void update(std::span<const std::unique_ptr<Accumulator>> accumulators,
+              const ThreadPool& pool) override {
+    std::vector<const typename Faces::Accumulator*> of_faces;
+    std::vector<const Tuning::Accumulator*> of_tuning;
+    for (const auto& t : accumulators) {
+      of_faces.push_back(&static_cast<const FaceAccumulator&>(*t).faces);
+      of_tuning.push_back(&static_cast<const FaceAccumulator&>(*t).tuning);
     }
-    faces_.end(of_faces, pool);
-    if (tuning_.learns()) tuning_.end(of_tuning);
+    faces_.update(of_faces, pool);
+    if (tuning_.learns()) tuning_.update(of_tuning);
   }
 
  private:
   RegionMixture mixture(const V3d& x, std::uint32_t voxel) const {
     return lattice_.mixture(x, (*label_)[voxel]);
   }
-  struct Both final : Tally {
-    typename Faces::Tally faces;
-    Tuning::Tally tuning;
+  struct FaceAccumulator final : Accumulator {
+    typename Faces::Accumulator faces;
+    Tuning::Accumulator tuning;
   };
 
-  /// How often a region draws.
+  /// The probability of sampling from a region's distribution.
   auto as_used() const {
     return [this](std::uint32_t region) {
       return double(tuning_.probability(region)) * faces_.mass(region);
@@ -147,7 +149,7 @@ class FaceDirections final : public GuidingDistribution {
     for (const auto& share : regions) sum += share.weight * drawn(share.region);
     return sum;
   }
-  /// Of `w` at `x`, where a region draws as often as `drawn` says.
+  /// Density of `w` at `x`, where region r is sampled with probability `drawn(r)`.
   template <class Drawn>
   Pdf<SolidAngle> density(std::uint32_t voxel, const V3f& x, const V3f& w,
                           const Drawn& drawn) const {

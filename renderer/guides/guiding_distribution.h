@@ -13,51 +13,51 @@
 
 namespace lacuna {
 
-/// A vertex of which a path is to go on, or could have: all that a distribution may depend on.
+/// A vertex at which a direction is sampled or evaluated: all that a distribution may depend on.
 struct GuidedVertex {
   const Surface& surface;
   const Bsdf& bsdf;
-  const V3f& wo;            ///< unit, to where the path came from
-  const GuidingCell& site;  ///< of the surface as seen from `wo`
+  const V3f& wo;            ///< unit, towards the previous vertex
+  const GuidingCell& cell;  ///< of the surface as seen from `wo`
 
   const V3f& x() const { return surface.x; }
 };
 
-/// A distribution of directions at every point of the scene's surfaces, of what a guide knows about
-/// where light comes from. MixedGuide combines it with the BSDF. Iterations read it from several
-/// threads; only end() and load() change what it draws from.
+/// A distribution of directions at every point of the scene's surfaces, which approximates where
+/// light comes from. MixedGuide combines it with the BSDF. Several threads sample it during an
+/// iteration; only update() and load() change it.
 class GuidingDistribution {
  public:
-  /// What the parts of an iteration learn apart and end() adds up in their order, so that the state
-  /// is the same for any number of threads.
-  struct Tally {
-    virtual ~Tally() = default;
+  /// The samples of one part of an iteration. update() adds the accumulators in the order of the
+  /// parts, so that the state is the same for any number of threads.
+  struct Accumulator {
+    virtual ~Accumulator() = default;
   };
 
   virtual ~GuidingDistribution() = default;
 
-  /// What is called by the integrator's functions of these names; before prepare(): needs_space().
+  /// Called by the integrator's functions of these names (see the concept Strategy).
   virtual bool needs_space() const = 0;
   virtual void prepare(const PrepareContext&) {}
   virtual void save(ByteWriter&) const {}
-  /// Throws std::runtime_error if what was saved is not of this scene.
+  /// Throws std::runtime_error if the state was saved for another scene.
   virtual void load(ByteReader&) {}
   virtual std::vector<std::pair<std::string, double>> statistics() const { return {}; }
 
-  /// Where the distribution at surface `s`, as seen from the side of unit `w`, is found.
-  virtual GuidingCell site(const Surface& s, const V3f& w) const = 0;
-  /// Draws a unit direction; nothing where the draw fails. Only where the site's probability is
+  /// The cell of the distribution at surface `s`, on the side of unit `w`.
+  virtual GuidingCell cell(const Surface& s, const V3f& w) const = 0;
+  /// Samples a unit direction; nothing where the sample fails. Requires a cell whose probability is
   /// above 0.
   virtual std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const = 0;
-  /// Density with which sample() returns unit `w`; its integral over the sphere is 1 less the
-  /// probability of failure. sample() never returns what has density 0, but for rounding.
+  /// Density with which sample() returns unit `w`. Its integral over the sphere is 1 less the
+  /// probability of failure. sample() returns a direction of density 0 only by rounding.
   virtual Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const = 0;
 
-  /// Whether learn() and end() want to be called in the coming iteration.
+  /// Whether accumulate() and update() need to be called in the coming iteration.
   virtual bool learns() const { return false; }
-  virtual std::unique_ptr<Tally> tally() const { return nullptr; }
-  virtual void learn(const GuidingSample&, Tally&) const {}
-  virtual void end(std::span<const std::unique_ptr<Tally>>, const ThreadPool&) {}
+  virtual std::unique_ptr<Accumulator> accumulator() const { return nullptr; }
+  virtual void accumulate(const GuidingSample&, Accumulator&) const {}
+  virtual void update(std::span<const std::unique_ptr<Accumulator>>, const ThreadPool&) {}
 };
 
 }  // namespace lacuna

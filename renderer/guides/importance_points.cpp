@@ -8,7 +8,7 @@ namespace lacuna {
 
 namespace {
 
-/// Points at one place become one: the mixture is the same.
+/// Merges points of equal position, which leaves the mixture unchanged.
 std::vector<ImportancePoint> merged(std::vector<ImportancePoint> points) {
   const auto before = [](const ImportancePoint& a, const ImportancePoint& b) {
     return std::tie(a.at.x, a.at.y, a.at.z) < std::tie(b.at.x, b.at.y, b.at.z);
@@ -51,7 +51,7 @@ void ImportancePaths::find_paths(std::uint32_t node) {
   });
 }
 
-/// Nodes from which a shortest path leads on to an importance node, or that are one.
+/// Marks importance nodes, and nodes on the shortest path to one.
 void ImportancePaths::mark_wanted() {
   for (const std::uint32_t v : settled_) wanted_[v] = importance_[v] > 0 ? 1 : 0;
   for (std::size_t i = settled_.size(); i-- > 1;) {
@@ -59,7 +59,7 @@ void ImportancePaths::mark_wanted() {
   }
 }
 
-/// The path that `node` sees goes on to `v`.
+/// Extends the visible path from `node` to `v`.
 void ImportancePaths::follow(std::uint32_t node, std::uint32_t v) {
   const Imath::V3d here(graph_.corners[v]);
   weight_[v] = 0;

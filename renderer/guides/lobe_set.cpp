@@ -26,7 +26,7 @@ LobeSet::LobeSet(std::span<const Target> targets) {
 std::optional<V3f> LobeSet::sample(const V3f& x, float s, Rng& rng) const {
   const V3f& to = points_[choice_.sample(rng)];
   const V2f u = rng.next2();
-  // cos^(s+1) is uniform. Near the axis 1 - cos tells more than the cosine.
+  // cos^(s+1) is uniform. Near the axis 1 - cos is more precise than the cosine.
   const double power = std::log1p(-double(u.x)) / (double(s) + 1);
   const double versine = -std::expm1(power);
   const auto sine = static_cast<float>(std::sqrt(versine * (2 - versine)));

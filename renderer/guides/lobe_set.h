@@ -12,26 +12,26 @@
 
 namespace lacuna {
 
-/// A point that rays are sent around, and its weight.
+/// A point that a lobe is aimed at, and its weight.
 struct Target {
   V3f at{0, 0, 0};    ///< scene units
   double weight = 0;  ///< > 0, of any scale
 };
 
-/// Power-cosine lobes around the directions to some points, mixed by their weights (Noel 2015, eq.
-/// 163 and 167):
+/// A mixture of power-cosine lobes around the directions to some points (Noel 2015, eq. 163, 167):
 ///     p(w) = sum_i c_i (s + 1) / (2 pi) max(0, w_i . w)^s
-/// with w_i the direction from `x` to point i, c_i its weight over the sum of all, s the strength.
+/// with w_i the direction from `x` to point i, c_i its weight over the sum of weights, s the
+/// strength.
 class LobeSet {
  public:
   LobeSet() = default;
   explicit LobeSet(std::span<const Target> targets);
 
-  /// Nothing can be drawn.
+  /// Nothing can be sampled.
   bool empty() const { return choice_.empty(); }
   std::size_t size() const { return choice_.size(); }
 
-  /// Draws a unit direction at `x` with strength `s` >= 0; nothing where a point lies at `x`
+  /// Samples a unit direction at `x` with strength `s` >= 0; nothing if the sampled point is `x`
   /// itself.
   std::optional<V3f> sample(const V3f& x, float s, Rng& rng) const;
   /// Density with which sample() returns unit `w`.

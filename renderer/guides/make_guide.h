@@ -9,11 +9,11 @@
 
 namespace lacuna {
 
-/// What the guide of these settings knows; nothing: it follows the BSDF alone.
+/// The distribution of the guide with these settings; null for guide: bsdf.
 std::unique_ptr<GuidingDistribution> make_guiding_distribution(const GuideSettings& settings);
 
-/// `make(guide)` with the guide of these settings: a BsdfGuide or a MixedGuide, so that integrators
-/// are compiled for these two only.
+/// Returns `make(guide)` with the guide of these settings: a BsdfGuide or a MixedGuide, so that
+/// integrators are compiled for these two only.
 template <class Make>
 auto with_guide(const GuideSettings& settings, Make&& make) {
   if (auto directions = make_guiding_distribution(settings))

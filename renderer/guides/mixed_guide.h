@@ -5,11 +5,11 @@
 
 namespace lacuna {
 
-/// One-sample combination of a distribution of directions with the BSDF (Noel 2015, 9.4): of paths
-/// from the eye a direction comes from the former with the probability that its site names, and its
-/// density is that of both together, so the balance heuristic is in the weight. Delta lobes are the
-/// BSDF's alone. Paths from lights follow the BSDF: how either walk goes on is the guide's answer
-/// for the transport that it is asked for, so each knows the other's densities.
+/// One-sample MIS of a GuidingDistribution and the BSDF (Noel 2015, 9.4). On eye paths a direction
+/// is sampled from the distribution with probability c of its guiding cell, else from the BSDF; its
+/// density is c p_guide + (1 - c) p_bsdf, which makes the weight the balance heuristic. Delta lobes
+/// are sampled by the BSDF alone. Light paths follow the BSDF. pdf() takes the transport, so each
+/// walk can evaluate the densities of the other.
 class MixedGuide {
  public:
   explicit MixedGuide(std::unique_ptr<GuidingDistribution> directions)
@@ -23,31 +23,33 @@ class MixedGuide {
     return directions_->statistics();
   }
 
-  using Tally = std::unique_ptr<GuidingDistribution::Tally>;
+  using Accumulator = std::unique_ptr<GuidingDistribution::Accumulator>;
   bool learns() const { return directions_->learns(); }
-  Tally tally() const { return directions_->tally(); }
-  void learn(const GuidingSample& what, Tally& tally) const { directions_->learn(what, *tally); }
-  void end(std::span<const Tally> tallies, const ThreadPool& pool) {
-    directions_->end(tallies, pool);
+  Accumulator accumulator() const { return directions_->accumulator(); }
+  void accumulate(const GuidingSample& sample, Accumulator& accumulator) const {
+    directions_->accumulate(sample, *accumulator);
+  }
+  void update(std::span<const Accumulator> accumulators, const ThreadPool& pool) {
+    directions_->update(accumulators, pool);
   }
 
-  /// Looks up what directions and densities at `v`, as seen from v.wp, need.
-  void arrive(Vertex& v) const {
-    v.site = v.bsdf->connectible() ? directions_->site(v.surface, v.wp) : GuidingCell{};
+  /// Looks up the guiding cell of `v`, on the side of v.wp.
+  void on_hit(Vertex& v) const {
+    v.guiding_cell = v.bsdf->connectible() ? directions_->cell(v.surface, v.wp) : GuidingCell{};
   }
 
   std::optional<BsdfSample> sample(const Vertex& v, Rng& rng, Transport transport) const {
-    const float c = v.site.probability;
+    const float c = v.guiding_cell.probability;
     if (transport == Transport::importance || c == 0) return bsdf_.sample(v, rng, transport);
     if (rng.next() < c) {
-      const std::optional<V3f> w = directions_->sample({v.surface, *v.bsdf, v.wp, v.site}, rng);
+      const std::optional<V3f> w =
+          directions_->sample({v.surface, *v.bsdf, v.wp, v.guiding_cell}, rng);
       if (!w) return std::nullopt;
       const Rgb f = v.bsdf->eval(v.wp, *w, transport);
-      // Light from below the surface is not scattered; the density of such draws counts all the
-      // same.
+      // A direction below the surface scatters nothing; it counts as a failed sample.
       if (is_black(f)) return std::nullopt;
       const Pdf<SolidAngle> bsdf = bsdf_.pdf(v, v.wp, *w, transport);
-      const Pdf<SolidAngle> p = mixed(v, v.wp, v.site, *w, bsdf);
+      const Pdf<SolidAngle> p = mixed(v, v.wp, v.guiding_cell, *w, bsdf);
       if (!p.positive()) return std::nullopt;
       const bool transmitted = dot(*w, v.surface.ng) * dot(v.wp, v.surface.ng) < 0;
       const float pdf_ratio = bsdf.positive() ? p / bsdf : 1;
@@ -60,27 +62,27 @@ class MixedGuide {
       s->pdf_ratio = 1 - c;
       return s;
     }
-    const Pdf<SolidAngle> p = mixed(v, v.wp, v.site, s->wi, s->pdf);
+    const Pdf<SolidAngle> p = mixed(v, v.wp, v.guiding_cell, s->wi, s->pdf);
     s->pdf_ratio = p / s->pdf;
     s->weight /= s->pdf_ratio;
     s->pdf = p;
     return s;
   }
 
-  /// Density of `wi` for a walk of kind `transport` that arrived at `v` from `wo`.
+  /// Density of `wi` for a walk of the given transport that arrived at `v` from `wo`.
   Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport) const {
     const Pdf<SolidAngle> bsdf = bsdf_.pdf(v, wo, wi, transport);
     if (transport == Transport::importance) return bsdf;
     const bool this_side = (dot(wo, v.surface.ng) < 0) == (dot(v.wp, v.surface.ng) < 0);
-    return mixed(v, wo, this_side ? v.site : directions_->site(v.surface, wo), wi, bsdf);
+    return mixed(v, wo, this_side ? v.guiding_cell : directions_->cell(v.surface, wo), wi, bsdf);
   }
 
  private:
-  Pdf<SolidAngle> mixed(const Vertex& v, const V3f& wo, const GuidingCell& site, const V3f& wi,
+  Pdf<SolidAngle> mixed(const Vertex& v, const V3f& wo, const GuidingCell& cell, const V3f& wi,
                         Pdf<SolidAngle> bsdf) const {
-    const float c = site.probability;
+    const float c = cell.probability;
     if (c == 0) return bsdf;
-    return c * directions_->pdf({v.surface, *v.bsdf, wo, site}, wi) + (1 - c) * bsdf;
+    return c * directions_->pdf({v.surface, *v.bsdf, wo, cell}, wi) + (1 - c) * bsdf;
   }
 
   std::unique_ptr<GuidingDistribution> directions_;

@@ -18,7 +18,7 @@ V3d middle(const Portals& portals, const Portal& portal, const Grid3<std::uint32
   return sum / static_cast<double>(portal.faces());
 }
 
-/// Of the voxels on both sides of its faces.
+/// The bounds of the voxels on both sides of its faces.
 VoxelBox box_around(const Portals& portals, const Portal& portal,
                     const Grid3<std::uint32_t>& label) {
   VoxelBox box;
@@ -31,7 +31,7 @@ VoxelBox box_around(const Portals& portals, const Portal& portal,
   return box;
 }
 
-/// The share of a portal that is seen from `eye`, in voxels, by some of its faces.
+/// The visible share of a portal from `eye`, in voxels, estimated by some of its faces.
 double share_seen(const RayCaster& rays, const GridTransform& transform, const V3d& eye,
                   const Portals& portals, const Portal& portal, const Grid3<std::uint32_t>& label) {
   // Only whether half of it is seen is asked, once for each region and portal.

@@ -8,10 +8,11 @@
 
 namespace lacuna {
 
-/// The faces of guide: portals. From every region shortest paths lead to the regions where light
-/// arrives; one portal on each is drawn by what arrives there over the path's length squared,
-/// as skeleton guiding does (Noel 2015, eq. 164), and its faces alike (10.4.1, where there is one
-/// light). What arrives in the region itself takes its share, and draws nothing.
+/// The faces of guide: portals. Shortest paths lead from every region to the regions where light
+/// arrives. One portal on each path is sampled with weight f / d^2, where f is the power that
+/// arrives in the region at its end and d its length, as in skeleton guiding (Noel 2015, eq. 164);
+/// the faces of a portal have equal probability (10.4.1, for one light). Power that arrives in the
+/// region itself lowers the region's mass().
 class PortalFaces {
  public:
   static constexpr bool learns = false;
@@ -24,28 +25,28 @@ class PortalFaces {
   static void load(ByteReader&) {}
   std::vector<std::pair<std::string, double>> statistics() const;
 
-  /// Share of the light that a region sees come from elsewhere, in [0, 1]; 0: nothing is drawn.
+  /// Share of a region's light that comes from other regions, in [0, 1]; 0: nothing is sampled.
   double mass(std::uint32_t region) const { return exits_[region].mass; }
   void add_parts(std::uint32_t region, double weight, FaceParts& parts) const {
     for (const Exit& e : exits_[region].exits)
       parts.add(boxes_[e.portal], e.portal, weight * e.each);
   }
   VoxelFace draw(std::uint32_t region, Rng& rng) const;
-  /// 1 of a face of `portal`, which lies between regions `near` and `far`.
+  /// 1 for a face of `portal`, that is, between its two regions `near` and `far`; else 0.
   double probability(std::uint32_t portal, const CrossedFace&, std::uint32_t near,
                      std::uint32_t far) const {
     const Portal& p = portals_->portals[portal];
     return (p.a == near && p.b == far) || (p.a == far && p.b == near) ? 1 : 0;
   }
 
-  struct Tally {};
-  static void end(std::span<const Tally* const>, const ThreadPool&) {}
+  struct Accumulator {};
+  static void update(std::span<const Accumulator* const>, const ThreadPool&) {}
 
  private:
   struct Exit {
     std::uint32_t portal;
-    double share;  // of the region's draws; all add up to 1
-    double each;   // share of one face
+    double share;  // probability of the portal; all of a region add up to 1
+    double each;   // probability of one of its faces
   };
   struct Exits {
     std::vector<Exit> exits;

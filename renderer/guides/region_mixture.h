@@ -6,7 +6,7 @@
 
 namespace lacuna {
 
-/// Regions and how much each counts at a point; all weights add up to 1.
+/// The weights of regions at a point, which add up to 1.
 class RegionMixture {
  public:
   struct Share {
@@ -17,7 +17,7 @@ class RegionMixture {
   const Share* begin() const { return shares_.data(); }
   const Share* end() const { return shares_.data() + count_; }
 
-  /// At most eight different ones.
+  /// Adds to the weight of `region`. At most eight different regions.
   void add(std::uint32_t region, double weight) {
     for (std::size_t i = 0; i < count_; ++i) {
       if (shares_[i].region == region) {
@@ -36,15 +36,15 @@ class RegionMixture {
   std::size_t count_ = 0;
 };
 
-/// Which regions' ways of drawing directions are mixed where. Regions have sharp borders, at which
-/// the variance of what is drawn would jump (Noel 2015, 10.4: discontinuities that the thesis
-/// leaves unsolved); so within `width` of a border both sides' are mixed, by weights that change
-/// continuously from place to place: the labels at the corners of a lattice of cells of that width,
-/// interpolated, those outside all regions left out.
+/// Interpolates between the distributions of neighbouring regions. Regions have sharp borders, at
+/// which the variance would jump (Noel 2015, 10.4: discontinuities that the thesis leaves
+/// unsolved). Within `width` of a border the distributions of both sides are mixed with weights
+/// that change continuously: a trilinear interpolation of the labels at the corners of a lattice of
+/// cells of that width, without corners outside all regions.
 class RegionLattice {
  public:
   RegionLattice() = default;
-  /// `label` is kept by reference; `width`: voxels, 0: nothing is mixed.
+  /// `label` is held by reference; `width`: voxels, 0: no mixing.
   RegionLattice(const Grid3<std::uint32_t>& label, int width) : label_(&label), width_(width) {
     if (width == 0) return;
     // Cells that reach out of the grid too: every corner in it belongs to eight.
@@ -52,7 +52,7 @@ class RegionLattice {
     for (std::size_t i = 0; i < only_.count(); ++i) only_[i] = only_region(only_.voxel(i));
   }
 
-  /// At `x`, in voxels, in front of which lies region `own`.
+  /// The mixture at `x`, in voxels; `own` is the region of the voxel in front of the surface.
   RegionMixture mixture(const Imath::V3d& x, std::uint32_t own) const {
     Imath::V3i cell;
     Imath::V3d part;
@@ -73,7 +73,7 @@ class RegionLattice {
   static constexpr std::uint32_t several = no_region - 1;
 
   static Imath::V3i corner(int k) { return {k & 1, k >> 1 & 1, k >> 2}; }
-  /// What lies at corner `k` of a cell.
+  /// The region at corner `k` of a cell.
   std::uint32_t at(const Imath::V3i& cell, int k) const {
     const Imath::V3i v = (cell - Imath::V3i(1) + corner(k)) * width_;
     return in_grid(v, label_->size()) ? (*label_)(v) : no_region;

@@ -13,10 +13,10 @@ constexpr std::size_t most_leaves = std::size_t{1} << 18;
 
 }  // namespace
 
-struct SdTree::Own final : Tally {
-  explicit Own(std::size_t leaves) : vertices(leaves, 0) {}
+struct SdTree::SampleAccumulator final : Accumulator {
+  explicit SampleAccumulator(std::size_t leaves) : vertices(leaves, 0) {}
   std::vector<std::uint32_t> vertices;  // of each leaf
-  std::vector<Seen> seen;
+  std::vector<EnergySample> samples;
 };
 
 void SdTree::prepare(const PrepareContext& context) {
@@ -39,53 +39,55 @@ std::uint32_t SdTree::leaf_at(const V3f& x) const {
   return nodes_[node].leaf;
 }
 
-std::unique_ptr<GuidingDistribution::Tally> SdTree::tally() const {
-  return std::make_unique<Own>(leaves_.size());
+std::unique_ptr<GuidingDistribution::Accumulator> SdTree::accumulator() const {
+  return std::make_unique<SampleAccumulator>(leaves_.size());
 }
 
-void SdTree::learn(const GuidingSample& what, Tally& tally) const {
-  auto& own = static_cast<Own&>(tally);
-  const std::uint32_t leaf = what.v.site.index;
+void SdTree::accumulate(const GuidingSample& sample, Accumulator& accumulator) const {
+  auto& own = static_cast<SampleAccumulator&>(accumulator);
+  const std::uint32_t leaf = sample.v.guiding_cell.index;
   if (leaf >= leaves_.size()) return;
   ++own.vertices[leaf];
-  const float energy = what.radiance / what.pdf.value;
-  if (energy > 0 && std::isfinite(energy)) own.seen.push_back({leaf, what.wi, energy});
+  const float energy = sample.radiance / sample.pdf.value;
+  if (energy > 0 && std::isfinite(energy)) own.samples.push_back({leaf, sample.wi, energy});
 }
 
-void SdTree::end(std::span<const std::unique_ptr<Tally>> tallies, const ThreadPool& pool) {
-  // By leaf, each in the order of the tallies: leaves can then learn side by side.
+void SdTree::update(std::span<const std::unique_ptr<Accumulator>> accumulators,
+                    const ThreadPool& pool) {
+  // By leaf, each in the order of the accumulators: leaves can then be filled in parallel.
   std::vector<std::size_t> first(leaves_.size() + 1, 0);
-  for (const auto& t : tallies) {
-    const auto& own = static_cast<const Own&>(*t);
+  for (const auto& t : accumulators) {
+    const auto& own = static_cast<const SampleAccumulator&>(*t);
     for (std::size_t l = 0; l < leaves_.size(); ++l) leaves_[l].vertices += own.vertices[l];
-    for (const Seen& s : own.seen) ++first[s.leaf + 1];
+    for (const EnergySample& s : own.samples) ++first[s.leaf + 1];
   }
   for (std::size_t l = 0; l < leaves_.size(); ++l) first[l + 1] += first[l];
-  std::vector<const Seen*> sorted(first.back());
+  std::vector<const EnergySample*> sorted(first.back());
   std::vector<std::size_t> next(first.begin(), first.end() - 1);
-  for (const auto& t : tallies) {
-    for (const Seen& s : static_cast<const Own&>(*t).seen) sorted[next[s.leaf]++] = &s;
+  for (const auto& t : accumulators) {
+    for (const EnergySample& s : static_cast<const SampleAccumulator&>(*t).samples)
+      sorted[next[s.leaf]++] = &s;
   }
   pool.for_each(static_cast<int>(leaves_.size()), [&](int i) {
     const auto l = static_cast<std::size_t>(i);
     for (std::size_t k = first[l]; k < first[l + 1]; ++k) {
-      leaves_[l].learning.add(sorted[k]->w, double(sorted[k]->energy), true);
+      leaves_[l].building.add(sorted[k]->w, double(sorted[k]->energy), true);
     }
   });
   if (++done_ == std::uint64_t{1} << round_) next_round(pool);
 }
 
 void SdTree::next_round(const ThreadPool& pool) {
-  // The paper's c sqrt(2^k): leaves hold the more vertices, the more there are.
+  // The paper's c sqrt(2^k): the limit grows with the number of samples.
   const double most =
       double(settings_.leaf_vertices) * std::sqrt(std::ldexp(1.0, static_cast<int>(round_)));
   divide(0, 0, most);
   pool.for_each(static_cast<int>(leaves_.size()), [&](int i) {
     Leaf& leaf = leaves_[static_cast<std::size_t>(i)];
-    leaf.learning.build();
-    // Where nothing was found this round, what was known stays.
-    if (!leaf.learning.empty()) leaf.drawn = std::move(leaf.learning);
-    leaf.learning = leaf.drawn.refined(leaf_share, deepest_directions);
+    leaf.building.build();
+    // Without samples in this round, the old tree stays.
+    if (!leaf.building.empty()) leaf.sampling = std::move(leaf.building);
+    leaf.building = leaf.sampling.refined(leaf_share, deepest_directions);
     leaf.vertices = 0;
   });
   ++round_;
@@ -116,8 +118,8 @@ void SdTree::save(ByteWriter& out) const {
   out.put(nodes_);
   out.put(static_cast<std::uint64_t>(leaves_.size()));
   for (const Leaf& l : leaves_) {
-    l.drawn.save(out);
-    l.learning.save(out);
+    l.sampling.save(out);
+    l.building.save(out);
     out.put(l.vertices);
   }
 }
@@ -127,19 +129,19 @@ void SdTree::load(ByteReader& in) {
   std::vector<Node> nodes = in.get_vector<Node>();
   std::vector<Leaf> leaves(in.get_length(sizeof(std::uint64_t)));
   for (Leaf& l : leaves) {
-    l.drawn.load(in);
-    l.learning.load(in);
+    l.sampling.load(in);
+    l.building.load(in);
     l.vertices = in.get<double>();
   }
   bool good = round < 63 && done < std::uint64_t{1} << round && !nodes.empty();
   for (std::size_t i = 0; i < nodes.size() && good; ++i) {
     const auto& child = nodes[i].child;
     const bool leaf = child[0] == 0 && child[1] == 0;
-    // Children come after their parents: there are no circles.
+    // Children come after their parents, so there are no cycles.
     good = leaf ? nodes[i].leaf < leaves.size()
                 : std::min(child[0], child[1]) > i && std::max(child[0], child[1]) < nodes.size();
   }
-  if (!good) throw std::runtime_error("saved guide is no tree");
+  if (!good) throw std::runtime_error("saved guide is not a valid tree");
   round_ = round;
   done_ = done;
   nodes_ = std::move(nodes);
@@ -148,7 +150,7 @@ void SdTree::load(ByteReader& in) {
 
 std::vector<std::pair<std::string, double>> SdTree::statistics() const {
   double nodes = 0;
-  for (const Leaf& l : leaves_) nodes += static_cast<double>(l.drawn.nodes());
+  for (const Leaf& l : leaves_) nodes += static_cast<double>(l.sampling.nodes());
   return {{"sd_leaves", static_cast<double>(leaves_.size())},
           {"sd_direction_nodes", nodes},
           {"sd_rounds", static_cast<double>(round_)}};

@@ -7,11 +7,11 @@
 namespace lacuna {
 
 /// guide: sd_tree. Practical path guiding (Mueller, Gross and Novak 2017): a binary tree over the
-/// scene's box, whose leaves each have a quadtree of directions with the light that paths found. It
-/// learns in rounds of 1, 2, 4, ... iterations; after each, leaves that many vertices lay in are
-/// divided, and the next round draws from what the last one found. Of the improvements of Mueller
-/// 2019 it has the box filter over directions. All iterations count in the picture alike, the first
-/// ones too: the film is the mean of independent estimates.
+/// scene's box; each leaf has a quadtree of directions with the light that paths found. It learns
+/// in rounds of 1, 2, 4, ... iterations: after each round, leaves with many vertices are divided,
+/// and the next round samples the directions of the last one. Of the improvements of Mueller 2019
+/// it has the box filter over directions. All iterations have equal weight in the picture, the
+/// first ones too: the film is the mean of independent estimates.
 class SdTree final : public GuidingDistribution {
  public:
   explicit SdTree(const SdTreeGuideSettings& settings) : settings_(settings) {}
@@ -22,22 +22,23 @@ class SdTree final : public GuidingDistribution {
   void load(ByteReader& in) override;
   std::vector<std::pair<std::string, double>> statistics() const override;
 
-  GuidingCell site(const Surface& s, const V3f&) const override {
+  GuidingCell cell(const Surface& s, const V3f&) const override {
     const std::uint32_t leaf = leaf_at(s.x);
-    const bool known = !leaves_[leaf].drawn.empty();
+    const bool known = !leaves_[leaf].sampling.empty();
     return {known ? static_cast<float>(settings_.probability) : 0.0F, leaf};
   }
   std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const override {
-    return leaves_[at.site.index].drawn.sample(rng);
+    return leaves_[at.cell.index].sampling.sample(rng);
   }
   Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const override {
-    return leaves_[at.site.index].drawn.pdf(w);
+    return leaves_[at.cell.index].sampling.pdf(w);
   }
 
   bool learns() const override { return true; }
-  std::unique_ptr<Tally> tally() const override;
-  void learn(const GuidingSample& what, Tally& tally) const override;
-  void end(std::span<const std::unique_ptr<Tally>> tallies, const ThreadPool& pool) override;
+  std::unique_ptr<Accumulator> accumulator() const override;
+  void accumulate(const GuidingSample& sample, Accumulator& accumulator) const override;
+  void update(std::span<const std::unique_ptr<Accumulator>> accumulators,
+              const ThreadPool& pool) override;
 
  private:
   struct Node {
@@ -45,16 +46,16 @@ class SdTree final : public GuidingDistribution {
     std::uint32_t leaf = 0;
   };
   struct Leaf {
-    DirectionTree drawn, learning;
-    double vertices = 0;  // that lay in it in this round
+    DirectionTree sampling, building;
+    double vertices = 0;  // of this round
   };
-  /// What a vertex saw.
-  struct Seen {
+  /// The energy, radiance / pdf, that arrived at a vertex.
+  struct EnergySample {
     std::uint32_t leaf;
     V3f w;
     float energy;
   };
-  struct Own;
+  struct SampleAccumulator;
 
   std::uint32_t leaf_at(const V3f& x) const;
   void next_round(const ThreadPool& pool);

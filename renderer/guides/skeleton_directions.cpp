@@ -9,7 +9,7 @@ namespace lacuna {
 
 namespace {
 
-/// Nodes whose paths are found with one set of arrays.
+/// Nodes of one task, which share the arrays of ImportancePaths.
 constexpr std::uint32_t nodes_of_part = 16;
 
 }  // namespace
@@ -50,19 +50,19 @@ void SkeletonDirections::prepare(const PrepareContext& context) {
   });
 }
 
-void SkeletonDirections::learn(const GuidingSample& what, Tally& tally) const {
-  const GuidingCell& site = what.v.site;
-  // A node that draws nothing from its lobes at present goes on learning.
-  if (site.index >= lobes_.size() || lobes_[site.index].empty()) return;
-  if (!tuning_.wants(site.index)) return;
-  const LobeSet& lobes = lobes_[site.index];
-  const V3f& x = what.v.surface.x;
-  auto& own = static_cast<Own&>(tally).tuning;
+void SkeletonDirections::accumulate(const GuidingSample& sample, Accumulator& accumulator) const {
+  const GuidingCell& cell = sample.v.guiding_cell;
+  // A node whose probability is 0 at present keeps learning.
+  if (cell.index >= lobes_.size() || lobes_[cell.index].empty()) return;
+  if (!tuning_.wants(cell.index)) return;
+  const LobeSet& lobes = lobes_[cell.index];
+  const V3f& x = sample.v.surface.x;
+  auto& own = static_cast<TuningAccumulator&>(accumulator).tuning;
   if (settings_.strength.is_auto()) {
-    tuning_.learn(what, site.index, lobes.pdf_of_powers(x, what.wi), own);
+    tuning_.accumulate(sample, cell.index, lobes.pdf_of_powers(x, sample.wi), own);
   } else {
-    const float density = lobes.pdf(x, what.wi, tuning_.strength(site.index)).value;
-    tuning_.learn(what, site.index, std::span(&density, 1), own);
+    const float density = lobes.pdf(x, sample.wi, tuning_.strength(cell.index)).value;
+    tuning_.accumulate(sample, cell.index, std::span(&density, 1), own);
   }
 }
 
@@ -73,14 +73,14 @@ std::vector<std::pair<std::string, double>> SkeletonDirections::statistics() con
     all += l.size();
     guided += l.empty() ? 0 : 1;
   }
-  std::vector<std::pair<std::string, double>> told{
+  std::vector<std::pair<std::string, double>> stats{
       {"nodes", static_cast<double>(lobes_.size())},
       {"importance_nodes", static_cast<double>(importance_nodes_)},
       {"guided_nodes", static_cast<double>(guided)},
       {"lobes_most", static_cast<double>(most)},
       {"lobes_mean", guided > 0 ? static_cast<double>(all) / static_cast<double>(guided) : 0.0}};
-  for (auto& s : tuning_.statistics()) told.push_back(std::move(s));
-  return told;
+  for (auto& s : tuning_.statistics()) stats.push_back(std::move(s));
+  return stats;
 }
 
 }  // namespace lacuna

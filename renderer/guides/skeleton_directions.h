@@ -7,9 +7,9 @@
 
 namespace lacuna {
 
-/// guide: skeleton. At the surfaces that belong to a node of the skeleton, rays go around the
-/// directions to its importance points: along the shortest paths to where the light arrives, as far
-/// as the node sees them (Noel 2015, ch. 9). The thesis' unfiltered skeleton.
+/// guide: skeleton. At the surfaces of a skeleton node, directions are sampled from lobes around
+/// its importance points, which lie on the visible parts of the shortest paths to where light
+/// arrives (Noel 2015, ch. 9). Uses the thesis' unfiltered skeleton.
 class SkeletonDirections final : public GuidingDistribution {
  public:
   explicit SkeletonDirections(const SkeletonGuideSettings& settings) : settings_(settings) {}
@@ -20,30 +20,34 @@ class SkeletonDirections final : public GuidingDistribution {
   void load(ByteReader& in) override { tuning_.load(in); }
   std::vector<std::pair<std::string, double>> statistics() const override;
 
-  GuidingCell site(const Surface& s, const V3f& w) const override {
+  GuidingCell cell(const Surface& s, const V3f& w) const override {
     const std::uint32_t node = lookup_->node(V3d(s.x), V3d(s.ng), V3d(w));
     if (node == no_node || lobes_[node].empty()) return {};
     return {tuning_.probability(node), node};
   }
   std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const override {
-    return lobes_[at.site.index].sample(at.x(), tuning_.strength(at.site.index), rng);
+    return lobes_[at.cell.index].sample(at.x(), tuning_.strength(at.cell.index), rng);
   }
   Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const override {
-    return lobes_[at.site.index].pdf(at.x(), w, tuning_.strength(at.site.index));
+    return lobes_[at.cell.index].pdf(at.x(), w, tuning_.strength(at.cell.index));
   }
 
   bool learns() const override { return tuning_.learns(); }
-  std::unique_ptr<Tally> tally() const override { return std::make_unique<Own>(); }
-  void learn(const GuidingSample& what, Tally& tally) const override;
-  void end(std::span<const std::unique_ptr<Tally>> tallies, const ThreadPool&) override {
-    std::vector<const Tuning::Tally*> own;
-    for (const auto& t : tallies) own.push_back(&static_cast<const Own&>(*t).tuning);
-    tuning_.end(own);
+  std::unique_ptr<Accumulator> accumulator() const override {
+    return std::make_unique<TuningAccumulator>();
+  }
+  void accumulate(const GuidingSample& sample, Accumulator& accumulator) const override;
+  void update(std::span<const std::unique_ptr<Accumulator>> accumulators,
+              const ThreadPool&) override {
+    std::vector<const Tuning::Accumulator*> own;
+    for (const auto& t : accumulators)
+      own.push_back(&static_cast<const TuningAccumulator&>(*t).tuning);
+    tuning_.update(own);
   }
 
  private:
-  struct Own final : Tally {
-    Tuning::Tally tuning;
+  struct TuningAccumulator final : Accumulator {
+    Tuning::Accumulator tuning;
   };
 
   SkeletonGuideSettings settings_;

@@ -7,10 +7,10 @@ namespace lacuna {
 
 namespace {
 
-/// What a place uses until it has learned something: the thesis' values.
+/// The values of a cell that has not learned yet: those of the thesis.
 constexpr float first_strength = 8, first_probability = 0.5F;
-/// Fewer paths than this have not told a place anything.
-constexpr double least_paths = 8;
+/// Paths below which a cell keeps its initial values.
+constexpr double min_paths = 8;
 
 std::uint32_t nearest(const std::vector<float>& values, float wanted) {
   const auto closer = [wanted](float a, float b) {
@@ -22,7 +22,7 @@ std::uint32_t nearest(const std::vector<float>& values, float wanted) {
 
 }  // namespace
 
-Tuning::Tuning(std::vector<float> strengths, const AutoNumber& probability, std::size_t places)
+Tuning::Tuning(std::vector<float> strengths, const AutoNumber& probability, std::size_t cells)
     : strengths_(std::move(strengths)) {
   if (probability.is_auto()) {
     probabilities_ = {0, 0.125F, 0.25F, 0.375F, 0.5F, 0.625F, 0.75F, 0.875F};
@@ -32,18 +32,18 @@ Tuning::Tuning(std::vector<float> strengths, const AutoNumber& probability, std:
   const std::uint32_t first =
       nearest(strengths_, first_strength) * static_cast<std::uint32_t>(count()) +
       nearest(probabilities_, first_probability);
-  chosen_.assign(places, first);
-  if (learns()) moments_.assign(places * stride(), 0.0);
+  chosen_.assign(cells, first);
+  if (learns()) moments_.assign(cells * stride(), 0.0);
 }
 
-void Tuning::learn(const GuidingSample& what, std::uint32_t place, std::span<const float> densities,
-                   Tally& tally) const {
-  const Vertex& v = what.v;
-  const double energy =
-      double(what.pixel_contribution) * double(what.pixel_contribution) * double(what.pdf.value);
+void Tuning::accumulate(const GuidingSample& sample, std::uint32_t cell,
+                        std::span<const float> densities, Accumulator& accumulator) const {
+  const Vertex& v = sample.v;
+  const double energy = double(sample.pixel_contribution) * double(sample.pixel_contribution) *
+                        double(sample.pdf.value);
   if (!(energy > 0) || !std::isfinite(energy)) return;
-  const float bsdf = v.bsdf->pdf(v.wp, what.wi, Transport::radiance).value;
-  std::vector<double>& moments = tally.moments[place];
+  const float bsdf = v.bsdf->pdf(v.wp, sample.wi, Transport::radiance).value;
+  std::vector<double>& moments = accumulator.moments[cell];
   moments.resize(stride());
   std::size_t i = 0;
   for (const float density : densities) {
@@ -51,35 +51,35 @@ void Tuning::learn(const GuidingSample& what, std::uint32_t place, std::span<con
       moments[i++] += energy / double(c * density + (1 - c) * bsdf);
     }
   }
-  moments[i] = std::max(moments[i], energy / double(what.pdf.value));
+  moments[i] = std::max(moments[i], energy / double(sample.pdf.value));
   moments[i + 1] += 1;
 }
 
-void Tuning::end(std::span<const Tally* const> tallies) {
+void Tuning::update(std::span<const Accumulator* const> accumulators) {
   std::vector<char> met(chosen_.size(), 0);
-  for (const Tally* t : tallies) {
-    for (const auto& [place, moments] : t->moments) {
-      met[place] = 1;
-      double* const all = moments_.data() + place * stride();
+  for (const Accumulator* t : accumulators) {
+    for (const auto& [cell, moments] : t->moments) {
+      met[cell] = 1;
+      double* const all = moments_.data() + cell * stride();
       for (std::size_t i = 0; i < stride(); ++i) {
         all[i] = i == candidates() ? std::max(all[i], moments[i]) : all[i] + moments[i];
       }
     }
   }
-  for (std::size_t place = 0; place < met.size(); ++place) {
-    if (met[place] != 0) choose(place);
+  for (std::size_t cell = 0; cell < met.size(); ++cell) {
+    if (met[cell] != 0) choose(cell);
   }
 }
 
-void Tuning::choose(std::size_t place) {
-  if (paths(place) < least_paths) return;
-  const double* const moments = moments_.data() + place * stride();
+void Tuning::choose(std::size_t cell) {
+  if (paths(cell) < min_paths) return;
+  const double* const moments = moments_.data() + cell * stride();
   double least = HUGE_VAL;
   for (std::size_t i = 0; i < candidates(); ++i) {
     const double unseen = moments[candidates()] / (1 - double(probabilities_[i % count()]));
     if (moments[i] + unseen >= least) continue;
     least = moments[i] + unseen;
-    chosen_[place] = static_cast<std::uint32_t>(i);
+    chosen_[cell] = static_cast<std::uint32_t>(i);
   }
 }
 
@@ -87,21 +87,21 @@ void Tuning::load(ByteReader& in) {
   if (!learns()) return;
   std::vector<double> moments = in.get_vector<double>();
   if (moments.size() != moments_.size()) {
-    throw std::runtime_error("saved strengths are of another scene");
+    throw std::runtime_error("saved strengths belong to another scene");
   }
   moments_ = std::move(moments);
-  for (std::size_t place = 0; place < chosen_.size(); ++place) choose(place);
+  for (std::size_t cell = 0; cell < chosen_.size(); ++cell) choose(cell);
 }
 
 std::vector<std::pair<std::string, double>> Tuning::statistics() const {
   if (!learns()) return {};
   std::size_t learned = 0;
   double logs = 0, shares = 0;
-  for (std::size_t place = 0; place < chosen_.size(); ++place) {
-    if (paths(place) < least_paths) continue;
+  for (std::size_t cell = 0; cell < chosen_.size(); ++cell) {
+    if (paths(cell) < min_paths) continue;
     ++learned;
-    logs += std::log2(double(strength(place)) + 1e-9);
-    shares += double(probability(place));
+    logs += std::log2(double(strength(cell)) + 1e-9);
+    shares += double(probability(cell));
   }
   const auto n = static_cast<double>(std::max<std::size_t>(learned, 1));
   return {{"places_learned", static_cast<double>(learned)},

@@ -8,37 +8,36 @@
 
 namespace lacuna {
 
-/// What a guide may learn for each of its places (nodes, regions): with which strength directions
-/// are drawn, if it has strengths, and how often they are drawn from the guide instead of the BSDF;
-/// as given, or learned. What is learned is the variance that the directions from a place bring to
-/// the picture's pixels, for every candidate: with the density q that a direction was drawn with
-/// and the density p that a candidate would have drawn it with, a path that gave g to its pixel
-/// adds g^2 q / p to the candidate's second moment. All candidates learn from the same paths,
-/// whichever drew them, and the one with the least is used. As the tails of such sums are heavy,
-/// each place reckons with one more path like its largest that came from where the guide does not
-/// look.
+/// The strength of a guide's lobes and its probability against the BSDF, for each cell (node or
+/// region): as given in the settings, or learned. Learning estimates the second moment of a path's
+/// contribution to its pixel for every candidate pair (strength, probability): a path that
+/// contributed g, and whose direction was sampled with density q, adds g^2 q / p to the moment of a
+/// candidate that has density p there. All candidates use the same paths, and the one with the
+/// smallest moment is chosen. As the tails of such sums are heavy, each cell adds one more path
+/// like its largest, from a direction that the guide does not sample.
 class Tuning {
  public:
   Tuning() = default;
-  /// `strengths`: the candidates, any number above 0; `probability` as in settings.
-  Tuning(std::vector<float> strengths, const AutoNumber& probability, std::size_t places);
+  /// `strengths`: one or more candidates; `probability`: as in the settings.
+  Tuning(std::vector<float> strengths, const AutoNumber& probability, std::size_t cells);
 
   bool learns() const { return strengths_.size() * probabilities_.size() > 1; }
-  float strength(std::size_t place) const { return strengths_[chosen_[place] / count()]; }
-  float probability(std::size_t place) const { return probabilities_[chosen_[place] % count()]; }
+  float strength(std::size_t cell) const { return strengths_[chosen_[cell] / count()]; }
+  float probability(std::size_t cell) const { return probabilities_[chosen_[cell] % count()]; }
 
-  struct Tally {
-    std::unordered_map<std::uint32_t, std::vector<double>> moments;  // of the places met, as below
+  struct Accumulator {
+    std::unordered_map<std::uint32_t, std::vector<double>>
+        moments;  // by cell, laid out as moments_
   };
-  /// Places that enough paths have told of learn nothing more: learning costs a density each.
-  bool wants(std::uint32_t place) const { return learns() && paths(place) < enough_paths; }
-  /// Only where it wants(). `densities`: with which the guide alone would draw what.wi, for each of
-  /// the strengths.
-  void learn(const GuidingSample& what, std::uint32_t place, std::span<const float> densities,
-             Tally& tally) const;
-  void end(std::span<const Tally* const> tallies);
+  /// Whether the cell still learns. Each sample costs a density, so learning ends with enough
+  /// paths.
+  bool wants(std::uint32_t cell) const { return learns() && paths(cell) < enough_paths; }
+  /// Requires wants(cell). `densities`: of sample.wi by the guide alone, for each strength.
+  void accumulate(const GuidingSample& sample, std::uint32_t cell, std::span<const float> densities,
+                  Accumulator& accumulator) const;
+  void update(std::span<const Accumulator* const> accumulators);
 
-  /// Nothing where nothing is learned.
+  /// Writes nothing if it does not learn.
   void save(ByteWriter& out) const {
     if (learns()) out.put(moments_);
   }
@@ -46,18 +45,19 @@ class Tuning {
   std::vector<std::pair<std::string, double>> statistics() const;
 
  private:
-  /// The mean of so many is known to 1 / sqrt(8192), about 1 %, of the spread of one.
+  /// Paths of a cell after which it stops learning: the mean of so many is known to 1 / sqrt(8192),
+  /// about 1 %, of the spread of one.
   static constexpr double enough_paths = 8192;
   std::size_t count() const { return probabilities_.size(); }
   std::size_t candidates() const { return strengths_.size() * count(); }
   std::size_t stride() const { return candidates() + 2; }
-  double paths(std::size_t place) const { return moments_[place * stride() + candidates() + 1]; }
-  void choose(std::size_t place);
+  double paths(std::size_t cell) const { return moments_[cell * stride() + candidates() + 1]; }
+  void choose(std::size_t cell);
 
   std::vector<float> strengths_, probabilities_;
-  std::vector<std::uint32_t> chosen_;  // of each place
-  /// Of each place: the second moment for each strength, of each probability; the largest of one
-  /// path as it was drawn; the number of paths.
+  std::vector<std::uint32_t> chosen_;  // of each cell
+  /// For each cell: the second moment of each strength and probability; the largest g^2 of a path;
+  /// the number of paths.
   std::vector<double> moments_;
 };
 

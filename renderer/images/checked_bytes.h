@@ -8,8 +8,8 @@
 
 namespace lacuna {
 
-/// An encoded image in memory, read from front to back. What lies beyond its end is never touched:
-/// every function throws SceneError, with the image's label, where it ends early.
+/// Reads an encoded image in memory from front to back, never beyond its end: every function throws
+/// SceneError, with the image's label, if it ends early.
 class CheckedBytes {
  public:
   CheckedBytes(std::span<const std::uint8_t> bytes, const std::string& label)

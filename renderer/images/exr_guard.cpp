@@ -78,7 +78,7 @@ class ExrHeader {
     return any;
   }
 
-  /// What an attribute says about the pixels.
+  /// The description of the pixels by an attribute.
   void note(const std::string& name, std::uint32_t bytes) {
     if (name == "dataWindow" && bytes == 16) picture_ = read_window();
     if (name == "tiles" && bytes == 9) tile_ = {integer(), integer()};

@@ -8,12 +8,12 @@
 
 namespace lacuna {
 
-// What stands between a file that nobody vouches for and the library that decodes it. Each guard
-// walks through a file's structure, decodes nothing, and throws SceneError with the file's name:
-// cut off, of a size, depth or kind that is not read, or saying what its bytes cannot hold.
+// Validates untrusted files before the library decodes them. Each guard parses a file's structure
+// without decoding it, and throws SceneError with the file's name if it is truncated, of an
+// unsupported size, depth or kind, or inconsistent with its length.
 //
-// Those of files in memory return what to decode: the same image with nothing in it but what makes
-// its pixels. Profiles, comments, thumbnails and camera data never reach the library.
+// Guards of files in memory return the bytes to decode: the same image with its pixels only.
+// Profiles, comments, thumbnails and camera data never reach the library.
 
 constexpr int max_picture_side = 32768;  ///< pixels
 constexpr int max_texture_side = 16384;  ///< texels

@@ -9,11 +9,11 @@
 
 namespace lacuna {
 
-// What the module of images offers: `module/openimageio.cpp` implements it, `image_module.h` loads
-// it, and only the rest of this room asks it, after its own checks. All functions throw
+// The interface of the image module: `module/openimageio.cpp` implements it, `image_module.h` loads
+// it, and only this folder calls it, after its own validation. All functions throw
 // std::runtime_error with a reason that names no file, and std::bad_alloc.
 
-/// The formats that are read. There is no other, and none is found by trying.
+/// The supported formats. The format is always known; none is found by trying.
 enum class ImageFormat { openexr, png, jpeg, radiance_hdr, tiff };
 
 /// The header of one picture of a file, as the file gives it.
@@ -44,7 +44,7 @@ struct StoredTexels {
   std::unique_ptr<std::uint8_t[]> values;  ///< interleaved, top row first
 };
 
-/// What an EXR file is made of.
+/// The content of an EXR file to write.
 struct ExrContent {
   int width = 0, height = 0;
   std::vector<std::string> channels;
@@ -58,9 +58,9 @@ using EncodedImage = std::vector<std::uint8_t>;
 class ImageCodec {
  public:
   virtual ~ImageCodec() = default;
-  /// By the reader of `format` alone.
+  /// Opens a file with the reader of `format`.
   virtual std::unique_ptr<PictureFile> open(ImageFormat format, const std::string& file) const = 0;
-  /// The same from memory; `bytes` outlive what is returned.
+  /// Opens a file in memory; `bytes` must outlive the result.
   virtual std::unique_ptr<PictureFile> open(ImageFormat format,
                                             std::span<const std::uint8_t> bytes) const = 0;
   /// Decodes a PNG or JPEG. Thread-safe.

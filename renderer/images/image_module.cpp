@@ -111,7 +111,7 @@ struct TheLoad {
   std::mutex mutex;
   std::shared_future<Loaded> result;
 
-  /// `when`: at once on a thread of its own, or by whoever waits first; as told the first time.
+  /// `when`: at once on its own thread, or by the first thread that waits; the first call decides.
   std::shared_future<Loaded> begin(std::launch when) {
     const std::lock_guard lock(mutex);
     if (!result.valid()) result = std::async(when, load).share();

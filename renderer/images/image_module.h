@@ -19,12 +19,12 @@ class ImageModuleLoading {
   ImageModuleLoading(const ImageModuleLoading&) = delete;
   ~ImageModuleLoading();
 
-  /// Waits until the module is there. Throws as image_codec() does.
+  /// Waits until the module is loaded. Throws like image_codec().
   void wait() const;
 };
 
-/// Loads the module, or waits for whoever loads it. Thread-safe. Throws std::runtime_error that
-/// names the file if it is missing or cannot be loaded, std::bad_alloc if memory lacks for it.
+/// Loads the module, or waits until another thread has loaded it. Thread-safe. Throws
+/// std::runtime_error with the file's name if it is missing or cannot be loaded, std::bad_alloc.
 const ImageCodec& image_codec();
 
 /// When the module was loaded and what that took.
@@ -34,7 +34,7 @@ struct ImageModuleTimes {
   double cpu_seconds = 0;  ///< of the thread that loaded it
 };
 
-/// Nothing as long as nobody needed it. Waits while it is being loaded.
+/// None if the module was not needed so far. Waits while it is being loaded.
 std::optional<ImageModuleTimes> image_module_times();
 
 }  // namespace lacuna

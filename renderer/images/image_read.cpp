@@ -23,7 +23,7 @@ constexpr std::size_t most_file_bytes = std::size_t{1} << 32;  // of formats rea
   throw SceneError(file.string() + ": " + what);
 }
 
-/// By the magic bytes, whatever the file is called; nothing for a format that is not read.
+/// The format by the magic bytes, whatever the file's name; none for an unsupported format.
 std::optional<ImageFormat> format_of(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
@@ -46,7 +46,7 @@ std::array<std::string, 3> channel_names(const std::string& layer) {
   return {prefix + "R", prefix + "G", prefix + "B"};
 }
 
-/// Where the channels of a layer are: three, or one that is grey; none if it is not there.
+/// The channels of a layer: three, or one that is grey; none if the layer is missing.
 std::vector<int> find_channels(const PictureHeader& header, const std::string& layer) {
   const auto place = [&](const std::string& name) {
     const auto it = std::find(header.channels.begin(), header.channels.end(), name);

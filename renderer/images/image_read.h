@@ -24,18 +24,18 @@ struct FloatImage {
   }
 };
 
-/// Reads an OpenEXR or Radiance HDR file, told by its magic bytes, of up to 32768 pixels a side.
+/// Reads an OpenEXR or Radiance HDR file, by its magic bytes, of up to 32768 pixels a side.
 /// `layer` chooses the channels of an EXR: empty means R, G, B, or Y alone as grey; "half_a" means
 /// half_a.R, half_a.G, half_a.B. Values are kept as they are, non-finite ones too. Throws
 /// SceneError: no such file or layer, another format, corrupt, deep, or a crop of a larger image;
 /// std::runtime_error if the module of images is missing.
 FloatImage read_float_image(const std::filesystem::path& file, const std::string& layer = "");
 
-/// The same for what a picture is compared with, which may also be a TIFF of floats.
+/// Reads a reference image, which may also be a TIFF of floats.
 FloatImage read_reference_image(const std::filesystem::path& file);
 
 /// Throws SceneError with `label`, the position and the value of the first pixel that is negative
-/// or not finite: light cannot be.
+/// or not finite, which radiance cannot be.
 void require_radiance(const FloatImage& image, const std::string& label);
 
 }  // namespace lacuna

@@ -16,7 +16,7 @@ struct Rgba {
   float a = 1;
 };
 
-/// An image of a scene: its encoded bytes until somebody needs the texels.
+/// An image of a scene: its encoded bytes until it is decoded.
 class Texture {
  public:
   enum class Encoding { linear, srgb };
@@ -39,10 +39,10 @@ class Texture {
   /// Bilinear in linear light; (0, 0) is the upper left corner of the image, as in glTF. Any `uv`
   /// is safe: where it is not finite, the texel at that corner. Must be decoded.
   Rgba lookup(const V2f& uv) const;
-  /// Asks for the texels that lookup(uv) will read.
+  /// Prefetches the texels that lookup(uv) reads.
   void prefetch(const V2f& uv) const;
 
-  /// Mean over all texels, linear: what emitter powers are estimated from. Must be decoded.
+  /// Linear mean over all texels, for estimates of emitter power. Must be decoded.
   Rgba mean() const;
 
  private:
@@ -51,7 +51,7 @@ class Texture {
 
   std::string label_;
   std::vector<std::uint8_t> encoded_;
-  const float* to_linear_;  ///< what the bytes of a texel mean under the encoding
+  const float* to_linear_;  ///< linear value of each byte under the encoding
   Wrap wrap_s_, wrap_t_;
   int width_ = 0, height_ = 0;
   HugeVector<std::uint8_t> texels_;  ///< RGBA8 as stored in the file

@@ -13,7 +13,7 @@ struct Rgba8Image {
   std::vector<std::uint8_t> rgba;  ///< 4 x width x height
 };
 
-/// Decodes a PNG or JPEG, told by its magic bytes, of up to 16384 texels a side. 16 bits are
+/// Decodes a PNG or JPEG, by its magic bytes, of up to 16384 texels a side. 16 bits are
 /// rounded to 8, grey becomes RGB, no alpha becomes 255; gamma and profiles are left aside, as glTF
 /// asks. Throws SceneError with `label`; std::runtime_error if the module of images is missing.
 Rgba8Image decode_png_or_jpeg(std::span<const std::uint8_t> encoded, const std::string& label);

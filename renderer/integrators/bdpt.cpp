@@ -15,21 +15,21 @@ namespace lacuna {
 
 namespace {
 
-/// What a strategy gives to a pixel of the tile, if nothing lies between.
+/// A contribution of a strategy to a pixel of the tile, pending its shadow ray.
 struct Contribution {
   std::uint32_t pixel = 0;
-  std::uint8_t walker = 0;  ///< of the eye's path, in its batch
+  std::uint8_t path = 0;  ///< of the eye's path, in its batch
   std::uint8_t distribution = 0;
-  float survival = 1;          ///< probability with which it was made; `value` is divided by it
-  float throughput = 0;        ///< luminance of the eye vertex'
-  std::uint32_t cell = 0;      ///< of the eye vertex: CellStatistics
+  float survival = 1;          ///< probability of making the connection; `value` is divided by it
+  float throughput = 0;        ///< luminance of the eye vertex' throughput
+  std::uint32_t cell = 0;      ///< of the eye vertex, for CellStatistics
   Rgb value{0, 0, 0};          ///< unweighted
   float weight = 0;            ///< MIS
-  std::uint16_t s = 0, t = 0;  ///< vertices made from the light and from the eye
+  std::uint16_t s = 0, t = 0;  ///< vertices sampled from the light and from the eye
 };
 
-/// Bidirectional path tracing (Noel 2015, 4.3 and ch. 11): everything but which light vertices an
-/// eye vertex is joined to.
+/// Bidirectional path tracing (Noel 2015, 4.3 and ch. 11), apart from the choice of the light
+/// vertices that an eye vertex is connected to.
 template <class Guide>
 class Bdpt : public GuidedIntegrator<Guide> {
  public:
@@ -44,7 +44,7 @@ class Bdpt : public GuidedIntegrator<Guide> {
     GatheredLight gathered{*this};  // for a guide that learns
   };
 
-  /// An eye path's vertices that emit: s = 0.
+  /// Adds the emission at a vertex of an eye path (s = 0).
   void gather_hit(const IterationContext& context, const SampleCounts& counts, EyePaths& batch,
                   std::size_t i, int depth) const {
     if (guide_.learns()) batch.gathered.reach(i, depth);
@@ -58,14 +58,15 @@ class Bdpt : public GuidedIntegrator<Guide> {
     layers_.strategy(context.layers, 0, depth + 1, batch.pixels[i], value, w);
   }
 
-  /// How many vertices of a light path may meet an eye vertex `depth` edges from the eye; 0: none.
+  /// Largest s of connections to an eye vertex `depth` edges from the eye; 0: none.
   int longest_light_path(const Vertex& v, int depth) const {
     if (v.kind != Vertex::Kind::surface || depth >= settings_.max_depth) return 0;
     return v.bsdf->connectible() ? settings_.max_depth - depth : 0;
   }
 
-  /// Joins `eye` and `light` for a pixel; the sum over light paths is estimated with 1 / `samples`
-  /// of it. What it is not told of a contribution is taken from `known`.
+  /// Connects `eye` and `light` and queues the contribution divided by `samples`, the expected
+  /// number of samples of this light vertex. The fields of the contribution that the connection
+  /// does not determine are copied from `known`.
   template <class Light>
   static void join(const SurfaceEndpoint<Guide>& eye, const Light& light, double samples,
                    const SampleCounts& counts, Contribution known,
@@ -78,49 +79,49 @@ class Bdpt : public GuidedIntegrator<Guide> {
     known.t = static_cast<std::uint16_t>(eye.index + 1);
     queue.add(shadow_ray(eye, light, c), known);
   }
-  /// What is known of a contribution to path `i` of `batch`, before it is joined to anything.
+  /// A contribution with the pixel and index of path `i` of `batch`.
   static Contribution contribution(const EyePaths& batch, std::size_t i) {
-    return {.pixel = batch.pixels[i], .walker = static_cast<std::uint8_t>(i)};
+    return {.pixel = batch.pixels[i], .path = static_cast<std::uint8_t>(i)};
   }
 
-  /// Adds what arrived for the paths of `batch`, hands it to `arrived(contribution)`, and tells the
-  /// guide of it.
+  /// Traces the queued shadow rays of `batch`, adds the unoccluded contributions to the image and
+  /// to the layers, passes each to `arrived(contribution)`, and records samples for the guide.
   template <class Arrived>
   void finish(const IterationContext& context, ShadowQueue<Contribution>& queue, EyePaths& batch,
-              Image& image, Counters& counters, typename Guide::Tally& tally,
+              Image& image, Counters& counters, typename Guide::Accumulator& accumulator,
               Arrived&& arrived) const {
-    for (std::size_t k = 0; k < batch.walkers.size(); ++k) {
+    for (std::size_t k = 0; k < batch.states.size(); ++k) {
       accumulate(image.pixels[batch.pixels[k]], batch.radiance[k], counters);
     }
     queue.flush(context.scene.rays(), counters, [&](const Contribution& c) {
       accumulate(image.pixels[c.pixel], c.value * c.weight, counters);
       arrived(c);
-      if (guide_.learns()) batch.gathered.add(c.walker, c.t - 1, c.value * c.weight);
+      if (guide_.learns()) batch.gathered.add(c.path, c.t - 1, c.value * c.weight);
       layers_.strategy(context.layers, c.s, c.t, c.pixel, c.value, c.weight);
       layers_.distribution(context.layers, c.distribution, c.pixel, c.value * c.weight);
     });
-    if (guide_.learns()) batch.gathered.teach(guide_, tally);
+    if (guide_.learns()) batch.gathered.record(guide_, accumulator);
   }
-  /// start_paths() of the tile, and their number counted.
+  /// Starts the paths of the tile from pixel `first` on, and counts them.
   void start(const IterationContext& context, const Image& image, const Tile& tile, int first,
              EyePaths& batch, Counters& counters) const {
     start_paths(context, image, tile, first, batch);
-    counters.samples += batch.walkers.size();
+    counters.samples += batch.states.size();
     if (guide_.learns()) batch.gathered.clear();
   }
-  /// One for each tile.
-  using Tallies = std::vector<typename Guide::Tally>;
-  Tallies start_tallies(const Tiling& tiling) const {
-    Tallies tallies(static_cast<std::size_t>(tiling.tiles()));
+  /// One accumulator for each tile.
+  using Accumulators = std::vector<typename Guide::Accumulator>;
+  Accumulators start_accumulators(const Tiling& tiling) const {
+    Accumulators accumulators(static_cast<std::size_t>(tiling.tiles()));
     if (guide_.learns()) {
-      for (auto& t : tallies) t = guide_.tally();
+      for (auto& t : accumulators) t = guide_.accumulator();
     }
-    return tallies;
+    return accumulators;
   }
-  void end_tallies(const IterationContext& context, const Tallies& tallies) {
-    if (guide_.learns()) guide_.end(tallies, context.pool);
+  void update_guide(const IterationContext& context, const Accumulators& accumulators) {
+    if (guide_.learns()) guide_.update(accumulators, context.pool);
   }
-  /// What for_each_splatting_part() hands on.
+  /// The callback of for_each_splatting_part() that adds splats to the layers.
   auto splat_layers(const IterationContext& context) const {
     return [this, &context](const Splat& s) {
       layers_.strategy(context.layers, s.s, 1, s.pixel, s.value, s.weight);
@@ -144,8 +145,8 @@ class Bdpt : public GuidedIntegrator<Guide> {
   StrategyLayers layers_;
 };
 
-/// connections: paired. Pixel j's path meets light path j; the points on emitters of s = 1 are
-/// drawn afresh at each vertex.
+/// connections: paired. The eye path of pixel j is connected to light path j; for s = 1 a new point
+/// on an emitter is sampled at each vertex.
 template <class Guide>
 class PairedBdpt final : public Bdpt<Guide> {
   using Base = Bdpt<Guide>;
@@ -166,7 +167,7 @@ class PairedBdpt final : public Bdpt<Guide> {
                               lit ? static_cast<double>(Base::pixels(image)) : 0.0};
     const LightPathSetting setting = Base::light_setting(context, counts);
     const Tiling tiling(image);
-    typename Base::Tallies tallies = Base::start_tallies(tiling);
+    typename Base::Accumulators accumulators = Base::start_accumulators(tiling);
     const auto work = [&](int i, Counters& counters, Splats& splats) {
       Pairs pairs{EyePaths(settings_.max_depth), LightBatch<Guide>(setting, guide_)};
       Walk<Guide> walk(context.scene, guide_, Base::eye_limits(counts), counters);
@@ -174,15 +175,15 @@ class PairedBdpt final : public Bdpt<Guide> {
       for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
         Base::start(context, image, tile, first, pairs.eye, counters);
         walk_light(context, pairs, counters);
-        pairs.light.splat(pairs.eye.walkers.size(), counters, splats);
+        pairs.light.splat(pairs.eye.states.size(), counters, splats);
         walk_eye(context, counts, walk, pairs);
         Base::finish(context, pairs.queue, pairs.eye, image, counters,
-                     tallies[static_cast<std::size_t>(i)], [](const Contribution&) {});
+                     accumulators[static_cast<std::size_t>(i)], [](const Contribution&) {});
       }
     };
     const Counters sum =
         for_each_splatting_part(context, tiling.tiles(), image, work, Base::splat_layers(context));
-    Base::end_tallies(context, tallies);
+    Base::update_guide(context, accumulators);
     return sum;
   }
 
@@ -197,7 +198,7 @@ class PairedBdpt final : public Bdpt<Guide> {
 
   static void walk_light(const IterationContext& context, Pairs& pairs, Counters& counters) {
     pairs.rngs.clear();
-    for (std::size_t k = 0; k < pairs.eye.walkers.size(); ++k) {
+    for (std::size_t k = 0; k < pairs.eye.states.size(); ++k) {
       pairs.rngs.emplace_back(context.seed, context.iteration, pairs.eye.pixels[k],
                               Rng::Purpose::light_path);
     }
@@ -209,16 +210,16 @@ class PairedBdpt final : public Bdpt<Guide> {
     const EmitterSet& lights = context.scene.emitters();
     const auto choose = [&](std::size_t i, int depth) {
       if (counts.nee > 0 && depth < settings_.max_depth) {
-        pairs.chosen[i] = lights.choose(pairs.eye.walkers[i].rng);
+        pairs.chosen[i] = lights.choose(pairs.eye.states[i].rng);
       }
     };
-    walk.trace_paths(pairs.eye.walkers, choose, [&](std::size_t i, int depth) {
+    walk.trace_paths(pairs.eye.states, choose, [&](std::size_t i, int depth) {
       Base::gather_hit(context, counts, pairs.eye, i, depth);
       const Vertex& v = pairs.eye.vertex(i, depth);
       const int longest = Base::longest_light_path(v, depth);
       if (longest == 0 || counts.nee == 0) return;
       const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
-      const EmitterPoint e = lights.sample(pairs.chosen[i], pairs.eye.walkers[i].rng);
+      const EmitterPoint e = lights.sample(pairs.chosen[i], pairs.eye.states[i].rng);
       const Contribution known = Base::contribution(pairs.eye, i);
       Base::join(eye, EmitterEndpoint{e}, 1, counts, known, pairs.queue);
       for (int s = 2; s <= std::min(longest, pairs.light.length(i)); ++s) {
@@ -229,8 +230,8 @@ class PairedBdpt final : public Bdpt<Guide> {
   }
 };
 
-/// Connections with light paths that all pixels share, resampled at each eye vertex: the first of
-/// the paths that meet the eye itself (t = 1).
+/// Connections to light paths that all pixels share, resampled at each eye vertex. The shared paths
+/// are the first of those connected to the eye (t = 1).
 template <class Guide, SharedConnections Choice>
 class ResampledBdpt final : public Bdpt<Guide> {
   using Base = Bdpt<Guide>;
@@ -255,23 +256,23 @@ class ResampledBdpt final : public Bdpt<Guide> {
   void prepare(const PrepareContext& context) override {
     Base::prepare(context);
     connections_.prepare(context);
-    seen_.resize(connections_.cells());
+    cell_statistics_.resize(connections_.cells());
   }
   std::vector<std::pair<std::string, double>> statistics() const override {
-    auto told = connections_.statistics();
-    for (auto& s : Base::statistics()) told.push_back(std::move(s));
-    told.emplace_back("light_pass_cpu_seconds", seconds_.light);
-    told.emplace_back("distributions_cpu_seconds", seconds_.distributions);
-    told.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
-    return told;
+    auto stats = connections_.statistics();
+    for (auto& s : Base::statistics()) stats.push_back(std::move(s));
+    stats.emplace_back("light_pass_cpu_seconds", seconds_.light);
+    stats.emplace_back("distributions_cpu_seconds", seconds_.distributions);
+    stats.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
+    return stats;
   }
   void save(ByteWriter& out) const override {
-    seen_.save(out);
+    cell_statistics_.save(out);
     connections_.save(out);
     Base::save(out);
   }
   void load(ByteReader& in) override {
-    seen_.load(in);
+    cell_statistics_.load(in);
     connections_.load(in);
     Base::load(in);
   }
@@ -282,10 +283,10 @@ class ResampledBdpt final : public Bdpt<Guide> {
     const double splatted = connections_.resampling().splat_paths * double(Base::pixels(image));
     const auto paths = std::max(static_cast<std::int64_t>(std::ceil(splatted)),
                                 static_cast<std::int64_t>(resampled));
-    const double asked = connections_.resampling().count_as;
-    const double count = asked > 0 ? asked : static_cast<double>(resampled);
+    const double count_as = connections_.resampling().count_as;
+    const double count = count_as > 0 ? count_as : static_cast<double>(resampled);
     const SampleCounts counts =
-        lit ? SampleCounts{1, asked > 0 ? 1.0 : count, count, static_cast<double>(paths)}
+        lit ? SampleCounts{1, count_as > 0 ? 1.0 : count, count, static_cast<double>(paths)}
             : SampleCounts{};
 
     PassSeconds pass;
@@ -299,7 +300,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
         Base::splat_layers(context));
     lights.arrange();
     pass.end(seconds_.light);
-    connections_.begin(context, lights, seen_, counters);
+    connections_.begin(context, lights, cell_statistics_, counters);
     pass.end(seconds_.distributions);
     counters += eye_pass(context, counts, lights, image);
     pass.end(seconds_.eye);
@@ -310,55 +311,55 @@ class ResampledBdpt final : public Bdpt<Guide> {
   Counters eye_pass(const IterationContext& context, const SampleCounts& counts,
                     const LightVertices& lights, Image& image) {
     const Tiling tiling(image);
-    std::vector<CellStatistics::Tally> tallies(static_cast<std::size_t>(tiling.tiles()));
-    typename Base::Tallies guide_tallies = Base::start_tallies(tiling);
+    std::vector<CellStatistics::Accumulator> accumulators(static_cast<std::size_t>(tiling.tiles()));
+    typename Base::Accumulators guide_accumulators = Base::start_accumulators(tiling);
     const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
       const auto index = static_cast<std::size_t>(i);
       EyePart part{counts,
                    lights,
-                   connections_.resampling().roulette * seen_.mean(index),
+                   connections_.resampling().roulette * cell_statistics_.mean(index),
                    EyePaths(settings_.max_depth),
                    {},
-                   CellStatistics::Tally(seen_.cells())};
+                   CellStatistics::Accumulator(cell_statistics_.cells())};
       Walk<Guide> walk(context.scene, guide_, Base::eye_limits(counts), counters);
       const Tile tile = tiling.tile(i);
       for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
         Base::start(context, image, tile, first, part.batch, counters);
         walk.trace_paths(
-            part.batch.walkers, [](std::size_t, int) {},
+            part.batch.states, [](std::size_t, int) {},
             [&](std::size_t k, int depth) {
               Base::gather_hit(context, counts, part.batch, k, depth);
               join_lights(part, k, depth);
             });
-        Base::finish(context, part.queue, part.batch, image, counters, guide_tallies[index],
-                     [&](const Contribution& c) { arrived(c, part.tally); });
+        Base::finish(context, part.queue, part.batch, image, counters, guide_accumulators[index],
+                     [&](const Contribution& c) { arrived(c, part.accumulator); });
       }
-      part.tally.paths(static_cast<std::uint64_t>(tile.pixels()));
-      part.tally.close();
-      tallies[index] = std::move(part.tally);
+      part.accumulator.add_paths(static_cast<std::uint64_t>(tile.pixels()));
+      part.accumulator.close();
+      accumulators[index] = std::move(part.accumulator);
     });
-    seen_.add(tallies);
-    Base::end_tallies(context, guide_tallies);
+    cell_statistics_.add(accumulators);
+    Base::update_guide(context, guide_accumulators);
     return sum;
   }
 
-  /// What the eye's paths of a tile work with.
+  /// The state of a tile's eye paths.
   struct EyePart {
     const SampleCounts& counts;
     const LightVertices& lights;
-    double enough;  // CellStatistics::survival()
+    double threshold;  // CellStatistics::survival()
     EyePaths batch;
     ShadowQueue<Contribution> queue;
-    CellStatistics::Tally tally;
+    CellStatistics::Accumulator accumulator;
   };
 
-  static void arrived(const Contribution& c, CellStatistics::Tally& tally) {
+  static void arrived(const Contribution& c, CellStatistics::Accumulator& accumulator) {
     const double value = double(luminance(c.value * c.weight));
     if (!std::isfinite(value)) return;
-    tally.gathered(value);
+    accumulator.add_path_sum(value);
     if (c.throughput > 0) {
-      tally.arrived(c.cell, c.s, value * double(c.survival) / double(c.throughput),
-                    double(c.survival));
+      accumulator.add_contribution(c.cell, c.s, value * double(c.survival) / double(c.throughput),
+                                   double(c.survival));
     }
   }
 
@@ -366,29 +367,29 @@ class ResampledBdpt final : public Bdpt<Guide> {
     const Vertex& v = part.batch.vertex(k, depth);
     const int longest = Base::longest_light_path(v, depth);
     if (longest == 0 || part.lights.paths() == 0) return;
-    Rng& rng = part.batch.walkers[k].rng;
+    Rng& rng = part.batch.states[k].rng;
     const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
-    const auto place = connections_.find(v, depth, rng);
-    part.tally.visit(place.cell);
+    const auto lookup = connections_.find(v, depth, rng);
+    part.accumulator.visit(lookup.cell);
     const float throughput = luminance(v.throughput);
     const auto survival = [&](int s) {
-      part.tally.asked(place.cell, s);
-      const float p = seen_.survival(place.cell, s, double(throughput), part.enough);
+      part.accumulator.attempt(lookup.cell, s);
+      const float p = cell_statistics_.survival(lookup.cell, s, double(throughput), part.threshold);
       return p >= 1 || rng.next() < p ? p : 0.0F;
     };
-    connections_.pick(place, part.lights, longest, rng, survival,
-                      [&](int s, const VertexSample& pick) {
-                        const double samples = static_cast<double>(part.lights.paths()) *
-                                               double(pick.probability) * double(pick.survival);
-                        part.lights.with_end(s, pick.index, guide_, [&](const auto& light) {
-                          Contribution known = Base::contribution(part.batch, k);
-                          known.distribution = pick.owner;
-                          known.survival = pick.survival;
-                          known.throughput = throughput;
-                          known.cell = place.cell;
-                          Base::join(eye, light, samples, part.counts, known, part.queue);
+    connections_.sample(lookup, LightRange{part.lights, longest}, rng, survival,
+                        [&](int s, const VertexSample& drawn) {
+                          const double samples = static_cast<double>(part.lights.paths()) *
+                                                 double(drawn.probability) * double(drawn.survival);
+                          part.lights.with_end(s, drawn.index, guide_, [&](const auto& light) {
+                            Contribution known = Base::contribution(part.batch, k);
+                            known.distribution = drawn.distribution;
+                            known.survival = drawn.survival;
+                            known.throughput = throughput;
+                            known.cell = lookup.cell;
+                            Base::join(eye, light, samples, part.counts, known, part.queue);
+                          });
                         });
-                      });
   }
 
   /// CPU seconds of all threads in the parts of an iteration.
@@ -396,7 +397,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
     double light = 0, distributions = 0, eye = 0;
   } seconds_;
   Choice connections_;
-  CellStatistics seen_;
+  CellStatistics cell_statistics_;
 };
 
 }  // namespace

@@ -4,8 +4,8 @@
 
 namespace lacuna {
 
-/// An integrator whose paths from the eye follow a guide (renderer/guides), of which its needs, its
-/// preparation and its learned state are.
+/// An integrator whose eye paths follow a guide (renderer/guides). The guide determines its needs,
+/// its preparation and its learned state.
 template <class Guide>
 class GuidedIntegrator : public Integrator {
  public:

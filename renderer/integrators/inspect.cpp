@@ -60,7 +60,7 @@ class Inspect final : public Integrator {
     if (space_) return space_->colour(scene, s, ray.d, context.seed, counters);
     switch (show_) {
       case InspectQuantity::normal:
-        // The side that is seen.
+        // The visible side.
         return dot(s.ng, ray.d) > 0 ? -s.ns : s.ns;
       case InspectQuantity::albedo: {
         std::optional<Bsdf> bsdf;

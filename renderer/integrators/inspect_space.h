@@ -9,17 +9,17 @@
 
 namespace lacuna {
 
-/// What `inspect` shows of the analysis of empty space: the value that a surface point has through
-/// the voxel in front of it.
+/// The analysis of the empty space for integrator `inspect`: the value of the voxel in front of a
+/// surface point.
 class SpaceView {
  public:
   static bool shows(InspectQuantity quantity);
 
-  /// Builds what the quantity needs, and only that. The context's space must outlive the view.
+  /// Builds only the artefacts that the quantity needs. The context's space must outlive the view.
   SpaceView(InspectQuantity quantity, const PrepareContext& context);
 
-  /// The colour of the surface seen along `d` (unit); black where it belongs to nothing. Labels
-  /// have false colours that hold for the seed.
+  /// The colour of the surface seen along `d` (unit); black where it has no value. The false
+  /// colours of labels depend on the seed.
   Rgb colour(const Scene& scene, const Surface& s, const V3f& d, std::uint64_t seed,
              Counters& counters) const;
 

@@ -15,24 +15,24 @@
 namespace lacuna {
 
 /// A rendering method. iterate() is a pure function of the scene, the settings, the seed, the
-/// iteration and of the state that save() writes; an iteration that was stopped leaves that state
-/// as it was.
+/// iteration and the state that save() writes. A stopped iteration does not change that state.
 class Integrator {
  public:
   virtual ~Integrator() = default;
 
   virtual SceneNeeds needs() const = 0;
-  /// Called once, before everything else but needs(). What it takes from `space` is charged to the
-  /// job's preparation.
+  /// Called once, before everything else but needs(). Its time, with the artefacts that it requests
+  /// from `space`, is charged to the job's preparation.
   virtual void prepare(const PrepareContext&) {}
-  /// Names of the images that the integrator fills beside the picture for the layers `wanted`, as
-  /// they are called in image.exr. Called once, after prepare(), before the first iteration;
-  /// iterate() then finds one image a name in IterationContext::layers, and puts only finite values
-  /// there. The settings list the layers that this is good for (filled_layers()).
+  /// Names in image.exr of the images that the integrator fills beside the picture for the layers
+  /// `wanted`. Called once, after prepare() and before the first iteration. iterate() then finds
+  /// one image for each name in IterationContext::layers and adds only finite values to it. The
+  /// settings list the layers that an integrator fills (filled_layers()).
   virtual std::vector<std::string> layers(std::span<const ImageLayer> /*wanted*/) { return {}; }
-  /// One more independent estimate of the whole picture into `image` (of the film's size, black).
+  /// Renders one more independent estimate of the whole picture into `image` (of the film's size,
+  /// black).
   virtual Counters iterate(const IterationContext& context, Image& image) = 0;
-  /// What it did, for the report: names and numbers, of this process' iterations.
+  /// Names and numbers for the report, of this process' iterations.
   virtual std::vector<std::pair<std::string, double>> statistics() const { return {}; }
   /// Learned state, for the checkpoint.
   virtual void save(ByteWriter&) const {}

@@ -15,8 +15,8 @@ namespace lacuna {
 
 namespace {
 
-/// Many-light rendering (Noel 2015, 4.4): the first connectible vertex of every eye path meets all
-/// virtual lights. Path tracing goes on from there for what they cannot give.
+/// Many-light rendering (Noel 2015, 4.4): the first connectible vertex of every eye path gathers
+/// all virtual lights. Path tracing continues from there for the light that they lack.
 template <Visibility V>
 class ManyLights final : public Integrator {
  public:
@@ -46,13 +46,13 @@ class ManyLights final : public Integrator {
   }
 
   std::vector<std::pair<std::string, double>> statistics() const override {
-    auto told = visibility_.statistics();
-    told.emplace_back("virtual_lights", lights_);
-    if (random()) told.emplace_back("lights_culled", culled_);
-    told.emplace_back("light_pass_cpu_seconds", seconds_.light);
-    told.emplace_back("visibility_cpu_seconds", seconds_.visibility);
-    told.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
-    return told;
+    auto stats = visibility_.statistics();
+    stats.emplace_back("virtual_lights", lights_);
+    if (random()) stats.emplace_back("lights_culled", culled_);
+    stats.emplace_back("light_pass_cpu_seconds", seconds_.light);
+    stats.emplace_back("visibility_cpu_seconds", seconds_.visibility);
+    stats.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
+    return stats;
   }
 
   Counters iterate(const IterationContext& context, Image& image) override {
@@ -61,7 +61,7 @@ class ManyLights final : public Integrator {
                   {settings_.max_depth - 1, by_lights(), least_alpha_});
     Counters counters;
     if (settings_.max_depth > (by_lights() ? 1 : 2)) counters = walk_lights(context, lights, image);
-    lights.arrange([this](const LightPlace& p) { return visibility_.group(p); });
+    lights.arrange([this](const VplGeometry& p) { return visibility_.group(p); });
     lights_ = static_cast<double>(lights.size());
     pass.end(seconds_.light);
     const VplContributions terms(lights, bound_of(settings_, context.scene.bounds().radius()));
@@ -103,7 +103,7 @@ class ManyLights final : public Integrator {
 
   struct Direct {
     Rgb value;
-    std::size_t walker;
+    std::size_t path;
   };
   /// A few pixels.
   struct Part {
@@ -114,7 +114,7 @@ class ManyLights final : public Integrator {
     ShadowQueue<Direct> shadows = {};
   };
 
-  /// What all parts of a picture share.
+  /// The data that all parts of a picture share.
   struct Gathering {
     const VplContributions& terms;
     const LightDraw* draw;  // null: all lights
@@ -122,18 +122,18 @@ class ManyLights final : public Integrator {
     BlockRange range;       // of this pass; what does not come from lights is added in the first
   };
 
-  /// How lights are drawn; null: all are taken.
+  /// Samples the lights; null: all lights are gathered.
   const RandomLightsSettings* random() const {
     return std::get_if<RandomLightsSettings>(&settings_.gather);
   }
 
-  /// Eye paths, and what the lights give to them.
+  /// Traces eye paths and gathers the lights at their shading points.
   Counters gather(const IterationContext& context, const Gathering& with, Image& image) const {
     const Tiling tiling(image, batch_side);
     return for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
       Part part{EyeBatch(settings_.max_depth)};
       start_paths(context, image, tiling.tile(i), 0, part.batch);
-      if (with.range.is_first()) count.samples += part.batch.walkers.size();
+      if (with.range.is_first()) count.samples += part.batch.states.size();
       trace(context, with, part, count);
       shine(context, with, part, count);
       add(context, with, part, image, count);
@@ -168,7 +168,8 @@ class ManyLights final : public Integrator {
         [](const Splat&) {});
   }
 
-  /// Eye paths: what they meet, direct light, and what the lights leave to path tracing.
+  /// Traces eye paths: emission, direct light, and the light that virtual lights leave to path
+  /// tracing.
   void trace(const IterationContext& context, const Gathering& with, Part& part,
              Counters& counters) const {
     const DirectLight<BsdfGuide> direct(context.scene, guide_, true);
@@ -177,10 +178,10 @@ class ManyLights final : public Integrator {
         {.max_depth = settings_.max_depth, .roulette_depth = settings_.roulette_depth}, counters);
     const auto choose = [&](std::size_t i, int depth) {
       if (direct.draws() && depth < settings_.max_depth) {
-        part.chosen[i] = context.scene.emitters().choose(part.batch.walkers[i].rng);
+        part.chosen[i] = context.scene.emitters().choose(part.batch.states[i].rng);
       }
     };
-    walk.trace_paths(part.batch.walkers, choose, [&](std::size_t i, int depth) {
+    walk.trace_paths(part.batch.states, choose, [&](std::size_t i, int depth) {
       return visit(context.scene, with, direct, part, i, depth);
     });
     if (!with.range.is_first()) {
@@ -189,7 +190,7 @@ class ManyLights final : public Integrator {
       return;
     }
     part.shadows.flush(context.scene.rays(), counters,
-                       [&](const Direct& d) { part.batch.radiance[d.walker] += d.value; });
+                       [&](const Direct& d) { part.batch.radiance[d.path] += d.value; });
   }
 
   /// One vertex of an eye path; false where the path ends.
@@ -199,7 +200,7 @@ class ManyLights final : public Integrator {
     Vertex& v = part.batch.vertex(i, depth);
     const bool first = part.shaded[i] == 0;
     const Vertex& before = part.batch.vertex(i, depth - 1);
-    // The edge is one that lights stand for too, but for what the bound cuts off.
+    // Virtual lights also sample this edge, except for the part above the bound.
     const bool shared = !first && depth == part.shaded[i] + 1 && !before.delta;
     if (shared && by_lights()) {
       part.batch.radiance[i] += emitted(scene, v) * missing(terms, before, v);
@@ -216,10 +217,10 @@ class ManyLights final : public Integrator {
       const float weight = missing(terms, before, v);
       if (weight == 0) return false;
       v.throughput *= weight;
-      part.batch.walkers[i].throughput *= weight;
+      part.batch.states[i].throughput *= weight;
     }
     if (v.bsdf->connectible() && direct.draws() && !(first && lit_by_lights && by_lights())) {
-      direct.draw(v, depth, part.chosen[i], part.batch.walkers[i].rng,
+      direct.draw(v, depth, part.chosen[i], part.batch.states[i].rng,
                   [&](const Ray& ray, const Rgb& value) {
                     part.shadows.add(ray, {value, i});
                   });
@@ -229,7 +230,7 @@ class ManyLights final : public Integrator {
 
   bool by_lights() const { return settings_.direct == DirectLighting::lights; }
 
-  /// What the bound of the geometric term cuts off of the light from `to`, as a share.
+  /// The share of the light from `to` that the bound of the geometric term removes.
   static float missing(const VplContributions& terms, const Vertex& at, const Vertex& to) {
     if (to.kind == Vertex::Kind::background) return 0;
     return 1 - terms.share(at, to, to.wp);
@@ -239,17 +240,17 @@ class ManyLights final : public Integrator {
     return e ? v.throughput * e->emission : Rgb(0, 0, 0);
   }
 
-  /// What the lights give to the part's shading points.
+  /// Gathers the lights at the part's shading points.
   void shine(const IterationContext& context, const Gathering& with, Part& part,
              Counters& counters) const {
     std::vector<ShadingPoint> points;
-    std::vector<std::size_t> walkers;
-    for (std::size_t i = 0; i < part.batch.walkers.size(); ++i) {
+    std::vector<std::size_t> paths;
+    for (std::size_t i = 0; i < part.batch.states.size(); ++i) {
       const int depth = part.shaded[i];
       if (depth == 0 || depth >= settings_.max_depth) continue;
       points.emplace_back(part.batch.vertex(i, depth), depth, settings_.max_depth - 1 - depth,
                           part.batch.pixels[i]);
-      walkers.push_back(i);
+      paths.push_back(i);
     }
     std::vector<LightSum> sums(points.size());
     LightGather<V>(context, with.terms, visibility_, with.draw, counters, with.range)
@@ -259,14 +260,14 @@ class ManyLights final : public Integrator {
         with.filter->add(points[k], sums[k].value);
         sums[k].value = V3d(0, 0, 0);  // until all pixels are there
       }
-      part.sums[walkers[k]] = sums[k];
+      part.sums[paths[k]] = sums[k];
     }
   }
 
   void add(const IterationContext& context, const Gathering& with, const Part& part, Image& image,
            Counters& counters) const {
     const double lights = static_cast<double>(std::max<std::size_t>(1, with.terms.lights().size()));
-    for (std::size_t i = 0; i < part.batch.walkers.size(); ++i) {
+    for (std::size_t i = 0; i < part.batch.states.size(); ++i) {
       const std::uint32_t pixel = part.batch.pixels[i];
       const V3d value = V3d(part.batch.radiance[i]) + part.sums[i].value;
       const bool negative = put(image.pixels[pixel], value, counters);
@@ -277,7 +278,7 @@ class ManyLights final : public Integrator {
       count_negative(context, pixel, negative);
     }
   }
-  /// Into a black pixel. Tells whether the value is negative.
+  /// Writes a black pixel. Returns whether the value is negative.
   bool put(Rgb& pixel, const V3d& exact, Counters& counters) const {
     Rgb value(exact);
     const bool negative = value.x < 0 || value.y < 0 || value.z < 0;

@@ -23,20 +23,20 @@ class PathTracer final : public GuidedIntegrator<Guide> {
 
   Counters iterate(const IterationContext& context, Image& image) override {
     const Tiling tiling(image);
-    std::vector<typename Guide::Tally> tallies(static_cast<std::size_t>(tiling.tiles()));
+    std::vector<typename Guide::Accumulator> accumulators(static_cast<std::size_t>(tiling.tiles()));
     const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
-      render(context, image, tiling.tile(i), counters, tallies[static_cast<std::size_t>(i)]);
+      render(context, image, tiling.tile(i), counters, accumulators[static_cast<std::size_t>(i)]);
     });
-    if (guide_.learns()) guide_.end(tallies, context.pool);
+    if (guide_.learns()) guide_.update(accumulators, context.pool);
     return sum;
   }
 
  private:
-  /// What next event estimation gives a pixel, if it sees the light.
+  /// A contribution of next event estimation, pending its shadow ray.
   struct Direct {
     Rgb value;
     std::uint32_t pixel;
-    std::uint16_t walker, depth;  // of the vertex that sees it
+    std::uint16_t path, depth;  // of the vertex
   };
 
   struct Batch : EyeBatch {
@@ -47,9 +47,9 @@ class PathTracer final : public GuidedIntegrator<Guide> {
   };
 
   void render(const IterationContext& context, Image& image, const Tile& tile, Counters& counters,
-              typename Guide::Tally& tally) const {
+              typename Guide::Accumulator& accumulator) const {
     const bool learns = guide_.learns();
-    if (learns) tally = guide_.tally();
+    if (learns) accumulator = guide_.accumulator();
     Batch batch(settings_.max_depth);
     Walk walk(context.scene, guide_,
               {.max_depth = settings_.max_depth, .roulette_depth = settings_.roulette_depth},
@@ -57,20 +57,20 @@ class PathTracer final : public GuidedIntegrator<Guide> {
     const auto flush = [&] {
       batch.shadows.flush(context.scene.rays(), counters, [&](const Direct& d) {
         accumulate(image.pixels[d.pixel], d.value, counters);
-        if (learns) batch.gathered.add(d.walker, d.depth, d.value);
+        if (learns) batch.gathered.add(d.path, d.depth, d.value);
       });
     };
     for (int first = 0; first < tile.pixels(); first += int{Batch::size}) {
       start_paths(context, image, tile, first, batch);
-      counters.samples += batch.walkers.size();
+      counters.samples += batch.states.size();
       if (learns) batch.gathered.clear();
       estimate(context.scene, walk, batch);
-      for (std::size_t i = 0; i < batch.walkers.size(); ++i) {
+      for (std::size_t i = 0; i < batch.states.size(); ++i) {
         accumulate(image.pixels[batch.pixels[i]], batch.radiance[i], counters);
       }
       if (learns) {
         flush();
-        batch.gathered.teach(guide_, tally);
+        batch.gathered.record(guide_, accumulator);
       }
     }
     flush();
@@ -81,7 +81,7 @@ class PathTracer final : public GuidedIntegrator<Guide> {
     const DirectLight<Guide> direct(scene, guide_, settings_.next_event_estimation);
     const auto choose_emitter = [&](std::size_t i, int depth) {
       if (direct.draws() && depth < settings_.max_depth) {
-        batch.chosen[i] = scene.emitters().choose(batch.walkers[i].rng);
+        batch.chosen[i] = scene.emitters().choose(batch.states[i].rng);
       }
     };
     const auto gather = [&](std::size_t i, int depth) {
@@ -94,14 +94,14 @@ class PathTracer final : public GuidedIntegrator<Guide> {
       }
       const bool goes_on = v.kind == Vertex::Kind::surface && depth < settings_.max_depth;
       if (goes_on && direct.draws() && v.bsdf->connectible()) {
-        direct.draw(v, depth, batch.chosen[i], batch.walkers[i].rng,
+        direct.draw(v, depth, batch.chosen[i], batch.states[i].rng,
                     [&](const Ray& ray, const Rgb& value) {
                       batch.shadows.add(ray, {value, batch.pixels[i], static_cast<std::uint16_t>(i),
                                               static_cast<std::uint16_t>(depth)});
                     });
       }
     };
-    walk.trace_paths(batch.walkers, choose_emitter, gather);
+    walk.trace_paths(batch.states, choose_emitter, gather);
   }
 
   PathSettings settings_;

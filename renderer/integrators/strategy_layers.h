@@ -10,15 +10,16 @@
 
 namespace lacuna {
 
-/// The layers of a bidirectional method: what each strategy (s, t) gives, weighted and not, as the
-/// pyramid of Noel 2015, Fig. 22, and what each resampling distribution gives (Fig. 106).
+/// The layers of a bidirectional method: the contribution of each strategy (s, t), weighted and
+/// unweighted, as in the pyramid of Noel 2015, Fig. 22, and of each resampling distribution (Fig.
+/// 106).
 class StrategyLayers {
  public:
   /// Integrator::layers() for paths of up to `max_depth` edges and these distributions.
   std::vector<std::string> choose(std::span<const ImageLayer> wanted, int max_depth,
                                   std::span<const std::string_view> distributions);
 
-  /// Adds what strategy (s, t) gives to a pixel. `layers`: IterationContext::layers.
+  /// Adds a contribution of strategy (s, t) to a pixel. `layers`: IterationContext::layers.
   void strategy(std::span<Image> layers, int s, int t, std::uint32_t pixel, const Rgb& unweighted,
                 float weight) const {
     if (layers.empty()) return;
@@ -31,7 +32,8 @@ class StrategyLayers {
   }
 
  private:
-  /// Rows of the pyramid by length: k = s + t - 1 edges in k + 1 ways, the eye being no emitter.
+  /// Index in the pyramid, whose rows are path lengths: k = s + t - 1 edges have k + 1 strategies,
+  /// because nothing hits the eye (t >= 1).
   static int index(int s, int t) {
     const int k = s + t - 1;
     return (k - 1) * (k + 2) / 2 + s;

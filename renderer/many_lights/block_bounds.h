@@ -5,12 +5,12 @@
 
 namespace lacuna {
 
-/// Where the lights of a block lie and face: most blocks of a closed scene turn their back to a
-/// shading point, or lie behind it, as a whole.
+/// Bounds of the positions and normals of a block's lights, for culling: in a closed scene most
+/// blocks face away from a shading point, or lie behind it, as a whole.
 class BlockBounds {
  public:
   BlockBounds() = default;
-  /// Of one light.
+  /// The bounds of one light.
   BlockBounds(const V3f& x, const V3f& ng) : low_(x), high_(x), least_(ng), most_(ng) {}
 
   void add(const BlockBounds& o) {
@@ -22,19 +22,19 @@ class BlockBounds {
     }
   }
 
-  /// Of eight points `x`: no light of the block lies in front of the plane through x with normal
-  /// `n`, and rounding does not decide it.
+  /// For eight points `x`: every light of the block lies behind the plane through x with normal
+  /// `n`, by more than the rounding error.
   Mask8 behind(const Float8x3& x, const Float8x3& n) const {
     return below_zero({low_.x - x.x, low_.y - x.y, low_.z - x.z},
                       {high_.x - x.x, high_.y - x.y, high_.z - x.z}, n, n);
   }
-  /// Of eight points: no light of the block has x in front of it.
-  Mask8 turned_from(const Float8x3& x) const {
+  /// For eight points `x`: every light of the block faces away from x.
+  Mask8 facing_away(const Float8x3& x) const {
     return below_zero({x.x - low_.x, x.y - low_.y, x.z - low_.z},
                       {x.x - high_.x, x.y - high_.y, x.z - high_.z}, all(least_), all(most_));
   }
 
-  /// Of eight points: no light of the block lies within `distance` of x.
+  /// For eight points `x`: every light of the block is further than `distance` from x.
   Mask8 further_than(float distance, const Float8x3& x) const {
     const auto off = [](Float8 p, float low, float high) {
       return max(Float8(0.0F), max(Float8(low) - p, p - Float8(high)));

@@ -32,24 +32,24 @@ const ByteTable bytes;
 std::vector<std::uint32_t> CachePoints::choose(const LightPass& pass, Counters& counters) {
   const IterationContext& context = pass.context;
   const int pixels = context.camera.width() * context.camera.height();
-  std::vector<RecordTree::Place> places(static_cast<std::size_t>(pixels));
-  std::vector<std::uint8_t> found(places.size(), 0);
+  std::vector<SurfacePoint> of_pixel(static_cast<std::size_t>(pixels));
+  std::vector<std::uint8_t> found(of_pixel.size(), 0);
   counters += for_each_part(context, (pixels + part - 1) / part, [&](int i, Counters& count) {
     ShadingPoints points(context, pass.max_depth, pass.least_alpha, count);
-    std::vector<std::uint32_t> asked;
+    std::vector<std::uint32_t> queried;
     for (int p = i * part; p < std::min(pixels, (i + 1) * part); ++p) {
-      asked.push_back(static_cast<std::uint32_t>(p));
+      queried.push_back(static_cast<std::uint32_t>(p));
     }
-    points.find(asked, [&](const Vertex& v, int, std::uint32_t pixel) {
-      places[pixel] = place_of(v);
+    points.find(queried, [&](const Vertex& v, int, std::uint32_t pixel) {
+      of_pixel[pixel] = surface_point(v);
       found[pixel] = 1;
     });
   });
-  std::vector<RecordTree::Place> there;
+  std::vector<SurfacePoint> there;
   std::vector<std::uint32_t> at;
-  for (std::size_t p = 0; p < places.size(); ++p) {
+  for (std::size_t p = 0; p < of_pixel.size(); ++p) {
     if (found[p] == 0) continue;
-    there.push_back(places[p]);
+    there.push_back(of_pixel[p]);
     at.push_back(static_cast<std::uint32_t>(p));
   }
   const auto groups =
@@ -67,7 +67,7 @@ std::vector<std::uint32_t> CachePoints::choose(const LightPass& pass, Counters& 
 Counters CachePoints::build(const LightPass& pass) {
   Counters counters;
   const std::vector<std::uint32_t> pixels = choose(pass, counters);
-  places_.assign(pixels.size(), {V3f(0, 0, 0), V3f(0, 0, 0)});
+  points_.assign(pixels.size(), {V3f(0, 0, 0), V3f(0, 0, 0)});
   variances_.assign(pixels.size(), 0.0);
   scales_.assign(pixels.size(), 0.0);
   blocks_ = pass.terms.lights().blocks();
@@ -88,12 +88,12 @@ Counters CachePoints::build(const LightPass& pass) {
     for (std::size_t k = first; k < std::min(pixels.size(), first + together); ++k) {
       points.find(std::span(pixels).subspan(k, 1),
                   [&](const Vertex& v, int depth, std::uint32_t pixel) {
-                    places_[k] = place_of(v);
+                    points_[k] = surface_point(v);
                     fill(pass, k, {v, depth, pass.max_depth, pixel}, count);
                   });
     }
   });
-  tree_.build(places_);
+  tree_.build(points_);
   picture_variance_ = 0;
   for (std::size_t i = 0; i < variances_.size(); ++i) {
     picture_variance_ += weights_[i] * variances_[i] * scales_[i] * scales_[i];
@@ -103,20 +103,20 @@ Counters CachePoints::build(const LightPass& pass) {
 
 void CachePoints::fill(const LightPass& pass, std::size_t point, const ShadingPoint& at,
                        Counters& counters) {
-  struct Seen {
+  struct Lit {
     std::size_t block;
     int light;
     float value;
   };
   const VplSet& lights = pass.terms.lights();
-  ShadowQueue<Seen> queue;
+  ShadowQueue<Lit> queue;
   Terms terms;
   PointLanes here;
   here.add(at);
   double sum = 0;
   double sum2 = 0;
   const auto flush = [&] {
-    queue.flush(pass.context.scene.rays(), counters, [&](const Seen& s) {
+    queue.flush(pass.context.scene.rays(), counters, [&](const Lit& s) {
       const double t = double(s.value) / double(at.scale);
       sum += t;
       sum2 += t * t;
@@ -144,16 +144,16 @@ void CachePoints::fill(const LightPass& pass, std::size_t point, const ShadingPo
 
 CachePoints::Near CachePoints::near(const ShadingPoint& at) const {
   Near near;
-  const RecordTree::Place place = place_of(*at.vertex);
+  const SurfacePoint point = surface_point(*at.vertex);
   near.n = static_cast<int>(
-      tree_.nearest(place, std::span(near.index).first(static_cast<std::size_t>(neighbours_))));
-  // The closer and the more alike the normal, the more it counts (Clarberg and Akenine-Moeller
-  // 2008): inversely to what the tree ranks by.
+      tree_.nearest(point, std::span(near.index).first(static_cast<std::size_t>(neighbours_))));
+  // Weights are inversely proportional to RecordTree::rank() (Clarberg and Akenine-Moeller
+  // 2008).
   std::array<float, max_neighbours> rank{};
   float farthest = 0;
   const auto n = static_cast<std::size_t>(near.n);
   for (std::size_t j = 0; j < n; ++j) {
-    rank[j] = RecordTree::rank(place, places_[near.index[j]]);
+    rank[j] = RecordTree::rank(point, points_[near.index[j]]);
     farthest = std::max(farthest, rank[j]);
   }
   float total = 0;

@@ -6,36 +6,35 @@
 
 namespace lacuna {
 
-/// What a visibility sees of an iteration before its picture is made.
+/// The inputs of Visibility::begin(): the lights of an iteration, before its picture is rendered.
 struct LightPass {
   const IterationContext& context;
   const VplContributions& terms;
   int max_depth;      ///< edges of an eye path
-  float least_alpha;  ///< of the surfaces that lights shine on: Bsdf::is_vpl_receiver()
+  float least_alpha;  ///< Bsdf::is_vpl_receiver()
   BlockRange lights = {};
 };
 
-/// n_d / N: rays besides tests that a light's share of a shading point takes (Nabata et al., eq.
-/// 13), one from the eye.
+/// n_d / N (Nabata et al., eq. 13): eye rays per light, with one eye ray for each shading point.
 inline float eye_rays_per_light(const VplSet& lights) {
   return 1 / static_cast<float>(std::max<std::size_t>(1, lights.size()));
 }
 
-/// Shading points of the picture at which all virtual lights were tested: the visibility of each
-/// light, a bit, and the variance of what they give (Nabata et al., 3.1). They are new in each
-/// iteration, as the lights are.
+/// Shading points at which all virtual lights are tested: they store one bit of visibility for each
+/// light, and the variance of the lights' contributions (Nabata et al., 3.1). They are new in each
+/// iteration, like the lights.
 class CachePoints {
  public:
   static constexpr int max_neighbours = 8;
 
-  /// Whether the bits are kept too, or the variances alone.
+  /// What is stored: the variances alone, or the visibility bits too.
   enum class Keep { variances, visibilities };
 
   CachePoints(int points, int neighbours, Keep keep)
       : wanted_(static_cast<std::size_t>(points)), neighbours_(neighbours), keep_(keep) {}
 
-  /// Places and fills them. Throws std::runtime_error if the bits would take more than half of the
-  /// free memory.
+  /// Chooses the points and tests all lights at them. Throws std::runtime_error if the bits would
+  /// take more than half of the free memory.
   Counters build(const LightPass& pass);
 
   /// The nearest cache points of a shading point.
@@ -46,12 +45,13 @@ class CachePoints {
   };
   Near near(const ShadingPoint& at) const;
 
-  /// Standard deviation, over the lights, of the luminance that they give `at`, visibility
-  /// included; 0 where there is no cache point.
+  /// Standard deviation of the lights' contributions (luminance, with visibility) to `at`; 0 where
+  /// there is no cache point.
   float deviation(const ShadingPoint& at, const Near& near) const;
-  /// The root of its mean square over the picture.
+  /// Its root mean square over the picture.
   float deviation() const { return static_cast<float>(std::sqrt(picture_variance_)); }
-  /// q: how many of the nearest, by weight, see each light of `block`. Only where bits are kept.
+  /// q: the weighted mean of the nearest points' visibility of each light of `block`. Requires
+  /// Keep::visibilities.
   void expected(const Near& near, std::size_t block, Lanes& q) const;
 
   std::size_t size() const { return variances_.size(); }
@@ -61,7 +61,7 @@ class CachePoints {
   }
 
  private:
-  /// Pixels, each with the share of the others that it stands for.
+  /// Chooses the pixels of the cache points and sets weights_.
   std::vector<std::uint32_t> choose(const LightPass& pass, Counters& counters);
   void fill(const LightPass& pass, std::size_t point, const ShadingPoint& at, Counters& counters);
 
@@ -69,13 +69,13 @@ class CachePoints {
   int neighbours_;
   Keep keep_;
   RecordTree tree_;
-  std::vector<RecordTree::Place> places_;
+  std::vector<SurfacePoint> points_;
   std::vector<double> variances_;  // of contributions over ShadingPoint::scale
   std::vector<double> scales_;     // ShadingPoint::scale
-  std::vector<double> weights_;    // share of the picture's points that each stands for
+  std::vector<double> weights_;    // share of the picture's shading points in its cluster
   double picture_variance_ = 0;
   std::size_t blocks_ = 0;
-  std::vector<std::uint64_t> bits_;  // of each point the words of all blocks
+  std::vector<std::uint64_t> bits_;  // blocks_ words for each point
 };
 
 }  // namespace lacuna

@@ -25,7 +25,7 @@ struct alignas(32) Lanes {
   }
 };
 
-/// Bit i: value i is above 0.
+/// A mask: bit i is set if value i is above 0.
 inline std::uint64_t positive(const Lanes& a) {
   std::uint64_t bits = 0;
   for (int k = 0; k < Lanes::groups; ++k)

@@ -63,7 +63,7 @@ std::uint64_t LightDraw::may_shine(const Stretch& s, const PointLanes& points) c
 
 bool LightDraw::is_near(const V3f& x, std::size_t block, int i) const {
   if (settings_.cutoff == 0) return true;
-  const LightPlace light = terms_.lights().place(block, i);
+  const VplGeometry light = terms_.lights().geometry(block, i);
   return light.infinite || (light.x - x).length2() <= cutoff() * cutoff();
 }
 
@@ -72,7 +72,7 @@ std::uint64_t LightDraw::draw_for(const V3f& x, std::size_t point,
                                   std::vector<Drawn>& drawn) const {
   std::uint64_t total = 0;
   for (const std::size_t s : stretches) total += lights_of(s);
-  // Steps of 1 or more: none is drawn twice.
+  // Steps are at least 1, so no light is sampled twice.
   const double step = std::max(1.0, double(total) / double(settings_.lights));
   const double u = (double(rng.next_u32()) + 0.5) * 0x1p-32 * step;
   const auto draws = std::min(total, static_cast<std::uint64_t>(settings_.lights));

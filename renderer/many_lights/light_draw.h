@@ -8,43 +8,45 @@
 
 namespace lacuna {
 
-/// Draws a few of all virtual lights for each shading point (Kol et al. 2018, 5.1), all that may
-/// shine on it with one probability. Unbiased: what is drawn counts by its inverse.
+/// Samples a few virtual lights for each shading point (Kol et al. 2018, 5.1). All lights that may
+/// illuminate the point have the same probability; contributions are divided by it, so the estimate
+/// is unbiased.
 ///
-/// Lights lie in blocks by the way they face and by place, and a stretch of blocks with bounds
-/// around it stands for a coarse node of the paper's hierarchy over them. Of the stretches that are
-/// left the lights are drawn at equal steps from a random start, so far apart.
+/// Blocks hold lights of similar position and normal. A stretch of consecutive blocks with bounds
+/// takes the role of a coarse node in the paper's hierarchy. The lights of the stretches that are
+/// not culled are sampled at equal steps from a random start (systematic sampling).
 class LightDraw {
  public:
-  /// `terms` outlives it. About as many stretches as `most_stretches` are made of the lights.
+  /// `terms` must outlive it. The lights are divided into about `most_stretches` stretches.
   LightDraw(const VplContributions& terms, const RandomLightsSettings& settings,
             std::size_t most_stretches = 1024);
 
-  /// Lights of a block for a shading point.
+  /// The sampled lights of one block for one shading point.
   struct Drawn {
     std::size_t block;
-    std::size_t point;  ///< its place among those given
-    std::uint64_t lights;
-    float weight;  ///< that each counts with
+    std::size_t point;     ///< index of the shading point
+    std::uint64_t lights;  ///< mask
+    float weight;          ///< 1 / probability
   };
-  /// For `points`, of which there are at most Lanes::size, by block and then by point.
+  /// Samples lights for at most Lanes::size `points`; the result is ordered by block, then by
+  /// point.
   std::vector<Drawn> draw(std::span<const ShadingPoint> points,
                           const IterationContext& context) const;
 
-  /// Of all pairs of a point and a light, those that were culled, as a share.
+  /// Share of all pairs of a point and a light that were culled.
   double culled() const;
 
  private:
   struct Stretch {
     std::size_t first, end;  // blocks
-    bool bounded;            // else anything in it may shine anywhere
+    bool bounded;            // false: its lights may illuminate any point
     BlockBounds bounds;
   };
-  /// Bit i: a light of the stretch may shine on point i.
+  /// A mask: bit i is set if a light of the stretch may illuminate point i.
   std::uint64_t may_shine(const Stretch& s, const PointLanes& points) const;
   bool is_near(const V3f& x, std::size_t block, int i) const;
   float cutoff() const { return static_cast<float>(settings_.cutoff); }
-  /// Of the lights of those stretches for the point at x; tells how many they are.
+  /// Samples lights of the given stretches for the point at x; returns the number of their lights.
   std::uint64_t draw_for(const V3f& x, std::size_t point, std::span<const std::size_t> stretches,
                          Rng rng, std::vector<Drawn>& drawn) const;
   std::uint64_t lights_of(std::size_t stretch) const {
@@ -54,7 +56,7 @@ class LightDraw {
   const VplContributions& terms_;
   RandomLightsSettings settings_;
   std::vector<Stretch> stretches_;
-  std::vector<std::uint64_t> before_;  // of each block the lights before it, and of all
+  std::vector<std::uint64_t> before_;  // number of lights before each block, and of all lights
   mutable std::atomic<std::uint64_t> pairs_ = 0, left_ = 0;
 };
 

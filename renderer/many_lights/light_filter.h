@@ -8,23 +8,24 @@
 
 namespace lacuna {
 
-/// Mixes what virtual lights give to neighbouring pixels whose surfaces are alike (cross-bilateral
-/// filter; Kol et al. 2018, 5.1): without what the surface itself reflects, so that textures stay.
+/// Averages the light of the virtual lights over neighbouring pixels with similar surfaces
+/// (cross-bilateral filter; Kol et al. 2018, 5.1). It is divided by the surface's reflectance
+/// first, so that textures stay sharp.
 class LightFilter {
  public:
   LightFilter(const Image& image, const RandomLightsSettings& settings);
 
-  /// What some lights give to a pixel by its shading point, which is one for all of them. Different
-  /// pixels may be added to by several threads.
+  /// Adds the light of some lights to the pixel of `point`, which has one shading point. Several
+  /// threads may add to different pixels.
   void add(const ShadingPoint& point, const V3d& light);
-  /// The filtered light of a pixel; that of one without a shading point is 0.
+  /// The filtered light of a pixel; 0 without a shading point.
   V3d at(V2i pixel) const;
 
  private:
   struct Pixel {
-    V3f x, n;            // of the surface; n 0: there is none
-    V3f reflected;       // of the light that arrives, with the path's throughput
-    V3d light{0, 0, 0};  // over that
+    V3f x, n;            // of the surface; n = 0: no shading point
+    V3f reflected;       // reflectance times the path's throughput
+    V3d light{0, 0, 0};  // contribution over `reflected`
   };
   float weight(const Pixel& middle, const Pixel& other) const;
 

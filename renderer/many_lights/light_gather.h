@@ -8,19 +8,19 @@
 
 namespace lacuna {
 
-/// What virtual lights give to a shading point.
+/// The summed contributions of virtual lights to a shading point.
 struct LightSum {
   V3d value{0, 0, 0};
-  std::uint64_t tests = 0;  ///< lights that a ray was sent to
+  std::uint64_t tests = 0;  ///< lights tested by a shadow ray
 };
 
-/// Adds up what all virtual lights, or those that are drawn, give to the shading points of a few
-/// pixels: lights outside, points inside, so that a block of lights is read from memory once for
-/// all of them.
+/// Sums the contributions of all virtual lights, or of the sampled ones, to the shading points of a
+/// few pixels. The outer loop is over lights and the inner one over points, so that a block of
+/// lights is read from memory once for all points.
 template <class Visibility>
 class LightGather {
  public:
-  /// `draw`: null for all lights; of those it takes `range`.
+  /// `draw`: samples the lights; null: all lights. Only blocks in `range` are used.
   LightGather(const IterationContext& context, const VplContributions& terms,
               const Visibility& visibility, const LightDraw* draw, Counters& counters,
               BlockRange range = {})
@@ -31,8 +31,8 @@ class LightGather {
         counters_(counters),
         range_(range) {}
 
-  /// `sums[i]` becomes that of `points[i]`, of which there are at most Lanes::size. Throws
-  /// IterationStopped if the context asks for it.
+  /// Writes the sum of `points[i]` to `sums[i]`, for at most Lanes::size points. Throws
+  /// IterationStopped when the context's stop() returns true.
   void gather(std::span<const ShadingPoint> points, std::span<LightSum> sums) {
     std::vector<typename Visibility::At> states;
     states.reserve(points.size());
@@ -46,7 +46,7 @@ class LightGather {
   }
 
  private:
-  /// What a light gives if it is seen.
+  /// The contribution of a light, pending its shadow ray.
   struct Lit {
     Rgb value;
     std::uint32_t point;
@@ -116,7 +116,7 @@ class LightGather {
     sum.tests += static_cast<std::uint64_t>(__builtin_popcountll(decision_.tests));
   }
 
-  /// Rays from one light to neighbouring points run together; they are traced side by side.
+  /// Queues the shadow rays by light: rays from one light to neighbouring points are coherent.
   void queue_tests() {
     for (auto& of_light : tests_) {
       for (const Test& t : of_light) queue_.add(t.ray, t.lit);

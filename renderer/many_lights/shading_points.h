@@ -5,8 +5,8 @@
 
 namespace lacuna {
 
-/// The shading points of a picture's pixels in an iteration, without what light reaches them:
-/// walks paths from the eye on to the first surface that is broad enough for them.
+/// Finds the shading points of an iteration's pixels: traces eye paths to the first vertex that
+/// Bsdf::is_vpl_receiver() accepts.
 class ShadingPoints {
  public:
   ShadingPoints(const IterationContext& context, int max_depth, float least_alpha,
@@ -19,17 +19,17 @@ class ShadingPoints {
               {.max_depth = max_depth, .last_scatters = true, .roulette_depth = max_depth + 1},
               counters) {}
 
-  /// Calls `use(vertex, depth, pixel)` for those of `pixels`, at most EyeBatch::size, that have a
+  /// Calls `use(vertex, depth, pixel)` for each of at most EyeBatch::size `pixels` that has a
   /// shading point less than max_depth edges from the eye. The vertices live until the next call.
   template <class Use>
   void find(std::span<const std::uint32_t> pixels, Use&& use) {
-    batch_.walkers.clear();
+    batch_.states.clear();
     for (const std::uint32_t pixel : pixels) {
       const CameraSample sample(context_, pixel);
       batch_.start(context_.camera, sample.rng, sample.ray, pixel);
     }
     walk_.trace_paths(
-        batch_.walkers, [](std::size_t, int) {},
+        batch_.states, [](std::size_t, int) {},
         [&](std::size_t i, int depth) {
           const Vertex& v = batch_.vertex(i, depth);
           if (v.kind != Vertex::Kind::surface || depth == max_depth_) return false;

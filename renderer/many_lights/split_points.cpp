@@ -9,11 +9,11 @@ namespace lacuna {
 
 namespace {
 
-/// A group of places, as a range of a list of indices.
+/// A group of points, as a range of a list of indices.
 struct Group {
   std::size_t first, last;
   std::size_t size() const { return last - first; }
-  /// Largest first; of equals the one that comes first in the list.
+  /// Largest first; among equals the first in the list.
   bool operator<(const Group& o) const {
     return size() != o.size() ? size() < o.size() : first > o.first;
   }
@@ -21,8 +21,8 @@ struct Group {
 
 class Splitter {
  public:
-  Splitter(std::span<const RecordTree::Place> places, float radius)
-      : places_(places), scale_(radius > 0 ? 1 / radius : 0), order_(places.size()) {
+  Splitter(std::span<const SurfacePoint> points, float radius)
+      : points_(points), scale_(radius > 0 ? 1 / radius : 0), order_(points.size()) {
     std::iota(order_.begin(), order_.end(), 0U);
   }
 
@@ -62,22 +62,22 @@ class Splitter {
 
  private:
   float coordinate(std::uint32_t i, int axis) const {
-    return axis < 3 ? places_[i].x[axis] * scale_ : places_[i].n[axis - 3];
+    return axis < 3 ? points_[i].x[axis] * scale_ : points_[i].n[axis - 3];
   }
 
-  std::span<const RecordTree::Place> places_;
+  std::span<const SurfacePoint> points_;
   float scale_;
   std::vector<std::uint32_t> order_;
 };
 
 }  // namespace
 
-std::vector<std::vector<std::uint32_t>> split_points(std::span<const RecordTree::Place> places,
+std::vector<std::vector<std::uint32_t>> split_points(std::span<const SurfacePoint> points,
                                                      std::size_t parts, float radius) {
-  Splitter splitter(places, radius);
+  Splitter splitter(points, radius);
   std::priority_queue<Group> open;
   std::vector<Group> done;
-  if (!places.empty()) open.push({0, places.size()});
+  if (!points.empty()) open.push({0, points.size()});
   while (!open.empty() && open.size() + done.size() < parts) {
     const Group g = open.top();
     open.pop();

@@ -8,12 +8,11 @@
 
 namespace lacuna {
 
-/// Splits places into at most `parts` >= 1 groups of places that lie near one another and face the
-/// same way, and returns the members of each as indices into `places`. The group of most members is
-/// split next, at the middle of the longest side of its 6-D box of position and normal (Nabata et
-/// al., 3.1); positions are measured in `radius`, scene units. Groups whose places are all alike
-/// stay whole.
-std::vector<std::vector<std::uint32_t>> split_points(std::span<const RecordTree::Place> places,
+/// Splits points into at most `parts` >= 1 groups of similar position and normal, and returns each
+/// group's indices into `points`. The largest group is split next, at the middle of the longest
+/// side of its 6-D bounding box of position / `radius` and normal (Nabata et al., 3.1); `radius` is
+/// in scene units. Groups of identical points are not split.
+std::vector<std::vector<std::uint32_t>> split_points(std::span<const SurfacePoint> points,
                                                      std::size_t parts, float radius);
 
 }  // namespace lacuna

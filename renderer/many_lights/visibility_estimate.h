@@ -4,10 +4,10 @@
 
 namespace lacuna {
 
-/// What is taken for the visibility of the lights of a block at a shading point: `untested`, plus
-/// `gain` where a ray was sent and met nothing. Every choice of visibility is a way to fill this.
+/// The estimated visibility of a block's lights at a shading point: `untested`, plus `gain` where a
+/// shadow ray was traced and was unoccluded. Every visibility strategy fills this.
 struct VisibilityEstimate {
-  std::uint64_t tests = 0;  ///< lights to send a ray to
+  std::uint64_t tests = 0;  ///< mask of the lights tested by a shadow ray
   Lanes untested;
   Lanes gain;  ///< of those in `tests`
 };

@@ -43,7 +43,7 @@ std::uint64_t PointLanes::all_but(LeavesOut&& leaves_out) const {
 
 std::uint64_t PointLanes::may_be_lit(const BlockBounds& bounds) const {
   return all_but([&](const Float8x3& x, const Float8x3& n) {
-    return movemask(bounds.turned_from(x)) | movemask(bounds.behind(x, n));
+    return movemask(bounds.facing_away(x)) | movemask(bounds.behind(x, n));
   });
 }
 
@@ -53,7 +53,7 @@ std::uint64_t PointLanes::may_be_near(const BlockBounds& bounds, float distance)
   });
 }
 
-/// Of those that were drawn what each stands for; the others of a group of eight become black.
+/// Weights the sampled lights; sets the others of a group of eight to black.
 void VplContributions::weigh(std::uint64_t of, float weight, Terms& out) {
   for (int k = 0; k < Lanes::groups; ++k) {
     const auto bits = static_cast<unsigned>(of >> (8 * k) & 0xff);
@@ -69,7 +69,7 @@ void VplContributions::diffuse_terms(const ShadingPoint& at, const DiffuseBlock&
                                      std::uint64_t of, Terms& out) const {
   const V3f x = at.vertex->surface.x;
   const V3f ng = at.vertex->surface.ng;
-  // What no path can hit, nothing could add again.
+  // Path tracing cannot hit these lights, so it could not compensate a bound.
   const float bound = from.points ? std::numeric_limits<float>::infinity() : bound_;
   for (int k = 0; k < Lanes::groups; ++k) {
     if ((of >> (8 * k) & 0xff) == 0) {
@@ -88,7 +88,7 @@ void VplContributions::diffuse_terms(const ShadingPoint& at, const DiffuseBlock&
     const Float8 geometric = abs(w.x * ng.x + w.y * ng.y + w.z * ng.z) * over_d2;
     const Mask8 above = geometric > bound;
     if (any(above)) t = select(above, t * bound / geometric, t);  // bounded_share()
-    // At the light itself nothing of this is a number, and no comparison holds.
+    // At the light's own position everything is NaN and all comparisons are false.
     t = keep_where(over_d2 > 0, t);
     const Float8x3 f = at.seen.eval(w);
     out.r.set(k, f.x * from.r.eight(k) * t);
@@ -103,7 +103,7 @@ Rgb VplContributions::general(const ShadingPoint& at, const GeneralLight& light)
     const Connection c = connect(eye, end);
     if (!c) return Rgb(0, 0, 0);
     const Rgb t = c.contribution * lights_.share();
-    // What no path can hit, nothing could add again.
+    // Path tracing cannot hit these lights, so it could not compensate a bound.
     if (c.infinite || light.delta()) return t;
     const double g = eye.area_factor(c.w) * end.area_factor(c.w) / double(c.distance2);
     return t * bounded_share(static_cast<float>(g), bound_);
@@ -116,7 +116,7 @@ void VplContributions::finish(Terms& out) {
   }
   out.rejected = 0;
   out.lit = positive(out.luminance);
-  // Infinity and what is no number stay so in the sum, which is almost always finite.
+  // Infinity and NaN propagate to the sum, which is almost always finite.
   if (sum(out.luminance) <= std::numeric_limits<float>::max()) return;
   for (int i = 0; i < Lanes::size; ++i) {
     if (is_finite(V3f(out.r[i], out.g[i], out.b[i]))) continue;

@@ -7,18 +7,18 @@
 
 namespace lacuna {
 
-/// What `bound` leaves of the geometric term `g` >= 0, as a share.
+/// min(g, bound) / g, for a geometric term `g` >= 0.
 inline float bounded_share(float g, float bound) { return g > bound ? bound / g : 1.0F; }
 
-/// A place of the picture that virtual lights shine on: the first vertex of an eye path that is
-/// broad enough (Bsdf::is_vpl_receiver()), and so opaque.
+/// A point that gathers virtual lights: the first vertex of an eye path that
+/// Bsdf::is_vpl_receiver() accepts, so it is opaque.
 struct ShadingPoint {
   const Vertex* vertex = nullptr;
   int depth = 0;   ///< edges from the eye
-  int edges = -1;  ///< of lights that may shine on it, at most; < 0: none
+  int edges = -1;  ///< largest number of edges of the lights' paths; < 0: no lights
   std::uint32_t pixel = 0;
   BsdfSeen seen;    ///< its factor is the path's throughput
-  float scale = 0;  ///< luminance of throughput times albedo, which contributions grow with
+  float scale = 0;  ///< luminance of throughput times albedo: contributions are proportional to it
 
   ShadingPoint(const Vertex& v, int edges_from_eye, int most_edges, std::uint32_t at)
       : vertex(&v),
@@ -31,62 +31,62 @@ struct ShadingPoint {
   }
 };
 
-/// Where up to sixty-four shading points lie, side by side.
+/// Positions and normals of up to sixty-four shading points, as a structure of arrays.
 class PointLanes {
  public:
   void add(const ShadingPoint& p);
-  /// Bit i: there is a point i.
+  /// A mask of all points.
   std::uint64_t all() const {
     return size_ < 64 ? (std::uint64_t{1} << size_) - 1 : ~std::uint64_t{0};
   }
-  /// Bit i: lights within the bounds may shine on point i. To the others they turn their backs, or
-  /// they lie behind them.
+  /// A mask of the points that lights within the bounds may illuminate. The lights face away from
+  /// the other points or lie behind them.
   std::uint64_t may_be_lit(const BlockBounds& bounds) const;
-  /// Bit i: a light within the bounds may lie within `distance` of point i.
+  /// A mask of the points that may be within `distance` of a light within the bounds.
   std::uint64_t may_be_near(const BlockBounds& bounds, float distance) const;
 
  private:
-  /// All but those of which `leaves_out(x, n)` tells eight at a time.
+  /// A mask of the points for which `leaves_out(x, n)`, evaluated for eight at a time, is false.
   template <class LeavesOut>
   std::uint64_t all_but(LeavesOut&& leaves_out) const;
 
   std::size_t size_ = 0;
   Lanes x_, y_, z_;
-  Lanes nx_, ny_, nz_;  // the geometric normal, on the side that is seen
+  Lanes nx_, ny_, nz_;  // geometric normal on the side of the eye
 };
 
-/// What the lights of a block give to a shading point if nothing lies between: t_i of Nabata et
-/// al., section 2.2.
+/// The unoccluded contributions of a block's lights to a shading point: t_i of Nabata et al.,
+/// section 2.2.
 struct Terms {
   Lanes r, g, b;
   Lanes luminance;
-  std::uint64_t lit = 0;       ///< those that are not black
-  std::uint64_t rejected = 0;  ///< those that were not finite; black now
+  std::uint64_t lit = 0;       ///< mask of the lights that are not black
+  std::uint64_t rejected = 0;  ///< mask of contributions that were not finite and were set to black
 };
 
-/// The contributions of virtual lights, with the geometric term bounded.
+/// Evaluates the contributions of virtual lights with a bounded geometric term.
 class VplContributions {
  public:
-  /// `bound`: of the geometric term, 1 / scene units^2; may be infinite.
+  /// `bound` of the geometric term, 1 / scene units^2; may be infinite.
   VplContributions(const VplSet& lights, float bound) : lights_(lights), bound_(bound) {}
 
   const VplSet& lights() const { return lights_; }
-  /// Of the light that goes straight between two surfaces the share that the bound leaves.
+  /// min(G, bound) / G, for the geometric term G of two surfaces with direction `w` between them.
   float share(const Vertex& a, const Vertex& b, const V3f& w) const {
     const float cosines = abs_dot(a.surface.ng, w) * abs_dot(b.surface.ng, w);
     return bounded_share(cosines / (a.surface.x - b.surface.x).length2(), bound_);
   }
-  /// Bit i: lights of the block may give something to point i. To the others evaluate() would give
-  /// nothing, and is saved.
+  /// A mask of the points that lights of the block may illuminate. For the others, evaluate() would
+  /// return black and need not be called.
   std::uint64_t may_light(std::size_t block, const PointLanes& points) const {
     return lights_.diffuse(block) == nullptr ? points.all()
                                              : points.may_be_lit(lights_.bounds(block));
   }
   static constexpr std::uint64_t all_lights = ~std::uint64_t{0};
-  /// Those of the lights in `of`, times `weight`; the others are black.
+  /// Evaluates the lights in the mask `of`, times `weight`; the others are black.
   void evaluate(const ShadingPoint& at, std::size_t block, Terms& out,
                 std::uint64_t of = all_lights, float weight = 1) const;
-  /// The ray that asks whether light `i` of `block`, which is lit, and `at` see one another.
+  /// The shadow ray between light `i` of `block`, which is lit, and `at`.
   Ray ray(const ShadingPoint& at, std::size_t block, int i) const;
 
  private:

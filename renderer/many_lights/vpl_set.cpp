@@ -25,13 +25,13 @@ struct Run {
   std::vector<std::size_t> lights;
 };
 
-/// Lights by group, then by the way they face, and then along a space-filling curve; as they are
-/// where they lie at one place.
-template <class Light, class Place>
+/// Sorts lights by group, by the direction of their normal, and along a space-filling curve; keeps
+/// the order of lights at equal positions.
+template <class Light, class Geometry>
 std::vector<Run> near_one_another(const std::vector<Light>& lights, const LightGroups& groups,
-                                  Place&& place) {
+                                  Geometry&& geometry) {
   Bounds box;
-  for (const Light& l : lights) box.add(place(l).x);
+  for (const Light& l : lights) box.add(geometry(l).x);
   const MortonOrder order(box);
   struct Key {
     std::uint32_t group;
@@ -41,7 +41,7 @@ std::vector<Run> near_one_another(const std::vector<Light>& lights, const LightG
   };
   std::vector<Key> keys(lights.size());
   for (std::size_t i = 0; i < lights.size(); ++i) {
-    const LightPlace p = place(lights[i]);
+    const VplGeometry p = geometry(lights[i]);
     keys[i] = {groups(p), main_direction(p.n) << 61 | order(p.x) >> 2, i};
   }
   std::sort(keys.begin(), keys.end());
@@ -81,15 +81,15 @@ void VplSet::add(Kept& path, const Vertex& v, int index) const {
   }
 }
 
-LightPlace GeneralLight::place() const {
+VplGeometry GeneralLight::geometry() const {
   if (const auto* v = std::get_if<Vertex>(&at)) return {v->surface.x, v->side(), false};
   const auto& e = std::get<EmitterPoint>(at);
   return {e.x, e.infinite() ? V3f(0.0F) : e.ng, e.infinite()};
 }
 
-LightPlace VplSet::place(std::size_t b, int i) const {
+VplGeometry VplSet::geometry(std::size_t b, int i) const {
   const DiffuseBlock* from = diffuse(b);
-  if (from == nullptr) return general(b, i).place();
+  if (from == nullptr) return general(b, i).geometry();
   return {V3f(from->x[i], from->y[i], from->z[i]), V3f(from->gx[i], from->gy[i], from->gz[i]),
           false};
 }
@@ -116,15 +116,15 @@ void VplSet::arrange(const LightGroups& groups) {
 
 void VplSet::arrange_diffuse(const std::vector<Diffuse>& lights, bool points,
                              const LightGroups& groups) {
-  const auto place = [](const Diffuse& l) { return LightPlace{l.x, l.ng, false}; };
-  for (const Run& run : near_one_another(lights, groups, place)) {
+  const auto geometry = [](const Diffuse& l) { return VplGeometry{l.x, l.ng, false}; };
+  for (const Run& run : near_one_another(lights, groups, geometry)) {
     const auto count = static_cast<int>(run.lights.size());
     blocks_.push_back({diffuse_.size(), count, true, run.group});
     DiffuseBlock& block = diffuse_.emplace_back();
     block.points = points;
     BlockBounds& bounds = bounds_.emplace_back();
     for (int i = 0; i < Lanes::size; ++i) {
-      // A missing one stands where another does, so that no geometry of it is special.
+      // An unused lane copies the geometry of a light, to avoid special values.
       const Diffuse& l = lights[run.lights[static_cast<std::size_t>(std::min(i, count - 1))]];
       bounds.add({l.x, l.ng});
       const auto put = [i](const V3f& p, Lanes& x, Lanes& y, Lanes& z) {
@@ -141,8 +141,8 @@ void VplSet::arrange_diffuse(const std::vector<Diffuse>& lights, bool points,
 }
 
 void VplSet::arrange_general(const std::vector<GeneralLight>& lights, const LightGroups& groups) {
-  const auto place = [](const GeneralLight& l) { return l.place(); };
-  for (const Run& run : near_one_another(lights, groups, place)) {
+  const auto geometry = [](const GeneralLight& l) { return l.geometry(); };
+  for (const Run& run : near_one_another(lights, groups, geometry)) {
     blocks_.push_back({general_.size(), static_cast<int>(run.lights.size()), false, run.group});
     for (const std::size_t i : run.lights) general_.push_back(lights[i]);
   }

@@ -12,38 +12,38 @@
 
 namespace lacuna {
 
-/// Lambertian surfaces that a light path met, and one-sided emitters, or else point lights:
-/// sixty-four lights side by side. What is missing of the sixty-four is black. Towards unit `w`
-/// with w.g > 0 each sends radiant intensity rgb (w.g) (w.s > 0 ? shading_cosine_ratio : 1).
+/// Sixty-four lights as a structure of arrays: Lambertian surface vertices of light paths and
+/// one-sided emitters, or else point lights. Unused lanes are black. Towards unit `w` with w.g > 0
+/// a light has radiant intensity rgb (w.g) (w.s > 0 ? shading_cosine_ratio : 1).
 struct DiffuseBlock {
-  bool points = false;         ///< it sends rgb everywhere, and all normals are 0
+  bool points = false;         ///< point lights: intensity rgb in all directions, normals are 0
   Lanes x, y, z;               ///< position
-  Lanes gx, gy, gz;            ///< unit geometric normal, on the side that shines
+  Lanes gx, gy, gz;            ///< unit geometric normal on the emitting side
   Lanes sx, sy, sz;            ///< unit shading normal on that side
   Lanes shading_cosine_ratio;  ///< LambertLit::shading_cosine_ratio
   Lanes r, g, b;
   Lanes extent;  ///< of the triangle, see TriangleShape
 };
 
-/// Where a light stands.
-struct LightPlace {
-  V3f x;          ///< position; not of a light at infinity
-  V3f n;          ///< unit normal on the side that shines; 0 of a point light
-  bool infinite;  ///< it shines from outside the scene
+/// Position and normal of a virtual light.
+struct VplGeometry {
+  V3f x;          ///< position; unused for a light at infinity
+  V3f n;          ///< unit normal on the emitting side; 0 for a point light
+  bool infinite;  ///< at infinity
 };
 
-/// A light of any other kind: a light path's vertex or the point on an emitter where it starts.
+/// A light of any other kind: a vertex of a light path, or the point on an emitter where it starts.
 struct GeneralLight {
   std::variant<Vertex, EmitterPoint> at;
   int index;  ///< of the vertex on its path
 
-  LightPlace place() const;
-  /// No path can hit it.
+  VplGeometry geometry() const;
+  /// Eye paths cannot hit it.
   bool delta() const {
     const auto* e = std::get_if<EmitterPoint>(&at);
     return e != nullptr && e->delta();
   }
-  /// Calls `use(end)` with the end of a connecting edge (ends.h).
+  /// Calls `use(endpoint)` with the endpoint of a connecting edge (endpoints.h).
   template <class Guide, class Use>
   decltype(auto) with_end(const Guide& guide, Use&& use) const {
     if (const auto* e = std::get_if<EmitterPoint>(&at)) return use(EmitterEndpoint{*e});
@@ -51,36 +51,36 @@ struct GeneralLight {
   }
 };
 
-/// Blocks of lights that are treated together.
+/// A range of blocks of lights.
 struct BlockRange {
   std::size_t first = 0;
-  std::size_t end = ~std::size_t{0};  ///< or the number of blocks, if that is less
+  std::size_t end = ~std::size_t{0};  ///< may exceed the number of blocks
 
   bool contains(std::size_t block) const { return block >= first && block < end; }
-  /// Of the ranges of all blocks, one after another, it is the first.
+  /// Whether it is the first of the ranges that cover all blocks.
   bool is_first() const { return first == 0; }
 };
 
-/// Lights that are treated alike have one number: the lights of a block are of one group.
-using LightGroups = std::function<std::uint32_t(const LightPlace&)>;
-/// Of a light that belongs nowhere.
+/// Assigns a group to each light; the lights of a block belong to one group.
+using LightGroups = std::function<std::uint32_t(const VplGeometry&)>;
+/// The group of lights that belong to no other.
 inline constexpr std::uint32_t no_group = 0xffffffff;
 
-/// The virtual point lights of an iteration, in blocks of sixty-four; those of a block lie near one
-/// another. The contribution of a light already holds 1 / the number of light paths.
+/// The virtual point lights (VPLs) of an iteration, in blocks of sixty-four nearby lights. The
+/// intensity of a light includes the factor 1 / number of light paths.
 class VplSet {
  public:
-  /// Which vertices of light paths are lights.
+  /// Which vertices of light paths become lights.
   struct Choice {
-    int longest;        ///< of vertices 0 to `longest` - 1
-    bool emitters;      ///< vertex 0 too, the point on an emitter
-    float least_alpha;  ///< of the surfaces: Bsdf::is_vpl_receiver()
+    int longest;        ///< vertices 0 to `longest` - 1
+    bool emitters;      ///< include vertex 0, the point on an emitter
+    float least_alpha;  ///< of surfaces: Bsdf::is_vpl_receiver()
   };
   VplSet(std::size_t paths, const Choice& choice)
       : choice_(choice), share_(1.0F / float(paths)), kept_(paths) {}
 
-  /// Keeps the path in place `i` of `batch` as path number `path`. Different paths may be kept by
-  /// several threads at once.
+  /// Stores the lights of path `i` of `batch` as path number `path`. Several threads may store
+  /// different paths at once.
   template <class Guide>
   void keep(std::size_t path, const LightBatch<Guide>& batch, std::size_t i) {
     const int length = std::min(batch.length(i), choice_.longest);
@@ -90,8 +90,8 @@ class VplSet {
       if (v.bsdf->is_vpl_receiver(choice_.least_alpha)) add(kept_[path], v, index);
     }
   }
-  /// To be called when all paths are kept. The order of the lights depends on the paths and on
-  /// `groups` only.
+  /// Sorts the lights into blocks; call once all paths are stored. The order of the lights depends
+  /// on the paths and on `groups` only.
   void arrange(const LightGroups& groups);
 
   std::size_t size() const { return size_; }
@@ -101,23 +101,23 @@ class VplSet {
     return ends_[std::min(static_cast<std::size_t>(edges), ends_.size() - 1)];
   }
   std::size_t blocks() const { return blocks_.size(); }
-  /// Lights of block `b`: 64 but for a last one of its kind.
+  /// Number of lights of block `b`: 64, or fewer in the last block of a kind and group.
   int count(std::size_t b) const { return blocks_[b].count; }
-  /// The group that all lights of block `b` are of.
+  /// The group of the lights of block `b`.
   std::uint32_t group(std::size_t b) const { return blocks_[b].group; }
-  /// Of block `b`, whose lights are diffuse.
+  /// The bounds of block `b`; requires diffuse(b).
   const BlockBounds& bounds(std::size_t b) const { return bounds_[blocks_[b].first]; }
-  /// The lights of block `b`, if they are diffuse; else null.
+  /// The lights of block `b` if they are diffuse or point lights; else null.
   const DiffuseBlock* diffuse(std::size_t b) const {
     return blocks_[b].diffuse ? &diffuse_[blocks_[b].first] : nullptr;
   }
-  /// Light `i` of block `b`, which is not diffuse.
+  /// Light `i` of block `b`; requires diffuse(b) == nullptr.
   const GeneralLight& general(std::size_t b, int i) const {
     return general_[blocks_[b].first + static_cast<std::size_t>(i)];
   }
-  /// Where light `i` of block `b` stands.
-  LightPlace place(std::size_t b, int i) const;
-  /// 1 / the number of light paths, which general lights do not hold.
+  /// Position and normal of light `i` of block `b`.
+  VplGeometry geometry(std::size_t b, int i) const;
+  /// 1 / number of light paths; general lights do not include it.
   float share() const { return share_; }
 
  private:
@@ -148,7 +148,7 @@ class VplSet {
   float share_;
   std::vector<Kept> kept_;
   std::vector<DiffuseBlock> diffuse_;
-  std::vector<BlockBounds> bounds_;  // of those
+  std::vector<BlockBounds> bounds_;  // of diffuse_
   std::vector<GeneralLight> general_;
   std::vector<Block> blocks_;
   std::vector<std::size_t> ends_;  // blocks of lights up to each number of edges

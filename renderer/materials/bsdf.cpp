@@ -5,8 +5,8 @@
 namespace lacuna {
 namespace {
 
-/// Rounding of the cosine between float unit vectors: a cosine below it does not even tell the
-/// side. Only divisors are held against it.
+/// Rounding error of the cosine between float unit vectors: below it, not even the side is known.
+/// Only divisors are compared with it.
 
 /// A uniform number in [0, width) stretched to [0, 1).
 float stretch(float u, float width) { return std::clamp(u / width, 0.0F, 1 - 0x1p-24F); }
@@ -74,7 +74,7 @@ Bsdf::Choice Bsdf::choice(const Seen& from) const {
     c.facets = luminance(s.reflected);
     if (lobes_.interface.clear()) {
       c.clear = luminance(s.transmitted);
-      // Where the mean facet hardly reflects, tilted ones still may.
+      // Tilted facets may reflect even where the mean facet hardly does.
       if (lobes_.interface.ior > 1) c.facets += lobes_.interface.glass * from.mean_weight;
     } else {
       c.facets += luminance(s.transmitted);
@@ -259,7 +259,7 @@ std::optional<BsdfSample> Bsdf::sample_any(const V3f& wo, float u_lobe, const V2
   V3f n = facing_normal(wo, side);
   float frame_probability = 1;
   if (transport == Transport::importance && !flat_ && in_front_of_ns(wo)) {
-    // Eyes in front of ns see the frame of ns, those behind it the one of ng: draw from either.
+    // Eyes in front of ns use the frame of ns, those behind it the frame of ng: sample either.
     frame_probability = 0.5F;
     if (u_lobe >= 0.5F) n = side < 0 ? -ng_ : ng_;
     u_lobe = 2 * u_lobe - (u_lobe >= 0.5F ? 1.0F : 0.0F);

@@ -10,28 +10,28 @@
 
 namespace lacuna {
 
-/// What is carried along the path: radiance (paths from the eye) or importance (paths from a
-/// light). The two differ where a BSDF is not symmetric: refraction and shading normals (Veach
-/// 1997, ch. 5).
+/// The quantity that a path transports: radiance (eye paths) or importance (light paths). They
+/// differ where a BSDF is not symmetric: at refraction and with shading normals (Veach 1997, ch.
+/// 5).
 enum class Transport { radiance, importance };
 
-/// A direction drawn by a BSDF.
+/// A direction sampled from a BSDF.
 struct BsdfSample {
   V3f wi;      ///< unit, world space, leaves the surface
   Rgb weight;  ///< f |cos| / pdf; for a delta lobe: its reflectance over its probability
-  /// Of the whole BSDF at wi, all non-delta lobes; for a delta lobe meaningless.
+  /// Density of wi by all non-delta lobes; meaningless for a delta lobe.
   Pdf<SolidAngle> pdf;
   bool delta = false;
   bool transmitted = false;  ///< wi lies on the other side of ng
-  /// Of a draw that a guide took part in (renderer/guides): its density over the BSDF's own.
+  /// For a direction sampled with a guide (renderer/guides): `pdf` over the density of the BSDF.
   float pdf_ratio = 1;
 };
 
 /// Cosines below it are rounding noise.
 inline constexpr float cos_rounding = 0x1p-24F;
 
-/// A Lambertian surface lit from one direction: it gives f (w.side) t towards unit `w` where
-/// w.side > 0, else nothing; t is `shading_cosine_ratio` where w.ns > 0 and 1 elsewhere.
+/// A Lambertian surface lit from one direction. It scatters f (w.side) t towards unit `w` if
+/// w.side > 0, else 0; t is `shading_cosine_ratio` if w.ns > 0, else 1.
 struct LambertLit {
   Rgb f;                       ///< diffuse reflectance / pi
   V3f side;                    ///< unit; ng on the side it is lit from
@@ -39,24 +39,23 @@ struct LambertLit {
   float shading_cosine_ratio;  ///< >= 0
 };
 
-/// Scattering at one point of a surface: a flat value, made per hit, without allocation or virtual
-/// calls. The glTF metallic-roughness model, mix(dielectric, metal, metallic):
+/// The BSDF at one point of a surface: a flat value, made for each hit, without allocation or
+/// virtual calls. The glTF metallic-roughness model, mix(dielectric, metal, metallic):
 /// - metal: GGX, Schlick from base_color to white;
-/// - dielectric: a GGX layer, Schlick from f0 to f90, over Lambert (layer.h), or where it transmits
-///   a refracting interface with exact Fresnel (interface.h).
+/// - dielectric: a GGX layer, Schlick from f0 to f90, over Lambert (layer.h); where it transmits, a
+///   refracting interface with exact Fresnel (interface.h).
 /// With f0 = f90 = 0 and nothing else it is exactly Lambert.
 ///
-/// `wo` and `wi` are unit, in world space, and leave the surface; `wi` is the one sampled. Which
-/// side a direction lies on is decided by the geometric normal `ng`, so light never leaks through a
-/// surface; cosines are taken with the shading normal `ns`, replaced by `ng` where the direction
-/// towards the eye lies behind `ns`, so that no black fringe appears. The direction towards the eye
-/// is `wo` for radiance and `wi` for importance, so that both modes measure the same light:
+/// `wo` and `wi` are unit, in world space, and leave the surface; `wi` is sampled. The geometric
+/// normal `ng` decides on which side a direction lies, so light never leaks through a surface.
+/// Cosines use the shading normal `ns`, replaced by `ng` where the direction towards the eye lies
+/// behind `ns`, so that no black fringe appears. The direction towards the eye is `wo` for radiance
+/// and `wi` for importance, so that both transports measure the same light:
 ///   eval(a, b, importance) = eval(b, a, radiance) |b.ng| / |a.ng|   (Veach 1997, sec. 5.3.2).
-/// All surfaces scatter on both sides; an opaque one looks the same from both.
+/// All surfaces scatter on both sides; the two sides of an opaque surface are equal.
 class Bsdf {
  public:
-  /// `ng` and `ns` are unit; `ns` is turned to the side of `ng`. They need not be on the same side
-  /// as wo.
+  /// `ng` and `ns` are unit; `ns` is flipped to the side of `ng`. wo may be on either side.
   Bsdf(const Lobes& lobes, const V3f& ng, const V3f& ns)
       : ng_(ng),
         ns_(dot(ns, ng) < 0 ? -ns : ns),
@@ -69,16 +68,16 @@ class Bsdf {
     return eval_any(wo, wi, transport);
   }
 
-  /// Density with which sample(wo) returns wi through a non-delta lobe; its integral over the
-  /// sphere is 1 minus the probability of the delta lobes and of failure. It depends on `transport`
-  /// only where ns differs from ng: importance must also be scattered to eyes behind ns.
+  /// Density with which sample(wo) returns wi by a non-delta lobe. Its integral over the sphere is
+  /// 1 minus the probability of the delta lobes and of failure. It depends on `transport` only
+  /// where ns differs from ng: importance must also be scattered to eyes behind ns.
   Pdf<SolidAngle> pdf(const V3f& wo, const V3f& wi,
                       Transport transport = Transport::radiance) const {
     if (plain_lambert(transport)) return Pdf<SolidAngle>(lambert(wo, wi));
     return pdf_any(wo, wi, transport);
   }
 
-  /// Draws wi. `u_lobe` and `u` are uniform in [0, 1). Nothing where the draw fails (below the
+  /// Samples wi. `u_lobe` and `u` are uniform in [0, 1). Nothing where the sample fails (below the
   /// surface) or the surface is black.
   std::optional<BsdfSample> sample(const V3f& wo, float u_lobe, const V2f& u,
                                    Transport transport) const {
@@ -86,28 +85,28 @@ class Bsdf {
     return sample_any(wo, u_lobe, u, transport);
   }
 
-  /// Some lobe is not a delta: the vertex can be connected to others.
+  /// Some lobe is not a delta, so the vertex can be connected to others.
   bool connectible() const {
     return lobes_.kind == Lobes::Kind::lambert ||
            (lobes_.kind == Lobes::Kind::layered &&
             (!lobes_.interface.smooth() || lobes_.has_diffuse()));
   }
 
-  /// eval(from, w, importance) of all w, where the surface is nothing but Lambertian.
+  /// eval(from, w, importance) as a function of w, if the surface is Lambertian only.
   std::optional<LambertLit> lambert_lit(const V3f& from) const;
 
-  /// Opaque, and with a lobe that no single direction rules: a diffuse one, or facets of at least
-  /// the width `least_alpha`.
+  /// Whether the surface can carry and receive virtual lights: it is opaque and has a broad lobe,
+  /// diffuse or GGX with alpha >= `least_alpha`.
   bool is_vpl_receiver(float least_alpha) const {
     if (transmits() || !connectible()) return false;
     return lobes_.has_diffuse() || lobes_.interface.alpha >= least_alpha;
   }
-  /// Light may pass to the other side of the surface.
+  /// Some lobe transmits light to the other side.
   bool transmits() const {
     return lobes_.kind == Lobes::Kind::layered && lobes_.interface.glass > 0;
   }
 
-  /// Albedo for the denoiser layer: base colour weighted by what the surface does with it.
+  /// Albedo for the denoiser layer: the sum of the lobes' reflectances.
   Rgb albedo() const;
 
  private:
@@ -116,10 +115,10 @@ class Bsdf {
   /// Probabilities of the lobes for one wo; they add up to 1, or are all 0.
   struct Choice {
     float diffuse = 0;
-    float facets = 0;  ///< a facet is drawn, which then reflects or transmits
+    float facets = 0;  ///< a facet is sampled, which reflects or transmits
     float clear = 0;   ///< the transmission of Interface::clear()
   };
-  /// The surface as seen from one direction, `wo`, with one of its normals.
+  /// Quantities that depend on `wo` and one of the normals.
   struct Seen {
     V3f n;  ///< on the side of wo
     bool front;
@@ -127,12 +126,12 @@ class Bsdf {
     float eta;
     float mean_weight = 0;  ///< of the layer, where facets_compete()
   };
-  /// Radiance's f |cos|, and the density of one frame; each 0 unless asked for.
+  /// f |cos| for radiance, and the density of one frame; 0 unless requested.
   struct Scatter {
     Rgb f{0, 0, 0};
     float pdf = 0;
   };
-  /// A lobe's draw before the rules about sides are applied.
+  /// A sample of a lobe, before its side is checked.
   struct Draw {
     V3f wi;
     Rgb share{0, 0, 0};  ///< of a delta lobe: reflectance or transmittance over its probability
@@ -140,7 +139,7 @@ class Bsdf {
     bool transmitted = false;
   };
 
-  /// Nothing but a Lambertian lobe, and symmetric: the fast path.
+  /// A single symmetric Lambertian lobe: the fast path.
   bool plain_lambert(Transport transport) const {
     return lobes_.kind == Lobes::Kind::lambert && (flat_ || transport == Transport::radiance);
   }
@@ -159,7 +158,7 @@ class Bsdf {
     return BsdfSample{wi, lobes_.diffuse, Pdf<SolidAngle>(dot(wi, n) * inv_pi), false, false};
   }
 
-  /// The normal that cosines are taken with when the eye lies in direction `w`; side = dot(w, ng).
+  /// The normal for cosines if the eye is in direction `w`; side = dot(w, ng).
   V3f facing_normal(const V3f& w, float side) const {
     const V3f n = side < 0 ? -ns_ : ns_;
     if (dot(w, n) > 0) return n;
@@ -176,7 +175,7 @@ class Bsdf {
 
   Seen seen(const V3f& n, const V3f& wo) const;
   Choice choice(const Seen& from) const;
-  /// `c` may be null where no density is asked for.
+  /// `c` may be null unless want_pdf.
   template <bool want_f, bool want_pdf>
   Scatter scatter(const Seen& from, const Choice* c, const V3f& wo, const V3f& wi) const;
   template <bool want_f, bool want_pdf>
@@ -184,7 +183,8 @@ class Bsdf {
   template <bool want_f, bool want_pdf>
   void transmitted(const Seen& from, const Choice* c, const V3f& wo, const V3f& wi,
                    Scatter& s) const;
-  /// wi lies on the side of both normals that the lobe is for: 1 reflects, -1 transmits, 0 neither.
+  /// 1: wi is on wo's side of both normals (reflection); -1: on the other side of both
+  /// (transmission); 0: neither.
   int passage(const Seen& from, const V3f& wi) const;
 
   std::optional<Draw> draw(const Seen& from, const Choice& c, const V3f& wo, float u_lobe,

@@ -5,7 +5,7 @@
 
 namespace lacuna {
 
-/// An opaque BSDF as seen from one direction, evaluated for eight directions of light at once.
+/// An opaque BSDF with fixed wo, evaluated for eight directions wi at once.
 class BsdfSeen {
  public:
   /// `bsdf` must not transmit.
@@ -33,7 +33,7 @@ class BsdfSeen {
   V3f wo_, side_, n_;
   float cos_o_;
   Rgb diffuse_;   // over pi
-  bool layered_;  // facets lie over the base, or there are facets alone
+  bool layered_;  // has facets
   Layer layer_;
   float through_o_ = 1;  // of the layer
   MeanWeights means_;

@@ -5,10 +5,9 @@
 
 namespace lacuna {
 
-/// Maps the unit square to the unit disk (Shirley and Chiu 1997): areas keep their proportion and
-/// neighbours stay neighbours. `u` lies in [0, 1)^2 and is read as the lower corner of a cell of
-/// side 2^-24, whose centre is mapped: the result lies strictly inside the disk, so that 1 - r^2 >
-/// 0 in floats.
+/// Maps the unit square to the unit disk (Shirley and Chiu 1997), preserving areas up to a factor
+/// and neighbourhoods. `u` in [0, 1)^2 is the lower corner of a cell of side 2^-24, whose centre is
+/// mapped: the result lies strictly inside the disk, so that 1 - r^2 > 0 in floats.
 inline V2f sample_disk(const V2f& u) {
   constexpr float half_cell = 0x1p-24F;  // of [-1, 1]
   const float a = (2 * u.x - 1) + half_cell;

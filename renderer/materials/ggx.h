@@ -9,26 +9,26 @@ namespace lacuna {
 // "Understanding the Masking-Shadowing Function"). Isotropic, width `alpha` in [ggx_min_alpha, 1].
 // Cosines are positive.
 
-/// Below it a lobe counts as smooth. A float direction is off by about 6e-8, which is 6e-4 of a
-/// lobe of this width: its density is still known to a fraction of a percent. Sharper lobes would
-/// be rounding noise, and are narrower than a pixel of any picture.
+/// Lobes below this width are treated as smooth. The rounding error of a float direction, about
+/// 6e-8, is 6e-4 of a lobe of this width: its density is still known to a fraction of a percent.
+/// Sharper lobes would be rounding noise, and are narrower than a pixel of any picture.
 inline constexpr float ggx_min_alpha = 1e-4F;
 
-/// Density of facet normals, per projected area, at an angle to the mean normal whose cosine and
-/// squared sine are given; T and A are float or Float8. From 1 - cos^2 the sine would be lost for
-/// small alpha.
+/// Density of facet normals, per projected area, as a function of the cosine and squared sine of
+/// the angle to the mean normal; T and A are float or Float8. The sine is an argument because 1 -
+/// cos^2 would lose it for small alpha.
 template <class T, class A>
 T ggx_d(const T& cos, const T& sin2, const A& alpha) {
   const A a2 = alpha * alpha;
   const T t = sin2 / a2 + cos * cos;
   return 1 / (std::numbers::pi_v<float> * a2 * t * t);
 }
-/// The same for facet normals `m` around `n`.
+/// ggx_d() of the facet normal `m` around `n`.
 inline float ggx_d(const V3f& m, const V3f& n, float alpha) {
   return ggx_d(dot(m, n), cross(n, m).length2(), alpha);
 }
 
-/// sqrt(alpha^2 + (1 - alpha^2) cos^2): what all of Smith's terms are made of.
+/// sqrt(alpha^2 + (1 - alpha^2) cos^2), which all of Smith's terms contain.
 template <class T, class A>
 T ggx_slope_root(const T& cos, const A& alpha) {
   using std::sqrt;
@@ -48,7 +48,7 @@ T ggx_g2_over_4cos(const O& cos_o, const T& cos_i, const A& alpha) {
   return 0.5F / (ggx_slope_root(cos_o, alpha) + cos_o * ggx_slope_root(cos_i, alpha) / cos_i);
 }
 
-/// Draws a facet normal visible from `wo`, all in the local frame (normal along z, wo.z > 0), with
+/// Samples a facet normal visible from `wo` in the local frame (normal along z, wo.z > 0), with
 /// density G1(wo) (wo.m) D(m) / wo.z (Heitz 2018, "Sampling the GGX Distribution of Visible
 /// Normals").
 V3f ggx_sample_visible(const V3f& wo, float alpha, const V2f& u);

@@ -21,7 +21,7 @@ SurfaceParams surface_params(const Material& material, Textures textures,
   p.alpha = roughness * roughness;
   p.transmission = material.transmission * texel(material.transmission_texture).rgb.x;
 
-  // KHR_materials_specular. An ior of 0 stands for a reflectance of 1; what still gets in is bent
+  // KHR_materials_specular. An ior of 0 means a reflectance of 1; transmitted light is refracted
   // as usual.
   if (material.ior != 0) p.ior = material.ior;
   const float f0 = material.ior == 0 ? 1.0F : normal_reflectance(material.ior);

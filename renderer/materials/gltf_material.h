@@ -10,19 +10,19 @@ namespace lacuna {
 
 using Textures = std::span<const std::unique_ptr<Texture>>;
 
-/// What a used texture reference says at `uv` (TEXCOORD_0 and _1). The texture must be decoded.
+/// The value of a used texture reference at `uv` (TEXCOORD_0 and _1). The texture must be decoded.
 inline Rgba texture_at(const TextureRef& ref, Textures textures, const std::array<V2f, 2>& uv) {
   return textures[static_cast<std::size_t>(ref.texture)]->lookup(
       ref.transform(uv[static_cast<std::size_t>(ref.uv_set)]));
 }
 
-/// The surface at texture coordinates `uv` (TEXCOORD_0 and _1). The textures that `material` uses
-/// must be decoded. KHR_materials_ior and _specular become f0 and f90; a surface that ends with
-/// both 0 is Lambertian.
+/// The surface parameters at texture coordinates `uv` (TEXCOORD_0 and _1). The textures that
+/// `material` uses must be decoded. KHR_materials_ior and _specular become f0 and f90; a surface
+/// with both 0 is Lambertian.
 SurfaceParams surface_params(const Material& material, Textures textures,
                              const std::array<V2f, 2>& uv);
 
-/// Asks for the texels that surface_params() will read.
+/// Prefetches the texels that surface_params() reads.
 inline void prefetch_textures(const Material& material, Textures textures,
                               const std::array<V2f, 2>& uv) {
   material.for_each_scattering_texture([&](const TextureRef& ref) {
@@ -31,7 +31,7 @@ inline void prefetch_textures(const Material& material, Textures textures,
   });
 }
 
-/// Radiance emitted, in every direction of the emitting side or sides.
+/// Emitted radiance, equal in every direction of the emitting side or sides.
 inline Rgb emission(const Material& material, Textures textures, const std::array<V2f, 2>& uv) {
   if (!material.emission_texture.used()) return material.emission;
   return material.emission * texture_at(material.emission_texture, textures, uv).rgb;

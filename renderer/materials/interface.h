@@ -7,7 +7,7 @@ namespace lacuna {
 
 struct SurfaceParams;
 
-/// The specular boundary of the glTF surface. One set of facets of width `alpha` carries all of
+/// The specular boundary of the glTF surface. One set of facets of width `alpha` models all of
 /// - the metal: Schlick from the base colour to white,
 /// - the layer over the opaque dielectric: Schlick from f0 to f90,
 /// - the boundary of the transmissive dielectric: exact Fresnel, remapped from its own range to
@@ -18,7 +18,7 @@ struct Interface {
   Interface() = default;
   explicit Interface(const SurfaceParams& params);
 
-  /// What a facet does with light that meets it at `cos`; `eta` as in specular.h.
+  /// Reflectance and transmittance of a facet for light at `cos`; `eta` as in specular.h.
   struct Split {
     Rgb reflected{0, 0, 0};
     Rgb transmitted{0, 0, 0};  ///< without the 1 / eta^2 of radiance
@@ -36,10 +36,10 @@ struct Interface {
   }
 
   bool smooth() const { return alpha == 0; }
-  /// Transmission passes unscattered although the facets are rough: it is spread by about alpha
-  /// (ior - 1), and that is below what ggx_min_alpha resolves.
+  /// Transmission is not scattered although the facets are rough: its spread, about alpha (ior -
+  /// 1), is below ggx_min_alpha.
   bool clear() const { return !smooth() && alpha * (ior - 1) < ggx_min_alpha; }
-  /// For light that arrives on the front or back side.
+  /// eta for light that arrives on the front or back side.
   float eta(bool front) const { return front ? ior : 1 / ior; }
 
   Rgb r0{0, 0, 0};  // metal and opaque dielectric, each by its share, at normal incidence

@@ -7,10 +7,11 @@
 
 namespace lacuna {
 
-// Lambert's law: f = albedo / pi. Directions are drawn with density cos / pi, so that
-// f cos / pdf = albedo without any arithmetic.
+// Lambert's law: f = albedo / pi. Directions are sampled with density cos / pi, so f cos / pdf is
+// exactly the albedo.
 
-/// A direction with density cos / pi around unit `n` (Malley's method). Its cosine is above 3e-4.
+/// Samples a direction with density cos / pi around unit `n` (Malley's method). Its cosine is above
+/// 3e-4.
 inline V3f sample_cosine(const V3f& n, const V2f& u) {
   const V2f d = sample_disk(u);
   const Frame frame(n);

@@ -13,7 +13,7 @@ namespace {
 /// [0, 1].
 class Table {
  public:
-  /// Makes the rows that are used at `row`, unless they are there: before at() and hemisphere().
+  /// Computes the rows used at `row` if missing; call before at() and hemisphere().
   /// From any thread.
   void need(float row) {
     const std::size_t r = split(row, rows).first;
@@ -74,7 +74,7 @@ class Table {
     hemisphere_[r] = static_cast<float>(sum);
   }
 
-  /// Visible normals on a regular grid, each with the share of its light that is not shadowed.
+  /// Visible normals on a regular grid, each with the unshadowed share of its light.
   static float mean(float cos, float alpha) {
     constexpr int n = 24;
     const V3f wo(std::sqrt(1 - cos * cos), 0, cos);
@@ -98,7 +98,7 @@ class Table {
   std::array<float, rows> hemisphere_{};
 };
 
-/// A row is made when the first surface needs it, in half a millisecond: a scene has few
+/// A row is computed when the first surface needs it, in half a millisecond: a scene has few
 /// roughnesses.
 Table& table() {
   static Table result;

@@ -4,29 +4,29 @@
 
 namespace lacuna {
 
-/// How a reflecting GGX layer dims the Lambertian base below it.
+/// The attenuation of a Lambertian base by a reflecting GGX layer.
 ///
 /// With K(w) the mean of Fresnel's factor over the facets that reflect light to w, the base is
 /// scaled by (1 - K(wo)) (1 - K(wi)) / (1 - mean K) (Kelemen and Szirmay-Kalos 2001, "A Microfacet
-/// Based Coupled Specular-Matte BRDF Model", sec. 2.3). That is reciprocal, and the base then
-/// reflects just the share 1 - K(wo) that the layer lets through. The sample implementation in the
-/// appendix of glTF 2.0 takes 1 - F of the half vector instead, which nearly doubles the energy at
+/// Based Coupled Specular-Matte BRDF Model", sec. 2.3). This is reciprocal, and a white base
+/// reflects exactly the share 1 - K(wo) that the layer transmits. The sample implementation in the
+/// appendix of glTF 2.0 uses 1 - F of the half vector instead, which nearly doubles the energy at
 /// grazing angles.
 class Layer {
  public:
   Layer() = default;  ///< no layer
-  /// Schlick's reflectances of the layer, the largest channel of each, and its width: 0 or at least
-  /// ggx_min_alpha.
+  /// Schlick's reflectances of the layer, the largest channel of each, and its GGX width: 0 or at
+  /// least ggx_min_alpha.
   Layer(float f0, float f90, float alpha);
 
-  /// Mean of Schlick's weight over the facets that reflect light to a direction with this cosine.
+  /// Mean of schlick_weight() over the facets that reflect light to a direction with this cosine.
   float mean_weight(float cos) const;
   /// 1 - K of a direction: the share that reaches the base. In [0, 1].
   template <class T>
   T let_through(const T& mean_weight) const {
     return 1 - (f0_ + (f90_ - f0_) * mean_weight);
   }
-  /// Scale of the base's f for the two directions' let_through().
+  /// Factor of the base's f, from let_through() of the two directions.
   template <class T>
   T scale(float through_o, const T& through_i) const {
     return through_o * through_i * norm_;

@@ -19,12 +19,12 @@ struct SurfaceParams {
   float transmission = 0;  ///< [0, 1]: share of the dielectric's base that refracts
 };
 
-/// What a surface does with light, apart from how it lies: made once for all hits where the
-/// parameters are the same everywhere.
+/// The scattering of a surface, apart from its normals. Computed once for all hits if the material
+/// has no textures.
 struct Lobes {
   enum class Kind : std::uint8_t { black, lambert, layered };
 
-  // Not explicit: the parameters are the lobes, in other words.
+  // Not explicit: the two types describe the same surface.
   Lobes(const SurfaceParams& params)
       : diffuse(((1 - params.metallic) * (1 - params.transmission)) * params.base_color) {
     if (params.metallic > 0 || params.transmission > 0 || params.f90 > 0 || !is_black(params.f0)) {
@@ -35,7 +35,7 @@ struct Lobes {
   }
 
   bool has_diffuse() const { return !is_black(diffuse); }
-  /// Other lobes than the facets' need a share of the draws.
+  /// Lobes other than the facets must be sampled too.
   bool facets_compete() const {
     return has_diffuse() || (interface.glass > 0 && interface.clear());
   }
@@ -43,7 +43,7 @@ struct Lobes {
 
   Rgb diffuse;  ///< share of Lambert times base colour
   Kind kind = Kind::layered;
-  Layer layer;  ///< where facets_compete()
+  Layer layer;  ///< used if facets_compete()
   Interface interface;
 
  private:

@@ -22,15 +22,15 @@ inline float normal_reflectance(float ior) {
   return r * r;
 }
 
-/// What a smooth dielectric interface does with unpolarised light.
+/// Fresnel reflection of unpolarised light at a smooth dielectric interface.
 struct Fresnel {
   float reflectance;  ///< [0, 1]; exactly 1 under total internal reflection
   float cos_t;        ///< >= 0: cosine on the far side
   bool total;         ///< total internal reflection: nothing refracts
 };
 
-/// Fresnel's equations, exact. The cosine on the far side is computed from (eta^2 - 1) + cos^2,
-/// which keeps a direction unbent for eta = 1 at every angle.
+/// Fresnel's equations, exact. The cosine on the far side is computed from (eta^2 - 1) + cos^2, so
+/// that directions stay exactly straight for eta = 1.
 inline Fresnel fresnel_dielectric(float cos, float eta) {
   const float t2 = (eta - 1) * (eta + 1) + cos * cos;
   if (t2 <= 0) return {1, 0, true};
@@ -46,7 +46,7 @@ inline Fresnel fresnel_dielectric(float cos, float eta) {
 inline V3f reflect(const V3f& w, const V3f& m) { return 2 * dot(w, m) * m - w; }
 
 /// The refracted direction, on the far side of `m` (Snell); `cos_t` from fresnel_dielectric().
-/// Normalised: on the way out of a dense medium the rounding errors of `w` grow by its index.
+/// Normalised, because the rounding errors of `w` grow by 1 / eta on the way out of a dense medium.
 inline V3f refract(const V3f& w, const V3f& m, float eta, float cos_t) {
   const float inv = 1 / eta;
   const V3f t = (dot(w, m) * inv - cos_t) * m - w * inv;

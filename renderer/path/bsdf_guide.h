@@ -4,21 +4,21 @@
 
 namespace lacuna {
 
-/// guide: bsdf. The BSDF's own directions.
+/// guide: bsdf. Samples the BSDF alone.
 struct BsdfGuide : StrategyBase {
-  /// There is nothing to learn.
-  struct Tally {};
+  /// It learns nothing.
+  struct Accumulator {};
   static constexpr bool learns() { return false; }
-  static Tally tally() { return {}; }
-  static void learn(const GuidingSample&, Tally&) {}
-  static void end(std::span<const Tally>, const ThreadPool&) {}
+  static Accumulator accumulator() { return {}; }
+  static void accumulate(const GuidingSample&, Accumulator&) {}
+  static void update(std::span<const Accumulator>, const ThreadPool&) {}
 
-  static void arrive(Vertex&) {}
+  static void on_hit(Vertex&) {}
   static std::optional<BsdfSample> sample(const Vertex& v, Rng& rng, Transport transport) {
     const float u_lobe = rng.next();
     return v.bsdf->sample(v.wp, u_lobe, rng.next2(), transport);
   }
-  /// Density of `wi` for a walk of kind `transport` that arrived at `v` from `wo`.
+  /// Density of `wi` for a walk of the given transport that arrived at `v` from `wo`.
   static Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport) {
     return v.bsdf->pdf(wo, wi, transport);
   }

@@ -7,14 +7,14 @@
 
 namespace lacuna {
 
-/// An edge that joins a path from the eye to one from a light, or to an emitter. Nothing is traced:
-/// the caller asks whether anything lies between.
+/// The edge between the endpoint of an eye path and the endpoint of a light path, or a point on an
+/// emitter. Visibility is not included: the caller traces shadow_ray().
 struct Connection {
-  V3f w{0, 0, 0};         ///< unit, from the eye's end to the light's
-  float distance2 = 1;    ///< squared length; 1 if the light's end is at infinity
-  bool infinite = false;  ///< the light's end is
-  Rgb contribution{0, 0,
-                   0};  ///< unweighted, without visibility: both ends' scatter() over distance2
+  V3f w{0, 0, 0};         ///< unit, from the eye's endpoint to the light's
+  float distance2 = 1;    ///< squared length; 1 if the light's endpoint is at infinity
+  bool infinite = false;  ///< the light's endpoint is at infinity
+  /// scatter() of both endpoints over distance2: without MIS weight and visibility.
+  Rgb contribution{0, 0, 0};
 
   explicit operator bool() const { return !is_black(contribution); }
 };
@@ -25,7 +25,8 @@ constexpr bool at_infinity(const End& e) {
   return false;
 }
 
-/// The edge alone, which carries nothing yet; of two ends at one place w is 0.
+/// The geometry of the edge; its contribution is left at 0. Where both endpoints are at the same
+/// point, w is 0.
 template <class Eye, class Light>
 Connection edge_between(const Eye& eye, const Light& light) {
   Connection c;
@@ -40,7 +41,8 @@ Connection edge_between(const Eye& eye, const Light& light) {
   return c;
 }
 
-/// Joins the ends `eye` and `light`; false if no light passes, whatever lies between.
+/// Joins the endpoints `eye` and `light`. The result is false where the unoccluded contribution is
+/// black.
 template <class Eye, class Light>
 Connection connect(const Eye& eye, const Light& light) {
   Connection c = edge_between(eye, light);
@@ -51,7 +53,7 @@ Connection connect(const Eye& eye, const Light& light) {
   return c;
 }
 
-/// The ray that meets nothing if nothing lies between the ends; both are moved off their surfaces.
+/// The shadow ray between the two endpoints, both offset from their surfaces.
 template <class Eye, class Light>
 Ray shadow_ray(const Eye& eye, const Light& light, const Connection& c) {
   const V3f from = eye.origin(c.w);
@@ -59,29 +61,30 @@ Ray shadow_ray(const Eye& eye, const Light& light, const Connection& c) {
   return {from, light.origin(-c.w) - from, 1.0F};
 }
 
-/// sum_{i != s} n_i p_i / p_s over the strategies that leave the light's end fewer vertices.
+/// sum_{i < s} n_i p_i / p_s: the strategies with fewer vertices on the light's side (mis.h).
 template <class Eye, class Light>
 double light_side_sum(const Eye& eye, const Light& light, const Connection& c,
                       const SampleCounts& n) {
-  if (light.index == 0 && !light.prior_connectible()) return 0;
+  if (light.index == 0 && !light.prev_connectible()) return 0;
   const double g = eye.pdf(c.w) * (c.infinite ? 1.0 : light.area_factor(c.w) / double(c.distance2));
-  const double back = light.mis_partial() > 0 ? light.back(-c.w) : 0.0;
+  const double pdf_rev = light.mis_partial() > 0 ? light.pdf_rev(-c.w) : 0.0;
   return g / light.p_fwd() *
-         mis_partial_sum(light_side(n), light.index, light.prior_connectible(), back,
+         mis_partial_sum(light_side(n), light.index, light.prev_connectible(), pdf_rev,
                          light.mis_partial());
 }
 
-/// The same over those that leave the eye's end fewer.
+/// sum_{i > s} n_i p_i / p_s: the strategies with fewer vertices on the eye's side (mis.h).
 template <class Eye, class Light>
 double eye_side_sum(const Eye& eye, const Light& light, const Connection& c,
                     const SampleCounts& n) {
   const double h = light.pdf(-c.w) * eye.area_factor(c.w) / double(c.distance2);
-  const double back = eye.mis_partial() > 0 ? eye.back(c.w) : 0.0;
+  const double pdf_rev = eye.mis_partial() > 0 ? eye.pdf_rev(c.w) : 0.0;
   return h / eye.p_fwd() *
-         mis_partial_sum(eye_side(n), eye.index, eye.prior_connectible(), back, eye.mis_partial());
+         mis_partial_sum(eye_side(n), eye.index, eye.prev_connectible(), pdf_rev,
+                         eye.mis_partial());
 }
 
-/// The MIS weight of a connection of a surface with an emitter or another surface.
+/// The MIS weight of a connection between a surface and an emitter or another surface.
 template <class Eye, class Light>
 double weight(const Eye& eye, const Light& light, const Connection& c, const SampleCounts& n) {
   const double own = n.of(light.index + 1, eye.index + 1);
@@ -89,15 +92,15 @@ double weight(const Eye& eye, const Light& light, const Connection& c, const Sam
                     n.bidirectional() ? eye_side_sum(eye, light, c, n) : 0.0);
 }
 
-/// The MIS weight of a connection with the eye itself.
+/// The MIS weight of a connection to the eye (t = 1).
 template <class Light>
 double weight(const EyeEndpoint& eye, const Light& light, const Connection& c,
               const SampleCounts& n) {
   return mis_weight(n.splat, light_side_sum(eye, light, c, n), 0.0);
 }
 
-/// The point of an emitter that a walk from the eye met at `v`, if any light leaves it towards the
-/// vertex before.
+/// The point on an emitter that an eye path hit at `v`; none if it emits nothing towards the
+/// previous vertex.
 inline std::optional<EmitterPoint> emitter_at(const Scene& scene, const Vertex& v) {
   if (v.kind == Vertex::Kind::background) {
     const EmitterPoint e = scene.emitters().hit_background(v.surface.x);
@@ -108,15 +111,15 @@ inline std::optional<EmitterPoint> emitter_at(const Scene& scene, const Vertex& 
   return scene.emitters().hit(v.surface, radiance);
 }
 
-/// The MIS weight of a path from the eye whose vertex `index` >= 1, `v`, is point `e` of an
-/// emitter.
+/// The MIS weight of an eye path whose vertex `v`, at `index` >= 1, is the point `e` on an emitter
+/// (s = 0).
 inline double hit_weight(const Vertex& v, int index, const EmitterPoint& e, const SampleCounts& n) {
   const double one_less = n.of(1, index);
   const TechniqueCounts side{0, one_less, one_less};
-  const double back = v.mis_partial > 0 ? double(e.leaving_pdf(v.wp).value) : 0.0;
+  const double pdf_rev = v.mis_partial > 0 ? double(e.leaving_pdf(v.wp).value) : 0.0;
   return mis_weight(n.hit, 0.0,
                     double(e.pdf.value) / double(v.p_fwd.value) *
-                        mis_partial_sum(side, index, v.prior_connectible, back, v.mis_partial));
+                        mis_partial_sum(side, index, v.prev_connectible, pdf_rev, v.mis_partial));
 }
 
 }  // namespace lacuna

@@ -11,25 +11,25 @@
 
 namespace lacuna {
 
-/// Thrown out of an iteration that was told to stop; what it had done is discarded, and the
-/// iteration can be run again with the same result.
+/// Thrown from an iteration when IterationContext::stop returned true. Its partial image is
+/// discarded; running the iteration again gives the same result.
 struct IterationStopped {};
 
-/// What one iteration works with.
+/// The inputs of one iteration.
 struct IterationContext {
   const Scene& scene;
   const Camera& camera;
   const ThreadPool& pool;
   std::uint64_t seed;
   std::uint64_t iteration;  ///< < 2^32
-  /// Asked between tiles, from several threads: true ends the iteration by IterationStopped.
+  /// Called between tiles, by several threads. When it returns true, IterationStopped is thrown.
   const std::function<bool()>& stop;
-  /// The images of the layers that the integrator fills, black; same size as the picture.
+  /// One image for each layer that the integrator fills: black at first, of the picture's size.
   std::span<Image> layers = {};
 };
 
-/// What a method may look at before its first iteration. `space` builds only what it is asked
-/// for.
+/// The inputs of prepare(), before the first iteration. `space` builds an artefact of the analysis
+/// when it is first requested.
 struct PrepareContext {
   const Scene& scene;
   const ThreadPool& pool;

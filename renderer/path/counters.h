@@ -4,7 +4,7 @@
 
 namespace lacuna {
 
-/// What was done, for rates and reports. Summed over tiles in a fixed order.
+/// Counts of samples and rays, for rates and reports. Summed over tiles in a fixed order.
 struct Counters {
   std::uint64_t samples = 0;      ///< paths from the eye or from a light
   std::uint64_t rays = 0;         ///< nearest-hit queries

@@ -7,11 +7,10 @@
 
 namespace lacuna {
 
-// The ends of a connecting edge: a surface that a walk reached, a point on an emitter, or the eye.
-// All have the same members, which connect.h asks for; directions are unit and lead away from the
-// end.
+// The endpoints of a connecting edge: a surface vertex, a point on an emitter, or the eye. All have
+// the members that connect.h uses; directions are unit and point away from the endpoint.
 
-/// A surface that a walk reached, which is vertex `index` of its path.
+/// A surface vertex: vertex `index` of its path.
 template <class Guide>
 struct SurfaceEndpoint {
   const Vertex& v;
@@ -21,29 +20,29 @@ struct SurfaceEndpoint {
 
   static constexpr bool infinite = false;
   const V3f& x() const { return v.surface.x; }
-  /// What the path carries on along `w`: its throughput, f and the cosine.
+  /// throughput f(wp, w) |cos|: what the path scatters along `w`.
   Rgb scatter(const V3f& w) const { return v.throughput * v.bsdf->eval(v.wp, w, transport); }
-  /// Density of the walk's going on along `w`.
+  /// Density per steradian with which this walk would continue along `w`.
   double pdf(const V3f& w) const { return guide.pdf(v, v.wp, w, transport).value; }
-  /// Density with which the other walk, arriving from `w`, would go on to the vertex before.
-  double back(const V3f& w) const {
+  /// Density per steradian with which the walk from the other side, arriving from `w`, would
+  /// continue to the previous vertex.
+  double pdf_rev(const V3f& w) const {
     const Transport other =
         transport == Transport::radiance ? Transport::importance : Transport::radiance;
     return guide.pdf(v, w, v.wp, other).value;
   }
-  /// Of this end as seen along the edge: density per area from one per steradian is times
-  /// area_factor over the squared distance.
+  /// |cos| at this endpoint: p_area = p_solid_angle area_factor(w) / distance^2.
   double area_factor(const V3f& w) const { return double(abs_dot(v.surface.ng, w)); }
   double p_fwd() const { return double(v.p_fwd.value); }
   double mis_partial() const { return v.mis_partial; }
-  bool prior_connectible() const { return v.prior_connectible; }
-  /// Where a ray along `w` starts.
+  bool prev_connectible() const { return v.prev_connectible; }
+  /// The origin of a ray along `w`, offset from the surface.
   V3f origin(const V3f& w) const {
     return offset_origin(v.surface.x, v.surface.ng, v.surface.extent, w);
   }
 };
 
-/// A point on an emitter: vertex 0 of a light's path, whether the path goes on or not.
+/// A point on an emitter: vertex 0 of a light path.
 struct EmitterEndpoint {
   const EmitterPoint& e;
   static constexpr int index = 0;
@@ -56,14 +55,14 @@ struct EmitterEndpoint {
     return e.towards(w) * (cosine / e.pdf.value);
   }
   double pdf(const V3f& w) const { return double(e.leaving_pdf(w).value); }
-  static double back(const V3f&) { return 0; }
+  static double pdf_rev(const V3f&) { return 0; }
   double area_factor(const V3f& w) const {
     return e.kind == EmitterPoint::Kind::area ? double(abs_dot(e.ng, w)) : 1.0;
   }
   double p_fwd() const { return double(e.pdf.value); }
   static double mis_partial() { return 0; }
-  /// An eye's path can meet it.
-  bool prior_connectible() const { return !e.delta(); }
+  /// An eye path can hit the emitter: c_0 of mis.h.
+  bool prev_connectible() const { return !e.delta(); }
   V3f origin(const V3f& w) const {
     return e.kind == EmitterPoint::Kind::area ? offset_origin(e.x, e.ng, e.extent, w) : e.x;
   }
@@ -75,7 +74,7 @@ struct EyeEndpoint {
   static constexpr int index = 0;
 
   const V3f& x() const { return camera.position(); }
-  /// The importance of light arriving from `w`, to be spread by Camera::splat().
+  /// The importance emitted along `w`; Camera::splat() spreads it over pixels.
   Rgb scatter(const V3f& w) const { return Rgb(camera.density(w).value); }
   double pdf(const V3f& w) const { return double(camera.density(w).value); }
   V3f origin(const V3f&) const { return camera.position(); }

@@ -4,13 +4,13 @@
 
 namespace lacuna {
 
-/// The light that arrived at one vertex of a finished path, for guides that learn.
+/// One vertex of a finished path and the light that arrived there: a training sample of a guide.
 struct GuidingSample {
-  const Vertex& v;      ///< left along `wi`, which was not drawn from a delta lobe
-  V3f wi;               ///< unit
-  Pdf<SolidAngle> pdf;  ///< with which it was drawn
-  float radiance;       ///< luminance that arrived along `wi`, as the rest of the path estimates it
-  float pixel_contribution;  ///< luminance of what the pixel got from there
+  const Vertex& v;
+  V3f wi;               ///< unit; the direction in which the path left `v`, not by a delta lobe
+  Pdf<SolidAngle> pdf;  ///< with which `wi` was sampled
+  float radiance;       ///< luminance from `wi`, as estimated by the rest of the path
+  float pixel_contribution;  ///< luminance that the rest of the path added to the pixel
 };
 
 }  // namespace lacuna

@@ -9,19 +9,19 @@
 
 namespace lacuna {
 
-/// What paths from lights need to know of the picture they are for.
+/// The scene, camera and limits that light paths are traced with.
 struct LightPathSetting {
   const Scene& scene;
   const Camera& camera;
   int max_depth;       ///< edges of whole paths, the one to the eye included
   int roulette_depth;  ///< as WalkLimits
   SampleCounts counts;
-  /// Of the paths of an iteration, each alike probable to start anywhere, the emitters are chosen
-  /// at equal steps from a random start, so that they share them evenly.
+  /// Choose the emitters of an iteration's paths by systematic sampling: at equal steps from a
+  /// random start. Each path alone has the same distribution; together they are stratified.
   bool spread = false;
 };
 
-/// Paths from lights that are walked together: at most `size`, of which each keeps its place.
+/// At most `size` light paths that are traced together. Path i of the batch has index i throughout.
 template <class Guide>
 class LightBatch {
  public:
@@ -32,14 +32,14 @@ class LightBatch {
         guide_(guide),
         places_(static_cast<std::size_t>(setting.max_depth)),
         vertices_(places_ * size) {
-    walkers_.reserve(size);
+    states_.reserve(size);
   }
 
-  /// Walks the paths of the given random numbers. A path without any light has length 0.
-  /// `choices`: 32 bits for each, uniform, by which it chooses its emitter; empty: from `rngs`.
+  /// Traces one path for each generator. A path that no emitter could start has length 0.
+  /// `choices`: 32 uniform bits for each path that choose its emitter; empty: drawn from `rngs`.
   void walk(std::span<const Rng> rngs, Counters& counters,
             std::span<const std::uint32_t> choices = {}) {
-    walkers_.clear();
+    states_.clear();
     counters.samples += rngs.size();
     for (std::size_t i = 0; i < rngs.size(); ++i) {
       Rng rng = rngs[i];
@@ -53,14 +53,14 @@ class LightBatch {
                             .counts = light_side(setting_.counts)};
     Walk<Guide> walk(setting_.scene, guide_, limits, counters);
     walk.trace_paths(
-        walkers_, [](std::size_t, int) {},
+        states_, [](std::size_t, int) {},
         [&](std::size_t i, int depth) {
-          if (vertex(place_[i], depth).kind == Vertex::Kind::surface)
-            length_[place_[i]] = depth + 1;
+          if (vertex(path_of_[i], depth).kind == Vertex::Kind::surface)
+            length_[path_of_[i]] = depth + 1;
         });
   }
 
-  /// How many vertices the path in place `i` has, the emitter's included.
+  /// Number of vertices of path `i`, including the one on the emitter.
   int length(std::size_t i) const { return length_[i]; }
   /// Vertex 0, on an emitter.
   const EmitterPoint& emitter(std::size_t i) const { return emitters_[i]; }
@@ -72,7 +72,8 @@ class LightBatch {
     return {vertex(i, index), index, Transport::importance, guide_};
   }
 
-  /// Joins all vertices of `paths` paths to the eye (t = 1) and adds what arrives to `splats`.
+  /// Joins all vertices of the first `paths` paths to the eye (t = 1) and appends the unoccluded
+  /// contributions to `splats`.
   void splat(std::size_t paths, Counters& counters, Splats& splats) {
     for (std::size_t i = 0; i < paths; ++i) {
       if (length_[i] > 0 && !emitters_[i].delta()) splat_end(EmitterEndpoint{emitters_[i]});
@@ -80,16 +81,16 @@ class LightBatch {
         if (vertex(i, index).bsdf->connectible()) splat_end(end(i, index));
       }
     }
-    queue_.flush(setting_.scene.rays(), counters, [&](const Seen& seen) {
-      setting_.camera.splat(seen.at, [&](std::uint32_t pixel, float share) {
-        splats.push_back({seen.value * share, seen.weight, pixel, seen.s});
+    queue_.flush(setting_.scene.rays(), counters, [&](const PendingSplat& p) {
+      setting_.camera.splat(p.at, [&](std::uint32_t pixel, float share) {
+        splats.push_back({p.value * share, p.weight, pixel, p.s});
       });
     });
   }
 
  private:
-  /// What arrives at the eye if nothing lies between.
-  struct Seen {
+  /// A contribution to the eye that waits for its shadow ray.
+  struct PendingSplat {
     Rgb value;
     float weight;
     V2f at;
@@ -103,7 +104,7 @@ class LightBatch {
     const EmitterPoint& e = emitters_[i] = lights.sample(lights.choose(choice, rng), rng);
     length_[i] = 1;
     if (setting_.max_depth == 1) return;
-    const std::optional<Leaving> leaving = lights.leave(e, rng);
+    const std::optional<Leaving> leaving = lights.sample_first_edge(e, rng);
     if (!leaving) return;
     const std::span<Vertex> path = std::span(vertices_).subspan(i * places_, places_);
     path[0].kind = e.infinite() ? Vertex::Kind::background : Vertex::Kind::emitter;
@@ -113,8 +114,8 @@ class LightBatch {
     w.throughput = leaving->throughput;
     w.roulette_scale = 1 / max_component(leaving->throughput);
     if (!e.delta()) w.mis_partial = light_side(setting_.counts).none / double(e.pdf.value);
-    place_[walkers_.size()] = i;
-    walkers_.push_back(w);
+    path_of_[states_.size()] = i;
+    states_.push_back(w);
   }
 
   template <class End>
@@ -135,11 +136,11 @@ class LightBatch {
   const Guide& guide_;
   std::size_t places_;
   std::vector<Vertex> vertices_;
-  std::vector<PathState> walkers_;
-  std::array<std::size_t, size> place_{};  // of each walker
+  std::vector<PathState> states_;
+  std::array<std::size_t, size> path_of_{};  // of each state in states_, its path's index
   std::array<int, size> length_{};
   std::array<EmitterPoint, size> emitters_{};
-  ShadowQueue<Seen> queue_;
+  ShadowQueue<PendingSplat> queue_;
 };
 
 }  // namespace lacuna

@@ -5,9 +5,9 @@
 
 namespace lacuna {
 
-/// Walks the light paths [0, paths) of an iteration, adds what they give at the eye (t = 1), if
-/// that strategy has samples, to `image` and to `arrived(splat)`, and calls `keep(path, batch,
-/// place)` for each once it is walked, from several threads.
+/// Traces the light paths [0, paths) of an iteration. If the strategy t = 1 has samples, adds their
+/// splats to `image` and hands each to `arrived(splat)`. Calls `keep(path, batch, i)` for each
+/// traced path, index `i` of its batch, from several threads.
 template <class Guide, class Keep, class Arrived>
 Counters light_pass(const IterationContext& context, const LightPathSetting& setting,
                     const Guide& guide, std::int64_t paths, Image& image, Keep&& keep,

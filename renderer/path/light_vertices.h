@@ -8,8 +8,8 @@
 
 namespace lacuna {
 
-/// The light paths of an iteration that eye paths of all pixels are joined to: `paths` of them,
-/// each with up to `longest` vertices. Vertices are counted by s: 1 lies on the emitter.
+/// The light paths of an iteration that the eye paths of all pixels share: `paths` of them, each
+/// with up to `longest` vertices. s counts the vertices from the light; s = 1 is on the emitter.
 class LightVertices {
  public:
   LightVertices(std::size_t paths, int longest)
@@ -21,8 +21,8 @@ class LightVertices {
   std::size_t paths() const { return paths_; }
   int longest() const { return longest_; }
 
-  /// Keeps the path in place `i` of `batch` as path number `path`. Different paths may be kept by
-  /// several threads at once.
+  /// Stores path `i` of `batch` as path number `path`. Several threads may store different paths at
+  /// once.
   template <class Guide>
   void keep(std::size_t path, const LightBatch<Guide>& batch, std::size_t i) {
     Path& p = kept_[path];
@@ -31,8 +31,8 @@ class LightVertices {
     for (int s = 2; s <= length; ++s) p.vertices.push_back(batch.vertex(i, s - 1));
   }
 
-  /// To be called when all paths are kept: leaves what can be joined, that of one length side by
-  /// side, in the order of the paths.
+  /// Call once all paths are stored: gathers the connectible vertices of each s, in the order of
+  /// the paths.
   void arrange() {
     for (Path& p : kept_) {
       if (p.emitter) emitters_.push_back(*p.emitter);
@@ -43,16 +43,16 @@ class LightVertices {
     }
   }
 
-  /// How many vertices `s` there are that can be the end of a connecting edge.
+  /// Number of connectible vertices with `s` vertices from the light.
   std::size_t count(int s) const {
     return s == 1 ? emitters_.size() : vertices_[static_cast<std::size_t>(s) - 2].size();
   }
   const EmitterPoint& emitter(std::size_t i) const { return emitters_[i]; }
-  /// Vertex `i` in [0, count(s)) of those, s >= 2.
+  /// Connectible vertex `i` in [0, count(s)), s >= 2.
   const Vertex& at(int s, std::size_t i) const {
     return vertices_[static_cast<std::size_t>(s) - 2][i];
   }
-  /// Asks for what a connection with it will read.
+  /// Prefetches what a connection to vertex `i` will read.
   void prefetch(int s, std::size_t i) const {
     const char* first = s == 1 ? reinterpret_cast<const char*>(&emitters_[i])
                                : reinterpret_cast<const char*>(&at(s, i));
@@ -61,7 +61,7 @@ class LightVertices {
     }
   }
 
-  /// Calls `use(end)` with vertex `i` of those: an EmitterEndpoint or a SurfaceEndpoint.
+  /// Calls `use(endpoint)` for connectible vertex `i`: an EmitterEndpoint or a SurfaceEndpoint.
   template <class Guide, class Use>
   decltype(auto) with_end(int s, std::size_t i, const Guide& guide, Use&& use) const {
     if (s == 1) return use(EmitterEndpoint{emitters_[i]});

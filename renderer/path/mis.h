@@ -14,12 +14,12 @@ namespace lacuna {
 // with p_j the density of vertex j on its walk, g_j the one from the other end, and c_j whether
 // x_{j-1} and x_j can be joined: neither scatters through a delta lobe only.
 
-/// How many samples a picture's pixel takes of each strategy. 0: not used.
+/// Number of samples of each strategy that a pixel takes; 0: the strategy is not used.
 struct SampleCounts {
-  double hit = 1;      ///< s = 0: the eye's path meets an emitter
+  double hit = 1;      ///< s = 0: the eye path hits an emitter
   double nee = 0;      ///< s = 1, t >= 2: next event estimation
   double connect = 0;  ///< s >= 2, t >= 2
-  double splat = 0;    ///< s >= 1, t = 1: a light's path joined to the eye
+  double splat = 0;    ///< s >= 1, t = 1: a light path joined to the eye
 
   /// Whether paths from lights are longer than one vertex.
   constexpr bool bidirectional() const { return connect > 0 || splat > 0; }
@@ -30,7 +30,7 @@ struct SampleCounts {
   }
 };
 
-/// The counts as one end of a path sees them: of the strategy that leaves it `vertices` vertices.
+/// The sample counts by the number of vertices that a strategy samples from one side of the path.
 struct TechniqueCounts {
   double none = 0, one = 0, more = 0;
   constexpr bool any() const { return none > 0 || one > 0 || more > 0; }
@@ -39,19 +39,20 @@ struct TechniqueCounts {
   }
 };
 constexpr TechniqueCounts light_side(const SampleCounts& n) { return {n.hit, n.nee, n.connect}; }
-/// The eye is a point that nothing hits: no strategy leaves it without a vertex.
+/// Nothing hits the eye, a point: every strategy samples at least one vertex from its side.
 constexpr TechniqueCounts eye_side(const SampleCounts& n) { return {0, n.splat, n.connect}; }
 
-/// n_j c_j + sum_{i < j} n_i p_i / p_j at vertex `j` of a walk: `connectible` is c_j, `back` the
+/// n_j c_j + sum_{i < j} n_i p_i / p_j at vertex `j` of a walk: `connectible` is c_j, `pdf_rev` the
 /// density, per steradian, with which the other end's walk goes on from j to j - 1, and
-/// `mis_partial` what the walk knew when it arrived (Walk).
-constexpr double mis_partial_sum(const TechniqueCounts& side, int j, bool connectible, double back,
-                                 double mis_partial) {
-  return (connectible ? side.of(j) : 0.0) + back * mis_partial;
+/// `mis_partial` the part of the sum that the walk carried to j (PathState).
+constexpr double mis_partial_sum(const TechniqueCounts& side, int j, bool connectible,
+                                 double pdf_rev, double mis_partial) {
+  return (connectible ? side.of(j) : 0.0) + pdf_rev * mis_partial;
 }
 
-/// The balance heuristic: share of the strategy with `own` samples, where the others' densities
-/// over its own, times their samples, add up to `light` and `eye`.
+/// The balance heuristic, own / (own + light + eye): `own` is the number of samples of this
+/// strategy; `light` and `eye` are the sums of n_i p_i / p_s over the strategies with fewer
+/// vertices on the light's and on the eye's side.
 constexpr double mis_weight(double own, double light, double eye) {
   return own / (own + light + eye);
 }

@@ -7,13 +7,13 @@
 
 namespace lacuna {
 
-/// Contributions that wait for their visibility. Shadow rays are traced many at a time, which
-/// Embree does half as fast again as one by one, and in the order they were added, so sums have the
+/// Contributions that wait for their shadow rays. Embree traces many rays at a time 1.5 times as
+/// fast as single ones. Contributions are handed out in the order they were added, so sums have the
 /// same bits for any number of threads.
 template <class Contribution>
 class ShadowQueue {
  public:
-  /// `value` counts if `ray` meets nothing.
+  /// `value` counts if `ray` is unoccluded.
   void add(const Ray& ray, const Contribution& value) {
     rays_.push_back(ray);
     pending_.push_back(value);
@@ -21,8 +21,7 @@ class ShadowQueue {
 
   std::size_t size() const { return rays_.size(); }
 
-  /// Traces all rays and calls `lit(value)` for each contribution that arrives; the queue is then
-  /// empty.
+  /// Traces all rays, calls `lit(value)` for each unoccluded contribution, and empties the queue.
   template <class Lit>
   void flush(const RayCaster& caster, Counters& counters, Lit&& lit) {
     counters.shadow_rays += rays_.size();

@@ -11,10 +11,10 @@
 
 namespace lacuna {
 
-/// What every strategy answers: guides, connections and visibilities.
+/// The interface of every strategy: guides, connections and visibilities.
 ///
-/// - needs_space(): whether prepare() takes something from the analysis of the empty space. Asked
-///   before prepare().
+/// - needs_space(): whether prepare() uses the analysis of the empty space. Called before
+/// prepare().
 /// - prepare(): called once, before the first iteration. Its time is charged to the job's
 ///   preparation.
 /// - save() and load(): the learned state, for checkpoints. It is the same bits for any number of
@@ -22,8 +22,8 @@ namespace lacuna {
 ///   scene.
 /// - statistics(): names and numbers for the report, of this process' iterations.
 ///
-/// Whether a strategy is biased stands in its settings (`static constexpr bool biased`), because
-/// the service must know it without the renderer.
+/// A strategy's settings say whether it is biased (`static constexpr bool biased`), because the
+/// service reads them without linking the renderer.
 template <class S>
 concept Strategy = requires(S s, const S& k, const PrepareContext& context, ByteWriter& out,
                             ByteReader& in) {
@@ -34,7 +34,7 @@ concept Strategy = requires(S s, const S& k, const PrepareContext& context, Byte
   { k.statistics() } -> std::same_as<std::vector<std::pair<std::string, double>>>;
 };
 
-/// The answers of a strategy that needs, prepares, learns and counts nothing.
+/// Defaults for a strategy that needs, prepares, learns and counts nothing.
 struct StrategyBase {
   static constexpr bool needs_space() { return false; }
   static void prepare(const PrepareContext&) {}
@@ -43,7 +43,7 @@ struct StrategyBase {
   static std::vector<std::pair<std::string, double>> statistics() { return {}; }
 };
 
-/// A row of a registry: what a job file names, and the class that does it.
+/// A row of a registry: the settings that a job file names, and the class that implements them.
 template <class SettingsOf, class StrategyOf>
 struct Entry {
   using Settings = SettingsOf;
@@ -55,7 +55,7 @@ template <class... Entries>
 struct Registry {
   using Settings = std::variant<typename Entries::Settings...>;
 
-  /// `make.template operator()<Strategy>(settings)` for the alternative that `settings` hold.
+  /// Calls `make.template operator()<Strategy>(settings)` for the alternative held by `settings`.
   template <class Make>
   static auto visit(const Settings& settings, Make&& make) {
     return std::visit(

@@ -29,8 +29,8 @@ struct Tile {
   V2i pixel(int i) const { return first + V2i(i % size.x, i / size.x); }
 };
 
-/// Calls `work(i, counters)` for i in [0, n) in parallel and adds up what they counted. Throws
-/// IterationStopped if the context asks for it.
+/// Calls `work(i, counters)` for i in [0, n) in parallel and returns the sum of the counters.
+/// Throws IterationStopped when the context's stop() returns true.
 template <class Work>
 Counters for_each_part(const IterationContext& context, int n, Work&& work) {
   std::vector<Counters> counters(static_cast<std::size_t>(n));
@@ -50,7 +50,7 @@ Counters for_each_part(const IterationContext& context, int n, Work&& work) {
   return sum;
 }
 
-/// How an image is cut into tiles.
+/// Divides an image into square tiles.
 class Tiling {
  public:
   /// `size`: pixels along a side; by default small enough to stop quickly and large enough to be
@@ -71,7 +71,7 @@ class Tiling {
   int width_, height_, size_, across_;
 };
 
-/// Calls `render(tile, counters)` for all tiles of `image`, as for_each_part() does.
+/// Calls `render(tile, counters)` for all tiles of `image` in parallel (for_each_part()).
 template <class Render>
 Counters for_each_tile(const IterationContext& context, const Image& image, Render&& render) {
   const Tiling tiling(image);
@@ -79,26 +79,26 @@ Counters for_each_tile(const IterationContext& context, const Image& image, Rend
                        [&](int i, Counters& counters) { render(tiling.tile(i), counters); });
 }
 
-/// Where a sample of a pixel starts: its stream of random numbers, and its first ray.
+/// The start of a pixel's sample: its stream of random numbers, and its camera ray.
 struct CameraSample {
   Rng rng;
   Ray ray;
 
   CameraSample(const IterationContext& context, std::size_t pixel)
       : rng(context.seed, context.iteration, pixel),
-        ray(context.camera.sample(place(pixel, context.camera.width()), rng.next2())) {}
+        ray(context.camera.sample(column_row(pixel, context.camera.width()), rng.next2())) {}
 
  private:
-  static V2i place(std::size_t pixel, int width) {
+  static V2i column_row(std::size_t pixel, int width) {
     const int i = static_cast<int>(pixel);
     return {i % width, i / width};
   }
 };
 
-/// Fills `batch` with a path for each of the tile's pixels from the `first` on, as many as fit.
+/// Starts a path for each pixel of the tile from number `first` on, as many as fit into `batch`.
 inline void start_paths(const IterationContext& context, const Image& image, const Tile& tile,
                         int first, EyeBatch& batch) {
-  batch.walkers.clear();
+  batch.states.clear();
   for (int i = first; i < std::min(first + int{EyeBatch::size}, tile.pixels()); ++i) {
     const V2i at = tile.pixel(i);
     const std::size_t pixel = image.index(at.x, at.y);
@@ -107,7 +107,7 @@ inline void start_paths(const IterationContext& context, const Image& image, con
   }
 }
 
-/// As for_each_part(); `work(i, counters, splats)` may also give to any pixel. What it gives is
+/// for_each_part() whose `work(i, counters, splats)` may also splat to any pixel. The splats are
 /// added to `image`, and handed to `arrived(splat)`, in the order of the parts.
 template <class Work, class Arrived>
 Counters for_each_splatting_part(const IterationContext& context, int n, Image& image, Work&& work,

@@ -8,38 +8,39 @@
 
 namespace lacuna {
 
-/// Where a guide (renderer/guides) found its distribution of directions at a surface.
+/// The cell of a guide (renderer/guides) whose distribution of directions is used at a surface.
 struct GuidingCell {
-  float probability = 0;  ///< with which a direction is drawn from it, < 1; 0: there is none
-  std::uint32_t index = 0xffffffff;  ///< the guide's own; at first: nothing
+  /// Probability of sampling the cell's distribution instead of the BSDF, < 1; 0: no distribution.
+  float probability = 0;
+  std::uint32_t index = 0xffffffff;  ///< the guide's own number of the cell; 0xffffffff: none
 };
 
-/// One vertex of a path, wherever it came from.
+/// One vertex of an eye path or a light path.
 struct Vertex {
   enum class Kind : std::uint8_t { eye, emitter, surface, background };
   Kind kind = Kind::eye;
   bool delta = false;  ///< the walk left it through a delta lobe
-  /// The strategy that joins the vertex before it to this one can make the path, as far as the
-  /// former is concerned (mis.h).
-  bool prior_connectible = true;
+  /// The previous vertex is connectible(): one of the two conditions of c_j in mis.h.
+  bool prev_connectible = true;
   Surface surface;          ///< emitter: x, ng; background: only x, the unit direction to infinity
   V3f wp{0, 0, 0};          ///< unit, to the previous vertex
-  Rgb throughput{1, 1, 1};  ///< includes every division by a density, up to here
+  Rgb throughput{1, 1, 1};  ///< product of f |cos| / pdf over the edges up to here
   Pdf<Area> p_fwd{};        ///< density of this vertex on this walk; background: per steradian
-  double mis_partial =
-      0;  ///< The part of mis_partial_sum() that is known before the path goes on (mis.h)
-  GuidingCell site;          ///< of the surface as seen from wp
+  /// The sum over i < j in mis_partial_sum() over pdf_rev, which the next edge decides.
+  double mis_partial = 0;
+  GuidingCell guiding_cell;  ///< of the surface as seen from wp
   std::optional<Bsdf> bsdf;  ///< of a surface from which the path may go on
 
-  /// A surface's geometric normal on the side that the walk came from.
+  /// The geometric normal on the side of wp.
   V3f side() const { return dot(surface.ng, wp) < 0 ? -surface.ng : surface.ng; }
-  /// An edge that was not sampled may begin or end here.
+  /// A connecting edge may end here: the vertex does not scatter through a delta lobe only.
   bool connectible() const { return kind == Kind::surface ? !delta && bsdf->connectible() : true; }
 };
 
-/// Density per area at `to` of reaching it from `from` along unit `w`, drawn with density `p`. The
-/// background has no area: its density stays per steradian; what comes from there is drawn per area
-/// across `w` (EmitterPoint::leaving_pdf). The only conversion between the measures.
+/// p |cos| / distance^2: the density per area at `to` of a direction `w` (unit) sampled at `from`
+/// with density `p`. The background has no area: its density stays per steradian, and rays from it
+/// have a density per area across `w` (EmitterPoint::leaving_pdf). The only conversion between the
+/// measures.
 inline Pdf<Area> to_area(Pdf<SolidAngle> p, const Vertex& from, const V3f& w, const Vertex& to) {
   if (to.kind == Vertex::Kind::background) return Pdf<Area>(p.value);
   const float cosine = abs_dot(to.surface.ng, w);

@@ -12,65 +12,66 @@
 
 namespace lacuna {
 
-/// How far a walk goes, and for whom.
+/// Limits and transport of a walk.
 struct WalkLimits {
   int max_depth = 1;           ///< edges
-  bool last_scatters = false;  ///< the vertex after the last edge has a Bsdf too: it will be joined
-  int roulette_depth = 1;      ///< edges that are walked before Russian roulette may end the path
+  bool last_scatters = false;  ///< make a Bsdf at the last vertex too, because it will be connected
+  int roulette_depth = 1;      ///< edges before Russian roulette may end the path
   Transport transport = Transport::radiance;
-  TechniqueCounts counts =
-      {};  ///< of this side's strategies; all 0: Vertex::mis_partial is not needed
+  /// Sample counts of this side's strategies; all 0: Vertex::mis_partial is not computed.
+  TechniqueCounts counts = {};
 };
 
-/// A random walk, between two of its edges.
+/// The state of a random walk between two edges.
 struct PathState {
   Rng rng;
   Ray ray;                  ///< the next edge
-  Hit hit{};                ///< of it
-  Rgb throughput{1, 1, 1};  ///< along it
-  Pdf<SolidAngle> p;        ///< density with which it was drawn
+  Hit hit{};                ///< of `ray`
+  Rgb throughput{1, 1, 1};  ///< along `ray`
+  Pdf<SolidAngle> p;        ///< density with which the direction of `ray` was sampled
   /// 1 / the largest component of the first edge's throughput, times BsdfSample::pdf_ratio of all
-  /// vertices: what is left by throughput that way is what the BSDF's own draws would have left. A
-  /// guide lowers it where it sends many paths, so roulette by it alone would end just those.
+  /// vertices. throughput times this scale is the throughput that sampling the BSDF would have
+  /// left. A guide lowers throughput where it sends many paths, so roulette by throughput alone
+  /// would end just those.
   float roulette_scale = 1;
-  std::span<Vertex> path;  ///< max_depth + 1 places; path[0] is set
-  /// mis_partial_sum() of the last vertex over its density: of the first, for a path from a light
-  /// whose emitter can be hit, TechniqueCounts::none over its density.
+  std::span<Vertex> path;  ///< room for max_depth + 1 vertices; path[0] is set
+  /// mis_partial_sum() of the last vertex over its density. At vertex 0 of a light path whose
+  /// emitter can be hit: TechniqueCounts::none over its density.
   double mis_partial = 0;
 };
 
-/// Leads random walks through a scene, all of them edge by edge: what a vertex needs from memory is
-/// asked for while the others' rays are traced, which pays where a scene is larger than the caches.
-/// The guide (renderer/guides) draws the directions. Walks know nothing of one another: the results
-/// are the same however many are led together.
+/// Traces a batch of random walks through a scene, one edge of each at a time: the memory that a
+/// vertex needs is prefetched while the rays of the others are traced, which pays where a scene is
+/// larger than the caches. The guide (renderer/guides) samples the directions. The walks are
+/// independent: the results do not depend on the size of the batch.
 template <class Guide>
 class Walk {
  public:
   Walk(const Scene& scene, const Guide& guide, const WalkLimits& limits, Counters& counters)
       : scene_(scene), guide_(guide), limits_(limits), counters_(counters) {}
 
-  /// Each vertex reached is stored in its walker's path and handed to `visit(i, depth)`, i = index
-  /// of the walker and depth = edges walked, before the walk goes on from it; `before(i, depth)` is
-  /// called before the ray to it is traced, for what can be drawn ahead. The densities of all
-  /// vertices are per area. A `visit` that returns bool ends the walk by false.
+  /// Stores each vertex in its path and calls `visit(i, depth)`, with i the index of the path and
+  /// depth the number of its edges, before the next direction is sampled. `before(i, depth)` is
+  /// called before the ray to that vertex is traced, for random numbers that are drawn ahead. The
+  /// densities of all vertices are per area. A `visit` that returns false ends its walk.
   template <class Before, class Visit>
-  void trace_paths(std::span<PathState> walkers, Before&& before, Visit&& visit) {
-    active_.resize(walkers.size());
+  void trace_paths(std::span<PathState> states, Before&& before, Visit&& visit) {
+    active_.resize(states.size());
     std::iota(active_.begin(), active_.end(), std::size_t{0});
     for (int depth = 1; depth <= limits_.max_depth && !active_.empty(); ++depth) {
       for (const std::size_t i : active_) {
         before(i, depth);
-        trace(walkers[i], depth);
+        trace(states[i], depth);
       }
-      for (const std::size_t i : active_) arrive(walkers[i], depth);
+      for (const std::size_t i : active_) on_hit(states[i], depth);
       std::erase_if(active_, [&](std::size_t i) {
-        scatter(walkers[i], depth);
+        scatter(states[i], depth);
         if constexpr (std::is_void_v<decltype(visit(i, depth))>) {
           visit(i, depth);
         } else if (!visit(i, depth)) {
           return true;
         }
-        return !leave(walkers[i], depth);
+        return !sample_next(states[i], depth);
       });
     }
   }
@@ -85,7 +86,7 @@ class Walk {
     if (met) scene_.prefetch(w.hit);
   }
 
-  void arrive(PathState& w, int depth) {
+  void on_hit(PathState& w, int depth) {
     Vertex& v = vertex(w, depth);
     v.delta = false;
     v.wp = -w.ray.d;
@@ -103,7 +104,7 @@ class Walk {
     } else {
       v.mis_partial = 0;
     }
-    v.prior_connectible = before.connectible();
+    v.prev_connectible = before.connectible();
   }
 
   bool scatters(int depth) const { return limits_.last_scatters || depth < limits_.max_depth; }
@@ -112,11 +113,11 @@ class Walk {
     Vertex& v = vertex(w, depth);
     if (v.kind == Vertex::Kind::background || !scatters(depth)) return;
     scene_.make_bsdf(v.surface, v.bsdf);
-    if constexpr (requires { guide_.arrive(v); }) guide_.arrive(v);
+    if constexpr (requires { guide_.on_hit(v); }) guide_.on_hit(v);
   }
 
-  /// Draws the next edge; false where the walk ends.
-  bool leave(PathState& w, int depth) {
+  /// Samples the next edge; false where the walk ends.
+  bool sample_next(PathState& w, int depth) {
     Vertex& v = vertex(w, depth);
     if (v.kind == Vertex::Kind::background || depth == limits_.max_depth) return false;
     const std::optional<BsdfSample> next = guide_.sample(v, w.rng, limits_.transport);
@@ -137,14 +138,14 @@ class Walk {
   }
 
   double mis_partial(const Vertex& v, int depth, const V3f& wi) const {
-    const bool connectible = v.prior_connectible && v.connectible();
-    double back = 0;
+    const bool connectible = v.prev_connectible && v.connectible();
+    double pdf_rev = 0;
     if (v.mis_partial > 0) {
       const Transport other =
           limits_.transport == Transport::radiance ? Transport::importance : Transport::radiance;
-      back = v.delta ? 1.0 : double(guide_.pdf(v, wi, v.wp, other).value);
+      pdf_rev = v.delta ? 1.0 : double(guide_.pdf(v, wi, v.wp, other).value);
     }
-    return mis_partial_sum(limits_.counts, depth, connectible, back, v.mis_partial) /
+    return mis_partial_sum(limits_.counts, depth, connectible, pdf_rev, v.mis_partial) /
            double(v.p_fwd.value);
   }
 

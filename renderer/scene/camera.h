@@ -14,7 +14,7 @@ namespace lacuna {
 const CameraData& choose_camera(const SceneData& scene, const std::string& name,
                                 const std::string& file);
 
-/// The part of a picture of `size` pixels that a film shows: from `first` on.
+/// The rectangle of a larger picture that a film shows: `size` pixels from `first` on.
 struct Crop {
   V2i first{0, 0};
   V2i size{0, 0};
@@ -24,26 +24,26 @@ struct Crop {
 /// the glTF camera's, the horizontal one follows from the film.
 class Camera {
  public:
-  /// Where there is a `crop`, the film is that part of a larger picture of the same view.
+  /// With a `crop`, the film is that part of a larger picture of the same view.
   Camera(const CameraData& data, int width, int height, PixelFilter filter = PixelFilter::box,
          const std::optional<Crop>& crop = {});
 
-  /// The ray of a sample of `pixel`, for `u` uniform in [0, 1)^2. The point on the film is drawn
-  /// from the pixel filter itself, so all samples count alike and pixels stay independent (Ernst,
+  /// The ray of a sample of `pixel`, for `u` uniform in [0, 1)^2. The point on the film is sampled
+  /// from the pixel filter, so all samples have equal weight and pixels are independent (Ernst,
   /// Stamminger and Greiner 2006, "Filter Importance Sampling").
   Ray sample(const V2i& pixel, const V2f& u) const;
 
   /// The ray through film position (x, y), in pixels from the upper left corner. `d` is unit.
   Ray ray(float x, float y) const;
 
-  /// Density per steradian, at unit `w` in front of the camera, of one sample a pixel spread evenly
-  /// over the film: how many pixels a steradian covers there. So it is the importance of what
-  /// arrives, too: a path from a light that ends at the eye gives density() times the weights of
+  /// Density per steradian, at unit `w` in front of the camera, of one sample per pixel, uniform
+  /// over the film: the number of pixels per steradian. It is also the importance of the eye: a
+  /// light path that ends at the eye contributes its radiance times density() times the weights of
   /// splat().
   Pdf<SolidAngle> density(const V3f& w) const;
 
-  /// The place on the film, in pixels, where light arriving against unit `w` (away from the eye) is
-  /// seen; nothing if no pixel sees it.
+  /// The film position, in pixels, of light that arrives against unit `w` (away from the eye); none
+  /// if no pixel sees it.
   std::optional<V2f> project(const V3f& w) const;
 
   /// Calls `pixel(index, weight)` for the pixels whose filter reaches film position `at`: index in

@@ -7,7 +7,7 @@
 
 namespace lacuna {
 
-/// Makes one of the scene's materials what `change` says. `file`: of the scene, for messages.
+/// Applies `change` to the scene's materials of that name. `file`: of the scene, for messages.
 /// Throws SceneError if no material has that name.
 void change_material(SceneData& scene, const MaterialChange& change, const std::string& file);
 

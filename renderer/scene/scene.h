@@ -12,15 +12,15 @@
 
 namespace lacuna {
 
-/// What an integrator wants to know of a scene. What nobody asks for is not built: masks decide
-/// what is there and are always included.
+/// The parts of a scene that an integrator needs; the others are not built. Alpha masks are always
+/// built, because they affect visibility.
 struct SceneNeeds {
   bool materials = false;  ///< scattering: textures of base colour, roughness, ...
   bool emission = false;   ///< emitters and the environment
   bool space = false;      ///< the analysis of the empty space
 };
 
-/// Light from all around, as a job names it.
+/// The environment light of a job.
 struct EnvironmentImage {
   std::filesystem::path file;
   float scale = 1;
@@ -30,18 +30,18 @@ struct EnvironmentImage {
 /// A scene ready to render. Immutable.
 class Scene {
  public:
-  /// Decodes the textures that `needs` asks for, builds the ray caster and, if asked for, the
-  /// emitters. Throws SceneError.
+  /// Decodes the textures of the `needs`, builds the ray caster and, if needed, the emitters.
+  /// Throws SceneError.
   Scene(SceneData data, const SceneNeeds& needs, const std::optional<EnvironmentImage>& environment,
         const ThreadPool& pool);
 
   const SceneData& data() const { return *data_; }
   /// The surface at a hit of rays().
   Surface surface(const Hit& hit) const { return {*data_, triangles_, hit}; }
-  /// Asks for what surface() will read.
+  /// Prefetches what surface() reads.
   void prefetch(const Hit& hit) const { triangles_.prefetch(hit.mesh, hit.triangle); }
   const RayCaster& rays() const { return rays_; }
-  /// Only where SceneNeeds::emission was asked for.
+  /// Requires SceneNeeds::emission.
   const EmitterSet& emitters() const { return *emitters_; }
   bool has_emitters() const { return emitters_ != nullptr; }
   /// The box of all triangles, scene units.
@@ -54,8 +54,8 @@ class Scene {
     if (!s.emits || (!s.emits_behind && dot(wo, s.ng) <= 0)) return {0, 0, 0};
     return emission(material(s), data_->textures, s.uv);
   }
-  /// Makes the scattering at `s` in `place`, where it is to stay: it is too large to be moved
-  /// about. Only where SceneNeeds::materials was asked for.
+  /// Constructs the BSDF at `s` in `place`, because it is too large to be moved. Requires
+  /// SceneNeeds::materials.
   void make_bsdf(const Surface& s, std::optional<Bsdf>& place) const {
     if (const auto& lobes = uniform_lobes_[s.material]) {
       place.emplace(*lobes, s.ng, s.ns);
@@ -63,7 +63,7 @@ class Scene {
       place.emplace(surface_params(material(s), data_->textures, s.uv), s.ng, s.ns);
     }
   }
-  /// Asks for the texels that make_bsdf() will read.
+  /// Prefetches the texels that make_bsdf() reads.
   void prefetch_bsdf(const Surface& s) const {
     if (!uniform_lobes_[s.material]) prefetch_textures(material(s), data_->textures, s.uv);
   }

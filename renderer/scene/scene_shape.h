@@ -8,18 +8,18 @@
 
 namespace lacuna {
 
-/// All triangles of a scene for the analysis of its empty space. Lights, glass and masked surfaces
-/// are scene like all others.
+/// All triangles of a scene for the analysis of its empty space, including lights, glass and masked
+/// surfaces.
 TriangleSoup triangle_soup(const SceneData& scene);
 
 /// SceneData::geometry_hash as 16 hexadecimal digits: the key of all analysis.
 std::string geometry_key(const SceneData& scene);
 
-/// A key of what rays can meet: the geometry, and where it has alpha masks all bytes of the scene.
+/// A key of the occluders: the geometry, and all bytes of the scene if it has alpha masks.
 std::string occluder_key(const SceneData& scene);
 
-/// Where light starts or is seen: the camera, points of every triangle that emits on each side that
-/// does, point and spot lights; `environment`, and directional lights, come from infinity.
+/// The seeds of the domain: the camera, points on every emitting side of every emitting triangle,
+/// point and spot lights; with `environment` or directional lights, light from infinity.
 DomainSeeds domain_seeds(const SceneData& scene, const CameraData& camera, bool environment);
 
 }  // namespace lacuna

@@ -28,8 +28,8 @@ struct BdptSettings : PathLengths {
 template <class V>
 void describe(V& v, BdptSettings& s) {
   describe_lengths(v, s);
-  v("connections", s.connections, {.doc = "which light vertices meet an eye vertex"});
-  v("guide", s.guide, {.doc = "where the next ray of a path from the eye goes"});
+  v("connections", s.connections, {.doc = "how light vertices are sampled for an eye vertex"});
+  v("guide", s.guide, {.doc = "how the next direction of an eye path is sampled"});
 }
 
 }  // namespace lacuna

@@ -8,7 +8,7 @@
 
 namespace lacuna {
 
-/// How several resampling distributions over the same light paths become one.
+/// How several resampling distributions over the same light vertices are combined.
 enum class Combination { mixture, max };
 
 template <>
@@ -16,23 +16,24 @@ struct EnumTable<Combination> {
   static constexpr std::array<EnumValue<Combination>, 2> values{{
       {Combination::mixture, "mixture", "their mean (balance heuristic)"},
       {Combination::max, "max",
-       "each light path only by the distribution that gives it most, all of them renormalised and "
-       "drawn from equally often (max heuristic, pre-multiplied; Noel 2015, 11.3)"},
+       "each light vertex is sampled only from the distribution that gives it the highest "
+       "probability; the distributions are renormalised and equally probable (max heuristic, "
+       "pre-multiplied; Noel 2015, 11.3)"},
   }};
 };
 
-/// Which light vertices a distribution that does not look at visibility takes.
+/// Which light vertices a distribution without visibility includes.
 enum class LightSides { facing, both };
 
 template <>
 struct EnumTable<LightSides> {
   static constexpr std::array<EnumValue<LightSides>, 2> values{{
       {LightSides::facing, "facing", "those that scatter towards the node or record"},
-      {LightSides::both, "both", "all, also those that turn their back to it"},
+      {LightSides::both, "both", "all, including those that face away from it"},
   }};
 };
 
-/// What all choices of connections but `paired` have in common.
+/// The settings that all connection strategies except `paired` have in common.
 struct ResamplingSettings {
   int light_paths = 1024;
   // As published they are otherwise, see their tables:
@@ -45,28 +46,31 @@ struct ResamplingSettings {
 template <class V>
 void describe_resampling(V& v, ResamplingSettings& s) {
   v("light_paths", s.light_paths,
-    {.doc = "light paths an iteration that eye paths are joined to, shared by all pixels",
+    {.doc = "light paths per iteration that eye paths are connected to, shared by all pixels",
      .min = 1,
      .max = 1 << 16});
   v("splat_paths", s.splat_paths,
-    {.doc = "light paths an iteration that are joined to the eye, as a share of the pixels; those "
-            "that eye paths are joined to always are",
+    {.doc = "light paths per iteration that are connected to the eye (t = 1), as a share of the "
+            "pixels; never fewer than light_paths",
      .min = 0,
      .max = 16,
      .published = "1"});
   v("count_as", s.count_as,
     {.doc =
-         "as how many samples a connection with a resampled path of two vertices or more counts "
-         "in the weights of multiple importance sampling; one with a point on an emitter counts as "
-         "one. 0: both as many as there are light paths (Noel 2015, 11.5)",
+         "number of samples n_s that MIS weights assume for connections to resampled light paths "
+         "of "
+         "two or more vertices (s >= 2); for s = 1, a point on an emitter, they assume 1. 0: both "
+         "are light_paths (Noel 2015, 11.5)",
      .min = 0,
      .max = 1 << 16,
      .published = "0"});
   v("roulette", s.roulette,
     {.doc =
-         "a connection is made with a probability in proportion to what those of its length gave "
-         "in its part of the empty space before; certainly, if that is this share of what all "
-         "connections of a path give in its part of the picture. 0: all are made",
+         "Russian roulette of connections: a connection is made with a probability proportional to "
+         "the root mean square contribution of earlier connections of the same length in the same "
+         "cell of the empty space. The probability is 1 from this share of the mean contribution "
+         "of "
+         "all connections of a path in the tile on. 0: all connections are made",
      .min = 0,
      .max = 1,
      .published = "0"});
@@ -76,8 +80,9 @@ void describe_resampling(V& v, ResamplingSettings& s) {
 struct PairedSettings {
   static constexpr std::string_view name = "paired";
   static constexpr std::string_view doc =
-      "every pixel's path to a light path of its own and, at each vertex, to a fresh point on an "
-      "emitter";
+      "every eye path is connected to a light path of its own and, at each vertex, to a new point "
+      "on "
+      "an emitter";
   bool operator==(const PairedSettings&) const = default;
 };
 template <class V>
@@ -87,7 +92,7 @@ void describe(V&, PairedSettings&) {}
 struct UniformSettings : ResamplingSettings {
   static constexpr std::string_view name = "uniform";
   static constexpr std::string_view doc =
-      "one of the shared light paths at random, for each length";
+      "for each length, one of the shared light vertices, all equally probable";
   bool operator==(const UniformSettings&) const = default;
 };
 template <class V>
@@ -99,7 +104,7 @@ void describe(V& v, UniformSettings& s) {
 struct SkeletonConnectionsSettings : ResamplingSettings {
   static constexpr std::string_view name = "skeleton";
   static constexpr std::string_view doc =
-      "light paths resampled by distributions at the skeleton's nodes (Noel 2015, ch. 11)";
+      "light vertices resampled by distributions at the skeleton's nodes (Noel 2015, ch. 11)";
 
   double acceptance = 1;
   bool visible = true;
@@ -111,8 +116,10 @@ struct SkeletonConnectionsSettings : ResamplingSettings {
 template <class V, class S>
 void describe_acceptance(V& v, S& s) {
   v("acceptance", s.acceptance,
-    {.doc = "a node has distributions if more eye vertices belonged to it than this times the mean "
-            "over nodes; elsewhere light paths are drawn uniformly",
+    {.doc =
+         "a node has distributions if at least this times the mean number of eye vertices of all "
+         "nodes belonged to it in earlier iterations; elsewhere light vertices are sampled "
+         "uniformly",
      .min = 0,
      .max = 1e6});
 }
@@ -121,18 +128,20 @@ void describe(V& v, SkeletonConnectionsSettings& s) {
   describe_resampling(v, s);
   describe_acceptance(v, s);
   v("visible", s.visible,
-    {.doc = "distribution V: contribution over squared distance, of what the node sees (eq. 188)"});
-  v("unshadowed", s.unshadowed, {.doc = "distribution U: the same of all (eq. 189)"});
+    {.doc = "distribution V: throughput over squared distance of the light vertices that the node "
+            "sees (eq. 188)"});
+  v("unshadowed", s.unshadowed,
+    {.doc = "distribution U: the same for all light vertices, without visibility (eq. 189)"});
   v("combination", s.combination,
-    {.doc = "of V, U and the uniform distribution C", .published = "\"max\""});
-  v("sides", s.sides, {.doc = "light vertices that V and U take"});
+    {.doc = "how V, U and the uniform distribution C are combined", .published = "\"max\""});
+  v("sides", s.sides, {.doc = "light vertices that V and U include"});
 }
 
 /// connections: importance_cache.
 struct ImportanceCacheSettings : ResamplingSettings {
   static constexpr std::string_view name = "importance_cache";
   static constexpr std::string_view doc =
-      "light paths resampled by distributions at records on surfaces (Georgiev et al. 2012)";
+      "light vertices resampled by distributions at records on surfaces (Georgiev et al. 2012)";
 
   double record_density = 0.001;
   int neighbours = 3;
@@ -145,32 +154,34 @@ struct ImportanceCacheSettings : ResamplingSettings {
 template <class V, class S>
 void describe_records(V& v, S& s) {
   v("record_density", s.record_density,
-    {.doc = "paths from the eye whose vertices become records, as a share of the pixels",
+    {.doc = "eye paths whose vertices become records, as a share of the pixels",
      .min = 0,
      .max = 0.1,
      .above_min = true});
   v("neighbours", s.neighbours,
-    {.doc = "nearest records of an eye vertex, one of which is drawn", .min = 1, .max = 64});
+    {.doc = "nearest records of an eye vertex; one of them, at random, samples the light vertices",
+     .min = 1,
+     .max = 64});
 }
 template <class V>
 void describe(V& v, ImportanceCacheSettings& s) {
   describe_resampling(v, s);
   describe_records(v, s);
-  v("full", s.full, {.doc = "distribution F: the record's whole contribution, with visibility"});
+  v("full", s.full, {.doc = "distribution F: the contribution to the record, with visibility"});
   v("unshadowed", s.unshadowed, {.doc = "distribution U: the same without visibility"});
   v("bounded", s.bounded,
-    {.doc = "distribution B: without visibility, and without what only holds at the record: its "
-            "BSDF and the distance"});
+    {.doc = "distribution B: without visibility, the record's BSDF and the distance, which hold "
+            "only at the record itself"});
   v("combination", s.combination,
-    {.doc = "of F, U, B and the uniform distribution C", .published = "\"max\""});
+    {.doc = "how F, U, B and the uniform distribution C are combined", .published = "\"max\""});
 }
 
-/// connections: hybrid. Records are dense where the eye looks and too few elsewhere; nodes are
-/// everywhere.
+/// connections: hybrid. Records are dense on visible surfaces and sparse elsewhere; skeleton nodes
+/// are everywhere.
 struct HybridSettings : ResamplingSettings {
   static constexpr std::string_view name = "hybrid";
   static constexpr std::string_view doc =
-      "as importance_cache at the first vertices of an eye's path, as skeleton beyond (Noel 2015, "
+      "importance_cache at the first vertices of an eye path, skeleton at later ones (Noel 2015, "
       "11.6)";
 
   int cached_depth = 1;
@@ -198,17 +209,18 @@ template <class V>
 void describe(V& v, HybridSettings& s) {
   describe_resampling(v, s);
   v("cached_depth", s.cached_depth,
-    {.doc = "vertices up to this many edges from the eye use records",
+    {.doc = "eye vertices up to this many edges from the eye use records",
      .min = 1,
      .max = 1024,
      .unit = "edges"});
   describe_records(v, s);
   describe_acceptance(v, s);
   v("combination", s.combination,
-    {.doc = "of F and C at records, and of V, U and C at nodes", .published = "\"max\""});
+    {.doc = "how F and C at records, and V, U and C at nodes, are combined",
+     .published = "\"max\""});
 }
 
-/// Which light vertices meet an eye vertex.
+/// How light vertices are sampled for an eye vertex.
 using ConnectionsSettings =
     std::variant<PairedSettings, UniformSettings, SkeletonConnectionsSettings,
                  ImportanceCacheSettings, HybridSettings>;

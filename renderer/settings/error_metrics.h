@@ -15,18 +15,18 @@ enum class ErrorMetric { mae, rmse, mse, relmse, smape, est_rmse };
 
 constexpr double squared_error(double x, double r) { return (x - r) * (x - r); }
 
-/// All that there is to say of an error metric. Film, curve.csv, reports, comparisons, the schema
-/// and the page take names and definitions from this table and have none of their own.
+/// The definition of an error metric. Film, curve.csv, reports, comparisons, the schema and the
+/// page take names and definitions from this table.
 struct ErrorMetricRow {
   ErrorMetric value;
   std::string_view name;   ///< in files
-  std::string_view doc;    ///< what it is
+  std::string_view doc;    ///< definition
   std::string_view label;  ///< in tables and figures
   std::string_view unit = {};
-  bool squared = false;  ///< falls with the samples; the others with their square root
-  /// The error is the mean of this over pixels and channels; null: it needs no reference.
+  bool squared = false;  ///< falls as 1 / samples; the others as 1 / sqrt(samples)
+  /// The error is the mean of term(x, r) over pixels and channels; null: it needs no reference.
   double (*term)(double x, double r) = nullptr;
-  bool root = false;  ///< the square root of that mean instead
+  bool root = false;  ///< the error is the square root of that mean
 };
 
 /// In the order of the enumerators, which is the order of the columns of curve.csv.
@@ -81,7 +81,7 @@ constexpr const ErrorMetricRow& row_of(ErrorMetric metric) {
 
 constexpr bool needs_reference(ErrorMetric metric) { return row_of(metric).term != nullptr; }
 
-/// Those that need a reference come first.
+/// Number of metrics that need a reference, which come first.
 inline constexpr std::size_t reference_metrics = static_cast<std::size_t>(std::ranges::count_if(
     error_metrics, [](const ErrorMetricRow& row) { return row.term != nullptr; }));
 
@@ -93,7 +93,7 @@ static_assert([] {
   return true;
 }());
 
-/// The error that is shown unless another is asked for.
+/// The metric that is shown by default.
 constexpr ErrorMetric usual_metric(bool has_reference) {
   return has_reference ? ErrorMetric::relmse : ErrorMetric::est_rmse;
 }

@@ -9,33 +9,34 @@
 
 namespace lacuna {
 
-/// guide: bsdf. The next ray follows the surface's own scattering.
+/// guide: bsdf. The next direction is sampled from the BSDF.
 struct BsdfGuideSettings {
   static constexpr std::string_view name = "bsdf";
-  static constexpr std::string_view doc = "directions drawn from the BSDF alone";
+  static constexpr std::string_view doc = "directions are sampled from the BSDF alone";
   bool operator==(const BsdfGuideSettings&) const = default;
 };
 template <class V>
 void describe(V&, BsdfGuideSettings&) {}
 
-/// Of directions drawn from a guide that are mixed with the BSDF's. 1 is not allowed: where the
-/// guide never looks, only the BSDF does.
+/// Largest probability of a guide against the BSDF. 1 is not allowed: directions that the guide
+/// never samples must be sampled by the BSDF.
 inline constexpr double most_guided = 0.9;
 
-/// Where on the visible part of a shortest path rays are sent.
+/// The point on the visible part of a shortest path that rays are aimed at.
 enum class ImportanceAim { last, tightest, mean };
 
 template <>
 struct EnumTable<ImportanceAim> {
   static constexpr std::array<EnumValue<ImportanceAim>, 3> values{{
-      {ImportanceAim::last, "last", "the last node that is seen"},
+      {ImportanceAim::last, "last", "the last visible node"},
       {ImportanceAim::tightest, "tightest",
-       "the node whose ball looks smallest: the bottleneck that all rays have to pass"},
-      {ImportanceAim::mean, "mean", "the mean of all (Noel 2015, eq. 162)"},
+       "the node whose ball subtends the smallest angle: the bottleneck that all rays pass"},
+      {ImportanceAim::mean, "mean", "the mean position of its nodes (Noel 2015, eq. 162)"},
   }};
 };
 
-/// What guides that look for where light arrives (Noel 2015, eq. 176) have in common.
+/// The settings of guides that trace rays from the lights to find lit surfaces (Noel 2015, eq.
+/// 176).
 struct LightRays {
   int light_rays = 1 << 16;
   bool operator==(const LightRays&) const = default;
@@ -60,22 +61,23 @@ struct SkeletonGuideSettings : LightRays {
 template <class V>
 void describe(V& v, SkeletonGuideSettings& s) {
   v("strength", s.strength,
-    {.doc = "exponent of the power-cosine lobes, 0: half the sphere (eq. 163); \"auto\": learned "
-            "for each node while rendering",
+    {.doc = "exponent of the power-cosine lobes; 0: uniform over the hemisphere (eq. 163); "
+            "\"auto\": learned for each node while rendering",
      .min = 0,
      .max = 10000});
   v("probability", s.probability,
-    {.doc = "share of directions drawn from the lobes instead of the BSDF (c_skel, 9.4); \"auto\": "
-            "learned for each node while rendering",
+    {.doc = "probability of sampling a direction from the lobes instead of the BSDF (c_skel, 9.4); "
+            "\"auto\": learned for each node while rendering",
      .min = 0,
      .max = most_guided});
   v("aim", s.aim,
-    {.doc = "where rays are sent on the visible part of a shortest path", .published = "\"mean\""});
+    {.doc = "the point on the visible part of a shortest path that rays are aimed at",
+     .published = "\"mean\""});
   describe_light_rays(
-      v, s, "rays from the lights that find the nodes whose surroundings are lit (eq. 176)");
+      v, s, "rays from the lights that estimate the power arriving at each node (eq. 176)");
 }
 
-/// What guides by the regions of the opening forest labelling have in common.
+/// The settings of guides that use the regions of the opening forest labelling.
 struct RegionGuideSettings {
   AutoNumber probability;
   int mixing = 4;
@@ -85,26 +87,26 @@ struct RegionGuideSettings {
 template <class V>
 void describe_region_guide(V& v, RegionGuideSettings& s) {
   v("probability", s.probability,
-    {.doc = "share of directions drawn through faces instead of from the BSDF; \"auto\": learned "
-            "for each region while rendering",
+    {.doc = "probability of sampling a direction through a face instead of from the BSDF; "
+            "\"auto\": learned for each region while rendering",
      .min = 0,
      .max = most_guided});
   v("mixing", s.mixing,
-    {.doc = "over how far a region's way of drawing turns into its neighbour's; 0: at once, which "
-            "shows as a border in the picture's noise",
+    {.doc = "distance over which the distributions of neighbouring regions are interpolated; 0: no "
+            "interpolation, which shows as a border in the picture's noise",
      .min = 0,
      .max = 64,
      .unit = "voxels"});
 }
 
-/// Which portal on a shortest path rays are sent through.
+/// The portal on a shortest path that rays are sent through.
 enum class PortalChoice { last, next };
 
 template <>
 struct EnumTable<PortalChoice> {
   static constexpr std::array<EnumValue<PortalChoice>, 2> values{{
-      {PortalChoice::last, "last", "the last one that the region's centre sees"},
-      {PortalChoice::next, "next", "the region's own (Noel 2015, 10.4.1)"},
+      {PortalChoice::last, "last", "the last portal that the region's centre sees"},
+      {PortalChoice::next, "next", "the first portal, on the region's border (Noel 2015, 10.4.1)"},
   }};
 };
 
@@ -121,16 +123,16 @@ template <class V>
 void describe(V& v, PortalsGuideSettings& s) {
   describe_region_guide(v, s);
   v("portal", s.portal,
-    {.doc = "which portal on a shortest path rays are sent through", .published = "\"next\""});
-  describe_light_rays(v, s, "rays from the lights that find the regions that are lit");
+    {.doc = "the portal on a shortest path that rays are sent through", .published = "\"next\""});
+  describe_light_rays(v, s, "rays from the lights that estimate the power arriving in each region");
 }
 
 /// guide: face_irradiance.
 struct FaceIrradianceGuideSettings : RegionGuideSettings {
   static constexpr std::string_view name = "face_irradiance";
   static constexpr std::string_view doc =
-      "rays through the faces of a region's border, by the light that was seen through each (Noel "
-      "2015, 10.4.2)";
+      "rays through the faces of a region's border, in proportion to the light found through each "
+      "(Noel 2015, 10.4.2)";
   bool operator==(const FaceIrradianceGuideSettings&) const = default;
 };
 template <class V>
@@ -142,7 +144,7 @@ void describe(V& v, FaceIrradianceGuideSettings& s) {
 struct SdTreeGuideSettings {
   static constexpr std::string_view name = "sd_tree";
   static constexpr std::string_view doc =
-      "rays to where paths before found light, learned in a tree over places and directions "
+      "practical path guiding: incident radiance learned in a tree over positions and directions "
       "(Mueller et al. 2017)";
   double probability = 0.5;
   int leaf_vertices = 4000;
@@ -151,16 +153,17 @@ struct SdTreeGuideSettings {
 template <class V>
 void describe(V& v, SdTreeGuideSettings& s) {
   v("probability", s.probability,
-    {.doc = "share of directions drawn from the tree instead of the BSDF",
+    {.doc = "probability of sampling a direction from the tree instead of the BSDF",
      .min = 0,
      .max = most_guided});
   v("leaf_vertices", s.leaf_vertices,
-    {.doc = "vertices in the first iteration beyond which a place is divided",
+    {.doc = "vertices above which a leaf of the spatial tree is divided after the first iteration "
+            "(c of the paper)",
      .min = 1,
      .max = 1 << 30});
 }
 
-/// Where the next ray of a path from the eye goes. A new guide is one more alternative here.
+/// How the next direction of an eye path is sampled. A new guide is one more alternative here.
 using GuideSettings = std::variant<BsdfGuideSettings, SkeletonGuideSettings, PortalsGuideSettings,
                                    FaceIrradianceGuideSettings, SdTreeGuideSettings>;
 

@@ -7,7 +7,7 @@
 
 namespace lacuna {
 
-/// What integrator `inspect` shows.
+/// The quantity that integrator `inspect` shows.
 enum class InspectQuantity {
   normal,
   albedo,
@@ -30,21 +30,21 @@ struct EnumTable<InspectQuantity> {
       {InspectQuantity::depth, "depth", "distance from the eye, scene units"},
       {InspectQuantity::emission, "emission", "radiance emitted towards the eye"},
       {InspectQuantity::node_mapping, "node_mapping",
-       "the skeleton's node that the surface belongs to, a colour for each"},
+       "the skeleton node that the surface belongs to, one colour per node"},
       {InspectQuantity::filtered_mapping, "filtered_mapping", "the same for the filtered skeleton"},
       {InspectQuantity::opening, "opening",
-       "half the side of the largest cube of empty space that holds the voxel in front of the "
+       "half the side of the largest cube of empty space that contains the voxel in front of the "
        "surface, scene units"},
       {InspectQuantity::region_labels, "region_labels",
-       "the region of the opening forest labelling, a colour for each"},
+       "the region of the opening forest labelling, one colour per region"},
       {InspectQuantity::visibility_clusters, "visibility_clusters",
-       "the visibility cluster of the surface's node, a colour for each"},
+       "the visibility cluster of the surface's node, one colour per cluster"},
       {InspectQuantity::nearest_node_visible, "nearest_node_visible",
-       "green where the surface sees its node, red where not, black where it has none"},
+       "green where the surface sees its node, red where it does not, black where it has no node"},
       {InspectQuantity::guide_density, "guide_density",
-       "how densely the guide sends rays to the surface from the place `from`, per steradian; "
+       "density per steradian of the guide's directions from the point `from` to the surface; "
        "black "
-       "where it does not see it"},
+       "where the surface is occluded from it"},
   }};
 };
 
@@ -63,12 +63,12 @@ struct InspectSettings {
 
 template <class V>
 void describe(V& v, InspectSettings& s) {
-  v("show", s.show, {.doc = "the quantity"});
-  v("guide", s.guide, {.doc = "the guide whose density is shown, before it has learned anything"});
+  v("show", s.show, {.doc = "the quantity shown"});
+  v("guide", s.guide, {.doc = "the guide whose density is shown, as prepared, without learning"});
   v("from", s.from,
     {.doc =
-         "where its rays start: the surface seen at this part of the picture's width and height, "
-         "from the upper left",
+         "the point at which the guide is evaluated: the visible surface at this fraction of the "
+         "picture's width and height, from the upper left",
      .min = 0,
      .max = 1});
 }

@@ -13,7 +13,7 @@
 
 namespace lacuna {
 
-/// Which integrator, and how. The order is the order in menus; the first is the default.
+/// The integrator and its settings. The order is the order in menus; the first is the default.
 /// renderer/integrators/registry.cpp makes the integrator of each alternative.
 using IntegratorSettings =
     std::variant<PathSettings, LightSettings, BdptSettings, ManyLightsSettings, InspectSettings>;
@@ -22,7 +22,7 @@ using IntegratorSettings =
 ///
 ///     static constexpr std::array layers{ImageLayer::strategies};
 ///
-/// and has no such list where there are none.
+/// or has no such list.
 template <class... Ts>
 std::span<const ImageLayer> filled_layers(const std::variant<Ts...>& settings) {
   return std::visit(
@@ -36,8 +36,8 @@ std::span<const ImageLayer> filled_layers(const std::variant<Ts...>& settings) {
       settings);
 }
 
-/// Whether the mean of many iterations is something else than the light in the scene. Settings of
-/// which that is so say so by `bool biased() const`.
+/// Whether the expected picture differs from the radiance of the scene. Such settings have a member
+/// `bool biased() const`.
 template <class... Ts>
 bool biased(const std::variant<Ts...>& settings) {
   return std::visit(
@@ -48,7 +48,7 @@ bool biased(const std::variant<Ts...>& settings) {
       settings);
 }
 
-/// All layers that a job of this integrator can ask for.
+/// All layers that a job with this integrator can request.
 template <class... Ts>
 std::vector<ImageLayer> offered_layers(const std::variant<Ts...>& settings) {
   std::vector<ImageLayer> all(common_layers.begin(), common_layers.end());

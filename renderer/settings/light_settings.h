@@ -10,10 +10,10 @@ namespace lacuna {
 struct LightSettings : PathLengths {
   static constexpr std::string_view name = "light";
   static constexpr std::string_view doc =
-      "light tracing: paths from the lights, joined to the eye (Noel 2015, 4.2.5); what is seen "
-      "through mirrors and clear glass stays black";
+      "light tracing: paths from the lights, connected to the eye (Noel 2015, 4.2.5); mirrors and "
+      "clear glass are black";
 
-  /// Nothing is sampled from the eye: where little light happens to pass it, there is much noise.
+  /// No paths start at the eye, so surfaces that few light paths reach are noisy.
   static constexpr bool from_lights_only = true;
 
   int light_paths = 0;
@@ -25,7 +25,7 @@ template <class V>
 void describe(V& v, LightSettings& s) {
   describe_lengths(v, s);
   v("light_paths", s.light_paths,
-    {.doc = "paths an iteration; 0: one for each pixel", .min = 0, .max = 1 << 20});
+    {.doc = "light paths per iteration; 0: one for each pixel", .min = 0, .max = 1 << 20});
 }
 
 }  // namespace lacuna

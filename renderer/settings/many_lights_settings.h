@@ -16,14 +16,14 @@ template <>
 struct EnumTable<DirectLighting> {
   static constexpr std::array<EnumValue<DirectLighting>, 2> values{{
       {DirectLighting::next_event, "next_event",
-       "as path tracing does: a point on an emitter for each pixel, and the emitters that its ray "
-       "meets"},
+       "as in path tracing: a point on an emitter for each pixel, and the emitters that its ray "
+       "hits"},
       {DirectLighting::lights, "lights",
        "the points on emitters where light paths start are virtual lights too"},
   }};
 };
 
-/// What bounds the geometric term, cosines over squared distance, between a surface and a light.
+/// The bound of the geometric term, cosines over squared distance, between a surface and a light.
 enum class Clamp { relative, absolute, off };
 
 template <>
@@ -31,7 +31,7 @@ struct EnumTable<Clamp> {
   static constexpr std::array<EnumValue<Clamp>, 3> values{{
       {Clamp::relative, "relative", "`bound` / r^2, r: half the diagonal of the scene's box"},
       {Clamp::absolute, "absolute", "`bound` / (unit of the scene)^2"},
-      {Clamp::off, "off", "nothing: bright spots in corners, whose variance has no bound"},
+      {Clamp::off, "off", "no bound: bright spots in corners, with unbounded variance"},
   }};
 };
 
@@ -39,8 +39,9 @@ struct EnumTable<Clamp> {
 struct ManyLightsSettings : PathLengths {
   static constexpr std::string_view name = "many_lights";
   static constexpr std::string_view doc =
-      "instant global illumination: the vertices of light paths are virtual point lights of all "
-      "pixels (Noel 2015, 4.4.1)";
+      "instant global illumination: the vertices of light paths become virtual point lights, "
+      "shared "
+      "by all pixels (Noel 2015, 4.4.1)";
 
   static constexpr std::array layers{ImageLayer::visibility_tests, ImageLayer::negative};
 
@@ -53,7 +54,7 @@ struct ManyLightsSettings : PathLengths {
   GatherSettings gather = AllLightsSettings{};
   VisibilitySettings visibility = ExactVisibilitySettings{};
 
-  /// The mean of many pictures is not the light in the scene.
+  /// The expected picture differs from the radiance of the scene.
   bool biased() const {
     const bool visibility_is = std::visit(
         []<class S>(const S& s) {
@@ -73,27 +74,28 @@ template <class V>
 void describe(V& v, ManyLightsSettings& s) {
   describe_lengths(v, s);
   v("light_paths", s.light_paths,
-    {.doc = "light paths an iteration, shared by all pixels; each gives a light for every surface "
-            "that it meets",
+    {.doc =
+         "light paths per iteration, shared by all pixels; every surface vertex of a path becomes "
+         "a virtual light",
      .min = 1,
      .max = 1 << 20});
-  v("direct", s.direct, {.doc = "light that reaches a surface straight from an emitter"});
+  v("direct", s.direct, {.doc = "how direct light is estimated"});
   v("clamp", s.clamp,
-    {.doc =
-         "what bounds the geometric term, cosines over squared distance, between a surface and a "
-         "light; lights without area are never clamped"});
-  v("bound", s.bound, {.doc = "of the clamp", .min = 0, .max = 1e30, .above_min = true});
+    {.doc = "bound of the geometric term, cosines over squared distance, between a surface and a "
+            "virtual light; lights without area are never clamped"});
+  v("bound", s.bound, {.doc = "value of the bound", .min = 0, .max = 1e30, .above_min = true});
   v("compensation", s.compensation,
-    {.doc = "path tracing adds what lights cannot give: what the clamp cut off, and what comes by "
-            "mirrors, glass and smooth metal (Kollig and Keller 2004). Without, the picture is too "
-            "dark"});
+    {.doc = "path tracing adds the light that virtual lights lack: the part above the bound, and "
+            "light by mirrors, glass and smooth metal (Kollig and Keller 2004). Without it, the "
+            "picture is too dark"});
   v("least_roughness", s.least_roughness,
-    {.doc = "metals smoother than this are no lights and are followed as mirrors are, and so is "
-            "glass: in narrow lobes a light is a bright spot",
+    {.doc = "metals smoother than this, and glass, carry no virtual lights and are followed like "
+            "mirrors, because a virtual light in a narrow lobe is a bright spot",
      .min = 0,
      .max = 1});
-  v("gather", s.gather, {.doc = "which of the lights a shading point meets"});
-  v("visibility", s.visibility, {.doc = "whether a surface and a light see one another"});
+  v("gather", s.gather, {.doc = "which virtual lights are gathered at a shading point"});
+  v("visibility", s.visibility,
+    {.doc = "how the visibility between a surface and a virtual light is estimated"});
 }
 
 }  // namespace lacuna

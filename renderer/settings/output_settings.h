@@ -6,7 +6,7 @@
 
 namespace lacuna {
 
-/// Layers beside the picture itself that can be asked for in image.exr.
+/// Layers of image.exr besides the picture itself.
 enum class ImageLayer {
   variance,
   halves,
@@ -23,19 +23,19 @@ enum class ImageLayer {
 template <>
 struct EnumTable<ImageLayer> {
   static constexpr std::array<EnumValue<ImageLayer>, 10> values{{
-      {ImageLayer::variance, "variance", "variance of the pixel's estimate (of the mean)"},
+      {ImageLayer::variance, "variance", "variance of the pixel's mean"},
       {ImageLayer::halves, "halves",
        "means of the even and of the odd iterations, two independent estimates"},
       {ImageLayer::albedo, "albedo", "base reflectance of the first hit"},
       {ImageLayer::normal, "normal", "shading normal of the first hit, world space"},
       {ImageLayer::depth, "depth", "distance to the first hit, scene units"},
       {ImageLayer::strategies, "strategies",
-       "what each strategy of a bidirectional method adds to the picture, weighted: one image for "
-       "each s, t"},
+       "weighted contribution of each strategy (s, t) of a bidirectional method: one image for "
+       "each"},
       {ImageLayer::strategies_unweighted, "strategies_unweighted",
-       "the same before weighting: each an estimate of all light of its path length"},
+       "the same without MIS weights: each image estimates all light of its path length"},
       {ImageLayer::distributions, "distributions",
-       "what each resampling distribution adds to the picture"},
+       "contribution of each resampling distribution to the picture"},
       {ImageLayer::visibility_tests, "visibility_tests",
        "share of the virtual lights whose visibility was tested by a ray"},
       {ImageLayer::negative, "negative", "share of the iterations in which the pixel was below 0"},
@@ -48,7 +48,7 @@ inline constexpr std::array common_layers{ImageLayer::variance, ImageLayer::halv
                                           ImageLayer::albedo, ImageLayer::normal,
                                           ImageLayer::depth};
 
-/// How the light of the film's points is weighted in a pixel.
+/// The reconstruction filter of a pixel.
 enum class PixelFilter { box, tent };
 
 template <>
@@ -66,7 +66,7 @@ template <>
 struct EnumTable<PixelType> {
   static constexpr std::array<EnumValue<PixelType>, 2> values{{
       {PixelType::single_float, "float", "32 bits"},
-      {PixelType::half_float, "half", "16 bits; refused where a value would overflow"},
+      {PixelType::half_float, "half", "16 bits; an error where a value would overflow"},
   }};
 };
 

@@ -4,12 +4,12 @@
 
 namespace lacuna {
 
-/// How long paths get: settings of every method that walks them.
+/// The limits of path length: settings of every method that traces paths.
 struct PathLengths {
   int max_depth = 6;
-  /// Where light comes round corners, ending paths costs more noise than its time saves: at equal
-  /// time on corridor, 2 has 2.7 times the squared error of 6 with `light`, 2.3 times with `path`
-  /// and, relative to the pixel, 1.5 times with `bdpt`; on door theirs differ by a fifth at most.
+  /// Where light comes around corners, roulette adds more noise than its time saves: at equal time
+  /// on corridor, 2 has 2.7 times the squared error of 6 with `light`, 2.3 times with `path` and,
+  /// relative to the pixel, 1.5 times with `bdpt`; on door they differ by a fifth at most.
   int roulette_depth = 6;
   bool operator==(const PathLengths&) const = default;
 };
@@ -22,9 +22,10 @@ void describe_lengths(V& v, PathLengths& s) {
      .max = 1024,
      .unit = "edges"});
   v("roulette_depth", s.roulette_depth,
-    {.doc = "after this many edges from the eye, or from a light, a path goes on with the "
-            "probability of its throughput only (Russian roulette); of a guided path, what the "
-            "BSDF's own draws would have left of it",
+    {.doc =
+         "Russian roulette starts after this many edges from the eye or from a light: a path "
+         "continues with a probability equal to its throughput; for a guided path, the throughput "
+         "that sampling the BSDF would have left",
      .min = 1,
      .max = 1024,
      .unit = "edges"});

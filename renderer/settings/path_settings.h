@@ -22,9 +22,9 @@ struct PathSettings : PathLengths {
 template <class V>
 void describe(V& v, PathSettings& s) {
   describe_lengths(v, s);
-  v("guide", s.guide, {.doc = "where the next ray goes"});
+  v("guide", s.guide, {.doc = "how the next direction is sampled"});
   v("next_event_estimation", s.next_event_estimation,
-    {.doc = "also sample emitters at every vertex"});
+    {.doc = "also sample a point on an emitter at every vertex"});
 }
 
 }  // namespace lacuna

@@ -7,7 +7,7 @@
 
 namespace lacuna {
 
-/// One of a scene's materials as another would have it: how a method fares with a glossy floor.
+/// A change of one of the scene's materials, to test a method with, say, a glossy floor.
 struct MaterialChange {
   std::string name;
   double roughness = 1;
@@ -17,16 +17,20 @@ struct MaterialChange {
 template <class V>
 void describe(V& v, MaterialChange& s) {
   v("name", s.name,
-    {.doc = "of the materials of that name in the file", .min = 1, .max = 1024, .required = true});
+    {.doc = "name of the materials in the file that are changed",
+     .min = 1,
+     .max = 1024,
+     .required = true});
   v("roughness", s.roughness,
-    {.doc = "as in glTF: GGX's alpha is its square; a texture of it is left out",
+    {.doc = "as in glTF: GGX's alpha is its square; a roughness texture is ignored",
      .min = 0,
      .max = 1,
      .required = true});
-  v("metallic", s.metallic, {.doc = "as in glTF: 0 a dielectric, 1 a metal", .min = 0, .max = 1});
+  v("metallic", s.metallic,
+    {.doc = "as in glTF: 0 is a dielectric, 1 a metal", .min = 0, .max = 1});
 }
 
-/// Glowing particles (Kol et al. 2018, 5.2): point lights at random places.
+/// Glowing particles (Kol et al. 2018, 5.2): point lights at random positions.
 struct ParticleSettings {
   int count = 0;
   double power = 0;
@@ -40,24 +44,21 @@ struct ParticleSettings {
 template <class V>
 void describe(V& v, ParticleSettings& s) {
   v("count", s.count,
-    {.doc = "point lights that shine alike in all directions",
-     .min = 1,
-     .max = 1 << 20,
-     .required = true});
+    {.doc = "number of isotropic point lights", .min = 1, .max = 1 << 20, .required = true});
   v("power", s.power,
-    {.doc = "of all together", .min = 0, .max = 1e12, .required = true, .unit = "W"});
+    {.doc = "total power of all particles", .min = 0, .max = 1e12, .required = true, .unit = "W"});
   v("color", s.color, {.doc = "multiplies the power: red, green, blue", .min = 0, .max = 1});
   v("low", s.low,
     {.doc =
-         "they lie evenly between the lowest and the highest corner of the scene's box: from this "
-         "share of the way, along x, y and z,",
+         "lower corner of the box in which particles are uniformly distributed, along x, y and z: "
+         "0 is the lower and 1 the upper corner of the scene's bounding box",
      .min = 0,
      .max = 1});
-  v("high", s.high, {.doc = "to this", .min = 0, .max = 1});
-  v("seed", s.seed, {.doc = "of their places", .min = 0, .max = 2147483647});
+  v("high", s.high, {.doc = "upper corner of that box, along x, y and z", .min = 0, .max = 1});
+  v("seed", s.seed, {.doc = "seed of the random positions", .min = 0, .max = 2147483647});
   v("alone", s.alone,
-    {.doc = "the scene's own point, spot and directional lights are left out; surfaces that glow "
-            "are not"});
+    {.doc =
+         "leave out the scene's own point, spot and directional lights; emissive surfaces stay"});
 }
 
 }  // namespace lacuna

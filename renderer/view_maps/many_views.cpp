@@ -10,7 +10,7 @@ namespace lacuna {
 
 namespace {
 
-/// A view node that is to be rendered: what its parent left, and what it has of the parent's map.
+/// A view node to render: the undecided nodes and the map of its parent.
 struct Work {
   std::uint32_t view;
   std::shared_ptr<const std::vector<Siblings>> waiting;
@@ -86,7 +86,7 @@ ManyViewsCounts render_views(const Octree& scene, const ViewTree& views,
     });
     return total;
   }
-  // Level by level until there is enough for all threads; then each part by itself.
+  // Level by level until there is work for all threads; then each part separately.
   constexpr std::size_t enough = 256;
   std::vector<Work> works{{0, std::make_shared<const std::vector<Siblings>>(whole), empty}};
   bool forked = true;

@@ -7,7 +7,7 @@
 
 namespace lacuna {
 
-/// Takes the map of a leaf, in [0, ViewTree::leaf_count()): of each texel a distance.
+/// Receives the map of a leaf in [0, ViewTree::leaf_count()): a distance for each texel.
 using UseMap = std::function<void(std::uint32_t leaf, std::span<const float> depths)>;
 
 /// Renders a scene's octree into the leaves of a view tree by traversing both at once (Kol et al.
@@ -15,10 +15,10 @@ using UseMap = std::function<void(std::uint32_t leaf, std::span<const float> dep
 /// distances from the centre of the leaf's sphere to the centre of the nearest node behind each
 /// texel of Paraboloid{map_size}, infinite where nothing is. The same for any number of threads.
 ///
-/// Where the paper keeps a queue of pairs, this goes depth-first through the views, unless
-/// `breadth_first`: what a view node cannot decide for all its views waits in one list that its
-/// children share, and the map of a node is handed down to its children as it is (the paper's
-/// fusion), so only the maps between the root and one leaf are there at a time.
+/// The paper processes a queue of pairs; this traverses the views depth-first, unless
+/// `breadth_first`. Scene nodes that a view node cannot decide for all its views wait in one list
+/// that its children share, and the map of a node is copied to its children (the paper's fusion),
+/// so only the maps between the root and one leaf are in memory at a time.
 ManyViewsCounts render_views(const Octree& scene, const ViewTree& views,
                              const ManyViewsSettings& settings, const ThreadPool& pool,
                              const UseMap& use);

@@ -10,63 +10,64 @@
 namespace lacuna {
 
 /// Directions as texels of a dual paraboloid map (Brabec et al. 2002): two squares of
-/// `size` x `size` texels for the half spaces of positive and of negative x. All maps are turned
-/// the same way, so that those of views near one another can share texels (Kol et al. 2018, 3.1.3).
+/// `size` x `size` texels for the half spaces of positive and of negative x. All maps have the same
+/// orientation, so that nearby views can share texels (Kol et al. 2018, 3.1.3).
 struct Paraboloid {
   int size;
 
   int texels() const { return 2 * size * size; }
 
-  /// A place on the squares, in texels whose corners are whole numbers.
-  struct Place {
+  /// Continuous texel coordinates; texel corners are at whole numbers.
+  struct TexelCoord {
     int half;    ///< 0: x >= 0
     float u, v;  ///< in [0, size]
   };
   /// `d`: of any length above 0.
-  Place place(const V3f& d) const {
+  TexelCoord coord(const V3f& d) const {
     const float scale = 1 / (d.length() + std::abs(d.x));
     return {d.x < 0 ? 1 : 0, coordinate(d.y * scale), coordinate(d.z * scale)};
   }
-  int texel(const Place& p) const {
+  int texel(const TexelCoord& p) const {
     const auto step = [&](float at) { return std::clamp(static_cast<int>(at), 0, size - 1); };
     return index(p.half, step(p.u), step(p.v));
   }
-  int texel(const V3f& d) const { return texel(place(d)); }
+  int texel(const V3f& d) const { return texel(coord(d)); }
   int index(int half, int i, int j) const { return (half * size + j) * size + i; }
-  /// Those of eight directions.
-  struct Eight {
+  /// TexelCoord of eight directions.
+  struct TexelCoord8 {
     Int8 half;    ///< 0 or `size`: the square's first row
-    Float8 u, v;  ///< as Place
+    Float8 u, v;  ///< as TexelCoord
     Float8 scale;
   };
   /// `length`: of each `d`.
-  Eight places(const Float8x3& d, Float8 length) const {
+  TexelCoord8 coords(const Float8x3& d, Float8 length) const {
     const Float8 scale = Float8(1.0F) / (length + abs(d.x));
     return {keep_where(Float8(0.0F) > d.x, Int8(size)), coordinate(d.y * scale),
             coordinate(d.z * scale), scale};
   }
-  Int8 texel(const Eight& p) const {
+  Int8 texel(const TexelCoord8& p) const {
     const auto step = [&](Float8 at) { return min(max(truncate(at), Int8(0)), Int8(size - 1)); };
     return (p.half + step(p.v)) * Int8(size) + step(p.u);
   }
-  /// Whether small spheres of this radius at those places cover the middles of the texels that
-  /// their own middles fall into.
-  Mask8 covers_middle(const Eight& p, float radius) const {
+  /// Whether small spheres of this radius, with centres at `p`, cover the centres of the texels
+  /// that contain their own centres.
+  Mask8 covers_middle(const TexelCoord8& p, float radius) const {
     const auto off = [](Float8 at) { return at - floor(at) - Float8(0.5F); };
     const Float8 u = off(p.u), v = off(p.v);
     const Float8 across = Float8(radius * static_cast<float>(size) / 2) * p.scale;
     return across * across >= u * u + v * v;
   }
 
-  /// From a coordinate in [-1, 1], on the paraboloid's plane, to one in texels, and back.
+  /// Converts a coordinate in [-1, 1] on the paraboloid's plane to texels. on_plane() is the
+  /// inverse.
   template <class F>
   F coordinate(F at) const {
     return (at + F(1.0F)) * F(static_cast<float>(size) / 2);
   }
   float on_plane(float at) const { return at * 2 / static_cast<float>(size) - 1; }
 
-  /// The unit direction through the middle of a texel. Those of the squares' corners belong to the
-  /// other half; nobody asks for them by place().
+  /// The unit direction through the centre of a texel. Texels at the squares' corners represent
+  /// directions of the other half; coord() never returns them.
   V3f direction(int texel) const {
     const float u = on_plane(static_cast<float>(texel % size) + 0.5F);
     const float v = on_plane(static_cast<float>(texel / size % size) + 0.5F);
@@ -76,9 +77,9 @@ struct Paraboloid {
     return {texel < size * size ? x : -x, u * side, v * side};
   }
 
-  /// Whether place() gives a texel for some direction: all but those of the squares' corners.
-  bool asked_for(int texel) const {
-    // Of its square, the point that is nearest to the middle.
+  /// Whether coord() gives a texel for some direction: all but those of the squares' corners.
+  bool reachable(int texel) const {
+    // The point of the texel that is nearest to the centre of the square.
     const auto nearest = [&](int i) {
       const float at = on_plane(static_cast<float>(i));
       return at < 0 ? std::min(0.0F, on_plane(static_cast<float>(i + 1))) : at;
@@ -88,14 +89,14 @@ struct Paraboloid {
     return u * u + v * v < 1 + 1e-5F;
   }
 
-  /// Texels across the disk that a small sphere shows, at most: twice its radius over its distance
-  /// times this. `cosine`: of the angle between its direction and the axis of its half, >= 0. The
-  /// angle is stretched by 1 / (1 + cos) towards the rim.
+  /// The image of a small sphere is at most 2 radius / distance * stretch(cosine) texels wide.
+  /// `cosine`: of the angle between its direction and the axis of its half, >= 0. Angles are
+  /// stretched by 1 / (1 + cos) towards the rim.
   float stretch(float cosine) const { return static_cast<float>(size) / (2 * (1 + cosine)); }
 
-  /// Calls `use(first, n)` for the runs of texels whose middles lie in the cap around the unit
-  /// direction `w` whose half angle has this cosine and sine; each once, but for some of the
-  /// squares' corners.
+  /// Calls `use(first, n)` for the runs of texels whose centres lie in the cap around the unit
+  /// direction `w` whose half angle has this cosine and sine. Each texel is visited once, except
+  /// for some at the squares' corners.
   template <class Use>
   void for_each_run(const V3f& w, float cosine, float sine, Use&& use) const {
     for (int half = 0; half < 2; ++half) {
@@ -110,7 +111,7 @@ struct Paraboloid {
   void run_half(int half, const V3f& w, float cosine, float sine, Use&& use) const {
     if (w.x < -sine) return;  // behind the rim
     const float a = cosine + w.x;
-    // The first texel whose middle is at a place or after it.
+    // The first texel whose centre is at a coordinate or beyond it.
     const auto after = [&](float at) {
       const float texel = std::ceil(coordinate(at) - 0.5F);
       return static_cast<int>(std::clamp(texel, 0.0F, static_cast<float>(size)));

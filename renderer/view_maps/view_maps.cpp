@@ -36,14 +36,14 @@ std::vector<MapTexel> map_texels(const Paraboloid& map) {
     const V3f w = map.direction(i);
     // Half the diagonal of a texel, as an angle.
     const float half = std::sqrt(0.5F) / map.stretch(std::abs(w.x));
-    texels.push_back({w, std::cos(half), std::sin(half), map.asked_for(i)});
+    texels.push_back({w, std::cos(half), std::sin(half), map.reachable(i)});
   }
   return texels;
 }
 
 namespace {
 
-/// The angle from the middle of what the views see to the texel is above the sum of both cones'.
+/// The angle between the axis of the views' cone and the texel exceeds the sum of both half angles.
 bool unseen(const ViewTree::Node& v, const MapTexel& t) {
   const bool narrow = v.sine * t.cosine + v.cosine * t.sine > 0;  // that sum is below pi
   return narrow && v.n.dot(t.direction) < v.cosine * t.cosine - v.sine * t.sine;
@@ -62,7 +62,7 @@ std::uint64_t trace_views(const RayCaster& rays, const ViewTree& views,
     std::uint64_t own = 0;
     for (std::size_t i = 0; i < texels.size(); ++i) {
       const MapTexel& t = texels[i];
-      if (!t.asked_for || unseen(v, t)) continue;
+      if (!t.reachable || unseen(v, t)) continue;
       Hit hit;
       if (rays.intersect({v.centre, t.direction}, hit)) depths[i] = hit.t;
       ++own;

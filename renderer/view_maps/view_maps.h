@@ -11,25 +11,26 @@ namespace lacuna {
 
 /// A texel of a map as a cone.
 struct MapTexel {
-  V3f direction;       ///< through its middle, unit
+  V3f direction;       ///< through its centre, unit
   float cosine, sine;  ///< of the angle from there to its corners
-  bool asked_for;      ///< Paraboloid::asked_for()
+  bool reachable;      ///< Paraboloid::reachable()
 };
-/// Of each texel of a map.
+/// The cones of all texels of a map.
 std::vector<MapTexel> map_texels(const Paraboloid& map);
 
 /// The finished maps of all leaves of a view tree, as half floats: a texel of 16 x 16 spans an
 /// eighth of a right angle, within which a distance is far less certain than its eleven bits.
 class ViewMaps {
  public:
-  /// `extent`: no distance is above it, scene units. Throws std::runtime_error if the maps would
-  /// take more than half of the free memory.
+  /// `extent`: the largest distance, scene units. Throws std::runtime_error if the maps would take
+  /// more than half of the free memory.
   ViewMaps(std::uint32_t leaves, int map_size, float extent);
 
   const Paraboloid& map() const { return map_; }
-  /// Of each texel its distance, or infinity. Different leaves may be set by several threads.
+  /// Stores a map: for each texel its distance, or infinity. Several threads may set different
+  /// leaves.
   void set(std::uint32_t leaf, std::span<const float> depths);
-  /// `scale()` over the distance; 0 where nothing is.
+  /// scale() / distance; 0 where the texel shows nothing.
   float nearness(std::uint32_t leaf, int texel) const;
   float scale() const { return nearness_.scale; }
   std::size_t bytes() const { return texels_.size() * sizeof(texels_[0]); }
@@ -40,8 +41,8 @@ class ViewMaps {
   std::vector<std::uint16_t> texels_;
 };
 
-/// What render_views() does, by a ray from the middle of each leaf's views through each texel that
-/// one of them may see: one map per view. Tells how many rays.
+/// Like render_views(), but traces a ray from the centre of each leaf's views through each texel
+/// that one of them may see: one map per view. Returns the number of rays.
 std::uint64_t trace_views(const RayCaster& rays, const ViewTree& views,
                           std::span<const MapTexel> texels, const ThreadPool& pool,
                           const UseMap& use);

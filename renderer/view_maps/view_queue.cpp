@@ -11,7 +11,7 @@ namespace lacuna {
 
 namespace {
 
-/// Some pairs: siblings of the scene's octree that a view node is to look at.
+/// Pairs: siblings of the scene's octree to process for a view node.
 struct Waiting {
   std::uint32_t view;
   Siblings siblings;
@@ -34,7 +34,7 @@ class ViewQueue {
 
   ManyViewsCounts counts() const { return counts_; }
 
-  /// Until nothing waits.
+  /// Runs until the queue is empty.
   void empty_queue() {
     std::vector<Waiting> queue;
     const auto roots = first_ == 0 ? 1 : views_.leaf_count();
@@ -76,16 +76,16 @@ class ViewQueue {
     }
   }
 
-  /// What a part of a generation leaves for the next; both by view.
+  /// The pairs that a part of a generation leaves for the next; both sorted by view.
   struct Left {
     std::vector<Waiting> here, later;
     ManyViewsCounts counts;
   };
 
-  /// `queue` by view, as is what comes back.
+  /// `queue` is sorted by view, and so is the result.
   std::vector<Waiting> next_generation(const std::vector<Waiting>& queue) {
     // View nodes are numbered by level, children as their parents, so what is left for children
-    // comes by view, too.
+    // is sorted by view, too.
     const std::vector<std::size_t> ends = parts(queue);
     std::vector<Left> left(ends.size());
     pool_.for_each(static_cast<int>(ends.size()), [&](int k) {
@@ -107,7 +107,7 @@ class ViewQueue {
     return next;
   }
 
-  /// Ends of parts of about the same length, each with all that waits for its views.
+  /// Ends of parts of similar length; all pairs of a view are in one part.
   std::vector<std::size_t> parts(const std::vector<Waiting>& queue) const {
     const auto most = static_cast<std::size_t>(pool_.threads()) * 16;
     const std::size_t length = std::max<std::size_t>(64, queue.size() / most);

@@ -19,7 +19,7 @@ ManyViewsCounts& ManyViewsCounts::operator+=(const ManyViewsCounts& o) {
   return *this;
 }
 
-/// Siblings as a view node sees them, one for each octant; some are not there.
+/// Siblings relative to a view node, one lane for each octant; some lanes are empty.
 struct ViewRendering::Eight {
   Float8x3 d;       // from the view node's centre to theirs
   Float8 distance;  // the length of that
@@ -43,7 +43,7 @@ Float8x3 octant_signs() {
           _mm256_setr_ps(-1, -1, -1, -1, 1, 1, 1, 1)};
 }
 
-/// Fig. 4: no view below sees anything of a sphere. The region that none of them sees is a cone;
+/// Fig. 4: no view below sees any part of a sphere. The region that none of them sees is a cone;
 /// the spheres of both nodes must fit between its rim and the scene node's centre.
 unsigned outside(const ViewTree::Node& v, const Float8x3& d, Float8 distance, float radius) {
   if (v.cosine <= -1) return 0;
@@ -58,8 +58,8 @@ unsigned outside(const ViewTree::Node& v, const Float8x3& d, Float8 distance, fl
   return movemask(unseen && to_rim > Float8((radius + v.radius) * (1 + 1e-5F)));
 }
 
-/// Fig. 6: a scene node shows less than `node_texels` to all views below, and none of them lies
-/// further from their centre than it is large: so it fills the same texel in all of them. `size`:
+/// Fig. 6: a scene node is smaller than `node_texels` for all views below, and none of them is
+/// further from their centre than its size, so it fills the same texel in all of them. `size`:
 /// of the map, over `node_texels`.
 unsigned same_texel(float size, const ViewTree::Node& v, const Float8x3& d, Float8 distance,
                     float radius) {
@@ -118,7 +118,7 @@ inline ViewRendering::Eight ViewRendering::eight(const Siblings& s, const ViewTr
   return e;
 }
 
-/// What is the same for all that a view node looks at.
+/// The data of a view node that all of its pairs share.
 struct ViewRendering::Visit {
   const ViewTree::Node& v;
   bool leaf;
@@ -162,11 +162,11 @@ inline void ViewRendering::look(const Siblings& siblings, Visit& visit) const {
     alignas(32) std::array<float, 8> distances;
     alignas(32) std::array<int, 8> texels;
     e.distance.store(distances.data());
-    const Paraboloid::Eight places = map_.places(e.d, e.distance);
-    map_.texel(places).store(texels.data());
+    const Paraboloid::TexelCoord8 coords = map_.coords(e.d, e.distance);
+    map_.texel(coords).store(texels.data());
     const float cover = settings_.cover;
     const unsigned shown =
-        cover > 0 ? same & movemask(map_.covers_middle(places, e.radius * cover)) : same;
+        cover > 0 ? same & movemask(map_.covers_middle(coords, e.radius * cover)) : same;
     for_each_bit(shown, [&](int i) {
       visit.splat(texels[static_cast<std::size_t>(i)], distances[static_cast<std::size_t>(i)]);
     });
@@ -212,7 +212,7 @@ void ViewRendering::render_once(std::uint32_t view, std::span<const Siblings> wa
   counts += own.counts;
 }
 
-/// All texels whose middle the sphere covers (3.2.4); as published that of its centre, too.
+/// Fills all texels whose centre the sphere covers (3.2.4); as published, also that of its centre.
 void ViewRendering::fill(const Eight& e, unsigned lanes, std::span<float> depths) const {
   alignas(32) std::array<float, 8> x, y, z, distances;
   e.d.x.store(x.data());

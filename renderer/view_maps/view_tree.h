@@ -8,28 +8,28 @@
 
 namespace lacuna {
 
-/// A place that the scene is seen from, and what of it: all directions in front of a plane, or all.
+/// A viewpoint and its field of view: the half space in front of a plane, or all directions.
 struct View {
   V3f x;
-  V3f n;  ///< unit; 0: sees in all directions
+  V3f n;  ///< unit normal of the plane; 0: all directions
 };
 
-/// Views by place (Kol et al. 2018, 3.1.2). Leaves are cubes that hold one view or several, which
-/// share what they see.
+/// An octree of views (Kol et al. 2018, 3.1.2). A leaf is a cube with one view or several, which
+/// share a map.
 class ViewTree {
  public:
-  /// What the views below a node have in common.
+  /// Bounds of the views below a node.
   struct Node {
-    V3f centre;    ///< of the sphere around them
-    float radius;  ///< of it; 0 for a single view
-    V3f n;         ///< the middle of their directions, unit
-    /// Cosine and sine of the widest angle between n and a direction that one of them sees: a
-    /// right angle more than their normals' cone. cosine -1: they see everything.
+    V3f centre;    ///< of their bounding sphere
+    float radius;  ///< of their bounding sphere; 0 for a single view
+    V3f n;         ///< axis of the cone around their normals, unit
+    /// Cosine and sine of the largest angle between n and a direction that one of them sees: the
+    /// half angle of the normals' cone plus a right angle. cosine -1: all directions.
     float cosine, sine;
   };
 
-  /// `levels` in [0, Octree::most_levels]: of the octree of the cube at `corner` with `side`, in
-  /// which all views lie.
+  /// `levels` in [0, Octree::most_levels] of the octree. The cube at `corner` with `side` contains
+  /// all views.
   ViewTree(std::span<const View> views, int levels, V3d corner, double side);
 
   const Octree& tree() const { return tree_; }
@@ -37,7 +37,7 @@ class ViewTree {
   std::uint32_t leaf_count() const { return static_cast<std::uint32_t>(tree_.leaves().size()); }
   /// The index of the first leaf in tree().nodes.
   std::uint32_t first_leaf() const { return tree_.first[tree_.first.size() - 2]; }
-  /// Which leaf, in [0, leaf_count()), view `i` belongs to.
+  /// The leaf, in [0, leaf_count()), of a view.
   std::uint32_t leaf_of(std::size_t view) const { return leaf_of_[view]; }
 
  private:

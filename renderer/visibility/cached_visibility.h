@@ -6,9 +6,10 @@
 
 namespace lacuna {
 
-/// visibility: probabilistic. A light whose visibility the nearest cache points agree on is seldom
-/// tested: with probability p its visibility is taken to be q, their mean, and else (v - p q) / (1
-/// - p), which has the mean v whatever q and p are (Nabata et al., eq. 6).
+/// visibility: probabilistic. With q the mean visibility of a light at the nearest cache points,
+/// the estimate is q with probability p, without a shadow ray, and (v - p q) / (1 - p) with
+/// probability 1 - p, where v is the result of the shadow ray. Its mean is v for any q and p
+/// (Nabata et al., eq. 6). p is large where the cache points agree.
 class ProbabilisticVisibility : public VisibilityBase {
  public:
   explicit ProbabilisticVisibility(const ProbabilisticVisibilitySettings& settings)
@@ -32,7 +33,7 @@ class ProbabilisticVisibility : public VisibilityBase {
   float other_rays_ = 0;
 };
 
-/// visibility: interpolated. q alone.
+/// visibility: interpolated. The estimate is q, without shadow rays.
 class InterpolatedVisibility : public VisibilityBase {
  public:
   explicit InterpolatedVisibility(const InterpolatedVisibilitySettings& settings)

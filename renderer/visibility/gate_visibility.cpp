@@ -4,7 +4,7 @@ namespace lacuna {
 
 namespace {
 
-/// Where the lights of a block stand.
+/// The positions of a block's lights.
 struct Positions {
   Lanes x, y, z;
 
@@ -14,7 +14,7 @@ struct Positions {
       return;
     }
     for (int i = 0; i < lights.count(block); ++i) {
-      const V3f p = lights.place(block, i).x;
+      const V3f p = lights.geometry(block, i).x;
       x[i] = p.x, y[i] = p.y, z[i] = p.z;
     }
   }
@@ -40,7 +40,7 @@ void GateVisibility::prepare(const PrepareContext& context) {
   }
 }
 
-/// How much light along `w`, unit length, a gate lets through.
+/// The share of light along unit `w` that passes a gate.
 Float8 GateVisibility::through(const Gate& gate, const Float8x3& to_gate, const Float8x3& w) const {
   const Float8x3 axis{gate.axis.x, gate.axis.y, gate.axis.z};
   const Float8 t = dot(to_gate, axis) / dot(w, axis);

@@ -3,17 +3,17 @@
 #include <optional>
 
 #include "renderer/settings/visibility_settings.h"
-#include "renderer/visibility/skeleton_place.h"
+#include "renderer/visibility/skeleton_node.h"
 #include "renderer/visibility/visibility_base.h"
 
 namespace lacuna {
 
-/// visibility: gates (Noel 2015, ch. 7). A light shines on all of its own visibility cluster, and
-/// on the rest through the disks between its cluster and others, whatever stands behind them.
-/// Lights and points that belong to no cluster are tested. Decided here, where the text leaves it
-/// open:
-/// - The cone of a light and a gate has the disk as its base, seen however obliquely.
-/// - Where cones of several gates overlap, the brightest counts: V is not above 1.
+/// visibility: gates (Noel 2015, ch. 7). A light illuminates all of its own visibility cluster, and
+/// other clusters through the disks between its cluster and theirs, without occlusion beyond the
+/// disks. Lights and points that belong to no cluster are tested by shadow rays. The thesis leaves
+/// open what is decided here:
+/// - The cone of a light and a gate has the disk as its base, at any angle.
+/// - Where the cones of several gates overlap, the largest value is taken, so V <= 1.
 class GateVisibility : public VisibilityBase {
  public:
   static constexpr bool needs_space() { return true; }
@@ -21,7 +21,7 @@ class GateVisibility : public VisibilityBase {
   explicit GateVisibility(const GatesVisibilitySettings& settings) : settings_(settings) {}
 
   void prepare(const PrepareContext& context);
-  std::uint32_t group(const LightPlace& light) const { return cluster(node_of(*lookup_, light)); }
+  std::uint32_t group(const VplGeometry& light) const { return cluster(node_of(*lookup_, light)); }
   Counters begin(const LightPass& pass) {
     lights_ = &pass.terms.lights();
     return {};
@@ -51,7 +51,7 @@ class GateVisibility : public VisibilityBase {
   std::optional<SurfaceLookup> lookup_;
   std::vector<std::uint32_t> cluster_of_;  // of each node of the skeleton
   std::vector<std::uint32_t> first_;       // of each cluster in gates_, and the end
-  std::vector<Gate> gates_;                // each once for either side
+  std::vector<Gate> gates_;                // each gate once for each of its two clusters
   const VplSet* lights_ = nullptr;
 };
 

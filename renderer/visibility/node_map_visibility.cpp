@@ -8,7 +8,7 @@ namespace lacuna {
 
 namespace {
 
-/// Raised when the same inputs give other bits.
+/// Increased when the same inputs give other bits.
 constexpr std::uint32_t node_maps_version = 1;
 
 }  // namespace
@@ -25,7 +25,7 @@ void NodeMapVisibility::prepare(const PrepareContext& context) {
       occluder_key(context.scene.data()), [&](std::uint64_t byte_limit) {
         return trace_node_maps(context.scene, nodes_, settings_.map_size, context.pool, byte_limit);
       });
-  if (maps_->places() != nodes_.size() || maps_->size != settings_.map_size) {
+  if (maps_->points() != nodes_.size() || maps_->size != settings_.map_size) {
     throw std::runtime_error("the cache's node maps are not of its skeleton");
   }
 }

@@ -4,14 +4,14 @@
 
 #include "renderer/settings/visibility_settings.h"
 #include "renderer/visibility/node_maps.h"
-#include "renderer/visibility/skeleton_place.h"
+#include "renderer/visibility/skeleton_node.h"
 #include "renderer/visibility/visibility_base.h"
 
 namespace lacuna {
 
-/// visibility: node_maps. All lights of a node of the filtered skeleton share the node's view: what
-/// it does not see, none of them is evaluated for (Noel 2015, ch. 8, eq. 161). Lights that belong
-/// to no node are tested.
+/// visibility: node_maps. All lights of a node of the filtered skeleton have the visibility of the
+/// node: shading points that the node does not see skip all of them (Noel 2015, ch. 8, eq. 161).
+/// Lights that belong to no node are tested by shadow rays.
 class NodeMapVisibility : public VisibilityBase {
  public:
   static constexpr bool needs_space() { return true; }
@@ -19,11 +19,11 @@ class NodeMapVisibility : public VisibilityBase {
   explicit NodeMapVisibility(const NodeMapsVisibilitySettings& settings) : settings_(settings) {}
 
   void prepare(const PrepareContext& context);
-  std::uint32_t group(const LightPlace& light) const { return node_of(*lookup_, light); }
+  std::uint32_t group(const VplGeometry& light) const { return node_of(*lookup_, light); }
   Counters begin(const LightPass& pass);
   struct At {
-    V3f x, n;                 // n on the side that is seen
-    std::vector<float> seen;  // by `views_`; below 0: nobody asked
+    V3f x, n;                 // n on the side of the eye
+    std::vector<float> seen;  // by each of `views_`; below 0: not yet computed
   };
   At at(const ShadingPoint& point, const IterationContext& context) const;
   bool hides(At& at, std::size_t block) const {
@@ -32,7 +32,7 @@ class NodeMapVisibility : public VisibilityBase {
     if (at.seen[view] < 0) at.seen[view] = views_[view].seen(at.x, at.n);
     return at.seen[view] == 0;
   }
-  /// To be asked only where hides() says no.
+  /// Requires hides(at, block) == false.
   void decide(const At& at, std::size_t block, const Terms& terms, VisibilityEstimate& d) const {
     const std::uint32_t view = view_of_[block];
     if (view == no_group) return test_all(terms, d);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int least_size = 8, most_size = 1024;
 
-/// A direction as a place on the cube around it.
+/// A direction as a point on the cube around it.
 struct CubePoint {
   int face;     // as NodeMaps::texels
   float u, v;   // in [-1, 1]
@@ -40,7 +40,7 @@ V3f direction(int face, float u, float v) {
   return d;
 }
 
-/// The middle of texel `i` along a side, in [-1, 1]; i may lie beyond.
+/// The centre of texel `i` along a side, in [-1, 1]; i may lie outside.
 float middle(int i, int size) {
   return (2 * static_cast<float>(i) + 1) / static_cast<float>(size) - 1;
 }
@@ -56,37 +56,37 @@ struct Window {
     high = centre + static_cast<float>(filter) / 2;
     first = static_cast<int>(std::floor(low + 0.5F));
   }
-  /// How much of texel `i` is covered.
+  /// The covered share of texel `i`.
   float weight(int i) const {
     const auto x = static_cast<float>(i);
     return std::max(0.0F, std::min(x + 0.5F, high) - std::max(x - 0.5F, low));
   }
 };
 
-/// Texels compared with a plane. A texel in whose direction the plane does not lie says nothing.
+/// Texels compared with a plane. Texels whose direction does not meet the plane are ignored.
 struct Sums {
   float seen = 0, all = 0;
 };
 
 }  // namespace
 
-NodeMaps trace_node_maps(const Scene& scene, std::span<const V3f> places, int size,
+NodeMaps trace_node_maps(const Scene& scene, std::span<const V3f> points, int size,
                          const ThreadPool& pool, std::uint64_t byte_limit) {
   NodeMaps maps;
   maps.size = size;
   const auto nearness = Nearness::within(static_cast<float>(2 * scene.bounds().radius()));
   maps.scale = nearness.scale;
-  const std::size_t texels = places.size() * maps.texels_of_place() + NodeMaps::margin;
+  const std::size_t texels = points.size() * maps.texels_of_point() + NodeMaps::margin;
   if (const std::uint64_t bytes = texels * sizeof(maps.texels[0]); bytes > byte_limit) {
     throw MemoryLimitError(
         fmt::format("distance maps of {} nodes with {} x {} texels a face take {} bytes, of {} "
                     "that are free: a smaller map_size, or an analysis of lower resolution",
-                    places.size(), size, size, bytes, byte_limit));
+                    points.size(), size, size, bytes, byte_limit));
   }
   maps.texels.resize(texels);
   const auto n = static_cast<std::size_t>(size);
-  pool.for_each(static_cast<int>(places.size()) * NodeMaps::faces, [&](int part) {
-    const V3f from = places[static_cast<std::size_t>(part / NodeMaps::faces)];
+  pool.for_each(static_cast<int>(points.size()) * NodeMaps::faces, [&](int part) {
+    const V3f from = points[static_cast<std::size_t>(part / NodeMaps::faces)];
     std::uint16_t* texel = maps.texels.data() + static_cast<std::size_t>(part) * n * n;
     for (int j = 0; j < size; ++j) {
       for (int i = 0; i < size; ++i, ++texel) {
@@ -102,15 +102,15 @@ NodeMaps trace_node_maps(const Scene& scene, std::span<const V3f> places, int si
 
 namespace {
 
-/// Asks a node's map around a direction.
+/// Evaluates a node's map around a direction.
 class Comparison {
  public:
   /// The plane: points p with p . n = h, seen from the node.
   Comparison(const NodeMaps& maps, std::size_t index, const V3f& n, float h)
       : maps_(maps),
-        texels_(maps.texels.data() + index * maps.texels_of_place()),
+        texels_(maps.texels.data() + index * maps.texels_of_point()),
         n_(n),
-        // Half a texel's width more: what is nearer to the plane than that is taken to be on it.
+        // Plus half a texel's width: points closer to the plane count as on it.
         over_h_(maps.scale * (1 + 1 / static_cast<float>(maps.size)) / h) {}
 
   Sums around(const CubePoint& p, int filter) const {
@@ -177,9 +177,9 @@ class Comparison {
 }  // namespace
 
 float NodeView::seen(const V3f& x, const V3f& n) const {
-  const V3f d = x - place_;
+  const V3f d = x - point_;
   const float h = d.dot(n);
-  if (!(h < 0)) return 0;  // the place lies behind the surface
+  if (!(h < 0)) return 0;  // the point lies behind the surface
   const Sums sums = Comparison(*maps_, index_, n, h).around(CubePoint(d), filter_);
   return sums.all > 0 ? sums.seen / sums.all : 0;
 }
@@ -197,7 +197,7 @@ NodeMaps Codec<NodeMaps>::read(ArtefactReader& in) {
           "the scale is above 0");
   maps.texels = decode<std::vector<std::uint16_t>>(in);
   require(maps.texels.size() >= NodeMaps::margin &&
-              (maps.texels.size() - NodeMaps::margin) % maps.texels_of_place() == 0,
+              (maps.texels.size() - NodeMaps::margin) % maps.texels_of_point() == 0,
           "whole maps");
   return maps;
 }

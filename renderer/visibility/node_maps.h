@@ -8,46 +8,46 @@
 
 namespace lacuna {
 
-/// How far points are seen in all directions from some places: a cube map around each (Noel 2015,
-/// 8.3). Sixteen bits are enough: half a texel's width, which answers are uncertain by anyway, is
-/// 1/1024 of the distance or more, and a half float's last place at most 1/2048.
+/// Cube maps of depth around some points (Noel 2015, 8.3). Sixteen bits are enough: depth is
+/// uncertain by half a texel's width, at least 1/1024 of the distance, and a half float is precise
+/// to 1/2048.
 struct NodeMaps {
   static constexpr int faces = 6;
-  /// A row of eight may be read from any texel on.
+  /// Extra texels, so that eight can be read from any texel on.
   static constexpr std::size_t margin = 8;
 
   int size = 0;     ///< texels along the side of a face
-  float scale = 0;  ///< texels hold scale / depth, and 0 where nothing is met
-  /// Half floats: of place n, face f = 2 axis + (1: towards its negative end), row j along the
-  /// second next axis and column i along the next one at ((6 n + f) size + j) size + i; `margin`
-  /// more follow. Depth is that along the face's axis.
+  float scale = 0;  ///< a texel is scale / depth, and 0 where the ray hits nothing
+  /// Half floats. Point n, face f = 2 axis + (1 for the negative direction), row j along axis + 2,
+  /// column i along axis + 1 (both modulo 3) is at ((6 n + f) size + j) size + i; `margin` more
+  /// follow. Depth is measured along the face's axis.
   std::vector<std::uint16_t> texels;
 
-  std::size_t places() const {
-    const std::size_t one = texels_of_place();
+  std::size_t points() const {
+    const std::size_t one = texels_of_point();
     return one == 0 ? 0 : (texels.size() - margin) / one;
   }
-  std::size_t texels_of_place() const {
+  std::size_t texels_of_point() const {
     return std::size_t{faces} * static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
   }
 };
 
-/// Sends a ray through the middle of every texel. `size` in [8, 1024]. Throws MemoryLimitError if
+/// Traces a ray through the centre of every texel. `size` in [8, 1024]. Throws MemoryLimitError if
 /// the maps would take more than `byte_limit` bytes.
-NodeMaps trace_node_maps(const Scene& scene, std::span<const V3f> places, int size,
+NodeMaps trace_node_maps(const Scene& scene, std::span<const V3f> points, int size,
                          const ThreadPool& pool, std::uint64_t byte_limit);
 
-/// What one place sees.
+/// The visibility from the centre of one cube map.
 class NodeView {
  public:
-  /// `place`: of number `index` in `maps`. The filter's square has `filter` texels along each side,
+  /// `point`: the centre of map `index` of `maps`. `filter`: side of the filter's square in texels,
   /// in [1, 7].
-  NodeView(const NodeMaps& maps, std::size_t index, const V3f& place, int filter)
-      : maps_(&maps), index_(index), place_(place), filter_(filter) {}
+  NodeView(const NodeMaps& maps, std::size_t index, const V3f& point, int filter)
+      : maps_(&maps), index_(index), point_(point), filter_(filter) {}
 
-  /// How much of the surface through `x` with unit normal `n` is seen around x on the side of n, as
-  /// a share in [0, 1]: the map around the direction of x, each texel compared with the depth of
-  /// the surface's plane there, averaged (percentage-closer filtering, Reeves et al. 1987).
+  /// The visible share, in [0, 1], of the surface around `x` with unit normal `n`, on the side of
+  /// n: each texel around the direction of x is compared with the depth of the surface's plane, and
+  /// the results are averaged (percentage-closer filtering, Reeves et al. 1987).
   float seen(const V3f& x, const V3f& n) const;
 
  private:
@@ -55,7 +55,7 @@ class NodeView {
 
   const NodeMaps* maps_;
   std::size_t index_;
-  V3f place_;
+  V3f point_;
   int filter_;
 };
 

@@ -5,7 +5,7 @@
 
 namespace lacuna {
 
-/// visibility: exact.
+/// visibility: exact. A shadow ray for every light.
 struct ExactVisibility : VisibilityBase {
   explicit ExactVisibility(const ExactVisibilitySettings&) {}
   struct At {};
@@ -15,7 +15,7 @@ struct ExactVisibility : VisibilityBase {
   }
 };
 
-/// visibility: none.
+/// visibility: none. V = 1 for every light.
 struct NoVisibility : VisibilityBase {
   explicit NoVisibility(const NoVisibilitySettings&) {}
   struct At {};

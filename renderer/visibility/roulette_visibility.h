@@ -6,8 +6,8 @@
 
 namespace lacuna {
 
-/// visibility: roulette. What is not tested counts as unseen, what is tested for as much more. The
-/// variance of contributions is measured at a few shading points.
+/// visibility: roulette. A light is tested with probability p: the estimate is v / p if tested,
+/// else 0. The variance of contributions, which p depends on, is measured at a few shading points.
 class RouletteVisibility : public VisibilityBase {
  public:
   explicit RouletteVisibility(const RouletteVisibilitySettings& settings)

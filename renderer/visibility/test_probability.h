@@ -6,47 +6,48 @@
 
 namespace lacuna {
 
-/// With which probability a light is tested that gives `t` if it is seen: 1 - p_i of Nabata et al.,
-/// where variance times time is least (eq. 9, 10),
+/// The probability of testing a light with unoccluded contribution `t`: 1 - p_i of Nabata et al.,
+/// which minimises variance times time (eq. 9, 10),
 ///
 ///   sqrt(A k / (sigma^2 - c A)),  A = t^2 var,  k = n_0 - 1,  c = 1,
 ///
-/// with n_0 - 1 the time, in tests, that a light takes besides its test, and var the variance its
-/// visibility is taken to have; at least `least`. It is 1 where A reaches sigma^2 (4.1). Veach's
-/// threshold, t sqrt(n) / sigma, is the same with k = n, c = 0 (Veach 1997, 10.4.1). Scaled by
-/// sigma throughout, so that any brightness is as good as another.
+/// with n_0 - 1 the time of a light besides its test, in units of tests, and var the assumed
+/// variance of its visibility; at least `least`. It is 1 where A reaches sigma^2 (4.1). Veach's
+/// threshold, t sqrt(n) / sigma, is the case k = n, c = 0 (Veach 1997, 10.4.1). Everything is
+/// divided by sigma, so the result does not depend on brightness.
 struct TestProbability {
   float k = 0;
   float c = 1;
   float least = 1;
-  float over_sigma = 0;  ///< 1 / sigma; infinite where nothing is known: all are tested
+  float over_sigma = 0;  ///< 1 / sigma; infinite where sigma is unknown: test every light
 
   Float8 of(Float8 t, Float8 var) const {
     const Float8 u = t * over_sigma;
     const Float8 a = u * u * var;
     const Float8 rest = 1 - c * a;
-    // What is no number, 0 times infinity, compares false: tested.
+    // NaN, from 0 times infinity, compares false: the light is tested.
     const Float8 x = select(rest > 0, sqrt(a * k / rest), 1);
     return min(1, max(least, x));
   }
 };
 
-/// Probabilities as integers, so that every light is drawn with exactly the one it is divided by.
+/// Systematic sampling of the lights of a block. Probabilities are integers, so that each light is
+/// sampled with exactly the probability that its contribution is divided by.
 struct SystematicSampler {
   static constexpr int bits = 20;
   static constexpr std::uint32_t one = 1U << bits;
   alignas(32) std::array<std::uint32_t, Lanes::size> v;
 
-  /// The probabilities of eight lights; 0 where `lit` is not above 0.
+  /// Sets the probabilities of eight lights; 0 where `lit` is not above 0.
   void set(int group, Float8 probability, Float8 lit) {
     const Float8 key = keep_where(lit > 0, ceil(probability * float(one)));
     truncate(key).store_unaligned(v.data() + static_cast<std::ptrdiff_t>(8 * group));
   }
   float probability(int i) const { return float(v[static_cast<std::size_t>(i)]) / float(one); }
 
-  /// Draws each light with its probability, all with one random number: those whose stretch of the
-  /// summed probabilities holds u, u + 1, ... Lights of a block are alike, and so are spread over
-  /// it (systematic sampling).
+  /// Samples each light with its probability by one random number u: the lights whose intervals of
+  /// the cumulative sum contain u, u + 1, ... The lights of a block are similar, and the samples
+  /// are spread over the block.
   std::uint64_t draw(std::uint32_t random) const {
     std::uint64_t drawn = 0;
     std::uint32_t sum = random >> (32 - bits);

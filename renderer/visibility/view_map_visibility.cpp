@@ -6,7 +6,7 @@ namespace lacuna {
 
 namespace {
 
-/// Views stand this many radii of the octree's leaves before their surface: of a flat one, no
+/// Views are this many radii of the octree's leaves in front of their surface: on a flat one, no
 /// leaf's sphere then rises above the horizon.
 constexpr float before_surface = 2;
 
@@ -49,7 +49,7 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
     first_[b] = static_cast<std::uint32_t>(views.size());
     if (lights_->group(b) == no_group) continue;
     for (int i = 0; i < lights_->count(b); ++i) {
-      const LightPlace p = lights_->place(b, i);
+      const VplGeometry p = lights_->geometry(b, i);
       views.push_back({p.x + p.n * (before_surface * cell_), p.n});
     }
   }
@@ -118,7 +118,7 @@ std::vector<std::pair<std::string, double>> ViewMapVisibility::statistics() cons
   if (!maps_) return {};
   const auto number = [](auto n) { return static_cast<double>(n); };
   const auto splats = number(std::max<std::uint64_t>(1, counts_.splats));
-  std::vector<std::pair<std::string, double>> told{
+  std::vector<std::pair<std::string, double>> stats{
       {"scene_leaves", number(scene_ ? scene_->leaves().size() : 0)},
       {"view_leaves", number(leaves_)},
       {"view_passes", number(passes_)},
@@ -132,11 +132,11 @@ std::vector<std::pair<std::string, double>> ViewMapVisibility::statistics() cons
       {"views_sharing_a_splat", number(counts_.sharing) / splats},
       {"view_queue_peak_pairs", number(queue_peak_)}};
   if (counts_.queue_bytes > 0) {
-    told.emplace_back("view_queue_bytes", number(counts_.queue_bytes));
-    told.emplace_back("view_unfused_bytes", number(counts_.unfused_bytes));
-    told.emplace_back("view_fusion_cpu_seconds", counts_.fusion_seconds);
+    stats.emplace_back("view_queue_bytes", number(counts_.queue_bytes));
+    stats.emplace_back("view_unfused_bytes", number(counts_.unfused_bytes));
+    stats.emplace_back("view_fusion_cpu_seconds", counts_.fusion_seconds);
   }
-  return told;
+  return stats;
 }
 
 }  // namespace lacuna

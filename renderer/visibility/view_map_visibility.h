@@ -9,8 +9,9 @@
 
 namespace lacuna {
 
-/// visibility: view_maps (Kol et al. 2018). Every light has a small map of distances, made by
-/// traversing the octrees of the scene and of the lights together. Lights at infinity are tested.
+/// visibility: view_maps (Kol et al. 2018). Every light has a small map of distances, rendered by
+/// traversing the octrees of the scene and of the lights together. Lights at infinity are tested by
+/// shadow rays.
 class ViewMapVisibility : public VisibilityBase {
  public:
   static constexpr bool needs_space() { return true; }
@@ -18,11 +19,11 @@ class ViewMapVisibility : public VisibilityBase {
   explicit ViewMapVisibility(const ViewMapsVisibilitySettings& settings) : settings_(settings) {}
 
   void prepare(const PrepareContext& context);
-  static std::uint32_t group(const LightPlace& light) { return light.infinite ? no_group : 0; }
+  static std::uint32_t group(const VplGeometry& light) { return light.infinite ? no_group : 0; }
   std::vector<BlockRange> passes(const VplSet& lights) const;
   Counters begin(const LightPass& pass);
   struct At {
-    V3f x, n;  // n on the side that is seen
+    V3f x, n;  // n on the side of the eye
   };
   static At at(const ShadingPoint& point, const IterationContext&) {
     return {point.vertex->surface.x, point.vertex->side()};
@@ -35,7 +36,7 @@ class ViewMapVisibility : public VisibilityBase {
 
   ViewMapsVisibilitySettings settings_;
   OctreeCube cube_;                      // of both octrees
-  std::shared_ptr<const Octree> scene_;  // where it is traversed
+  std::shared_ptr<const Octree> scene_;  // null for per_view, which traces rays
   float cell_ = 0;                       // radius of the scene's leaves
   std::unique_ptr<ViewTree> views_;
   std::unique_ptr<ViewMaps> maps_;
@@ -43,7 +44,7 @@ class ViewMapVisibility : public VisibilityBase {
   std::vector<std::uint32_t> first_;  // of each block of lights its first view
   const VplSet* lights_ = nullptr;
   ManyViewsCounts counts_;
-  std::uint64_t queue_peak_ = 0;  // of the pass that has the most
+  std::uint64_t queue_peak_ = 0;  // largest of all passes
   std::uint64_t leaves_ = 0;      // of all passes of an iteration
   int passes_ = 0;
   double tree_seconds_ = 0, map_seconds_ = 0;

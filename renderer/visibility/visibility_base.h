@@ -6,24 +6,24 @@
 
 namespace lacuna {
 
-/// The answers of a visibility that treats all lights alike (see the concept Visibility).
+/// Defaults of the concept Visibility for a strategy that treats all lights alike.
 struct VisibilityBase : StrategyBase {
-  /// Lights of which groups it wants to meet one after another.
-  static std::uint32_t group(const LightPlace&) { return 0; }
-  /// Which lights it treats at a time: all blocks, one range after another.
+  /// The group of a light; the lights of a group are consecutive.
+  static std::uint32_t group(const VplGeometry&) { return 0; }
+  /// The ranges of blocks that are processed one after another; together, all blocks.
   static std::vector<BlockRange> passes(const VplSet&) { return {{}}; }
-  /// Once the lights of an iteration are there, for each of the passes.
+  /// Called for each pass when the lights of an iteration are complete.
   static Counters begin(const LightPass&) { return {}; }
-  /// No light of `block` shines on the point, whatever it would give.
+  /// No light of `block` illuminates the point.
   template <class At>
   static bool hides(At&, std::size_t /*block*/) {
     return false;
   }
-  /// Negative pixels are to become black.
+  /// Negative pixels become black.
   static bool clamps_negative() { return false; }
 };
 
-/// Every light that could add something is tested.
+/// Tests every light that has a contribution.
 inline void test_all(const Terms& terms, VisibilityEstimate& d) {
   d.tests = terms.lit;
   d.untested.v.fill(0);

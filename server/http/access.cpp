@@ -118,7 +118,7 @@ Response Access::session(const Request& request) {
     sessions_.close(id);
     return cookie_answer(request, "", "; Max-Age=0");
   }
-  throw HttpError(405, "A session can be begun (POST) and ended (DELETE).")
+  throw HttpError(405, "A session is created by POST and ended by DELETE.")
       .with("Allow", "POST, DELETE");
 }
 
@@ -130,7 +130,7 @@ void Access::check_token(std::string_view shown) {
   const double seconds = std::chrono::duration<double>(now - std::exchange(counted_, now)).count();
   tries_ = std::min(failures_a_second, tries_ + failures_a_second * seconds);
   if (tries_ < 1) {
-    throw HttpError(429, "Too many wrong tokens have been shown.").with("Retry-After", "1");
+    throw HttpError(429, "Too many wrong tokens have been sent.").with("Retry-After", "1");
   }
   if (token_->is(shown)) return;
   tries_ -= 1;

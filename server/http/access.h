@@ -15,9 +15,9 @@
 
 namespace lacuna {
 
-/// Decides who may ask for what. Without a token file: everybody who reaches the address and is no
-/// page of another site. With one: who shows the token, or the cookie that POST /api/session gave
-/// for it; GET /health and the page's own files are for everybody.
+/// Access control. Without a token file, every client that reaches the address is admitted, except
+/// pages of other sites. With one, clients must send the token, or the cookie that POST
+/// /api/session issued for it; GET /health and the page's own files are public.
 class Access {
  public:
   /// `is_public`: whether a path is one of the page's files. Throws std::runtime_error for the
@@ -25,8 +25,8 @@ class Access {
   Access(const std::string& bind, const AccessSettings& settings,
          std::function<bool(const std::string& path)> is_public);
 
-  /// Returns if the request may go on; gives the answer if it is one about sessions. Throws
-  /// HttpError 400, 401, 403, and 429 when too many wrong tokens were shown.
+  /// Returns if the request is admitted; returns the response to requests for sessions. Throws
+  /// HttpError 400, 401, 403, and 429 after too many wrong tokens.
   std::optional<Response> admit(const Request& request);
 
  private:
@@ -38,7 +38,7 @@ class Access {
   const std::function<bool(const std::string&)> is_public_;
   Sessions sessions_;
   std::mutex mutex_;
-  double tries_;  ///< wrong tokens that may still be shown now
+  double tries_;  ///< wrong tokens still allowed at present
   std::chrono::steady_clock::time_point counted_ = std::chrono::steady_clock::now();
 };
 

@@ -19,8 +19,8 @@ Address parsed_address(const std::string& name) {
   in6_addr v6{};
   if (::inet_pton(AF_INET, text.c_str(), &v4) == 1) return {text, (ntohl(v4.s_addr) >> 24) == 127};
   if (::inet_pton(AF_INET6, text.c_str(), &v6) == 1) return {text, IN6_IS_ADDR_LOOPBACK(&v6) != 0};
-  throw std::invalid_argument(
-      fmt::format("\"{}\" is no address to bind to: give an IP address or localhost", name));
+  throw std::invalid_argument(fmt::format(
+      "\"{}\" is not an address to listen on; allowed: an IP address or localhost", name));
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 namespace lacuna {
 
-/// The numeric IP address that `name` stands for: itself, or 127.0.0.1 for "localhost". Throws
+/// The numeric IP address of `name`: itself, or 127.0.0.1 for "localhost". Throws
 /// std::invalid_argument for any other name.
 std::string numeric_address(const std::string& name);
 

@@ -6,13 +6,13 @@
 
 namespace lacuna {
 
-/// Holds the framing of a chunked body (RFC 9112, section 7.1) to its letter before the HTTP
-/// library decodes it: the library takes signs, blanks and "0x" in front of a size, and knows no
+/// Validates the framing of a chunked body strictly (RFC 9112, section 7.1) before the HTTP library
+/// decodes it: the library accepts signs, blanks and "0x" before a size, and does not know
 /// trailers.
 class ChunkCheck {
  public:
-  /// Checks the next bytes, in place. Returns how many of them the library gets: all but trailers,
-  /// which are checked and dropped. Throws HttpError 400.
+  /// Validates the next bytes, in place. Returns the number of bytes for the library: all except
+  /// trailers, which are validated and dropped. Throws HttpError 400.
   std::size_t pass(char* data, std::size_t size);
   /// The end of the body has passed.
   bool complete() const { return state_ == State::complete; }

@@ -51,7 +51,7 @@ Guard::Guard(const std::string& bind, const std::vector<std::string>& hosts)
     const auto host = parse(text);
     if (!host) {
       throw std::invalid_argument(
-          fmt::format("--host \"{}\" is no name of a host: give NAME or NAME:PORT", text));
+          fmt::format("--host \"{}\" is not a host name; allowed: NAME or NAME:PORT", text));
     }
     if (host->port.empty()) {
       names_.push_back(host->name);

@@ -7,7 +7,7 @@
 
 namespace lacuna {
 
-/// Refuses what a page of another site could make a browser send.
+/// Refuses requests that a page of another site could make a browser send (CSRF, DNS rebinding).
 class Guard {
  public:
   /// `bind`: the address that the service listens on; `hosts`: further names of it, NAME (at any

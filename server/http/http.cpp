@@ -168,7 +168,7 @@ Request request_of(const httplib::Request& sent, const httplib::ContentReader* r
   Request request;
   request.method = sent.method;
   request.path = path_as_sent(sent);
-  if (!is_plain_path(request.path)) throw HttpError(404, "There is nothing here.");
+  if (!is_plain_path(request.path)) throw HttpError(404, "There is no such address.");
   if (request.path.size() < sent.target.size()) {
     request.query =
         Query(std::string_view(sent.target).substr(request.path.size() + 1), sent.params);
@@ -242,7 +242,7 @@ void put_file(Response response, httplib::Response& out) {
 void put(Response response, httplib::Response& out) {
   if (!headers_are_plain(response)) {
     log::error("an answer could not be made: a header would hold a control character");
-    response = problem_response(HttpError(500, "The service failed; its log says more."), "");
+    response = problem_response(HttpError(500, "The service failed; see its log."), "");
   }
   current->answered = true;
   out.status = response.status;
@@ -333,7 +333,7 @@ void Library::add_refusals(const Router& routes) {
       });
     }
     add(method, ".*", [](const Request&, const Router::Parts&) -> Response {
-      throw HttpError(404, "There is nothing here.");
+      throw HttpError(404, "There is no such address.");
     });
   }
 }
@@ -367,7 +367,7 @@ void Library::respond(const httplib::Request& sent, httplib::Response& out,
     response = problem_response(error, path);
   } catch (const std::exception& error) {
     log::error("{} {}: {}", sent.method, path, error.what());
-    response = problem_response(HttpError(500, "The service failed; its log says more."), path);
+    response = problem_response(HttpError(500, "The service failed; see its log."), path);
   }
   put(std::move(response), out);
 }

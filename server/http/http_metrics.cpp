@@ -29,12 +29,14 @@ void write_metrics(PrometheusText& text, const HttpMetrics& m) {
     requests.value(value(m.requests[i]), {{"status", fmt::format("{}xx", i + 1)}});
   }
   std::vector<std::uint64_t> counts(m.seconds.begin(), m.seconds.end());
-  text.histogram("lacuna_http_request_seconds", "From the whole request to its answer.",
+  text.histogram("lacuna_http_request_seconds",
+                 "Time from the arrival of a request to its response.",
                  {m.bounds.begin(), m.bounds.end()}, counts, 1e-6 * value(m.microseconds));
   text.counter("lacuna_http_sent_bytes_total", "Bytes sent to clients.").value(value(m.bytes_out));
-  text.counter("lacuna_http_given_up_total", "Answers cut off because the client took too little.")
+  text.counter("lacuna_http_given_up_total",
+               "Responses aborted because the client read too slowly.")
       .value(value(m.given_up));
-  text.gauge("lacuna_http_parked", "Connections whose request is still coming.")
+  text.gauge("lacuna_http_parked", "Connections whose request has not arrived completely.")
       .value(value(m.parked));
   text.gauge("lacuna_http_slow_seats", "Threads that wait for a body or a reader.")
       .value(value(m.slow_seats));

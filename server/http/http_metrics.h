@@ -10,7 +10,7 @@ namespace lacuna {
 
 class PrometheusText;
 
-/// What the HTTP layer has seen and done since its start. Written by many threads, read by any.
+/// Metrics of the HTTP layer since its start. Written and read by any thread.
 struct HttpMetrics {
   using Count = std::atomic<std::uint64_t>;
 
@@ -19,11 +19,11 @@ struct HttpMetrics {
                                                  0.25,  0.5,    1,     2.5,  5,     10};
 
   Count accepted{0};    ///< connections
-  Count refused{0};     ///< of these, answered before a handler: malformed, late or too many
-  Count parked{0};      ///< now: connections whose request is still coming
-  Count given_up{0};    ///< answers that were cut off: their clients took too little
-  Count slow_seats{0};  ///< now: threads that wait for a body, or for a reader
-  Count streams{0};     ///< now: open streams of events
+  Count refused{0};     ///< connections refused before a handler: malformed, late or too many
+  Count parked{0};      ///< gauge: connections whose request has not arrived completely
+  Count given_up{0};    ///< responses aborted because the client read too slowly
+  Count slow_seats{0};  ///< gauge: threads that wait for a body or for a reader
+  Count streams{0};     ///< gauge: open event streams
   Count bytes_out{0};   ///< to clients, heads included
   std::array<Count, 5> requests{};                 ///< answered, by the first digit of the status
   std::array<Count, bounds.size() + 1> seconds{};  ///< from the whole request to its answer

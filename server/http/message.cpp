@@ -39,7 +39,7 @@ const char* status_title(int status) {
       {500, "Internal error"},
       {501, "Unknown method"},
       {503, "Busy"},
-      {505, "Unknown version of HTTP"},
+      {505, "HTTP version not supported"},
       {507, "Cannot store"},
   }};
   for (const auto& [number, text] : titles) {
@@ -52,7 +52,7 @@ std::optional<std::string> single_header(const Headers& headers, const std::stri
   const auto [first, last] = headers.equal_range(name);
   if (first == last) return std::nullopt;
   if (std::next(first) != last) {
-    throw HttpError(400, fmt::format("Header {} stands more than once.", name));
+    throw HttpError(400, fmt::format("Header {} is given more than once.", name));
   }
   return first->second;
 }

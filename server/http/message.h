@@ -21,13 +21,13 @@ using Headers = std::multimap<std::string, std::string>;
 /// The value of a header that may stand only once; nothing if it is absent. Throws HttpError.
 std::optional<std::string> single_header(const Headers& headers, const std::string& name);
 
-/// First and last byte. As a client asks: -1 for a last one that is the end, or for a first one
-/// that makes `last` the number of bytes before the end (RFC 9110, section 14.1.2).
+/// First and last byte, as requested by a client: `last` -1 is the end; with `first` -1, `last` is
+/// the number of bytes before the end (RFC 9110, section 14.1.2).
 struct ByteRange {
   std::int64_t first = -1, last = -1;
 };
 
-/// A request as the routes see it: bounded and well formed.
+/// A request as handlers get it: bounded and well formed.
 struct Request {
   std::string method;
   std::string path;  ///< as sent, without the query; nothing is decoded: no name here needs it
@@ -49,7 +49,8 @@ struct Request {
   }
 };
 
-/// Of the body, in lower case and without parameters: "application/json"; empty if it has none.
+/// The media type of the body, in lower case and without parameters: "application/json"; empty if
+/// it has none.
 std::string media_type(const Request& request);
 
 /// A part of an open file.
@@ -59,7 +60,7 @@ struct FilePart {
   std::int64_t length = 0;
 };
 
-/// What goes back: one of a text, a part of a file, or a stream of texts.
+/// A response: a text, a part of a file, or a stream of texts.
 struct Response {
   int status = 200;
   std::string content_type;
@@ -75,7 +76,7 @@ struct Response {
 /// "Not found" and the like.
 const char* status_title(int status);
 
-/// A request that is refused: becomes an application/problem+json answer.
+/// A refusal of a request: becomes an application/problem+json response.
 class HttpError : public std::runtime_error {
  public:
   HttpError(int status, const std::string& detail, std::vector<Problem> errors = {})

@@ -5,8 +5,8 @@
 
 namespace lacuna {
 
-/// A deadline that moves on for who keeps up: in each window of `time`, at least `bytes`, however
-/// many there were before. With no `bytes` given it never moves.
+/// A deadline that is extended while a transfer keeps a minimum rate: at least `bytes` in each
+/// window of `time`, regardless of earlier windows. Without `bytes` it is fixed.
 class PacedDeadline {
  public:
   using Clock = std::chrono::steady_clock;

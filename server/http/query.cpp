@@ -30,7 +30,7 @@ void check_escapes(std::string_view sent) {
     const std::string_view digits = sent.substr(i + 1, 2);
     if (digits.size() < 2 ||
         digits.find_first_not_of("0123456789abcdefABCDEF") != std::string_view::npos) {
-      throw HttpError(400, "The query holds a % that two hexadecimal digits do not follow.");
+      throw HttpError(400, "The query contains a % without two hexadecimal digits.");
     }
   }
 }
@@ -41,7 +41,7 @@ std::size_t check_parameters(std::string_view sent) {
   while (!sent.empty()) {
     const std::string_view part = sent.substr(0, sent.find('&'));
     if (part.empty() || part.front() == '=') {
-      throw HttpError(400, "The query holds a parameter without a name.");
+      throw HttpError(400, "The query contains a parameter without a name.");
     }
     if (part.find('=') != part.rfind('=')) {
       throw HttpError(400, "The query holds a second \"=\" in a parameter: write it as %3D.");
@@ -59,15 +59,15 @@ Query::Query(std::string_view sent, const Parameters& decoded) {
   const std::size_t count = check_parameters(sent);
   for (const auto& [name, value] : decoded) {
     if (!is_plain_text(name) || !is_plain_text(value)) {
-      throw HttpError(400, "The query holds what is no UTF-8 text, or a control character.");
+      throw HttpError(400, "The query contains invalid UTF-8 or a control character.");
     }
     if (!values_.emplace(name, value).second) {
-      throw HttpError(400, fmt::format("Query parameter \"{}\" stands more than once.", name));
+      throw HttpError(400, fmt::format("Query parameter \"{}\" is given more than once.", name));
     }
   }
   // Of parameters that are the same to the letter the library keeps one.
   if (values_.size() < count) {
-    throw HttpError(400, "A query parameter stands more than once.");
+    throw HttpError(400, "A query parameter is given more than once.");
   }
 }
 

@@ -59,12 +59,12 @@ void check_request_line(std::string_view line) {
     throw HttpError(400, "The request line is not \"METHOD PATH HTTP/1.1\".");
   }
   if (version != "HTTP/1.1" && version != "HTTP/1.0") {
-    throw HttpError(505, "Only HTTP/1.1 and HTTP/1.0 are spoken here.");
+    throw HttpError(505, "Only HTTP/1.1 and HTTP/1.0 are supported.");
   }
   constexpr std::array<std::string_view, 7> methods{"GET",   "HEAD",   "POST",   "PUT",
                                                     "PATCH", "DELETE", "OPTIONS"};
   if (std::find(methods.begin(), methods.end(), method) == methods.end()) {
-    throw HttpError(501, "The method is not known here.");
+    throw HttpError(501, "The method is not supported.");
   }
 }
 
@@ -75,7 +75,7 @@ struct Header {
 
 Header checked_header(std::string_view line) {
   if (line.front() == ' ' || line.front() == '\t') {
-    throw HttpError(400, "A header goes on over several lines, which is out of use.");
+    throw HttpError(400, "A header is continued on several lines, which is obsolete.");
   }
   const std::size_t colon = line.find(':');
   const std::string_view name = line.substr(0, colon);
@@ -200,7 +200,7 @@ RequestHead check_head(std::string_view text) {
     }
     const Header header = checked_header(line);
     if (!values.emplace(header.name, header.value).second && may_stand_once(header.name)) {
-      throw HttpError(400, fmt::format("Header {} stands more than once.", header.name));
+      throw HttpError(400, fmt::format("Header {} is given more than once.", header.name));
     }
     if (library_gets(header)) head.text += library_line(header);
   }

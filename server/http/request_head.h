@@ -10,7 +10,7 @@ inline constexpr std::size_t max_head_bytes = 16 * 1024;
 inline constexpr std::size_t max_target_bytes = 1024;
 inline constexpr std::size_t max_headers = 64;
 
-/// What the waiting room must know of a request before the HTTP library parses it.
+/// The parts of a request that the waiting room needs before the HTTP library parses it.
 struct RequestHead {
   /// The head in a form that the library can read in one way only: as it was sent, but for three
   /// things. A % in a header is written %25, since the library decodes escapes there. Expect and

@@ -21,7 +21,7 @@ struct QueryParameter {
   std::int64_t min = INT64_MIN, max = INT64_MAX;  ///< of an integer
 };
 
-/// What a route does, for people and for programs that read /openapi.json.
+/// The description of a route, for /openapi.json.
 struct RouteDoc {
   std::string summary = {};
   std::vector<QueryParameter> query = {};                 ///< others are refused

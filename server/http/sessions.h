@@ -11,8 +11,8 @@ namespace lacuna {
 
 inline constexpr std::string_view session_cookie = "lacuna_session";
 
-/// Browsers that have shown the token once: each has a random id of its own. In memory only, and
-/// not too many: the oldest is forgotten. Any thread.
+/// Sessions of browsers that have sent the token once, each with a random id. In memory only, with
+/// a limit: the oldest is dropped. Thread-safe.
 class Sessions {
  public:
   static constexpr std::size_t max_sessions = 64;

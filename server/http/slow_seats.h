@@ -9,8 +9,8 @@
 
 namespace lacuna {
 
-/// How many threads may wait for their client at a time, and how much of the answers that they hold
-/// is in memory. Any thread.
+/// Limits the number of threads that wait for slow clients, and the memory of the responses that
+/// they hold. Thread-safe.
 class SlowSeats {
  public:
   struct Holder {
@@ -31,13 +31,13 @@ class SlowSeats {
   SlowSeats(std::size_t seats, std::size_t max_bytes, HttpMetrics& metrics)
       : seats_(seats), max_bytes_(max_bytes), metrics_(metrics) {}
 
-  /// A seat for who sends a body; empty if none is free.
+  /// A seat for a client that sends a body; empty if none is free.
   Seat for_body(int socket);
-  /// A seat for who is slow to take an answer. If there is none, the connection of the reader who
-  /// has taken nothing for longest is shut: clients that merely have a thin line stay. Empty if
-  /// that does not help.
+  /// A seat for a client that reads a response slowly. If none is free, closes the connection of
+  /// the reader that has been idle for longest, so clients with a slow but steady connection stay.
+  /// Empty if that does not free a seat.
   Seat for_reader(int socket, std::size_t bytes);
-  /// A reader has taken something.
+  /// Call when a reader has received data.
   void moved_on(Holder& reader);
 
  private:

@@ -36,11 +36,12 @@ TimedSocket::Wait TimedSocket::wait(short events, PacedDeadline::Clock::time_poi
 void TimedSocket::wait_for_body() {
   if (!seat_) seat_ = shared_.seats.for_body(socket_.get());
   if (!seat_) {
-    throw HttpError(503, "Too many clients send slowly at present.").with("Retry-After", "5");
+    throw HttpError(503, "Too many slow clients are sending at present.").with("Retry-After", "5");
   }
   const Wait result = wait(POLLIN, deadline_.end());
-  if (result == Wait::late && deadline_.over()) throw HttpError(408, "The body came too slowly.");
-  if (result == Wait::failed) throw HttpError(503, "The service ends.");
+  if (result == Wait::late && deadline_.over())
+    throw HttpError(408, "The body arrived too slowly.");
+  if (result == Wait::failed) throw HttpError(503, "The service is shutting down.");
 }
 
 std::size_t TimedSocket::read(char* data, std::size_t size) {
@@ -50,7 +51,7 @@ std::size_t TimedSocket::read(char* data, std::size_t size) {
     return n;
   }
   for (;;) {
-    if (deadline_.over()) throw HttpError(408, "The body came too slowly.");
+    if (deadline_.over()) throw HttpError(408, "The body arrived too slowly.");
     const ssize_t n = ::recv(socket_.get(), data, size, MSG_DONTWAIT);
     if (n >= 0) {
       deadline_.count(static_cast<std::size_t>(n));

@@ -12,9 +12,9 @@
 
 namespace lacuna {
 
-/// A non-blocking connection that a thread waits for, with deadlines: while a body comes and while
-/// an answer goes out, on one of the slow seats, and for as long as a stream of texts is open. A
-/// client that is slower than that, in whatever rhythm, holds its thread no longer.
+/// A non-blocking connection with deadlines. A thread waits for it on a slow seat while a body
+/// arrives and while a response is sent, and without a seat while a stream of texts is open. A
+/// client below the minimum rate is disconnected and its thread freed.
 class TimedSocket {
  public:
   enum class Pace { total, rate };  ///< a deadline for the whole body, or a least rate

@@ -6,7 +6,7 @@
 
 namespace lacuna {
 
-/// A secret that callers show. Is never printed.
+/// The secret token of clients. Never printed.
 class Token {
  public:
   explicit Token(std::string secret) : secret_(std::move(secret)) {}

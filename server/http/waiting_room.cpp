@@ -188,7 +188,7 @@ void WaitingRoom::hand_over(Client& client) {
   arrival.socket = leave(client);
   if (offer_(arrival)) return;
   refuse(std::move(arrival.socket),
-         HttpError(503, "Too many requests wait to be answered.").with("Retry-After", "1"));
+         HttpError(503, "Too many requests are waiting.").with("Retry-After", "1"));
 }
 
 void WaitingRoom::refuse(FileHandle socket, const HttpError& error) {
@@ -208,7 +208,7 @@ void WaitingRoom::expire() {
       continue;
     }
     const char* const what =
-        client.head ? "The body came too slowly." : "The request came too slowly.";
+        client.head ? "The body arrived too slowly." : "The request arrived too slowly.";
     refuse(leave(client), HttpError(408, what));
   }
   while (!lingering_.empty() && lingering_.front().deadline.over()) leave(lingering_.front());
@@ -232,7 +232,7 @@ void WaitingRoom::take_in() {
 void WaitingRoom::make_room() {
   while (arriving_.size() > settings_.parked) {
     refuse(leave(arriving_.front()),
-           HttpError(503, "Too many requests are on their way.").with("Retry-After", "1"));
+           HttpError(503, "Too many requests are arriving.").with("Retry-After", "1"));
   }
   while (lingering_.size() > settings_.parked) leave(lingering_.front());
 }

@@ -18,7 +18,7 @@
 
 namespace lacuna {
 
-/// A request that has come: its head, and of its body what came with it; all of it if it is small.
+/// An arrived request: its head, and the part of the body that came with it; a small body entirely.
 struct Arrival {
   FileHandle socket;
   RequestHead head;
@@ -26,9 +26,9 @@ struct Arrival {
   PacedDeadline::Clock::time_point time;
 };
 
-/// Accepts connections and keeps them until their request is there, on one thread for all of them:
-/// who sends slowly holds up nobody. Here, too, those are waited for whose answer is sent, but who
-/// still send: closing at once would reset the connection, and they would lose the answer.
+/// Accepts connections and holds them until their request has arrived, on one thread for all, so
+/// slow senders delay nobody. Also holds connections whose response is sent but that still send:
+/// closing them at once would reset the connection and lose the response.
 class WaitingRoom {
  public:
   /// Takes the arrival over, or returns false and leaves it alone: there is no room.

@@ -13,9 +13,8 @@
 
 namespace lacuna {
 
-/// Held while a child exists that has not become its program yet: until then it has copies of all
-/// that is open here. Hold it, too, where such a copy does harm: a lock on a job's folder would
-/// stay.
+/// Held between fork and exec of a child, which until then has copies of all open files. Hold it
+/// too where such a copy would do harm: a lock on a job's folder would stay.
 std::mutex& fork_mutex();
 
 struct Command {

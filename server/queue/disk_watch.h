@@ -6,7 +6,7 @@
 
 namespace lacuna {
 
-/// The room on the disk where `folder` lies, against a floor below which nothing shall start.
+/// The free space on the disk of `folder`, compared with a floor below which no job starts.
 class DiskWatch {
  public:
   /// `floor`: bytes; 0: any room is enough.
@@ -16,9 +16,9 @@ class DiskWatch {
   /// Bytes that may still be written. Throws std::system_error.
   std::uint64_t free_bytes() const;
   std::uint64_t floor() const { return floor_; }
-  /// Looks anew. Once there was too little room, there has to be a tenth more than the floor before
-  /// there is enough: or a few checkpoints would stop all work again. A disk that does not answer
-  /// counts as it was before.
+  /// Checks the free space. Once it was below the floor, it stays low until a tenth above the floor
+  /// (hysteresis), so that a few checkpoints do not stop all work again. If the disk does not
+  /// answer, the last result is kept.
   bool is_low();
 
  private:

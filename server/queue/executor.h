@@ -12,14 +12,14 @@ namespace lacuna {
 
 /// How a renderer ended.
 struct Ending {
-  /// out_of_memory: it said so itself (exit_memory), or the kernel killed it for it.
+  /// out_of_memory: it reported exit_memory, or the kernel killed it for lack of memory.
   enum class Kind { exited, killed, not_started, out_of_memory };
   Kind kind = Kind::exited;
   int code = 0;        ///< exit code, out_of_memory too (128 + SIGKILL if killed); signal; errno
   std::string reason;  ///< "renderer ended by signal 9 (Killed)"
 };
 
-/// A request to stop, made by any thread and waited for by one.
+/// A request to stop, sent by any thread and awaited by one.
 class StopSignal {
  public:
   StopSignal();  ///< throws std::system_error
@@ -30,7 +30,7 @@ class StopSignal {
   FileHandle event_;
 };
 
-/// Runs renderers: here in child processes; elsewhere perhaps on a cluster.
+/// The interface that runs renderers, for example in child processes or on a cluster.
 class Executor {
  public:
   virtual ~Executor() = default;

@@ -17,7 +17,7 @@
 namespace lacuna {
 namespace {
 
-/// The ending, told for what it was where memory ran out.
+/// The ending, classified as out of memory where memory ran out.
 Ending name_memory(Ending end, std::uint64_t limit, bool kernel_killed) {
   if (end.kind == Ending::Kind::exited && end.code == exit_memory) {
     const std::string size = limit > 0 ? fmt::format(" (limit {})", byte_size_text(limit)) : "";
@@ -30,7 +30,7 @@ Ending name_memory(Ending end, std::uint64_t limit, bool kernel_killed) {
   return end;
 }
 
-/// The service's own environment, with the places it was told on its command line.
+/// The service's own environment, with the folders of its command line.
 std::vector<std::string> child_environment(const ExecutorSettings& settings) {
   const std::string data = "LACUNA_DATA=", cache = "LACUNA_CACHE=", scenes = "LACUNA_SCENES=";
   std::vector<std::string> result;

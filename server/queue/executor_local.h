@@ -8,11 +8,10 @@
 
 namespace lacuna {
 
-/// Each renderer is a child process in a process group of its own, with nothing of the service but
-/// its environment. It gets SIGTERM when asked to stop and when the service dies, SIGKILL when the
-/// grace has passed; what it prints is added to the job's log.txt. It is held to the settings'
-/// limits; a renderer that the kernel kills while it counts a kill for want of memory is taken to
-/// be the one.
+/// Runs each renderer as a child process in its own process group, with only the environment of the
+/// service. Sends SIGTERM to stop it and when the service dies, SIGKILL after the grace period; its
+/// output is appended to the job's log.txt. Applies the settings' limits. A renderer that is killed
+/// while the kernel counts an out-of-memory kill is assumed to be its victim.
 class LocalExecutor : public Executor {
  public:
   /// Throws std::invalid_argument if there is no such renderer.

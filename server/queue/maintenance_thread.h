@@ -10,8 +10,8 @@
 
 namespace lacuna {
 
-/// Looks after what changes by itself while the service runs: what renderers write, folders that
-/// come and go by other hands, room on the disk, and old jobs that need not be kept.
+/// Periodic maintenance: reads the progress of renderers, finds folders added or removed by others,
+/// checks the disk space, and removes outdated jobs.
 class MaintenanceThread {
  public:
   MaintenanceThread(JobTable& table, Queue& queue, CareSettings settings);

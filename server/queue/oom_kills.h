@@ -6,8 +6,8 @@
 
 namespace lacuna {
 
-/// How many processes the kernel has killed so far because memory ran out: in this process's own
-/// control group if it counts them, else on the whole machine; 0 if nobody says.
+/// Number of processes that the kernel has killed for lack of memory: in this process's control
+/// group if it counts them, else on the whole machine; 0 if unknown.
 std::uint64_t oom_kills();
 
 /// The number after the word "oom_kill", as memory.events and /proc/vmstat have it; nothing if they

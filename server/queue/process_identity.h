@@ -8,8 +8,8 @@
 
 namespace lacuna {
 
-/// A process, told from a later one with the same number by the time it started: in clock ticks
-/// since this machine's boot, so an identity holds until the next boot only.
+/// Identifies a process by its number and start time, which distinguishes it from a later process
+/// with the same number. The time is in clock ticks since boot, so it is valid until the next boot.
 struct ProcessIdentity {
   pid_t pid = 0;
   std::uint64_t start_ticks = 0;

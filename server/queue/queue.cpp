@@ -86,14 +86,14 @@ Queue::WorkPtr Queue::open(const JobEntry& entry, const JobControl& control) {
 }
 
 void Queue::line_up(Work& work) {
-  work.place = Place{-work.control.priority, work.created, work.id};
-  line_.insert(*work.place);
+  work.queue_key = QueueKey{-work.control.priority, work.created, work.id};
+  line_.insert(*work.queue_key);
   changed_.notify_all();
 }
 
 void Queue::leave_line(Work& work) {
-  if (work.place) line_.erase(*work.place);
-  work.place.reset();
+  if (work.queue_key) line_.erase(*work.queue_key);
+  work.queue_key.reset();
 }
 
 /// Writes the new state of a job that no runner has. False: a renderer of somebody else still holds
@@ -129,10 +129,9 @@ void Queue::forget(const std::string& id) {
 
 EntryPtr Queue::checked(const std::string& id, const std::string& revision) const {
   EntryPtr entry = table_.find(id);
-  if (!entry) throw Conflict("The job is not there any more.");
+  if (!entry) throw Conflict("The job no longer exists.");
   if (!revision.empty() && revision != "*" && revision != entry->revision) {
-    throw Changed(
-        fmt::format("The job has changed meanwhile: its revision is {}.", entry->revision));
+    throw Changed(fmt::format("The job has changed: its revision is now {}.", entry->revision));
   }
   return entry;
 }
@@ -149,8 +148,7 @@ void Queue::change(const std::string& id, std::optional<int> priority, std::opti
   const EntryPtr entry = checked(id, revision);
   const auto found = work_.find(id);
   if (found == work_.end()) {
-    throw Conflict(
-        fmt::format("The job is {}: it waits for nothing.", enum_name(entry->state.state)));
+    throw Conflict(fmt::format("The job is {}: it is not waiting.", enum_name(entry->state.state)));
   }
   Work& work = *found->second;
   JobControl control = work.control;
@@ -204,9 +202,8 @@ void Queue::retry(const std::string& id, const std::string& revision) {
   const EntryPtr entry = checked(id, revision);
   const State state = entry->state.state;
   if (!entry->over || entry->damaged || state == State::done) {
-    throw Conflict(
-        fmt::format("The job is {}: only one that failed or was cancelled is tried again.",
-                    entry->damaged ? "damaged" : enum_name(state)));
+    throw Conflict(fmt::format("The job is {}: only failed and cancelled jobs can be retried.",
+                               entry->damaged ? "damaged" : enum_name(state)));
   }
   line_up(reopen(entry));
 }
@@ -215,7 +212,7 @@ void Queue::extend(const std::string& id, const Budget& budget, const std::strin
   const std::lock_guard lock(mutex_);
   const EntryPtr entry = checked(id, revision);
   if (!entry->over || entry->damaged) {
-    throw Conflict(fmt::format("The job is {}: only one that is over is extended.",
+    throw Conflict(fmt::format("The job is {}: only a job that is over can be extended.",
                                entry->damaged ? "damaged" : enum_name(entry->state.state)));
   }
   JobSpec spec = table_.folder(id).read_job();
@@ -239,7 +236,7 @@ Queue::Work& Queue::reopen(const EntryPtr& entry) {
   const JobFolder folder = table_.folder(entry->id);
   const std::lock_guard no_forks(fork_mutex());
   const auto free = folder.try_lock();
-  if (!free) throw Conflict("A renderer still works in the job's folder.");
+  if (!free) throw Conflict("A renderer is still running in the job's folder.");
   JobControl control = entry->control;
   control.cancel = control.held = false;
   control.crashes = 0;
@@ -267,7 +264,7 @@ void Queue::check_all_removable(const std::vector<std::string>& ids) const {
   for (const std::string& id : ids) {
     const EntryPtr entry = checked(id, {});
     if (!entry->over) {
-      throw Conflict(fmt::format("Job {} is {}: only one that is over can be removed.", id,
+      throw Conflict(fmt::format("Job {} is {}: only a job that is over can be removed.", id,
                                  enum_name(entry->state.state)));
     }
     if (table_.sweeps().is_unfinished(entry->sweep)) {
@@ -304,7 +301,7 @@ void Queue::take_away(const std::vector<std::string>& ids) {
   for (const std::string& id : ids) {
     const JobFolder folder = table_.folder(id);
     auto lock = folder.try_lock();
-    if (!lock) throw Conflict(fmt::format("A renderer still works in the folder of {}.", id));
+    if (!lock) throw Conflict(fmt::format("A renderer is still running in the folder of {}.", id));
     taken.push_back(std::move(*lock));
     folders.push_back(folder.dir());
   }

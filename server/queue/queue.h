@@ -17,19 +17,19 @@
 #include "jobs/store/job_folder.h"
 #include "server/queue/disk_watch.h"
 #include "server/queue/executor.h"
+#include "server/queue/exit_classification.h"
 #include "server/queue/trash.h"
-#include "server/queue/verdict.h"
 #include "server/settings/queue_settings.h"
 #include "server/tables/job_table.h"
 
 namespace lacuna {
 
-/// What is asked for is not possible for a job in its state.
+/// The request is not possible in the job's present state.
 class Conflict : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
-/// The job is no longer the one that the asker had seen.
+/// The job has changed since the client read it.
 class Changed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -40,12 +40,12 @@ class Full : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The jobs that wait and those that are rendered: by priority, then first come, first served; an
-/// exclusive job runs alone, and none overtakes it. The folders are the truth; this is what can be
-/// rebuilt from them. While a renderer runs, its job's state.json belongs to it; before and after,
-/// to the queue. What a person asks for is on disk before the call returns.
+/// The waiting and the running jobs: by priority, then first come, first served; an exclusive job
+/// runs alone, and no job overtakes it. The folders are the source of truth, from which the queue
+/// can be rebuilt. While a renderer runs, it owns its job's state.json; before and after, the queue
+/// does. Requests are on disk before the call returns.
 ///
-/// The calls that change a job take the `revision` that the asker has seen; empty: any. All throw
+/// The calls that change a job take the `revision` that the client has read; empty: any. All throw
 /// Changed, Conflict, and std::system_error if the request could not be stored.
 class Queue {
  public:
@@ -94,7 +94,7 @@ class Queue {
 
  private:
   using Clock = std::chrono::steady_clock;
-  using Place = std::tuple<int, std::string, std::string>;  // -priority, creation, id
+  using QueueKey = std::tuple<int, std::string, std::string>;  // -priority, creation, id
 
   /// A job that is not over.
   struct Work {
@@ -103,8 +103,8 @@ class Queue {
     bool exclusive = false;
     JobControl control;
     Clock::time_point not_before{};
-    std::optional<Place> place;        // in the line
-    std::shared_ptr<StopSignal> stop;  // a runner has it
+    std::optional<QueueKey> queue_key;  // in the line
+    std::shared_ptr<StopSignal> stop;   // a runner has it
     bool stopped_for_disk = false;
   };
   using WorkPtr = std::shared_ptr<Work>;
@@ -146,7 +146,7 @@ class Queue {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::map<std::string, WorkPtr> work_;
-  std::set<Place> line_;
+  std::set<QueueKey> line_;
   std::map<std::string, JobState> unsaved_;  // states that could not be written (disk full)
   int running_ = 0;
   bool exclusive_runs_ = false;

@@ -75,8 +75,8 @@ void Queue::give_up(const std::string& id, const std::string& reason) {
 Queue::WorkPtr Queue::first_ready(Clock::time_point& look_again) const {
   if (line_.empty() || exclusive_runs_ || disk_.is_low()) return nullptr;
   const auto now = Clock::now();
-  for (const Place& place : line_) {
-    const WorkPtr& work = work_.at(std::get<2>(place));
+  for (const QueueKey& key : line_) {
+    const WorkPtr& work = work_.at(std::get<2>(key));
     if (work->not_before > now) {
       look_again = std::min(look_again, work->not_before);
     } else {
@@ -175,9 +175,9 @@ void Queue::settle(Work& work, Attempt attempt) {
   attempt.hold = work.control.held;
   attempt.stopped = stopping_ || work.stopped_for_disk;
   attempt.disk_low = disk_.is_low();
-  const Verdict verdict = judge(attempt, settings_.max_attempts, utc_now());
+  const ExitClassification exit = classify_exit(attempt, settings_.max_attempts, utc_now());
   if (progress) table_.set_progress(work.id, *progress);
-  if (verdict.crashed) {
+  if (exit.crashed) {
     JobControl control = work.control;
     ++control.crashes;
     try {
@@ -188,8 +188,8 @@ void Queue::settle(Work& work, Attempt attempt) {
     }
     work.not_before = Clock::now() + back_off(control.crashes);
   }
-  const bool over = is_terminal(verdict.state.state);
-  write_state(work.id, verdict.state, over);
+  const bool over = is_terminal(exit.state.state);
+  write_state(work.id, exit.state, over);
   if (over) forget(work.id);
 }
 
@@ -198,7 +198,7 @@ void Queue::resume(Work& work) {
   work.stopped_for_disk = false;
   const EntryPtr entry = table_.find(work.id);
   if (!entry) return forget(work.id);
-  if (work.control.cancel) {  // asked for after its renderer had been judged
+  if (work.control.cancel) {  // asked for after its renderer had been classified
     if (withdraw(work, State::cancelled)) return;
   } else if (work.control.held) {
     if (entry->state.state == State::held || withdraw(work, State::held)) return;

@@ -10,9 +10,9 @@
 
 namespace lacuna {
 
-/// The jobs that `settings` say need not be kept, oldest first: over, not damaged, and no other
-/// job's reference, no run of a sweep that is not over (`unfinished_sweeps`). `jobs` are all there
-/// are, oldest first; `now` is UTC as JobState has it.
+/// The jobs that may be removed by `settings`, oldest first: over, not damaged, not the reference
+/// of another job, and not a run of an unfinished sweep (`unfinished_sweeps`). `jobs`: all jobs,
+/// oldest first; `now`: UTC as in JobState.
 std::vector<std::string> outdated(const std::vector<EntryPtr>& jobs,
                                   const std::set<std::string>& unfinished_sweeps,
                                   const CareSettings& settings,

@@ -9,8 +9,8 @@
 
 namespace lacuna {
 
-/// Removes folders that have been taken away already (take_folders_away()), on a thread of its own:
-/// a job's dozen files take a disk tens of milliseconds, and nobody has to wait for them.
+/// Deletes folders already renamed by take_folders_away() on its own thread: deleting a job's dozen
+/// files takes tens of milliseconds, for which no request should wait.
 class Trash {
  public:
   Trash();

@@ -10,7 +10,7 @@
 
 namespace lacuna {
 
-/// Runs a change that a person asks for and gives what went wrong its HTTP status.
+/// Runs a change requested by a client and converts exceptions to HTTP statuses.
 template <class Change>
 void apply(Change&& change) {
   try {

@@ -5,7 +5,7 @@
 
 namespace lacuna {
 
-/// What is kept so that it need not be made again: {"bytes", "entries": [{kind, name, bytes, used,
+/// The cached references and artefacts: {"bytes", "entries": [{kind, name, bytes, used,
 /// ...}]}, largest first. `kind`: "reference" (a rendered or stored picture) or "artefact", of
 /// which `name` is the type, and `file`, `key` and `label` follow, or `refused`: why it cannot be
 /// read. `used`: UTC, when it was last written or read, as far as the file system knows. Throws

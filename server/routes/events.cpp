@@ -107,7 +107,7 @@ class JobStream final : public Stream {
   }
 
   std::string forgotten() override {
-    seen_ = journal_.last();  // before the entry: what happens in between is told twice, not never
+    seen_ = journal_.last();  // before the entry: what happens in between is sent twice, not never
     const EntryPtr entry = table_.find(id_);
     return entry ? tell(*entry) : end();
   }
@@ -130,10 +130,10 @@ class JobStream final : public Stream {
     return {};
   }
 
-  void append(std::string& text, const char* name, std::string data, std::string& told) const {
-    if (data == told) return;
+  void append(std::string& text, const char* name, std::string data, std::string& sent) const {
+    if (data == sent) return;
     text += format(name, data);
-    told = std::move(data);
+    sent = std::move(data);
   }
 
   JobTable& table_;

@@ -82,7 +82,7 @@ JobSpec JobPosting::checked_spec(const std::string& body) const {
     JobSpec spec = parse_job(body);
     const auto missing = NamedFiles(scenes_).missing(spec);
     if (missing.empty()) return spec;
-    throw HttpError(400, "The job names a file that is not there.", missing);
+    throw HttpError(400, "The job names a missing file.", missing);
   } catch (const BadJob& bad) {
     throw HttpError(400, "The job is not valid.", bad.problems());
   }

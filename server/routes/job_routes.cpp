@@ -191,7 +191,7 @@ void JobRoutes::add_collection(Router& router) {
     return request.query.flag("dry_run") ? posting_.dry_run(request) : posting_.post(request);
   });
   router.add("GET", "/api/events",
-             {.summary = "What happens to all jobs, as server-sent events: job, removed, reset",
+             {.summary = "Changes of all jobs, as server-sent events: job, removed, reset",
               .query = {{"after", QueryType::text, "the list's last_event, or Last-Event-ID"}}},
              [this](const Request& request, const Parts&) {
                const auto last = request.header("last-event-id");
@@ -202,19 +202,18 @@ void JobRoutes::add_collection(Router& router) {
 void JobRoutes::add_changes(Router& router) {
   router.add(
       "PATCH", "/api/jobs/{id}",
-      change_doc("Another priority; holds it or releases it", "it is over", job_change_schema()),
+      change_doc("Changes its priority; holds or releases it", "it is over", job_change_schema()),
       with_id(*this, &JobRoutes::change));
   auto cancel = change_doc("Stops it for good", "it was over before");
   cancel.answers.emplace_back(202, "its renderer is asked to stop");
   router.add("POST", "/api/jobs/{id}/cancel", std::move(cancel),
              with_id(*this, &JobRoutes::cancel));
   router.add("POST", "/api/jobs/{id}/retry",
-             change_doc("It goes on from its checkpoint", "it has not failed or been cancelled"),
+             change_doc("Continues it from its checkpoint", "it has not failed or been cancelled"),
              with_id(*this, &JobRoutes::retry));
-  router.add(
-      "POST", "/api/jobs/{id}/extend",
-      change_doc("It goes on until a larger budget is spent", "it is not over", extension_schema()),
-      with_id(*this, &JobRoutes::extend));
+  router.add("POST", "/api/jobs/{id}/extend",
+             change_doc("Continues it with a larger budget", "it is not over", extension_schema()),
+             with_id(*this, &JobRoutes::extend));
   router.add(
       "DELETE", "/api/jobs/{id}",
       {.summary = "Removes it and its results",
@@ -230,7 +229,7 @@ void JobRoutes::add_results(Router& router) {
   using Parts = Router::Parts;
   router.add("GET", "/api/jobs/{id}", {.summary = "One job"}, with_id(*this, &JobRoutes::detail));
   router.add("GET", "/api/jobs/{id}/log",
-             {.summary = "Its log from a byte on; header Next-Offset has the next",
+             {.summary = "Its log from a byte offset on; header Next-Offset has the next offset",
               .query = {{"offset", QueryType::integer, "bytes to leave out", 0, INT64_MAX}}},
              with_id(*this, &JobRoutes::log));
   router.add("GET", "/api/jobs/{id}/events",

@@ -10,12 +10,12 @@
 
 namespace lacuna {
 
-/// Whether the files that jobs name are there. Each name is looked up once, however many jobs have
-/// it. The scenes roots outlive it.
+/// Checks whether the files that jobs name exist. Each name is looked up once for all jobs. The
+/// scenes roots must outlive it.
 class NamedFiles {
  public:
   explicit NamedFiles(const ScenesRoots& scenes) : scenes_(scenes) {}
-  /// What a job names and is not there, by pointers into the job; empty: nothing.
+  /// The missing files that a job names, with pointers into the job.
   std::vector<Problem> missing(const JobSpec& spec);
 
  private:

@@ -51,7 +51,7 @@ Response Posting::post(const Request& request) {
         response.headers.emplace_back("Idempotent-Replayed", "true");
         return response;
       }
-      throw HttpError(422, fmt::format("This Idempotency-Key stands for {} {}, which was posted "
+      throw HttpError(422, fmt::format("This Idempotency-Key belongs to {} {}, which was posted "
                                        "with another body.",
                                        noun_, id));
     }

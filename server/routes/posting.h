@@ -11,8 +11,8 @@
 
 namespace lacuna {
 
-/// Makes what is posted as JSON: a thing for each request, but one for each Idempotency-Key, also
-/// after a restart. What the thing is, derived classes say.
+/// Handles POST of JSON that creates an object (a job or a sweep, by the derived class): one for
+/// each request, but only one for each Idempotency-Key, even after a restart.
 class Posting {
  public:
   virtual ~Posting() = default;

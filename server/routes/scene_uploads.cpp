@@ -163,7 +163,7 @@ SceneUploads::Result SceneUploads::publish(Draft draft, const std::string& name)
   if (!lock || is_requested(stop_)) return {Outcome::busy, bytes};
   if (fs::exists(fs::symlink_status(target))) return known();
   if (!is_glb(draft.file())) {
-    return {Outcome::refused, bytes, "it is no GLB: it does not begin with \"glTF\""};
+    return {Outcome::refused, bytes, "it is not a GLB: it does not begin with \"glTF\""};
   }
   bool stopped = false;
   std::string reason = check(draft.file(), stopped);

@@ -53,7 +53,7 @@ class SceneUploads {
     created,   ///< it is there under its name now
     same,      ///< the very same bytes were there already
     conflict,  ///< another scene of that name is there
-    refused,   ///< it is no scene that can be rendered; `reason` says why
+    refused,   ///< it is not a scene that can be rendered; `reason` says why
     busy,      ///< another scene is being checked, or the service ends
   };
   struct Result {

@@ -79,7 +79,7 @@ Response ServiceRoutes::metrics() const {
   for (const auto& [state, n] : facts_.table.counts()) {
     jobs.value(static_cast<double>(n), {{"state", std::string(enum_name(state))}});
   }
-  text.gauge("lacuna_disk_free_bytes", "Room where the jobs lie.")
+  text.gauge("lacuna_disk_free_bytes", "Free space on the disk of the jobs.")
       .value(static_cast<double>(facts_.disk.free_bytes()));
   text.gauge("lacuna_disk_floor_bytes", "With less room than this, jobs wait.")
       .value(static_cast<double>(facts_.disk.floor()));
@@ -98,7 +98,7 @@ Response ServiceRoutes::metrics() const {
 
 Response ServiceRoutes::put_scene(const Request& request, const std::string& name) const {
   if (facts_.uploads == nullptr) {
-    throw HttpError(404, "This service takes no scenes: it runs without --uploads.");
+    throw HttpError(404, "This service accepts no scenes: it runs without --uploads.");
   }
   if (!is_upload_name(name)) {
     throw HttpError(400,
@@ -136,16 +136,16 @@ void ServiceRoutes::add_to(Router& router) {
              [](const Request&, const Parts&) {
                return json_response(200, {{"status", "ok"}});
              });
-  router.add("GET", "/metrics", {.summary = "Counts and times, for Prometheus"},
+  router.add("GET", "/metrics", {.summary = "Metrics, for Prometheus"},
              [this](const Request&, const Parts&) { return metrics(); });
-  router.add("GET", "/api/info", {.summary = "Version, settings, machine, room on the disk"},
+  router.add("GET", "/api/info", {.summary = "Version, settings, machine, free disk space"},
              [this](const Request&, const Parts&) { return info(); });
   router.add("GET", "/openapi.json", {.summary = "This description"},
              [&router](const Request& request, const Parts&) {
                const OrderedJson info = {{"title", "Lacuna"}, {"version", version()}};
                return with_tag(request, json_response(200, router.openapi(info)));
              });
-  router.add("GET", "/api/states", {.summary = "The states of a job and what may follow what"},
+  router.add("GET", "/api/states", {.summary = "The states of a job and the allowed changes"},
              [](const Request& request, const Parts&) {
                return with_tag(request, json_response(200, states()));
              });
@@ -159,16 +159,16 @@ void ServiceRoutes::add_to(Router& router) {
              });
   router.add(
       "PUT", "/api/scenes/{name}",
-      {.summary = "Takes a scene in, if it can be rendered; never replaces one",
+      {.summary = "Stores a scene if it can be rendered; never replaces one",
        .body_type = "model/gltf-binary",
        .answers = {{201, "it is there now"},
                    {200, "the very same bytes were there"},
                    {404, "the service runs without --uploads"},
                    {409, "another scene has that name"},
                    {413, "it is larger than 256 MiB"},
-                   {422, "it is no scene that can be rendered"}}},
+                   {422, "it is not a scene that can be rendered"}}},
       [this](const Request& request, const Parts& parts) { return put_scene(request, parts[0]); });
-  router.add("GET", "/api/cache", {.summary = "What is kept so that it need not be made again"},
+  router.add("GET", "/api/cache", {.summary = "The cached references and artefacts"},
              [this](const Request&, const Parts&) {
                return json_response(200, cache_listing(facts_.data));
              });

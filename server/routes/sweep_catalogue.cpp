@@ -11,10 +11,10 @@
 namespace lacuna {
 namespace {
 
-double share_done(std::size_t runs, const JobTable::Tally& tally, const JobTable& jobs) {
+double share_done(std::size_t runs, const JobTable::RunCounts& run_counts, const JobTable& jobs) {
   if (runs == 0) return 0;
-  auto done = static_cast<double>(tally.jobs() - tally.unfinished.size());
-  for (const std::string& id : tally.unfinished) {
+  auto done = static_cast<double>(run_counts.jobs() - run_counts.unfinished.size());
+  for (const std::string& id : run_counts.unfinished) {
     const EntryPtr entry = jobs.find(id);
     if (entry && entry->progress) done += entry->progress->share;
   }
@@ -58,10 +58,10 @@ SweepEntryPtr find_sweep(const SweepTable& sweeps, const std::string& id) {
 }
 
 OrderedJson to_json(const SweepEntry& sweep, const JobTable& jobs) {
-  JobTable::Tally tally = jobs.tally(sweep.id);
-  const double share = share_done(sweep.state.runs, tally, jobs);
+  JobTable::RunCounts run_counts = jobs.run_counts(sweep.id);
+  const double share = share_done(sweep.state.runs, run_counts, jobs);
   if (!is_over(sweep.state.state)) {  // what is no job yet
-    tally.counts[State::queued] += sweep.state.runs - tally.jobs();
+    run_counts.counts[State::queued] += sweep.state.runs - run_counts.jobs();
   }
   return {{"id", sweep.id},
           {"label", sweep.label},
@@ -70,7 +70,7 @@ OrderedJson to_json(const SweepEntry& sweep, const JobTable& jobs) {
           {"finished", sweep.state.finished},
           {"error", sweep.error},
           {"run_count", sweep.state.runs},
-          {"counts", counts_json(tally.counts)},
+          {"counts", counts_json(run_counts.counts)},
           {"share", share}};
 }
 

@@ -114,7 +114,7 @@ void SweepRoutes::add_one(Router& router) {
                           {404, "there is no such sweep"}}},
              with_id(*this, &SweepRoutes::detail));
   router.add("POST", "/api/sweeps/{id}/cancel",
-             {.summary = "Stops it for good, with all its runs",
+             {.summary = "Cancels it and all its runs",
               .answers = {{200, "it is cancelled"},
                           {202, "renderers are asked to stop"},
                           {404, "there is no such sweep"},
@@ -133,7 +133,7 @@ void SweepRoutes::add_one(Router& router) {
 /// What its runs have come to.
 void SweepRoutes::add_results(Router& router) {
   router.add("GET", "/api/sweeps/{id}/answers",
-             {.summary = "What its finished runs say of its settings, with intervals",
+             {.summary = "The comparison of its finished runs, with intervals",
               .answers = {{200, "the answers (docs/sweeps-and-reports.md)"},
                           {304, "as you have it"},
                           {404, "there is no such sweep"}}},

@@ -8,7 +8,7 @@
 
 namespace lacuna {
 
-/// How the service hands jobs to renderers.
+/// Settings of the queue.
 struct QueueSettings {
   int children = 1;                   ///< renderers at a time
   int max_attempts = 3;               ///< a renderer that crashes is started this often for one job
@@ -16,14 +16,14 @@ struct QueueSettings {
   std::chrono::milliseconds grace{};  ///< between SIGTERM and SIGKILL
 };
 
-/// What the service keeps, and how much room it leaves on the disk.
+/// Settings of the retention of jobs and of disk space.
 struct CareSettings {
   std::uint64_t disk_floor = 256 << 20;  ///< bytes; with less free, jobs wait and renderers stop
   std::size_t keep_jobs = 0;             ///< jobs that are over; 0: all
   double keep_days = 0;                  ///< since they ended; 0: for ever
 };
 
-/// What a child process is held to, so that the service outlives it and stays quick.
+/// Limits of a child process, so that the service survives it and stays responsive.
 struct ChildLimits {
   /// Of its private writable memory, RLIMIT_DATA; 0: none. Not RLIMIT_AS: that counts address space
   /// too that is only reserved (malloc's arenas, 64 MiB a thread, Embree, TBB) and every library
@@ -34,7 +34,7 @@ struct ChildLimits {
   std::uint64_t file_bytes = 0;  ///< of a file that it writes, RLIMIT_FSIZE; 0: no limit
 };
 
-/// How the local executor treats its children.
+/// Settings of the local executor.
 struct ExecutorSettings {
   std::filesystem::path renderer;             ///< the `lacuna` command
   std::filesystem::path data;                 ///< working directory of the children

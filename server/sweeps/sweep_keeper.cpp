@@ -85,7 +85,7 @@ bool SweepKeeper::look_after(const std::string& id) {
   if (!sweep || is_over(sweep->state.state)) return false;
   if (sweep->state.state == SweepStage::cancelling) {
     cancel_runs(id);
-    if (jobs_.tally(id).unfinished.empty()) sweeps_.set_stage(id, SweepStage::cancelled);
+    if (jobs_.run_counts(id).unfinished.empty()) sweeps_.set_stage(id, SweepStage::cancelled);
     return false;
   }
   Feed& feed = feeds_[id];
@@ -105,12 +105,12 @@ bool SweepKeeper::make_next(const std::string& id, Feed& feed) {
   const std::lock_guard lock(mutex_);
   const SweepEntryPtr sweep = sweeps_.find(id);
   if (!sweep || sweep->state.state != SweepStage::running) return false;
-  const JobTable::Tally tally = jobs_.tally(id);
+  const JobTable::RunCounts run_counts = jobs_.run_counts(id);
   const auto& runs = feed.folder->plan().runs;
   while (feed.next < runs.size() && jobs_.find(feed.folder->job_id(runs[feed.next]))) ++feed.next;
   if (feed.next == runs.size()) {
-    if (!tally.unfinished.empty()) return false;
-    if (tally.jobs() == runs.size()) {
+    if (!run_counts.unfinished.empty()) return false;
+    if (run_counts.jobs() == runs.size()) {
       sweeps_.set_stage(id, SweepStage::done);
       log::info("{}: done, {} runs", id, runs.size());
       return false;
@@ -118,7 +118,7 @@ bool SweepKeeper::make_next(const std::string& id, Feed& feed) {
     feed.next = 0;  // somebody has removed a run's folder: it is made anew
     return false;
   }
-  if (tally.unfinished.size() >= most_waiting || disk_.is_low()) return false;
+  if (run_counts.unfinished.size() >= most_waiting || disk_.is_low()) return false;
   if (queue_.room() <= kept_free_) return false;
   make(feed, runs[feed.next]);
   return true;
@@ -134,7 +134,7 @@ void SweepKeeper::make(const Feed& feed, const SweepRun& run) {
 
 SweepEntryPtr SweepKeeper::checked(const std::string& id) const {
   SweepEntryPtr sweep = sweeps_.find(id);
-  if (!sweep) throw Conflict("The sweep is not there any more.");
+  if (!sweep) throw Conflict("The sweep no longer exists.");
   return sweep;
 }
 
@@ -152,7 +152,7 @@ void SweepKeeper::cancel(const std::string& id) {
 
 /// Those that wait first: or they would begin as those that run end.
 void SweepKeeper::cancel_runs(const std::string& id) {
-  const auto unfinished = jobs_.tally(id).unfinished;
+  const auto unfinished = jobs_.run_counts(id).unfinished;
   for (const bool runs : {false, true}) {
     for (const std::string& job : unfinished) {
       const EntryPtr entry = jobs_.find(job);
@@ -170,8 +170,8 @@ void SweepKeeper::cancel_runs(const std::string& id) {
 void SweepKeeper::remove(const std::string& id) {
   const SweepStage stage = checked(id)->state.state;
   if (!is_over(stage)) {
-    throw Conflict(
-        fmt::format("The sweep is {}: only one that is over can be removed.", enum_name(stage)));
+    throw Conflict(fmt::format("The sweep is {}: only a sweep that is over can be removed.",
+                               enum_name(stage)));
   }
   JobTable::Query runs;
   runs.sweep = id;

@@ -15,9 +15,9 @@
 
 namespace lacuna {
 
-/// Has the runs of sweeps done: makes them jobs of the queue, a few at a time and in the plan's
-/// order, and sees when a sweep is over. What it goes by is in the folders: a run that is there as
-/// a job is not made again, whatever happened meanwhile.
+/// Feeds the runs of sweeps into the queue as jobs, a few at a time and in the plan's order, and
+/// detects when a sweep is over. Its state is in the folders: a run that exists as a job is not
+/// created again, even after a restart.
 class SweepKeeper {
  public:
   /// Runs of one sweep that are jobs and not over: the queue never has to wait for the next, and
@@ -33,7 +33,7 @@ class SweepKeeper {
 
   void start();
   void stop();
-  /// Something has changed that may concern a sweep. From any thread, under any lock.
+  /// Call when something has changed that may concern a sweep; from any thread, under any lock.
   void notice();
 
   /// Stops a sweep for good: what is not over is cancelled, and no run is made any more. On disk
@@ -66,7 +66,7 @@ class SweepKeeper {
   DiskWatch& disk_;
   const std::size_t kept_free_;
 
-  // For the own thread only:
+  // Used by its own thread only:
   std::map<std::string, Feed> feeds_;
   std::string last_created_;  // of the run made last
   // Held while a run is made and while it is decided that none is made any more.

@@ -138,9 +138,9 @@ void JobTable::remove(const std::string& id) {
 /// Both only under the lock: all that is counted of a job.
 void JobTable::put_in(const Place& place, EntryPtr entry) {
   ++counts_[entry->state.state];
-  Tally& tally = tallies_[entry->sweep];
-  ++tally.counts[entry->state.state];
-  if (!entry->over) tally.unfinished.insert(entry->id);
+  RunCounts& run_counts = run_counts_[entry->sweep];
+  ++run_counts.counts[entry->state.state];
+  if (!entry->over) run_counts.unfinished.insert(entry->id);
   places_[entry->id] = place;
   jobs_[place] = std::move(entry);
 }
@@ -151,25 +151,25 @@ EntryPtr JobTable::take_out(const std::string& id) {
   const auto job = jobs_.find(place->second);
   EntryPtr entry = job->second;
   --counts_[entry->state.state];
-  Tally& tally = tallies_[entry->sweep];
-  --tally.counts[entry->state.state];
-  tally.unfinished.erase(id);
-  if (tally.jobs() == 0) tallies_.erase(entry->sweep);
+  RunCounts& run_counts = run_counts_[entry->sweep];
+  --run_counts.counts[entry->state.state];
+  run_counts.unfinished.erase(id);
+  if (run_counts.jobs() == 0) run_counts_.erase(entry->sweep);
   jobs_.erase(job);
   places_.erase(place);
   return entry;
 }
 
-std::size_t JobTable::Tally::jobs() const {
+std::size_t JobTable::RunCounts::jobs() const {
   std::size_t sum = 0;
   for (const auto& [state, n] : counts) sum += n;
   return sum;
 }
 
-JobTable::Tally JobTable::tally(const std::string& sweep) const {
+JobTable::RunCounts JobTable::run_counts(const std::string& sweep) const {
   const std::lock_guard lock(mutex_);
-  const auto found = tallies_.find(sweep);
-  return found == tallies_.end() ? Tally{} : found->second;
+  const auto found = run_counts_.find(sweep);
+  return found == run_counts_.end() ? RunCounts{} : found->second;
 }
 
 /// Only under the lock.
@@ -233,10 +233,10 @@ void JobTable::reread_job(const std::string& id) {
 
 /// How many match but for the words. Only under the lock.
 std::size_t JobTable::count(const Query& query) const {
-  const auto tally = tallies_.find(query.sweep.value_or(""));
-  if (query.sweep && tally == tallies_.end()) return 0;
+  const auto run_counts = run_counts_.find(query.sweep.value_or(""));
+  if (query.sweep && run_counts == run_counts_.end()) return 0;
   std::size_t sum = 0;
-  for (const auto& [state, n] : query.sweep ? tally->second.counts : counts_) {
+  for (const auto& [state, n] : query.sweep ? run_counts->second.counts : counts_) {
     if (is_any_of(query.states, state)) sum += n;
   }
   return sum;

@@ -17,7 +17,7 @@
 
 namespace lacuna {
 
-/// What the service knows of one job without opening its folder.
+/// The data of one job that the service holds in memory.
 struct JobEntry {
   std::string id, label, scene, integrator, reference;
   std::string sweep;  ///< that it is a run of; empty: none
@@ -32,14 +32,14 @@ struct JobEntry {
 
   // Made by the table from the above:
   std::string text;      ///< as an element of the API's list, JSON
-  std::string revision;  ///< changes with the job, its state and what was asked of it
+  std::string revision;  ///< changes with the job, its state and the requests for it
   std::string words;     ///< in lower case: what a search by words looks at
 };
 using EntryPtr = std::shared_ptr<const JobEntry>;
 
-/// All jobs of a service in memory, and the journal of what happens to them. The folders are the
-/// truth: this is read from them at the start and follows them. Safe from any thread; an entry that
-/// was given out never changes.
+/// All jobs of a service in memory, and the journal of their changes. The folders are the source of
+/// truth, from which the table is read at the start and updated. Thread-safe; a returned entry
+/// never changes.
 class JobTable {
  public:
   /// `sweeps` outlives it, and knows a sweep before any of its jobs is there.
@@ -93,12 +93,12 @@ class JobTable {
   Counts counts() const;
 
   /// The runs of a sweep that are there as jobs.
-  struct Tally {
+  struct RunCounts {
     Counts counts;
     std::set<std::string> unfinished;  ///< their ids
     std::size_t jobs() const;
   };
-  Tally tally(const std::string& sweep) const;
+  RunCounts run_counts(const std::string& sweep) const;
   const SweepTable& sweeps() const { return sweeps_; }
 
   Journal& journal() { return journal_; }
@@ -120,8 +120,8 @@ class JobTable {
   std::map<Place, EntryPtr> jobs_;
   std::map<std::string, Place, std::less<>> places_;
   Counts counts_;
-  std::map<std::string, Tally> tallies_;  // of sweeps; "": of jobs of none
-  std::int64_t scanned_ = -1;             // the folder's time of change when it was last read
+  std::map<std::string, RunCounts> run_counts_;  // of sweeps; "": of jobs of none
+  std::int64_t scanned_ = -1;  // the folder's time of change when it was last read
 };
 
 }  // namespace lacuna

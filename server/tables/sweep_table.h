@@ -12,7 +12,7 @@
 
 namespace lacuna {
 
-/// What the service knows of one sweep without opening its folder.
+/// The data of one sweep that the service holds in memory.
 struct SweepEntry {
   std::string id, label;
   SweepState state;
@@ -20,9 +20,9 @@ struct SweepEntry {
 };
 using SweepEntryPtr = std::shared_ptr<const SweepEntry>;
 
-/// All sweeps of a service in memory. The folders are the truth: this is read from them at the
-/// start, and writes what it changes to them first. Safe from any thread; an entry that was given
-/// out never changes.
+/// All sweeps of a service in memory. The folders are the source of truth: the table is read from
+/// them at the start, and changes are written to them first. Thread-safe; a returned entry never
+/// changes.
 class SweepTable {
  public:
   explicit SweepTable(DataRoot data) : data_(std::move(data)) {}
@@ -40,7 +40,7 @@ class SweepTable {
   std::set<std::string> unfinished() const;
   bool is_unfinished(const std::string& id) const;
 
-  /// The folder of a sweep with its plan; those asked for lately are kept. Throws what
+  /// The folder of a sweep with its plan; recently used ones are cached. Throws what
   /// SweepFolder() throws.
   std::shared_ptr<const SweepFolder> open(const std::string& id);
 
@@ -49,7 +49,7 @@ class SweepTable {
   SweepEntryPtr create(const SweepSpec& spec, SweepPlan plan, SweepState state);
   /// Where it stands now: on disk first. Throws std::system_error.
   void set_stage(const std::string& id, SweepStage stage);
-  /// It cannot be gone on with: told, but not stored.
+  /// Marks a sweep that cannot continue as failed, in memory only.
   void give_up(const std::string& id, const std::string& error);
   /// Removes its folder, but none of its jobs. Throws std::system_error.
   void remove(const std::string& id);

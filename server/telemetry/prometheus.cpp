@@ -38,7 +38,8 @@ void check_name(std::string_view name, bool colons) {
   };
   if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0 ||
       !std::all_of(name.begin(), name.end(), fits)) {
-    throw std::invalid_argument(fmt::format("\"{}\" is no name of a metric or label", name));
+    throw std::invalid_argument(
+        fmt::format("\"{}\" is not a valid name of a metric or label", name));
   }
 }
 

@@ -136,7 +136,7 @@ test("an interrupted renderer's job goes on: that is no crash", async (t) => {
 test("an interruption that nobody asked for is a crash unless the job came on", async (t) => {
   const service = await Service.start(folders(t), ["--max-attempts", "2"]);
   const idle = await service.reaches(await service.post("interrupt"), "failed");
-  assert.match(idle.state.error, /exit code 75, unasked and without progress, 2 times/);
+  assert.match(idle.state.error, /exit code 75, without a request and without progress, 2 times/);
   assert.equal(idle.state.attempts, 3, "the first brought it from nothing to iteration 25");
   const full = await service.reaches(await service.post("full"), "failed");
   assert.match(full.state.error, /No space left on device, 2 times/);

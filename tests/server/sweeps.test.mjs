@@ -120,7 +120,7 @@ test("a sweep is made once for a key, also after a restart", async (t) => {
   assert.ok(ids.has((await again.json()).id));
   const other = await refused(service, `${body} `, key);
   assert.equal(other.status, 422);
-  assert.match(other.detail, /stands for sweep/);
+  assert.match(other.detail, /belongs to sweep/);
   assert.equal((await refused(service, body, { "Idempotency-Key": "a b" })).status, 400);
   assert.equal((await service.postText(JSON.stringify({ scene: "room/scene.glb" }),
     { "Content-Type": "application/json", ...key })).status, 201, "a job's keys are others");

@@ -155,7 +155,7 @@ test("jobs chosen in the list are compared; the choice is kept, and cleared", as
   assert.ok(page.url().endsWith(`#/compare?jobs=${cornell},${shallow}`));
   await page.goBack();
   await page.waitForSelector(`tr[data-job="${cornell}"] input:checked`);
-  await button("Clear the choice").click();
+  await button("Clear the selection").click();
   await page.waitForFunction(() => document.querySelectorAll("tr[data-job] input:checked").length === 0);
   assert.equal(await button("Compare").isDisabled(), true);
 });

@@ -245,7 +245,7 @@ test("? lists the keys, Esc closes them, and text fields keep their ?", async ()
   await page.locator("input[type=search]").press("?");
   assert.equal(await count("dialog"), 0);
   await page.locator("main").press("?");
-  assert.match(await text("dialog"), /brighter, darker by half a stop/);
+  assert.match(await text("dialog"), /exposure half a stop up, down/);
   await page.keyboard.press("Escape");
   await page.waitForSelector("dialog", { state: "detached" });
   await page.getByRole("button", { name: "?" }).click();

@@ -351,7 +351,7 @@ test("number keys flip pictures at one exposure and one zoom", async () => {
 test("a picture of another size is shown apart, and it is said", async () => {
   mock.update(job, { files: small() });
   await open(`/#/compare?jobs=${job},${other}`);
-  await page.getByText("Not of the first's size: image.png").waitFor();
+  await page.getByText("Size differs from the first: image.png").waitFor();
   await page.waitForSelector(stage);
   await page.waitForFunction(() => document.querySelectorAll(".gallery img").length === 1);
   assert.deepEqual(page.troubles, []);

@@ -139,7 +139,7 @@ test("a disk that fills up while a job is rendered, and a folder that turns read
   assert.deepEqual(readFileSync(join(out, "checkpoint.bin")), checkpoint);
 
   const { child, ended } = start(disk, "render", "a.json");
-  while (!/going on from iteration/.test(readFileSync(join(out, "log.txt"), "utf8").split("Read-only").pop())
+  while (!/continuing from iteration/.test(readFileSync(join(out, "log.txt"), "utf8").split("Read-only").pop())
     && child.exitCode === null) await pause(5);
   child.kill("SIGTERM");
   assert.equal((await ended).code, 75);

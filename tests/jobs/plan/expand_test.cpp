@@ -151,7 +151,7 @@ TEST(Sweep, MistakesAreToldWhereTheyStand) {
   expect_problem(R"({"job": {"scene": "a.glb"}, "axes": {"/seed/~2": [1]}})",
                  "/axes/~1seed~1~02: is no JSON pointer");
   expect_problem(R"({"job": {"scene": "a.glb"}, "axes": {"/resolution/2": [1]}})",
-                 "/axes/~1resolution~12: leads nowhere");
+                 "/axes/~1resolution~12: points to no setting");
   expect_problem(R"({"job": {"scene": "a.glb"}, "axes": {"/threads": []}})",
                  "/axes/~1threads: found no values");
   expect_problem(R"({"job": {"scene": "a.glb"}, "axes": {"/threads": [1, 2, 1.0]}})",

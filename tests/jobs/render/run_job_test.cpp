@@ -144,7 +144,7 @@ TEST_F(RunJob, DoneItGoesOnWithALargerBudgetToTheSameBits) {
     observer.milestones.clear();
     extend(parts, [&](Budget& b) { b.iterations = iterations; });
     EXPECT_EQ(run(parts), Outcome::done);
-    EXPECT_EQ(observer.milestones.front().rfind("going on from iteration ", 0), 0U);
+    EXPECT_EQ(observer.milestones.front().rfind("continuing from iteration ", 0), 0U);
     EXPECT_TRUE(observer.warnings.empty());
   }
   for (const char* layer : {"", "variance", "even", "odd"}) {
@@ -202,7 +202,7 @@ TEST_F(RunJob, InterruptedItsProgressIsThatOfItsCheckpoint) {
   const std::function<bool()> at_once = [] { return true; };
   ASSERT_EQ(run_job(folder, context(at_once)), Outcome::interrupted);
   const std::string said = observer.milestones.front();
-  EXPECT_EQ(said.rfind("going on from iteration " + std::to_string(progress->iteration) + " ", 0),
+  EXPECT_EQ(said.rfind("continuing from iteration " + std::to_string(progress->iteration) + " ", 0),
             0U)
       << said;
   EXPECT_EQ(folder.read_progress()->iteration, progress->iteration);

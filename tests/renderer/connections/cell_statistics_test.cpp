@@ -6,23 +6,23 @@ namespace lacuna {
 namespace {
 
 /// Of cell 1, `n` vertices joined to paths of two vertices, each of which gave `value`.
-CellStatistics::Tally tally_of(int n, double value, double survival = 1) {
-  CellStatistics::Tally t(3);
+CellStatistics::Accumulator accumulator_of(int n, double value, double survival = 1) {
+  CellStatistics::Accumulator t(3);
   for (int i = 0; i < n; ++i) {
     t.visit(1);
-    t.asked(1, 2);
-    t.arrived(1, 2, value, survival);
+    t.attempt(1, 2);
+    t.add_contribution(1, 2, value, survival);
   }
-  t.gathered(n * value);
-  t.paths(static_cast<std::uint64_t>(n));
+  t.add_path_sum(n * value);
+  t.add_paths(static_cast<std::uint64_t>(n));
   t.close();
   return t;
 }
 
-CellStatistics statistics_of(std::vector<CellStatistics::Tally> tallies) {
+CellStatistics statistics_of(std::vector<CellStatistics::Accumulator> accumulators) {
   CellStatistics s;
   s.resize(3);
-  s.add(tallies);
+  s.add(accumulators);
   return s;
 }
 
@@ -36,9 +36,9 @@ TEST(CellStatistics, NothingIsLeftOutBeforeItIsKnown) {
   CellStatistics s;
   s.resize(3);
   EXPECT_EQ(s.survival(1, 2, 1e-9, 1), 1);
-  s.add(std::vector{tally_of(31, 0.001)});
+  s.add(std::vector{accumulator_of(31, 0.001)});
   EXPECT_EQ(s.survival(1, 2, 1e-9, 1), 1);
-  s.add(std::vector{tally_of(1, 0.001)});
+  s.add(std::vector{accumulator_of(1, 0.001)});
   EXPECT_LT(s.survival(1, 2, 1e-9, 1), 1);
   EXPECT_EQ(s.survival(1, 3, 1e-9, 1), 1);
   EXPECT_EQ(s.survival(0, 2, 1e-9, 1), 1);
@@ -46,7 +46,7 @@ TEST(CellStatistics, NothingIsLeftOutBeforeItIsKnown) {
 }
 
 TEST(CellStatistics, SurvivalIsWhatIsExpectedOverWhatIsEnough) {
-  const CellStatistics s = statistics_of({tally_of(100, 3)});
+  const CellStatistics s = statistics_of({accumulator_of(100, 3)});
   EXPECT_FLOAT_EQ(s.survival(1, 2, 0.5, 2), 0.75F);
   EXPECT_EQ(s.survival(1, 2, 0.5, 1.4), 1);
   EXPECT_FLOAT_EQ(s.survival(1, 2, 0.001, 2), 0.05F);
@@ -54,20 +54,20 @@ TEST(CellStatistics, SurvivalIsWhatIsExpectedOverWhatIsEnough) {
 }
 
 TEST(CellStatistics, WhatWasSeldomMadeCountsAsOftenAsItStandsFor) {
-  CellStatistics::Tally t(3);
+  CellStatistics::Accumulator t(3);
   for (int i = 0; i < 400; ++i) {
-    t.asked(1, 2);
-    if (i % 4 == 0) t.arrived(1, 2, 3, 0.25);
+    t.attempt(1, 2);
+    if (i % 4 == 0) t.add_contribution(1, 2, 3, 0.25);
   }
   t.close();
   EXPECT_FLOAT_EQ(statistics_of({std::move(t)}).survival(1, 2, 0.5, 2), 0.75F);
 }
 
 TEST(CellStatistics, LongPathsShareOneClass) {
-  CellStatistics::Tally t(3);
+  CellStatistics::Accumulator t(3);
   for (int s = 8; s < 48; ++s) {
-    t.asked(2, s);
-    t.arrived(2, s, 1, 1);
+    t.attempt(2, s);
+    t.add_contribution(2, s, 1, 1);
   }
   t.close();
   const CellStatistics all = statistics_of({std::move(t)});
@@ -76,7 +76,8 @@ TEST(CellStatistics, LongPathsShareOneClass) {
 }
 
 TEST(CellStatistics, TilesHaveTheirOwnMeans) {
-  const CellStatistics s = statistics_of({tally_of(10, 3), tally_of(10, 5), tally_of(0, 0)});
+  const CellStatistics s =
+      statistics_of({accumulator_of(10, 3), accumulator_of(10, 5), accumulator_of(0, 0)});
   EXPECT_DOUBLE_EQ(s.mean(0), 3);
   EXPECT_DOUBLE_EQ(s.mean(1), 5);
   EXPECT_EQ(s.mean(2), 0);
@@ -86,7 +87,7 @@ TEST(CellStatistics, TilesHaveTheirOwnMeans) {
 }
 
 TEST(CellStatistics, AreSavedAndRead) {
-  const CellStatistics s = statistics_of({tally_of(100, 3), tally_of(10, 5)});
+  const CellStatistics s = statistics_of({accumulator_of(100, 3), accumulator_of(10, 5)});
   const std::string bytes = saved(s);
   CellStatistics again;
   again.resize(3);

@@ -111,10 +111,10 @@ TEST(ResamplingTable, OwnerIsTheDistributionThatGivesMost) {
   const Weights w{{8, 1, 0, 1}, {0, 0, 1, 0}, {1, 1, 1, 1}};  // 0.8, 0.1, 0, 0.1; 1; 0.25 each
   for (const Combination combination : both_combinations) {
     const ResamplingTable table = table_of(w, combination);
-    EXPECT_EQ(table.owner(0), 0);
-    EXPECT_EQ(table.owner(1), 2);
-    EXPECT_EQ(table.owner(2), 1);
-    EXPECT_EQ(table.owner(3), 2);
+    EXPECT_EQ(table.distribution(0), 0);
+    EXPECT_EQ(table.distribution(1), 2);
+    EXPECT_EQ(table.distribution(2), 1);
+    EXPECT_EQ(table.distribution(3), 2);
   }
 }
 
@@ -128,9 +128,9 @@ TEST(ResamplingTable, ADistributionOfZerosTakesNoPart) {
       const ResamplingTable with = table_of({zeros, w[0], zeros, w[1], w[2], zeros}, combination);
       for (std::uint32_t i = 0; i < 30; ++i) {
         EXPECT_EQ(with.pmf(i).value, without.pmf(i).value);
-        EXPECT_NE(with.owner(i), 0);
-        EXPECT_NE(with.owner(i), 2);
-        EXPECT_NE(with.owner(i), 5);
+        EXPECT_NE(with.distribution(i), 0);
+        EXPECT_NE(with.distribution(i), 2);
+        EXPECT_NE(with.distribution(i), 5);
       }
     }
   }
@@ -153,7 +153,7 @@ TEST(ResamplingTable, IsEmptyWhereNothingCanBeDrawn) {
     EXPECT_TRUE(table_of({{0, 0}, {0, 0}}, combination).empty());
     const ResamplingTable one = table_of({{0}, {3}}, combination);
     EXPECT_EQ(one.pmf(0).value, 1);
-    EXPECT_EQ(one.owner(0), 1);
+    EXPECT_EQ(one.distribution(0), 1);
   }
 }
 

@@ -27,7 +27,7 @@ void expect_power(const Scene& scene, const Power& expected, int draws, double u
   Rng rng(51, 0, 0, Rng::Purpose::test);
   for (int i = 0; i < draws; ++i) {
     const EmitterPoint e = scene.emitters().sample(scene.emitters().choose(rng), rng);
-    const auto l = scene.emitters().leave(e, rng);
+    const auto l = scene.emitters().sample_first_edge(e, rng);
     for (std::size_t c = 0; c < 3; ++c) {
       carried[c].add(l ? double(l->throughput[static_cast<int>(c)]) : 0.0);
     }

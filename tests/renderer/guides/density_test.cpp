@@ -38,7 +38,7 @@ std::vector<Case> cases() {
 
 constexpr std::size_t points = 4;
 
-GuidedVertex guided(const Vertex& v) { return {v.surface, *v.bsdf, v.wp, v.site}; }
+GuidedVertex guided(const Vertex& v) { return {v.surface, *v.bsdf, v.wp, v.guiding_cell}; }
 
 class Density : public testing::TestWithParam<Case> {};
 
@@ -84,7 +84,7 @@ TEST_P(Density, WithTheSurfaceIsThatOfItsSamples) {
      public:
       explicit Lent(const GuidingDistribution& d) : d_(d) {}
       bool needs_space() const override { return d_.needs_space(); }
-      GuidingCell site(const Surface& x, const V3f& w) const override { return d_.site(x, w); }
+      GuidingCell cell(const Surface& x, const V3f& w) const override { return d_.cell(x, w); }
       std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const override {
         return d_.sample(at, rng);
       }

@@ -40,10 +40,10 @@ class GuidedScene {
   const GuidingDistribution& directions() const { return *directions_; }
   const Scene& scene() const { return scene_; }
 
-  /// Vertices of paths from the eye that scatter and have a site from which directions are drawn;
-  /// at most `wanted`, from as many paths as it takes, up to 64. Moved one voxel and a half off
-  /// their surfaces: what voxels of the surface itself look like from there, edge-on, no histogram
-  /// resolves.
+  /// Vertices of paths from the eye that scatter and have a guiding cell from which directions are
+  /// drawn; at most `wanted`, from as many paths as it takes, up to 64. Moved one voxel and a half
+  /// off their surfaces: what voxels of the surface itself look like from there, edge-on, no
+  /// histogram resolves.
   std::vector<Vertex> guided_vertices(std::size_t wanted) const {
     std::vector<Vertex> found;
     EyeBatch batch(4);
@@ -56,12 +56,12 @@ class GuidedScene {
     const BsdfGuide guide;
     Walk<BsdfGuide> walk(scene_, guide, {.max_depth = 4, .roulette_depth = 4}, counters);
     walk.trace_paths(
-        batch.walkers, [](std::size_t, int) {},
+        batch.states, [](std::size_t, int) {},
         [&](std::size_t i, int depth) {
           Vertex v = batch.vertex(i, depth);
           if (v.kind != Vertex::Kind::surface || depth == 4 || !v.bsdf->connectible()) return;
-          v.site = directions_->site(v.surface, v.wp);
-          if (!(v.site.probability > 0) || found.size() >= wanted) return;
+          v.guiding_cell = directions_->cell(v.surface, v.wp);
+          if (!(v.guiding_cell.probability > 0) || found.size() >= wanted) return;
           const auto away = static_cast<float>(1.5 * space_->voxels().transform.voxel_size);
           v.surface.x += v.surface.ng * std::copysign(away, dot(v.wp, v.surface.ng));
           found.push_back(v);

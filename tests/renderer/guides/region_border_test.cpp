@@ -21,9 +21,9 @@ double difference(const GuidingDistribution& d, const GuidedVertex& a, const Gui
     const bool first = i % 2 == 0;
     const auto w = d.sample(first ? a : b, rng);
     if (!w) continue;
-    const double pa = double(a.site.probability) * double(d.pdf(a, *w).value);
-    const double pb = double(b.site.probability) * double(d.pdf(b, *w).value);
-    const double drawn = pa / double(a.site.probability) + pb / double(b.site.probability);
+    const double pa = double(a.cell.probability) * double(d.pdf(a, *w).value);
+    const double pb = double(b.cell.probability) * double(d.pdf(b, *w).value);
+    const double drawn = pa / double(a.cell.probability) + pb / double(b.cell.probability);
     if (drawn > 0) sum += std::abs(pa - pb) / drawn / n;
   }
   return sum;
@@ -48,11 +48,11 @@ TEST(RegionBorders, ShowNoStepWithMixing) {
     for (int k = 0; k < 100; ++k) {
       s.x = next.x;
       next.x += along;
-      const GuidingCell a = one.site(s, v.wp), b = one.site(next, v.wp);
+      const GuidingCell a = one.cell(s, v.wp), b = one.cell(next, v.wp);
       if (!(a.probability > 0 && b.probability > 0) || a.index == b.index) continue;
       const double step = difference(one, {s, *v.bsdf, v.wp, a}, {next, *v.bsdf, v.wp, b}, rng);
       if (step < 0.1) continue;  // no border of regions
-      const GuidingCell ma = other.site(s, v.wp), mb = other.site(next, v.wp);
+      const GuidingCell ma = other.cell(s, v.wp), mb = other.cell(next, v.wp);
       if (!(ma.probability > 0 && mb.probability > 0)) continue;
       step_sharp += step;
       step_mixed += difference(other, {s, *v.bsdf, v.wp, ma}, {next, *v.bsdf, v.wp, mb}, rng);

@@ -37,7 +37,7 @@ TEST(BlockBounds, LeaveOutOnlyWhatNoLightOfTheBlockReaches) {
     }
     const auto all = [](const V3f& v) { return Float8x3{v.x, v.y, v.z}; };
     const bool is_behind = any(bounds.behind(all(p), all(normal)));
-    const bool is_turned = any(bounds.turned_from(all(p)));
+    const bool is_turned = any(bounds.facing_away(all(p)));
     EXPECT_FALSE(is_behind && in_front);
     EXPECT_FALSE(is_turned && faced);
     const bool is_further = any(bounds.further_than(reach, all(p)));

@@ -131,7 +131,7 @@ TEST(LightDraw, LeavesOutWhatIsBeyondTheCutoff) {
       for (const auto& d : draw.draw(std::span(&p, 1), lit.context(1))) drawn[d.block] = d.lights;
       for (const auto& [block, bits] : candidates(lit, p, false)) {
         for_each_bit(bits, [&](int i) {
-          const bool within = (lit.lights().place(block, i).x - x).length2() <= reach * reach;
+          const bool within = (lit.lights().geometry(block, i).x - x).length2() <= reach * reach;
           EXPECT_EQ((drawn[block] >> i & 1) != 0, within);
           beyond += !within;
         });

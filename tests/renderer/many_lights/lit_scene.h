@@ -25,14 +25,14 @@ class LitScene {
         scene_(std::move(data_), {.materials = true, .emission = true}, environment(named), pool_),
         light_paths_(light_paths),
         with_emitters_(with_emitters),
-        lights_(walk([](const LightPlace&) { return 0U; })),
+        lights_(walk([](const VplGeometry&) { return 0U; })),
         terms_(lights_, bound) {}
 
   /// `visibility` sees the scene's empty space, and the lights in the groups that it wants.
   template <class Visibility>
   void prepare(Visibility& visibility) {
     visibility.prepare({scene_, pool_, space_});
-    lights_ = walk([&](const LightPlace& p) { return visibility.group(p); });
+    lights_ = walk([&](const VplGeometry& p) { return visibility.group(p); });
     const IterationContext first = context(1);
     visibility.begin(pass(first));
   }

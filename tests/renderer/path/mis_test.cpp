@@ -56,7 +56,7 @@ class Meeting {
       }
       Counters counters;
       light_.walk(rngs, counters);
-      eye_.walkers.clear();
+      eye_.states.clear();
       for (std::size_t i = 0; i < EyeBatch::size; ++i) {
         Rng rng(71, static_cast<std::uint64_t>(round), i);
         const float x = rng.next() * side;
@@ -68,7 +68,7 @@ class Meeting {
           {.max_depth = longest, .roulette_depth = longest + 1, .counts = eye_side(counts_)},
           counters);
       walk.trace_paths(
-          eye_.walkers, [](std::size_t, int) {},
+          eye_.states, [](std::size_t, int) {},
           [&](std::size_t i, int depth) {
             meet_emitter(i, depth, hit);
             join(i, depth, joined);

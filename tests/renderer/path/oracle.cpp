@@ -74,9 +74,9 @@ double Oracle::eye_step(int i) const {
   const V3f& wo = path_.towards_eye(i + 1);
   const auto bsdf = double(from.bsdf->pdf(wo, w, Transport::radiance).value);
   if (directions_ == nullptr) return bsdf * there;
-  const GuidingCell site = directions_->site(from.surface, wo);
-  const auto guided = double(directions_->pdf({from.surface, *from.bsdf, wo, site}, w).value);
-  const auto c = double(site.probability);
+  const GuidingCell cell = directions_->cell(from.surface, wo);
+  const auto guided = double(directions_->pdf({from.surface, *from.bsdf, wo, cell}, w).value);
+  const auto c = double(cell.probability);
   return (c * guided + (1 - c) * bsdf) * there;
 }
 

@@ -9,41 +9,39 @@
 namespace lacuna {
 namespace {
 
-using Place = RecordTree::Place;
-
 V3f random_normal(Rng& rng) {
   const V2f u = rng.next2();
   const float z = 2 * u.x - 1, r = std::sqrt(1 - z * z);
   return {r * std::cos(6.2831853F * u.y), r * std::sin(6.2831853F * u.y), z};
 }
 
-std::vector<Place> random_places(Rng& rng, std::size_t n) {
-  std::vector<Place> places;
+std::vector<SurfacePoint> random_points(Rng& rng, std::size_t n) {
+  std::vector<SurfacePoint> points;
   for (std::size_t i = 0; i < n; ++i) {
     const V2f at = rng.next2();
     // Most lie on two walls, some in one spot.
     const V3f x = rng.next() < 0.1F   ? V3f(0.5F, 0.5F, 0)
                   : rng.next() < 0.5F ? V3f(at.x, at.y, 0)
                                       : V3f(0, at.x, at.y);
-    places.push_back({x, random_normal(rng)});
+    points.push_back({x, random_normal(rng)});
   }
-  return places;
+  return points;
 }
 
-double cost(const Place& at, const Place& p) {
+double cost(const SurfacePoint& at, const SurfacePoint& p) {
   return (V3d(at.x) - V3d(p.x)).length() * (2 - V3d(at.n).dot(V3d(p.n)));
 }
 
 /// What nearest() promises, as distances: equals may be found in any order.
-std::vector<double> by_brute_force(const std::vector<Place>& places, const Place& at,
+std::vector<double> by_brute_force(const std::vector<SurfacePoint>& points, const SurfacePoint& at,
                                    std::size_t wanted) {
-  std::vector<Place> near = places;
-  std::stable_sort(near.begin(), near.end(), [&](const Place& a, const Place& b) {
+  std::vector<SurfacePoint> near = points;
+  std::stable_sort(near.begin(), near.end(), [&](const SurfacePoint& a, const SurfacePoint& b) {
     return (V3d(at.x) - V3d(a.x)).length2() < (V3d(at.x) - V3d(b.x)).length2();
   });
   near.resize(std::min(near.size(), 2 * wanted));
   std::vector<double> costs;
-  for (const Place& p : near) costs.push_back(cost(at, p));
+  for (const SurfacePoint& p : near) costs.push_back(cost(at, p));
   std::sort(costs.begin(), costs.end());
   costs.resize(std::min(costs.size(), wanted));
   return costs;
@@ -53,11 +51,11 @@ TEST(RecordTree, FindsWhatBruteForceFinds) {
   Rng rng(91, 0, 0, Rng::Purpose::test);
   int compared = 0;
   for (const std::size_t n : {1, 2, 5, 100, 3000}) {
-    const std::vector<Place> places = random_places(rng, n);
+    const std::vector<SurfacePoint> points = random_points(rng, n);
     RecordTree tree;
-    tree.build(places);
+    tree.build(points);
     for (int query = 0; query < 50; ++query) {
-      const Place at{V3f(rng.next(), rng.next(), rng.next()), random_normal(rng)};
+      const SurfacePoint at{V3f(rng.next(), rng.next(), rng.next()), random_normal(rng)};
       for (const std::size_t wanted : {1, 3, 8, 64}) {
         std::vector<std::uint32_t> found(wanted, ~0U);
         const std::size_t count = tree.nearest(at, found);
@@ -67,12 +65,12 @@ TEST(RecordTree, FindsWhatBruteForceFinds) {
         std::sort(once.begin(), once.end());
         EXPECT_EQ(std::unique(once.begin(), once.end()), once.end()) << "one was found twice";
         // Places in one spot are equally near: which of them are candidates is not said.
-        const std::vector<double> expected = by_brute_force(places, at, wanted);
+        const std::vector<double> expected = by_brute_force(points, at, wanted);
         const double spot = (V3d(at.x) - V3d(0.5, 0.5, 0)).length();
         for (std::size_t i = 0; i < count; ++i) {
           ASSERT_LT(found[i], n);
           if (expected.back() >= spot) continue;
-          EXPECT_NEAR(cost(at, places[found[i]]), expected[i], 1e-5) << i << " of " << count;
+          EXPECT_NEAR(cost(at, points[found[i]]), expected[i], 1e-5) << i << " of " << count;
           ++compared;
         }
       }

@@ -40,10 +40,10 @@ TEST(Roulette, GoesByWhatTheBsdfWouldHaveLeft) {
   int told = 0;
   float least = 1;
   walk.trace_paths(
-      batch.walkers, [](std::size_t, int) {},
+      batch.states, [](std::size_t, int) {},
       [&](std::size_t i, int depth) {
         if (depth < 2) return;
-        const PathState& w = batch.walkers[i];
+        const PathState& w = batch.states[i];
         const float carried = max_component(w.throughput);
         EXPECT_NEAR(carried * w.roulette_scale, 1.0F, 1e-4F);
         least = std::min(least, carried);

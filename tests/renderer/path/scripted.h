@@ -16,8 +16,8 @@ struct ScriptedGuide {
   std::vector<Step> steps = {};           ///< of its vertices 1, 2, ...
   const MixedGuide* densities = nullptr;  ///< null: of the BSDF
 
-  void arrive(Vertex& v) const {
-    if (densities != nullptr) densities->arrive(v);
+  void on_hit(Vertex& v) const {
+    if (densities != nullptr) densities->on_hit(v);
   }
 
   std::optional<BsdfSample> sample(const Vertex& v, Rng&, Transport transport) const {
@@ -90,7 +90,7 @@ class Remake {
   /// Walks `depth` edges from the eye; the last one to the emitter itself where it is to be `hit`.
   bool walk_eye(int depth, bool hit) {
     const int k = path_.edges();
-    eye_.walkers.clear();
+    eye_.states.clear();
     if (depth == 0) return true;
     eye_guide_.first = &eye_.vertex(0, 0);
     eye_guide_.steps.clear();
@@ -99,7 +99,7 @@ class Remake {
     }
     eye_.start(camera_, rng_, {camera_.position(), step(k, -1)}, 0);
     int reached = 0;
-    trace_paths(eye_.walkers, eye_guide_, depth, Transport::radiance, eye_side(counts_), reached);
+    trace_paths(eye_.states, eye_guide_, depth, Transport::radiance, eye_side(counts_), reached);
     if (reached != depth) return false;
     for (int j = 1; j <= depth - (hit ? 1 : 0); ++j) {
       if (!same(eye_.vertex(0, j), path_.node(k - j))) return false;
@@ -133,7 +133,7 @@ class Remake {
     return true;
   }
 
-  void trace_paths(std::span<PathState> walkers, const ScriptedGuide& guide, int depth,
+  void trace_paths(std::span<PathState> states, const ScriptedGuide& guide, int depth,
                    Transport transport, const TechniqueCounts& side, int& reached) {
     Counters counters;
     Walk<ScriptedGuide> walk(scene_, guide,
@@ -144,7 +144,7 @@ class Remake {
                               .counts = side},
                              counters);
     walk.trace_paths(
-        walkers, [](std::size_t, int) {}, [&](std::size_t, int d) { reached = d; });
+        states, [](std::size_t, int) {}, [&](std::size_t, int d) { reached = d; });
   }
 
   /// The same triangle, and nearly the same place on it.

@@ -12,23 +12,23 @@ namespace lacuna::test {
 class SidedDirections final : public GuidingDistribution {
  public:
   bool needs_space() const override { return false; }
-  GuidingCell site(const Surface& s, const V3f& w) const override {
+  GuidingCell cell(const Surface& s, const V3f& w) const override {
     return dot(w, s.ng) < 0 ? GuidingCell{0.7F, 1} : GuidingCell{0.3F, 0};
   }
   std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const override {
     const V2f u = rng.next2();
     const float z = std::cbrt(1 - u.x);
     const float r = std::sqrt(std::max(0.0F, 1 - z * z)), phi = 2 * pi * u.y;
-    return Frame(axis(at.site, at.x())).to_world({r * std::cos(phi), r * std::sin(phi), z});
+    return Frame(axis(at.cell, at.x())).to_world({r * std::cos(phi), r * std::sin(phi), z});
   }
   Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const override {
-    const float c = std::max(0.0F, dot(axis(at.site, at.x()), w));
+    const float c = std::max(0.0F, dot(axis(at.cell, at.x()), w));
     return Pdf<SolidAngle>(3 * c * c / (2 * pi));
   }
 
  private:
-  static V3f axis(const GuidingCell& site, const V3f& x) {
-    return ((site.index == 0 ? V3f(40, 90, -30) : V3f(-70, 20, 50)) - x).normalized();
+  static V3f axis(const GuidingCell& cell, const V3f& x) {
+    return ((cell.index == 0 ? V3f(40, 90, -30) : V3f(-70, 20, 50)) - x).normalized();
   }
 };
 

@@ -74,7 +74,7 @@ TEST(Paraboloid, HasEveryDirectionOnce) {
   }
   for (int t = 0; t < map.texels(); ++t) {
     EXPECT_NEAR(map.direction(t).length(), 1, 1e-6);
-    const auto place = map.place(map.direction(t));
+    const auto place = map.coord(map.direction(t));
     if (place.half == t / 256) {
       EXPECT_EQ(map.texel(map.direction(t)), t);
     }
@@ -93,7 +93,7 @@ TEST(Paraboloid, EightAtATimeAreAsOne) {
         x[i] = d.x, y[i] = d.y, z[i] = d.z;
       }
       const Float8x3 d{Float8::load(x.data()), Float8::load(y.data()), Float8::load(z.data())};
-      map.texel(map.places(d, sqrt(length2(d)))).store(texels.data());
+      map.texel(map.coords(d, sqrt(length2(d)))).store(texels.data());
       for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(texels[i], map.texel(V3f(x[i], y[i], z[i])));
     }
   }
@@ -110,7 +110,7 @@ TEST(Paraboloid, KnowsWhatCoversTheMiddleOfATexel) {
     const float angle = std::acos(std::min(1.0F, middle.dot(d) / d.length()));
     const float sphere = radius / d.length();  // small
     const Float8x3 eight{d.x, d.y, d.z};
-    const auto places = map.places(eight, Float8(d.length()));
+    const auto places = map.coords(eight, Float8(d.length()));
     const bool said = movemask(map.covers_middle(places, radius)) == 0xff;
     covered += said;
     // The map is conformal, but for its stretch, which changes a little within a texel.
@@ -132,8 +132,8 @@ TEST(Paraboloid, LeavesOutTheCornersOfTheSquares) {
       asked[static_cast<std::size_t>(map.texel(random_direction(rng)))] = true;
     int unmet = 0;  // a square that meets the disk in a tip only
     for (int t = 0; t < map.texels(); ++t) {
-      EXPECT_LE(asked[static_cast<std::size_t>(t)], map.asked_for(t)) << t;
-      unmet += map.asked_for(t) && !asked[static_cast<std::size_t>(t)];
+      EXPECT_LE(asked[static_cast<std::size_t>(t)], map.reachable(t)) << t;
+      unmet += map.reachable(t) && !asked[static_cast<std::size_t>(t)];
     }
     EXPECT_LE(unmet, 16) << "of " << map.texels();
   }
@@ -153,7 +153,7 @@ TEST(Paraboloid, FillsCaps) {
     });
     for (int t = 0; t < map.texels(); ++t) {
       const float off = map.direction(t).dot(w) - cosine;
-      const bool corner = map.place(map.direction(t)).half != t / 256;
+      const bool corner = map.coord(map.direction(t)).half != t / 256;
       if (std::abs(off) < 1e-4F || corner) continue;
       EXPECT_EQ(times[static_cast<std::size_t>(t)], off > 0 ? 1 : 0) << t << " " << off;
     }

@@ -15,14 +15,14 @@ Scene scene_of(SceneData data) {
   return Scene(std::move(data), {}, std::nullopt, pool);
 }
 
-struct SurfacePoint {
+struct HitPoint {
   V3f x, n;  // n towards `from`
 };
 
 /// What rays from `from` meet.
-std::vector<SurfacePoint> points_around(const Scene& scene, const V3f& from, int rays) {
+std::vector<HitPoint> points_around(const Scene& scene, const V3f& from, int rays) {
   Rng rng(7, 0, 0, Rng::Purpose::test);
-  std::vector<SurfacePoint> points;
+  std::vector<HitPoint> points;
   for (int i = 0; i < rays; ++i) {
     const V3f d = V3f(rng.next() - 0.5F, rng.next() - 0.5F, rng.next() - 0.5F).normalized();
     Hit hit;
@@ -33,7 +33,7 @@ std::vector<SurfacePoint> points_around(const Scene& scene, const V3f& from, int
   return points;
 }
 
-bool sees(const Scene& scene, const V3f& place, const SurfacePoint& p) {
+bool sees(const Scene& scene, const V3f& place, const HitPoint& p) {
   const V3f start = offset_origin(p.x, p.n, p.x.length(), p.n);
   return dot(place - p.x, p.n) > 0 && !scene.rays().occluded({start, place - start, 1.0F});
 }
@@ -55,7 +55,7 @@ TEST(NodeMaps, OfAnEmptyRoomSeeAllOfIt) {
   for (const int filter : {1, 2, 5, 7}) {
     const NodeView view(maps, 0, place, filter);
     int all = 0, whole = 0;
-    for (const SurfacePoint& p : points_around(scene, {-0.7F, 1, 2}, 20000)) {
+    for (const HitPoint& p : points_around(scene, {-0.7F, 1, 2}, 20000)) {
       const float seen = view.seen(p.x, p.n);
       EXPECT_GE(seen, 0.2F) << p.x << " filter " << filter;  // in a corner, a quarter of it
       EXPECT_LE(seen, 1.00001F);
@@ -82,12 +82,12 @@ TEST_P(NodeMapsIn, SeeWhatRaysSee) {
     if (places.back() == from) places.push_back(eye);
   }
   const NodeMaps maps = maps_of(scene, places, 128);
-  ASSERT_EQ(maps.places(), places.size());
+  ASSERT_EQ(maps.points(), places.size());
   int seen = 0, unseen = 0, wrong = 0;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const NodeView view(maps, k, places[k], 1);
     for (const V3f& from : places) {
-      for (const SurfacePoint& p : points_around(scene, from, 800)) {
+      for (const HitPoint& p : points_around(scene, from, 800)) {
         const bool expected = sees(scene, places[k], p);
         (expected ? seen : unseen) += 1;
         wrong += (view.seen(p.x, p.n) > 0.5F) != expected;

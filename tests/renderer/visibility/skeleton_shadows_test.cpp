@@ -11,7 +11,7 @@ namespace {
 using test::gathered;
 using test::LitScene;
 
-/// The sum over all lights of what they give times `v(place)`; what is below 0 is tested by a ray.
+/// The sum over all lights of what they give times `v(light)`; what is below 0 is tested by a ray.
 template <class V>
 double by_hand(const LitScene& lit, const ShadingPoint& at, V&& v) {
   double total = 0;
@@ -20,7 +20,7 @@ double by_hand(const LitScene& lit, const ShadingPoint& at, V&& v) {
   for (std::size_t b = 0; b < lights.blocks(at.edges); ++b) {
     lit.terms().evaluate(at, b, terms);
     for (int i = 0; i < lights.count(b); ++i) {
-      double seen = v(lights.place(b, i));
+      double seen = v(lights.geometry(b, i));
       if (seen < 0) seen = lit.scene().rays().occluded(lit.terms().ray(at, b, i)) ? 0 : 1;
       if (terms.r[i] > 0) total += double(terms.r[i]) * seen;
     }
@@ -28,7 +28,7 @@ double by_hand(const LitScene& lit, const ShadingPoint& at, V&& v) {
   return total;
 }
 
-/// `expected(at, place)`: V by its definition.
+/// `expected(at, light)`: V by its definition.
 template <class Visibility, class V>
 void expect_sums(const LitScene& lit, const Visibility& visibility, V&& expected) {
   int compared = 0, shadowed = 0;
@@ -38,7 +38,7 @@ void expect_sums(const LitScene& lit, const Visibility& visibility, V&& expected
       const auto all = gathered(lit, lit.context(1), NoVisibility{{}}, points);
       for (std::size_t k = 0; k < points.size(); ++k) {
         const double sum = by_hand(
-            lit, points[k], [&](const LightPlace& place) { return expected(points[k], place); });
+            lit, points[k], [&](const VplGeometry& light) { return expected(points[k], light); });
         // A light at the rim of a gate may count or not.
         EXPECT_NEAR(values[k], sum, 1e-4 * all[k] + 1e-12);
         compared += all[k] > 0;
@@ -64,8 +64,8 @@ TEST_P(SkeletonShadows, OfNodeMapsAreThoseOfTheLightsNodes) {
   }
   const NodeMaps maps = trace_node_maps(lit.scene(), nodes, 32, lit.pool(), no_memory_limit);
   const SurfaceLookup lookup(transform, lit.space().filtered_map());
-  expect_sums(lit, visibility, [&](const ShadingPoint& at, const LightPlace& place) {
-    const std::uint32_t node = node_of(lookup, place);
+  expect_sums(lit, visibility, [&](const ShadingPoint& at, const VplGeometry& light) {
+    const std::uint32_t node = node_of(lookup, light);
     if (node == no_node) return -1.0;
     const Vertex& v = *at.vertex;
     const V3f n = dot(v.wp, v.surface.ng) < 0 ? -v.surface.ng : v.surface.ng;
@@ -87,14 +87,14 @@ TEST_P(SkeletonShadows, OfGatesAreClustersAndCones) {
     const auto cluster_of = [&](std::uint32_t node) {
       return clusters.of_node[simplified.parent[node]];
     };
-    expect_sums(lit, visibility, [&](const ShadingPoint& at, const LightPlace& place) {
-      const std::uint32_t from = node_of(lookup, place), to = node_of(lookup, at);
+    expect_sums(lit, visibility, [&](const ShadingPoint& at, const VplGeometry& light) {
+      const std::uint32_t from = node_of(lookup, light), to = node_of(lookup, at);
       if (from == no_node || to == no_node) return -1.0;
       if (cluster_of(from) == cluster_of(to)) return 1.0;
       double most = 0;
       for (const VisibilityGate& g : gates.gates) {
         if (g.clusters[0] != cluster_of(from) && g.clusters[1] != cluster_of(from)) continue;
-        const V3d y(place.x), c(transform.to_world(V3d(g.centre))), a(g.axis);
+        const V3d y(light.x), c(transform.to_world(V3d(g.centre))), a(g.axis);
         const V3d w = (V3d(at.vertex->surface.x) - y).normalized();
         const double t = (c - y).dot(a) / w.dot(a);
         const double r = (y + w * t - c).length() / (double(g.radius) * transform.voxel_size);
@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(All, SkeletonShadows,
 TEST(VplSet, InGroupsGiveTheSame) {
   struct ByPlace : ExactVisibility {
     using ExactVisibility::ExactVisibility;
-    static std::uint32_t group(const LightPlace& p) {
+    static std::uint32_t group(const VplGeometry& p) {
       if (p.infinite || p.n == V3f(0.0F)) return no_group;
       return p.n.y > 0.5F ? 7 : p.x.x > 0 ? 3 : 0;
     }
@@ -136,7 +136,7 @@ TEST(VplSet, InGroupsGiveTheSame) {
     EXPECT_EQ(lit.lights().size(), size);
     for (std::size_t b = 0; b < lit.lights().blocks(); ++b) {
       for (int i = 0; i < lit.lights().count(b); ++i) {
-        EXPECT_EQ(ByPlace::group(lit.lights().place(b, i)), lit.lights().group(b));
+        EXPECT_EQ(ByPlace::group(lit.lights().geometry(b, i)), lit.lights().group(b));
       }
     }
     lit.with_points(300, [&](auto points) {

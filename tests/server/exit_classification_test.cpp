@@ -1,4 +1,4 @@
-#include "server/queue/verdict.h"
+#include "server/queue/exit_classification.h"
 
 #include <gtest/gtest.h>
 
@@ -18,114 +18,117 @@ Attempt attempt(const Ending& ending, State left = State::running) {
   a.ending = ending;
   return a;
 }
-Verdict judged(const Attempt& a, int max_attempts = 2) { return judge(a, max_attempts, "now"); }
+ExitClassification classified(const Attempt& a, int max_attempts = 2) {
+  return classify_exit(a, max_attempts, "now");
+}
 
 const Ending crash{Kind::killed, SIGSEGV, "renderer ended by signal 11 (Segmentation fault)"};
 const Ending interruption{Kind::exited, 75, "renderer ended with exit code 75"};
 const Ending no_memory{Kind::out_of_memory, 71, "renderer ran out of memory (limit 4.0 GiB)"};
 
-TEST(Verdict, ACrashIsRetriedUntilThereWereEnough) {
+TEST(ExitClassification, ACrashIsRetriedUntilThereWereEnough) {
   Attempt a = attempt(crash);
-  Verdict v = judged(a);
+  ExitClassification v = classified(a);
   EXPECT_EQ(v.state.state, State::queued);
   EXPECT_TRUE(v.crashed);
   a.crashes = 1;
-  v = judged(a);
+  v = classified(a);
   EXPECT_EQ(v.state.state, State::failed);
   EXPECT_EQ(v.state.error, crash.reason + ", 2 times");
   EXPECT_EQ(v.state.exit_code, 128 + SIGSEGV);
 }
 
-TEST(Verdict, WantOfMemoryCountsAsACrashAndNamesItself) {
+TEST(ExitClassification, WantOfMemoryCountsAsACrashAndNamesItself) {
   Attempt a = attempt(no_memory, State::interrupted);
   a.after.error = "out of memory";
-  Verdict v = judged(a);
+  ExitClassification v = classified(a);
   EXPECT_EQ(v.state.state, State::queued);
   EXPECT_TRUE(v.crashed);
   EXPECT_EQ(v.state.error, "") << "it waits; nothing has failed";
   EXPECT_EQ(v.state.exit_code, 71);
   a.crashes = 1;
-  v = judged(a);
+  v = classified(a);
   EXPECT_EQ(v.state.state, State::failed);
   EXPECT_EQ(v.state.error, "renderer ran out of memory (limit 4.0 GiB), 2 times");
 }
 
-TEST(Verdict, AnInterruptionThatNobodyAskedForIsACrashUnlessTheJobCameOn) {
+TEST(ExitClassification, AnInterruptionThatNobodyAskedForIsACrashUnlessTheJobCameOn) {
   Attempt a = attempt(interruption, State::interrupted);
   a.iteration_before = a.iteration_after = 40;
-  Verdict v = judged(a);
+  ExitClassification v = classified(a);
   EXPECT_EQ(v.state.state, State::queued);
   EXPECT_TRUE(v.crashed);
   a.crashes = 1;
-  EXPECT_EQ(judged(a).state.error, interruption.reason + ", unasked and without progress, 2 times");
+  EXPECT_EQ(classified(a).state.error,
+            interruption.reason + ", without a request and without progress, 2 times");
   a.after.error = "cannot write x: No space left on device";
-  EXPECT_EQ(judged(a).state.error, a.after.error + ", 2 times") << "what the renderer said";
+  EXPECT_EQ(classified(a).state.error, a.after.error + ", 2 times") << "what the renderer said";
   a.iteration_after = 41;
-  v = judged(a);
+  v = classified(a);
   EXPECT_EQ(v.state.state, State::queued);
   EXPECT_FALSE(v.crashed);
 }
 
-TEST(Verdict, ACrashIsOneEvenIfTheJobCameOn) {
+TEST(ExitClassification, ACrashIsOneEvenIfTheJobCameOn) {
   Attempt a = attempt(crash);
   a.iteration_after = 41;
-  EXPECT_TRUE(judged(a).crashed);
+  EXPECT_TRUE(classified(a).crashed);
 }
 
-TEST(Verdict, NothingIsCountedWhileTheDiskIsLow) {
+TEST(ExitClassification, NothingIsCountedWhileTheDiskIsLow) {
   for (const Ending& ending : {crash, interruption, no_memory}) {
     Attempt a = attempt(ending);
     a.disk_low = true;
     a.crashes = 100;
-    const Verdict v = judged(a);
+    const ExitClassification v = classified(a);
     EXPECT_EQ(v.state.state, State::queued) << ending.reason;
     EXPECT_FALSE(v.crashed) << ending.reason;
   }
 }
 
-TEST(Verdict, ALowDiskDoesNotMakeABadJobGood) {
+TEST(ExitClassification, ALowDiskDoesNotMakeABadJobGood) {
   Attempt a = attempt({Kind::exited, 2, "renderer ended with exit code 2"});
   a.disk_low = true;
-  EXPECT_EQ(judged(a).state.state, State::failed);
+  EXPECT_EQ(classified(a).state.state, State::failed);
 }
 
-TEST(Verdict, AskedToStopItIsCancelledHeldOrQueuedInThisOrder) {
+TEST(ExitClassification, AskedToStopItIsCancelledHeldOrQueuedInThisOrder) {
   for (const Ending& ending : {crash, interruption, no_memory}) {
     Attempt a = attempt(ending, State::interrupted);
     a.after.error = "out of memory";
     a.stopped = true;
-    EXPECT_EQ(judged(a, 1).state.state, State::queued);
+    EXPECT_EQ(classified(a, 1).state.state, State::queued);
     a.hold = true;
-    const Verdict held = judged(a, 1);
+    const ExitClassification held = classified(a, 1);
     EXPECT_EQ(held.state.state, State::held);
     EXPECT_FALSE(held.crashed);
     EXPECT_EQ(held.state.error, "");
     EXPECT_EQ(held.state.finished, "");
     a.cancel = true;
-    const Verdict cancelled = judged(a, 1);
+    const ExitClassification cancelled = classified(a, 1);
     EXPECT_EQ(cancelled.state.state, State::cancelled);
     EXPECT_EQ(cancelled.state.error, "");
     EXPECT_EQ(cancelled.state.finished, "now");
   }
 }
 
-TEST(Verdict, WhatTheRendererFinishedStands) {
+TEST(ExitClassification, WhatTheRendererFinishedStands) {
   Attempt a = attempt({Kind::exited, 0, "renderer ended with exit code 0"}, State::done);
   a.cancel = a.hold = a.stopped = a.disk_low = true;
-  EXPECT_EQ(judged(a).state.state, State::done);
+  EXPECT_EQ(classified(a).state.state, State::done);
 }
 
-TEST(Verdict, ARendererThatCannotBeStartedFailsItsJobUnlessThatMayPass) {
+TEST(ExitClassification, ARendererThatCannotBeStartedFailsItsJobUnlessThatMayPass) {
   Attempt a = attempt({Kind::not_started, ENOENT, "renderer could not be started"}, State::queued);
   a.after.attempts = 0;
-  EXPECT_EQ(judged(a).state.state, State::failed);
+  EXPECT_EQ(classified(a).state.state, State::failed);
   a.ending.code = ENOSPC;
-  const Verdict v = judged(a);
+  const ExitClassification v = classified(a);
   EXPECT_EQ(v.state.state, State::queued);
   EXPECT_TRUE(v.crashed) << "or it would be tried for ever";
   EXPECT_EQ(v.state.attempts, 0);
   a.disk_low = true;
-  EXPECT_FALSE(judged(a).crashed);
+  EXPECT_FALSE(classified(a).crashed);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "server/queue/verdict.h"
+#include "server/queue/exit_classification.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 namespace lacuna {
 namespace {
 
-Verdict failed(JobState state, const std::string& error, const std::string& now) {
+ExitClassification failed(JobState state, const std::string& error, const std::string& now) {
   state.error = error;
   return {ended(std::move(state), State::failed, now)};
 }
@@ -46,7 +46,7 @@ std::string reason_of(const Attempt& attempt) {
   const Ending& end = attempt.ending;
   if (interrupted(end)) {
     const std::string& said = attempt.after.error;
-    return said.empty() ? end.reason + ", unasked and without progress" : said;
+    return said.empty() ? end.reason + ", without a request and without progress" : said;
   }
   const bool silent = end.kind == Ending::Kind::exited && end.code == exit_done;
   return silent ? end.reason + " but left no result" : end.reason;
@@ -76,7 +76,7 @@ JobState held(JobState state) {
   return state;
 }
 
-Verdict judge(const Attempt& attempt, int max_attempts, const std::string& now) {
+ExitClassification classify_exit(const Attempt& attempt, int max_attempts, const std::string& now) {
   JobState state = attempt.after;
   const Ending& end = attempt.ending;
   if (exited(end)) state.exit_code = end.code;

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "jobs/store/state.h"
+#include "server/queue/executor.h"
+
+namespace lacuna {
+
+/// The state of a job that is over, that is queued (again), and that is held.
+JobState ended(JobState state, State how, const std::string& now);
+JobState queued(JobState state);
+JobState held(JobState state);
+
+/// The circumstances in which a renderer ended.
+struct Attempt {
+  JobState before;  ///< state.json before the renderer started
+  JobState after;   ///< state.json after it ended
+  Ending ending;
+  bool cancel = false;    ///< a client cancelled the job
+  bool hold = false;      ///< a client put the job on hold
+  bool stopped = false;   ///< the service is shutting down and stopped the renderer
+  bool disk_low = false;  ///< free space is below the floor, so failures do not count as crashes
+  int crashes = 0;        ///< crashes of this job's earlier renderers
+  /// Iteration in progress.json before the renderer started and after it ended; 0: none.
+  std::int64_t iteration_before = 0, iteration_after = 0;
+};
+
+/// The job's next state, and whether the exit counts as a crash.
+struct ExitClassification {
+  JobState state;  ///< terminal, held, or queued again
+  bool crashed = false;
+};
+
+/// Classifies the exit of a renderer by the exit codes of `lacuna render`: 0 done, 2 bad job, 3
+/// scene or asset, 71 out of memory, 75 interrupted and resumable; all others are crashes. A
+/// terminal state that the renderer wrote stands. Crashes, lack of memory, and interruptions that
+/// nobody requested and that completed no iteration are retried from the checkpoint, up to
+/// `max_attempts` times; while the disk is low they are retried without being counted. A renderer
+/// that could not be started is retried likewise if the cause may pass (no disk space, memory,
+/// process or file handle left); otherwise the job fails.
+ExitClassification classify_exit(const Attempt& attempt, int max_attempts, const std::string& now);
+
+}  // namespace lacuna
