@@ -88,7 +88,7 @@ STRENGTHS = (2, 8, 16, 32, 128)
 
 
 def skeleton(strength, **more):
-    return {"type": "skeleton", "strength": strength, **more}
+    return {"type": "skeleton", "strength": strength, "probability": 0.5, **more}
 
 
 GUIDES = {

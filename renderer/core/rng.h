@@ -22,7 +22,8 @@ class Rng {
     test = 3,
     visibility = 4,
     gather = 5,
-    particles = 6
+    particles = 6,
+    branch = 7
   };
 
   /// `path` < 2^56; `iteration` < 2^32.
@@ -32,6 +33,12 @@ class Rng {
         counter_{0, static_cast<std::uint32_t>(path),
                  static_cast<std::uint32_t>(path >> 32) | static_cast<std::uint32_t>(purpose) << 24,
                  static_cast<std::uint32_t>(iteration)} {}
+
+  /// An independent stream, keyed by the next 64 bits of this one.
+  Rng branch() {
+    const std::uint64_t low = next_u32();
+    return Rng(low | std::uint64_t{next_u32()} << 32, 0, 0, Purpose::branch);
+  }
 
   /// 32 uniform bits.
   std::uint32_t next_u32() {

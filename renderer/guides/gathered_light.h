@@ -13,38 +13,91 @@ class GatheredLight {
  public:
   explicit GatheredLight(const EyeBatch& batch) : batch_(batch) {}
 
-  /// Call when the batch's paths have started.
+  /// Call when the batch's paths have started or resumed.
   void clear() {
     light_.assign(batch_.stride * EyeBatch::size, Rgb(0, 0, 0));
-    std::fill(length_.begin(), length_.end(), 0);
+    split_.assign(batch_.stride * EyeBatch::size, 1.0F);
+    for (std::size_t i = 0; i < batch_.states.size(); ++i) {
+      first_[i] = last_[i] = batch_.states[i].depth;
+    }
   }
   /// Path `i` has reached its vertex `depth`.
-  void reach(std::size_t i, int depth) { length_[i] = depth; }
+  void reach(std::size_t i, int depth) {
+    last_[i] = depth;
+    split_[index(i, depth)] = batch_.states[i].split;
+  }
   /// Adds the contribution `value` to the pixel, by emission or a connection at vertex `depth`.
   void add(std::size_t i, int depth, const Rgb& value) {
-    if (is_finite(value)) light_[i * batch_.stride + static_cast<std::size_t>(depth)] += value;
+    if (is_finite(value)) light_[index(i, depth)] += value;
   }
 
-  /// Passes a GuidingSample to `guide` for every edge that was not sampled from a delta lobe.
+  /// Passes to `guide` a GuidingSample for every edge that was not sampled from a delta lobe, and
+  /// the light behind every connectible vertex. A path that was split represents all of its parts:
+  /// its later contributions are multiplied by their number.
   template <class Guide>
   void record(const Guide& guide, typename Guide::Accumulator& accumulator) const {
     for (std::size_t i = 0; i < batch_.states.size(); ++i) {
       Rgb behind(0, 0, 0);
-      for (int depth = length_[i]; depth > 1; --depth) {
-        behind += light_[i * batch_.stride + static_cast<std::size_t>(depth)];
-        const Vertex& v = batch_.vertex(i, depth - 1);
-        const Vertex& next = batch_.vertex(i, depth);
-        if (v.delta) continue;
-        const V3f wi = -next.wp;
-        const Rgb arrived(over(behind.x, next.throughput.x), over(behind.y, next.throughput.y),
-                          over(behind.z, next.throughput.z));
-        const Pdf<SolidAngle> p(next.p_fwd / to_area(Pdf<SolidAngle>(1.0F), v, wi, next));
-        guide.accumulate({v, wi, p, luminance(arrived), luminance(behind)}, accumulator);
+      for (int depth = last_[i]; depth >= std::max(1, first_[i]); --depth) {
+        if (depth < last_[i]) record_edge(guide, i, depth, behind, accumulator);
+        record_vertex(guide, i, depth, behind, accumulator);
+        behind += light_[index(i, depth)] * split_[index(i, depth)];
       }
     }
   }
 
  private:
+  std::size_t index(std::size_t i, int depth) const {
+    return i * batch_.stride + static_cast<std::size_t>(depth);
+  }
+  static bool connectible(const Vertex& v) {
+    return v.kind == Vertex::Kind::surface && v.bsdf && v.bsdf->connectible();
+  }
+
+  /// Of the edge from vertex `depth` of path `i` to the next.
+  template <class Guide>
+  void record_edge(const Guide& guide, std::size_t i, int depth, const Rgb& behind,
+                   typename Guide::Accumulator& accumulator) const {
+    const Vertex& v = batch_.vertex(i, depth);
+    const Vertex& next = batch_.vertex(i, depth + 1);
+    if (v.delta) return;
+    const V3f wi = -next.wp;
+    const Rgb carried = next.throughput * split_[index(i, depth + 1)];
+    const Rgb arrived(over(behind.x, carried.x), over(behind.y, carried.y),
+                      over(behind.z, carried.z));
+    const Pdf<SolidAngle> p(next.p_fwd / to_area(Pdf<SolidAngle>(1.0F), v, wi, next));
+    guide.accumulate({v, wi, p, luminance(arrived), contribution(guide, i, depth + 1, behind)},
+                     accumulator);
+  }
+
+  template <class Guide>
+  void record_vertex(const Guide& guide, std::size_t i, int depth, const Rgb& behind,
+                     typename Guide::Accumulator& accumulator) const {
+    if constexpr (Guide::has_expected) {
+      const Vertex& v = batch_.vertex(i, depth);
+      if (!connectible(v)) return;
+      const float carried = luminance(v.throughput) * split_[index(i, depth)];
+      guide.record(v, double(luminance(behind)) / double(carried), accumulator);
+    }
+  }
+
+  /// Luminance of the contributions of vertex `depth` and those `behind` it. The latter are
+  /// replaced by their expectation where it is known: a guide that minimises the variance of its
+  /// own directions must not learn the noise of the vertices behind.
+  template <class Guide>
+  float contribution(const Guide& guide, std::size_t i, int depth, const Rgb& behind) const {
+    if constexpr (Guide::has_expected) {
+      const Vertex& v = batch_.vertex(i, depth);
+      if (connectible(v)) {
+        const float expected = guide.expected(v);
+        if (expected < 0) return 0;
+        return split_[index(i, depth)] *
+               (luminance(light_[index(i, depth)]) + luminance(v.throughput) * expected);
+      }
+    }
+    return luminance(behind);
+  }
+
   /// 0 for a channel whose throughput is 0.
   static float over(float value, float throughput) {
     return throughput > 0 ? value / throughput : 0.0F;
@@ -52,7 +105,8 @@ class GatheredLight {
 
   const EyeBatch& batch_;
   std::vector<Rgb> light_;
-  std::array<int, EyeBatch::size> length_{};
+  std::vector<float> split_;                          // PathState::split at each vertex
+  std::array<int, EyeBatch::size> first_{}, last_{};  // depths of the vertices recorded
 };
 
 }  // namespace lacuna

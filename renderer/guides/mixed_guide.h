@@ -1,6 +1,7 @@
 #pragma once
 
 #include "renderer/guides/guiding_distribution.h"
+#include "renderer/guides/reflected_radiance.h"
 #include "renderer/path/bsdf_guide.h"
 
 namespace lacuna {
@@ -16,21 +17,51 @@ class MixedGuide {
       : directions_(std::move(directions)) {}
 
   bool needs_space() const { return directions_->needs_space(); }
-  void prepare(const PrepareContext& context) { directions_->prepare(context); }
-  void save(ByteWriter& out) const { directions_->save(out); }
-  void load(ByteReader& in) { directions_->load(in); }
+  void prepare(const PrepareContext& context) {
+    const Bounds& box = context.scene.bounds();
+    reflected_ = ReflectedRadiance(box.low, box.size());
+    directions_->prepare(context);
+  }
+  void save(ByteWriter& out) const {
+    reflected_.save(out);
+    directions_->save(out);
+  }
+  void load(ByteReader& in) {
+    reflected_.load(in);
+    directions_->load(in);
+  }
   std::vector<std::pair<std::string, double>> statistics() const {
     return directions_->statistics();
   }
 
-  using Accumulator = std::unique_ptr<GuidingDistribution::Accumulator>;
-  bool learns() const { return directions_->learns(); }
-  Accumulator accumulator() const { return directions_->accumulator(); }
-  void accumulate(const GuidingSample& sample, Accumulator& accumulator) const {
-    directions_->accumulate(sample, *accumulator);
+  static constexpr bool has_expected = true;
+  float expected(const Vertex& v) const { return reflected_.at(v); }
+
+  struct Accumulator {
+    std::unique_ptr<GuidingDistribution::Accumulator> directions;  // null: they do not learn
+    ReflectedRadiance::Accumulator reflected;
+  };
+  bool learns() const { return directions_->learns() || reflected_.learns(); }
+  Accumulator accumulator() const {
+    return {directions_->learns() ? directions_->accumulator() : nullptr, {}};
   }
-  void update(std::span<const Accumulator> accumulators, const ThreadPool& pool) {
-    directions_->update(accumulators, pool);
+  void accumulate(const GuidingSample& sample, Accumulator& accumulator) const {
+    if (accumulator.directions) directions_->accumulate(sample, *accumulator.directions);
+  }
+  void record(const Vertex& v, double value, Accumulator& accumulator) const {
+    if (reflected_.learns()) reflected_.record(v, value, accumulator.reflected);
+  }
+  void update(std::span<Accumulator> accumulators, const ThreadPool& pool) {
+    if (directions_->learns()) {
+      std::vector<std::unique_ptr<GuidingDistribution::Accumulator>> directions;
+      for (Accumulator& a : accumulators) directions.push_back(std::move(a.directions));
+      directions_->update(directions, pool);
+    }
+    if (reflected_.learns()) {
+      std::vector<const ReflectedRadiance::Accumulator*> reflected;
+      for (const Accumulator& a : accumulators) reflected.push_back(&a.reflected);
+      reflected_.update(reflected);
+    }
   }
 
   /// Looks up the guiding cell of `v`, on the side of v.wp.
@@ -86,6 +117,7 @@ class MixedGuide {
   }
 
   std::unique_ptr<GuidingDistribution> directions_;
+  ReflectedRadiance reflected_;
   BsdfGuide bsdf_;
 };
 static_assert(Guide<MixedGuide>);

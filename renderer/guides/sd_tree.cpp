@@ -17,6 +17,7 @@ struct SdTree::SampleAccumulator final : Accumulator {
   explicit SampleAccumulator(std::size_t leaves) : vertices(leaves, 0) {}
   std::vector<std::uint32_t> vertices;  // of each leaf
   std::vector<EnergySample> samples;
+  Tuning::Accumulator tuning;
 };
 
 void SdTree::prepare(const PrepareContext& context) {
@@ -26,6 +27,7 @@ void SdTree::prepare(const PrepareContext& context) {
   side_ = std::max({size.x, size.y, size.z});
   nodes_ = {Node{}};
   leaves_.resize(1);
+  tuning_ = Tuning({1}, settings_.probability, 1);  // a tree has no strength
 }
 
 std::uint32_t SdTree::leaf_at(const V3f& x) const {
@@ -50,6 +52,10 @@ void SdTree::accumulate(const GuidingSample& sample, Accumulator& accumulator) c
   ++own.vertices[leaf];
   const float energy = sample.radiance / sample.pdf.value;
   if (energy > 0 && std::isfinite(energy)) own.samples.push_back({leaf, sample.wi, energy});
+  const DirectionTree& tree = leaves_[leaf].sampling;
+  if (tree.empty() || !tuning_.wants(leaf)) return;
+  const float density = tree.pdf(sample.wi).value;
+  tuning_.accumulate(sample, leaf, std::span(&density, 1), own.tuning);
 }
 
 void SdTree::update(std::span<const std::unique_ptr<Accumulator>> accumulators,
@@ -74,6 +80,11 @@ void SdTree::update(std::span<const std::unique_ptr<Accumulator>> accumulators,
       leaves_[l].building.add(sorted[k]->w, double(sorted[k]->energy), true);
     }
   });
+  std::vector<const Tuning::Accumulator*> tuning;
+  for (const auto& t : accumulators) {
+    tuning.push_back(&static_cast<const SampleAccumulator&>(*t).tuning);
+  }
+  tuning_.update(tuning);
   if (++done_ == std::uint64_t{1} << round_) next_round(pool);
 }
 
@@ -82,6 +93,7 @@ void SdTree::next_round(const ThreadPool& pool) {
   const double most =
       double(settings_.leaf_vertices) * std::sqrt(std::ldexp(1.0, static_cast<int>(round_)));
   divide(0, 0, most);
+  tuning_.forget();
   pool.for_each(static_cast<int>(leaves_.size()), [&](int i) {
     Leaf& leaf = leaves_[static_cast<std::size_t>(i)];
     leaf.building.build();
@@ -102,6 +114,7 @@ void SdTree::divide(std::uint32_t node, int depth, double most) {
     leaves_[leaf].vertices /= 2;
     Leaf half = leaves_[leaf];
     leaves_.push_back(std::move(half));
+    tuning_.divide(leaf);
     const auto other = static_cast<std::uint32_t>(leaves_.size() - 1);
     const auto first = static_cast<std::uint32_t>(nodes_.size());
     nodes_.push_back({{}, leaf});
@@ -122,6 +135,7 @@ void SdTree::save(ByteWriter& out) const {
     l.building.save(out);
     out.put(l.vertices);
   }
+  tuning_.save(out);
 }
 
 void SdTree::load(ByteReader& in) {
@@ -146,14 +160,19 @@ void SdTree::load(ByteReader& in) {
   done_ = done;
   nodes_ = std::move(nodes);
   leaves_ = std::move(leaves);
+  tuning_ = Tuning({1}, settings_.probability, leaves_.size());
+  tuning_.load(in);
 }
 
 std::vector<std::pair<std::string, double>> SdTree::statistics() const {
   double nodes = 0;
   for (const Leaf& l : leaves_) nodes += static_cast<double>(l.sampling.nodes());
-  return {{"sd_leaves", static_cast<double>(leaves_.size())},
-          {"sd_direction_nodes", nodes},
-          {"sd_rounds", static_cast<double>(round_)}};
+  std::vector<std::pair<std::string, double>> stats{
+      {"sd_leaves", static_cast<double>(leaves_.size())},
+      {"sd_direction_nodes", nodes},
+      {"sd_rounds", static_cast<double>(round_)}};
+  for (auto& s : tuning_.statistics()) stats.push_back(std::move(s));
+  return stats;
 }
 
 }  // namespace lacuna

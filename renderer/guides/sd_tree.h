@@ -2,6 +2,7 @@
 
 #include "renderer/guides/direction_tree.h"
 #include "renderer/guides/guiding_distribution.h"
+#include "renderer/guides/tuning.h"
 #include "renderer/settings/guide_settings.h"
 
 namespace lacuna {
@@ -25,7 +26,7 @@ class SdTree final : public GuidingDistribution {
   GuidingCell cell(const Surface& s, const V3f&) const override {
     const std::uint32_t leaf = leaf_at(s.x);
     const bool known = !leaves_[leaf].sampling.empty();
-    return {known ? static_cast<float>(settings_.probability) : 0.0F, leaf};
+    return {known ? tuning_.probability(leaf) : 0.0F, leaf};
   }
   std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const override {
     return leaves_[at.cell.index].sampling.sample(rng);
@@ -66,6 +67,7 @@ class SdTree final : public GuidingDistribution {
   double side_ = 1;  // of the cube around the scene
   std::vector<Node> nodes_;
   std::vector<Leaf> leaves_;
+  Tuning tuning_;                       // a cell for each leaf
   std::uint64_t round_ = 0, done_ = 0;  // iterations done of 2^round_
 };
 

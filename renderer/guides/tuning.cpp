@@ -7,8 +7,9 @@ namespace lacuna {
 
 namespace {
 
-/// The values of a cell that has not learned yet: those of the thesis.
-constexpr float first_strength = 8, first_probability = 0.5F;
+/// The values of a cell that has not learned yet: the strength of the thesis, and half of its
+/// probability, because the first iterations count like all others, and a wrong guide spoils them.
+constexpr float first_strength = 8, first_probability = 0.25F;
 /// Paths below which a cell keeps its initial values.
 constexpr double min_paths = 8;
 
@@ -83,14 +84,26 @@ void Tuning::choose(std::size_t cell) {
   }
 }
 
+void Tuning::divide(std::size_t cell) {
+  chosen_.push_back(chosen_[cell]);
+  if (!learns()) return;
+  const std::size_t from = cell * stride();
+  for (std::size_t i = 0; i < stride(); ++i) moments_.push_back(moments_[from + i]);
+}
+
+void Tuning::forget() { std::fill(moments_.begin(), moments_.end(), 0.0); }
+
 void Tuning::load(ByteReader& in) {
   if (!learns()) return;
+  std::vector<std::uint32_t> chosen = in.get_vector<std::uint32_t>();
   std::vector<double> moments = in.get_vector<double>();
-  if (moments.size() != moments_.size()) {
+  const bool valid = std::all_of(chosen.begin(), chosen.end(),
+                                 [this](std::uint32_t i) { return i < candidates(); });
+  if (!valid || chosen.size() != chosen_.size() || moments.size() != moments_.size()) {
     throw std::runtime_error("saved strengths belong to another scene");
   }
+  chosen_ = std::move(chosen);
   moments_ = std::move(moments);
-  for (std::size_t cell = 0; cell < chosen_.size(); ++cell) choose(cell);
 }
 
 std::vector<std::pair<std::string, double>> Tuning::statistics() const {

@@ -37,9 +37,17 @@ class Tuning {
                   Accumulator& accumulator) const;
   void update(std::span<const Accumulator* const> accumulators);
 
+  /// Adds a cell that starts as a copy of `cell`.
+  void divide(std::size_t cell);
+  /// Call when the guide's densities have changed: cells learn anew and keep their choice until
+  /// they have.
+  void forget();
+
   /// Writes nothing if it does not learn.
   void save(ByteWriter& out) const {
-    if (learns()) out.put(moments_);
+    if (!learns()) return;
+    out.put(chosen_);
+    out.put(moments_);
   }
   void load(ByteReader& in);
   std::vector<std::pair<std::string, double>> statistics() const;

@@ -111,6 +111,13 @@ class Bdpt : public GuidedIntegrator<Guide> {
   }
   /// One accumulator for each tile.
   using Accumulators = std::vector<typename Guide::Accumulator>;
+  /// Continues with the branches of the paths; false if there are none left.
+  bool resume(Walk<Guide>& walk, EyePaths& batch) const {
+    batch.store(walk.branches());
+    if (!batch.resume()) return false;
+    if (guide_.learns()) batch.gathered.clear();
+    return true;
+  }
   Accumulators start_accumulators(const Tiling& tiling) const {
     Accumulators accumulators(static_cast<std::size_t>(tiling.tiles()));
     if (guide_.learns()) {
@@ -118,7 +125,7 @@ class Bdpt : public GuidedIntegrator<Guide> {
     }
     return accumulators;
   }
-  void update_guide(const IterationContext& context, const Accumulators& accumulators) {
+  void update_guide(const IterationContext& context, Accumulators& accumulators) {
     if (guide_.learns()) guide_.update(accumulators, context.pool);
   }
   /// The callback of for_each_splatting_part() that adds splats to the layers.
@@ -176,9 +183,11 @@ class PairedBdpt final : public Bdpt<Guide> {
         Base::start(context, image, tile, first, pairs.eye, counters);
         walk_light(context, pairs, counters);
         pairs.light.splat(pairs.eye.states.size(), counters, splats);
-        walk_eye(context, counts, walk, pairs);
-        Base::finish(context, pairs.queue, pairs.eye, image, counters,
-                     accumulators[static_cast<std::size_t>(i)], [](const Contribution&) {});
+        do {
+          walk_eye(context, counts, walk, pairs);
+          Base::finish(context, pairs.queue, pairs.eye, image, counters,
+                       accumulators[static_cast<std::size_t>(i)], [](const Contribution&) {});
+        } while (Base::resume(walk, pairs.eye));
       }
     };
     const Counters sum =
@@ -222,9 +231,10 @@ class PairedBdpt final : public Bdpt<Guide> {
       const EmitterPoint e = lights.sample(pairs.chosen[i], pairs.eye.states[i].rng);
       const Contribution known = Base::contribution(pairs.eye, i);
       Base::join(eye, EmitterEndpoint{e}, 1, counts, known, pairs.queue);
-      for (int s = 2; s <= std::min(longest, pairs.light.length(i)); ++s) {
-        if (!pairs.light.vertex(i, s - 1).bsdf->connectible()) continue;
-        Base::join(eye, pairs.light.end(i, s - 1), 1, counts, known, pairs.queue);
+      const std::size_t path = pairs.eye.origin[i];
+      for (int s = 2; s <= std::min(longest, pairs.light.length(path)); ++s) {
+        if (!pairs.light.vertex(path, s - 1).bsdf->connectible()) continue;
+        Base::join(eye, pairs.light.end(path, s - 1), 1, counts, known, pairs.queue);
       }
     });
   }
@@ -325,14 +335,16 @@ class ResampledBdpt final : public Bdpt<Guide> {
       const Tile tile = tiling.tile(i);
       for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
         Base::start(context, image, tile, first, part.batch, counters);
-        walk.trace_paths(
-            part.batch.states, [](std::size_t, int) {},
-            [&](std::size_t k, int depth) {
-              Base::gather_hit(context, counts, part.batch, k, depth);
-              join_lights(part, k, depth);
-            });
-        Base::finish(context, part.queue, part.batch, image, counters, guide_accumulators[index],
-                     [&](const Contribution& c) { arrived(c, part.accumulator); });
+        do {
+          walk.trace_paths(
+              part.batch.states, [](std::size_t, int) {},
+              [&](std::size_t k, int depth) {
+                Base::gather_hit(context, counts, part.batch, k, depth);
+                join_lights(part, k, depth);
+              });
+          Base::finish(context, part.queue, part.batch, image, counters, guide_accumulators[index],
+                       [&](const Contribution& c) { arrived(c, part.accumulator); });
+        } while (Base::resume(walk, part.batch));
       }
       part.accumulator.add_paths(static_cast<std::uint64_t>(tile.pixels()));
       part.accumulator.close();

@@ -63,15 +63,18 @@ class PathTracer final : public GuidedIntegrator<Guide> {
     for (int first = 0; first < tile.pixels(); first += int{Batch::size}) {
       start_paths(context, image, tile, first, batch);
       counters.samples += batch.states.size();
-      if (learns) batch.gathered.clear();
-      estimate(context.scene, walk, batch);
-      for (std::size_t i = 0; i < batch.states.size(); ++i) {
-        accumulate(image.pixels[batch.pixels[i]], batch.radiance[i], counters);
-      }
-      if (learns) {
-        flush();
-        batch.gathered.record(guide_, accumulator);
-      }
+      do {
+        if (learns) batch.gathered.clear();
+        estimate(context.scene, walk, batch);
+        for (std::size_t i = 0; i < batch.states.size(); ++i) {
+          accumulate(image.pixels[batch.pixels[i]], batch.radiance[i], counters);
+        }
+        if (learns) {
+          flush();
+          batch.gathered.record(guide_, accumulator);
+        }
+        batch.store(walk.branches());
+      } while (batch.resume());
     }
     flush();
   }

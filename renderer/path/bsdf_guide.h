@@ -8,10 +8,11 @@ namespace lacuna {
 struct BsdfGuide : StrategyBase {
   /// It learns nothing.
   struct Accumulator {};
+  static constexpr bool has_expected = false;
   static constexpr bool learns() { return false; }
   static Accumulator accumulator() { return {}; }
   static void accumulate(const GuidingSample&, Accumulator&) {}
-  static void update(std::span<const Accumulator>, const ThreadPool&) {}
+  static void update(std::span<Accumulator>, const ThreadPool&) {}
 
   static void on_hit(Vertex&) {}
   static std::optional<BsdfSample> sample(const Vertex& v, Rng& rng, Transport transport) {

@@ -25,7 +25,35 @@ struct EyeBatch {
     // The eye's density and its importance cancel: the throughput is 1.
     states.push_back({.rng = rng, .ray = ray, .p = camera.density(ray.d), .path = path});
     pixels[i] = static_cast<std::uint32_t>(pixel);
+    origin[i] = static_cast<std::uint8_t>(i);
     radiance[i] = Rgb(0, 0, 0);
+  }
+
+  /// Stores the branches of the batch's paths for resume().
+  void store(std::vector<PathBranch>& branches) {
+    for (PathBranch& b : branches) {
+      pending_.push_back({std::move(b), pixels[b.walk], origin[b.walk]});
+    }
+    branches.clear();
+  }
+
+  /// Replaces the paths by stored branches, as many as fit. False if there are none. Requires that
+  /// all contributions of the paths are gathered.
+  bool resume() {
+    states.clear();
+    while (!pending_.empty() && states.size() < size) {
+      Pending& p = pending_.back();
+      const std::size_t i = states.size();
+      PathState w = p.branch.state;
+      w.path = std::span(vertices).subspan(i * stride, stride);
+      w.path[static_cast<std::size_t>(w.depth)] = std::move(p.branch.vertex);
+      states.push_back(w);
+      pixels[i] = p.pixel;
+      origin[i] = p.origin;
+      radiance[i] = Rgb(0, 0, 0);
+      pending_.pop_back();
+    }
+    return !states.empty();
   }
 
   const Vertex& vertex(std::size_t i, int depth) const {
@@ -40,7 +68,16 @@ struct EyeBatch {
   std::vector<Vertex> vertices;
   std::vector<PathState> states;
   std::array<std::uint32_t, size> pixels{};
+  std::array<std::uint8_t, size> origin{};  ///< index of the path that start() added
   std::array<Rgb, size> radiance{};
+
+ private:
+  struct Pending {
+    PathBranch branch;
+    std::uint32_t pixel;
+    std::uint8_t origin;
+  };
+  std::vector<Pending> pending_;
 };
 
 }  // namespace lacuna

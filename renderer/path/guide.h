@@ -23,16 +23,22 @@ namespace lacuna {
 ///   samples separately. update() adds the accumulators in the order of the parts, so the state has
 ///   the same bits for any number of threads.
 ///
+/// - has_expected: whether expected(v) exists: the luminance that a path of throughput 1 is
+/// expected
+///   to gather behind the connectible vertex `v`; below 0 while that is unknown. Walks use it for
+///   roulette and splitting. record(v, value, accumulator) adds the value of one path.
+///
 /// sample(), pdf(), on_hit() and accumulate() are const and are called by many threads.
 template <class G>
 concept Guide = Strategy<G> &&
     requires(G g, const G& k, Vertex& v, const V3f& w, Rng& rng, Transport transport,
              const GuidingSample& sample, typename G::Accumulator& accumulator,
-             std::span<const typename G::Accumulator> accumulators, const ThreadPool& pool) {
+             std::span<typename G::Accumulator> accumulators, const ThreadPool& pool) {
   k.on_hit(v);
   { k.sample(v, rng, transport) } -> std::same_as<std::optional<BsdfSample>>;
   { k.pdf(v, w, w, transport) } -> std::same_as<Pdf<SolidAngle>>;
   { k.learns() } -> std::same_as<bool>;
+  { G::has_expected } -> std::convertible_to<bool>;
   { k.accumulator() } -> std::same_as<typename G::Accumulator>;
   k.accumulate(sample, accumulator);
   g.update(accumulators, pool);

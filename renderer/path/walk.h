@@ -38,6 +38,20 @@ struct PathState {
   /// mis_partial_sum() of the last vertex over its density. At vertex 0 of a light path whose
   /// emitter can be hit: TechniqueCounts::none over its density.
   double mis_partial = 0;
+  int depth = 0;  ///< edges traced: path[depth] is the last vertex
+  /// Luminance that the path was expected to gather from its first vertex with a density on; below
+  /// 0 before that vertex.
+  float expected = -1;
+  float least = 0;  ///< luminance of throughput below which the path is not split
+  float split = 1;  ///< number of equal parts it was split into since it started or branched off
+  bool windowed = false;  ///< keep_expected() has replaced roulette at the last vertex
+};
+
+/// One part of a path that was split at its last vertex. It continues there on its own.
+struct PathBranch {
+  PathState state{.rng = Rng(0, 0, 0), .ray = {}, .p = {}, .path = {}};
+  Vertex vertex;         ///< the last one, with the throughput of the branch
+  std::size_t walk = 0;  ///< index of the path that was split
 };
 
 /// Traces a batch of random walks through a scene, one edge of each at a time: the memory that a
@@ -53,28 +67,37 @@ class Walk {
   /// Stores each vertex in its path and calls `visit(i, depth)`, with i the index of the path and
   /// depth the number of its edges, before the next direction is sampled. `before(i, depth)` is
   /// called before the ray to that vertex is traced, for random numbers that are drawn ahead. The
-  /// densities of all vertices are per area. A `visit` that returns false ends its walk.
+  /// densities of all vertices are per area. A `visit` that returns false ends its walk. A state
+  /// whose depth is above 0 is a branch: it continues at its last vertex. New branches are appended
+  /// to branches().
   template <class Before, class Visit>
   void trace_paths(std::span<PathState> states, Before&& before, Visit&& visit) {
     active_.resize(states.size());
     std::iota(active_.begin(), active_.end(), std::size_t{0});
-    for (int depth = 1; depth <= limits_.max_depth && !active_.empty(); ++depth) {
+    std::erase_if(active_,
+                  [&](std::size_t i) { return states[i].depth > 0 && !sample_next(states[i]); });
+    while (!active_.empty()) {
       for (const std::size_t i : active_) {
+        const int depth = ++states[i].depth;
         before(i, depth);
         trace(states[i], depth);
       }
-      for (const std::size_t i : active_) on_hit(states[i], depth);
+      for (const std::size_t i : active_) on_hit(states[i], states[i].depth);
       std::erase_if(active_, [&](std::size_t i) {
+        const int depth = states[i].depth;
         scatter(states[i], depth);
         if constexpr (std::is_void_v<decltype(visit(i, depth))>) {
           visit(i, depth);
         } else if (!visit(i, depth)) {
           return true;
         }
-        return !sample_next(states[i], depth);
+        return !continues(states[i], i) || !sample_next(states[i]);
       });
     }
   }
+
+  /// The parts that paths were split into, in a fixed order. The caller removes and traces them.
+  std::vector<PathBranch>& branches() { return branches_; }
 
  private:
   static Vertex& vertex(PathState& w, int depth) { return w.path[static_cast<std::size_t>(depth)]; }
@@ -116,15 +139,75 @@ class Walk {
     if constexpr (requires { guide_.on_hit(v); }) guide_.on_hit(v);
   }
 
+  /// False where the walk ends before a direction is sampled. May split the path.
+  bool continues(PathState& w, std::size_t walk) {
+    const Vertex& v = vertex(w, w.depth);
+    if (v.kind == Vertex::Kind::background || w.depth == limits_.max_depth) return false;
+    if constexpr (Guide::has_expected) {
+      return limits_.transport == Transport::importance || keep_expected(w, v, walk);
+    }
+    return true;
+  }
+
+  /// Adjoint-driven Russian roulette and splitting (Vorba and Krivanek 2016): keeps the luminance
+  /// that a guided path is expected to gather within a window around what it was at the first
+  /// vertex. Guiding weights multiply by a factor at each vertex; without a window their variance
+  /// grows exponentially with the depth. False where roulette ends the path.
+  bool keep_expected(PathState& w, const Vertex& v, std::size_t walk) {
+    constexpr float low = 1.0F / 3, high = 5.0F / 3;  // section 5.1, s = 5
+    constexpr float min_survival = 0.1F;
+    constexpr int max_parts = 16;
+    // The throughputs of all parts of a path sum to at most its own, on average. A least part
+    // therefore bounds their number, and the time that wrong expectations cost.
+    constexpr float least_part = 1.0F / 64;
+    w.windowed = false;
+    if (!v.bsdf->connectible()) return true;
+    const float gathered = guide_.expected(v);  // unknown: as if it were equal everywhere
+    const float carried = luminance(w.throughput);
+    const float now = carried * (gathered < 0 ? 1 : gathered);
+    if (w.expected < 0) {
+      w.expected = now;
+      w.least = carried * least_part;
+      return true;
+    }
+    if (!(w.expected > 0)) return true;
+    w.windowed = true;
+    const float ratio = now / w.expected;
+    if (ratio < low && w.depth >= limits_.roulette_depth) {
+      const float survival = std::max(ratio / low, min_survival);
+      if (w.rng.next() >= survival) return false;
+      w.throughput /= survival;
+    } else if (ratio > high && carried > w.least) {
+      split(w, v, static_cast<int>(std::min(ratio, float{max_parts}) + 0.5F), walk);
+    }
+    return true;
+  }
+
+  /// The path itself keeps one of the parts.
+  void split(PathState& w, const Vertex& v, int parts, std::size_t walk) {
+    const float share = 1.0F / static_cast<float>(parts);
+    w.throughput *= share;
+    for (int k = 1; k < parts; ++k) {
+      PathBranch& b = branches_.emplace_back();
+      b.state = w;
+      b.state.rng = w.rng.branch();
+      b.state.split = 1;
+      b.vertex = v;
+      b.vertex.throughput *= share;
+      b.walk = walk;
+    }
+    w.split *= static_cast<float>(parts);
+  }
+
   /// Samples the next edge; false where the walk ends.
-  bool sample_next(PathState& w, int depth) {
+  bool sample_next(PathState& w) {
+    const int depth = w.depth;
     Vertex& v = vertex(w, depth);
-    if (v.kind == Vertex::Kind::background || depth == limits_.max_depth) return false;
     const std::optional<BsdfSample> next = guide_.sample(v, w.rng, limits_.transport);
     if (!next) return false;
     w.throughput *= next->weight;
     w.roulette_scale *= next->pdf_ratio;
-    if (depth >= limits_.roulette_depth) {
+    if (depth >= limits_.roulette_depth && !w.windowed) {
       const float survival = std::min(1.0F, max_component(w.throughput) * w.roulette_scale);
       if (w.rng.next() >= survival) return false;
       w.throughput /= survival;
@@ -155,6 +238,7 @@ class Walk {
   bool tracked_ = limits_.counts.any();
   Counters& counters_;
   std::vector<std::size_t> active_;
+  std::vector<PathBranch> branches_;
 };
 
 }  // namespace lacuna

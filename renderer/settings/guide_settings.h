@@ -54,7 +54,7 @@ struct SkeletonGuideSettings : LightRays {
       "rays towards the light along the skeleton of the empty space (Noel 2015, ch. 9)";
 
   AutoNumber strength{8};
-  AutoNumber probability{0.5};
+  AutoNumber probability;
   ImportanceAim aim = ImportanceAim::last;  // as published it is otherwise
   bool operator==(const SkeletonGuideSettings&) const = default;
 };
@@ -69,7 +69,8 @@ void describe(V& v, SkeletonGuideSettings& s) {
     {.doc = "probability of sampling a direction from the lobes instead of the BSDF (c_skel, 9.4); "
             "\"auto\": learned for each node while rendering",
      .min = 0,
-     .max = most_guided});
+     .max = most_guided,
+     .published = "0.5"});
   v("aim", s.aim,
     {.doc = "the point on the visible part of a shortest path that rays are aimed at",
      .published = "\"mean\""});
@@ -146,16 +147,18 @@ struct SdTreeGuideSettings {
   static constexpr std::string_view doc =
       "practical path guiding: incident radiance learned in a tree over positions and directions "
       "(Mueller et al. 2017)";
-  double probability = 0.5;
+  AutoNumber probability;
   int leaf_vertices = 4000;
   bool operator==(const SdTreeGuideSettings&) const = default;
 };
 template <class V>
 void describe(V& v, SdTreeGuideSettings& s) {
   v("probability", s.probability,
-    {.doc = "probability of sampling a direction from the tree instead of the BSDF",
+    {.doc = "probability of sampling a direction from the tree instead of the BSDF; \"auto\": learned "
+            "for each leaf while rendering",
      .min = 0,
-     .max = most_guided});
+     .max = most_guided,
+     .published = "0.5"});
   v("leaf_vertices", s.leaf_vertices,
     {.doc = "vertices above which a leaf of the spatial tree is divided after the first iteration "
             "(c of the paper)",

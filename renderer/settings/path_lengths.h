@@ -24,8 +24,8 @@ void describe_lengths(V& v, PathLengths& s) {
   v("roulette_depth", s.roulette_depth,
     {.doc =
          "Russian roulette starts after this many edges from the eye or from a light: a path "
-         "continues with a probability equal to its throughput; for a guided path, the throughput "
-         "that sampling the BSDF would have left",
+         "continues with a probability equal to its throughput; a guided path, with what it is "
+         "still expected to gather over what it was at its first vertex",
      .min = 1,
      .max = 1024,
      .unit = "edges"});

@@ -1,0 +1,80 @@
+// Guided paths of many edges. Their weights are products of a factor per vertex; without a bound
+// their mean over any number of samples stays below what it should be, with a small error estimate.
+
+#include <gtest/gtest.h>
+
+#include "tests/renderer/integrators/methods.h"
+#include "tests/renderer/integrators/render.h"
+#include "tests/renderer/path/scenes.h"
+#include "tests/statistics.h"
+
+namespace lacuna {
+namespace {
+
+/// A closed box of albedo 1 that shines with radiance 1: a pixel of paths of n edges has value n.
+SceneData white_furnace() {
+  SceneData data = test::load({"furnace"});
+  for (Material& m : data.materials) {
+    m.base_color = Rgb(1, 1, 1);
+    m.emission = Rgb(1, 1, 1);
+  }
+  return data;
+}
+
+/// Means of pictures of independent seeds.
+statistics::Moments means(const SceneData& scene, const IntegratorSettings& method) {
+  statistics::Moments all;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const test::Rendering r = test::render(SceneData(scene), {.integrator = method,
+                                                              .width = 12,
+                                                              .height = 8,
+                                                              .iterations = 24,
+                                                              .camera = "inside",
+                                                              .seed = seed});
+    all.add(r.mean());
+    EXPECT_EQ(r.counters.rejected, 0U);
+  }
+  return all;
+}
+
+void expect_mean(const SceneData& scene, const IntegratorSettings& method, int depth) {
+  const statistics::Moments all = means(scene, method);
+  EXPECT_GT(statistics::t_test(all, depth), 1e-4) << all.mean() << ", expected " << depth;
+  EXPECT_LT(all.standard_error(), 0.05 * depth) << "the test has no power";
+}
+
+TEST(GuidedDepth, FurnaceOfAlbedoOne) {
+  const SceneData scene = white_furnace();
+  for (const auto& [name, guide] : test::guides()) {
+    for (const int depth : {6, 100}) {
+      SCOPED_TRACE(testing::Message() << name << ", depth " << depth);
+      PathSettings path{PathLengths{.max_depth = depth}};
+      path.guide = guide;
+      expect_mean(scene, path, depth);
+    }
+  }
+}
+
+TEST(GuidedDepth, ThousandEdges) {
+  const SceneData scene = white_furnace();
+  test::for_each_choice(GuideSettings{}, [&]<class S>(const S& guide) {
+    if constexpr (std::is_same_v<S, BsdfGuideSettings>) return;
+    SCOPED_TRACE(S::name);
+    PathSettings path{PathLengths{.max_depth = 1000}};
+    path.guide = guide;
+    expect_mean(scene, path, 1000);
+  });
+}
+
+TEST(GuidedDepth, BidirectionalPathTracing) {
+  const SceneData scene = white_furnace();
+  for (const auto& [name, guide] : test::guides()) {
+    SCOPED_TRACE(name);
+    BdptSettings bdpt{PathLengths{.max_depth = 40}};
+    bdpt.guide = guide;
+    expect_mean(scene, bdpt, 40);
+  }
+}
+
+}  // namespace
+}  // namespace lacuna
