@@ -22,57 +22,54 @@ SceneData white_furnace() {
 }
 
 /// Means of pictures of independent seeds.
-statistics::Moments means(const SceneData& scene, const IntegratorSettings& method) {
+statistics::Moments means(const IntegratorSettings& method) {
   statistics::Moments all;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
-    const test::Rendering r = test::render(SceneData(scene), {.integrator = method,
-                                                              .width = 12,
-                                                              .height = 8,
-                                                              .iterations = 24,
-                                                              .camera = "inside",
-                                                              .seed = seed});
+    const test::Rendering r = test::render(white_furnace(), {.integrator = method,
+                                                             .width = 12,
+                                                             .height = 8,
+                                                             .iterations = 24,
+                                                             .camera = "inside",
+                                                             .seed = seed});
     all.add(r.mean());
     EXPECT_EQ(r.counters.rejected, 0U);
   }
   return all;
 }
 
-void expect_mean(const SceneData& scene, const IntegratorSettings& method, int depth) {
-  const statistics::Moments all = means(scene, method);
+void expect_mean(const IntegratorSettings& method, int depth) {
+  const statistics::Moments all = means(method);
   EXPECT_GT(statistics::t_test(all, depth), 1e-4) << all.mean() << ", expected " << depth;
   EXPECT_LT(all.standard_error(), 0.05 * depth) << "the test has no power";
 }
 
 TEST(GuidedDepth, FurnaceOfAlbedoOne) {
-  const SceneData scene = white_furnace();
   for (const auto& [name, guide] : test::guides()) {
     for (const int depth : {6, 100}) {
       SCOPED_TRACE(testing::Message() << name << ", depth " << depth);
       PathSettings path{PathLengths{.max_depth = depth}};
       path.guide = guide;
-      expect_mean(scene, path, depth);
+      expect_mean(path, depth);
     }
   }
 }
 
 TEST(GuidedDepth, ThousandEdges) {
-  const SceneData scene = white_furnace();
   test::for_each_choice(GuideSettings{}, [&]<class S>(const S& guide) {
     if constexpr (std::is_same_v<S, BsdfGuideSettings>) return;
     SCOPED_TRACE(S::name);
     PathSettings path{PathLengths{.max_depth = 1000}};
     path.guide = guide;
-    expect_mean(scene, path, 1000);
+    expect_mean(path, 1000);
   });
 }
 
 TEST(GuidedDepth, BidirectionalPathTracing) {
-  const SceneData scene = white_furnace();
   for (const auto& [name, guide] : test::guides()) {
     SCOPED_TRACE(name);
     BdptSettings bdpt{PathLengths{.max_depth = 40}};
     bdpt.guide = guide;
-    expect_mean(scene, bdpt, 40);
+    expect_mean(bdpt, 40);
   }
 }
 
