@@ -115,7 +115,7 @@ class ScenesRoots {
   /// The regular file that `name` means. A name is relative, with '/' between parts; it may not
   /// leave its root in any spelling, nor through a symbolic link. `extensions` have their dot
   /// (".glb"); case does not matter. Throws std::invalid_argument saying why not and which names
-  /// are there.
+  /// are there; std::system_error where that cannot be seen now (no descriptor, a failing disk).
   std::filesystem::path resolve(std::string_view name,
                                 const std::vector<std::string_view>& extensions) const;
 

@@ -18,7 +18,7 @@ void create_folder_whole(const std::filesystem::path& target,
 
 /// Takes folders that lie beside each other away, synced: they get hidden names, which are given
 /// back, to be removed when there is time. After a crash remove_stale_folders() does that. Throws
-/// std::system_error.
+/// std::system_error if one cannot be taken: all have their names then.
 std::vector<std::filesystem::path> take_folders_away(
     const std::vector<std::filesystem::path>& folders);
 /// Removes a folder and all in it; a crash midway leaves nothing that has its name. Throws

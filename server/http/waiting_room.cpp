@@ -51,11 +51,11 @@ WaitingRoom::WaitingRoom(int listener, const HttpSettings& settings, HttpMetrics
   if (!watch(listener_, nullptr) || !watch(wake_.get(), this)) {
     throw std::system_error(errno, std::generic_category(), "cannot wait for clients");
   }
-  thread_ = std::thread([this] { run(); });
+  thread_ = std::jthread([this](const std::stop_token& ends) { run(ends); });
 }
 
 WaitingRoom::~WaitingRoom() {
-  stopping_ = true;
+  thread_.request_stop();
   ::eventfd_write(wake_.get(), 1);
   thread_.join();
 }
@@ -74,10 +74,10 @@ bool WaitingRoom::watch(int fd, void* tag) const {
   return ::epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, fd, &event) == 0;
 }
 
-void WaitingRoom::run() {
+void WaitingRoom::run(const std::stop_token& ends) {
   std::array<epoll_event, 256> events;
   auto next_tick = Clock::now();
-  while (!stopping_) {
+  while (!ends.stop_requested()) {
     const bool idle = arriving_.empty() && lingering_.empty();
     const int n = ::epoll_wait(epoll_.get(), events.data(), static_cast<int>(events.size()),
                                idle ? -1 : tick_milliseconds);

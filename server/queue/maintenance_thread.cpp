@@ -19,27 +19,21 @@ MaintenanceThread::MaintenanceThread(JobTable& table, Queue& queue, CareSettings
     : table_(table), queue_(queue), settings_(settings) {}
 
 void MaintenanceThread::start() {
-  thread_ = std::thread([this] { run(); });
+  thread_ = std::jthread([this](const std::stop_token& ends) { run(ends); });
 }
 
-void MaintenanceThread::stop() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
-  }
-  changed_.notify_all();
-  if (thread_.joinable()) thread_.join();
-}
+void MaintenanceThread::stop() { thread_ = {}; }
 
-void MaintenanceThread::run() {
+void MaintenanceThread::run(const std::stop_token& ends) {
   for (int i = 1;; ++i) {
     {
       std::unique_lock lock(mutex_);
-      if (changed_.wait_for(lock, tick, [&] { return stopping_; })) return;
+      ended_.wait_for(lock, ends, tick, [] { return false; });
+      if (ends.stop_requested()) return;
     }
     try {
       queue_.look_at_running();
-      if (i % ticks_to_folders == 0) table_.rescan_if_changed();
+      if (i % ticks_to_folders == 0 && table_.rescan_if_changed()) queue_.adopt();
       if (i % ticks_to_disk == 0) {
         queue_.save_pending();
         queue_.look_at_disk();
@@ -55,7 +49,7 @@ void MaintenanceThread::remove_old() {
   for (const std::string& id : outdated(table_.all(), table_.sweeps().unfinished(), settings_,
                                         std::chrono::system_clock::now())) {
     try {
-      queue_.remove(id);
+      queue_.remove_outdated(id);
       log::info("{}: removed, as the settings of what is kept say", id);
     } catch (const std::exception& error) {  // it was asked to go on, or its folder resists
       log::warn("{} is kept: {}", id, error.what());

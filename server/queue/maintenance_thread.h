@@ -2,6 +2,7 @@
 
 #include <condition_variable>
 #include <mutex>
+#include <stop_token>
 #include <thread>
 
 #include "server/queue/queue.h"
@@ -23,7 +24,7 @@ class MaintenanceThread {
   void stop();
 
  private:
-  void run();
+  void run(const std::stop_token& ends);
   void remove_old();
 
   JobTable& table_;
@@ -31,9 +32,8 @@ class MaintenanceThread {
   const CareSettings settings_;
 
   std::mutex mutex_;
-  std::condition_variable changed_;
-  bool stopping_ = false;
-  std::thread thread_;
+  std::condition_variable_any ended_;
+  std::jthread thread_;
 };
 
 }  // namespace lacuna

@@ -31,6 +31,7 @@ struct Attempt {
 struct Verdict {
   JobState state;  ///< terminal, held, or queued again
   bool crashed = false;
+  std::string obstacle = {};  ///< what it waits to pass; empty: nothing
 };
 
 /// Judges an ended renderer (the contract of `lacuna render`: 0 done, 2 bad job, 3 scene or asset,
@@ -38,8 +39,8 @@ struct Verdict {
 /// renderer wrote stands. A crash, want of memory and an interruption that nobody asked for and
 /// that brought no iteration are retried from the checkpoint until there were `max_attempts` of
 /// them; while the disk is low they are retried without being counted. A renderer that could not be
-/// started is retried likewise where the cause may pass (no space, memory, process or file handle
-/// left), else the job fails.
+/// started, or could not write its files, for a reason that may pass is retried without being
+/// counted, however often: it is not its fault.
 Verdict judge(const Attempt& attempt, int max_attempts, const std::string& now);
 
 }  // namespace lacuna
