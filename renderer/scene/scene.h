@@ -31,7 +31,7 @@ struct EnvironmentImage {
 class Scene {
  public:
   /// Decodes the textures that `needs` asks for, builds the ray caster and, if asked for, the
-  /// emitters. Throws SceneError.
+  /// emitters. Throws SceneError; also where these textures have more than max_scene_texels.
   Scene(SceneData data, const SceneNeeds& needs, const std::optional<EnvironmentImage>& environment,
         const ThreadPool& pool);
 

@@ -1,5 +1,6 @@
 #include "server/http/waiting_room.h"
 
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/epoll.h>
@@ -130,8 +131,31 @@ void WaitingRoom::accept_some() {
       continue;
     }
     ++metrics_.accepted;
+    if (connection.get() > settings_.max_connection_fd) {
+      if (!keep_reserve()) {
+        ++metrics_.refused;  // without a word: it is closed
+        continue;
+      }
+      // The number that has become free: or each second newcomer would get it and be let in beside.
+      connection = FileHandle(::fcntl(connection.get(), F_DUPFD_CLOEXEC, 0));
+    }
     receive(enter(arriving_, std::move(connection), PacedDeadline(settings_.head_time)), true);
   }
+}
+
+/// Closes the connection that can be done without most, for a new one: its number says that all
+/// below, as they are given out, are in use. False: there is none.
+bool WaitingRoom::keep_reserve() {
+  std::list<Client>& list = lingering_.empty() ? arriving_ : lingering_;
+  if (list.empty()) return false;
+  if (&list == &arriving_) {
+    ++metrics_.refused;
+    const std::string text =
+        refusal_(HttpError(503, "Too many connections are open.").with("Retry-After", "1"));
+    ::send(list.front().socket.get(), text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  }
+  leave(list.front());
+  return true;
 }
 
 void WaitingRoom::receive(Client& client, bool is_new) {

@@ -65,6 +65,7 @@ class WaitingRoom {
   Client& enter(std::list<Client>& list, FileHandle socket, PacedDeadline deadline);
   FileHandle leave(Client& client);
   void accept_some();
+  bool keep_reserve();
   void receive(Client& client, bool is_new);
   State read(Client& client) const;
   bool is_whole(Client& client) const;

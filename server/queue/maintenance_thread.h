@@ -1,9 +1,12 @@
 #pragma once
 
 #include <condition_variable>
+#include <filesystem>
+#include <functional>
 #include <mutex>
 #include <stop_token>
 #include <thread>
+#include <vector>
 
 #include "server/queue/queue.h"
 #include "server/settings/queue_settings.h"
@@ -15,7 +18,9 @@ namespace lacuna {
 /// come and go by other hands, room on the disk, and old jobs that need not be kept.
 class MaintenanceThread {
  public:
-  MaintenanceThread(JobTable& table, Queue& queue, CareSettings settings);
+  /// `look`: called about once a second, too.
+  MaintenanceThread(JobTable& table, Queue& queue, CareSettings settings,
+                    std::function<void()> look);
   ~MaintenanceThread() { stop(); }
   MaintenanceThread(const MaintenanceThread&) = delete;
   MaintenanceThread& operator=(const MaintenanceThread&) = delete;
@@ -25,11 +30,16 @@ class MaintenanceThread {
 
  private:
   void run(const std::stop_token& ends);
+  void do_round(int number);
   void remove_old();
+  void list_folders();
+  void tidy_some();
 
   JobTable& table_;
   Queue& queue_;
   const CareSettings settings_;
+  const std::function<void()> look_;
+  std::vector<std::filesystem::path> to_tidy_;  // folders, the last first
 
   std::mutex mutex_;
   std::condition_variable_any ended_;

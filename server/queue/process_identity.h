@@ -4,15 +4,20 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace lacuna {
 
-/// A process, told from a later one with the same number by the time it started: in clock ticks
-/// since this machine's boot, so an identity holds until the next boot only.
+/// The kernel's name of this boot of the machine; empty if it gives none.
+const std::string& boot_id();
+
+/// A process, told from a later one with the same number by the time it started, in clock ticks
+/// since the machine's boot, and by that boot: after the next one the same numbers come again.
 struct ProcessIdentity {
   pid_t pid = 0;
   std::uint64_t start_ticks = 0;
+  std::string boot = boot_id();
   bool operator==(const ProcessIdentity&) const = default;
 };
 

@@ -35,7 +35,7 @@ std::string general_reason(const std::exception& error) {
 
 ProcessIdentity renderer_of(const JobControl& control) {
   return {static_cast<pid_t>(control.renderer_pid),
-          static_cast<std::uint64_t>(control.renderer_start)};
+          static_cast<std::uint64_t>(control.renderer_start), control.renderer_boot};
 }
 
 }  // namespace
@@ -254,6 +254,7 @@ void Queue::note_start(Work& work, pid_t pid) {
   JobControl control = work.control;
   control.renderer_pid = identity->pid;
   control.renderer_start = static_cast<std::int64_t>(identity->start_ticks);
+  control.renderer_boot = identity->boot;
   try {
     write_control(work, control);
   } catch (const std::exception& error) {

@@ -131,7 +131,10 @@ Response ServiceRoutes::put_scene(const Request& request, const std::string& nam
     case Outcome::same:
       return json_response(200, {{"scene", name}, {"bytes", result.bytes}});
     case Outcome::conflict:
-      throw HttpError(409, fmt::format("Another scene has the name \"{}\".", name));
+      throw HttpError(
+          409,
+          fmt::format("Another scene has the name \"{}\", here or in a folder that comes before.",
+                      name));
     case Outcome::busy:
       throw HttpError(503, "Another scene is being checked.").with("Retry-After", "2");
     case Outcome::refused:
@@ -177,7 +180,8 @@ void ServiceRoutes::add_to(Router& router) {
        .answers = {{201, "it is there now"},
                    {200, "the very same bytes were there"},
                    {404, "the service runs without --uploads"},
-                   {409, "another scene has that name"},
+                   {409,
+                    "another scene has that name, here or in a scenes folder that comes before"},
                    {413, "it is larger than 256 MiB"},
                    {422, "it is no scene that can be rendered"}}},
       [this](const Request& request, const Parts& parts) { return put_scene(request, parts[0]); });

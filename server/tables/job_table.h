@@ -108,6 +108,7 @@ class JobTable {
   };
   Tally tally(const std::string& sweep) const;
   const SweepTable& sweeps() const { return sweeps_; }
+  const DataRoot& data() const { return data_; }
 
   Journal& journal() { return journal_; }
   const Journal& journal() const { return journal_; }

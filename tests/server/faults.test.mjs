@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import fs from "node:fs";
+import net from "node:net";
 import path from "node:path";
 import { test } from "node:test";
 import { setTimeout as pause } from "node:timers/promises";
@@ -139,7 +140,6 @@ test("without descriptors a scene is not called missing", async (t) => {
   const agent = fs.readdirSync(`/proc/${service.child.pid}/fd`).map(Number);
   const body = JSON.stringify({ scene: "room/scene.glb", label: "finish" });
   const text = `POST /api/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: ${body.length}\r\n\r\n`;
-  const { default: net } = await import("node:net");
   const socket = net.connect(service.port, "127.0.0.1");
   t.after(() => socket.destroy());
   let answer = "";
@@ -152,4 +152,63 @@ test("without descriptors a scene is not called missing", async (t) => {
   limitDescriptors(service, 1024);
   assert.match(answer, /^HTTP\/1\.1 503 .*Retry-After: 1/s);
   await service.reaches(await service.post("finish"), "done");
+});
+
+/// Connections that send half a request and wait.
+function halfRequests(t, service, n) {
+  const sockets = Array.from({ length: n }, () => {
+    const socket = net.connect(service.port, "127.0.0.1");
+    socket.on("error", () => {});
+    socket.write("GET /health HTTP/1.1\r\n");
+    return socket;
+  });
+  t.after(() => sockets.forEach((socket) => socket.destroy()));
+}
+
+test("more half requests than descriptors take none from the jobs, nor from other clients", async (t) => {
+  const service = await Service.start(folders(t), ["--max-attempts", "1"], ["prlimit", "--nofile=128:128"]);
+  const ids = [await service.post("gate go")];
+  await service.reaches(ids[0], "running");
+  for (let i = 0; i < 5; i += 1) ids.push(await service.post("finish"));
+  halfRequests(t, service, 200);
+  service.open("go");
+  for (const id of ids) await service.reaches(id, "done", 60000);
+  assert.ok(!service.log.includes("Too many open files"), service.log);
+  await service.reaches(await service.post("finish"), "done", 60000);
+});
+
+test("two services on one folder whose lock was removed: the younger ends, and its job is not lost", async (t) => {
+  const places = folders(t);
+  const older = await Service.start(places);
+  const own = await older.post("gate go");
+  await older.reaches(own, "running");
+  fs.rmSync(path.join(places.data, ".lacuna-server.lock"));
+  const younger = await Service.start(places).catch(() => null);
+  if (younger) {  // unless the older had seen it before
+    const id = await younger.post("finish");
+    assert.equal((await younger.ended).code, 1);
+    assert.match(younger.log, /an older lacuna-server \(process \d+\) works in/);
+    older.open("go");
+    await until(async () => (await older.fetch(`/api/jobs/${id}`)).ok, "it is seen", 60000);
+    await older.reaches(id, "done", 60000);
+  } else {
+    older.open("go");
+  }
+  await older.reaches(own, "done", 60000);
+  await until(() => fs.existsSync(path.join(places.data, ".lacuna-server.lock")), "the lock is there again", 60000);
+});
+
+test("temporary files of killed writes are swept at the start", async (t) => {
+  const places = folders(t);
+  const first = await Service.start(places);
+  const id = await first.post("finish");
+  await first.reaches(id, "done");
+  await first.stop();
+  const left = [first.folder(id), places.data].map((dir) => path.join(dir, ".state.json.4194304-0123456789abcdef.tmp"));
+  for (const file of left) {
+    fs.writeFileSync(file, "half");
+    fs.utimesSync(file, new Date(0), new Date(0));
+  }
+  await Service.start(places);
+  await until(() => left.every((file) => !fs.existsSync(file)), "they are gone", 60000);
 });
