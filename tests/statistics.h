@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "jobs/statistics/distributions.h"
+
 namespace lacuna::statistics {
 
 // Tests of significance for samplers and estimators. A test yields a p-value: the probability, if
@@ -22,74 +24,10 @@ inline double sidak(double level, std::size_t n) {
   return -std::expm1(std::log1p(-level) / static_cast<double>(n));
 }
 
-/// Regularised upper incomplete gamma function Q(a, x), a > 0, x >= 0: by its series below a + 1,
-/// else by its continued fraction (Abramowitz and Stegun 6.5.29 and 6.5.31), the latter evaluated
-/// by Lentz's method.
-inline double gamma_q(double a, double x) {
-  if (!(a > 0) || !(x >= 0)) throw std::domain_error("gamma_q needs a > 0 and x >= 0");
-  if (x == 0) return 1;
-  constexpr double tiny = 1e-300, precision = 1e-15;
-  const double scale = std::exp(a * std::log(x) - x - std::lgamma(a));
-  if (x < a + 1) {
-    double term = 1 / a, sum = term;
-    for (double k = a + 1; term > sum * precision; ++k) sum += term *= x / k;
-    return 1 - scale * sum;
-  }
-  double b = x + 1 - a;
-  double c = 1 / tiny, d = 1 / b, h = d;
-  for (int i = 1; i < 100000; ++i) {
-    const double numerator = -i * (i - a);
-    b += 2;
-    d = numerator * d + b;
-    if (std::abs(d) < tiny) d = tiny;
-    c = b + numerator / c;
-    if (std::abs(c) < tiny) c = tiny;
-    d = 1 / d;
-    h *= d * c;
-    if (std::abs(d * c - 1) < precision) break;
-  }
-  return scale * h;
-}
-
-/// Regularised incomplete beta function I_x(a, b) (Abramowitz and Stegun 26.5.8).
-inline double beta_i(double x, double a, double b) {
-  if (x <= 0) return 0;
-  if (x >= 1) return 1;
-  // The continued fraction converges quickly on this side.
-  if (x > (a + 1) / (a + b + 2)) return 1 - beta_i(1 - x, b, a);
-  constexpr double tiny = 1e-300, precision = 1e-15;
-  double c = 1, d = 1 - (a + b) * x / (a + 1);
-  d = 1 / (std::abs(d) < tiny ? tiny : d);
-  double h = d;
-  const auto step = [&](double numerator) {
-    d = 1 + numerator * d;
-    d = 1 / (std::abs(d) < tiny ? tiny : d);
-    c = 1 + numerator / c;
-    if (std::abs(c) < tiny) c = tiny;
-    h *= d * c;
-    return std::abs(d * c - 1);
-  };
-  for (int m = 1; m < 100000; ++m) {
-    step(m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m)));
-    if (step(-(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))) < precision) break;
-  }
-  return h * std::exp(a * std::log(x) + b * std::log1p(-x) - std::log(a) + std::lgamma(a + b) -
-                      std::lgamma(a) - std::lgamma(b));
-}
-
-/// Probability that a chi-square variable exceeds `statistic`.
-inline double chi_square_p(double statistic, double degrees_of_freedom) {
-  return gamma_q(degrees_of_freedom / 2, statistic / 2);
-}
 /// Probability that a standard normal variable is further from 0 than `z`.
 inline double two_sided_p(double z) { return std::erfc(std::abs(z) / std::numbers::sqrt2); }
 /// Probability that a standard normal variable exceeds `z`.
 inline double upper_p(double z) { return 0.5 * std::erfc(z / std::numbers::sqrt2); }
-/// Probability that Student's variable is further from 0 than `t`.
-inline double student_two_sided_p(double t, double degrees_of_freedom) {
-  return beta_i(degrees_of_freedom / (degrees_of_freedom + t * t), degrees_of_freedom / 2, 0.5);
-}
-
 /// Mean and variance of a stream of numbers (Welford 1962).
 class Moments {
  public:
@@ -132,13 +70,13 @@ inline double z_test(const Moments& a, const Moments& b) {
 /// Is the mean of a few normal samples `expected`? Student's test.
 inline double t_test(const Moments& m, double expected) {
   const double t = z_score(m.mean() - expected, m.standard_error());
-  return std::isfinite(t) ? student_two_sided_p(t, static_cast<double>(m.count() - 1)) : 0;
+  return std::isfinite(t) ? student_beyond(t, static_cast<double>(m.count() - 1)) : 0;
 }
 /// Is the mean of a few normal samples at least `bound`? One-sided: what shows that it is below.
 inline double t_test_at_least(const Moments& m, double bound) {
   const double t = z_score(m.mean() - bound, m.standard_error());
   if (!std::isfinite(t)) return t > 0 ? 1 : 0;
-  const double beyond = student_two_sided_p(t, static_cast<double>(m.count() - 1)) / 2;
+  const double beyond = student_beyond(t, static_cast<double>(m.count() - 1)) / 2;
   return t > 0 ? 1 - beyond : beyond;
 }
 /// Do a few normal samples of each kind have the same mean? Welch's test.
@@ -151,7 +89,7 @@ inline double t_test(const Moments& a, const Moments& b) {
   const double dof =
       (va + vb) * (va + vb) /
       (va * va / static_cast<double>(a.count() - 1) + vb * vb / static_cast<double>(b.count() - 1));
-  return student_two_sided_p(t, dof);
+  return student_beyond(t, dof);
 }
 
 struct ChiSquare {
@@ -212,7 +150,7 @@ inline ChiSquare chi_square_test(std::span<const double> observed, std::span<con
   }
   result.degrees_of_freedom = static_cast<double>(cells.size()) - 1;
   // A single cell holds every sample, right or wrong.
-  if (cells.size() > 1) result.p = chi_square_p(result.statistic, result.degrees_of_freedom);
+  if (cells.size() > 1) result.p = chi_square_beyond(result.statistic, result.degrees_of_freedom);
   result.message = "chi-square " + std::to_string(result.statistic) + " with " +
                    std::to_string(cells.size()) + " cells; the worst holds " +
                    std::to_string(worst.observed) + " and expects " +

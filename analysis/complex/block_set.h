@@ -3,10 +3,11 @@
 #include <Imath/ImathVec.h>
 
 #include <algorithm>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include "analysis/geometry/bits.h"
 
 namespace lacuna {
 
@@ -65,19 +66,14 @@ class BlockSet {
   template <class F>
   void row_up(int by, int bz, const F& visit) const {
     for (int i = 0; i < row_words_; ++i) {
-      for (std::uint64_t w = words_[word(i, by, bz)]; w != 0; w &= w - 1) {
-        visit(i * 64 + std::countr_zero(w), by, bz);
-      }
+      for_each_bit(words_[word(i, by, bz)], [&](int bit) { visit(i * 64 + bit, by, bz); });
     }
   }
   template <class F>
   void row_down(int by, int bz, const F& visit) const {
     for (int i = row_words_ - 1; i >= 0; --i) {
-      for (std::uint64_t w = words_[word(i, by, bz)]; w != 0;) {
-        const int top = 63 - std::countl_zero(w);
-        visit(i * 64 + top, by, bz);
-        w ^= std::uint64_t{1} << top;
-      }
+      for_each_bit_descending(words_[word(i, by, bz)],
+                              [&](int bit) { visit(i * 64 + bit, by, bz); });
     }
   }
 

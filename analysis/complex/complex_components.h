@@ -1,7 +1,7 @@
 #pragma once
 
 #include "analysis/complex/cubical_complex.h"
-#include "analysis/complex/run_components.h"
+#include "analysis/space/run_components.h"
 
 namespace lacuna {
 
@@ -9,17 +9,18 @@ namespace lacuna {
 /// between them is missing; the grid has one cell more on every side, which belong to the outside.
 class ComplementComponents {
  public:
-  explicit ComplementComponents(const CubicalComplex& complex);
+  explicit ComplementComponents(const CubicalComplex& complex,
+                                const ThreadPool& pool = ThreadPool(1));
 
   /// Cavities and the outside.
-  std::uint32_t count() const { return runs_.count(); }
+  std::uint32_t count() const { return static_cast<std::uint32_t>(components_.count()); }
   /// Of the missing cube at `cell`, in [-1, size].
-  std::uint32_t of(Imath::V3i cell) const { return runs_.of(cell + Imath::V3i(1)); }
+  std::uint32_t of(Imath::V3i cell) const { return components_.at(cell + Imath::V3i(1)); }
   /// What everything outside the grid belongs to.
   std::uint32_t outside() const { return of(Imath::V3i(-1)); }
 
  private:
-  RunComponents runs_;
+  RunComponents components_;
 };
 
 /// Number of connected components of a complex.

@@ -9,6 +9,7 @@
 
 #include "analysis/complex/plane.h"
 #include "analysis/geometry/bit_grid.h"
+#include "analysis/geometry/bits.h"
 
 namespace lacuna {
 
@@ -88,9 +89,7 @@ template <class F>
 void for_each_bit(const Plane& plane, const F& visit) {
   const BitBlock bits = plane.bits();
   for (int z = 0; z < BitBlock::side; ++z) {
-    for (std::uint64_t w = bits.z[static_cast<std::size_t>(z)]; w != 0; w &= w - 1) {
-      visit(z * 64 + std::countr_zero(w));
-    }
+    for_each_bit(bits.z[static_cast<std::size_t>(z)], [&](int bit) { visit(z * 64 + bit); });
   }
 }
 /// The cell of such a position, from the block's first.

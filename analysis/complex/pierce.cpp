@@ -1,10 +1,10 @@
 #include "analysis/complex/pierce.h"
 
 #include <algorithm>
-#include <bit>
 #include <unordered_map>
 
 #include "analysis/complex/complex_components.h"
+#include "analysis/geometry/bits.h"
 #include "analysis/geometry/disjoint_sets.h"
 
 namespace lacuna {
@@ -29,13 +29,12 @@ template <class F>
 void visit_row(const std::vector<SquareBits>& blocks, int y, int z, const F& visit) {
   const int shift = 8 * (y & 7);
   for (const SquareBits& b : blocks) {
-    for (std::uint64_t w = (b.xy | b.xz | b.yz) >> shift & 0xff; w != 0; w &= w - 1) {
-      const int bit = std::countr_zero(w);
+    for_each_bit((b.xy | b.xz | b.yz) >> shift & 0xff, [&](int bit) {
       const Imath::V3i cell(b.x + bit, y, z);
       if ((b.xy >> (shift + bit) & 1) != 0) visit(Square{cell, 3});
       if ((b.xz >> (shift + bit) & 1) != 0) visit(Square{cell, 5});
       if ((b.yz >> (shift + bit) & 1) != 0) visit(Square{cell, 6});
-    }
+    });
   }
 }
 
@@ -106,7 +105,8 @@ std::vector<Square> between_components(const CubicalComplex& thin,
     Square square;
     std::uint32_t a, b;
   };
-  const ComplementComponents complement(thin);
+  const ComplementComponents complement =
+      pool != nullptr ? ComplementComponents(thin, *pool) : ComplementComponents(thin);
   std::vector<Square> chosen;
   if (complement.count() == 1) return chosen;
   const auto edges = farthest_first<Edge>(thin, distance, pool, [&](const Square& s, auto add) {

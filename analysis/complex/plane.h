@@ -44,15 +44,7 @@ inline Plane operator~(Plane a) { return {~a.lo, ~a.hi}; }
 inline Plane& operator&=(Plane& a, Plane b) { return a = a & b; }
 inline Plane& operator|=(Plane& a, Plane b) { return a = a | b; }
 
-/// The bits of the slice of a block that lies lowest (or highest) along an axis.
-template <int axis>
-inline Plane low_slice() {
-  constexpr std::uint64_t w = axis == 0   ? 0x0101010101010101u
-                              : axis == 1 ? 0xffu
-                                          : ~std::uint64_t{0};
-  if constexpr (axis == 2) return {Plane::Half{w, 0, 0, 0}, Plane::Half{}};
-  return {Plane::Half{w, w, w, w}, Plane::Half{w, w, w, w}};
-}
+/// The bits of the slice of a block that lies highest along an axis.
 template <int axis>
 inline Plane high_slice() {
   constexpr std::uint64_t w = axis == 0   ? 0x8080808080808080u

@@ -3,6 +3,7 @@
 #include <Imath/ImathVec.h>
 
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -35,7 +36,8 @@ struct Octree {
   /// Of the sphere around a node's cube.
   float radius(int level) const { return radius(side, level); }
   static float radius(double side, int level) {
-    return static_cast<float>(side) * 0.8660254F / static_cast<float>(1 << level);
+    constexpr float half_diagonal = std::numbers::sqrt3_v<float> / 2;  // of a cube of side 1
+    return static_cast<float>(side) * half_diagonal / static_cast<float>(1 << level);
   }
 };
 

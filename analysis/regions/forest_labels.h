@@ -30,7 +30,7 @@ struct RegionLabels {
 
 /// Labels every voxel by the root of its tree; roots of equal opening that touch through faces are
 /// one (def. 10.8, 10.9). Then makes every region 6-connected by join_stray_pieces(). The forest's
-/// memory becomes the labels'; a bit a voxel and runs along x are added for a time.
+/// memory becomes the labels'; runs along x are added for a time.
 RegionLabels forest_labels(OpeningForest forest, const ThreadPool& pool);
 
 }  // namespace lacuna

@@ -25,6 +25,8 @@ struct Field {
   bool above_min = false;                       ///< `min` itself is not allowed
   bool required = false;                        ///< there is no default
   std::string_view unit = {};
+  /// The paper's own value, as JSON, where the default is another: there to reproduce the paper.
+  std::string_view published = {};
 };
 
 /// Name and one-line documentation of each value of an enum that appears in settings: specialise

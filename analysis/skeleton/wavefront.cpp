@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "analysis/complex/cubical_complex.h"
+#include "analysis/geometry/bits.h"
 #include "analysis/skeleton/graph.h"
 #include "analysis/space/sweep.h"
 
@@ -180,10 +181,9 @@ void Wavefront::label_plane(int z) {
     for (int x = 0; x < n.x; x += BitBlock::side) {
       const auto& from = blocks_[index({x, y, z})].from;
       const std::uint64_t low = from[0].z[lane], mid = from[1].z[lane], high = from[2].z[lane];
-      for (std::uint64_t w = (low & mid & ~high) | (~low & ~mid & high); w != 0; w &= w - 1) {
-        const int bit = std::countr_zero(w);
+      for_each_bit((low & mid & ~high) | (~low & ~mid & high), [&](int bit) {
         trace({x + (bit & 7), y + (bit >> 3), z}, way);
-      }
+      });
     }
   for (int y = 0; y < n.y; ++y) label_row(y, z);
 }
@@ -201,16 +201,10 @@ void Wavefront::label_row(int y, int z) {
     return byte(which) & ~byte(1 - which) & ~byte(2);
   };
   for (int bx = 0; bx < blocks; ++bx)
-    for (unsigned bits = code_bits(bx, 0); bits != 0; bits &= bits - 1) {
-      const int x = 8 * bx + std::countr_zero(bits);
-      row[x] = row[x - 1];
-    }
+    for_each_bit(code_bits(bx, 0), [&](int i) { row[8 * bx + i] = row[8 * bx + i - 1]; });
   for (int bx = blocks - 1; bx >= 0; --bx)
-    for (unsigned bits = code_bits(bx, 1); bits != 0;) {
-      const int high = std::bit_width(bits) - 1;
-      row[8 * bx + high] = row[8 * bx + high + 1];
-      bits ^= 1u << high;
-    }
+    for_each_bit_descending(code_bits(bx, 1),
+                            [&](int i) { row[8 * bx + i] = row[8 * bx + i + 1]; });
 }
 
 std::vector<Imath::V3i> Wavefront::unreached() const {

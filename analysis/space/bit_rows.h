@@ -3,21 +3,23 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "analysis/geometry/bit_grid.h"
 
 namespace lacuna {
 
-/// The bits of one line of a BitGrid3 along x, 64 to a word, x = 0 lowest; bits beyond the size are
+/// The bits of one line of cells along x, 64 to a word, x = 0 lowest; bits beyond the size are
 /// 0.
 class BitRow {
  public:
   explicit BitRow(int width)
       : width_(width), words_((static_cast<std::size_t>(width) + 63) / 64, 0) {}
 
+  /// A line of a grid of the same width.
   void read(const BitGrid3& grid, int y, int z) {
-    std::fill(words_.begin(), words_.end(), 0);
+    clear();
     const int blocks = grid.blocks().x, shift = 8 * (y & 7);
     if (blocks == 0) return;
     const BitBlock* block = &grid.block(0, y >> 3, z >> 3);
@@ -37,7 +39,28 @@ class BitRow {
     }
   }
 
- private:
+  /// Sets the 1 bits of `byte` at x .. x + 7, which may reach beyond either end.
+  void add_byte(std::uint64_t byte, int x) {
+    if (x < 0) {
+      byte >>= -x;
+      x = 0;
+    }
+    const auto word = static_cast<std::size_t>(x) >> 6;
+    if (word < words_.size()) words_[word] |= byte << (x & 63);
+    if ((x & 63) > 56 && word + 1 < words_.size()) words_[word + 1] |= byte >> (64 - (x & 63));
+  }
+  void clear() { std::fill(words_.begin(), words_.end(), 0); }
+  void complement() {
+    for (std::uint64_t& w : words_) w = ~w;
+    if (width_ % 64 != 0) words_.back() &= (std::uint64_t{1} << width_ % 64) - 1;
+  }
+
+  /// Moves every bit to the next position.
+  void shift_up() {
+    std::uint64_t carry = 0;
+    for (std::uint64_t& w : words_) carry = std::exchange(w, w << 1 | carry) >> 63;
+  }
+
   /// The first position from `x` on whose bit is `value`, or the width.
   int next(int x, bool value) const {
     while (x < width_) {
@@ -49,6 +72,7 @@ class BitRow {
     return width_;
   }
 
+ private:
   int width_;
   std::vector<std::uint64_t> words_;
 };

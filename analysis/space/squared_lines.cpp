@@ -1,8 +1,8 @@
 #include "analysis/space/squared_lines.h"
 
-#include <immintrin.h>
-
 #include <algorithm>
+
+#include "analysis/geometry/simd.h"
 
 namespace lacuna {
 
@@ -23,35 +23,29 @@ SquaredLines::SquaredLines(int length)
 
 void SquaredLines::search_outwards() {
   static_assert(lanes == 16, "two vectors of eight");
-  const auto load = [](const std::uint32_t* p) {
-    return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
-  };
-  const auto store = [](std::uint32_t* p, __m256i v) {
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), v);
-  };
   for (int i = 0; i < length_; ++i) {
     const auto rim = static_cast<std::uint32_t>(std::min(i + 1, length_ - i));
     const std::uint32_t* const here = at(i);
-    const __m256i outside = _mm256_set1_epi32(static_cast<int>(rim * rim));
-    __m256i low = _mm256_min_epu32(load(here), outside);
-    __m256i high = _mm256_min_epu32(load(here + 8), outside);
+    const Int8 outside(static_cast<int>(rim * rim));
+    Int8 low = min_unsigned(Int8::load_unaligned(here), outside);
+    Int8 high = min_unsigned(Int8::load_unaligned(here + 8), outside);
     const std::uint32_t *before = here, *after = here;
     for (std::uint32_t k = 1; k < rim; ++k) {
       before -= lanes;
       after += lanes;
-      const __m256i square = _mm256_set1_epi32(static_cast<int>(k * k));
-      const __m256i largest = _mm256_max_epu32(low, high);
+      const Int8 square(static_cast<int>(k * k));
       // No lane is farther than k: positions from here on cannot be nearer.
-      if (_mm256_movemask_epi8(_mm256_cmpeq_epi32(_mm256_max_epu32(largest, square), square)) == -1)
-        break;
-      low = _mm256_min_epu32(low,
-                             _mm256_add_epi32(_mm256_min_epu32(load(before), load(after)), square));
-      high = _mm256_min_epu32(
-          high, _mm256_add_epi32(_mm256_min_epu32(load(before + 8), load(after + 8)), square));
+      if (all_equal(max_unsigned(max_unsigned(low, high), square), square)) break;
+      const auto nearer = [&](std::ptrdiff_t lane) {
+        return min_unsigned(Int8::load_unaligned(before + lane),
+                            Int8::load_unaligned(after + lane));
+      };
+      low = min_unsigned(low, nearer(0) + square);
+      high = min_unsigned(high, nearer(8) + square);
     }
     std::uint32_t* const to = &result_[static_cast<std::size_t>(i) * lanes];
-    store(to, low);
-    store(to + 8, high);
+    low.store_unaligned(to);
+    high.store_unaligned(to + 8);
   }
   values_.swap(result_);
 }

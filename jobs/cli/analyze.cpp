@@ -5,15 +5,15 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/geometry/disjoint_sets.h"
+#include "analysis/json/json_text.h"
 #include "analysis/storage/peak_memory.h"
+#include "jobs/analyze/overlay.h"
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/settings_options.h"
 #include "jobs/cli/terminal.h"
 #include "jobs/run/clock.h"
-#include "jobs/run/overlay.h"
 #include "jobs/spec/byte_size.h"
-#include "jobs/spec/json_text.h"
 #include "jobs/store/job_folder.h"
 #include "jobs/store/machine.h"
 #include "renderer/gltf/gltf_load.h"

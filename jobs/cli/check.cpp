@@ -3,11 +3,10 @@
 #include <CLI/CLI.hpp>
 
 #include "analysis/storage/atomic_file.h"
+#include "jobs/check/check.h"
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/terminal.h"
-#include "jobs/run/check_scene.h"
-#include "jobs/run/run_job.h"
 #include "jobs/spec/job_json.h"
 
 namespace lacuna {

@@ -5,8 +5,8 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "analysis/json/json_text.h"
 #include "jobs/report/page_files.h"
-#include "jobs/spec/json_text.h"
 #include "jobs/spec/page_tables.h"
 #include "jobs/spec/version.h"
 #include "jobs/store/job_folder.h"

@@ -9,7 +9,8 @@ import os
 import pathlib
 import sys
 
-from harness import catalogue, child, output
+import catalogue
+from harness import child, output
 from harness.run import Run
 from harness.verdict import MISSED
 
@@ -34,11 +35,10 @@ def error(text):
 
 
 def reproduce(entry, options):
-    module = entry.module()
     try:
-        child.build(getattr(module, "TARGETS", ("lacuna",)))
+        child.build(entry.targets)
         run = Run(entry, options.full, options.out.absolute())
-        module.measure(run)
+        entry.measure(run)
     except child.Failed as failed:
         error(failed)
         return failed.code

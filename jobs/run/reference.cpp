@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 
-#include "jobs/run/results.h"
 #include "jobs/spec/reference_spec.h"
 #include "renderer/geometry/scene_data.h"
 #include "renderer/images/image_read.h"

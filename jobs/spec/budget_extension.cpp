@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "jobs/spec/limits.h"
+#include "analysis/json/limits.h"
 
 namespace lacuna {
 namespace {

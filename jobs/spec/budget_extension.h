@@ -12,9 +12,4 @@ namespace lacuna {
 /// error target: fall) or go; one must be left. Pointers are those of a job ("/budget/seconds").
 std::vector<Problem> extension_problems(const Budget& old, const Budget& larger);
 
-/// A job that was done with `old` can go on with `larger`.
-inline bool is_extension(const Budget& old, const Budget& larger) {
-  return extension_problems(old, larger).empty();
-}
-
 }  // namespace lacuna

@@ -28,7 +28,7 @@ T read_document(std::string_view text, DocumentLimits limits) {
   std::vector<Problem> problems;
   const Json document = parse_document(text, limits, problems);
   T settings{};
-  read_settings({document, "", problems}, settings);
+  read_settings(document, problems, settings);
   throw_if_any(std::move(problems));
   return settings;
 }

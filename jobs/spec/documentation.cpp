@@ -9,8 +9,6 @@
 namespace lacuna {
 namespace {
 
-using Kind = Type::Kind;
-
 /// Text in a cell of a Markdown table.
 std::string cell(std::string_view text) {
   std::string escaped;
@@ -33,42 +31,43 @@ std::string type_text(const Type& type) {
     return limits.empty() ? std::string(thing) : fmt::format("{} {}", thing, limits);
   };
   switch (type.kind) {
-    case Kind::boolean:
+    case Type::Kind::boolean:
       return "true or false";
-    case Kind::integer:
+    case Type::Kind::integer:
       return with("integer", range_text(type.limits));
-    case Kind::number:
+    case Type::Kind::number:
       return with("number", range_text(type.limits));
-    case Kind::auto_number:
+    case Type::Kind::auto_number:
       return with("number", range_text(type.limits)) + fmt::format(", or `{}`", auto_name);
-    case Kind::string:
+    case Type::Kind::string:
       return with("string", length_text(type.limits, "characters"));
-    case Kind::array:
+    case Type::Kind::array:
       return fmt::format("list of {}, each: {}", type.array_size, type_text(type.elements.front()));
-    case Kind::list:
+    case Type::Kind::list:
       return fmt::format("{}, each: {}", with("list", length_text(type.limits, "elements")),
                          type_text(type.elements.front()));
-    case Kind::object:
+    case Type::Kind::object:
       return "object, see below";
-    case Kind::any:
+    case Type::Kind::any:
       return "any value";
-    case Kind::table:
+    case Type::Kind::table:
       return fmt::format("object of any keys, each: {}", type_text(type.elements.front()));
-    case Kind::word:
-    case Kind::choice:
+    case Type::Kind::word:
+    case Type::Kind::choice:
       break;
   }
   std::string names;
   for (const Type::Name& n : type.names) {
     names += fmt::format("{}`{}`", names.empty() ? "" : ", ", n.name);
   }
-  return (type.kind == Kind::choice ? "one of these methods, see below: " : "one of ") + names;
+  return (type.kind == Type::Kind::choice ? "one of these methods, see below: " : "one of ") +
+         names;
 }
 
 std::string default_text(const Member& member) {
   if (member.field.required) return "required";
-  if (member.type.kind == Kind::object && !member.type.optional) return "";
-  if (member.type.kind == Kind::choice && member.default_value.is_object()) {
+  if (member.type.kind == Type::Kind::object && !member.type.optional) return "";
+  if (member.type.kind == Type::Kind::choice && member.default_value.is_object()) {
     return fmt::format("`{}`", json_text(member.default_value[std::string(variant_key)]));
   }
   return member.default_value.is_null() ? "none"
@@ -76,8 +75,9 @@ std::string default_text(const Member& member) {
 }
 
 void put_names(std::string& page, const Member& member) {
-  const Type& named = member.type.kind == Kind::list ? member.type.elements.front() : member.type;
-  if (named.kind != Kind::word) return;
+  const Type& named =
+      member.type.kind == Type::Kind::list ? member.type.elements.front() : member.type;
+  if (named.kind != Type::Kind::word) return;
   page += fmt::format("\n`{}`:\n\n", member.name);
   for (const Type::Name& n : named.names) page += fmt::format("- `{}`: {}\n", n.name, n.doc);
 }
@@ -86,11 +86,12 @@ void put_section(std::string& page, const Type& object, const std::string& path)
 
 /// The sections of what a member holds.
 void put_parts(std::string& page, const Member& member, const std::string& path) {
-  if (member.type.kind == Kind::object) {
+  if (member.type.kind == Type::Kind::object) {
     page += fmt::format("\n## {}\n\n{}\n", path, sentence(member.field.doc));
     put_section(page, member.type, path);
   }
-  for (std::size_t i = 0; member.type.kind == Kind::choice && i < member.type.names.size(); ++i) {
+  for (std::size_t i = 0; member.type.kind == Type::Kind::choice && i < member.type.names.size();
+       ++i) {
     const Type::Name& name = member.type.names[i];
     const std::size_t start = page.size();
     page += fmt::format("\n## {}: {}\n\n`{{\"type\": \"{}\"}}`. {}\n", path, name.name, name.name,
@@ -110,7 +111,7 @@ void put_section(std::string& page, const Type& object, const std::string& path)
   page += "\n| key | value | default | meaning |\n| --- | --- | --- | --- |\n";
   for (const Member& m : object.members) {
     page += fmt::format("| `{}` | {} | {} | {} |\n", m.name, cell(type_text(m.type)),
-                        cell(default_text(m)), cell(m.field.doc));
+                        cell(default_text(m)), cell(meaning_text(m.field)));
   }
   for (const Member& m : object.members) put_names(page, m);
   for (const Member& m : object.members) {

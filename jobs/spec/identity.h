@@ -98,7 +98,7 @@ T without(const T& settings, KeyList left_out) {
   for (const std::string_view key : left_out) json.erase(std::string(key));
   std::vector<Problem> problems;
   T rest{};
-  read_settings({Json(json), "", problems}, rest);
+  read_settings(Json(json), problems, rest);
   if (!problems.empty()) throw BadJob(std::move(problems));
   return rest;
 }

@@ -77,7 +77,7 @@ JobSpec parse_job(std::string_view json) {
   std::vector<Problem> problems;
   const Json document = parse_document(json, {max_job_bytes, max_json_depth}, problems);
   JobSpec spec;
-  read_settings({document, "", problems}, spec);
+  read_settings(document, problems, spec);
   check_error_target(spec, problems);
   check_layers_of_integrator(spec, problems);
   check_layers_once(spec, problems);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "analysis/json/json_cursor.h"
+
 namespace lacuna {
 namespace {
 
@@ -141,20 +143,6 @@ class Builder final : public nlohmann::json_sax<Json> {
 };
 
 }  // namespace
-
-std::string child_pointer(const std::string& base, std::string_view key) {
-  std::string at = base + '/';
-  for (const char c : key) {
-    if (c == '~') {
-      at += "~0";
-    } else if (c == '/') {
-      at += "~1";
-    } else {
-      at += c;
-    }
-  }
-  return at;
-}
 
 Json parse_document(std::string_view text, DocumentLimits limits, std::vector<Problem>& problems) {
   if (text.size() > limits.max_bytes) {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "jobs/spec/json_text.h"
+#include "analysis/json/json_text.h"
 #include "jobs/spec/problems.h"
 
 namespace lacuna {
@@ -22,8 +22,5 @@ struct DocumentLimits {
 /// document to go on with: too large, too deep (nothing deep is ever built), malformed (with line,
 /// column and an excerpt).
 Json parse_document(std::string_view text, DocumentLimits limits, std::vector<Problem>& problems);
-
-/// `base` with one more reference token, escaped (RFC 6901).
-std::string child_pointer(const std::string& base, std::string_view key);
 
 }  // namespace lacuna

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "analysis/json/json_cursor.h"
 #include "analysis/settings/auto_number.h"
 #include "jobs/spec/described.h"
 #include "jobs/spec/json_document.h"
@@ -18,56 +19,48 @@
 
 namespace lacuna {
 
-/// One value of a document, where it stands, and where its problems go.
-struct Found {
-  const Json& value;
-  std::string at;
-  std::vector<Problem>& problems;
-
-  void add_problem(std::string message) const { problems.push_back({at, std::move(message)}); }
-  /// "found string "abc"; allowed: ...".
-  void refuse(const std::string& allowed) const;
-  Found child(std::string_view key, const Json& v) const {
-    return {v, child_pointer(at, key), problems};
+/// Puts what a reader finds into a list.
+class ProblemList final : public JsonProblems {
+ public:
+  explicit ProblemList(std::vector<Problem>& problems) : problems_(problems) {}
+  void add(const std::string& pointer, const std::string& message) override {
+    problems_.push_back({pointer, message});
   }
+
+ private:
+  std::vector<Problem>& problems_;
 };
 
-// The parts of the reader that no type changes. Each adds a problem and returns nothing, or false,
-// where the value is not what is allowed.
-std::optional<std::int64_t> read_integer(const Found& found, const Limits& limits);
-std::optional<double> read_number(const Found& found, const Limits& limits);
-/// Nothing where it adds a problem.
-std::optional<AutoNumber> read_auto_number(const Found& found, const Limits& limits);
-std::optional<std::string> read_string(const Found& found, const Limits& length);
-bool check_object(const Found& found);
-bool check_list(const Found& found, const Limits& length);
+// What JsonCursor does not read. Each adds a problem and returns nothing, or false, where the value
+// is not what is allowed.
+std::optional<AutoNumber> read_auto_number(const JsonCursor& found, const Limits& limits);
+/// No U+0000; `length` in code points.
+std::optional<std::string> read_string(const JsonCursor& found, const Limits& length);
 /// Of an object: its number of keys.
-bool check_size(const Found& found, const Limits& size);
+bool check_size(const JsonCursor& found, const Limits& size);
 /// Any value, as one line of text.
-std::string any_value(const Found& found);
-bool check_array(const Found& found, std::size_t size);
-void check_keys(const Found& found, const std::vector<std::string_view>& known);
+std::string any_value(const JsonCursor& found);
+void check_keys(const JsonCursor& found, const std::vector<std::string_view>& known);
 /// The index of the name that the value is.
-std::optional<std::size_t> read_name(const Found& found, std::span<const std::string_view> names);
+std::optional<std::size_t> read_name(const JsonCursor& found,
+                                     std::span<const std::string_view> names);
 /// The index of the alternative that {"type": NAME, ...} or "NAME" asks for.
-std::optional<std::size_t> read_alternative(const Found& found,
+std::optional<std::size_t> read_alternative(const JsonCursor& found,
                                             std::span<const std::string_view> names);
-void refuse_missing(const Found& parent, std::string_view key, const Field& field);
 
 /// The reading visitor: fills settings from an object of a document. A key that is not there leaves
 /// the member's default; every problem is noted and the reading goes on.
 class ObjectReader {
  public:
-  explicit ObjectReader(const Found& object) : object_(object) {}
+  explicit ObjectReader(const JsonCursor& object) : object_(object) {}
 
   template <class T>
   void operator()(std::string_view key, T& member, const Field& field) {
     known_.push_back(key);
-    const auto it = object_.value.find(key);
-    if (it != object_.value.end()) {
-      read_value(object_.child(key, *it), member, field);
+    if (const auto found = object_.find(key)) {
+      read_value(*found, member, field);
     } else if (field.required) {
-      refuse_missing(object_, key, field);
+      object_.refuse_missing(key, field.doc);
     }
   }
 
@@ -76,45 +69,47 @@ class ObjectReader {
   void refuse_unknown_keys() const { check_keys(object_, known_); }
 
   template <class T>
-  static void read_value(const Found& found, T& out, const Field& field);
+  static void read_value(const JsonCursor& found, T& out, const Field& field);
 
  private:
   template <class T, std::size_t N>
-  static void read_array(const Found& found, std::array<T, N>& out, const Field& field);
+  static void read_array(const JsonCursor& found, std::array<T, N>& out, const Field& field);
   template <class T>
-  static void read_list(const Found& found, std::vector<T>& out, const Field& field);
+  static void read_list(const JsonCursor& found, std::vector<T>& out, const Field& field);
   template <class T>
-  static void read_table(const Found& found, JsonTable<T>& out, const Field& field);
+  static void read_table(const JsonCursor& found, JsonTable<T>& out, const Field& field);
   template <class... Ts>
-  static void read_variant(const Found& found, std::variant<Ts...>& out);
+  static void read_variant(const JsonCursor& found, std::variant<Ts...>& out);
   template <class E>
-  static void read_enum(const Found& found, E& out);
+  static void read_enum(const JsonCursor& found, E& out);
 
-  const Found& object_;
+  const JsonCursor& object_;
   std::vector<std::string_view> known_;
 };
 
 /// Reads a described struct; `out` holds the defaults.
 template <Described T>
-void read_settings(const Found& found, T& out) {
-  if (!check_object(found)) return;
+void read_settings(const JsonCursor& found, T& out) {
+  if (!found.check_object()) return;
   ObjectReader reader(found);
   describe(reader, out);
   reader.refuse_unknown_keys();
 }
 
+template <Described T>
+void read_settings(const Json& document, std::vector<Problem>& problems, T& out) {
+  ProblemList list(problems);
+  read_settings(JsonCursor(document, "", list), out);
+}
+
 template <class T>
-void ObjectReader::read_value(const Found& found, T& out, const Field& field) {
+void ObjectReader::read_value(const JsonCursor& found, T& out, const Field& field) {
   if constexpr (std::is_same_v<T, bool>) {
-    if (found.value.is_boolean()) {
-      out = found.value.get<bool>();
-    } else {
-      found.refuse("true or false");
-    }
+    if (const auto v = found.boolean()) out = *v;
   } else if constexpr (Integer<T>) {
-    if (const auto v = read_integer(found, limits_of<T>(field))) out = static_cast<T>(*v);
+    if (const auto v = found.integer(limits_of<T>(field))) out = static_cast<T>(*v);
   } else if constexpr (std::is_same_v<T, double>) {
-    if (const auto v = read_number(found, limits_of<T>(field))) out = *v;
+    if (const auto v = found.number(limits_of<T>(field))) out = *v;
   } else if constexpr (std::is_same_v<T, AutoNumber>) {
     if (const auto v = read_auto_number(found, limits_of<double>(field))) out = *v;
   } else if constexpr (std::is_same_v<T, std::string>) {
@@ -122,7 +117,7 @@ void ObjectReader::read_value(const Found& found, T& out, const Field& field) {
   } else if constexpr (NamedEnum<T>) {
     read_enum(found, out);
   } else if constexpr (is_optional<T>) {
-    if (found.value.is_null()) {
+    if (found.value().is_null()) {
       out.reset();
     } else {
       read_value(found, out.emplace(), field);
@@ -145,40 +140,40 @@ void ObjectReader::read_value(const Found& found, T& out, const Field& field) {
 }
 
 template <class T, std::size_t N>
-void ObjectReader::read_array(const Found& found, std::array<T, N>& out, const Field& field) {
-  if (!check_array(found, N)) return;
+void ObjectReader::read_array(const JsonCursor& found, std::array<T, N>& out, const Field& field) {
+  if (!found.check_list_of(N)) return;
   for (std::size_t i = 0; i < N; ++i) {
-    read_value(found.child(std::to_string(i), found.value[i]), out[i], field);
+    read_value(found.at(i), out[i], field);
   }
 }
 
 template <class T>
-void ObjectReader::read_list(const Found& found, std::vector<T>& out, const Field& field) {
-  if (!check_list(found, length_limits(field))) return;
+void ObjectReader::read_list(const JsonCursor& found, std::vector<T>& out, const Field& field) {
+  if (!found.check_list(length_limits(field))) return;
   out.clear();
-  for (std::size_t i = 0; i < found.value.size(); ++i) {
+  for (std::size_t i = 0; i < found.value().size(); ++i) {
     T element{};
-    read_value(found.child(std::to_string(i), found.value[i]), element, Field{});
+    read_value(found.at(i), element, Field{});
     out.push_back(std::move(element));
   }
 }
 
 template <class T>
-void ObjectReader::read_table(const Found& found, JsonTable<T>& out, const Field& field) {
-  if (!check_object(found) || !check_size(found, length_limits(field))) return;
+void ObjectReader::read_table(const JsonCursor& found, JsonTable<T>& out, const Field& field) {
+  if (!found.check_object() || !check_size(found, length_limits(field))) return;
   out.clear();
-  for (const auto& [key, value] : found.value.items()) {
-    read_value(found.child(key, value), out[key], Field{});
+  for (const auto& [key, value] : found.value().items()) {
+    read_value(found.at(key), out[key], Field{});
   }
 }
 
 template <class... Ts>
-void ObjectReader::read_variant(const Found& found, std::variant<Ts...>& out) {
+void ObjectReader::read_variant(const JsonCursor& found, std::variant<Ts...>& out) {
   static constexpr std::array<std::string_view, sizeof...(Ts)> names{Ts::name...};
   const auto chosen = read_alternative(found, names);
   if (!chosen) return;
   const Json nothing = Json::object();
-  const Found object{found.value.is_string() ? nothing : found.value, found.at, found.problems};
+  const JsonCursor object = found.in_place(found.value().is_string() ? nothing : found.value());
   const auto read_as = [&]<class T>(T settings) {
     ObjectReader reader(object);
     reader.know(variant_key);
@@ -191,7 +186,7 @@ void ObjectReader::read_variant(const Found& found, std::variant<Ts...>& out) {
 }
 
 template <class E>
-void ObjectReader::read_enum(const Found& found, E& out) {
+void ObjectReader::read_enum(const JsonCursor& found, E& out) {
   constexpr auto& values = EnumTable<E>::values;
   static constexpr auto names = [] {
     std::array<std::string_view, EnumTable<E>::values.size()> all;

@@ -5,9 +5,9 @@
 #include <string_view>
 #include <variant>
 
+#include "analysis/json/json_text.h"
 #include "analysis/settings/auto_number.h"
 #include "jobs/spec/described.h"
-#include "jobs/spec/json_text.h"
 
 namespace lacuna {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "jobs/spec/json_text.h"
+#include "analysis/json/json_text.h"
 
 namespace lacuna {
 

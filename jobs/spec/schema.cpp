@@ -9,15 +9,14 @@
 namespace lacuna {
 namespace {
 
-using Kind = Type::Kind;
-
 OrderedJson schema_of(const Type& type);
 
 /// The key's own line, its unit, and what each name means.
 std::string description(const Member& member) {
-  std::string text(member.field.doc);
+  std::string text = meaning_text(member.field);
   if (!member.field.unit.empty()) text += fmt::format(" [{}]", member.field.unit);
-  const Type& named = member.type.kind == Kind::list ? member.type.elements.front() : member.type;
+  const Type& named =
+      member.type.kind == Type::Kind::list ? member.type.elements.front() : member.type;
   for (const Type::Name& n : named.names) {
     text += fmt::format("\n{}: {}", n.name, n.doc);
   }
@@ -26,7 +25,8 @@ std::string description(const Member& member) {
 
 void put_limits(OrderedJson& schema, const Type& type) {
   const auto number = [&](double x) {
-    return type.kind == Kind::integer ? OrderedJson(static_cast<std::int64_t>(x)) : OrderedJson(x);
+    return type.kind == Type::Kind::integer ? OrderedJson(static_cast<std::int64_t>(x))
+                                            : OrderedJson(x);
   };
   if (std::isfinite(type.limits.min)) {
     schema[type.limits.above_min ? "exclusiveMinimum" : "minimum"] = number(type.limits.min);
@@ -96,19 +96,19 @@ OrderedJson auto_schema(const Type& type) {
   return {{"oneOf", choices}};
 }
 
-std::string type_name(Kind kind) {
+std::string type_name(Type::Kind kind) {
   switch (kind) {
-    case Kind::boolean:
+    case Type::Kind::boolean:
       return "boolean";
-    case Kind::integer:
+    case Type::Kind::integer:
       return "integer";
-    case Kind::number:
+    case Type::Kind::number:
       return "number";
-    case Kind::array:
-    case Kind::list:
+    case Type::Kind::array:
+    case Type::Kind::list:
       return "array";
-    case Kind::object:
-    case Kind::table:
+    case Type::Kind::object:
+    case Type::Kind::table:
       return "object";
     default:
       return "string";
@@ -116,35 +116,35 @@ std::string type_name(Kind kind) {
 }
 
 OrderedJson schema_of(const Type& type) {
-  if (type.kind == Kind::choice) return choice_schema(type);
-  if (type.kind == Kind::word) return enum_schema(type);
-  if (type.kind == Kind::auto_number) return auto_schema(type);
-  if (type.kind == Kind::any) return OrderedJson::object();
+  if (type.kind == Type::Kind::choice) return choice_schema(type);
+  if (type.kind == Type::Kind::word) return enum_schema(type);
+  if (type.kind == Type::Kind::auto_number) return auto_schema(type);
+  if (type.kind == Type::Kind::any) return OrderedJson::object();
   OrderedJson schema;
   schema["type"] = type_name(type.kind);
   if (type.optional) schema["type"] = OrderedJson::array({type_name(type.kind), "null"});
   switch (type.kind) {
-    case Kind::integer:
-    case Kind::number:
+    case Type::Kind::integer:
+    case Type::Kind::number:
       put_limits(schema, type);
       break;
-    case Kind::string:
+    case Type::Kind::string:
       put_lengths(schema, type.limits, "minLength", "maxLength");
       break;
-    case Kind::array:
+    case Type::Kind::array:
       schema["items"] = schema_of(type.elements.front());
       schema["minItems"] = type.array_size;
       schema["maxItems"] = type.array_size;
       break;
-    case Kind::list:
+    case Type::Kind::list:
       schema["items"] = schema_of(type.elements.front());
       put_lengths(schema, type.limits, "minItems", "maxItems");
       break;
-    case Kind::table:
+    case Type::Kind::table:
       schema["additionalProperties"] = schema_of(type.elements.front());
       put_lengths(schema, type.limits, "minProperties", "maxProperties");
       break;
-    case Kind::object:
+    case Type::Kind::object:
       put_members(schema, type);
       break;
     default:

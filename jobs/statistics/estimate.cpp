@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "jobs/statistics/student.h"
+#include "jobs/statistics/distributions.h"
 
 namespace lacuna {
 namespace {

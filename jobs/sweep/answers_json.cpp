@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "jobs/spec/json_text.h"
+#include "analysis/json/json_text.h"
 #include "jobs/sweep/answers.h"
 
 namespace lacuna {
 namespace {
 
-OrderedJson number(std::optional<double> value) {
+OrderedJson number_or_null(std::optional<double> value) {
   return value ? OrderedJson(*value) : OrderedJson(nullptr);
 }
 
@@ -48,7 +48,7 @@ OrderedJson to_json(const TimeToError& to) {
           {"reached", to.reached},
           {"time", optional_json(to.time)},
           {"at_most", to.at_most},
-          {"at_least", number(to.at_least)},
+          {"at_least", number_or_null(to.at_least)},
           {"speed_up", optional_json(to.speed_up)},
           {"supported", !to.at_floor}};
 }
@@ -150,7 +150,8 @@ class Writer {
     j["bias_squared"] = optional_json(c.bias_squared);
     j["bias_between_runs"] = optional_json(c.bias_between_runs);
     j["variance"] = optional_json(c.variance);
-    j["preparation"] = {{"cold", number(c.preparation.cold)}, {"warm", number(c.preparation.warm)}};
+    j["preparation"] = {{"cold", number_or_null(c.preparation.cold)},
+                        {"warm", number_or_null(c.preparation.warm)}};
     j["pays"] = {{"cold", optional_json(c.pays.cold)}, {"warm", optional_json(c.pays.warm)}};
     return j;
   }

@@ -109,7 +109,7 @@ const Json* find(const Json& json, const Keys&... keys) {
 }
 
 template <class... Keys>
-std::optional<double> number(const Json& json, const Keys&... keys) {
+std::optional<double> number_at(const Json& json, const Keys&... keys) {
   const Json* found = find(json, keys...);
   return found != nullptr && found->is_number() ? std::optional(found->get<double>())
                                                 : std::nullopt;
@@ -133,7 +133,7 @@ void tell_bias(const NumberTable& table, const Json& report, RunResult& result) 
                deviation = table.at(last, enum_name(ErrorMetric::est_rmse));
   if (!std::isfinite(deviation)) return;
   result.variance = deviation * deviation;
-  const auto own = number(report, "errors", "reference", "own_rmse");
+  const auto own = number_at(report, "errors", "reference", "own_rmse");
   if (std::isfinite(mse) && own) result.bias_squared = mse - *result.variance - *own * *own;
 }
 
@@ -156,14 +156,14 @@ RunResult read_result(const JobFolder& folder, const CurveAxes& axes) {
   Json report = Json::object();
   if (fs::exists(folder.file("report.json"))) {
     read_report(folder.file("report.json"), report);
-    result.preparation = {number(report, "seconds", "load").value_or(0),
-                          number(report, "seconds", "analysis").value_or(0),
+    result.preparation = {number_at(report, "seconds", "load").value_or(0),
+                          number_at(report, "seconds", "analysis").value_or(0),
                           artefact_names(report, "built"), artefact_names(report, "loaded")};
     const Json* file = find(report, "errors", "reference", "file");
     if (file != nullptr && file->is_string()) result.reference_file = file->get<std::string>();
-    result.others = number(report, "machine", "others_share");
-    result.stolen = number(report, "machine", "stolen_share");
-    result.mhz = number(report, "machine", "mhz");
+    result.others = number_at(report, "machine", "others_share");
+    result.stolen = number_at(report, "machine", "stolen_share");
+    result.mhz = number_at(report, "machine", "mhz");
   }
   if (!fs::exists(folder.file("curve.csv"))) return result;
   const NumberTable table(folder.file("curve.csv"));

@@ -4,8 +4,8 @@
 #include <set>
 #include <sstream>
 
+#include "analysis/json/json_text.h"
 #include "analysis/storage/atomic_file.h"
-#include "jobs/spec/json_text.h"
 #include "jobs/sweep/limits.h"
 #include "jobs/sweep/sweep_folder.h"
 

@@ -95,7 +95,11 @@ class CellStatistics {
   void load(ByteReader& in);
 
  private:
+  /// What survives counts 1 / survival times: no connection counts more than twentyfold, however
+  /// wrong the expectation of its cell is.
   static constexpr double least_survival = 0.05;
+  /// The mean square of so many is known to 1 / sqrt(32), a sixth, of the spread of one; before,
+  /// all are made.
   static constexpr std::uint64_t least_asked = 32;
 
   static std::size_t index(int s) { return static_cast<std::size_t>(std::min(s, lengths) - 1); }

@@ -2,7 +2,6 @@
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
-#include <immintrin.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +9,7 @@
 #include <cstring>
 #include <new>
 
+#include "analysis/geometry/simd.h"
 #include "renderer/geometry/alpha_mask.h"
 
 namespace lacuna {
@@ -22,10 +22,8 @@ constexpr float largest_coordinate = 1e18F;
 bool acceptable(const Ray& ray) {
   // The ray's o and d at once; an ordered comparison is false for NaN as well.
   static_assert(sizeof(Ray) == 32);
-  const __m256 all = _mm256_load_ps(&ray.o.x);
-  const __m256 magnitude = _mm256_andnot_ps(_mm256_set1_ps(-0.0F), all);
-  const __m256 small = _mm256_cmp_ps(magnitude, _mm256_set1_ps(largest_coordinate), _CMP_LE_OQ);
-  return (_mm256_movemask_ps(small) & 0x3f) == 0x3f && ray.tmax >= 0.0F;
+  const Mask8 small = Float8(largest_coordinate) >= abs(Float8::load(&ray.o.x));
+  return (movemask(small) & 0x3f) == 0x3f && ray.tmax >= 0.0F;
 }
 
 RTCRay to_embree(const Ray& ray) {

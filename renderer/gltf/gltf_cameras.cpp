@@ -23,29 +23,30 @@ V3f position_of(const PlacedNode& node) {
   const V3d origin = axis(node.to_world, 3);
   for (int i = 0; i < 3; ++i) {
     if (!(std::abs(origin[i]) <= max_coordinate))
-      node.place.refuse("its position", origin[i], coordinate_rule);
+      node.place.fail("its position is " + number_text(origin[i]) +
+                      "; allowed: " + coordinate_rule);
   }
   return V3f(origin);
 }
 
-CameraData read_camera(const Place& camera, const PlacedNode& node) {
+CameraData read_camera(const GltfObject& camera, const PlacedNode& node) {
   const auto lens = camera.object("perspective");
   if (!lens) camera.fail("perspective is missing");
   CameraData out;
   out.name = camera.string("name", node.place.string("name", ""));
-  out.yfov = lens->number("yfov", Range{0, std::numbers::pi});
+  out.yfov = lens->number("yfov", Limits{0, std::numbers::pi});
   if (out.yfov == 0 || out.yfov == std::numbers::pi) {
-    lens->refuse("yfov", out.yfov, "radians above 0 and below pi");
+    lens->refuse("yfov", "radians above 0 and below pi");
   }
   position_of(node);
   out.to_world = orthonormal(node);
   return out;
 }
 
-void read_cone(const Place& light, PunctualLight& out) {
+void read_cone(const GltfObject& light, PunctualLight& out) {
   const auto spot = light.object("spot");
   if (!spot) light.fail("spot is missing");
-  const Range angle{0, std::numbers::pi_v<float> / 2};  // what pi/2 is when written as a float
+  const Limits angle{0, std::numbers::pi_v<float> / 2};  // what pi/2 is when written as a float
   out.inner_cone = static_cast<float>(spot->number("innerConeAngle", 0, angle));
   out.outer_cone = static_cast<float>(spot->number("outerConeAngle", std::numbers::pi / 4, angle));
   if (!(out.inner_cone < out.outer_cone)) {
@@ -54,7 +55,7 @@ void read_cone(const Place& light, PunctualLight& out) {
   }
 }
 
-PunctualLight read_light(const Place& light, const PlacedNode& node, Warnings& warnings) {
+PunctualLight read_light(const GltfObject& light, const PlacedNode& node, Warnings& warnings) {
   PunctualLight out;
   out.name = light.string("name", node.place.string("name", ""));
   const auto color = light.numbers<3>("color", unit_interval).value_or(std::array{1.0, 1.0, 1.0});
@@ -71,7 +72,7 @@ PunctualLight read_light(const Place& light, const PlacedNode& node, Warnings& w
     out.kind = PunctualLight::Kind::spot;
     read_cone(light, out);
   } else {
-    light.refuse("type", type, "\"point\", \"spot\" or \"directional\"");
+    light.refuse("type", "\"point\", \"spot\" or \"directional\"");
   }
   if (light.has("range"))
     warnings.once(
@@ -83,17 +84,17 @@ PunctualLight read_light(const Place& light, const PlacedNode& node, Warnings& w
 
 }  // namespace
 
-std::vector<CameraData> read_cameras(const Place& root, const std::vector<PlacedNode>& nodes,
+std::vector<CameraData> read_cameras(const GltfObject& root, const std::vector<PlacedNode>& nodes,
                                      Warnings& warnings) {
   std::vector<CameraData> out;
   const auto cameras = root.objects("cameras");
   for (const PlacedNode& node : nodes) {
     const auto index = node.place.index("camera", cameras.size(), "cameras");
     if (!index) continue;
-    const Place& camera = cameras[*index];
+    const GltfObject& camera = cameras[*index];
     const std::string type = camera.string("type");
     if (type != "perspective" && type != "orthographic") {
-      camera.refuse("type", type, "\"perspective\" or \"orthographic\"");
+      camera.refuse("type", "\"perspective\" or \"orthographic\"");
     }
     if (type == "perspective") {
       out.push_back(read_camera(camera, node));
@@ -104,11 +105,11 @@ std::vector<CameraData> read_cameras(const Place& root, const std::vector<Placed
   return out;
 }
 
-std::vector<PunctualLight> read_lights(const Place& root, const std::vector<PlacedNode>& nodes,
+std::vector<PunctualLight> read_lights(const GltfObject& root, const std::vector<PlacedNode>& nodes,
                                        Warnings& warnings) {
   std::vector<PunctualLight> out;
   const auto extension = root.extension("KHR_lights_punctual");
-  const auto lights = extension ? extension->objects("lights") : std::vector<Place>{};
+  const auto lights = extension ? extension->objects("lights") : std::vector<GltfObject>{};
   for (const PlacedNode& node : nodes) {
     const auto reference = node.place.extension("KHR_lights_punctual");
     if (!reference) continue;

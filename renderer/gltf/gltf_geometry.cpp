@@ -137,7 +137,7 @@ void read_uvs(const Source& source, const std::vector<std::uint32_t>& kept,
   }
 }
 
-void warn_of_rest(const tinygltf::Primitive& primitive, Warnings& warnings) {
+void warn_of_unread_attributes(const tinygltf::Primitive& primitive, Warnings& warnings) {
   if (!primitive.targets.empty()) {
     warnings.once("morph targets are left out: meshes keep their base shape");
   }
@@ -177,7 +177,7 @@ Mesh build_mesh(const Source& source, const SceneData& scene, Counts& counts, Wa
     counts.normals += mend_normals(mesh);
   }
   read_uvs(source, kept, scene.materials[mesh.material], mesh, warnings);
-  warn_of_rest(source.primitive, warnings);
+  warn_of_unread_attributes(source.primitive, warnings);
   return mesh;
 }
 
@@ -218,7 +218,7 @@ void add_node(const tinygltf::Model& model, const PlacedNode& node, std::size_t 
     }
     Mesh built = build_mesh({model, primitive, node, place_of(node, mesh_index, k)}, scene, counts,
                             warnings);
-    built.name = mesh.name.empty() ? node.place.string("name", node.place.path()) : mesh.name;
+    built.name = mesh.name.empty() ? node.place.string("name", node.place.label()) : mesh.name;
     if (!built.triangles.empty()) scene.meshes.push_back(std::move(built));
   }
 }

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "renderer/gltf/gltf_json.h"
+#include "renderer/gltf/gltf_object.h"
 
 namespace lacuna::gltf {
 
@@ -25,7 +25,7 @@ Json parse_json(std::span<const std::uint8_t> text);
 /// bufferViews, accessors, images, textures, samplers, meshes, nodes and scenes; offsets and
 /// lengths against what holds them; required extensions by name. Materials, cameras and lights are
 /// checked by their readers. Throws SceneError.
-void check_structure(const Place& root, const Framing& framing);
+void check_structure(const GltfObject& root, const Framing& framing);
 
 /// The names that may stand in extensionsRequired.
 bool extension_supported(std::string_view name);

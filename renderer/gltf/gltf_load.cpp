@@ -8,11 +8,10 @@
 #include "renderer/gltf/gltf_nodes.h"
 
 namespace lacuna {
+namespace gltf {
 namespace {
 
-using namespace gltf;
-
-void warn_of_rest(const Place& root, Warnings& warnings) {
+void warn_of_unread_parts(const GltfObject& root, Warnings& warnings) {
   if (root.array_size("animations") > 0) {
     warnings.once("animations are left out: the scene stands still in its rest pose");
   }
@@ -26,7 +25,8 @@ SceneData load(const std::filesystem::path& file) {
   const Bytes bytes = folder.read_main();
   const Framing framing = check_framing(bytes);
   const Json json = parse_json(framing.json);
-  const Place root(json, "");
+  GltfProblems problems(json);
+  const GltfObject root(json, problems);
   check_structure(root, framing);
 
   SceneData scene;
@@ -43,16 +43,17 @@ SceneData load(const std::filesystem::path& file) {
   build_meshes(model, nodes, scene, warnings);
   scene.textures = textures.build(model, folder, content);
   scene.content_hash = content.digest();
-  warn_of_rest(root, warnings);
+  warn_of_unread_parts(root, warnings);
   scene.warnings = warnings.take();
   return scene;
 }
 
 }  // namespace
+}  // namespace gltf
 
 SceneData load_gltf(const std::filesystem::path& file) {
   try {
-    return load(file);
+    return gltf::load(file);
   } catch (const SceneError& e) {
     throw SceneError(file.string() + ": " + e.what());
   }

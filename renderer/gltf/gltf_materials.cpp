@@ -9,11 +9,11 @@ Rgb to_rgb(const std::array<double, 3>& a) {
   return {static_cast<float>(a[0]), static_cast<float>(a[1]), static_cast<float>(a[2])};
 }
 
-float read(const Place& from, std::string_view key, float fallback, Range allowed) {
+float read(const GltfObject& from, std::string_view key, float fallback, Limits allowed) {
   return static_cast<float>(from.number(key, fallback, allowed));
 }
 
-void read_metallic_roughness(const Place& material, TextureTable& textures, Material& out) {
+void read_metallic_roughness(const GltfObject& material, TextureTable& textures, Material& out) {
   const auto pbr = material.object("pbrMetallicRoughness");
   if (!pbr) return;
   if (const auto c = pbr->numbers<4>("baseColorFactor", unit_interval)) {
@@ -27,7 +27,7 @@ void read_metallic_roughness(const Place& material, TextureTable& textures, Mate
       *pbr, "metallicRoughnessTexture", Encoding::linear, out.metallic > 0 || out.roughness > 0);
 }
 
-void read_emission(const Place& material, TextureTable& textures, Material& out) {
+void read_emission(const GltfObject& material, TextureTable& textures, Material& out) {
   if (const auto factor = material.numbers<3>("emissiveFactor", unit_interval)) {
     out.emission = to_rgb(*factor);
   }
@@ -38,10 +38,10 @@ void read_emission(const Place& material, TextureTable& textures, Material& out)
       textures.reference(material, "emissiveTexture", Encoding::srgb, out.emits());
 }
 
-void read_specular(const Place& material, TextureTable& textures, Material& out) {
+void read_specular(const GltfObject& material, TextureTable& textures, Material& out) {
   if (const auto ior = material.extension("KHR_materials_ior")) {
     out.ior = read(*ior, "ior", out.ior, non_negative);
-    if (out.ior != 0 && out.ior < 1) ior->refuse("ior", out.ior, "0, or a number, at least 1");
+    if (out.ior != 0 && out.ior < 1) ior->refuse("ior", "0, or a number, at least 1");
   }
   if (const auto specular = material.extension("KHR_materials_specular")) {
     out.specular = read(*specular, "specularFactor", out.specular, unit_interval);
@@ -60,10 +60,10 @@ void read_specular(const Place& material, TextureTable& textures, Material& out)
   }
 }
 
-void read_alpha(const Place& material, Warnings& warnings, Material& out) {
+void read_alpha(const GltfObject& material, Warnings& warnings, Material& out) {
   const std::string mode = material.string("alphaMode", "OPAQUE");
   if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND") {
-    material.refuse("alphaMode", mode, "\"OPAQUE\", \"MASK\" or \"BLEND\"");
+    material.refuse("alphaMode", "\"OPAQUE\", \"MASK\" or \"BLEND\"");
   }
   if (mode == "BLEND") warnings.once("alphaMode BLEND is not supported: such materials are opaque");
   out.mask = mode == "MASK";
@@ -71,7 +71,7 @@ void read_alpha(const Place& material, Warnings& warnings, Material& out) {
   out.double_sided = material.boolean("doubleSided", out.double_sided);
 }
 
-void warn_of_rest(const Place& material, Warnings& warnings) {
+void warn_of_unread_extensions(const GltfObject& material, Warnings& warnings) {
   if (material.has("normalTexture")) warnings.once("normal maps are not supported and left out");
   if (material.has("occlusionTexture")) {
     warnings.once("occlusion maps are left out: occlusion is what is being computed");
@@ -85,17 +85,17 @@ void warn_of_rest(const Place& material, Warnings& warnings) {
 
 }  // namespace
 
-std::vector<Material> read_materials(const Place& root, TextureTable& textures,
+std::vector<Material> read_materials(const GltfObject& root, TextureTable& textures,
                                      Warnings& warnings) {
   std::vector<Material> materials;
-  for (const Place& material : root.objects("materials")) {
+  for (const GltfObject& material : root.objects("materials")) {
     Material out;
-    out.name = material.string("name", material.path());
+    out.name = material.string("name", material.label());
     read_metallic_roughness(material, textures, out);
     read_emission(material, textures, out);
     read_specular(material, textures, out);
     read_alpha(material, warnings, out);
-    warn_of_rest(material, warnings);
+    warn_of_unread_extensions(material, warnings);
     materials.push_back(std::move(out));
   }
   materials.emplace_back().name = "default";

@@ -8,6 +8,7 @@ namespace lacuna::gltf {
 
 /// All materials of the file and glTF's default material behind them. Throws SceneError on a value
 /// outside of what glTF or its extensions allow.
-std::vector<Material> read_materials(const Place& root, TextureTable& textures, Warnings& warnings);
+std::vector<Material> read_materials(const GltfObject& root, TextureTable& textures,
+                                     Warnings& warnings);
 
 }  // namespace lacuna::gltf

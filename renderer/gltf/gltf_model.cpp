@@ -11,7 +11,7 @@ namespace {
 /// The external buffers in the order of the file, which is the order in which tinygltf asks.
 using BufferQueue = std::deque<Bytes>;
 
-void refuse_data_uri(const Place& place, const std::string& uri) {
+void refuse_data_uri(const GltfObject& place, const std::string& uri) {
   if (uri.starts_with("data:") && !tinygltf::IsDataURI(uri)) {
     place.fail("uri is a data: URI of an unknown kind (\"" + uri.substr(0, 40) +
                "...\"); allowed: base64 of application/octet-stream, application/gltf-buffer, "
@@ -19,14 +19,14 @@ void refuse_data_uri(const Place& place, const std::string& uri) {
   }
 }
 
-BufferQueue read_external_buffers(const Place& root, SceneFolder& folder, Hasher& content) {
+BufferQueue read_external_buffers(const GltfObject& root, SceneFolder& folder, Hasher& content) {
   BufferQueue queue;
-  for (const Place& buffer : root.objects("buffers")) {
+  for (const GltfObject& buffer : root.objects("buffers")) {
     if (!buffer.has("uri")) continue;
     const std::string uri = buffer.string("uri");
     refuse_data_uri(buffer, uri);
     if (tinygltf::IsDataURI(uri)) continue;
-    Bytes bytes = folder.read(uri, buffer.path());
+    Bytes bytes = folder.read(uri, buffer.label());
     const std::uint64_t needed = buffer.integer("byteLength", 1, bytes.max_size());
     if (bytes.size() < needed) {
       buffer.fail("\"" + uri + "\" has " + std::to_string(bytes.size()) + " bytes; byteLength is " +
@@ -73,8 +73,8 @@ std::string first_line(const std::string& text) {
 }  // namespace
 
 tinygltf::Model parse_model(std::span<const std::uint8_t> file, const Framing& framing,
-                            const Place& root, SceneFolder& folder, Hasher& content) {
-  for (const Place& image : root.objects("images")) {
+                            const GltfObject& root, SceneFolder& folder, Hasher& content) {
+  for (const GltfObject& image : root.objects("images")) {
     if (image.has("uri")) refuse_data_uri(image, image.string("uri"));
   }
   BufferQueue queue = read_external_buffers(root, folder, content);

@@ -18,6 +18,6 @@ namespace lacuna::gltf {
 /// their encoded bytes only if they came as a data: URI. External buffers are read through `folder`
 /// and enter `content`. Throws SceneError.
 tinygltf::Model parse_model(std::span<const std::uint8_t> file, const Framing& framing,
-                            const Place& root, SceneFolder& folder, Hasher& content);
+                            const GltfObject& root, SceneFolder& folder, Hasher& content);
 
 }  // namespace lacuna::gltf

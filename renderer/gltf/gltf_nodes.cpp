@@ -15,15 +15,15 @@ constexpr std::size_t none = static_cast<std::size_t>(-1);
 double determinant3(const M44d& m) { return row(m, 0).dot(row(m, 1).cross(row(m, 2))); }
 
 /// glTF stores columns for column vectors, which is what Imath stores as rows for row vectors.
-M44d local_transform(const Place& node) {
+M44d local_transform(const GltfObject& node) {
   M44d m;
-  if (const auto a = node.numbers<16>("matrix", Range{})) {
+  if (const auto a = node.numbers<16>("matrix", Limits{})) {
     for (std::size_t i = 0; i < 16; ++i) m[static_cast<int>(i / 4)][i % 4] = (*a)[i];
     return m;
   }
-  const auto scale = node.numbers<3>("scale", Range{}).value_or(std::array{1.0, 1.0, 1.0});
-  const auto shift = node.numbers<3>("translation", Range{}).value_or(std::array{0.0, 0.0, 0.0});
-  auto q = node.numbers<4>("rotation", Range{}).value_or(std::array{0.0, 0.0, 0.0, 1.0});
+  const auto scale = node.numbers<3>("scale", Limits{}).value_or(std::array{1.0, 1.0, 1.0});
+  const auto shift = node.numbers<3>("translation", Limits{}).value_or(std::array{0.0, 0.0, 0.0});
+  auto q = node.numbers<4>("rotation", Limits{}).value_or(std::array{0.0, 0.0, 0.0, 1.0});
   const double norm = std::sqrt(std::inner_product(q.begin(), q.end(), q.begin(), 0.0));
   for (double& component : q) component /= norm;
   const auto [x, y, z, w] = q;
@@ -52,13 +52,13 @@ bool usable(const M44d& m) {
   return std::isnormal(lengths) && std::isnormal(det) && det > 1e-12 * lengths;
 }
 
-bool carries_something(const Place& node) {
+bool carries_something(const GltfObject& node) {
   const auto light = node.extension("KHR_lights_punctual");
   return node.has("mesh") || node.has("camera") || (light && light->has("light"));
 }
 
 /// Every node has at most one parent and no node is its own ancestor. Returns the parents.
-std::vector<std::size_t> check_forest(const std::vector<Place>& nodes) {
+std::vector<std::size_t> check_forest(const std::vector<GltfObject>& nodes) {
   std::vector<std::size_t> parents(nodes.size(), none);
   std::vector<std::vector<std::size_t>> children(nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -89,7 +89,7 @@ std::vector<std::size_t> check_forest(const std::vector<Place>& nodes) {
   return parents;
 }
 
-std::vector<std::size_t> scene_roots(const Place& root, const std::vector<Place>& nodes,
+std::vector<std::size_t> scene_roots(const GltfObject& root, const std::vector<GltfObject>& nodes,
                                      const std::vector<std::size_t>& parents) {
   std::vector<std::size_t> roots;
   const auto scenes = root.objects("scenes");
@@ -99,7 +99,7 @@ std::vector<std::size_t> scene_roots(const Place& root, const std::vector<Place>
     }
     return roots;
   }
-  const Place& scene = scenes[root.index("scene", scenes.size(), "scenes").value_or(0)];
+  const GltfObject& scene = scenes[root.index("scene", scenes.size(), "scenes").value_or(0)];
   roots = scene.indices("nodes", nodes.size(), "nodes");
   std::vector<bool> listed(nodes.size());
   for (const std::size_t i : roots) {
@@ -122,7 +122,7 @@ struct Visit {
 
 }  // namespace
 
-std::vector<PlacedNode> place_nodes(const Place& root) {
+std::vector<PlacedNode> place_nodes(const GltfObject& root) {
   const auto nodes = root.objects("nodes");
   const auto parents = check_forest(nodes);
   const auto roots = scene_roots(root, nodes, parents);
@@ -133,7 +133,7 @@ std::vector<PlacedNode> place_nodes(const Place& root) {
   while (!stack.empty()) {
     Visit visit = stack.back();
     stack.pop_back();
-    const Place& node = nodes[visit.node];
+    const GltfObject& node = nodes[visit.node];
     if (visit.level > max_levels) {
       node.fail("lies more than " + std::to_string(max_levels) + " levels deep");
     }

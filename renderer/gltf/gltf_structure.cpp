@@ -15,7 +15,7 @@ constexpr std::array<std::string_view, 6> supported_extensions{
     "KHR_materials_specular", "KHR_materials_transmission",      "KHR_texture_transform"};
 
 struct Sizes {
-  explicit Sizes(const Place& root)
+  explicit Sizes(const GltfObject& root)
       : buffers(root.array_size("buffers")),
         buffer_views(root.array_size("bufferViews")),
         accessors(root.array_size("accessors")),
@@ -31,14 +31,13 @@ struct Sizes {
       cameras, nodes, scenes;
 };
 
-void check_asset(const Place& root) {
+void check_asset(const GltfObject& root) {
   const auto asset = root.object("asset");
   if (!asset) root.fail("asset is missing; required: an object with the glTF version");
   const std::string version = asset->string("version");
   const std::string needed = asset->string("minVersion", version);
   if (!version.starts_with("2.") || (asset->has("minVersion") && needed != "2.0")) {
-    asset->refuse(asset->has("minVersion") ? "minVersion" : "version",
-                  asset->has("minVersion") ? needed : version, "glTF 2.0");
+    asset->refuse(asset->has("minVersion") ? "minVersion" : "version", "glTF 2.0");
   }
   for (const std::string& name : root.strings("extensionsRequired")) {
     if (extension_supported(name)) continue;
@@ -46,13 +45,13 @@ void check_asset(const Place& root) {
     for (const auto known : supported_extensions) {
       allowed.append(allowed.empty() ? "" : ", ").append(known);
     }
-    root.refuse("extensionsRequired", name, allowed);
+    root.fail("extensionsRequired: found " + in_quotes(name) + "; allowed: " + allowed);
   }
 }
 
-void check_buffers(const Place& root, const Framing& framing) {
+void check_buffers(const GltfObject& root, const Framing& framing) {
   std::size_t i = 0;
-  for (const Place& buffer : root.objects("buffers")) {
+  for (const GltfObject& buffer : root.objects("buffers")) {
     const std::uint64_t bytes = buffer.integer("byteLength", 1, max_bytes);
     if (buffer.has("uri")) {
       buffer.string("uri");
@@ -66,9 +65,9 @@ void check_buffers(const Place& root, const Framing& framing) {
   }
 }
 
-void check_buffer_views(const Place& root, const Sizes& sizes) {
+void check_buffer_views(const GltfObject& root, const Sizes& sizes) {
   const auto buffers = root.objects("buffers");
-  for (const Place& view : root.objects("bufferViews")) {
+  for (const GltfObject& view : root.objects("bufferViews")) {
     const auto buffer = view.index("buffer", sizes.buffers, "buffers");
     if (!buffer) view.fail("buffer is missing");
     const std::uint64_t offset = view.integer("byteOffset", 0, 0, max_bytes);
@@ -80,11 +79,11 @@ void check_buffer_views(const Place& root, const Sizes& sizes) {
                 std::to_string(held));
     }
     const std::uint64_t stride = view.integer("byteStride", 4, 4, 252);
-    if (stride % 4 != 0) view.refuse("byteStride", static_cast<double>(stride), "a multiple of 4");
+    if (stride % 4 != 0) view.refuse("byteStride", "a multiple of 4");
   }
 }
 
-std::uint64_t element_bytes(const Place& accessor) {
+std::uint64_t element_bytes(const GltfObject& accessor) {
   static constexpr std::array<std::pair<std::uint64_t, std::uint64_t>, 6> component_bytes{
       {{5120, 1}, {5121, 1}, {5122, 2}, {5123, 2}, {5125, 4}, {5126, 4}}};
   static constexpr std::array<std::pair<std::string_view, std::uint64_t>, 7> component_counts{
@@ -102,18 +101,17 @@ std::uint64_t element_bytes(const Place& accessor) {
   const auto count = std::find_if(component_counts.begin(), component_counts.end(),
                                   [&](const auto& entry) { return entry.first == type; });
   if (bytes == component_bytes.end()) {
-    accessor.refuse("componentType", static_cast<double>(component),
-                    "5120, 5121, 5122, 5123, 5125 or 5126");
+    accessor.refuse("componentType", "5120, 5121, 5122, 5123, 5125 or 5126");
   }
   if (count == component_counts.end()) {
-    accessor.refuse("type", type, "SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3 or MAT4");
+    accessor.refuse("type", "SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3 or MAT4");
   }
   return bytes->second * count->second;
 }
 
-void check_accessors(const Place& root, const Sizes& sizes) {
+void check_accessors(const GltfObject& root, const Sizes& sizes) {
   const auto views = root.objects("bufferViews");
-  for (const Place& accessor : root.objects("accessors")) {
+  for (const GltfObject& accessor : root.objects("accessors")) {
     const std::uint64_t element = element_bytes(accessor);
     const std::uint64_t count = accessor.integer("count", 1, max_bytes);
     const std::uint64_t offset = accessor.integer("byteOffset", 0, 0, max_bytes);
@@ -136,8 +134,8 @@ void check_accessors(const Place& root, const Sizes& sizes) {
   }
 }
 
-void check_images(const Place& root, const Sizes& sizes) {
-  for (const Place& image : root.objects("images")) {
+void check_images(const GltfObject& root, const Sizes& sizes) {
+  for (const GltfObject& image : root.objects("images")) {
     if (image.has("uri") == image.has("bufferView")) {
       image.fail("exactly one of uri and bufferView must be there");
     }
@@ -145,17 +143,16 @@ void check_images(const Place& root, const Sizes& sizes) {
     image.index("bufferView", sizes.buffer_views, "bufferViews");
     image.string("mimeType", "");
   }
-  for (const Place& texture : root.objects("textures")) {
+  for (const GltfObject& texture : root.objects("textures")) {
     texture.index("source", sizes.images, "images");
     texture.index("sampler", sizes.samplers, "samplers");
   }
-  for (const Place& sampler : root.objects("samplers")) {
+  for (const GltfObject& sampler : root.objects("samplers")) {
     for (const char* key : {"wrapS", "wrapT"}) {
       constexpr std::uint64_t clamp = 33071, mirrored = 33648, repeat = 10497;
       const std::uint64_t wrap = sampler.integer(key, repeat, 0, 65535);
       if (wrap != clamp && wrap != mirrored && wrap != repeat) {
-        sampler.refuse(key, static_cast<double>(wrap),
-                       "33071 (clamp), 33648 (mirrored) or 10497 (repeat)");
+        sampler.refuse(key, "33071 (clamp), 33648 (mirrored) or 10497 (repeat)");
       }
     }
     sampler.integer("magFilter", 9729, 9728, 9729);
@@ -163,21 +160,21 @@ void check_images(const Place& root, const Sizes& sizes) {
   }
 }
 
-void check_attributes(const Place& attributes, const Sizes& sizes) {
+void check_attributes(const GltfObject& attributes, const Sizes& sizes) {
   for (const std::string& name : attributes.keys()) {
     attributes.index(name, sizes.accessors, "accessors");
   }
 }
 
-void check_meshes(const Place& root, const Sizes& sizes) {
-  for (const Place& mesh : root.objects("meshes")) {
+void check_meshes(const GltfObject& root, const Sizes& sizes) {
+  for (const GltfObject& mesh : root.objects("meshes")) {
     const auto primitives = mesh.objects("primitives");
     if (primitives.empty()) mesh.fail("primitives is missing or empty");
-    for (const Place& primitive : primitives) {
+    for (const GltfObject& primitive : primitives) {
       const auto attributes = primitive.object("attributes");
       if (!attributes) primitive.fail("attributes is missing");
       check_attributes(*attributes, sizes);
-      for (const Place& target : primitive.objects("targets")) {
+      for (const GltfObject& target : primitive.objects("targets")) {
         check_attributes(target, sizes);
       }
       primitive.index("indices", sizes.accessors, "accessors");
@@ -187,12 +184,12 @@ void check_meshes(const Place& root, const Sizes& sizes) {
   }
 }
 
-void check_nodes(const Place& root, const Sizes& sizes) {
-  for (const Place& node : root.objects("nodes")) {
+void check_nodes(const GltfObject& root, const Sizes& sizes) {
+  for (const GltfObject& node : root.objects("nodes")) {
     node.index("mesh", sizes.meshes, "meshes");
     node.index("camera", sizes.cameras, "cameras");
     node.indices("children", sizes.nodes, "nodes");
-    const Range any{};
+    const Limits any{};
     const auto matrix = node.numbers<16>("matrix", any);
     const auto rotation = node.numbers<4>("rotation", {-1.001, 1.001});
     const auto scale = node.numbers<3>("scale", any);
@@ -212,7 +209,8 @@ void check_nodes(const Place& root, const Sizes& sizes) {
         node.fail("rotation has length " + std::to_string(norm) + "; allowed: 1");
     }
   }
-  for (const Place& scene : root.objects("scenes")) scene.indices("nodes", sizes.nodes, "nodes");
+  for (const GltfObject& scene : root.objects("scenes"))
+    scene.indices("nodes", sizes.nodes, "nodes");
   root.index("scene", sizes.scenes, "scenes");
 }
 
@@ -227,7 +225,7 @@ std::string unsupported_extension(std::string_view name) {
   return "extension " + std::string(name) + " is not supported and left out";
 }
 
-void check_structure(const Place& root, const Framing& framing) {
+void check_structure(const GltfObject& root, const Framing& framing) {
   const Sizes sizes(root);
   check_asset(root);
   check_buffers(root, framing);

@@ -8,7 +8,7 @@
 namespace lacuna::gltf {
 namespace {
 
-Texture::Wrap wrap_mode(const Place* sampler, const char* key) {
+Texture::Wrap wrap_mode(const GltfObject* sampler, const char* key) {
   constexpr std::uint64_t repeat = TINYGLTF_TEXTURE_WRAP_REPEAT;
   switch (sampler == nullptr ? repeat : sampler->integer(key, repeat, 0, 65535)) {
     case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
@@ -26,8 +26,8 @@ V2f to_v2f(const std::array<double, 2>& a) {
 
 constexpr std::uint64_t last_uv_set = 1;
 
-Bytes encoded_bytes(const Place& image, const tinygltf::Image& parsed, const tinygltf::Model& model,
-                    SceneFolder& folder) {
+Bytes encoded_bytes(const GltfObject& image, const tinygltf::Image& parsed,
+                    const tinygltf::Model& model, SceneFolder& folder) {
   if (parsed.bufferView >= 0) {
     const auto& view = model.bufferViews[static_cast<std::size_t>(parsed.bufferView)];
     const auto& data = model.buffers[static_cast<std::size_t>(view.buffer)].data;
@@ -40,13 +40,13 @@ Bytes encoded_bytes(const Place& image, const tinygltf::Image& parsed, const tin
 
 }  // namespace
 
-TextureTable::TextureTable(const Place& root, Warnings& warnings)
+TextureTable::TextureTable(const GltfObject& root, Warnings& warnings)
     : warnings_(warnings),
       textures_(root.objects("textures")),
       images_(root.objects("images")),
       samplers_(root.objects("samplers")) {}
 
-TextureRef TextureTable::reference(const Place& owner, std::string_view key,
+TextureRef TextureTable::reference(const GltfObject& owner, std::string_view key,
                                    Texture::Encoding encoding, bool needed) {
   TextureRef ref;
   const auto info = owner.object(key);
@@ -66,11 +66,11 @@ TextureRef TextureTable::reference(const Place& owner, std::string_view key,
   return ref;
 }
 
-int TextureTable::enter(const Place& texture, Texture::Encoding encoding) {
+int TextureTable::enter(const GltfObject& texture, Texture::Encoding encoding) {
   const auto source = texture.index("source", images_.size(), "images");
   if (!source) texture.fail("source is missing: it has no PNG or JPEG image");
   const auto sampler = texture.index("sampler", samplers_.size(), "samplers");
-  const Place* used = sampler ? &samplers_[*sampler] : nullptr;
+  const GltfObject* used = sampler ? &samplers_[*sampler] : nullptr;
   constexpr std::uint64_t nearest = TINYGLTF_TEXTURE_FILTER_NEAREST;
   if (used != nullptr && used->has("magFilter") &&
       used->integer("magFilter", 0, 65535) == nearest) {
@@ -90,7 +90,7 @@ std::vector<std::unique_ptr<Texture>> TextureTable::build(const tinygltf::Model&
   std::vector<bool> hashed(images_.size());
   std::uint64_t all_bytes = 0;
   for (const Entry& entry : entries_) {
-    const Place& image = images_[entry.image];
+    const GltfObject& image = images_[entry.image];
     Bytes bytes = encoded_bytes(image, model.images[entry.image], model, folder);
     all_bytes += bytes.size();
     if (all_bytes > max_encoded_bytes) {

@@ -13,11 +13,11 @@ namespace lacuna::gltf {
 class TextureTable {
  public:
   /// `root` must outlive the table.
-  TextureTable(const Place& root, Warnings& warnings);
+  TextureTable(const GltfObject& root, Warnings& warnings);
 
   /// The textureInfo under `key`, with KHR_texture_transform. Checked in any case; entered into the
   /// table only if `needed`, that is if its factor is not 0. Throws SceneError.
-  TextureRef reference(const Place& owner, std::string_view key, Texture::Encoding encoding,
+  TextureRef reference(const GltfObject& owner, std::string_view key, Texture::Encoding encoding,
                        bool needed);
 
   /// Takes the encoded bytes of all entries. Throws SceneError if one is missing.
@@ -31,10 +31,10 @@ class TextureTable {
     Texture::Wrap wrap_s, wrap_t;
     bool operator==(const Entry&) const = default;
   };
-  int enter(const Place& texture, Texture::Encoding encoding);
+  int enter(const GltfObject& texture, Texture::Encoding encoding);
 
   Warnings& warnings_;
-  std::vector<Place> textures_, images_, samplers_;
+  std::vector<GltfObject> textures_, images_, samplers_;
   std::vector<Entry> entries_;
 };
 

@@ -71,7 +71,6 @@ struct CrossedFace {
   std::uint8_t side_of_from() const {
     return static_cast<std::uint8_t>(2 * axis + (to[axis] > from[axis] ? 1 : 0));
   }
-  std::uint8_t side_of_to() const { return side_of_from() ^ 1U; }
 };
 
 /// From `x` in direction `w`, of any length but 0, in grid coordinates; for many boxes.

@@ -1,7 +1,6 @@
 #include "renderer/guides/importance_points.h"
 
 #include <algorithm>
-#include <queue>
 #include <tuple>
 #include <utility>
 
@@ -30,10 +29,8 @@ std::vector<ImportancePoint> merged(std::vector<ImportancePoint> points) {
 
 ImportancePaths::ImportancePaths(const SkeletonGraph& graph, std::span<const double> importance,
                                  ImportanceAim aim)
-    : graph_(graph), importance_(importance), aim_(aim) {
+    : graph_(graph), importance_(importance), aim_(aim), paths_(graph.nodes()) {
   const std::size_t n = graph.nodes();
-  distance_.resize(n);
-  before_.resize(n);
   last_seen_.resize(n);
   steps_.resize(n);
   tightest_.resize(n);
@@ -43,36 +40,22 @@ ImportancePaths::ImportancePaths(const SkeletonGraph& graph, std::span<const dou
   wanted_.resize(n);
 }
 
-/// Dijkstra's algorithm; among equals the node of lower index goes first.
 void ImportancePaths::find_paths(std::uint32_t node) {
-  using Reached = std::pair<double, std::uint32_t>;
-  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> reached;
-  std::fill(distance_.begin(), distance_.end(), HUGE_VAL);
   settled_.clear();
-  distance_[node] = 0;
-  before_[node] = node;
-  reached.push({0.0, node});
-  while (!reached.empty()) {
-    const auto [d, v] = reached.top();
-    reached.pop();
-    if (d > distance_[v]) continue;
+  paths_.find(node, [&](std::uint32_t v, double d, const auto& reach) {
     settled_.push_back(v);
     for (const std::uint32_t next : graph_.of(v)) {
       const Imath::V3d edge(graph_.corners[next] - graph_.corners[v]);
-      const double there = d + edge.length();
-      if (there >= distance_[next]) continue;
-      distance_[next] = there;
-      before_[next] = v;
-      reached.push({there, next});
+      reach(next, d + edge.length(), v);
     }
-  }
+  });
 }
 
 /// Nodes from which a shortest path leads on to an importance node, or that are one.
 void ImportancePaths::mark_wanted() {
   for (const std::uint32_t v : settled_) wanted_[v] = importance_[v] > 0 ? 1 : 0;
   for (std::size_t i = settled_.size(); i-- > 1;) {
-    if (wanted_[settled_[i]] != 0) wanted_[before_[settled_[i]]] = 1;
+    if (wanted_[settled_[i]] != 0) wanted_[paths_.last[settled_[i]]] = 1;
   }
 }
 
@@ -87,7 +70,7 @@ void ImportancePaths::follow(std::uint32_t node, std::uint32_t v) {
     tightest_[v] = v;
     return;
   }
-  const std::uint32_t before = before_[v];
+  const std::uint32_t before = paths_.last[v];
   sum_[v] = sum_[before] + here;
   steps_[v] = steps_[before] + 1;
   const double size = double(graph_.radii[v]) / (here - Imath::V3d(graph_.corners[node])).length();
@@ -115,11 +98,11 @@ std::vector<ImportancePoint> ImportancePaths::points(
   const double least = std::max(0.5, double(graph_.radii[node]));
   for (const std::uint32_t v : settled_) {
     if (wanted_[v] == 0) continue;
-    const std::uint32_t before = before_[v];
+    const std::uint32_t before = paths_.last[v];
     const bool seen = v == node || (last_seen_[before] == before && sees(v));
     last_seen_[v] = seen ? v : last_seen_[before];
     if (seen) follow(node, v);
-    const double d = std::max(distance_[v], least);
+    const double d = std::max(paths_.distance[v], least);
     if (importance_[v] > 0) weight_[last_seen_[v]] += importance_[v] / (d * d);
   }
   std::vector<ImportancePoint> points;

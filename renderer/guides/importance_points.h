@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "analysis/skeleton/graph.h"
+#include "renderer/guides/shortest_paths.h"
 #include "renderer/settings/guide_settings.h"
 
 namespace lacuna {
@@ -41,10 +42,9 @@ class ImportancePaths {
   const SkeletonGraph& graph_;
   std::span<const double> importance_;
   ImportanceAim aim_;
-  // Of the shortest paths from the node asked for last; nodes in the order of their distance.
-  std::vector<std::uint32_t> settled_;
-  std::vector<double> distance_;
-  std::vector<std::uint32_t> before_, last_seen_;
+  ShortestPaths paths_;  // from the node asked for last; an edge is the node that it comes from
+  std::vector<std::uint32_t> settled_;  // in the order of their distance
+  std::vector<std::uint32_t> last_seen_;
   // Of the path to a node that is seen: how many nodes it has and the sum of their places; the one
   // whose ball looks smallest, and how small.
   std::vector<std::uint32_t> steps_, tightest_;

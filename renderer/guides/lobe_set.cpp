@@ -45,16 +45,16 @@ std::vector<float> LobeSet::powers() {
 }
 
 std::array<float, LobeSet::doublings> LobeSet::pdf_of_powers(const V3f& x, const V3f& w) const {
-  __m256 sums[doublings] = {};
-  for_each_cosine(x, w, [&](__m256 cosine, __m256 share) {
-    for (std::size_t k = 0; k < doublings; ++k) {
-      sums[k] = _mm256_add_ps(sums[k], _mm256_mul_ps(share, cosine));
-      cosine = _mm256_mul_ps(cosine, cosine);
+  std::array<Float8, doublings> sums;
+  for_each_cosine(x, w, [&](Float8 cosine, Float8 share) {
+    for (Float8& sum : sums) {
+      sum = sum + share * cosine;
+      cosine = cosine * cosine;
     }
   });
   std::array<float, doublings> densities;
   for (std::size_t k = 0; k < doublings; ++k) {
-    densities[k] = sum(Float8(sums[k])) * static_cast<float>((1U << k) + 1) * norm;
+    densities[k] = reduce_add(sums[k]) * static_cast<float>((1U << k) + 1) * norm;
   }
   return densities;
 }

@@ -7,7 +7,6 @@
 
 #include "renderer/core/alias_table.h"
 #include "renderer/core/density.h"
-#include "renderer/core/float8.h"
 #include "renderer/core/power8.h"
 #include "renderer/core/vec.h"
 
@@ -37,11 +36,10 @@ class LobeSet {
   std::optional<V3f> sample(const V3f& x, float s, Rng& rng) const;
   /// Density with which sample() returns unit `w`.
   Pdf<SolidAngle> pdf(const V3f& x, const V3f& w, float s) const {
-    __m256 sum = _mm256_setzero_ps();
-    for_each_cosine(x, w, [&](__m256 cosine, __m256 share) {
-      sum = _mm256_add_ps(sum, _mm256_mul_ps(share, power8(cosine, s)));
-    });
-    return Pdf<SolidAngle>(lacuna::sum(Float8(sum)) * (s + 1) * norm);
+    Float8 sum;
+    for_each_cosine(x, w,
+                    [&](Float8 cosine, Float8 share) { sum = sum + share * power8(cosine, s); });
+    return Pdf<SolidAngle>(reduce_add(sum) * (s + 1) * norm);
   }
 
   static constexpr std::size_t doublings = 10;
@@ -61,21 +59,12 @@ class LobeSet {
   template <class Use>
   void for_each_cosine(const V3f& x, const V3f& w, const Use& use) const {
     for (const Block& b : blocks_) {
-      const __m256 dx = _mm256_sub_ps(_mm256_load_ps(b.x.data()), _mm256_set1_ps(x.x));
-      const __m256 dy = _mm256_sub_ps(_mm256_load_ps(b.y.data()), _mm256_set1_ps(x.y));
-      const __m256 dz = _mm256_sub_ps(_mm256_load_ps(b.z.data()), _mm256_set1_ps(x.z));
-      const auto dot3 = [](__m256 ax, __m256 ay, __m256 az, __m256 bx, __m256 by, __m256 bz) {
-        return _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(ax, bx), _mm256_mul_ps(ay, by)),
-                             _mm256_mul_ps(az, bz));
-      };
-      const __m256 length = _mm256_sqrt_ps(dot3(dx, dy, dz, dx, dy, dz));
-      const __m256 along =
-          dot3(dx, dy, dz, _mm256_set1_ps(w.x), _mm256_set1_ps(w.y), _mm256_set1_ps(w.z));
+      const Float8x3 d{Float8::load(b.x.data()) - x.x, Float8::load(b.y.data()) - x.y,
+                       Float8::load(b.z.data()) - x.z};
+      const Float8 along = dot(d, Float8x3{w.x, w.y, w.z});
       // Of a point at x itself no direction is known: 0 / 0 becomes 0 in max(), whose second
       // operand wins.
-      __m256 cosine = _mm256_max_ps(_mm256_div_ps(along, length), _mm256_setzero_ps());
-      cosine = _mm256_min_ps(cosine, _mm256_set1_ps(1));
-      use(cosine, _mm256_load_ps(b.share.data()));
+      use(min(max(along / sqrt(length2(d)), 0.0F), 1.0F), Float8::load(b.share.data()));
     }
   }
 

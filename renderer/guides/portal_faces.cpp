@@ -1,9 +1,9 @@
 #include "renderer/guides/portal_faces.h"
 
 #include <map>
-#include <queue>
 
 #include "renderer/guides/arriving_power.h"
+#include "renderer/guides/shortest_paths.h"
 
 namespace lacuna {
 
@@ -34,7 +34,9 @@ VoxelBox box_around(const Portals& portals, const Portal& portal,
 /// The share of a portal that is seen from `eye`, in voxels, by some of its faces.
 double share_seen(const RayCaster& rays, const GridTransform& transform, const V3d& eye,
                   const Portals& portals, const Portal& portal, const Grid3<std::uint32_t>& label) {
-  const std::uint64_t tried = std::min<std::uint64_t>(portal.faces(), 16);
+  // Only whether half of it is seen is asked, once for each region and portal.
+  constexpr std::uint64_t most_tried = 16;
+  const std::uint64_t tried = std::min(portal.faces(), most_tried);
   const V3f from(transform.to_world(eye));
   double seen = 0;
   for (std::uint64_t k = 0; k < tried; ++k) {
@@ -85,48 +87,38 @@ void PortalFaces::prepare(const PrepareContext& context, const SurfaceLookup& lo
   });
 }
 
-/// Dijkstra's algorithm over regions, from centre to portal to centre.
+/// By the shortest paths over regions, from centre to portal to centre.
 void PortalFaces::find_exits(std::uint32_t region, const std::vector<V3d>& centres,
                              const std::vector<double>& power, const RegionLabels& labels,
                              const std::function<bool(const Portal&)>& sees) {
-  using Reached = std::pair<double, std::uint32_t>;
-  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> reached;
-  std::vector<double> distance(centres.size(), HUGE_VAL);
+  ShortestPaths paths(centres.size());                 // their edges are portals
   std::vector<std::uint32_t> exit(centres.size(), 0);  // the portal to aim at on the way there
-  std::vector<std::uint32_t> last(centres.size(), 0);  // the last one on the way
-  std::vector<char> seen(centres.size(), 0);           // all of them are
-  distance[region] = 0;
-  reached.push({0.0, region});
+  std::vector<char> seen(centres.size(), 0);           // all portals on the way are
   const double own_size = std::max(1.0, double(labels.regions[region].opening));
   std::map<std::uint32_t, double> by_portal;
   double elsewhere = 0;
-  while (!reached.empty()) {
-    const auto [d, at] = reached.top();
-    reached.pop();
-    if (d > distance[at]) continue;
+  const auto other_side = [&](std::uint32_t portal, std::uint32_t of) {
+    const Portal& p = portals_->portals[portal];
+    return p.a == of ? p.b : p.a;
+  };
+  paths.find(region, [&](std::uint32_t at, double d, const auto& reach) {
     if (at != region) {
-      const Portal& portal = portals_->portals[last[at]];
-      const std::uint32_t before = portal.a == at ? portal.b : portal.a;
+      const std::uint32_t last = paths.last[at], before = other_side(last, at);
       const bool first = before == region;
-      seen[at] = (first || seen[before] != 0) && sees(portal) ? 1 : 0;
-      exit[at] = first || seen[at] != 0 ? last[at] : exit[before];
-    }
-    if (at != region && power[at] > 0) {
-      const double length = std::max(d, own_size);
-      by_portal[exit[at]] += power[at] / (length * length);
-      elsewhere += power[at] / (length * length);
+      seen[at] = (first || seen[before] != 0) && sees(portals_->portals[last]) ? 1 : 0;
+      exit[at] = first || seen[at] != 0 ? last : exit[before];
+      if (power[at] > 0) {
+        const double length = std::max(d, own_size);
+        by_portal[exit[at]] += power[at] / (length * length);
+        elsewhere += power[at] / (length * length);
+      }
     }
     for (const std::uint32_t p : portals_->of(at)) {
-      const Portal& portal = portals_->portals[p];
-      const std::uint32_t next = portal.a == at ? portal.b : portal.a;
-      const double there =
-          d + (middles_[p] - centres[at]).length() + (centres[next] - middles_[p]).length();
-      if (there >= distance[next]) continue;
-      distance[next] = there;
-      last[next] = p;
-      reached.push({there, next});
+      const std::uint32_t next = other_side(p, at);
+      reach(next, d + (middles_[p] - centres[at]).length() + (centres[next] - middles_[p]).length(),
+            p);
     }
-  }
+  });
   if (!(elsewhere > 0)) return;
   Exits& exits = exits_[region];
   exits.mass = elsewhere / (elsewhere + power[region] / (own_size * own_size));

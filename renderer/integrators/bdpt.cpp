@@ -1,4 +1,4 @@
-#include "renderer/integrators/bdpt.h"
+#include "renderer/integrators/integrators.h"
 
 #include "renderer/connections/registry.h"
 #include "renderer/core/pass_seconds.h"

@@ -1,4 +1,4 @@
-#include "renderer/integrators/inspect.h"
+#include "renderer/integrators/integrators.h"
 
 #include "renderer/guides/make_guide.h"
 #include "renderer/integrators/inspect_guide.h"

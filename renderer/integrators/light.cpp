@@ -1,4 +1,4 @@
-#include "renderer/integrators/light.h"
+#include "renderer/integrators/integrators.h"
 
 #include "renderer/path/bsdf_guide.h"
 #include "renderer/path/light_pass.h"

@@ -1,4 +1,4 @@
-#include "renderer/integrators/many_lights.h"
+#include "renderer/integrators/integrators.h"
 
 #include "renderer/core/pass_seconds.h"
 #include "renderer/many_lights/light_filter.h"

@@ -1,14 +1,4 @@
-#include "renderer/integrators/bdpt.h"
-#include "renderer/integrators/inspect.h"
-#include "renderer/integrators/integrator.h"
-#include "renderer/integrators/light.h"
-#include "renderer/integrators/many_lights.h"
-#include "renderer/integrators/path.h"
-#include "renderer/settings/bdpt_settings.h"
-#include "renderer/settings/inspect_settings.h"
-#include "renderer/settings/light_settings.h"
-#include "renderer/settings/many_lights_settings.h"
-#include "renderer/settings/path_settings.h"
+#include "renderer/integrators/integrators.h"
 
 namespace lacuna {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "renderer/core/float8.h"
+#include "analysis/geometry/simd.h"
 #include "renderer/core/vec.h"
 
 namespace lacuna {

@@ -11,6 +11,10 @@ namespace {
 
 constexpr int part = EyeBatch::size;  // pixels
 
+/// Of the rank of the farthest neighbour: a cache point counts at most a thousand times as much as
+/// that, also where it is the shading point itself and its rank 0.
+constexpr float least_rank = 1e-3F;
+
 /// Eight bits as eight floats.
 struct ByteTable {
   alignas(32) std::array<std::array<float, 8>, 256> of;
@@ -154,7 +158,7 @@ CachePoints::Near CachePoints::near(const ShadingPoint& at) const {
   }
   float total = 0;
   for (std::size_t j = 0; j < n; ++j) {
-    near.weight[j] = farthest > 0 ? farthest / std::max(rank[j], 1e-3F * farthest) : 1.0F;
+    near.weight[j] = farthest > 0 ? farthest / std::max(rank[j], least_rank * farthest) : 1.0F;
     total += near.weight[j];
   }
   for (std::size_t j = 0; j < n; ++j) near.weight[j] /= total;

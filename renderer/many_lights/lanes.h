@@ -1,11 +1,10 @@
 #pragma once
 
-#include <immintrin.h>
-
 #include <array>
 #include <cstdint>
 
-#include "renderer/core/float8.h"
+#include "analysis/geometry/bits.h"
+#include "analysis/geometry/simd.h"
 
 namespace lacuna {
 
@@ -29,7 +28,8 @@ struct alignas(32) Lanes {
 /// Bit i: value i is above 0.
 inline std::uint64_t positive(const Lanes& a) {
   std::uint64_t bits = 0;
-  for (int k = 0; k < Lanes::groups; ++k) bits |= std::uint64_t{bits_of(a.eight(k) > 0)} << (8 * k);
+  for (int k = 0; k < Lanes::groups; ++k)
+    bits |= std::uint64_t{movemask(a.eight(k) > 0)} << (8 * k);
   return bits;
 }
 
@@ -37,20 +37,14 @@ inline std::uint64_t positive(const Lanes& a) {
 inline float sum(const Lanes& a) {
   Float8 s = a.eight(0);
   for (int k = 1; k < Lanes::groups; ++k) s = s + a.eight(k);
-  return sum(s);
+  return reduce_add(s);
 }
 
 /// The sum of all products, in a fixed order.
 inline float sum_of_products(const Lanes& a, const Lanes& b) {
   Float8 s = a.eight(0) * b.eight(0);
   for (int k = 1; k < Lanes::groups; ++k) s = s + a.eight(k) * b.eight(k);
-  return sum(s);
-}
-
-/// Calls `use(i)` for each bit that is set, from the lowest on.
-template <class Use>
-void for_each_bit(std::uint64_t bits, Use&& use) {
-  for (; bits != 0; bits &= bits - 1) use(__builtin_ctzll(bits));
+  return reduce_add(s);
 }
 
 }  // namespace lacuna

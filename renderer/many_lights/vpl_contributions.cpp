@@ -43,24 +43,22 @@ std::uint64_t PointLanes::all_but(LeavesOut&& leaves_out) const {
 
 std::uint64_t PointLanes::may_be_lit(const BlockBounds& bounds) const {
   return all_but([&](const Float8x3& x, const Float8x3& n) {
-    return bits_of(bounds.turned_from(x)) | bits_of(bounds.behind(x, n));
+    return movemask(bounds.turned_from(x)) | movemask(bounds.behind(x, n));
   });
 }
 
 std::uint64_t PointLanes::may_be_near(const BlockBounds& bounds, float distance) const {
   return all_but([&](const Float8x3& x, const Float8x3&) {
-    return bits_of(bounds.further_than(distance, x));
+    return movemask(bounds.further_than(distance, x));
   });
 }
 
 /// Of those that were drawn what each stands for; the others of a group of eight become black.
 void VplContributions::weigh(std::uint64_t of, float weight, Terms& out) {
-  const __m256i lane_bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
   for (int k = 0; k < Lanes::groups; ++k) {
-    const auto bits = static_cast<int>(of >> (8 * k) & 0xff);
+    const auto bits = static_cast<unsigned>(of >> (8 * k) & 0xff);
     if (bits == 0) continue;  // black already
-    const __m256i drawn = _mm256_and_si256(_mm256_set1_epi32(bits), lane_bits);
-    const Mask8 mask{_mm256_castsi256_ps(_mm256_cmpeq_epi32(drawn, lane_bits))};
+    const Mask8 mask = mask_from_bits(bits);
     for (Lanes* const channel : {&out.r, &out.g, &out.b}) {
       channel->set(k, keep_where(mask, channel->eight(k) * Float8(weight)));
     }
@@ -89,7 +87,7 @@ void VplContributions::diffuse_terms(const ShadingPoint& at, const DiffuseBlock&
     Float8 t = over_d2 * select(cos_s > 0, from.shading_cosine_ratio.eight(k), 1);
     const Float8 geometric = abs(w.x * ng.x + w.y * ng.y + w.z * ng.z) * over_d2;
     const Mask8 above = geometric > bound;
-    if (any_of(above)) t = select(above, t * bound / geometric, t);  // bounded_share()
+    if (any(above)) t = select(above, t * bound / geometric, t);  // bounded_share()
     // At the light itself nothing of this is a number, and no comparison holds.
     t = keep_where(over_d2 > 0, t);
     const Float8x3 f = at.seen.eval(w);

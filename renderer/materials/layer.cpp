@@ -124,10 +124,9 @@ MeanWeights::MeanWeights(const Layer& layer) : smooth_(layer.row_ < 0) {
 Float8 MeanWeights::at(Float8 cos) const {
   if (smooth_) return schlick_weight(cos);
   const Float8 x = sqrt(min(Float8(1), max(Float8(0), cos))) * float(columns - 1);
-  const __m256i column = _mm256_min_epi32(_mm256_cvttps_epi32(x.v), _mm256_set1_epi32(columns - 2));
-  const Float8 low(_mm256_i32gather_ps(v_.data(), column, 4));
-  const Float8 high(_mm256_i32gather_ps(v_.data() + 1, column, 4));
-  return low + (x - Float8(_mm256_cvtepi32_ps(column))) * (high - low);
+  const Int8 column = min(truncate(x), Int8(columns - 2));
+  const Float8 low = gather(v_.data(), column), high = gather(v_.data() + 1, column);
+  return low + (x - to_float(column)) * (high - low);
 }
 
 float Layer::mean_weight(float cos) const {

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "renderer/core/float8.h"
+#include "analysis/geometry/simd.h"
 #include "renderer/materials/layer.h"
 
 namespace lacuna {

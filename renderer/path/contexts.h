@@ -4,7 +4,7 @@
 #include <functional>
 #include <span>
 
-#include "analysis/artefacts/space_analysis.h"
+#include "analysis/space_analysis/space_analysis.h"
 #include "renderer/film/image.h"
 #include "renderer/scene/camera.h"
 #include "renderer/scene/scene.h"

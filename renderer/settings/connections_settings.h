@@ -35,6 +35,7 @@ struct EnumTable<LightSides> {
 /// What all choices of connections but `paired` have in common.
 struct ResamplingSettings {
   int light_paths = 1024;
+  // As published they are otherwise, see their tables:
   int count_as = 8;
   double splat_paths = 0.25;
   double roulette = 0.3;
@@ -51,21 +52,24 @@ void describe_resampling(V& v, ResamplingSettings& s) {
     {.doc = "light paths an iteration that are joined to the eye, as a share of the pixels; those "
             "that eye paths are joined to always are",
      .min = 0,
-     .max = 16});
+     .max = 16,
+     .published = "1"});
   v("count_as", s.count_as,
     {.doc =
          "as how many samples a connection with a resampled path of two vertices or more counts "
          "in the weights of multiple importance sampling; one with a point on an emitter counts as "
          "one. 0: both as many as there are light paths (Noel 2015, 11.5)",
      .min = 0,
-     .max = 1 << 16});
+     .max = 1 << 16,
+     .published = "0"});
   v("roulette", s.roulette,
     {.doc =
          "a connection is made with a probability in proportion to what those of its length gave "
          "in its part of the empty space before; certainly, if that is this share of what all "
          "connections of a path give in its part of the picture. 0: all are made",
      .min = 0,
-     .max = 1});
+     .max = 1,
+     .published = "0"});
 }
 
 /// connections: paired.
@@ -100,7 +104,7 @@ struct SkeletonConnectionsSettings : ResamplingSettings {
   double acceptance = 1;
   bool visible = true;
   bool unshadowed = true;
-  Combination combination = Combination::mixture;
+  Combination combination = Combination::mixture;  // as published it is otherwise
   LightSides sides = LightSides::facing;
   bool operator==(const SkeletonConnectionsSettings&) const = default;
 };
@@ -119,7 +123,8 @@ void describe(V& v, SkeletonConnectionsSettings& s) {
   v("visible", s.visible,
     {.doc = "distribution V: contribution over squared distance, of what the node sees (eq. 188)"});
   v("unshadowed", s.unshadowed, {.doc = "distribution U: the same of all (eq. 189)"});
-  v("combination", s.combination, {.doc = "of V, U and the uniform distribution C"});
+  v("combination", s.combination,
+    {.doc = "of V, U and the uniform distribution C", .published = "\"max\""});
   v("sides", s.sides, {.doc = "light vertices that V and U take"});
 }
 
@@ -134,7 +139,7 @@ struct ImportanceCacheSettings : ResamplingSettings {
   bool full = true;
   bool unshadowed = false;
   bool bounded = false;
-  Combination combination = Combination::mixture;
+  Combination combination = Combination::mixture;  // as published it is otherwise
   bool operator==(const ImportanceCacheSettings&) const = default;
 };
 template <class V, class S>
@@ -156,7 +161,8 @@ void describe(V& v, ImportanceCacheSettings& s) {
   v("bounded", s.bounded,
     {.doc = "distribution B: without visibility, and without what only holds at the record: its "
             "BSDF and the distance"});
-  v("combination", s.combination, {.doc = "of F, U, B and the uniform distribution C"});
+  v("combination", s.combination,
+    {.doc = "of F, U, B and the uniform distribution C", .published = "\"max\""});
 }
 
 /// connections: hybrid. Records are dense where the eye looks and too few elsewhere; nodes are
@@ -171,7 +177,7 @@ struct HybridSettings : ResamplingSettings {
   double record_density = ImportanceCacheSettings{}.record_density;
   int neighbours = ImportanceCacheSettings{}.neighbours;
   double acceptance = SkeletonConnectionsSettings{}.acceptance;
-  Combination combination = Combination::mixture;
+  Combination combination = Combination::mixture;  // as published it is otherwise
   bool operator==(const HybridSettings&) const = default;
 
   ImportanceCacheSettings cache() const {
@@ -198,7 +204,8 @@ void describe(V& v, HybridSettings& s) {
      .unit = "edges"});
   describe_records(v, s);
   describe_acceptance(v, s);
-  v("combination", s.combination, {.doc = "of F and C at records, and of V, U and C at nodes"});
+  v("combination", s.combination,
+    {.doc = "of F and C at records, and of V, U and C at nodes", .published = "\"max\""});
 }
 
 /// Which light vertices meet an eye vertex.

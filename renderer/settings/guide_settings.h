@@ -54,7 +54,7 @@ struct SkeletonGuideSettings : LightRays {
 
   AutoNumber strength{8};
   AutoNumber probability{0.5};
-  ImportanceAim aim = ImportanceAim::last;
+  ImportanceAim aim = ImportanceAim::last;  // as published it is otherwise
   bool operator==(const SkeletonGuideSettings&) const = default;
 };
 template <class V>
@@ -69,7 +69,8 @@ void describe(V& v, SkeletonGuideSettings& s) {
             "learned for each node while rendering",
      .min = 0,
      .max = most_guided});
-  v("aim", s.aim, {.doc = "where rays are sent on the visible part of a shortest path"});
+  v("aim", s.aim,
+    {.doc = "where rays are sent on the visible part of a shortest path", .published = "\"mean\""});
   describe_light_rays(
       v, s, "rays from the lights that find the nodes whose surroundings are lit (eq. 176)");
 }
@@ -113,13 +114,14 @@ struct PortalsGuideSettings : RegionGuideSettings, LightRays {
   static constexpr std::string_view doc =
       "rays through the portals on the shortest paths to where the light arrives (Noel 2015, "
       "10.4.1)";
-  PortalChoice portal = PortalChoice::last;
+  PortalChoice portal = PortalChoice::last;  // as published it is otherwise
   bool operator==(const PortalsGuideSettings&) const = default;
 };
 template <class V>
 void describe(V& v, PortalsGuideSettings& s) {
   describe_region_guide(v, s);
-  v("portal", s.portal, {.doc = "which portal on a shortest path rays are sent through"});
+  v("portal", s.portal,
+    {.doc = "which portal on a shortest path rays are sent through", .published = "\"next\""});
   describe_light_rays(v, s, "rays from the lights that find the regions that are lit");
 }
 

@@ -47,6 +47,7 @@ struct ChanceSettings {
   int cache_points = 2000;
   int neighbours = 3;
   double epsilon_probability = 0.1;
+  // As published they are otherwise, see their tables:
   double term_cost = 0.03;
   VarianceOf variance = VarianceOf::picture;
   bool operator==(const ChanceSettings&) const = default;
@@ -63,7 +64,7 @@ void describe_cache(V& v, S& s, std::string_view what) {
 }
 
 template <class V>
-void describe_chance(V& v, ChanceSettings& s) {
+void describe_chance(V& v, ChanceSettings& s, std::string_view published_variance = {}) {
   v("epsilon_probability", s.epsilon_probability,
     {.doc = "least probability of a test (Nabata et al., eq. 12)",
      .min = 0,
@@ -73,8 +74,10 @@ void describe_chance(V& v, ChanceSettings& s) {
     {.doc = "time of a light's contribution without its test, as a share of the time of the test; "
             "0: only rays count (eq. 13)",
      .min = 0,
-     .max = 1e6});
-  v("variance", s.variance, {.doc = "of what sigma^2 is the variance (eq. 8)"});
+     .max = 1e6,
+     .published = "0"});
+  v("variance", s.variance,
+    {.doc = "of what sigma^2 is the variance (eq. 8)", .published = published_variance});
 }
 
 /// How a contribution's probability of a test follows from it.
@@ -116,7 +119,7 @@ struct ProbabilisticVisibilitySettings : ChanceSettings {
       "the estimate is corrected by those that are (Nabata et al.)";
 
   double epsilon_variance = 0.1;
-  bool clamp_negative = false;
+  bool clamp_negative = false;  // as published it is otherwise
   bool operator==(const ProbabilisticVisibilitySettings&) const = default;
 };
 
@@ -127,7 +130,7 @@ inline constexpr std::string_view cache_points_doc =
 template <class V>
 void describe(V& v, ProbabilisticVisibilitySettings& s) {
   describe_cache(v, s, cache_points_doc);
-  describe_chance(v, s);
+  describe_chance(v, s, "\"point\"");
   v("epsilon_variance", s.epsilon_variance,
     {.doc = "least variance that a visibility is taken to have, also where all cache points agree "
             "(eq. 11)",
@@ -135,8 +138,8 @@ void describe(V& v, ProbabilisticVisibilitySettings& s) {
      .max = 0.25,
      .above_min = true});
   v("clamp_negative", s.clamp_negative,
-    {.doc =
-         "an iteration's pixels below zero become black, as in the paper (section 4.2): biased"});
+    {.doc = "an iteration's pixels below zero become black (section 4.2): biased",
+     .published = "true"});
 }
 
 /// visibility: interpolated.
@@ -237,8 +240,7 @@ struct EnumTable<ViewTraversal> {
       {ViewTraversal::depth_first, "depth_first", "branch by branch, which holds nearly none"},
       {ViewTraversal::breadth_first, "breadth_first",
        "by a queue of one generation after another, with a map for every node of the lights' "
-       "octree "
-       "(as published; the same picture, for the memory it takes)"},
+       "octree (the same picture, for the memory it takes)"},
   }};
 };
 
@@ -253,10 +255,11 @@ struct ViewMapsVisibilitySettings {
   ViewMapMethod method = ViewMapMethod::megaviews;
   int map_size = 16;
   int levels = 9;
-  double node_texels = 1.75;
-  double cover = 0.82;
   double memory = 4;
   bool cull = true;
+  // As published they are otherwise, see their tables:
+  double node_texels = 1.75;
+  double cover = 0.82;
   ViewTraversal traversal = ViewTraversal::depth_first;
   bool operator==(const ViewMapsVisibilitySettings&) const = default;
 };
@@ -271,19 +274,21 @@ void describe(V& v, ViewMapsVisibilitySettings& s) {
     {.doc = "of the octrees: the scene's longest side has 2^levels cubes", .min = 1, .max = 11});
   v("node_texels", s.node_texels,
     {.doc =
-         "texels that the sphere around a node may show across where it is rendered as one: 1 in "
-         "the paper, so that no hole can be; at 1.75 a cube's side shows about one, which costs "
-         "less than half, and larger maps for the same time err less. Not for per_view",
+         "texels that the sphere around a node may show across where it is rendered as one: at 1 "
+         "no hole can be; at 1.75 a cube's side shows about one, which costs less than half, and "
+         "larger maps for the same time err less. Not for per_view",
      .min = 0.25,
-     .max = 4});
+     .max = 4,
+     .published = "1"});
   v("cover", s.cover,
     {.doc =
          "a node fills the texels whose middles lie within this share of the radius of its sphere, "
          "so that what is thinner than a texel hides little; below 0.82 a wall of cubes has holes, "
          "and yet some scenes err least near 0.65; 0: it fills the texel that its middle falls "
-         "into, whatever it covers of it (as published), and shadows are larger. Not for per_view",
+         "into, whatever it covers of it, and shadows are larger. Not for per_view",
      .min = 0,
-     .max = 1});
+     .max = 1,
+     .published = "0"});
   v("memory", s.memory,
     {.doc =
          "that the maps may take; where those of all lights would take more, the picture is made "
@@ -295,7 +300,8 @@ void describe(V& v, ViewMapsVisibilitySettings& s) {
     {.doc = "what lies behind all lights of a node is left out of their maps: the same picture, "
             "sooner. Not for per_view"});
   v("traversal", s.traversal,
-    {.doc = "in which order pairs of nodes of both octrees are looked at. Not for per_view"});
+    {.doc = "in which order pairs of nodes of both octrees are looked at. Not for per_view",
+     .published = "\"breadth_first\""});
 }
 
 /// Whether a virtual light and a shading point see one another.

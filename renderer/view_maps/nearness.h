@@ -1,31 +1,30 @@
 #pragma once
 
-#include <immintrin.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <span>
+
+#include "analysis/geometry/simd.h"
 
 namespace lacuna {
 
 /// Distances in sixteen bits: 1 / distance as half floats, of which what is nearer than 1/4,000,000
 /// of the scene's size is taken to be there.
 struct Nearness {
-  float scale = 0;  ///< codes stand for scale / distance; 0: infinitely far
+  static constexpr float largest = 65504;  ///< the largest half float
+  float scale = 0;                         ///< codes stand for scale / distance; 0: infinitely far
 
   /// `extent`: no distance is above it. The far end is 1/64 or more, well above the smallest half.
   static Nearness within(float extent) { return {extent / 64}; }
   std::uint16_t encode(float distance) const {
-    return _cvtss_sh(std::min(scale / distance, 65504.0F), _MM_FROUND_TO_NEAREST_INT);
+    return _cvtss_sh(std::min(scale / distance, largest), _MM_FROUND_TO_NEAREST_INT);
   }
   /// The same of many distances. `to`: as many codes.
   void encode(std::span<const float> distances, std::uint16_t* to) const {
-    const __m256 most = _mm256_set1_ps(65504.0F);
     std::size_t i = 0;
     for (; i + 8 <= distances.size(); i += 8) {
-      const __m256 codes = _mm256_div_ps(_mm256_set1_ps(scale), _mm256_loadu_ps(&distances[i]));
-      _mm_storeu_si128(reinterpret_cast<__m128i*>(to + i),
-                       _mm256_cvtps_ph(_mm256_min_ps(codes, most), _MM_FROUND_TO_NEAREST_INT));
+      const Float8 codes = Float8(scale) / Float8::load_unaligned(&distances[i]);
+      min(codes, largest).store_half(to + i);
     }
     for (; i < distances.size(); ++i) to[i] = encode(distances[i]);
   }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "renderer/core/float8.h"
+#include "analysis/geometry/simd.h"
 #include "renderer/core/vec.h"
 
 namespace lacuna {
@@ -46,7 +46,7 @@ struct Paraboloid {
             coordinate(d.z * scale), scale};
   }
   Int8 texel(const Eight& p) const {
-    const auto step = [&](Float8 at) { return min(max(truncated(at), Int8(0)), Int8(size - 1)); };
+    const auto step = [&](Float8 at) { return min(max(truncate(at), Int8(0)), Int8(size - 1)); };
     return (p.half + step(p.v)) * Int8(size) + step(p.u);
   }
   /// Whether small spheres of this radius at those places cover the middles of the texels that

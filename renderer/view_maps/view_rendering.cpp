@@ -2,6 +2,8 @@
 
 #include <bit>
 
+#include "analysis/geometry/bits.h"
+
 namespace lacuna {
 
 ManyViewsCounts& ManyViewsCounts::operator+=(const ManyViewsCounts& o) {
@@ -48,12 +50,12 @@ unsigned outside(const ViewTree::Node& v, const Float8x3& d, Float8 distance, fl
   const Float8 cosine(v.cosine), sine(v.sine);
   const Float8 along = dot(d, Float8x3{v.n.x, v.n.y, v.n.z});
   const Mask8 unseen = cosine * distance > along;  // alpha > psi, without a division
-  if (!any_of(unseen)) return 0;
+  if (!any(unseen)) return 0;
   // |d| sin(alpha - psi), the distance to the rim, or that to the apex where it is nearer.
   const Float8 across = sqrt(max(Float8(0.0F), distance * distance - along * along));
   const Mask8 beyond = Float8(0.0F) > along * cosine + across * sine;
   const Float8 to_rim = select(beyond, distance, across * cosine - along * sine);
-  return bits_of(unseen && to_rim > Float8((radius + v.radius) * (1 + 1e-5F)));
+  return movemask(unseen && to_rim > Float8((radius + v.radius) * (1 + 1e-5F)));
 }
 
 /// Fig. 6: a scene node shows less than `node_texels` to all views below, and none of them lies
@@ -65,13 +67,7 @@ unsigned same_texel(float size, const ViewTree::Node& v, const Float8x3& d, Floa
   const Float8 nearest = distance - Float8(v.radius);
   // 2 radius / nearest Paraboloid::stretch() < node_texels, without a division
   const Float8 bound = nearest * (distance + abs(d.x));
-  return bits_of(nearest > Float8(radius) && bound > Float8(radius * size) * distance);
-}
-
-/// Calls `use(lane)` for each bit.
-template <class Use>
-void for_each_lane(unsigned bits, Use&& use) {
-  for (; bits != 0; bits &= bits - 1) use(std::countr_zero(bits));
+  return movemask(nearest > Float8(radius) && bound > Float8(radius * size) * distance);
 }
 
 }  // namespace
@@ -170,8 +166,8 @@ inline void ViewRendering::look(const Siblings& siblings, Visit& visit) const {
     map_.texel(places).store(texels.data());
     const float cover = settings_.cover;
     const unsigned shown =
-        cover > 0 ? same & bits_of(map_.covers_middle(places, e.radius * cover)) : same;
-    for_each_lane(shown, [&](int i) {
+        cover > 0 ? same & movemask(map_.covers_middle(places, e.radius * cover)) : same;
+    for_each_bit(shown, [&](int i) {
       visit.splat(texels[static_cast<std::size_t>(i)], distances[static_cast<std::size_t>(i)]);
     });
   }
@@ -186,7 +182,7 @@ inline void ViewRendering::look(const Siblings& siblings, Visit& visit) const {
       visit.left.later.push_back({siblings.parent, static_cast<std::uint8_t>(rest)});
     }
   } else {
-    for_each_lane(rest, [&](int i) { visit.left.here.push_back(Siblings::all_of(e.node(i))); });
+    for_each_bit(rest, [&](int i) { visit.left.here.push_back(Siblings::all_of(e.node(i))); });
   }
   counts.splats += static_cast<std::uint64_t>(std::popcount(rendered));
 }
@@ -224,7 +220,7 @@ void ViewRendering::fill(const Eight& e, unsigned lanes, std::span<float> depths
   e.d.z.store(z.data());
   e.distance.store(distances.data());
   const float radius = settings_.cover > 0 ? settings_.cover * e.radius : e.radius;
-  for_each_lane(lanes, [&](int lane) {
+  for_each_bit(lanes, [&](int lane) {
     const auto i = static_cast<std::size_t>(lane);
     const float distance = distances[i];
     const auto run = [&](int first, int n) {
@@ -245,10 +241,11 @@ void ViewRendering::hand_down(std::uint32_t parent, std::span<const float> from,
   const V3f step = views_.node(parent).centre - views_.node(child).centre;
   const Float8x3 s{step.x, step.y, step.z};
   for (std::size_t i = 0; i < from.size(); i += 8) {
-    const Float8 depth(_mm256_loadu_ps(&from[i]));
-    const Float8x3 w{_mm256_loadu_ps(&x_[i]), _mm256_loadu_ps(&y_[i]), _mm256_loadu_ps(&z_[i])};
+    const auto depth = Float8::load_unaligned(&from[i]);
+    const Float8x3 w{Float8::load_unaligned(&x_[i]), Float8::load_unaligned(&y_[i]),
+                     Float8::load_unaligned(&z_[i])};
     const Float8 moved = sqrt(length2(s + w * depth));
-    _mm256_storeu_ps(&to[i], select(Float8(nothing) > depth, moved, Float8(nothing)).v);
+    select(Float8(nothing) > depth, moved, Float8(nothing)).store_unaligned(&to[i]);
   }
 }
 

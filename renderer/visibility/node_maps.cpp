@@ -1,10 +1,9 @@
 #include "renderer/visibility/node_maps.h"
 
 #include <fmt/format.h>
-#include <immintrin.h>
 
+#include "analysis/geometry/simd.h"
 #include "analysis/space/memory_limit.h"
-#include "renderer/core/float8.h"
 #include "renderer/view_maps/nearness.h"
 
 namespace lacuna {
@@ -148,13 +147,12 @@ class Comparison {
     Float8 seen = 0.0F, all = 0.0F;
     for (int j = down.first; j <= down.first + filter; ++j) {
       const Float8 plane = first + middle(j, maps_.size) * n_[(face / 2 + 2) % 3] * over_h_;
-      const Float8 nearest = _mm256_cvtph_ps(
-          _mm_loadu_si128(reinterpret_cast<const __m128i*>(texel(face, across.first, j))));
+      const Float8 nearest = Float8::load_half(texel(face, across.first, j));
       const Float8 counts = keep_where(plane > 0, weight * down.weight(j));
       all = all + counts;
       seen = seen + keep_where(plane >= nearest, counts);
     }
-    return {sum(seen), sum(all)};
+    return {reduce_add(seen), reduce_add(all)};
   }
 
   /// One texel in a direction which may lie beyond the face that it was made for.

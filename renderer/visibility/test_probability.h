@@ -40,8 +40,7 @@ struct SystematicSampler {
   /// The probabilities of eight lights; 0 where `lit` is not above 0.
   void set(int group, Float8 probability, Float8 lit) {
     const Float8 key = keep_where(lit > 0, ceil(probability * float(one)));
-    const __m256i keys = _mm256_cvttps_epi32(key.v);
-    _mm256_store_si256(reinterpret_cast<__m256i*>(v.data()) + group, keys);
+    truncate(key).store_unaligned(v.data() + static_cast<std::ptrdiff_t>(8 * group));
   }
   float probability(int i) const { return float(v[static_cast<std::size_t>(i)]) / float(one); }
 

@@ -6,8 +6,8 @@
 #include <cctype>
 #include <nlohmann/json.hpp>
 
+#include "analysis/json/json_text.h"
 #include "analysis/storage/passing_error.h"
-#include "jobs/spec/json_text.h"
 
 namespace lacuna {
 

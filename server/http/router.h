@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "jobs/spec/json_text.h"
+#include "analysis/json/json_text.h"
 #include "server/http/message.h"
 
 namespace lacuna {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "jobs/spec/json_text.h"
+#include "analysis/json/json_text.h"
 #include "server/http/message.h"
 
 namespace lacuna {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "jobs/spec/json_text.h"
+#include "analysis/json/json_text.h"
 #include "jobs/store/job_folder.h"
 #include "server/tables/job_table.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "jobs/run/prepare.h"
+#include "jobs/render/prepare.h"
 
 namespace lacuna::extremes {
 namespace {

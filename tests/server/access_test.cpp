@@ -21,7 +21,7 @@ Request request(std::string method, std::string path, Headers headers = {}) {
   return r;
 }
 
-int status(const std::function<void()>& call) {
+int status_of_error(const std::function<void()>& call) {
   try {
     call();
     return 200;
@@ -43,7 +43,7 @@ class AccessTest : public ::testing::Test {
             }};
   }
   static int admit(Access& access, const Request& r) {
-    return status([&] { access.admit(r); });
+    return status_of_error([&] { access.admit(r); });
   }
   static Request login(const std::string& token, Headers headers = {}) {
     headers.emplace("content-type", "application/json");
@@ -179,7 +179,7 @@ TEST(Guard, KnowsEachLoopbackAddressThatItIsBoundTo) {
 TEST(Guard, KnowsTheNamesOfTheService) {
   const Guard guard("192.0.2.7", {"render.example", "Other.Example:444"});
   const auto check = [&](const std::string& host) {
-    return status([&] { guard.check(request("GET", "/", {{"host", host}})); });
+    return status_of_error([&] { guard.check(request("GET", "/", {{"host", host}})); });
   };
   for (const char* own : {"localhost:1", "127.0.0.1", "[::1]:8017", "192.0.2.7", "192.0.2.7:80",
                           "render.example", "RENDER.example:99", "other.example:444"}) {
@@ -192,7 +192,7 @@ TEST(Guard, KnowsTheNamesOfTheService) {
   }
   EXPECT_THROW(Guard("127.0.0.1", {"http://render.example"}), std::invalid_argument);
   EXPECT_THROW(Guard("127.0.0.1", {""}), std::invalid_argument);
-  EXPECT_EQ(status([] {
+  EXPECT_EQ(status_of_error([] {
               Guard("127.0.0.1", {}).check(request("GET", "/", {{"host", "192.0.2.7"}}));
             }),
             403);

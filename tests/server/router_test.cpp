@@ -30,8 +30,8 @@ Router make_router() {
   return router;
 }
 
-int status(const Router& router, const std::string& method, const std::string& path,
-           const std::string& query = "") {
+int status_of_answer(const Router& router, const std::string& method, const std::string& path,
+                     const std::string& query = "") {
   HttpMetrics metrics;
   const HttpServer server({}, router, metrics);
   const std::string target = query.empty() ? path : path + "?" + query;
@@ -40,16 +40,16 @@ int status(const Router& router, const std::string& method, const std::string& p
 
 TEST(Router, RefusesWhatTheRouteDoesNotKnowBeforeItsHandler) {
   const Router router = make_router();
-  EXPECT_EQ(status(router, "GET", "/jobs", "limit=1000&label=x&all=1"), 200);
-  EXPECT_EQ(status(router, "HEAD", "/jobs", "limit=1"), 200);
+  EXPECT_EQ(status_of_answer(router, "GET", "/jobs", "limit=1000&label=x&all=1"), 200);
+  EXPECT_EQ(status_of_answer(router, "HEAD", "/jobs", "limit=1"), 200);
   for (const char* query : {"limit=0", "limit=1001", "limit=", "limit=x", "all=2", "lmit=1"}) {
-    EXPECT_EQ(status(router, "GET", "/jobs", query), 400) << query;
+    EXPECT_EQ(status_of_answer(router, "GET", "/jobs", query), 400) << query;
   }
-  EXPECT_EQ(status(router, "POST", "/jobs", "limit=1"), 400);
-  EXPECT_EQ(status(router, "DELETE", "/jobs/a/files/b"), 200);
-  EXPECT_EQ(status(router, "DELETE", "/jobs/a/files/b", "x=1"), 400);
-  EXPECT_EQ(status(router, "DELETE", "/jobs//files/b"), 404);
-  EXPECT_EQ(status(router, "PATCH", "/jobs"), 405);
+  EXPECT_EQ(status_of_answer(router, "POST", "/jobs", "limit=1"), 400);
+  EXPECT_EQ(status_of_answer(router, "DELETE", "/jobs/a/files/b"), 200);
+  EXPECT_EQ(status_of_answer(router, "DELETE", "/jobs/a/files/b", "x=1"), 400);
+  EXPECT_EQ(status_of_answer(router, "DELETE", "/jobs//files/b"), 404);
+  EXPECT_EQ(status_of_answer(router, "PATCH", "/jobs"), 405);
 }
 
 TEST(Router, DescribesItself) {

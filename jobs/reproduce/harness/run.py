@@ -1,4 +1,4 @@
-"""One reproduction in the making: what a script measures with, and what it found."""
+"""One reproduction in the making: what an entry measures with, and what it found."""
 
 import dataclasses
 import json
@@ -35,7 +35,7 @@ class Table:
 
 
 class Run:
-    """What the script of `entry` measures with. `full`: as the paper did, as far as this machine allows, instead of in
+    """What `entry` measures with. `full`: as the paper did, as far as this machine allows, instead of in
     minutes. `folder` holds results from one start to the next, `runs` the results of the last sweep's jobs."""
 
     def __init__(self, entry, full, out):

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "analysis/artefacts/codec.h"
-#include "analysis/artefacts/space_codecs.h"
 #include "analysis/octree/octree.h"
+#include "analysis/space_analysis/space_codecs.h"
 #include "tests/analysis/artefacts/entries.h"
 
 namespace lacuna {

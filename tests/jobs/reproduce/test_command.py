@@ -5,8 +5,8 @@ import subprocess
 import sys
 import unittest
 
+from catalogue import ENTRIES
 from harness import child
-from harness.catalogue import ENTRIES
 
 
 def reproduce(*arguments):

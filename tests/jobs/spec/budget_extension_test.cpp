@@ -16,6 +16,10 @@ Budget budget(std::optional<double> seconds, std::optional<std::int64_t> iterati
   return b;
 }
 
+bool is_extension(const Budget& old, const Budget& larger) {
+  return extension_problems(old, larger).empty();
+}
+
 TEST(BudgetExtension, OneLimitThatGrowsOrGoesIsEnough) {
   EXPECT_TRUE(is_extension(budget(60, {}), budget(61, {})));
   EXPECT_TRUE(is_extension(budget({}, 10), budget({}, 11)));

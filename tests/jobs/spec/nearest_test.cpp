@@ -26,14 +26,6 @@ TEST(Nearest, DoesNotGuessWildly) {
   EXPECT_EQ(nearest("b", {"a"}), std::nullopt);
 }
 
-TEST(Limits, AreToldInWords) {
-  EXPECT_EQ(range_text({}), "");
-  EXPECT_EQ(range_text({.min = 1, .max = 4294967295.0, .unit = "px"}), "from 1 to 4294967295 px");
-  EXPECT_EQ(range_text({.min = 0, .max = 1e7, .above_min = true}), "above 0, at most 10000000");
-  EXPECT_EQ(range_text({.min = 0.05}), "at least 0.05");
-  EXPECT_EQ(range_text({.max = -2}), "at most -2");
-}
-
 TEST(Limits, OfIntegersIncludeThoseOfTheTypeAndOfExactDoubles) {
   EXPECT_EQ(limits_of<int>({}).max, 2147483647.0);
   EXPECT_EQ(limits_of<std::int64_t>({}).min, -max_exact_integer);

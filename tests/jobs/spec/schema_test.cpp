@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -43,6 +44,12 @@ class TableCheck {
       ASSERT_TRUE(property.contains("default"));
       EXPECT_EQ(property["default"].dump(), Json(ObjectWriter::value_of(member)).dump());
       EXPECT_TRUE(MiniSchema::accepts(property, property["default"]));
+    }
+    if (!field.published.empty()) {
+      const Json published = Json::parse(field.published);
+      EXPECT_TRUE(MiniSchema::accepts(property, published));
+      EXPECT_NE(published, Json(ObjectWriter::value_of(member)));
+      EXPECT_NE(text.find(fmt::format("as published: `{}`", field.published)), std::string::npos);
     }
     descend(property, member);
   }

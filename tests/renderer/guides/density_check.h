@@ -91,7 +91,7 @@ DensityCheck density_check(const Draw& draw, const Density& density, int draws, 
     result.p = 0;  // where none are expected
     return result;
   }
-  if (degrees > 0) result.p = statistics::chi_square_p(statistic, degrees);
+  if (degrees > 0) result.p = chi_square_beyond(statistic, degrees);
   return result;
 }
 

@@ -124,7 +124,7 @@ void expect_picture(const Rendering& r, Exact&& exact, Hidden&& hidden) {
     }
   }
   EXPECT_GT(pixels, n * n / 3);
-  EXPECT_GT(statistics::chi_square_p(chi2, pixels), 1e-5) << "chi2 " << chi2 << " of " << pixels;
+  EXPECT_GT(chi_square_beyond(chi2, pixels), 1e-5) << "chi2 " << chi2 << " of " << pixels;
   EXPECT_EQ(r.counters.rejected, 0U);
 }
 

@@ -36,11 +36,11 @@ TEST(BlockBounds, LeaveOutOnlyWhatNoLightOfTheBlockReaches) {
       near = near || (x[i] - p).length() <= reach;
     }
     const auto all = [](const V3f& v) { return Float8x3{v.x, v.y, v.z}; };
-    const bool is_behind = any_of(bounds.behind(all(p), all(normal)));
-    const bool is_turned = any_of(bounds.turned_from(all(p)));
+    const bool is_behind = any(bounds.behind(all(p), all(normal)));
+    const bool is_turned = any(bounds.turned_from(all(p)));
     EXPECT_FALSE(is_behind && in_front);
     EXPECT_FALSE(is_turned && faced);
-    const bool is_further = any_of(bounds.further_than(reach, all(p)));
+    const bool is_further = any(bounds.further_than(reach, all(p)));
     EXPECT_FALSE(is_further && near);
     further += is_further;
     behind += is_behind;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/space/memory_limit.h"
+#include "renderer/many_lights/cache_points.h"
 #include "renderer/many_lights/light_gather.h"
 #include "renderer/many_lights/shading_points.h"
 #include "renderer/path/light_pass.h"

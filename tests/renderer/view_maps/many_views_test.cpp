@@ -111,7 +111,7 @@ TEST(Paraboloid, KnowsWhatCoversTheMiddleOfATexel) {
     const float sphere = radius / d.length();  // small
     const Float8x3 eight{d.x, d.y, d.z};
     const auto places = map.places(eight, Float8(d.length()));
-    const bool said = bits_of(map.covers_middle(places, radius)) == 0xff;
+    const bool said = movemask(map.covers_middle(places, radius)) == 0xff;
     covered += said;
     // The map is conformal, but for its stretch, which changes a little within a texel.
     if (std::abs(angle / sphere - 1) > 0.1F) {

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "analysis/space_analysis/space_analysis.h"
+#include "renderer/geometry/scene_data.h"
+
+namespace lacuna {
+
+/// Triangles of one colour in scene units.
+struct OverlayMesh {
+  std::string name;
+  Rgb colour{1, 1, 1};
+  std::vector<V3f> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Pictures of the analysis as triangles, so that every viewer (and Lacuna itself) shows them.
+/// Edges are square bars, nodes and gates what their names say; thickness in voxels.
+std::vector<OverlayMesh> skeleton_overlay(const SkeletonGraph& graph, const GridTransform& grid);
+/// The simplified skeleton, a colour for each visibility cluster, as edges and balls.
+std::vector<OverlayMesh> cluster_overlay(const SimplifiedSkeleton& skeleton,
+                                         const VisibilityClusters& clusters,
+                                         const GridTransform& grid);
+std::vector<OverlayMesh> gate_overlay(const VisibilityGates& gates, const GridTransform& grid);
+/// The faces of every portal, a colour for each.
+std::vector<OverlayMesh> portal_overlay(const Portals& portals, const RegionLabels& regions,
+                                        const GridTransform& grid);
+
+/// A GLB with these meshes and the scene's triangles and cameras; the scene is grey and see-through
+/// (alphaMode BLEND). Throws std::system_error.
+void write_overlay(const std::filesystem::path& file, const SceneData& scene,
+                   const std::vector<OverlayMesh>& overlay);
+
+}  // namespace lacuna

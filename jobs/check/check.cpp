@@ -1,0 +1,30 @@
+#include "jobs/check/check.h"
+#include "jobs/render/prepare.h"
+#include "jobs/run/reference.h"
+#include "renderer/gltf/gltf_load.h"
+
+#include <optional>
+#include <utility>
+
+#include "renderer/scene/scene.h"
+
+namespace lacuna {
+
+std::vector<std::string> check_job(const JobSpec& spec, const RunContext& context) {
+  Prepared prepared = prepare(spec, context);
+  if (!spec.reference.empty() && spec.reference != "auto") {
+    find_reference(spec, context.data, context.scenes);
+  }
+  return prepared.warnings;
+}
+
+SceneCounts check_scene(const std::filesystem::path& file, const ThreadPool& pool) {
+  SceneData data = load_gltf(file);
+  SceneCounts counts{data.triangle_count(), data.materials.size() - 1,  // without glTF's own
+                     data.textures.size(),  data.cameras.size(),
+                     data.lights.size(),    data.warnings};
+  const Scene scene(std::move(data), {.materials = true, .emission = true}, std::nullopt, pool);
+  return counts;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,111 @@
+#include "jobs/render/prepare.h"
+#include "renderer/gltf/gltf_load.h"
+#include "renderer/scene/material_change.h"
+#include "renderer/scene/particles.h"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "analysis/storage/atomic_file.h"
+#include "jobs/store/machine.h"
+#include "renderer/scene/scene_shape.h"
+
+namespace lacuna {
+
+namespace {
+
+std::filesystem::path resolve(const RunContext& context, const std::string& what,
+                              const std::string& name,
+                              const std::vector<std::string_view>& extensions) {
+  try {
+    return context.scenes.resolve(name, extensions);
+  } catch (const std::invalid_argument& e) {
+    throw SceneError(fmt::format("{} \"{}\": {}", what, name, e.what()));
+  }
+}
+
+SceneNeeds needs_of(const JobSpec& spec, const Integrator& integrator) {
+  SceneNeeds needs = integrator.needs();
+  if (std::find(spec.layers.begin(), spec.layers.end(), ImageLayer::albedo) != spec.layers.end()) {
+    needs.materials = true;
+  }
+  return needs;
+}
+
+std::uint64_t file_hash(const std::filesystem::path& file) {
+  const std::string bytes = read_file(file, std::size_t{1} << 32);
+  return XXH3_64bits(bytes.data(), bytes.size());
+}
+
+/// The analysis of the scene's empty space as seen by the job's camera, of which nothing is built.
+void set_up_analysis(Prepared& p, const JobSpec& spec, const RunContext& context,
+                     const CameraData& camera) {
+  Observer& observer = context.observer;
+  p.artefacts = std::make_unique<ArtefactStore>(StoreSettings{
+      .folder = context.data.cache(),
+      .byte_limit = context.data.cache_limit,
+      .label = spec.scene,
+      .message = [&observer](const std::string& line) { observer.milestone(line); },
+      .warning = [&observer](const std::string& line) { observer.warning(line); },
+      .building = [&observer](const std::string& type) { observer.milestone("building " + type); },
+      .interrupted = context.interrupted});
+  const SceneData& data = p.scene->data();
+  p.space = std::make_unique<SpaceAnalysis>(
+      SpaceInput{.triangles = [&data] { return triangle_soup(data); },
+                 .geometry = geometry_key(data),
+                 .seeds =
+                     [&data, camera, everywhere = spec.environment.has_value()] {
+                       return domain_seeds(data, camera, everywhere);
+                     },
+                 .settings = spec.analysis,
+                 .byte_limit = memory_to_take},
+      *p.artefacts, *p.pool);
+}
+
+}  // namespace
+
+Prepared prepare(const JobSpec& spec, const RunContext& context) {
+  Prepared p;
+  p.pool = std::make_unique<ThreadPool>(context.threads >= 0 ? context.threads : spec.threads);
+  p.integrator = make_integrator(spec.integrator);
+  SceneData data = load_gltf(resolve(context, "scene", spec.scene, {".glb", ".gltf"}));
+  if (spec.material) change_material(data, *spec.material, spec.scene);
+  if (spec.particles) add_particles(data, *spec.particles);
+  const CameraData camera = choose_camera(data, spec.camera, spec.scene);
+  std::optional<Crop> crop;
+  if (const auto& c = spec.crop) crop = Crop{{c->from[0], c->from[1]}, {c->of[0], c->of[1]}};
+  p.camera = std::make_unique<Camera>(camera, spec.resolution[0], spec.resolution[1],
+                                      spec.pixel_filter, crop);
+  p.warnings = data.warnings;
+  if (biased(spec.integrator)) {
+    p.warnings.emplace_back(
+        "the integrator's settings make it biased: however long it runs, an error remains");
+  }
+  p.content = fmt::format("{:016x}", data.content_hash);
+
+  const SceneNeeds needs = needs_of(spec, *p.integrator);
+  std::optional<EnvironmentImage> environment;
+  if (spec.environment && needs.emission) {
+    const auto& e = *spec.environment;
+    environment = {resolve(context, "environment", e.file, {".exr", ".hdr"}),
+                   static_cast<float>(e.scale),
+                   static_cast<float>(e.rotation * std::numbers::pi / 180)};
+    p.content += fmt::format("-{:016x}", file_hash(environment->file));
+  }
+  p.scene = std::make_unique<Scene>(std::move(data), needs, environment, *p.pool);
+  if (needs.emission && p.scene->emitters().empty()) {
+    p.warnings.emplace_back("the scene has no light: the picture is black");
+  }
+  set_up_analysis(p, spec, context, camera);
+  return p;
+}
+
+void analyse(const Prepared& p) {
+  p.integrator->prepare({*p.scene, *p.pool, *p.space});
+  p.space->close();
+}
+
+}  // namespace lacuna

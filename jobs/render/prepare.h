@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "jobs/render/run_job.h"
+#include "renderer/integrators/integrator.h"
+
+namespace lacuna {
+
+/// Scene, camera and integrator of a job, ready to render.
+struct Prepared {
+  std::unique_ptr<ThreadPool> pool;
+  std::unique_ptr<Integrator> integrator;
+  std::unique_ptr<Scene> scene;
+  std::unique_ptr<Camera> camera;
+  std::unique_ptr<ArtefactStore> artefacts;
+  std::unique_ptr<SpaceAnalysis> space;  ///< nothing of it is built yet
+  std::string content;                   ///< hashes of the files the picture depends on
+  std::vector<std::string> warnings;
+};
+
+/// Loads and builds what `spec` needs, and only that. Throws SceneError: no such scene or camera,
+/// an asset that cannot be used.
+Prepared prepare(const JobSpec& spec, const RunContext& context);
+
+/// Lets the integrator look at the scene and at its empty space; only what it asks for is built, or
+/// loaded from the cache. Throws MemoryLimitError, GeometryError, WaitInterrupted.
+void analyse(const Prepared& prepared);
+
+}  // namespace lacuna

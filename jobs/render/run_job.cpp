@@ -1,0 +1,214 @@
+#include "jobs/render/run_job.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <thread>
+
+#include "analysis/storage/atomic_file.h"
+#include "jobs/render/prepare.h"
+#include "jobs/results/report.h"
+#include "jobs/results/results.h"
+#include "jobs/run/machine_watch.h"
+#include "jobs/run/obstacle.h"
+#include "jobs/run/reference.h"
+#include "jobs/run/render_loop.h"
+#include "renderer/images/image_module.h"
+#include "renderer/integrators/integrator.h"
+
+namespace lacuna {
+
+namespace {
+
+/// The job's state on disk and its phases' times while it runs.
+class Running {
+ public:
+  Running(const JobFolder& folder, Observer& observer) : folder_(folder), observer_(observer) {
+    state_ = folder.read_state();
+    state_.state = State::running;
+    state_.attempts += 1;
+    state_.started = utc_now();
+    state_.finished.clear();
+    state_.error.clear();
+    state_.warnings.clear();
+  }
+
+  void phase(const std::string& name) {
+    state_.phase = name;
+    folder_.write_state(state_);
+    observer_.phase(name);
+  }
+  void warn(const std::string& line) {
+    state_.warnings.push_back(line);
+    observer_.warning(line);
+  }
+  void finish(State state, const std::string& error = "") {
+    state_.state = state;
+    state_.phase.clear();
+    state_.error = error;
+    state_.finished = utc_now();
+    folder_.write_state(state_);
+  }
+  /// After an exception, which is what counts: that the state cannot be written, too, is only told.
+  void stop(const std::exception& e) {
+    const bool may_go_on = obstacle_of(e) != Obstacle::none;
+    try {
+      finish(may_go_on ? State::interrupted : State::failed, reason_of(e));
+    } catch (const std::exception& second) {
+      observer_.warning(second.what());
+    }
+  }
+  const std::vector<std::string>& warnings() const { return state_.warnings; }
+
+ private:
+  JobFolder folder_;
+  Observer& observer_;
+  JobState state_;
+};
+
+/// Shows a reference's progress as that of the job that waits for it.
+class ReferenceObserver final : public Observer {
+ public:
+  ReferenceObserver(const JobFolder& job, Observer& inner) : job_(job), inner_(inner) {}
+  void phase(const std::string&) override {}
+  void progress(const Progress& p) override {
+    job_.write_progress(p);
+    inner_.progress(p);
+  }
+  void milestone(const std::string& line) override { inner_.milestone("reference: " + line); }
+  void warning(const std::string& line) override { inner_.warning("reference: " + line); }
+
+ private:
+  const JobFolder& job_;
+  Observer& inner_;
+};
+
+/// Runs `folder`, or waits while another process does.
+Outcome run_or_wait(const JobFolder& folder, const RunContext& context) {
+  constexpr auto pause = std::chrono::milliseconds(200);
+  while (!context.interrupted()) {
+    try {
+      return run_job(folder, context);
+    } catch (const FolderBusy&) {
+      std::this_thread::sleep_for(pause);
+    }
+  }
+  return Outcome::interrupted;
+}
+
+/// The reference as a job of its own in a folder of its own, made by whoever needs it first.
+/// Nothing if interrupted.
+std::optional<Reference> make_auto_reference(const JobFolder& folder, const JobSpec& spec,
+                                             const std::string& content,
+                                             const RunContext& context) {
+  const ReferenceJob job = auto_reference(spec, context.data, content);
+  const auto& dir = job.folder.dir();
+  if (!std::filesystem::exists(dir)) {
+    std::filesystem::create_directories(dir.parent_path());
+    try {
+      JobFolder::create(dir, job.spec);
+    } catch (const std::invalid_argument&) {
+      // Somebody else was quicker: the lock decides who renders.
+    }
+  }
+  ReferenceObserver observer(folder, context.observer);
+  const RunContext own{context.data, context.scenes, context.threads, context.interrupted,
+                       observer};
+  if (run_or_wait(job.folder, own) == Outcome::interrupted) return std::nullopt;
+  return read_reference("auto", job.folder.file("image.exr"), spec.resolution);
+}
+
+Outcome render(const JobFolder& folder, const RunContext& context, Running& running) {
+  const double started = clock_seconds(CLOCK_MONOTONIC);
+  // TBB loads libraries of its own when it is first used, and would wait for those of the images.
+  ThreadPool(1).for_each(1, [](int) {});
+  const ImageModuleLoading images;  // what every job writes needs it
+  PhaseSeconds phases;
+  running.phase("loading");
+  const JobSpec spec = folder.read_job();
+  Prepared prepared;
+  {
+    const ScopedSeconds timed(phases["load"]);
+    prepared = prepare(spec, context);
+  }
+  for (const std::string& w : prepared.warnings) running.warn(w);
+
+  if (prepared.integrator->needs().space) running.phase("analysing");
+  try {
+    const ScopedSeconds timed(phases["analysis"]);
+    analyse(prepared);
+  } catch (const WaitInterrupted&) {
+    return Outcome::interrupted;
+  }
+
+  std::optional<Reference> reference;
+  if (!spec.reference.empty()) {
+    running.phase("reference");
+    const ScopedSeconds timed(phases["reference"]);
+    if (spec.reference == "auto") {
+      reference = make_auto_reference(folder, spec, prepared.content, context);
+      if (!reference) return Outcome::interrupted;
+    } else {
+      reference = find_reference(spec, context.data, context.scenes);
+    }
+  }
+
+  {
+    // What loads must not compete with what is timed.
+    const ScopedSeconds timed(phases["images"]);
+    images.wait();
+  }
+
+  running.phase("rendering");
+  const RenderTask task{folder,
+                        spec,
+                        *prepared.scene,
+                        *prepared.camera,
+                        *prepared.pool,
+                        *prepared.integrator,
+                        reference ? &*reference : nullptr,
+                        context.interrupted,
+                        context.observer,
+                        phases,
+                        prepared.content};
+  RenderLoop loop(task);
+  loop.resume();
+  const MachineWatch watch;
+  if (!loop.run()) return Outcome::interrupted;
+  const auto disturbance = watch.disturbance();
+
+  running.phase("writing");
+  {
+    const ScopedSeconds timed(phases["write"]);
+    write_results(task, loop);
+  }
+  if (loop.counters().rejected > 0) {
+    running.warn(fmt::format("{} contributions were not finite and were left out",
+                             loop.counters().rejected));
+  }
+  write_file_atomically(folder.file("report.json"),
+                        write_report({task, loop, running.warnings(), prepared.artefacts->records(),
+                                      disturbance, started}));
+  return Outcome::done;
+}
+
+}  // namespace
+
+Outcome run_job(const JobFolder& folder, const RunContext& context) {
+  const auto lock = folder.try_lock();
+  if (!lock) {
+    throw FolderBusy(fmt::format("{}: another process works on this job", folder.dir().string()));
+  }
+  if (folder.read_state().state == State::done) return Outcome::done;
+  Running running(folder, context.observer);
+  try {
+    const Outcome outcome = render(folder, context, running);
+    running.finish(outcome == Outcome::done ? State::done : State::interrupted);
+    return outcome;
+  } catch (const std::exception& e) {
+    running.stop(e);
+    throw;
+  }
+}
+
+}  // namespace lacuna

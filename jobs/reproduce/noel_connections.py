@@ -1,0 +1,242 @@
+"""Resampled connections. Every entry renders by bidirectional path tracing on the thesis' scenes
+that this project has, with every kind of connections, at the project's settings and at the thesis'."""
+
+from harness import layers, many_lights
+from harness.entry import Entries
+from harness.measured import error_at, exact, gain_at, median_of, speed_up_to, time_to
+from harness.run import Table, cell_with
+from harness.verdict import at_least, beside
+
+ENTRIES = Entries()
+RESAMPLING = "bdpt with connections: skeleton, importance_cache"
+BPT = at_least("error of BPT / of SkelBPT", 1)
+ICBPT = at_least("error of ICBPT / of SkelBPT", 1)
+DEPTH = 6  # edges
+SCENES = {
+    "door": {"/scene": "door/scene.glb", "/camera": "corner", "/resolution": [1024, 512], "/reference": "auto"},
+    "sponza": {"/scene": "sponza/scene.glb", "/camera": "directional-light-from-power", "/resolution": [1024, 512],
+               "/reference": "auto"},
+    "corridor": {"/scene": "corridor/scene.glb", "/camera": "far-from-light", "/resolution": [512, 512],
+                 "/reference": "corridor/reference.exr"},
+}
+
+
+def bdpt(connections, **more):
+    return {"type": "bdpt", "max_depth": DEPTH, "connections": connections, **more}
+
+
+OURS = {"BPT": bdpt({"type": "paired"}), "ICBPT": bdpt({"type": "importance_cache"}),
+        "SkelBPT": bdpt({"type": "skeleton"}), "uniform": bdpt({"type": "uniform"})}
+
+
+def as_published(connections):
+    """11.3 to 11.5, and what is known of the author's code: no roulette anywhere, every light path joined to the eye."""
+    resampling = {"count_as": 0, "combination": "max", "roulette": 0, "splat_paths": 1}
+    return bdpt({"type": connections, **(resampling if connections != "paired" else {})}, roulette_depth=DEPTH)
+
+
+THESIS = {"BPT": as_published("paired"), "ICBPT": as_published("importance_cache"),
+          "SkelBPT": as_published("skeleton")}
+
+
+def resampling_sweep(full, methods, scenes=tuple(SCENES), seeds=3):
+    """The value of a sweep file; the first of the methods is the baseline. CPU seconds are the clock: they hold on a busy
+    machine, too."""
+    return {
+        "label": "connections of bidirectional path tracing",
+        "job": {"analysis": {"resolution": 128}, "budget": {"cpu_seconds": 300 if full else 15},
+                "reference_iterations": 4000 if full else 64},
+        "axes": {"/integrator": list(methods.values())},
+        "zip": [{pointer: [SCENES[s][pointer] for s in scenes] for pointer in SCENES["door"]}],
+        "seeds": seeds,
+        "baseline": {"/integrator": next(iter(methods.values()))},
+        "compare_at": {"clock": "cpu_seconds", "metric": "mae"},
+    }
+
+
+def all_methods(run):
+    """The answers to all methods on all scenes, which several entries share."""
+    return run.answers(resampling_sweep(run.full, OURS), shared="noel-resampling")
+
+
+def resampled_cell(answers, scene, integrator):
+    return cell_with(answers, scene=SCENES[scene]["/scene"], integrator=integrator)
+
+
+def resampled_table(answers, scene, methods, title=""):
+    """What every method reached on a scene."""
+    return Table((scene + title, "MAE at equal time", "gain", "time to equal MAE", "speed-up"), [
+        (name, *map(str, (error_at(c["at"][-1]), gain_at(c["at"][-1]), time_to(c["to"][-1]), speed_up_to(c["to"][-1]))))
+        for name, c in ((name, resampled_cell(answers, scene, value)) for name, value in methods.items())])
+
+
+def measure_errors(run, scene):
+    """Figs 98 and 99: the errors at equal time, as ratios to that of SkelBPT."""
+    answers = all_methods(run)
+    at = {name: resampled_cell(answers, scene, value)["at"][-1] for name, value in OURS.items()}
+    best = error_at(at["SkelBPT"])
+    run.found("error of BPT / of SkelBPT", gain_at(at["SkelBPT"]))
+    cached = error_at(at["ICBPT"])
+    run.found("error of ICBPT / of SkelBPT", cached and best and cached.ratio(best))
+    run.tables.append(resampled_table(answers, scene, OURS))
+    run.note(f"MAE after {at['BPT']['seconds']:.3g} CPU seconds, {answers['seeds']} runs each; pictures: {run.runs}")
+
+
+def resampled(number, page, configuration, seconds, *claims):
+    return (f"noel-fig-{number}", f"Noel 2015, Fig. {number}, p. {page}",
+            f"{configuration}: error after {seconds} s of BPT, SkelBPT and ICBPT", RESAMPLING, claims)
+
+
+SKELETON = OURS["SkelBPT"]
+
+
+def table_5_sweep(full):
+    value = resampling_sweep(full, {"SkelBPT": SKELETON}, ("door", "sponza"), seeds=1)
+    del value["compare_at"], value["baseline"]
+    for scene in value["zip"]:
+        del scene["/reference"]
+    value["job"]["budget"] = {"iterations": 16 if full else 4}
+    return value
+
+
+@ENTRIES.measured(
+    "noel-table-5", "Noel 2015, Table 5, p. 167", "nodes of the filtered skeleton, and nodes used per iteration",
+    "bdpt with connections: skeleton",
+    (beside("Door, nodes", 74), beside("Door, per iteration", 9), beside("Sponza, nodes", 666),
+     beside("Sponza, per iteration", 45), beside("Sibenik, nodes", 1420), beside("Sibenik, per iteration", 85)),
+    sweep=table_5_sweep)
+def table_5(run):
+    """Nodes of the filtered skeleton, and how many of them have distributions in an iteration."""
+    answers = run.answers(table_5_sweep(run.full))
+    for name in ("Door", "Sponza"):
+        told = run.report(resampled_cell(answers, name.lower(), SKELETON))["integrator"]
+        run.found(f"{name}, nodes", exact(told["nodes"]))
+        run.found(f"{name}, per iteration", exact(told["nodes_used"]))
+        passes = {key: told[f"{key}_cpu_seconds"] for key in ("light_pass", "distributions", "eye_pass")}
+        run.note(f"{name}: the distributions take {passes['distributions'] / sum(passes.values()):.1%} of an iteration")
+
+
+FIRST = {"Door": "Door to 0.01, BPT", "Sponza": "Sponza to 0.15, BPT"}
+
+
+@ENTRIES.measured(
+    "noel-table-6", "Noel 2015, Table 6, p. 169", "time to equal L1 error, and speed-up over BPT", RESAMPLING,
+    (beside("Door to 0.01, BPT", 3677.44, "s"), beside("Door, ICBPT", 7095.64, "s"),
+     beside("Door, SkelBPT", 2341.36, "s"), beside("Door, ICBPT: speed-up", 0.51),
+     at_least("Door, SkelBPT: speed-up", 1.57), beside("Sponza to 0.15, BPT", 1910.39, "s"),
+     beside("Sponza, ICBPT", 4731.15, "s"), beside("Sponza, SkelBPT", 675.98, "s"),
+     beside("Sponza, ICBPT: speed-up", 0.40), at_least("Sponza, SkelBPT: speed-up", 2.82),
+     beside("Sibenik to 0.025, BPT", 1334.48, "s"), beside("Sibenik, ICBPT", 3114.65, "s"),
+     beside("Sibenik, SkelBPT", 1298.69, "s"), beside("Sibenik, ICBPT: speed-up", 0.42),
+     at_least("Sibenik, SkelBPT: speed-up", 1.02)))
+def table_6(run):
+    """Time to equal L1 error of bidirectional path tracing with paired connections (BPT), importance caching (ICBPT) and
+    the skeleton (SkelBPT), all at this project's settings. The corridor, and all three at the settings of the thesis,
+    stand beside."""
+    published = run.answers(resampling_sweep(run.full, THESIS, ("door", "sponza")), shared="noel-published")
+    answers = all_methods(run)
+    for name, first in FIRST.items():
+        for method in ("BPT", "ICBPT", "SkelBPT"):
+            to = resampled_cell(answers, name.lower(), OURS[method])["to"][-1]
+            run.found(first if method == "BPT" else f"{name}, {method}", time_to(to))
+            if method != "BPT":
+                run.found(f"{name}, {method}: speed-up", speed_up_to(to))
+    run.tables += [resampled_table(answers, scene, OURS) for scene in SCENES]
+    run.tables += [resampled_table(published, scene, THESIS, ", as published") for scene in ("door", "sponza")]
+    run.note("CPU seconds of a core; equal error: the lowest MAE that every run of a scene reached; "
+             f"{answers['seeds']} runs each")
+
+
+@ENTRIES.measured(*resampled(98, 171, "door", 300, BPT, ICBPT))
+def fig_98(run):
+    """BPT, SkelBPT and ICBPT on door at equal time."""
+    measure_errors(run, "door")
+
+
+@ENTRIES.measured(*resampled(99, 172, "sponza", 300, BPT, ICBPT))
+def fig_99(run):
+    """BPT, SkelBPT and ICBPT on sponza at equal time."""
+    measure_errors(run, "sponza")
+
+
+ENTRIES.planned(*resampled(100, 173, "sibenik (similar to BPT)", 300, ICBPT))
+ENTRIES.planned(*resampled(101, 174, "apartment (ICBPT beats BPT, SkelBPT both)", 900, BPT, ICBPT))
+ENTRIES.planned(*resampled(102, 175, "plants (ICBPT and SkelBPT similar, both beat BPT)", 900, BPT))
+
+
+@ENTRIES.measured(
+    "noel-fig-103", "Noel 2015, Fig. 103, p. 176",
+    "L1 error curves of 300 s: SkelBPT below BPT on door and sponza, the same on sibenik", RESAMPLING, (
+        at_least("Door: error of BPT / of SkelBPT", 1), at_least("Sponza: error of BPT / of SkelBPT", 1)))
+def fig_103(run):
+    """L1 error against time."""
+    answers = all_methods(run)
+    for name in ("Door", "Sponza"):
+        cells = {method: resampled_cell(answers, name.lower(), value) for method, value in OURS.items()}
+        run.found(f"{name}: error of BPT / of SkelBPT", gain_at(cells["SkelBPT"]["at"][-1]))
+        run.tables.append(Table((f"{name}, CPU seconds", *cells), [
+            (f"{at['seconds']:.3g}", *(str(error_at(c["at"][i])) for c in cells.values()))
+            for i, at in enumerate(cells["BPT"]["at"])]))
+    run.note(f"MAE, {answers['seeds']} runs each; the curves: lacuna report {run.runs}")
+
+
+ENTRIES.planned(
+    "noel-fig-104", "Noel 2015, Fig. 104, p. 177",
+    "L1 error curves of 900 s: SkelBPT below BPT on apartment and plants", RESAMPLING, (
+        at_least("Apartment: error of BPT / of SkelBPT", 1), at_least("Plants: error of BPT / of SkelBPT", 1)))
+
+
+METHODS = {name: OURS[name] for name in ("BPT", "ICBPT", "SkelBPT")}
+
+
+def fig_105_sweep(full):
+    value = resampling_sweep(full, METHODS, ("door",), seeds=6)
+    value["job"]["budget"] = {"iterations": 64 if full else 8}
+    return value
+
+
+@ENTRIES.measured(
+    "noel-fig-105", "Noel 2015, Fig. 105, p. 178",
+    "after 64 iterations ICBPT has the lowest error, at about twice the time of BPT", RESAMPLING, (
+        at_least("error of BPT / of ICBPT, at equal iterations", 1),
+        at_least("error of SkelBPT / of ICBPT, at equal iterations", 1), beside("time of ICBPT / of BPT", 2)),
+    sweep=fig_105_sweep)
+def fig_105(run):
+    """Errors and times after as many iterations of each method."""
+    answers = run.answers(fig_105_sweep(run.full))
+    cells = {name: resampled_cell(answers, "door", value) for name, value in METHODS.items()}
+    reports = {name: [run.report(c, seed) for seed in range(answers["seeds"])] for name, c in cells.items()}
+
+    def ratio(of, to, value):
+        return median_of([value(a) / value(b) for a, b in zip(reports[of], reports[to])])
+
+    def error(report):
+        return report["errors"]["mae"]
+
+    run.found("error of BPT / of ICBPT, at equal iterations", ratio("BPT", "ICBPT", error))
+    run.found("error of SkelBPT / of ICBPT, at equal iterations", ratio("SkelBPT", "ICBPT", error))
+    run.found("time of ICBPT / of BPT", ratio("ICBPT", "BPT", lambda report: report["seconds"]["render_cpu"]))
+    iterations = fig_105_sweep(run.full)["job"]["budget"]["iterations"]
+    run.note(f"MAE after {iterations} iterations; medians of {answers['seeds']} runs")
+
+
+@ENTRIES.measured(
+    "noel-fig-106", "Noel 2015, Fig. 106, p. 179",
+    "door after two hours: each distribution's own share; added up, no border of the node map shows", RESAMPLING)
+def fig_106(run):
+    """What each distribution of resampled connections gives to the picture of door."""
+    job = {"scene": "door/scene.glb", "camera": "corner", "resolution": [1024, 512] if run.full else [256, 128],
+           "budget": {"cpu_seconds": 7200 if run.full else 30}, "layers": ["distributions"]}
+    rows = []
+    for name in ("SkelBPT", "ICBPT"):
+        many_lights.render(run, name, {**job, "integrator": OURS[name]})
+        folder = run.folder / run.version / name
+
+        def mean(layer, folder=folder):
+            return sum(map(sum, layers.channels(folder, layer)))
+
+        whole = mean("")
+        rows += [(name, layer.split(".")[1], f"{mean(layer) / whole:.1%}") for layer in layers.names(folder)
+                 if layer.startswith("distributions.")]
+    run.tables.append(Table(("method", "distribution", "of the picture's light"), rows))
+    run.note(f"layers of each: {run.folder / run.version}")

@@ -1,0 +1,87 @@
+"""The integrators that the methods are compared with; and ours against renders of others."""
+
+import json
+import math
+
+from harness import child
+from harness.entry import Entries
+from harness.measured import error_at, gain_at, of_answer, speed_up_to, time_to
+from harness.run import cell_with
+from harness.verdict import at_least, beside, up_to
+
+ENTRIES = Entries()
+# A picture counts as unbiased within a tenth of its mean radiance; here squared.
+UNBIASED = 0.1**2
+
+JOB = child.ROOT / "jobs/examples/corridor.json"
+SWITCH = "/integrator/next_event_estimation"
+
+
+def path_corridor_sweep(full):
+    """CPU seconds are the clock: they hold on a busy machine, too."""
+    job = json.loads(JOB.read_text())
+    del job["label"]
+    return {
+        "label": "next event estimation in the corridor",
+        "job": {**job, "budget": {"cpu_seconds": 240 if full else 8}},
+        "axes": {SWITCH: [False, True]},
+        "seeds": 10 if full else 3,
+        "baseline": {SWITCH: False},
+        "compare_at": {"clock": "cpu_seconds", "metric": "relmse"},
+    }
+
+
+def mean_radiance(run, cell):
+    """Of the reference that the runs were compared with."""
+    report = json.loads((run.runs / cell["runs"][0]["name"] / "report.json").read_text())
+    reference = report["errors"]["reference"]["file"]
+    lines = dict(line.split(maxsplit=1) for line in child.lacuna("compare", reference, reference)[0].splitlines())
+    return float(lines["mean_b"])
+
+
+@ENTRIES.measured(
+    "path-corridor", "the thesis author's own render, 63,555 samples a pixel (corridor/reference.exr)",
+    "path tracing without and with next event estimation: error at equal time, time to equal error, bias",
+    "path",
+    (beside("relMSE at equal time, without"), beside("relMSE at equal time, with"),
+     at_least("error without / with, at equal time", 1), beside("CPU seconds to equal relMSE, without"),
+     beside("CPU seconds to equal relMSE, with"), at_least("time without / with, to equal relMSE", 1),
+     up_to("squared bias / squared mean radiance, without", 0, UNBIASED),
+     up_to("squared bias / squared mean radiance, with", 0, UNBIASED)),
+    sweep=path_corridor_sweep)
+def path_corridor(run):
+    """Path tracing in the thesis' corridor, without and with next event estimation, against its author's own render."""
+    answers = run.answers(path_corridor_sweep(run.full))
+    cells = {"without": cell_with(answers, next_event_estimation=False),
+             "with": cell_with(answers, next_event_estimation=True)}
+    mean = mean_radiance(run, cells["with"])
+    for name, cell in cells.items():
+        run.found(f"relMSE at equal time, {name}", error_at(cell["at"][-1]))
+        run.found(f"CPU seconds to equal relMSE, {name}", time_to(cell["to"][-1]))
+        bias = of_answer(cell["bias_between_runs"])
+        run.found(f"squared bias / squared mean radiance, {name}", bias and bias.scaled(1 / mean**2))
+        if bias and bias.low is not None and bias.low <= 0:
+            within = math.sqrt(max(bias.high, 0)) / mean
+            run.note(f"{name}: unbiased within {within:.0%} of the mean radiance {mean:.4g}")
+    at, to = cells["with"]["at"][-1], cells["with"]["to"][-1]
+    run.found("error without / with, at equal time", gain_at(at))
+    run.found("time without / with, to equal relMSE", speed_up_to(to))
+    run.note(f"equal time: {at['seconds']:.3g} CPU seconds; equal error: relMSE {to['error']:.3g}; "
+             f"{answers['seeds']} runs each; the reference's own noise is not known and counts as bias")
+
+
+ENTRIES.planned(
+    "noel-fig-20", "Noel 2015, Fig. 20, p. 48",
+    "less noise with bidirectional path tracing than with path tracing after 90 s", "bdpt",
+    (at_least("error of path tracing / of bidirectional, at equal time", 1),))
+
+
+ENTRIES.planned(
+    "noel-fig-23", "Noel 2015, Fig. 23, p. 52",
+    "instant global illumination has structured errors where bidirectional path tracing has noise, after 90 s",
+    "bdpt; many_lights with visibility: exact")
+
+
+ENTRIES.planned(
+    "noel-fig-25", "Noel 2015, Fig. 25, p. 58",
+    "photon mapping stays blurred, progressive photon mapping converges to the picture", "photon_map; sppm")

@@ -1,0 +1,133 @@
+#include "jobs/results/report.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "analysis/storage/peak_memory.h"
+#include "jobs/results/artefacts_json.h"
+#include "analysis/json/json_text.h"
+#include "jobs/spec/version.h"
+#include "jobs/store/machine.h"
+#include "renderer/images/image_module.h"
+
+namespace lacuna {
+
+namespace {
+
+OrderedJson optional(std::optional<double> v) { return v ? OrderedJson(*v) : OrderedJson(nullptr); }
+
+OrderedJson seconds(const PhaseSeconds& phases, const Spent& spent) {
+  OrderedJson j;
+  for (const auto& [name, value] : phases) j[name] = value;
+  j["render"] = spent.seconds;
+  j["render_cpu"] = spent.cpu_seconds;
+  return j;
+}
+
+OrderedJson counts(const RenderLoop& loop) {
+  const Counters& c = loop.counters();
+  return {
+      {"iterations", loop.spent().iterations}, {"samples", c.samples},   {"rays", c.rays},
+      {"shadow_rays", c.shadow_rays},          {"negative", c.negative}, {"rejected", c.rejected},
+      {"refused_rays", loop.refused_rays()}};
+}
+
+OrderedJson rates(const RenderTask& task, const Spent& spent, const Counters& c) {
+  const auto rays = static_cast<double>(c.rays + c.shadow_rays);
+  const auto per = [](double n, double t) {
+    return t > 0 ? OrderedJson(n / t) : OrderedJson(nullptr);
+  };
+  return {{"rays_per_second", per(rays, spent.seconds)},
+          {"rays_per_cpu_second", per(rays, spent.cpu_seconds * task.pool.threads())},
+          {"samples_per_second", per(static_cast<double>(c.samples), spent.seconds)},
+          {"rays_per_sample", per(rays, static_cast<double>(c.samples))}};
+}
+
+OrderedJson scene(const Scene& s) {
+  const SceneData& d = s.data();
+  return {
+      {"triangles", d.triangle_count()},
+      {"dropped_triangles", d.dropped_triangles},
+      {"emitters", s.has_emitters() ? OrderedJson(s.emitters().size()) : OrderedJson("not needed")},
+      {"textures",
+       {{"in_scene", d.textures.size()},
+        {"decoded", s.textures_decoded()},
+        {"decoded_bytes", s.texture_bytes()}}},
+      {"mask_filters", s.rays().filters()},
+      {"ray_caster_bytes", s.rays().bytes()},
+      {"content_hash", fmt::format("{:016x}", d.content_hash)},
+      {"geometry_hash", fmt::format("{:016x}", d.geometry_hash)}};
+}
+
+OrderedJson errors_json(const RenderTask& task, const Curve& curve) {
+  OrderedJson j;
+  if (curve.rows().empty()) return j;
+  j["biased"] = biased(task.spec.integrator);
+  const CurveRow& row = curve.rows().back();
+  for (const ErrorMetricRow& metric : error_metrics) {
+    j[std::string(metric.name)] = optional(row.value(metric.value));
+  }
+  const double mse = row.value(ErrorMetric::mse).value_or(0);
+  if (mse > 0) j["efficiency"] = 1 / (mse * row.seconds);
+  if (task.reference != nullptr) {
+    j["reference"] = {
+        {"name", task.reference->name},
+        {"file", std::filesystem::absolute(task.reference->file).string()},
+        {"own_rmse",
+         task.reference->mse ? OrderedJson(std::sqrt(*task.reference->mse)) : OrderedJson(nullptr)},
+        {"at_floor", row.at_floor}};
+  }
+  return j;
+}
+
+OrderedJson machine(const ThreadPool& pool, const std::optional<Disturbance>& disturbance) {
+  OrderedJson j{{"processor", processor_name()},
+                {"cores", sysconf(_SC_NPROCESSORS_ONLN)},
+                {"threads", pool.threads()},
+                {"peak_memory_bytes", peak_memory()}};
+  if (disturbance) {
+    j["others_share"] = disturbance->others;
+    j["stolen_share"] = disturbance->stolen;
+    j["load"] = disturbance->load;
+    j["mhz"] = optional(disturbance->mhz);
+  }
+  return j;
+}
+
+/// When the module of images was loaded, seconds from the job's start (below 0: before it, by
+/// another job of the process), and what that took. What the job waited for it is phase "images".
+OrderedJson image_module(double started) {
+  const auto times = image_module_times();
+  if (!times) return "not needed";
+  return {{"begun", times->begun - started},
+          {"seconds", times->seconds},
+          {"cpu_seconds", times->cpu_seconds}};
+}
+
+}  // namespace
+
+std::string write_report(const ReportInput& input) {
+  const RenderTask& task = input.task;
+  const RenderLoop& loop = input.loop;
+  OrderedJson j;
+  j["version"] = version();
+  j["job"] = task.folder.id();
+  j["seconds"] = seconds(task.phases, loop.spent());
+  j["counts"] = counts(loop);
+  j["rates"] = rates(task, loop.spent(), loop.counters());
+  if (const auto told = task.integrator.statistics(); !told.empty()) {
+    for (const auto& [name, value] : told) j["integrator"][name] = value;
+  }
+  j["errors"] = errors_json(task, loop.curve());
+  j["scene"] = scene(task.scene);
+  j["image_module"] = image_module(input.started);
+  j["artefacts"] = artefacts_json(input.artefacts);
+  j["warnings"] = input.warnings;
+  j["machine"] = machine(task.pool, input.disturbance);
+  return document_text(j);
+}
+
+}  // namespace lacuna

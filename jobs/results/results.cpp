@@ -1,0 +1,121 @@
+#include "jobs/results/results.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/storage/atomic_file.h"
+#include "jobs/spec/job_json.h"
+#include "analysis/json/json_text.h"
+#include "jobs/spec/version.h"
+#include "renderer/film/half_layers.h"
+#include "renderer/film/preview.h"
+#include "renderer/images/exr_write.h"
+
+namespace lacuna {
+
+namespace {
+
+const std::vector<std::string> rgb{"R", "G", "B"};
+
+/// A layer that tells of the first hit: the mean over a few iterations of integrator `inspect`.
+std::vector<double> first_hit(const RenderTask& task, InspectQuantity quantity) {
+  constexpr std::uint64_t iterations = 16;
+  const auto inspect = make_integrator(InspectSettings{quantity});
+  Film film(task.spec.resolution[0], task.spec.resolution[1]);
+  const std::function<bool()> never = [] { return false; };
+  for (std::uint64_t i = 0; i < iterations; ++i) {
+    Image frame(film.width(), film.height());
+    inspect->iterate({task.scene, task.camera, task.pool, task.spec.seed, i, never}, frame);
+    film.add(i, frame);
+  }
+  return film.mean();
+}
+
+std::vector<double> every_third(const std::vector<double>& values) {
+  std::vector<double> result;
+  result.reserve(values.size() / 3);
+  for (std::size_t i = 0; i < values.size(); i += 3) result.push_back(values[i]);
+  return result;
+}
+
+void add_layer(const RenderTask& task, const Film& film, ImageLayer layer,
+               std::vector<ExrLayer>& out) {
+  switch (layer) {
+    case ImageLayer::variance:
+      out.push_back({"variance", rgb, film.variance_of_mean()});
+      return;
+    case ImageLayer::halves:
+      out.push_back({"even", rgb, film.half_mean(0)});
+      out.push_back({"odd", rgb, film.half_mean(1)});
+      return;
+    case ImageLayer::albedo:
+      out.push_back({"albedo", rgb, first_hit(task, InspectQuantity::albedo)});
+      return;
+    case ImageLayer::normal:
+      out.push_back({"normal", {"X", "Y", "Z"}, first_hit(task, InspectQuantity::normal)});
+      return;
+    case ImageLayer::depth:
+      out.push_back({"depth", {"Z"}, every_third(first_hit(task, InspectQuantity::depth))});
+      return;
+    case ImageLayer::strategies:
+    case ImageLayer::strategies_unweighted:
+    case ImageLayer::distributions:
+    case ImageLayer::visibility_tests:
+    case ImageLayer::negative:
+      return;  // the integrator's own (RenderLoop::layers())
+  }
+}
+
+std::map<std::string, std::string> attributes(const RenderTask& task, const RenderLoop& loop) {
+  std::map<std::string, std::string> a{
+      {"version", version()},
+      {"job", task.folder.id()},
+      {"spec", write_job(task.spec)},
+      {"seed", fmt::format("{}", task.spec.seed)},
+      {"iterations", fmt::format("{}", loop.spent().iterations)},
+      {"seconds", fmt::format("{:.3f}", loop.spent().seconds)},
+      {"cpu_seconds", fmt::format("{:.3f}", loop.spent().cpu_seconds)},
+      {"scene_hash", fmt::format("{:016x}", task.scene.data().content_hash)},
+  };
+  if (const auto rmse = estimated_rmse(loop.film())) a["est_rmse"] = fmt::format("{:.17g}", *rmse);
+  return a;
+}
+
+/// layers.half, then layers.json, which says what lies where in it.
+void write_half_layers(const RenderTask& task, std::vector<ExrLayer> layers) {
+  if (task.reference != nullptr) layers.push_back({"reference", rgb, task.reference->rgb});
+  const HalfLayers packed = pack_half(layers);
+  OrderedJson index;
+  index["width"] = task.spec.resolution[0];
+  index["height"] = task.spec.resolution[1];
+  for (const HalfLayer& l : packed.index) {
+    index["layers"].push_back({{"name", l.name},
+                               {"channels", l.channels},
+                               {"offset", l.offset},
+                               {"bytes", l.bytes},
+                               {"scale", l.scale}});
+  }
+  write_file_atomically(task.folder.file("layers.half"), packed.bytes);
+  write_file_atomically(task.folder.file("layers.json"), document_text(index));
+}
+
+}  // namespace
+
+void write_results(const RenderTask& task, const RenderLoop& loop) {
+  const Film& film = loop.film();
+  const std::vector<double> mean = film.mean();
+  std::vector<ExrLayer> layers{{"", rgb, mean}};
+  for (const ImageLayer layer : task.spec.layers) add_layer(task, film, layer, layers);
+  const std::vector<std::string>& own = loop.layers().names();
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    layers.push_back({own[i], rgb, loop.layers().mean(i)});
+  }
+  write_exr(task.folder.file("image.exr"), film.width(), film.height(), layers,
+            task.spec.pixel_type, attributes(task, loop));
+  write_half_layers(task, layers);
+  write_preview(task.folder.file("image.png"), film.width(), film.height(), mean);
+  write_file_atomically(task.folder.file("curve.csv"), loop.curve().csv());
+}
+
+}  // namespace lacuna

@@ -1,0 +1,182 @@
+#include "renderer/gltf/gltf_object.h"
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "renderer/core/scene_error.h"
+
+namespace lacuna::gltf {
+namespace {
+
+/// The reference tokens of a JSON pointer (RFC 6901).
+std::vector<std::string> tokens(std::string_view pointer) {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < pointer.size(); ++i) {
+    if (pointer[i] == '/') {
+      out.emplace_back();
+    } else if (pointer[i] == '~') {
+      out.back() += pointer[++i] == '1' ? '/' : '~';
+    } else {
+      out.back() += pointer[i];
+    }
+  }
+  return out;
+}
+
+std::size_t checked_index(const JsonCursor& found, std::size_t size, std::string_view target) {
+  const Json& value = found.value();
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= size) {
+    found.refuse("an index below " + std::to_string(size) + " (" + std::string(target) + ")");
+  }
+  return value.get<std::size_t>();
+}
+
+}  // namespace
+
+void GltfProblems::add(const std::string& pointer, const std::string& message) {
+  const std::string where = place(pointer);
+  throw SceneError(where.empty() ? message : where + ": " + message);
+}
+
+std::string GltfProblems::place(const std::string& pointer) const {
+  const Json* value = &root_;  // null where nothing is
+  std::string object;          // the innermost one
+  std::string name;            // of it
+  std::string rest;            // from there on
+  for (const std::string& token : tokens(pointer)) {
+    if (value != nullptr && value->is_array()) {
+      rest += '[' + token + ']';
+      value = &(*value)[std::stoul(token)];
+    } else {
+      rest += rest.empty() ? token : '.' + token;
+      const bool there = value != nullptr && value->contains(token);
+      value = there ? &(*value)[token] : nullptr;
+    }
+    if (value == nullptr || !value->is_object()) continue;
+    object += object.empty() ? rest : '.' + rest;
+    rest.clear();
+    const auto own = value->find("name");
+    const bool named = own != value->end() && own->is_string();
+    name = named ? ' ' + in_quotes(own->get_ref<const std::string&>()) : "";
+  }
+  if (object.empty()) return rest;
+  return rest.empty() ? object + name : object + name + ": " + rest;
+}
+
+GltfObject::GltfObject(JsonCursor cursor, GltfProblems& problems)
+    : cursor_(std::move(cursor)), problems_(&problems) {
+  cursor_.check_object();
+}
+
+JsonCursor GltfObject::require(std::string_view key, std::string_view required) const {
+  auto found = cursor_.find(key);
+  if (!found) cursor_.refuse_missing(key, required);
+  return std::move(found).value();
+}
+
+std::vector<JsonCursor> GltfObject::elements(std::string_view key) const {
+  std::vector<JsonCursor> out;
+  const auto list = cursor_.find(key);
+  if (!list) return out;
+  list->check_list();
+  out.reserve(list->value().size());
+  for (std::size_t i = 0; i < list->value().size(); ++i) out.push_back(list->at(i));
+  return out;
+}
+
+bool GltfObject::has(std::string_view key) const { return cursor_.value().contains(key); }
+
+double GltfObject::number(std::string_view key, double fallback, const Limits& allowed) const {
+  const auto found = cursor_.find(key);
+  return found ? found->number(allowed).value() : fallback;
+}
+
+double GltfObject::number(std::string_view key, const Limits& allowed) const {
+  return require(key, "a number").number(allowed).value();
+}
+
+std::uint64_t GltfObject::integer(std::string_view key, std::uint64_t low,
+                                  std::uint64_t high) const {
+  const Limits allowed{static_cast<double>(low), static_cast<double>(high)};
+  return require(key, "an integer").digits(allowed).value();
+}
+
+std::uint64_t GltfObject::integer(std::string_view key, std::uint64_t fallback, std::uint64_t low,
+                                  std::uint64_t high) const {
+  return has(key) ? integer(key, low, high) : fallback;
+}
+
+bool GltfObject::boolean(std::string_view key, bool fallback) const {
+  const auto found = cursor_.find(key);
+  return found ? found->boolean().value() : fallback;
+}
+
+std::string GltfObject::string(std::string_view key) const {
+  return require(key, "a string").string().value();
+}
+
+std::string GltfObject::string(std::string_view key, const std::string& fallback) const {
+  const auto found = cursor_.find(key);
+  return found ? found->string().value() : fallback;
+}
+
+std::optional<std::size_t> GltfObject::index(std::string_view key, std::size_t size,
+                                             std::string_view target) const {
+  const auto found = cursor_.find(key);
+  if (!found) return std::nullopt;
+  return checked_index(*found, size, target);
+}
+
+std::vector<std::size_t> GltfObject::indices(std::string_view key, std::size_t size,
+                                             std::string_view target) const {
+  std::vector<std::size_t> out;
+  for (const JsonCursor& item : elements(key)) out.push_back(checked_index(item, size, target));
+  return out;
+}
+
+std::optional<GltfObject> GltfObject::object(std::string_view key) const {
+  auto found = cursor_.find(key);
+  if (!found) return std::nullopt;
+  return GltfObject(std::move(*found), *problems_);
+}
+
+std::optional<GltfObject> GltfObject::extension(std::string_view name) const {
+  const auto extensions = object("extensions");
+  return extensions ? extensions->object(name) : std::nullopt;
+}
+
+std::vector<GltfObject> GltfObject::objects(std::string_view key) const {
+  std::vector<GltfObject> out;
+  for (JsonCursor& item : elements(key)) out.push_back(GltfObject(std::move(item), *problems_));
+  return out;
+}
+
+std::vector<std::string> GltfObject::strings(std::string_view key) const {
+  std::vector<std::string> out;
+  for (const JsonCursor& item : elements(key)) out.push_back(item.string().value());
+  return out;
+}
+
+std::vector<std::string> GltfObject::keys() const {
+  std::vector<std::string> out;
+  for (const auto& item : cursor_.value().items()) out.push_back(item.key());
+  return out;
+}
+
+std::size_t GltfObject::array_size(std::string_view key) const {
+  const auto list = cursor_.find(key);
+  if (!list) return 0;
+  list->check_list();
+  return list->value().size();
+}
+
+void GltfObject::refuse(std::string_view key, const std::string& allowed) const {
+  const JsonCursor found = cursor_.at(key);
+  problems_->add(found.pointer(), "found " + shown(found.value()) + "; allowed: " + allowed);
+}
+
+void GltfObject::fail(const std::string& message) const {
+  problems_->add(cursor_.pointer(), message);
+}
+
+}  // namespace lacuna::gltf

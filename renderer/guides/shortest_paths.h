@@ -1,0 +1,44 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <queue>
+#include <utility>
+#include <vector>
+
+namespace lacuna {
+
+/// The shortest paths from one node of a graph to all others.
+struct ShortestPaths {
+  std::vector<double> distance;  ///< of each node; infinite where no path leads
+  std::vector<std::uint32_t>
+      last;  ///< the last edge of its path, as find() was told; the source: 0
+
+  explicit ShortestPaths(std::size_t nodes) : distance(nodes), last(nodes) {}
+
+  /// Dijkstra's algorithm from `source`. settle(node, distance, reach) is called for every node
+  /// that a path leads to, by distance, of equal ones the lower index first; it calls reach(next,
+  /// distance of next by way of node, edge) for every neighbour. Lengths are 0 or more.
+  template <class Settle>
+  void find(std::uint32_t source, const Settle& settle) {
+    using Reached = std::pair<double, std::uint32_t>;
+    std::priority_queue<Reached, std::vector<Reached>, std::greater<>> open;
+    std::fill(distance.begin(), distance.end(), HUGE_VAL);
+    const auto reach = [&](std::uint32_t node, double d, std::uint32_t edge) {
+      if (d >= distance[node]) return;
+      distance[node] = d;
+      last[node] = edge;
+      open.push({d, node});
+    };
+    reach(source, 0, 0);
+    while (!open.empty()) {
+      const auto [d, node] = open.top();
+      open.pop();
+      if (d > distance[node]) continue;  // a shorter path was found since
+      settle(node, d, reach);
+    }
+  }
+};
+
+}  // namespace lacuna

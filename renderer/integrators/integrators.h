@@ -1,0 +1,14 @@
+#pragma once
+
+#include "renderer/integrators/integrator.h"
+
+namespace lacuna {
+
+// What registry.cpp chooses from: each is defined in the source of its name.
+std::unique_ptr<Integrator> make_path(const PathSettings& settings);
+std::unique_ptr<Integrator> make_light(const LightSettings& settings);
+std::unique_ptr<Integrator> make_bdpt(const BdptSettings& settings);
+std::unique_ptr<Integrator> make_many_lights(const ManyLightsSettings& settings);
+std::unique_ptr<Integrator> make_inspect(const InspectSettings& settings);
+
+}  // namespace lacuna

@@ -1,0 +1,380 @@
+#include "jobs/render/run_job.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <atomic>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <system_error>
+
+#include "analysis/storage/atomic_file.h"
+#include "jobs/run/reference.h"
+#include "jobs/spec/job_json.h"
+#include "jobs/spec/problems.h"
+#include "renderer/geometry/scene_data.h"
+#include "renderer/images/exr_write.h"
+#include "renderer/images/image_read.h"
+#include "tests/jobs/run/silent_observer.h"
+#include "tests/renderer/gltf/glb_builder.h"
+
+namespace lacuna {
+namespace {
+
+using nlohmann::json;
+
+/// A data root of one test, with the project's scenes and one folder more.
+class RunJob : public testing::Test {
+ protected:
+  RunContext context(const std::function<bool()>& interrupted) {
+    return {DataRoot{temp.path()},
+            ScenesRoots({std::filesystem::path(LACUNA_SOURCE_DIR) / "jobs/scenes", temp.path()}), 2,
+            interrupted, observer};
+  }
+  JobFolder create(const JobSpec& spec, const std::string& name = "job") {
+    return JobFolder::create(temp.path() / name, spec);
+  }
+  Outcome run(const JobFolder& folder) { return run_job(folder, context(never)); }
+  static JobSpec spec(const std::string& scene = "cornell.glb", int iterations = 4) {
+    JobSpec s;
+    s.scene = scene;
+    s.resolution = {24, 16};
+    s.budget.iterations = iterations;
+    return s;
+  }
+  static json report(const JobFolder& folder) {
+    return json::parse(read_file(folder.file("report.json"), 1 << 20));
+  }
+  static std::vector<float> pixels(const JobFolder& folder, const std::string& layer = "") {
+    return read_float_image(folder.file("image.exr"), layer).rgb;
+  }
+
+  TemporaryFolder temp;
+  SilentObserver observer;
+  const std::function<bool()> never = [] { return false; };
+};
+
+TEST_F(RunJob, LeavesItsFolderComplete) {
+  JobSpec s = spec();
+  s.layers = {ImageLayer::variance, ImageLayer::halves, ImageLayer::albedo, ImageLayer::normal,
+              ImageLayer::depth};
+  const JobFolder folder = create(s);
+  EXPECT_EQ(run(folder), Outcome::done);
+  EXPECT_EQ(folder.read_state().state, State::done);
+  for (const char* name : {"image.exr", "image.png", "layers.half", "layers.json", "curve.csv",
+                           "report.json", "progress.json"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder.file(name))) << name;
+  }
+  const std::vector<float> all = pixels(folder);
+  const std::vector<float> even = pixels(folder, "even");
+  const std::vector<float> odd = pixels(folder, "odd");
+  for (std::size_t i = 0; i < all.size(); ++i)
+    EXPECT_NEAR(all[i], (even[i] + odd[i]) / 2, 1e-5 * std::abs(all[i]));
+  EXPECT_EQ(observer.phases, (std::vector<std::string>{"loading", "rendering", "writing"}));
+  EXPECT_EQ(run(folder), Outcome::done) << "a job that is done is left as it is";
+}
+
+TEST_F(RunJob, ReportSaysThatNothingWasBuiltThatNobodyNeeds) {
+  const JobFolder folder = create(spec());
+  run(folder);
+  const json r = report(folder);
+  EXPECT_TRUE(r.at("artefacts").at("built").empty());
+  EXPECT_TRUE(r.at("artefacts").at("loaded").empty());
+  EXPECT_EQ(r.at("scene").at("textures").at("decoded"), 0);
+  EXPECT_EQ(r.at("scene").at("mask_filters"), 0);
+  EXPECT_FALSE(std::filesystem::exists(temp.path() / "cache"));
+  JobSpec s = spec("ajar.glb", 1);
+  s.integrator = InspectSettings{InspectQuantity::normal};
+  const JobFolder shape = create(s, "shape");
+  run(shape);
+  EXPECT_EQ(report(shape).at("scene").at("emitters"), "not needed");
+  EXPECT_EQ(report(shape).at("scene").at("textures").at("decoded"), 0);
+  EXPECT_GT(report(shape).at("scene").at("textures").at("in_scene"), 0);
+}
+
+TEST_F(RunJob, InterruptedAnywhereItGoesOnToTheSameBits) {
+  const JobFolder whole = create(spec("ajar.glb", 12), "whole");
+  run(whole);
+  const JobFolder parts = create(spec("ajar.glb", 12), "parts");
+  int stops = 0;
+  for (int patience = 0; parts.read_state().state != State::done; patience += 2) {
+    std::atomic<int> asked{0};
+    const std::function<bool()> impatient = [&] { return ++asked > patience; };
+    const Outcome outcome = run_job(parts, context(impatient));
+    if (outcome == Outcome::interrupted) {
+      ++stops;
+      EXPECT_EQ(parts.read_state().state, State::interrupted);
+    }
+    ASSERT_LT(stops, 200);
+  }
+  EXPECT_GT(stops, 3);
+  EXPECT_EQ(pixels(parts), pixels(whole));
+  EXPECT_EQ(report(parts).at("counts").at("rays"), report(whole).at("counts").at("rays"));
+}
+
+/// Gives a job that is done a larger budget, as the service does.
+void extend(const JobFolder& folder, const std::function<void(Budget&)>& grow) {
+  JobSpec s = folder.read_job();
+  grow(s.budget);
+  write_file_atomically(folder.file("job.json"), write_job(s));
+  JobState state = folder.read_state();
+  state.state = State::queued;
+  folder.write_state(state);
+}
+
+std::vector<std::string> lines_of(const JobFolder& folder) {
+  std::istringstream text(content_of(folder.file("curve.csv")));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST_F(RunJob, DoneItGoesOnWithALargerBudgetToTheSameBits) {
+  JobSpec s = spec("ajar.glb", 14);
+  s.layers = {ImageLayer::variance, ImageLayer::halves};
+  const JobFolder whole = create(s, "whole");
+  run(whole);
+  s.budget.iterations = 5;
+  const JobFolder parts = create(s, "parts");
+  run(parts);
+  const json first = report(parts);
+  const std::vector<std::string> rows = lines_of(parts);
+  for (const int iterations : {6, 14}) {
+    observer.milestones.clear();
+    extend(parts, [&](Budget& b) { b.iterations = iterations; });
+    EXPECT_EQ(run(parts), Outcome::done);
+    EXPECT_EQ(observer.milestones.front().rfind("going on from iteration ", 0), 0U);
+    EXPECT_TRUE(observer.warnings.empty());
+  }
+  for (const char* layer : {"", "variance", "even", "odd"}) {
+    EXPECT_EQ(pixels(parts, layer), pixels(whole, layer)) << layer;
+  }
+  const json last = report(parts);
+  EXPECT_EQ(last.at("counts"), report(whole).at("counts"));
+  for (const auto& [phase, seconds] : first.at("seconds").items()) {
+    if (phase == "write" || phase == "checkpoint" || phase == "progress") continue;  // ends later
+    EXPECT_GE(last.at("seconds").at(phase), seconds) << phase;
+  }
+  EXPECT_GT(last.at("seconds").at("load"), first.at("seconds").at("load")) << "loaded three times";
+  const std::vector<std::string> more = lines_of(parts);
+  ASSERT_GT(more.size(), rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(more[i], rows[i]) << "row " << i;
+  EXPECT_EQ(more.back().substr(0, 3), "14,");
+}
+
+TEST_F(RunJob, ABudgetOfTimeGoesOnFromWhereItEnded) {
+  JobSpec s = spec();
+  s.budget = {};
+  s.budget.seconds = 0.05;
+  const JobFolder folder = create(s);
+  run(folder);
+  const std::int64_t before = report(folder).at("counts").at("iterations");
+  extend(folder, [](Budget& b) { b.seconds = 0.2; });
+  run(folder);
+  EXPECT_GT(report(folder).at("counts").at("iterations"), before);
+  EXPECT_GT(report(folder).at("seconds").at("render"), 0.05);
+  EXPECT_EQ(folder.read_progress()->iteration, report(folder).at("counts").at("iterations"));
+}
+
+TEST_F(RunJob, KilledWhileItsResultsAreWrittenItRendersNothingAnew) {
+  const JobFolder folder = create(spec());
+  run(folder);
+  const auto checkpoint = std::filesystem::last_write_time(folder.file("checkpoint.bin"));
+  const json counts = report(folder).at("counts");
+  std::filesystem::remove(folder.file("image.exr"));
+  extend(folder, [](Budget&) {});
+  EXPECT_EQ(run(folder), Outcome::done);
+  EXPECT_EQ(report(folder).at("counts"), counts);
+  EXPECT_TRUE(std::filesystem::exists(folder.file("image.exr")));
+  EXPECT_EQ(std::filesystem::last_write_time(folder.file("checkpoint.bin")), checkpoint);
+}
+
+TEST_F(RunJob, InterruptedItsProgressIsThatOfItsCheckpoint) {
+  const JobFolder folder = create(spec("cornell.glb", 1000000));
+  std::atomic<int> asked{0};
+  const std::function<bool()> soon = [&] { return ++asked > 50; };
+  ASSERT_EQ(run_job(folder, context(soon)), Outcome::interrupted);
+  const auto progress = folder.read_progress();
+  ASSERT_TRUE(progress);
+  EXPECT_GT(progress->iteration, 0);
+  observer.milestones.clear();
+  const std::function<bool()> at_once = [] { return true; };
+  ASSERT_EQ(run_job(folder, context(at_once)), Outcome::interrupted);
+  const std::string said = observer.milestones.front();
+  EXPECT_EQ(said.rfind("going on from iteration " + std::to_string(progress->iteration) + " ", 0),
+            0U)
+      << said;
+  EXPECT_EQ(folder.read_progress()->iteration, progress->iteration);
+}
+
+TEST_F(RunJob, AFolderThatCannotBeWrittenLeavesTheJobAsItIs) {
+  const JobFolder folder = create(spec("cornell.glb", 1000000));
+  std::atomic<int> asked{0};
+  const std::function<bool()> soon = [&] { return ++asked > 50; };
+  ASSERT_EQ(run_job(folder, context(soon)), Outcome::interrupted);
+  const std::string checkpoint = content_of(folder.file("checkpoint.bin"));
+  // A limit on the size of files stands for a full disk.
+  JobSpec s = folder.read_job();
+  s.budget.iterations = folder.read_progress()->iteration + 1;
+  write_file_atomically(folder.file("job.json"), write_job(s));
+  rlimit limit{};
+  ::getrlimit(RLIMIT_FSIZE, &limit);
+  ::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{4096, limit.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &small);
+  EXPECT_THROW(run(folder), std::system_error);
+  ::setrlimit(RLIMIT_FSIZE, &limit);
+  EXPECT_EQ(folder.read_state().state, State::interrupted);
+  EXPECT_NE(folder.read_state().error.find("cannot write"), std::string::npos);
+  EXPECT_EQ(content_of(folder.file("checkpoint.bin")), checkpoint);
+  for (const std::string& name : names_in(folder.dir())) {
+    EXPECT_FALSE(name.ends_with(".tmp")) << name;
+  }
+  EXPECT_EQ(run(folder), Outcome::done);
+  EXPECT_EQ(folder.read_state().error, "");
+}
+
+TEST_F(RunJob, DamagedCheckpointIsReportedKeptAndDoneWithout) {
+  const JobFolder whole = create(spec("cornell.glb", 6), "whole");
+  run(whole);
+  const JobFolder folder = create(spec("cornell.glb", 6));
+  std::atomic<int> asked{0};
+  const std::function<bool()> soon = [&] { return ++asked > 6; };
+  ASSERT_EQ(run_job(folder, context(soon)), Outcome::interrupted);
+  std::string bytes = read_file(folder.file("checkpoint.bin"), 1 << 24);
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  write_file_atomically(folder.file("checkpoint.bin"), bytes);
+  EXPECT_EQ(run(folder), Outcome::done);
+  ASSERT_FALSE(observer.warnings.empty());
+  EXPECT_NE(observer.warnings.back().find("checksum"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(folder.file("checkpoint.unusable")));
+  EXPECT_EQ(pixels(folder), pixels(whole));
+}
+
+TEST_F(RunJob, CheckpointOfAnotherSceneIsNotGoneOnFrom) {
+  const auto scenes = std::filesystem::path(LACUNA_SOURCE_DIR) / "jobs/scenes";
+  const JobFolder whole = create(spec("cornell.glb", 6), "whole");
+  run(whole);
+  std::filesystem::copy_file(scenes / "ajar.glb", temp.path() / "own.glb");
+  const JobFolder folder = create(spec("own.glb", 6));
+  std::atomic<int> asked{0};
+  const std::function<bool()> soon = [&] { return ++asked > 6; };
+  ASSERT_EQ(run_job(folder, context(soon)), Outcome::interrupted);
+  std::filesystem::copy_file(scenes / "cornell.glb", temp.path() / "own.glb",
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_EQ(run(folder), Outcome::done);
+  ASSERT_FALSE(observer.warnings.empty());
+  EXPECT_NE(observer.warnings.back().find("another picture"), std::string::npos);
+  EXPECT_EQ(pixels(folder), pixels(whole));
+}
+
+TEST_F(RunJob, AutoReferenceIsMadeOnceAndKnowsItsNoise) {
+  JobSpec s = spec();
+  s.reference = "auto";
+  s.reference_iterations = 64;
+  const JobFolder first = create(s, "first");
+  run(first);
+  const auto references = [&] {
+    std::vector<std::filesystem::path> found;
+    for (const auto& e : std::filesystem::directory_iterator(temp.path() / "references"))
+      found.push_back(e.path());
+    return found;
+  };
+  ASSERT_EQ(references().size(), 1U);
+  const auto written = std::filesystem::last_write_time(references()[0] / "image.exr");
+  const json errors = report(first).at("errors");
+  EXPECT_GT(errors.at("reference").at("own_rmse"), 0);
+  EXPECT_GT(errors.at("rmse"), errors.at("reference").at("own_rmse"));
+  s.seed = 2;
+  run(create(s, "second"));
+  EXPECT_EQ(references().size(), 1U);
+  EXPECT_EQ(std::filesystem::last_write_time(references()[0] / "image.exr"), written);
+  s.camera = "front";
+  s.resolution = {8, 8};
+  run(create(s, "third"));
+  EXPECT_EQ(references().size(), 2U);
+}
+
+TEST_F(RunJob, CurveSaysWhenTheReferenceIsTheFloor) {
+  JobSpec s = spec("cornell.glb", 512);
+  s.reference = "auto";
+  s.reference_iterations = 4;
+  const JobFolder folder = create(s);
+  run(folder);
+  EXPECT_EQ(report(folder).at("errors").at("reference").at("at_floor"), true);
+}
+
+TEST_F(RunJob, StopsAtAnErrorTarget) {
+  JobSpec s = spec("cornell.glb", 1);
+  s.budget.iterations = 1000000;
+  s.budget.error = ErrorTarget{ErrorMetric::est_rmse, 0.5};
+  const JobFolder folder = create(s);
+  run(folder);
+  EXPECT_LE(report(folder).at("errors").at("est_rmse"), 0.5);
+}
+
+TEST_F(RunJob, NoLightIsBlackAndSaysSo) {
+  const JobFolder folder = create(spec("open.glb", 1));
+  EXPECT_EQ(run(folder), Outcome::done);
+  for (const float v : pixels(folder)) EXPECT_EQ(v, 0);
+  ASSERT_EQ(folder.read_state().warnings.size(), 1U);
+  EXPECT_NE(folder.read_state().warnings[0].find("no light"), std::string::npos);
+}
+
+/// Runs a job that cannot be done; the state says why.
+std::string failure(const JobFolder& folder, const RunContext& context) {
+  try {
+    run_job(folder, context);
+  } catch (const SceneError& e) {
+    EXPECT_EQ(folder.read_state().state, State::failed);
+    EXPECT_EQ(folder.read_state().error, e.what());
+    return e.what();
+  }
+  ADD_FAILURE() << "the job did not fail";
+  return "";
+}
+
+TEST_F(RunJob, WhatCannotBeDoneFailsAndNamesThePlace) {
+  const auto context_of = [&] { return context(never); };
+  JobSpec s = spec("nowhere.glb");
+  EXPECT_NE(failure(create(s, "a"), context_of()).find("nowhere.glb"), std::string::npos);
+  s = spec();
+  s.camera = "back";
+  const std::string camera = failure(create(s, "b"), context_of());
+  EXPECT_NE(camera.find("\"back\""), std::string::npos);
+  EXPECT_NE(camera.find("\"front\""), std::string::npos);
+  write_exr(temp.path() / "small.exr", 2, 2, {{"", {"R", "G", "B"}, std::vector<double>(12, 1)}},
+            PixelType::single_float, {});
+  s = spec();
+  s.reference = "small.exr";
+  EXPECT_NE(failure(create(s, "c"), context_of()).find("2 x 2"), std::string::npos);
+  s.reference = "20260101-000000-abcdef";
+  EXPECT_NE(failure(create(s, "d"), context_of()).find("no such job"), std::string::npos);
+  s.reference = "../job";
+  EXPECT_NE(failure(create(s, "e"), context_of()).find("../job"), std::string::npos);
+  s = spec("open.glb");
+  s.environment = EnvironmentSettings{"missing.hdr", 1, 0};
+  EXPECT_NE(failure(create(s, "f"), context_of()).find("missing.hdr"), std::string::npos);
+}
+
+TEST_F(RunJob, AFolderIsOneProcessAtATime) {
+  const JobFolder folder = create(spec());
+  const auto lock = folder.try_lock();
+  EXPECT_THROW(run(folder), FolderBusy);
+  EXPECT_EQ(folder.read_state().state, State::queued);
+}
+
+TEST_F(RunJob, EnvironmentLightsTheScene) {
+  JobSpec s = spec("open.glb", 2);
+  s.environment = EnvironmentSettings{"sky.hdr", 1, 0};
+  const JobFolder folder = create(s);
+  run(folder);
+  float largest = 0;
+  for (const float v : pixels(folder)) largest = std::max(largest, v);
+  EXPECT_GT(largest, 0);
+  EXPECT_TRUE(folder.read_state().warnings.empty());
+}
+
+}  // namespace
+}  // namespace lacuna
