@@ -15,11 +15,12 @@
 namespace lacuna {
 
 struct SceneUploadSettings {
-  std::filesystem::path folder;              ///< of the uploaded scenes; made if it is not there
-  std::vector<std::filesystem::path> older = {};  ///< scenes roots that a name is looked up in before
-  std::filesystem::path renderer;            ///< the `lacuna` command, which checks them
-  ChildLimits limits;                        ///< of the check
-  std::chrono::milliseconds time{120'000};   ///< that a check may take
+  std::filesystem::path folder;  ///< of the uploaded scenes; made if it is not there
+  std::vector<std::filesystem::path> older =
+      {};                                   ///< scenes roots that a name is looked up in before
+  std::filesystem::path renderer;           ///< the `lacuna` command, which checks them
+  ChildLimits limits;                       ///< of the check
+  std::chrono::milliseconds time{120'000};  ///< that a check may take
 };
 
 /// "NAME.glb": a letter or digit, then at most 79 letters, digits, '.', '_' or '-', never "..".
