@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "analysis/storage/file_handle.h"
+#include "analysis/storage/passing_error.h"
 #include "jobs/spec/nearest.h"
 #include "jobs/store/job_folder.h"
 
@@ -157,6 +158,8 @@ fs::path ScenesRoots::resolve(std::string_view name, const Extensions& extension
     for (const fs::path& root : roots_) {
       const int error = walk(root, name);
       if (error == 0) return root / name;
+      // What cannot be looked at now is not missing: a later root's file is another one.
+      if (error != EACCES && may_pass(error)) throw_file_error(error, "look for", root / name);
       if (error != ENOENT && error != ENOTDIR) worst = error;
     }
     fault = worst == ENOENT  ? "it is not there"
