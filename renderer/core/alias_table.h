@@ -9,7 +9,11 @@
 
 namespace lacuna {
 
-/// Discrete distribution with constant-time draws (Walker 1977, in Vose's form).
+/// Discrete distribution with constant-time draws (Walker 1977, in Vose's form). All of a draw is
+/// done in integers: of 2^64 equally probable draws, so and so many return an index, and that
+/// number is its probability. So every probability is exactly the one that is drawn, up to the
+/// rounding of a float, for weights of any ratio: a weight that 2^-32 of a bin is too coarse for is
+/// rounded, one above 0 never to 0, and its probability with it.
 class AliasTable {
  public:
   AliasTable() = default;
@@ -19,8 +23,7 @@ class AliasTable {
 
   bool empty() const { return bins_.empty(); }
   std::size_t size() const { return bins_.size(); }
-  /// Draws an index from two random numbers. 64-bit arithmetic: 24 bits would not be enough to tell
-  /// a million bins apart.
+  /// Draws an index from two random numbers.
   std::uint32_t sample(Rng& rng) const { return resolve(choose(rng), rng).index; }
 
   /// An index and its probability.
@@ -36,16 +39,20 @@ class AliasTable {
     __builtin_prefetch(&bins_[i]);
     return i;
   }
-  Draw resolve(std::uint32_t chosen, Rng& rng) const {
+  Draw resolve(std::uint32_t chosen, Rng& rng) const { return resolve(chosen, rng.next_u32()); }
+  /// By 32 uniform bits.
+  Draw resolve(std::uint32_t chosen, std::uint32_t uniform) const {
     const Bin& b = bins_[chosen];
-    if (rng.next() < b.threshold) return {chosen, Pdf<Count>(b.pmf)};
+    if (uniform < b.threshold) return {chosen, Pdf<Count>(b.pmf)};
     return {b.alias, Pdf<Count>(b.alias_pmf)};
   }
   Pdf<Count> pmf(std::uint32_t i) const { return Pdf<Count>(bins_[i].pmf); }
 
  private:
+  void set_probabilities();
+
   struct Bin {
-    float threshold;  // below it: this index, else `alias`
+    std::uint32_t threshold;  // of 2^32; below it: this index, else `alias`
     std::uint32_t alias;
     float pmf;
     float alias_pmf;  // so that a draw reads one bin

@@ -374,7 +374,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
     const auto survival = [&](int s) {
       part.tally.asked(place.cell, s);
       const float p = seen_.survival(place.cell, s, double(throughput), part.enough);
-      return p >= 1 || rng.next() < p ? p : 0.0F;
+      return p >= 1 || rng.decide(p) ? p : 0.0F;
     };
     connections_.pick(place, part.lights, longest, rng, survival,
                       [&](int s, const VertexSample& pick) {
