@@ -13,8 +13,6 @@ namespace lacuna {
 /// the voxel in front of it.
 class SpaceView {
  public:
-  static bool shows(InspectQuantity quantity);
-
   /// Builds what the quantity needs, and only that. The context's space must outlive the view.
   SpaceView(InspectQuantity quantity, const PrepareContext& context);
 
