@@ -6,6 +6,7 @@
 #include "renderer/gltf/gltf_load.h"
 #include "renderer/gltf/gltf_materials.h"
 #include "renderer/gltf/gltf_nodes.h"
+#include "renderer/gltf/gltf_origin.h"
 
 namespace lacuna {
 namespace {
@@ -45,6 +46,7 @@ SceneData load(const std::filesystem::path& file) {
   const tinygltf::Model model = parse_model(bytes, framing, root, folder, content);
   build_meshes(model, nodes, scene, warnings);
   if (scene.origin != V3d(0.0)) place_cameras_and_lights();
+  warn_of_far_cameras(scene, warnings);
   scene.textures = textures.build(model, folder, content);
   scene.content_hash = content.digest();
   warn_of_rest(root, warnings);

@@ -117,4 +117,16 @@ void warn_of_places(const SceneData& scene, std::uint64_t coarse, Warnings& warn
   }
 }
 
+void warn_of_far_cameras(const SceneData& scene, Warnings& warnings) {
+  const double side = longest(scene.bounds().size());
+  for (const CameraData& camera : scene.cameras) {
+    const double distance = camera.to_world.translation().length();
+    if (!(distance > too_far * side)) continue;
+    warnings.once(
+        fmt::format("camera \"{}\" is {:.2g} from the middle of a scene {:.2g} wide: its place is "
+                    "rounded by {:.1g}",
+                    camera.name, distance, side, distance * 0x1p-24));
+  }
+}
+
 }  // namespace lacuna::gltf

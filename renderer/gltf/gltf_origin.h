@@ -21,6 +21,10 @@ V3d scene_origin(const tinygltf::Model& model, const std::vector<PlacedNode>& no
 /// floats in the file (`coarse`: how many meshes have coordinates too coarse for them).
 void warn_of_places(const SceneData& scene, std::uint64_t coarse, Warnings& warnings);
 
+/// Warns of cameras so far away that a float rounds their place by 2^-10 of the scene's longest side
+/// or more.
+void warn_of_far_cameras(const SceneData& scene, Warnings& warnings);
+
 /// The largest coordinate of a box is more than 2^14 times its longest side:
 /// a float resolves them to 2^-10 of their size, and rays start a thirty-second of it beside them.
 bool is_far_for_its_size(const Bounds& box);

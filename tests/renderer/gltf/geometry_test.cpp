@@ -97,6 +97,14 @@ TEST(Origin, WhatAFloatCannotResolveIsWarnedOf) {
   EXPECT_NE(places.find("1 of 2 meshes are too small for their distance"), std::string::npos);
   EXPECT_NE(places.find("is 1 wide at a distance of 3e+04"), std::string::npos) << places;
 
+  GlbBuilder seen = test::triangle_scene();
+  seen.add_camera("here", {0, 0, 1e4F}, 0.8);
+  EXPECT_EQ(said(load(seen)), "");
+  seen.add_camera("there", {0, 0, 2e6F}, 0.8);
+  EXPECT_EQ(said(load(seen)),
+            "camera \"there\" is 2e+06 from the middle of a scene 1 wide: its place is rounded by "
+            "0.1");
+
   GlbBuilder baked;
   const auto far = baked.add_mesh({{1e6, 0, 0}, {1e6 + 1, 0, 0}, {1e6, 1, 0}}, {{0, 1, 2}});
   baked.add_node({{"mesh", far}});
