@@ -48,7 +48,7 @@ bool has_extension(std::string_view name, const Extensions& extensions) {
 }
 
 /// Why a name is refused before anything is looked up; empty: it is not.
-std::string_view fault_of(std::string_view name, const Extensions& extensions) {
+std::string fault_of(std::string_view name, const Extensions& extensions) {
   if (name.empty()) return "it is empty";
   if (name.front() == '/') return "it is absolute; allowed: a name below a scenes root";
   for (const char c : name) {
@@ -59,7 +59,9 @@ std::string_view fault_of(std::string_view name, const Extensions& extensions) {
     if (part.empty()) return "it has an empty part";
     if (part == "." || part == "..") return "it has a part \".\" or \"..\"";
   }
-  if (!has_extension(name, extensions)) return "it is not a file of this kind";
+  if (!has_extension(name, extensions)) {
+    return fmt::format("it does not end in {}", fmt::join(extensions, " or "));
+  }
   return {};
 }
 
@@ -152,7 +154,7 @@ ScenesRoots ScenesRoots::from_environment() {
 }
 
 fs::path ScenesRoots::resolve(std::string_view name, const Extensions& extensions) const {
-  std::string fault(fault_of(name, extensions));
+  std::string fault = fault_of(name, extensions);
   if (fault.empty()) {
     int worst = ENOENT;
     for (const fs::path& root : roots_) {
@@ -167,7 +169,7 @@ fs::path ScenesRoots::resolve(std::string_view name, const Extensions& extension
                              : "it is not a regular file that can be read";
   }
   throw std::invalid_argument(
-      fmt::format("no file {}: {}{}", shown(name), fault,
+      fmt::format("{} cannot be used: {}{}", shown(name), fault,
                   available(name, names_below(roots_, extensions), extensions)));
 }
 
