@@ -97,5 +97,5 @@ test("a token file that others can read, or that is none, is refused", async (t)
   await refused(tokenFile(places, 0o640), /token: others may use it \(mode 0640\): chmod 600/);
   await refused(path.join(places.root, "none"), /none: No such file/);
   await refused(places.root, /it is not a regular file/);
-  await refused(tokenFile(places), /--host "http:\/\/x" is no name/, ["--host", "http://x"]);
+  await refused(tokenFile(places), /--host "http:\/\/x" is not a host name/, ["--host", "http://x"]);
 });

@@ -94,7 +94,7 @@ TEST_F(Uploads, WhatIsNoSceneIsRefusedWithTheReasonAndLeavesNothing) {
     return result.reason;
   };
   EXPECT_TRUE(contains(refused(""), "glTF"));
-  EXPECT_TRUE(contains(refused(R"({"asset": {"version": "2.0"}})"), "no GLB"));
+  EXPECT_TRUE(contains(refused(R"({"asset": {"version": "2.0"}})"), "not a GLB"));
   EXPECT_FALSE(refused("glTF but no more than that").empty());
   const std::string cornell = scene("cornell.glb");
   EXPECT_FALSE(refused(cornell.substr(0, cornell.size() / 2)).empty());
