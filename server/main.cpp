@@ -80,10 +80,12 @@ void define_options(CLI::App& app, ServiceSettings& s) {
   app.add_option_function<std::string>(
          "--disk-floor",
          [&s](const std::string& text) { s.care.disk_floor = byte_size("--disk-floor", text); },
-         "free disk space to keep, for example 1G; with less, jobs wait and renderers stop")
+         "free disk space to keep, for example 1G; with less, or with few inodes, jobs wait and "
+         "renderers stop; 0: none")
       ->default_str(byte_size_text(s.care.disk_floor));
-  app.add_option("--keep-jobs", s.care.keep_jobs,
-                 "finished jobs to keep; the oldest are removed; 0: keep all")
+  app.add_option(
+         "--keep-jobs", s.care.keep_jobs,
+         "finished jobs to keep, by their state on disk; the oldest are removed; 0: keep all")
       ->check(CLI::Range(0, 10'000'000))
       ->capture_default_str();
   app.add_option("--keep-days", s.care.keep_days,
@@ -115,6 +117,8 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   log::start("lacuna-server", settings.verbose);
 
+  // A file beyond the size limit must become an error, not the end of the service.
+  std::signal(SIGXFSZ, SIG_IGN);
   const sigset_t ends = block_ends();
   try {
     Service service(settings);
@@ -125,7 +129,9 @@ int main(int argc, char** argv) {
     sigwait(&ends, &signal);
     log::info("ending (signal {})", signal);
     service.stop();
-    return 0;
+    const std::string lost = service.lost();
+    if (!lost.empty()) fmt::print(stderr, "lacuna-server: {}\n", lost);
+    return lost.empty() ? 0 : 1;
   } catch (const std::exception& error) {
     fmt::print(stderr, "lacuna-server: {}\n", error.what());
     return 1;

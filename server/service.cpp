@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <stdexcept>
-#include <thread>
 
-#include "analysis/storage/file_lock.h"
 #include "jobs/spec/page_tables.h"
 #include "jobs/spec/version.h"
 #include "server/http/access.h"
@@ -19,6 +19,7 @@
 #include "server/queue/queue.h"
 #include "server/routes/routes.h"
 #include "server/routes/scene_uploads.h"
+#include "server/service_lock.h"
 #include "server/sweeps/sweep_keeper.h"
 #include "server/tables/sweep_table.h"
 #include "server/telemetry/log.h"
@@ -58,15 +59,21 @@ fs::path renderer(const ServiceSettings& settings) {
 /// Where uploaded scenes lie: the last of the scenes roots, so that they hide no other.
 fs::path uploads_folder(const DataRoot& data) { return data.dir / "scenes"; }
 
+std::vector<fs::path> given_roots(const ServiceSettings& settings) {
+  return absolute(settings.scenes.empty() ? ScenesRoots::from_environment().roots()
+                                          : settings.scenes);
+}
+
 std::unique_ptr<SceneUploads> make_uploads(const ServiceSettings& settings, const DataRoot& data) {
   if (!settings.uploads) return nullptr;
-  return std::make_unique<SceneUploads>(SceneUploadSettings{
-      .folder = uploads_folder(data), .renderer = renderer(settings), .limits = settings.limits});
+  return std::make_unique<SceneUploads>(SceneUploadSettings{.folder = uploads_folder(data),
+                                                            .older = given_roots(settings),
+                                                            .renderer = renderer(settings),
+                                                            .limits = settings.limits});
 }
 
 ScenesRoots scenes_roots(const ServiceSettings& settings, const DataRoot& data) {
-  auto roots =
-      absolute(settings.scenes.empty() ? ScenesRoots::from_environment().roots() : settings.scenes);
+  auto roots = given_roots(settings);
   if (settings.uploads) roots.push_back(uploads_folder(data));
   return ScenesRoots(std::move(roots));
 }
@@ -76,20 +83,6 @@ DataRoot data_root(const ServiceSettings& settings) {
       settings.data.empty() ? DataRoot::from_environment() : DataRoot::at(settings.data);
   fs::create_directories(data.jobs());
   return data;
-}
-
-/// Two services on one folder would start every job twice. A child that a killed service had just
-/// forked has the lock, too, until it has become a renderer: that is waited for.
-FileLock lock_data(const DataRoot& data) {
-  constexpr std::chrono::seconds patience(3);
-  constexpr std::chrono::milliseconds pause(10);
-  const auto end = std::chrono::steady_clock::now() + patience;
-  for (;;) {
-    if (auto lock = FileLock::try_take(data.dir / ".lacuna-server.lock")) return std::move(*lock);
-    if (std::chrono::steady_clock::now() >= end) break;
-    std::this_thread::sleep_for(pause);
-  }
-  throw std::runtime_error(fmt::format("another lacuna-server works in {}", data.dir.string()));
 }
 
 std::chrono::milliseconds grace(const ServiceSettings& settings) {
@@ -105,16 +98,29 @@ void check(const ServiceSettings& settings) {
   }
 }
 
-/// Connections need descriptors: what was allowed at the start is often too little.
-void allow_descriptors() {
+/// Connections need descriptors: what was allowed at the start is often too little. Gives the
+/// highest that a connection may have: those above, at most half, are for the files of renderers,
+/// jobs and answers.
+int allow_descriptors(const ServiceSettings& settings) {
   constexpr rlim_t wanted = 8192;
+  constexpr int for_answers = 512, for_a_renderer = 8;
   rlimit limit{};
-  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= wanted) return;
-  limit.rlim_cur = std::min(wanted, limit.rlim_max);
-  if (::setrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur < wanted) {
-    log::warn("only {} files may be open at a time: less than {} clients can be served at once",
-              limit.rlim_cur, wanted);
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return HttpSettings{}.max_connection_fd;
+  if (limit.rlim_cur < wanted) {
+    limit.rlim_cur = std::min(wanted, limit.rlim_max);
+    if (::setrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur < wanted) {
+      log::warn("only {} files may be open at a time: less than {} clients can be served at once",
+                limit.rlim_cur, wanted);
+    }
   }
+  const int all = static_cast<int>(std::min<rlim_t>(limit.rlim_cur, 1 << 20));
+  return all - std::min(all / 2, for_answers + for_a_renderer * settings.queue.children);
+}
+
+HttpSettings http_settings(const ServiceSettings& settings) {
+  HttpSettings http = settings.http;
+  http.max_connection_fd = allow_descriptors(settings);
+  return http;
 }
 
 QueueSettings queue_settings(const ServiceSettings& settings) {
@@ -137,7 +143,7 @@ struct Service::Parts {
   explicit Parts(const ServiceSettings& given)
       : settings(given),
         data(data_root(settings)),
-        lock(lock_data(data)),
+        lock(data.dir),
         uploads(make_uploads(settings, data)),
         scenes(scenes_roots(settings, data)),
         executor({.renderer = renderer(settings),
@@ -151,20 +157,27 @@ struct Service::Parts {
         disk(data.jobs(), settings.care.disk_floor),
         queue(executor, table, disk, queue_settings(settings)),
         keeper(sweeps, table, queue, disk, settings.queue.max_waiting / 2),
-        maintenance(table, queue, settings.care),
+        maintenance(table, queue, settings.care, [this] { look_at_lock(); }),
         files(page(settings)),
         access(settings.http.bind, settings.access,
                [this](const std::string& path) { return files.has(path); }),
-        routes({settings, data, scenes, table, disk, http_metrics, uploads.get()}, table, queue,
-               sweeps, keeper, files),
-        http(settings.http, routes.router(), http_metrics,
+        routes({settings, data, scenes, table, disk, queue, http_metrics, uploads.get()}, table,
+               queue, sweeps, keeper, files),
+        http(http_settings(settings), routes.router(), http_metrics,
              [this](const Request& request) { return access.admit(request); }) {
     http.bind();
   }
 
+  /// Ends the service, as a signal from outside does, if the folder is another's.
+  void look_at_lock() {
+    if (!lost.empty()) return;
+    lost = lock.look();
+    if (!lost.empty()) ::kill(::getpid(), SIGTERM);
+  }
+
   const ServiceSettings settings;
   const DataRoot data;
-  const FileLock lock;
+  ServiceLock lock;
   const std::unique_ptr<SceneUploads> uploads;
   const ScenesRoots scenes;
   LocalExecutor executor;
@@ -175,6 +188,7 @@ struct Service::Parts {
   SweepKeeper keeper;
   MaintenanceThread maintenance;
   const StaticFiles files;
+  std::string lost;  ///< why it has to end; the maintenance thread's, until that has ended
   Access access;
   HttpMetrics http_metrics;
   Routes routes;
@@ -183,7 +197,6 @@ struct Service::Parts {
 
 Service::Service(const ServiceSettings& settings) {
   check(settings);
-  allow_descriptors();
   parts_ = std::make_unique<Parts>(settings);
 }
 Service::~Service() { stop(); }
@@ -205,6 +218,8 @@ void Service::stop() {
   parts_->queue.stop();
   parts_->maintenance.stop();
 }
+
+std::string Service::lost() const { return parts_->lost; }
 
 std::string Service::url() const { return parts_->http.url(); }
 

@@ -53,6 +53,8 @@ export const json = async (path, signal) => (await request(path, { signal })).js
 /// A part of the list: {jobs, total, counts, next, last_event}; `wanted`: {state, label, limit, cursor}.
 export const getJobs = (wanted, signal) => json(`/api/jobs?${queryOf(wanted)}`, signal);
 export const getJob = (id, signal) => json(jobPath(id), signal);
+/// {status}, and what keeps all jobs from going on: {obstacle}.
+export const getHealth = (signal) => json("/health", signal);
 export const getScenes = async (signal) => (await json("/api/scenes", signal)).scenes;
 /// A file as it is now: a Response.
 export const getFile = (id, name, signal) => request(fileUrl(id, name), { signal, cache: "no-cache" });

@@ -36,7 +36,7 @@ export function jobRow(id, onchoose) {
       choose.checked = chosen;
       setText(title, name);
       setText(detail, job.label ? `${job.scene} · ${id}` : id);
-      setText(reason, job.error ?? "");
+      setText(reason, job.error || job.obstacle || "");
       setText(integrator, integratorName(job.integrator));
       state.set(job.state, job.phase);
       progress.set(job.state, job.progress);

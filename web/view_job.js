@@ -117,7 +117,8 @@ export async function show(main, { params, query, signal }) {
     view.state.set(state.state, state.phase);
     view.bar.set(state.state, progress);
     actions.show(shown);
-    replace(view.notes, state.error && problem(state.error), state.warnings?.map(warning));
+    replace(view.notes, state.error && problem(state.error), state.obstacle && warning(`It waits: ${state.obstacle}`),
+      state.warnings?.map(warning));
     replace(view.facts, jobFacts(shown));
     view.element.dataset.state = state.state;
   }
@@ -132,6 +133,11 @@ export async function show(main, { params, query, signal }) {
   async function refresh() {
     const before = shown;
     shown = await getJob(id, signal);
+    if (!shown.job) {  // its folder is damaged
+      document.title = `${id} · Lacuna`;
+      main.replaceChildren(h("article", h("h1", id), problem(shown.state.error)));
+      return false;
+    }
     if (before === null) {
       view.log.element.open = shown.state.state === "failed";
       main.replaceChildren(view.element);

@@ -1,6 +1,6 @@
 // The list of jobs, live, a page at a time, with a filter and a choice of jobs to compare.
-import { getJobs, getScenes, listen, poll, queryOf, soon } from "./api.js";
-import { button, copyButton, h, note, problem, remember, setText } from "./dom.js";
+import { getHealth, getJobs, getScenes, listen, poll, queryOf, soon } from "./api.js";
+import { button, copyButton, h, note, problem, remember, replace, setText, warning } from "./dom.js";
 import { curlLine, firstJob } from "./format.js";
 import { jobFilter } from "./job_filter.js";
 import { jobRow, jobTable } from "./job_row.js";
@@ -24,6 +24,9 @@ async function noJobs(signal) {
       "The server has no scenes: start it with LACUNA_SCENES set to a folder of scenes."));
 }
 
+/// What the page, the counts and the service's health change with.
+const standing = (job) => `${job.state} ${job.obstacle ? "waits" : ""}`;
+
 /// The buttons of the choice.
 function choice(redraw) {
   const compare = button("Compare", () => { location.hash = `#/compare?jobs=${[...chosen].join(",")}`; });
@@ -44,7 +47,7 @@ function choice(redraw) {
 export async function show(main, { query, signal }) {
   document.title = "Jobs · Lacuna";
   let rows = new Map();  // of the page that is shown, by id
-  const known = new Map();  // the state of every job that was told of
+  const known = new Map();  // the standing of every job that was told of
   let place = { cursor: query.get("cursor") ?? "", from: Number(query.get("from")) || 0 };
   let last = "";  // the last event that is known of
   let empty = null;
@@ -59,8 +62,9 @@ export async function show(main, { query, signal }) {
   const choosing = choice(() => listSoon(0));
   const { element, arrange } = jobTable();
   const tools = h("div.tools", { role: "search" }, filter.elements, count, choosing.element);
+  const waits = h("div");  // what keeps all jobs from going on
   const body = h("div");
-  main.append(h("h1", "Jobs"), tools, body, pages.element);
+  main.append(h("h1", "Jobs"), waits, tools, body, pages.element);
 
   function onchoose(id, on) {
     if (on) chosen.add(id);
@@ -80,7 +84,7 @@ export async function show(main, { query, signal }) {
     const before = rows;
     rows = new Map(jobs.map((job) => [job.id, before.get(job.id) ?? jobRow(job.id, onchoose)]));
     for (const job of jobs) {
-      known.set(job.id, job.state);
+      known.set(job.id, standing(job));
       rows.get(job.id).set(job, chosen.has(job.id));
     }
     arrange([...rows.values()].map((row) => row.element));
@@ -97,10 +101,12 @@ export async function show(main, { query, signal }) {
   async function list() {
     asked += 1;
     const mine = asked;
-    const found = await getJobs({ ...filter.values(), cursor: place.cursor, limit: pageSize }, signal);
+    const [found, health] = await Promise.all([
+      getJobs({ ...filter.values(), cursor: place.cursor, limit: pageSize }, signal), getHealth(signal)]);
     if (found.total === 0) empty ??= await noJobs(signal);
     if (mine !== asked) return;
     last = found.last_event;
+    replace(waits, health.obstacle && warning(`Jobs wait: ${health.obstacle}`));
     draw(found);
   }
 
@@ -112,8 +118,8 @@ export async function show(main, { query, signal }) {
       last = id || last;
       rows.get(entry.id)?.set(entry, chosen.has(entry.id));
       // What is on the page, and the counts, change only with the jobs' states.
-      if (known.get(entry.id) !== entry.state) listSoon(soonMs);
-      known.set(entry.id, entry.state);
+      if (known.get(entry.id) !== standing(entry)) listSoon(soonMs);
+      known.set(entry.id, standing(entry));
     },
     removed({ id }, event) {
       last = event || last;

@@ -11,7 +11,7 @@ namespace lacuna {
 namespace {
 
 /// The open file still has its name: nobody removed it between open() and flock().
-bool is_named(int fd, const std::filesystem::path& file) {
+bool has_name(int fd, const std::filesystem::path& file) {
   struct stat held {
   }, named{};
   return ::fstat(fd, &held) == 0 && ::lstat(file.c_str(), &named) == 0 &&
@@ -29,9 +29,11 @@ std::optional<FileLock> FileLock::try_take(const std::filesystem::path& file) {
       if (errno == EWOULDBLOCK) return std::nullopt;
       throw_file_error(errno, "lock", file);
     }
-    if (is_named(handle.get(), file)) return FileLock(file, std::move(handle));
+    if (has_name(handle.get(), file)) return FileLock(file, std::move(handle));
   }
 }
+
+bool FileLock::is_named() const { return has_name(handle_.get(), file_); }
 
 void FileLock::note(std::string_view text) const {
   if (::ftruncate(handle_.get(), 0) != 0) return;

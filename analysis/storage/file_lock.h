@@ -20,6 +20,8 @@ class FileLock {
   FileLock& operator=(FileLock&&) = delete;
   ~FileLock();
 
+  /// The file still has its name: nobody has removed it or put another in its place.
+  bool is_named() const;
   /// Replaces what the file says, for people who ask who has it. Whether it could be written does
   /// not matter.
   void note(std::string_view text) const;

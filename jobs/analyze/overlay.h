@@ -9,7 +9,7 @@
 
 namespace lacuna {
 
-/// Triangles of one colour in scene units.
+/// Triangles of one colour in scene coordinates.
 struct OverlayMesh {
   std::string name;
   Rgb colour{1, 1, 1};
@@ -29,7 +29,8 @@ std::vector<OverlayMesh> gate_overlay(const VisibilityGates& gates, const GridTr
 std::vector<OverlayMesh> portal_overlay(const Portals& portals, const RegionLabels& regions,
                                         const GridTransform& grid);
 
-/// A GLB with these meshes and the scene's triangles and cameras; the scene is grey and see-through
+/// A GLB in the coordinates of the scene's file, with these meshes and the scene's triangles and
+/// cameras; the scene is grey and see-through
 /// (alphaMode BLEND). Throws std::system_error.
 void write_overlay(const std::filesystem::path& file, const SceneData& scene,
                    const std::vector<OverlayMesh>& overlay);

@@ -1,8 +1,8 @@
 #include <nlohmann/json.hpp>
 
+#include "analysis/json/json_text.h"
 #include "analysis/storage/atomic_file.h"
 #include "jobs/analyze/overlay.h"
-#include "analysis/json/json_text.h"
 #include "renderer/scene/scene_shape.h"
 
 namespace lacuna {
@@ -11,10 +11,14 @@ namespace {
 /// A glTF document and its one buffer, in the making.
 class Document {
  public:
-  Document() {
+  /// What is added lies relative to `origin`.
+  explicit Document(const V3d& origin) {
     json_["asset"] = {{"version", "2.0"}, {"generator", "lacuna analyze"}};
     json_["scene"] = 0;
-    json_["scenes"] = {{{"nodes", OrderedJson::array()}}};
+    json_["nodes"].push_back({{"name", "origin"},
+                              {"translation", {origin.x, origin.y, origin.z}},
+                              {"children", OrderedJson::array()}});
+    json_["scenes"] = {{{"nodes", {0}}}};
   }
 
   void add(const OverlayMesh& mesh, float alpha) {
@@ -91,7 +95,7 @@ class Document {
   }
   void add_node(OrderedJson node) {
     json_["nodes"].push_back(std::move(node));
-    json_["scenes"][0]["nodes"].push_back(json_["nodes"].size() - 1);
+    json_["nodes"][0]["children"].push_back(json_["nodes"].size() - 1);
   }
 
   OrderedJson json_;
@@ -102,7 +106,7 @@ class Document {
 
 void write_overlay(const std::filesystem::path& file, const SceneData& scene,
                    const std::vector<OverlayMesh>& overlay) {
-  Document document;
+  Document document(scene.origin);
   TriangleSoup soup = triangle_soup(scene);
   constexpr float grey = 0.6F, see_through = 0.25F;
   document.add({"scene", Rgb(grey), std::move(soup.positions), std::move(soup.triangles)},

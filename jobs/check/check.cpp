@@ -3,10 +3,12 @@
 #include "jobs/run/reference.h"
 #include "renderer/gltf/gltf_load.h"
 
+#include <fmt/format.h>
+
 #include <optional>
 #include <utility>
 
-#include "renderer/scene/scene.h"
+#include "renderer/scene/hidden_emitters.h"
 
 namespace lacuna {
 
@@ -19,11 +21,16 @@ std::vector<std::string> check_job(const JobSpec& spec, const RunContext& contex
 }
 
 SceneCounts check_scene(const std::filesystem::path& file, const ThreadPool& pool) {
+  if (const std::string kind = file.extension().string(); kind != ".glb" && kind != ".gltf") {
+    throw SceneError(
+        fmt::format("\"{}\" ends in \"{}\"; allowed: .glb and .gltf", file.string(), kind));
+  }
   SceneData data = load_gltf(file);
   SceneCounts counts{data.triangle_count(), data.materials.size() - 1,  // without glTF's own
                      data.textures.size(),  data.cameras.size(),
                      data.lights.size(),    data.warnings};
   const Scene scene(std::move(data), {.materials = true, .emission = true}, std::nullopt, pool);
+  for (std::string& w : hidden_emitters(scene)) counts.warnings.push_back(std::move(w));
   return counts;
 }
 

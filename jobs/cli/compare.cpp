@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "jobs/cli/commands.h"
+#include "jobs/results/results.h"
 #include "renderer/film/block_statistics.h"
 #include "renderer/film/display_errors.h"
 #include "renderer/film/metrics.h"
@@ -59,9 +60,12 @@ std::vector<double> variance_of_difference(const CompareOptions& o, const Crop& 
   std::vector<double> sum;
   for (const auto& file : {o.a, o.b}) {
     try {
-      const std::vector<double> v = in_double(read_float_image(file, "variance"), crop);
+      const FloatImage layer = read_float_image(file, "variance");
+      const auto found = layer.attributes.find(fmt::format("lacuna:{}", variance_scale_attribute));
+      const double scale = found == layer.attributes.end() ? 1 : std::stod(found->second);
+      const std::vector<double> v = in_double(layer, crop);
       if (sum.empty()) sum.resize(v.size());
-      for (std::size_t i = 0; i < v.size(); ++i) sum[i] += v[i];
+      for (std::size_t i = 0; i < v.size(); ++i) sum[i] += v[i] / scale;
     } catch (const SceneError&) {
       if (file == o.a) return {};
     }

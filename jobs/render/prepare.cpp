@@ -1,5 +1,6 @@
 #include "jobs/render/prepare.h"
 #include "renderer/gltf/gltf_load.h"
+#include "renderer/scene/hidden_emitters.h"
 #include "renderer/scene/material_change.h"
 #include "renderer/scene/particles.h"
 
@@ -75,6 +76,7 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   if (spec.material) change_material(data, *spec.material, spec.scene);
   if (spec.particles) add_particles(data, *spec.particles);
   const CameraData camera = choose_camera(data, spec.camera, spec.scene);
+  p.camera_name = camera.name;
   std::optional<Crop> crop;
   if (const auto& c = spec.crop) crop = Crop{{c->from[0], c->from[1]}, {c->of[0], c->of[1]}};
   p.camera = std::make_unique<Camera>(camera, spec.resolution[0], spec.resolution[1],
@@ -98,6 +100,9 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   p.scene = std::make_unique<Scene>(std::move(data), needs, environment, *p.pool);
   if (needs.emission && p.scene->emitters().empty()) {
     p.warnings.emplace_back("the scene has no light: the picture is black");
+  }
+  if (needs.emission) {
+    for (std::string& w : hidden_emitters(*p.scene)) p.warnings.push_back(std::move(w));
   }
   set_up_analysis(p, spec, context, camera);
   return p;

@@ -14,6 +14,7 @@ struct Prepared {
   std::unique_ptr<Integrator> integrator;
   std::unique_ptr<Scene> scene;
   std::unique_ptr<Camera> camera;
+  std::string camera_name;  ///< of the camera that was chosen, also where the job names none
   std::unique_ptr<ArtefactStore> artefacts;
   std::unique_ptr<SpaceAnalysis> space;  ///< nothing of it is built yet
   std::string content;                   ///< hashes of the files the picture depends on

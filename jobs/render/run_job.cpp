@@ -99,9 +99,11 @@ Outcome run_or_wait(const JobFolder& folder, const RunContext& context) {
 /// The reference as a job of its own in a folder of its own, made by whoever needs it first.
 /// Nothing if interrupted.
 std::optional<Reference> make_auto_reference(const JobFolder& folder, const JobSpec& spec,
-                                             const std::string& content,
-                                             const RunContext& context) {
-  const ReferenceJob job = auto_reference(spec, context.data, content);
+                                             const Prepared& prepared, const RunContext& context) {
+  // A job that names no camera has the reference of one that names the first.
+  JobSpec named = spec;
+  named.camera = prepared.camera_name;
+  const ReferenceJob job = auto_reference(named, context.data, prepared.content);
   const auto& dir = job.folder.dir();
   if (!std::filesystem::exists(dir)) {
     std::filesystem::create_directories(dir.parent_path());
@@ -146,7 +148,7 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
     running.phase("reference");
     const ScopedSeconds timed(phases["reference"]);
     if (spec.reference == "auto") {
-      reference = make_auto_reference(folder, spec, prepared.content, context);
+      reference = make_auto_reference(folder, spec, prepared, context);
       if (!reference) return Outcome::interrupted;
     } else {
       reference = find_reference(spec, context.data, context.scenes);

@@ -58,6 +58,7 @@ OrderedJson scene(const Scene& s) {
         {"decoded_bytes", s.texture_bytes()}}},
       {"mask_filters", s.rays().filters()},
       {"ray_caster_bytes", s.rays().bytes()},
+      {"origin", {d.origin.x, d.origin.y, d.origin.z}},
       {"content_hash", fmt::format("{:016x}", d.content_hash)},
       {"geometry_hash", fmt::format("{:016x}", d.geometry_hash)}};
 }

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "analysis/json/json_text.h"
 #include "analysis/storage/atomic_file.h"
 #include "jobs/spec/job_json.h"
-#include "analysis/json/json_text.h"
 #include "jobs/spec/version.h"
 #include "renderer/film/half_layers.h"
 #include "renderer/film/preview.h"
@@ -39,6 +41,15 @@ std::vector<double> every_third(const std::vector<double>& values) {
   return result;
 }
 
+/// The power of two by which variances are multiplied in a file of `type`. Squares of small or
+/// large radiances leave a float's range long before the radiances do; then, and always in halves,
+/// the largest is brought near 1.
+double variance_scale(const std::vector<double>& variance, PixelType type) {
+  const double largest = *std::max_element(variance.begin(), variance.end());
+  const bool fits = type == PixelType::single_float && largest > 0x1p-80 && largest < 0x1p100;
+  return largest == 0 || fits ? 1 : std::exp2(-std::ilogb(largest));
+}
+
 void add_layer(const RenderTask& task, const Film& film, ImageLayer layer,
                std::vector<ExrLayer>& out) {
   switch (layer) {
@@ -64,6 +75,17 @@ void add_layer(const RenderTask& task, const Film& film, ImageLayer layer,
     case ImageLayer::visibility_tests:
     case ImageLayer::negative:
       return;  // the integrator's own (RenderLoop::layers())
+  }
+}
+
+/// Scales the variance among the layers, and says so among the file's attributes.
+void scale_variance(std::vector<ExrLayer>& layers, PixelType type,
+                    std::map<std::string, std::string>& attributes) {
+  for (ExrLayer& layer : layers) {
+    if (layer.name != "variance") continue;
+    const double scale = variance_scale(layer.values, type);
+    for (double& v : layer.values) v *= scale;
+    attributes[std::string(variance_scale_attribute)] = fmt::format("{:.17g}", scale);
   }
 }
 
@@ -111,9 +133,11 @@ void write_results(const RenderTask& task, const RenderLoop& loop) {
   for (std::size_t i = 0; i < own.size(); ++i) {
     layers.push_back({own[i], rgb, loop.layers().mean(i)});
   }
-  write_exr(task.folder.file("image.exr"), film.width(), film.height(), layers,
-            task.spec.pixel_type, attributes(task, loop));
   write_half_layers(task, layers);
+  std::map<std::string, std::string> header = attributes(task, loop);
+  scale_variance(layers, task.spec.pixel_type, header);
+  write_exr(task.folder.file("image.exr"), film.width(), film.height(), layers,
+            task.spec.pixel_type, header);
   write_preview(task.folder.file("image.png"), film.width(), film.height(), mean);
   write_file_atomically(task.folder.file("curve.csv"), loop.curve().csv());
 }

@@ -1,19 +1,15 @@
 #include "jobs/run/obstacle.h"
 
-#include <algorithm>
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <new>
 #include <system_error>
 
 #include "analysis/space/memory_limit.h"
+#include "analysis/storage/passing_error.h"
 
 namespace lacuna {
 namespace {
-
-// EACCES: a folder that was made read-only; EFBIG: beyond RLIMIT_FSIZE.
-constexpr std::array storage_errors{ENOSPC, EDQUOT, EFBIG, EROFS, EIO, EACCES};
 
 std::atomic<bool> ran_out{false};
 
@@ -37,9 +33,7 @@ Obstacle obstacle_of(const std::exception& e) {
   if (const auto* error = dynamic_cast<const std::system_error*>(&e)) {
     const int number = error->code().value();
     if (number == ENOMEM) return Obstacle::memory;
-    if (std::find(storage_errors.begin(), storage_errors.end(), number) != storage_errors.end()) {
-      return Obstacle::storage;
-    }
+    if (may_pass(number)) return Obstacle::storage;
   }
   return ran_out ? Obstacle::memory : Obstacle::none;
 }

@@ -9,7 +9,7 @@ namespace lacuna {
 enum class Obstacle {
   none,     ///< it would fail again
   memory,   ///< there was not enough
-  storage,  ///< a file could not be written: no space, a quota or a size limit, read-only, failing
+  storage,  ///< a file could not be read or written for a reason that may pass (may_pass())
 };
 
 /// Makes this process remember that memory ran out. Libraries that catch std::bad_alloc report an

@@ -32,8 +32,11 @@ Job reference_spec(const Job& job) {
   r.integrator = reference_integrator(job.integrator);
   r.budget.iterations = job.reference_iterations;
   r.reference.clear();
-  // False colours show the analysis itself; light does not depend on it.
-  if (std::holds_alternative<InspectSettings>(job.integrator)) r.analysis = job.analysis;
+  // Light does not depend on the analysis; some false colours do, as a guide's density may.
+  if (const auto* s = std::get_if<InspectSettings>(&job.integrator)) {
+    const bool analysed = shows_space(s->show) || s->show == InspectQuantity::guide_density;
+    if (analysed) r.analysis = job.analysis;
+  }
   r.seed = reference_seed;
   r.threads = job.threads;
   r.layers = {ImageLayer::variance, ImageLayer::halves};

@@ -16,6 +16,7 @@ struct JobControl {
   int crashes = 0;
   std::int64_t renderer_pid = 0;
   std::int64_t renderer_start = 0;
+  std::string renderer_boot;
   std::string idempotency_key;
   std::string body_hash;
   bool operator==(const JobControl&) const = default;
@@ -31,6 +32,7 @@ void describe(V& v, JobControl& s) {
   v("renderer_pid", s.renderer_pid, {.doc = "the latest renderer's process; 0: none", .min = 0});
   v("renderer_start", s.renderer_start,
     {.doc = "when that process began, in clock ticks since the machine did", .min = 0});
+  v("renderer_boot", s.renderer_boot, {.doc = "the kernel's name of that boot", .max = 64});
   v("idempotency_key", s.idempotency_key, {.doc = "the poster's own name for it", .max = 128});
   v("body_hash", s.body_hash, {.doc = "of the posted text, in hexadecimal", .max = 32});
 }

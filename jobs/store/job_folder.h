@@ -113,7 +113,8 @@ class ScenesRoots {
 
   /// The regular file named `name`: a relative path with '/' between parts that does not leave its
   /// root in any spelling, nor through a symbolic link. `extensions` include the dot (".glb"); case
-  /// does not matter. Throws std::invalid_argument with the reason and the available names.
+  /// does not matter. Throws std::invalid_argument with the reason and the available names, and
+  /// std::system_error if the file cannot be examined now (no descriptor left, a failing disk).
   std::filesystem::path resolve(std::string_view name,
                                 const std::vector<std::string_view>& extensions) const;
 

@@ -33,7 +33,9 @@ std::uint64_t letters_values() {
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 std::tm utc(std::chrono::system_clock::time_point t) {
-  const std::time_t seconds = std::chrono::system_clock::to_time_t(t);
+  // Rounded down, before 1970 too: to_time_t() may round towards 1970.
+  const std::time_t seconds =
+      std::chrono::floor<std::chrono::seconds>(t).time_since_epoch().count();
   std::tm fields{};
   ::gmtime_r(&seconds, &fields);
   return fields;
@@ -90,8 +92,9 @@ std::vector<JobFolder> list_jobs(const std::filesystem::path& jobs) {
 }
 
 std::string utc_text(std::chrono::system_clock::time_point time) {
-  const auto since = std::chrono::floor<std::chrono::milliseconds>(time.time_since_epoch());
-  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", utc(time), since.count() % 1000);
+  const auto since_second = time - std::chrono::floor<std::chrono::seconds>(time);
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", utc(time),
+                     std::chrono::floor<std::chrono::milliseconds>(since_second).count());
 }
 
 std::string utc_now() { return utc_text(std::chrono::system_clock::now()); }

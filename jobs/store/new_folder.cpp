@@ -54,10 +54,15 @@ std::vector<std::filesystem::path> take_folders_away(
     const std::vector<std::filesystem::path>& folders) {
   std::vector<std::filesystem::path> hidden;
   for (const auto& folder : folders) {
-    hidden.push_back(temporary_name(folder));
-    if (::rename(folder.c_str(), hidden.back().c_str()) != 0) {
-      throw_file_error(errno, "remove", folder);
+    const std::filesystem::path name = temporary_name(folder);
+    if (::rename(folder.c_str(), name.c_str()) != 0) {
+      const int error = errno;
+      for (std::size_t i = 0; i < hidden.size(); ++i) {
+        ::rename(hidden[i].c_str(), folders[i].c_str());
+      }
+      throw_file_error(error, "remove", folder);
     }
+    hidden.push_back(name);
   }
   if (!folders.empty()) sync_folder(folders.front().parent_path());
   return hidden;

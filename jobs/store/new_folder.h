@@ -16,7 +16,8 @@ void create_folder_whole(const std::filesystem::path& target,
                          const std::function<void(const std::filesystem::path& draft)>& fill);
 
 /// Renames sibling folders to hidden names, synced, and returns these names, to be removed later.
-/// After a crash remove_stale_folders() removes them. Throws std::system_error.
+/// After a crash remove_stale_folders() removes them. Throws std::system_error if one cannot be
+/// renamed; then all have their old names.
 std::vector<std::filesystem::path> take_folders_away(
     const std::vector<std::filesystem::path>& folders);
 /// Removes a folder with its contents; after a crash midway, nothing has its name. Throws

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "analysis/storage/file_handle.h"
+#include "analysis/storage/passing_error.h"
 #include "jobs/spec/nearest.h"
 #include "jobs/store/job_folder.h"
 
@@ -47,7 +48,7 @@ bool has_extension(std::string_view name, const Extensions& extensions) {
 }
 
 /// Why a name is refused before anything is looked up; empty: it is not.
-std::string_view fault_of(std::string_view name, const Extensions& extensions) {
+std::string fault_of(std::string_view name, const Extensions& extensions) {
   if (name.empty()) return "it is empty";
   if (name.front() == '/') return "it is absolute; allowed: a name below a scenes root";
   for (const char c : name) {
@@ -58,7 +59,9 @@ std::string_view fault_of(std::string_view name, const Extensions& extensions) {
     if (part.empty()) return "it has an empty part";
     if (part == "." || part == "..") return "it has a part \".\" or \"..\"";
   }
-  if (!has_extension(name, extensions)) return "it is not a file of this kind";
+  if (!has_extension(name, extensions)) {
+    return fmt::format("it does not end in {}", fmt::join(extensions, " or "));
+  }
   return {};
 }
 
@@ -151,12 +154,14 @@ ScenesRoots ScenesRoots::from_environment() {
 }
 
 fs::path ScenesRoots::resolve(std::string_view name, const Extensions& extensions) const {
-  std::string fault(fault_of(name, extensions));
+  std::string fault = fault_of(name, extensions);
   if (fault.empty()) {
     int worst = ENOENT;
     for (const fs::path& root : roots_) {
       const int error = walk(root, name);
       if (error == 0) return root / name;
+      // What cannot be looked at now is not missing: a later root's file is another one.
+      if (error != EACCES && may_pass(error)) throw_file_error(error, "look for", root / name);
       if (error != ENOENT && error != ENOTDIR) worst = error;
     }
     fault = worst == ENOENT  ? "it is not there"
@@ -164,7 +169,7 @@ fs::path ScenesRoots::resolve(std::string_view name, const Extensions& extension
                              : "it is not a regular file that can be read";
   }
   throw std::invalid_argument(
-      fmt::format("no file {}: {}{}", shown(name), fault,
+      fmt::format("{} cannot be used: {}{}", shown(name), fault,
                   available(name, names_below(roots_, extensions), extensions)));
 }
 

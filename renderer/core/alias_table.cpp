@@ -6,6 +6,16 @@
 
 namespace lacuna {
 
+namespace {
+
+/// What a bin keeps of 2^32 for an index of that weight, whose share of a bin is `scaled` < 1.
+std::uint32_t threshold(double weight, double scaled) {
+  if (weight == 0) return 0;
+  return static_cast<std::uint32_t>(std::clamp(std::round(scaled * 0x1p32), 1.0, 0x1p32 - 1));
+}
+
+}  // namespace
+
 AliasTable::AliasTable(std::span<const double> weights) {
   // Scaled by the largest first, so that neither tiny nor huge weights overflow their sum.
   double largest = 0;
@@ -25,17 +35,16 @@ AliasTable::AliasTable(std::span<const double> weights) {
   std::vector<std::uint32_t> small;
   std::vector<std::uint32_t> large;
   for (std::size_t i = 0; i < n; ++i) {
-    const double p = weights[i] / largest / sum;
-    scaled[i] = p * static_cast<double>(n);
-    bins_[i] = {1.0F, static_cast<std::uint32_t>(i), static_cast<float>(p), 0};
-    (scaled[i] < 1 ? small : large).push_back(static_cast<std::uint32_t>(i));
+    const auto own = static_cast<std::uint32_t>(i);
+    scaled[i] = weights[i] / largest / sum * static_cast<double>(n);
+    bins_[i] = {0, own, 0, 0};  // a full bin: it is its own alias
+    (scaled[i] < 1 ? small : large).push_back(own);
   }
   while (!small.empty() && !large.empty()) {
     const auto s = small.back();
     const auto l = large.back();
     small.pop_back();
-    bins_[s].threshold = static_cast<float>(scaled[s]);
-    bins_[s].alias = l;
+    bins_[s] = {threshold(weights[s], scaled[s]), l, 0, 0};
     scaled[l] -= 1 - scaled[s];
     if (scaled[l] < 1) {
       large.pop_back();
@@ -46,8 +55,23 @@ AliasTable::AliasTable(std::span<const double> weights) {
   const auto heaviest = static_cast<std::uint32_t>(
       std::max_element(weights.begin(), weights.end()) - weights.begin());
   for (const auto s : small) {
-    if (weights[s] == 0) bins_[s] = {0.0F, heaviest, 0.0F, 0.0F};
+    if (weights[s] == 0) bins_[s].alias = heaviest;
   }
+  set_probabilities();
+}
+
+void AliasTable::set_probabilities() {
+  // choose() returns bin i for the numbers from ceil(2^32 i / n) on.
+  const std::uint64_t n = bins_.size();
+  const auto first = [n](std::uint64_t i) { return ((i << 32) + n - 1) / n; };
+  std::vector<double> draws(n);  // of 2^64; each term is an integer that a double holds to 2^-53
+  for (std::uint64_t i = 0; i < n; ++i) {
+    const auto width = static_cast<double>(first(i + 1) - first(i));
+    const Bin& b = bins_[i];
+    draws[i] += width * double(b.threshold);
+    draws[b.alias] += width * (0x1p32 - double(b.threshold));
+  }
+  for (std::uint64_t i = 0; i < n; ++i) bins_[i].pmf = static_cast<float>(draws[i] * 0x1p-64);
   for (Bin& b : bins_) b.alias_pmf = bins_[b.alias].pmf;
 }
 

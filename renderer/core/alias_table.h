@@ -9,7 +9,10 @@
 
 namespace lacuna {
 
-/// A discrete distribution sampled in constant time (Walker 1977, in Vose's form).
+/// A discrete distribution sampled in constant time (Walker 1977, in Vose's form), in integers
+/// only. An index has the probability n / 2^64 if n of the 2^64 equally probable pairs of random
+/// numbers return it, and this is the probability that is stated, up to the rounding of a float.
+/// Weights are rounded to multiples of 2^-32 of a bin; one above 0 is never rounded to 0.
 class AliasTable {
  public:
   AliasTable() = default;
@@ -19,8 +22,7 @@ class AliasTable {
 
   bool empty() const { return bins_.empty(); }
   std::size_t size() const { return bins_.size(); }
-  /// Samples an index from two random numbers. The bin is chosen by 32 bits in 64-bit arithmetic:
-  /// 24 bits would not resolve a million bins.
+  /// Samples an index from two random numbers.
   std::uint32_t sample(Rng& rng) const { return resolve(choose(rng), rng).index; }
 
   /// An index and its probability.
@@ -36,16 +38,20 @@ class AliasTable {
     __builtin_prefetch(&bins_[i]);
     return i;
   }
-  Draw resolve(std::uint32_t chosen, Rng& rng) const {
+  Draw resolve(std::uint32_t chosen, Rng& rng) const { return resolve(chosen, rng.next_u32()); }
+  /// By 32 uniform bits.
+  Draw resolve(std::uint32_t chosen, std::uint32_t uniform) const {
     const Bin& b = bins_[chosen];
-    if (rng.next() < b.threshold) return {chosen, Pdf<Count>(b.pmf)};
+    if (uniform < b.threshold) return {chosen, Pdf<Count>(b.pmf)};
     return {b.alias, Pdf<Count>(b.alias_pmf)};
   }
   Pdf<Count> pmf(std::uint32_t i) const { return Pdf<Count>(bins_[i].pmf); }
 
  private:
+  void set_probabilities();
+
   struct Bin {
-    float threshold;  // probability of this index; else `alias`
+    std::uint32_t threshold;  // of 2^32; below it: this index, else `alias`
     std::uint32_t alias;
     float pmf;
     float alias_pmf;  // stored here too, so that a sample reads one bin

@@ -3,6 +3,7 @@
 #include <immintrin.h>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "renderer/core/vec.h"
@@ -47,12 +48,41 @@ class Rng {
   }
 
   /// Uniform in [0, 1), a multiple of 2^-24: never 1.
-  float next() { return static_cast<float>(next_u32() >> 8) * 0x1p-24F; }
+  float next() { return unit(next_u32()); }
 
   /// Two independent uniforms in [0, 1).
   V2f next2() {
     const float a = next();
     return {a, next()};
+  }
+
+  /// Uniform in [0, 1) to choose by among weights of any ratio, a multiple of 2^-53; two numbers.
+  double next_choice() {
+    const std::uint64_t high = next_u32();
+    return static_cast<double>((high << 32 | next_u32()) >> 11) * 0x1p-53;
+  }
+
+  /// A uniform to choose by, and two to place by, all independent, from three numbers.
+  struct ChoiceAndPoint {
+    double choice;  ///< in [0, 1), a multiple of 2^-48
+    V2f point;      ///< as next2()
+  };
+  ChoiceAndPoint next_choice_and_point() {
+    const std::uint64_t a = next_u32();
+    const std::uint32_t b = next_u32();
+    const std::uint32_t c = next_u32();
+    // The bits that the point has no use for.
+    const std::uint64_t choice = a << 16 | (b & 0xff) << 8 | (c & 0xff);
+    return {static_cast<double>(choice) * 0x1p-48, {unit(b), unit(c)}};
+  }
+
+  /// True with probability `p`, to 2^-64: a draw of next() would round small ones up to 2^-24.
+  bool decide(float p) {
+    const double scaled = double(p) * 0x1p32;
+    const double whole = std::floor(scaled);
+    const double u = next_u32();
+    if (u != whole) return u < whole;
+    return next_u32() < (scaled - whole) * 0x1p32;
   }
 
   using Block = std::array<std::uint32_t, 4>;
@@ -70,6 +100,8 @@ class Rng {
   }
 
  private:
+  static float unit(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24F; }
+
   static constexpr std::uint64_t multiplier_0 = 0xD2511F53, multiplier_1 = 0xCD9E8D57;
   static constexpr std::uint32_t weyl_0 = 0x9E3779B9, weyl_1 = 0xBB67AE85;
 

@@ -18,11 +18,11 @@ V3f sample_around(const V3f& axis, float cos_least, const V2f& u) {
 /// A point on the sides of `box` that face unit direction `w`, uniform in projected area.
 V3d sample_silhouette(const Bounds& box, const V3f& w, Rng& rng) {
   const V3d sides = box.sides_across(w);
-  double u = double(rng.next()) * (sides.x + sides.y + sides.z);
+  const auto [choice, at] = rng.next_choice_and_point();
+  double u = choice * (sides.x + sides.y + sides.z);
   int k = 0;
   while (k < 2 && u >= sides[k]) u -= sides[k++];
   V3d p;
-  const V2f at = rng.next2();
   const int i = (k + 1) % 3;
   const int j = (k + 2) % 3;
   p[k] = w[k] > 0 ? box.high[k] : box.low[k];

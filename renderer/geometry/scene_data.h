@@ -14,7 +14,7 @@
 
 namespace lacuna {
 
-/// Triangles of one material under one node, in world space.
+/// Triangles of one material under one node, in scene coordinates.
 struct Mesh {
   std::string name;
   std::vector<V3f> positions;
@@ -45,6 +45,7 @@ struct TextureRef {
 
   bool used() const { return texture >= 0; }
   V2f transform(const V2f& uv) const;
+  bool operator==(const TextureRef&) const = default;
 };
 
 /// glTF 2.0 metallic-roughness with KHR_materials_emissive_strength, _ior, _specular and
@@ -71,6 +72,7 @@ struct Material {
   bool double_sided = false;  ///< emits from both sides; all surfaces scatter on both
 
   bool emits() const { return !is_black(emission); }
+  bool operator==(const Material&) const = default;
 
   /// Calls `f` with each texture that scattering depends on.
   template <class F>
@@ -111,8 +113,11 @@ struct SceneData {
   std::vector<CameraData> cameras;
   std::vector<PunctualLight> lights;
 
+  /// Scene coordinates are the file's minus this. 0 unless the scene lies far from the file's
+  /// origin (gltf_origin.h); all that is computed, warned of and stored is in scene coordinates.
+  V3d origin{0, 0, 0};
   std::uint64_t content_hash = 0;       ///< of all bytes read: the file, its buffers and its images
-  std::uint64_t geometry_hash = 0;      ///< of world-space positions and indices only
+  std::uint64_t geometry_hash = 0;      ///< of positions in scene coordinates and indices only
   std::uint64_t dropped_triangles = 0;  ///< zero area or non-finite vertices
   std::vector<std::string> warnings;    ///< parts of the file that were left out
 

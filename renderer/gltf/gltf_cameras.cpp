@@ -10,26 +10,26 @@ namespace {
 V3d axis(const M44d& m, int i) { return {m[i][0], m[i][1], m[i][2]}; }
 
 /// The same view without scale or shear; a mirrored one stays mirrored.
-M44d orthonormal(const PlacedNode& node) {
+M44d orthonormal(const PlacedNode& node, const V3d& origin) {
   const M44d& m = node.to_world;
   const V3d z = axis(m, 2).normalized();
   const V3d x = (axis(m, 0) - z * z.dot(axis(m, 0))).normalized();
   const V3d y = z.cross(x) * (node.determinant < 0 ? -1.0 : 1.0);
-  const V3d origin = axis(m, 3);
   return {x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, origin.x, origin.y, origin.z, 1};
 }
 
-V3f position_of(const PlacedNode& node) {
+/// In scene coordinates.
+V3d position_of(const PlacedNode& node, const V3d& scene_origin) {
   const V3d origin = axis(node.to_world, 3);
   for (int i = 0; i < 3; ++i) {
     if (!(std::abs(origin[i]) <= max_coordinate))
       node.place.fail("its position is " + number_text(origin[i]) +
                       "; allowed: " + coordinate_rule);
   }
-  return V3f(origin);
+  return origin - scene_origin;
 }
 
-CameraData read_camera(const GltfObject& camera, const PlacedNode& node) {
+CameraData read_camera(const GltfObject& camera, const PlacedNode& node, const V3d& origin) {
   const auto lens = camera.object("perspective");
   if (!lens) camera.fail("perspective is missing");
   CameraData out;
@@ -38,8 +38,7 @@ CameraData read_camera(const GltfObject& camera, const PlacedNode& node) {
   if (out.yfov == 0 || out.yfov == std::numbers::pi) {
     lens->refuse("yfov", "radians above 0 and below pi");
   }
-  position_of(node);
-  out.to_world = orthonormal(node);
+  out.to_world = orthonormal(node, position_of(node, origin));
   return out;
 }
 
@@ -55,7 +54,8 @@ void read_cone(const GltfObject& light, PunctualLight& out) {
   }
 }
 
-PunctualLight read_light(const GltfObject& light, const PlacedNode& node, Warnings& warnings) {
+PunctualLight read_light(const GltfObject& light, const PlacedNode& node, const V3d& origin,
+                         Warnings& warnings) {
   PunctualLight out;
   out.name = light.string("name", node.place.string("name", ""));
   const auto color = light.numbers<3>("color", unit_interval).value_or(std::array{1.0, 1.0, 1.0});
@@ -77,7 +77,7 @@ PunctualLight read_light(const GltfObject& light, const PlacedNode& node, Warnin
   if (light.has("range"))
     warnings.once(
         "the range of punctual lights is left out: light falls off with the square of distance");
-  out.position = position_of(node);
+  out.position = V3f(position_of(node, origin));
   out.direction = V3f(-axis(node.to_world, 2).normalized());
   return out;
 }
@@ -85,7 +85,7 @@ PunctualLight read_light(const GltfObject& light, const PlacedNode& node, Warnin
 }  // namespace
 
 std::vector<CameraData> read_cameras(const GltfObject& root, const std::vector<PlacedNode>& nodes,
-                                     Warnings& warnings) {
+                                     const V3d& origin, Warnings& warnings) {
   std::vector<CameraData> out;
   const auto cameras = root.objects("cameras");
   for (const PlacedNode& node : nodes) {
@@ -97,7 +97,7 @@ std::vector<CameraData> read_cameras(const GltfObject& root, const std::vector<P
       camera.refuse("type", "\"perspective\" or \"orthographic\"");
     }
     if (type == "perspective") {
-      out.push_back(read_camera(camera, node));
+      out.push_back(read_camera(camera, node, origin));
     } else {
       warnings.once(camera.label() + " is orthographic, which is not supported; it is left out");
     }
@@ -106,7 +106,7 @@ std::vector<CameraData> read_cameras(const GltfObject& root, const std::vector<P
 }
 
 std::vector<PunctualLight> read_lights(const GltfObject& root, const std::vector<PlacedNode>& nodes,
-                                       Warnings& warnings) {
+                                       const V3d& origin, Warnings& warnings) {
   std::vector<PunctualLight> out;
   const auto extension = root.extension("KHR_lights_punctual");
   const auto lights = extension ? extension->objects("lights") : std::vector<GltfObject>{};
@@ -115,7 +115,7 @@ std::vector<PunctualLight> read_lights(const GltfObject& root, const std::vector
     if (!reference) continue;
     const auto index =
         reference->index("light", lights.size(), "extensions.KHR_lights_punctual.lights");
-    if (index) out.push_back(read_light(lights[*index], node, warnings));
+    if (index) out.push_back(read_light(lights[*index], node, origin, warnings));
   }
   return out;
 }

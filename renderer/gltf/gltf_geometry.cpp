@@ -4,9 +4,10 @@
 #include <cmath>
 #include <optional>
 
-#include "renderer/gltf/gltf_accessors.h"
+#include "renderer/gltf/gltf_duplicates.h"
 #include "renderer/gltf/gltf_limits.h"
-#include "renderer/gltf/gltf_triangles.h"
+#include "renderer/gltf/gltf_origin.h"
+#include "renderer/gltf/gltf_primitives.h"
 
 namespace lacuna::gltf {
 namespace {
@@ -16,40 +17,12 @@ constexpr std::size_t max_triangles = std::size_t{1} << 27;
 struct Counts {
   Dropped dropped;
   std::uint64_t normals = 0;
+  std::uint64_t coarse = 0;  ///< meshes; see warn_of_places()
 };
 
-bool is_drawn(const tinygltf::Primitive& primitive) {
-  return is_triangle_mode(primitive.mode) && primitive.attributes.contains("POSITION");
-}
-
-/// One primitive under one node.
-struct Source {
-  const tinygltf::Model& model;
-  const tinygltf::Primitive& primitive;
-  const PlacedNode& node;
-  std::string place;
-
-  /// The accessor of an attribute with as many elements as POSITION has; -1 if there is none.
-  int attribute(const std::string& name) const {
-    const auto it = primitive.attributes.find(name);
-    return it == primitive.attributes.end() ? -1 : it->second;
-  }
-  AccessorView view(const std::string& name, int type,
-                    std::initializer_list<int> components) const {
-    const std::string use = name + " of " + place;
-    AccessorView out(model, attribute(name), type, components, use);
-    const auto vertices =
-        model.accessors[static_cast<std::size_t>(primitive.attributes.at("POSITION"))].count;
-    if (out.size() != vertices) {
-      throw SceneError(use + ": " + std::to_string(out.size()) + " elements for " +
-                       std::to_string(vertices) + " vertices");
-    }
-    return out;
-  }
-};
-
+/// Relative to `origin`.
 std::vector<V3f> world_positions(const Source& source, const AccessorView& local,
-                                 const std::vector<std::uint32_t>& kept) {
+                                 const std::vector<std::uint32_t>& kept, const V3d& origin) {
   std::vector<V3f> out(kept.size());
   for (std::size_t i = 0; i < kept.size(); ++i) {
     const auto p = local.floats<3>(kept[i]);
@@ -61,13 +34,22 @@ std::vector<V3f> world_positions(const Source& source, const AccessorView& local
     const V3d world = V3d(x) * source.node.to_world;
     for (int k = 0; k < 3; ++k) {
       if (!(std::abs(world[k]) <= max_coordinate)) {
-        throw SceneError(source.place + ": vertex " + std::to_string(kept[i]) + " lies at " +
+        throw SceneError(source.place() + ": vertex " + std::to_string(kept[i]) + " lies at " +
                          std::to_string(world[k]) + "; allowed: " + coordinate_rule);
       }
     }
-    out[i] = V3f(world);
+    out[i] = V3f(world - origin);
   }
   return out;
+}
+
+Bounds bounds_of(const AccessorView& positions, const std::vector<std::uint32_t>& kept) {
+  Bounds box;
+  for (const std::uint32_t v : kept) {
+    const auto p = positions.floats<3>(v);
+    if (const V3f x(p[0], p[1], p[2]); is_finite(x)) box.add(x);
+  }
+  return box;
 }
 
 /// Normals go with the inverse transpose, which is the matrix of cofactors over the determinant.
@@ -121,7 +103,7 @@ void read_uvs(const Source& source, const std::vector<std::uint32_t>& kept,
     if (!used[set]) continue;
     const std::string name = "TEXCOORD_" + std::to_string(set);
     if (source.attribute(name) < 0) {
-      warnings.once(source.place + " has no " + name + ", which material \"" + material.name +
+      warnings.once(source.place() + " has no " + name + ", which material \"" + material.name +
                     "\" needs: its textures are read at (0, 0)");
       continue;
     }
@@ -151,15 +133,16 @@ void warn_of_unread_attributes(const tinygltf::Primitive& primitive, Warnings& w
 
 Mesh build_mesh(const Source& source, const SceneData& scene, Counts& counts, Warnings& warnings) {
   Mesh mesh;
-  mesh.material = source.primitive.material >= 0
-                      ? static_cast<std::uint32_t>(source.primitive.material)
+  mesh.material = source.primitive().material >= 0
+                      ? static_cast<std::uint32_t>(source.primitive().material)
                       : static_cast<std::uint32_t>(scene.materials.size() - 1);
   const AccessorView local =
       source.view("POSITION", TINYGLTF_TYPE_VEC3, {TINYGLTF_COMPONENT_TYPE_FLOAT});
-  mesh.triangles = assemble_triangles(source.model, source.primitive, local.size(),
-                                      source.node.determinant < 0, source.place);
+  mesh.triangles = assemble_triangles(source.model, source.primitive(), local.size(),
+                                      source.node.determinant < 0, source.place());
   auto kept = compact(mesh.triangles, local.size());
-  mesh.positions = world_positions(source, local, kept);
+  mesh.positions = world_positions(source, local, kept, scene.origin);
+  counts.coarse += is_far_for_its_size(bounds_of(local, kept)) ? 1 : 0;
   const Dropped dropped = drop_unusable(mesh.triangles, mesh.positions);
   if (dropped.total() > 0) {
     counts.dropped.non_finite += dropped.non_finite;
@@ -177,18 +160,8 @@ Mesh build_mesh(const Source& source, const SceneData& scene, Counts& counts, Wa
     counts.normals += mend_normals(mesh);
   }
   read_uvs(source, kept, scene.materials[mesh.material], mesh, warnings);
-  warn_of_unread_attributes(source.primitive, warnings);
+  warn_of_unread_attributes(source.primitive(), warnings);
   return mesh;
-}
-
-/// The name of a node's primitive in errors.
-std::string place_of(const PlacedNode& node, std::size_t mesh, std::size_t primitive) {
-  return "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) +
-         "] under " + node.place.label();
-}
-
-std::optional<std::size_t> mesh_of(const tinygltf::Model& model, const PlacedNode& node) {
-  return node.place.index("mesh", model.meshes.size(), "meshes");
 }
 
 /// A file of a few kilobytes can place one mesh a million times: count before anything is built.
@@ -216,8 +189,7 @@ void add_node(const tinygltf::Model& model, const PlacedNode& node, std::size_t 
       warnings.once("primitives of points or lines, or without POSITION, are left out");
       continue;
     }
-    Mesh built = build_mesh({model, primitive, node, place_of(node, mesh_index, k)}, scene, counts,
-                            warnings);
+    Mesh built = build_mesh({model, mesh_index, k, node}, scene, counts, warnings);
     built.name = mesh.name.empty() ? node.place.string("name", node.place.label()) : mesh.name;
     if (!built.triangles.empty()) scene.meshes.push_back(std::move(built));
   }
@@ -228,6 +200,7 @@ void add_node(const tinygltf::Model& model, const PlacedNode& node, std::size_t 
 void build_meshes(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes,
                   SceneData& scene, Warnings& warnings) {
   check_total(model, nodes);
+  scene.origin = scene_origin(model, nodes);
   Counts counts;
   for (const PlacedNode& node : nodes) {
     const auto mesh = mesh_of(model, node);
@@ -245,6 +218,8 @@ void build_meshes(const tinygltf::Model& model, const std::vector<PlacedNode>& n
     warnings.once(std::to_string(counts.normals) +
                   " normals were zero or not finite and were replaced by geometric ones");
   }
+  merge_equal_emitters(scene, warnings);
+  warn_of_places(scene, counts.coarse, warnings);
   Hasher hasher;
   for (const Mesh& mesh : scene.meshes) {
     hasher.add(std::span(mesh.positions));

@@ -8,8 +8,9 @@
 
 namespace lacuna::gltf {
 
-/// Fills `scene.meshes` (one for each primitive of each placed node, in world space),
-/// `dropped_triangles` and `geometry_hash`. Reads `scene.materials`. Throws SceneError.
+/// Fills `scene.origin`, `meshes` (one for each primitive of each placed node, in scene
+/// coordinates), `dropped_triangles` and `geometry_hash`. Reads `scene.materials`. Throws
+/// SceneError.
 void build_meshes(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes,
                   SceneData& scene, Warnings& warnings);
 

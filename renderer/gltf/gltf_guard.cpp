@@ -90,8 +90,10 @@ Json parse_json(std::span<const std::uint8_t> text) {
   ShallowBuilder builder(json);
   try {
     Json::sax_parse(text.begin(), text.end(), &builder);
-  } catch (const Json::exception& e) {
-    throw SceneError(std::string("JSON: ") + e.what());
+  } catch (const Json::parse_error& e) {
+    throw SceneError("JSON: it breaks off, or is none, at byte " + std::to_string(e.byte));
+  } catch (const Json::out_of_range&) {
+    throw SceneError("JSON: a number is larger than a double can be");
   }
   return json;
 }

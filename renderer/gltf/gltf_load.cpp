@@ -6,6 +6,7 @@
 #include "renderer/gltf/gltf_load.h"
 #include "renderer/gltf/gltf_materials.h"
 #include "renderer/gltf/gltf_nodes.h"
+#include "renderer/gltf/gltf_origin.h"
 
 namespace lacuna {
 namespace gltf {
@@ -34,13 +35,18 @@ SceneData load(const std::filesystem::path& file) {
   TextureTable textures(root, warnings);
   scene.materials = read_materials(root, textures, warnings);
   const auto nodes = place_nodes(root);
-  scene.cameras = read_cameras(root, nodes, warnings);
-  scene.lights = read_lights(root, nodes, warnings);
+  const auto place_cameras_and_lights = [&] {
+    scene.cameras = read_cameras(root, nodes, scene.origin, warnings);
+    scene.lights = read_lights(root, nodes, scene.origin, warnings);
+  };
+  place_cameras_and_lights();  // their faults are told before the library meets them
 
   Hasher content;
   content.add(std::span<const std::uint8_t>(bytes));
   const tinygltf::Model model = parse_model(bytes, framing, root, folder, content);
   build_meshes(model, nodes, scene, warnings);
+  if (scene.origin != V3d(0.0)) place_cameras_and_lights();
+  warn_of_far_cameras(scene, warnings);
   scene.textures = textures.build(model, folder, content);
   scene.content_hash = content.digest();
   warn_of_unread_parts(root, warnings);

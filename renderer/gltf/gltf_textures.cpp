@@ -1,6 +1,9 @@
 #include "renderer/gltf/gltf_textures.h"
 
 #include <algorithm>
+#include <string>
+
+#include "renderer/images/guards.h"
 
 namespace lacuna::gltf {
 namespace {
@@ -85,9 +88,16 @@ std::vector<std::unique_ptr<Texture>> TextureTable::build(const tinygltf::Model&
                                                           Hasher& content) const {
   std::vector<std::unique_ptr<Texture>> built;
   std::vector<bool> hashed(images_.size());
+  std::uint64_t all_bytes = 0;
   for (const Entry& entry : entries_) {
     const GltfObject& image = images_[entry.image];
     Bytes bytes = encoded_bytes(image, model.images[entry.image], model, folder);
+    all_bytes += bytes.size();
+    if (all_bytes > max_encoded_bytes) {
+      image.fail("is one too many: the textures have more than " +
+                 std::to_string(max_encoded_bytes) +
+                 " bytes together, each way of reading counted");
+    }
     if (!hashed[entry.image]) content.add(std::span<const std::uint8_t>(bytes));
     hashed[entry.image] = true;
     built.push_back(std::make_unique<Texture>(image.label(), std::move(bytes), entry.encoding,

@@ -103,7 +103,7 @@ V3f DirectionTree::sample(Rng& rng) const {
   std::uint32_t node = 0;
   for (;;) {
     const Node& n = nodes_[node];
-    double left = double(rng.next()) * sum(n);
+    double left = rng.next_choice() * sum(n);
     std::size_t q = 0;
     for (std::size_t i = 0; i < 4; ++i) {
       if (!(n.energy[i] > 0)) continue;

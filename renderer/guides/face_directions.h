@@ -64,7 +64,7 @@ class FaceDirections final : public GuidingDistribution {
     const V3d from = transform_.to_grid(V3d(at.x()));
     const RegionMixture regions = mixture(from, at.cell.index);
     const auto used = as_used();
-    double left = double(rng.next()) * sum_of(regions, used);
+    double left = rng.next_choice() * sum_of(regions, used);
     std::uint32_t region = no_region;
     for (const auto& share : regions) {
       const double part = share.weight * used(share.region);

@@ -72,7 +72,7 @@ class MixedGuide {
   std::optional<BsdfSample> sample(const Vertex& v, Rng& rng, Transport transport) const {
     const float c = v.guiding_cell.probability;
     if (transport == Transport::importance || c == 0) return bsdf_.sample(v, rng, transport);
-    if (rng.next() < c) {
+    if (rng.decide(c)) {
       const std::optional<V3f> w =
           directions_->sample({v.surface, *v.bsdf, v.wp, v.guiding_cell}, rng);
       if (!w) return std::nullopt;

@@ -131,7 +131,7 @@ void PortalFaces::find_exits(std::uint32_t region, const std::vector<V3d>& centr
 
 VoxelFace PortalFaces::draw(std::uint32_t region, Rng& rng) const {
   const std::vector<Exit>& exits = exits_[region].exits;
-  double left = double(rng.next());
+  double left = rng.next_choice();
   std::size_t i = 0;
   while (i + 1 < exits.size() && left >= exits[i].share) left -= exits[i++].share;
   const Portal& portal = portals_->portals[exits[i].portal];

@@ -17,6 +17,10 @@ namespace lacuna {
 
 constexpr int max_picture_side = 32768;  ///< pixels
 constexpr int max_texture_side = 16384;  ///< texels
+/// Of all textures of a scene together, where they are decoded: 2 GiB at 4 bytes a texel.
+constexpr std::uint64_t max_scene_texels = std::uint64_t{1} << 29;
+/// Of all textures of a scene together, encoded: once for every way in which one is read.
+constexpr std::uint64_t max_encoded_bytes = std::uint64_t{2} << 30;
 
 /// Checks the headers of an OpenEXR file for what the libraries take on trust: they make room for
 /// an attribute of any size and for rows and tiles of any number before they look whether the file
@@ -29,6 +33,10 @@ std::vector<std::uint8_t> plain_png(std::span<const std::uint8_t> png, const std
 
 /// A JPEG of 8 bits, grey or three colours, in at most 500 scans, up to max_texture_side.
 std::vector<std::uint8_t> plain_jpeg(std::span<const std::uint8_t> jpeg, const std::string& label);
+
+/// How many texels the head of a PNG says, or the frame of a JPEG; what follows is not looked at.
+std::uint64_t png_texels(std::span<const std::uint8_t> png, const std::string& label);
+std::uint64_t jpeg_texels(std::span<const std::uint8_t> jpeg, const std::string& label);
 
 /// A Radiance picture (`32-bit_rle_rgbe`, top row first) up to max_picture_side: rows flat or
 /// channel by channel. Rows in the old run-length form, which the library does not know, come out

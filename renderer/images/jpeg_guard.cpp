@@ -29,7 +29,8 @@ bool makes_texels(std::uint8_t marker) {
   return marker != comment;
 }
 
-void check_frame(std::uint8_t marker, CheckedBytes segment) {
+/// Gives its texels.
+std::uint64_t check_frame(std::uint8_t marker, CheckedBytes segment) {
   if (std::find(frames.begin(), frames.end(), marker) == frames.end()) {
     segment.fail("is coded as frame type " + std::to_string(marker - 0xC0) +
                  "; allowed: baseline, extended and progressive");
@@ -43,6 +44,7 @@ void check_frame(std::uint8_t marker, CheckedBytes segment) {
   if (components != 1 && components != 3) {
     segment.fail("has " + std::to_string(components) + " channels; allowed: 1 and 3");
   }
+  return std::uint64_t{width} * height;
 }
 
 class JpegGuard {
@@ -50,6 +52,16 @@ class JpegGuard {
   JpegGuard(std::span<const std::uint8_t> jpeg, const std::string& label)
       : in_(jpeg, label), label_(label) {
     plain_.reserve(jpeg.size());
+  }
+
+  /// Of the first frame.
+  std::uint64_t texels() {
+    while (texels_ == 0) {
+      const std::uint8_t marker = next_marker();
+      if (marker == end_of_image) in_.fail("is corrupt: there is no image in it");
+      if (marker != start_of_image && !is_restart(marker)) read_segment(marker);
+    }
+    return texels_;
   }
 
   std::vector<std::uint8_t> run() {
@@ -79,7 +91,7 @@ class JpegGuard {
     const auto content = in_.take(length - 2);
     if (begins_frame(marker)) {
       if (std::exchange(framed_, true)) in_.fail("has several frames; allowed: one");
-      check_frame(marker, {content, label_});
+      texels_ = check_frame(marker, {content, label_});
     }
     if (marker == start_of_scan) {
       if (++scans_ > most_scans) {
@@ -109,10 +121,15 @@ class JpegGuard {
   const std::string& label_;
   std::vector<std::uint8_t> plain_;
   bool framed_ = false;
+  std::uint64_t texels_ = 0;
   int scans_ = 0;
 };
 
 }  // namespace
+
+std::uint64_t jpeg_texels(std::span<const std::uint8_t> jpeg, const std::string& label) {
+  return JpegGuard(jpeg, label).texels();
+}
 
 std::vector<std::uint8_t> plain_jpeg(std::span<const std::uint8_t> jpeg, const std::string& label) {
   return JpegGuard(jpeg, label).run();

@@ -36,6 +36,13 @@ PngHeader read_png_header(CheckedBytes chunk) {
 
 }  // namespace
 
+std::uint64_t png_texels(std::span<const std::uint8_t> png, const std::string& label) {
+  CheckedBytes in(png, label);
+  in.take(png_signature_bytes + 8);  // and the length and type of the first chunk
+  const PngHeader header = read_png_header({in.take(png_header_bytes), label});
+  return header.width * header.height;
+}
+
 std::vector<std::uint8_t> plain_png(std::span<const std::uint8_t> png, const std::string& label) {
   CheckedBytes in(png, label);
   const auto signature = in.take(png_signature_bytes);

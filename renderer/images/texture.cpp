@@ -90,8 +90,12 @@ void Texture::decode() {
   Rgba8Image image = decode_png_or_jpeg(encoded_, label_);
   width_ = image.width;
   height_ = image.height;
-  texels_.assign(image.rgba.begin(), image.rgba.end());
+  texels_ = std::move(image.rgba);
   std::vector<std::uint8_t>().swap(encoded_);
+}
+
+std::uint64_t Texture::texels() const {
+  return decoded() ? texels_.size() / 4 : texels_of_png_or_jpeg(encoded_, label_);
 }
 
 /// The four texels of a lookup, and their weights.

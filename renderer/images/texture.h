@@ -32,6 +32,8 @@ class Texture {
   /// alpha is never multiplied into the colour. Throws SceneError: not a PNG or JPEG, corrupt, or
   /// larger than 16384 x 16384.
   void decode();
+  /// How many it has, decoded or not: then its head says so. Throws SceneError.
+  std::uint64_t texels() const;
   bool decoded() const { return !texels_.empty(); }
   const std::string& label() const { return label_; }
   std::size_t bytes() const { return texels_.size(); }  ///< of decoded memory

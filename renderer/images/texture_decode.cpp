@@ -29,7 +29,7 @@ Rgba8Image to_rgba(const StoredTexels& texels) {
       static_cast<std::size_t>(texels.width) * static_cast<std::size_t>(texels.height);
   const auto channels = static_cast<std::size_t>(texels.channels);
   const bool grey = channels < 3, alpha = channels % 2 == 0;
-  Rgba8Image image{texels.width, texels.height, std::vector<std::uint8_t>(4 * pixels)};
+  Rgba8Image image{texels.width, texels.height, HugeVector<std::uint8_t>(4 * pixels)};
   for (std::size_t i = 0; i < pixels; ++i) {
     std::uint8_t* const out = image.rgba.data() + 4 * i;
     const std::size_t first = i * channels;
@@ -49,18 +49,32 @@ Rgba8Image decode_plain(ImageFormat format, const std::vector<std::uint8_t>& pla
   }
 }
 
-}  // namespace
-
-Rgba8Image decode_png_or_jpeg(std::span<const std::uint8_t> encoded, const std::string& label) {
+/// Told by its magic bytes.
+ImageFormat format_of(std::span<const std::uint8_t> encoded, const std::string& label) {
   constexpr std::array<std::uint8_t, 8> png{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
   constexpr std::array<std::uint8_t, 3> jpeg{0xFF, 0xD8, 0xFF};
   const auto starts_with = [&encoded](const auto& magic) {
     return encoded.size() >= magic.size() &&
            std::equal(magic.begin(), magic.end(), encoded.begin());
   };
-  if (starts_with(png)) return decode_plain(ImageFormat::png, plain_png(encoded, label), label);
-  if (starts_with(jpeg)) return decode_plain(ImageFormat::jpeg, plain_jpeg(encoded, label), label);
+  if (starts_with(png)) return ImageFormat::png;
+  if (starts_with(jpeg)) return ImageFormat::jpeg;
   throw SceneError(label + ": neither a PNG nor a JPEG");
+}
+
+}  // namespace
+
+std::uint64_t texels_of_png_or_jpeg(std::span<const std::uint8_t> encoded,
+                                    const std::string& label) {
+  return format_of(encoded, label) == ImageFormat::png ? png_texels(encoded, label)
+                                                       : jpeg_texels(encoded, label);
+}
+
+Rgba8Image decode_png_or_jpeg(std::span<const std::uint8_t> encoded, const std::string& label) {
+  const ImageFormat format = format_of(encoded, label);
+  return decode_plain(
+      format, format == ImageFormat::png ? plain_png(encoded, label) : plain_jpeg(encoded, label),
+      label);
 }
 
 }  // namespace lacuna

@@ -387,7 +387,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
     const auto survival = [&](int s) {
       part.accumulator.attempt(lookup.cell, s);
       const float p = cell_statistics_.survival(lookup.cell, s, double(throughput), part.threshold);
-      return p >= 1 || rng.next() < p ? p : 0.0F;
+      return p >= 1 || rng.decide(p) ? p : 0.0F;
     };
     connections_.sample(lookup, LightRange{part.lights, longest}, rng, survival,
                         [&](int s, const VertexSample& drawn) {

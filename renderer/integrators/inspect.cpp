@@ -18,11 +18,11 @@ class Inspect final : public Integrator {
     const bool guide = show_ == InspectQuantity::guide_density;
     return {.materials = guide || show_ == InspectQuantity::albedo,
             .emission = guide || show_ == InspectQuantity::emission,
-            .space = SpaceView::shows(show_) || (guide && guide_needs_space())};
+            .space = shows_space(show_) || (guide && guide_needs_space())};
   }
 
   void prepare(const PrepareContext& context) override {
-    if (SpaceView::shows(show_)) space_.emplace(show_, context);
+    if (shows_space(show_)) space_.emplace(show_, context);
     if (show_ == InspectQuantity::guide_density) guide_.emplace(settings_, context);
   }
 

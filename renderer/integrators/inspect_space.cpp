@@ -5,20 +5,6 @@
 
 namespace lacuna {
 
-bool SpaceView::shows(InspectQuantity quantity) {
-  switch (quantity) {
-    case InspectQuantity::node_mapping:
-    case InspectQuantity::filtered_mapping:
-    case InspectQuantity::opening:
-    case InspectQuantity::region_labels:
-    case InspectQuantity::visibility_clusters:
-    case InspectQuantity::nearest_node_visible:
-      return true;
-    default:
-      return false;
-  }
-}
-
 SpaceView::SpaceView(InspectQuantity quantity, const PrepareContext& context)
     : quantity_(quantity), transform_(context.space.voxels().transform) {
   SpaceAnalysis& space = context.space;

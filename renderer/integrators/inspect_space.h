@@ -13,8 +13,6 @@ namespace lacuna {
 /// surface point.
 class SpaceView {
  public:
-  static bool shows(InspectQuantity quantity);
-
   /// Builds only the artefacts that the quantity needs. The context's space must outlive the view.
   SpaceView(InspectQuantity quantity, const PrepareContext& context);
 

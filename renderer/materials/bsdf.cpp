@@ -8,18 +8,15 @@ namespace {
 /// Rounding error of the cosine between float unit vectors: below it, not even the side is known.
 /// Only divisors are compared with it.
 
-/// A uniform number in [0, width) stretched to [0, 1).
-float stretch(float u, float width) { return std::clamp(u / width, 0.0F, 1 - 0x1p-24F); }
-
 /// Probabilities that a facet reflects and that it transmits.
 struct Coin {
-  float reflect = 1, transmit = 0;
+  double reflect = 1, transmit = 0;
 
   Coin() = default;  ///< the facet only reflects
   explicit Coin(const Interface::Split& split) : Coin(split.reflected, split.transmitted) {}
   Coin(const Rgb& reflected, const Rgb& transmitted) {
-    const float r = luminance(reflected);
-    const float t = luminance(transmitted);
+    const double r = double(luminance(reflected));
+    const double t = double(luminance(transmitted));
     if (r + t == 0) return;
     reflect = r / (r + t);
     transmit = t / (r + t);
@@ -71,21 +68,21 @@ Bsdf::Choice Bsdf::choice(const Seen& from) const {
   }
   if (lobes_.interface.glass > 0) {
     const Interface::Split s = lobes_.interface.split(from.cos_o, from.eta);
-    c.facets = luminance(s.reflected);
+    c.facets = double(luminance(s.reflected));
     if (lobes_.interface.clear()) {
-      c.clear = luminance(s.transmitted);
+      c.clear = double(luminance(s.transmitted));
       // Tilted facets may reflect even where the mean facet hardly does.
-      if (lobes_.interface.ior > 1) c.facets += lobes_.interface.glass * from.mean_weight;
+      if (lobes_.interface.ior > 1) c.facets += double(lobes_.interface.glass * from.mean_weight);
     } else {
-      c.facets += luminance(s.transmitted);
+      c.facets += double(luminance(s.transmitted));
     }
   } else {
     const float r0 = luminance(lobes_.interface.r0);
-    c.facets = r0 + (lobes_.interface.r90 - r0) * from.mean_weight;
+    c.facets = double(r0 + (lobes_.interface.r90 - r0) * from.mean_weight);
   }
   if (lobes_.has_diffuse())
-    c.diffuse = luminance(lobes_.diffuse) * lobes_.layer.let_through(from.mean_weight);
-  const float sum = c.diffuse + c.facets + c.clear;
+    c.diffuse = double(luminance(lobes_.diffuse) * lobes_.layer.let_through(from.mean_weight));
+  const double sum = c.diffuse + c.facets + c.clear;
   if (!(sum > 0)) return {};
   return {c.diffuse / sum, c.facets / sum, c.clear / sum};
 }
@@ -109,7 +106,7 @@ void Bsdf::reflected(const Seen& from, const Choice* c, const V3f& wo, const V3f
                              lobes_.layer.let_through(lobes_.layer.mean_weight(cos_i)));
       s.f = lobes_.diffuse * (scale * cos_i * inv_pi);
     }
-    if constexpr (want_pdf) s.pdf = c->diffuse * cos_i * inv_pi;
+    if constexpr (want_pdf) s.pdf = static_cast<float>(c->diffuse) * cos_i * inv_pi;
   }
   const V3f h = wo + wi;
   const float length = std::sqrt(h.length2());
@@ -123,7 +120,8 @@ void Bsdf::reflected(const Seen& from, const Choice* c, const V3f& wo, const V3f
   if constexpr (want_pdf) {
     // Visible normals; dm / dwi = 1 / (4 wo.m).
     const Coin coin = lobes_.facets_transmit() ? Coin(split) : Coin();
-    s.pdf += c->facets * coin.reflect * 0.25F * ggx_g1_over_cos(from.cos_o, a) * d;
+    s.pdf +=
+        static_cast<float>(c->facets * coin.reflect) * 0.25F * ggx_g1_over_cos(from.cos_o, a) * d;
   }
 }
 
@@ -144,7 +142,7 @@ void Bsdf::transmitted(const Seen& from, const Choice* c, const V3f& wo, const V
   if constexpr (want_pdf) {
     // dm / dwi = eta^2 |wi.m| / (...)^2 (Walter et al. 2007, eq. 17).
     const Coin coin(lobes_.interface.split(facet->cos_o, from.eta).reflected, share);
-    s.pdf = c->facets * coin.transmit * common * from.eta * from.eta;
+    s.pdf = static_cast<float>(c->facets * coin.transmit) * common * from.eta * from.eta;
   }
 }
 
@@ -197,8 +195,8 @@ Pdf<SolidAngle> Bsdf::pdf_any(const V3f& wo, const V3f& wi, Transport transport)
   return Pdf<SolidAngle>(0.5F * (p + density(side < 0 ? -ng_ : ng_)));
 }
 
-std::optional<Bsdf::Draw> Bsdf::draw(const Seen& from, const Choice& c, const V3f& wo, float u_lobe,
-                                     const V2f& u) const {
+std::optional<Bsdf::Draw> Bsdf::draw(const Seen& from, const Choice& c, const V3f& wo,
+                                     double u_lobe, const V2f& u) const {
   const V3f& n = from.n;
   if (u_lobe < c.diffuse) return Draw{sample_cosine(n, u)};
   u_lobe -= c.diffuse;
@@ -215,12 +213,12 @@ std::optional<Bsdf::Draw> Bsdf::draw(const Seen& from, const Choice& c, const V3
   const Interface::Split split = lobes_.interface.split(cos_m, from.eta);
   Draw result;
   result.delta = smooth;
-  float p = c.clear;
+  double p = c.clear;
   if (clear) {
     result.transmitted = true;
   } else {
     const Coin coin = lobes_.facets_transmit() ? Coin(split) : Coin();
-    result.transmitted = stretch(u_lobe - c.clear, c.facets) >= coin.reflect;
+    result.transmitted = u_lobe - c.clear >= c.facets * coin.reflect;
     p = c.facets * (result.transmitted ? coin.transmit : coin.reflect);
   }
   if (result.transmitted) {
@@ -230,7 +228,9 @@ std::optional<Bsdf::Draw> Bsdf::draw(const Seen& from, const Choice& c, const V3
   } else {
     result.wi = reflect(wo, m);
   }
-  if (smooth) result.share = (result.transmitted ? split.transmitted : split.reflected) / p;
+  if (smooth)
+    result.share =
+        (result.transmitted ? split.transmitted : split.reflected) / static_cast<float>(p);
   return result;
 }
 
@@ -252,7 +252,7 @@ std::optional<BsdfSample> Bsdf::finish_delta(const Draw& drawn, const Seen& from
   return BsdfSample{drawn.wi, weight, {}, true, drawn.transmitted};
 }
 
-std::optional<BsdfSample> Bsdf::sample_any(const V3f& wo, float u_lobe, const V2f& u,
+std::optional<BsdfSample> Bsdf::sample_any(const V3f& wo, double u_lobe, const V2f& u,
                                            Transport transport) const {
   const float side = dot(wo, ng_);
   if (lobes_.kind == Lobes::Kind::black || side == 0) return std::nullopt;

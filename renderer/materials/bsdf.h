@@ -79,7 +79,7 @@ class Bsdf {
 
   /// Samples wi. `u_lobe` and `u` are uniform in [0, 1). Nothing where the sample fails (below the
   /// surface) or the surface is black.
-  std::optional<BsdfSample> sample(const V3f& wo, float u_lobe, const V2f& u,
+  std::optional<BsdfSample> sample(const V3f& wo, double u_lobe, const V2f& u,
                                    Transport transport) const {
     if (plain_lambert(transport)) return sample_lambert(wo, u);
     return sample_any(wo, u_lobe, u, transport);
@@ -114,9 +114,9 @@ class Bsdf {
 
   /// Probabilities of the lobes for one wo; they add up to 1, or are all 0.
   struct Choice {
-    float diffuse = 0;
-    float facets = 0;  ///< a facet is sampled, which reflects or transmits
-    float clear = 0;   ///< the transmission of Interface::clear()
+    double diffuse = 0;
+    double facets = 0;  ///< a facet is sampled, which reflects or transmits
+    double clear = 0;   ///< the transmission of Interface::clear()
   };
   /// Quantities that depend on `wo` and one of the normals.
   struct Seen {
@@ -170,7 +170,7 @@ class Bsdf {
 
   Rgb eval_any(const V3f& wo, const V3f& wi, Transport transport) const;
   Pdf<SolidAngle> pdf_any(const V3f& wo, const V3f& wi, Transport transport) const;
-  std::optional<BsdfSample> sample_any(const V3f& wo, float u_lobe, const V2f& u,
+  std::optional<BsdfSample> sample_any(const V3f& wo, double u_lobe, const V2f& u,
                                        Transport transport) const;
 
   Seen seen(const V3f& n, const V3f& wo) const;
@@ -187,7 +187,7 @@ class Bsdf {
   /// (transmission); 0: neither.
   int passage(const Seen& from, const V3f& wi) const;
 
-  std::optional<Draw> draw(const Seen& from, const Choice& c, const V3f& wo, float u_lobe,
+  std::optional<Draw> draw(const Seen& from, const Choice& c, const V3f& wo, double u_lobe,
                            const V2f& u) const;
   std::optional<BsdfSample> finish_delta(const Draw& drawn, const Seen& from, const V3f& wo,
                                          float frame_probability, Transport transport) const;

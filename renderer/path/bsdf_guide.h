@@ -16,8 +16,8 @@ struct BsdfGuide : StrategyBase {
 
   static void on_hit(Vertex&) {}
   static std::optional<BsdfSample> sample(const Vertex& v, Rng& rng, Transport transport) {
-    const float u_lobe = rng.next();
-    return v.bsdf->sample(v.wp, u_lobe, rng.next2(), transport);
+    const auto [u_lobe, u] = rng.next_choice_and_point();
+    return v.bsdf->sample(v.wp, u_lobe, u, transport);
   }
   /// Density of `wi` for a walk of the given transport that arrived at `v` from `wo`.
   static Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport) {

@@ -209,7 +209,7 @@ class Walk {
     w.roulette_scale *= next->pdf_ratio;
     if (depth >= limits_.roulette_depth && !w.windowed) {
       const float survival = std::min(1.0F, max_component(w.throughput) * w.roulette_scale);
-      if (w.rng.next() >= survival) return false;
+      if (!w.rng.decide(survival)) return false;
       w.throughput /= survival;
     }
     v.delta = next->delta;

@@ -1,14 +1,22 @@
 #include "renderer/scene/scene.h"
 
 #include <set>
+#include <string>
+#include <vector>
 
+#include "renderer/core/scene_error.h"
 #include "renderer/geometry/alpha_mask.h"
+#include "renderer/images/guards.h"
 #include "renderer/images/image_read.h"
 #include "renderer/materials/gltf_material.h"
 
 namespace lacuna {
 
 namespace {
+
+/// Larger textures are decoded one at a time: while it is decoded, one takes several times the
+/// memory that it keeps.
+constexpr std::uint64_t max_small_texels = std::uint64_t{1} << 24;
 
 std::unique_ptr<Environment> load_environment(const EnvironmentImage& e) {
   FloatImage image = read_float_image(e.file);
@@ -53,11 +61,23 @@ void Scene::decode_textures(const SceneNeeds& needs, const ThreadPool& pool) {
     if (needs.emission && m.emits()) want(m.emission_texture);
     if (needs.materials) m.for_each_scattering_texture(want);
   }
-  const std::vector<int> list(wanted.begin(), wanted.end());
-  pool.for_each(static_cast<int>(list.size()), [&](int i) {
-    data_->textures[static_cast<std::size_t>(list[static_cast<std::size_t>(i)])]->decode();
-  });
-  textures_decoded_ = static_cast<int>(list.size());
+  std::vector<Texture*> small;
+  std::vector<Texture*> large;
+  std::uint64_t texels = 0;
+  for (const int i : wanted) {
+    Texture* const texture = data_->textures[static_cast<std::size_t>(i)].get();
+    const std::uint64_t own = texture->texels();
+    (own > max_small_texels ? large : small).push_back(texture);
+    texels += own;
+  }
+  if (texels > max_scene_texels) {
+    throw SceneError("the textures have " + std::to_string(texels) +
+                     " texels together; allowed: up to " + std::to_string(max_scene_texels));
+  }
+  for (Texture* texture : large) texture->decode();
+  pool.for_each(static_cast<int>(small.size()),
+                [&](int i) { small[static_cast<std::size_t>(i)]->decode(); });
+  textures_decoded_ = static_cast<int>(wanted.size());
 }
 
 std::uint64_t Scene::texture_bytes() const {

@@ -31,7 +31,7 @@ struct EnvironmentImage {
 class Scene {
  public:
   /// Decodes the textures of the `needs`, builds the ray caster and, if needed, the emitters.
-  /// Throws SceneError.
+  /// Throws SceneError, also if these textures have more than max_scene_texels together.
   Scene(SceneData data, const SceneNeeds& needs, const std::optional<EnvironmentImage>& environment,
         const ThreadPool& pool);
 

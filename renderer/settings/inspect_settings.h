@@ -48,6 +48,21 @@ struct EnumTable<InspectQuantity> {
   }};
 };
 
+/// It shows the analysis of the empty space.
+constexpr bool shows_space(InspectQuantity quantity) {
+  switch (quantity) {
+    case InspectQuantity::node_mapping:
+    case InspectQuantity::filtered_mapping:
+    case InspectQuantity::opening:
+    case InspectQuantity::region_labels:
+    case InspectQuantity::visibility_clusters:
+    case InspectQuantity::nearest_node_visible:
+      return true;
+    default:
+      return false;
+  }
+}
+
 /// integrator: inspect.
 struct InspectSettings {
   static constexpr std::string_view name = "inspect";

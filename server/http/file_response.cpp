@@ -5,6 +5,9 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cerrno>
+
+#include "analysis/storage/passing_error.h"
 
 namespace lacuna {
 namespace {
@@ -36,6 +39,7 @@ FileHandle open_regular(const std::filesystem::path& folder, std::string_view na
   FileHandle file(dir ? ::openat(dir.get(), std::string(name).c_str(),
                                  O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC)
                       : -1);
+  if (!file && is_want_of_descriptors(errno)) throw_file_error(errno, "read", folder / name);
   if (!file || ::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) return {};
   return file;
 }

@@ -9,8 +9,6 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "server/http/address.h"
-
 namespace lacuna {
 namespace {
 
@@ -39,6 +37,10 @@ std::optional<HostPort> parse(std::string_view text) {
   return result;
 }
 
+bool holds(const std::vector<std::string>& list, const std::string& name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
 }  // namespace
 
 bool is_safe(const Request& request) { return request.method == "GET" || request.method == "HEAD"; }
@@ -46,7 +48,9 @@ bool is_safe(const Request& request) { return request.method == "GET" || request
 Guard::Guard(const std::string& bind, const std::vector<std::string>& hosts)
     : names_{"localhost", "127.0.0.1", "[::1]"} {
   const std::string own = bind.find(':') == std::string::npos ? bind : "[" + bind + "]";
-  if (const auto host = parse(own); host && !is_loopback(bind)) names_.push_back(host->name);
+  if (const auto host = parse(own); host && !holds(names_, host->name)) {
+    names_.push_back(host->name);
+  }
   for (const std::string& text : hosts) {
     const auto host = parse(text);
     if (!host) {
@@ -63,9 +67,6 @@ Guard::Guard(const std::string& bind, const std::vector<std::string>& hosts)
 
 bool Guard::is_own(const std::string& host) const {
   const auto sent = parse(host);
-  const auto holds = [](const auto& list, const std::string& s) {
-    return std::find(list.begin(), list.end(), s) != list.end();
-  };
   return sent && (holds(names_, sent->name) || holds(with_ports_, sent->name + ":" + sent->port));
 }
 

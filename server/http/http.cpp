@@ -16,6 +16,7 @@
 #include <system_error>
 #include <utility>
 
+#include "analysis/storage/passing_error.h"
 #include "server/http/address.h"
 #include "server/http/chunk_check.h"
 #include "server/http/timed_socket.h"
@@ -365,6 +366,12 @@ void Library::respond(const httplib::Request& sent, httplib::Response& out,
     response = early ? std::move(*early) : answer(request, parts);
   } catch (const HttpError& error) {
     response = problem_response(error, path);
+  } catch (const std::system_error& error) {
+    log::error("{} {}: {}", sent.method, path, error.what());
+    response = problem_response(
+        may_pass(error) ? storage_error(error, "The service cannot use its files for now")
+                        : HttpError(500, "The service failed; its log says more."),
+        path);
   } catch (const std::exception& error) {
     log::error("{} {}: {}", sent.method, path, error.what());
     response = problem_response(HttpError(500, "The service failed; see its log."), path);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/json/json_text.h"
+#include "analysis/storage/passing_error.h"
 
 namespace lacuna {
 
@@ -63,6 +64,12 @@ std::string media_type(const Request& request) {
   type.erase(type.find_last_not_of(" \t") + 1);
   for (char& c : type) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return type;
+}
+
+HttpError storage_error(const std::system_error& error, const std::string& what) {
+  const std::string detail = fmt::format("{}: {}.", what, error.code().message());
+  if (!is_want_of_descriptors(error.code().value())) return HttpError(507, detail);
+  return HttpError(503, detail).with("Retry-After", "1");
 }
 
 Response problem_response(const HttpError& error, const std::string& path) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -95,6 +96,10 @@ class HttpError : public std::runtime_error {
   std::vector<Problem> errors_;
   std::vector<std::pair<std::string, std::string>> headers_;
 };
+
+/// A file could not be written or read: 503 where descriptors lack, else 507. `what`: the beginning
+/// of the sentence; the answer names no file.
+HttpError storage_error(const std::system_error& error, const std::string& what);
 
 /// The application/problem+json answer (RFC 9457) to a request for `path`.
 Response problem_response(const HttpError& error, const std::string& path);

@@ -1,5 +1,6 @@
 #include "server/http/waiting_room.h"
 
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/epoll.h>
@@ -51,11 +52,11 @@ WaitingRoom::WaitingRoom(int listener, const HttpSettings& settings, HttpMetrics
   if (!watch(listener_, nullptr) || !watch(wake_.get(), this)) {
     throw std::system_error(errno, std::generic_category(), "cannot wait for clients");
   }
-  thread_ = std::thread([this] { run(); });
+  thread_ = std::jthread([this](const std::stop_token& ends) { run(ends); });
 }
 
 WaitingRoom::~WaitingRoom() {
-  stopping_ = true;
+  thread_.request_stop();
   ::eventfd_write(wake_.get(), 1);
   thread_.join();
 }
@@ -74,10 +75,10 @@ bool WaitingRoom::watch(int fd, void* tag) const {
   return ::epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, fd, &event) == 0;
 }
 
-void WaitingRoom::run() {
+void WaitingRoom::run(const std::stop_token& ends) {
   std::array<epoll_event, 256> events;
   auto next_tick = Clock::now();
-  while (!stopping_) {
+  while (!ends.stop_requested()) {
     const bool idle = arriving_.empty() && lingering_.empty();
     const int n = ::epoll_wait(epoll_.get(), events.data(), static_cast<int>(events.size()),
                                idle ? -1 : tick_milliseconds);
@@ -130,8 +131,31 @@ void WaitingRoom::accept_some() {
       continue;
     }
     ++metrics_.accepted;
+    if (connection.get() > settings_.max_connection_fd) {
+      if (!keep_reserve()) {
+        ++metrics_.refused;  // without a word: it is closed
+        continue;
+      }
+      // The number that has become free: or each second newcomer would get it and be let in beside.
+      connection = FileHandle(::fcntl(connection.get(), F_DUPFD_CLOEXEC, 0));
+    }
     receive(enter(arriving_, std::move(connection), PacedDeadline(settings_.head_time)), true);
   }
+}
+
+/// Closes the connection that can be done without most, for a new one: its number says that all
+/// below, as they are given out, are in use. False: there is none.
+bool WaitingRoom::keep_reserve() {
+  std::list<Client>& list = lingering_.empty() ? arriving_ : lingering_;
+  if (list.empty()) return false;
+  if (&list == &arriving_) {
+    ++metrics_.refused;
+    const std::string text =
+        refusal_(HttpError(503, "Too many connections are open.").with("Retry-After", "1"));
+    ::send(list.front().socket.get(), text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  }
+  leave(list.front());
+  return true;
 }
 
 void WaitingRoom::receive(Client& client, bool is_new) {

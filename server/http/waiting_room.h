@@ -1,10 +1,10 @@
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <list>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
@@ -60,11 +60,12 @@ class WaitingRoom {
   };
   enum class State { incomplete, complete, gone };
 
-  void run();
+  void run(const std::stop_token& ends);
   bool watch(int fd, void* tag) const;
   Client& enter(std::list<Client>& list, FileHandle socket, PacedDeadline deadline);
   FileHandle leave(Client& client);
   void accept_some();
+  bool keep_reserve();
   void receive(Client& client, bool is_new);
   State read(Client& client) const;
   bool is_whole(Client& client) const;
@@ -82,10 +83,9 @@ class WaitingRoom {
   const FileHandle epoll_, wake_;
   std::mutex mutex_;
   std::vector<FileHandle> inbox_;
-  std::atomic<bool> stopping_{false};
   // For the own thread only, in the order in which they came:
   std::list<Client> arriving_, lingering_;
-  std::thread thread_;
+  std::jthread thread_;
 };
 
 }  // namespace lacuna

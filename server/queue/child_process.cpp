@@ -84,7 +84,7 @@ struct AbsoluteLimits {
     ::close(file);
   }
   if (::getppid() != p.parent) ::_exit(127);  // the service died before the line above
-  for (const int s : {SIGTERM, SIGINT, SIGPIPE, SIGHUP}) ::signal(s, SIG_DFL);
+  for (const int s : {SIGTERM, SIGINT, SIGPIPE, SIGHUP, SIGXFSZ}) ::signal(s, SIG_DFL);
   check(::dup2(p.input, STDIN_FILENO));
   check(::dup2(p.output, STDOUT_FILENO));
   check(::dup2(p.output, STDERR_FILENO));

@@ -3,29 +3,43 @@
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
+#include <string>
 
 namespace lacuna {
+
+/// The free space of a disk.
+struct DiskRoom {
+  std::uint64_t bytes = 0;
+  std::uint64_t inodes = 0;
+  std::uint64_t all_inodes = 0;  ///< 0: the file system creates them as needed
+};
 
 /// The free space on the disk of `folder`, compared with a floor below which no job starts.
 class DiskWatch {
  public:
-  /// `floor`: bytes; 0: any room is enough.
+  /// `floor`: bytes; 0: any room is enough, of inodes too.
   DiskWatch(std::filesystem::path folder, std::uint64_t floor)
       : folder_(std::move(folder)), floor_(floor) {}
 
-  /// Bytes that may still be written. Throws std::system_error.
-  std::uint64_t free_bytes() const;
+  /// What may still be written. Throws std::system_error.
+  DiskRoom room() const;
   std::uint64_t floor() const { return floor_; }
   /// Checks the free space. Once it was below the floor, it stays low until a tenth above the floor
   /// (hysteresis), so that a few checkpoints do not stop all work again. If the disk does not
   /// answer, the last result is kept.
   bool is_low();
+  /// What it is low of; empty: it was not when it was last looked at.
+  std::string shortage() const;
 
  private:
   const std::filesystem::path folder_;
   const std::uint64_t floor_;
-  std::mutex mutex_;
-  bool low_ = false;
+  mutable std::mutex mutex_;  // guards all below
+  std::string shortage_;
 };
+
+/// What `room` is short of where `floor` bytes and, where inodes are counted, 1024 of them or a
+/// sixteenth of all shall stay free; `was_low` raises both by a tenth. Empty: nothing.
+std::string shortage_of(const DiskRoom& room, std::uint64_t floor, bool was_low);
 
 }  // namespace lacuna

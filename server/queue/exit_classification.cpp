@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
+#include <csignal>
 
+#include "analysis/storage/passing_error.h"
 #include "jobs/store/exit_code.h"
 
 namespace lacuna {
@@ -21,15 +21,9 @@ bool exited(const Ending& end) {
   return end.kind == Ending::Kind::exited || end.kind == Ending::Kind::out_of_memory;
 }
 
-/// A renderer that could not be started may be another time: it was not its fault.
-bool may_start_later(int error) {
-  constexpr std::array passing{EAGAIN, ENOMEM, ENOSPC, EDQUOT, EMFILE, ENFILE};
-  return std::find(passing.begin(), passing.end(), error) != passing.end();
-}
-
 /// Another renderer would end likewise.
 bool is_final(const Ending& end) {
-  if (end.kind == Ending::Kind::not_started) return !may_start_later(end.code);
+  if (end.kind == Ending::Kind::not_started) return !may_pass(end.code);
   return end.kind == Ending::Kind::exited && (end.code == exit_bad_job || end.code == exit_asset);
 }
 
@@ -37,17 +31,26 @@ bool interrupted(const Ending& end) {
   return end.kind == Ending::Kind::exited && end.code == exit_interrupted;
 }
 
-/// Stopped by somebody else or by a full disk, but not in vain.
+/// What kept it from being started, or from writing its files, and may pass; empty: nothing did.
+/// Interrupted without being asked, a renderer says why in state.json, or could not write even
+/// that; one that somebody else has stopped leaves no error there.
+std::string obstacle_of(const Attempt& attempt) {
+  const Ending& end = attempt.ending;
+  if (end.kind == Ending::Kind::not_started) return may_pass(end.code) ? end.reason : "";
+  if (end.kind == Ending::Kind::killed && end.code == SIGXFSZ) return end.reason;
+  if (!interrupted(end)) return "";
+  if (attempt.after.state != State::interrupted) return "the renderer could not write its files";
+  return attempt.after.error;
+}
+
+/// Stopped by somebody else, but not in vain.
 bool made_progress(const Attempt& attempt) {
   return interrupted(attempt.ending) && attempt.iteration_after > attempt.iteration_before;
 }
 
 std::string reason_of(const Attempt& attempt) {
   const Ending& end = attempt.ending;
-  if (interrupted(end)) {
-    const std::string& said = attempt.after.error;
-    return said.empty() ? end.reason + ", without a request and without progress" : said;
-  }
+  if (interrupted(end)) return end.reason + ", without a request and without progress";
   const bool silent = end.kind == Ending::Kind::exited && end.code == exit_done;
   return silent ? end.reason + " but left no result" : end.reason;
 }
@@ -90,6 +93,8 @@ ExitClassification classify_exit(const Attempt& attempt, int max_attempts, const
   if (attempt.hold) return {held(std::move(state))};
   if (attempt.stopped) return {queued(std::move(state))};
   if (is_final(end)) return failed(std::move(state), end.reason, now);
+  const std::string obstacle = obstacle_of(attempt);
+  if (!obstacle.empty()) return {queued(std::move(state)), false, obstacle};
   if (attempt.disk_low || made_progress(attempt)) return {queued(std::move(state))};
   const int crashes = attempt.crashes + 1;
   if (crashes < max_attempts) return {queued(std::move(state)), true};

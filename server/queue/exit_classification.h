@@ -31,6 +31,7 @@ struct Attempt {
 struct ExitClassification {
   JobState state;  ///< terminal, held, or queued again
   bool crashed = false;
+  std::string obstacle = {};  ///< what the job waits for to pass; empty: nothing
 };
 
 /// Classifies the exit of a renderer by the exit codes of `lacuna render`: 0 done, 2 bad job, 3
@@ -38,8 +39,8 @@ struct ExitClassification {
 /// terminal state that the renderer wrote stands. Crashes, lack of memory, and interruptions that
 /// nobody requested and that completed no iteration are retried from the checkpoint, up to
 /// `max_attempts` times; while the disk is low they are retried without being counted. A renderer
-/// that could not be started is retried likewise if the cause may pass (no disk space, memory,
-/// process or file handle left); otherwise the job fails.
+/// that could not be started, or could not write its files, for a cause that may pass (may_pass())
+/// is retried without being counted; otherwise the job fails.
 ExitClassification classify_exit(const Attempt& attempt, int max_attempts, const std::string& now);
 
 }  // namespace lacuna

@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "analysis/storage/file_handle.h"
 #include "server/queue/retention.h"
 #include "server/telemetry/log.h"
 
@@ -11,43 +12,72 @@ namespace {
 // Renderers write their progress a few times a second: looking at two small files as often is
 // simpler than a notice from the kernel, and costs next to nothing.
 constexpr std::chrono::milliseconds tick{250};
-constexpr int ticks_to_folders = 4, ticks_to_disk = 4, ticks_to_retention = 240;
+constexpr int ticks_to_folders = 4, ticks_to_disk = 4, ticks_to_lock = 4, ticks_to_retention = 240;
+// Temporary files are looked for at the start, and once more when all that were left then are old
+// enough to be taken away.
+constexpr int ticks_to_tidy = 480;
 
 }  // namespace
 
-MaintenanceThread::MaintenanceThread(JobTable& table, Queue& queue, CareSettings settings)
-    : table_(table), queue_(queue), settings_(settings) {}
+MaintenanceThread::MaintenanceThread(JobTable& table, Queue& queue, CareSettings settings,
+                                     std::function<void()> look)
+    : table_(table), queue_(queue), settings_(settings), look_(std::move(look)) {}
 
 void MaintenanceThread::start() {
-  thread_ = std::thread([this] { run(); });
+  thread_ = std::jthread([this](const std::stop_token& ends) { run(ends); });
 }
 
-void MaintenanceThread::stop() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
-  }
-  changed_.notify_all();
-  if (thread_.joinable()) thread_.join();
-}
+void MaintenanceThread::stop() { thread_ = {}; }
 
-void MaintenanceThread::run() {
+void MaintenanceThread::run(const std::stop_token& ends) {
   for (int i = 1;; ++i) {
     {
       std::unique_lock lock(mutex_);
-      if (changed_.wait_for(lock, tick, [&] { return stopping_; })) return;
+      ended_.wait_for(lock, ends, tick, [] { return false; });
+      if (ends.stop_requested()) return;
     }
+    do_round(i);
+  }
+}
+
+void MaintenanceThread::do_round(int number) {
+  // What fails keeps nothing else from being done.
+  const auto each = [&](int rounds, const auto& step) {
+    if (number % rounds != 0) return;
     try {
-      queue_.look_at_running();
-      if (i % ticks_to_folders == 0) table_.rescan_if_changed();
-      if (i % ticks_to_disk == 0) {
-        queue_.save_pending();
-        queue_.look_at_disk();
-      }
-      if (i % ticks_to_retention == 0) remove_old();
+      step();
     } catch (const std::exception& error) {
       log::error("looking after the jobs: {}", error.what());
     }
+  };
+  each(1, [&] { queue_.look_at_running(); });
+  each(ticks_to_folders, [&] {
+    if (table_.rescan_if_changed()) queue_.adopt();
+  });
+  each(ticks_to_disk, [&] { queue_.save_pending(); });
+  each(ticks_to_disk, [&] { queue_.look_at_disk(); });
+  each(ticks_to_lock, [&] { look_(); });
+  each(ticks_to_retention, [&] { remove_old(); });
+  if (number == 1 || number == ticks_to_tidy) list_folders();
+  each(1, [&] { tidy_some(); });
+}
+
+/// Those in which a killed write may have left its temporary file.
+void MaintenanceThread::list_folders() {
+  to_tidy_.clear();
+  for (const EntryPtr& entry : table_.all()) to_tidy_.push_back(table_.folder(entry->id).dir());
+  for (const SweepEntryPtr& sweep : table_.sweeps().all()) {
+    to_tidy_.push_back(table_.sweeps().dir(sweep->id));
+  }
+  to_tidy_.push_back(table_.data().dir);
+}
+
+void MaintenanceThread::tidy_some() {
+  constexpr int at_once = 200;  // a round stays short
+  for (int i = 0; i < at_once && !to_tidy_.empty(); ++i) {
+    const std::filesystem::path folder = std::move(to_tidy_.back());
+    to_tidy_.pop_back();
+    if (std::filesystem::exists(folder)) remove_stale_temporaries(folder);
   }
 }
 
@@ -55,7 +85,7 @@ void MaintenanceThread::remove_old() {
   for (const std::string& id : outdated(table_.all(), table_.sweeps().unfinished(), settings_,
                                         std::chrono::system_clock::now())) {
     try {
-      queue_.remove(id);
+      queue_.remove_outdated(id);
       log::info("{}: removed, as the settings of what is kept say", id);
     } catch (const std::exception& error) {  // it was asked to go on, or its folder resists
       log::warn("{} is kept: {}", id, error.what());

@@ -1,8 +1,12 @@
 #pragma once
 
 #include <condition_variable>
+#include <filesystem>
+#include <functional>
 #include <mutex>
+#include <stop_token>
 #include <thread>
+#include <vector>
 
 #include "server/queue/queue.h"
 #include "server/settings/queue_settings.h"
@@ -14,7 +18,9 @@ namespace lacuna {
 /// checks the disk space, and removes outdated jobs.
 class MaintenanceThread {
  public:
-  MaintenanceThread(JobTable& table, Queue& queue, CareSettings settings);
+  /// `look`: called about once a second, too.
+  MaintenanceThread(JobTable& table, Queue& queue, CareSettings settings,
+                    std::function<void()> look);
   ~MaintenanceThread() { stop(); }
   MaintenanceThread(const MaintenanceThread&) = delete;
   MaintenanceThread& operator=(const MaintenanceThread&) = delete;
@@ -23,17 +29,21 @@ class MaintenanceThread {
   void stop();
 
  private:
-  void run();
+  void run(const std::stop_token& ends);
+  void do_round(int number);
   void remove_old();
+  void list_folders();
+  void tidy_some();
 
   JobTable& table_;
   Queue& queue_;
   const CareSettings settings_;
+  const std::function<void()> look_;
+  std::vector<std::filesystem::path> to_tidy_;  // folders, the last first
 
   std::mutex mutex_;
-  std::condition_variable changed_;
-  bool stopping_ = false;
-  std::thread thread_;
+  std::condition_variable_any ended_;
+  std::jthread thread_;
 };
 
 }  // namespace lacuna

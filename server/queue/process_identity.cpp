@@ -19,12 +19,22 @@ std::optional<ProcessStat> stat_of(pid_t pid) {
 
 /// What this very process is now; nothing if it has ended.
 std::optional<ProcessStat> living(const ProcessIdentity& identity) {
+  if (identity.boot != boot_id()) return std::nullopt;
   const auto now = stat_of(identity.pid);
   const bool same = now && now->start_ticks == identity.start_ticks;
   return same && now->state != 'Z' && now->state != 'X' ? now : std::nullopt;
 }
 
 }  // namespace
+
+const std::string& boot_id() {
+  static const std::string id = [] {
+    std::string text;
+    std::ifstream("/proc/sys/kernel/random/boot_id") >> text;
+    return text;
+  }();
+  return id;
+}
 
 std::optional<ProcessStat> parse_process_stat(std::string_view stat) {
   const auto name_end = stat.rfind(')');  // no later field has one
@@ -43,7 +53,7 @@ std::optional<ProcessStat> parse_process_stat(std::string_view stat) {
 std::optional<ProcessIdentity> identity_of(pid_t pid) {
   const auto stat = stat_of(pid);
   if (!stat) return std::nullopt;
-  return ProcessIdentity{pid, stat->start_ticks};
+  return ProcessIdentity{.pid = pid, .start_ticks = stat->start_ticks};
 }
 
 bool is_alive(const ProcessIdentity& identity) { return living(identity).has_value(); }

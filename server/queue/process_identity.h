@@ -4,15 +4,20 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace lacuna {
 
-/// Identifies a process by its number and start time, which distinguishes it from a later process
-/// with the same number. The time is in clock ticks since boot, so it is valid until the next boot.
+/// The kernel's identifier of this boot of the machine; empty if there is none.
+const std::string& boot_id();
+
+/// Identifies a process by its number, its start time in clock ticks since boot, and that boot,
+/// which together distinguish it from a later process with the same number.
 struct ProcessIdentity {
   pid_t pid = 0;
   std::uint64_t start_ticks = 0;
+  std::string boot = boot_id();
   bool operator==(const ProcessIdentity&) const = default;
 };
 

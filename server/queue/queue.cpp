@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "analysis/storage/passing_error.h"
 #include "jobs/spec/budget_extension.h"
 #include "jobs/spec/described_json.h"
 #include "jobs/store/new_folder.h"
@@ -19,26 +20,22 @@ Queue::Queue(Executor& executor, JobTable& table, DiskWatch& disk, QueueSettings
 void Queue::start() {
   for (const EntryPtr& entry : table_.all()) {
     if (entry->damaged) log::error("{} is left alone: {}", entry->id, entry->state.error);
-    if (entry->over) continue;
-    try {
-      enter(entry);
-    } catch (const std::exception& error) {
-      give_up(entry->id, error.what());
-    }
+    enter(entry->id);
   }
-  for (int i = 0; i < settings_.children; ++i) runners_.emplace_back([this] { run(); });
+  for (int i = 0; i < settings_.children; ++i) {
+    runners_.emplace_back([this](const std::stop_token& ends) { run(ends); });
+  }
 }
 
 void Queue::stop() {
   {
     const std::lock_guard lock(mutex_);
-    stopping_ = true;
+    for (std::jthread& runner : runners_) runner.request_stop();
     for (const auto& [id, work] : work_) {
       if (work->stop) work->stop->request();
     }
   }
   changed_.notify_all();
-  for (std::thread& runner : runners_) runner.join();
   runners_.clear();
 }
 
@@ -56,23 +53,42 @@ void Queue::check_room() const {
 
 EntryPtr Queue::add(const std::string& id) {
   EntryPtr entry = table_.add(id);
-  if (!entry->over) enter(entry);
+  enter(id);
   return entry;
 }
 
+void Queue::adopt() {
+  for (const EntryPtr& entry : table_.all()) {
+    if (!entry->over) enter(entry->id);
+  }
+}
+
 /// A job that is not over comes in: new, or left by an earlier run of the service.
-void Queue::enter(const EntryPtr& entry) {
+void Queue::enter(const std::string& id) {
   const std::lock_guard lock(mutex_);
-  if (work_.contains(entry->id)) return;
+  const EntryPtr entry = table_.find(id);
+  if (!entry || entry->over || work_.contains(id)) return;
   const WorkPtr work = open(*entry, entry->control);
-  if (entry->state.state == State::cancelling) work->control.cancel = true;
-  if (work->control.cancel && withdraw(*work, State::cancelled)) return;
-  if (work->control.held && withdraw(*work, State::held)) return;
-  const State state = entry->state.state;
+  try {
+    place(*entry, *work);
+  } catch (const std::exception& error) {
+    if (!may_pass(error)) return give_up(id, error.what());
+    postpone(*work, error);
+    line_up(*work);
+  }
+}
+
+/// Where it belongs by its state. Throws before anything has changed.
+void Queue::place(const JobEntry& entry, Work& work) {
+  if (entry.unread) return line_up(work);
+  const State state = entry.state.state;
+  if (state == State::cancelling) work.control.cancel = true;
+  if (work.control.cancel && withdraw(work, State::cancelled)) return;
+  if (work.control.held && withdraw(work, State::held)) return;
   // Where a renderer of an earlier service still ends, its state.json is not ours yet.
-  if (state != State::queued) withdraw(*work, State::queued);
+  if (state != State::queued) withdraw(work, State::queued);
   // Unless that renderer has come to the end just now, and the job is over.
-  if (work_.contains(work->id)) line_up(*work);
+  if (work_.contains(entry.id)) line_up(work);
 }
 
 Queue::WorkPtr Queue::open(const JobEntry& entry, const JobControl& control) {
@@ -96,27 +112,42 @@ void Queue::leave_line(Work& work) {
   work.queue_key.reset();
 }
 
-/// Writes the new state of a job that no runner has. False: a renderer of somebody else still holds
-/// its folder, and a runner has to wait for that.
+/// Takes a job that no runner has, so that its state can be written. Nothing: a renderer of
+/// somebody else still holds its folder, and a runner has to wait for that. Throws Conflict if the
+/// folder is damaged, and std::system_error. Only under the fork mutex, which has to be held as
+/// long as the claim.
+std::optional<Queue::Claim> Queue::claim(const Work& work) const {
+  auto lock = try_folder(work);
+  if (!lock) return std::nullopt;
+  try {
+    return Claim{std::move(*lock), stored_state(work.id)};
+  } catch (const std::exception& error) {
+    if (may_pass(error)) throw;
+    throw Conflict(error.what());
+  }
+}
+
+/// Writes the new state of a job that is claimed.
+void Queue::commit(Work& work, const JobState& before, State how) {
+  if (is_terminal(before.state)) {
+    table_.set_state(work.id, before, true);
+    forget(work.id);
+  } else if (how == State::queued) {
+    write_state(work.id, queued(before), false);
+  } else if (how == State::held) {
+    write_state(work.id, held(before), false);
+  } else {
+    write_state(work.id, ended(before, how, utc_now()), true);
+    forget(work.id);
+  }
+}
+
+/// Both in one. False: there is no claim to be had, and nothing has changed.
 bool Queue::withdraw(Work& work, State how) {
   const std::lock_guard no_forks(fork_mutex());
-  const auto free = try_folder(work);
-  if (!free) return false;
-  const JobState state = stored_state(work.id);
-  if (is_terminal(state.state)) {
-    table_.set_state(work.id, state, true);
-    forget(work.id);
-    return true;
-  }
-  if (how == State::queued) {
-    write_state(work.id, queued(state), false);
-  } else if (how == State::held) {
-    write_state(work.id, held(state), false);
-  } else {
-    write_state(work.id, ended(state, how, utc_now()), true);
-    forget(work.id);
-  }
-  return true;
+  const auto claimed = claim(work);
+  if (claimed) commit(work, claimed->state, how);
+  return claimed.has_value();
 }
 
 void Queue::forget(const std::string& id) {
@@ -133,6 +164,7 @@ EntryPtr Queue::checked(const std::string& id, const std::string& revision) cons
   if (!revision.empty() && revision != "*" && revision != entry->revision) {
     throw Changed(fmt::format("The job has changed: its revision is now {}.", entry->revision));
   }
+  if (entry->unread) throw Unavailable(entry->obstacle);
   return entry;
 }
 
@@ -156,16 +188,21 @@ void Queue::change(const std::string& id, std::optional<int> priority, std::opti
   control.held = held.value_or(control.held);
   if (control == work.control) return;
   if (work.control.cancel) throw Conflict("The job is being cancelled.");
-  write_control(work, control);
   if (work.stop) {  // a runner has it and looks at what was asked when its renderer has ended
+    write_control(work, control);
     if (control.held) work.stop->request();
     return;
   }
+  // What may fail comes first: the change is made as a whole or not at all.
+  const std::lock_guard no_forks(fork_mutex());
+  const bool moves = control.held || entry->state.state == State::held;
+  const auto claimed = moves ? claim(work) : std::nullopt;
+  write_control(work, control);
   leave_line(work);
-  if (!control.held) {
-    if (entry->state.state == State::held) withdraw(work, State::queued);
-  } else if (withdraw(work, State::held)) {
-    return;
+  if (claimed) {
+    const bool waits = !control.held && !is_terminal(claimed->state.state);
+    commit(work, claimed->state, control.held ? State::held : State::queued);
+    if (!waits) return;
   }
   line_up(work);
 }
@@ -179,19 +216,19 @@ void Queue::cancel(const std::string& id, const std::string& revision) {
     throw Conflict(fmt::format("The job is {}.", enum_name(entry->state.state)));
   }
   Work& work = *found->second;
-  if (!work.control.cancel) {
-    JobControl control = work.control;
-    control.cancel = true;
-    write_control(work, control);
-  }
-  JobState state = entry->state;
+  JobControl control = work.control;
+  control.cancel = true;
+  const std::lock_guard no_forks(fork_mutex());
+  // What may fail comes first, as in change().
+  const auto claimed = work.stop ? std::nullopt : claim(work);
+  if (control != work.control) write_control(work, control);
+  if (claimed) return commit(work, claimed->state, State::cancelled);
   if (work.stop) {
     work.stop->request();
-  } else {
-    leave_line(work);
-    if (withdraw(work, State::cancelled)) return;
+  } else if (!work.queue_key) {
     line_up(work);
   }
+  JobState state = entry->state;
   if (is_terminal(state.state)) return;
   state.state = State::cancelling;
   table_.set_state(id, state, false);
@@ -224,10 +261,11 @@ void Queue::extend(const std::string& id, const Budget& budget, const std::strin
   try {
     table_.folder(id).write_job(spec);
   } catch (...) {
-    line_up(work);
+    write_state(id, entry->state, true);
+    forget(id);
     throw;
   }
-  table_.reread_job(id);
+  table_.set_job(id, spec);
   line_up(work);
 }
 
@@ -240,9 +278,10 @@ Queue::Work& Queue::reopen(const EntryPtr& entry) {
   JobControl control = entry->control;
   control.cancel = control.held = false;
   control.crashes = 0;
-  folder.write_control(control);
   const JobState state = queued(folder.read_state());
+  folder.write_control(control);  // which changes nothing while the state says that it is over
   folder.write_state(state);
+  unsaved_.erase(entry->id);
   table_.set_control(entry->id, control);
   table_.set_state(entry->id, state, false);
   return *open(*entry, control);
@@ -287,6 +326,17 @@ void Queue::remove(const std::string& id, const std::string& revision) {
   take_away({id});
 }
 
+/// Its folder says so itself: what is known here only is not what a restart would find.
+bool Queue::is_over_on_disk(const std::string& id) const {
+  return !unsaved_.contains(id) && is_terminal(table_.folder(id).read_state().state);
+}
+
+void Queue::remove_outdated(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  if (!is_over_on_disk(id)) throw Conflict("Its folder does not say that it is over.");
+  take_away({id});
+}
+
 void Queue::remove_all(const std::vector<std::string>& ids) {
   const std::lock_guard lock(mutex_);
   take_away(ids);
@@ -328,7 +378,9 @@ void Queue::look_at_running() {
     try {
       if (const auto progress = folder.read_progress()) table_.set_progress(id, *progress);
       JobState state = stored_state(id);
-      if (work->control.cancel && !is_terminal(state.state)) state.state = State::cancelling;
+      // An end counts once its runner has seen it: only then can the job be removed or extended.
+      if (is_terminal(state.state)) continue;
+      if (work->control.cancel) state.state = State::cancelling;
       table_.set_state(id, state, false);
     } catch (const std::exception& error) {  // its runner will find out, too
       log::debug("{}: {}", id, error.what());

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <tuple>
@@ -34,6 +35,11 @@ class Changed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+/// It is not possible now, and may be soon.
+class Unavailable : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 /// No more jobs may wait.
 class Full : public std::runtime_error {
  public:
@@ -45,8 +51,13 @@ class Full : public std::runtime_error {
 /// can be rebuilt. While a renderer runs, it owns its job's state.json; before and after, the queue
 /// does. Requests are on disk before the call returns.
 ///
+/// A fault that may pass (may_pass()) costs no job. A job whose folder cannot be locked, read or
+/// written stays in the line, with the obstacle in the table, and the queue pauses before it
+/// continues with the next one; the pauses grow with each fault, of a job and of all.
+///
 /// The calls that change a job take the `revision` that the client has read; empty: any. All throw
-/// Changed, Conflict, and std::system_error if the request could not be stored.
+/// Changed, Conflict, Unavailable, and std::system_error if the request could not be stored: then
+/// nothing has changed.
 class Queue {
  public:
   Queue(Executor& executor, JobTable& table, DiskWatch& disk, QueueSettings settings);
@@ -68,6 +79,9 @@ class Queue {
   void on_over(std::function<void()> notice) { on_over_ = std::move(notice); }
   /// A new job, whose folder is complete on disk.
   EntryPtr add(const std::string& id);
+  /// Puts the unfinished jobs of the table that it has not seen yet in the line: folders that
+  /// somebody else has made.
+  void adopt();
 
   /// A running job that is held is stopped, with its checkpoint.
   void change(const std::string& id, std::optional<int> priority, std::optional<bool> held,
@@ -80,6 +94,8 @@ class Queue {
   void extend(const std::string& id, const Budget& budget, const std::string& revision = {});
   /// Removes a job that is over, and its folder: none of a sweep that is not over.
   void remove(const std::string& id, const std::string& revision = {});
+  /// The same of one that need not be kept: throws Conflict unless its folder says that it is over.
+  void remove_outdated(const std::string& id);
   /// The same of many at once: all of them or, if one cannot be, none.
   void remove_all(const std::vector<std::string>& ids);
   /// Throws Conflict if one of them cannot be removed.
@@ -91,6 +107,8 @@ class Queue {
   void look_at_running();
   /// Tries once more to write the states that could not be written.
   void save_pending();
+  /// Why the jobs that wait do not go on, for everybody: names no file. Empty: nothing keeps them.
+  std::string obstacle() const;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -103,26 +121,42 @@ class Queue {
     bool exclusive = false;
     JobControl control;
     Clock::time_point not_before{};
+    int faults = 0;                     // that may pass, since its last progress
     std::optional<QueueKey> queue_key;  // in the line
     std::shared_ptr<StopSignal> stop;   // a runner has it
     bool stopped_for_disk = false;
+    std::optional<Attempt> ended;  // a renderer that is not judged yet
   };
   using WorkPtr = std::shared_ptr<Work>;
 
-  void run();
-  WorkPtr take();
+  /// The folder of a job that no runner has, for ourselves, and what its state.json says.
+  struct Claim {
+    JobFolder::Lock lock;
+    JobState state;
+  };
+
+  void run(const std::stop_token& ends);
+  WorkPtr take(const std::stop_token& ends);
   WorkPtr first_ready(Clock::time_point& look_again) const;
-  void attend(Work& work);
-  bool wait_until_free(const Work& work);
-  void note_renderer(Work& work, pid_t pid);
-  void settle(Work& work, Attempt attempt);
+  void attend(Work& work, const std::stop_token& ends);
+  bool render(Work& work);
+  void read_at_last(const std::string& id);
+  void hand_back(const WorkPtr& work);
+  void postpone(Work& work, const std::exception& error);
+  void note_obstacle(Work& work, const std::string& what, const std::string& for_all);
+  bool wait_until_free(const Work& work, const std::stop_token& ends);
+  void note_start(Work& work, pid_t pid);
+  void settle(Work& work, Attempt attempt, const std::stop_token& ends);
   void resume(Work& work);
   void give_up(const std::string& id, const std::string& reason);
-  void enter(const EntryPtr& entry);
+  void enter(const std::string& id);
+  void place(const JobEntry& entry, Work& work);
   WorkPtr open(const JobEntry& entry, const JobControl& control);
   void line_up(Work& work);
   void leave_line(Work& work);
   std::optional<JobFolder::Lock> try_folder(const Work& work) const;
+  std::optional<Claim> claim(const Work& work) const;
+  void commit(Work& work, const JobState& before, State how);
   bool withdraw(Work& work, State how);
   void write_control(Work& work, const JobControl& control);
   void write_state(const std::string& id, const JobState& state, bool over);
@@ -133,6 +167,7 @@ class Queue {
   std::map<std::string, std::string> references() const;
   void check_all_removable(const std::vector<std::string>& ids) const;
   void take_away(const std::vector<std::string>& ids);
+  bool is_over_on_disk(const std::string& id) const;
 
   Executor& executor_;
   JobTable& table_;
@@ -150,8 +185,11 @@ class Queue {
   std::map<std::string, JobState> unsaved_;  // states that could not be written (disk full)
   int running_ = 0;
   bool exclusive_runs_ = false;
-  bool stopping_ = false;
-  std::vector<std::thread> runners_;
+  // After a fault that may pass nothing starts until then.
+  Clock::time_point paused_until_{};
+  int faults_ = 0;        // in a row
+  std::string obstacle_;  // the last of them
+  std::vector<std::jthread> runners_;
 };
 
 }  // namespace lacuna

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <csignal>
+#include <system_error>
 #include <utility>
 
+#include "analysis/storage/passing_error.h"
 #include "server/queue/child_process.h"
 #include "server/queue/process_identity.h"
 #include "server/queue/queue.h"
@@ -15,15 +17,25 @@ namespace {
 // How often a folder that another renderer holds is looked at again.
 constexpr std::chrono::milliseconds look_again_at_lock{200};
 
-/// The wait after the n-th crash of a job: what brought it down may pass.
-std::chrono::milliseconds back_off(int crashes) {
-  constexpr std::chrono::milliseconds first{250}, longest{60'000};
-  return std::min(longest, first * (1 << std::min(crashes - 1, 10)));
+/// The wait after the n-th crash or fault of a job: what brought it down may pass.
+std::chrono::milliseconds back_off(int n, std::chrono::milliseconds longest) {
+  constexpr std::chrono::milliseconds first{250};
+  return std::min(longest, first * (1 << std::clamp(n - 1, 0, 10)));
+}
+// A crash may be the job's own doing; a fault that passes shall not be waited for much longer than
+// it lasts, least of all by the whole queue.
+constexpr std::chrono::minutes longest_after_crash{1};
+constexpr std::chrono::seconds longest_after_fault{30}, longest_pause{5};
+
+/// What of an error concerns everybody: without the names of files.
+std::string general_reason(const std::exception& error) {
+  const auto* system = dynamic_cast<const std::system_error*>(&error);
+  return system != nullptr ? system->code().message() : error.what();
 }
 
 ProcessIdentity renderer_of(const JobControl& control) {
   return {static_cast<pid_t>(control.renderer_pid),
-          static_cast<std::uint64_t>(control.renderer_start)};
+          static_cast<std::uint64_t>(control.renderer_start), control.renderer_boot};
 }
 
 }  // namespace
@@ -36,32 +48,66 @@ std::optional<JobFolder::Lock> Queue::try_folder(const Work& work) const {
   return table_.folder(work.id).try_lock();
 }
 
-void Queue::run() {
-  while (const WorkPtr work = take()) {
+void Queue::run(const std::stop_token& ends) {
+  while (const WorkPtr work = take(ends)) {
     try {
-      attend(*work);
+      attend(*work, ends);
     } catch (const std::exception& error) {
-      give_up(work->id, error.what());
+      const std::lock_guard lock(mutex_);
+      if (may_pass(error)) {
+        postpone(*work, error);
+      } else {
+        give_up(work->id, error.what());
+      }
     }
     const std::lock_guard lock(mutex_);
-    work->stop.reset();
-    --running_;
-    exclusive_runs_ = false;
-    // Not one that was retried meanwhile: that is another work.
-    if (const auto left = work_.find(work->id); left != work_.end() && left->second == work) {
-      resume(*work);
-    }
-    changed_.notify_all();
+    hand_back(work);
   }
 }
 
-/// The job's folder cannot be read or written any more.
+/// Only under the lock, as all that follows to first_ready().
+void Queue::hand_back(const WorkPtr& work) {
+  work->stop.reset();
+  --running_;
+  exclusive_runs_ = false;
+  changed_.notify_all();
+  // Not one that was retried meanwhile: that is another work.
+  const auto left = work_.find(work->id);
+  if (left == work_.end() || left->second != work) return;
+  try {
+    resume(*work);
+  } catch (const std::exception& error) {
+    if (!may_pass(error)) return give_up(work->id, error.what());
+    postpone(*work, error);
+    line_up(*work);
+  }
+}
+
+/// A fault that may pass keeps the job from going on.
+void Queue::postpone(Work& work, const std::exception& error) {
+  note_obstacle(work, error.what(), general_reason(error));
+  const EntryPtr entry = table_.find(work.id);
+  const bool ran =
+      entry && (entry->state.state == State::running || entry->state.state == State::interrupted);
+  if (ran) table_.set_state(work.id, queued(entry->state), false);
+}
+
+/// The next job is tried after a pause, and this one later still: what keeps one folder from being
+/// used may leave the others alone. `for_all`: `what` without the names of files.
+void Queue::note_obstacle(Work& work, const std::string& what, const std::string& for_all) {
+  paused_until_ = Clock::now() + back_off(++faults_, longest_pause);
+  work.not_before = paused_until_ + back_off(++work.faults, longest_after_fault);
+  if (obstacle_ != for_all) log::warn("jobs wait: {}", what);
+  obstacle_ = for_all;
+  table_.set_obstacle(work.id, what);
+}
+
+/// The job's folder is damaged, or is not there any more.
 void Queue::give_up(const std::string& id, const std::string& reason) {
   log::error("{} is given up: {}", id, reason);
-  const std::lock_guard lock(mutex_);
   forget(id);
   std::error_code ignored;
-  if (!std::filesystem::exists(table_.folder(id).dir(), ignored)) {
+  if (!std::filesystem::exists(table_.folder(id).dir(), ignored) && !ignored) {
     return table_.remove(id);
   }
   if (const EntryPtr entry = table_.find(id)) {
@@ -71,10 +117,21 @@ void Queue::give_up(const std::string& id, const std::string& reason) {
   }
 }
 
+std::string Queue::obstacle() const {
+  if (std::string shortage = disk_.shortage(); !shortage.empty()) return shortage;
+  const std::lock_guard lock(mutex_);
+  if (faults_ > 0 && !line_.empty()) return obstacle_;
+  return unsaved_.empty() ? "" : "states of jobs that have ended cannot be saved";
+}
+
 /// The first in the line that may start now; `look_again` is when time alone may change that.
 Queue::WorkPtr Queue::first_ready(Clock::time_point& look_again) const {
   if (line_.empty() || exclusive_runs_ || disk_.is_low()) return nullptr;
   const auto now = Clock::now();
+  if (paused_until_ > now) {
+    look_again = paused_until_;
+    return nullptr;
+  }
   for (const QueueKey& key : line_) {
     const WorkPtr& work = work_.at(std::get<2>(key));
     if (work->not_before > now) {
@@ -86,14 +143,19 @@ Queue::WorkPtr Queue::first_ready(Clock::time_point& look_again) const {
   return nullptr;
 }
 
-Queue::WorkPtr Queue::take() {
+Queue::WorkPtr Queue::take(const std::stop_token& ends) {
   std::unique_lock lock(mutex_);
   for (;;) {
-    if (stopping_) return nullptr;
+    if (ends.stop_requested()) return nullptr;
     auto look_again = Clock::now() + std::chrono::hours(1);
     if (WorkPtr work = first_ready(look_again)) {
+      try {
+        work->stop = std::make_shared<StopSignal>();
+      } catch (const std::exception& error) {  // no descriptor is left for it
+        postpone(*work, error);
+        continue;
+      }
       leave_line(*work);
-      work->stop = std::make_shared<StopSignal>();
       ++running_;
       exclusive_runs_ = work->exclusive;
       return work;
@@ -104,7 +166,7 @@ Queue::WorkPtr Queue::take() {
 
 /// Waits while somebody else's renderer has the folder; one that an earlier run of this service
 /// started has had its notice to stop and is killed after the grace. False: stop was asked for.
-bool Queue::wait_until_free(const Work& work) {
+bool Queue::wait_until_free(const Work& work, const std::stop_token& ends) {
   const auto is_free = [&] {
     const std::lock_guard no_forks(fork_mutex());
     return try_folder(work).has_value();
@@ -117,19 +179,49 @@ bool Queue::wait_until_free(const Work& work) {
       if (killed) log::warn("{}: an earlier renderer did not end and is killed", work.id);
     }
     std::unique_lock lock(mutex_);
-    if (changed_.wait_for(lock, look_again_at_lock, [&] { return stopping_; })) return false;
+    if (changed_.wait_for(lock, look_again_at_lock, [&] { return ends.stop_requested(); })) {
+      return false;
+    }
   }
   return true;
 }
 
-void Queue::attend(Work& work) {
-  if (!wait_until_free(work)) return;
+/// A job whose folder could not be read when it came in.
+void Queue::read_at_last(const std::string& id) {
+  const EntryPtr entry = table_.reread(id);
+  {
+    const std::lock_guard lock(mutex_);
+    work_.erase(id);
+  }
+  if (entry) enter(id);
+}
+
+void Queue::attend(Work& work, const std::stop_token& ends) {
+  if (const EntryPtr entry = table_.find(work.id); entry && entry->unread) {
+    return read_at_last(work.id);
+  }
+  if (!wait_until_free(work, ends)) return;
+  if (!work.ended && !render(work)) return;
+  const JobFolder folder = table_.folder(work.id);
+  try {
+    work.ended->after = folder.read_state();
+  } catch (const std::runtime_error& error) {
+    if (may_pass(error)) throw;  // the renderer is judged when that can be read
+    log::error("{}: {}", work.id, error.what());
+    work.ended->after = work.ended->before;
+  }
+  Attempt attempt = *std::exchange(work.ended, std::nullopt);
+  settle(work, std::move(attempt), ends);
+}
+
+/// Has the job rendered, unless somebody has asked for something else, or it is over. False: so.
+bool Queue::render(Work& work) {
   const JobFolder folder = table_.folder(work.id);
   Attempt attempt;
   {
     const std::lock_guard lock(mutex_);
-    if (work.control.cancel) return void(withdraw(work, State::cancelled));
-    if (work.control.held) return void(withdraw(work, State::held));
+    if (work.control.cancel) return withdraw(work, State::cancelled), false;
+    if (work.control.held) return withdraw(work, State::held), false;
     attempt.before = stored_state(work.id);
     attempt.crashes = work.control.crashes;
     if (const auto progress = folder.read_progress()) {
@@ -137,29 +229,32 @@ void Queue::attend(Work& work) {
     }
     if (is_terminal(attempt.before.state)) {  // a renderer of an earlier service came to the end
       table_.set_state(work.id, attempt.before, true);
-      return forget(work.id);
+      return forget(work.id), false;
     }
   }
   log::info("{}: a renderer is started", work.id);
-  attempt.ending = executor_.run(folder, *work.stop, [&](pid_t pid) { note_renderer(work, pid); });
+  attempt.ending = executor_.run(folder, *work.stop, [&](pid_t pid) { note_start(work, pid); });
   log::info("{}: {}", work.id, attempt.ending.reason);
-  try {
-    attempt.after = folder.read_state();
-  } catch (const std::runtime_error& error) {
-    log::error("{}: {}", work.id, error.what());
-    attempt.after = attempt.before;
-  }
-  settle(work, std::move(attempt));
+  work.ended = std::move(attempt);
+  return true;
 }
 
-/// So that a renderer that outlives the service is known again after a restart.
-void Queue::note_renderer(Work& work, pid_t pid) {
+/// A renderer has begun: no fault keeps the queue from going on any more. It is noted so that it is
+/// known again after a restart, should it outlive the service.
+void Queue::note_start(Work& work, pid_t pid) {
   const auto identity = identity_of(pid);
-  if (!identity) return;
   const std::lock_guard lock(mutex_);
+  table_.set_obstacle(work.id, "");
+  if (std::exchange(faults_, 0) > 1) {  // which not one folder alone had
+    for (const auto& [id, other] : work_) {
+      if (other->faults > 0) other->not_before = {};
+    }
+  }
+  if (!identity) return;
   JobControl control = work.control;
   control.renderer_pid = identity->pid;
   control.renderer_start = static_cast<std::int64_t>(identity->start_ticks);
+  control.renderer_boot = identity->boot;
   try {
     write_control(work, control);
   } catch (const std::exception& error) {
@@ -167,13 +262,13 @@ void Queue::note_renderer(Work& work, pid_t pid) {
   }
 }
 
-void Queue::settle(Work& work, Attempt attempt) {
+void Queue::settle(Work& work, Attempt attempt, const std::stop_token& ends) {
   const auto progress = table_.folder(work.id).read_progress();
   if (progress) attempt.iteration_after = progress->iteration;
   const std::lock_guard lock(mutex_);
   attempt.cancel = work.control.cancel;
   attempt.hold = work.control.held;
-  attempt.stopped = stopping_ || work.stopped_for_disk;
+  attempt.stopped = ends.stop_requested() || work.stopped_for_disk;
   attempt.disk_low = disk_.is_low();
   const ExitClassification exit = classify_exit(attempt, settings_.max_attempts, utc_now());
   if (progress) table_.set_progress(work.id, *progress);
@@ -186,10 +281,16 @@ void Queue::settle(Work& work, Attempt attempt) {
       log::warn("{}: {}", work.id, error.what());
       work.control = control;
     }
-    work.not_before = Clock::now() + back_off(control.crashes);
+    work.not_before = Clock::now() + back_off(control.crashes, longest_after_crash);
   }
   const bool over = is_terminal(exit.state.state);
   write_state(work.id, exit.state, over);
+  if (exit.obstacle.empty() || attempt.iteration_after > attempt.iteration_before) {
+    work.faults = 0;
+  }
+  if (!exit.obstacle.empty()) {
+    note_obstacle(work, exit.obstacle, "renderers cannot be started or cannot write their files");
+  }
   if (over) forget(work.id);
 }
 

@@ -4,7 +4,7 @@
 
 namespace lacuna {
 
-Trash::Trash() : thread_([this] { run(); }) {}
+Trash::Trash() : thread_([this](const std::stop_token& ends) { run(ends); }) {}
 
 void Trash::take(std::vector<std::filesystem::path> folders) {
   {
@@ -14,22 +14,13 @@ void Trash::take(std::vector<std::filesystem::path> folders) {
   changed_.notify_all();
 }
 
-void Trash::stop() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
-  }
-  changed_.notify_all();
-  if (thread_.joinable()) thread_.join();
-}
-
-void Trash::run() {
+void Trash::run(const std::stop_token& ends) {
   for (;;) {
     std::filesystem::path folder;
     {
       std::unique_lock lock(mutex_);
-      changed_.wait(lock, [&] { return stopping_ || !folders_.empty(); });
-      if (stopping_) return;
+      changed_.wait(lock, ends, [&] { return !folders_.empty(); });
+      if (ends.stop_requested()) return;
       folder = std::move(folders_.front());
       folders_.pop_front();
     }

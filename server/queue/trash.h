@@ -4,6 +4,7 @@
 #include <deque>
 #include <filesystem>
 #include <mutex>
+#include <stop_token>
 #include <thread>
 #include <vector>
 
@@ -13,23 +14,20 @@ namespace lacuna {
 /// files takes tens of milliseconds, for which no request should wait.
 class Trash {
  public:
+  /// What is left when it ends, remove_stale_folders() finds when the service starts again.
   Trash();
-  ~Trash() { stop(); }
   Trash(const Trash&) = delete;
   Trash& operator=(const Trash&) = delete;
 
   void take(std::vector<std::filesystem::path> folders);
-  /// What is left then, remove_stale_folders() finds when the service starts again.
-  void stop();
 
  private:
-  void run();
+  void run(const std::stop_token& ends);
 
   std::mutex mutex_;  // guards all below
-  std::condition_variable changed_;
+  std::condition_variable_any changed_;
   std::deque<std::filesystem::path> folders_;
-  bool stopping_ = false;
-  std::thread thread_;
+  std::jthread thread_;
 };
 
 }  // namespace lacuna

@@ -19,10 +19,12 @@ void apply(Change&& change) {
     throw HttpError(412, error.what());
   } catch (const Conflict& error) {
     throw HttpError(409, error.what());
+  } catch (const Unavailable& error) {
+    throw HttpError(503, error.what()).with("Retry-After", "1");
   } catch (const BadJob& bad) {
     throw HttpError(400, "The new budget is not valid.", bad.problems());
   } catch (const std::system_error& error) {
-    throw HttpError(507, fmt::format("This could not be stored: {}.", error.code().message()));
+    throw storage_error(error, "This could not be stored");
   }
 }
 

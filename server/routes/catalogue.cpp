@@ -64,10 +64,16 @@ std::string list_text(const JobTable::Page& page) {
 
 OrderedJson job_detail(const JobTable& table, const JobEntry& entry) {
   const JobFolder folder = table.folder(entry.id);
+  OrderedJson job = nullptr, state = state_json(entry);
+  try {
+    job = parse_own(write_job(folder.read_job()));
+  } catch (const BadJob& bad) {  // it was damaged after it had been read, unless the state says so
+    if (!entry.damaged) state["error"] = fmt::format("job.json cannot be read: {}", bad.what());
+  }
   return {{"id", entry.id},
           {"sweep", sweep_json(entry)},
-          {"job", parse_own(write_job(folder.read_job()))},
-          {"state", to_json(entry.state)},
+          {"job", std::move(job)},
+          {"state", std::move(state)},
           {"progress", entry.progress ? to_json(*entry.progress) : OrderedJson(nullptr)},
           {"priority", entry.control.priority},
           {"held", entry.control.held},

@@ -120,7 +120,7 @@ class JobStream final : public Stream {
   std::string tell(const JobEntry& entry) {
     std::string text;
     if (entry.progress) append(text, "progress", json_text(to_json(*entry.progress)), progress_);
-    append(text, "state", json_text(to_json(entry.state)), state_);
+    append(text, "state", json_text(state_json(entry)), state_);
     over_ = entry.over;
     return text;
   }

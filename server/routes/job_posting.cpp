@@ -68,7 +68,7 @@ std::string JobPosting::make(const std::string& body, const Key& key) {
       return JobFolder::create(data_.jobs() / new_id(), spec, control);
     } catch (const std::system_error& error) {
       log::error("a job could not be stored: {}", error.what());
-      throw HttpError(507, fmt::format("The job could not be stored: {}.", error.code().message()));
+      throw storage_error(error, "The job could not be stored");
     }
   }();
   queue_.add(folder.id());

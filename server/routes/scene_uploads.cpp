@@ -156,12 +156,16 @@ SceneUploads::Result SceneUploads::publish(Draft draft, const std::string& name)
   draft.finish();
   const std::uint64_t bytes = fs::file_size(draft.file());
   const fs::path target = settings_.folder / name;
-  const auto known = [&] {
-    return Result{same_bytes(target, draft.file()) ? Outcome::same : Outcome::conflict, bytes};
+  const auto known = [&](const fs::path& there) {
+    return Result{same_bytes(there, draft.file()) ? Outcome::same : Outcome::conflict, bytes};
   };
+  // A job that names the scene would get that of the older root.
+  for (const fs::path& root : settings_.older) {
+    if (fs::is_regular_file(fs::symlink_status(root / name))) return known(root / name);
+  }
   const std::unique_lock lock(checking_, std::try_to_lock);
   if (!lock || is_requested(stop_)) return {Outcome::busy, bytes};
-  if (fs::exists(fs::symlink_status(target))) return known();
+  if (fs::exists(fs::symlink_status(target))) return known(target);
   if (!is_glb(draft.file())) {
     return {Outcome::refused, bytes, "it is not a GLB: it does not begin with \"glTF\""};
   }
@@ -171,7 +175,7 @@ SceneUploads::Result SceneUploads::publish(Draft draft, const std::string& name)
   if (!reason.empty()) return {Outcome::refused, bytes, std::move(reason)};
   // Unlike a rename, a link never replaces what is there.
   if (::link(draft.file().c_str(), target.c_str()) != 0) {
-    if (errno == EEXIST) return known();
+    if (errno == EEXIST) return known(target);
     throw_file_error(errno, "create", target);
   }
   sync_folder(settings_.folder);

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "analysis/storage/file_handle.h"
 #include "server/queue/executor.h"
@@ -14,7 +15,9 @@
 namespace lacuna {
 
 struct SceneUploadSettings {
-  std::filesystem::path folder;             ///< of the uploaded scenes; made if it is not there
+  std::filesystem::path folder;  ///< of the uploaded scenes; made if it is not there
+  std::vector<std::filesystem::path> older =
+      {};                                   ///< scenes roots that a name is looked up in before
   std::filesystem::path renderer;           ///< the `lacuna` command, which checks them
   ChildLimits limits;                       ///< of the check
   std::chrono::milliseconds time{120'000};  ///< that a check may take
@@ -52,7 +55,7 @@ class SceneUploads {
   enum class Outcome {
     created,   ///< it is there under its name now
     same,      ///< the very same bytes were there already
-    conflict,  ///< another scene of that name is there
+    conflict,  ///< another scene of that name is there, or in an older root, which would hide it
     refused,   ///< it is not a scene that can be rendered; `reason` says why
     busy,      ///< another scene is being checked, or the service ends
   };

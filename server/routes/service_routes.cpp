@@ -43,34 +43,42 @@ double cpu_seconds(int who) {
 
 }  // namespace
 
+Response ServiceRoutes::health() const {
+  const std::string obstacle = facts_.queue.obstacle();
+  if (obstacle.empty()) return json_response(200, {{"status", "ok"}});
+  return json_response(200, {{"status", "waiting"}, {"obstacle", obstacle}});
+}
+
 Response ServiceRoutes::info() const {
+  const DiskRoom room = facts_.disk.room();
   const ServiceSettings& s = facts_.settings;
   const auto counts = facts_.table.counts();
   const std::chrono::duration<double> up = std::chrono::steady_clock::now() - start_;
-  return json_response(
-      200,
-      {{"version", version()},
-       {"started", started_},
-       {"uptime_seconds", up.count()},
-       {"uploads", facts_.uploads != nullptr},
-       {"settings",
-        {{"jobs", s.queue.children},
-         {"max_attempts", s.queue.max_attempts},
-         {"max_jobs", s.queue.max_waiting},
-         {"grace_seconds", s.grace_seconds},
-         {"memory_limit", s.limits.memory_bytes},
-         {"nice", s.limits.niceness},
-         {"keep_jobs", s.care.keep_jobs},
-         {"keep_days", s.care.keep_days}}},
-       {"machine",
-        {{"cpu", processor_name()},
-         {"cores", processor_threads()},
-         {"memory_bytes", memory_bytes()}}},
-       {"disk", {{"free_bytes", facts_.disk.free_bytes()}, {"floor_bytes", facts_.disk.floor()}}},
-       {"queue",
-        {{"queued", counts.at(State::queued)},
-         {"running", counts.at(State::running)},
-         {"held", counts.at(State::held)}}}});
+  return json_response(200, {{"version", version()},
+                             {"started", started_},
+                             {"uptime_seconds", up.count()},
+                             {"uploads", facts_.uploads != nullptr},
+                             {"settings",
+                              {{"jobs", s.queue.children},
+                               {"max_attempts", s.queue.max_attempts},
+                               {"max_jobs", s.queue.max_waiting},
+                               {"grace_seconds", s.grace_seconds},
+                               {"memory_limit", s.limits.memory_bytes},
+                               {"nice", s.limits.niceness},
+                               {"keep_jobs", s.care.keep_jobs},
+                               {"keep_days", s.care.keep_days}}},
+                             {"machine",
+                              {{"cpu", processor_name()},
+                               {"cores", processor_threads()},
+                               {"memory_bytes", memory_bytes()}}},
+                             {"disk",
+                              {{"free_bytes", room.bytes},
+                               {"floor_bytes", facts_.disk.floor()},
+                               {"free_inodes", room.inodes}}},
+                             {"queue",
+                              {{"queued", counts.at(State::queued)},
+                               {"running", counts.at(State::running)},
+                               {"held", counts.at(State::held)}}}});
 }
 
 Response ServiceRoutes::metrics() const {
@@ -79,8 +87,13 @@ Response ServiceRoutes::metrics() const {
   for (const auto& [state, n] : facts_.table.counts()) {
     jobs.value(static_cast<double>(n), {{"state", std::string(enum_name(state))}});
   }
+  const DiskRoom room = facts_.disk.room();
   text.gauge("lacuna_disk_free_bytes", "Free space on the disk of the jobs.")
-      .value(static_cast<double>(facts_.disk.free_bytes()));
+      .value(static_cast<double>(room.bytes));
+  text.gauge("lacuna_disk_free_inodes", "Free inodes on the disk of the jobs.")
+      .value(static_cast<double>(room.inodes));
+  text.gauge("lacuna_waiting", "1: jobs wait for an obstacle that may pass.")
+      .value(facts_.queue.obstacle().empty() ? 0 : 1);
   text.gauge("lacuna_disk_floor_bytes", "With less room than this, jobs wait.")
       .value(static_cast<double>(facts_.disk.floor()));
   text.counter("lacuna_events_total", "Events of jobs since the service started.")
@@ -118,7 +131,10 @@ Response ServiceRoutes::put_scene(const Request& request, const std::string& nam
     case Outcome::same:
       return json_response(200, {{"scene", name}, {"bytes", result.bytes}});
     case Outcome::conflict:
-      throw HttpError(409, fmt::format("Another scene has the name \"{}\".", name));
+      throw HttpError(
+          409,
+          fmt::format("Another scene has the name \"{}\", here or in a folder that comes before.",
+                      name));
     case Outcome::busy:
       throw HttpError(503, "Another scene is being checked.").with("Retry-After", "2");
     case Outcome::refused:
@@ -131,11 +147,11 @@ void ServiceRoutes::add_to(Router& router) {
   using Parts = Router::Parts;
   router.add("GET", "/health",
              {.summary = "The service is up",
-              .answers = {{200, "{\"status\": \"ok\"}"}},
+              .answers = {{200,
+                           "{\"status\": \"ok\"}, or \"waiting\" with the \"obstacle\" that keeps "
+                           "jobs from going on"}},
               .needs_token = false},
-             [](const Request&, const Parts&) {
-               return json_response(200, {{"status", "ok"}});
-             });
+             [this](const Request&, const Parts&) { return health(); });
   router.add("GET", "/metrics", {.summary = "Metrics, for Prometheus"},
              [this](const Request&, const Parts&) { return metrics(); });
   router.add("GET", "/api/info", {.summary = "Version, settings, machine, free disk space"},
@@ -164,7 +180,8 @@ void ServiceRoutes::add_to(Router& router) {
        .answers = {{201, "it is there now"},
                    {200, "the very same bytes were there"},
                    {404, "the service runs without --uploads"},
-                   {409, "another scene has that name"},
+                   {409,
+                    "another scene has that name, here or in a scenes folder that comes before"},
                    {413, "it is larger than 256 MiB"},
                    {422, "it is not a scene that can be rendered"}}},
       [this](const Request& request, const Parts& parts) { return put_scene(request, parts[0]); });

@@ -8,6 +8,7 @@
 #include "server/http/http_metrics.h"
 #include "server/http/router.h"
 #include "server/queue/disk_watch.h"
+#include "server/queue/queue.h"
 #include "server/routes/scene_uploads.h"
 #include "server/settings/service_settings.h"
 #include "server/tables/job_table.h"
@@ -21,6 +22,7 @@ struct ServiceFacts {
   const ScenesRoots& scenes;
   const JobTable& table;
   const DiskWatch& disk;
+  const Queue& queue;
   const HttpMetrics& http;
   SceneUploads* uploads;  ///< none: uploads are off
 };
@@ -33,6 +35,7 @@ class ServiceRoutes {
   void add_to(Router& router);
 
  private:
+  Response health() const;
   Response info() const;
   Response metrics() const;
   Response put_scene(const Request& request, const std::string& name) const;

@@ -49,7 +49,7 @@ std::string SweepPosting::make(const std::string& body, const Key& key) {
     return sweep->id;
   } catch (const std::system_error& error) {
     log::error("a sweep could not be stored: {}", error.what());
-    throw HttpError(507, fmt::format("The sweep could not be stored: {}.", error.code().message()));
+    throw storage_error(error, "The sweep could not be stored");
   }
 }
 

@@ -20,9 +20,12 @@ struct AccessSettings {
 /// Bounds that keep one client from using up the service (FACTS, section 4).
 struct HttpSettings {
   std::string bind = "127.0.0.1";
-  int port = 8017;                                ///< 0: any free one
-  std::size_t threads = 160;                      ///< requests that are worked on at a time
-  std::size_t waiting = 1024;                     ///< whole requests that wait for a thread
+  int port = 8017;             ///< 0: any free one
+  std::size_t threads = 160;   ///< requests that are worked on at a time
+  std::size_t waiting = 1024;  ///< whole requests that wait for a thread
+  /// Of this process: with one above it a connection is dropped, the oldest first; the rest is kept
+  /// for the service's own files. Set at its start.
+  int max_connection_fd = 1 << 20;
   std::size_t parked = 1024;                      ///< connections whose request is still coming
   std::size_t reading_bytes = 64 << 20;           ///< of answers to slow readers, all together
   std::chrono::milliseconds head_time{5'000};     ///< to send the head of a request

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "analysis/storage/passing_error.h"
 #include "server/telemetry/log.h"
 
 namespace lacuna {
@@ -25,17 +26,10 @@ SweepKeeper::SweepKeeper(SweepTable& sweeps, JobTable& jobs, Queue& queue, DiskW
 }
 
 void SweepKeeper::start() {
-  thread_ = std::thread([this] { run(); });
+  thread_ = std::jthread([this](const std::stop_token& ends) { run(ends); });
 }
 
-void SweepKeeper::stop() {
-  {
-    const std::lock_guard lock(signal_);
-    stopping_ = true;
-  }
-  changed_.notify_all();
-  if (thread_.joinable()) thread_.join();
-}
+void SweepKeeper::stop() { thread_ = {}; }
 
 void SweepKeeper::notice() {
   {
@@ -45,21 +39,16 @@ void SweepKeeper::notice() {
   changed_.notify_all();
 }
 
-bool SweepKeeper::stopping() const {
-  const std::lock_guard lock(signal_);
-  return stopping_;
-}
-
-void SweepKeeper::run() {
+void SweepKeeper::run(const std::stop_token& ends) {
   for (;;) {
     {
       std::unique_lock lock(signal_);
-      changed_.wait_for(lock, look_again, [&] { return stopping_ || noticed_; });
-      if (stopping_) return;
+      changed_.wait_for(lock, ends, look_again, [&] { return noticed_; });
+      if (ends.stop_requested()) return;
       noticed_ = false;
     }
     try {
-      look_after_all();
+      look_after_all(ends);
     } catch (const std::exception& error) {
       log::error("looking after the sweeps: {}", error.what());
     }
@@ -67,13 +56,13 @@ void SweepKeeper::run() {
 }
 
 /// A run of each in turn, so that all sweeps come on together.
-void SweepKeeper::look_after_all() {
+void SweepKeeper::look_after_all(const std::stop_token& ends) {
   const auto unfinished = sweeps_.unfinished();
   std::erase_if(feeds_, [&](const auto& feed) { return !unfinished.contains(feed.first); });
   for (bool busy = true; busy;) {
     busy = false;
     for (const std::string& id : unfinished) {
-      if (stopping()) return;
+      if (ends.stop_requested()) return;
       busy = look_after(id) || busy;
     }
   }
@@ -93,6 +82,7 @@ bool SweepKeeper::look_after(const std::string& id) {
     try {
       feed.folder = sweeps_.open(id);
     } catch (const std::exception& error) {
+      if (may_pass(error)) throw;  // the next look may bring more
       sweeps_.give_up(id, fmt::format("the sweep's folder cannot be read: {}", error.what()));
       return false;
     }

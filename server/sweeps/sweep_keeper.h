@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -51,9 +52,8 @@ class SweepKeeper {
     std::size_t next = 0;  // all runs before this one, in the plan's order, are jobs
   };
 
-  void run();
-  bool stopping() const;
-  void look_after_all();
+  void run(const std::stop_token& ends);
+  void look_after_all(const std::stop_token& ends);
   bool look_after(const std::string& id);
   bool make_next(const std::string& id, Feed& feed);
   void make(const Feed& feed, const SweepRun& run);
@@ -72,11 +72,10 @@ class SweepKeeper {
   // Held while a run is made and while it is decided that none is made any more.
   std::mutex mutex_;
 
-  mutable std::mutex signal_;  // guards all below; nothing is waited for under it
-  std::condition_variable changed_;
+  std::mutex signal_;  // guards all below; nothing is waited for under it
+  std::condition_variable_any changed_;
   bool noticed_ = false;
-  bool stopping_ = false;
-  std::thread thread_;
+  std::jthread thread_;
 };
 
 }  // namespace lacuna

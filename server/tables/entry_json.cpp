@@ -18,6 +18,12 @@ OrderedJson to_json(const JobState& s) {
           {"finished", s.finished},      {"error", s.error},     {"warnings", s.warnings}};
 }
 
+OrderedJson state_json(const JobEntry& e) {
+  OrderedJson json = to_json(e.state);
+  json["obstacle"] = e.obstacle;
+  return json;
+}
+
 OrderedJson to_json(const Progress& p) {
   return {{"iteration", p.iteration},
           {"seconds", p.seconds},
@@ -41,7 +47,7 @@ OrderedJson to_json(const JobEntry& e) {
                       {"picture", e.pictured},
                       {"priority", e.control.priority},
                       {"held", e.control.held}};
-  json.update(to_json(e.state));
+  json.update(state_json(e));
   json["progress"] = e.progress ? to_json(*e.progress) : OrderedJson(nullptr);
   return json;
 }

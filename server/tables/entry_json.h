@@ -10,6 +10,8 @@ OrderedJson to_json(const JobState& state);
 OrderedJson to_json(const Progress& progress);
 /// The id of its sweep, or null.
 OrderedJson sweep_json(const JobEntry& entry);
+/// Its state, and the obstacle that keeps it from going on.
+OrderedJson state_json(const JobEntry& entry);
 /// As an element of the API's list of jobs.
 OrderedJson to_json(const JobEntry& entry);
 

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <variant>
 
+#include "analysis/storage/passing_error.h"
 #include "jobs/spec/job_json.h"
 #include "server/tables/entry_json.h"
 
@@ -25,8 +26,7 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-void read_spec(JobEntry& entry, const JobFolder& folder) {
-  const JobSpec spec = folder.read_job();
+void take_spec(JobEntry& entry, const JobSpec& spec) {
   entry.label = spec.label;
   entry.scene = spec.scene;
   entry.integrator = std::visit([](const auto& s) { return std::string(s.name); }, spec.integrator);
@@ -40,22 +40,48 @@ bool has_picture(const JobFolder& folder) {
   return std::filesystem::exists(folder.file("image.png"), unknown);
 }
 
+/// The first thing that a folder could not tell.
+class Damage {
+ public:
+  /// Throws on what may pass.
+  template <class Read>
+  void try_to(Read&& read) {
+    try {
+      read();
+    } catch (const std::exception& error) {
+      if (may_pass(error)) throw;
+      if (reason_.empty()) reason_ = error.what();
+    }
+  }
+  const std::string& reason() const { return reason_; }
+
+ private:
+  std::string reason_;
+};
+
+/// Throws what may pass. A damaged folder tells what it can: its key still counts.
 std::shared_ptr<JobEntry> read_entry(const JobFolder& folder) {
   auto entry = std::make_shared<JobEntry>();
   entry->id = folder.id();
-  try {
-    read_spec(*entry, folder);
-    entry->state = folder.read_state();
-    entry->control = folder.read_control();
-    entry->progress = folder.read_progress();
-    entry->pictured = has_picture(folder);
-    entry->over = is_terminal(entry->state.state);
-  } catch (const std::exception& error) {  // a damaged folder hides no other job
-    entry->damaged = true;
-    entry->over = true;
-    entry->state.state = State::failed;
-    entry->state.error = fmt::format("the job's folder cannot be read: {}", error.what());
-  }
+  Damage damage;
+  damage.try_to([&] { entry->control = folder.read_control(); });
+  damage.try_to([&] { entry->state = folder.read_state(); });
+  damage.try_to([&] { take_spec(*entry, folder.read_job()); });
+  entry->progress = folder.read_progress();
+  entry->pictured = has_picture(folder);
+  entry->over = is_terminal(entry->state.state);
+  if (damage.reason().empty()) return entry;
+  entry->damaged = entry->over = true;
+  entry->state.state = State::failed;
+  entry->state.error = fmt::format("the job's folder cannot be read: {}", damage.reason());
+  return entry;
+}
+
+std::shared_ptr<JobEntry> unread_entry(const std::string& id, const std::exception& error) {
+  auto entry = std::make_shared<JobEntry>();
+  entry->id = id;
+  entry->unread = true;
+  entry->obstacle = fmt::format("the job's folder cannot be read for now: {}", error.what());
   return entry;
 }
 
@@ -106,13 +132,14 @@ void JobTable::rescan() {
   }
 }
 
-void JobTable::rescan_if_changed() {
+bool JobTable::rescan_if_changed() {
   const std::int64_t changed = time_of_change(data_.jobs());
   {
     const std::lock_guard lock(mutex_);
-    if (changed == scanned_) return;
+    if (changed == scanned_) return false;
   }
   rescan();
+  return true;
 }
 
 EntryPtr JobTable::find(const std::string& id) const {
@@ -122,11 +149,26 @@ EntryPtr JobTable::find(const std::string& id) const {
 }
 
 EntryPtr JobTable::add(const std::string& id) {
-  const auto entry = read_entry(folder(id));
+  const auto entry = [&] {
+    try {
+      return read_entry(folder(id));
+    } catch (const std::exception& error) {
+      return unread_entry(id, error);
+    }
+  }();
   entry->sweep = sweeps_.sweep_of(id);
   const std::lock_guard lock(mutex_);
   if (const auto place = places_.find(id); place != places_.end()) return jobs_.at(place->second);
   put(entry, JobEvent::Kind::added);
+  return entry;
+}
+
+EntryPtr JobTable::reread(const std::string& id) {
+  const auto entry = read_entry(folder(id));
+  entry->sweep = sweeps_.sweep_of(id);
+  const std::lock_guard lock(mutex_);
+  if (!places_.contains(id)) return nullptr;
+  put(entry, JobEvent::Kind::state);
   return entry;
 }
 
@@ -202,6 +244,7 @@ void JobTable::set_state(const std::string& id, const JobState& state, bool over
     if (entry.state == state && entry.over == over) return std::nullopt;
     entry.state = state;
     entry.over = over;
+    if (over) entry.obstacle.clear();
     return JobEvent::Kind::state;
   });
 }
@@ -211,6 +254,14 @@ void JobTable::set_control(const std::string& id, const JobControl& control) {
     if (entry.control == control) return std::nullopt;
     entry.control = control;
     return JobEvent::Kind::control;
+  });
+}
+
+void JobTable::set_obstacle(const std::string& id, const std::string& obstacle) {
+  change(id, [&](JobEntry& entry) -> std::optional<JobEvent::Kind> {
+    if (entry.obstacle == obstacle) return std::nullopt;
+    entry.obstacle = obstacle;
+    return JobEvent::Kind::state;
   });
 }
 
@@ -224,9 +275,9 @@ void JobTable::set_progress(const std::string& id, const Progress& progress) {
   });
 }
 
-void JobTable::reread_job(const std::string& id) {
+void JobTable::set_job(const std::string& id, const JobSpec& spec) {
   change(id, [&](JobEntry& entry) -> std::optional<JobEvent::Kind> {
-    read_spec(entry, folder(id));
+    take_spec(entry, spec);
     return JobEvent::Kind::control;
   });
 }

@@ -29,6 +29,8 @@ struct JobEntry {
   bool pictured = false;  ///< image.png is there: the first comes after the first progress
   bool over = false;      ///< terminal, and the queue has nothing more to say about it
   bool damaged = false;   ///< its folder cannot be read; state.error says why
+  bool unread = false;    ///< its folder cannot be read for now; `obstacle` says why
+  std::string obstacle;   ///< what keeps it from going on, and may pass; empty: nothing
 
   // Made by the table from the above:
   std::string text;      ///< as an element of the API's list, JSON
@@ -48,24 +50,30 @@ class JobTable {
   /// Reads every folder that is not known yet and forgets those that are gone.
   void rescan();
   /// rescan(), if a folder was added or removed by somebody since the last one.
-  void rescan_if_changed();
+  /// Whether it was.
+  bool rescan_if_changed();
 
   /// Nothing if there is no such job.
   EntryPtr find(const std::string& id) const;
   JobFolder folder(const std::string& id) const { return JobFolder(data_.jobs() / id); }
 
-  /// A job whose folder is complete on disk: reads it.
+  /// A job whose folder is complete on disk: reads it. Where that fails for a reason that may pass,
+  /// the entry is `unread` until reread().
   EntryPtr add(const std::string& id);
+  /// Reads the folder of a job anew; nothing if the table has no such job any more. Throws what may
+  /// pass (may_pass()).
+  EntryPtr reread(const std::string& id);
   void remove(const std::string& id);
 
   /// Each puts a new value in the place of the old one and tells the journal, if it differs;
   /// nothing happens for a job that is not there.
   void set_state(const std::string& id, const JobState& state, bool over);
   void set_control(const std::string& id, const JobControl& control);
+  void set_obstacle(const std::string& id, const std::string& obstacle);
   /// Looks for the picture, too.
   void set_progress(const std::string& id, const Progress& progress);
-  /// Reads job.json anew.
-  void reread_job(const std::string& id);
+  /// Its job.json says this now.
+  void set_job(const std::string& id, const JobSpec& spec);
 
   using Counts = std::map<State, std::size_t>;
 
@@ -100,6 +108,7 @@ class JobTable {
   };
   RunCounts run_counts(const std::string& sweep) const;
   const SweepTable& sweeps() const { return sweeps_; }
+  const DataRoot& data() const { return data_; }
 
   Journal& journal() { return journal_; }
   const Journal& journal() const { return journal_; }

@@ -40,6 +40,7 @@ class SweepTable {
   std::set<std::string> unfinished() const;
   bool is_unfinished(const std::string& id) const;
 
+  std::filesystem::path dir(const std::string& id) const { return data_.sweeps() / id; }
   /// The folder of a sweep with its plan; recently used ones are cached. Throws what
   /// SweepFolder() throws.
   std::shared_ptr<const SweepFolder> open(const std::string& id);
@@ -56,7 +57,6 @@ class SweepTable {
 
  private:
   using FolderPtr = std::shared_ptr<const SweepFolder>;
-  std::filesystem::path dir(const std::string& id) const { return data_.sweeps() / id; }
   bool is_taken(const std::string& id, std::size_t runs) const;
   void keep(const FolderPtr& folder);
 

@@ -74,6 +74,7 @@ std::vector<Row> light_rows(const Effort& effort) {
       glowing(1, 1e-12),
       glowing(1000, 1e12),
       the_same(fmt::format("{} points of light", points), {.points = 1}, {.points = points}),
+      the_same("a panel thrice in one place", {}, {.panels = 3}),
       the_same(fmt::format("{} shining triangles", 2 * cells * cells), {}, {.panel_cells = cells})};
 }
 

@@ -131,7 +131,7 @@ Bytes room(const Room& r) {
   b.add_box(V3f(0), corner, false, white);
   b.add_box({0, 0, 2.390625F}, {2.265625F, corner.y, 2.609375F}, true, red);
   b.add_box({0.515625F, 0.015625F, 3.140625F}, {1.390625F, 0.984375F, 3.890625F}, true, shiny);
-  add_panel(b, r.panel_cells, lamp);
+  for (int i = 0; i < r.panels; ++i) add_panel(b, r.panel_cells, lamp);
   add_clutter(b, r.clutter, white);
   b.add_points(r.points, {2.890625F, 1.640625F, 3.484375F}, 2 * r.radiance);
   b.add_eye({2.796875F, 1.359375F, 5.140625F}, 1.375);  // the panel is seen
@@ -139,7 +139,7 @@ Bytes room(const Room& r) {
 }
 
 Bytes furnace(const Furnace& f) {
-  Builder b(1, 0);
+  Builder b(1, f.offset);
   const std::array<double, 3> albedo{f.albedo, f.albedo, f.albedo};
   const std::size_t wall = b.add_material(shining(diffuse(albedo), {1, 1, 1}, f.radiance));
   const V3f high(1, static_cast<float>(f.height), 1);

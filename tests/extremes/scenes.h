@@ -18,6 +18,7 @@ struct Room {
   double radiance = 1;           ///< multiplies that of the panel and of the points
   int points = 0;                ///< point lights in one place; together they have one power
   int panel_cells = 1;           ///< the panel is so many times so many squares
+  int panels = 1;                ///< so many of them in one place
   Clutter clutter = Clutter::none;
 };
 Bytes room(const Room& room);
@@ -28,6 +29,7 @@ Bytes room(const Room& room);
 struct Furnace {
   double albedo = 0.5, radiance = 1, height = 1;
   float eye = 0.375F;  ///< the camera's height as a share of the box's
+  double offset = 0;   ///< added to every coordinate
   Json content = {};   ///< material of a block in the middle, if it is not null
 };
 Bytes furnace(const Furnace& furnace);

@@ -101,10 +101,14 @@ FAULTS = [
     Fault("a tent of one axis", "renderer/scene/camera.h",
           "tent(at.x - static_cast<float>(p.x)) * tent(at.y - static_cast<float>(p.y));",
           "tent(at.x - static_cast<float>(p.x)) * 0.5F;"),
+    # Loading.
+    Fault("far scenes stay far", "renderer/gltf/gltf_origin.cpp",
+          "constexpr double far = 32;", "constexpr double far = 1e300;"),
+    Fault("lamps are there twice", "renderer/gltf/gltf_duplicates.cpp",
+          "if (found == end) {", "if (found == end || merged == 0) {"),
     # Resampling.
     Fault("probabilities are not normalised", "renderer/core/alias_table.cpp",
-          "bins_[i] = {1.0F, static_cast<std::uint32_t>(i), static_cast<float>(p), 0};",
-          "bins_[i] = {1.0F, static_cast<std::uint32_t>(i), static_cast<float>(p * sum), 0};"),
+          "static_cast<float>(draws[i] * 0x1p-64)", "static_cast<float>(draws[i] * 0x1p-63)"),
     Fault("an alias has the bin's own probability", "renderer/core/alias_table.cpp",
           "b.alias_pmf = bins_[b.alias].pmf;", "b.alias_pmf = b.pmf;"),
     Fault("the max heuristic does not renormalise", "renderer/connections/resampling_table.cpp",

@@ -61,8 +61,6 @@ TEST(ExitClassification, AnInterruptionThatNobodyAskedForIsACrashUnlessTheJobCam
   a.crashes = 1;
   EXPECT_EQ(classified(a).state.error,
             interruption.reason + ", without a request and without progress, 2 times");
-  a.after.error = "cannot write x: No space left on device";
-  EXPECT_EQ(classified(a).state.error, a.after.error + ", 2 times") << "what the renderer said";
   a.iteration_after = 41;
   v = classified(a);
   EXPECT_EQ(v.state.state, State::queued);
@@ -77,7 +75,7 @@ TEST(ExitClassification, ACrashIsOneEvenIfTheJobCameOn) {
 
 TEST(ExitClassification, NothingIsCountedWhileTheDiskIsLow) {
   for (const Ending& ending : {crash, interruption, no_memory}) {
-    Attempt a = attempt(ending);
+    Attempt a = attempt(ending, State::interrupted);
     a.disk_low = true;
     a.crashes = 100;
     const ExitClassification v = classified(a);
@@ -122,13 +120,30 @@ TEST(ExitClassification, ARendererThatCannotBeStartedFailsItsJobUnlessThatMayPas
   Attempt a = attempt({Kind::not_started, ENOENT, "renderer could not be started"}, State::queued);
   a.after.attempts = 0;
   EXPECT_EQ(classified(a).state.state, State::failed);
-  a.ending.code = ENOSPC;
-  const ExitClassification v = classified(a);
-  EXPECT_EQ(v.state.state, State::queued);
-  EXPECT_TRUE(v.crashed) << "or it would be tried for ever";
-  EXPECT_EQ(v.state.attempts, 0);
-  a.disk_low = true;
-  EXPECT_FALSE(classified(a).crashed);
+  for (const int error : {ENOSPC, EDQUOT, EROFS, EMFILE, ENFILE, EIO, EACCES, ESTALE}) {
+    a.ending.code = error;
+    a.crashes = 100;
+    const ExitClassification v = classified(a);
+    EXPECT_EQ(v.state.state, State::queued) << error;
+    EXPECT_FALSE(v.crashed) << error;
+    EXPECT_EQ(v.obstacle, a.ending.reason) << error;
+    EXPECT_EQ(v.state.attempts, 0) << error;
+  }
+}
+
+TEST(ExitClassification, WantOfRoomIsNoCrash) {
+  Attempt said = attempt(interruption, State::interrupted);
+  said.after.error = "cannot write x: No space left on device";
+  const Attempt silent = attempt(interruption);  // not even its state could be written
+  const Attempt too_large = attempt({Kind::killed, SIGXFSZ, "File size limit exceeded"});
+  for (Attempt a : {said, silent, too_large}) {
+    a.crashes = 100;
+    const ExitClassification v = classified(a);
+    EXPECT_EQ(v.state.state, State::queued);
+    EXPECT_FALSE(v.crashed);
+    EXPECT_NE(v.obstacle, "");
+  }
+  EXPECT_EQ(classified(said).obstacle, said.after.error);
 }
 
 }  // namespace

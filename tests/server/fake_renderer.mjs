@@ -13,7 +13,9 @@
 //   hog               takes ever more memory
 //   interrupt         interrupted by itself, each time, without an iteration more
 //   interrupt on      likewise, with one iteration more each time; done at the fourth attempt
-//   full              state interrupted because its disk is full, each time
+//   full NAME         state interrupted because its disk is full, until the file NAME is there; then done
+//   mute NAME         likewise, but it could not even write its state
+//   linger            done, and ends a little later
 //   limits            done; its limits, niceness and oom_score_adj go to report.json
 //   environment       done; its environment goes to report.json
 import fs from "node:fs";
@@ -106,8 +108,17 @@ switch (word) {
     interrupt();
     break;
   case "full":
+    if (fs.existsSync(argument)) finish();
     state({ state: "interrupted", phase: "", error: "cannot write image.exr: No space left on device", finished: now() });
     process.exit(75);
+    break;
+  case "mute":
+    if (fs.existsSync(argument)) finish();
+    process.exit(75);
+    break;
+  case "linger":
+    state({ state: "done", phase: "", finished: now(), exit_code: -1 });
+    setTimeout(() => process.exit(0), 600);
     break;
   case "gate":
     setInterval(() => { if (fs.existsSync(argument)) finish(); }, 10);

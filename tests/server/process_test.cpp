@@ -60,9 +60,14 @@ TEST(ProcessIdentity, IsFoundWhateverTheName) {
 
 TEST(ProcessIdentity, AnotherProcessOfTheSameNumberIsAnother) {
   const Sleeper sleeper("mine");
-  const ProcessIdentity earlier{sleeper.pid(), identity_of(sleeper.pid())->start_ticks - 1};
-  EXPECT_FALSE(is_alive(earlier));
-  EXPECT_FALSE(kill_group(earlier, SIGKILL));
+  ProcessIdentity earlier = *identity_of(sleeper.pid());
+  earlier.start_ticks -= 1;
+  ProcessIdentity before_boot = *identity_of(sleeper.pid());
+  before_boot.boot = "another boot";
+  for (const ProcessIdentity& other : {earlier, before_boot}) {
+    EXPECT_FALSE(is_alive(other));
+    EXPECT_FALSE(kill_group(other, SIGKILL));
+  }
   EXPECT_TRUE(is_alive(*identity_of(sleeper.pid()))) << "it got no signal";
 }
 

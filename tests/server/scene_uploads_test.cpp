@@ -71,6 +71,19 @@ TEST_F(Uploads, AGoodSceneGetsItsNameOnceAndIsNeverReplaced) {
   EXPECT_EQ(scenes(), std::set<std::string>{"room.glb"});
 }
 
+TEST_F(Uploads, ASceneThatAnOlderRootHidesIsRefusedUnlessItIsTheSame) {
+  const std::string cornell = scene("cornell.glb");
+  const fs::path older = temp / "older";
+  fs::create_directories(older);
+  put_file(older / "room.glb", cornell);
+  SceneUploads uploads(
+      {.folder = folder, .older = {older}, .renderer = real_renderer(), .limits = {}});
+  EXPECT_EQ(put(uploads, "room.glb", scene("point.glb")).outcome, Outcome::conflict);
+  EXPECT_EQ(put(uploads, "room.glb", cornell).outcome, Outcome::same);
+  EXPECT_TRUE(scenes().empty());
+  EXPECT_EQ(put(uploads, "other.glb", cornell).outcome, Outcome::created);
+}
+
 TEST_F(Uploads, WhatIsNoSceneIsRefusedWithTheReasonAndLeavesNothing) {
   SceneUploads uploads = make();
   const auto refused = [&](const std::string& body) {
@@ -81,7 +94,7 @@ TEST_F(Uploads, WhatIsNoSceneIsRefusedWithTheReasonAndLeavesNothing) {
     return result.reason;
   };
   EXPECT_TRUE(contains(refused(""), "glTF"));
-  EXPECT_TRUE(contains(refused(R"({"asset": {"version": "2.0"}})"), "no GLB"));
+  EXPECT_TRUE(contains(refused(R"({"asset": {"version": "2.0"}})"), "not a GLB"));
   EXPECT_FALSE(refused("glTF but no more than that").empty());
   const std::string cornell = scene("cornell.glb");
   EXPECT_FALSE(refused(cornell.substr(0, cornell.size() / 2)).empty());

@@ -68,10 +68,12 @@ export const sweepFile = (label, more = {}) =>
 
 /// A running service.
 export class Service {
-  static async start(places, args = []) {
+  /// `wrapper`: a program and its arguments that the service is started by.
+  static async start(places, args = [], wrapper = []) {
     const service = new Service();
     service.places = places;
-    service.child = spawn(binary, [
+    const [program, ...before] = [...wrapper, binary];
+    service.child = spawn(program, [...before,
       "--port", "0", "--data", places.data, "--scenes", places.scenes, "--web", web,
       "--renderer", fakeRenderer, ...args,
     ], { stdio: ["ignore", "pipe", "pipe"] });

@@ -1,4 +1,4 @@
-"""Long checks: many kills and resumes, all tests under sanitizers, fuzzing, whether intervals hold the truth, and
+"""Long checks: many kills and resumes, faults of the machine, all tests under sanitizers, fuzzing, whether intervals hold the truth, and
 whether the tests notice faults."""
 
 import argparse
@@ -47,6 +47,7 @@ def fuzz(seconds):
 CHECKS = {
     "kills": lambda _: kills(20),
     "service": lambda _: service(200),
+    "faults": lambda _: run("faults of the machine, which cost no job", ["node", "tests/soak/faults.mjs"]),
     "asan": lambda _: sanitizers("asan", {
         "LSAN_OPTIONS": f"suppressions={ROOT}/tests/soak/lsan.txt",
     }),

@@ -153,6 +153,7 @@ export class Mock {
       if ((await body(request)).token !== this.token) return problem(response, 401, "Unauthorized", "That is not the token.");
       return send(response, 204, "text/plain", "", { "Set-Cookie": `lacuna=${this.token}; HttpOnly; SameSite=Strict` });
     }
+    if (path === "/health") return sendJson(response, { status: "ok" });
     if (path.startsWith("/api/")) {
       if (this.token !== null && request.headers.cookie !== `lacuna=${this.token}`) {
         return problem(response, 401, "Unauthorized", "A token is needed.");

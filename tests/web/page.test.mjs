@@ -212,7 +212,7 @@ test("the new-job view takes a scene, or another job, and leads to the schema", 
   await open(views.new);
   await page.getByLabel("Scene").selectOption("door/scene.glb");
   assert.equal(JSON.parse(await page.inputValue("textarea")).scene, "door/scene.glb");
-  assert.equal(await page.getByText("Every key").getAttribute("href"), "/api/schema/job");
+  assert.equal(await page.getByText("All keys and their allowed values").getAttribute("href"), "/api/schema/job");
   await page.goto(`${origin}/#/new?from=${shallow}`);
   await ready(page);
   await page.waitForFunction(() => JSON.parse(document.querySelector("textarea").value).seed === 2);

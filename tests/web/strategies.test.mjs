@@ -105,7 +105,7 @@ test("before weighting, each is told by its mean, and the choice is in the addre
   await drawn();
   assert.deepEqual((await cells(".pyramid")).slice(0, 5),
     ["s 0 t 2: 0.250", "s 1 t 1: 0.500", "s 0 t 3: 0.125", "s 1 t 2: 0.250", "s 2 t 1: 0.250"]);
-  await page.getByText("Each estimates all light of its path length").waitFor();
+  await page.getByText("Each image estimates all light of its path length").waitFor();
   assert.match(page.url(), /strategies=strategies_unweighted/);
   await openStrategies("?strategies=strategies_unweighted");
   assert.equal((await cells(".pyramid"))[1], "s 1 t 1: 0.500");

@@ -258,16 +258,16 @@ test("what is still computed is shown to be, over the picture before it; so is w
 
 test("a job without layers shows image.png and says why", async () => {
   await open(`/#/job/${old}`);
-  await page.getByText("A preview: the tone-mapped image.png as last written.").waitFor();
+  await page.getByText("Preview: the latest tone-mapped image.png.").waitFor();
   await page.waitForFunction(() => document.querySelector(".frame img")?.naturalWidth === 160);
   mock.update(old, { progress: mock.find(job).progress });
   mock.update(old, { files: { "image.png": mock.find(job).files["image.png"], ...small() } });
   mock.update(old, { state: { state: "done" } });
   await page.waitForSelector(stage);
-  assert.equal(await page.getByText("A preview").isVisible(), false);
+  assert.equal(await page.getByText("Preview: the latest").isVisible(), false);
   delete mock.find(job).files["layers.json"];
   await page.goto(origin + address());
-  await page.getByText("This job has no layers.json, which newer versions write").waitFor();
+  await page.getByText("This job has no layers.json (written by newer versions)").waitFor();
   assert.deepEqual(page.troubles, []);
 });
 

@@ -56,6 +56,14 @@ test("check --scene: what a scene holds, or why it is none", async (t) => {
   assert.equal(bad.code, 3);
   assert.match(bad.err, /noise\.glb/);
   assert.equal(bad.out, "");
+  writeFileSync(join(folder, "mesh.obj"), "v 0 0 0\n");
+  writeFileSync(join(folder, "mesh.gltf"), "v 0 0 0\n");
+  const other = await run(folder, "check", "--scene", "mesh.obj");
+  assert.equal(other.code, 3);
+  assert.match(other.err, /"mesh\.obj" ends in "\.obj"; allowed: \.glb and \.gltf/);
+  const broken = await run(folder, "check", "--scene", "mesh.gltf");
+  assert.match(broken.err, /JSON: it breaks off, or is none, at byte 1/);
+  assert.doesNotMatch(broken.err, /exception|parse_error|literal/);
   assert.equal((await run(folder, "check", "--scene", "nowhere.glb")).code, 2);
   assert.equal((await run(folder, "check")).code, 2, "a job or a scene");
   job(folder, "a.json", {});

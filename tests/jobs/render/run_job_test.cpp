@@ -14,6 +14,7 @@
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/problems.h"
 #include "renderer/geometry/scene_data.h"
+#include "renderer/gltf/gltf_load.h"
 #include "renderer/images/exr_write.h"
 #include "renderer/images/image_read.h"
 #include "tests/jobs/run/silent_observer.h"
@@ -290,6 +291,11 @@ TEST_F(RunJob, AutoReferenceIsMadeOnceAndKnowsItsNoise) {
   run(create(s, "second"));
   EXPECT_EQ(references().size(), 1U);
   EXPECT_EQ(std::filesystem::last_write_time(references()[0] / "image.exr"), written);
+  s.camera = load_gltf(std::filesystem::path(LACUNA_SOURCE_DIR) / "jobs/scenes" / s.scene)
+                 .cameras.at(0)
+                 .name;
+  run(create(s, "named"));
+  EXPECT_EQ(references().size(), 1U) << "the camera that a job without a name has";
   s.camera = "front";
   s.resolution = {8, 8};
   run(create(s, "third"));

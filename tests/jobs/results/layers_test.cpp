@@ -51,13 +51,15 @@ class Noise final : public Integrator {
 
   int asked = 0;
   std::vector<ImageLayer> asked_for;
+  float brightness = 1;
 
  private:
-  static void fill(const IterationContext& context, Image& image, std::size_t key) {
+  void fill(const IterationContext& context, Image& image, std::size_t key) const {
     Image values = noise_of(context.seed, context.iteration, key);
     EXPECT_EQ(image.width, values.width);
     EXPECT_EQ(image.height, values.height);
     for (const Rgb& p : image.pixels) EXPECT_EQ(p, Rgb(0, 0, 0));
+    for (Rgb& p : values.pixels) p *= brightness;
     image.pixels.swap(values.pixels);
   }
   std::vector<std::string> names_;
@@ -139,6 +141,38 @@ TEST_F(Layers, AreMeansInImageExrAndForThePageByTheirNames) {
   expected.insert(expected.end(), all_names.begin(), all_names.end());
   EXPECT_EQ(names, expected);
   EXPECT_TRUE(phases.contains("layers"));
+}
+
+TEST_F(Layers, VarianceIsKeptAtEveryBrightness) {
+  const auto variance = [&](const std::string& name, float brightness) {
+    Noise noise;
+    noise.brightness = brightness;
+    const JobFolder folder = create(name);
+    run(folder, noise);
+    const FloatImage file = read_float_image(folder.file("image.exr"), "variance");
+    std::vector<double> values(file.rgb.begin(), file.rgb.end());
+    const double scale = std::stod(file.attributes.at("lacuna:variance_scale"));
+    for (double& v : values) v /= scale * double(brightness) * double(brightness);
+    return std::pair(values, scale);
+  };
+  const auto [plain, one] = variance("plain", 1);
+  EXPECT_EQ(one, 1);
+  for (const float brightness : {0x1p-20F, 0x1p-100F, 0x1p80F}) {
+    const auto [scaled, scale] = variance(std::to_string(std::ilogb(brightness)), brightness);
+    EXPECT_EQ(scale == 1, brightness == 0x1p-20F);
+    ASSERT_EQ(scaled.size(), plain.size());
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+      EXPECT_GT(plain[i], 0);
+      EXPECT_NEAR(scaled[i] / plain[i], 1, 1e-6) << brightness;
+    }
+  }
+  spec.pixel_type = PixelType::half_float;
+  Noise noise;
+  noise.brightness = 1e-4F;
+  const JobFolder halves = create("halves");
+  run(halves, noise);
+  const std::vector<float> stored = layer(halves, "variance");
+  EXPECT_GT(*std::max_element(stored.begin(), stored.end()), 0.5F);
 }
 
 TEST_F(Layers, InterruptedAnywhereTheyGoOnToTheSameBits) {

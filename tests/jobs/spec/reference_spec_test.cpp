@@ -30,6 +30,8 @@ TEST(ReferenceSpec, FalseColoursDependOnTheAnalysis) {
   const std::string inspect = R"(, "integrator": {"type": "inspect", "show": "node_mapping"})";
   EXPECT_EQ(reference_spec(job(shape + inspect)).analysis.resolution, 32);
   EXPECT_EQ(reference_spec(job(shape)), reference_spec(job("")));
+  const std::string normals = R"(, "integrator": {"type": "inspect", "show": "normal"})";
+  EXPECT_EQ(reference_spec(job(shape + normals)), reference_spec(job(normals)));
 }
 
 TEST(PictureName, IsOneForMethodsOfOnePicture) {

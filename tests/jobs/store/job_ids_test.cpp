@@ -6,6 +6,18 @@
 namespace lacuna {
 namespace {
 
+TEST(UtcText, RoundsDownOnBothSidesOf1970) {
+  using std::chrono::milliseconds;
+  const auto text = [](std::int64_t ms) {
+    return utc_text(std::chrono::system_clock::time_point(milliseconds(ms)));
+  };
+  EXPECT_EQ(text(0), "1970-01-01T00:00:00.000Z");
+  EXPECT_EQ(text(1'001), "1970-01-01T00:00:01.001Z");
+  EXPECT_EQ(text(-1), "1969-12-31T23:59:59.999Z");
+  EXPECT_EQ(text(-1'000), "1969-12-31T23:59:59.000Z");
+  EXPECT_EQ(text(-1'001), "1969-12-31T23:59:58.999Z");
+}
+
 TEST(JobIds, HaveTheFormThatIsLookedUp) {
   std::set<std::string> ids;
   for (int i = 0; i < 1000; ++i) {

@@ -72,8 +72,8 @@ TEST_F(ScenesRootsTest, NoLinkIsFollowed) {
 TEST_F(ScenesRootsTest, OnlyRegularFilesOfTheWantedKindAreFound) {
   EXPECT_TRUE(contains(refusal("folder.glb"), "not a regular file"));
   EXPECT_TRUE(contains(refusal("fifo.glb"), "not a regular file"));
-  EXPECT_TRUE(contains(refusal("door/notes.txt"), "not a file of this kind"));
-  EXPECT_TRUE(contains(refusal(".glb"), "not a file of this kind"));
+  EXPECT_TRUE(contains(refusal("door/notes.txt"), "does not end in .glb or .gltf"));
+  EXPECT_TRUE(contains(refusal(".glb"), "does not end in .glb or .gltf"));
   EXPECT_TRUE(contains(refusal("box.glb/scene.glb"), "not there"));
 }
 

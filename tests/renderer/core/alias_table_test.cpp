@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -48,6 +49,70 @@ TEST(AliasTable, TellsAMillionBinsApart) {
   for (int i = 0; i < draws; ++i) odd += static_cast<int>(table.sample(rng) % 2);
   const double sigma = std::sqrt(draws * 0.75 * 0.25);
   EXPECT_NEAR(odd, draws * 0.75, 4 * sigma);
+}
+
+/// The first of the 32-bit numbers for which `is` holds; it holds for all after that.
+template <class Is>
+double first_of_32_bits(Is&& is) {
+  std::uint64_t low = 0, high = std::uint64_t{1} << 32;
+  while (low < high) {
+    const std::uint64_t middle = (low + high) / 2;
+    if (is(static_cast<std::uint32_t>(middle))) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
+  }
+  return double(low);
+}
+
+/// How probable each index is, from all 2^64 pairs of numbers that a draw may consist of.
+std::vector<double> drawn_probabilities(const AliasTable& table) {
+  std::vector<double> drawn(table.size());
+  double begin = 0;
+  for (std::uint32_t i = 0; i < table.size(); ++i) {
+    const double end = first_of_32_bits([&](std::uint32_t u) { return table.choose(u) > i; });
+    const std::uint32_t last = table.resolve(i, ~0U).index;
+    const double kept =
+        first_of_32_bits([&](std::uint32_t u) { return table.resolve(i, u).index == last; });
+    if (kept > 0) drawn[table.resolve(i, 0).index] += (end - begin) * kept * 0x1p-64;
+    drawn[last] += (end - begin) * (0x1p32 - kept) * 0x1p-64;
+    begin = end;
+  }
+  return drawn;
+}
+
+TEST(AliasTable, DrawsWhatItStatesOverManyDecades) {
+  Rng rng(7, 0, 0, Rng::Purpose::test);
+  for (const std::size_t n : {2U, 3U, 25U, 1000U, 40000U}) {
+    std::vector<double> weights(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      weights[i] = std::pow(10.0, i < 25 ? -double(i) : -24 * double(rng.next()));
+    }
+    const AliasTable table(weights);
+    double sum = 0;
+    for (const double w : weights) sum += w;
+    const std::vector<double> drawn = drawn_probabilities(table);
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const double stated = table.pmf(i).value;
+      ASSERT_GT(drawn[i], 0) << "index " << i << " of " << n;
+      ASSERT_NEAR(stated / drawn[i], 1, 0x1p-24) << "index " << i << " of " << n;
+      // Bins and thresholds are a whole number of 2^-32 each.
+      const double p = weights[i] / sum;
+      ASSERT_NEAR(drawn[i], p, p * double(n) * 0x1p-32 + 2 * 0x1p-32) << "index " << i;
+    }
+  }
+}
+
+TEST(AliasTable, DrawsRareEntriesRarely) {
+  // Fifteen of 1e-10 each: 0.15 of them are expected; drawn in steps of 2^-24 there were 5.6.
+  std::vector<double> weights(16, 1e-10);
+  weights[0] = 1;
+  const AliasTable table(weights);
+  Rng rng(11, 0, 0, Rng::Purpose::test);
+  int rare = 0;
+  for (int i = 0; i < 100'000'000; ++i) rare += table.sample(rng) != 0 ? 1 : 0;
+  EXPECT_LE(rare, 3);  // more: with probability 2e-5
 }
 
 TEST(AliasTable, NothingToDraw) {

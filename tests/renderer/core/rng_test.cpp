@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 namespace lacuna {
@@ -64,6 +65,40 @@ TEST(Rng, NextIsBelowOneAndUniform) {
   // 255 degrees of freedom: mean 255, standard deviation 22.6.
   EXPECT_LT(chi2, 255 + 5 * 22.6);
   EXPECT_GT(chi2, 255 - 5 * 22.6);
+}
+
+TEST(Rng, DecidesWithTheProbabilityItIsGiven) {
+  Rng rng(2, 0, 0, Rng::Purpose::test);
+  const auto share = [&](float p, int n) {
+    int decided = 0;
+    for (int i = 0; i < n; ++i) decided += rng.decide(p) ? 1 : 0;
+    return decided;
+  };
+  EXPECT_EQ(share(0, 1000), 0);
+  EXPECT_EQ(share(1, 1000), 1000);
+  EXPECT_NEAR(share(0.3F, 1'000'000), 3e5, 4.5 * std::sqrt(0.21e6));
+  // 0.01 are expected; of numbers in steps of 2^-24, 6 would be below.
+  EXPECT_LE(share(1e-10F, 100'000'000), 1);  // more: with probability 5e-5
+}
+
+TEST(Rng, ChoicesAreUniformAndFine) {
+  Rng rng(3, 0, 0, Rng::Purpose::test);
+  constexpr int n = 1 << 20;
+  double sum = 0, product = 0, low_sum = 0;
+  for (int i = 0; i < n; ++i) {
+    const double u = rng.next_choice();
+    const auto [choice, point] = rng.next_choice_and_point();
+    ASSERT_TRUE(u >= 0 && u < 1 && choice >= 0 && choice < 1);
+    ASSERT_TRUE(point.x >= 0 && point.x < 1 && point.y >= 0 && point.y < 1);
+    sum += u + choice;
+    // The bits below 2^-32 of a choice are none of the point's.
+    const double low = std::ldexp(choice, 32) - std::floor(std::ldexp(choice, 32));
+    product += (low - 0.5) * (double(point.x) - 0.5 + double(point.y) - 0.5);
+    low_sum += low + std::ldexp(u, 32) - std::floor(std::ldexp(u, 32));
+  }
+  EXPECT_NEAR(sum / n, 1, 4.5 * std::sqrt(2.0 / 12 / n));
+  EXPECT_NEAR(product / n, 0, 4.5 * std::sqrt(2.0 / 144 / n));
+  EXPECT_NEAR(low_sum / n, 1, 0.01);  // they are there
 }
 
 }  // namespace

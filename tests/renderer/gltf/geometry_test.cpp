@@ -45,6 +45,74 @@ TEST(Transforms, TranslationRotationScaleInGltfOrder) {
   expect_near(p[2], {7, 20, 30}, 1e-5F);   // (0,1,0) -> (0,3,0) -> (-3,0,0)
 }
 
+/// A triangle of side 1, a camera and a light in its middle, all at `offset` by way of two nodes.
+SceneData placed_at(const V3d& offset) {
+  GlbBuilder b;
+  const auto mesh =
+      b.add_mesh({{-0.5F, -0.5F, 0}, {0.5F, -0.5F, 0}, {-0.5F, 0.5F, 0}}, {{0, 1, 2}});
+  const Json translation{offset.x - 3, offset.y - 3, offset.z - 3};
+  b.add_node({{"translation", translation}, {"children", {1, 2, 3}}});
+  for (const Json& node : {Json{{"mesh", mesh}, {"translation", {3, 3, 3}}},
+                           Json{{"camera", 0}, {"translation", {3.25, 3.25, 4}}},
+                           Json{{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}},
+                                {"translation", {3.25, 3.25, 3.5}}}}) {
+    b.json["nodes"].push_back(node);
+  }
+  b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.1}}}}};
+  b.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+  return load(b);
+}
+
+TEST(Origin, AFarSceneIsMovedToIt) {
+  const SceneData near = placed_at({20, -30, 15});  // ratios up to 30
+  EXPECT_EQ(near.origin, V3d(0, 0, 0));
+  EXPECT_EQ(near.meshes.at(0).positions[0], V3f(19.5F, -30.5F, 15));
+  const SceneData at = placed_at({0, 0, 0});
+  for (const V3d& offset : {V3d(1e5, 0, 0), V3d(1e7, -1e7, 1e7), V3d(1e12, 0, 3), V3d(0, 64, 0)}) {
+    const SceneData far = placed_at(offset);
+    SCOPED_TRACE(offset.x);
+    EXPECT_EQ(far.origin, offset) << "a multiple of 1, and so exact";
+    EXPECT_EQ(far.meshes.at(0).positions, at.meshes.at(0).positions);
+    EXPECT_EQ(far.cameras.at(0).to_world, at.cameras.at(0).to_world);
+    EXPECT_EQ(far.lights.at(0).position, at.lights.at(0).position);
+    EXPECT_EQ(far.geometry_hash, at.geometry_hash);
+    EXPECT_TRUE(far.warnings.empty());
+  }
+  const SceneData odd = placed_at({1e6 + 0.3, 0, 0});
+  EXPECT_EQ(odd.origin, V3d(1e6, 0, 0));
+  EXPECT_FLOAT_EQ(odd.meshes.at(0).positions[0].x, -0.2F);
+}
+
+TEST(Origin, WhatAFloatCannotResolveIsWarnedOf) {
+  const auto said = [](const SceneData& scene) {
+    std::string all;
+    for (const std::string& w : scene.warnings) all += w;
+    return all;
+  };
+  GlbBuilder b;
+  const auto small = b.add_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
+  b.add_node({{"mesh", small}, {"name", "speck"}});
+  b.add_node({{"mesh", small}, {"translation", {3e4, 0, 0}}});
+  const std::string places = said(load(b));
+  EXPECT_NE(places.find("1 of 2 meshes are too small for their distance"), std::string::npos);
+  EXPECT_NE(places.find("is 1 wide at a distance of 3e+04"), std::string::npos) << places;
+
+  GlbBuilder seen = test::triangle_scene();
+  seen.add_camera("here", {0, 0, 1e4F}, 0.8);
+  EXPECT_EQ(said(load(seen)), "");
+  seen.add_camera("there", {0, 0, 2e6F}, 0.8);
+  EXPECT_EQ(said(load(seen)),
+            "camera \"there\" is 2e+06 from the middle of a scene 1 wide: its place is rounded by "
+            "0.1");
+
+  GlbBuilder baked;
+  const auto far = baked.add_mesh({{1e6, 0, 0}, {1e6 + 1, 0, 0}, {1e6, 1, 0}}, {{0, 1, 2}});
+  baked.add_node({{"mesh", far}});
+  const SceneData scene = load(baked);
+  EXPECT_NEAR(scene.origin.x, 1e6, 1);
+  EXPECT_NE(said(scene).find("1 of 1 meshes have coordinates in the file"), std::string::npos);
+}
+
 TEST(Transforms, MatrixIsColumnMajorAndParentsComeLast) {
   const Json shear{{"matrix", {1, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 1, 0, 7, 8, 9, 1}}};
   const auto scene = under({{{"scale", {2, 2, 2}}}, shear});

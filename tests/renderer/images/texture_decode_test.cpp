@@ -12,7 +12,10 @@ using test::Bytes;
 using test::expect_contains;
 using test::make_png;
 
-Bytes texels(const Bytes& file) { return decode_png_or_jpeg(file, "test").rgba; }
+Bytes texels(const Bytes& file) {
+  const auto rgba = decode_png_or_jpeg(file, "test").rgba;
+  return {rgba.begin(), rgba.end()};
+}
 
 std::string refusal(const Bytes& file) {
   return test::refusal_of([&] { decode_png_or_jpeg(file, "wood"); });

@@ -31,12 +31,12 @@ double noise(const Pictures& p, const GuideSettings& guide, int seed) {
   PathSettings path = test::path_tracing(6);
   path.roulette_depth = p.roulette_depth;
   path.guide = guide;
-  const test::Rendering r =
-      test::render(test::load({p.scene}), {.integrator = path,
-                                           .width = 24,
-                                           .height = 16,
-                                           .iterations = p.iterations,
-                                           .seed = static_cast<std::uint64_t>(seed)});
+  const test::Rendering r = test::render(test::load(test::PathScene{p.scene}),
+                                         {.integrator = path,
+                                          .width = 24,
+                                          .height = 16,
+                                          .iterations = p.iterations,
+                                          .seed = static_cast<std::uint64_t>(seed)});
   double sum = 0;
   for (const double v : r.film.variance_of_mean()) sum += std::sqrt(v);
   return sum;

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "renderer/gltf/gltf_accessors.h"
+#include "renderer/gltf/gltf_model.h"
+#include "renderer/gltf/gltf_nodes.h"
+#include "renderer/gltf/gltf_triangles.h"
+
+namespace lacuna::gltf {
+
+inline bool is_drawn(const tinygltf::Primitive& primitive) {
+  return is_triangle_mode(primitive.mode) && primitive.attributes.contains("POSITION");
+}
+
+/// The mesh that a node places.
+inline std::optional<std::size_t> mesh_of(const tinygltf::Model& model, const PlacedNode& node) {
+  return node.place.index("mesh", model.meshes.size(), "meshes");
+}
+
+/// One primitive under one node.
+struct Source {
+  const tinygltf::Model& model;
+  std::size_t mesh, index;
+  const PlacedNode& node;
+
+  const tinygltf::Primitive& primitive() const { return model.meshes[mesh].primitives[index]; }
+  /// What it is called in errors.
+  std::string place() const {
+    return "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(index) + "] under " +
+           node.place.label();
+  }
+  /// The accessor of an attribute; -1 if there is none.
+  int attribute(const std::string& name) const {
+    const auto it = primitive().attributes.find(name);
+    return it == primitive().attributes.end() ? -1 : it->second;
+  }
+  /// The elements of an attribute, as many as POSITION has.
+  AccessorView view(const std::string& name, int type,
+                    std::initializer_list<int> components) const {
+    const std::string use = name + " of " + place();
+    AccessorView out(model, attribute(name), type, components, use);
+    const auto vertices =
+        model.accessors[static_cast<std::size_t>(primitive().attributes.at("POSITION"))].count;
+    if (out.size() != vertices) {
+      throw SceneError(use + ": " + std::to_string(out.size()) + " elements for " +
+                       std::to_string(vertices) + " vertices");
+    }
+    return out;
+  }
+};
+
+}  // namespace lacuna::gltf

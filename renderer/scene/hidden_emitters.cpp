@@ -1,0 +1,78 @@
+#include "renderer/scene/hidden_emitters.h"
+
+#include <fmt/format.h>
+
+namespace lacuna {
+namespace {
+
+/// Of a triangle's extent, twice what offset_origin() moves by.
+constexpr float beside = 0x1p-18F;
+
+struct Place {
+  std::uint32_t mesh, triangle;
+};
+
+/// Every so many of the emitting triangles.
+std::vector<Place> some_emitters(const SceneData& data, std::size_t most) {
+  std::size_t count = 0;
+  const auto emits = [&data](const Mesh& m) { return data.materials[m.material].emits(); };
+  for (const Mesh& m : data.meshes) count += emits(m) ? m.triangles.size() : 0;
+  const std::size_t step = (count + most - 1) / most;
+  std::vector<Place> places;
+  std::size_t at = 0;
+  for (std::uint32_t m = 0; m < data.meshes.size(); ++m) {
+    if (!emits(data.meshes[m])) continue;
+    for (std::uint32_t t = 0; t < data.meshes[m].triangles.size(); ++t) {
+      if (at++ % step == 0) places.push_back({m, t});
+    }
+  }
+  return places;
+}
+
+/// The mesh that a ray meets in the place of a point of the emitter, on the side of `n`.
+std::optional<std::uint32_t> hider(const Scene& scene, const Place& place, const V3f& x,
+                                   const V3f& n, float extent) {
+  constexpr float away = 0x1p-10F;  // of the extent: nothing else is likely to be in between
+  const float distance = away * extent;
+  Hit hit;
+  if (!scene.rays().intersect({x + n * distance, -n, distance * 2}, hit)) return std::nullopt;
+  const bool own = hit.mesh == place.mesh && hit.triangle == place.triangle;
+  if (own || std::abs(hit.t - distance) > beside * extent) return std::nullopt;
+  return hit.mesh;
+}
+
+}  // namespace
+
+std::vector<std::string> hidden_emitters(const Scene& scene) {
+  constexpr std::size_t most = 1 << 14;
+  constexpr std::array<std::array<float, 2>, 4> points{
+      {{0.334F, 0.331F}, {0.09F, 0.07F}, {0.85F, 0.08F}, {0.07F, 0.84F}}};
+  const SceneData& data = scene.data();
+  const std::vector<Place> places = some_emitters(data, most);
+  std::size_t hidden = 0;
+  std::string which;
+  for (const Place& place : places) {
+    const Mesh& mesh = data.meshes[place.mesh];
+    const TriangleShape shape(mesh, place.triangle);
+    // Of a triangle that small the neighbours lie as close.
+    const float side = std::sqrt(std::max(shape.e1.length2(), shape.e2.length2()));
+    if (side < 16 * beside * shape.extent) continue;
+    std::optional<std::uint32_t> by;
+    for (const auto& [u, v] : points) {
+      const V3f x = shape.at(u, v);
+      if (!by) by = hider(scene, place, x, shape.ng, shape.extent);
+      if (!by && data.materials[mesh.material].double_sided) {
+        by = hider(scene, place, x, -shape.ng, shape.extent);
+      }
+    }
+    if (!by) continue;
+    if (hidden++ == 0) which = fmt::format("\"{}\" by \"{}\"", mesh.name, data.meshes[*by].name);
+  }
+  if (hidden == 0) return {};
+  return {fmt::format(
+      "{} of {} emitting triangles that were looked at are hidden by another surface in their "
+      "plane, the first of mesh {}: methods disagree on their light; move one of them",
+      hidden, places.size(), which)};
+}
+
+}  // namespace lacuna

@@ -1,0 +1,214 @@
+// Faults of the machine that pass: they cost no accepted job, and nobody has to help.
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import fs from "node:fs";
+import net from "node:net";
+import path from "node:path";
+import { test } from "node:test";
+import { setTimeout as pause } from "node:timers/promises";
+import { folders, Service, until } from "./service.mjs";
+
+/// From now on the service may have so many descriptors: below what it has, each open fails.
+function limitDescriptors(service, n) {
+  const set = spawnSync("prlimit", ["--pid", service.child.pid, `--nofile=${n}:`]);
+  assert.equal(set.status, 0, String(set.stderr));
+}
+
+test("jobs whose folders cannot be locked wait, and go on by themselves", async (t) => {
+  const service = await Service.start(folders(t), ["--max-attempts", "1"]);
+  const ids = [await service.post("gate go")];
+  await service.reaches(ids[0], "running");
+  for (let i = 0; i < 10; i += 1) ids.push(await service.post("finish"));
+  limitDescriptors(service, 3);
+  service.open("go");
+  await until(() => service.log.includes("jobs wait: "), "a folder could not be locked");
+  await pause(1000);  // so that several are tried
+  limitDescriptors(service, 1024);
+  for (const id of ids) {
+    const { state } = await service.reaches(id, "done", 60000);
+    assert.deepEqual([state.attempts, state.obstacle], [1, ""]);
+  }
+  assert.deepEqual(await service.json("/health"), { status: "ok" });
+});
+
+test("a renderer without room is no crash: its job says what it waits for", async (t) => {
+  const service = await Service.start(folders(t), ["--max-attempts", "1"]);
+  const reasons = { full: /No space left on device/, mute: /could not write its files/ };
+  for (const [word, reason] of Object.entries(reasons)) {
+    const id = await service.post(`${word} ${word}.room`);
+    const waits = await until(async () => {
+      const { state } = await service.json(`/api/jobs/${id}`);
+      return state.state === "queued" && state.attempts > 1 && state;
+    }, "it has been tried more than once", 60000);
+    assert.match(waits.obstacle, reason);
+    assert.equal(waits.error, "");
+    const { jobs } = await service.json("/api/jobs");
+    assert.match(jobs.find((job) => job.id === id).obstacle, reason);
+    service.open(`${word}.room`);
+    await service.reaches(id, "done", 60000);
+  }
+});
+
+test("health says that jobs wait, and why, without the name of a file", async (t) => {
+  const service = await Service.start(folders(t));
+  const id = await service.post("full later");
+  const health = await until(async () => {
+    const seen = await service.json("/health");
+    return seen.status === "waiting" && seen;
+  }, "it waits");
+  assert.match(health.obstacle, /cannot write their files/);
+  service.open("later");
+  await service.reaches(id, "done", 60000);
+  assert.deepEqual(await service.json("/health"), { status: "ok" });
+});
+
+test("a change that cannot be made leaves the job where it was", async (t) => {
+  const service = await Service.start(folders(t));
+  const first = await service.post("gate go");
+  await service.reaches(first, "running");
+  const id = await service.post("finish");
+  const file = path.join(service.folder(id), "state.json");
+  const state = fs.readFileSync(file);
+  const patch = (change) => service.fetch(`/api/jobs/${id}`, { method: "PATCH",
+    headers: { "Content-Type": "application/json" }, body: JSON.stringify(change) });
+  fs.writeFileSync(file, "{");
+  const before = await service.json(`/api/jobs/${id}`);
+  const held = await patch({ held: true });
+  assert.deepEqual([held.status, (await service.cancel(id)).status], [409, 409]);
+  assert.match((await held.json()).detail, /state\.json is corrupt/);
+  assert.deepEqual(await service.json(`/api/jobs/${id}`), before);
+  // Where queue.json cannot be replaced.
+  fs.writeFileSync(file, state);
+  fs.mkdirSync(path.join(service.folder(id), "queue.json/in the way"), { recursive: true });
+  for (const change of [{ held: true }, { priority: 3 }]) assert.equal((await patch(change)).status, 507);
+  assert.equal((await service.cancel(id)).status, 507);
+  assert.deepEqual((await service.json(`/api/jobs/${id}`)).state, before.state);
+  fs.rmSync(path.join(service.folder(id), "queue.json"), { recursive: true });
+  service.open("go");
+  await service.reaches(id, "done", 60000);
+});
+
+test("a job whose job.json is damaged says so, and its key still counts", async (t) => {
+  const places = folders(t);
+  const post = (service) => service.postText(JSON.stringify({ scene: "room/scene.glb", label: "finish" }),
+    { "Content-Type": "application/json", "Idempotency-Key": "once" });
+  const first = await Service.start(places);
+  const { id } = await (await post(first)).json();
+  const done = await first.reaches(id, "done", 60000);
+  fs.writeFileSync(path.join(first.folder(id), "job.json"), "{\"scene\":");
+  const seen = await first.json(`/api/jobs/${id}`);
+  assert.deepEqual([seen.job, seen.state.state], [null, "done"]);
+  assert.match(seen.state.error, /job\.json cannot be read/);
+  await first.stop();
+
+  const second = await Service.start(places);
+  const again = await post(second);
+  assert.deepEqual([again.status, again.headers.get("idempotent-replayed")], [200, "true"]);
+  const { job, state } = await again.json();
+  assert.deepEqual([job, state.state, state.created], [null, "failed", done.state.created]);
+  assert.match(state.error, /folder cannot be read/);
+  assert.equal((await second.json("/api/jobs")).total, 1);
+});
+
+test("a job that is done can be removed at once", async (t) => {
+  const service = await Service.start(folders(t));
+  const id = await service.post("linger");
+  await until(async () => (await service.json(`/api/jobs/${id}`)).state.state === "done", "it is done");
+  const gone = await service.fetch(`/api/jobs/${id}`, { method: "DELETE" });
+  assert.equal(gone.status, 204, await gone.text());
+});
+
+test("a job's folder that somebody else has made is taken up", async (t) => {
+  const service = await Service.start(folders(t));
+  const id = await service.post("gate go");
+  await service.reaches(id, "running");
+  const other = `${id.slice(0, -6)}zzzzzz`;
+  const draft = path.join(service.places.data, "draft");
+  fs.mkdirSync(draft);
+  for (const name of ["job.json", "state.json"]) fs.copyFileSync(path.join(service.folder(id), name), path.join(draft, name));
+  fs.writeFileSync(path.join(draft, "state.json"), JSON.stringify({ state: "queued", attempts: 0, created: "2026-01-31T00:00:00.000Z" }));
+  fs.renameSync(draft, service.folder(other));
+  service.open("go");
+  await service.reaches(id, "done", 60000);
+  await until(async () => (await service.fetch(`/api/jobs/${other}`)).ok, "it is seen");
+  await service.reaches(other, "done");
+});
+
+test("without descriptors a scene is not called missing", async (t) => {
+  const service = await Service.start(folders(t));
+  // Connections keep what they have; only what is opened for a request fails.
+  const agent = fs.readdirSync(`/proc/${service.child.pid}/fd`).map(Number);
+  const body = JSON.stringify({ scene: "room/scene.glb", label: "finish" });
+  const text = `POST /api/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: ${body.length}\r\n\r\n`;
+  const socket = net.connect(service.port, "127.0.0.1");
+  t.after(() => socket.destroy());
+  let answer = "";
+  socket.on("data", (d) => { answer += d; });
+  socket.write(text);
+  await until(() => fs.readdirSync(`/proc/${service.child.pid}/fd`).length > agent.length, "it is accepted");
+  limitDescriptors(service, 3);
+  socket.write(body);
+  await until(() => answer.includes("\r\n\r\n"), "it is answered");
+  limitDescriptors(service, 1024);
+  assert.match(answer, /^HTTP\/1\.1 503 .*Retry-After: 1/s);
+  await service.reaches(await service.post("finish"), "done");
+});
+
+/// Connections that send half a request and wait.
+function halfRequests(t, service, n) {
+  const sockets = Array.from({ length: n }, () => {
+    const socket = net.connect(service.port, "127.0.0.1");
+    socket.on("error", () => {});
+    socket.write("GET /health HTTP/1.1\r\n");
+    return socket;
+  });
+  t.after(() => sockets.forEach((socket) => socket.destroy()));
+}
+
+test("more half requests than descriptors take none from the jobs, nor from other clients", async (t) => {
+  const service = await Service.start(folders(t), ["--max-attempts", "1"], ["prlimit", "--nofile=128:128"]);
+  const ids = [await service.post("gate go")];
+  await service.reaches(ids[0], "running");
+  for (let i = 0; i < 5; i += 1) ids.push(await service.post("finish"));
+  halfRequests(t, service, 200);
+  service.open("go");
+  for (const id of ids) await service.reaches(id, "done", 60000);
+  assert.ok(!service.log.includes("Too many open files"), service.log);
+  await service.reaches(await service.post("finish"), "done", 60000);
+});
+
+test("two services on one folder whose lock was removed: the younger ends, and its job is not lost", async (t) => {
+  const places = folders(t);
+  const older = await Service.start(places);
+  const own = await older.post("gate go");
+  await older.reaches(own, "running");
+  fs.rmSync(path.join(places.data, ".lacuna-server.lock"));
+  const younger = await Service.start(places).catch(() => null);
+  if (younger) {  // unless the older had seen it before
+    const id = await younger.post("finish");
+    assert.equal((await younger.ended).code, 1);
+    assert.match(younger.log, /an older lacuna-server \(process \d+\) works in/);
+    older.open("go");
+    await until(async () => (await older.fetch(`/api/jobs/${id}`)).ok, "it is seen", 60000);
+    await older.reaches(id, "done", 60000);
+  } else {
+    older.open("go");
+  }
+  await older.reaches(own, "done", 60000);
+  await until(() => fs.existsSync(path.join(places.data, ".lacuna-server.lock")), "the lock is there again", 60000);
+});
+
+test("temporary files of killed writes are swept at the start", async (t) => {
+  const places = folders(t);
+  const first = await Service.start(places);
+  const id = await first.post("finish");
+  await first.reaches(id, "done");
+  await first.stop();
+  const left = [first.folder(id), places.data].map((dir) => path.join(dir, ".state.json.4194304-0123456789abcdef.tmp"));
+  for (const file of left) {
+    fs.writeFileSync(file, "half");
+    fs.utimesSync(file, new Date(0), new Date(0));
+  }
+  await Service.start(places);
+  await until(() => left.every((file) => !fs.existsSync(file)), "they are gone", 60000);
+});
