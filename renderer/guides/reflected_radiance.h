@@ -46,7 +46,7 @@ class ReflectedRadiance {
 
   /// Mean at `v`, a surface; below 0 while nothing is known.
   float at(const Vertex& v) const;
-  bool learns() const { return samples_ < enough_samples; }
+  bool learns() const { return samples_ < enough_samples || round_ < least_rounds; }
   /// One path's value at `v`; only while it learns().
   void record(const Vertex& v, double value, Accumulator& accumulator) const;
   /// Adds what the parts of an iteration met, in their order.
@@ -62,7 +62,8 @@ class ReflectedRadiance {
   /// A cell with fewer samples leaves the answer to the coarser one above it.
   static constexpr double least_samples = 16;
   /// Of a whole picture: then means are known well enough.
-  static constexpr double enough_samples = 1 << 22;
+  static constexpr double enough_samples = 1 << 18;
+  static constexpr std::uint64_t least_rounds = 3;
 
   struct Cell {
     std::array<std::uint32_t, 3> at;

@@ -38,9 +38,9 @@ struct PathState {
   /// mis_partial_sum() of the last vertex over its density. At vertex 0 of a light path whose
   /// emitter can be hit: TechniqueCounts::none over its density.
   double mis_partial = 0;
-  int depth = 0;  ///< edges traced: path[depth] is the last vertex
-  /// Luminance that the path was expected to gather from its first vertex with a density on; below
-  /// 0 before that vertex.
+  int depth = 0;      ///< edges traced: path[depth] is the last vertex
+  int reference = 0;  ///< depth of the first vertex whose BSDF has a density; 0: none yet
+  /// Luminance that the path was expected to gather behind that vertex; below 0 until it is needed.
   float expected = -1;
   float least = 0;  ///< luminance of throughput below which the path is not split
   float split = 1;  ///< number of equal parts it was split into since it started or branched off
@@ -162,31 +162,48 @@ class Walk {
     constexpr float least_part = 1.0F / 64;
     w.windowed = false;
     if (!v.bsdf->connectible()) return true;
-    const float gathered = guide_.expected(v);  // unknown: as if it were equal everywhere
-    const float carried = luminance(w.throughput);
-    const float now = carried * (gathered < 0 ? 1 : gathered);
-    if (w.expected < 0) {
-      w.expected = now;
-      w.least = carried * least_part;
+    if (w.reference == 0) {
+      w.reference = w.depth;
       return true;
     }
+    // What the guide has added to the weight.
+    const float guiding_weight = 1 / w.roulette_scale;
+    if (guiding_weight <= high && w.depth < limits_.roulette_depth) return true;
+    if (w.expected < 0) {
+      const Vertex& first = vertex(w, w.reference);
+      w.expected = luminance(first.throughput) * expected_behind(first);
+      w.least = luminance(first.throughput) * least_part;
+    }
     if (!(w.expected > 0)) return true;
+    const float carried = luminance(w.throughput);
+    const float ratio = carried * expected_behind(v) / w.expected;
     w.windowed = true;
-    const float ratio = now / w.expected;
     if (ratio < low && w.depth >= limits_.roulette_depth) {
       const float survival = std::max(ratio / low, min_survival);
-      if (w.rng.next() >= survival) return false;
+      if (!w.rng.decide(survival)) return false;
       w.throughput /= survival;
-    } else if (ratio > high && carried > w.least) {
-      split(w, v, static_cast<int>(std::min(ratio, float{max_parts}) + 0.5F), walk);
+      w.roulette_scale *= survival;
+    } else {
+      // Splitting undoes what the guide has added to the weight, and no more: to split all paths
+      // that come into the light costs more time than it saves noise.
+      const float excess = std::min({ratio, guiding_weight, float{max_parts}});
+      if (excess > high && carried > w.least) split(w, v, static_cast<int>(excess + 0.5F), walk);
     }
     return true;
+  }
+
+  /// The luminance that a path of throughput 1 gathers behind `v`; while that is unknown, as if it
+  /// were equal everywhere.
+  float expected_behind(const Vertex& v) const {
+    const float known = guide_.expected(v);
+    return known < 0 ? 1 : known;
   }
 
   /// The path itself keeps one of the parts.
   void split(PathState& w, const Vertex& v, int parts, std::size_t walk) {
     const float share = 1.0F / static_cast<float>(parts);
     w.throughput *= share;
+    w.roulette_scale *= static_cast<float>(parts);
     for (int k = 1; k < parts; ++k) {
       PathBranch& b = branches_.emplace_back();
       b.state = w;
