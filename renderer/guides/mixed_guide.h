@@ -23,12 +23,12 @@ class MixedGuide {
     directions_->prepare(context);
   }
   void save(ByteWriter& out) const {
-    reflected_.save(out);
     directions_->save(out);
+    reflected_.save(out);
   }
   void load(ByteReader& in) {
-    reflected_.load(in);
     directions_->load(in);
+    reflected_.load(in);
   }
   std::vector<std::pair<std::string, double>> statistics() const {
     return directions_->statistics();

@@ -89,6 +89,7 @@ void ReflectedRadiance::make_means() {
 }
 
 void ReflectedRadiance::save(ByteWriter& out) const {
+  out.put(grid());
   out.put(round_);
   out.put(iteration_);
   for (const auto* cells : {&known_, &learning_}) {
@@ -101,6 +102,9 @@ void ReflectedRadiance::save(ByteWriter& out) const {
 }
 
 void ReflectedRadiance::load(ByteReader& in) {
+  if (in.get<std::array<double, 4>>() != grid()) {
+    throw std::runtime_error("saved radiance belongs to another scene");
+  }
   round_ = in.get<std::uint64_t>();
   iteration_ = in.get<std::uint64_t>();
   bool good = round_ < 63 && iteration_ < std::uint64_t{1} << round_;
@@ -112,7 +116,7 @@ void ReflectedRadiance::load(ByteReader& in) {
       (*cells)[s.cell] = s.met;
     }
   }
-  if (!good) throw std::runtime_error("saved radiance is of another scene");
+  if (!good) throw std::runtime_error("saved radiance is not valid");
   make_means();
 }
 

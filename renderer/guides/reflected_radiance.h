@@ -60,7 +60,7 @@ class ReflectedRadiance {
   static constexpr int side = 32, sides = 6;
   static constexpr std::size_t levels = 6;  // 32, 16, ..., 1 cells along a side
   /// A cell with fewer samples leaves the answer to the coarser one above it.
-  static constexpr double least_samples = 16;
+  static constexpr double least_samples = 128;
   /// Of a whole picture: then means are known well enough.
   static constexpr double enough_samples = 1 << 18;
   static constexpr std::uint64_t least_rounds = 3;
@@ -69,6 +69,7 @@ class ReflectedRadiance {
     std::array<std::uint32_t, 3> at;
     std::uint32_t normal;
   };
+  std::array<double, 4> grid() const { return {low_.x, low_.y, low_.z, scale_}; }
   Cell cell(const Vertex& v) const;
   static std::size_t index(const Cell& c, std::size_t level);
   void make_means();
