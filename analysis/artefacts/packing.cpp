@@ -45,6 +45,7 @@ void ArtefactWriter::append(const void* from, std::size_t n) {
 void ArtefactWriter::compress(const void* from, std::size_t n, bool last) {
   ZSTD_inBuffer in{from, n, 0};
   for (;;) {
+    if (before_block_) before_block_();
     ZSTD_outBuffer out{block_.data(), block_.size(), 0};
     const std::size_t left =
         check(ZSTD_compressStream2(context_.get(), &out, &in, last ? ZSTD_e_end : ZSTD_e_continue));
@@ -102,6 +103,7 @@ std::size_t ArtefactReader::unpack(void* to, std::size_t n) {
 }
 
 void ArtefactReader::refill() {
+  if (before_block_) before_block_();
   constexpr std::uint64_t block = 1 << 17;
   block_.resize(static_cast<std::size_t>(std::min(block, packed_left_)));
   used_ = 0;

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "analysis/storage/bytes.h"
 
@@ -18,6 +20,8 @@ class ArtefactWriter : public PutsValues<ArtefactWriter> {
   explicit ArtefactWriter(std::string& packed);
   ~ArtefactWriter();
 
+  /// Called once for each block of some hundred KiB from now on; may throw.
+  void before_block(std::function<void()> call) { before_block_ = std::move(call); }
   void append(const void* from, std::size_t n);
   /// Number of input bytes so far.
   std::uint64_t written() const { return written_; }
@@ -31,6 +35,7 @@ class ArtefactWriter : public PutsValues<ArtefactWriter> {
   std::string& packed_;
   std::string block_;
   std::uint64_t written_ = 0;
+  std::function<void()> before_block_;
 };
 
 /// Decompresses the output of an ArtefactWriter, one block of the file at a time. Throws
@@ -43,6 +48,8 @@ class ArtefactReader : public GetsValues<ArtefactReader> {
                  std::uint64_t content_bytes);
   ~ArtefactReader();
 
+  /// Called once for each block of some hundred KiB from now on; may throw.
+  void before_block(std::function<void()> call) { before_block_ = std::move(call); }
   void read(void* to, std::size_t n);
   /// Bytes of content not yet read.
   std::uint64_t remaining() const { return remaining_; }
@@ -61,6 +68,7 @@ class ArtefactReader : public GetsValues<ArtefactReader> {
   std::string block_;
   std::size_t used_ = 0;  // of block_
   bool frame_ended_ = false;
+  std::function<void()> before_block_;
 };
 
 /// Upper bound of the content of `packed_bytes`: a zstd block has at least four bytes and at most

@@ -13,6 +13,7 @@
 
 #include "analysis/artefacts/cache_folder.h"
 #include "analysis/artefacts/entry_file.h"
+#include "analysis/parallel/stop.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/file_lock.h"
 #include "analysis/storage/peak_memory.h"
@@ -89,6 +90,12 @@ class ArtefactStore::Attempt {
   std::optional<FileLock> wait_for_lock(const fs::path& file);
   void keep(const void* value);
   void report(const std::string& what);
+  /// Throws Stopped when interrupted: large artefacts take seconds to pack and to unpack.
+  std::function<void()> check_stop() const {
+    return [&stop = settings_.interrupted] {
+      if (stop && stop()) throw Stopped{};
+    };
+  }
 
   const ArtefactStore& store_;
   const StoreSettings& settings_;
@@ -126,8 +133,10 @@ std::shared_ptr<const void> ArtefactStore::Attempt::run() {
 std::shared_ptr<const void> ArtefactStore::Attempt::load() {
   std::shared_ptr<const void> value;
   EntryHeader header;
-  const auto refusal =
-      read_entry(file_, key_, header, [&](ArtefactReader& in) { value = request_.decode(in); });
+  const auto refusal = read_entry(file_, key_, header, [&](ArtefactReader& in) {
+    in.before_block(check_stop());
+    value = request_.decode(in);
+  });
   if (!refusal) {
     // The time of its last use. On a disk that cannot be written the order does not matter.
     ::utimensat(AT_FDCWD, file_.c_str(), nullptr, 0);
@@ -188,6 +197,7 @@ std::optional<FileLock> ArtefactStore::Attempt::wait_for_lock(const fs::path& fi
 void ArtefactStore::Attempt::keep(const void* value) {
   try {
     const std::string entry = pack_entry(key_, settings_.label, [&](ArtefactWriter& out) {
+      out.before_block(check_stop());
       request_.encode(out, value);
       record_.content_bytes = out.written();
     });

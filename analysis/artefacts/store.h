@@ -25,7 +25,7 @@ struct StoreSettings {
   std::function<void(const std::string&)> message;        ///< reports waits; may be empty
   std::function<void(const std::string&)> warning;        ///< reports problems; may be empty
   std::function<void(const std::string&)> building = {};  ///< gets the type before; may be empty
-  std::function<bool()> interrupted;                      ///< true ends a wait; may be empty
+  std::function<bool()> interrupted;  ///< true ends waits and packing; may be empty
 };
 
 /// StoreSettings::interrupted returned true during a wait for another process.
@@ -43,7 +43,7 @@ class ArtefactStore {
 
   /// The artefact of `key`: the object still in use in this process, or its cache entry, or the
   /// result of `build`, which is then cached by Codec<T>. Waits while another process or thread
-  /// builds it. Throws the exceptions of `build`, and WaitInterrupted.
+  /// builds it. Throws the exceptions of `build`, WaitInterrupted and Stopped.
   template <class T>
   std::shared_ptr<const T> get(const ArtefactKey& key, const std::function<T()>& build);
 

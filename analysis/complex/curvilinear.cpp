@@ -37,6 +37,7 @@ CubicalComplex curvilinear_skeleton(const BitGrid3& domain, const SpaceMaps& map
                  byte_limit);
   auto [complex, kept] = thin(domain, maps, report, pool);
   for (;;) {
+    if (pool != nullptr) pool->check_stop();
     const std::vector<Square> squares = squares_to_pierce(complex, maps.distance, pool);
     if (squares.empty()) return std::move(complex);
     ++report.pierce_rounds;

@@ -112,13 +112,17 @@ class Stagger {
 void staggered_rows(const ThreadPool* pool, int columns,
                     const std::function<void(int row, int column)>& body,
                     const std::function<bool(int row)>& another) {
+  const std::function<void(int, int)> checked = [&](int row, int column) {
+    if (pool != nullptr) pool->check_stop();
+    body(row, column);
+  };
   if (pool == nullptr || pool->threads() == 1 || columns == 1) {
     for (int row = 0;; ++row) {
-      for (int column = 0; column < columns; ++column) body(row, column);
+      for (int column = 0; column < columns; ++column) checked(row, column);
       if (!another(row)) return;
     }
   }
-  Stagger stagger(columns, body, another);
+  Stagger stagger(columns, checked, another);
   pool->for_each(pool->threads(), [&](int) { stagger.work(); });
   stagger.rethrow();
 }

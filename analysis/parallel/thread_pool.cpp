@@ -7,6 +7,7 @@
 #include <xmmintrin.h>
 
 #include <atomic>
+#include <utility>
 
 namespace lacuna {
 namespace {
@@ -38,8 +39,9 @@ struct ThreadPool::Impl {
         arena(threads) {}
 };
 
-ThreadPool::ThreadPool(int threads)
-    : threads_(threads > 0 ? threads : tbb::this_task_arena::max_concurrency()) {
+ThreadPool::ThreadPool(int threads, std::function<bool()> stop)
+    : threads_(threads > 0 ? threads : tbb::this_task_arena::max_concurrency()),
+      stop_(std::move(stop)) {
   impl_ = std::make_unique<Impl>(threads_);
 }
 
@@ -56,6 +58,7 @@ void ThreadPool::for_each(int n, const std::function<void(int)>& body) const {
           _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
           _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
           order.enter();
+          check_stop();
           body(i);
           order.leave();
         },

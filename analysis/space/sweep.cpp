@@ -20,7 +20,10 @@ void run_parallel(const ThreadPool& pool, int n, const std::function<void(int)>&
   if (n > 1 && pool.threads() > 1) {
     pool.for_each(n, body);
   } else {
-    for (int i = 0; i < n; ++i) body(i);
+    for (int i = 0; i < n; ++i) {
+      pool.check_stop();
+      body(i);
+    }
   }
 }
 

@@ -62,6 +62,7 @@ SpaceAnalysis::SpaceAnalysis(SpaceInput input, ArtefactStore& store, const Threa
 template <class T>
 const T& SpaceAnalysis::get(Part<T>& part, const ArtefactKey& key,
                             const std::function<T()>& build) {
+  pool_.check_stop();
   if (!part.value) part.value = store_.get<T>(key, build);
   return *part.value;
 }

@@ -34,7 +34,7 @@ struct SpaceInput {
 /// The shape of a scene's empty space. Each artefact is built or loaded on its first request,
 /// together with its inputs, and then stays in memory; artefacts that are never requested are never
 /// built. Not thread-safe; the returned objects may be read by all threads. Every call may throw
-/// the exceptions of voxelize(), MemoryLimitError and WaitInterrupted.
+/// the exceptions of voxelize(), MemoryLimitError, WaitInterrupted and Stopped.
 class SpaceAnalysis {
  public:
   /// `store` and `pool` must outlive it.

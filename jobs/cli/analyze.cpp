@@ -6,6 +6,7 @@
 
 #include "analysis/geometry/disjoint_sets.h"
 #include "analysis/json/json_text.h"
+#include "analysis/storage/available_memory.h"
 #include "analysis/storage/peak_memory.h"
 #include "jobs/analyze/overlay.h"
 #include "jobs/cli/commands.h"
@@ -15,7 +16,6 @@
 #include "jobs/run/clock.h"
 #include "jobs/spec/byte_size.h"
 #include "jobs/store/job_folder.h"
-#include "jobs/store/machine.h"
 #include "renderer/gltf/gltf_load.h"
 #include "renderer/scene/camera.h"
 #include "renderer/scene/scene_shape.h"
@@ -133,7 +133,7 @@ void write_overlays(const std::filesystem::path& dir, const SceneData& scene,
 }
 
 void analyze(const AnalyzeOptions& o) {
-  const ThreadPool pool(o.threads);
+  const ThreadPool pool(o.threads, interrupt_requested());
   Terminal terminal({}, false);
   const SceneData scene = load_gltf(find_scene(o.scene));
   const CameraData camera = choose_camera(scene, o.camera, o.scene);
@@ -188,8 +188,12 @@ void add_analyze(CLI::App& app, int& code) {
                     "build everything anew and store nothing in the cache");
   command->add_flag("--json", o->json, "print JSON, for scripts");
   command->callback([o, &code] {
-    analyze(*o);
-    code = exit_done;
+    try {
+      analyze(*o);
+      code = exit_done;
+    } catch (const Stopped&) {
+      code = exit_interrupted;
+    }
   });
 }
 

@@ -21,11 +21,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "raise the limit of 4.0 GiB (ulimit -d), ", if this process has one.
+/// "raise the limit of 4.0 GiB (ulimit -d), ", for each that this process has.
 std::string memory_limit_advice() {
-  rlimit limit{};
-  if (getrlimit(RLIMIT_DATA, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return "";
-  return fmt::format("raise the limit of {} (ulimit -d), ", byte_size_text(limit.rlim_cur));
+  std::string advice;
+  for (const auto& [resource, option] : {std::pair{RLIMIT_DATA, "-d"}, {RLIMIT_AS, "-v"}}) {
+    rlimit limit{};
+    if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) continue;
+    advice +=
+        fmt::format("raise the limit of {} (ulimit {}), ", byte_size_text(limit.rlim_cur), option);
+  }
+  return advice;
 }
 
 /// The folder of a job file's results: there already with this very job, or made now.

@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "analysis/storage/atomic_file.h"
-#include "jobs/store/machine.h"
+#include "analysis/storage/available_memory.h"
 #include "renderer/scene/scene_shape.h"
 
 namespace lacuna {
@@ -70,7 +70,8 @@ void set_up_analysis(Prepared& p, const JobSpec& spec, const RunContext& context
 
 Prepared prepare(const JobSpec& spec, const RunContext& context) {
   Prepared p;
-  p.pool = std::make_unique<ThreadPool>(context.threads >= 0 ? context.threads : spec.threads);
+  p.pool = std::make_unique<ThreadPool>(context.threads >= 0 ? context.threads : spec.threads,
+                                        context.interrupted);
   p.integrator = make_integrator(spec.integrator);
   SceneData data = load_gltf(resolve(context, "scene", spec.scene, {".glb", ".gltf"}));
   if (spec.material) change_material(data, *spec.material, spec.scene);

@@ -22,11 +22,12 @@ struct Prepared {
 };
 
 /// Loads and builds what `spec` needs, and only that. Throws SceneError: no such scene or camera,
-/// an asset that cannot be used.
+/// an asset that cannot be used; and Stopped.
 Prepared prepare(const JobSpec& spec, const RunContext& context);
 
 /// Lets the integrator look at the scene and at its empty space; only what it asks for is built, or
-/// loaded from the cache. Throws MemoryLimitError, GeometryError, WaitInterrupted.
+/// loaded from the cache. Throws MemoryLimitError, GeometryError, WaitInterrupted,
+/// Stopped.
 void analyse(const Prepared& prepared);
 
 }  // namespace lacuna

@@ -5,7 +5,10 @@
 #include <chrono>
 #include <thread>
 
+#include "analysis/space/memory_limit.h"
 #include "analysis/storage/atomic_file.h"
+#include "analysis/storage/available_memory.h"
+#include "analysis/storage/peak_memory.h"
 #include "jobs/render/prepare.h"
 #include "jobs/results/report.h"
 #include "jobs/results/results.h"
@@ -13,6 +16,7 @@
 #include "jobs/run/obstacle.h"
 #include "jobs/run/reference.h"
 #include "jobs/run/render_loop.h"
+#include "jobs/spec/byte_size.h"
 #include "renderer/images/image_module.h"
 #include "renderer/integrators/integrator.h"
 
@@ -38,6 +42,7 @@ class Running {
     folder_.write_state(state_);
     observer_.phase(name);
   }
+  const std::string& phase_name() const { return state_.phase; }
   void warn(const std::string& line) {
     state_.warnings.push_back(line);
     observer_.warning(line);
@@ -160,6 +165,14 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
     const ScopedSeconds timed(phases["images"]);
     images.wait();
   }
+  const double preparation = phases["load"] + phases["analysis"];
+  const std::optional<double> limit =
+      spec.budget.seconds ? spec.budget.seconds : spec.budget.cpu_seconds;
+  if (limit && preparation > *limit) {
+    running.warn(fmt::format(
+        "preparation took {:.1f} s, more than the budget of {:g} s, which counts rendering only",
+        preparation, *limit));
+  }
 
   running.phase("rendering");
   const RenderTask task{folder,
@@ -207,6 +220,15 @@ Outcome run_job(const JobFolder& folder, const RunContext& context) {
     const Outcome outcome = render(folder, context, running);
     running.finish(outcome == Outcome::done ? State::done : State::interrupted);
     return outcome;
+  } catch (const Stopped&) {
+    running.finish(State::interrupted);
+    return Outcome::interrupted;
+  } catch (const std::bad_alloc&) {
+    const MemoryLimitError named(fmt::format(
+        "{}: an allocation failed; {} were held, {} are available", running.phase_name(),
+        byte_size_text(peak_memory()), byte_size_text(available_memory())));
+    running.stop(named);
+    throw named;
   } catch (const std::exception& e) {
     running.stop(e);
     throw;

@@ -27,6 +27,18 @@ OrderedJson seconds(const PhaseSeconds& phases, const Spent& spent) {
   return j;
 }
 
+/// Limits of time, against what they count and what they do not.
+OrderedJson budget(const RenderTask& task, const Spent& spent) {
+  const auto phase = [&](const char* name) {
+    const auto found = task.phases.find(name);
+    return found == task.phases.end() ? 0.0 : found->second;
+  };
+  return {{"seconds", optional(task.spec.budget.seconds)},
+          {"cpu_seconds", optional(task.spec.budget.cpu_seconds)},
+          {"render_seconds", spent.seconds},
+          {"preparation_seconds", phase("load") + phase("analysis")}};
+}
+
 OrderedJson counts(const RenderLoop& loop) {
   const Counters& c = loop.counters();
   return {
@@ -117,6 +129,7 @@ std::string write_report(const ReportInput& input) {
   j["version"] = version();
   j["job"] = task.folder.id();
   j["seconds"] = seconds(task.phases, loop.spent());
+  j["budget"] = budget(task, loop.spent());
   j["counts"] = counts(loop);
   j["rates"] = rates(task, loop.spent(), loop.counters());
   if (const auto stats = task.integrator.statistics(); !stats.empty()) {

@@ -7,11 +7,11 @@
 #include <system_error>
 
 #include "analysis/storage/atomic_file.h"
+#include "analysis/storage/available_memory.h"
 #include "jobs/run/checkpoint.h"
 #include "jobs/run/obstacle.h"
 #include "jobs/spec/identity.h"
 #include "jobs/spec/version.h"
-#include "jobs/store/machine.h"
 #include "renderer/film/preview.h"
 
 namespace lacuna {
@@ -163,7 +163,7 @@ bool RenderLoop::iterate() {
     counters_ += task_.integrator.iterate({task_.scene, task_.camera, task_.pool, task_.spec.seed,
                                            completed_.iterations, stop, layers},
                                           frame_);
-  } catch (const IterationStopped&) {
+  } catch (const Stopped&) {
     clock_.stop();
     return false;
   }

@@ -22,6 +22,7 @@ void ImportanceCacheConnections::place_records(const IterationContext& context, 
                        {.max_depth = longest, .last_scatters = true, .roulette_depth = longest + 1},
                        counters);
   for (std::uint64_t first = 0; first < paths; first += EyeBatch::size) {
+    context.check_stop();
     batch.states.clear();
     for (std::uint64_t j = first; j < std::min(paths, first + EyeBatch::size); ++j) {
       Rng rng(context.seed, context.iteration, j, Rng::Purpose::integrator);
@@ -59,16 +60,14 @@ void ImportanceCacheConnections::begin(const IterationContext& context, const Li
   cells_of_records_.resize(records_.size());
   std::vector<std::uint64_t> rays(records_.size());
   context.pool.for_each(static_cast<int>(records_.size()), [&](int i) {
-    if (context.stop()) return;
     const auto k = static_cast<std::size_t>(i);
-    rays[k] = build(records_[k], cells_of_records_[k], context.scene, lights);
+    rays[k] = build(records_[k], cells_of_records_[k], context, lights);
   });
-  if (context.stop()) throw IterationStopped{};
   counters.shadow_rays += std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
 }
 
 std::uint64_t ImportanceCacheConnections::build(const Vertex& record, ResamplingCell& cell,
-                                                const Scene& scene,
+                                                const IterationContext& context,
                                                 const LightVertices& lights) const {
   Vertex unit = record;  // what light gives to the record, whatever the record gives to a pixel
   unit.throughput = Rgb(1, 1, 1);
@@ -79,6 +78,7 @@ std::uint64_t ImportanceCacheConnections::build(const Vertex& record, Resampling
   std::vector<std::uint8_t> occluded;
   std::uint64_t sent = 0;
   for (int s = 1; s <= lights.longest(); ++s) {
+    context.check_stop();
     const std::size_t n = lights.count(s);
     std::vector<double> full(n, 0.0), unshadowed(n, 0.0), bounded(n, 0.0);
     const std::vector<double> same(n, 1.0);
@@ -98,7 +98,7 @@ std::uint64_t ImportanceCacheConnections::build(const Vertex& record, Resampling
       });
     }
     occluded.resize(rays.size());
-    scene.rays().occluded(rays, occluded);
+    context.scene.rays().occluded(rays, occluded);
     sent += rays.size();
     for (std::size_t k = 0; k < traced.size(); ++k) {
       if (occluded[k] != 0) full[traced[k]] = 0;

@@ -28,8 +28,8 @@ class ImportanceCacheConnections : public StrategyBase {
                                                                  "uniform"};
 
   static std::size_t cells() { return 1; }  // records are new in each iteration
-  /// Traces the records and builds their distributions. Throws std::runtime_error if they would
-  /// take more than half of the free memory.
+  /// Traces the records and builds their distributions. Throws MemoryLimitError if there is no
+  /// memory for them.
   void begin(const IterationContext& context, const LightVertices& lights, const CellStatistics&,
              Counters& counters);
 
@@ -83,7 +83,7 @@ class ImportanceCacheConnections : public StrategyBase {
   static constexpr std::uint8_t uniform = 3;  // in `distributions`
 
   void place_records(const IterationContext& context, int longest, Counters& counters);
-  std::uint64_t build(const Vertex& record, ResamplingCell& cell, const Scene& scene,
+  std::uint64_t build(const Vertex& record, ResamplingCell& cell, const IterationContext& context,
                       const LightVertices& lights) const;
 
   ImportanceCacheSettings settings_;

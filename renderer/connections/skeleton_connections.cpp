@@ -36,18 +36,17 @@ void SkeletonConnections::begin(const IterationContext& context, const LightVert
   used_ = used.size();
   std::vector<std::uint64_t> rays(used.size());
   context.pool.for_each(static_cast<int>(used.size()), [&](int i) {
-    if (context.stop()) return;
     const auto k = static_cast<std::size_t>(i);
-    rays[k] = build(used[k], context.scene, lights);
+    rays[k] = build(used[k], context, lights);
   });
-  if (context.stop()) throw IterationStopped{};
   counters.shadow_rays += std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
 }
 
-std::uint64_t SkeletonConnections::build(std::size_t node, const Scene& scene,
+std::uint64_t SkeletonConnections::build(std::size_t node, const IterationContext& context,
                                          const LightVertices& lights) {
   std::uint64_t rays_sent = 0;
   for (int s = 1; s <= lights.longest(); ++s) {
+    context.check_stop();
     const std::size_t n = lights.count(s);
     std::vector<double> weights(n, 0.0);
     std::vector<double> visible(n, 0.0);
@@ -57,7 +56,7 @@ std::uint64_t SkeletonConnections::build(std::size_t node, const Scene& scene,
     if (settings_.visible) {
       const std::vector<Ray> rays = rays_to(lights, s, positions_[node]);
       std::vector<std::uint8_t> occluded(n);
-      scene.rays().occluded(rays, occluded);
+      context.scene.rays().occluded(rays, occluded);
       rays_sent += n;
       for (std::size_t i = 0; i < n; ++i) visible[i] = occluded[i] != 0 ? 0 : weights[i];
     }

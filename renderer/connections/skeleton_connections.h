@@ -65,7 +65,8 @@ class SkeletonConnections : public StrategyBase {
   static constexpr std::uint8_t uniform = 2;  // in `distributions`
 
   bool accepted(std::uint64_t mapped, std::uint64_t sum) const;
-  std::uint64_t build(std::size_t node, const Scene& scene, const LightVertices& lights);
+  std::uint64_t build(std::size_t node, const IterationContext& context,
+                      const LightVertices& lights);
 
   SkeletonConnectionsSettings settings_;
   std::vector<V3f> positions_;  // of the nodes, scene units

@@ -1,22 +1,20 @@
 #pragma once
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <stdexcept>
+#include "analysis/space/memory_limit.h"
+#include "analysis/storage/available_memory.h"
 
 namespace lacuna {
 
-/// Throws std::runtime_error if `bytes` exceed half of the free memory; `what()` returns what they
-/// are for and how to need less.
+/// Throws MemoryLimitError if `bytes` exceed memory_to_take(); `what()` returns what they are for
+/// and how to need less. To be called before they are allocated.
 template <class What>
 void require_free(double bytes, What&& what) {
-  const double free = double(sysconf(_SC_AVPHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
-  if (bytes < free / 2) return;
-  throw std::runtime_error(
-      fmt::format("{}: {:.1f} GiB, more than half of the {:.1f} GiB that are "
-                  "free",
-                  what(), bytes / 0x1p30, free / 0x1p30));
+  const auto free = double(memory_to_take());
+  if (bytes < free) return;
+  throw MemoryLimitError(fmt::format("{}: {:.1f} MiB, of {:.1f} MiB that are available", what(),
+                                     bytes / 0x1p20, free / 0x1p20));
 }
 
 }  // namespace lacuna

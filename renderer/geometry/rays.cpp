@@ -113,8 +113,10 @@ struct RayCaster::Impl {
   }
 };
 
-RayCaster::RayCaster(const SceneData& data, int threads) : impl_(std::make_unique<Impl>()) {
-  impl_->device = rtcNewDevice(fmt::format("isa=avx2,threads={},set_affinity=0", threads).c_str());
+RayCaster::RayCaster(const SceneData& data, const ThreadPool& pool)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->device =
+      rtcNewDevice(fmt::format("isa=avx2,threads={},set_affinity=0", pool.threads()).c_str());
   impl_->check("starting");
   rtcSetDeviceErrorFunction(
       impl_->device,
@@ -133,7 +135,13 @@ RayCaster::RayCaster(const SceneData& data, int threads) : impl_(std::make_uniqu
   rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
   for (std::size_t i = 0; i < data.meshes.size(); ++i) impl_->add(data, i);
+  rtcSetSceneProgressMonitorFunction(
+      impl_->scene,
+      [](void* user, double) { return !static_cast<const ThreadPool*>(user)->stopped(); },
+      const_cast<ThreadPool*>(&pool));
   rtcCommitScene(impl_->scene);
+  rtcSetSceneProgressMonitorFunction(impl_->scene, nullptr, nullptr);
+  pool.check_stop();
   impl_->check("building its acceleration structure");
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "analysis/parallel/thread_pool.h"
 #include "renderer/core/vec.h"
 #include "renderer/geometry/scene_data.h"
 
@@ -41,9 +42,9 @@ class RayCaster {
  public:
   /// Copies the triangles of `scene` and keeps a pointer to its materials and textures for alpha
   /// masks: points where alpha < cutoff are not hit. Only meshes whose material has a mask get a
-  /// filter. Builds with `threads` threads. Throws SceneError, and std::bad_alloc if Embree runs
-  /// out of memory.
-  RayCaster(const SceneData& scene, int threads);
+  /// filter. Builds with as many threads as `pool` has. Throws SceneError, std::bad_alloc if
+  /// Embree runs out of memory, and Stopped.
+  RayCaster(const SceneData& scene, const ThreadPool& pool);
   ~RayCaster();
   RayCaster(RayCaster&&) noexcept;
   RayCaster& operator=(RayCaster&&) noexcept;

@@ -31,20 +31,22 @@ VoxelBox box_around(const Portals& portals, const Portal& portal,
   return box;
 }
 
-/// The visible share of a portal from `eye`, in voxels, estimated by some of its faces.
-double share_seen(const RayCaster& rays, const GridTransform& transform, const V3d& eye,
-                  const Portals& portals, const Portal& portal, const Grid3<std::uint32_t>& label) {
-  // Only whether half of it is seen is asked, once for each region and portal.
+/// Whether half of a portal or more is seen from `eye`, in voxels, by some of its faces.
+bool mostly_seen(const RayCaster& rays, const GridTransform& transform, const V3d& eye,
+                 const Portals& portals, const Portal& portal, const Grid3<std::uint32_t>& label) {
+  // Asked for each pair of region and portal: the first faces that decide it are enough.
   constexpr std::uint64_t most_tried = 16;
   const std::uint64_t tried = std::min(portal.faces(), most_tried);
   const V3f from(transform.to_world(eye));
-  double seen = 0;
+  std::uint64_t seen = 0;
   for (std::uint64_t k = 0; k < tried; ++k) {
     const VoxelFace face = portals.face(portal, (2 * k + 1) * portal.faces() / (2 * tried));
     const V3d to = transform.to_world(face.point(label.voxel(face.voxel), 0.5, 0.5));
-    seen += rays.occluded({from, V3f(to) - from, 1.0F}) ? 0 : 1;
+    if (!rays.occluded({from, V3f(to) - from, 1.0F})) ++seen;
+    if (2 * seen >= tried) return true;
+    if (2 * (seen + tried - k - 1) < tried) return false;
   }
-  return seen / static_cast<double>(tried);
+  return false;
 }
 
 /// The centre of each region's voxels.
@@ -80,8 +82,7 @@ void PortalFaces::prepare(const PrepareContext& context, const SurfaceLookup& lo
     const V3d eye = V3d(labels.label.voxel(labels.regions[r].root)) + V3d(0.5);
     const auto sees = [&](const Portal& portal) {
       return settings_.portal == PortalChoice::last &&
-             share_seen(context.scene.rays(), transform, eye, *portals_, portal, labels.label) >=
-                 0.5;
+             mostly_seen(context.scene.rays(), transform, eye, *portals_, portal, labels.label);
     };
     find_exits(r, centres, power, labels, sees);
   });

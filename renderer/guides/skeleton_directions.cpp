@@ -36,6 +36,7 @@ void SkeletonDirections::prepare(const PrepareContext& context) {
     ImportancePaths paths(graph, importance, settings_.aim);
     const auto first = static_cast<std::uint32_t>(i) * nodes_of_part;
     for (std::uint32_t node = first; node < std::min(count, first + nodes_of_part); ++node) {
+      context.pool.check_stop();
       const V3f from = position(node);
       const auto sees = [&](std::uint32_t other) {
         return graph.in_ball(other, node) ||

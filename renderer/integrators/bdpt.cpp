@@ -93,13 +93,16 @@ class Bdpt : public GuidedIntegrator<Guide> {
     for (std::size_t k = 0; k < batch.states.size(); ++k) {
       accumulate(image.pixels[batch.pixels[k]], batch.radiance[k], counters);
     }
-    queue.flush(context.scene.rays(), counters, [&](const Contribution& c) {
-      accumulate(image.pixels[c.pixel], c.value * c.weight, counters);
-      arrived(c);
-      if (guide_.learns()) batch.gathered.add(c.path, c.t - 1, c.value * c.weight);
-      layers_.strategy(context.layers, c.s, c.t, c.pixel, c.value, c.weight);
-      layers_.distribution(context.layers, c.distribution, c.pixel, c.value * c.weight);
-    });
+    queue.flush(
+        context.scene.rays(), counters,
+        [&](const Contribution& c) {
+          accumulate(image.pixels[c.pixel], c.value * c.weight, counters);
+          arrived(c);
+          if (guide_.learns()) batch.gathered.add(c.path, c.t - 1, c.value * c.weight);
+          layers_.strategy(context.layers, c.s, c.t, c.pixel, c.value, c.weight);
+          layers_.distribution(context.layers, c.distribution, c.pixel, c.value * c.weight);
+        },
+        [&] { context.check_stop(); });
     if (guide_.learns()) batch.gathered.record(guide_, accumulator);
   }
   /// Starts the paths of the tile from pixel `first` on, and counts them.
@@ -203,6 +206,7 @@ class PairedBdpt final : public Bdpt<Guide> {
     std::vector<Rng> rngs = {};
     std::array<std::uint32_t, EyeBatch::size> chosen = {};  // emitters of s = 1
     ShadowQueue<Contribution> queue = {};
+    SparseStop stop = {};
   };
 
   static void walk_light(const IterationContext& context, Pairs& pairs, Counters& counters) {
@@ -223,6 +227,7 @@ class PairedBdpt final : public Bdpt<Guide> {
       }
     };
     walk.trace_paths(pairs.eye.states, choose, [&](std::size_t i, int depth) {
+      pairs.stop.check(context);
       Base::gather_hit(context, counts, pairs.eye, i, depth);
       const Vertex& v = pairs.eye.vertex(i, depth);
       const int longest = Base::longest_light_path(v, depth);
@@ -339,6 +344,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
           walk.trace_paths(
               part.batch.states, [](std::size_t, int) {},
               [&](std::size_t k, int depth) {
+                part.stop.check(context);
                 Base::gather_hit(context, counts, part.batch, k, depth);
                 join_lights(part, k, depth);
               });
@@ -363,6 +369,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
     EyePaths batch;
     ShadowQueue<Contribution> queue;
     CellStatistics::Accumulator accumulator;
+    SparseStop stop = {};
   };
 
   static void arrived(const Contribution& c, CellStatistics::Accumulator& accumulator) {

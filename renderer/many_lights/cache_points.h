@@ -33,8 +33,8 @@ class CachePoints {
   CachePoints(int points, int neighbours, Keep keep)
       : wanted_(static_cast<std::size_t>(points)), neighbours_(neighbours), keep_(keep) {}
 
-  /// Chooses the points and tests all lights at them. Throws std::runtime_error if the bits would
-  /// take more than half of the free memory.
+  /// Chooses the points and tests all lights at them. Throws MemoryLimitError if there is no memory
+  /// for the bits.
   Counters build(const LightPass& pass);
 
   /// The nearest cache points of a shading point.

@@ -13,7 +13,7 @@ namespace lacuna {
 
 /// Thrown from an iteration when IterationContext::stop returned true. Its partial image is
 /// discarded; running the iteration again gives the same result.
-struct IterationStopped {};
+struct IterationStopped : Stopped {};
 
 /// The inputs of one iteration.
 struct IterationContext {
@@ -22,14 +22,30 @@ struct IterationContext {
   const ThreadPool& pool;
   std::uint64_t seed;
   std::uint64_t iteration;  ///< < 2^32
-  /// Called between tiles, by several threads. When it returns true, IterationStopped is thrown.
+  /// Called by several threads, between tiles, batches of paths and whatever else may take a
+  /// second. When it returns true, IterationStopped is thrown.
   const std::function<bool()>& stop;
   /// One image for each layer that the integrator fills: black at first, of the picture's size.
   std::span<Image> layers = {};
+
+  void check_stop() const {
+    if (stop()) throw IterationStopped{};
+  }
+};
+
+/// Asks whether to stop at one of 64 calls: asking reads a clock, which a short step must not pay.
+class SparseStop {
+ public:
+  void check(const IterationContext& context) {
+    if (++calls_ % 64 == 0) context.check_stop();
+  }
+
+ private:
+  std::uint32_t calls_ = 0;
 };
 
 /// The inputs of prepare(), before the first iteration. `space` builds an artefact of the analysis
-/// when it is first requested.
+/// when it is first requested. Loops ask `pool` whether to stop (ThreadPool::check_stop()).
 struct PrepareContext {
   const Scene& scene;
   const ThreadPool& pool;

@@ -27,6 +27,7 @@ Counters light_pass(const IterationContext& context, const LightPathSetting& set
     std::vector<std::uint32_t> choices;
     const std::int64_t end = std::min(paths, (i + 1) * part);
     for (std::int64_t first = i * part; first < end; first += Batch::size) {
+      context.check_stop();
       rngs.clear();
       choices.clear();
       for (std::int64_t j = first; j < std::min(end, first + Batch::size); ++j) {

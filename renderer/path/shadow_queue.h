@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <span>
 #include <vector>
 
 #include "renderer/path/counters.h"
@@ -22,11 +24,18 @@ class ShadowQueue {
   std::size_t size() const { return rays_.size(); }
 
   /// Traces all rays, calls `lit(value)` for each unoccluded contribution, and empties the queue.
-  template <class Lit>
-  void flush(const RayCaster& caster, Counters& counters, Lit&& lit) {
+  /// `between()` is called between some ten thousand rays; it may throw.
+  template <class Lit, class Between = void (*)()>
+  void flush(
+      const RayCaster& caster, Counters& counters, Lit&& lit, Between&& between = [] {}) {
+    constexpr std::size_t together = 1 << 14;
     counters.shadow_rays += rays_.size();
     occluded_.resize(rays_.size());
-    caster.occluded(rays_, occluded_);
+    for (std::size_t first = 0; first < rays_.size(); first += together) {
+      if (first > 0) between();
+      const std::size_t n = std::min(together, rays_.size() - first);
+      caster.occluded(std::span(rays_).subspan(first, n), std::span(occluded_).subspan(first, n));
+    }
     for (std::size_t i = 0; i < rays_.size(); ++i) {
       if (occluded_[i] == 0) lit(pending_[i]);
     }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <vector>
 
 #include "renderer/path/contexts.h"
@@ -34,17 +33,12 @@ struct Tile {
 template <class Work>
 Counters for_each_part(const IterationContext& context, int n, Work&& work) {
   std::vector<Counters> counters(static_cast<std::size_t>(n));
-  std::atomic<bool> stopped{false};
   context.pool.for_each(n, [&](int i) {
-    if (stopped || context.stop()) {
-      stopped = true;
-      return;
-    }
+    context.check_stop();
     Counters count;  // not in the shared array: neighbours would share a cache line
     work(i, count);
     counters[static_cast<std::size_t>(i)] = count;
   });
-  if (stopped) throw IterationStopped{};
   Counters sum;
   for (const Counters& c : counters) sum += c;
   return sum;
@@ -96,8 +90,10 @@ struct CameraSample {
 };
 
 /// Starts a path for each pixel of the tile from number `first` on, as many as fit into `batch`.
+/// Throws IterationStopped: a tile of long paths takes minutes.
 inline void start_paths(const IterationContext& context, const Image& image, const Tile& tile,
                         int first, EyeBatch& batch) {
+  context.check_stop();
   batch.states.clear();
   for (int i = first; i < std::min(first + int{EyeBatch::size}, tile.pixels()); ++i) {
     const V2i at = tile.pixel(i);

@@ -32,7 +32,7 @@ Scene::Scene(SceneData data, const SceneNeeds& needs,
     : data_(std::make_unique<SceneData>(std::move(data))),
       bounds_(data_->bounds()),
       triangles_(*data_),
-      rays_((decode_textures(needs, pool), RayCaster(*data_, pool.threads()))) {
+      rays_((decode_textures(needs, pool), RayCaster(*data_, pool))) {
   if (needs.materials) make_uniform_lobes();
   if (needs.emission) {
     emitters_ = std::make_unique<EmitterSet>(
@@ -74,7 +74,10 @@ void Scene::decode_textures(const SceneNeeds& needs, const ThreadPool& pool) {
     throw SceneError("the textures have " + std::to_string(texels) +
                      " texels together; allowed: up to " + std::to_string(max_scene_texels));
   }
-  for (Texture* texture : large) texture->decode();
+  for (Texture* texture : large) {
+    pool.check_stop();
+    texture->decode();
+  }
   pool.for_each(static_cast<int>(small.size()),
                 [&](int i) { small[static_cast<std::size_t>(i)]->decode(); });
   textures_decoded_ = static_cast<int>(wanted.size());

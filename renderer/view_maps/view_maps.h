@@ -22,8 +22,8 @@ std::vector<MapTexel> map_texels(const Paraboloid& map);
 /// eighth of a right angle, within which a distance is far less certain than its eleven bits.
 class ViewMaps {
  public:
-  /// `extent`: the largest distance, scene units. Throws std::runtime_error if the maps would take
-  /// more than half of the free memory.
+  /// `extent`: the largest distance, scene units. Throws MemoryLimitError if there is no memory for
+  /// the maps.
   ViewMaps(std::uint32_t leaves, int map_size, float extent);
 
   const Paraboloid& map() const { return map_; }

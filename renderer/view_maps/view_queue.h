@@ -11,7 +11,7 @@ namespace lacuna {
 /// maps.
 ///
 /// One thread at a time processes the pairs of a view node. `scene_empty`: there is nothing to
-/// render. Throws std::runtime_error if the maps would take more than half of the free memory.
+/// render. Throws MemoryLimitError if there is no memory for the maps.
 ManyViewsCounts render_breadth_first(const ViewRendering& rendering, const ViewTree& views,
                                      bool scene_empty, bool share, const ThreadPool& pool,
                                      const UseMap& use);

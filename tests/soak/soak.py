@@ -45,6 +45,7 @@ def fuzz(seconds):
 
 
 CHECKS = {
+    "stops": lambda _: run("seconds from SIGTERM to the end of a busy job", [sys.executable, "tests/soak/stops.py"]),
     "kills": lambda _: kills(20),
     "service": lambda _: service(200),
     "faults": lambda _: run("faults of the machine, which cost no job", ["node", "tests/soak/faults.mjs"]),

@@ -156,6 +156,33 @@ test("not enough memory: exit 71, resumable, and it says what to do", async (t) 
   assert.match(stateOf(folder).error, /^out of memory/);
 });
 
+// Each method asks for more memory than a machine has, all at once, when it knows how much.
+const hungry = {
+  "importance_cache: the distributions of .* light paths": {
+    resolution: [512, 512],
+    integrator: { type: "bdpt", connections: { type: "importance_cache", record_density: 0.05, light_paths: 20000 } },
+  },
+  "many_lights: the visibility of .* cache points": {
+    resolution: [1024, 1024],
+    integrator: { type: "many_lights", light_paths: 1000000, visibility: { type: "probabilistic", cache_points: 1000000 } },
+  },
+  "view_maps: maps of .* views": {
+    integrator: { type: "many_lights", light_paths: 500000, visibility: { type: "view_maps", map_size: 256, levels: 8 } },
+  },
+};
+for (const [part, content] of Object.entries(hungry)) {
+  for (const limit of ["-d", "-v"]) {
+    test(`more than ulimit ${limit} allows, ${part.split(":")[0]}: exit 71, resumable, with the bytes`, async (t) => {
+      const folder = temporaryFolder(t);
+      job(folder, "a.json", { ...content, budget: { iterations: 1 } });
+      const { code, err } = await runAfter(`ulimit ${limit} 2000000`, folder, "render", "a.json", "-q", "-t", "2");
+      assert.equal(code, 71, err);
+      assert.match(err, new RegExp(`error: out of memory: ${part}.*: [0-9.]+ MiB, of [0-9.]+ MiB that are available; .*goes on`));
+      assert.equal(stateOf(folder).state, "interrupted");
+    });
+  }
+}
+
 test("wherever memory runs out, it ends as itself and goes on with more", async (t) => {
   const folder = temporaryFolder(t);
   job(folder, "a.json", { scene: "ajar.glb", resolution: [192, 108], layers: ["albedo", "variance"] });
