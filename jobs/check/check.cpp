@@ -23,7 +23,9 @@ std::vector<std::string> check_job(const JobSpec& spec, const RunContext& contex
 SceneCounts check_scene(const std::filesystem::path& file, const ThreadPool& pool) {
   if (const std::string kind = file.extension().string(); kind != ".glb" && kind != ".gltf") {
     throw SceneError(
-        fmt::format("\"{}\" ends in \"{}\"; allowed: .glb and .gltf", file.string(), kind));
+        fmt::format("\"{}\" ends in \"{}\"; allowed: .glb and .gltf; Blender's glTF exporter "
+                    "converts other formats, or `assimp export {} {}`",
+                    file.string(), kind, file.filename().string(), file.stem().string() + ".glb"));
   }
   SceneData data = load_gltf(file);
   SceneCounts counts{data.triangle_count(), data.materials.size() - 1,  // without glTF's own

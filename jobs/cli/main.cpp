@@ -29,6 +29,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   int code = lacuna::exit_done;
   lacuna::add_render(app, code);
+  lacuna::add_extend(app, code);
   lacuna::add_check(app, code);
   lacuna::add_schema(app, code);
   lacuna::add_list(app, code);

@@ -7,6 +7,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
+#include "jobs/cli/render_job.h"
 #include "jobs/cli/results_folder.h"
 #include "jobs/cli/terminal.h"
 #include "jobs/render/run_job.h"
@@ -69,14 +70,14 @@ std::string advice_for(Obstacle obstacle) {
   return "";
 }
 
-int render(const fs::path& what, const fs::path& out, int threads, bool quiet) {
+}  // namespace
+
+int render_folder(const JobFolder& folder, const RenderOptions& options) {
   // A full disk or a size limit must become an error, not the end of the process.
   signal(SIGXFSZ, SIG_IGN);
-  const JobFolder folder = fs::is_directory(what) ? JobFolder(fs::absolute(what).lexically_normal())
-                                                  : folder_for(what, out);
-  Terminal terminal(folder.file("log.txt"), quiet);
-  const RunContext context{DataRoot::from_environment(), ScenesRoots::from_environment(), threads,
-                           interrupt_requested(), terminal};
+  Terminal terminal(folder.file("log.txt"), options.quiet);
+  const RunContext context{DataRoot::from_environment(), ScenesRoots::from_environment(),
+                           options.threads, interrupt_requested(), terminal};
   try {
     if (folder.read_state().state == State::done) {
       terminal.milestone(fmt::format("{}: done already", folder.dir().string()));
@@ -95,15 +96,11 @@ int render(const fs::path& what, const fs::path& out, int threads, bool quiet) {
   return exit_done;
 }
 
-}  // namespace
-
 void add_render(CLI::App& app, int& code) {
-  struct RenderOptions {
+  struct Options : RenderOptions {
     fs::path job, out;
-    int threads = -1;
-    bool quiet = false;
   };
-  const auto o = std::make_shared<RenderOptions>();
+  const auto o = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("render", "Render a job file, or continue a job's folder");
   command->add_option("JOB", o->job, "a job file (JSON), or a job's folder")
       ->required()
@@ -114,7 +111,11 @@ void add_render(CLI::App& app, int& code) {
                    "number of threads instead of the job's; 0: one per core")
       ->check(CLI::Range(0, 1024));
   command->add_flag("-q,--quiet", o->quiet, "show warnings and errors only");
-  command->callback([o, &code] { code = render(o->job, o->out, o->threads, o->quiet); });
+  command->callback([o, &code] {
+    const JobFolder folder =
+        fs::is_directory(o->job) ? JobFolder(folder_path(o->job)) : folder_for(o->job, o->out);
+    code = render_folder(folder, *o);
+  });
 }
 
 }  // namespace lacuna

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <system_error>
+#include <utility>
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/available_memory.h"
@@ -205,7 +206,14 @@ void RenderLoop::add_row() {
     const auto error = curve_.rows().back().value(m);
     if (error) line += fmt::format(", {} {:.4g}", enum_name(m), *error);
   }
+  if (curve_.rows().back().at_floor) line += ", at the reference's noise";
   task_.observer.milestone(line);
+  if (curve_.rows().back().at_floor && !std::exchange(floor_told_, true)) {
+    task_.observer.milestone(
+        fmt::format("the reference's own noise, rmse {:.4g}, is more than half of the mse: errors "
+                    "fall no further; a better reference shows more (reference_iterations)",
+                    std::sqrt(*task_.reference->mse)));
+  }
 }
 
 void RenderLoop::write_checkpoint_now() {

@@ -84,6 +84,7 @@ class RenderLoop {
   Counters counters_;
   std::uint64_t refused_before_ = 0;  // by processes before this one
   std::uint64_t saved_ = 0;           // iterations in the checkpoint
+  bool floor_told_ = false;           // that the reference bounds the errors
   RenderClock clock_;
   Spent completed_;  // when the last finished iteration ended
   Pace checkpoints_, previews_, progress_;

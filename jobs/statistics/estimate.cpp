@@ -85,6 +85,21 @@ bool may_be_equal(std::span<const double> a, std::span<const double> b) {
   return student_within(std::abs(d.mean) / std::sqrt(d.variance), d.df) <= confidence;
 }
 
+std::size_t samples_for_half(std::size_t n) {
+  if (n < 2) throw std::domain_error("one value has no interval");
+  const auto width = [](std::size_t m) {
+    return student_bound(confidence, static_cast<double>(m - 1)) /
+           std::sqrt(static_cast<double>(m));
+  };
+  const double half = width(n) / 2;
+  std::size_t below = n, enough = 4 * n;  // Student's factor falls: 4 n is always enough
+  while (enough - below > 1) {
+    const std::size_t m = (below + enough) / 2;
+    (width(m) <= half ? enough : below) = m;
+  }
+  return enough;
+}
+
 Estimate mean(std::span<const double> values) {
   const Moments m = moments(values);
   Estimate e{m.mean, {}, m.n};

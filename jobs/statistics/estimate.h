@@ -35,6 +35,10 @@ Estimate ratio_of_means(std::span<const double> a, std::span<const double> b);
 /// Throws likewise; false where there is no interval.
 bool may_be_equal(std::span<const double> a, std::span<const double> b);
 
+/// The least number of values whose interval is expected to be at most half as wide as that of `n`
+/// >= 2 values of equal scatter: less than 4 n, as Student's factor falls too.
+std::size_t samples_for_half(std::size_t n);
+
 /// The plain mean of values of any sign, with Student's interval. Throws std::domain_error: no
 /// value.
 Estimate mean(std::span<const double> values);

@@ -44,7 +44,8 @@ class Comparison {
  private:
   void read() {
     for (const SweepRun& run : plan_.runs) {
-      answers_.results.emplace_back(read_result(sweep_.folder(run), answers_.axes));
+      answers_.results.emplace_back(
+          read_result(sweep_.folder(run), answers_.axes, plan_.cells[run.cell].job.budget));
       ++answers_.states[answers_.results.back().state.state];
     }
   }
@@ -203,12 +204,34 @@ class Comparison {
       w.emplace_back(
           "one seed for each cell: there are no intervals; \"seeds\" 3 or more has them");
     }
+    hint_at_seeds();
     if (!answers_.tainted.empty()) {
       const bool wall = sweep_.spec().compare_at.clock == SweepClock::seconds;
       w.push_back(fmt::format("{} of {} runs were timed while the machine did something else{}",
                               answers_.tainted.size(), plan_.runs.size(),
                               wall ? "; compare_at.clock \"cpu_seconds\" suffers less" : ""));
     }
+  }
+
+  /// How many seeds would halve the intervals, where the widest of errors spans a factor of two.
+  void hint_at_seeds() {
+    constexpr double wide = 2;
+    double widest = 1;
+    std::size_t seeds = 0;
+    for (const CellAnswer& cell : answers_.cells) {
+      for (const ErrorAtTime& at : cell.at) {
+        if (!at.error || !at.error->interval) continue;
+        const double span = at.error->interval->high / at.error->interval->low;
+        if (span <= widest) continue;
+        widest = span;
+        seeds = at.error->n;
+      }
+    }
+    if (widest < wide) return;
+    answers_.warnings.push_back(
+        fmt::format("{} seeds: intervals of errors span up to a factor of {:.2g}; about {} seeds "
+                    "would halve them (in the logarithm)",
+                    seeds, widest, samples_for_half(seeds)));
   }
 
   const SweepFolder& sweep_;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -69,14 +70,23 @@ class NumberTable {
   std::vector<std::vector<double>> rows_;
 };
 
-/// A later picture would have been finished one more iteration after the last.
-double held_until(const NumberTable& table, const std::string& clock) {
-  const std::size_t last = table.rows() - 1;
-  const double time = table.at(last, clock), iterations = table.at(last, "iteration");
-  return iterations > 0 ? time * (1 + 1 / iterations) : time;
+/// The end of a finished job's budget of `clock`; 0 unless that alone can have ended it.
+double budget_end(const Budget& budget, const std::string& clock) {
+  if (budget.iterations || budget.error) return 0;
+  if (budget.seconds && budget.cpu_seconds) return 0;
+  return (clock == "seconds" ? budget.seconds : budget.cpu_seconds).value_or(0);
 }
 
-ErrorCurve error_curve(const NumberTable& table, const CurveAxes& axes) {
+/// A later picture would have been finished one more iteration after the last; and no later one was
+/// finished within the budget: an iteration under way at its end is given up.
+double held_until(const NumberTable& table, const CurveAxes& axes, const Budget& budget) {
+  const std::size_t last = table.rows() - 1;
+  const double time = table.at(last, axes.clock), iterations = table.at(last, "iteration");
+  const double next = iterations > 0 ? time * (1 + 1 / iterations) : time;
+  return std::max(next, budget_end(budget, axes.clock));
+}
+
+ErrorCurve error_curve(const NumberTable& table, const CurveAxes& axes, const Budget& budget) {
   std::vector<CurvePoint> points;
   const bool referenced = needs_reference(axes.metric);
   for (std::size_t i = 0; i < table.rows(); ++i) {
@@ -86,7 +96,7 @@ ErrorCurve error_curve(const NumberTable& table, const CurveAxes& axes) {
     if (p.time > 0 && later && p.error > 0 && std::isfinite(p.error)) points.push_back(p);
   }
   if (points.empty()) return {};
-  return {std::move(points), held_until(table, axes.clock)};
+  return {std::move(points), held_until(table, axes, budget)};
 }
 
 std::optional<double> efficiency(const ErrorCurve& curve, ErrorMetric metric) {
@@ -149,7 +159,7 @@ void read_report(const fs::path& file, Json& report) {
 
 }  // namespace
 
-RunResult read_result(const JobFolder& folder, const CurveAxes& axes) {
+RunResult read_result(const JobFolder& folder, const CurveAxes& axes, const Budget& budget) {
   RunResult result;
   if (!fs::exists(folder.file("state.json"))) return result;
   result.state = folder.read_state();
@@ -168,7 +178,8 @@ RunResult read_result(const JobFolder& folder, const CurveAxes& axes) {
   if (!fs::exists(folder.file("curve.csv"))) return result;
   const NumberTable table(folder.file("curve.csv"));
   if (table.rows() == 0) return result;
-  result.curve = error_curve(table, axes);
+  const bool done = result.state.state == State::done;
+  result.curve = error_curve(table, axes, done ? budget : Budget{});
   result.efficiency = efficiency(result.curve, axes.metric);
   tell_bias(table, report, result);
   return result;

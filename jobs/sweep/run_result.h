@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "jobs/spec/job_spec.h"
 #include "jobs/statistics/error_curve.h"
 #include "jobs/store/job_folder.h"
 #include "renderer/settings/error_metrics.h"
@@ -38,9 +39,9 @@ struct RunResult {
   std::optional<double> mhz;
 };
 
-/// Reads curve.csv and report.json of a folder, if they exist. Squared errors are those of the
-/// metric (squared metrics as they are, others squared). Throws std::runtime_error that names a
-/// damaged file.
-RunResult read_result(const JobFolder& folder, const CurveAxes& axes);
+/// Reads curve.csv and report.json of a folder, if they exist. `budget`: of its job. Squared errors
+/// are those of the metric (squared metrics as they are, others squared). Throws std::runtime_error
+/// that names a damaged file.
+RunResult read_result(const JobFolder& folder, const CurveAxes& axes, const Budget& budget);
 
 }  // namespace lacuna

@@ -26,10 +26,42 @@ std::string field(const JsonValue& value) {
   return field(v.is_string() ? v.get<std::string>() : value.text);
 }
 
+/// The values in an object as settings of their own, by keys joined with '.', at any depth.
+void flatten(const std::string& name, const OrderedJson& value, JsonTable<std::string>& flat) {
+  for (const auto& [key, inner] : value.items()) {
+    const std::string below = name + '.' + key;
+    if (inner.is_object()) {
+      flatten(below, inner, flat);
+    } else {
+      flat[below] = inner.is_string() ? inner.get<std::string>() : json_text(inner);
+    }
+  }
+}
+
+/// The settings of a cell that lie in objects.
+JsonTable<std::string> flat_settings(const SweepCell& cell) {
+  JsonTable<std::string> flat;
+  for (const auto& [pointer, value] : cell.settings) {
+    const OrderedJson v = parse_own(value.text);
+    if (v.is_object()) flatten(pointer, v, flat);
+  }
+  return flat;
+}
+
+/// The names of flat_settings() of all cells.
+std::vector<std::string> flat_columns(const SweepPlan& plan) {
+  std::set<std::string> names;
+  for (const SweepCell& cell : plan.cells) {
+    for (const auto& [name, value] : flat_settings(cell)) names.insert(name);
+  }
+  return {names.begin(), names.end()};
+}
+
 }  // namespace
 
 std::string sweep_table(const SweepFolder& sweep) {
   std::string header, rows;
+  const std::vector<std::string> flat = flat_columns(sweep.plan());
   for (const SweepRun& run : sweep.plan().runs) {
     const std::filesystem::path file = sweep.folder(run).file("curve.csv");
     if (!std::filesystem::exists(file)) continue;
@@ -39,12 +71,18 @@ std::string sweep_table(const SweepFolder& sweep) {
                     cell.baseline ? std::to_string(*cell.baseline + 1) : "", run.replicate + 1,
                     sweep.plan().job_of(run).seed, enum_name(sweep.state(run).state));
     for (const auto& [pointer, value] : cell.settings) start += ',' + field(value);
+    const JsonTable<std::string> own = flat_settings(cell);
+    for (const std::string& name : flat) {
+      const auto found = own.find(name);
+      start += ',' + (found != own.end() ? field(found->second) : "");
+    }
     std::istringstream curve(read_file(file, max_curve_bytes));
     std::string line;
     std::getline(curve, line);
     if (header.empty()) {
       header = "run,cell,baseline,replicate,seed,state";
       for (const auto& [pointer, value] : cell.settings) header += ',' + field(pointer);
+      for (const std::string& name : flat) header += ',' + field(name);
       header += ',' + line + '\n';
     }
     while (std::getline(curve, line))

@@ -71,7 +71,13 @@ class ManyLights final : public Integrator {
     if (random() && random()->filter_radius > 0) filter.emplace(image, *random());
     for (const BlockRange& range : visibility_.passes(lights)) {
       if (lights.size() > 0) {
-        counters += visibility_.begin({context, terms, settings_.max_depth, least_alpha_, range});
+        counters += visibility_.begin(
+            {.context = context,
+             .terms = terms,
+             .max_depth = settings_.max_depth,
+             .least_alpha = least_alpha_,
+             .lights = range,
+             .sampled = random() ? std::size_t(random()->lights) : ~std::size_t{0}});
       }
       pass.end(seconds_.visibility);
       counters += gather(

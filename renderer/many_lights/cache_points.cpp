@@ -27,7 +27,18 @@ struct ByteTable {
 };
 const ByteTable bytes;
 
+/// Of the tests of the gathered lights: what cache points may take where lights are sampled.
+constexpr double largest_share = 0.25;
+
 }  // namespace
+
+std::size_t CachePoints::affordable(const LightPass& pass, std::size_t shading_points) const {
+  const std::size_t lights = pass.terms.lights().size();
+  if (pass.gathered() == lights) return wanted_;
+  const double most =
+      largest_share * double(shading_points) * double(pass.gathered()) / double(lights);
+  return std::clamp<std::size_t>(static_cast<std::size_t>(most), 1, wanted_);
+}
 
 std::vector<std::uint32_t> CachePoints::choose(const LightPass& pass, Counters& counters) {
   const IterationContext& context = pass.context;
@@ -52,8 +63,8 @@ std::vector<std::uint32_t> CachePoints::choose(const LightPass& pass, Counters& 
     there.push_back(of_pixel[p]);
     at.push_back(static_cast<std::uint32_t>(p));
   }
-  const auto groups =
-      split_points(there, wanted_, static_cast<float>(context.scene.bounds().radius()));
+  const auto groups = split_points(there, affordable(pass, there.size()),
+                                   static_cast<float>(context.scene.bounds().radius()));
   std::vector<std::uint32_t> chosen;
   weights_.clear();
   Rng rng(context.seed, context.iteration, 0, Rng::Purpose::integrator);
@@ -72,13 +83,13 @@ Counters CachePoints::build(const LightPass& pass) {
   scales_.assign(pixels.size(), 0.0);
   blocks_ = pass.terms.lights().blocks();
   if (keep_ == Keep::visibilities) {
-    require_free(double(pixels.size()) * double(blocks_) * sizeof(std::uint64_t), [&] {
+    require_free(double(pixels.size()) * double(blocks_) * sizeof(Seen), [&] {
       return fmt::format(
           "many_lights: the visibility of {} lights at {} cache points; lower "
           "cache_points or light_paths",
           pass.terms.lights().size(), pixels.size());
     });
-    bits_.assign(pixels.size() * blocks_, 0);
+    seen_.assign(pixels.size() * blocks_, {});
   }
   constexpr std::size_t together = 16;
   const int parts = static_cast<int>((pixels.size() + together - 1) / together);
@@ -121,13 +132,14 @@ void CachePoints::fill(const LightPass& pass, std::size_t point, const ShadingPo
       sum += t;
       sum2 += t * t;
       if (keep_ == Keep::visibilities) {
-        bits_[point * blocks_ + s.block] |= std::uint64_t{1} << s.light;
+        seen_[point * blocks_ + s.block].visible |= std::uint64_t{1} << s.light;
       }
     });
   };
   for (std::size_t b = 0; b < lights.blocks(); ++b) {
     if (pass.terms.may_light(b, here) != 0) {
       pass.terms.evaluate(at, b, terms);
+      if (keep_ == Keep::visibilities) seen_[point * blocks_ + b].known = terms.lit;
       for_each_bit(terms.lit, [&](int i) {
         queue.add(pass.terms.ray(at, b, i), {b, i, terms.luminance[i]});
       });
@@ -173,15 +185,22 @@ float CachePoints::deviation(const ShadingPoint& at, const Near& near) const {
   return static_cast<float>(std::sqrt(variance) * double(at.scale));
 }
 
-void CachePoints::expected(const Near& near, std::size_t block, Lanes& q) const {
-  for (int k = 0; k < Lanes::size / 8; ++k) {
-    Float8 sum;
-    for (std::size_t j = 0; j < static_cast<std::size_t>(near.n); ++j) {
-      const std::uint64_t word = bits_[near.index[j] * blocks_ + block];
-      sum = sum + near.weight[j] * Float8::load(bytes.of[word >> (8 * k) & 0xff].data());
-    }
-    q.set(k, sum);
+std::uint64_t CachePoints::expected(const Near& near, std::size_t block, Lanes& q) const {
+  std::uint64_t any_known = 0;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(near.n); ++j) {
+    any_known |= seen_[near.index[j] * blocks_ + block].known;
   }
+  for (int k = 0; k < Lanes::groups; ++k) {
+    Float8 visible, known;
+    for (std::size_t j = 0; j < static_cast<std::size_t>(near.n); ++j) {
+      const Seen& seen = seen_[near.index[j] * blocks_ + block];
+      const Float8 weight = near.weight[j];
+      visible = visible + weight * Float8::load(bytes.of[seen.visible >> (8 * k) & 0xff].data());
+      known = known + weight * Float8::load(bytes.of[seen.known >> (8 * k) & 0xff].data());
+    }
+    q.set(k, keep_where(known > 0, visible / known));
+  }
+  return any_known;
 }
 
 }  // namespace lacuna

@@ -13,16 +13,21 @@ struct LightPass {
   int max_depth;      ///< edges of an eye path
   float least_alpha;  ///< Bsdf::is_vpl_receiver()
   BlockRange lights = {};
+  std::size_t sampled = ~std::size_t{0};  ///< lights gathered at a shading point, if not all
+
+  std::size_t gathered() const { return std::min(sampled, terms.lights().size()); }
 };
 
-/// n_d / N (Nabata et al., eq. 13): eye rays per light, with one eye ray for each shading point.
-inline float eye_rays_per_light(const VplSet& lights) {
-  return 1 / static_cast<float>(std::max<std::size_t>(1, lights.size()));
+/// n_d / N (Nabata et al., eq. 13): eye rays per gathered light, with one eye ray for each shading
+/// point.
+inline float eye_rays_per_light(const LightPass& pass) {
+  return 1 / static_cast<float>(std::max<std::size_t>(1, pass.gathered()));
 }
 
 /// Shading points at which all virtual lights are tested: they store one bit of visibility for each
 /// light, and the variance of the lights' contributions (Nabata et al., 3.1). They are new in each
-/// iteration, like the lights.
+/// iteration, like the lights. Where only some lights are gathered at a shading point, there are
+/// fewer cache points, so that their tests are at most a quarter of those of the gathered lights.
 class CachePoints {
  public:
   static constexpr int max_neighbours = 8;
@@ -50,9 +55,11 @@ class CachePoints {
   float deviation(const ShadingPoint& at, const Near& near) const;
   /// Its root mean square over the picture.
   float deviation() const { return static_cast<float>(std::sqrt(picture_variance_)); }
-  /// q: the weighted mean of the nearest points' visibility of each light of `block`. Requires
+  /// q: the weighted mean of the nearest points' visibility of each light of `block`, over those at
+  /// which the light has a contribution: behind a point's horizon its visibility is not known.
+  /// Returns a mask of the lights that at least one point knows; q of the others is 0. Requires
   /// Keep::visibilities.
-  void expected(const Near& near, std::size_t block, Lanes& q) const;
+  std::uint64_t expected(const Near& near, std::size_t block, Lanes& q) const;
 
   std::size_t size() const { return variances_.size(); }
   /// For the report.
@@ -61,6 +68,8 @@ class CachePoints {
   }
 
  private:
+  /// The largest number of cache points for a picture with so many shading points.
+  std::size_t affordable(const LightPass& pass, std::size_t shading_points) const;
   /// Chooses the pixels of the cache points and sets weights_.
   std::vector<std::uint32_t> choose(const LightPass& pass, Counters& counters);
   void fill(const LightPass& pass, std::size_t point, const ShadingPoint& at, Counters& counters);
@@ -75,7 +84,11 @@ class CachePoints {
   std::vector<double> weights_;    // share of the picture's shading points in its cluster
   double picture_variance_ = 0;
   std::size_t blocks_ = 0;
-  std::vector<std::uint64_t> bits_;  // blocks_ words for each point
+  // For each point and block: which lights have a contribution, and which of them are visible.
+  struct Seen {
+    std::uint64_t known = 0, visible = 0;
+  };
+  std::vector<Seen> seen_;
 };
 
 }  // namespace lacuna

@@ -9,6 +9,7 @@ void VplContributions::evaluate(const ShadingPoint& at, std::size_t block, Terms
   const int count = lights_.count(block);
   const std::uint64_t there = count < Lanes::size ? (std::uint64_t{1} << count) - 1 : all_lights;
   of &= there;
+  out.weight = weight;
   if (const DiffuseBlock* diffuse = lights_.diffuse(block)) {
     diffuse_terms(at, *diffuse, of, out);
   } else {

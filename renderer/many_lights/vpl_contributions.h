@@ -62,6 +62,7 @@ struct Terms {
   Lanes luminance;
   std::uint64_t lit = 0;       ///< mask of the lights that are not black
   std::uint64_t rejected = 0;  ///< mask of contributions that were not finite and were set to black
+  float weight = 1;            ///< factor of all of them: 1 / the probability of sampling a light
 };
 
 /// Evaluates the contributions of virtual lights with a bounded geometric term.

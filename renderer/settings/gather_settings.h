@@ -36,7 +36,12 @@ struct RandomLightsSettings {
 };
 template <class V>
 void describe(V& v, RandomLightsSettings& s) {
-  v("lights", s.lights, {.doc = "virtual lights for each shading point", .min = 1, .max = 1 << 20});
+  v("lights", s.lights,
+    {.doc =
+         "virtual lights for each shading point. A visibility has fewer cache points then, so that "
+         "their tests are at most a quarter of the tests of these lights",
+     .min = 1,
+     .max = 1 << 20});
   v("cull", s.cull,
     {.doc =
          "leave out groups of lights that all face away from the shading point or lie behind its "

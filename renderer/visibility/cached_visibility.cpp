@@ -5,7 +5,7 @@
 namespace lacuna {
 
 Counters ProbabilisticVisibility::begin(const LightPass& pass) {
-  other_rays_ = eye_rays_per_light(pass.terms.lights());
+  other_rays_ = eye_rays_per_light(pass);
   return points_.build(pass);
 }
 
@@ -24,14 +24,17 @@ ProbabilisticVisibility::At ProbabilisticVisibility::at(const ShadingPoint& poin
 
 void ProbabilisticVisibility::decide(At& at, std::size_t block, const Terms& terms,
                                      VisibilityEstimate& d) const {
-  points_.expected(at.near, block, d.untested);  // q
+  const std::uint64_t known = points_.expected(at.near, block, d.untested);  // q
   const auto least = static_cast<float>(settings_.epsilon_variance);
+  constexpr float unknown = std::numeric_limits<float>::infinity();  // such lights are tested
   const TestProbability chance = at.chance;
   SystematicSampler keys;
   for (int k = 0; k < Lanes::groups; ++k) {
     const Float8 q = d.untested.eight(k);
     const Float8 t = terms.luminance.eight(k);
-    keys.set(k, chance.of(t, max(least, q * (1 - q))), t);
+    const Mask8 is_known = mask_from_bits(static_cast<unsigned>(known >> (8 * k) & 0xff));
+    const Float8 var = select(is_known, max(least, q * (1 - q)), unknown);
+    keys.set(k, chance.of(t, var, terms.weight), t);
   }
   d.tests = keys.draw(at.rng.next_u32());
   for_each_bit(d.tests, [&](int i) {

@@ -5,7 +5,7 @@
 namespace lacuna {
 
 Counters RouletteVisibility::begin(const LightPass& pass) {
-  other_rays_ = eye_rays_per_light(pass.terms.lights());
+  other_rays_ = eye_rays_per_light(pass);
   return points_.build(pass);
 }
 
@@ -27,7 +27,7 @@ void RouletteVisibility::decide(At& at, std::size_t, const Terms& terms, Visibil
   SystematicSampler keys;
   for (int k = 0; k < Lanes::groups; ++k) {
     const Float8 t = terms.luminance.eight(k);
-    keys.set(k, chance.of(t, 1), t);
+    keys.set(k, chance.of(t, 1, terms.weight), t);
   }
   d.tests = keys.draw(at.rng.next_u32());
   d.untested.v.fill(0);

@@ -14,15 +14,17 @@ namespace lacuna {
 /// with n_0 - 1 the time of a light besides its test, in units of tests, and var the assumed
 /// variance of its visibility; at least `least`. It is 1 where A reaches sigma^2 (4.1). Veach's
 /// threshold, t sqrt(n) / sigma, is the case k = n, c = 0 (Veach 1997, 10.4.1). Everything is
-/// divided by sigma, so the result does not depend on brightness.
+/// divided by sigma, so the result does not depend on brightness. Where the lights are sampled, and
+/// contributions divided by the probability of that, t and sigma carry the same factor: it cancels.
 struct TestProbability {
   float k = 0;
   float c = 1;
   float least = 1;
   float over_sigma = 0;  ///< 1 / sigma; infinite where sigma is unknown: test every light
 
-  Float8 of(Float8 t, Float8 var) const {
-    const Float8 u = t * over_sigma;
+  /// `weight`: the factor in `t` that sigma does not have.
+  Float8 of(Float8 t, Float8 var, float weight = 1) const {
+    const Float8 u = t * (over_sigma / weight);
     const Float8 a = u * u * var;
     const Float8 rest = 1 - c * a;
     // NaN, from 0 times infinity, compares false: the light is tested.

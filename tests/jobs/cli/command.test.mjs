@@ -1,5 +1,5 @@
 import assert from "node:assert/strict";
-import { existsSync, readFileSync, symlinkSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, symlinkSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 
@@ -9,7 +9,7 @@ test("help and version", async (t) => {
   const folder = temporaryFolder(t);
   const help = await run(folder, "--help");
   assert.equal(help.code, 0);
-  for (const word of ["render", "check", "schema", "list", "compare", "cache", "71 out of memory", "75 interrupted"]) assert.ok(help.out.includes(word), word);
+  for (const word of ["render", "check", "schema", "extend", "list", "compare", "cache", "71 out of memory", "75 interrupted"]) assert.ok(help.out.includes(word), word);
   assert.match((await run(folder, "--version")).out, /^lacuna \d+\.\d+\.\d+\n$/);
   assert.equal((await run(folder, "paint")).code, 2);
   assert.equal((await run(folder)).code, 2);
@@ -60,7 +60,7 @@ test("check --scene: what a scene holds, or why it is none", async (t) => {
   writeFileSync(join(folder, "mesh.gltf"), "v 0 0 0\n");
   const other = await run(folder, "check", "--scene", "mesh.obj");
   assert.equal(other.code, 3);
-  assert.match(other.err, /"mesh\.obj" ends in "\.obj"; allowed: \.glb and \.gltf/);
+  assert.match(other.err, /"mesh\.obj" ends in "\.obj"; allowed: \.glb and \.gltf; .*`assimp export mesh\.obj mesh\.glb`/);
   const broken = await run(folder, "check", "--scene", "mesh.gltf");
   assert.match(broken.err, /JSON: it breaks off, or is none, at byte 1/);
   assert.doesNotMatch(broken.err, /exception|parse_error|literal/);
@@ -82,6 +82,47 @@ test("list: scenes and jobs", async (t) => {
   const folder = temporaryFolder(t);
   assert.match((await run(folder, "list", "--scenes")).out, /^cornell\.glb$/m);
   assert.equal((await run(folder, "list")).code, 0);
+  job(folder, "b.json", { label: "second" });
+  job(folder, "a.json", { label: "first" });
+  for (const name of ["a", "b"]) assert.equal((await run(folder, "render", `${name}.json`, "-q")).code, 0);
+  assert.equal((await run(folder, "render", "a.json", "-q", "--out", "others/x")).code, 0);
+  const names = async (...what) => (await run(folder, "list", ...what)).out.trimEnd().split("\n").slice(1)
+    .map((line) => line.split(/ +/).slice(0, 2).join(" "));
+  assert.deepEqual(await names(), ["a.job done", "b.job done"]);
+  assert.deepEqual(await names("b.job", "others"), ["b.job done", "others/x done"]);
+  mkdirSync(join(folder, "empty"));
+  const none = await run(folder, "list", "empty");
+  assert.equal(none.code, 2);
+  assert.match(none.err, /empty is no job's folder and holds none/);
+});
+
+test("extend: a done job goes on from its checkpoint to the bits of one run", async (t) => {
+  const folder = temporaryFolder(t);
+  job(folder, "a.json", {});
+  job(folder, "whole.json", { budget: { iterations: 5 } });
+  for (const name of ["a", "whole"]) assert.equal((await run(folder, "render", `${name}.json`, "-q")).code, 0);
+  const smaller = await run(folder, "extend", "a.job", "--iterations", "1");
+  assert.equal(smaller.code, 2);
+  assert.match(smaller.err, /\/budget\/iterations: found 1; allowed: at least 2/);
+  assert.match((await run(folder, "extend", "a.job")).err, /names no limit/);
+  assert.match((await run(folder, "extend", "a.job", "--seconds", "-1")).err, /\/budget\/seconds.*-1/);
+  assert.match((await run(folder, "extend", "a.job", "--error", "0.1")).err, /the job has no error target/);
+  const same = JSON.parse(readFileSync(join(folder, "a.job/job.json"), "utf8"));
+  assert.deepEqual(same.budget.iterations, 2, "what is refused changes nothing");
+  assert.equal(JSON.parse(readFileSync(join(folder, "a.job/state.json"), "utf8")).state, "done");
+  const extended = await run(folder, "extend", "a.job", "--iterations", "5");
+  assert.equal(extended.code, 0, extended.err);
+  assert.match(extended.err, /continuing from iteration 2/);
+  assert.match((await run(folder, "compare", "a.job/image.exr", "whole.job/image.exr")).out, /^mse +0$/m);
+});
+
+test("render: errors that the reference's own noise bounds are marked", async (t) => {
+  const folder = temporaryFolder(t);
+  job(folder, "a.json", { reference: "auto", reference_iterations: 2, budget: { iterations: 200 } });
+  const done = await run(folder, "render", "a.json");
+  assert.equal(done.code, 0, done.err);
+  assert.match(done.err, /^iteration 200, .*, at the reference's noise$/m);
+  assert.equal(done.err.match(/^the reference's own noise, rmse \S+, is more than half of the mse/gm)?.length, 1);
 });
 
 test("the service's documentation holds the state machine as it is", async (t) => {

@@ -39,6 +39,17 @@ test("sweep: every run is a job's folder, and all curves are one table", async (
   assert.equal((await run(folder, "sweep", "a.sweep", "--missing")).out, "\n");
 });
 
+test("sweep: settings that are objects stand flat in the table, too", async (t) => {
+  const sweep = { job: { ...small.job, budget: { iterations: 1 } },
+    axes: { "/integrator": [{ type: "path", guide: { type: "skeleton", strength: 4 } }, { type: "bdpt", max_depth: 3 }] } };
+  const folder = sweepFile(t, sweep);
+  assert.equal((await run(folder, "sweep", "a.json", "-q")).code, 0);
+  const [header, first, second] = rows(folder);
+  assert.match(header, /^run,cell,baseline,replicate,seed,state,\/integrator,\/integrator\.guide\.strength,\/integrator\.guide\.type,\/integrator\.max_depth,\/integrator\.type,iteration,/);
+  assert.match(first, /^0001-1,1,,1,1,done,".*",4,skeleton,,path,1,/);
+  assert.match(second, /^0002-1,2,,1,1,done,".*",,,3,bdpt,1,/);
+});
+
 test("sweep: what is listed is not begun, and array tasks do one run each", async (t) => {
   const folder = sweepFile(t);
   const listed = await run(folder, "sweep", "a.json", "--list");

@@ -112,5 +112,15 @@ TEST(RatioOfMeans, WithVeryDifferentSpread) {
   EXPECT_FALSE(ratio_of_means(wide, one).interval);
 }
 
+// By a table of Student's factors.
+TEST(Estimate, ValuesThatHalveAnInterval) {
+  EXPECT_EQ(samples_for_half(3), 5u);    // 4.303 / sqrt(3) = 2.484; 2.776 / sqrt(5) = 1.2416
+  EXPECT_EQ(samples_for_half(10), 33u);  // 2.262 / sqrt(10) = 0.7153; 2.037 / sqrt(33) = 0.3546
+  EXPECT_EQ(samples_for_half(2), 3u);    // 12.71 / sqrt(2) = 8.98; 4.303 / sqrt(3) = 2.484
+  EXPECT_LE(samples_for_half(1000), 4000u);
+  EXPECT_GT(samples_for_half(1000), 3990u);
+  EXPECT_THROW(samples_for_half(1), std::domain_error);
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -132,6 +132,83 @@ TEST(Estimators, OfOneLight) {
   });
 }
 
+/// The lights that `visibility` tests at `at`, of the contributions times `weight`.
+template <class Visibility>
+std::vector<std::uint64_t> tested(const LitScene& lit, const Visibility& visibility,
+                                  const ShadingPoint& at, float weight) {
+  const IterationContext context = lit.context(1);
+  auto state = visibility.at(at, context);
+  Terms terms;
+  VisibilityEstimate estimate;
+  std::vector<std::uint64_t> tests;
+  for (std::size_t b = 0; b < lit.lights().blocks(); ++b) {
+    lit.terms().evaluate(at, b, terms, VplContributions::all_lights, weight);
+    visibility.decide(state, b, terms, estimate);
+    tests.push_back(estimate.tests);
+  }
+  return tests;
+}
+
+// The factor of sampled lights is in their contributions and in the deviation alike.
+TEST(Estimators, TestSampledLightsAsOftenAsTheOthers) {
+  const LitScene lit({"ajar"}, 200, 2);
+  const IterationContext context = lit.context(1);
+  ProbabilisticVisibility probabilistic(changed<ProbabilisticVisibilitySettings>([](auto&) {}));
+  RouletteVisibility roulette(changed<RouletteVisibilitySettings>([](auto&) {}));
+  probabilistic.begin(lit.pass(context));
+  roulette.begin(lit.pass(context));
+  lit.with_points(400, [&](std::span<const ShadingPoint> points) {
+    for (const ShadingPoint& p : points) {
+      // A power of two, which rounds nothing.
+      EXPECT_EQ(tested(lit, probabilistic, p, 64), tested(lit, probabilistic, p, 1));
+      EXPECT_EQ(tested(lit, roulette, p, 64), tested(lit, roulette, p, 1));
+    }
+  });
+}
+
+TEST(CachePoints, TakeAQuarterOfTheTestsOfSampledLights) {
+  const LitScene lit({"ajar"}, 200, 2);
+  const IterationContext context = lit.context(1);
+  LightPass pass = lit.pass(context);
+  CachePoints cache(1 << 20, 3, CachePoints::Keep::variances);
+  cache.build(pass);
+  const double all = static_cast<double>(cache.size()), lights = double(lit.lights().size());
+  pass.sampled = 8;
+  cache.build(pass);
+  EXPECT_LE(double(cache.size()), 0.25 * 1200 * 8 / lights);
+  EXPECT_GE(double(cache.size()), 0.8 * 0.25 * all * 8 / lights - 1);
+  pass.sampled = lit.lights().size();
+  cache.build(pass);
+  EXPECT_EQ(double(cache.size()), all);
+}
+
+// Behind the horizon of all cache points nothing is known of a light, whatever it is later.
+TEST(Estimators, TestLightsThatNoCachePointKnows) {
+  const LitScene lit({"ajar"}, 200, 2);
+  const IterationContext context = lit.context(1);
+  const auto settings = changed<ProbabilisticVisibilitySettings>(
+      [](auto& s) { s.cache_points = 3, s.neighbours = 1; });
+  ProbabilisticVisibility visibility(settings);
+  visibility.begin(lit.pass(context));
+  CachePoints cache(3, 1, CachePoints::Keep::visibilities);
+  cache.build(lit.pass(context));
+  std::uint64_t unknown_lights = 0;
+  lit.with_points(400, [&](std::span<const ShadingPoint> points) {
+    for (const ShadingPoint& p : points) {
+      const auto tests = tested(lit, visibility, p, 1);
+      Terms terms;
+      Lanes q;
+      for (std::size_t b = 0; b < lit.lights().blocks(); ++b) {
+        lit.terms().evaluate(p, b, terms);
+        const std::uint64_t unknown = terms.lit & ~cache.expected(cache.near(p), b, q);
+        EXPECT_EQ(tests[b] & unknown, unknown);
+        unknown_lights += static_cast<std::uint64_t>(__builtin_popcountll(unknown));
+      }
+    }
+  });
+  EXPECT_GT(unknown_lights, 100U) << "the test has no power";
+}
+
 // A cache point's own visibility is that of exact tests.
 TEST(CachePoints, KnowWhatTheySee) {
   const LitScene lit({"ajar"}, 200, 2);
@@ -148,7 +225,7 @@ TEST(CachePoints, KnowWhatTheySee) {
       double sum = 0, sum2 = 0;
       for (std::size_t b = 0; b < lit.lights().blocks(); ++b) {
         lit.terms().evaluate(p, b, terms);
-        cache.expected(near, b, q);
+        EXPECT_EQ(cache.expected(near, b, q), terms.lit);
         for (int i = 0; i < Lanes::size; ++i) {
           const bool seen =
               (terms.lit >> i & 1) != 0 && !lit.scene().rays().occluded(lit.terms().ray(p, b, i));

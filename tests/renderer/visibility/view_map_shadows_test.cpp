@@ -48,10 +48,14 @@ TEST_P(ViewMapShadows, AreNearlyThoseOfRays) {
   using M = ViewMapMethod;
   const Agreement fine_rays = against_rays(lit, {M::per_view, 128, 8});
   const Agreement coarse_rays = against_rays(lit, {M::per_view, 16, 8});
-  const Agreement views = against_rays(lit, {M::megaviews, 64, 8, 1, 0});
-  const Agreement lods = against_rays(lit, {M::many_lods, 64, 8, 1, 0});
-  const Agreement larger = against_rays(lit, {M::megaviews, 64, 8, 1.75, 0});
-  const Agreement covering = against_rays(lit, {M::megaviews, 64, 8, 1, 0.82});
+  const Agreement views = against_rays(
+      lit, {.method = M::megaviews, .map_size = 64, .levels = 8, .node_texels = 1, .cover = 0});
+  const Agreement lods = against_rays(
+      lit, {.method = M::many_lods, .map_size = 64, .levels = 8, .node_texels = 1, .cover = 0});
+  const Agreement larger = against_rays(
+      lit, {.method = M::megaviews, .map_size = 64, .levels = 8, .node_texels = 1.75, .cover = 0});
+  const Agreement covering = against_rays(
+      lit, {.method = M::megaviews, .map_size = 64, .levels = 8, .node_texels = 1, .cover = 0.82});
   const double all_seen = double(views.unseen) / double(views.seen + views.unseen);
   EXPECT_LT(fine_rays.share(), 0.08);
   EXPECT_LT(views.share(), 0.2);

@@ -1,0 +1,91 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "jobs/cli/commands.h"
+#include "jobs/cli/render_job.h"
+#include "jobs/render/run_job.h"
+#include "jobs/spec/budget_extension.h"
+#include "jobs/spec/described_json.h"
+#include "jobs/spec/job_json.h"
+#include "jobs/store/new_folder.h"
+
+namespace lacuna {
+
+namespace {
+
+struct ExtendOptions {
+  std::filesystem::path folder;
+  Budget budget;                ///< without its error target
+  std::optional<double> error;  ///< in the metric that the job has
+  RenderOptions render;
+};
+
+Budget larger_budget(const Budget& old, const ExtendOptions& o) {
+  Budget larger = o.budget;
+  if (!o.error) return larger;
+  if (!old.error) {
+    throw BadJob(
+        {{"", fmt::format("--error {}: the job has no error target, so no metric; allowed: "
+                          "--seconds, --cpu-seconds, --iterations",
+                          *o.error)}});
+  }
+  larger.error = ErrorTarget{old.error->metric, *o.error};
+  return larger;
+}
+
+/// Writes the larger budget and opens the job again.
+void extend(const JobFolder& folder, const ExtendOptions& o) {
+  const auto lock = folder.try_lock();
+  if (!lock) {
+    throw FolderBusy(fmt::format("{}: another process works on this job", folder.dir().string()));
+  }
+  JobSpec spec = folder.read_job();
+  const Budget larger = larger_budget(spec.budget, o);
+  throw_if_any(extension_problems(spec.budget, larger));
+  spec.budget = larger;
+  parse_job(write_job(spec));  // the ranges
+  JobState state = folder.read_state();
+  if (is_terminal(state.state)) {
+    // First the state: a crash in between leaves a job that ends at once with its old budget, and
+    // not one that says it is done and is not.
+    state.state = State::queued;
+    state.error.clear();
+    state.finished.clear();
+    folder.write_state(state);
+  }
+  folder.write_job(spec);
+}
+
+}  // namespace
+
+void add_extend(CLI::App& app, int& code) {
+  const auto o = std::make_shared<ExtendOptions>();
+  CLI::App* command = app.add_subcommand(
+      "extend",
+      "Give a job's folder a larger budget and go on rendering from its checkpoint, also after it "
+      "is done");
+  command->footer(
+      "The limits given are the whole new budget: the others that the job had are dropped. None "
+      "may be\nsmaller than before. If it is stopped, `lacuna render FOLDER` goes on.");
+  command->add_option("FOLDER", o->folder, "a job's folder")
+      ->required()
+      ->check(CLI::ExistingDirectory);
+  command->add_option("--seconds", o->budget.seconds, "render time in all, wall clock");
+  command->add_option("--cpu-seconds", o->budget.cpu_seconds,
+                      "render time in all, CPU seconds / threads");
+  command->add_option("--iterations", o->budget.iterations, "iterations in all");
+  command->add_option("--error", o->error, "error target, in the metric of the job's own");
+  command
+      ->add_option("-t,--threads", o->render.threads,
+                   "number of threads instead of the job's; 0: one per core")
+      ->check(CLI::Range(0, 1024));
+  command->add_flag("-q,--quiet", o->render.quiet, "show warnings and errors only");
+  command->callback([o, &code] {
+    const JobFolder folder(folder_path(o->folder));
+    extend(folder, *o);
+    code = render_folder(folder, o->render);
+  });
+}
+
+}  // namespace lacuna
