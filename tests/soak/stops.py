@@ -15,10 +15,9 @@ ALLOWED = 2.0  # seconds
 MOMENTS = (0.1, 1, 3, 8, 20)  # seconds after the start
 
 
-def deep(connections):
+def deep(**connections):
     return {"scene": "furnace.glb",
-            "integrator": {"type": "bdpt", "max_depth": 1000, "roulette_depth": 1000,
-                           "connections": {"type": connections}}}
+            "integrator": {"type": "bdpt", "max_depth": 1000, "roulette_depth": 1000, "connections": connections}}
 
 
 def guided(guide, resolution):
@@ -27,7 +26,9 @@ def guided(guide, resolution):
 
 
 JOBS = {
-    **{f"bdpt, 1000 edges, {c}": deep(c) for c in ("paired", "importance_cache", "skeleton")},
+    "bdpt, 1000 edges, paired": deep(type="paired"),
+    "bdpt, 1000 edges, importance_cache": deep(type="importance_cache", light_paths=100),
+    "bdpt, 1000 edges, skeleton": deep(type="skeleton"),
     "portals at 256": guided("portals", 256),
     "skeleton at 512": guided("skeleton", 512),
 }

@@ -56,6 +56,19 @@ class RunJob : public testing::Test {
   const std::function<bool()> never = [] { return false; };
 };
 
+TEST_F(RunJob, SaysWhenPreparationExceedsTheBudget) {
+  JobSpec s = spec();
+  s.budget = {};
+  s.budget.seconds = 1e-6;
+  const JobFolder folder = create(s);
+  ASSERT_EQ(run(folder), Outcome::done);
+  const json budget = report(folder)["budget"];
+  EXPECT_EQ(budget["seconds"], 1e-6);
+  EXPECT_GT(budget["preparation_seconds"], 1e-6);
+  ASSERT_FALSE(observer.warnings.empty());
+  EXPECT_EQ(observer.warnings.back().rfind("preparation took", 0), 0u) << observer.warnings.back();
+}
+
 TEST_F(RunJob, LeavesItsFolderComplete) {
   JobSpec s = spec();
   s.layers = {ImageLayer::variance, ImageLayer::halves, ImageLayer::albedo, ImageLayer::normal,
