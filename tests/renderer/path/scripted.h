@@ -8,6 +8,7 @@ namespace lacuna::test {
 
 /// A guide that goes where it is told, with the densities of the BSDF or of another guide.
 struct ScriptedGuide {
+  static constexpr bool has_expected = false;
   struct Step {
     V3f w;
     bool delta;
