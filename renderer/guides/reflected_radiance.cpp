@@ -41,7 +41,7 @@ float ReflectedRadiance::at(const Vertex& v) const {
     const float mean = means_[level][index(c, level)];
     if (mean >= 0) return mean;
   }
-  return -1;
+  return mean_;
 }
 
 void ReflectedRadiance::record(const Vertex& v, double value, Accumulator& accumulator) const {
@@ -68,13 +68,18 @@ void ReflectedRadiance::update(std::span<const Accumulator* const> accumulators)
 void ReflectedRadiance::make_means() {
   std::vector<Samples> sums = known_;
   samples_ = 0;
+  double sum = 0;
+  for (const Samples& s : known_) {
+    sum += s.sum;
+    samples_ += s.samples;
+  }
+  mean_ = static_cast<float>(sum / samples_);
   for (std::size_t level = 0; level < levels; ++level) {
     const std::size_t n = std::size_t{side} >> level;
     means_[level].resize(sums.size());
     for (std::size_t i = 0; i < sums.size(); ++i) {
-      const auto& [sum, samples] = sums[i];
-      means_[level][i] = samples >= least_samples ? static_cast<float>(sum / samples) : -1;
-      if (level == 0) samples_ += samples;  // by whole numbers: exact
+      const Samples& s = sums[i];
+      means_[level][i] = s.samples >= least_samples ? static_cast<float>(s.sum / s.samples) : -1;
     }
     if (n == 1) break;
     std::vector<Samples> above(sums.size() / 8);

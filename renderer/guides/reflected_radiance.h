@@ -83,6 +83,7 @@ class ReflectedRadiance {
   std::uint64_t round_ = 0, iteration_ = 0;  // iterations done of 2^round_
   double samples_ = 0;                       // in known_
   std::vector<Samples> known_, learning_;    // of the finest grid: the last round's, and this one's
+  float mean_ = 0;                           // of all samples in known_
   /// Of each grid: the means, below 0 where too few samples were met.
   std::array<std::vector<float>, levels> means_;
 };

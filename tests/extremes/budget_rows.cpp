@@ -39,7 +39,7 @@ Row stopped(const std::string& name, const Budget& budget) {
             job.budget = budget;
             parse_job(write_job(job));  // it is allowed
             std::atomic<int> asked{0};
-            constexpr int patience = 100;  // questions
+            constexpr int patience = 600;  // questions
             const std::function<bool()> impatient = [&] { return ++asked > patience; };
             const JobFolder folder = stage.run(job, impatient);
             check.require(folder.read_state().state == State::interrupted,

@@ -86,7 +86,7 @@ async function begin(folder, content = {}) {
 test("a file that does not fit: interrupted with the reason, the old checkpoint whole", async (t) => {
   const folder = temporaryFolder(t);
   const checkpoint = await begin(folder);
-  const full = await runAfter("ulimit -f 64", folder, "render", "a.json");
+  const full = await runAfter("ulimit -f 16", folder, "render", "a.json");
   assert.equal(full.code, 75, full.err);
   assert.match(full.err, /error: cannot write .*(checkpoint\.bin|image\.png).*File too large.*the same command goes on/);
   assert.match(readFileSync(join(folder, "a.job/log.txt"), "utf8"), /File too large/);
@@ -99,7 +99,7 @@ test("a file that does not fit: interrupted with the reason, the old checkpoint 
 test("no room for the results: interrupted, and done with room again", async (t) => {
   const folder = temporaryFolder(t);
   job(folder, "a.json", { ...spec, budget: { iterations: 4 }, checkpoint_seconds: 100 });
-  const full = await runAfter("ulimit -f 64", folder, "render", "a.json");
+  const full = await runAfter("ulimit -f 16", folder, "render", "a.json");
   assert.equal(full.code, 75, full.err);
   assert.match(full.err, /warning: cannot write .*checkpoint\.bin/);
   assert.match(full.err, /error: cannot write .*image\.exr/);

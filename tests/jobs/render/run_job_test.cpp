@@ -213,13 +213,14 @@ TEST_F(RunJob, InterruptedItsProgressIsThatOfItsCheckpoint) {
   ASSERT_TRUE(progress);
   EXPECT_GT(progress->iteration, 0);
   observer.milestones.clear();
-  const std::function<bool()> at_once = [] { return true; };
-  ASSERT_EQ(run_job(folder, context(at_once)), Outcome::interrupted);
+  asked = 0;
+  ASSERT_EQ(run_job(folder, context(soon)), Outcome::interrupted);
+  ASSERT_FALSE(observer.milestones.empty());
   const std::string said = observer.milestones.front();
   EXPECT_EQ(said.rfind("continuing from iteration " + std::to_string(progress->iteration) + " ", 0),
             0U)
       << said;
-  EXPECT_EQ(folder.read_progress()->iteration, progress->iteration);
+  EXPECT_GE(folder.read_progress()->iteration, progress->iteration);
 }
 
 TEST_F(RunJob, AFolderThatCannotBeWrittenLeavesTheJobAsItIs) {
