@@ -11,22 +11,22 @@
 
 namespace lacuna {
 
-/// The light that a path gathers behind a vertex, in the mean: luminance over the path's luminance
-/// of throughput there, without what the vertex emits or gets from next event estimation. It is the
-/// adjoint by which roulette and splitting keep guided paths at their expected contribution
-/// (Vorba and Krivanek 2016, "Adjoint-driven Russian roulette and splitting").
+/// An estimate of the indirect radiance that a vertex reflects: the luminance that a path gathers
+/// behind the vertex over the luminance of its throughput there. Emission and next event estimation
+/// at the vertex itself are not included. Roulette and splitting of guided paths use it as the
+/// adjoint (Vorba and Krivanek 2016, "Adjoint-driven Russian roulette and splitting").
 ///
 /// A grid of 32^3 cells over the scene, each with six sides for the normals, and coarser grids of
-/// 16^3 to 1 above it: the finest cell with enough samples answers. Learned from all vertices in
-/// rounds of 1, 2, 4, ... iterations, of which each forgets the one before: the first paths have
-/// the heaviest tails. Whatever it holds, the picture's mean does not depend on it.
+/// 16^3 to 1 cells: a look-up returns the mean of the finest cell with enough samples. It learns from
+/// all vertices in rounds of 1, 2, 4, ... iterations; each round replaces the one before, because
+/// the first paths have the heaviest tails. The picture's mean does not depend on its values.
 class ReflectedRadiance {
  public:
-  /// What was met in a cell.
+  /// The samples of a cell.
   struct Samples {
     double sum = 0, samples = 0;
   };
-  /// What a part of an iteration has met, by cell of the finest grid.
+  /// The samples of one part of an iteration, by cell of the finest grid.
   class Accumulator {
    public:
     void add(std::uint32_t cell, double value) {
@@ -49,7 +49,7 @@ class ReflectedRadiance {
   bool learns() const { return samples_ < enough_samples || round_ < least_rounds; }
   /// One path's value at `v`; only while it learns().
   void record(const Vertex& v, double value, Accumulator& accumulator) const;
-  /// Adds what the parts of an iteration met, in their order.
+  /// Adds the samples of the parts of an iteration, in their order.
   void update(std::span<const Accumulator* const> accumulators);
 
   void save(ByteWriter& out) const;
@@ -59,9 +59,9 @@ class ReflectedRadiance {
  private:
   static constexpr int side = 32, sides = 6;
   static constexpr std::size_t levels = 6;  // 32, 16, ..., 1 cells along a side
-  /// A cell with fewer samples leaves the answer to the coarser one above it.
+  /// Samples below which a look-up uses the coarser cell.
   static constexpr double least_samples = 128;
-  /// Of a whole picture: then means are known well enough.
+  /// Samples of a round after which learning ends.
   static constexpr double enough_samples = 1 << 18;
   static constexpr std::uint64_t least_rounds = 3;
 

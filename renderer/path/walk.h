@@ -154,7 +154,7 @@ class Walk {
   /// vertex. Guiding weights multiply by a factor at each vertex; without a window their variance
   /// grows exponentially with the depth. False where roulette ends the path.
   bool keep_expected(PathState& w, const Vertex& v, std::size_t walk) {
-    constexpr float low = 1.0F / 3, high = 5.0F / 3;  // section 5.1, s = 5
+    constexpr float low = 1.0F / 3, high = 5.0F / 3;  // 2 / (1 + s) and 2 s / (1 + s), s = 5
     constexpr float min_survival = 0.1F;
     constexpr int max_parts = 16;
     // The throughputs of all parts of a path sum to at most its own, on average. A least part

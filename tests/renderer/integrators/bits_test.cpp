@@ -97,11 +97,12 @@ TEST_P(BidirectionalBits, GoOnAfterAPause) {
   for (std::uint64_t i = 4; i < 7; ++i) {
     EXPECT_EQ(resumed->iterate(i).pixels, expected[i].pixels) << "iteration " << i;
   }
-  // Without a state nothing is learned. What guides expect of light may not yet matter here.
+  // What was learned is of use: without it the pictures differ. The light that portals expect, and
+  // a tree that has learned to be left alone, change no path of this small picture.
+  const std::string& name = GetParam().name;
+  if (name == "path_portals" || name.ends_with("learning_sd_tree")) return;
   const auto forgetful = start();
-  if (saved.bytes().empty()) {
-    EXPECT_EQ(forgetful->iterate(4).pixels, expected[4].pixels);
-  }
+  EXPECT_EQ(forgetful->iterate(4).pixels != expected[4].pixels, !saved.bytes().empty());
 }
 
 TEST_P(BidirectionalBits, AreTheSameAfterAnIterationThatWasStopped) {
