@@ -17,9 +17,10 @@ namespace lacuna {
 /// adjoint (Vorba and Krivanek 2016, "Adjoint-driven Russian roulette and splitting").
 ///
 /// A grid of 32^3 cells over the scene, each with six sides for the normals, and coarser grids of
-/// 16^3 to 1 cells: a look-up returns the mean of the finest cell with enough samples. It learns from
-/// all vertices in rounds of 1, 2, 4, ... iterations; each round replaces the one before, because
-/// the first paths have the heaviest tails. The picture's mean does not depend on its values.
+/// 16^3 to 1 cells: a look-up returns the mean of the finest cell with enough samples. It learns
+/// from all vertices in rounds of 1, 2, 4, ... iterations; each round replaces the one before,
+/// because the first paths have the heaviest tails. The picture's mean does not depend on its
+/// values.
 class ReflectedRadiance {
  public:
   /// The samples of a cell.
