@@ -28,6 +28,17 @@ inline double sidak(double level, std::size_t n) {
 inline double two_sided_p(double z) { return std::erfc(std::abs(z) / std::numbers::sqrt2); }
 /// Probability that a standard normal variable exceeds `z`.
 inline double upper_p(double z) { return 0.5 * std::erfc(z / std::numbers::sqrt2); }
+/// Probability that of `n` independent trials, each a success with probability `p` in (0, 1), at
+/// least `k` are successes.
+inline double binomial_at_least(int k, int n, double p) {
+  double sum = 0;
+  for (int i = std::max(k, 0); i <= n; ++i) {
+    sum += std::exp(std::lgamma(n + 1.0) - std::lgamma(i + 1.0) - std::lgamma(n - i + 1.0) +
+                    i * std::log(p) + (n - i) * std::log1p(-p));
+  }
+  return std::min(sum, 1.0);
+}
+
 /// Mean and variance of a stream of numbers (Welford 1962).
 class Moments {
  public:

@@ -208,8 +208,8 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
         tail->index, tail->limit));
   }
   write_file_atomically(folder.file("report.json"),
-                        write_report({task, loop, running.warnings(), prepared.artefacts->records(),
-                                      disturbance, started}));
+                        write_report({task, loop, prepared.camera_name, running.warnings(),
+                                      prepared.artefacts->records(), disturbance, started}));
   return Outcome::done;
 }
 

@@ -59,9 +59,10 @@ OrderedJson rates(const RenderTask& task, const Spent& spent, const Counters& c)
           {"rays_per_sample", per(rays, static_cast<double>(c.samples))}};
 }
 
-OrderedJson scene(const Scene& s) {
+OrderedJson scene(const Scene& s, const std::string& camera) {
   const SceneData& d = s.data();
   return {
+      {"camera", camera},
       {"triangles", d.triangle_count()},
       {"dropped_triangles", d.dropped_triangles},
       {"emitters", s.has_emitters() ? OrderedJson(s.emitters().size()) : OrderedJson("not needed")},
@@ -151,7 +152,7 @@ std::string write_report(const ReportInput& input) {
     for (const auto& [name, value] : stats) j["integrator"][name] = value;
   }
   j["errors"] = errors_json(task, loop);
-  j["scene"] = scene(task.scene);
+  j["scene"] = scene(task.scene, input.camera);
   j["image_module"] = image_module(input.started);
   j["artefacts"] = artefacts_json(input.artefacts);
   j["warnings"] = input.warnings;

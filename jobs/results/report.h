@@ -13,6 +13,7 @@ namespace lacuna {
 struct ReportInput {
   const RenderTask& task;
   const RenderLoop& loop;
+  const std::string& camera;  ///< the name of the one that was rendered
   std::vector<std::string> warnings;
   std::vector<ArtefactRecord> artefacts = {};   ///< ArtefactStore::records()
   std::optional<Disturbance> disturbance = {};  ///< while it was rendered

@@ -6,8 +6,8 @@
 
 namespace lacuna {
 
-/// Two clocks that run only while a picture is being made: wall seconds, and CPU seconds of the
-/// process divided by its threads, which hold still on a busy machine.
+/// Measures rendering time by two clocks: wall seconds, and CPU seconds of the process divided by
+/// its threads, which other load on the machine does not add to.
 class RenderClock {
  public:
   explicit RenderClock(int threads) : threads_(threads) {}
@@ -29,7 +29,7 @@ class RenderClock {
     return cpu_ +
            (running_ ? (clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu_start_) / threads_ : 0);
   }
-  /// Goes on from a checkpoint's times.
+  /// Continues from the times of a checkpoint, seconds.
   void set(double wall, double cpu) {
     wall_ = wall;
     cpu_ = cpu;
@@ -42,14 +42,14 @@ class RenderClock {
   double wall_start_ = 0, cpu_start_ = 0;
 };
 
-/// Says when something that costs time may be done again: not before `interval` seconds, and so
-/// seldom that it takes at most `share` of all time.
+/// Limits how often a costly action is repeated: at intervals of at least `interval` seconds, and
+/// such that the action takes at most `share` of all time.
 class Pace {
  public:
   Pace(double interval, double share) : interval_(interval), share_(share) { done(0); }
 
   bool due() const { return clock_seconds(CLOCK_MONOTONIC) >= next_; }
-  /// It was done and took `cost` seconds.
+  /// Reports that the action was done and took `cost` seconds.
   void done(double cost) {
     next_ = clock_seconds(CLOCK_MONOTONIC) + std::max(interval_, cost / share_);
   }

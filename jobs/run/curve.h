@@ -10,15 +10,15 @@
 
 namespace lacuna {
 
-/// One instant of a job: how far it was, and how good.
+/// The state of a job at one instant: what it has spent, and its errors.
 struct CurveRow {
   std::uint64_t iteration = 0;
   double seconds = 0, cpu_seconds = 0;  ///< render time; CPU divided by threads
   Counters counters;
   std::optional<Errors> errors;  ///< against the reference, if there is one
   std::optional<double> est_rmse;
-  /// More than half of the measured mse is the reference's own noise: the curve no longer falls for
-  /// the method's sake.
+  /// More than half of the measured mse is noise of the reference, so the curve no longer shows how
+  /// the method converges.
   bool at_floor = false;
 
   /// The value of `metric` in this row, if it has one.
@@ -38,11 +38,11 @@ class Curve {
   void add(const CurveRow& row);
   const std::vector<CurveRow>& rows() const { return rows_; }
 
-  /// curve.csv: a header and a line a row; empty where there is no value; 17 significant digits.
+  /// The text of curve.csv: a header, then one line for each row. Missing values are empty; numbers
+  /// have 17 significant digits.
   std::string csv() const;
 
-  /// The rows as bytes and back, for checkpoints. load() throws std::runtime_error on what save()
-  /// never writes.
+  /// For checkpoints. load() throws std::runtime_error on bytes that save() cannot have written.
   void save(ByteWriter& out) const;
   void load(ByteReader& in);
 

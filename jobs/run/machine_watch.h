@@ -12,23 +12,23 @@ struct ProcessorTicks {
   double idle = 0;    ///< nothing to do, or waiting for a disk
   double stolen = 0;  ///< the host gave them to another machine
 };
-/// The first line of /proc/stat; nothing if it is none.
+/// Parses the first line of /proc/stat; none if it has another form.
 std::optional<ProcessorTicks> parse_processor_ticks(std::string_view stat);
 
-/// What else the machine did meanwhile. A time that was taken while `others` + `stolen` is not
-/// small is no measurement of the method.
+/// Other load on the machine during a measurement. Unless `others` + `stolen` is small, the
+/// measured time says little about the method.
 struct Disturbance {
   double others = 0;          ///< share of all processors' time that other processes took, [0, 1]
   double stolen = 0;          ///< share that the host took, [0, 1]
-  double load = 0;            ///< processes that wanted to run at the end, mean of a minute
-  std::optional<double> mhz;  ///< the processors' mean frequency at the end, if it is told
+  double load = 0;            ///< load average over the last minute, at the end
+  std::optional<double> mhz;  ///< mean frequency of the processors at the end, if it is known
 };
 
-/// Watches the machine from its construction on.
+/// Measures the load of the machine since the construction.
 class MachineWatch {
  public:
   MachineWatch();
-  /// Since the construction; nothing where /proc does not tell, or after less than a few ticks.
+  /// None if /proc/stat is missing or has another form, or if less than a few ticks have passed.
   std::optional<Disturbance> disturbance() const;
 
  private:

@@ -6,7 +6,7 @@
 
 namespace lacuna {
 
-/// Whoever wants to see a job going on: a terminal, a log.
+/// Receives the progress of a job, for example to show it on a terminal.
 class Observer {
  public:
   virtual ~Observer() = default;

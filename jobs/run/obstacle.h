@@ -5,20 +5,22 @@
 
 namespace lacuna {
 
-/// What kept a job from being done, though another time it may go on from its checkpoint.
+/// The kind of a fault that interrupted a job and may pass, so that the job can continue from its
+/// checkpoint.
 enum class Obstacle {
-  none,     ///< it would fail again
-  memory,   ///< there was not enough
-  storage,  ///< a file could not be read or written for a reason that may pass (may_pass())
+  none,     ///< no such fault: the job would fail again
+  memory,   ///< memory ran out
+  storage,  ///< a file could not be read or written, and may_pass() holds for the reason
 };
 
-/// Makes this process remember that memory ran out. Libraries that catch std::bad_alloc report an
-/// error of their own in its place, often without a word: obstacle_of() then still knows.
+/// From this call on the process records failed allocations. Libraries that catch std::bad_alloc
+/// report errors of their own, often without a reason; obstacle_of() uses the record for these.
 void watch_memory();
 
 Obstacle obstacle_of(const std::exception& e);
 
-/// What went wrong, for a person: "out of memory" in place of, or before, what the exception says.
+/// The reason as text for people. If memory ran out, it is "out of memory" or begins with it,
+/// followed by the exception's own text.
 std::string reason_of(const std::exception& e);
 
 }  // namespace lacuna

@@ -9,11 +9,11 @@
 
 namespace lacuna {
 
-/// What a job's error is measured against.
+/// The reference image of a job, which its errors are measured against.
 struct Reference {
   std::string name;
   std::vector<double> rgb;          ///< interleaved, top row first, of the job's resolution
-  std::optional<double> mse;        ///< its own remaining noise, if it is known
+  std::optional<double> mse;        ///< of its own noise, estimated, if it is known
   std::filesystem::path file = {};  ///< where it was read from
 };
 
@@ -22,18 +22,18 @@ struct Reference {
 /// SceneError: not there, unfinished, or of another size.
 Reference find_reference(const JobSpec& spec, const DataRoot& data, const ScenesRoots& scenes);
 
-/// Reads `image` (an image.exr of ours, or anybody's EXR). Throws SceneError, also on another size
-/// than `resolution` or a value that is not finite.
+/// Reads the file `image`, the image.exr of a job or another EXR. Throws SceneError, also if its
+/// size is not `resolution` or a value is not finite.
 Reference read_reference(const std::string& name, const std::filesystem::path& image,
                          const std::array<int, 2>& resolution);
 
-/// The job that makes the "auto" reference of `spec` (reference_spec()), and its folder below the
-/// references, named by what it depends on: this job, and `content` (hashes of the scene and of the
-/// environment).
+/// The job that renders an "auto" reference.
 struct ReferenceJob {
   JobSpec spec;
   JobFolder folder;
 };
+/// The job that renders the "auto" reference of `spec` (reference_spec()). The name of its folder
+/// is a hash of that job and of `content`, the hashes of the scene and the environment.
 ReferenceJob auto_reference(const JobSpec& spec, const DataRoot& data, const std::string& content);
 
 }  // namespace lacuna

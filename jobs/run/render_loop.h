@@ -18,11 +18,11 @@
 
 namespace lacuna {
 
-/// The wall seconds of each phase of a job, for the report: of this process, and of those before it
-/// up to the checkpoint it went on from.
+/// The wall seconds of each phase of a job, for the report. They include those of earlier processes
+/// up to the checkpoint from which this one continues.
 using PhaseSeconds = std::map<std::string, double>;
 
-/// What the loop works on. All references outlive it.
+/// The input of RenderLoop. All referenced objects outlive it.
 struct RenderTask {
   const JobFolder& folder;
   const JobSpec& spec;
@@ -37,34 +37,34 @@ struct RenderTask {
   std::string content;  ///< hashes of the files the picture depends on
 };
 
-/// A picture in the making: iterations until the budget is spent, rows of the curve at log-spaced
-/// instants, checkpoints, progress. The render clock runs only during iterations.
+/// Renders iterations until the budget is spent, and writes rows of the curve at log-spaced
+/// instants, checkpoints, previews and progress. The render clock runs only during iterations.
 class RenderLoop {
  public:
-  /// The integrator is prepared. Throws MemoryLimitError where it would fill more layers than
-  /// memory holds.
+  /// The task's integrator must be prepared. Throws MemoryLimitError if its layers do not fit into
+  /// memory.
   explicit RenderLoop(const RenderTask& task);
 
-  /// Goes on from the folder's checkpoint, if it has one of this picture. A damaged one is reported
-  /// to the observer, kept under another name, and the picture begins anew.
+  /// Continues from the folder's checkpoint, if there is one of this picture. A damaged checkpoint
+  /// is reported to the observer and renamed, and rendering starts from the first iteration.
   void resume();
 
-  /// True: the budget is spent; the checkpoint holds this very end, so that a larger budget can go
-  /// on from it. False: interrupted; a checkpoint was written.
+  /// True: the budget is spent, and the checkpoint holds the final state, so that the job can
+  /// continue with a larger budget. False: interrupted; a checkpoint was written.
   bool run();
 
   const Film& film() const { return film_; }
-  /// What the integrator filled beside the picture.
+  /// The means of the integrator's own layers.
   const LayerMeans& layers() const { return layers_; }
   const Curve& curve() const { return curve_; }
   const Counters& counters() const { return counters_; }
   Spent spent() const { return completed_; }
-  std::uint64_t refused_rays() const;  ///< as RayCaster counts them, since the job began
+  std::uint64_t refused_rays() const;  ///< as counted by RayCaster, of the whole job
 
  private:
-  /// What a checkpoint must agree with to be gone on from. The integrator's own layers are means
-  /// over all iterations, so they are part of it: where a job file came to ask for others, the
-  /// picture begins anew. All other layers are made at the end, and may change at any time.
+  /// Identifies the picture: rendering continues only from a checkpoint with the same value. It
+  /// includes the names of the integrator's own layers, which are means over all iterations. Other
+  /// layers are rendered at the end, so they may change.
   std::string identity() const;
   bool iterate();
   void add_row();

@@ -12,8 +12,8 @@ struct Interval {
   double low, high;
 };
 
-/// A positive quantity known from `n` independent measurements. The interval holds the truth with
-/// probability `confidence`; one measurement alone tells nothing of its own spread and has none.
+/// An estimate of a positive quantity from `n` independent measurements. The interval contains the
+/// true value with probability `confidence`; a single measurement has no interval.
 struct Estimate {
   double value = 0;
   std::optional<Interval> interval;
@@ -21,9 +21,9 @@ struct Estimate {
 };
 
 /// The geometric mean of positive values, with Student's interval for the mean of their logarithms.
-/// Errors and times of replicates scatter by factors, and what is asked of them are ratios: both
-/// are even on this scale, and no bound is negative. Throws std::domain_error: no value, or one
-/// that is not positive and finite.
+/// Errors and times of replicates vary by factors and are compared as ratios: their logarithms are
+/// nearly normal, and no bound is negative. Throws std::domain_error if there is no value, or if
+/// one is not positive and finite.
 Estimate geometric_mean(std::span<const double> values);
 
 /// The geometric mean of `a` over that of `b`, two independent groups that may scatter differently:
@@ -31,12 +31,13 @@ Estimate geometric_mean(std::span<const double> values);
 /// Throws as geometric_mean().
 Estimate ratio_of_means(std::span<const double> a, std::span<const double> b);
 
-/// Whether the interval of ratio_of_means() holds 1: which of the two is larger is left open.
-/// Throws likewise; false where there is no interval.
+/// Whether the interval of ratio_of_means() contains 1, so that it is not known which mean is
+/// larger. False if there is no interval. Throws as geometric_mean().
 bool may_be_equal(std::span<const double> a, std::span<const double> b);
 
 /// The least number of values whose interval is expected to be at most half as wide as that of `n`
-/// >= 2 values of equal scatter: less than 4 n, as Student's factor falls too.
+/// >= 2 values of the same variance. It is less than 4 n, because Student's factor falls with n
+/// too.
 std::size_t samples_for_half(std::size_t n);
 
 /// The plain mean of values of any sign, with Student's interval. Throws std::domain_error: no

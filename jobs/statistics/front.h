@@ -8,32 +8,34 @@
 
 namespace lacuna {
 
-/// A cell as the front sees it: its curves, and the seconds that it spends before they begin.
+/// The input of pareto_front() for one cell: its curves, and the seconds of its preparation.
 struct Contender {
   Replicates curves;
   double preparation = 0;
 };
 
-/// From one time to another no cell has a smaller mean error than this one.
+/// An interval of time in which one contender has the smallest mean error.
 struct FrontPart {
   double from, to;
-  std::size_t best;               ///< index of the contender
-  std::vector<std::size_t> tied;  ///< others whose error could not be told from it, somewhere there
-  double error;                   ///< its mean error at `to`
+  std::size_t best;  ///< index of the contender
+  std::vector<std::size_t>
+      tied;      ///< others whose error does not differ significantly somewhere in it
+  double error;  ///< mean error of the best at `to`
   bool at_floor = false;
 };
 
 /// The Pareto front of error against total time (preparation and rendering) over all contenders. A
-/// picture that was finished stays: an error holds after its curve's end. Contenders without a
-/// common time are left out.
+/// finished picture remains available, so an error holds after the end of its curve. Contenders
+/// whose runs have no common time are left out.
 std::vector<FrontPart> pareto_front(std::span<const Contender> contenders);
 
-/// The total time from which on `cell`'s mean error is not above `baseline`'s, as long as both were
-/// measured: when its preparation has paid. Nothing: not within the measured times.
+/// The total time after which a cell's preparation has paid off against a baseline.
 struct BreakEven {
   double seconds;
-  bool from_the_start = false;  ///< it never was above
+  bool from_the_start = false;  ///< the cell's error was never above the baseline's
 };
+/// The total time after which the mean error of `cell` stays at or below that of `baseline`, over
+/// the times at which both were measured; none if there is no such time.
 std::optional<BreakEven> break_even(const Contender& cell, const Contender& baseline);
 
 }  // namespace lacuna

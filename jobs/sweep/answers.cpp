@@ -67,11 +67,27 @@ class Comparison {
     }
   }
 
+  /// The name of each scene's first camera, which jobs without a camera render, from the reports of
+  /// such runs.
+  std::map<std::string, std::string> first_cameras() const {
+    std::map<std::string, std::string> first;
+    for (std::size_t r = 0; r < plan_.runs.size(); ++r) {
+      const JobSpec& job = plan_.cells[plan_.runs[r].cell].job;
+      const std::optional<std::string>& rendered = answers_.results[r].camera;
+      if (job.camera.empty() && rendered) first.emplace(job.scene, *rendered);
+    }
+    return first;
+  }
+
   void gather_pictures() {
+    const std::map<std::string, std::string> first = first_cameras();
     std::map<std::string, std::size_t> known;
     for (CellAnswer& cell : answers_.cells) {
-      const auto [found, is_new] =
-          known.emplace(picture_name(plan_.cells[cell.cell].job), answers_.pictures.size());
+      JobSpec job = plan_.cells[cell.cell].job;
+      if (const auto named = first.find(job.scene); job.camera.empty() && named != first.end()) {
+        job.camera = named->second;
+      }
+      const auto [found, is_new] = known.emplace(picture_name(job), answers_.pictures.size());
       if (is_new) answers_.pictures.emplace_back();
       cell.picture = found->second;
       answers_.pictures[cell.picture].cells.push_back(cell.cell);

@@ -125,6 +125,13 @@ std::optional<double> number_at(const Json& json, const Keys&... keys) {
                                                 : std::nullopt;
 }
 
+template <class... Keys>
+std::optional<std::string> string_at(const Json& json, const Keys&... keys) {
+  const Json* found = find(json, keys...);
+  return found != nullptr && found->is_string() ? std::optional(found->get<std::string>())
+                                                : std::nullopt;
+}
+
 std::set<std::string> artefact_names(const Json& report, const char* origin) {
   std::set<std::string> names;
   const Json* artefacts = find(report, "artefacts", origin);
@@ -169,8 +176,8 @@ RunResult read_result(const JobFolder& folder, const CurveAxes& axes, const Budg
     result.preparation = {number_at(report, "seconds", "load").value_or(0),
                           number_at(report, "seconds", "analysis").value_or(0),
                           artefact_names(report, "built"), artefact_names(report, "loaded")};
-    const Json* file = find(report, "errors", "reference", "file");
-    if (file != nullptr && file->is_string()) result.reference_file = file->get<std::string>();
+    result.camera = string_at(report, "scene", "camera");
+    result.reference_file = string_at(report, "errors", "reference", "file");
     result.others = number_at(report, "machine", "others_share");
     result.stolen = number_at(report, "machine", "stolen_share");
     result.mhz = number_at(report, "machine", "mhz");

@@ -33,6 +33,7 @@ struct RunResult {
   std::optional<double> bias_squared;  ///< of the last row, less the reference's own noise
   std::optional<double> variance;      ///< likewise, from the two halves
   std::optional<RunPreparation> preparation;
+  std::optional<std::string> camera;  ///< the one rendered, also where the job names none
   std::optional<std::string> reference_file;
   std::optional<double> others,
       stolen;  ///< shares of the processors' time (jobs/run/machine_watch.h)

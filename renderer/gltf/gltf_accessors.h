@@ -8,10 +8,12 @@
 
 namespace lacuna::gltf {
 
-/// The elements of one accessor, already checked to lie inside their buffer. Throws SceneError if
-/// the accessor has no bufferView, is sparse, or is not of `type` with one of `components`.
+/// Reads the elements of one glTF accessor. check_structure() has validated that they lie inside
+/// their buffer.
 class AccessorView {
  public:
+  /// `type`: TINYGLTF_TYPE_*; `components`: the allowed component types; `use`: names the accessor
+  /// in errors. Throws SceneError if the accessor has another type, has no bufferView or is sparse.
   AccessorView(const tinygltf::Model& model, int accessor, int type,
                std::initializer_list<int> components, const std::string& use);
 

@@ -5,9 +5,10 @@
 
 namespace lacuna::gltf {
 
-/// A lamp that is there twice gives twice the light where it is sampled, and once where a ray meets
-/// it. So of emitting triangles with the same corners in the same order, and with materials,
-/// normals and texture coordinates that are equal, all but the first are removed, and warned of.
+/// Removes duplicates of emitting triangles and warns of them. Next event estimation samples both
+/// of two coincident emitters, but a ray hits only one, so the two estimates of the same light
+/// would differ. Duplicates have the same corners in the same order and equal materials, normals
+/// and texture coordinates; the first one is kept.
 void merge_equal_emitters(SceneData& scene, Warnings& warnings);
 
 }  // namespace lacuna::gltf

@@ -14,17 +14,18 @@ struct Framing {
   std::uint64_t bin_bytes = 0;  ///< length of the BIN chunk; 0: none
 };
 
-/// Splits a file into its chunks. A GLB is told by its magic. Throws SceneError on a header that
-/// lies about lengths, on a version other than 2 and on wrong chunk types.
+/// Splits a file into its chunks. A file with the magic bytes of GLB is a GLB, any other is JSON.
+/// Throws SceneError if lengths in the header do not match the file, if the version is not 2, or if
+/// a chunk has the wrong type.
 Framing check_framing(std::span<const std::uint8_t> file);
 
 /// Parses the JSON, at most 64 levels deep (tinygltf recurses). Throws SceneError.
 Json parse_json(std::span<const std::uint8_t> text);
 
-/// Validates everything that tinygltf does not: types, ranges and indices of buffers,
-/// bufferViews, accessors, images, textures, samplers, meshes, nodes and scenes; offsets and
-/// lengths against what holds them; required extensions by name. Materials, cameras and lights are
-/// checked by their readers. Throws SceneError.
+/// Validates what tinygltf does not: types, ranges and indices of buffers, bufferViews, accessors,
+/// images, textures, samplers, meshes, nodes and scenes; that each bufferView lies inside its
+/// buffer and each accessor inside its bufferView; that required extensions are supported.
+/// Materials, cameras and lights are validated where they are read. Throws SceneError.
 void check_structure(const GltfObject& root, const Framing& framing);
 
 /// The names that may stand in extensionsRequired.

@@ -17,9 +17,10 @@ struct PlacedNode {
   double determinant = 0;  ///< of the upper 3x3; its sign tells mirrored nodes
 };
 
-/// The nodes with content that the default scene (or the first one, or, without scenes, all roots)
-/// contains, in depth-first order. Throws SceneError on a cycle, a node with two
-/// parents, more than 256 levels, and a singular or overflowing transform above something carried.
+/// The nodes with a mesh, camera or light in the default scene, in depth-first order. A file
+/// without a default scene: its first scene; a file without scenes: all root nodes. Throws
+/// SceneError on a cycle, on a node with two parents, on more than 256 levels, and if the transform
+/// of such a node is singular or overflows.
 std::vector<PlacedNode> place_nodes(const GltfObject& root);
 
 }  // namespace lacuna::gltf

@@ -14,19 +14,19 @@ inline bool is_drawn(const tinygltf::Primitive& primitive) {
   return is_triangle_mode(primitive.mode) && primitive.attributes.contains("POSITION");
 }
 
-/// The mesh that a node places.
+/// The index of a node's mesh; none if it has no mesh.
 inline std::optional<std::size_t> mesh_of(const tinygltf::Model& model, const PlacedNode& node) {
   return node.place.index("mesh", model.meshes.size(), "meshes");
 }
 
-/// One primitive under one node.
+/// An instance of a primitive: the primitive and the node that places it.
 struct Source {
   const tinygltf::Model& model;
   std::size_t mesh, index;
   const PlacedNode& node;
 
   const tinygltf::Primitive& primitive() const { return model.meshes[mesh].primitives[index]; }
-  /// What it is called in errors.
+  /// Names the instance in errors.
   std::string place() const {
     return "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(index) + "] under " +
            node.place.label();

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <string>
 
-#include "renderer/images/guards.h"
-
 namespace lacuna::gltf {
 namespace {
 
@@ -84,8 +82,8 @@ int TextureTable::enter(const GltfObject& texture, Texture::Encoding encoding) {
 }
 
 std::vector<std::unique_ptr<Texture>> TextureTable::build(const tinygltf::Model& model,
-                                                          SceneFolder& folder,
-                                                          Hasher& content) const {
+                                                          SceneFolder& folder, Hasher& content,
+                                                          std::uint64_t most_bytes) const {
   std::vector<std::unique_ptr<Texture>> built;
   std::vector<bool> hashed(images_.size());
   std::uint64_t all_bytes = 0;
@@ -93,9 +91,8 @@ std::vector<std::unique_ptr<Texture>> TextureTable::build(const tinygltf::Model&
     const GltfObject& image = images_[entry.image];
     Bytes bytes = encoded_bytes(image, model.images[entry.image], model, folder);
     all_bytes += bytes.size();
-    if (all_bytes > max_encoded_bytes) {
-      image.fail("is one too many: the textures have more than " +
-                 std::to_string(max_encoded_bytes) +
+    if (all_bytes > most_bytes) {
+      image.fail("is one too many: the textures have more than " + std::to_string(most_bytes) +
                  " bytes together, each way of reading counted");
     }
     if (!hashed[entry.image]) content.add(std::span<const std::uint8_t>(bytes));

@@ -5,24 +5,28 @@
 
 #include "renderer/gltf/gltf_model.h"
 #include "renderer/gltf/gltf_warnings.h"
+#include "renderer/images/guards.h"
 
 namespace lacuna::gltf {
 
-/// Which textures the materials use, each once for every way of reading it: a texture that serves
-/// both as colour and as data becomes two.
+/// The textures that materials use. Each combination of an image, an encoding (sRGB or linear) and
+/// wrap modes is one texture: an image that is used as colour and as data becomes two.
 class TextureTable {
  public:
   /// `root` must outlive the table.
   TextureTable(const GltfObject& root, Warnings& warnings);
 
-  /// The textureInfo under `key`, with KHR_texture_transform. Checked in any case; entered into the
-  /// table only if `needed`, that is if its factor is not 0. Throws SceneError.
+  /// Reads the textureInfo under `key`, with KHR_texture_transform. It is always validated; the
+  /// texture is added to the table only if `needed`, that is if its factor is not 0. Throws
+  /// SceneError.
   TextureRef reference(const GltfObject& owner, std::string_view key, Texture::Encoding encoding,
                        bool needed);
 
-  /// Takes the encoded bytes of all entries. Throws SceneError if one is missing.
+  /// Creates all textures of the table with their encoded bytes. Throws SceneError if an image is
+  /// missing, or if all textures together have more than `most_bytes`, encoded.
   std::vector<std::unique_ptr<Texture>> build(const tinygltf::Model& model, SceneFolder& folder,
-                                              Hasher& content) const;
+                                              Hasher& content,
+                                              std::uint64_t most_bytes = max_encoded_bytes) const;
 
  private:
   struct Entry {

@@ -9,8 +9,8 @@ namespace lacuna {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// The only way by which a scene's files are read: regular files inside the scene's own folder,
-/// 2 GiB of them in all.
+/// Reads all files of a scene: only regular files inside the scene's own folder, and at most 2 GiB
+/// in total.
 class SceneFolder {
  public:
   /// The folder of `main_file`. Throws SceneError if there is none.

@@ -16,7 +16,7 @@ struct ExrLayer {
   std::vector<double> values;
 };
 
-/// Writes scan-line EXR (ZIP) as a whole or not at all (a temporary beside it, fsync, rename).
+/// Writes a scan-line EXR (ZIP) atomically (temporary file, fsync, rename).
 /// Attributes are strings, under "lacuna:NAME"; the file holds no date. Throws std::system_error or
 /// std::runtime_error that names the file; also where `type` is half and a value would overflow.
 void write_exr(const std::filesystem::path& file, int width, int height,

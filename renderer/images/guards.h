@@ -17,15 +17,15 @@ namespace lacuna {
 
 constexpr int max_picture_side = 32768;  ///< pixels
 constexpr int max_texture_side = 16384;  ///< texels
-/// Of all textures of a scene together, where they are decoded: 2 GiB at 4 bytes a texel.
+/// Limit of the decoded texels of all textures of a scene together: 2 GiB at 4 bytes a texel.
 constexpr std::uint64_t max_scene_texels = std::uint64_t{1} << 29;
-/// Of all textures of a scene together, encoded: once for every way in which one is read.
+/// Limit of the encoded bytes of all textures of a scene together (gltf::TextureTable).
 constexpr std::uint64_t max_encoded_bytes = std::uint64_t{2} << 30;
 
-/// Checks the headers of an OpenEXR file for what the libraries take on trust: they make room for
-/// an attribute of any size and for rows and tiles of any number before they look whether the file
-/// has them, and a channel of an unknown type ends the process. Flat parts up to max_picture_side,
-/// all channels at full resolution.
+/// Validates the headers of an OpenEXR file, which the libraries trust: they allocate memory for
+/// attributes, rows and tiles of any stated number before they read them, and an unknown channel
+/// type ends the process. Allowed are flat parts of up to max_picture_side with all channels at
+/// full resolution.
 void check_exr_header(const std::filesystem::path& file);
 
 /// A PNG of 8 or 16 bits or less, of any colour type, up to max_texture_side.
@@ -34,13 +34,14 @@ std::vector<std::uint8_t> plain_png(std::span<const std::uint8_t> png, const std
 /// A JPEG of 8 bits, grey or three colours, in at most 500 scans, up to max_texture_side.
 std::vector<std::uint8_t> plain_jpeg(std::span<const std::uint8_t> jpeg, const std::string& label);
 
-/// How many texels the head of a PNG says, or the frame of a JPEG; what follows is not looked at.
+/// The number of texels by the header of a PNG or the frame header of a JPEG. Does not validate the
+/// rest of the file.
 std::uint64_t png_texels(std::span<const std::uint8_t> png, const std::string& label);
 std::uint64_t jpeg_texels(std::span<const std::uint8_t> jpeg, const std::string& label);
 
 /// A Radiance picture (`32-bit_rle_rgbe`, top row first) up to max_picture_side: rows flat or
-/// channel by channel. Rows in the old run-length form, which the library does not know, come out
-/// flat. Its EXPOSURE is left aside.
+/// channel by channel. Rows in the old run-length encoding, which the library does not support, are
+/// expanded. EXPOSURE is ignored.
 std::vector<std::uint8_t> plain_hdr(std::span<const std::uint8_t> hdr, const std::string& label);
 
 /// The first picture of a TIFF of up to 4 GiB and max_picture_side: 1, 3 or 4 channels of 16- or

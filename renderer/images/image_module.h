@@ -6,13 +6,13 @@
 
 namespace lacuna {
 
-// OpenImageIO needs 260 shared libraries, which take more time and memory than many a command. So
-// it is no part of the program but a module, `lacuna-images.so`, which is loaded once in a process,
-// when the first image is needed and never before. It lies beside the program, or in `../bin`.
+// OpenImageIO depends on 260 shared libraries, which cost more time and memory than many commands
+// do otherwise. The program therefore does not link it: the module `lacuna-images.so`, beside the
+// program or in `../bin`, does, and a process loads it when it needs the first image.
 
-/// Begins to load the module on a thread of its own, unless that was done already, and returns at
-/// once; where a limit of memory is near, it returns when all is done. A program that ends while
-/// libraries are being loaded may crash: the destructor waits.
+/// Starts loading the module on a thread of its own, unless it is loaded already, and returns at
+/// once; near a memory limit it loads the module before it returns. The destructor waits until the
+/// module is loaded: a program that exits during the loading of libraries may crash.
 class ImageModuleLoading {
  public:
   ImageModuleLoading();

@@ -16,7 +16,7 @@ struct Rgba {
   float a = 1;
 };
 
-/// An image of a scene: its encoded bytes until it is decoded.
+/// A texture of a scene. It holds the encoded bytes of its image until decode(), then the texels.
 class Texture {
  public:
   enum class Encoding { linear, srgb };
@@ -26,13 +26,13 @@ class Texture {
   Texture(std::string label, std::vector<std::uint8_t> encoded, Encoding encoding, Wrap wrap_s,
           Wrap wrap_t);
 
-  /// Decodes and frees the encoded bytes; does nothing the second time. Not thread-safe on one
-  /// texture: the scene calls it before rendering, for just the textures that the integrator needs.
-  /// Kept at 8 bits a channel (PNGs of 16 bits are rounded); grey becomes RGB; no alpha becomes 1;
-  /// alpha is never multiplied into the colour. Throws SceneError: not a PNG or JPEG, corrupt, or
-  /// larger than 16384 x 16384.
+  /// Decodes the image and frees its encoded bytes; does nothing if it is decoded already. Not
+  /// thread-safe on one texture. The scene calls it before rendering, for the textures that the
+  /// integrator needs. Texels have 8 bits a channel (16-bit PNGs are rounded), grey becomes RGB,
+  /// missing alpha becomes 1, and alpha is not multiplied into the colour. Throws SceneError if the
+  /// image is not a PNG or JPEG, is corrupt, or is larger than 16384 x 16384.
   void decode();
-  /// How many it has, decoded or not: then its head says so. Throws SceneError.
+  /// The number of texels; before decode() by the header of the image. Throws SceneError.
   std::uint64_t texels() const;
   bool decoded() const { return !texels_.empty(); }
   const std::string& label() const { return label_; }

@@ -123,9 +123,9 @@ class ManyLights final : public Integrator {
   /// The data that all parts of a picture share.
   struct Gathering {
     const VplContributions& terms;
-    const LightDraw* draw;  // null: all lights
-    LightFilter* filter;    // null: none
-    BlockRange range;       // of this pass; what does not come from lights is added in the first
+    LightDraw* draw;      // null: all lights
+    LightFilter* filter;  // null: none
+    BlockRange range;     // of this pass; what does not come from lights is added in the first
   };
 
   /// Samples the lights; null: all lights are gathered.

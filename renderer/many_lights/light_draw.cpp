@@ -27,7 +27,7 @@ LightDraw::LightDraw(const VplContributions& terms, const RandomLightsSettings& 
 }
 
 std::vector<LightDraw::Drawn> LightDraw::draw(std::span<const ShadingPoint> points,
-                                              const IterationContext& context) const {
+                                              const IterationContext& context) {
   PointLanes lanes;
   for (const ShadingPoint& p : points) lanes.add(p);
   std::vector<std::vector<std::size_t>> left(points.size());

@@ -29,11 +29,10 @@ class LightDraw {
     float weight;          ///< 1 / probability
   };
   /// Samples lights for at most Lanes::size `points`; the result is ordered by block, then by
-  /// point.
-  std::vector<Drawn> draw(std::span<const ShadingPoint> points,
-                          const IterationContext& context) const;
+  /// point. Counts pairs for culled(). Several threads may call it at once.
+  std::vector<Drawn> draw(std::span<const ShadingPoint> points, const IterationContext& context);
 
-  /// Share of all pairs of a point and a light that were culled.
+  /// Share of all pairs of a point and a light that draw() has culled so far.
   double culled() const;
 
  private:
@@ -57,7 +56,7 @@ class LightDraw {
   RandomLightsSettings settings_;
   std::vector<Stretch> stretches_;
   std::vector<std::uint64_t> before_;  // number of lights before each block, and of all lights
-  mutable std::atomic<std::uint64_t> pairs_ = 0, left_ = 0;
+  std::atomic<std::uint64_t> pairs_ = 0, left_ = 0;
 };
 
 }  // namespace lacuna

@@ -22,7 +22,7 @@ class LightGather {
  public:
   /// `draw`: samples the lights; null: all lights. Only blocks in `range` are used.
   LightGather(const IterationContext& context, const VplContributions& terms,
-              const Visibility& visibility, const LightDraw* draw, Counters& counters,
+              const Visibility& visibility, LightDraw* draw, Counters& counters,
               BlockRange range = {})
       : context_(context),
         terms_(terms),
@@ -132,7 +132,7 @@ class LightGather {
   const IterationContext& context_;
   const VplContributions& terms_;
   const Visibility& visibility_;
-  const LightDraw* draw_;
+  LightDraw* draw_;
   Counters& counters_;
   BlockRange range_;
   std::size_t blocks_ = 0;                            // done

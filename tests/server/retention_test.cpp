@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "server/queue/queue.h"
+#include "tests/temporary_folder.h"
+
 namespace lacuna {
 namespace {
 
@@ -58,6 +61,72 @@ TEST(Retention, NoRunOfASweepThatIsNotOver) {
   EXPECT_EQ(outdated(jobs, {"s"}, keep(0, 1), now), (Ids{"b", "c"}));
   EXPECT_EQ(outdated(jobs, {"s"}, keep(1, 0), now), Ids{"b"}) << "it does not count";
   EXPECT_EQ(outdated(jobs, {"t"}, keep(1, 0), now), (Ids{"a", "b"}));
+}
+
+/// Never asked: the queue of these tests does not begin.
+class NoExecutor final : public Executor {
+ public:
+  Ending run(const JobFolder&, const StopSignal&, const Started&) override { return {}; }
+};
+
+/// A queue over the folders of a data root.
+class RetentionOnDisk : public testing::Test {
+ protected:
+  JobFolder make_job(const std::string& id, State state) {
+    JobSpec spec;
+    spec.scene = "a.glb";
+    std::filesystem::create_directories(data.jobs());
+    const JobFolder folder = JobFolder::create(data.jobs() / id, spec);
+    set_on_disk(folder, state);
+    table.rescan();
+    return folder;
+  }
+  static void set_on_disk(const JobFolder& folder, State state) {
+    JobState changed = folder.read_state();
+    changed.state = state;
+    changed.finished = is_terminal(state) ? utc_text(now) : "";
+    folder.write_state(changed);
+  }
+
+  TemporaryFolder temp;
+  DataRoot data{temp.path()};
+  SweepTable sweeps{data};
+  JobTable table{data, sweeps};
+  NoExecutor executor;
+  DiskWatch disk{temp.path(), 0};
+  Queue queue{executor, table, disk, {}};
+};
+
+TEST_F(RetentionOnDisk, AJobThatItsFolderSaysIsOverGoes) {
+  const std::string id = "20260101-000000-aaaaaa";
+  const JobFolder folder = make_job(id, State::done);
+  queue.remove_outdated(id);
+  EXPECT_FALSE(std::filesystem::exists(folder.dir()));
+  EXPECT_EQ(table.find(id), nullptr);
+}
+
+// Somebody at a shell lets a job go on that the service knows as done.
+TEST_F(RetentionOnDisk, AJobThatOnlyTheTableSaysIsOverStays) {
+  const std::string id = "20260101-000000-aaaaaa";
+  const JobFolder folder = make_job(id, State::done);
+  for (const State state : {State::interrupted, State::running, State::queued}) {
+    set_on_disk(folder, state);
+    ASSERT_EQ(outdated(table.all(), {}, keep(0, 1), now + std::chrono::hours(48)), Ids{id});
+    EXPECT_THROW(queue.remove_outdated(id), Conflict) << enum_name(state);
+    EXPECT_TRUE(std::filesystem::exists(folder.file("job.json")));
+    EXPECT_NE(table.find(id), nullptr);
+  }
+  set_on_disk(folder, State::done);
+  queue.remove_outdated(id);
+  EXPECT_FALSE(std::filesystem::exists(folder.dir()));
+}
+
+TEST_F(RetentionOnDisk, AJobWhoseFolderSaysNothingStays) {
+  const std::string id = "20260101-000000-aaaaaa";
+  const JobFolder folder = make_job(id, State::done);
+  temp.write("jobs/" + id + "/state.json", "{");
+  EXPECT_ANY_THROW(queue.remove_outdated(id));
+  EXPECT_TRUE(std::filesystem::exists(folder.file("job.json")));
 }
 
 }  // namespace

@@ -82,6 +82,30 @@ test("where no events can be had, the list asks", async () => {
   await page.waitForFunction((id) => document.querySelector(`tr[data-job="${id}"] progress`).value === 0.5, running);
 });
 
+test("a job that waits for a fault to pass says so, in the list, above it and on its own page", async () => {
+  const full = "renderer could not write its files: No space left on device";
+  const reason = page.locator(`tr[data-job="${waiting}"] .reason`);
+  await open("/");
+  assert.equal(await reason.innerText(), "");
+  assert.equal(await page.locator("main .warning").count(), 0);
+  mock.obstacle = "renderers cannot write their files";
+  mock.update(waiting, { state: { obstacle: full } });
+  await page.waitForFunction(([id, words]) => document.querySelector(`tr[data-job="${id}"] .reason`).innerText === words,
+    [waiting, full]);
+  await page.getByText("Jobs wait: renderers cannot write their files").waitFor();
+  assert.equal(await text(`tr[data-job="${waiting}"] .badge`), "queued", "it has not failed");
+  await open(`/#/job/${waiting}`);
+  await page.getByText(`It waits: ${full}`).waitFor();
+  while (mock.listeners.size === 0) await page.waitForTimeout(20);
+  mock.obstacle = "";
+  mock.update(waiting, { state: { obstacle: "" } });
+  await page.getByText("It waits:").waitFor({ state: "detached" });
+  await open("/");
+  await page.getByText("Jobs wait:").waitFor({ state: "detached" });
+  assert.equal(await reason.innerText(), "");
+  assert.deepEqual(page.troubles, []);
+});
+
 test("the filter and the state are the service's, and go into the address", async () => {
   await open("/");
   await page.fill("input[type=search]", "CORNELL box");

@@ -84,7 +84,8 @@ async function body(request) {
 }
 
 /// The mock: `jobs` may be changed at will; `update(id, changes)` and `drop(id)` also send the events.
-/// With a `token`, it must be known; with `events` false, no event stream is to be had.
+/// With a `token`, it must be known; with `events` false, no event stream is to be had; an `obstacle`
+/// keeps all jobs from going on.
 export class Mock {
   constructor() {
     this.reset();
@@ -100,6 +101,7 @@ export class Mock {
     this.requests = [];
     this.token = null;
     this.events = true;
+    this.obstacle = "";
     this.told = 0;
   }
 
@@ -153,7 +155,9 @@ export class Mock {
       if ((await body(request)).token !== this.token) return problem(response, 401, "Unauthorized", "That is not the token.");
       return send(response, 204, "text/plain", "", { "Set-Cookie": `lacuna=${this.token}; HttpOnly; SameSite=Strict` });
     }
-    if (path === "/health") return sendJson(response, { status: "ok" });
+    if (path === "/health") {
+      return sendJson(response, this.obstacle ? { status: "waiting", obstacle: this.obstacle } : { status: "ok" });
+    }
     if (path.startsWith("/api/")) {
       if (this.token !== null && request.headers.cookie !== `lacuna=${this.token}`) {
         return problem(response, 401, "Unauthorized", "A token is needed.");

@@ -97,6 +97,7 @@ TEST_F(RunJob, ReportSaysThatNothingWasBuiltThatNobodyNeeds) {
   EXPECT_TRUE(r.at("artefacts").at("loaded").empty());
   EXPECT_EQ(r.at("scene").at("textures").at("decoded"), 0);
   EXPECT_EQ(r.at("scene").at("mask_filters"), 0);
+  EXPECT_EQ(r.at("scene").at("camera"), "front");
   EXPECT_FALSE(std::filesystem::exists(temp.path() / "cache"));
   JobSpec s = spec("ajar.glb", 1);
   s.integrator = InspectSettings{InspectQuantity::normal};

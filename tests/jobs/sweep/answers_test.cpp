@@ -146,6 +146,23 @@ TEST_F(SweepAnswers, OnlyCellsOfOnePictureAreCompared) {
   EXPECT_NE(a.warnings[0].find("one seed"), std::string::npos);
 }
 
+// A job without a camera renders its scene's first one, whose name only a report tells.
+TEST_F(SweepAnswers, TheFirstCameraIsOnePictureWithOrWithoutItsName) {
+  const SweepFolder sweep = make(R"({"job": {"scene": "a.glb", "reference": "r.exr"},
+    "axes": {"/camera": ["", "room", "hall"]}, "baseline": {"/camera": "room"}})");
+  FakeRun unnamed{1}, room{2}, hall{4};
+  unnamed.report = room.report = R"({"scene": {"camera": "room"}})";
+  hall.report = R"({"scene": {"camera": "hall"}})";
+  EXPECT_EQ(answer(sweep).pictures.size(), 3u);  // as long as no report tells it
+  const Answers a = answer(finish_all(sweep, {unnamed, room, hall}));
+  ASSERT_EQ(a.pictures.size(), 2u);
+  EXPECT_EQ(a.pictures[0].cells, (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(a.pictures[1].cells, (std::vector<std::size_t>{2}));
+  ASSERT_FALSE(a.cells[0].at.empty());
+  ASSERT_TRUE(a.cells[0].at[0].gain);
+  EXPECT_NEAR(a.cells[0].at[0].gain->ratio.value, 2, 1e-9);
+}
+
 TEST_F(SweepAnswers, WhatIsNotDoneTakesNoPart) {
   const SweepFolder sweep = make(two_depths);
   finish(sweep, 0, {16});

@@ -1,6 +1,8 @@
 // What guides are for: less noise where light comes round corners, and little more where it does
-// not. The bounds lie between what was seen and what faults in learning make of it; that a gain is
-// beyond its bound must be significant over pairs of pictures of the same seed.
+// not. The bounds lie between what was measured, over 24 to 48 seeds, and what faults make of it;
+// that a gain is beyond its bound must be significant over pairs of pictures of the same seed. With
+// the measured means and deviations each line raises a false alarm in less than one of 1,000 sets
+// of seeds.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -84,25 +86,31 @@ GuideSettings skeleton(const AutoNumber& strength, const AutoNumber& probability
 
 TEST(GuideGain, RoundCorners) {
   const Gain gain({"bends", 12, 160});
-  gain.expect_below(0.72, skeleton({8}, {0.5}));
-  gain.expect_below(0.68, skeleton({}, {0.5}));
-  gain.expect_below(0.73, skeleton({8}, {}));
-  gain.expect_below(0.72, skeleton({}, {}));
-  gain.expect_below(1.05, FaceIrradianceGuideSettings{});
-  gain.expect_below(0.95, test::in_small_pictures(SdTreeGuideSettings{}));
+  // Measured, and without splitting: 0.58 and 0.63, 0.56 and 0.60, 0.59 and 0.63, 0.56 and 0.60.
+  gain.expect_below(0.64, skeleton({8}, {0.5}));
+  gain.expect_below(0.62, skeleton({}, {0.5}));
+  gain.expect_below(0.65, skeleton({8}, {}));
+  gain.expect_below(0.62, skeleton({}, {}));
+  gain.expect_below(0.9, test::in_small_pictures(FaceIrradianceGuideSettings{}));  // 0.80
+  gain.expect_below(0.85, test::in_small_pictures(SdTreeGuideSettings{}));         // 0.73 and 0.82
+}
+
+// So few paths hardly teach it where the faces lead: 0.954 +- 0.013. Always led there, 1.25.
+TEST(GuideGain, FacesThatAreLearnedDoNoHarmRoundCorners) {
+  Gain({"bends", 24, 160}).expect_below(1.08, FaceIrradianceGuideSettings{});
 }
 
 // A guided path has little throughput: roulette by it would end just what the guide is for.
 TEST(GuideGain, IsNotLostToRoulette) {
   const Gain gain({"bends", 12, 160, 2});
-  gain.expect_below(0.85, skeleton({8}, {0.5}));
+  gain.expect_below(0.56, skeleton({8}, {0.5}));  // 0.45; without the window 0.72
 }
 
 // With the lamp in sight lobes can only cost.
 TEST(GuideGain, WhatIsLearnedDoesNoHarm) {
   for (const char* scene : {"cornell", "atrium"}) {
-    const Gain gain({scene, 5, 64});
-    gain.expect_above(1.07, skeleton({32}, {0.5}));  // or the test has no power
+    const Gain gain({scene, 6, 64});
+    gain.expect_above(1.07, skeleton({32}, {0.5}));  // 1.15 and 1.13; or the test has no power
     gain.expect_below(1.05, skeleton({}, {}));
     gain.expect_below(1.02, PortalsGuideSettings{});
     gain.expect_below(1.05, FaceIrradianceGuideSettings{});

@@ -20,7 +20,7 @@ using Lights = std::map<std::size_t, std::uint64_t>;  // by block
 /// All that may be drawn for a point.
 Lights candidates(const LitScene& lit, const ShadingPoint& point, bool cull,
                   std::size_t most_stretches = 1024) {
-  const LightDraw draw(lit.terms(), {.lights = 1 << 20, .cull = cull}, most_stretches);
+  LightDraw draw(lit.terms(), {.lights = 1 << 20, .cull = cull}, most_stretches);
   Lights all;
   for (const auto& d : draw.draw(std::span(&point, 1), lit.context(1))) {
     EXPECT_EQ(d.weight, 1.0F);
@@ -74,7 +74,7 @@ TEST(LightDraw, DrawsAllAlike) {
     const Lights all = candidates(lit, point, true);
     const auto n = static_cast<double>(count(all));
     ASSERT_GT(n, 40);
-    const LightDraw draw(lit.terms(), {.lights = 16});
+    LightDraw draw(lit.terms(), {.lights = 16});
     std::map<std::pair<std::size_t, int>, int> times;
     for (int r = 0; r < rounds; ++r) {
       std::size_t drawn = 0;
@@ -101,7 +101,7 @@ TEST(LightDraw, SumsHaveTheMeanOfAll) {
       const ExactVisibility exact{{}};
       const auto expected = gathered(lit, lit.context(1), exact, points);
       for (const bool cull : {true, false}) {
-        const LightDraw draw(lit.terms(), {.lights = 20, .cull = cull});
+        LightDraw draw(lit.terms(), {.lights = 20, .cull = cull});
         std::vector<Moments> means(points.size());
         for (std::uint64_t r = 0; r < 600; ++r) {
           const auto values = gathered(lit, lit.context(r + 2), exact, points, nullptr, &draw);
@@ -126,7 +126,7 @@ TEST(LightDraw, LeavesOutWhatIsBeyondTheCutoff) {
     for (const ShadingPoint& p : points) {
       const V3f x = p.vertex->surface.x;
       const float reach = 0.7F;
-      const LightDraw draw(lit.terms(), {.lights = 1 << 20, .cull = false, .cutoff = reach});
+      LightDraw draw(lit.terms(), {.lights = 1 << 20, .cull = false, .cutoff = reach});
       Lights drawn;
       for (const auto& d : draw.draw(std::span(&p, 1), lit.context(1))) drawn[d.block] = d.lights;
       for (const auto& [block, bits] : candidates(lit, p, false)) {
@@ -145,7 +145,7 @@ TEST(LightDraw, OfMoreThanThereAreIsAll) {
   const LitScene lit({"ajar"}, 100, 2);
   lit.with_points(400, [&](std::span<const ShadingPoint> points) {
     const ExactVisibility exact{{}};
-    const LightDraw draw(lit.terms(), {.lights = 1 << 20});
+    LightDraw draw(lit.terms(), {.lights = 1 << 20});
     const auto all = gathered(lit, lit.context(1), exact, points);
     const auto drawn = gathered(lit, lit.context(1), exact, points, nullptr, &draw);
     for (std::size_t i = 0; i < all.size(); ++i) EXPECT_NEAR(drawn[i], all[i], 1e-12 * all[i]);
@@ -159,7 +159,7 @@ TEST(LightDraw, OfNoLightsIsNothing) {
   lit.with_points(400, [&](std::span<const ShadingPoint> points) {
     const VplSet none(1, {1, false, 0.1F});
     const VplContributions terms(none, 2);
-    const LightDraw draw(terms, {});
+    LightDraw draw(terms, {});
     EXPECT_TRUE(draw.draw(points, lit.context(1)).empty());
     EXPECT_EQ(draw.culled(), 0);
   });

@@ -18,8 +18,11 @@ class LitScene {
   static constexpr int max_depth = 5;
   static constexpr float least_alpha = 0.09F;
 
-  LitScene(const PathScene& named, int light_paths, float bound, bool with_emitters = true)
-      : data_(load(named)),
+  /// `seed`: of the lights and of the shading points.
+  LitScene(const PathScene& named, int light_paths, float bound, bool with_emitters = true,
+           std::uint64_t seed = 1)
+      : seed_(seed),
+        data_(load(named)),
         eye_(choose_camera(data_, "", "test")),
         camera_(eye_, 40, 30, PixelFilter::box),
         scene_(std::move(data_), {.materials = true, .emission = true}, environment(named), pool_),
@@ -33,13 +36,13 @@ class LitScene {
   void prepare(Visibility& visibility) {
     visibility.prepare({scene_, pool_, space_});
     lights_ = walk([&](const VplGeometry& p) { return visibility.group(p); });
-    const IterationContext first = context(1);
+    const IterationContext first = context(seed_);
     visibility.begin(pass(first));
   }
   SpaceAnalysis& space() { return space_; }
   const ThreadPool& pool() const { return pool_; }
 
-  /// With random numbers of their own for each seed; the lights stay those of seed 1.
+  /// With random numbers of their own for each seed; the lights stay as they are.
   IterationContext context(std::uint64_t seed) const {
     return {scene_, camera_, pool_, seed, 0, never_};
   }
@@ -55,7 +58,7 @@ class LitScene {
   /// Calls `use(points)` with the shading points of the pixels `first` and the 63 after it.
   template <class Use>
   void with_points(std::uint32_t first, Use&& use) const {
-    const IterationContext c = context(1);
+    const IterationContext c = context(seed_);
     Counters counters;
     ShadingPoints finder(c, max_depth, least_alpha, counters);
     std::vector<std::uint32_t> pixels(EyeBatch::size);
@@ -78,7 +81,7 @@ class LitScene {
         scene_, camera_, max_depth - 1, max_depth, SampleCounts{.hit = 0}, true};
     Image image(40, 30);
     light_pass(
-        context(1), setting, guide_, light_paths_, image,
+        context(seed_), setting, guide_, light_paths_, image,
         [&](std::size_t path, const LightBatch<BsdfGuide>& batch, std::size_t place) {
           lights.keep(path, batch, place);
           const int length = std::min(batch.length(place), max_depth - 1);
@@ -93,6 +96,7 @@ class LitScene {
     return lights;
   }
 
+  std::uint64_t seed_;
   ThreadPool pool_{2};
   std::function<bool()> never_ = [] { return false; };
   BsdfGuide guide_;
@@ -119,7 +123,7 @@ class LitScene {
 template <class Visibility>
 std::vector<double> gathered(const LitScene& lit, const IterationContext& context,
                              const Visibility& visibility, std::span<const ShadingPoint> points,
-                             std::uint64_t* tests = nullptr, const LightDraw* draw = nullptr) {
+                             std::uint64_t* tests = nullptr, LightDraw* draw = nullptr) {
   Counters counters;
   std::vector<LightSum> sums(points.size());
   LightGather<Visibility>(context, lit.terms(), visibility, draw, counters).gather(points, sums);

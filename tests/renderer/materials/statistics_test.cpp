@@ -82,6 +82,13 @@ TEST(Statistics, ChiSquareRefusesTheImpossible) {
 }
 
 /// p-values of right hypotheses are uniform: tested by the same test one level up.
+TEST(Statistics, BinomialTails) {
+  EXPECT_NEAR(binomial_at_least(8, 10, 0.5), 56.0 / 1024, 1e-12);
+  EXPECT_NEAR(binomial_at_least(1, 3, 0.2), 1 - 0.512, 1e-12);
+  EXPECT_NEAR(binomial_at_least(0, 24, 0.25), 1, 1e-12);
+  EXPECT_EQ(binomial_at_least(25, 24, 0.25), 0);
+}
+
 TEST(Statistics, PValuesAreUniform) {
   Rng random(1, 0, 0, Rng::Purpose::test);
   constexpr int bins = 10, repeats = 2000;
