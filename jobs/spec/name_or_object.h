@@ -15,6 +15,8 @@ struct NameOr {
   NameOr() = default;
   NameOr(std::string of) : name(std::move(of)) {}
   NameOr(const char* of) : name(of) {}
+  /// Neither a name nor an object is given.
+  bool is_default() const { return name.empty() && !object; }
   bool operator==(const NameOr&) const = default;
 };
 

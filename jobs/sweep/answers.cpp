@@ -74,7 +74,7 @@ class Comparison {
     for (std::size_t r = 0; r < plan_.runs.size(); ++r) {
       const JobSpec& job = plan_.cells[plan_.runs[r].cell].job;
       const std::optional<std::string>& rendered = answers_.results[r].camera;
-      if (job.camera.empty() && rendered) first.emplace(job.scene, *rendered);
+      if (job.camera.is_default() && rendered) first.emplace(job.scene, *rendered);
     }
     return first;
   }
@@ -84,8 +84,9 @@ class Comparison {
     std::map<std::string, std::size_t> known;
     for (CellAnswer& cell : answers_.cells) {
       JobSpec job = plan_.cells[cell.cell].job;
-      if (const auto named = first.find(job.scene); job.camera.empty() && named != first.end()) {
-        job.camera = named->second;
+      if (const auto named = first.find(job.scene);
+          job.camera.is_default() && named != first.end()) {
+        job.camera.name = named->second;
       }
       const auto [found, is_new] = known.emplace(picture_name(job), answers_.pictures.size());
       if (is_new) answers_.pictures.emplace_back();

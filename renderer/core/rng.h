@@ -10,6 +10,16 @@
 
 namespace lacuna {
 
+/// Where the words of a stream come from that are not drawn anew, but kept and changed (primary
+/// samples: renderer/path/primary_samples.h).
+class RandomWords {
+ public:
+  using Block = std::array<std::uint32_t, 16>;
+  virtual ~RandomWords() = default;
+  /// The next words of the stream.
+  virtual void next(Block& out) = 0;
+};
+
 /// A counter-based random number generator: Philox4x32-10 (Salmon et al. 2011, "Parallel random
 /// numbers: as easy as 1, 2, 3"). The stream is a pure function of (seed, iteration, path,
 /// purpose), so an image does not depend on threads, on their order, or on a kill and a resume.
@@ -24,7 +34,9 @@ class Rng {
     visibility = 4,
     gather = 5,
     particles = 6,
-    branch = 7
+    branch = 7,
+    bootstrap = 8,
+    chain = 9
   };
 
   /// `path` < 2^56; `iteration` < 2^32.
@@ -34,6 +46,15 @@ class Rng {
         counter_{0, static_cast<std::uint32_t>(path),
                  static_cast<std::uint32_t>(path >> 32) | static_cast<std::uint32_t>(purpose) << 24,
                  static_cast<std::uint32_t>(iteration)} {}
+
+  /// The stream of `words`, which outlives it.
+  explicit Rng(RandomWords& words) : Rng(0, 0, 0) { words_ = &words; }
+
+  /// Called at each vertex of a path. In a stream of kept words each vertex begins a block, so that
+  /// a change at one vertex leaves the others theirs; without effect in others.
+  void next_vertex() {
+    if (words_ != nullptr) used_ = numbers_.size();
+  }
 
   /// An independent stream, keyed by the next 64 bits of this one.
   Rng branch() {
@@ -107,6 +128,11 @@ class Rng {
 
   // Four blocks at once, one in each 64-bit lane (values in the low halves): a quarter of the work.
   void refill() {
+    if (words_ != nullptr) [[unlikely]] {
+      words_->next(numbers_);
+      used_ = 0;
+      return;
+    }
     const __m256i low = _mm256_set1_epi64x(0xffffffff);
     const auto spread = [](std::uint32_t v) { return _mm256_set1_epi64x(v); };
     __m256i c0 = _mm256_add_epi64(spread(counter_[0]), _mm256_setr_epi64x(0, 1, 2, 3));
@@ -137,8 +163,9 @@ class Rng {
     used_ = 0;
   }
 
-  alignas(32) std::array<std::uint32_t, 16> numbers_;
-  std::uint32_t used_ = 16;
+  alignas(32) RandomWords::Block numbers_;
+  std::size_t used_ = 16;
+  RandomWords* words_ = nullptr;
   std::array<std::uint32_t, 2> key_;
   Block counter_;
 };

@@ -9,6 +9,7 @@ std::unique_ptr<Integrator> make_path(const PathSettings& settings);
 std::unique_ptr<Integrator> make_light(const LightSettings& settings);
 std::unique_ptr<Integrator> make_bdpt(const BdptSettings& settings);
 std::unique_ptr<Integrator> make_many_lights(const ManyLightsSettings& settings);
+std::unique_ptr<Integrator> make_metropolis(const MetropolisSettings& settings);
 std::unique_ptr<Integrator> make_inspect(const InspectSettings& settings);
 
 }  // namespace lacuna

@@ -11,6 +11,9 @@ struct Make {
   std::unique_ptr<Integrator> operator()(const ManyLightsSettings& s) const {
     return make_many_lights(s);
   }
+  std::unique_ptr<Integrator> operator()(const MetropolisSettings& s) const {
+    return make_metropolis(s);
+  }
   std::unique_ptr<Integrator> operator()(const InspectSettings& s) const { return make_inspect(s); }
 };
 

@@ -37,14 +37,18 @@ class LightBatch {
 
   /// Traces one path for each generator. A path that no emitter could start has length 0.
   /// `choices`: 32 uniform bits for each path that choose its emitter; empty: drawn from `rngs`.
+  /// `wanted`: the most vertices of each path, >= 1; empty: as many as max_depth allows.
   void walk(std::span<const Rng> rngs, Counters& counters,
-            std::span<const std::uint32_t> choices = {}) {
+            std::span<const std::uint32_t> choices = {}, std::span<const int> wanted = {}) {
+    const auto goes_on = [&](std::size_t i, int vertices) {
+      return vertices < (wanted.empty() ? setting_.max_depth : wanted[i]);
+    };
     states_.clear();
     counters.samples += rngs.size();
     for (std::size_t i = 0; i < rngs.size(); ++i) {
       Rng rng = rngs[i];
       const std::uint32_t own = rng.next_u32();
-      start(i, rng, choices.empty() ? own : choices[i]);
+      if (start(i, rng, choices.empty() ? own : choices[i]) && goes_on(i, 1)) leave(i, rng);
     }
     const WalkLimits limits{.max_depth = setting_.max_depth - 1,
                             .last_scatters = true,
@@ -55,8 +59,9 @@ class LightBatch {
     walk.trace_paths(
         states_, [](std::size_t, int) {},
         [&](std::size_t i, int depth) {
-          if (vertex(path_of_[i], depth).kind == Vertex::Kind::surface)
-            length_[path_of_[i]] = depth + 1;
+          const std::size_t path = path_of_[i];
+          if (vertex(path, depth).kind == Vertex::Kind::surface) length_[path] = depth + 1;
+          return goes_on(path, depth + 1);
         });
   }
 
@@ -76,35 +81,49 @@ class LightBatch {
   /// contributions to `splats`.
   void splat(std::size_t paths, Counters& counters, Splats& splats) {
     for (std::size_t i = 0; i < paths; ++i) {
-      if (length_[i] > 0 && !emitters_[i].delta()) splat_end(EmitterEndpoint{emitters_[i]});
-      for (int index = 1; index < length_[i]; ++index) {
-        if (vertex(i, index).bsdf->connectible()) splat_end(end(i, index));
+      for (int index = 0; index < length_[i]; ++index) {
+        join_eye(i, index,
+                 [&](const Ray& ray, const UnshadowedSplat& splat) { queue_.add(ray, splat); });
       }
     }
-    queue_.flush(setting_.scene.rays(), counters, [&](const PendingSplat& p) {
+    queue_.flush(setting_.scene.rays(), counters, [&](const UnshadowedSplat& p) {
       setting_.camera.splat(p.at, [&](std::uint32_t pixel, float share) {
         splats.push_back({p.value * share, p.weight, pixel, p.s});
       });
     });
   }
 
- private:
   /// A contribution to the eye that waits for its shadow ray.
-  struct PendingSplat {
-    Rgb value;
-    float weight;
-    V2f at;
+  struct UnshadowedSplat {
+    Rgb value;     ///< divided by the number of samples of t = 1
+    float weight;  ///< MIS
+    V2f at;        ///< on the film, in pixels
     std::uint16_t s;
   };
+  /// Joins vertex `index` in [0, length(i)) of path `i` to the eye (t = 1) and calls `joined(ray,
+  /// splat)` where the unoccluded contribution is not black.
+  template <class Joined>
+  void join_eye(std::size_t i, int index, Joined&& joined) const {
+    if (index == 0) {
+      if (!emitters_[i].delta()) join_eye(EmitterEndpoint{emitters_[i]}, joined);
+    } else if (vertex(i, index).bsdf->connectible()) {
+      join_eye(end(i, index), joined);
+    }
+  }
 
-  void start(std::size_t i, Rng rng, std::uint32_t choice) {
-    length_[i] = 0;
+ private:
+  /// Vertex 0; false where there is none.
+  bool start(std::size_t i, Rng& rng, std::uint32_t choice) {
     const EmitterSet& lights = setting_.scene.emitters();
-    if (lights.empty()) return;
-    const EmitterPoint& e = emitters_[i] = lights.sample(lights.choose(choice, rng), rng);
-    length_[i] = 1;
-    if (setting_.max_depth == 1) return;
-    const std::optional<Leaving> leaving = lights.sample_first_edge(e, rng);
+    length_[i] = lights.empty() ? 0 : 1;
+    if (!lights.empty()) emitters_[i] = lights.sample(lights.choose(choice, rng), rng);
+    return !lights.empty();
+  }
+
+  /// The first edge.
+  void leave(std::size_t i, Rng& rng) {
+    const EmitterPoint& e = emitters_[i];
+    const std::optional<Leaving> leaving = setting_.scene.emitters().sample_first_edge(e, rng);
     if (!leaving) return;
     const std::span<Vertex> path = std::span(vertices_).subspan(i * places_, places_);
     path[0].kind = e.infinite() ? Vertex::Kind::background : Vertex::Kind::emitter;
@@ -118,18 +137,18 @@ class LightBatch {
     states_.push_back(w);
   }
 
-  template <class End>
-  void splat_end(const End& light) {
+  template <class End, class Joined>
+  void join_eye(const End& light, Joined& joined) const {
     const EyeEndpoint eye{setting_.camera};
     const V3f to = at_infinity(light) ? light.x() : light.x() - eye.x();
     const std::optional<V2f> at = setting_.camera.project(to.normalized());
     if (!at) return;
     const Connection c = connect(eye, light);
     if (!c) return;
-    queue_.add(shadow_ray(eye, light, c),
-               {c.contribution / static_cast<float>(setting_.counts.splat),
-                static_cast<float>(weight(eye, light, c, setting_.counts)), *at,
-                static_cast<std::uint16_t>(light.index + 1)});
+    joined(shadow_ray(eye, light, c),
+           UnshadowedSplat{c.contribution / static_cast<float>(setting_.counts.splat),
+                           static_cast<float>(weight(eye, light, c, setting_.counts)), *at,
+                           static_cast<std::uint16_t>(light.index + 1)});
   }
 
   const LightPathSetting& setting_;
@@ -140,7 +159,7 @@ class LightBatch {
   std::array<std::size_t, size> path_of_{};  // of each state in states_, its path's index
   std::array<int, size> length_{};
   std::array<EmitterPoint, size> emitters_{};
-  ShadowQueue<PendingSplat> queue_;
+  ShadowQueue<UnshadowedSplat> queue_;
 };
 
 }  // namespace lacuna

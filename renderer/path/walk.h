@@ -220,6 +220,7 @@ class Walk {
   bool sample_next(PathState& w) {
     const int depth = w.depth;
     Vertex& v = vertex(w, depth);
+    w.rng.next_vertex();
     const std::optional<BsdfSample> next = guide_.sample(v, w.rng, limits_.transport);
     if (!next) return false;
     w.throughput *= next->weight;

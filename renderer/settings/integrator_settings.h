@@ -8,6 +8,7 @@
 #include "renderer/settings/inspect_settings.h"
 #include "renderer/settings/light_settings.h"
 #include "renderer/settings/many_lights_settings.h"
+#include "renderer/settings/metropolis_settings.h"
 #include "renderer/settings/output_settings.h"
 #include "renderer/settings/path_settings.h"
 
@@ -16,7 +17,8 @@ namespace lacuna {
 /// The integrator and its settings. The order is the order in menus; the first is the default.
 /// renderer/integrators/registry.cpp makes the integrator of each alternative.
 using IntegratorSettings =
-    std::variant<PathSettings, LightSettings, BdptSettings, ManyLightsSettings, InspectSettings>;
+    std::variant<PathSettings, LightSettings, BdptSettings, ManyLightsSettings, MetropolisSettings,
+                 InspectSettings>;
 
 /// The layers that the integrator of these settings fills itself. Its settings struct lists them as
 ///

@@ -83,6 +83,18 @@ TEST_P(Agrees, WithPathTracing) {
   }
 }
 
+TEST_P(Agrees, Metropolis) {
+  const Agreement& a = GetParam();
+  const Rendering expected =
+      reference(a.scene, small_picture(a.scene, test::path_tracing(a.max_depth), a.iterations));
+  for (const Method& method : test::metropolis(a.max_depth)) {
+    SCOPED_TRACE(method.name);
+    expect_same_picture(
+        render(load(a.scene), small_picture(a.scene, method.settings, a.iterations)), expected,
+        5 * a.useful);
+  }
+}
+
 TEST_P(Agrees, ManyLights) {
   const Agreement& a = GetParam();
   const Rendering expected =

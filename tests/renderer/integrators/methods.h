@@ -107,6 +107,24 @@ inline std::vector<Method> connections(int max_depth, int light_paths = 64) {
   return all;
 }
 
+/// Metropolis light transport with every mutation of the registry, with few chains that are longer
+/// than one step in small pictures.
+inline std::vector<Method> metropolis(int max_depth) {
+  std::vector<Method> all;
+  for_each_choice(MutationSettings{}, [&]<class S>(const S& mutation) {
+    for (const bool separate : {true, false}) {
+      MetropolisSettings s{whole_paths(max_depth)};
+      s.mutation = mutation;
+      s.chains = 20;
+      s.mutations = 4;
+      s.bootstrap = 2;
+      s.separate_direct = separate;
+      all.push_back({std::string(S::name) + (separate ? "" : "_all_light"), s});
+    }
+  });
+  return all;
+}
+
 /// Many-light rendering with `visibility`, in a small picture.
 inline ManyLightsSettings lit_by(int max_depth, int light_paths,
                                  const VisibilitySettings& visibility) {

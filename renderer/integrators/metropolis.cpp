@@ -1,0 +1,272 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "renderer/core/pass_seconds.h"
+#include "renderer/integrators/integrators.h"
+#include "renderer/integrators/path_tracer.h"
+#include "renderer/mutations/registry.h"
+
+namespace lacuna {
+
+namespace {
+
+/// Numbers of an iteration's independent samples and chains.
+struct ChainPlan {
+  std::int64_t samples = 0;  ///< independent: of the bootstrap
+  std::int64_t chains = 0;
+  std::int64_t mutations = 0;  ///< of each chain
+};
+
+/// Metropolis light transport (Veach and Guibas 1997; Noel 2015, 4.6). Each iteration is an
+/// estimate of its own: independent samples give the brightness of the picture, and chains start at
+/// samples that are drawn in proportion to what they contribute. So chains need no time to forget
+/// where they started, and the estimate is unbiased (Veach 1997, 11.3.1); and iterations are
+/// independent of each other, so that the film's variance and its halves tell the true error.
+template <Mutation M, class Settings>
+class Metropolis final : public Integrator {
+ public:
+  Metropolis(const MetropolisSettings& settings, const Settings& mutation)
+      : settings_(settings), mutation_(mutation), direct_(direct_settings(settings), BsdfGuide{}) {}
+
+  SceneNeeds needs() const override { return {.materials = true, .emission = true}; }
+
+  Counters iterate(const IterationContext& context, Image& image) override {
+    Counters counters;
+    if (settings_.separate_direct) counters += direct_.iterate(context, image);
+    const bool any = settings_.max_depth >= least_edges() && context.scene.has_emitters() &&
+                     !context.scene.emitters().empty();
+    if (!any) return counters;
+    const ChainPaths paths{settings_, least_edges(), double(image.width) * image.height};
+    const ChainPlan plan = make_plan(paths.pixels);
+    PassSeconds pass;
+    std::vector<double> scalars(static_cast<std::size_t>(plan.samples));
+    counters += bootstrap(context, paths, scalars);
+    pass.end(seconds_.bootstrap);
+    const double sum = std::accumulate(scalars.begin(), scalars.end(), 0.0);
+    if (!(sum > 0)) return counters;
+    const std::vector<std::int64_t> starts = choose_starts(context, plan, scalars, sum);
+    // A chain's states have the density scalar / brightness.
+    const double brightness = sum / static_cast<double>(plan.samples);
+    const double share = brightness * paths.pixels / double(plan.chains * plan.mutations);
+    counters += run_chains(context, paths, plan, starts, share, image);
+    pass.end(seconds_.chains);
+    return counters;
+  }
+
+  std::vector<std::pair<std::string, double>> statistics() const override {
+    const auto rate = [](std::uint64_t n, std::uint64_t of) {
+      return of > 0 ? double(n) / double(of) : 0.0;
+    };
+    return {{"mutations", double(proposed_[0] + proposed_[1])},
+            {"large_step_acceptance", rate(accepted_[0], proposed_[0])},
+            {"small_step_acceptance", rate(accepted_[1], proposed_[1])},
+            {"bootstrap_cpu_seconds", seconds_.bootstrap},
+            {"chains_cpu_seconds", seconds_.chains}};
+  }
+
+ private:
+  static PathSettings direct_settings(const MetropolisSettings& s) {
+    PathSettings direct;
+    direct.max_depth = std::min(2, s.max_depth);
+    direct.roulette_depth = direct.max_depth;
+    return direct;
+  }
+  int least_edges() const { return settings_.separate_direct ? 3 : 1; }
+
+  ChainPlan make_plan(double pixels) const {
+    const auto at_least_one = [](double n) {
+      return std::max(std::int64_t{1}, static_cast<std::int64_t>(std::ceil(n)));
+    };
+    return {at_least_one(pixels * settings_.bootstrap), settings_.chains,
+            at_least_one(pixels * settings_.mutations / settings_.chains)};
+  }
+
+  /// The generator of independent sample `n`.
+  static Rng sample_rng(const IterationContext& context, std::int64_t n) {
+    return Rng(context.seed, context.iteration, static_cast<std::uint64_t>(n),
+               Rng::Purpose::bootstrap);
+  }
+  /// Draws independent samples and stores their scalars.
+  Counters bootstrap(const IterationContext& context, const ChainPaths& paths,
+                     std::vector<double>& scalars) const {
+    constexpr std::size_t part = 16 * M::size;
+    const int parts = static_cast<int>((scalars.size() + part - 1) / part);
+    return for_each_part(context, parts, [&](int i, Counters& counters) {
+      M m(mutation_, context, paths);
+      const std::size_t end = std::min(scalars.size(), (std::size_t(i) + 1) * part);
+      for (std::size_t first = std::size_t(i) * part; first < end; first += M::size) {
+        const std::size_t n = std::min(end - first, std::size_t{M::size});
+        std::vector<Rng> rngs = sample_rngs(context, first, n);
+        for (std::size_t k = 0; k < n; ++k) m.propose(k, Step::large, rngs[k]);
+        m.evaluate(n, counters);
+        for (std::size_t k = 0; k < n; ++k) scalars[first + k] = m.proposed(k).scalar;
+      }
+    });
+  }
+  static std::vector<Rng> sample_rngs(const IterationContext& context, std::size_t first,
+                                      std::size_t n) {
+    std::vector<Rng> rngs;
+    for (std::size_t k = 0; k < n; ++k)
+      rngs.push_back(sample_rng(context, static_cast<std::int64_t>(first + k)));
+    return rngs;
+  }
+
+  /// The samples at which the chains start, drawn by systematic resampling: each in proportion to
+  /// its scalar.
+  static std::vector<std::int64_t> choose_starts(const IterationContext& context,
+                                                 const ChainPlan& plan,
+                                                 const std::vector<double>& scalars, double sum) {
+    constexpr std::uint64_t no_chain = (std::uint64_t{1} << 56) - 1;
+    Rng rng(context.seed, context.iteration, no_chain, Rng::Purpose::chain);
+    const double offset = rng.next_choice(), step = sum / static_cast<double>(plan.chains);
+    std::vector<std::int64_t> starts;
+    double before = 0;
+    std::size_t n = 0, last = 0;  // `last`: that contributes anything
+    for (std::int64_t c = 0; c < plan.chains; ++c) {
+      const double at = (static_cast<double>(c) + offset) * step;
+      while (n < scalars.size() && before + scalars[n] <= at) {
+        if (scalars[n] > 0) last = n;
+        before += scalars[n++];
+      }
+      // Sums may round to less than the last positions.
+      starts.push_back(static_cast<std::int64_t>(n < scalars.size() ? n : last));
+    }
+    return starts;
+  }
+
+  /// Advances all chains and adds what they meet to `image`, times `share`.
+  Counters run_chains(const IterationContext& context, const ChainPaths& paths,
+                      const ChainPlan& plan, const std::vector<std::int64_t>& starts, double share,
+                      Image& image) {
+    // What is in memory together: chains, and splats between two additions to the picture.
+    constexpr std::size_t batches = 64;
+    constexpr std::int64_t round = 512;
+    Counters sum;
+    for (std::size_t first = 0; first < starts.size(); first += batches * M::size) {
+      const std::size_t n = std::min(batches * M::size, starts.size() - first);
+      std::vector<std::unique_ptr<Batch>> running((n + M::size - 1) / M::size);
+      for (std::int64_t done = 0; done < plan.mutations; done += round) {
+        const auto work = [&](int i, Counters& counters, Splats& splats) {
+          std::unique_ptr<Batch>& batch = running[static_cast<std::size_t>(i)];
+          if (batch == nullptr) {
+            const std::size_t chain = first + static_cast<std::size_t>(i) * M::size;
+            batch = std::make_unique<Batch>(*this, context, paths, share);
+            batch->start(std::span(starts).subspan(
+                             chain, std::min(std::size_t{M::size}, starts.size() - chain)),
+                         chain, counters);
+          }
+          const std::int64_t steps = std::min(round, plan.mutations - done);
+          for (std::int64_t k = 0; k < steps; ++k) {
+            if (k % 16 == 0) context.check_stop();
+            batch->advance(counters, splats);
+          }
+          if (done + steps == plan.mutations) batch->finish(splats);
+        };
+        sum += for_each_splatting_part(context, static_cast<int>(running.size()), image, work,
+                                       [](const Splat&) {});
+      }
+      for (const auto& batch : running) {
+        for (const std::size_t kind : {0, 1}) {
+          proposed_[kind] += batch->proposed[kind];
+          accepted_[kind] += batch->accepted[kind];
+        }
+      }
+    }
+    return sum;
+  }
+
+  /// Chains that one thread advances together.
+  struct Batch {
+    Batch(const Metropolis& of, const IterationContext& c, const ChainPaths& paths, double share_)
+        : context(c),
+          large_steps(static_cast<float>(of.mutation_.large_steps)),
+          m(of.mutation_, c, paths),
+          share(share_) {}
+
+    /// `first`: number of the first chain.
+    void start(std::span<const std::int64_t> starts, std::size_t first, Counters& counters) {
+      std::vector<Rng> samples;
+      for (const std::int64_t s : starts) samples.push_back(sample_rng(context, s));
+      for (std::size_t k = 0; k < starts.size(); ++k) {
+        m.propose(k, Step::large, samples[k]);
+        rngs.emplace_back(context.seed, context.iteration, first + k, Rng::Purpose::chain);
+      }
+      m.evaluate(starts.size(), counters);
+      for (std::size_t k = 0; k < starts.size(); ++k) m.accept(k);
+    }
+
+    void advance(Counters& counters, Splats& splats) {
+      const std::size_t n = rngs.size();
+      for (std::size_t k = 0; k < n; ++k) {
+        large[k] = rngs[k].decide(large_steps);
+        m.propose(k, large[k] ? Step::large : Step::small, rngs[k]);
+      }
+      m.evaluate(n, counters);
+      for (std::size_t k = 0; k < n; ++k) decide(k, splats);
+    }
+
+    /// Both states count, by the probability that the chain is there next (Veach 1997, 11.3.2.1).
+    void decide(std::size_t k, Splats& splats) {
+      const double now = m.current(k).scalar, next = m.proposed(k).scalar;
+      const double a =
+          next > 0 ? std::min(1.0, next / now * (large[k] ? 1.0 : m.reverse_ratio(k))) : 0.0;
+      stay[k] += 1 - a;
+      const int kind = large[k] ? 0 : 1;
+      ++proposed[kind];
+      if (rngs[k].decide(static_cast<float>(a))) {
+        ++accepted[kind];
+        deposit(m.current(k), stay[k], splats);
+        m.accept(k);
+        stay[k] = a;
+      } else if (a > 0) {
+        deposit(m.proposed(k), a, splats);
+      }
+    }
+
+    void finish(Splats& splats) {
+      for (std::size_t k = 0; k < rngs.size(); ++k) deposit(m.current(k), stay[k], splats);
+    }
+
+    void deposit(const ChainState& state, double weight, Splats& splats) const {
+      if (weight == 0 || state.scalar == 0) return;
+      const double scale = weight * share / state.scalar;
+      for (const ChainState::Pixel& p : state.pixels) {
+        const Rgb value(static_cast<float>(double(p.value.x) * scale),
+                        static_cast<float>(double(p.value.y) * scale),
+                        static_cast<float>(double(p.value.z) * scale));
+        splats.push_back({value, 1.0F, p.index, 0});
+      }
+    }
+
+    const IterationContext& context;
+    float large_steps;
+    M m;
+    double share;
+    std::vector<Rng> rngs = {};
+    std::array<bool, M::size> large{};
+    std::array<double, M::size> stay{};  // weight of the current state that is not deposited yet
+    std::array<std::uint64_t, 2> proposed{}, accepted{};  // by Step
+  };
+
+  MetropolisSettings settings_;
+  Settings mutation_;
+  PathTracer<BsdfGuide> direct_;
+  std::array<std::uint64_t, 2> proposed_{}, accepted_{};
+  /// CPU seconds of all threads in the parts of an iteration.
+  struct {
+    double bootstrap = 0, chains = 0;
+  } seconds_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_metropolis(const MetropolisSettings& settings) {
+  return MutationRegistry::visit(
+      settings.mutation, [&]<Mutation M>(const auto& mutation) -> std::unique_ptr<Integrator> {
+        return std::make_unique<Metropolis<M, std::decay_t<decltype(mutation)>>>(settings,
+                                                                                 mutation);
+      });
+}
+
+}  // namespace lacuna

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+
+#include "renderer/mutations/chain_state.h"
+#include "renderer/mutations/primary_samples.h"
+#include "renderer/path/bsdf_guide.h"
+#include "renderer/path/contexts.h"
+#include "renderer/path/eye_batch.h"
+#include "renderer/path/light_batch.h"
+#include "renderer/settings/path_lengths.h"
+
+namespace lacuna {
+
+/// What is asked of a pair of paths: the strategies (s, t) with s and t within these bounds, of
+/// paths of `least_edges` to `most_edges`.
+struct WantedPaths {
+  int least_s = 0, most_s = 0;
+  int least_t = 1, most_t = 1;
+  int least_edges = 1, most_edges = 1;
+  float scale = 1;  ///< 1 / the probability that these were asked for
+
+  bool wants(int s, int t) const {
+    const int edges = s + t - 1;
+    return s >= least_s && s <= most_s && t >= least_t && t <= most_t && edges >= least_edges &&
+           edges <= most_edges;
+  }
+};
+
+/// Evaluates points of primary sample space: an eye path and a light path for each, joined by the
+/// wanted strategies of bidirectional path tracing. A batch is traced together. Of one thread.
+class PathEvaluator {
+ public:
+  static constexpr std::size_t size = 16;
+
+  PathEvaluator(const IterationContext& context, const PathLengths& lengths, double pixels);
+  PathEvaluator(const PathEvaluator&) = delete;
+  PathEvaluator& operator=(const PathEvaluator&) = delete;
+
+  /// One point: its streams, which strategies, and where the result goes.
+  struct Point {
+    RandomWords* eye = nullptr;
+    RandomWords* light = nullptr;
+    WantedPaths wanted;
+    ChainState* result = nullptr;
+  };
+  /// Fills the results of at most `size` points.
+  void evaluate(std::span<const Point> points, Counters& counters);
+
+ private:
+  /// A contribution that waits for its shadow ray.
+  struct Unshadowed {
+    Rgb value;
+    std::size_t point;
+    std::uint32_t pixel;  ///< not of a splat
+    bool splat = false;
+    V2f at{0, 0};
+  };
+
+  void walk_lights(std::span<const Point> points, Counters& counters);
+  void walk_eyes(std::span<const Point> points, Counters& counters);
+  /// Of vertex `depth` of eye path `i`.
+  void gather(const Point& point, std::size_t i, int depth);
+  void add(const Point& point, std::uint32_t pixel, const Rgb& value, Counters& counters) const;
+
+  const IterationContext& context_;
+  SampleCounts counts_;
+  LightPathSetting setting_;
+  BsdfGuide guide_;
+  EyeBatch eyes_;
+  LightBatch<BsdfGuide> lights_;
+  std::vector<Rng> rngs_;
+  std::vector<int> vertices_;                           // that are wanted of each light path
+  std::array<std::size_t, size> light_of_{};            // of each point, the light path's index
+  std::array<std::size_t, EyeBatch::size> point_of_{};  // of each eye path
+  ShadowQueue<Unshadowed> queue_;
+  SparseStop stop_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "renderer/mutations/mutation.h"
+#include "renderer/mutations/path_evaluator.h"
+#include "renderer/settings/mutation_settings.h"
+
+namespace lacuna {
+
+/// Uniform in 0 ... n - 1, n > 0.
+inline int below(Rng& rng, int n) {
+  return static_cast<int>(std::uint64_t{rng.next_u32()} * std::uint64_t(n) >> 32);
+}
+
+/// Chains in primary sample space: a state is the random numbers that a pair of paths is sampled
+/// from, so that sampling, connecting and weighting are those of bidirectional path tracing.
+/// `Technique` says which strategies a point's control numbers choose.
+template <class Technique>
+class PrimarySampleChains {
+ public:
+  static constexpr std::size_t size = PathEvaluator::size;
+
+  template <class Settings>
+  PrimarySampleChains(const Settings& settings, const IterationContext& context,
+                      const ChainPaths& paths)
+      : paths_(paths),
+        evaluator_(context, paths.lengths, paths.pixels),
+        step_(settings.step),
+        octaves_(settings.octaves) {}
+
+  void propose(std::size_t i, Step step, Rng& rng) {
+    Chain& c = chains_[i];
+    if (step == Step::large) {
+      for (PrimarySamples* p : {&c.control, &c.eye, &c.light}) p->propose_fresh(rng);
+      return;
+    }
+    // One distance for all numbers: where some moved far, little would be gained by others that
+    // did not. Half of a pair that stays is a view of the same light from elsewhere, or other light
+    // in the same view.
+    const double distance = std::ldexp(step_, -below(rng, octaves_));
+    enum { both, eye, light };
+    const int moved = below(rng, 3);
+    c.control.propose_near(rng, moved == both ? step_ : 0);
+    c.eye.propose_near(rng, moved != light ? distance : 0);
+    c.light.propose_near(rng, moved != eye ? distance : 0);
+  }
+
+  void evaluate(std::size_t n, Counters& counters) {
+    std::array<PathEvaluator::Point, size> points;
+    for (std::size_t i = 0; i < n; ++i) {
+      Chain& c = chains_[i];
+      Rng control(c.control);
+      points[i] = {&c.eye, &c.light, Technique::choose(paths_, control), &c.proposed};
+    }
+    evaluator_.evaluate(std::span(points).first(n), counters);
+  }
+
+  const ChainState& current(std::size_t i) const { return chains_[i].current; }
+  const ChainState& proposed(std::size_t i) const { return chains_[i].proposed; }
+  static double reverse_ratio(std::size_t) { return 1; }
+
+  void accept(std::size_t i) {
+    Chain& c = chains_[i];
+    c.control.accept();
+    c.eye.accept();
+    c.light.accept();
+    std::swap(c.current, c.proposed);
+  }
+
+ private:
+  struct Chain {
+    PrimarySamples control, eye, light;
+    ChainState current, proposed;
+  };
+  ChainPaths paths_;
+  PathEvaluator evaluator_;
+  double step_;
+  int octaves_;
+  std::array<Chain, size> chains_;
+};
+
+/// mutation: primary_sample. A point is all ways to join its two paths (Kelemen et al. 2002; Noel
+/// 2015, 4.6).
+struct AllTechniques {
+  static WantedPaths choose(const ChainPaths& paths, Rng&) {
+    const int most = paths.lengths.max_depth;
+    return {0, most, 1, most + 1, paths.least_edges, most, 1};
+  }
+};
+
+/// mutation: multiplexed. A point is one path, of one length by one strategy, which are two more
+/// numbers of the point (Hachisuka, Kaplanyan and Dachsbacher 2014, "Multiplexed Metropolis light
+/// transport").
+struct OneTechnique {
+  static WantedPaths choose(const ChainPaths& paths, Rng& control) {
+    // Long paths carry less light, and there may be a thousand lengths: log-uniform.
+    const int number = paths.lengths.max_depth - paths.least_edges + 1;
+    const double range = std::log(number + 1.0), u = control.next_choice();
+    const int longer = std::clamp(static_cast<int>(std::exp(u * range)) - 1, 0, number - 1);
+    const double probability = std::log((longer + 2.0) / (longer + 1.0)) / range;
+    const int edges = paths.least_edges + longer;
+    const int s = below(control, edges + 1), t = edges + 1 - s;
+    return {s, s, t, t, edges, edges, static_cast<float>((edges + 1) / probability)};
+  }
+};
+
+using PrimarySampleMutation = PrimarySampleChains<AllTechniques>;
+using MultiplexedMutation = PrimarySampleChains<OneTechnique>;
+static_assert(Mutation<PrimarySampleMutation> && Mutation<MultiplexedMutation>);
+
+}  // namespace lacuna

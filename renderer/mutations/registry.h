@@ -1,0 +1,15 @@
+#pragma once
+
+#include "renderer/mutations/primary_sample.h"
+#include "renderer/path/strategy.h"
+
+namespace lacuna {
+
+/// All mutations. A new one is a row here and an alternative of MutationSettings.
+using MutationRegistry = Registry<Entry<MultiplexedSettings, MultiplexedMutation>,
+                                  Entry<PrimarySampleSettings, PrimarySampleMutation>>;
+
+static_assert(std::is_same_v<MutationRegistry::Settings, MutationSettings>,
+              "the registry and the settings list the same choices in the same order");
+
+}  // namespace lacuna

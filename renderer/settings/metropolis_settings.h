@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string_view>
+
+#include "renderer/settings/mutation_settings.h"
+#include "renderer/settings/path_lengths.h"
+
+namespace lacuna {
+
+/// integrator: metropolis.
+struct MetropolisSettings : PathLengths {
+  static constexpr std::string_view name = "metropolis";
+  static constexpr std::string_view doc =
+      "Metropolis light transport: Markov chains of paths that follow the light (Noel 2015, 4.6)";
+
+  MutationSettings mutation = MultiplexedSettings{};
+  int chains = 256;
+  double mutations = 1;
+  double bootstrap = 0.25;
+  bool separate_direct = true;
+
+  bool operator==(const MetropolisSettings&) const = default;
+};
+
+template <class V>
+void describe(V& v, MetropolisSettings& s) {
+  describe_lengths(v, s);
+  v("mutation", s.mutation, {.doc = "how the next path of a chain is proposed"});
+  v("chains", s.chains,
+    {.doc =
+         "chains of an iteration; they start anew in each, where independent samples found light",
+     .min = 1,
+     .max = 1 << 17});
+  v("mutations", s.mutations,
+    {.doc = "mutations for each pixel in an iteration, all chains together",
+     .min = 0.01,
+     .max = 1000});
+  v("bootstrap", s.bootstrap,
+    {.doc = "independent samples for each pixel in an iteration, which give the brightness of the "
+            "picture and the starts of chains",
+     .min = 0.001,
+     .max = 100});
+  v("separate_direct", s.separate_direct,
+    {.doc = "emitters seen directly and direct light by path tracing, one sample a pixel; chains "
+            "follow longer paths only"});
+}
+
+}  // namespace lacuna
