@@ -60,14 +60,14 @@ TEST(PrimarySamples, MoveByNoMoreThanTheDistance) {
   samples.propose_fresh(rng);
   const std::uint32_t start = first_word(samples);
   samples.accept();
-  Moments moved;
+  statistics::Moments moved;
   for (int i = 0; i < 10000; ++i) {
     samples.propose_near(rng, 0.01);
     const auto by = static_cast<std::int32_t>(first_word(samples) - start);
     ASSERT_LE(std::abs(double(by)), 0.01 * 0x1p32);
     moved.add(std::abs(double(by)) * 0x1p-32);
   }
-  EXPECT_LT(std::abs(z_test(moved, 0.005)), 4);
+  EXPECT_LT(std::abs(statistics::z_test(moved, 0.005)), 4);
 }
 
 TEST(PrimarySamples, AreKeptOnlyWhenAccepted) {
