@@ -16,10 +16,15 @@ import { chosen } from "./view_jobs.js";
 
 const refreshMs = 2000;
 
+// A camera of the job's own in one line: "at 1, 2, 3 to 0, 0, 0, 45°".
+const cameraText = (camera) => (camera && typeof camera === "object"
+  ? `at ${camera.position.join(", ")} to ${camera.target.join(", ")}, ${camera.fov}°`
+  : camera);
+
 const jobFacts = ({ job, state, progress, sweep }) => facts([
   ["Sweep", sweep && h("a", { href: `#/sweep/${sweep}` }, sweep)],
   ["Scene", job.scene],
-  ["Camera", job.camera],
+  ["Camera", cameraText(job.camera)],
   ["Integrator", integratorName(job.integrator)],
   ["Resolution", job.resolution?.join(" × ")],
   ["Reference", job.reference],

@@ -76,7 +76,8 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   SceneData data = load_gltf(resolve(context, "scene", spec.scene, {".glb", ".gltf"}));
   if (spec.material) change_material(data, *spec.material, spec.scene);
   if (spec.particles) add_particles(data, *spec.particles);
-  const CameraData camera = choose_camera(data, spec.camera, spec.scene);
+  const CameraData camera = spec.camera.object ? look_at(*spec.camera.object, data.origin)
+                                               : choose_camera(data, spec.camera.name, spec.scene);
   p.camera_name = camera.name;
   std::optional<Crop> crop;
   if (const auto& c = spec.crop) crop = Crop{{c->from[0], c->from[1]}, {c->of[0], c->of[1]}};

@@ -107,7 +107,7 @@ std::optional<Reference> make_auto_reference(const JobFolder& folder, const JobS
                                              const Prepared& prepared, const RunContext& context) {
   // A job that names no camera has the reference of one that names the first.
   JobSpec named = spec;
-  named.camera = prepared.camera_name;
+  if (!named.camera.object) named.camera.name = prepared.camera_name;
   const ReferenceJob job = auto_reference(named, context.data, prepared.content);
   const auto& dir = job.folder.dir();
   if (!std::filesystem::exists(dir)) {
@@ -200,6 +200,12 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
   if (loop.counters().rejected > 0) {
     running.warn(fmt::format("{} contributions were not finite and were left out",
                              loop.counters().rejected));
+  }
+  if (const auto tail = error_tail(loop.film()); tail && !tail->mean_is_known()) {
+    running.warn(fmt::format(
+        "the error may be far larger than est_rmse says, and the picture too dark: squared errors "
+        "have a tail of index {:.2f}, and can be trusted to {:.2f}; rare bright paths carry them",
+        tail->index, tail->limit));
   }
   write_file_atomically(folder.file("report.json"),
                         write_report({task, loop, prepared.camera_name, running.warnings(),

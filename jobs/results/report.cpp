@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -76,14 +77,24 @@ OrderedJson scene(const Scene& s, const std::string& camera) {
       {"geometry_hash", fmt::format("{:016x}", d.geometry_hash)}};
 }
 
-OrderedJson errors_json(const RenderTask& task, const Curve& curve) {
+/// Whether est_rmse is known; null where too few iterations say so.
+OrderedJson tail_json(const std::optional<ParetoTail>& tail) {
+  if (!tail) return nullptr;
+  return {{"index", std::isfinite(tail->index) ? OrderedJson(tail->index) : OrderedJson(nullptr)},
+          {"limit", tail->limit},
+          {"known", tail->mean_is_known()}};
+}
+
+OrderedJson errors_json(const RenderTask& task, const RenderLoop& loop) {
   OrderedJson j;
+  const Curve& curve = loop.curve();
   if (curve.rows().empty()) return j;
   j["biased"] = biased(task.spec.integrator);
   const CurveRow& row = curve.rows().back();
   for (const ErrorMetricRow& metric : error_metrics) {
     j[std::string(metric.name)] = optional(row.value(metric.value));
   }
+  j["est_rmse_tail"] = tail_json(error_tail(loop.film()));
   const double mse = row.value(ErrorMetric::mse).value_or(0);
   if (mse > 0) j["efficiency"] = 1 / (mse * row.seconds);
   if (task.reference != nullptr) {
@@ -123,6 +134,10 @@ OrderedJson image_module(double started) {
 
 }  // namespace
 
+std::optional<ParetoTail> error_tail(const Film& film) {
+  return pareto_tail(film.squared_errors().largest(), film.squared_errors().count());
+}
+
 std::string write_report(const ReportInput& input) {
   const RenderTask& task = input.task;
   const RenderLoop& loop = input.loop;
@@ -136,7 +151,7 @@ std::string write_report(const ReportInput& input) {
   if (const auto stats = task.integrator.statistics(); !stats.empty()) {
     for (const auto& [name, value] : stats) j["integrator"][name] = value;
   }
-  j["errors"] = errors_json(task, loop.curve());
+  j["errors"] = errors_json(task, loop);
   j["scene"] = scene(task.scene, input.camera);
   j["image_module"] = image_module(input.started);
   j["artefacts"] = artefacts_json(input.artefacts);

@@ -5,6 +5,7 @@
 #include "analysis/artefacts/record.h"
 #include "jobs/run/machine_watch.h"
 #include "jobs/run/render_loop.h"
+#include "jobs/statistics/pareto_tail.h"
 
 namespace lacuna {
 
@@ -18,6 +19,9 @@ struct ReportInput {
   std::optional<Disturbance> disturbance = {};  ///< while it was rendered
   double started = 0;                           ///< when the job began, on the monotonic clock
 };
+
+/// The tail of the squared errors that est_rmse is a mean of; none where too few are known of it.
+std::optional<ParetoTail> error_tail(const Film& film);
 
 /// report.json: seconds by phase, counts, rates, what of the scene was built and what was not
 /// needed, artefacts built, loaded and left out, errors, memory, machine.

@@ -10,6 +10,7 @@
 
 #include "analysis/settings/field.h"
 #include "jobs/spec/json_value.h"
+#include "jobs/spec/name_or_object.h"
 
 namespace lacuna {
 

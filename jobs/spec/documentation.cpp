@@ -41,6 +41,8 @@ std::string type_text(const Type& type) {
       return with("number", range_text(type.limits)) + fmt::format(", or `{}`", auto_name);
     case Type::Kind::string:
       return with("string", length_text(type.limits, "characters"));
+    case Type::Kind::name_or_object:
+      return with("string", length_text(type.limits, "characters")) + ", or an object, see below";
     case Type::Kind::array:
       return fmt::format("list of {}, each: {}", type.array_size, type_text(type.elements.front()));
     case Type::Kind::list:
@@ -86,7 +88,7 @@ void put_section(std::string& page, const Type& object, const std::string& path)
 
 /// The sections of what a member holds.
 void put_parts(std::string& page, const Member& member, const std::string& path) {
-  if (member.type.kind == Type::Kind::object) {
+  if (member.type.kind == Type::Kind::object || member.type.kind == Type::Kind::name_or_object) {
     page += fmt::format("\n## {}\n\n{}\n", path, sentence(member.field.doc));
     put_section(page, member.type, path);
   }

@@ -69,6 +69,19 @@ void check_crop(const JobSpec& spec, std::vector<Problem>& problems) {
   }
 }
 
+void check_camera(const JobSpec& spec, std::vector<Problem>& problems) {
+  if (!spec.camera.object || !is_good(problems, "/camera")) return;
+  const CameraSettings& camera = *spec.camera.object;
+  if (frame_of(camera)) return;
+  if (camera.position == camera.target) {
+    problems.push_back({"/camera/target", "found the camera's position; allowed: another point"});
+    return;
+  }
+  problems.push_back({"/camera/up", fmt::format("found {}, which is 0 or along the view; allowed: "
+                                                "another direction",
+                                                json_text(OrderedJson(camera.up)))});
+}
+
 bool has_limit(const Budget& b) { return b.seconds || b.cpu_seconds || b.iterations || b.error; }
 
 }  // namespace
@@ -82,6 +95,7 @@ JobSpec parse_job(std::string_view json) {
   check_layers_of_integrator(spec, problems);
   check_layers_once(spec, problems);
   check_crop(spec, problems);
+  check_camera(spec, problems);
   throw_if_any(std::move(problems));
   if (!has_limit(spec.budget)) spec.budget.seconds = Budget::default_seconds;
   return spec;

@@ -8,6 +8,8 @@
 
 #include "analysis/settings/analysis_settings.h"
 #include "analysis/settings/field.h"
+#include "jobs/spec/name_or_object.h"
+#include "renderer/settings/camera_settings.h"
 #include "renderer/settings/error_metrics.h"
 #include "renderer/settings/integrator_settings.h"
 #include "renderer/settings/output_settings.h"
@@ -102,7 +104,7 @@ void describe(V& v, CropSettings& s) {
 /// One job: what is posted to the service and given to `lacuna render`.
 struct JobSpec {
   std::string scene;
-  std::string camera;
+  NameOr<CameraSettings> camera;
   std::string label;
   std::array<int, 2> resolution{512, 512};
   std::optional<CropSettings> crop;
@@ -127,7 +129,10 @@ template <class V>
 void describe(V& v, JobSpec& s) {
   v("scene", s.scene,
     {.doc = "glTF or GLB file, below a scenes root", .min = 1, .max = 1024, .required = true});
-  v("camera", s.camera, {.doc = "name of a glTF camera; empty: the first", .max = 1024});
+  v("camera", s.camera,
+    {.doc = "name of one of the scene's cameras, or where a camera of your own stands and looks; "
+            "empty: the scene's first",
+     .max = 1024});
   v("label", s.label, {.doc = "a description of your own", .max = 200});
   v("resolution", s.resolution,
     {.doc = "width and height", .min = 1, .max = 16384, .unit = "pixels"});

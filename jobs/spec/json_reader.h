@@ -77,6 +77,8 @@ class ObjectReader {
   template <class T>
   static void read_list(const JsonCursor& found, std::vector<T>& out, const Field& field);
   template <class T>
+  static void read_name_or(const JsonCursor& found, NameOr<T>& out, const Field& field);
+  template <class T>
   static void read_table(const JsonCursor& found, JsonTable<T>& out, const Field& field);
   template <class... Ts>
   static void read_variant(const JsonCursor& found, std::variant<Ts...>& out);
@@ -126,6 +128,8 @@ void ObjectReader::read_value(const JsonCursor& found, T& out, const Field& fiel
     out.text = any_value(found);
   } else if constexpr (is_table<T>) {
     read_table(found, out, field);
+  } else if constexpr (is_name_or<T>) {
+    read_name_or(found, out, field);
   } else if constexpr (is_array<T>) {
     read_array(found, out, field);
   } else if constexpr (is_vector<T>) {
@@ -155,6 +159,17 @@ void ObjectReader::read_list(const JsonCursor& found, std::vector<T>& out, const
     T element{};
     read_value(found.at(i), element, Field{});
     out.push_back(std::move(element));
+  }
+}
+
+template <class T>
+void ObjectReader::read_name_or(const JsonCursor& found, NameOr<T>& out, const Field& field) {
+  if (found.value().is_object()) {
+    read_settings(found, out.object.emplace());
+  } else if (found.value().is_string()) {
+    read_value(found, out.name, field);
+  } else {
+    found.refuse("a name, or an object");
   }
 }
 

@@ -96,6 +96,14 @@ OrderedJson auto_schema(const Type& type) {
   return {{"oneOf", choices}};
 }
 
+/// A name, or an object in its place.
+OrderedJson name_schema(const Type& type) {
+  OrderedJson name = {{"type", "string"}}, object = {{"type", "object"}};
+  put_lengths(name, type.limits, "minLength", "maxLength");
+  put_members(object, type);
+  return {{"oneOf", {name, object}}};
+}
+
 std::string type_name(Type::Kind kind) {
   switch (kind) {
     case Type::Kind::boolean:
@@ -119,6 +127,7 @@ OrderedJson schema_of(const Type& type) {
   if (type.kind == Type::Kind::choice) return choice_schema(type);
   if (type.kind == Type::Kind::word) return enum_schema(type);
   if (type.kind == Type::Kind::auto_number) return auto_schema(type);
+  if (type.kind == Type::Kind::name_or_object) return name_schema(type);
   if (type.kind == Type::Kind::any) return OrderedJson::object();
   OrderedJson schema;
   schema["type"] = type_name(type.kind);

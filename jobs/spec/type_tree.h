@@ -22,6 +22,7 @@ struct Type {
     number,
     auto_number,
     string,
+    name_or_object,
     word,
     array,
     list,
@@ -38,11 +39,11 @@ struct Type {
 
   Kind kind = Kind::boolean;
   bool optional = false;  ///< may be null or absent
-  Limits limits = {};     ///< of a number; of the length of a string or list
+  Limits limits = {};     ///< of a number; of the length of a string, name or list
   std::size_t array_size = 0;
   std::vector<Name> names;      ///< word, choice
   std::vector<Type> elements;   ///< array, list, table: one; choice: an object for each name
-  std::vector<Member> members;  ///< object
+  std::vector<Member> members;  ///< object; the one in a name's place
 };
 
 /// One line of a table.
@@ -104,6 +105,10 @@ Type TypeReader::type_of(const T& value, const Field& field) {
     type.limits = limits_of<double>(field);
   } else if constexpr (std::is_same_v<T, std::string>) {
     type.kind = Type::Kind::string;
+    type.limits = length_limits(field);
+  } else if constexpr (is_name_or<T>) {
+    type = object_of(typename decltype(T::object)::value_type{});
+    type.kind = Type::Kind::name_or_object;
     type.limits = length_limits(field);
   } else if constexpr (NamedEnum<T>) {
     type.kind = Type::Kind::word;

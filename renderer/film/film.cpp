@@ -18,15 +18,27 @@ void Film::add(std::uint64_t iteration, const Image& estimate) {
   Half& h = halves_[iteration % 2];
   ++h.n;
   const double share = 1.0 / static_cast<double>(h.n);
+  SquaredErrors::Sums sums{};
   std::size_t i = 0;
-  for (const Rgb& pixel : estimate.pixels) {
-    for (const float v : {pixel.x, pixel.y, pixel.z}) {
-      const double deviation = double(v) - h.mean[i];
-      h.mean[i] += deviation * share;
-      h.m2[i] += deviation * (double(v) - h.mean[i]);
-      ++i;
+  for (int y = 0; y < height_; ++y) {
+    double* row = &sums[std::size_t(y % SquaredErrors::side) * SquaredErrors::side];
+    for (int x = 0; x < width_; ++x) {
+      const Rgb& pixel = estimate.pixels[i / 3];
+      double squares = 0;
+      for (const float v : {pixel.x, pixel.y, pixel.z}) {
+        const double deviation = double(v) - h.mean[i];
+        h.mean[i] += deviation * share;
+        const double square = deviation * (double(v) - h.mean[i]);
+        h.m2[i] += square;
+        squares += square;
+        ++i;
+      }
+      row[x % SquaredErrors::side] += squares;
     }
   }
+  if (h.n < 2) return;
+  for (double& sum : sums) sum /= 3;  // channels
+  squared_errors_.add(sums, width_, height_);
 }
 
 std::vector<double> Film::mean() const {
@@ -62,6 +74,7 @@ void Film::save(ByteWriter& out) const {
     out.put(h.mean);
     out.put(h.m2);
   }
+  squared_errors_.save(out);
 }
 
 void Film::load(ByteReader& in) {
@@ -74,6 +87,7 @@ void Film::load(ByteReader& in) {
     h.mean = get_finite(in, size, "film");
     h.m2 = get_finite(in, size, "film");
   }
+  squared_errors_.load(in);
 }
 
 }  // namespace lacuna

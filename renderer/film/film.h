@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "renderer/film/image.h"
+#include "renderer/film/squared_errors.h"
 
 namespace lacuna {
 
@@ -31,6 +32,9 @@ class Film {
   /// Variance of mean() itself: the unbiased variance of one iteration divided by their number.
   /// Zero with fewer than two iterations.
   std::vector<double> variance_of_mean() const;
+  /// Of the iterations but the first of each half, which has no mean before it; a value's
+  /// expectation is the variance of one iteration, averaged over pixels and channels.
+  const SquaredErrors& squared_errors() const { return squared_errors_; }
 
   /// The state as bytes and back, for checkpoints. load() throws std::runtime_error on another
   /// size and on values that are not finite.
@@ -44,6 +48,7 @@ class Film {
   };
   int width_ = 0, height_ = 0;
   std::array<Half, 2> halves_;
+  SquaredErrors squared_errors_;
 };
 
 }  // namespace lacuna

@@ -20,6 +20,7 @@ constexpr std::uint64_t pixel_bytes = sizeof(Rgb) + 3 * 3 * sizeof(double);
 LayerMeans::LayerMeans(std::vector<std::string> names, int width, int height,
                        std::uint64_t byte_limit)
     : names_(std::move(names)) {
+  if (names_.empty()) return;
   const auto pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   const std::uint64_t bytes = names_.size() * pixels * pixel_bytes;
   if (bytes > byte_limit) {

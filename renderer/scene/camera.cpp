@@ -4,6 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
 
 namespace lacuna {
 
@@ -20,6 +23,19 @@ const CameraData& choose_camera(const SceneData& scene, const std::string& name,
   for (const CameraData& c : scene.cameras) names.push_back(fmt::format("\"{}\"", c.name));
   throw SceneError(fmt::format("scene \"{}\" has no camera \"{}\"; it has {}", file, name,
                                fmt::join(names, ", ")));
+}
+
+CameraData look_at(const CameraSettings& s, const V3d& origin) {
+  const auto frame = frame_of(s);
+  if (!frame) {
+    throw std::invalid_argument("the camera's target is its position, or up is along its view");
+  }
+  const auto& [x, y, z] = *frame;
+  const V3d p = V3d(s.position[0], s.position[1], s.position[2]) - origin;
+  CameraData data;
+  data.to_world = M44d(x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, p.x, p.y, p.z, 1);
+  data.yfov = s.fov * std::numbers::pi / 180;
+  return data;
 }
 
 Camera::Camera(const CameraData& data, int width, int height, PixelFilter filter,

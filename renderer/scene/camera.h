@@ -5,6 +5,7 @@
 #include "renderer/core/density.h"
 #include "renderer/geometry/rays.h"
 #include "renderer/geometry/scene_data.h"
+#include "renderer/settings/camera_settings.h"
 #include "renderer/settings/output_settings.h"
 
 namespace lacuna {
@@ -13,6 +14,10 @@ namespace lacuna {
 /// SceneError: there is none of that name, or none at all.
 const CameraData& choose_camera(const SceneData& scene, const std::string& name,
                                 const std::string& file);
+
+/// A camera of the job's own, without a name. `origin` is SceneData's. Throws std::invalid_argument
+/// where it has no frame (frame_of()).
+CameraData look_at(const CameraSettings& s, const V3d& origin);
 
 /// The rectangle of a larger picture that a film shows: `size` pixels from `first` on.
 struct Crop {

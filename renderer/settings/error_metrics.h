@@ -24,7 +24,8 @@ struct ErrorMetricRow {
   std::string_view label;  ///< in tables and figures
   std::string_view unit = {};
   bool squared = false;  ///< falls as 1 / samples; the others as 1 / sqrt(samples)
-  /// The error is the mean of term(x, r) over pixels and channels; null: it needs no reference.
+  bool needs_reference = true;
+  /// With a reference, the error is the mean of term(x, r) over pixels and channels.
   double (*term)(double x, double r) = nullptr;
   bool root = false;  ///< the error is the square root of that mean
 };
@@ -69,7 +70,8 @@ struct EnumTable<ErrorMetric> {
        .name = "est_rmse",
        .doc = "rmse estimated from two independent halves; needs no reference",
        .label = "estimated RMSE",
-       .unit = "radiance"},
+       .unit = "radiance",
+       .needs_reference = false},
   }};
 };
 
@@ -79,16 +81,16 @@ constexpr const ErrorMetricRow& row_of(ErrorMetric metric) {
   return error_metrics[static_cast<std::size_t>(metric)];
 }
 
-constexpr bool needs_reference(ErrorMetric metric) { return row_of(metric).term != nullptr; }
+constexpr bool needs_reference(ErrorMetric metric) { return row_of(metric).needs_reference; }
 
 /// Number of metrics that need a reference, which come first.
 inline constexpr std::size_t reference_metrics = static_cast<std::size_t>(std::ranges::count_if(
-    error_metrics, [](const ErrorMetricRow& row) { return row.term != nullptr; }));
+    error_metrics, [](const ErrorMetricRow& row) { return row.needs_reference; }));
 
 static_assert([] {
   for (std::size_t i = 0; i < error_metrics.size(); ++i) {
     if (static_cast<std::size_t>(error_metrics[i].value) != i) return false;
-    if ((error_metrics[i].term != nullptr) != (i < reference_metrics)) return false;
+    if (error_metrics[i].needs_reference != (i < reference_metrics)) return false;
   }
   return true;
 }());

@@ -22,10 +22,9 @@ void describe_lengths(V& v, PathLengths& s) {
      .max = 1024,
      .unit = "edges"});
   v("roulette_depth", s.roulette_depth,
-    {.doc =
-         "Russian roulette starts after this many edges from the eye or from a light: a path "
-         "continues with a probability equal to its throughput; a guided path, with what it is "
-         "still expected to gather over what it was at its first vertex",
+    {.doc = "Russian roulette starts after this many edges from the eye or from a light: a path "
+            "continues with a probability equal to its throughput; a guided path, with what it is "
+            "still expected to gather over what it was at its first vertex",
      .min = 1,
      .max = 1024,
      .unit = "edges"});

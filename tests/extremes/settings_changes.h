@@ -7,8 +7,8 @@
 #include <string_view>
 #include <variant>
 
-#include "jobs/spec/limits.h"
 #include "jobs/spec/described.h"
+#include "jobs/spec/limits.h"
 #include "tests/extremes/methods.h"
 
 namespace lacuna::extremes {

@@ -100,7 +100,8 @@ TEST(Sweep, ZippedSettingsChangeTogether) {
     "axes": {"/integrator/max_depth": [2, 3]},
     "zip": [{"/scene": ["a.glb", "b.glb"], "/camera": ["eye", ""]}]})");
   ASSERT_EQ(plan.cells.size(), 4u);
-  for (const SweepCell& c : plan.cells) EXPECT_EQ(c.job.scene == "a.glb", c.job.camera == "eye");
+  for (const SweepCell& c : plan.cells)
+    EXPECT_EQ(c.job.scene == "a.glb", c.job.camera.name == "eye");
 }
 
 TEST(Sweep, ASettingWithinOneThatIsSweptToo) {

@@ -160,7 +160,8 @@ TEST_F(RunJob, DoneItGoesOnWithALargerBudgetToTheSameBits) {
     extend(parts, [&](Budget& b) { b.iterations = iterations; });
     EXPECT_EQ(run(parts), Outcome::done);
     EXPECT_EQ(observer.milestones.front().rfind("continuing from iteration ", 0), 0U);
-    EXPECT_TRUE(observer.warnings.empty());
+    for (const std::string& w : observer.warnings)
+      EXPECT_EQ(w.find("checkpoint"), std::string::npos) << w;
   }
   for (const char* layer : {"", "variance", "even", "odd"}) {
     EXPECT_EQ(pixels(parts, layer), pixels(whole, layer)) << layer;
@@ -317,6 +318,54 @@ TEST_F(RunJob, AutoReferenceIsMadeOnceAndKnowsItsNoise) {
   s.resolution = {8, 8};
   run(create(s, "third"));
   EXPECT_EQ(references().size(), 2U);
+}
+
+TEST_F(RunJob, ACameraOfTheJobsOwnSeesWhatTheScenesCameraSees) {
+  JobSpec s = spec("cornell.glb", 1);
+  const JobFolder named = create(s, "named");
+  run(named);
+  const CameraData camera =
+      load_gltf(std::filesystem::path(LACUNA_SOURCE_DIR) / "jobs/scenes" / s.scene).cameras.at(0);
+  const V3d place = camera.to_world.translation();
+  const V3d at = V3d(0, 0, -1) * camera.to_world;
+  s.camera = {};
+  s.camera.object = CameraSettings{.position = {place.x, place.y, place.z},
+                                   .target = {at.x, at.y, at.z},
+                                   .fov = camera.yfov * 180 / std::numbers::pi};
+  const JobFolder own = create(s, "own");
+  run(own);
+  // Directions may differ in their last bits: the pictures by what random numbers at an edge do.
+  const std::vector<float> a = pixels(named), b = pixels(own);
+  double difference = 0, sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    difference += std::abs(double(a[i]) - double(b[i]));
+    sum += double(a[i]);
+  }
+  EXPECT_LT(difference, 0.01 * sum);
+  s.camera.object->position[1] += 0.1;
+  const JobFolder moved = create(s, "moved");
+  run(moved);
+  EXPECT_NE(pixels(moved), b);
+}
+
+TEST_F(RunJob, SaysWhenTheErrorEstimateIsNotKnown) {
+  const auto tail_of = [&](const JobFolder& folder) {
+    run(folder);
+    return report(folder).at("errors").at("est_rmse_tail");
+  };
+  // Light through a roof's opening that rarely meets the eye: few splats carry the picture.
+  JobSpec s = spec("atrium.glb", 64);
+  s.integrator = LightSettings{};
+  const JobFolder rare = create(s, "rare");
+  EXPECT_EQ(tail_of(rare).at("known"), false);
+  const auto warnings = rare.read_state().warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("tail of index"), std::string::npos);
+  const JobFolder plain = create(spec("cornell.glb", 64), "plain");
+  EXPECT_EQ(tail_of(plain).at("known"), true);
+  EXPECT_TRUE(plain.read_state().warnings.empty());
+  const JobFolder short_one = create(spec("cornell.glb", 8), "short");
+  EXPECT_TRUE(tail_of(short_one).is_null()) << "8 iterations";
 }
 
 TEST_F(RunJob, CurveSaysWhenTheReferenceIsTheFloor) {

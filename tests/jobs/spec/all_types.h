@@ -11,6 +11,7 @@
 #include "analysis/settings/auto_number.h"
 #include "analysis/settings/field.h"
 #include "jobs/spec/json_value.h"
+#include "jobs/spec/name_or_object.h"
 
 namespace lacuna {
 
@@ -62,6 +63,7 @@ struct AllTypes {
   std::optional<Sphere> maybe_sphere;
   std::optional<std::variant<Sphere, Box>> maybe_shape;
   AutoNumber found{4};
+  NameOr<Sphere> named{"ball"};
   std::array<int, 2> pair{1, 2};
   std::vector<std::string> words;
   std::vector<Sphere> spheres;
@@ -85,6 +87,7 @@ void describe(V& v, AllTypes& s) {
   v("maybe_sphere", s.maybe_sphere, {.doc = "optional struct"});
   v("maybe_shape", s.maybe_shape, {.doc = "optional variant"});
   v("found", s.found, {.doc = "number or auto", .min = 0, .max = 8});
+  v("named", s.named, {.doc = "name or struct", .max = 8});
   v("pair", s.pair, {.doc = "array", .min = 0, .max = 9});
   v("words", s.words, {.doc = "list", .max = 2});
   v("spheres", s.spheres, {.doc = "list of structs"});

@@ -18,7 +18,7 @@ namespace {
 /// For each key of the job, a change of it alone.
 const std::map<std::string, std::function<void(JobSpec&)>> changes{
     {"scene", [](JobSpec& s) { s.scene.push_back('b'); }},
-    {"camera", [](JobSpec& s) { s.camera.push_back('c'); }},
+    {"camera", [](JobSpec& s) { s.camera.name.push_back('c'); }},
     {"label", [](JobSpec& s) { s.label.push_back('x'); }},
     {"resolution",
      [](JobSpec& s) {

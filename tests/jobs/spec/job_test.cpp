@@ -51,6 +51,27 @@ TEST(Job, AnErrorTargetNeedsAReferenceUnlessItIsAnEstimate) {
   expect_one(job_problems(job("mae", R"(, "reference": 1)")), "/reference", {"found number 1"});
 }
 
+TEST(Job, ACameraIsANameOrAPlaceOfItsOwn) {
+  const auto job = [](const std::string& camera) {
+    return R"({"scene": "a", "camera": )" + camera + "}";
+  };
+  EXPECT_EQ(parse_job(job(R"("front")")).camera.name, "front");
+  const std::string view = R"("position": [1, 2, 3], "target": [1, 2, 2])";
+  const auto own = parse_job(job("{" + view + R"(, "fov": 60})")).camera.object;
+  ASSERT_TRUE(own);
+  EXPECT_EQ(own->position[2], 3);
+  EXPECT_EQ(own->fov, 60);
+  expect_one(job_problems(job("7")), "/camera", {"found number 7", "a name, or an object"});
+  expect_one(job_problems(job(R"({"position": [1, 2, 3]})")), "/camera/target", {"required"});
+  expect_one(job_problems(job("{" + view + R"(, "fov": 180})")), "/camera/fov", {"179"});
+  expect_one(job_problems(job("{" + view + R"(, "name": "x"})")), "/camera/name", {"unknown"});
+  expect_one(job_problems(job(R"({"position": [1, 2, 3], "target": [1, 2, 3]})")), "/camera/target",
+             {"the camera's position"});
+  for (const char* up : {"[0, 0, 0]", "[0, 0, -2]"})
+    expect_one(job_problems(job("{" + view + R"(, "up": )" + up + "}")), "/camera/up",
+               {"along the view"});
+}
+
 TEST(Job, LayersComeOnce) {
   expect_one(job_problems(R"({"scene": "a", "layers": ["albedo", "depth", "albedo"]})"),
              "/layers/2", {"\"albedo\" again", "each layer once"});

@@ -39,6 +39,13 @@ class RandomSettings {
     } else if constexpr (std::is_same_v<T, AutoNumber>) {
       out.value.reset();
       if (below(2) == 0) fill(out.value.emplace(), field);
+    } else if constexpr (is_name_or<T>) {
+      out = {};
+      if (below(2) == 0) {
+        fill(out.name, field);
+      } else {
+        describe(*this, out.object.emplace());
+      }
     } else if constexpr (is_optional<T>) {
       out.reset();
       if (below(2) == 0) fill(out.emplace(), field);
@@ -105,6 +112,7 @@ inline JobSpec random_job(std::uint64_t seed) {
       crop->from[k] = std::min(crop->from[k], crop->of[k] - spec.resolution[k]);
     }
   }
+  if (auto& camera = spec.camera.object; camera && !frame_of(*camera)) camera = CameraSettings{};
   auto& layers = spec.layers;
   std::sort(layers.begin(), layers.end());
   layers.erase(std::unique(layers.begin(), layers.end()), layers.end());

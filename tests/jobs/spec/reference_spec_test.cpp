@@ -17,7 +17,7 @@ TEST(ReferenceSpec, EstimatesTheSamePicture) {
     "integrator": {"type": "path", "max_depth": 5, "next_event_estimation": false})"));
   EXPECT_EQ(r.pixel_filter, PixelFilter::tent);  // another filter is another picture
   EXPECT_EQ(r.resolution, (std::array<int, 2>{8, 4}));
-  EXPECT_EQ(r.camera, "c");
+  EXPECT_EQ(r.camera.name, "c");
   EXPECT_NE(r.seed, 3u);
   BdptSettings plain;
   plain.max_depth = 5;

@@ -51,6 +51,43 @@ TEST(Film, MeanAndVarianceAreTheTextbookOnes) {
   }
 }
 
+TEST(Film, SquaredErrorsHaveTheVarianceAsTheirMean) {
+  constexpr int n = 400;
+  const Film film = noisy(n, 1);
+  // 5 x 4 pixels: 16 pictures, four of them of two pixels; n - 2 iterations have a mean before
+  // them.
+  EXPECT_EQ(film.squared_errors().count(), 16U * (n - 2));
+  const std::vector<double> largest = film.squared_errors().largest();
+  EXPECT_EQ(largest.size(), SquaredErrors::kept);
+  EXPECT_TRUE(std::is_sorted(largest.begin(), largest.end()));
+
+  const Film few = noisy(200, 1);
+  const std::vector<double> all = few.squared_errors().largest();
+  ASSERT_EQ(all.size(), few.squared_errors().count());
+  double mean = 0, squares = 0;
+  for (const double v : all) {
+    mean += v / double(all.size());
+    squares += v * v / double(all.size());
+  }
+  // Each channel is uniform: variance 1/12.
+  const double error = std::sqrt((squares - mean * mean) / double(all.size()));
+  EXPECT_NEAR(mean, 1.0 / 12, 4 * error);
+  EXPECT_LT(error, 0.01 * mean);
+}
+
+TEST(Film, SquaredErrorsAreKeptInACheckpoint) {
+  const Film film = noisy(50, 1);
+  ByteWriter out;
+  film.save(out);
+  const std::string bytes = out.bytes();
+  Film copy(5, 4);
+  ByteReader in(bytes);
+  copy.load(in);
+  EXPECT_TRUE(in.at_end());
+  EXPECT_EQ(copy.squared_errors().count(), film.squared_errors().count());
+  EXPECT_EQ(copy.squared_errors().largest(), film.squared_errors().largest());
+}
+
 TEST(Film, HalvesAreEvenAndOddIterations) {
   std::vector<std::vector<double>> values;
   const Film film = noisy(5, 1, &values);

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace lacuna {
+
+/// A member that is the name of something that exists elsewhere, or an object that describes it. A
+/// document contains a string, or an object with T's settings.
+template <class T>
+struct NameOr {
+  std::string name;  ///< meaningless where there is an object
+  std::optional<T> object;
+
+  NameOr() = default;
+  NameOr(std::string of) : name(std::move(of)) {}
+  NameOr(const char* of) : name(of) {}
+  bool operator==(const NameOr&) const = default;
+};
+
+template <class>
+inline constexpr bool is_name_or = false;
+template <class T>
+inline constexpr bool is_name_or<NameOr<T>> = true;
+
+}  // namespace lacuna

@@ -1,0 +1,65 @@
+#include "jobs/statistics/pareto_tail.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace lacuna {
+namespace {
+
+constexpr std::size_t least_exceedances = 5;
+
+/// The mean of log(1 - theta x): the shape k, given theta = -k / sigma.
+double shape(std::span<const double> x, double theta) {
+  double sum = 0;
+  for (const double v : x) sum += std::log1p(-theta * v);
+  return sum / double(x.size());
+}
+
+/// k of the generalized Pareto distribution of `x` > 0, ascending: theta averaged over a grid by
+/// profile likelihood (Zhang and Stephens 2009).
+double fitted_shape(std::span<const double> x) {
+  constexpr double prior = 3;
+  const auto n = double(x.size());
+  const double quartile = x[std::size_t(n / 4 + 0.5) - 1];
+  const int points = 30 + int(std::sqrt(n));
+  std::vector<double> theta, likelihood;
+  for (int j = 1; j <= points; ++j) {
+    theta.push_back(1 / x.back() + (1 - std::sqrt(points / (j - 0.5))) / (prior * quartile));
+    const double k = shape(x, theta.back());
+    likelihood.push_back(n * (std::log(-theta.back() / k) - k - 1));
+  }
+  double weights = 0, mean = 0;
+  const double best = *std::max_element(likelihood.begin(), likelihood.end());
+  for (std::size_t j = 0; j < theta.size(); ++j) {
+    const double weight = std::exp(likelihood[j] - best);
+    weights += weight;
+    mean += weight * theta[j];
+  }
+  return shape(x, mean / weights);
+}
+
+}  // namespace
+
+std::optional<ParetoTail> pareto_tail(std::span<const double> largest, std::uint64_t count) {
+  if (count < least_for_a_tail || largest.empty()) return {};
+  const auto n = double(count);
+  const auto wanted = std::size_t(std::min(0.2 * n, 3 * std::sqrt(n)));
+  const std::size_t tail = std::min(wanted, largest.size() - 1);
+  const double threshold = largest[largest.size() - 1 - tail];
+  // In units of the largest: squares of radiances may be near either end of a double's range.
+  const double scale = largest.back() - threshold;
+  if (!(scale > 0)) return {};
+  std::vector<double> exceedances;
+  for (const double v : largest.last(tail)) {
+    if (v > threshold) exceedances.push_back((v - threshold) / scale);
+  }
+  ParetoTail result{std::numeric_limits<double>::infinity(), std::min(1 - 1 / std::log10(n), 0.7)};
+  if (exceedances.size() < least_exceedances) return result;
+  const auto m = double(exceedances.size());
+  result.index = (m * fitted_shape(exceedances) + 5) / (m + 10);
+  return result;
+}
+
+}  // namespace lacuna
