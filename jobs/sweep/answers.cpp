@@ -67,6 +67,10 @@ class Comparison {
     }
   }
 
+  static bool takes_first_camera(const JobSpec& job) {
+    return !job.camera.object && job.camera.name.empty();
+  }
+
   /// The name of each scene's first camera, which jobs without a camera render, from the reports of
   /// such runs.
   std::map<std::string, std::string> first_cameras() const {
@@ -74,7 +78,7 @@ class Comparison {
     for (std::size_t r = 0; r < plan_.runs.size(); ++r) {
       const JobSpec& job = plan_.cells[plan_.runs[r].cell].job;
       const std::optional<std::string>& rendered = answers_.results[r].camera;
-      if (job.camera.empty() && rendered) first.emplace(job.scene, *rendered);
+      if (takes_first_camera(job) && rendered) first.emplace(job.scene, *rendered);
     }
     return first;
   }
@@ -84,9 +88,8 @@ class Comparison {
     std::map<std::string, std::size_t> known;
     for (CellAnswer& cell : answers_.cells) {
       JobSpec job = plan_.cells[cell.cell].job;
-      if (const auto named = first.find(job.scene); job.camera.empty() && named != first.end()) {
-        job.camera = named->second;
-      }
+      const auto named = first.find(job.scene);
+      if (takes_first_camera(job) && named != first.end()) job.camera = named->second;
       const auto [found, is_new] = known.emplace(picture_name(job), answers_.pictures.size());
       if (is_new) answers_.pictures.emplace_back();
       cell.picture = found->second;
