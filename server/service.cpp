@@ -161,8 +161,8 @@ struct Service::Parts {
         files(page(settings)),
         access(settings.http.bind, settings.access,
                [this](const std::string& path) { return files.has(path); }),
-        routes({settings, data, scenes, table, disk, queue, http_metrics, uploads.get()}, table,
-               queue, sweeps, keeper, files),
+        routes({settings, data, scenes, table, disk, queue, http_metrics, uploads.get()},
+               {table, queue, sweeps, keeper}, files),
         http(http_settings(settings), routes.router(), http_metrics,
              [this](const Request& request) { return access.admit(request); }) {
     http.bind();

@@ -82,9 +82,15 @@ void step_corner_rows(Grid3<std::uint16_t>& map, int z, int from, int y0, int y1
 using StepRow = void (*)(Row, ConstRow, int);
 using StepPlane = void (*)(Grid3<std::uint16_t>& map, int z, int from, int y0, int y1);
 
+/// A metric, as the steps from one row and one plane to the next.
+struct Metric {
+  int reach;  // rows to either side that a row of the next plane depends on
+  StepRow row;
+  StepPlane plane;
+};
+
 Grid3<std::uint16_t> distance_map(const BitGrid3& domain, const ThreadPool& pool,
-                                  std::uint64_t byte_limit, int reach, StepRow step_row,
-                                  StepPlane step_plane) {
+                                  std::uint64_t byte_limit, const Metric& metric) {
   const Imath::V3i size = domain.size();
   const std::uint64_t voxels = checked_voxels(size);
   require_memory("a distance map", size, voxels * sizeof(std::uint16_t), byte_limit);
@@ -94,18 +100,18 @@ Grid3<std::uint16_t> distance_map(const BitGrid3& domain, const ThreadPool& pool
     if (from < 0 || from >= size.z) {
       for (int y = y0; y < y1; ++y) limit_to_one(map.row(y, z), size.x);
     } else {
-      step_plane(map, z, from, y0, y1);
+      metric.plane(map, z, from, y0, y1);
     }
   };
   sweep({.size = size,
          .direction = SweepDirection::ascending,
-         .reach = reach,
-         .prepare = [&](int z) { plane_distance(domain, map, z, step_row); },
+         .reach = metric.reach,
+         .prepare = [&](int z) { plane_distance(domain, map, z, metric.row); },
          .step = [&](int z, int y0, int y1) { step(z, z - 1, y0, y1); }},
         pool);
   sweep({.size = size,
          .direction = SweepDirection::descending,
-         .reach = reach,
+         .reach = metric.reach,
          .prepare = {},
          .step = [&](int z, int y0, int y1) { step(z, z + 1, y0, y1); }},
         pool);
@@ -116,12 +122,12 @@ Grid3<std::uint16_t> distance_map(const BitGrid3& domain, const ThreadPool& pool
 
 Grid3<std::uint16_t> l1_distance(const BitGrid3& domain, const ThreadPool& pool,
                                  std::uint64_t byte_limit) {
-  return distance_map(domain, pool, byte_limit, 0, step_over_face, step_face_rows);
+  return distance_map(domain, pool, byte_limit, {0, step_over_face, step_face_rows});
 }
 
 Grid3<std::uint16_t> chebyshev_distance(const BitGrid3& domain, const ThreadPool& pool,
                                         std::uint64_t byte_limit) {
-  return distance_map(domain, pool, byte_limit, 1, step_over_corner, step_corner_rows);
+  return distance_map(domain, pool, byte_limit, {1, step_over_corner, step_corner_rows});
 }
 
 }  // namespace lacuna

@@ -10,9 +10,15 @@ namespace lacuna {
 
 namespace {
 
-/// The lines through the row of `width` voxels at `first`, `stride` apart along each line.
-void pass_over(Grid3<std::uint32_t>& map, SquaredLines& lines, std::size_t first,
-               std::size_t stride, int width, int length) {
+/// The parallel lines through the voxels of a row.
+struct RowOfLines {
+  std::size_t first;   // index of the row
+  std::size_t stride;  // between the voxels of a line
+  int width, length;   // of the row, and of the lines
+};
+
+void pass_over(Grid3<std::uint32_t>& map, SquaredLines& lines, const RowOfLines& row) {
+  const auto [first, stride, width, length] = row;
   for (int x = 0; x < width; x += SquaredLines::lanes) {
     const int n = std::min(SquaredLines::lanes, width - x);
     std::uint32_t* const begin = map.data() + first + x;
@@ -37,7 +43,7 @@ void plane_distance(const BitGrid3& domain, Grid3<std::uint32_t>& map, int z) {
                    [](std::uint32_t d) { return d * d; });
   }
   SquaredLines lines(size.y);
-  pass_over(map, lines, map.index(0, 0, z), static_cast<std::size_t>(size.x), size.x, size.y);
+  pass_over(map, lines, {map.index(0, 0, z), static_cast<std::size_t>(size.x), size.x, size.y});
 }
 
 }  // namespace
@@ -53,7 +59,7 @@ Grid3<std::uint32_t> squared_distance(const BitGrid3& domain, const ThreadPool& 
   const std::size_t plane = map.count() / static_cast<std::size_t>(size.z);
   run_parallel(pool, size.y, [&](int y) {
     SquaredLines lines(size.z);
-    pass_over(map, lines, map.index(0, y, 0), plane, size.x, size.z);
+    pass_over(map, lines, {map.index(0, y, 0), plane, size.x, size.z});
   });
   return map;
 }

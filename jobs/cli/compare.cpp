@@ -80,7 +80,7 @@ void print_blocks(const CompareOptions& o, const Crop& crop, const std::vector<d
                                  crop.width, crop.height));
   }
   const std::vector<double> variance = variance_of_difference(o, crop);
-  const BlockStatistics s = block_statistics(a, b, variance, crop.width, crop.height, o.block);
+  const BlockStatistics s = block_statistics({a, b, variance, crop.width, crop.height}, o.block);
   fmt::print("blocks  {} of {} x {} pixels\nblock_relative {:.6g}\nworst_block {}, {}\n", s.blocks,
              o.block, o.block, s.largest_relative, crop.x + s.worst_x, crop.y + s.worst_y);
   if (variance.empty()) return;

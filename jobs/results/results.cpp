@@ -136,8 +136,8 @@ void write_results(const RenderTask& task, const RenderLoop& loop) {
   write_half_layers(task, layers);
   std::map<std::string, std::string> header = attributes(task, loop);
   scale_variance(layers, task.spec.pixel_type, header);
-  write_exr(task.folder.file("image.exr"), film.width(), film.height(), layers,
-            task.spec.pixel_type, header);
+  write_exr(task.folder.file("image.exr"), {film.width(), film.height(), std::move(layers),
+                                            task.spec.pixel_type, std::move(header)});
   write_preview(task.folder.file("image.png"), film.width(), film.height(), mean);
   write_file_atomically(task.folder.file("curve.csv"), loop.curve().csv());
 }

@@ -84,10 +84,8 @@ class Comparison {
     std::map<std::string, std::size_t> known;
     for (CellAnswer& cell : answers_.cells) {
       JobSpec job = plan_.cells[cell.cell].job;
-      if (const auto named = first.find(job.scene);
-          job.camera.is_default() && named != first.end()) {
-        job.camera.name = named->second;
-      }
+      const auto named = first.find(job.scene);
+      if (job.camera.is_default() && named != first.end()) job.camera.name = named->second;
       const auto [found, is_new] = known.emplace(picture_name(job), answers_.pictures.size());
       if (is_new) answers_.pictures.emplace_back();
       cell.picture = found->second;

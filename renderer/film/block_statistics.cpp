@@ -15,9 +15,8 @@ struct Block {
 
 }  // namespace
 
-BlockStatistics block_statistics(std::span<const double> a, std::span<const double> b,
-                                 std::span<const double> variance, int width, int height,
-                                 int size) {
+BlockStatistics block_statistics(const PicturePair& pair, int size) {
+  const auto& [a, b, variance, width, height] = pair;
   BlockStatistics s;
   std::vector<double> z;
   for (int y0 = 0; y0 + size <= height; y0 += size) {

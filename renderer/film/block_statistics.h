@@ -16,9 +16,14 @@ struct BlockStatistics {
   double z_mean = 0, z_deviation = 0, z_beyond = 0;
 };
 
-/// `a`, `b`: interleaved RGB of `width` x `height`; `variance` of a - b (empty: no z). `size` is
-/// the side of a block in pixels, at most the picture's.
-BlockStatistics block_statistics(std::span<const double> a, std::span<const double> b,
-                                 std::span<const double> variance, int width, int height, int size);
+/// Two pictures of `width` x `height` pixels, interleaved RGB.
+struct PicturePair {
+  std::span<const double> a, b;
+  std::span<const double> variance;  ///< of a - b; empty: unknown
+  int width = 0, height = 0;
+};
+
+/// `size`: side of a block in pixels, at most the pictures'. Without a variance there is no z.
+BlockStatistics block_statistics(const PicturePair& pair, int size);
 
 }  // namespace lacuna

@@ -180,16 +180,18 @@ void check_total(const tinygltf::Model& model, const std::vector<PlacedNode>& no
   }
 }
 
-void add_node(const tinygltf::Model& model, const PlacedNode& node, std::size_t mesh_index,
-              SceneData& scene, Counts& counts, Warnings& warnings) {
-  const tinygltf::Mesh& mesh = model.meshes[mesh_index];
+void add_node(const tinygltf::Model& model, const PlacedNode& node, SceneData& scene,
+              Counts& counts, Warnings& warnings) {
+  const auto mesh_index = mesh_of(model, node);
+  if (!mesh_index) return;
+  const tinygltf::Mesh& mesh = model.meshes[*mesh_index];
   for (std::size_t k = 0; k < mesh.primitives.size(); ++k) {
     const tinygltf::Primitive& primitive = mesh.primitives[k];
     if (!is_drawn(primitive)) {
       warnings.once("primitives of points or lines, or without POSITION, are left out");
       continue;
     }
-    Mesh built = build_mesh({model, mesh_index, k, node}, scene, counts, warnings);
+    Mesh built = build_mesh({model, *mesh_index, k, node}, scene, counts, warnings);
     built.name = mesh.name.empty() ? node.place.string("name", node.place.label()) : mesh.name;
     if (!built.triangles.empty()) scene.meshes.push_back(std::move(built));
   }
@@ -203,9 +205,8 @@ void build_meshes(const tinygltf::Model& model, const std::vector<PlacedNode>& n
   scene.origin = scene_origin(model, nodes);
   Counts counts;
   for (const PlacedNode& node : nodes) {
-    const auto mesh = mesh_of(model, node);
     if (node.place.has("skin")) warnings.once("skins are left out: meshes keep their bind pose");
-    if (mesh) add_node(model, node, *mesh, scene, counts, warnings);
+    add_node(model, node, scene, counts, warnings);
   }
   scene.dropped_triangles = counts.dropped.total();
   const std::string dropped = std::to_string(counts.dropped.degenerate) + " of zero area, " +

@@ -50,12 +50,12 @@ void DirectionTree::add(const V3f& w, double energy, bool filter) {
   V2f p = to_square(w);
   if (filter) {
     const auto half = static_cast<float>(leaf_size(p) / 2);
-    const V2f low = p - V2f(half), high = p + V2f(half);
+    const Rectangle area{p - V2f(half), p + V2f(half)};
     const double density = energy / (4 * double(half) * double(half));
     // The azimuth wraps around at its ends; energy beyond the poles is
     // lost.
     for (const float shift : {-1.0F, 0.0F, 1.0F}) {
-      spread(0, V2f(0, shift), 1, low, high, density);
+      spread(0, V2f(0, shift), 1, area, density);
     }
     return;
   }
@@ -70,17 +70,17 @@ void DirectionTree::add(const V3f& w, double energy, bool filter) {
   }
 }
 
-/// Adds `density` over the part of [from, to] that the square at `low` covers.
-void DirectionTree::spread(std::uint32_t node, const V2f& low, float size, const V2f& from,
-                           const V2f& to, double density) {
+/// Adds `density` over the part of `area` that the square at `low` covers.
+void DirectionTree::spread(std::uint32_t node, const V2f& low, float size, const Rectangle& area,
+                           double density) {
   for (std::size_t q = 0; q < 4; ++q) {
     const V2f at = low + corner_of(q) * size;
     const float half = size / 2;
-    const float width = std::min(at.x + half, to.x) - std::max(at.x, from.x);
-    const float height = std::min(at.y + half, to.y) - std::max(at.y, from.y);
+    const float width = std::min(at.x + half, area.high.x) - std::max(at.x, area.low.x);
+    const float height = std::min(at.y + half, area.high.y) - std::max(at.y, area.low.y);
     if (!(width > 0 && height > 0)) continue;
     if (nodes_[node].child[q] != 0) {
-      spread(nodes_[node].child[q], at, half, from, to, density);
+      spread(nodes_[node].child[q], at, half, area, density);
     } else {
       nodes_[node].energy[q] += static_cast<float>(density * double(width) * double(height));
     }

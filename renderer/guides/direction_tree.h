@@ -59,7 +59,10 @@ class DirectionTree {
   /// Returns the quarter that contains `p` and makes `p` relative to it.
   static std::size_t quarter(V2f& p);
   double leaf_size(V2f p) const;
-  void spread(std::uint32_t node, const V2f& low, float size, const V2f& from, const V2f& to,
+  struct Rectangle {
+    V2f low, high;
+  };
+  void spread(std::uint32_t node, const V2f& low, float size, const Rectangle& area,
               double density);
   double build(std::uint32_t node);
 

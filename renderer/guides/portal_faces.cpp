@@ -9,22 +9,31 @@ namespace lacuna {
 
 namespace {
 
-V3d middle(const Portals& portals, const Portal& portal, const Grid3<std::uint32_t>& label) {
-  V3d sum(0.0);
-  for (std::uint64_t i = 0; i < portal.faces(); ++i) {
+/// The portals of the regions in a grid of labels.
+struct PortalGrid {
+  const Portals& portals;
+  const Grid3<std::uint32_t>& label;
+  GridTransform transform;
+
+  /// The centre of face `i` of a portal, in voxels.
+  V3d face_centre(const Portal& portal, std::uint64_t i) const {
     const VoxelFace face = portals.face(portal, i);
-    sum += face.point(label.voxel(face.voxel), 0.5, 0.5);
+    return face.point(label.voxel(face.voxel), 0.5, 0.5);
   }
+};
+
+V3d middle(const PortalGrid& grid, const Portal& portal) {
+  V3d sum(0.0);
+  for (std::uint64_t i = 0; i < portal.faces(); ++i) sum += grid.face_centre(portal, i);
   return sum / static_cast<double>(portal.faces());
 }
 
 /// The bounds of the voxels on both sides of its faces.
-VoxelBox box_around(const Portals& portals, const Portal& portal,
-                    const Grid3<std::uint32_t>& label) {
+VoxelBox box_around(const PortalGrid& grid, const Portal& portal) {
   VoxelBox box;
   for (std::uint64_t i = 0; i < portal.faces(); ++i) {
-    const VoxelFace face = portals.face(portal, i);
-    const Imath::V3i voxel = label.voxel(face.voxel);
+    const VoxelFace face = grid.portals.face(portal, i);
+    const Imath::V3i voxel = grid.label.voxel(face.voxel);
     box.add(voxel);
     box.add(voxel + Imath::V3i(face.normal()));
   }
@@ -32,16 +41,16 @@ VoxelBox box_around(const Portals& portals, const Portal& portal,
 }
 
 /// Whether half of a portal or more is seen from `eye`, in voxels, by some of its faces.
-bool mostly_seen(const RayCaster& rays, const GridTransform& transform, const V3d& eye,
-                 const Portals& portals, const Portal& portal, const Grid3<std::uint32_t>& label) {
+bool mostly_seen(const RayCaster& rays, const V3d& eye, const PortalGrid& grid,
+                 const Portal& portal) {
   // Asked for each pair of region and portal: the first faces that decide it are enough.
   constexpr std::uint64_t most_tried = 16;
   const std::uint64_t tried = std::min(portal.faces(), most_tried);
-  const V3f from(transform.to_world(eye));
+  const V3f from(grid.transform.to_world(eye));
   std::uint64_t seen = 0;
   for (std::uint64_t k = 0; k < tried; ++k) {
-    const VoxelFace face = portals.face(portal, (2 * k + 1) * portal.faces() / (2 * tried));
-    const V3d to = transform.to_world(face.point(label.voxel(face.voxel), 0.5, 0.5));
+    const std::uint64_t face = (2 * k + 1) * portal.faces() / (2 * tried);
+    const V3d to = grid.transform.to_world(grid.face_centre(portal, face));
     if (!rays.occluded({from, V3f(to) - from, 1.0F})) ++seen;
     if (2 * seen >= tried) return true;
     if (2 * (seen + tried - k - 1) < tried) return false;
@@ -71,18 +80,18 @@ void PortalFaces::prepare(const PrepareContext& context, const SurfaceLookup& lo
   const std::vector<double> power = arriving_power(context.scene, lookup, labels.regions.size(),
                                                    settings_.light_rays, context.pool);
   const std::vector<V3d> centres = centres_of(labels);
+  const PortalGrid grid{*portals_, labels.label, context.space.voxels().transform};
   for (const Portal& p : portals_->portals) {
-    middles_.push_back(middle(*portals_, p, labels.label));
-    boxes_.push_back(box_around(*portals_, p, labels.label));
+    middles_.push_back(middle(grid, p));
+    boxes_.push_back(box_around(grid, p));
   }
   exits_.resize(labels.regions.size());
-  const GridTransform transform = context.space.voxels().transform;
   context.pool.for_each(static_cast<int>(exits_.size()), [&](int i) {
     const auto r = static_cast<std::uint32_t>(i);
     const V3d eye = V3d(labels.label.voxel(labels.regions[r].root)) + V3d(0.5);
     const auto sees = [&](const Portal& portal) {
       return settings_.portal == PortalChoice::last &&
-             mostly_seen(context.scene.rays(), transform, eye, *portals_, portal, labels.label);
+             mostly_seen(context.scene.rays(), eye, grid, portal);
     };
     find_exits(r, centres, power, labels, sees);
   });

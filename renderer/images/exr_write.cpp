@@ -58,17 +58,13 @@ std::vector<T> interleave(std::size_t pixels, const std::vector<ExrLayer>& layer
 }
 
 template <class T>
-EncodedImage encode_as(const std::filesystem::path& file, int width, int height,
-                       const std::vector<ExrLayer>& layers,
-                       const std::map<std::string, std::string>& attributes) {
-  ExrContent content{width,
-                     height,
-                     channel_names(layers),
-                     std::is_same_v<T, half>,
-                     nullptr,
-                     header_texts(attributes)};
-  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  const std::vector<T> values = interleave<T>(pixels, layers, content.channels.size(), file);
+EncodedImage encode_as(const std::filesystem::path& file, const ExrPicture& picture) {
+  ExrContent content{picture.width,           picture.height, channel_names(picture.layers),
+                     std::is_same_v<T, half>, nullptr,        header_texts(picture.attributes)};
+  const std::size_t pixels =
+      static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
+  const std::vector<T> values =
+      interleave<T>(pixels, picture.layers, content.channels.size(), file);
   content.values = values.data();
   const ImageCodec& codec = image_codec();
   try {
@@ -80,12 +76,10 @@ EncodedImage encode_as(const std::filesystem::path& file, int width, int height,
 
 }  // namespace
 
-void write_exr(const std::filesystem::path& file, int width, int height,
-               const std::vector<ExrLayer>& layers, PixelType type,
-               const std::map<std::string, std::string>& attributes) {
-  const EncodedImage bytes = type == PixelType::half_float
-                                 ? encode_as<half>(file, width, height, layers, attributes)
-                                 : encode_as<float>(file, width, height, layers, attributes);
+void write_exr(const std::filesystem::path& file, const ExrPicture& picture) {
+  const EncodedImage bytes = picture.type == PixelType::half_float
+                                 ? encode_as<half>(file, picture)
+                                 : encode_as<float>(file, picture);
   write_file_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

@@ -16,11 +16,17 @@ struct ExrLayer {
   std::vector<double> values;
 };
 
+/// The content of an EXR file.
+struct ExrPicture {
+  int width = 0, height = 0;
+  std::vector<ExrLayer> layers;
+  PixelType type = PixelType::single_float;       ///< of all values
+  std::map<std::string, std::string> attributes;  ///< written under "lacuna:NAME"
+};
+
 /// Writes a scan-line EXR (ZIP) atomically (temporary file, fsync, rename).
-/// Attributes are strings, under "lacuna:NAME"; the file holds no date. Throws std::system_error or
-/// std::runtime_error that names the file; also where `type` is half and a value would overflow.
-void write_exr(const std::filesystem::path& file, int width, int height,
-               const std::vector<ExrLayer>& layers, PixelType type,
-               const std::map<std::string, std::string>& attributes);
+/// The file holds no date. Throws std::system_error or std::runtime_error that names the file; also
+/// if the type is half and a value would overflow.
+void write_exr(const std::filesystem::path& file, const ExrPicture& picture);
 
 }  // namespace lacuna

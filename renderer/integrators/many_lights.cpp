@@ -188,7 +188,7 @@ class ManyLights final : public Integrator {
       }
     };
     walk.trace_paths(part.batch.states, choose, [&](std::size_t i, int depth) {
-      return visit(context.scene, with, direct, part, i, depth);
+      return visit({context.scene, with, direct, part}, i, depth);
     });
     if (!with.range.is_first()) {
       part.shadows = {};
@@ -199,17 +199,26 @@ class ManyLights final : public Integrator {
                        [&](const Direct& d) { part.batch.radiance[d.path] += d.value; });
   }
 
-  /// One vertex of an eye path; false where the path ends.
-  bool visit(const Scene& scene, const Gathering& with, const DirectLight<BsdfGuide>& direct,
-             Part& part, std::size_t i, int depth) const {
+  /// What the eye paths of a part are traced with.
+  struct EyePass {
+    const Scene& scene;
+    const Gathering& with;
+    const DirectLight<BsdfGuide>& direct;
+    Part& part;
+  };
+  /// Visits a vertex of eye path `i`; false where the path ends.
+  bool visit(const EyePass& pass, std::size_t i, int depth) const {
+    const Gathering& with = pass.with;
     const VplContributions& terms = with.terms;
+    const DirectLight<BsdfGuide>& direct = pass.direct;
+    Part& part = pass.part;
     Vertex& v = part.batch.vertex(i, depth);
     const bool first = part.shaded[i] == 0;
     const Vertex& before = part.batch.vertex(i, depth - 1);
     // Virtual lights also sample this edge, except for the part above the bound.
     const bool shared = !first && depth == part.shaded[i] + 1 && !before.delta;
     if (shared && by_lights()) {
-      part.batch.radiance[i] += emitted(scene, v) * missing(terms, before, v);
+      part.batch.radiance[i] += emitted(pass.scene, v) * missing(terms, before, v);
     } else {
       part.batch.radiance[i] += direct.met(v, depth);
     }
@@ -259,7 +268,7 @@ class ManyLights final : public Integrator {
       paths.push_back(i);
     }
     std::vector<LightSum> sums(points.size());
-    LightGather<V>(context, with.terms, visibility_, with.draw, counters, with.range)
+    LightGather<V>(context, with.terms, visibility_, {with.draw, with.range}, counters)
         .gather(points, sums);
     for (std::size_t k = 0; k < sums.size(); ++k) {
       if (with.filter != nullptr) {

@@ -14,22 +14,26 @@ struct LightSum {
   std::uint64_t tests = 0;  ///< lights tested by a shadow ray
 };
 
+/// Which virtual lights are gathered.
+struct GatheredLights {
+  LightDraw* draw = nullptr;  ///< samples them; null: all
+  BlockRange range = {};      ///< only those of these blocks
+};
+
 /// Sums the contributions of all virtual lights, or of the sampled ones, to the shading points of a
 /// few pixels. The outer loop is over lights and the inner one over points, so that a block of
 /// lights is read from memory once for all points.
 template <class Visibility>
 class LightGather {
  public:
-  /// `draw`: samples the lights; null: all lights. Only blocks in `range` are used.
   LightGather(const IterationContext& context, const VplContributions& terms,
-              const Visibility& visibility, LightDraw* draw, Counters& counters,
-              BlockRange range = {})
+              const Visibility& visibility, const GatheredLights& gathered, Counters& counters)
       : context_(context),
         terms_(terms),
         visibility_(visibility),
-        draw_(draw),
-        counters_(counters),
-        range_(range) {}
+        draw_(gathered.draw),
+        range_(gathered.range),
+        counters_(counters) {}
 
   /// Writes the sum of `points[i]` to `sums[i]`, for at most Lanes::size points. Throws
   /// IterationStopped when the context's stop() returns true.
@@ -133,8 +137,8 @@ class LightGather {
   const VplContributions& terms_;
   const Visibility& visibility_;
   LightDraw* draw_;
-  Counters& counters_;
   BlockRange range_;
+  Counters& counters_;
   std::size_t blocks_ = 0;                            // done
   std::array<std::vector<Test>, Lanes::size> tests_;  // of each light of the block
   ShadowQueue<Lit> queue_;

@@ -61,7 +61,7 @@ ManyViewsCounts render_views(const Octree& scene, const ViewTree& views,
   if (views.tree().empty()) return {};
   const ViewRendering rendering(scene, views, settings);
   if (settings.breadth_first) {
-    return render_breadth_first(rendering, views, scene.empty(), settings.share, pool, use);
+    return render_breadth_first(rendering, views, settings.share, pool, use);
   }
   const std::vector<float> empty(rendering.map_floats(), std::numeric_limits<float>::infinity());
   const std::vector<Siblings> whole(scene.empty() ? 0 : 1, Siblings::root());

@@ -150,10 +150,9 @@ class ViewQueue {
 }  // namespace
 
 ManyViewsCounts render_breadth_first(const ViewRendering& rendering, const ViewTree& views,
-                                     bool scene_empty, bool share, const ThreadPool& pool,
-                                     const UseMap& use) {
+                                     bool share, const ThreadPool& pool, const UseMap& use) {
   ViewQueue queue(rendering, views, share, pool);
-  if (!scene_empty) queue.empty_queue();
+  if (!rendering.scene_empty()) queue.empty_queue();
   queue.fuse(use);
   return queue.counts();
 }

@@ -10,10 +10,9 @@ namespace lacuna {
 /// the depth-first traversal bit by bit; the counts include the memory of the queue and of the
 /// maps.
 ///
-/// One thread at a time processes the pairs of a view node. `scene_empty`: there is nothing to
-/// render. Throws MemoryLimitError if there is no memory for the maps.
+/// One thread at a time processes the pairs of a view node. Throws MemoryLimitError if there is no
+/// memory for the maps.
 ManyViewsCounts render_breadth_first(const ViewRendering& rendering, const ViewTree& views,
-                                     bool scene_empty, bool share, const ThreadPool& pool,
-                                     const UseMap& use);
+                                     bool share, const ThreadPool& pool, const UseMap& use);
 
 }  // namespace lacuna

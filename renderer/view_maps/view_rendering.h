@@ -61,6 +61,8 @@ class ViewRendering {
   /// The references outlive it.
   ViewRendering(const Octree& scene, const ViewTree& views, const ManyViewsSettings& settings);
 
+  /// Whether there is nothing to render.
+  bool scene_empty() const { return scene_.empty(); }
   /// Length of a map in floats: its texels, rounded up to whole vectors of eight.
   std::size_t map_floats() const { return x_.size(); }
   std::size_t texels() const { return static_cast<std::size_t>(map_.texels()); }

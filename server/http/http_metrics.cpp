@@ -28,10 +28,11 @@ void write_metrics(PrometheusText& text, const HttpMetrics& m) {
   for (std::size_t i = 0; i < m.requests.size(); ++i) {
     requests.value(value(m.requests[i]), {{"status", fmt::format("{}xx", i + 1)}});
   }
-  std::vector<std::uint64_t> counts(m.seconds.begin(), m.seconds.end());
   text.histogram("lacuna_http_request_seconds",
                  "Time from the arrival of a request to its response.",
-                 {m.bounds.begin(), m.bounds.end()}, counts, 1e-6 * value(m.microseconds));
+                 {{m.bounds.begin(), m.bounds.end()},
+                  {m.seconds.begin(), m.seconds.end()},
+                  1e-6 * value(m.microseconds)});
   text.counter("lacuna_http_sent_bytes_total", "Bytes sent to clients.").value(value(m.bytes_out));
   text.counter("lacuna_http_given_up_total",
                "Responses aborted because the client read too slowly.")

@@ -2,10 +2,9 @@
 
 namespace lacuna {
 
-Routes::Routes(const ServiceFacts& facts, JobTable& table, Queue& queue, SweepTable& sweeps,
-               SweepKeeper& keeper, const StaticFiles& page)
-    : jobs_(facts.data, facts.scenes, table, queue),
-      sweeps_(facts.scenes, sweeps, table, keeper),
+Routes::Routes(const ServiceFacts& facts, const ServiceWork& work, const StaticFiles& page)
+    : jobs_(facts.data, facts.scenes, work.jobs, work.queue),
+      sweeps_(facts.scenes, work.sweeps, work.jobs, work.keeper),
       service_(facts) {
   jobs_.add_to(router_);
   sweeps_.add_to(router_);

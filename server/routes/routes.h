@@ -8,11 +8,18 @@
 
 namespace lacuna {
 
+/// The jobs and sweeps that requests read and change.
+struct ServiceWork {
+  JobTable& jobs;
+  Queue& queue;
+  SweepTable& sweeps;
+  SweepKeeper& keeper;
+};
+
 /// The service's addresses and what each does. All references outlive it.
 class Routes {
  public:
-  Routes(const ServiceFacts& facts, JobTable& table, Queue& queue, SweepTable& sweeps,
-         SweepKeeper& keeper, const StaticFiles& page);
+  Routes(const ServiceFacts& facts, const ServiceWork& work, const StaticFiles& page);
 
   /// For HttpServer.
   const Router& router() const { return router_; }

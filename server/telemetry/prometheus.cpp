@@ -71,9 +71,8 @@ PrometheusText& PrometheusText::value(double value, const Labels& labels) {
 }
 
 PrometheusText& PrometheusText::histogram(std::string_view name, std::string_view help,
-                                          const std::vector<double>& bounds,
-                                          const std::vector<std::uint64_t>& counts, double sum,
-                                          const Labels& labels) {
+                                          const Histogram& histogram, const Labels& labels) {
+  const auto& [bounds, counts, sum] = histogram;
   if (counts.size() != bounds.size() + 1 || !std::is_sorted(bounds.begin(), bounds.end())) {
     throw std::invalid_argument(fmt::format("histogram {}: buckets and counts do not fit", name));
   }

@@ -23,12 +23,15 @@ class PrometheusText {
   /// One value of the metric begun last. Throws std::invalid_argument for a bad label's name.
   PrometheusText& value(double value, const Labels& labels = {});
 
-  /// A whole histogram. `bounds`: upper bounds of the buckets, ascending; `counts`: in each bucket
-  /// (not cumulative), and one more for what is above all bounds.
+  /// The values of a histogram.
+  struct Histogram {
+    std::vector<double> bounds;         ///< upper bounds of the buckets, ascending
+    std::vector<std::uint64_t> counts;  ///< of each bucket, not cumulative, and above all bounds
+    double sum = 0;                     ///< of all values
+  };
+  /// A metric with one histogram. Throws std::invalid_argument if bounds and counts do not fit.
   PrometheusText& histogram(std::string_view name, std::string_view help,
-                            const std::vector<double>& bounds,
-                            const std::vector<std::uint64_t>& counts, double sum,
-                            const Labels& labels = {});
+                            const Histogram& histogram, const Labels& labels = {});
 
   const std::string& text() const { return text_; }
 

@@ -28,7 +28,7 @@ TEST(Prometheus, WritesValuesWithEscapedLabels) {
 
 TEST(Prometheus, SumsHistogramsUp) {
   PrometheusText text;
-  text.histogram("seconds", "Time.", {0.5, 1}, {2, 0, 3}, 7.25, {{"kind", "x"}});
+  text.histogram("seconds", "Time.", {{0.5, 1}, {2, 0, 3}, 7.25}, {{"kind", "x"}});
   EXPECT_EQ(text.text(),
             "# HELP seconds Time.\n# TYPE seconds histogram\n"
             "seconds_bucket{kind=\"x\",le=\"0.5\"} 2\nseconds_bucket{kind=\"x\",le=\"1\"} 2\n"
@@ -44,8 +44,8 @@ TEST(Prometheus, RefusesWhatItsReadersWould) {
   EXPECT_THROW(text.gauge("a b", ""), std::invalid_argument);
   EXPECT_THROW(text.gauge("", ""), std::invalid_argument);
   EXPECT_THROW(text.value(1, {{"a:b", ""}}), std::invalid_argument);
-  EXPECT_THROW(text.histogram("h", "", {1}, {1}, 0), std::invalid_argument);
-  EXPECT_THROW(text.histogram("h", "", {2, 1}, {1, 1, 1}, 0), std::invalid_argument);
+  EXPECT_THROW(text.histogram("h", "", {{1}, {1}, 0}), std::invalid_argument);
+  EXPECT_THROW(text.histogram("h", "", {{2, 1}, {1, 1, 1}, 0}), std::invalid_argument);
 }
 
 TEST(HttpMetrics, CountsByClassAndBucket) {

@@ -93,11 +93,12 @@ class OpenPicture final : public PictureFile {
       return spec.channelformat(c) == OIIO::TypeUInt32;
     });
     if (in_a_row && !integers) {
-      return read_range(part, channels.front(), channels.back() + 1, OIIO::TypeFloat, out, stride);
+      return read_range({part, channels.front(), channels.back() + 1}, OIIO::TypeFloat, out,
+                        stride);
     }
     for (std::size_t c = 0; c < channels.size(); ++c) {
       const bool integer = spec.channelformat(channels[c]) == OIIO::TypeUInt32;
-      read_range(part, channels[c], channels[c] + 1, integer ? OIIO::TypeUInt32 : OIIO::TypeFloat,
+      read_range({part, channels[c], channels[c] + 1}, integer ? OIIO::TypeUInt32 : OIIO::TypeFloat,
                  out + c, stride);
       if (integer) to_float(out + c, channels.size(), parts_[part]);
     }
@@ -113,9 +114,14 @@ class OpenPicture final : public PictureFile {
     reader_->geterror();  // that there are no more is no error
   }
 
-  void read_range(std::size_t part, int first, int end, const OIIO::TypeDesc& type, void* out,
+  struct ChannelRange {
+    std::size_t part;
+    int first, end;
+  };
+  void read_range(const ChannelRange& range, const OIIO::TypeDesc& type, void* out,
                   OIIO::stride_t stride) {
-    const bool read = reader_->read_image(static_cast<int>(part), 0, first, end, type, out, stride);
+    const bool read = reader_->read_image(static_cast<int>(range.part), 0, range.first, range.end,
+                                          type, out, stride);
     require_clean(*reader_, read);
   }
 

@@ -416,8 +416,9 @@ TEST_F(RunJob, WhatCannotBeDoneFailsAndNamesThePlace) {
   const std::string camera = failure(create(s, "b"), context_of());
   EXPECT_NE(camera.find("\"back\""), std::string::npos);
   EXPECT_NE(camera.find("\"front\""), std::string::npos);
-  write_exr(temp.path() / "small.exr", 2, 2, {{"", {"R", "G", "B"}, std::vector<double>(12, 1)}},
-            PixelType::single_float, {});
+  write_exr(
+      temp.path() / "small.exr",
+      {2, 2, {{"", {"R", "G", "B"}, std::vector<double>(12, 1)}}, PixelType::single_float, {}});
   s = spec();
   s.reference = "small.exr";
   EXPECT_NE(failure(create(s, "c"), context_of()).find("2 x 2"), std::string::npos);

@@ -190,12 +190,12 @@ TEST(BlockStatistics, NoiseLooksLikeNoiseAndADifferenceDoesNot) {
     a[i] = 1 + double(rng.next());
     b[i] = 1.5;
   }
-  const BlockStatistics noise = block_statistics(a, b, variance, side, side, 4);
+  const BlockStatistics noise = block_statistics({a, b, variance, side, side}, 4);
   EXPECT_EQ(noise.blocks, 256);
   EXPECT_NEAR(noise.z_mean, 0, 4 / std::sqrt(768.0));
   EXPECT_NEAR(noise.z_deviation, 1, 4 / std::sqrt(2 * 768.0));
   for (double& v : a) v += 0.2;
-  const BlockStatistics biased = block_statistics(a, b, variance, side, side, 4);
+  const BlockStatistics biased = block_statistics({a, b, variance, side, side}, 4);
   EXPECT_NEAR(biased.z_mean, 0.2 * 4 * std::sqrt(12.0), 0.2);
   EXPECT_GT(biased.largest_relative, 0.1);
 }
@@ -207,7 +207,7 @@ TEST(Exr, LayersAndAttributesComeBack) {
   const std::vector<ExrLayer> layers{{"", {"R", "G", "B"}, picture},
                                      {"depth", {"Z"}, {1, 2, 3, 4}},
                                      {"even", {"R", "G", "B"}, std::vector<double>(12, 0.5)}};
-  write_exr(file, 2, 2, layers, PixelType::single_float, {{"seed", "18446744073709551615"}});
+  write_exr(file, {2, 2, layers, PixelType::single_float, {{"seed", "18446744073709551615"}}});
   const FloatImage back = read_float_image(file);
   ASSERT_EQ(back.rgb.size(), 12U);
   for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(back.rgb[i], static_cast<float>(picture[i]));
@@ -215,7 +215,7 @@ TEST(Exr, LayersAndAttributesComeBack) {
   EXPECT_EQ(read_float_image(file, "even").rgb[0], 0.5F);
   // The same picture is the same file.
   const auto again = folder.path() / "b.exr";
-  write_exr(again, 2, 2, layers, PixelType::single_float, {{"seed", "18446744073709551615"}});
+  write_exr(again, {2, 2, layers, PixelType::single_float, {{"seed", "18446744073709551615"}}});
   std::ifstream f(file, std::ios::binary);
   std::ifstream g(again, std::ios::binary);
   EXPECT_TRUE(
@@ -254,9 +254,9 @@ TEST(HalfLayers, KeepElevenBitsOfEveryLayer) {
 TEST(Exr, HalfRefusesWhatOverflowsAndLeavesTheOldFile) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "a.exr";
-  write_exr(file, 1, 1, {{"", {"R", "G", "B"}, {1, 2, 3}}}, PixelType::half_float, {});
+  write_exr(file, {1, 1, {{"", {"R", "G", "B"}, {1, 2, 3}}}, PixelType::half_float, {}});
   EXPECT_THROW(
-      write_exr(file, 1, 1, {{"", {"R", "G", "B"}, {1, 70000, 3}}}, PixelType::half_float, {}),
+      write_exr(file, {1, 1, {{"", {"R", "G", "B"}, {1, 70000, 3}}}, PixelType::half_float, {}}),
       std::runtime_error);
   EXPECT_EQ(read_float_image(file).rgb[1], 2);
 }

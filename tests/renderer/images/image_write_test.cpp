@@ -39,8 +39,11 @@ TEST(ExrWrite, TheHeaderHoldsWhatItIsToldAndNothingElse) {
   const TemporaryFolder folder;
   const auto file = folder / "a.exr";
   const std::vector<ExrLayer> layers{{"", {"R", "G", "B"}, {1, 2, 3}}, {"depth", {"Z"}, {4}}};
-  write_exr(file, 1, 1, layers, PixelType::half_float,
-            {{"seed", "18446744073709551615"}, {"job", "j-1"}, {"spec", "{\n}\n"}});
+  write_exr(file, {1,
+                   1,
+                   layers,
+                   PixelType::half_float,
+                   {{"seed", "18446744073709551615"}, {"job", "j-1"}, {"spec", "{\n}\n"}}});
   std::map<std::string, std::string> texts;
   std::set<std::string> others;
   for (const auto& [name, type, value] : exr_attributes(test::read_bytes(file))) {
@@ -76,7 +79,7 @@ TEST(ExrWrite, ManyLayersComeBackUnderTheirNames) {
   for (int i = 0; i < count; ++i) {
     layers.push_back({"strategies.s" + std::to_string(i), {"R", "G", "B"}, {1.0 * i, 2.0 * i, 0}});
   }
-  write_exr(file, 1, 1, layers, PixelType::single_float, {});
+  write_exr(file, {1, 1, layers, PixelType::single_float, {}});
   for (const int i : {0, 1, 12, 699}) {
     const auto v = static_cast<float>(i);
     EXPECT_EQ(read_float_image(file, "strategies.s" + std::to_string(i)).at(0, 0),
@@ -87,8 +90,8 @@ TEST(ExrWrite, ManyLayersComeBackUnderTheirNames) {
 TEST(ExrWrite, HalfTellsWhatOverflows) {
   const TemporaryFolder folder;
   const auto write = [&](double v) {
-    write_exr(folder / "a.exr", 1, 1, {{"", {"R", "G", "B"}, {1, v, 3}}}, PixelType::half_float,
-              {});
+    write_exr(folder / "a.exr",
+              {1, 1, {{"", {"R", "G", "B"}, {1, v, 3}}}, PixelType::half_float, {}});
   };
   write(65504);
   try {

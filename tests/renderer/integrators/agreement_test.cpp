@@ -135,14 +135,20 @@ TEST(Agree, AllFlagsOfConnections) {
 TEST(Agree, ReflectionsOfPoints) {
   const PathScene scene{"coated_points"};
   const std::vector<Method> methods = test::connections(4);
-  const Rendering expected = reference(scene, small_picture(scene, methods[0].settings, 50));
+  const Rendering expected = reference(scene, small_picture(scene, methods[0].settings, 400));
   for (std::size_t i = 1; i < methods.size(); ++i) {
     SCOPED_TRACE(methods[i]);
     expect_same_picture(render(load(scene), small_picture(scene, methods[i].settings, 120)),
                         expected, 0.015);
   }
-  const Rendering without = reference(scene, small_picture(scene, test::path_tracing(4), 200));
-  EXPECT_LT(mean_over_iterations(without).mean(), 0.995 * mean_over_iterations(expected).mean());
+  const Rendering without = reference(scene, small_picture(scene, test::path_tracing(4), 1250));
+  const statistics::Moments lacks = mean_over_iterations(without),
+                            has = mean_over_iterations(expected);
+  EXPECT_LT(lacks.mean(), has.mean());
+  // They are one part in a hundred of the light, with a standard error of a sixth of that.
+  EXPECT_LT(statistics::t_test(lacks, has), 0.02)
+      << lacks.mean() << " +- " << lacks.standard_error() << " is not less than " << has.mean()
+      << " +- " << has.standard_error();
 }
 
 TEST(Agree, ThroughATentFilter) {

@@ -108,8 +108,8 @@ TEST(GuidedDepth, PathTracingOfManyEdgesIsNotDark) {
   for (const auto& [name, guide] : test::guides()) {
     SCOPED_TRACE(name);
     const int depth = long_paths(guide);
-    expect_few_dark(
-        [&](int seed) { return brightness(guided_path(guide, depth), depth, seed, 8); });
+    const PathSettings path = guided_path(guide, depth);
+    expect_few_dark([&](int seed) { return brightness(path, depth, seed, 8); });
   }
 }
 

@@ -77,8 +77,7 @@ TEST(LightSums, AreNothingWhereAllLightsLieBehind) {
     const ShadingPoint turned(outside, 1, 3, 0);
     Counters counters;
     std::vector<LightSum> sums(1);
-    LightGather<ExactVisibility>(lit.context(1), lit.terms(), ExactVisibility{{}}, nullptr,
-                                 counters)
+    LightGather<ExactVisibility>(lit.context(1), lit.terms(), ExactVisibility{{}}, {}, counters)
         .gather(std::span(&turned, 1), sums);
     EXPECT_EQ(sums[0].value, V3d(0.0));
     EXPECT_EQ(sums[0].tests, 0U);

@@ -6,9 +6,12 @@
 #include "renderer/core/rng.h"
 #include "tests/analysis/artefacts/entries.h"
 #include "tests/renderer/path/scenes.h"
+#include "tests/statistics.h"
 
 namespace lacuna {
 namespace {
+
+using statistics::Moments;
 
 Scene scene_of(SceneData data) {
   static const ThreadPool pool(2);
@@ -54,16 +57,16 @@ TEST(NodeMaps, OfAnEmptyRoomSeeAllOfIt) {
   const NodeMaps maps = maps_of(scene, {place}, 64);
   for (const int filter : {1, 2, 5, 7}) {
     const NodeView view(maps, 0, place, filter);
-    int all = 0, whole = 0;
+    Moments whole;
     for (const HitPoint& p : points_around(scene, {-0.7F, 1, 2}, 20000)) {
       const float seen = view.seen(p.x, p.n);
       EXPECT_GE(seen, 0.2F) << p.x << " filter " << filter;  // in a corner, a quarter of it
       EXPECT_LE(seen, 1.00001F);
-      ++all;
-      whole += seen > 0.9999F;
+      whole.add(seen > 0.9999F ? 1 : 0);
       EXPECT_EQ(view.seen(p.x, -p.n), 0) << "from behind";
     }
-    EXPECT_GT(whole, all * (1 - 0.04 * (filter + 1)));
+    EXPECT_GT(statistics::t_test_at_least(whole, 1 - 0.04 * (filter + 1)), 1 - 1e-4)
+        << "filter " << filter << ": " << whole.mean() << " +- " << whole.standard_error();
   }
 }
 
@@ -83,19 +86,23 @@ TEST_P(NodeMapsIn, SeeWhatRaysSee) {
   }
   const NodeMaps maps = maps_of(scene, places, 128);
   ASSERT_EQ(maps.points(), places.size());
-  int seen = 0, unseen = 0, wrong = 0;
+  int seen = 0, unseen = 0;
+  Moments wrong;  // shares of the points around one place: those of one place are not independent
   for (std::size_t k = 0; k < places.size(); ++k) {
     const NodeView view(maps, k, places[k], 1);
+    Moments of_place;
     for (const V3f& from : places) {
       for (const HitPoint& p : points_around(scene, from, 800)) {
         const bool expected = sees(scene, places[k], p);
         (expected ? seen : unseen) += 1;
-        wrong += (view.seen(p.x, p.n) > 0.5F) != expected;
+        of_place.add((view.seen(p.x, p.n) > 0.5F) != expected ? 1 : 0);
       }
     }
+    wrong.add(of_place.mean());
   }
   EXPECT_GT(std::min(seen, unseen), 500);
-  EXPECT_LT(wrong, 0.025 * (seen + unseen));
+  EXPECT_LT(statistics::t_test_at_least(wrong, 0.025), 0.01)
+      << wrong.mean() << " +- " << wrong.standard_error();
 }
 
 INSTANTIATE_TEST_SUITE_P(All, NodeMapsIn, testing::Values("ajar", "atrium"),
