@@ -15,14 +15,21 @@ struct Photon {
   float p_fwd = 0;          ///< Vertex::p_fwd
   std::uint16_t index = 0;  ///< of the vertex on its path, >= 1
   bool prev_connectible = true;
+  bool caustic = false;    ///< PhotonMap::keep()
   double mis_partial = 0;  ///< Vertex::mis_partial
 };
+static_assert(sizeof(Photon) == 64);  // a cache line
 
 /// The vertex `v`, number `index` >= 1 of a light path.
 inline Photon photon(const Vertex& v, int index) {
-  return {v.surface.x,        v.surface.ng,  v.wp,
-          v.throughput,       v.p_fwd.value, static_cast<std::uint16_t>(index),
-          v.prev_connectible, v.mis_partial};
+  return {.x = v.surface.x,
+          .ng = v.surface.ng,
+          .wp = v.wp,
+          .throughput = v.throughput,
+          .p_fwd = v.p_fwd.value,
+          .index = static_cast<std::uint16_t>(index),
+          .prev_connectible = v.prev_connectible,
+          .mis_partial = v.mis_partial};
 }
 
 /// Whether both points may lie on one surface: their normals differ by less than 60 degrees. Where

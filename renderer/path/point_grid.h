@@ -37,20 +37,20 @@ class PointGrid {
   /// The index of the point that has place `k` in the sorted order.
   std::span<const std::uint32_t> order() const { return order_; }
 
-  /// Calls `visit(k, distance2)` for the places k of the points within `radius` of `x`, where
-  /// `radius` is at most that of build(). Returns by what each point counts: 1, or where candidates
-  /// are too many the step at which they are visited from a start that `rng` draws, so that a sum
-  /// over the points visited, times the step, has the mean of the sum over all.
+  /// Calls `visit(k, distance2, count)` for the places k of the points within `radius` of `x`,
+  /// where `radius` is at most that of build(). `count` is 1, or where candidates are too many the
+  /// step at which they are visited from a start that `rng` draws: a sum over the points visited,
+  /// each times its count, has the mean of the sum over all.
   template <class Visit>
-  float for_each_within(const V3f& x, float radius, Rng& rng, Visit&& visit) const {
-    if (order_.empty()) return 1;
+  void for_each_within(const V3f& x, float radius, Rng& rng, Visit&& visit) const {
+    if (order_.empty()) return;
     Query query;
     const std::span<const Row> rows = rows_around(x, query);
     std::uint64_t candidates = 0;
     for (const Row& row : rows) candidates += row.end - row.begin;
     if (candidates <= most_candidates) {
       for (const Row& row : rows) visit_row(x, radius, row, visit);
-      return 1;
+      return;
     }
     const auto step = static_cast<std::uint32_t>((candidates - 1) / most_candidates + 1);
     // Uniform in [0, step) to 2^-32.
@@ -58,11 +58,13 @@ class PointGrid {
     for (const Row& row : rows) {
       const std::uint64_t n = row.end - row.begin;
       for (; next < n; next += step) {
-        visit_point(x, radius, row, row.begin + static_cast<std::uint32_t>(next), visit);
+        visit_point(x, radius, row, row.begin + static_cast<std::uint32_t>(next),
+                    [&](std::uint32_t k, float distance2) {
+                      visit(k, distance2, static_cast<float>(step));
+                    });
       }
       next -= n;
     }
-    return static_cast<float>(step);
   }
 
  private:
@@ -138,7 +140,7 @@ class PointGrid {
       _mm256_store_ps(values.data(), distance2);
       for (; found != 0; found &= found - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(found));
-        if (in_row(row, k + lane)) visit(k + lane, values[lane]);
+        if (in_row(row, k + lane)) visit(k + lane, values[lane], 1.0F);
       }
     }
   }

@@ -10,13 +10,16 @@
 #include "renderer/settings/many_lights_settings.h"
 #include "renderer/settings/output_settings.h"
 #include "renderer/settings/path_settings.h"
+#include "renderer/settings/photon_mapping_settings.h"
+#include "renderer/settings/vcm_settings.h"
 
 namespace lacuna {
 
 /// The integrator and its settings. The order is the order in menus; the first is the default.
 /// renderer/integrators/registry.cpp makes the integrator of each alternative.
 using IntegratorSettings =
-    std::variant<PathSettings, LightSettings, BdptSettings, ManyLightsSettings, InspectSettings>;
+    std::variant<PathSettings, LightSettings, BdptSettings, VcmSettings, SppmSettings,
+                 PhotonMapSettings, ManyLightsSettings, InspectSettings>;
 
 /// The layers that the integrator of these settings fills itself. Its settings struct lists them as
 ///

@@ -33,9 +33,10 @@ std::vector<std::uint32_t> found(const PointGrid& grid, const V3f& x, float radi
                                  float* step = nullptr) {
   Rng rng(6, 0, 0, Rng::Purpose::test);
   std::vector<std::uint32_t> all;
-  const float by = grid.for_each_within(
-      x, radius, rng, [&](std::uint32_t k, float) { all.push_back(grid.order()[k]); });
-  if (step != nullptr) *step = by;
+  grid.for_each_within(x, radius, rng, [&](std::uint32_t k, float, float count) {
+    all.push_back(grid.order()[k]);
+    if (step != nullptr) *step = count;
+  });
   std::sort(all.begin(), all.end());
   return all;
 }
@@ -111,9 +112,10 @@ TEST(PointGrid, BoundsWhatAQueryVisits) {
   Rng rng(7, 0, 0, Rng::Purpose::test);
   for (int i = 0; i < 2000; ++i) {
     double sum = 0;
-    const float step = grid.for_each_within(
-        V3f(0), 100, rng, [&](std::uint32_t k, float) { sum += double(walls[grid.order()[k]].x); });
-    sums.add(double(step) * sum);
+    grid.for_each_within(V3f(0), 100, rng, [&](std::uint32_t k, float, float count) {
+      sum += double(count) * double(walls[grid.order()[k]].x);
+    });
+    sums.add(sum);
   }
   EXPECT_NEAR(sums.mean(), all, 4.5 * sums.standard_error());
   EXPECT_LT(sums.standard_error(), 0.01 * std::abs(all)) << "the test has no power";
