@@ -12,12 +12,6 @@ constexpr std::size_t block = 1 << 14;  // points that one thread counts and mov
 constexpr std::uint32_t fewest_buckets = 16;
 constexpr std::uint32_t parts = 256;  // of the buckets, which are sorted apart
 
-/// A point on its way to its bucket.
-struct Entry {
-  std::uint32_t bucket;
-  std::uint32_t index;
-};
-
 }  // namespace
 
 // A counting sort in two steps, each stable: into parts of neighbouring buckets, by blocks of
@@ -35,7 +29,7 @@ void PointGrid::build(std::span<const V3f> points, double radius, const ThreadPo
   const std::uint32_t used_parts = buckets / of_part;
   const int blocks = static_cast<int>((n + block - 1) / block);
 
-  HugeVector<std::uint32_t> bucket_of(n);
+  bucket_of_.resize(n);
   std::vector<std::array<std::uint32_t, parts>> places(static_cast<std::size_t>(blocks));
   const auto each_of = [&](int b, auto&& use) {
     const std::size_t first = static_cast<std::size_t>(b) * block;
@@ -45,8 +39,8 @@ void PointGrid::build(std::span<const V3f> points, double radius, const ThreadPo
     auto& count = places[static_cast<std::size_t>(b)];
     count.fill(0);
     each_of(b, [&](std::size_t i) {
-      bucket_of[i] = bucket(points[i]);
-      ++count[bucket_of[i] / of_part];
+      bucket_of_[i] = bucket(points[i]);
+      ++count[bucket_of_[i] / of_part];
     });
   });
   std::vector<std::uint32_t> part_starts(used_parts + 1);
@@ -56,22 +50,22 @@ void PointGrid::build(std::span<const V3f> points, double radius, const ThreadPo
     for (auto& count : places) sum += std::exchange(count[part], sum);
   }
   part_starts[used_parts] = sum;
-  HugeVector<Entry> entries(n);
+  entries_.resize(n);
   pool.for_each(blocks, [&](int b) {
     auto& place = places[static_cast<std::size_t>(b)];
     each_of(b, [&](std::size_t i) {
-      entries[place[bucket_of[i] / of_part]++] = {bucket_of[i], static_cast<std::uint32_t>(i)};
+      entries_[place[bucket_of_[i] / of_part]++] = {bucket_of_[i], static_cast<std::uint32_t>(i)};
     });
   });
 
   starts_.resize(buckets + 1);
   starts_[buckets] = static_cast<std::uint32_t>(n);
   order_.resize(n);
-  for (auto* axis : {&x_, &y_, &z_}) axis->assign(n + 8, 0.0F);
+  for (auto* axis : {&x_, &y_, &z_}) axis->resize(n + 8);
   pool.for_each(static_cast<int>(used_parts), [&](int p) {
     const auto part = static_cast<std::uint32_t>(p);
     const auto of =
-        std::span(entries).subspan(part_starts[part], part_starts[part + 1] - part_starts[part]);
+        std::span(entries_).subspan(part_starts[part], part_starts[part + 1] - part_starts[part]);
     std::vector<std::uint32_t> place(of_part, 0);
     for (const Entry& e : of) ++place[e.bucket - part * of_part];
     std::uint32_t next = part_starts[part];

@@ -75,6 +75,11 @@ class PointGrid {
   };
   /// Four, or more where one goes on at the first bucket.
   using Query = std::array<Row, 8>;
+  /// A point on its way to its bucket.
+  struct Entry {
+    std::uint32_t bucket;
+    std::uint32_t index;
+  };
 
   int cell(float x) const { return static_cast<int>(std::floor(double(x) * per_cell_)); }
   static std::uint64_t hash(int y, int z) {
@@ -151,6 +156,9 @@ class PointGrid {
   HugeVector<std::uint32_t> starts_;  ///< of each bucket, its first place
   HugeVector<float> x_, y_, z_;       ///< in sorted order, padded to whole loads
   HugeVector<std::uint32_t> order_;
+  // Of build(), kept for the next: to touch new memory costs as much as to sort.
+  HugeVector<std::uint32_t> bucket_of_;
+  HugeVector<Entry> entries_;
 };
 
 }  // namespace lacuna

@@ -24,7 +24,7 @@ void describe_photons(V& v, PhotonTracing& s) {
          "light paths per iteration, shared by all pixels; every surface vertex of a path leaves "
          "a photon. 0: one path for each pixel",
      .min = 0,
-     .max = 1 << 24});
+     .max = 1 << 22});
   describe_radius(v, s);
   v("kernel", s.kernel, {.doc = "how a photon counts by its distance"});
   v("next_event_estimation", s.next_event_estimation,
@@ -90,7 +90,7 @@ void describe(V& v, PhotonMapSettings& s) {
     {.doc = "light paths per iteration whose caustics, light by way of mirrors or glass only, have "
             "a map of their own; 0: the photons of all paths are in one map",
      .min = 0,
-     .max = 1 << 24});
+     .max = 1 << 22});
 }
 
 }  // namespace lacuna
