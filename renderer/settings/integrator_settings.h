@@ -51,6 +51,18 @@ bool biased(const std::variant<Ts...>& settings) {
       settings);
 }
 
+/// Whether the picture of biased settings converges to the radiance, because the bias of an iteration
+/// vanishes with its number. Such settings have a member `bool consistent() const`.
+template <class... Ts>
+bool consistent(const std::variant<Ts...>& settings) {
+  return std::visit(
+      []<class S>(const S& s) {
+        if constexpr (requires { s.consistent(); }) return s.consistent();
+        return false;
+      },
+      settings);
+}
+
 /// All layers that a job with this integrator can request.
 template <class... Ts>
 std::vector<ImageLayer> offered_layers(const std::variant<Ts...>& settings) {

@@ -44,7 +44,7 @@ struct SppmSettings : PhotonTracing {
       "stochastic progressive photon mapping: photons and eye paths of each iteration are new, and "
       "the radius shrinks (Hachisuka and Jensen 2009; Noel 2015, 4.5.2)";
 
-  /// Any iteration is, by its radius; the picture converges to the radiance if that shrinks.
+  /// By the radius of each iteration; see RadiusSettings::consistent().
   static constexpr bool biased() { return true; }
   bool operator==(const SppmSettings&) const = default;
 };

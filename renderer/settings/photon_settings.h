@@ -25,6 +25,9 @@ struct RadiusSettings {
   double radius = 4;
   RadiusUnit radius_unit = RadiusUnit::pixels;
   double alpha = 2.0 / 3;
+
+  /// The radius, and with it the bias, vanishes.
+  bool consistent() const { return alpha < 1; }
   bool operator==(const RadiusSettings&) const = default;
 };
 

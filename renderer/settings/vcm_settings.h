@@ -22,7 +22,7 @@ struct VcmSettings : PathLengths, RadiusSettings {
   bool connect = true;
   GuideSettings guide = BsdfGuideSettings{};
 
-  /// Any iteration is, by its radius; the picture converges to the radiance if that shrinks.
+  /// By the radius of each iteration; see RadiusSettings::consistent().
   bool biased() const { return merge; }
   bool operator==(const VcmSettings&) const = default;
 };
