@@ -12,36 +12,40 @@ const sets = [{ key: "strategies", label: "weighted" }, { key: "strategies_unwei
 const unweighted = sets[1].key;
 const thin = "\u202f";
 
-/// The layers that are shown here: {name, set, text}, and of strategies {s, t, edges}.
+/// The layers that are shown here: {name, set, text}, and of strategies {s, t, edges, merged}. Vertices that are merged
+/// are vertex s of one walk and t of the other.
 function partsOf(names) {
   return names.map((name) => {
-    const [, set, of, s, t] = /^(\w+)\.(s(\d+)t(\d+)$|.+)/.exec(name) ?? [];
+    const [, set, of, s, t, merged] = /^(\w+)\.(s(\d+)t(\d+)(m?)$|.+)/.exec(name) ?? [];
     if (set === "distributions") return { name, set, text: of };
     return s && sets.some(({ key }) => key === set)
-      && { name, set, s: Number(s), t: Number(t), edges: Number(s) + Number(t) - 1, text: `s${thin}${s} t${thin}${t}` };
+      && { name, set, s: Number(s), t: Number(t), edges: Number(s) + Number(t) - (merged ? 2 : 1), merged: Boolean(merged),
+        text: `s${thin}${s} t${thin}${t}${merged ? " merged" : ""}` };
   }).filter(Boolean);
 }
 
 const edgesText = (n) => `${n} edge${n === 1 ? "" : "s"}`;
 
-/// Strategies in rows of one length, which stands in front, and columns of one s.
+/// Strategies in rows of one length, which stands in front, and columns of one s; those of merging to their right.
 function pyramid(cells) {
   const lengths = [...new Set(cells.map((c) => c.edges))].sort((a, b) => a - b);
   const least = Math.min(...cells.map(({ s }) => s));
+  const joined = Math.max(0, ...cells.filter((c) => !c.merged).map(({ s }) => s));
+  const column = ({ s, merged }) => 1 + (merged ? joined + s - 1 : s) - least;
   const place = (element, row, column) => {
     Object.assign(element.style, { gridRow: row + 1, gridColumn: column + 1 });
     return element;
   };
   return h("div.scroll", { tabIndex: 0, role: "group", "aria-label": "Pyramid" }, h("div.pyramid",
     lengths.map((k, row) => place(h("span.muted", edgesText(k)), row, 0)),
-    cells.map((c) => place(c.element, lengths.indexOf(c.edges), 1 + c.s - least))));
+    cells.map((c) => place(c.element, lengths.indexOf(c.edges), column(c)))));
 }
 
 /// `show(layers)` takes those of a job (see layers.js), which are read once this is in sight; `open(name)` is called
 /// with the one that the reader wants to look at. What is chosen is in `query`.
 export function strategies(query, signal, open) {
   const paint = stripPainter(signal);
-  const [title, about, say, body] = [h("h2"), note(), h("div"), h("div")];
+  const [title, about, shares, say, body] = [h("h2"), note(), note(), h("div"), h("div")];
   let layers = null;
   let parts = [];
   let cells = [];
@@ -62,7 +66,7 @@ export function strategies(query, signal, open) {
     choose("stops-each", value !== null && String(value));
     draw();
   } });
-  const element = h("section", title, h("div.tools", which.element, exposure.element), about, say, body);
+  const element = h("section", title, h("div.tools", which.element, exposure.element), about, shares, say, body);
 
   async function draw() {
     if (look === null) return;
@@ -88,13 +92,19 @@ export function strategies(query, signal, open) {
       const [picture] = await layers.read("");
       look = lookOf([picture]);
       const whole = (await small(picture)).mean;
+      const light = { hit: 0, connected: 0, merged: 0 };
       for (const cell of cells) {
         const [picture] = await layers.read(cell.name);
         layers.forget(cell.name);
         const { image, mean } = await small(picture);
         if (turn !== mine || signal.aborted) return;
         cell.image = image;
+        if (cell.edges) light[cell.merged ? "merged" : cell.s > 0 ? "connected" : "hit"] += mean;
         setText(cell.light, cell.set === unweighted ? number(mean) : `${significant(100 * mean / whole)}${thin}%`);
+      }
+      if (cells.some((c) => c.merged && c.set !== unweighted)) {
+        setText(shares, Object.entries(light).map(([name, mean]) => `${name} ${significant(100 * mean / whole)}${thin}%`)
+          .join(", ") + ".");
       }
       await draw();
       if (turn === mine) body.ariaBusy = "false";
@@ -122,11 +132,13 @@ export function strategies(query, signal, open) {
     cells = [...steps, ...others];
     setText(title, set ? "Strategies" : "Resampling distributions");
     setText(about, [set && "s vertices are sampled from the light, t from the eye.",
+      steps.some((c) => c.merged) && "Merged: the last vertices of both are taken for one.",
       set === unweighted && "Each image estimates all light of its path length, with its mean below. Images in a row agree, except for "
         + "noise and paths that a strategy cannot sample.",
       (set !== unweighted || others.length > 0) && "In %: its share of the picture's light.",
       "All at one exposure; a click shows one in the viewer."].filter(Boolean).join(" "));
     replace(say);
+    setText(shares, "");
     replace(body, set && pyramid(steps), others.length > 0 && [set && h("h3", "Resampling distributions"),
       h("div.distributions", others.map((c) => c.element))]);
     seen.disconnect();

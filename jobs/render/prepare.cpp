@@ -86,7 +86,11 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   p.warnings = data.warnings;
   if (biased(spec.integrator)) {
     p.warnings.emplace_back(
-        "the integrator's settings make it biased: however long it runs, an error remains");
+        consistent(spec.integrator)
+            ? "every iteration is biased by its radius: the error vanishes as that shrinks, but "
+              "noise "
+              "alone does not bound it"
+            : "the integrator's settings make it biased: however long it runs, an error remains");
   }
   p.content = fmt::format("{:016x}", data.content_hash);
 

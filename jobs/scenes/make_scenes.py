@@ -18,8 +18,8 @@ from images import sky
 from validate import faults
 
 HERE = pathlib.Path(__file__).resolve().parent
-ROOMS = [rooms.cornell, rooms.bends, rooms.ajar, rooms.atrium]
-TRIALS = [trials.furnace, trials.furnace_sphere, trials.mirror, trials.glass_room]
+ROOMS = [rooms.cornell, rooms.cornell_ball, rooms.bends, rooms.ajar, rooms.atrium]
+TRIALS = [trials.furnace, trials.furnace_sphere, trials.mirror, trials.glass_room, trials.slab]
 TRIALS += [trials.many_lights, trials.sides, trials.open_air]
 TRIALS += [trials.point, trials.spot, trials.directional, trials.area]
 TRIALS += [hairball]

@@ -1,4 +1,4 @@
-"""The four demo scenes: rooms in which most of the light arrives round a corner."""
+"""The demo scenes: rooms, in most of which the light arrives round a corner."""
 
 from glb import Glb, cut_out, diffuse, emitter, glass, metal, plastic, texture_info
 from images import checker, leaves, tiles
@@ -14,6 +14,16 @@ def cornell():
         f"a ceiling panel, radiance {radiance}, facing down",
         "open towards the camera",
     )
+    white, light = cornell_walls(s, radiance)
+    s.add("tall box", block(0, 0, (0.58, 1.22, 0.58)), white, at=(-0.34, 0, -0.32), turn=17)
+    s.add("short box", block(0, 0, (0.56, 0.56, 0.56)), white, at=(0.37, 0, 0.3), turn=-19)
+    s.add("lamp", quad((-0.3, 1.98, -0.25), (0.6, 0, 0), (0, 0, 0.5)), light)
+    s.camera("front", (0, 1, 3.9), (0, 1, 0), 39)
+    return s
+
+
+def cornell_walls(s, radiance):
+    """Adds floor, ceiling and three walls; returns the materials of the boxes and of the lamp."""
     white = s.material(diffuse("white", (0.74, 0.73, 0.70)))
     red = s.material(diffuse("red", (0.61, 0.07, 0.06)))
     green = s.material(diffuse("green", (0.13, 0.44, 0.10)))
@@ -24,9 +34,23 @@ def cornell():
     s.add("floor, ceiling, back", joined(*shell), white)
     s.add("left", wall("+x", -1.0, side, height), red)
     s.add("right", wall("-x", 1.0, side, height), green)
-    s.add("tall box", block(0, 0, (0.58, 1.22, 0.58)), white, at=(-0.34, 0, -0.32), turn=17)
-    s.add("short box", block(0, 0, (0.56, 0.56, 0.56)), white, at=(0.37, 0, 0.3), turn=-19)
-    s.add("lamp", quad((-0.3, 1.98, -0.25), (0.6, 0, 0), (0, 0, 0.5)), light)
+    return white, light
+
+
+def cornell_ball():
+    radiance = (550, 450, 325)
+    s = Glb(
+        "cornell_ball",
+        "Caustics of a small lamp: a ball of glass (IOR 1.5) and one of mirror in a Cornell box.",
+        f"a ceiling panel of 12 x 10 cm, radiance {radiance}, facing down",
+        "open towards the camera",
+    )
+    _, light = cornell_walls(s, radiance)
+    ball = sphere(0.38, 96, 48)
+    s.add("glass ball", ball, s.material(glass("glass")), at=(0.42, 0.39, 0.25))
+    mirror = s.material(metal("mirror", (0.95, 0.95, 0.95), 0.0))
+    s.add("mirror ball", ball, mirror, at=(-0.45, 0.39, -0.3))
+    s.add("lamp", quad((-0.06, 1.98, -0.05), (0.12, 0, 0), (0, 0, 0.1)), light)
     s.camera("front", (0, 1, 3.9), (0, 1, 0), 39)
     return s
 

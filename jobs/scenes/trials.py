@@ -87,6 +87,27 @@ def glass_room():
     return s
 
 
+def slab():
+    radiance = 20000
+    s = Glb(
+        "slab",
+        "Caustics seen through glass: a small lamp and the camera above a slab of glass (IOR 1.5), a "
+        "floor below it. Nothing joins the floor to the lamp or to the camera but by way of the slab.",
+        f"a quad of 4 x 4 cm, radiance {radiance}, facing down",
+        "open",
+        "`max_depth` 6: a ray at the angle a to the vertical, b in the glass, sin a = 1.5 sin b, "
+        "passes the slab with (1 - F(a))^2, and moves sideways by 0.2 tan b + 0.8 tan a from the "
+        "camera or by 0.2 tan b + 1.8 tan a from the lamp, at height 1 and 2, down to the floor",
+    )
+    grey = s.material(diffuse("floor", (0.5, 0.5, 0.5)))
+    s.add("floor", wall("+y", 0.0, (-4, 4), (-4, 4)), grey)
+    s.add("slab", box((-5, 0.4, -5), (5, 0.6, 5)), s.material(glass("glass")))
+    light = s.material(emitter("lamp", (radiance,) * 3))
+    s.add("lamp", wall("-y", 2.0, (-0.02, 0.02), (-0.02, 0.02)), light)
+    s.camera("above", (1.5, 1.0, 0.2), (1.5, 0, 0.2), 50, up=(0, 0, -1))  # sees no mirrored lamp
+    return s
+
+
 def tilt(degrees):
     """A quaternion: a turn about the z axis."""
     return (0, 0, math.sin(math.radians(degrees) / 2), math.cos(math.radians(degrees) / 2))

@@ -7,9 +7,11 @@
 #include "renderer/integrators/guided_integrator.h"
 #include "renderer/integrators/strategy_layers.h"
 #include "renderer/path/light_pass.h"
+#include "renderer/path/photon_map.h"
 #include "renderer/settings/bdpt_settings.h"
 #include "renderer/settings/connections_settings.h"
 #include "renderer/settings/output_settings.h"
+#include "renderer/settings/vcm_settings.h"
 
 namespace lacuna {
 
@@ -155,8 +157,18 @@ class Bdpt : public GuidedIntegrator<Guide> {
   StrategyLayers layers_;
 };
 
+/// What paired connections are combined with.
+struct Merging {
+  bool merge = false;   ///< eye vertices with the vertices of all light paths (mis.h)
+  bool connect = true;  ///< all strategies but s = 0
+  RadiusSettings radius = {};
+};
+
 /// connections: paired. The eye path of pixel j is connected to light path j; for s = 1 a new point
-/// on an emitter is sampled at each vertex.
+/// on an emitter is sampled at each vertex. With merging: vertex connection and merging (Georgiev
+/// et al. 2012). Then all light paths are walked before the eye paths, for their photons; those
+/// that are connected are walked once more with the eye paths, which takes less memory than to keep
+/// their vertices.
 template <class Guide>
 class PairedBdpt final : public Bdpt<Guide> {
   using Base = Bdpt<Guide>;
@@ -166,56 +178,118 @@ class PairedBdpt final : public Bdpt<Guide> {
   using typename Base::EyePaths;
 
  public:
-  using Base::Base;
+  PairedBdpt(const BdptSettings& settings, Guide guide, const Merging& merging = {})
+      : Base(settings, std::move(guide)), merging_(merging) {}
+
   std::vector<std::string> layers(std::span<const ImageLayer> wanted) override {
-    return layers_.choose(wanted, settings_.max_depth, {});
+    return layers_.choose(wanted, settings_.max_depth, {}, merging_.merge);
+  }
+
+  std::vector<std::pair<std::string, double>> statistics() const override {
+    auto stats = Base::statistics();
+    if (!merging_.merge) return stats;
+    stats.emplace_back("photons", static_cast<double>(photons_.size()));
+    stats.emplace_back("radius", photons_.radius());
+    stats.emplace_back("light_pass_cpu_seconds", seconds_.light);
+    stats.emplace_back("photon_grid_cpu_seconds", seconds_.grid);
+    stats.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
+    stats.emplace_back("look_up_cpu_seconds", seconds_.look_up);
+    return stats;
   }
 
   Counters iterate(const IterationContext& context, Image& image) override {
+    const auto pixels = static_cast<double>(Base::pixels(image));
     const bool lit = !context.scene.emitters().empty();
-    const SampleCounts counts{1, lit ? 1.0 : 0.0, lit ? 1.0 : 0.0,
-                              lit ? static_cast<double>(Base::pixels(image)) : 0.0};
-    const LightPathSetting setting = Base::light_setting(context, counts);
-    const Tiling tiling(image);
-    typename Base::Accumulators accumulators = Base::start_accumulators(tiling);
-    const auto work = [&](int i, Counters& counters, Splats& splats) {
-      Pairs pairs{EyePaths(settings_.max_depth), LightBatch<Guide>(setting, guide_)};
-      Walk<Guide> walk(context.scene, guide_, Base::eye_limits(counts), counters);
-      const Tile tile = tiling.tile(i);
-      for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
-        Base::start(context, image, tile, first, pairs.eye, counters);
-        walk_light(context, pairs, counters);
-        pairs.light.splat(pairs.eye.states.size(), counters, splats);
-        do {
-          walk_eye(context, counts, walk, pairs);
-          Base::finish(context, pairs.queue, pairs.eye, image, counters,
-                       accumulators[static_cast<std::size_t>(i)], [](const Contribution&) {});
-        } while (Base::resume(walk, pairs.eye));
-      }
-    };
-    const Counters sum =
-        for_each_splatting_part(context, tiling.tiles(), image, work, Base::splat_layers(context));
-    Base::update_guide(context, accumulators);
+    SampleCounts counts;
+    if (lit && merging_.connect) counts = {1, 1, 1, pixels};
+    Counters sum;
+    if (lit && merging_.merge) {
+      const double radius = merge_radius(merging_.radius, context);
+      counts.merge = pixels * std::numbers::pi * radius * radius;
+      sum = photon_pass(context, counts, radius, image);
+    }
+    PassSeconds pass;
+    sum += eye_pass(context, counts, image);
+    pass.end(seconds_.eye);
     return sum;
   }
 
  private:
+  /// An eye vertex whose photons are looked up.
+  struct LookUp {
+    std::uint32_t path;
+    int depth;
+  };
   struct Pairs {
     EyePaths eye;
     LightBatch<Guide> light;
     std::vector<Rng> rngs = {};
     std::array<std::uint32_t, EyeBatch::size> chosen = {};  // emitters of s = 1
     ShadowQueue<Contribution> queue = {};
+    std::vector<LookUp> look_ups = {};
+    double look_up_seconds = 0;
     SparseStop stop = {};
   };
 
-  static void walk_light(const IterationContext& context, Pairs& pairs, Counters& counters) {
+  Counters photon_pass(const IterationContext& context, const SampleCounts& counts, double radius,
+                       Image& image) {
+    PassSeconds pass;
+    photons_.begin(Base::pixels(image));
+    const LightPathSetting setting = Base::light_setting(context, counts);
+    const Counters sum = light_pass(
+        context, setting, guide_, Base::pixels(image), image,
+        [&](std::size_t path, const LightBatch<Guide>& batch, std::size_t i) {
+          for (int s = 1; s < batch.length(i); ++s) photons_.keep(path, batch.vertex(i, s), s);
+        },
+        Base::splat_layers(context));
+    pass.end(seconds_.light);
+    photons_.arrange(radius, context.pool);
+    pass.end(seconds_.grid);
+    return sum;
+  }
+
+  Counters eye_pass(const IterationContext& context, const SampleCounts& counts, Image& image) {
+    const LightPathSetting setting = Base::light_setting(context, counts);
+    const Tiling tiling(image);
+    typename Base::Accumulators accumulators = Base::start_accumulators(tiling);
+    std::vector<double> seconds(static_cast<std::size_t>(tiling.tiles()), 0.0);
+    const auto work = [&](int i, Counters& counters, Splats& splats) {
+      Pairs pairs{EyePaths(settings_.max_depth), LightBatch<Guide>(setting, guide_)};
+      Walk<Guide> walk(context.scene, guide_, Base::eye_limits(counts), counters);
+      const Tile tile = tiling.tile(i);
+      for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
+        Base::start(context, image, tile, first, pairs.eye, counters);
+        if (merging_.connect) walk_light(context, counts, pairs, counters, splats);
+        do {
+          walk_eye(context, counts, walk, pairs);
+          look_up(context, counts, pairs);
+          Base::finish(context, pairs.queue, pairs.eye, image, counters,
+                       accumulators[static_cast<std::size_t>(i)], [](const Contribution&) {});
+        } while (Base::resume(walk, pairs.eye));
+      }
+      seconds[static_cast<std::size_t>(i)] = pairs.look_up_seconds;
+    };
+    const Counters sum =
+        for_each_splatting_part(context, tiling.tiles(), image, work, Base::splat_layers(context));
+    for (const double s : seconds) seconds_.look_up += s;
+    Base::update_guide(context, accumulators);
+    return sum;
+  }
+
+  static void walk_light(const IterationContext& context, const SampleCounts& counts, Pairs& pairs,
+                         Counters& counters, Splats& splats) {
     pairs.rngs.clear();
     for (std::size_t k = 0; k < pairs.eye.states.size(); ++k) {
       pairs.rngs.emplace_back(context.seed, context.iteration, pairs.eye.pixels[k],
                               Rng::Purpose::light_path);
     }
+    const std::uint64_t samples = counters.samples;
     pairs.light.walk(pairs.rngs, counters);
+    if (counts.merge > 0) {
+      counters.samples = samples;  // photon_pass() has counted and splatted these paths
+    } else {
+      pairs.light.splat(pairs.eye.states.size(), counters, splats);
+    }
   }
 
   void walk_eye(const IterationContext& context, const SampleCounts& counts, Walk<Guide>& walk,
@@ -231,7 +305,9 @@ class PairedBdpt final : public Bdpt<Guide> {
       Base::gather_hit(context, counts, pairs.eye, i, depth);
       const Vertex& v = pairs.eye.vertex(i, depth);
       const int longest = Base::longest_light_path(v, depth);
-      if (longest == 0 || counts.nee == 0) return;
+      if (longest == 0) return;
+      if (counts.merge > 0) pairs.look_ups.push_back({static_cast<std::uint32_t>(i), depth});
+      if (counts.nee == 0) return;
       const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
       const EmitterPoint e = lights.sample(pairs.chosen[i], pairs.eye.states[i].rng);
       const Contribution known = Base::contribution(pairs.eye, i);
@@ -243,6 +319,39 @@ class PairedBdpt final : public Bdpt<Guide> {
       }
     });
   }
+
+  /// Merges the eye vertices of the batch with the photons around them.
+  void look_up(const IterationContext& context, const SampleCounts& counts, Pairs& pairs) const {
+    if (pairs.look_ups.empty()) return;
+    const double begin = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
+    for (const LookUp& at : pairs.look_ups) {
+      pairs.stop.check(context);
+      const Vertex& v = pairs.eye.vertex(at.path, at.depth);
+      const SurfaceEndpoint<Guide> eye{v, at.depth, Transport::radiance, guide_};
+      const std::uint32_t pixel = pairs.eye.pixels[at.path];
+      Rgb sum(0, 0, 0);
+      photons_.for_each_at(
+          v, pairs.eye.states[at.path].rng, [&](const Photon& p, float, float count) {
+            if (p.index + at.depth > settings_.max_depth) return;
+            const Rgb value = merged(eye, p) * static_cast<float>(double(count) / counts.merge);
+            if (is_black(value)) return;
+            const auto w = static_cast<float>(merge_weight(eye, p, counts));
+            sum += value * w;
+            layers_.merge(context.layers, p.index + 1, at.depth + 1, pixel, value, w);
+          });
+      pairs.eye.radiance[at.path] += sum;
+      if (guide_.learns()) pairs.eye.gathered.add(at.path, at.depth, sum);
+    }
+    pairs.look_ups.clear();
+    pairs.look_up_seconds += clock_seconds(CLOCK_THREAD_CPUTIME_ID) - begin;
+  }
+
+  Merging merging_;
+  PhotonMap photons_;
+  /// CPU seconds of all threads in the parts of an iteration.
+  struct {
+    double light = 0, grid = 0, eye = 0, look_up = 0;
+  } seconds_;
 };
 
 /// Connections to light paths that all pixels share, resampled at each eye vertex. The shared paths
@@ -433,6 +542,14 @@ std::unique_ptr<Integrator> make_bdpt(const BdptSettings& settings) {
                                                              connections);
           }
         });
+  });
+}
+
+std::unique_ptr<Integrator> make_vcm(const VcmSettings& settings) {
+  const BdptSettings bdpt{static_cast<const PathLengths&>(settings)};
+  return with_guide(settings.guide, [&]<class Guide>(Guide guide) -> std::unique_ptr<Integrator> {
+    return std::make_unique<PairedBdpt<Guide>>(bdpt, std::move(guide),
+                                               Merging{settings.merge, settings.connect, settings});
   });
 }
 

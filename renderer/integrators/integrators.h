@@ -4,10 +4,14 @@
 
 namespace lacuna {
 
-// What registry.cpp chooses from: each is defined in the source of its name.
+// What registry.cpp chooses from: each is defined in the source of its name, but vcm beside bdpt,
+// and sppm and photon_map in photon_mapping.cpp.
 std::unique_ptr<Integrator> make_path(const PathSettings& settings);
 std::unique_ptr<Integrator> make_light(const LightSettings& settings);
 std::unique_ptr<Integrator> make_bdpt(const BdptSettings& settings);
+std::unique_ptr<Integrator> make_vcm(const VcmSettings& settings);
+std::unique_ptr<Integrator> make_sppm(const SppmSettings& settings);
+std::unique_ptr<Integrator> make_photon_map(const PhotonMapSettings& settings);
 std::unique_ptr<Integrator> make_many_lights(const ManyLightsSettings& settings);
 std::unique_ptr<Integrator> make_metropolis(const MetropolisSettings& settings);
 std::unique_ptr<Integrator> make_inspect(const InspectSettings& settings);

@@ -8,6 +8,11 @@ struct Make {
   std::unique_ptr<Integrator> operator()(const PathSettings& s) const { return make_path(s); }
   std::unique_ptr<Integrator> operator()(const LightSettings& s) const { return make_light(s); }
   std::unique_ptr<Integrator> operator()(const BdptSettings& s) const { return make_bdpt(s); }
+  std::unique_ptr<Integrator> operator()(const VcmSettings& s) const { return make_vcm(s); }
+  std::unique_ptr<Integrator> operator()(const SppmSettings& s) const { return make_sppm(s); }
+  std::unique_ptr<Integrator> operator()(const PhotonMapSettings& s) const {
+    return make_photon_map(s);
+  }
   std::unique_ptr<Integrator> operator()(const ManyLightsSettings& s) const {
     return make_many_lights(s);
   }

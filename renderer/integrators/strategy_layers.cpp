@@ -7,7 +7,9 @@
 namespace lacuna {
 
 std::vector<std::string> StrategyLayers::choose(std::span<const ImageLayer> wanted, int max_depth,
-                                                std::span<const std::string_view> distributions) {
+                                                std::span<const std::string_view> distributions,
+                                                bool merges) {
+  pyramid_ = max_depth * (max_depth + 3) / 2;
   std::vector<std::string> names;
   const auto take = [&](ImageLayer layer, int& first, const auto& list) {
     if (std::find(wanted.begin(), wanted.end(), layer) == wanted.end()) return;
@@ -17,6 +19,9 @@ std::vector<std::string> StrategyLayers::choose(std::span<const ImageLayer> want
   const auto pyramid = [&](std::string_view layer) {
     for (int k = 1; k <= max_depth; ++k) {
       for (int s = 0; s <= k; ++s) names.push_back(fmt::format("{}.s{}t{}", layer, s, k + 1 - s));
+    }
+    for (int k = 2; merges && k <= max_depth; ++k) {
+      for (int s = 2; s <= k; ++s) names.push_back(fmt::format("{}.s{}t{}m", layer, s, k + 2 - s));
     }
   };
   take(ImageLayer::strategies, weighted_, pyramid);

@@ -11,13 +11,14 @@
 namespace lacuna {
 
 /// The layers of a bidirectional method: the contribution of each strategy (s, t), weighted and
-/// unweighted, as in the pyramid of Noel 2015, Fig. 22, and of each resampling distribution (Fig.
-/// 106).
+/// unweighted, as in the pyramid of Noel 2015, Fig. 22, of merging, and of each resampling
+/// distribution (Fig. 106).
 class StrategyLayers {
  public:
   /// Integrator::layers() for paths of up to `max_depth` edges and these distributions.
   std::vector<std::string> choose(std::span<const ImageLayer> wanted, int max_depth,
-                                  std::span<const std::string_view> distributions);
+                                  std::span<const std::string_view> distributions,
+                                  bool merges = false);
 
   /// Adds a contribution of strategy (s, t) to a pixel. `layers`: IterationContext::layers.
   void strategy(std::span<Image> layers, int s, int t, std::uint32_t pixel, const Rgb& unweighted,
@@ -25,6 +26,16 @@ class StrategyLayers {
     if (layers.empty()) return;
     if (weighted_ >= 0) add(layers, weighted_ + index(s, t), pixel, unweighted * weight);
     if (unweighted_ >= 0) add(layers, unweighted_ + index(s, t), pixel, unweighted);
+  }
+  /// The same of merging vertex s of a light path with vertex t of an eye path, s >= 2, t >= 2:
+  /// s + t - 2 edges. Requires choose() with `merges`.
+  void merge(std::span<Image> layers, int s, int t, std::uint32_t pixel, const Rgb& unweighted,
+             float weight) const {
+    if (layers.empty()) return;
+    const int k = s + t - 2;
+    const int at = pyramid_ + (k - 2) * (k - 1) / 2 + s - 2;
+    if (weighted_ >= 0) add(layers, weighted_ + at, pixel, unweighted * weight);
+    if (unweighted_ >= 0) add(layers, unweighted_ + at, pixel, unweighted);
   }
   void distribution(std::span<Image> layers, int which, std::uint32_t pixel,
                     const Rgb& value) const {
@@ -42,6 +53,7 @@ class StrategyLayers {
     if (is_finite(value)) layers[static_cast<std::size_t>(image)].pixels[pixel] += value;
   }
 
+  int pyramid_ = 0;  // images of strategies; those of merging follow
   int weighted_ = -1, unweighted_ = -1, distributions_ = -1;  // first image; -1: not wanted
 };
 

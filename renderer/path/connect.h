@@ -61,7 +61,7 @@ Ray shadow_ray(const Eye& eye, const Light& light, const Connection& c) {
   return {from, light.origin(-c.w) - from, 1.0F};
 }
 
-/// sum_{i < s} n_i p_i / p_s: the strategies with fewer vertices on the light's side (mis.h).
+/// sum_{i < s} n_i p_i / p_s: the techniques with fewer vertices on the light's side (mis.h).
 template <class Eye, class Light>
 double light_side_sum(const Eye& eye, const Light& light, const Connection& c,
                       const SampleCounts& n) {
@@ -69,19 +69,21 @@ double light_side_sum(const Eye& eye, const Light& light, const Connection& c,
   const double g = eye.pdf(c.w) * (c.infinite ? 1.0 : light.area_factor(c.w) / double(c.distance2));
   const double pdf_rev = light.mis_partial() > 0 ? light.pdf_rev(-c.w) : 0.0;
   return g / light.p_fwd() *
-         mis_partial_sum(light_side(n), light.index, light.prev_connectible(), pdf_rev,
-                         light.mis_partial());
+         (mis_partial_sum(light_side(n), light.index, light.prev_connectible(), pdf_rev,
+                          light.mis_partial()) +
+          merge_partial(light_side(n), light.index, true, light.p_fwd()));
 }
 
-/// sum_{i > s} n_i p_i / p_s: the strategies with fewer vertices on the eye's side (mis.h).
+/// sum_{i > s} n_i p_i / p_s: the techniques with fewer vertices on the eye's side (mis.h).
 template <class Eye, class Light>
 double eye_side_sum(const Eye& eye, const Light& light, const Connection& c,
                     const SampleCounts& n) {
   const double h = light.pdf(-c.w) * eye.area_factor(c.w) / double(c.distance2);
   const double pdf_rev = eye.mis_partial() > 0 ? eye.pdf_rev(c.w) : 0.0;
   return h / eye.p_fwd() *
-         mis_partial_sum(eye_side(n), eye.index, eye.prev_connectible(), pdf_rev,
-                         eye.mis_partial());
+         (mis_partial_sum(eye_side(n), eye.index, eye.prev_connectible(), pdf_rev,
+                          eye.mis_partial()) +
+          merge_partial(eye_side(n), eye.index, true, eye.p_fwd()));
 }
 
 /// The MIS weight of a connection between a surface and an emitter or another surface.
@@ -115,7 +117,8 @@ inline std::optional<EmitterPoint> emitter_at(const Scene& scene, const Vertex& 
 /// (s = 0).
 inline double hit_weight(const Vertex& v, int index, const EmitterPoint& e, const SampleCounts& n) {
   const double one_less = n.of(1, index);
-  const TechniqueCounts side{0, one_less, one_less};
+  // x_0 is never merged.
+  const TechniqueCounts side{.none = 0, .one = one_less, .more = one_less};
   const double pdf_rev = v.mis_partial > 0 ? double(e.leaving_pdf(v.wp).value) : 0.0;
   return mis_weight(n.hit, 0.0,
                     double(e.pdf.value) / double(v.p_fwd.value) *

@@ -5,15 +5,18 @@
 
 namespace lacuna {
 
+/// Light paths that one thread traces one after the other: few enough to stop quickly.
+inline constexpr std::int64_t paths_of_part = 16 * 64;
+
 /// Traces the light paths [0, paths) of an iteration. If the strategy t = 1 has samples, adds their
 /// splats to `image` and hands each to `arrived(splat)`. Calls `keep(path, batch, i)` for each
-/// traced path, index `i` of its batch, from several threads.
+/// traced path, index `i` of its batch, from several threads: for the paths of a part, each
+/// `paths_of_part`, in their order.
 template <class Guide, class Keep, class Arrived>
 Counters light_pass(const IterationContext& context, const LightPathSetting& setting,
                     const Guide& guide, std::int64_t paths, Image& image, Keep&& keep,
                     Arrived&& arrived) {
   using Batch = LightBatch<Guide>;
-  constexpr std::int64_t part = 16 * Batch::size;  // small enough to stop quickly
   constexpr std::uint64_t no_path = (std::uint64_t{1} << 56) - 1;
   const std::uint32_t start =
       Rng(context.seed, context.iteration, no_path, Rng::Purpose::light_path).next_u32();
@@ -25,8 +28,8 @@ Counters light_pass(const IterationContext& context, const LightPathSetting& set
     Batch batch(setting, guide);
     std::vector<Rng> rngs;
     std::vector<std::uint32_t> choices;
-    const std::int64_t end = std::min(paths, (i + 1) * part);
-    for (std::int64_t first = i * part; first < end; first += Batch::size) {
+    const std::int64_t end = std::min(paths, (i + 1) * paths_of_part);
+    for (std::int64_t first = i * paths_of_part; first < end; first += Batch::size) {
       context.check_stop();
       rngs.clear();
       choices.clear();
@@ -42,8 +45,8 @@ Counters light_pass(const IterationContext& context, const LightPathSetting& set
       }
     }
   };
-  return for_each_splatting_part(context, static_cast<int>((paths + part - 1) / part), image, work,
-                                 arrived);
+  return for_each_splatting_part(
+      context, static_cast<int>((paths + paths_of_part - 1) / paths_of_part), image, work, arrived);
 }
 
 }  // namespace lacuna

@@ -13,6 +13,15 @@ namespace lacuna {
 //
 // with p_j the density of vertex j on its walk, g_j the one from the other end, and c_j whether
 // x_{j-1} and x_j can be joined: neither scatters through a delta lobe only.
+//
+// Vertex merging (Georgiev et al. 2012; Hachisuka et al. 2012) is one more technique for each
+// vertex x_j, 0 < j < k: both walks sample it, and it counts where the two points lie within a
+// radius r. Its density is p_{j+1} times the probability g_j pi r^2 that the walk from the other
+// end comes so close. With m the number of light paths times pi r^2 and d_j whether x_j can be
+// merged (it does not scatter through a delta lobe only), the sum has one more term for each
+// vertex:
+//
+//   (g_j / p_j) (n_j c_j + m p_j d_j + sum_{i < j} ...)
 
 /// Number of samples of each strategy that a pixel takes; 0: the strategy is not used.
 struct SampleCounts {
@@ -20,9 +29,12 @@ struct SampleCounts {
   double nee = 0;      ///< s = 1, t >= 2: next event estimation
   double connect = 0;  ///< s >= 2, t >= 2
   double splat = 0;    ///< s >= 1, t = 1: a light path joined to the eye
+  /// Merging: light paths whose vertices an eye vertex may be merged with, times pi r^2; scene
+  /// units^2.
+  double merge = 0;
 
   /// Whether paths from lights are longer than one vertex.
-  constexpr bool bidirectional() const { return connect > 0 || splat > 0; }
+  constexpr bool bidirectional() const { return connect > 0 || splat > 0 || merge > 0; }
   constexpr double of(int s, int t) const {
     if (s == 0) return hit;
     if (t == 1) return splat;
@@ -33,14 +45,19 @@ struct SampleCounts {
 /// The sample counts by the number of vertices that a strategy samples from one side of the path.
 struct TechniqueCounts {
   double none = 0, one = 0, more = 0;
-  constexpr bool any() const { return none > 0 || one > 0 || more > 0; }
+  double merge = 0;  ///< SampleCounts::merge
+  constexpr bool any() const { return none > 0 || one > 0 || more > 0 || merge > 0; }
   constexpr double of(int vertices) const {
     return vertices == 0 ? none : vertices == 1 ? one : more;
   }
 };
-constexpr TechniqueCounts light_side(const SampleCounts& n) { return {n.hit, n.nee, n.connect}; }
+constexpr TechniqueCounts light_side(const SampleCounts& n) {
+  return {n.hit, n.nee, n.connect, n.merge};
+}
 /// Nothing hits the eye, a point: every strategy samples at least one vertex from its side.
-constexpr TechniqueCounts eye_side(const SampleCounts& n) { return {0, n.splat, n.connect}; }
+constexpr TechniqueCounts eye_side(const SampleCounts& n) {
+  return {0, n.splat, n.connect, n.merge};
+}
 
 /// n_j c_j + sum_{i < j} n_i p_i / p_j at vertex `j` of a walk: `connectible` is c_j, `pdf_rev` the
 /// density, per steradian, with which the other end's walk goes on from j to j - 1, and
@@ -48,6 +65,12 @@ constexpr TechniqueCounts eye_side(const SampleCounts& n) { return {0, n.splat, 
 constexpr double mis_partial_sum(const TechniqueCounts& side, int j, bool connectible,
                                  double pdf_rev, double mis_partial) {
   return (connectible ? side.of(j) : 0.0) + pdf_rev * mis_partial;
+}
+
+/// m p_j d_j at vertex `j` of a walk with density `p_fwd` per area there: the technique that merges
+/// this vertex, relative to the strategy that joins it.
+constexpr double merge_partial(const TechniqueCounts& side, int j, bool mergeable, double p_fwd) {
+  return side.merge > 0 && j > 0 && mergeable ? side.merge * p_fwd : 0.0;
 }
 
 /// The balance heuristic, own / (own + light + eye): `own` is the number of samples of this

@@ -246,7 +246,8 @@ class Walk {
           limits_.transport == Transport::radiance ? Transport::importance : Transport::radiance;
       pdf_rev = v.delta ? 1.0 : double(guide_.pdf(v, wi, v.wp, other).value);
     }
-    return mis_partial_sum(limits_.counts, depth, connectible, pdf_rev, v.mis_partial) /
+    return (mis_partial_sum(limits_.counts, depth, connectible, pdf_rev, v.mis_partial) +
+            merge_partial(limits_.counts, depth, v.connectible(), double(v.p_fwd.value))) /
            double(v.p_fwd.value);
   }
 

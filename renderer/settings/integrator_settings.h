@@ -11,14 +11,16 @@
 #include "renderer/settings/metropolis_settings.h"
 #include "renderer/settings/output_settings.h"
 #include "renderer/settings/path_settings.h"
+#include "renderer/settings/photon_mapping_settings.h"
+#include "renderer/settings/vcm_settings.h"
 
 namespace lacuna {
 
 /// The integrator and its settings. The order is the order in menus; the first is the default.
 /// renderer/integrators/registry.cpp makes the integrator of each alternative.
 using IntegratorSettings =
-    std::variant<PathSettings, LightSettings, BdptSettings, ManyLightsSettings, MetropolisSettings,
-                 InspectSettings>;
+    std::variant<PathSettings, LightSettings, BdptSettings, VcmSettings, SppmSettings,
+                 PhotonMapSettings, ManyLightsSettings, MetropolisSettings, InspectSettings>;
 
 /// The layers that the integrator of these settings fills itself. Its settings struct lists them as
 ///
@@ -45,6 +47,18 @@ bool biased(const std::variant<Ts...>& settings) {
   return std::visit(
       []<class S>(const S& s) {
         if constexpr (requires { s.biased(); }) return s.biased();
+        return false;
+      },
+      settings);
+}
+
+/// Whether the picture of biased settings converges to the radiance, because the bias of an iteration
+/// vanishes with its number. Such settings have a member `bool consistent() const`.
+template <class... Ts>
+bool consistent(const std::variant<Ts...>& settings) {
+  return std::visit(
+      []<class S>(const S& s) {
+        if constexpr (requires { s.consistent(); }) return s.consistent();
         return false;
       },
       settings);

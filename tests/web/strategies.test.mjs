@@ -74,6 +74,26 @@ test("strategies stand in a row for each path length and a column for each s, wi
   assert.deepEqual(page.troubles, []);
 });
 
+test("merging stands to the right of the joining strategies, with the share of each kind", async () => {
+  const grey = (value) => [value, value, value];
+  mock.update(job, { files: layerFiles(8, 4, [
+    { name: "", channels: rgb, pixel: () => grey(1) },
+    ...strategies(2).map(({ s, t }) => ({ name: `strategies.s${s}t${t}`, channels: rgb, pixel: () => grey(1 / 8) })),
+    { name: "strategies.s2t2m", channels: rgb, pixel: () => grey(3 / 8) },
+  ]) });
+  await openStrategies();
+  assert.deepEqual(await cells(".pyramid"), ["s 0 t 2: 12.5 %", "s 1 t 1: 12.5 %", "s 0 t 3: 12.5 %", "s 1 t 2: 12.5 %",
+    "s 2 t 1: 12.5 %", "s 2 t 2 merged: 37.5 %"]);
+  const last = await page.locator(".pyramid .cell").evaluateAll((all) => all.slice(-2).map((c) => {
+    const { x, y } = c.getBoundingClientRect();
+    return [Math.round(x), Math.round(y)];
+  }));
+  assert.ok(last[1][0] > last[0][0] && last[1][1] === last[0][1], `${last}`);
+  const text = (await page.locator("section", { has: page.locator(".pyramid") }).innerText()).replaceAll("\u202f", " ");
+  assert.match(text, /hit 25.0 %, connected 37.5 %, merged 37.5 %/);
+  assert.deepEqual(page.troubles, []);
+});
+
 test("all have one exposure: the picture's own, until the reader chooses another", async () => {
   mock.update(job, { files: known() });
   await openStrategies();

@@ -30,6 +30,7 @@ std::vector<test::Method> bidirectional(int max_depth) {
   for (test::Method& m : test::metropolis(max_depth)) all.push_back(std::move(m));
   for (test::Method& m : test::many_lights(max_depth)) all.push_back(std::move(m));
   for (test::Method& m : test::approximate_lights(max_depth)) all.push_back(std::move(m));
+  for (test::Method& m : test::merging(max_depth)) all.push_back(std::move(m));
   return all;
 }
 

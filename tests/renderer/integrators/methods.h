@@ -20,6 +20,12 @@ struct Method {
 inline PathLengths whole_paths(int max_depth) {
   return {.max_depth = max_depth, .roulette_depth = max_depth};
 }
+/// `settings` for paths of so many edges.
+template <class S>
+S of_length(S settings, int max_depth) {
+  static_cast<PathLengths&>(settings) = whole_paths(max_depth);
+  return settings;
+}
 inline PathSettings path_tracing(int max_depth) { return {whole_paths(max_depth)}; }
 inline LightSettings light_tracing(int max_depth, int paths = 0) {
   LightSettings s{whole_paths(max_depth)};
@@ -175,6 +181,42 @@ inline std::vector<Method> approximate_lights(int max_depth, int light_paths = 6
     if constexpr (requires { S::biased; }) {
       all.push_back({"lights_" + std::string(S::name), lit_by(max_depth, light_paths, s)});
     }
+  });
+  return all;
+}
+
+/// Every method that merges, with what it can do at least once.
+inline std::vector<Method> merging(int max_depth) {
+  std::vector<Method> all;
+  const auto add = [&]<class S>(const char* name, S s, auto&& change) {
+    s = of_length(s, max_depth);
+    s.radius = 0.02;
+    s.radius_unit = RadiusUnit::scene;
+    change(s);
+    all.push_back({name, s});
+  };
+  add("vcm", VcmSettings{}, [](auto&) {});
+  add("vcm_merges_only", VcmSettings{}, [](auto& s) { s.connect = false; });
+  add("vcm_guided", VcmSettings{},
+      [](auto& s) { s.guide = in_small_pictures(SdTreeGuideSettings{}); });
+  add("sppm", SppmSettings{}, [](auto& s) { s.light_paths = 300; });
+  add("sppm_photons_only", SppmSettings{}, [](auto& s) {
+    s.next_event_estimation = false;
+    s.kernel = PhotonKernel::epanechnikov;
+    s.least_roughness = 0;
+  });
+  add("photon_map", PhotonMapSettings{}, [](auto&) {});
+  add("photon_map_caustics", PhotonMapSettings{}, [](auto& s) {
+    s.caustic_paths = 500;
+    s.next_event_estimation = false;
+  });
+  add("photon_map_gather", PhotonMapSettings{}, [](auto& s) {
+    s.final_gather = true;
+    s.caustic_paths = 500;
+  });
+  add("photon_map_gather_photons_only", PhotonMapSettings{}, [](auto& s) {
+    s.final_gather = true;
+    s.next_event_estimation = false;
   });
   return all;
 }

@@ -6,8 +6,8 @@
 #include <map>
 
 #include "tests/renderer/integrators/methods.h"
+#include "tests/renderer/integrators/plates.h"
 #include "tests/renderer/integrators/same_picture.h"
-#include "tests/renderer/scene/scene_parts.h"
 
 namespace lacuna {
 namespace {
@@ -18,41 +18,21 @@ using test::Session;
 
 constexpr int max_depth = 4;
 
-/// Plates that do not touch, so that no connection is short: with all weights 1 the noise stays
-/// finite. Every strategy can make every path.
-SceneData plates() {
-  test::SceneParts p;
-  const auto plate = p.material(test::diffuse(Rgb(0.8F, 0.7F, 0.6F)));
-  Material shining = test::diffuse(Rgb(0.5F));
-  shining.emission = Rgb(2, 3, 4);
-  p.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, plate);
-  p.quad({-1, 0.5F, -1.6F}, {2, 0, 0}, {0, 1.2F, 0}, plate);
-  p.quad({1.5F, 0.4F, 1}, {0, 0, -2}, {0, 1.2F, 0}, p.material(test::metal(Rgb(0.9F), 0.7F)));
-  p.quad({-0.6F, 2.2F, -0.6F}, {1.2F, 0, 0}, {0, 0, 1.2F}, p.material(shining));
-  p.eye({0.2, 1.1, 3.2}, {0, 0.9, -0.5}, 1.1);
-  return std::move(p.data);
-}
-
 test::RenderSettings with_layers(const IntegratorSettings& integrator,
                                  std::vector<ImageLayer> layers) {
   return {.integrator = integrator, .width = 12, .height = 10, .layers = std::move(layers)};
 }
 
-double sum_of(const Image& image) {
-  double sum = 0;
-  for (const Rgb& p : image.pixels) sum += double(p.x) + double(p.y) + double(p.z);
-  return sum;
-}
-
 class Pyramid : public testing::TestWithParam<Method> {};
 
 TEST_P(Pyramid, EachStrategyAloneGivesAllTheLightOfItsLength) {
-  Session session(plates(), with_layers(GetParam().settings, {ImageLayer::strategies_unweighted}));
+  Session session(test::plates(),
+                  with_layers(GetParam().settings, {ImageLayer::strategies_unweighted}));
   std::map<std::string, Moments> found;
   for (std::uint64_t i = 0; i < 2500; ++i) {
     session.iterate(i);
     for (std::size_t k = 0; k < session.layers().size(); ++k) {
-      found[session.layer_names()[k]].add(sum_of(session.layers()[k]));
+      found[session.layer_names()[k]].add(test::sum_of(session.layers()[k]));
     }
   }
   for (int k = 1; k <= max_depth; ++k) {
@@ -79,10 +59,10 @@ TEST_P(Pyramid, EachStrategyAloneGivesAllTheLightOfItsLength) {
 }
 
 TEST_P(Pyramid, WeightedStrategiesAddUpToThePicture) {
-  Session plain(plates(), with_layers(GetParam().settings, {}));
+  Session plain(test::plates(), with_layers(GetParam().settings, {}));
   EXPECT_TRUE(plain.layer_names().empty());
-  Session session(plates(), with_layers(GetParam().settings,
-                                        {ImageLayer::distributions, ImageLayer::strategies}));
+  Session session(test::plates(), with_layers(GetParam().settings,
+                                              {ImageLayer::distributions, ImageLayer::strategies}));
   for (std::uint64_t i = 0; i < 4; ++i) {
     const Image image = session.iterate(i);
     EXPECT_EQ(image.pixels, plain.iterate(i).pixels) << "layers change the picture";

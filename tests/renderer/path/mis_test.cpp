@@ -31,7 +31,11 @@ const std::vector<Counts> all_counts{{"path", {1, 1, 0, 0}},
                                      {"light", {0, 0, 0, 100}},
                                      {"paired", {1, 1, 1, side* side}},
                                      {"resampled", {1, 37, 37, side* side}},
-                                     {"counted as eight", {1, 1, 8, 1000}}};
+                                     {"counted as eight", {1, 1, 8, 1000}},
+                                     {"merged", {1, 1, 1, side* side, 2}},
+                                     {"merged more", {1, 1, 1, side* side, 30}}};
+/// That makes all paths.
+const SampleCounts complete_counts{1, 1, 1, side* side};
 
 /// Real walks from both ends, which meet in all ways.
 template <class Guide>
@@ -240,7 +244,7 @@ void Weights::are_their_definition(const Guide& guide,
   }
 }
 
-// Whole paths, each made once more by every strategy: what one walk knows of the other's densities
+// Whole paths, each made once more by every technique: what one walk knows of the other's densities
 // is what the other has.
 TEST_P(Weights, OfAllStrategiesAddUpToOne) {
   for_both_guides(
@@ -252,10 +256,12 @@ TEST_P(Weights, OfAllStrategiesAddUpToOne) {
 template <class Guide>
 void Weights::add_up_to_one(const Guide& guide, const MixedGuide* mixed,
                             const GuidingDistribution* directions) const {
-  for (const Counts& counts : all_counts) {
+  std::vector<Counts> counts_and_photons = all_counts;
+  counts_and_photons.push_back({"photons", {1, 0, 0, 0, 0.5}});  // which join nothing
+  for (const Counts& counts : counts_and_photons) {
     SCOPED_TRACE(counts.name);
     std::vector<WholePath> paths;
-    Meeting<Guide>(scene_, camera_, counts.n, guide)
+    Meeting<Guide>(scene_, camera_, counts.n.merge > 0 ? complete_counts : counts.n, guide)
         .meet(
             4, [&](const WholePath& path, double) { paths.push_back(path); },
             [&](const WholePath& path, int, double, bool visible) {
@@ -273,18 +279,18 @@ void Weights::add_up_to_one(const Guide& guide, const MixedGuide* mixed,
       test::Remake remake(scene_, camera_, path, counts.n, mixed);
       double sum = 0;
       bool complete = true;
-      for (int s = 0; s <= path.edges(); ++s) {
-        const double w = expected[static_cast<std::size_t>(s)];
+      for (std::size_t s = 0; s < expected.size(); ++s) {
+        const double w = expected[s];
         if (w == 0) continue;
-        const std::optional<double> found = remake.weight(s);
+        const std::optional<double> found = remake.weight(static_cast<int>(s));
         complete = complete && found;
         if (!found) continue;
         sum += *found;
-        weights.add(*found, w, s, path.edges() + 1 - s);
+        weights.add(*found, w, static_cast<int>(s), path.edges() + 1 - static_cast<int>(s));
       }
       ++tried;
       lost += complete ? 0 : 1;
-      // Counts that leave strategies out may leave a path none.
+      // Counts that leave techniques out may leave a path none.
       if (complete && sum > 0) sums.add(sum, 1, 0, 0);
     }
     EXPECT_LE(weights.apart, weights.compared / 100) << "the worst by " << weights.worst;

@@ -80,6 +80,16 @@ double Oracle::eye_step(int i) const {
   return (c * guided + (1 - c) * bsdf) * there;
 }
 
+/// Logarithm of the density with which a walk makes the first `from_light` vertices and one from
+/// the eye the last `from_eye`.
+double Oracle::product(int from_light, int from_eye) const {
+  double sum = 0;
+  const int k = path_.edges();
+  for (int i = 0; i < from_light; ++i) sum += from_light_[static_cast<std::size_t>(i)];
+  for (int i = k + 1 - from_eye; i <= k; ++i) sum += from_eye_[static_cast<std::size_t>(i)];
+  return sum;
+}
+
 std::vector<double> Oracle::weights(const SampleCounts& n) const {
   const int k = path_.edges();
   std::vector<double> logs;
@@ -94,12 +104,11 @@ std::vector<double> Oracle::weights(const SampleCounts& n) const {
     } else if (s == 1) {
       samples = n.nee;
     }
-    double sum = possible ? std::log(samples) : -HUGE_VAL;
-    for (int i = 0; i <= k; ++i) {
-      sum +=
-          i < s ? from_light_[static_cast<std::size_t>(i)] : from_eye_[static_cast<std::size_t>(i)];
-    }
-    logs.push_back(sum);
+    logs.push_back(possible ? std::log(samples) + product(s, t) : -HUGE_VAL);
+  }
+  for (int j = 1; j < k; ++j) {  // both walks come to x_j, within the disc that n.merge contains
+    const bool possible = !path_.node(j).delta;
+    logs.push_back(possible ? std::log(n.merge) + product(j + 1, k + 1 - j) : -HUGE_VAL);
   }
   const double largest = *std::max_element(logs.begin(), logs.end());
   double all = 0;

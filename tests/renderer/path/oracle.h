@@ -14,13 +14,15 @@ class Oracle {
   Oracle(const Scene& scene, const Camera& camera, const WholePath& path,
          const GuidingDistribution* directions = nullptr);
 
-  /// Of strategy s = 0 ... k under the balance heuristic. All 0: no strategy makes this path.
+  /// Of all techniques under the balance heuristic: [s] of strategy s = 0 ... k, then [k + j] of
+  /// merging at x_j, 0 < j < k. All 0: no technique makes this path.
   std::vector<double> weights(const SampleCounts& n) const;
 
  private:
   double leaving(const V3f& w) const;
   double light_step(int i) const;
   double eye_step(int i) const;
+  double product(int from_light, int from_eye) const;
 
   const Scene& scene_;
   const Camera& camera_;

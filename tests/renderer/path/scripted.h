@@ -2,6 +2,7 @@
 
 #include "renderer/guides/mixed_guide.h"
 #include "renderer/path/eye_batch.h"
+#include "renderer/path/merge.h"
 #include "tests/renderer/path/whole_path.h"
 
 namespace lacuna::test {
@@ -51,8 +52,25 @@ class Remake {
         eye_guide_{.densities = guide},
         light_guide_{.densities = guide} {}
 
-  /// The weight of strategy s; nothing if the walks do not come to the same vertices again.
-  std::optional<double> weight(int s) {
+  /// The weight of technique `i` of Oracle::weights(); nothing if the walks do not come to the same
+  /// vertices again.
+  std::optional<double> weight(int i) {
+    const int k = path_.edges();
+    return i > k ? merging(i - k) : joining(i);
+  }
+
+ private:
+  /// Of merging at x_j.
+  std::optional<double> merging(int j) {
+    const int depth = path_.edges() - j;
+    if (!walk_eye(depth, false) || !walk_light(j + 1)) return std::nullopt;
+    const SurfaceEndpoint<ScriptedGuide> eye{eye_.vertex(0, depth), depth, Transport::radiance,
+                                             eye_guide_};
+    return merge_weight(eye, photon(light_[static_cast<std::size_t>(j)], j), counts_);
+  }
+
+  /// Of strategy s.
+  std::optional<double> joining(int s) {
     const int k = path_.edges();
     if (!walk_eye(s == 0 ? k : k - s, s == 0)) return std::nullopt;
     if (s == 0) {
@@ -67,7 +85,6 @@ class Remake {
                   s);
   }
 
- private:
   template <class Light>
   double joined(const Light& light, int s) const {
     const int depth = path_.edges() - s;

@@ -1,0 +1,299 @@
+#include "renderer/integrators/integrators.h"
+
+#include <algorithm>
+
+#include "renderer/core/pass_seconds.h"
+#include "renderer/path/bsdf_guide.h"
+#include "renderer/path/direct_light.h"
+#include "renderer/path/photon_map.h"
+#include "renderer/settings/photon_mapping_settings.h"
+
+namespace lacuna {
+
+namespace {
+
+/// What photon mapping and its progressive form differ in.
+struct Density {
+  std::size_t nearest = 0;         ///< PhotonMapSettings
+  bool final_gather = false;       ///< PhotonMapSettings
+  std::int64_t caustic_paths = 0;  ///< PhotonMapSettings
+};
+
+/// Photon mapping (Jensen 1996; Noel 2015, 4.5) and its progressive form (Hachisuka and Jensen
+/// 2009; Knaus and Zwicker 2011). An eye path is followed through mirrors and glass to the first
+/// rough surface, where direct light is sampled and the density of the photons around it gives the
+/// rest. Each iteration has its own photons.
+///
+/// Every path of light is counted once, by what its first rough vertex x from the eye receives:
+/// direct light; caustics, which reach x from an emitter by way of mirrors and glass only; the
+/// rest. With a final gather the rest comes from the photons at the next rough vertex.
+class PhotonMapping final : public Integrator {
+ public:
+  PhotonMapping(const PhotonTracing& settings, const Density& density)
+      : settings_(settings),
+        density_(density),
+        least_alpha_(static_cast<float>(settings.least_roughness * settings.least_roughness)) {}
+
+  SceneNeeds needs() const override { return {.materials = true, .emission = true}; }
+
+  std::vector<std::pair<std::string, double>> statistics() const override {
+    return {{"photons", static_cast<double>(photons_.size() + caustics_.size())},
+            {"radius", photons_.radius()},
+            {"light_pass_cpu_seconds", seconds_.light},
+            {"photon_grid_cpu_seconds", seconds_.grid},
+            {"eye_pass_cpu_seconds", seconds_.eye},
+            {"look_up_cpu_seconds", seconds_.look_up}};
+  }
+
+  Counters iterate(const IterationContext& context, Image& image) override {
+    PassSeconds pass;
+    const std::int64_t paths = settings_.light_paths > 0 ? settings_.light_paths
+                                                         : std::int64_t{image.width} * image.height;
+    Counters sum = light_pass(context, paths, image);
+    pass.end(seconds_.light);
+    const double radius = merge_radius(settings_, context);
+    photons_.arrange(radius, context.pool);
+    caustics_.arrange(radius, context.pool);
+    pass.end(seconds_.grid);
+    sum += eye_pass(context, static_cast<double>(paths), image);
+    pass.end(seconds_.eye);
+    return sum;
+  }
+
+ private:
+  /// Where an eye path is.
+  enum class Stage : std::uint8_t {
+    seeing,     ///< behind mirrors and glass only
+    at_first,   ///< at its first rough vertex
+    last_edge,  ///< on the edge behind it, which may hit an emitter
+    gathering,  ///< behind it, until the next rough vertex
+    at_second,  ///< there
+  };
+  /// The photons that count in a look-up.
+  struct Wanted {
+    bool direct = false;    ///< of direct light
+    bool caustics = false;  ///< by mirrors and glass only
+    bool others = false;
+    bool any() const { return direct || caustics || others; }
+    bool of(const Photon& p) const {
+      if (p.index == 1) return direct;
+      return p.caustic ? caustics : others;
+    }
+  };
+  struct LookUp {
+    std::uint32_t path;
+    int depth;
+    bool first;  ///< at the first rough vertex
+  };
+  struct Direct {
+    Rgb value;
+    std::size_t path;
+  };
+  struct Part {
+    EyeBatch batch;
+    std::array<Stage, EyeBatch::size> stage = {};
+    std::array<std::uint32_t, EyeBatch::size> chosen = {};  // emitters of next event estimation
+    ShadowQueue<Direct> shadows = {};
+    std::vector<LookUp> look_ups = {};
+    std::vector<std::pair<float, Rgb>> found = {};  // squared distance, and what a photon gives
+    double look_up_seconds = 0;
+    SparseStop stop = {};
+  };
+
+  /// Whether photons are looked up here.
+  bool is_rough(const Vertex& v) const { return v.bsdf->is_vpl_receiver(least_alpha_); }
+
+  Counters light_pass(const IterationContext& context, std::int64_t paths, Image& image) {
+    const std::int64_t all = std::max(paths, density_.caustic_paths);
+    photons_.begin(paths);
+    caustics_.begin(density_.caustic_paths);
+    if (context.scene.emitters().empty()) return {};
+    const LightPathSetting setting{context.scene,          context.camera,
+                                   settings_.max_depth,    settings_.roulette_depth,
+                                   SampleCounts{.hit = 0}, true};
+    return lacuna::light_pass(
+        context, setting, guide_, all, image,
+        [&](std::size_t path, const LightBatch<BsdfGuide>& batch, std::size_t i) {
+          const auto number = static_cast<std::int64_t>(path);
+          bool caustic = true;  // so far
+          for (int s = 1; s < batch.length(i); ++s) {
+            const Vertex& v = batch.vertex(i, s);
+            if (!is_rough(v)) continue;
+            const bool focused = caustic && s > 1;
+            if (number < paths) photons_.keep(path, v, s, focused);
+            if (focused && number < density_.caustic_paths) caustics_.keep(path, v, s, true);
+            caustic = caustic && v.delta;
+          }
+        },
+        [](const Splat&) {});
+  }
+
+  Counters eye_pass(const IterationContext& context, double paths, Image& image) {
+    const Tiling tiling(image);
+    std::vector<double> seconds(static_cast<std::size_t>(tiling.tiles()), 0.0);
+    const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
+      Part part{EyeBatch(settings_.max_depth)};
+      const Tile tile = tiling.tile(i);
+      for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
+        start_paths(context, image, tile, first, part.batch);
+        counters.samples += part.batch.states.size();
+        part.stage.fill(Stage::seeing);
+        trace(context, part, counters);
+        look_up(context, paths, part);
+        for (std::size_t k = 0; k < part.batch.states.size(); ++k) {
+          accumulate(image.pixels[part.batch.pixels[k]], part.batch.radiance[k], counters);
+        }
+      }
+      seconds[static_cast<std::size_t>(i)] = part.look_up_seconds;
+    });
+    for (const double s : seconds) seconds_.look_up += s;
+    return sum;
+  }
+
+  void trace(const IterationContext& context, Part& part, Counters& counters) const {
+    const DirectLight<BsdfGuide> direct(context.scene, guide_, true);
+    Walk<BsdfGuide> walk(
+        context.scene, guide_,
+        {.max_depth = settings_.max_depth, .roulette_depth = settings_.roulette_depth}, counters);
+    const auto choose = [&](std::size_t i, int depth) {
+      if (direct.draws() && depth < settings_.max_depth && part.stage[i] <= Stage::at_first) {
+        part.chosen[i] = context.scene.emitters().choose(part.batch.states[i].rng);
+      }
+    };
+    walk.trace_paths(part.batch.states, choose, [&](std::size_t i, int depth) {
+      part.stop.check(context);
+      return visit(direct, part, i, depth);
+    });
+    part.shadows.flush(context.scene.rays(), counters,
+                       [&](const Direct& d) { part.batch.radiance[d.path] += d.value; });
+  }
+
+  /// Takes the edge to the vertex at `depth` into account; false where the path ends before it.
+  bool arrive(const DirectLight<BsdfGuide>& direct, Part& part, std::size_t i, int depth) const {
+    const Vertex& v = part.batch.vertex(i, depth);
+    Stage& stage = part.stage[i];
+    const bool passed = part.batch.vertex(i, depth - 1).delta;
+    if (stage == Stage::at_first && passed) stage = Stage::seeing;
+    if (stage == Stage::at_second && passed) stage = Stage::gathering;
+    if (stage == Stage::at_second) return false;
+    const bool first_edge = stage == Stage::at_first;
+    if (first_edge) stage = density_.final_gather ? Stage::gathering : Stage::last_edge;
+    const bool hit = first_edge ? settings_.next_event_estimation : stage == Stage::seeing;
+    if (hit) part.batch.radiance[i] += direct.met(v, depth);
+    return stage != Stage::last_edge;
+  }
+
+  /// One vertex of an eye path; false where the path ends.
+  bool visit(const DirectLight<BsdfGuide>& direct, Part& part, std::size_t i, int depth) const {
+    const Vertex& v = part.batch.vertex(i, depth);
+    if (!arrive(direct, part, i, depth)) return false;
+    if (v.kind != Vertex::Kind::surface || depth == settings_.max_depth) return false;
+    Stage& stage = part.stage[i];
+    const bool rough = is_rough(v);
+    const bool nee = settings_.next_event_estimation;
+    if (stage == Stage::gathering) {
+      if (!rough) return true;
+      part.look_ups.push_back({static_cast<std::uint32_t>(i), depth, false});
+      stage = Stage::at_second;
+      return true;
+    }
+    if (direct.draws() && v.bsdf->connectible() && (nee || !rough)) {
+      direct.draw(v, depth, part.chosen[i], part.batch.states[i].rng,
+                  [&](const Ray& ray, const Rgb& value) {
+                    part.shadows.add(ray, {value, i});
+                  });
+    }
+    if (!rough) return true;
+    part.look_ups.push_back({static_cast<std::uint32_t>(i), depth, true});
+    stage = Stage::at_first;
+    return true;
+  }
+
+  void look_up(const IterationContext& context, double paths, Part& part) const {
+    const bool apart = density_.caustic_paths > 0;
+    const Wanted at_first{!settings_.next_event_estimation, !apart, !density_.final_gather};
+    const double begin = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
+    for (const LookUp& at : part.look_ups) {
+      part.stop.check(context);
+      Rgb& radiance = part.batch.radiance[at.path];
+      if (!at.first) {
+        radiance += estimate(photons_, {true, true, true}, at, part) / static_cast<float>(paths);
+        continue;
+      }
+      if (at_first.any()) {
+        radiance += estimate(photons_, at_first, at, part) / static_cast<float>(paths);
+      }
+      if (apart) {
+        radiance += estimate(caustics_, {false, true, false}, at, part) /
+                    static_cast<float>(density_.caustic_paths);
+      }
+    }
+    part.look_ups.clear();
+    part.look_up_seconds += clock_seconds(CLOCK_THREAD_CPUTIME_ID) - begin;
+  }
+
+  /// The radiance that the photons of `map` around an eye vertex give, times the number of their
+  /// light paths.
+  Rgb estimate(const PhotonMap& map, const Wanted& wanted, const LookUp& at, Part& part) const {
+    const Vertex& v = part.batch.vertex(at.path, at.depth);
+    const SurfaceEndpoint<BsdfGuide> eye{v, at.depth, Transport::radiance, guide_};
+    part.found.clear();
+    map.for_each_at(v, part.batch.states[at.path].rng,
+                    [&](const Photon& p, float distance2, float count) {
+                      if (p.index + at.depth > settings_.max_depth || !wanted.of(p)) return;
+                      part.found.push_back({distance2, merged(eye, p) * count});
+                    });
+    double radius2 = map.radius() * map.radius();
+    if (density_.nearest > 0 && part.found.size() > density_.nearest) {
+      // The k nearest lie in the disc up to the next one: k / (pi r_{k+1}^2) has the density's mean
+      // where that is uniform.
+      const auto next = part.found.begin() + static_cast<std::ptrdiff_t>(density_.nearest);
+      std::nth_element(part.found.begin(), next, part.found.end(),
+                       [](const auto& a, const auto& b) { return a.first < b.first; });
+      radius2 = std::max(double(next->first), radius2 * 0x1p-20);  // photons may be at one point
+      part.found.erase(next, part.found.end());
+    }
+    V3d sum(0);
+    for (const auto& [distance2, value] : part.found) {
+      sum += V3d(value) * kernel(double(distance2) / radius2);
+    }
+    return Rgb(sum / (std::numbers::pi * radius2));
+  }
+
+  /// At squared distance `d2` in units of the radius; its mean over the disc is 1.
+  double kernel(double d2) const {
+    switch (settings_.kernel) {
+      case PhotonKernel::cone:
+        return 3 * (1 - std::sqrt(d2));
+      case PhotonKernel::epanechnikov:
+        return 2 * (1 - d2);
+      case PhotonKernel::constant:
+        break;
+    }
+    return 1;
+  }
+
+  BsdfGuide guide_;
+  PhotonTracing settings_;
+  Density density_;
+  float least_alpha_;
+  PhotonMap photons_, caustics_;
+  /// CPU seconds of all threads in the parts of an iteration.
+  struct {
+    double light = 0, grid = 0, eye = 0, look_up = 0;
+  } seconds_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_sppm(const SppmSettings& settings) {
+  return std::make_unique<PhotonMapping>(settings, Density{});
+}
+
+std::unique_ptr<Integrator> make_photon_map(const PhotonMapSettings& settings) {
+  return std::make_unique<PhotonMapping>(
+      settings, Density{static_cast<std::size_t>(settings.nearest), settings.final_gather,
+                        settings.caustic_paths});
+}
+
+}  // namespace lacuna

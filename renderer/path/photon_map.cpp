@@ -1,0 +1,128 @@
+#include "renderer/path/photon_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/core/free_memory.h"
+
+namespace lacuna {
+
+namespace {
+
+/// Of one photon, at most: in its part, sorted, its place, and in the grid with all that sorts it.
+constexpr double bytes_of_photon = 2.0 * sizeof(Photon) + sizeof(V3f) + 40;
+
+void require_photons(double photons, double stored) {
+  require_free(photons * bytes_of_photon - stored * double{sizeof(Photon)}, [&] {
+    return fmt::format(
+        "the {:.0f} photons of an iteration need too much memory (fewer light_paths, "
+        "or a smaller max_depth, need less)",
+        photons);
+  });
+}
+
+/// Side of a pixel at the median distance of what the camera sees; with nothing in view, at the
+/// scene's radius.
+double footprint(const Scene& scene, const Camera& camera) {
+  constexpr int steps = 16;  // of rays across the film
+  std::vector<double> sides;
+  const auto at = [](int i, int size) {
+    return (static_cast<float>(i) + 0.5F) * static_cast<float>(size) / float{steps};
+  };
+  const auto angle = [&](const V3f& w) { return 1 / std::sqrt(double(camera.density(w).value)); };
+  for (int i = 0; i < steps * steps; ++i) {
+    const Ray ray = camera.ray(at(i % steps, camera.width()), at(i / steps, camera.height()));
+    Hit hit{};
+    if (!scene.rays().intersect(ray, hit)) continue;
+    sides.push_back((V3d(scene.surface(hit).x) - V3d(ray.o)).length() * angle(ray.d));
+  }
+  if (sides.empty()) return scene.bounds().radius() * angle(camera.forward());
+  const auto middle = sides.begin() + static_cast<std::ptrdiff_t>(sides.size() / 2);
+  std::nth_element(sides.begin(), middle, sides.end());
+  return *middle;
+}
+
+double unit_of(RadiusUnit unit, const IterationContext& context) {
+  switch (unit) {
+    case RadiusUnit::pixels:
+      return footprint(context.scene, context.camera);
+    case RadiusUnit::scene:
+      return context.scene.bounds().radius();
+    case RadiusUnit::absolute:
+      break;
+  }
+  return 1;
+}
+
+}  // namespace
+
+double merge_radius(const RadiusSettings& settings, const IterationContext& context) {
+  const Bounds& box = context.scene.bounds();
+  double largest = 0;
+  for (int k = 0; k < 3; ++k) {
+    if (box.low[k] <= box.high[k]) {
+      largest = std::max({largest, std::abs(box.low[k]), std::abs(box.high[k])});
+    }
+  }
+  const double first = settings.radius * unit_of(settings.radius_unit, context);
+  const double shrunk =
+      first * std::pow(static_cast<double>(context.iteration) + 1, (settings.alpha - 1) / 2);
+  const double r = std::max(shrunk, largest * 0x1p-18);
+  return r > 0 ? r : 1;  // of a scene without size, where nothing is hit
+}
+
+void PhotonMap::begin(std::int64_t paths) {
+  require_photons(static_cast<double>(paths), 0);
+  parts_.resize(static_cast<std::size_t>((paths + paths_of_part - 1) / paths_of_part));
+  for (auto& part : parts_) part.clear();
+  stored_ = 0;
+  parts_begun_ = 0;
+}
+
+void PhotonMap::keep(std::size_t path, const Vertex& v, int index, bool caustic) {
+  auto& part = parts_[path / std::size_t{paths_of_part}];
+  if (!v.bsdf->connectible() || !v.p_fwd.positive() || is_black(v.throughput)) return;
+  if (part.empty()) {
+    check_room();
+    ++parts_begun_;
+  }
+  part.push_back(photon(v, index));
+  part.back().caustic = caustic;
+  constexpr std::size_t some = 64;  // counted together: all threads share the count
+  if (part.size() % some == 0) stored_ += some;
+}
+
+void PhotonMap::check_room() const {
+  const double begun = static_cast<double>(parts_begun_.load());
+  const double stored = static_cast<double>(stored_.load());
+  if (begun > 0) require_photons(stored / begun * static_cast<double>(parts_.size()), stored);
+}
+
+void PhotonMap::arrange(double radius, const ThreadPool& pool) {
+  radius_ = radius;
+  std::vector<std::size_t> first(parts_.size() + 1, 0);
+  for (std::size_t p = 0; p < parts_.size(); ++p) first[p + 1] = first[p] + parts_[p].size();
+  const std::size_t n = first.back();
+  const auto each_part = [&](auto&& use) {
+    pool.for_each(static_cast<int>(parts_.size()), [&](int p) {
+      const auto& part = parts_[static_cast<std::size_t>(p)];
+      for (std::size_t k = 0; k < part.size(); ++k)
+        use(first[static_cast<std::size_t>(p)] + k, part[k]);
+    });
+  };
+  positions_.resize(n);
+  each_part([&](std::size_t i, const Photon& p) { positions_[i] = p.x; });
+  grid_.build(positions_, radius, pool);
+  places_.resize(n);
+  constexpr std::size_t block = 1 << 14;
+  pool.for_each(static_cast<int>((n + block - 1) / block), [&](int b) {
+    const std::size_t begin = static_cast<std::size_t>(b) * block;
+    for (std::size_t k = begin; k < std::min(n, begin + block); ++k) {
+      places_[grid_.order()[k]] = static_cast<std::uint32_t>(k);
+    }
+  });
+  photons_.resize(n);
+  each_part([&](std::size_t i, const Photon& p) { photons_[places_[i]] = p; });
+}
+
+}  // namespace lacuna

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <atomic>
+#include <numbers>
+#include <vector>
+
+#include "renderer/path/light_pass.h"
+#include "renderer/path/merge.h"
+#include "renderer/path/point_grid.h"
+#include "renderer/settings/photon_settings.h"
+
+namespace lacuna {
+
+/// The radius within which photons count in iteration `context.iteration`, scene units, > 0
+/// (RadiusSettings).
+double merge_radius(const RadiusSettings& settings, const IterationContext& context);
+
+/// The photons of an iteration. A member of an integrator keeps its memory between iterations.
+class PhotonMap {
+ public:
+  /// Before the light pass: room for the photons of `paths` light paths. Throws MemoryLimitError
+  /// where one photon a path is too much.
+  void begin(std::int64_t paths);
+  /// Stores vertex `v`, number `index` >= 1 of light path number `path`, if it can be merged. To be
+  /// called for the paths of one part of a light pass in their order. Throws MemoryLimitError where
+  /// the photons so far let expect too many.
+  void keep(std::size_t path, const Vertex& v, int index, bool caustic = false);
+  /// After the light pass.
+  void arrange(double radius, const ThreadPool& pool);
+
+  std::size_t size() const { return photons_.size(); }
+  /// Scene units.
+  double radius() const { return radius_; }
+
+  /// Calls `visit(photon, distance2, count)` for the photons within the radius of eye vertex `v`
+  /// that lie on one surface with it (PointGrid::for_each_within).
+  template <class Visit>
+  void for_each_at(const Vertex& v, Rng& rng, Visit&& visit) const {
+    grid_.for_each_within(v.surface.x, static_cast<float>(radius_), rng,
+                          [&](std::uint32_t k, float distance2, float count) {
+                            const Photon& p = photons_[k];
+                            if (on_one_surface(v.surface.ng, p)) visit(p, distance2, count);
+                          });
+  }
+
+ private:
+  void check_room() const;
+
+  std::vector<std::vector<Photon>> parts_;  // of a light pass
+  std::atomic<std::uint64_t> stored_ = 0;
+  std::atomic<std::uint64_t> parts_begun_ = 0;
+  HugeVector<V3f> positions_;
+  HugeVector<Photon> photons_;  // in the order of the grid
+  HugeVector<std::uint32_t> places_;
+  PointGrid grid_;
+  double radius_ = 0;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,164 @@
+#pragma once
+
+#include <immintrin.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "analysis/parallel/thread_pool.h"
+#include "renderer/core/huge_pages.h"
+#include "renderer/core/rng.h"
+#include "renderer/core/vec.h"
+
+namespace lacuna {
+
+/// A hash grid of points, for all points within a fixed radius of a place. Cells are twice the
+/// radius wide, so that a ball touches two along each axis. The points are sorted by the hash of
+/// their cell; cells that are neighbours along x are neighbours in memory, so that a query reads
+/// four runs of points, eight at a time.
+///
+/// Time and memory of build() are linear in the points, whatever the radius. The order of the
+/// points, and with it that of a query's answers, does not depend on the number of threads.
+class PointGrid {
+ public:
+  /// A query looks at no more points than about this: of more, at a random part. So the time of
+  /// many queries stays linear where the radius is as large as the scene or all points are at one
+  /// place.
+  static constexpr std::uint32_t most_candidates = 1 << 12;
+
+  /// `radius`: of queries, > 0 and at least 2^-20 times the coordinates, below which floats have no
+  /// neighbours. At most 2^32 - 1 points.
+  void build(std::span<const V3f> points, double radius, const ThreadPool& pool);
+
+  std::size_t size() const { return order_.size(); }
+  /// The index of the point that has place `k` in the sorted order.
+  std::span<const std::uint32_t> order() const { return order_; }
+
+  /// Calls `visit(k, distance2, count)` for the places k of the points within `radius` of `x`,
+  /// where `radius` is at most that of build(). `count` is 1, or where candidates are too many the
+  /// step at which they are visited from a start that `rng` draws: a sum over the points visited,
+  /// each times its count, has the mean of the sum over all.
+  template <class Visit>
+  void for_each_within(const V3f& x, float radius, Rng& rng, Visit&& visit) const {
+    if (order_.empty()) return;
+    Query query;
+    const std::span<const Row> rows = rows_around(x, query);
+    std::uint64_t candidates = 0;
+    for (const Row& row : rows) candidates += row.end - row.begin;
+    if (candidates <= most_candidates) {
+      for (const Row& row : rows) visit_row(x, radius, row, visit);
+      return;
+    }
+    const auto step = static_cast<std::uint32_t>((candidates - 1) / most_candidates + 1);
+    // Uniform in [0, step) to 2^-32.
+    std::uint64_t next = std::uint64_t{rng.next_u32()} * step >> 32;
+    for (const Row& row : rows) {
+      const std::uint64_t n = row.end - row.begin;
+      for (; next < n; next += step) {
+        visit_point(x, radius, row, row.begin + static_cast<std::uint32_t>(next),
+                    [&](std::uint32_t k, float distance2) {
+                      visit(k, distance2, static_cast<float>(step));
+                    });
+      }
+      next -= n;
+    }
+  }
+
+ private:
+  /// Two cells along x: [begin, end) holds their points, and others of the same hash.
+  struct Row {
+    int y, z;
+    std::uint32_t begin, end;
+  };
+  /// Four, or more where one goes on at the first bucket.
+  using Query = std::array<Row, 8>;
+  /// A point on its way to its bucket.
+  struct Entry {
+    std::uint32_t bucket;
+    std::uint32_t index;
+  };
+
+  int cell(float x) const { return static_cast<int>(std::floor(double(x) * per_cell_)); }
+  static std::uint64_t hash(int y, int z) {
+    std::uint64_t h = static_cast<std::uint32_t>(y) | std::uint64_t{static_cast<std::uint32_t>(z)}
+                                                          << 32;
+    h = (h ^ (h >> 32)) * 0xd6e8feb86659fd93;  // a mixer of 64 bits (Maiga 2018)
+    h = (h ^ (h >> 32)) * 0xd6e8feb86659fd93;
+    return h ^ (h >> 32);
+  }
+  std::uint32_t bucket(int x, int y, int z) const {
+    return static_cast<std::uint32_t>(hash(y, z) + static_cast<std::uint64_t>(x)) & mask_;
+  }
+  std::uint32_t bucket(const V3f& p) const { return bucket(cell(p.x), cell(p.y), cell(p.z)); }
+
+  std::span<const Row> rows_around(const V3f& x, Query& rows) const {
+    // The lower of two cells: the one that the ball's lower end lies in.
+    const auto lower = [&](float at) {
+      return static_cast<int>(std::floor((double(at) - reach_) * per_cell_));
+    };
+    const int cx = lower(x.x), cy = lower(x.y), cz = lower(x.z);
+    std::size_t n = 0;
+    for (int i = 0; i < 4; ++i) {
+      const int y = cy + (i & 1), z = cz + (i >> 1);
+      const std::uint32_t first = bucket(cx, y, z);
+      if (first < mask_) {
+        rows[n++] = {y, z, starts_[first], starts_[first + 2]};
+      } else {
+        rows[n++] = {y, z, starts_[first], starts_[first + 1]};
+        rows[n++] = {y, z, starts_[0], starts_[1]};
+      }
+    }
+    return std::span(rows).first(n);
+  }
+
+  /// Points of other cells share a hash: one counts for its own row, and so once.
+  bool in_row(const Row& row, std::size_t k) const {
+    return cell(y_[k]) == row.y && cell(z_[k]) == row.z;
+  }
+
+  template <class Visit>
+  void visit_point(const V3f& x, float radius, const Row& row, std::uint32_t k,
+                   Visit&& visit) const {
+    const float dx = x_[k] - x.x, dy = y_[k] - x.y, dz = z_[k] - x.z;
+    const float distance2 = dx * dx + dy * dy + dz * dz;
+    if (distance2 <= radius * radius && in_row(row, k)) visit(k, distance2);
+  }
+
+  template <class Visit>
+  void visit_row(const V3f& x, float radius, const Row& row, Visit&& visit) const {
+    const __m256 px = _mm256_set1_ps(x.x), py = _mm256_set1_ps(x.y), pz = _mm256_set1_ps(x.z);
+    const __m256 radius2 = _mm256_set1_ps(radius * radius);
+    for (std::uint32_t k = row.begin; k < row.end; k += 8) {
+      const __m256 dx = _mm256_sub_ps(_mm256_loadu_ps(&x_[k]), px);
+      const __m256 dy = _mm256_sub_ps(_mm256_loadu_ps(&y_[k]), py);
+      const __m256 dz = _mm256_sub_ps(_mm256_loadu_ps(&z_[k]), pz);
+      const __m256 distance2 = _mm256_add_ps(
+          _mm256_add_ps(_mm256_mul_ps(dx, dx), _mm256_mul_ps(dy, dy)), _mm256_mul_ps(dz, dz));
+      const int near = _mm256_movemask_ps(_mm256_cmp_ps(distance2, radius2, _CMP_LE_OQ));
+      auto found = static_cast<std::uint32_t>(near);
+      if (row.end - k < 8) found &= (1U << (row.end - k)) - 1;
+      if (found == 0) continue;
+      alignas(32) std::array<float, 8> values;
+      _mm256_store_ps(values.data(), distance2);
+      for (; found != 0; found &= found - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(found));
+        if (in_row(row, k + lane)) visit(k + lane, values[lane], 1.0F);
+      }
+    }
+  }
+
+  double per_cell_ = 1;  ///< 1 / width of a cell
+  double reach_ = 1;     ///< half a cell
+  std::uint32_t mask_ = 0;
+  HugeVector<std::uint32_t> starts_;  ///< of each bucket, its first place
+  HugeVector<float> x_, y_, z_;       ///< in sorted order, padded to whole loads
+  HugeVector<std::uint32_t> order_;
+  // Of build(), kept for the next: to touch new memory costs as much as to sort.
+  HugeVector<std::uint32_t> bucket_of_;
+  HugeVector<Entry> entries_;
+};
+
+}  // namespace lacuna

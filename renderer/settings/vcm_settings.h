@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string_view>
+
+#include "renderer/settings/guide_settings.h"
+#include "renderer/settings/output_settings.h"
+#include "renderer/settings/path_lengths.h"
+#include "renderer/settings/photon_settings.h"
+
+namespace lacuna {
+
+/// integrator: vcm.
+struct VcmSettings : PathLengths, RadiusSettings {
+  static constexpr std::string_view name = "vcm";
+  static constexpr std::string_view doc =
+      "bidirectional path tracing that also merges eye vertices with the vertices of all light "
+      "paths: vertex connection and merging (Georgiev et al. 2012; Hachisuka et al. 2012)";
+
+  static constexpr std::array layers{ImageLayer::strategies, ImageLayer::strategies_unweighted};
+
+  bool merge = true;
+  bool connect = true;
+  GuideSettings guide = BsdfGuideSettings{};
+
+  /// By the radius of each iteration; see RadiusSettings::consistent().
+  bool biased() const { return merge; }
+  bool operator==(const VcmSettings&) const = default;
+};
+
+template <class V>
+void describe(V& v, VcmSettings& s) {
+  describe_lengths(v, s);
+  v("merge", s.merge,
+    {.doc = "merge eye vertices with light vertices nearby. Without it, the method is `bdpt` with "
+            "`paired` connections, bit by bit"});
+  v("connect", s.connect,
+    {.doc = "connect the vertices of eye and light paths, light paths to the eye, and eye paths to "
+            "points on emitters. Without it, the method is bidirectional photon mapping"});
+  describe_radius(v, s);
+  describe_alpha(v, s);
+  v("guide", s.guide, {.doc = "how the next direction of an eye path is sampled"});
+}
+
+}  // namespace lacuna
