@@ -78,8 +78,8 @@ class Metropolis final : public Integrator {
     const auto at_least_one = [](double n) {
       return std::max(std::int64_t{1}, static_cast<std::int64_t>(std::ceil(n)));
     };
-    return {at_least_one(pixels * settings_.bootstrap), settings_.chains,
-            at_least_one(pixels * settings_.mutations / settings_.chains)};
+    return {std::max(at_least_one(pixels * settings_.bootstrap), std::int64_t{settings_.chains}),
+            settings_.chains, at_least_one(pixels * settings_.mutations / settings_.chains)};
   }
 
   /// The generator of independent sample `n`.

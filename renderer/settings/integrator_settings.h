@@ -52,8 +52,8 @@ bool biased(const std::variant<Ts...>& settings) {
       settings);
 }
 
-/// Whether the picture of biased settings converges to the radiance, because the bias of an iteration
-/// vanishes with its number. Such settings have a member `bool consistent() const`.
+/// Whether the picture of biased settings converges to the radiance, because the bias of an
+/// iteration vanishes with its number. Such settings have a member `bool consistent() const`.
 template <class... Ts>
 bool consistent(const std::variant<Ts...>& settings) {
   return std::visit(

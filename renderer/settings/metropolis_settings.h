@@ -37,7 +37,7 @@ void describe(V& v, MetropolisSettings& s) {
      .max = 1000});
   v("bootstrap", s.bootstrap,
     {.doc = "independent samples for each pixel in an iteration, which give the brightness of the "
-            "picture and the starts of chains",
+            "picture and the starts of chains; as many as chains at least",
      .min = 0.001,
      .max = 100});
   v("separate_direct", s.separate_direct,

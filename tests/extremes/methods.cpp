@@ -24,6 +24,10 @@ std::vector<Method> changed(const Method& method, Args... args) {
 template <class S>
 S for_small_pictures(S settings) {
   if constexpr (std::is_same_v<S, ManyLightsSettings>) settings.light_paths = 100;
+  if constexpr (std::is_same_v<S, MetropolisSettings>) {
+    settings.chains = 64;
+    settings.bootstrap = settings.mutations = 8;
+  }
   if constexpr (requires { settings.roulette_depth; }) settings.roulette_depth = 8;
   return settings;
 }
