@@ -33,7 +33,7 @@ class Metropolis final : public Integrator {
 
   Counters iterate(const IterationContext& context, Image& image) override {
     Counters counters;
-    if (settings_.separate_direct) counters += direct_.iterate(context, image);
+    trace_direct(context, image, counters);
     const bool any = settings_.max_depth >= least_edges() && context.scene.has_emitters() &&
                      !context.scene.emitters().empty();
     if (!any) return counters;
@@ -72,7 +72,23 @@ class Metropolis final : public Integrator {
     direct.roulette_depth = direct.max_depth;
     return direct;
   }
-  int least_edges() const { return settings_.separate_direct ? 3 : 1; }
+  int least_edges() const { return settings_.direct_samples > 0 ? 3 : 1; }
+
+  /// Adds the mean of the path traced samples of each pixel.
+  void trace_direct(const IterationContext& context, Image& image, Counters& counters) {
+    const auto share = 1.0F / static_cast<float>(settings_.direct_samples);
+    for (int i = 0; i < settings_.direct_samples; ++i) {
+      // A job's seed is below 2^53.
+      const std::uint64_t seed = context.seed | static_cast<std::uint64_t>(i) << 53;
+      Image sample(image.width, image.height);
+      counters += direct_.iterate(
+          {context.scene, context.camera, context.pool, seed, context.iteration, context.stop},
+          sample);
+      for (std::size_t k = 0; k < image.pixels.size(); ++k) {
+        image.pixels[k] += sample.pixels[k] * share;
+      }
+    }
+  }
 
   ChainPlan make_plan(double pixels) const {
     const auto at_least_one = [](double n) {

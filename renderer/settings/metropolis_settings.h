@@ -15,9 +15,9 @@ struct MetropolisSettings : PathLengths {
 
   MutationSettings mutation = MultiplexedSettings{};
   int chains = 256;
-  double mutations = 1;
+  double mutations = 4;
   double bootstrap = 0.25;
-  bool separate_direct = true;
+  int direct_samples = 2;
 
   bool operator==(const MetropolisSettings&) const = default;
 };
@@ -40,9 +40,11 @@ void describe(V& v, MetropolisSettings& s) {
             "picture and the starts of chains; as many as chains at least",
      .min = 0.001,
      .max = 100});
-  v("separate_direct", s.separate_direct,
-    {.doc = "emitters seen directly and direct light by path tracing, one sample a pixel; chains "
-            "follow longer paths only"});
+  v("direct_samples", s.direct_samples,
+    {.doc = "path traced samples for each pixel in an iteration, of emitters seen directly and of "
+            "direct light; chains follow longer paths only; 0: chains follow all paths",
+     .min = 0,
+     .max = 1000});
 }
 
 }  // namespace lacuna

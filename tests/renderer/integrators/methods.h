@@ -118,14 +118,14 @@ inline std::vector<Method> connections(int max_depth, int light_paths = 64) {
 inline std::vector<Method> metropolis(int max_depth) {
   std::vector<Method> all;
   for_each_choice(MutationSettings{}, [&]<class S>(const S& mutation) {
-    for (const bool separate : {true, false}) {
+    for (const int direct_samples : {1, 0}) {
       MetropolisSettings s{whole_paths(max_depth)};
       s.mutation = mutation;
       s.chains = 20;
       s.mutations = 4;
       s.bootstrap = 2;
-      s.separate_direct = separate;
-      all.push_back({std::string(S::name) + (separate ? "" : "_all_light"), s});
+      s.direct_samples = direct_samples;
+      all.push_back({std::string(S::name) + (direct_samples > 0 ? "" : "_all_light"), s});
     }
   });
   return all;
