@@ -82,12 +82,13 @@ ENTRIES.planned(
     "bdpt; many_lights with visibility: exact")
 
 
-# The thesis' scene is not known. In ours the lamp is so large that path tracing, too, finds its caustics.
+# The thesis' scene and radii are not known. In ours the lamp is so large that path tracing, too, finds its
+# caustics, and the radius so large that its blur shows.
 FIG_25 = {
     "path tracing": {"type": "path"}, "bidirectional": {"type": "bdpt"},
     "instant global illumination": {"type": "many_lights", "light_paths": 1000},
-    "photon mapping": {"type": "photon_map", "radius": 0.02, "radius_unit": "scene"},
-    "progressive": {"type": "sppm", "radius": 0.02, "radius_unit": "scene"},
+    "photon mapping": {"type": "photon_map", "radius": 0.08, "radius_unit": "scene"},
+    "progressive": {"type": "sppm", "radius": 0.08, "radius_unit": "scene"},
     "connection and merging": {"type": "vcm", "radius": 0.005, "radius_unit": "scene"}}
 
 

@@ -166,9 +166,9 @@ struct Merging {
 
 /// connections: paired. The eye path of pixel j is connected to light path j; for s = 1 a new point
 /// on an emitter is sampled at each vertex. With merging: vertex connection and merging (Georgiev
-/// et al. 2012). Then all light paths are walked before the eye paths, for their photons; those
-/// that are connected are walked once more with the eye paths, which takes less memory than to keep
-/// their vertices.
+/// et al. 2012). Then all light paths are walked before the eye paths, for their photons; the
+/// vertices that are connected are made anew from these, which takes less memory than to keep them
+/// whole.
 template <class Guide>
 class PairedBdpt final : public Bdpt<Guide> {
   using Base = Bdpt<Guide>;
@@ -239,7 +239,7 @@ class PairedBdpt final : public Bdpt<Guide> {
     const Counters sum = light_pass(
         context, setting, guide_, Base::pixels(image), image,
         [&](std::size_t path, const LightBatch<Guide>& batch, std::size_t i) {
-          for (int s = 1; s < batch.length(i); ++s) photons_.keep(path, batch.vertex(i, s), s);
+          photons_.keep_path(path, batch, i);
         },
         Base::splat_layers(context));
     pass.end(seconds_.light);
@@ -276,20 +276,23 @@ class PairedBdpt final : public Bdpt<Guide> {
     return sum;
   }
 
-  static void walk_light(const IterationContext& context, const SampleCounts& counts, Pairs& pairs,
-                         Counters& counters, Splats& splats) {
+  /// The light paths that the batch is connected to.
+  void walk_light(const IterationContext& context, const SampleCounts& counts, Pairs& pairs,
+                  Counters& counters, Splats& splats) const {
+    const std::size_t paths = pairs.eye.states.size();
+    if (counts.merge > 0) {  // photon_pass() has walked, counted and splatted them
+      for (std::size_t k = 0; k < paths; ++k) {
+        photons_.restore_path(pairs.eye.pixels[k], pairs.light, k);
+      }
+      return;
+    }
     pairs.rngs.clear();
-    for (std::size_t k = 0; k < pairs.eye.states.size(); ++k) {
+    for (std::size_t k = 0; k < paths; ++k) {
       pairs.rngs.emplace_back(context.seed, context.iteration, pairs.eye.pixels[k],
                               Rng::Purpose::light_path);
     }
-    const std::uint64_t samples = counters.samples;
     pairs.light.walk(pairs.rngs, counters);
-    if (counts.merge > 0) {
-      counters.samples = samples;  // photon_pass() has counted and splatted these paths
-    } else {
-      pairs.light.splat(pairs.eye.states.size(), counters, splats);
-    }
+    pairs.light.splat(paths, counters, splats);
   }
 
   void walk_eye(const IterationContext& context, const SampleCounts& counts, Walk<Guide>& walk,
@@ -314,7 +317,7 @@ class PairedBdpt final : public Bdpt<Guide> {
       Base::join(eye, EmitterEndpoint{e}, 1, counts, known, pairs.queue);
       const std::size_t path = pairs.eye.origin[i];
       for (int s = 2; s <= std::min(longest, pairs.light.length(path)); ++s) {
-        if (!pairs.light.vertex(path, s - 1).bsdf->connectible()) continue;
+        if (!pairs.light.connectible(path, s - 1)) continue;
         Base::join(eye, pairs.light.end(path, s - 1), 1, counts, known, pairs.queue);
       }
     });

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "renderer/path/connect.h"
+#include "renderer/path/merge.h"
 #include "renderer/path/shadow_queue.h"
 #include "renderer/path/splats.h"
 #include "renderer/path/walk.h"
@@ -31,7 +32,8 @@ class LightBatch {
       : setting_(setting),
         guide_(guide),
         places_(static_cast<std::size_t>(setting.max_depth)),
-        vertices_(places_ * size) {
+        vertices_(places_ * size),
+        hits_(places_ * size) {
     states_.reserve(size);
   }
 
@@ -61,8 +63,30 @@ class LightBatch {
         [&](std::size_t i, int depth) {
           const std::size_t path = path_of_[i];
           if (vertex(path, depth).kind == Vertex::Kind::surface) length_[path] = depth + 1;
+          hits_[path * places_ + static_cast<std::size_t>(depth)] = states_[i].hit;
           return goes_on(path, depth + 1);
         });
+  }
+
+  /// Makes path `i` the one that had these vertices, ascending, each with its hit() beside it. The
+  /// others are not connectible; vertex 0 is left as it is.
+  void restore(std::size_t i, std::span<const Photon> photons, std::span<const Hit> hits) {
+    length_[i] = photons.empty() ? 1 : photons.back().index + 1;
+    for (int index = 1; index < length_[i]; ++index) vertex_to_set(i, index).bsdf.reset();
+    for (std::size_t k = 0; k < photons.size(); ++k) {
+      const Photon& p = photons[k];
+      Vertex& v = vertex_to_set(i, p.index);
+      v.kind = Vertex::Kind::surface;
+      v.delta = false;
+      v.surface = setting_.scene.surface(hits[k]);
+      v.wp = p.wp;
+      v.throughput = p.throughput;
+      v.p_fwd = Pdf<Area>(p.p_fwd);
+      v.prev_connectible = p.prev_connectible;
+      v.mis_partial = p.mis_partial;
+      setting_.scene.make_bsdf(v.surface, v.bsdf);
+      guide_.on_hit(v);
+    }
   }
 
   /// Number of vertices of path `i`, including the one on the emitter.
@@ -72,6 +96,14 @@ class LightBatch {
   /// Vertex `index` in [1, length(i)).
   const Vertex& vertex(std::size_t i, int index) const {
     return vertices_[i * places_ + static_cast<std::size_t>(index)];
+  }
+  bool connectible(std::size_t i, int index) const {
+    const std::optional<Bsdf>& bsdf = vertex(i, index).bsdf;
+    return bsdf && bsdf->connectible();
+  }
+  /// Of the ray to a vertex.
+  const Hit& hit(std::size_t i, int index) const {
+    return hits_[i * places_ + static_cast<std::size_t>(index)];
   }
   SurfaceEndpoint<Guide> end(std::size_t i, int index) const {
     return {vertex(i, index), index, Transport::importance, guide_};
@@ -112,6 +144,10 @@ class LightBatch {
   }
 
  private:
+  Vertex& vertex_to_set(std::size_t i, int index) {
+    return vertices_[i * places_ + static_cast<std::size_t>(index)];
+  }
+
   /// Vertex 0; false where there is none.
   bool start(std::size_t i, Rng& rng, std::uint32_t choice) {
     const EmitterSet& lights = setting_.scene.emitters();
@@ -155,6 +191,7 @@ class LightBatch {
   const Guide& guide_;
   std::size_t places_;
   std::vector<Vertex> vertices_;
+  std::vector<Hit> hits_;  // of each vertex
   std::vector<PathState> states_;
   std::array<std::size_t, size> path_of_{};  // of each state in states_, its path's index
   std::array<int, size> length_{};

@@ -41,10 +41,12 @@ inline bool on_one_surface(const V3f& ng, const Photon& p) {
 /// What `eye` scatters of one photon's power: the product of both throughputs and the BSDF, which
 /// SurfaceEndpoint::scatter() has times the cosine. Over pi r^2 and the number of light paths it
 /// estimates the radiance that the path carries (Georgiev et al. 2012, eq. 7; Noel 2015, 4.5).
-/// Black at grazing incidence, where rounding would decide.
+/// The cosine is the photon's, because the probability that a photon arrives falls with it: the
+/// quotient stays bounded where the eye vertex lies on another triangle. Black at grazing
+/// incidence, where rounding would decide.
 template <class Guide>
 Rgb merged(const SurfaceEndpoint<Guide>& eye, const Photon& p) {
-  const float cosine = abs_dot(eye.v.surface.ng, p.wp);
+  const float cosine = abs_dot(p.ng, p.wp);
   if (!(cosine > cos_rounding)) return Rgb(0, 0, 0);
   return eye.scatter(p.wp) * p.throughput / cosine;
 }

@@ -9,8 +9,9 @@ namespace lacuna {
 
 namespace {
 
-/// Of one photon, at most: in its part, sorted, its place, and in the grid with all that sorts it.
-constexpr double bytes_of_photon = 2.0 * sizeof(Photon) + sizeof(V3f) + 40;
+/// Of one photon, at most: in its part with its hit, sorted, its place, and in the grid with all
+/// that sorts it.
+constexpr double bytes_of_photon = 2.0 * sizeof(Photon) + sizeof(Hit) + sizeof(V3f) + 44;
 
 void require_photons(double photons, double stored) {
   require_free(photons * bytes_of_photon - stored * double{sizeof(Photon)}, [&] {
@@ -74,13 +75,17 @@ double merge_radius(const RadiusSettings& settings, const IterationContext& cont
 void PhotonMap::begin(std::int64_t paths) {
   require_photons(static_cast<double>(paths), 0);
   parts_.resize(static_cast<std::size_t>((paths + paths_of_part - 1) / paths_of_part));
-  for (auto& part : parts_) part.clear();
+  for (Part& part : parts_) {
+    part.photons.clear();
+    part.hits.clear();
+    part.ends.clear();
+  }
   stored_ = 0;
   parts_begun_ = 0;
 }
 
 void PhotonMap::keep(std::size_t path, const Vertex& v, int index, bool caustic) {
-  auto& part = parts_[path / std::size_t{paths_of_part}];
+  auto& part = parts_[path / std::size_t{paths_of_part}].photons;
   if (!v.bsdf->connectible() || !v.p_fwd.positive() || is_black(v.throughput)) return;
   if (part.empty()) {
     check_room();
@@ -101,11 +106,12 @@ void PhotonMap::check_room() const {
 void PhotonMap::arrange(double radius, const ThreadPool& pool) {
   radius_ = radius;
   std::vector<std::size_t> first(parts_.size() + 1, 0);
-  for (std::size_t p = 0; p < parts_.size(); ++p) first[p + 1] = first[p] + parts_[p].size();
+  for (std::size_t p = 0; p < parts_.size(); ++p)
+    first[p + 1] = first[p] + parts_[p].photons.size();
   const std::size_t n = first.back();
   const auto each_part = [&](auto&& use) {
     pool.for_each(static_cast<int>(parts_.size()), [&](int p) {
-      const auto& part = parts_[static_cast<std::size_t>(p)];
+      const auto& part = parts_[static_cast<std::size_t>(p)].photons;
       for (std::size_t k = 0; k < part.size(); ++k)
         use(first[static_cast<std::size_t>(p)] + k, part[k]);
     });

@@ -25,6 +25,26 @@ class PhotonMap {
   /// called for the paths of one part of a light pass in their order. Throws MemoryLimitError where
   /// the photons so far let expect too many.
   void keep(std::size_t path, const Vertex& v, int index, bool caustic = false);
+  /// Stores the photons of path `i` of `batch`, as keep(), and what restores its vertices.
+  template <class Guide>
+  void keep_path(std::size_t path, const LightBatch<Guide>& batch, std::size_t i) {
+    Part& part = parts_[path / std::size_t{paths_of_part}];
+    for (int s = 1; s < batch.length(i); ++s) {
+      const std::size_t before = part.photons.size();
+      keep(path, batch.vertex(i, s), s);
+      if (part.photons.size() > before) part.hits.push_back(batch.hit(i, s));
+    }
+    part.ends.push_back(static_cast<std::uint32_t>(part.photons.size()));
+  }
+  /// Makes path `i` of `batch` the path that keep_path() stored, without vertex 0.
+  template <class Guide>
+  void restore_path(std::size_t path, LightBatch<Guide>& batch, std::size_t i) const {
+    const Part& part = parts_[path / std::size_t{paths_of_part}];
+    const std::size_t k = path % std::size_t{paths_of_part};
+    const std::size_t begin = k > 0 ? part.ends[k - 1] : 0, n = part.ends[k] - begin;
+    batch.restore(i, std::span(part.photons).subspan(begin, n),
+                  std::span(part.hits).subspan(begin, n));
+  }
   /// After the light pass.
   void arrange(double radius, const ThreadPool& pool);
 
@@ -44,9 +64,16 @@ class PhotonMap {
   }
 
  private:
+  /// Of a light pass.
+  struct Part {
+    std::vector<Photon> photons;
+    std::vector<Hit> hits;            ///< of keep_path(): of each photon
+    std::vector<std::uint32_t> ends;  ///< of keep_path(): of each path, the end of its photons
+  };
+
   void check_room() const;
 
-  std::vector<std::vector<Photon>> parts_;  // of a light pass
+  std::vector<Part> parts_;
   std::atomic<std::uint64_t> stored_ = 0;
   std::atomic<std::uint64_t> parts_begun_ = 0;
   HugeVector<V3f> positions_;
