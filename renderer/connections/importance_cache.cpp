@@ -26,7 +26,7 @@ void ImportanceCacheConnections::place_records(const IterationContext& context, 
     batch.states.clear();
     for (std::uint64_t j = first; j < std::min(paths, first + EyeBatch::size); ++j) {
       Rng rng(context.seed, context.iteration, j, Rng::Purpose::integrator);
-      const std::uint64_t pixel = (std::uint64_t{rng.next_u32()} * pixels) >> 32;
+      const std::uint64_t pixel = rng.below(pixels);
       const V2i p(static_cast<int>(pixel % static_cast<std::uint64_t>(width)),
                   static_cast<int>(pixel / static_cast<std::uint64_t>(width)));
       batch.start(context.camera, rng, context.camera.sample(p, rng.next2()), pixel);

@@ -46,8 +46,7 @@ class ImportanceCacheConnections : public StrategyBase {
         tree_.nearest(surface_point(v),
                       std::span(lookup.near).first(static_cast<std::size_t>(settings_.neighbours)));
     if (lookup.n > 0) {
-      lookup.drawn =
-          &cells_of_records_[lookup.near[(std::uint64_t{rng.next_u32()} * lookup.n) >> 32]];
+      lookup.drawn = &cells_of_records_[lookup.near[rng.below(lookup.n)]];
     }
     return lookup;
   }

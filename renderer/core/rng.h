@@ -97,6 +97,9 @@ class Rng {
     return {static_cast<double>(choice) * 0x1p-48, {unit(b), unit(c)}};
   }
 
+  /// Uniform in 0 ... n - 1, to n 2^-32 of each probability; n <= 2^32.
+  std::uint64_t below(std::uint64_t n) { return (n * next_u32()) >> 32; }
+
   /// True with probability `p`, to 2^-64: a draw of next() would round small ones up to 2^-24.
   bool decide(float p) {
     const double scaled = double(p) * 0x1p32;

@@ -145,7 +145,7 @@ VoxelFace PortalFaces::draw(std::uint32_t region, Rng& rng) const {
   std::size_t i = 0;
   while (i + 1 < exits.size() && left >= exits[i].share) left -= exits[i++].share;
   const Portal& portal = portals_->portals[exits[i].portal];
-  return portals_->face(portal, (std::uint64_t{rng.next_u32()} * portal.faces()) >> 32);
+  return portals_->face(portal, rng.below(portal.faces()));
 }
 
 std::vector<std::pair<std::string, double>> PortalFaces::statistics() const {

@@ -16,8 +16,7 @@ class Light final : public Integrator {
   SceneNeeds needs() const override { return {.materials = true, .emission = true}; }
 
   Counters iterate(const IterationContext& context, Image& image) override {
-    const std::int64_t paths = settings_.light_paths > 0 ? settings_.light_paths
-                                                         : std::int64_t{image.width} * image.height;
+    const std::int64_t paths = light_paths(settings_.light_paths, image);
     const LightPathSetting setting{context.scene,
                                    context.camera,
                                    settings_.max_depth,

@@ -34,22 +34,20 @@ class Metropolis final : public Integrator {
   Counters iterate(const IterationContext& context, Image& image) override {
     Counters counters;
     trace_direct(context, image, counters);
-    const bool any = settings_.max_depth >= least_edges() && context.scene.has_emitters() &&
-                     !context.scene.emitters().empty();
-    if (!any) return counters;
-    const ChainPaths paths{settings_, least_edges(), double(image.width) * image.height};
-    const ChainPlan plan = make_plan(paths.pixels);
+    if (settings_.max_depth < least_edges() || context.scene.emitters().empty()) return counters;
+    const double pixels = double(image.width) * image.height;
+    const ChainPlan plan = make_plan(pixels);
     PassSeconds pass;
     std::vector<double> scalars(static_cast<std::size_t>(plan.samples));
-    counters += bootstrap(context, paths, scalars);
+    counters += bootstrap(context, scalars);
     pass.end(seconds_.bootstrap);
     const double sum = std::accumulate(scalars.begin(), scalars.end(), 0.0);
     if (!(sum > 0)) return counters;
-    const std::vector<std::int64_t> starts = choose_starts(context, plan, scalars, sum);
+    const std::vector<std::size_t> starts = choose_starts(context, plan, scalars, sum);
     // A chain's states have the density scalar / brightness.
     const double brightness = sum / static_cast<double>(plan.samples);
-    const double share = brightness * paths.pixels / double(plan.chains * plan.mutations);
-    counters += run_chains(context, paths, plan, starts, share, image);
+    const double share = brightness * pixels / double(plan.chains * plan.mutations);
+    counters += run_chains(context, plan, starts, share, image);
     pass.end(seconds_.chains);
     return counters;
   }
@@ -72,6 +70,7 @@ class Metropolis final : public Integrator {
     direct.roulette_depth = direct.max_depth;
     return direct;
   }
+  ChainPaths paths() const { return {settings_, least_edges()}; }
   int least_edges() const { return settings_.direct_samples > 0 ? 3 : 1; }
 
   /// Adds the mean of the path traced samples of each pixel.
@@ -99,44 +98,38 @@ class Metropolis final : public Integrator {
   }
 
   /// The generator of independent sample `n`.
-  static Rng sample_rng(const IterationContext& context, std::int64_t n) {
-    return Rng(context.seed, context.iteration, static_cast<std::uint64_t>(n),
-               Rng::Purpose::bootstrap);
+  static Rng sample_rng(const IterationContext& context, std::size_t n) {
+    return Rng(context.seed, context.iteration, n, Rng::Purpose::bootstrap);
   }
+
   /// Draws independent samples and stores their scalars.
-  Counters bootstrap(const IterationContext& context, const ChainPaths& paths,
-                     std::vector<double>& scalars) const {
+  Counters bootstrap(const IterationContext& context, std::vector<double>& scalars) const {
     constexpr std::size_t part = 16 * M::size;
     const int parts = static_cast<int>((scalars.size() + part - 1) / part);
     return for_each_part(context, parts, [&](int i, Counters& counters) {
-      M m(mutation_, context, paths);
+      M m(mutation_, paths());
+      typename M::Workspace workspace(context, settings_);
       const std::size_t end = std::min(scalars.size(), (std::size_t(i) + 1) * part);
       for (std::size_t first = std::size_t(i) * part; first < end; first += M::size) {
         const std::size_t n = std::min(end - first, std::size_t{M::size});
-        std::vector<Rng> rngs = sample_rngs(context, first, n);
+        std::vector<Rng> rngs;
+        for (std::size_t k = 0; k < n; ++k) rngs.push_back(sample_rng(context, first + k));
         for (std::size_t k = 0; k < n; ++k) m.propose(k, Step::large, rngs[k]);
-        m.evaluate(n, counters);
+        m.evaluate(n, workspace, counters);
         for (std::size_t k = 0; k < n; ++k) scalars[first + k] = m.proposed(k).scalar;
       }
     });
   }
-  static std::vector<Rng> sample_rngs(const IterationContext& context, std::size_t first,
-                                      std::size_t n) {
-    std::vector<Rng> rngs;
-    for (std::size_t k = 0; k < n; ++k)
-      rngs.push_back(sample_rng(context, static_cast<std::int64_t>(first + k)));
-    return rngs;
-  }
 
   /// The samples at which the chains start, drawn by systematic resampling: each in proportion to
   /// its scalar.
-  static std::vector<std::int64_t> choose_starts(const IterationContext& context,
-                                                 const ChainPlan& plan,
-                                                 const std::vector<double>& scalars, double sum) {
+  static std::vector<std::size_t> choose_starts(const IterationContext& context,
+                                                const ChainPlan& plan,
+                                                const std::vector<double>& scalars, double sum) {
     constexpr std::uint64_t no_chain = (std::uint64_t{1} << 56) - 1;
     Rng rng(context.seed, context.iteration, no_chain, Rng::Purpose::chain);
     const double offset = rng.next_choice(), step = sum / static_cast<double>(plan.chains);
-    std::vector<std::int64_t> starts;
+    std::vector<std::size_t> starts;
     double before = 0;
     std::size_t n = 0, last = 0;  // `last`: that contributes anything
     for (std::int64_t c = 0; c < plan.chains; ++c) {
@@ -146,15 +139,14 @@ class Metropolis final : public Integrator {
         before += scalars[n++];
       }
       // Sums may round to less than the last positions.
-      starts.push_back(static_cast<std::int64_t>(n < scalars.size() ? n : last));
+      starts.push_back(n < scalars.size() ? n : last);
     }
     return starts;
   }
 
   /// Advances all chains and adds what they meet to `image`, times `share`.
-  Counters run_chains(const IterationContext& context, const ChainPaths& paths,
-                      const ChainPlan& plan, const std::vector<std::int64_t>& starts, double share,
-                      Image& image) {
+  Counters run_chains(const IterationContext& context, const ChainPlan& plan,
+                      const std::vector<std::size_t>& starts, double share, Image& image) {
     // What is in memory together: chains, and splats between two additions to the picture.
     constexpr std::size_t batches = 64;
     constexpr std::int64_t round = 512;
@@ -164,18 +156,19 @@ class Metropolis final : public Integrator {
       std::vector<std::unique_ptr<Batch>> running((n + M::size - 1) / M::size);
       for (std::int64_t done = 0; done < plan.mutations; done += round) {
         const auto work = [&](int i, Counters& counters, Splats& splats) {
+          typename M::Workspace workspace(context, settings_);
           std::unique_ptr<Batch>& batch = running[static_cast<std::size_t>(i)];
           if (batch == nullptr) {
             const std::size_t chain = first + static_cast<std::size_t>(i) * M::size;
-            batch = std::make_unique<Batch>(*this, context, paths, share);
+            batch = std::make_unique<Batch>(*this, share);
             batch->start(std::span(starts).subspan(
                              chain, std::min(std::size_t{M::size}, starts.size() - chain)),
-                         chain, counters);
+                         chain, context, workspace, counters);
           }
           const std::int64_t steps = std::min(round, plan.mutations - done);
           for (std::int64_t k = 0; k < steps; ++k) {
             if (k % 16 == 0) context.check_stop();
-            batch->advance(counters, splats);
+            batch->advance(workspace, counters, splats);
           }
           if (done + steps == plan.mutations) batch->finish(splats);
         };
@@ -194,41 +187,42 @@ class Metropolis final : public Integrator {
 
   /// Chains that one thread advances together.
   struct Batch {
-    Batch(const Metropolis& of, const IterationContext& c, const ChainPaths& paths, double share_)
-        : context(c),
-          large_steps(static_cast<float>(of.mutation_.large_steps)),
-          m(of.mutation_, c, paths),
+    Batch(const Metropolis& of, double share_)
+        : large_steps(static_cast<float>(of.mutation_.large_steps)),
+          m(of.mutation_, of.paths()),
           share(share_) {}
 
-    /// `first`: number of the first chain.
-    void start(std::span<const std::int64_t> starts, std::size_t first, Counters& counters) {
+    /// `starts`: numbers of the samples; `first`: number of the first chain.
+    void start(std::span<const std::size_t> starts, std::size_t first,
+               const IterationContext& context, typename M::Workspace& workspace,
+               Counters& counters) {
       std::vector<Rng> samples;
-      for (const std::int64_t s : starts) samples.push_back(sample_rng(context, s));
+      for (const std::size_t s : starts) samples.push_back(sample_rng(context, s));
       for (std::size_t k = 0; k < starts.size(); ++k) {
         m.propose(k, Step::large, samples[k]);
         rngs.emplace_back(context.seed, context.iteration, first + k, Rng::Purpose::chain);
       }
-      m.evaluate(starts.size(), counters);
+      m.evaluate(starts.size(), workspace, counters);
       for (std::size_t k = 0; k < starts.size(); ++k) m.accept(k);
     }
 
-    void advance(Counters& counters, Splats& splats) {
+    void advance(typename M::Workspace& workspace, Counters& counters, Splats& splats) {
       const std::size_t n = rngs.size();
       for (std::size_t k = 0; k < n; ++k) {
-        large[k] = rngs[k].decide(large_steps);
-        m.propose(k, large[k] ? Step::large : Step::small, rngs[k]);
+        steps[k] = rngs[k].decide(large_steps) ? Step::large : Step::small;
+        m.propose(k, steps[k], rngs[k]);
       }
-      m.evaluate(n, counters);
+      m.evaluate(n, workspace, counters);
       for (std::size_t k = 0; k < n; ++k) decide(k, splats);
     }
 
     /// Both states count, by the probability that the chain is there next (Veach 1997, 11.3.2.1).
     void decide(std::size_t k, Splats& splats) {
       const double now = m.current(k).scalar, next = m.proposed(k).scalar;
-      const double a =
-          next > 0 ? std::min(1.0, next / now * (large[k] ? 1.0 : m.reverse_ratio(k))) : 0.0;
+      const double reverse = steps[k] == Step::large ? 1.0 : m.reverse_ratio(k);
+      const double a = next > 0 ? std::min(1.0, next / now * reverse) : 0.0;
       stay[k] += 1 - a;
-      const int kind = large[k] ? 0 : 1;
+      const auto kind = static_cast<std::size_t>(steps[k]);
       ++proposed[kind];
       if (rngs[k].decide(static_cast<float>(a))) {
         ++accepted[kind];
@@ -255,12 +249,11 @@ class Metropolis final : public Integrator {
       }
     }
 
-    const IterationContext& context;
     float large_steps;
     M m;
     double share;
     std::vector<Rng> rngs = {};
-    std::array<bool, M::size> large{};
+    std::array<Step, M::size> steps{};
     std::array<double, M::size> stay{};  // weight of the current state that is not deposited yet
     std::array<std::uint64_t, 2> proposed{}, accepted{};  // by Step
   };

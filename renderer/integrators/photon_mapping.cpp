@@ -47,8 +47,7 @@ class PhotonMapping final : public Integrator {
 
   Counters iterate(const IterationContext& context, Image& image) override {
     PassSeconds pass;
-    const std::int64_t paths = settings_.light_paths > 0 ? settings_.light_paths
-                                                         : std::int64_t{image.width} * image.height;
+    const std::int64_t paths = light_paths(settings_.light_paths, image);
     Counters sum = light_pass(context, paths, image);
     pass.end(seconds_.light);
     const double radius = merge_radius(settings_, context);

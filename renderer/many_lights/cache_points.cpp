@@ -69,7 +69,7 @@ std::vector<std::uint32_t> CachePoints::choose(const LightPass& pass, Counters& 
   weights_.clear();
   Rng rng(context.seed, context.iteration, 0, Rng::Purpose::integrator);
   for (const auto& group : groups) {
-    chosen.push_back(at[group[(std::uint64_t{rng.next_u32()} * group.size()) >> 32]]);
+    chosen.push_back(at[group[rng.below(group.size())]]);
     weights_.push_back(static_cast<double>(group.size()) / static_cast<double>(there.size()));
   }
   return chosen;

@@ -26,10 +26,9 @@ FilmPoint film_point(Rng& rng, const Camera& camera) {
 
 }  // namespace
 
-PathEvaluator::PathEvaluator(const IterationContext& context, const PathLengths& lengths,
-                             double pixels)
+PathEvaluator::PathEvaluator(const IterationContext& context, const PathLengths& lengths)
     : context_(context),
-      counts_{1, 1, 1, pixels},
+      counts_{1, 1, 1, double(context.camera.width()) * context.camera.height()},
       setting_{context.scene, context.camera, lengths.max_depth, lengths.roulette_depth, counts_},
       eyes_(lengths.max_depth),
       lights_(setting_, guide_) {}
@@ -148,7 +147,7 @@ void PathEvaluator::gather(const Point& point, std::size_t i, int depth) {
     if (!point.wanted.wants(s, t)) continue;
     if (s == 1) {
       join(EmitterEndpoint{lights_.emitter(light)});
-    } else if (lights_.vertex(light, s - 1).bsdf->connectible()) {
+    } else if (lights_.connectible(light, s - 1)) {
       join(lights_.end(light, s - 1));
     }
   }

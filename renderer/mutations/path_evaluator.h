@@ -33,7 +33,7 @@ class PathEvaluator {
  public:
   static constexpr std::size_t size = 16;
 
-  PathEvaluator(const IterationContext& context, const PathLengths& lengths, double pixels);
+  PathEvaluator(const IterationContext& context, const PathLengths& lengths);
   PathEvaluator(const PathEvaluator&) = delete;
   PathEvaluator& operator=(const PathEvaluator&) = delete;
 

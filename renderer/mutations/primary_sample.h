@@ -10,11 +10,6 @@
 
 namespace lacuna {
 
-/// Uniform in 0 ... n - 1, n > 0.
-inline int below(Rng& rng, int n) {
-  return static_cast<int>(std::uint64_t{rng.next_u32()} * std::uint64_t(n) >> 32);
-}
-
 /// Chains in primary sample space: a state is the random numbers that a pair of paths is sampled
 /// from, so that sampling, connecting and weighting are those of bidirectional path tracing.
 /// `Technique` says which strategies a point's control numbers choose.
@@ -23,13 +18,10 @@ class PrimarySampleChains {
  public:
   static constexpr std::size_t size = PathEvaluator::size;
 
-  template <class Settings>
-  PrimarySampleChains(const Settings& settings, const IterationContext& context,
-                      const ChainPaths& paths)
-      : paths_(paths),
-        evaluator_(context, paths.lengths, paths.pixels),
-        step_(settings.step),
-        octaves_(settings.octaves) {}
+  using Workspace = PathEvaluator;
+
+  PrimarySampleChains(const PrimaryStepSettings& settings, const ChainPaths& paths)
+      : settings_(settings), paths_(paths) {}
 
   void propose(std::size_t i, Step step, Rng& rng) {
     Chain& c = chains_[i];
@@ -37,25 +29,26 @@ class PrimarySampleChains {
       for (PrimarySamples* p : {&c.control, &c.eye, &c.light}) p->propose_fresh(rng);
       return;
     }
-    // One distance for all numbers: where some moved far, little would be gained by others that
-    // did not. Half of a pair that stays is a view of the same light from elsewhere, or other light
-    // in the same view.
-    const double distance = std::ldexp(step_, -below(rng, octaves_));
+    // All numbers move at one scale: the largest move decides whether a proposal is accepted, and
+    // smaller ones beside it would explore less. Where one of the two paths stays, the other meets
+    // the same light, or the same surface is lit in another way.
+    const int octave = static_cast<int>(rng.below(static_cast<std::uint64_t>(settings_.octaves)));
+    const double distance = std::ldexp(settings_.step, -octave);
     enum { both, eye, light };
-    const int moved = below(rng, 3);
-    c.control.propose_near(rng, moved == both ? step_ : 0);
+    const auto moved = rng.below(3);
+    c.control.propose_near(rng, moved == both ? settings_.step : 0);
     c.eye.propose_near(rng, moved != light ? distance : 0);
     c.light.propose_near(rng, moved != eye ? distance : 0);
   }
 
-  void evaluate(std::size_t n, Counters& counters) {
+  void evaluate(std::size_t n, PathEvaluator& evaluator, Counters& counters) {
     std::array<PathEvaluator::Point, size> points;
     for (std::size_t i = 0; i < n; ++i) {
       Chain& c = chains_[i];
       Rng control(c.control);
       points[i] = {&c.eye, &c.light, Technique::choose(paths_, control), &c.proposed};
     }
-    evaluator_.evaluate(std::span(points).first(n), counters);
+    evaluator.evaluate(std::span(points).first(n), counters);
   }
 
   const ChainState& current(std::size_t i) const { return chains_[i].current; }
@@ -75,10 +68,8 @@ class PrimarySampleChains {
     PrimarySamples control, eye, light;
     ChainState current, proposed;
   };
+  PrimaryStepSettings settings_;
   ChainPaths paths_;
-  PathEvaluator evaluator_;
-  double step_;
-  int octaves_;
   std::array<Chain, size> chains_;
 };
 
@@ -102,7 +93,8 @@ struct OneTechnique {
     const int longer = std::clamp(static_cast<int>(std::exp(u * range)) - 1, 0, number - 1);
     const double probability = std::log((longer + 2.0) / (longer + 1.0)) / range;
     const int edges = paths.least_edges + longer;
-    const int s = below(control, edges + 1), t = edges + 1 - s;
+    const int s = static_cast<int>(control.below(static_cast<std::uint64_t>(edges) + 1));
+    const int t = edges + 1 - s;
     return {s, s, t, t, edges, edges, static_cast<float>((edges + 1) / probability)};
   }
 };

@@ -138,7 +138,7 @@ class LightBatch {
   void join_eye(std::size_t i, int index, Joined&& joined) const {
     if (index == 0) {
       if (!emitters_[i].delta()) join_eye(EmitterEndpoint{emitters_[i]}, joined);
-    } else if (vertex(i, index).bsdf->connectible()) {
+    } else if (connectible(i, index)) {
       join_eye(end(i, index), joined);
     }
   }

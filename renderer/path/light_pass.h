@@ -8,6 +8,11 @@ namespace lacuna {
 /// Light paths that one thread traces one after the other: few enough to stop quickly.
 inline constexpr std::int64_t paths_of_part = 16 * 64;
 
+/// The number of light paths of an iteration: `wanted`, or one for each pixel where that is 0.
+inline std::int64_t light_paths(int wanted, const Image& image) {
+  return wanted > 0 ? wanted : std::int64_t{image.width} * image.height;
+}
+
 /// Traces the light paths [0, paths) of an iteration. If the strategy t = 1 has samples, adds their
 /// splats to `image` and hands each to `arrived(splat)`. Calls `keep(path, batch, i)` for each
 /// traced path, index `i` of its batch, from several threads: for the paths of a part, each

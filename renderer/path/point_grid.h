@@ -1,13 +1,12 @@
 #pragma once
 
-#include <immintrin.h>
-
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
 
+#include "analysis/geometry/simd.h"
 #include "analysis/parallel/thread_pool.h"
 #include "renderer/core/huge_pages.h"
 #include "renderer/core/rng.h"
@@ -53,8 +52,7 @@ class PointGrid {
       return;
     }
     const auto step = static_cast<std::uint32_t>((candidates - 1) / most_candidates + 1);
-    // Uniform in [0, step) to 2^-32.
-    std::uint64_t next = std::uint64_t{rng.next_u32()} * step >> 32;
+    std::uint64_t next = rng.below(step);
     for (const Row& row : rows) {
       const std::uint64_t n = row.end - row.begin;
       for (; next < n; next += step) {
@@ -129,20 +127,17 @@ class PointGrid {
 
   template <class Visit>
   void visit_row(const V3f& x, float radius, const Row& row, Visit&& visit) const {
-    const __m256 px = _mm256_set1_ps(x.x), py = _mm256_set1_ps(x.y), pz = _mm256_set1_ps(x.z);
-    const __m256 radius2 = _mm256_set1_ps(radius * radius);
+    const Float8 radius2(radius * radius);
     for (std::uint32_t k = row.begin; k < row.end; k += 8) {
-      const __m256 dx = _mm256_sub_ps(_mm256_loadu_ps(&x_[k]), px);
-      const __m256 dy = _mm256_sub_ps(_mm256_loadu_ps(&y_[k]), py);
-      const __m256 dz = _mm256_sub_ps(_mm256_loadu_ps(&z_[k]), pz);
-      const __m256 distance2 = _mm256_add_ps(
-          _mm256_add_ps(_mm256_mul_ps(dx, dx), _mm256_mul_ps(dy, dy)), _mm256_mul_ps(dz, dz));
-      const int near = _mm256_movemask_ps(_mm256_cmp_ps(distance2, radius2, _CMP_LE_OQ));
-      auto found = static_cast<std::uint32_t>(near);
+      const Float8 dx = Float8::load_unaligned(&x_[k]) - x.x;
+      const Float8 dy = Float8::load_unaligned(&y_[k]) - x.y;
+      const Float8 dz = Float8::load_unaligned(&z_[k]) - x.z;
+      const Float8 distance2 = dx * dx + dy * dy + dz * dz;
+      std::uint32_t found = movemask(radius2 >= distance2);
       if (row.end - k < 8) found &= (1U << (row.end - k)) - 1;
       if (found == 0) continue;
       alignas(32) std::array<float, 8> values;
-      _mm256_store_ps(values.data(), distance2);
+      distance2.store(values.data());
       for (; found != 0; found &= found - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(found));
         if (in_row(row, k + lane)) visit(k + lane, values[lane], 1.0F);

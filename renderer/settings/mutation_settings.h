@@ -31,8 +31,7 @@ struct MultiplexedSettings : PrimaryStepSettings {
   static constexpr std::string_view name = "multiplexed";
   static constexpr std::string_view doc =
       "changes the random numbers of a path; the strategy that samples it is one of them "
-      "(Hachisuka "
-      "et al. 2014)";
+      "(Hachisuka et al. 2014)";
   bool operator==(const MultiplexedSettings&) const = default;
 };
 template <class V>

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "jobs/statistics/distributions.h"
 #include "tests/statistics.h"
 
 namespace lacuna {
@@ -47,9 +48,8 @@ TEST(PrimarySamples, SmallStepsAreInDetailedBalance) {
       }
       uniform += std::pow(arrived - 100000.0 / bins, 2) / (100000.0 / bins);
     }
-    // Chi-square to its normal limit: p 1e-4 each.
-    EXPECT_LT((uniform - (bins - 1)) / std::sqrt(2.0 * (bins - 1)), 5) << distance;
-    EXPECT_LT((balance - pairs) / std::sqrt(2.0 * pairs), 5) << distance;
+    EXPECT_GT(chi_square_beyond(uniform, bins - 1), 1e-4) << distance;
+    EXPECT_GT(chi_square_beyond(balance, pairs), 1e-4) << distance;
     EXPECT_GE(pairs, bins) << "the torus has neighbours across its end";
   }
 }
