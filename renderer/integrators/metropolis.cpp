@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -56,14 +58,22 @@ class Metropolis final : public Integrator {
     const auto rate = [](std::uint64_t n, std::uint64_t of) {
       return of > 0 ? double(n) / double(of) : 0.0;
     };
-    return {{"mutations", double(proposed_[0] + proposed_[1])},
-            {"large_step_acceptance", rate(accepted_[0], proposed_[0])},
-            {"small_step_acceptance", rate(accepted_[1], proposed_[1])},
-            {"bootstrap_cpu_seconds", seconds_.bootstrap},
-            {"chains_cpu_seconds", seconds_.chains}};
+    std::vector<std::pair<std::string, double>> list{
+        {"mutations",
+         double(std::accumulate(proposed_.begin(), proposed_.end(), std::uint64_t{0}))},
+        {"bootstrap_cpu_seconds", seconds_.bootstrap},
+        {"chains_cpu_seconds", seconds_.chains}};
+    for (std::size_t i = 0; i < M::kinds.size(); ++i) {
+      list.emplace_back(fmt::format("{}_proposals", M::kinds[i]), double(proposed_[i]));
+      list.emplace_back(fmt::format("{}_acceptance", M::kinds[i]),
+                        rate(accepted_[i], proposed_[i]));
+    }
+    return list;
   }
 
  private:
+  using ByKind = std::array<std::uint64_t, M::kinds.size()>;  ///< numbers by kind of proposal
+
   static PathSettings direct_settings(const MetropolisSettings& s) {
     PathSettings direct;
     direct.max_depth = std::min(2, s.max_depth);
@@ -114,7 +124,7 @@ class Metropolis final : public Integrator {
         const std::size_t n = std::min(end - first, std::size_t{M::size});
         std::vector<Rng> rngs;
         for (std::size_t k = 0; k < n; ++k) rngs.push_back(sample_rng(context, first + k));
-        for (std::size_t k = 0; k < n; ++k) m.propose(k, Step::large, rngs[k]);
+        for (std::size_t k = 0; k < n; ++k) m.start(k, rngs[k]);
         m.evaluate(n, workspace, counters);
         for (std::size_t k = 0; k < n; ++k) scalars[first + k] = m.proposed(k).scalar;
       }
@@ -176,7 +186,7 @@ class Metropolis final : public Integrator {
                                        [](const Splat&) {});
       }
       for (const auto& batch : running) {
-        for (const std::size_t kind : {0, 1}) {
+        for (std::size_t kind = 0; kind < M::kinds.size(); ++kind) {
           proposed_[kind] += batch->proposed[kind];
           accepted_[kind] += batch->accepted[kind];
         }
@@ -187,10 +197,7 @@ class Metropolis final : public Integrator {
 
   /// Chains that one thread advances together.
   struct Batch {
-    Batch(const Metropolis& of, double share_)
-        : large_steps(static_cast<float>(of.mutation_.large_steps)),
-          m(of.mutation_, of.paths()),
-          share(share_) {}
+    Batch(const Metropolis& of, double share_) : m(of.mutation_, of.paths()), share(share_) {}
 
     /// `starts`: numbers of the samples; `first`: number of the first chain.
     void start(std::span<const std::size_t> starts, std::size_t first,
@@ -199,7 +206,7 @@ class Metropolis final : public Integrator {
       std::vector<Rng> samples;
       for (const std::size_t s : starts) samples.push_back(sample_rng(context, s));
       for (std::size_t k = 0; k < starts.size(); ++k) {
-        m.propose(k, Step::large, samples[k]);
+        m.start(k, samples[k]);
         rngs.emplace_back(context.seed, context.iteration, first + k, Rng::Purpose::chain);
       }
       m.evaluate(starts.size(), workspace, counters);
@@ -208,21 +215,16 @@ class Metropolis final : public Integrator {
 
     void advance(typename M::Workspace& workspace, Counters& counters, Splats& splats) {
       const std::size_t n = rngs.size();
-      for (std::size_t k = 0; k < n; ++k) {
-        steps[k] = rngs[k].decide(large_steps) ? Step::large : Step::small;
-        m.propose(k, steps[k], rngs[k]);
-      }
+      for (std::size_t k = 0; k < n; ++k) m.propose(k, rngs[k]);
       m.evaluate(n, workspace, counters);
       for (std::size_t k = 0; k < n; ++k) decide(k, splats);
     }
 
     /// Both states count, by the probability that the chain is there next (Veach 1997, 11.3.2.1).
     void decide(std::size_t k, Splats& splats) {
-      const double now = m.current(k).scalar, next = m.proposed(k).scalar;
-      const double reverse = steps[k] == Step::large ? 1.0 : m.reverse_ratio(k);
-      const double a = next > 0 ? std::min(1.0, next / now * reverse) : 0.0;
+      const double a = m.proposed(k).scalar > 0 ? std::min(1.0, m.acceptance_ratio(k)) : 0.0;
       stay[k] += 1 - a;
-      const auto kind = static_cast<std::size_t>(steps[k]);
+      const std::size_t kind = m.kind(k);
       ++proposed[kind];
       if (rngs[k].decide(static_cast<float>(a))) {
         ++accepted[kind];
@@ -249,19 +251,17 @@ class Metropolis final : public Integrator {
       }
     }
 
-    float large_steps;
     M m;
     double share;
     std::vector<Rng> rngs = {};
-    std::array<Step, M::size> steps{};
     std::array<double, M::size> stay{};  // weight of the current state that is not deposited yet
-    std::array<std::uint64_t, 2> proposed{}, accepted{};  // by Step
+    ByKind proposed{}, accepted{};
   };
 
   MetropolisSettings settings_;
   Settings mutation_;
   PathTracer<BsdfGuide> direct_;
-  std::array<std::uint64_t, 2> proposed_{}, accepted_{};
+  ByKind proposed_{}, accepted_{};
   /// CPU seconds of all threads in the parts of an iteration.
   struct {
     double bootstrap = 0, chains = 0;

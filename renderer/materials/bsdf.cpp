@@ -5,9 +5,6 @@
 namespace lacuna {
 namespace {
 
-/// Rounding error of the cosine between float unit vectors: below it, not even the side is known.
-/// Only divisors are compared with it.
-
 /// Probabilities that a facet reflects and that it transmits.
 struct Coin {
   double reflect = 1, transmit = 0;
@@ -195,6 +192,14 @@ Pdf<SolidAngle> Bsdf::pdf_any(const V3f& wo, const V3f& wi, Transport transport)
   return Pdf<SolidAngle>(0.5F * (p + density(side < 0 ? -ng_ : ng_)));
 }
 
+double Bsdf::delta_probability(const Choice& c, const Interface::Split& split,
+                               bool transmitted) const {
+  if (transmitted && lobes_.interface.clear()) return c.clear;
+  if (!lobes_.interface.smooth()) return 0;
+  const Coin coin = lobes_.facets_transmit() ? Coin(split) : Coin();
+  return c.facets * (transmitted ? coin.transmit : coin.reflect);
+}
+
 std::optional<Bsdf::Draw> Bsdf::draw(const Seen& from, const Choice& c, const V3f& wo,
                                      double u_lobe, const V2f& u) const {
   const V3f& n = from.n;
@@ -213,13 +218,11 @@ std::optional<Bsdf::Draw> Bsdf::draw(const Seen& from, const Choice& c, const V3
   const Interface::Split split = lobes_.interface.split(cos_m, from.eta);
   Draw result;
   result.delta = smooth;
-  double p = c.clear;
   if (clear) {
     result.transmitted = true;
   } else {
     const Coin coin = lobes_.facets_transmit() ? Coin(split) : Coin();
     result.transmitted = u_lobe - c.clear >= c.facets * coin.reflect;
-    p = c.facets * (result.transmitted ? coin.transmit : coin.reflect);
   }
   if (result.transmitted) {
     const Fresnel f = fresnel_dielectric(cos_m, from.eta);
@@ -228,10 +231,49 @@ std::optional<Bsdf::Draw> Bsdf::draw(const Seen& from, const Choice& c, const V3
   } else {
     result.wi = reflect(wo, m);
   }
-  if (smooth)
+  if (smooth) {
+    const double p = delta_probability(c, split, result.transmitted);
     result.share =
         (result.transmitted ? split.transmitted : split.reflected) / static_cast<float>(p);
+  }
   return result;
+}
+
+float Bsdf::frame_probability(const V3f& w, const V3f& n) const {
+  if (flat_) return 1;
+  if (in_front_of_ns(w)) return 0.5F;
+  return n == ng_ || n == -ng_ ? 1 : 0;
+}
+
+std::optional<DeltaLobe> Bsdf::delta(const V3f& wo, bool transmitted) const {
+  const float side = dot(wo, ng_);
+  if (lobes_.kind != Lobes::Kind::layered || side == 0) return std::nullopt;
+  const V3f n = facing_normal(wo, side);
+  const Seen from = seen(n, wo);
+  if (!(from.cos_o > 0)) return std::nullopt;
+  const Interface::Split split = lobes_.interface.split(from.cos_o, from.eta);
+  DeltaLobe lobe;
+  lobe.p_radiance = delta_probability(choice(from), split, transmitted);
+  if (!(lobe.p_radiance > 0)) return std::nullopt;
+  if (transmitted) {
+    const Fresnel f = fresnel_dielectric(from.cos_o, from.eta);
+    if (f.total) return std::nullopt;
+    lobe.wi = refract(wo, n, from.eta, f.cos_t);
+    lobe.value = split.transmitted / (from.eta * from.eta);
+  } else {
+    lobe.wi = reflect(wo, n);
+    lobe.value = split.reflected;
+  }
+  if (passage(from, lobe.wi) != (transmitted ? -1 : 1)) return std::nullopt;
+  const Seen back = seen(transmitted ? -n : n, lobe.wi);
+  if (!(back.cos_o > 0)) return std::nullopt;
+  if (transmitted) {  // eta^2 cos_i dwi = cos_o dwo
+    lobe.jacobian = double(from.cos_o) / (double(from.eta) * double(from.eta) * double(back.cos_o));
+  }
+  lobe.p_importance =
+      delta_probability(choice(back), lobes_.interface.split(back.cos_o, back.eta), transmitted) *
+      double(frame_probability(lobe.wi, n)) * lobe.jacobian;
+  return lobe;
 }
 
 std::optional<BsdfSample> Bsdf::finish_delta(const Draw& drawn, const Seen& from, const V3f& wo,

@@ -27,6 +27,18 @@ struct BsdfSample {
   float pdf_ratio = 1;
 };
 
+/// A delta lobe between two directions, as both transports sample it.
+struct DeltaLobe {
+  V3f wi;     ///< unit
+  Rgb value;  ///< f |cos| for radiance, without the delta in wi
+  /// Probability that radiance from wo is scattered to wi.
+  double p_radiance = 0;
+  /// Probability that importance from wi is scattered to wo, times `jacobian`.
+  double p_importance = 0;
+  /// The delta in wo over the delta in wi; not 1 where light is refracted.
+  double jacobian = 1;
+};
+
 /// Cosines below it are rounding noise.
 inline constexpr float cos_rounding = 0x1p-24F;
 
@@ -84,6 +96,10 @@ class Bsdf {
     if (plain_lambert(transport)) return sample_lambert(wo, u);
     return sample_any(wo, u_lobe, u, transport);
   }
+
+  /// The delta lobe that reflects or transmits the direction `wo`, towards the eye; nothing if
+  /// there is none.
+  std::optional<DeltaLobe> delta(const V3f& wo, bool transmitted) const;
 
   /// Some lobe is not a delta, so the vertex can be connected to others.
   bool connectible() const {
@@ -189,6 +205,10 @@ class Bsdf {
 
   std::optional<Draw> draw(const Seen& from, const Choice& c, const V3f& wo, double u_lobe,
                            const V2f& u) const;
+  /// Probability of the delta lobe of the facets, or of Interface::clear(); `split` is theirs.
+  double delta_probability(const Choice& c, const Interface::Split& split, bool transmitted) const;
+  /// Probability with which importance from `w` is scattered in the frame of `n`.
+  float frame_probability(const V3f& w, const V3f& n) const;
   std::optional<BsdfSample> finish_delta(const Draw& drawn, const Seen& from, const V3f& wo,
                                          float frame_probability, Transport transport) const;
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <concepts>
+#include <string_view>
 
 #include "renderer/core/rng.h"
 #include "renderer/mutations/chain_state.h"
@@ -9,12 +10,6 @@
 #include "renderer/settings/path_lengths.h"
 
 namespace lacuna {
-
-/// How a proposal is made from a chain's state.
-enum class Step {
-  large,  ///< independent of the state: any path may follow any other
-  small   ///< near the state
-};
 
 /// The paths that chains may contain.
 struct ChainPaths {
@@ -28,25 +23,30 @@ struct ChainPaths {
 /// - M(settings, paths).
 /// - M::Workspace(context, lengths): what evaluation needs beside the states. A thread has one for
 ///   all chains that it advances, one batch after the other; `context` outlives it.
-/// - propose(i, step, rng): chooses a proposal for chain i. A proposal of Step::large depends on
-///   `rng` alone: with equal ones two chains have equal proposals. `rng` is read until evaluate()
-///   has returned.
+/// - start(i, rng): chain i gets an independent sample as its proposal; it depends on `rng` alone.
+/// - propose(i, rng): chain i chooses a proposal. `rng` is read until evaluate() has returned, here
+///   and in start().
 /// - evaluate(n, workspace, counters): evaluates the proposals of chains [0, n).
-/// - current(i), proposed(i): what state and proposal contribute to the picture, with
-///   E of the pixels over Step::large times the number of pixels = the picture.
-/// - reverse_ratio(i): probability density of proposing the state from the proposal over that of
-///   the proposal from the state, in the measure in which ChainState::scalar is a density; 1 where
-///   proposals are symmetric.
+/// - current(i), proposed(i): what state and proposal contribute to the picture. E of the pixels of
+///   an independent sample, times the number of pixels, is the picture; those of other states have
+///   any scale.
+/// - acceptance_ratio(i): the target density of the proposal times the density of proposing the
+///   state from it, over the target density of the state times the density of the proposal from it
+///   (Veach 1997, eq. 11.5); not of start().
+/// - kinds, kind(i): names for the report, and which of them the proposal of chain i is.
 /// - accept(i): the proposal becomes the state.
 template <class M>
-concept Mutation = requires(M m, const M& k, std::size_t i, Step step, Rng& rng,
+concept Mutation = requires(M m, const M& k, std::size_t i, Rng& rng,
                             typename M::Workspace& workspace, Counters& counters) {
   { M::size } -> std::convertible_to<std::size_t>;
-  m.propose(i, step, rng);
+  { M::kinds[0] } -> std::convertible_to<std::string_view>;
+  m.start(i, rng);
+  m.propose(i, rng);
   m.evaluate(i, workspace, counters);
   { k.current(i) } -> std::same_as<const ChainState&>;
   { k.proposed(i) } -> std::same_as<const ChainState&>;
-  { k.reverse_ratio(i) } -> std::same_as<double>;
+  { k.acceptance_ratio(i) } -> std::same_as<double>;
+  { k.kind(i) } -> std::same_as<std::size_t>;
   m.accept(i);
 };
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "renderer/mutations/length_choice.h"
 #include "renderer/mutations/mutation.h"
 #include "renderer/mutations/path_evaluator.h"
 #include "renderer/settings/mutation_settings.h"
@@ -17,18 +17,23 @@ template <class Technique>
 class PrimarySampleChains {
  public:
   static constexpr std::size_t size = PathEvaluator::size;
+  static constexpr std::array kinds{"large_step", "small_step"};
 
   using Workspace = PathEvaluator;
 
   PrimarySampleChains(const PrimaryStepSettings& settings, const ChainPaths& paths)
       : settings_(settings), paths_(paths) {}
 
-  void propose(std::size_t i, Step step, Rng& rng) {
+  void start(std::size_t i, Rng& rng) {
     Chain& c = chains_[i];
-    if (step == Step::large) {
-      for (PrimarySamples* p : {&c.control, &c.eye, &c.light}) p->propose_fresh(rng);
-      return;
-    }
+    c.kind = 0;
+    for (PrimarySamples* p : {&c.control, &c.eye, &c.light}) p->propose_fresh(rng);
+  }
+
+  void propose(std::size_t i, Rng& rng) {
+    if (rng.decide(static_cast<float>(settings_.large_steps))) return start(i, rng);
+    Chain& c = chains_[i];
+    c.kind = 1;
     // All numbers move at one scale: the largest move decides whether a proposal is accepted, and
     // smaller ones beside it would explore less. Where one of the two paths stays, the other meets
     // the same light, or the same surface is lit in another way.
@@ -53,7 +58,12 @@ class PrimarySampleChains {
 
   const ChainState& current(std::size_t i) const { return chains_[i].current; }
   const ChainState& proposed(std::size_t i) const { return chains_[i].proposed; }
-  static double reverse_ratio(std::size_t) { return 1; }
+  /// Proposals are symmetric.
+  double acceptance_ratio(std::size_t i) const {
+    const Chain& c = chains_[i];
+    return c.proposed.scalar / c.current.scalar;
+  }
+  std::size_t kind(std::size_t i) const { return chains_[i].kind; }
 
   void accept(std::size_t i) {
     Chain& c = chains_[i];
@@ -67,6 +77,7 @@ class PrimarySampleChains {
   struct Chain {
     PrimarySamples control, eye, light;
     ChainState current, proposed;
+    std::size_t kind = 0;
   };
   PrimaryStepSettings settings_;
   ChainPaths paths_;
@@ -87,15 +98,11 @@ struct AllTechniques {
 /// transport").
 struct OneTechnique {
   static WantedPaths choose(const ChainPaths& paths, Rng& control) {
-    // Long paths carry less light, and there may be a thousand lengths: log-uniform.
-    const int number = paths.lengths.max_depth - paths.least_edges + 1;
-    const double range = std::log(number + 1.0), u = control.next_choice();
-    const int longer = std::clamp(static_cast<int>(std::exp(u * range)) - 1, 0, number - 1);
-    const double probability = std::log((longer + 2.0) / (longer + 1.0)) / range;
-    const int edges = paths.least_edges + longer;
+    const LengthChoice lengths(paths);
+    const int edges = lengths.sample(control.next_choice());
     const int s = static_cast<int>(control.below(static_cast<std::uint64_t>(edges) + 1));
     const int t = edges + 1 - s;
-    return {s, s, t, t, edges, edges, static_cast<float>((edges + 1) / probability)};
+    return {s, s, t, t, edges, edges, static_cast<float>((edges + 1) / lengths.probability(edges))};
   }
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "renderer/mutations/path_space.h"
 #include "renderer/mutations/primary_sample.h"
 #include "renderer/path/strategy.h"
 
@@ -7,7 +8,8 @@ namespace lacuna {
 
 /// All mutations. A new one is a row here and an alternative of MutationSettings.
 using MutationRegistry = Registry<Entry<MultiplexedSettings, MultiplexedMutation>,
-                                  Entry<PrimarySampleSettings, PrimarySampleMutation>>;
+                                  Entry<PrimarySampleSettings, PrimarySampleMutation>,
+                                  Entry<PathSpaceSettings, PathSpaceMutation>>;
 
 static_assert(std::is_same_v<MutationRegistry::Settings, MutationSettings>,
               "the registry and the settings list the same choices in the same order");

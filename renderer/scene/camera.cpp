@@ -79,10 +79,9 @@ std::optional<V2f> Camera::project(const V3f& w) const {
   const double square = pixel_ * pixel_;
   const V2f at(static_cast<float>(on_film.dot(dx_) / square),
                static_cast<float>(on_film.dot(dy_) / square));
-  const float margin = filter_ == PixelFilter::box ? 0.0F : 0.5F;
-  const bool seen = at.x >= -margin && at.y >= -margin &&
-                    at.x < static_cast<float>(width_) + margin &&
-                    at.y < static_cast<float>(height_) + margin;
+  const bool seen = at.x >= -margin() && at.y >= -margin() &&
+                    at.x < static_cast<float>(width_) + margin() &&
+                    at.y < static_cast<float>(height_) + margin();
   return seen ? std::optional(at) : std::nullopt;
 }
 

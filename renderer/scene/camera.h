@@ -72,6 +72,8 @@ class Camera {
   /// Of the film, in pixels.
   int width() const { return width_; }
   int height() const { return height_; }
+  /// Pixels beyond the film that the filter of its pixels reaches.
+  float margin() const { return filter_ == PixelFilter::box ? 0.0F : 0.5F; }
   const V3f& position() const { return position_; }
   const V3f& forward() const { return forward_; }
 

@@ -52,7 +52,55 @@ void describe(V& v, PrimarySampleSettings& s) {
   describe_steps(v, s);
 }
 
+/// mutation: path_space.
+struct PathSpaceSettings {
+  static constexpr std::string_view name = "path_space";
+  static constexpr std::string_view doc =
+      "changes some vertices of a path: replaces a part of it, or turns one of its directions "
+      "(Veach and Guibas 1997)";
+
+  double large_steps = 0.01;
+  double bidirectional = 0.25;
+  double lens = 0.35;
+  double largest_angle = 0.5;
+  double largest_lens = 0.1;
+  double octaves = 8;
+  double least_tested = 0.1;
+  bool operator==(const PathSpaceSettings&) const = default;
+};
+template <class V>
+void describe(V& v, PathSpaceSettings& s) {
+  v("large_steps", s.large_steps,
+    {.doc = "probability of a proposal that is independent of the state", .min = 0, .max = 1});
+  v("bidirectional", s.bidirectional,
+    {.doc = "probability of replacing a part of the path; the other proposals are perturbations",
+     .min = 0,
+     .max = 1});
+  v("lens", s.lens,
+    {.doc = "probability of moving the path on the film; the other perturbations turn a direction "
+            "between two of its vertices",
+     .min = 0,
+     .max = 1});
+  v("largest_angle", s.largest_angle,
+    {.doc = "largest angle that a direction is turned by, radians", .min = 1e-6, .max = 3});
+  v("largest_lens", s.largest_lens,
+    {.doc = "largest distance that a path moves on the film, in heights of the picture",
+     .min = 1e-6,
+     .max = 1});
+  v("octaves", s.octaves,
+    {.doc = "both distances are divided by a power of 2, its exponent uniform in 0 to `octaves`",
+     .min = 0,
+     .max = 20});
+  v("least_tested", s.least_tested,
+    {.doc = "a proposal whose probability of acceptance is below this gets its shadow ray with a "
+            "probability only",
+     .min = 0,
+     .max = 1,
+     .above_min = true});
+}
+
 /// How a chain's next path is proposed.
-using MutationSettings = std::variant<MultiplexedSettings, PrimarySampleSettings>;
+using MutationSettings =
+    std::variant<MultiplexedSettings, PrimarySampleSettings, PathSpaceSettings>;
 
 }  // namespace lacuna

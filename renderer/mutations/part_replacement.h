@@ -1,0 +1,34 @@
+#pragma once
+
+#include "renderer/mutations/mutation.h"
+#include "renderer/mutations/path_builder.h"
+
+namespace lacuna {
+
+/// Veach's bidirectional mutation (Veach 1997, sec. 11.4.2): deletes the vertices between x_first
+/// and x_last and samples others in their place, some from the eye's side and some from the
+/// light's. A part may reach to the emitter, which is then chosen anew, and to the first vertex
+/// behind the eye.
+class PartReplacement {
+ public:
+  explicit PartReplacement(const ChainPaths& paths) : paths_(paths) {}
+
+  /// Builds a proposal from `path`; false where it found none.
+  bool propose(const WholePath& path, PathBuilder& builder, Rng& rng);
+  /// Density of proposing `from` from `to` over that of `to` from `from`, the last proposal.
+  long double reverse_ratio(const PathMeasure& measure, const VertexPool& pool,
+                            const WholePath& from, const WholePath& to) const;
+
+ private:
+  /// Probability of deleting `deleted` vertices of a path of `edges`, at one of the places, and of
+  /// sampling `added` instead; 0 where it is not allowed. `to_end`: the emitter is deleted too.
+  double probability(int edges, int deleted, int added, bool to_end) const;
+  /// Weight of `added` in the choice that `edges` and `deleted` leave.
+  double weight(int edges, int deleted, int added, bool to_end) const;
+
+  ChainPaths paths_;
+  int first_ = 0, deleted_ = 0, added_ = 0;
+  bool to_end_ = false;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,190 @@
+#include "renderer/mutations/path_builder.h"
+
+#include <algorithm>
+
+#include "renderer/path/connect.h"
+
+namespace lacuna {
+namespace {
+
+V3f origin(const Vertex& v, const V3f& w) {
+  return offset_origin(v.surface.x, v.surface.ng, v.surface.extent, w);
+}
+
+/// A segment's end at `v`; `w` points away from it. Points in space are not moved.
+V3f segment_end(const Vertex& v, const V3f& w) {
+  return v.surface.extent > 0 ? origin(v, w) : v.surface.x;
+}
+
+}  // namespace
+
+void PathBuilder::keep(const WholePath& path, int first, int last) {
+  keep_eye(path, first);
+  keep_light(path, last);
+}
+
+void PathBuilder::keep_eye(const WholePath& path, int first) {
+  eye_.assign(path.nodes.begin(), path.nodes.begin() + first + 1);
+  kept_eye_ = eye_.size();
+}
+
+void PathBuilder::keep_light(const WholePath& path, int last) {
+  light_.assign(path.nodes.rbegin(), path.nodes.rend() - last);
+  kept_light_ = light_.size();
+}
+
+bool PathBuilder::sample_from_eye(int n, Rng& rng) {
+  for (int i = 0; i < n; ++i) {
+    const bool met = eye_.size() == 1 ? look_through(measure_.film_point(rng.next2()))
+                                      : scatter(eye_, Transport::radiance, rng);
+    if (!met) return false;
+  }
+  return true;
+}
+
+bool PathBuilder::sample_from_light(int n, Rng& rng) {
+  for (int i = 0; i < n; ++i) {
+    bool met = false;
+    if (light_.empty()) {
+      met = start_light(rng);
+    } else if (light_.size() == 1) {
+      met = leave_light(rng);
+    } else {
+      met = scatter(light_, Transport::importance, rng);
+    }
+    if (!met) return false;
+  }
+  return true;
+}
+
+bool PathBuilder::look_through(const V2f& at) {
+  return arrive(measure_.camera().ray(at.x, at.y), eye_);
+}
+
+bool PathBuilder::arrive(const Ray& ray, std::vector<PathNode>& end) {
+  const Scene& scene = measure_.scene();
+  ++counters_.rays;
+  Hit hit;
+  const bool met = scene.rays().intersect(ray, hit);
+  if (!met && &end == &light_) return false;
+  const std::uint32_t id = pool_.take();
+  end.push_back({id, false, false});
+  Vertex& v = pool_[id].v;
+  v.wp = -ray.d;
+  if (met) {
+    v.kind = Vertex::Kind::surface;
+    v.surface = scene.surface(hit);
+    scene.make_bsdf(v.surface, v.bsdf);
+  } else {
+    v.kind = Vertex::Kind::background;
+    v.surface.x = ray.d;
+    v.bsdf.reset();
+  }
+  return true;
+}
+
+bool PathBuilder::scatter(std::vector<PathNode>& end, Transport transport, Rng& rng) {
+  PathNode& node = end.back();
+  const Vertex& v = vertex(node);
+  if (v.kind != Vertex::Kind::surface) return false;
+  const V3f from = span_between(v, vertex(end[end.size() - 2])).w;
+  const auto [u_lobe, u] = rng.next_choice_and_point();
+  const auto next = v.bsdf->sample(from, u_lobe, u, transport);
+  if (!next) return false;
+  node.delta = next->delta;
+  node.transmitted = next->transmitted;
+  return arrive({origin(v, next->wi), next->wi}, end);
+}
+
+bool PathBuilder::start_light(Rng& rng) {
+  const EmitterSet& emitters = measure_.scene().emitters();
+  if (emitters.empty()) return false;
+  const std::uint32_t id = pool_.take();
+  light_.push_back({id, false, false});
+  PathVertex& p = pool_[id];
+  p.emitter = emitters.sample(emitters.choose(rng), rng);
+  p.v.kind = p.emitter.infinite() ? Vertex::Kind::background : Vertex::Kind::emitter;
+  p.v.surface.x = p.emitter.x;
+  p.v.surface.ng = p.emitter.ng;
+  p.v.surface.extent = p.emitter.kind == EmitterPoint::Kind::area ? p.emitter.extent : 0.0F;
+  p.v.bsdf.reset();
+  return true;
+}
+
+bool PathBuilder::leave_light(Rng& rng) {
+  const auto leaving =
+      measure_.scene().emitters().sample_first_edge(pool_[light_.front().vertex].emitter, rng);
+  return leaving && arrive(leaving->ray, light_);
+}
+
+bool PathBuilder::go_from_eye(const V3f& w) {
+  eye_.back().delta = false;
+  return arrive({origin(vertex(eye_.back()), w), w}, eye_);
+}
+
+bool PathBuilder::go_from_light(const V3f& w) {
+  light_.back().delta = false;
+  return arrive({segment_end(vertex(light_.back()), w), w}, light_);
+}
+
+bool PathBuilder::follow_from_eye(bool transmitted) {
+  PathNode& node = eye_.back();
+  const Vertex& v = vertex(node);
+  if (v.kind != Vertex::Kind::surface) return false;
+  const auto lobe = v.bsdf->delta(v.wp, transmitted);
+  if (!lobe) return false;
+  node.delta = true;
+  node.transmitted = transmitted;
+  return arrive({origin(v, lobe->wi), lobe->wi}, eye_);
+}
+
+bool PathBuilder::follow_from_light(bool transmitted) {
+  PathNode& node = light_.back();
+  const Vertex& v = vertex(node);
+  const auto lobe = v.bsdf->delta(v.wp, transmitted);
+  if (!lobe) return false;
+  // Eye and light may see the surface with different normals; then no eye sees this lobe.
+  const auto seen = v.bsdf->delta(lobe->wi, transmitted);
+  if (!seen || (seen->wi - v.wp).length2() > 1e-6F) return false;
+  node.delta = true;
+  node.transmitted = transmitted;
+  return arrive({origin(v, lobe->wi), lobe->wi}, light_);
+}
+
+bool PathBuilder::end_on_emitter() {
+  PathVertex& last = pool_[eye_.back().vertex];
+  eye_.back().delta = false;
+  const std::optional<EmitterPoint> e = emitter_at(measure_.scene(), last.v);
+  if (e) last.emitter = *e;
+  return e.has_value();
+}
+
+void PathBuilder::join(WholePath& path) {
+  eye_.back().delta = false;
+  if (!light_.empty()) light_.back().delta = false;
+  path.nodes.assign(eye_.begin(), eye_.end());
+  path.nodes.insert(path.nodes.end(), light_.rbegin(), light_.rend());
+}
+
+bool PathBuilder::visible() const {
+  if (light_.empty()) return true;
+  const Vertex& a = vertex(eye_.back());
+  const Vertex& b = vertex(light_.back());
+  const V3f w = span_between(a, b).w;
+  const V3f from = a.kind == Vertex::Kind::eye ? a.surface.x : origin(a, w);
+  ++counters_.shadow_rays;
+  const Ray ray = b.kind == Vertex::Kind::background ? Ray{from, w}
+                                                     : Ray{from, segment_end(b, -w) - from, 1.0F};
+  return !measure_.scene().rays().occluded(ray);
+}
+
+void PathBuilder::abandon() {
+  const auto give_back = [&](std::vector<PathNode>& end, std::size_t kept) {
+    for (std::size_t i = kept; i < end.size(); ++i) pool_.give_back(end[i].vertex);
+    end.resize(std::min(kept, end.size()));
+  };
+  give_back(eye_, kept_eye_);
+  give_back(light_, kept_light_);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "renderer/mutations/whole_path.h"
+#include "renderer/scene/camera.h"
+#include "renderer/scene/scene.h"
+
+namespace lacuna {
+
+/// The contribution of whole paths, and the densities with which their vertices are sampled from
+/// the eye and from the light. Of a scene and a camera, which outlive it.
+class PathMeasure {
+ public:
+  PathMeasure(const Scene& scene, const Camera& camera);
+
+  /// Computes edges, film position and contribution of `path` from its nodes, as if all edges were
+  /// visible. False where it is black or no pixel sees it.
+  bool evaluate(WholePath& path, const VertexPool& pool) const;
+
+  /// Density of x_i, 1 <= i <= k, for a walk from the eye that came to x_{i-1}.
+  double from_eye(const WholePath& path, const VertexPool& pool, int i) const;
+  /// Density of x_i, 1 <= i <= k, for a walk from the light that came to x_{i+1}.
+  double from_light(const WholePath& path, const VertexPool& pool, int i) const;
+  /// The same densities where the direction towards x_i, or the film position, has density 1 and
+  /// delta lobes have probability 1.
+  double per_direction_from_eye(const WholePath& path, const VertexPool& pool, int i) const;
+  double per_direction_from_light(const WholePath& path, const VertexPool& pool, int i) const;
+  /// The sum over all j, first <= j < last, of the density with which the vertices between
+  /// x_first and x_last are sampled: those up to x_j from the eye's side, the others from the
+  /// light's, and x_j and x_{j+1} joined. With last = k + 1, the light's side starts on an emitter,
+  /// and for j = k the walk from the eye hits it.
+  long double between(const WholePath& path, const VertexPool& pool, int first, int last) const;
+
+  /// A point of the film, uniform over all positions that a pixel sees.
+  V2f film_point(const V2f& u) const {
+    return {u.x * film_size_.x - margin_, u.y * film_size_.y - margin_};
+  }
+  bool on_film(const V2f& at) const {
+    return at.x >= -margin_ && at.y >= -margin_ && at.x < film_size_.x - margin_ &&
+           at.y < film_size_.y - margin_;
+  }
+  const Scene& scene() const { return scene_; }
+  const Camera& camera() const { return camera_; }
+
+ private:
+  const Scene& scene_;
+  const Camera& camera_;
+  float pixels_;  // number of pixels
+  float margin_;  // pixels beyond the film that the filter reaches
+  V2f film_size_;
+};
+
+/// The direction from `a` to `b`, unit, and the squared distance; 1 if `b` is at infinity. A
+/// distance of 0 has no direction.
+struct Span {
+  V3f w{0, 0, 0};
+  float distance2 = 1;
+};
+Span span_between(const Vertex& a, const Vertex& b);
+
+}  // namespace lacuna

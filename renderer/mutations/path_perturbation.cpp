@@ -1,0 +1,96 @@
+#include "renderer/mutations/path_perturbation.h"
+
+#include <cmath>
+
+#include "renderer/core/frame.h"
+
+namespace lacuna {
+namespace {
+
+/// Log-uniform in (largest 2^-octaves, largest].
+double distance(double largest, double octaves, Rng& rng) {
+  return largest * std::exp2(-octaves * rng.next_choice());
+}
+
+}  // namespace
+
+V3f PathPerturbation::turned(const V3f& w, Rng& rng) const {
+  const auto angle = static_cast<float>(distance(settings_.largest_angle, settings_.octaves, rng));
+  const float phi = 2 * pi * rng.next();
+  const float s = std::sin(angle);
+  return Frame(w).to_world({s * std::cos(phi), s * std::sin(phi), std::cos(angle)}).normalized();
+}
+
+V2f PathPerturbation::moved(const V2f& at, const PathBuilder& builder, Rng& rng) const {
+  const double size = settings_.largest_lens * builder.measure().camera().height();
+  const auto r = static_cast<float>(distance(size, settings_.octaves, rng));
+  const float phi = 2 * pi * rng.next();
+  return at + V2f(r * std::cos(phi), r * std::sin(phi));
+}
+
+bool PathPerturbation::propose_from_eye(const WholePath& path, int start, PathBuilder& builder,
+                                        Rng& rng) {
+  const int k = path.edge_count();
+  from_eye_ = true;
+  first_ = start + 1;
+  if (path.node(start).delta) return false;
+  builder.keep(path, start, k + 1);
+  for (int i = start + 1;; ++i) {
+    const PathNode& before = path.node(i - 1);
+    bool met = false;
+    if (before.delta) {
+      met = builder.follow_from_eye(before.transmitted);
+    } else if (i == 1) {
+      const V2f at = moved(path.film, builder, rng);
+      met = builder.measure().on_film(at) && builder.look_through(at);
+    } else {
+      met = builder.go_from_eye(turned(path.edge(i - 1).w, rng));
+    }
+    if (!met) return false;
+    last_ = i;
+    if (i == k) return builder.end_on_emitter();
+    if (!builder.eye_on_surface()) return false;
+    if (!path.node(i).delta && !path.node(i + 1).delta) {
+      builder.keep_light(path, i + 1);
+      return true;
+    }
+  }
+}
+
+bool PathPerturbation::propose_from_light(const WholePath& path, int start, PathBuilder& builder,
+                                          Rng& rng) {
+  from_eye_ = false;
+  last_ = start - 1;
+  if (path.node(start).delta || start == 1) return false;
+  builder.keep(path, 0, start);
+  if (builder.light_is_infinite()) return false;
+  for (int i = start - 1; i > 0; --i) {
+    const PathNode& before = path.node(i + 1);
+    const bool met = before.delta ? builder.follow_from_light(before.transmitted)
+                                  : builder.go_from_light(turned(-path.edge(i).w, rng));
+    if (!met) return false;
+    first_ = i;
+    if (!path.node(i).delta && !path.node(i - 1).delta) {
+      builder.keep_eye(path, i - 1);
+      return true;
+    }
+  }
+  return false;
+}
+
+long double PathPerturbation::reverse_ratio(const PathMeasure& measure, const VertexPool& pool,
+                                            const WholePath& from, const WholePath& to) const {
+  long double ratio = 1;
+  for (int i = first_; i <= last_; ++i) {
+    if (from_eye_) {
+      ratio *= measure.per_direction_from_eye(from, pool, i) /
+               measure.per_direction_from_eye(to, pool, i);
+    } else {
+      ratio *= measure.per_direction_from_light(from, pool, i) /
+               measure.per_direction_from_light(to, pool, i);
+    }
+  }
+  return ratio;
+}
+
+}  // namespace lacuna
