@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "analysis/geometry/morton.h"
 #include "renderer/core/pass_seconds.h"
 #include "renderer/integrators/integrators.h"
 #include "renderer/integrators/path_tracer.h"
@@ -40,12 +41,15 @@ class Metropolis final : public Integrator {
     const double pixels = double(image.width) * image.height;
     const ChainPlan plan = make_plan(pixels);
     PassSeconds pass;
-    std::vector<double> scalars(static_cast<std::size_t>(plan.samples));
-    counters += bootstrap(context, scalars);
+    std::vector<Sample> samples(static_cast<std::size_t>(plan.samples));
+    counters += bootstrap(context, samples);
     pass.end(seconds_.bootstrap);
-    const double sum = std::accumulate(scalars.begin(), scalars.end(), 0.0);
-    if (!(sum > 0)) return counters;
-    const std::vector<std::size_t> starts = choose_starts(context, plan, scalars, sum);
+    std::erase_if(samples, [](const Sample& s) { return !(s.scalar > 0); });
+    if (samples.empty()) return counters;
+    std::ranges::sort(samples, {}, [](const Sample& s) { return std::pair(s.order, s.number); });
+    double sum = 0;
+    for (const Sample& s : samples) sum += s.scalar;
+    const std::vector<std::size_t> starts = choose_starts(context, plan, samples, sum);
     // A chain's states have the density scalar / brightness.
     const double brightness = sum / static_cast<double>(plan.samples);
     const double share = brightness * pixels / double(plan.chains * plan.mutations);
@@ -112,44 +116,59 @@ class Metropolis final : public Integrator {
     return Rng(context.seed, context.iteration, n, Rng::Purpose::bootstrap);
   }
 
-  /// Draws independent samples and stores their scalars.
-  Counters bootstrap(const IterationContext& context, std::vector<double>& scalars) const {
+  /// An independent sample of the bootstrap.
+  struct Sample {
+    double scalar = 0;
+    std::uint32_t order = 0;  ///< of its brightest pixel along a Morton curve
+    std::size_t number = 0;   ///< of its generator
+  };
+  static std::uint32_t film_order(const ChainState& state, int width) {
+    const auto brightest = std::ranges::max_element(
+        state.pixels, {}, [](const ChainState::Pixel& p) { return luminance(p.value); });
+    if (brightest == state.pixels.end()) return 0;
+    const auto w = static_cast<std::uint32_t>(width);
+    return static_cast<std::uint32_t>(morton_code(brightest->index % w, brightest->index / w, 0));
+  }
+
+  Counters bootstrap(const IterationContext& context, std::vector<Sample>& samples) const {
     constexpr std::size_t part = 16 * M::size;
-    const int parts = static_cast<int>((scalars.size() + part - 1) / part);
+    const int parts = static_cast<int>((samples.size() + part - 1) / part);
     return for_each_part(context, parts, [&](int i, Counters& counters) {
       M m(mutation_, paths());
       typename M::Workspace workspace(context, settings_);
-      const std::size_t end = std::min(scalars.size(), (std::size_t(i) + 1) * part);
+      const std::size_t end = std::min(samples.size(), (std::size_t(i) + 1) * part);
       for (std::size_t first = std::size_t(i) * part; first < end; first += M::size) {
         const std::size_t n = std::min(end - first, std::size_t{M::size});
         std::vector<Rng> rngs;
         for (std::size_t k = 0; k < n; ++k) rngs.push_back(sample_rng(context, first + k));
         for (std::size_t k = 0; k < n; ++k) m.start(k, rngs[k]);
         m.evaluate(n, workspace, counters);
-        for (std::size_t k = 0; k < n; ++k) scalars[first + k] = m.proposed(k).scalar;
+        for (std::size_t k = 0; k < n; ++k) {
+          const ChainState& state = m.proposed(k);
+          samples[first + k] = {state.scalar, film_order(state, context.camera.width()), first + k};
+        }
       }
     });
   }
 
-  /// The samples at which the chains start, drawn by systematic resampling: each in proportion to
-  /// its scalar.
+  /// Numbers of the samples at which the chains start: each in proportion to its scalar, by
+  /// systematic resampling along the film, so that each region of it has its share.
   static std::vector<std::size_t> choose_starts(const IterationContext& context,
                                                 const ChainPlan& plan,
-                                                const std::vector<double>& scalars, double sum) {
+                                                std::span<const Sample> samples, double sum) {
     constexpr std::uint64_t no_chain = (std::uint64_t{1} << 56) - 1;
     Rng rng(context.seed, context.iteration, no_chain, Rng::Purpose::chain);
     const double offset = rng.next_choice(), step = sum / static_cast<double>(plan.chains);
     std::vector<std::size_t> starts;
     double before = 0;
-    std::size_t n = 0, last = 0;  // `last`: that contributes anything
+    std::size_t n = 0;
     for (std::int64_t c = 0; c < plan.chains; ++c) {
       const double at = (static_cast<double>(c) + offset) * step;
-      while (n < scalars.size() && before + scalars[n] <= at) {
-        if (scalars[n] > 0) last = n;
-        before += scalars[n++];
-      }
       // Sums may round to less than the last positions.
-      starts.push_back(n < scalars.size() ? n : last);
+      while (n + 1 < samples.size() && before + samples[n].scalar <= at) {
+        before += samples[n++].scalar;
+      }
+      starts.push_back(samples[n].number);
     }
     return starts;
   }

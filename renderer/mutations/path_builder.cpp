@@ -159,11 +159,13 @@ bool PathBuilder::end_on_emitter() {
   return e.has_value();
 }
 
-void PathBuilder::join(WholePath& path) {
+bool PathBuilder::join(WholePath& path) {
+  if (!light_.empty() && vertex(eye_.back()).kind == Vertex::Kind::background) return false;
   eye_.back().delta = false;
   if (!light_.empty()) light_.back().delta = false;
   path.nodes.assign(eye_.begin(), eye_.end());
   path.nodes.insert(path.nodes.end(), light_.rbegin(), light_.rend());
+  return true;
 }
 
 bool PathBuilder::visible() const {

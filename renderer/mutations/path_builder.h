@@ -11,9 +11,16 @@ namespace lacuna {
 /// then abandoned.
 class PathBuilder {
  public:
-  /// The vertices that a path newly has are taken from `pool`; all three outlive the building.
-  PathBuilder(const PathMeasure& measure, VertexPool& pool, Counters& counters)
-      : measure_(measure), pool_(pool), counters_(counters) {}
+  /// The parts, kept from one path to the next for their memory.
+  struct Parts {
+    std::vector<PathNode> eye, light;  ///< from x_0 on; from x_k on, towards the eye
+  };
+  /// The vertices that a path newly has are taken from `pool`; all outlive the building.
+  PathBuilder(const PathMeasure& measure, VertexPool& pool, Parts& parts, Counters& counters)
+      : measure_(measure), pool_(pool), counters_(counters), eye_(parts.eye), light_(parts.light) {
+    eye_.clear();
+    light_.clear();
+  }
 
   /// Begins with the nodes of `path` up to x_first and from x_last on; none of the light's if
   /// `last` is k + 1.
@@ -47,8 +54,9 @@ class PathBuilder {
   bool eye_on_surface() const { return vertex(eye_.back()).kind == Vertex::Kind::surface; }
   bool light_is_infinite() const { return vertex(light_.back()).kind == Vertex::Kind::background; }
 
-  /// Joins the ends by a segment, if the light's is not empty, and writes the nodes to `path`.
-  void join(WholePath& path);
+  /// Joins the ends by a segment, if the light's is not empty, and writes the nodes to `path`. False
+  /// where the eye's end left the scene.
+  bool join(WholePath& path);
   /// The segment that joins both parts is unoccluded.
   bool visible() const;
   /// Gives back the vertices that were appended since keep().
@@ -64,7 +72,7 @@ class PathBuilder {
   const PathMeasure& measure_;
   VertexPool& pool_;
   Counters& counters_;
-  std::vector<PathNode> eye_, light_;  // from x_0 on; from x_k on, towards the eye
+  std::vector<PathNode>&eye_, &light_;
   std::size_t kept_eye_ = 0, kept_light_ = 0;
 };
 

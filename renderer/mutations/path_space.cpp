@@ -77,7 +77,7 @@ void PathSpaceMutation::evaluate(Chain& c, Workspace& workspace, Counters& count
   ++counters.samples;
   drop_proposal(c);
   c.pool[c.current.node(0).vertex].v.surface.x = workspace.measure.camera().position();
-  PathBuilder builder(workspace.measure, c.pool, counters);
+  PathBuilder builder(workspace.measure, c.pool, workspace.parts, counters);
   c.pending = propose(c, builder);
   if (!c.pending) builder.abandon();
 }
@@ -87,8 +87,7 @@ bool PathSpaceMutation::propose(Chain& c, PathBuilder& builder) const {
   PartReplacement replacement(paths_);
   PathPerturbation perturbation(settings_);
   if (!build(c, builder, replacement, perturbation)) return false;
-  builder.join(c.proposed);
-  if (!measure.evaluate(c.proposed, c.pool)) return false;
+  if (!builder.join(c.proposed) || !measure.evaluate(c.proposed, c.pool)) return false;
   if (c.starting) {
     const long double p = independent_density(measure, c.pool, c.proposed);
     if (!(p > 0) || !builder.visible()) return false;

@@ -24,6 +24,7 @@ class PathSpaceMutation {
         : context(c), measure(c.scene, c.camera) {}
     const IterationContext& context;
     PathMeasure measure;
+    PathBuilder::Parts parts;
     SparseStop stop;
   };
 

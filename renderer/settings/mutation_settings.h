@@ -60,11 +60,11 @@ struct PathSpaceSettings {
       "(Veach and Guibas 1997)";
 
   double large_steps = 0.01;
-  double bidirectional = 0.25;
-  double lens = 0.35;
+  double bidirectional = 0.15;
+  double lens = 0.7;
   double largest_angle = 0.5;
   double largest_lens = 0.1;
-  double octaves = 8;
+  double octaves = 5;
   double least_tested = 0.1;
   bool operator==(const PathSpaceSettings&) const = default;
 };
