@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "renderer/core/pass_seconds.h"
-#include "renderer/path/bsdf_guide.h"
+#include "renderer/guides/light_guide.h"
 #include "renderer/path/direct_light.h"
 #include "renderer/path/photon_map.h"
 #include "renderer/settings/photon_mapping_settings.h"
@@ -27,22 +27,29 @@ struct Density {
 /// Every path of light is counted once, by what its first rough vertex x from the eye receives:
 /// direct light; caustics, which reach x from an emitter by way of mirrors and glass only; the
 /// rest. With a final gather the rest comes from the photons at the next rough vertex.
+template <class GuideOfLight>
 class PhotonMapping final : public Integrator {
  public:
-  PhotonMapping(const PhotonTracing& settings, const Density& density)
-      : settings_(settings),
+  PhotonMapping(const PhotonTracing& settings, const Density& density, GuideOfLight light_guide)
+      : light_guide_(std::move(light_guide)),
+        settings_(settings),
         density_(density),
         least_alpha_(static_cast<float>(settings.least_roughness * settings.least_roughness)) {}
 
-  SceneNeeds needs() const override { return {.materials = true, .emission = true}; }
+  SceneNeeds needs() const override {
+    return {.materials = true, .emission = true, .space = light_guide_.needs_space()};
+  }
+  void prepare(const PrepareContext& context) override { light_guide_.prepare(context); }
 
   std::vector<std::pair<std::string, double>> statistics() const override {
-    return {{"photons", static_cast<double>(photons_.size() + caustics_.size())},
-            {"radius", photons_.radius()},
-            {"light_pass_cpu_seconds", seconds_.light},
-            {"photon_grid_cpu_seconds", seconds_.grid},
-            {"eye_pass_cpu_seconds", seconds_.eye},
-            {"look_up_cpu_seconds", seconds_.look_up}};
+    auto stats = light_guide_.statistics();
+    stats.emplace_back("photons", static_cast<double>(photons_.size() + caustics_.size()));
+    stats.emplace_back("radius", photons_.radius());
+    stats.emplace_back("light_pass_cpu_seconds", seconds_.light);
+    stats.emplace_back("photon_grid_cpu_seconds", seconds_.grid);
+    stats.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
+    stats.emplace_back("look_up_cpu_seconds", seconds_.look_up);
+    return stats;
   }
 
   Counters iterate(const IterationContext& context, Image& image) override {
@@ -111,8 +118,8 @@ class PhotonMapping final : public Integrator {
                                    settings_.max_depth,    settings_.roulette_depth,
                                    SampleCounts{.hit = 0}, true};
     return lacuna::light_pass(
-        context, setting, guide_, all, image,
-        [&](std::size_t path, const LightBatch<BsdfGuide>& batch, std::size_t i) {
+        context, setting, light_guide_, all, image,
+        [&](std::size_t path, const LightBatch<GuideOfLight>& batch, std::size_t i) {
           const auto number = static_cast<std::int64_t>(path);
           bool caustic = true;  // so far
           for (int s = 1; s < batch.length(i); ++s) {
@@ -272,7 +279,8 @@ class PhotonMapping final : public Integrator {
     return 1;
   }
 
-  BsdfGuide guide_;
+  BsdfGuide guide_;  ///< of eye paths
+  GuideOfLight light_guide_;
   PhotonTracing settings_;
   Density density_;
   float least_alpha_;
@@ -283,16 +291,22 @@ class PhotonMapping final : public Integrator {
   } seconds_;
 };
 
+std::unique_ptr<Integrator> make(const PhotonTracing& settings, const Density& density) {
+  return with_light_guide(
+      settings.light_guide, [&]<class Guide>(Guide guide) -> std::unique_ptr<Integrator> {
+        return std::make_unique<PhotonMapping<Guide>>(settings, density, std::move(guide));
+      });
+}
+
 }  // namespace
 
 std::unique_ptr<Integrator> make_sppm(const SppmSettings& settings) {
-  return std::make_unique<PhotonMapping>(settings, Density{});
+  return make(settings, Density{});
 }
 
 std::unique_ptr<Integrator> make_photon_map(const PhotonMapSettings& settings) {
-  return std::make_unique<PhotonMapping>(
-      settings, Density{static_cast<std::size_t>(settings.nearest), settings.final_gather,
-                        settings.caustic_paths});
+  return make(settings, Density{static_cast<std::size_t>(settings.nearest), settings.final_gather,
+                                settings.caustic_paths});
 }
 
 }  // namespace lacuna
