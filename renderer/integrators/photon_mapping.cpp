@@ -81,11 +81,17 @@ class PhotonMapping final : public Integrator {
     bool caustics = false;  ///< by mirrors and glass only
     bool others = false;
     bool any() const { return direct || caustics || others; }
-    bool of(const Photon& p) const {
-      if (p.index == 1) return direct;
-      return p.caustic ? caustics : others;
+    bool of(const Photon& p) const { return of(p.index, p.caustic); }
+    /// `index`, `caustic`: of the photon.
+    bool of(int index, bool caustic) const {
+      if (index == 1) return direct;
+      return caustic ? caustics : others;
     }
   };
+  /// At the first rough vertex, of photons_.
+  Wanted at_first() const {
+    return {!settings_.next_event_estimation, density_.caustic_paths == 0, !density_.final_gather};
+  }
   struct LookUp {
     std::uint32_t path;
     int depth;
@@ -117,6 +123,8 @@ class PhotonMapping final : public Integrator {
     const LightPathSetting setting{context.scene,          context.camera,
                                    settings_.max_depth,    settings_.roulette_depth,
                                    SampleCounts{.hit = 0}, true};
+    // What is never looked up is not stored: with next event estimation, a photon of each path.
+    const Wanted kept = density_.final_gather ? Wanted{true, true, true} : at_first();
     return lacuna::light_pass(
         context, setting, light_guide_, all, image,
         [&](std::size_t path, const LightBatch<GuideOfLight>& batch, std::size_t i) {
@@ -126,7 +134,7 @@ class PhotonMapping final : public Integrator {
             const Vertex& v = batch.vertex(i, s);
             if (!is_rough(v)) continue;
             const bool focused = caustic && s > 1;
-            if (number < paths) photons_.keep(path, v, s, focused);
+            if (number < paths && kept.of(s, focused)) photons_.keep(path, v, s, focused);
             if (focused && number < density_.caustic_paths) caustics_.keep(path, v, s, true);
             caustic = caustic && v.delta;
           }
@@ -217,7 +225,7 @@ class PhotonMapping final : public Integrator {
 
   void look_up(const IterationContext& context, double paths, Part& part) const {
     const bool apart = density_.caustic_paths > 0;
-    const Wanted at_first{!settings_.next_event_estimation, !apart, !density_.final_gather};
+    const Wanted first = at_first();
     const double begin = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
     for (const LookUp& at : part.look_ups) {
       part.stop.check(context);
@@ -226,8 +234,8 @@ class PhotonMapping final : public Integrator {
         radiance += estimate(photons_, {true, true, true}, at, part) / static_cast<float>(paths);
         continue;
       }
-      if (at_first.any()) {
-        radiance += estimate(photons_, at_first, at, part) / static_cast<float>(paths);
+      if (first.any()) {
+        radiance += estimate(photons_, first, at, part) / static_cast<float>(paths);
       }
       if (apart) {
         radiance += estimate(caustics_, {false, true, false}, at, part) /
