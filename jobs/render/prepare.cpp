@@ -115,7 +115,7 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
 }
 
 void analyse(const Prepared& p) {
-  p.integrator->prepare({*p.scene, *p.pool, *p.space});
+  p.integrator->prepare({*p.scene, *p.pool, *p.space, *p.camera});
   p.space->close();
 }
 

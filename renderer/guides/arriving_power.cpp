@@ -11,40 +11,62 @@ struct Arrival {
   std::uint32_t part;
   double power;
 };
+/// What leaves along a ray.
+struct Sent {
+  Ray ray;
+  double power;
+};
 
-std::vector<Arrival> arrivals(const Scene& scene, const SurfaceLookup& lookup, int first, int end) {
-  std::vector<Arrival> all;
-  const EmitterSet& lights = scene.emitters();
-  for (int i = first; i < end; ++i) {
-    Rng rng(0, 0, static_cast<std::uint64_t>(i), Rng::Purpose::integrator);
-    const EmitterPoint e = lights.sample(lights.choose(rng), rng);
-    const std::optional<Leaving> leaving = lights.sample_first_edge(e, rng);
-    Hit hit;
-    if (!leaving || !scene.rays().intersect(leaving->ray, hit)) continue;
-    const Surface s = scene.surface(hit);
-    const std::uint32_t part = lookup.node(V3d(s.x), V3d(s.ng), -V3d(leaving->ray.d));
-    const auto power = double(luminance(leaving->throughput));
-    if (part != no_node && std::isfinite(power)) all.push_back({part, power});
+/// `send(rng)`: a Sent or nothing.
+template <class Send>
+std::vector<double> arriving(const Scene& scene, const SurfaceLookup& lookup, std::size_t count,
+                             int rays, const ThreadPool& pool, const Send& send) {
+  const int parts = (rays + rays_of_part - 1) / rays_of_part;
+  std::vector<std::vector<Arrival>> found(static_cast<std::size_t>(parts));
+  pool.for_each(parts, [&](int part) {
+    const int first = part * rays_of_part, end = std::min(rays, first + rays_of_part);
+    for (int i = first; i < end; ++i) {
+      Rng rng(0, 0, static_cast<std::uint64_t>(i), Rng::Purpose::integrator);
+      const std::optional<Sent> sent = send(rng);
+      Hit hit;
+      if (!sent || !scene.rays().intersect(sent->ray, hit)) continue;
+      const Surface s = scene.surface(hit);
+      const std::uint32_t node = lookup.node(V3d(s.x), V3d(s.ng), -V3d(sent->ray.d));
+      if (node != no_node && std::isfinite(sent->power)) {
+        found[static_cast<std::size_t>(part)].push_back({node, sent->power});
+      }
+    }
+  });
+  std::vector<double> power(count, 0.0);
+  for (const auto& of_part : found) {
+    for (const Arrival& a : of_part) power[a.part] += a.power / rays;
   }
-  return all;
+  return power;
 }
 
 }  // namespace
 
 std::vector<double> arriving_power(const Scene& scene, const SurfaceLookup& lookup,
                                    std::size_t count, int rays, const ThreadPool& pool) {
-  std::vector<double> power(count, 0.0);
-  if (scene.emitters().empty()) return power;
-  const int parts = (rays + rays_of_part - 1) / rays_of_part;
-  std::vector<std::vector<Arrival>> found(static_cast<std::size_t>(parts));
-  pool.for_each(parts, [&](int i) {
-    found[static_cast<std::size_t>(i)] =
-        arrivals(scene, lookup, i * rays_of_part, std::min(rays, (i + 1) * rays_of_part));
+  const EmitterSet& lights = scene.emitters();
+  if (lights.empty()) return std::vector<double>(count, 0.0);
+  return arriving(scene, lookup, count, rays, pool, [&](Rng& rng) -> std::optional<Sent> {
+    const EmitterPoint e = lights.sample(lights.choose(rng), rng);
+    const std::optional<Leaving> leaving = lights.sample_first_edge(e, rng);
+    if (!leaving) return std::nullopt;
+    return Sent{leaving->ray, double(luminance(leaving->throughput))};
   });
-  for (const auto& of_part : found) {
-    for (const Arrival& a : of_part) power[a.part] += a.power / rays;
-  }
-  return power;
+}
+
+std::vector<double> arriving_importance(const Scene& scene, const Camera& camera,
+                                        const SurfaceLookup& lookup, std::size_t count, int rays,
+                                        const ThreadPool& pool) {
+  return arriving(scene, lookup, count, rays, pool, [&](Rng& rng) -> std::optional<Sent> {
+    const V2f at = rng.next2();
+    return Sent{camera.ray(at.x * static_cast<float>(camera.width()),
+                           at.y * static_cast<float>(camera.height())),
+                1.0};
+  });
 }
 
 }  // namespace lacuna

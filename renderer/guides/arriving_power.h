@@ -4,6 +4,7 @@
 
 #include "analysis/parallel/thread_pool.h"
 #include "analysis/skeleton/surface_lookup.h"
+#include "renderer/scene/camera.h"
 #include "renderer/scene/scene.h"
 
 namespace lacuna {
@@ -14,5 +15,11 @@ namespace lacuna {
 /// for any number of threads.
 std::vector<double> arriving_power(const Scene& scene, const SurfaceLookup& lookup,
                                    std::size_t count, int rays, const ThreadPool& pool);
+
+/// The share of the picture in which each part's surfaces are seen, without mirrors: the power that
+/// arrives of an eye that emits importance. As arriving_power() otherwise.
+std::vector<double> arriving_importance(const Scene& scene, const Camera& camera,
+                                        const SurfaceLookup& lookup, std::size_t count, int rays,
+                                        const ThreadPool& pool);
 
 }  // namespace lacuna

@@ -6,15 +6,17 @@
 
 namespace lacuna {
 
-/// One-sample MIS of a GuidingDistribution and the BSDF (Noel 2015, 9.4). On eye paths a direction
-/// is sampled from the distribution with probability c of its guiding cell, else from the BSDF; its
-/// density is c p_guide + (1 - c) p_bsdf, which makes the weight the balance heuristic. Delta lobes
-/// are sampled by the BSDF alone. Light paths follow the BSDF. pdf() takes the transport, so each
-/// walk can evaluate the densities of the other.
+/// One-sample MIS of a GuidingDistribution and the BSDF (Noel 2015, 9.4). On the paths it guides,
+/// those from the eye unless told otherwise, a direction is sampled from the distribution with
+/// probability c of its guiding cell, else from the BSDF; its density is c p_guide + (1 - c)
+/// p_bsdf, which makes the weight the balance heuristic. Delta lobes are sampled by the BSDF alone.
+/// Paths of the other transport follow the BSDF. pdf() takes the transport, so each walk can
+/// evaluate the densities of the other.
 class MixedGuide {
  public:
-  explicit MixedGuide(std::unique_ptr<GuidingDistribution> directions)
-      : directions_(std::move(directions)) {}
+  explicit MixedGuide(std::unique_ptr<GuidingDistribution> directions,
+                      Transport guided = Transport::radiance)
+      : directions_(std::move(directions)), guided_(guided) {}
 
   bool needs_space() const { return directions_->needs_space(); }
   void prepare(const PrepareContext& context) {
@@ -71,7 +73,7 @@ class MixedGuide {
 
   std::optional<BsdfSample> sample(const Vertex& v, Rng& rng, Transport transport) const {
     const float c = v.guiding_cell.probability;
-    if (transport == Transport::importance || c == 0) return bsdf_.sample(v, rng, transport);
+    if (transport != guided_ || c == 0) return bsdf_.sample(v, rng, transport);
     if (rng.decide(c)) {
       const std::optional<V3f> w =
           directions_->sample({v.surface, *v.bsdf, v.wp, v.guiding_cell}, rng);
@@ -103,7 +105,7 @@ class MixedGuide {
   /// Density of `wi` for a walk of the given transport that arrived at `v` from `wo`.
   Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport) const {
     const Pdf<SolidAngle> bsdf = bsdf_.pdf(v, wo, wi, transport);
-    if (transport == Transport::importance) return bsdf;
+    if (transport != guided_) return bsdf;
     const bool this_side = (dot(wo, v.surface.ng) < 0) == (dot(v.wp, v.surface.ng) < 0);
     return mixed(v, wo, this_side ? v.guiding_cell : directions_->cell(v.surface, wo), wi, bsdf);
   }
@@ -117,6 +119,7 @@ class MixedGuide {
   }
 
   std::unique_ptr<GuidingDistribution> directions_;
+  Transport guided_;
   ReflectedRadiance reflected_;
   BsdfGuide bsdf_;
 };

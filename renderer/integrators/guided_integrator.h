@@ -4,7 +4,7 @@
 
 namespace lacuna {
 
-/// An integrator whose eye paths follow a guide (renderer/guides). The guide determines its needs,
+/// An integrator whose paths follow a guide (renderer/guides). The guide determines its needs,
 /// its preparation and its learned state.
 template <class Guide>
 class GuidedIntegrator : public Integrator {

@@ -1,6 +1,7 @@
 #include "renderer/integrators/integrators.h"
 
-#include "renderer/path/bsdf_guide.h"
+#include "renderer/guides/light_guide.h"
+#include "renderer/integrators/guided_integrator.h"
 #include "renderer/path/light_pass.h"
 #include "renderer/settings/light_settings.h"
 
@@ -9,11 +10,11 @@ namespace lacuna {
 namespace {
 
 /// Light tracing (Noel 2015, 4.2.5): the strategies t = 1 alone.
-class Light final : public Integrator {
+template <class Guide>
+class Light final : public GuidedIntegrator<Guide> {
  public:
-  explicit Light(const LightSettings& settings) : settings_(settings) {}
-
-  SceneNeeds needs() const override { return {.materials = true, .emission = true}; }
+  Light(const LightSettings& settings, Guide guide)
+      : GuidedIntegrator<Guide>(std::move(guide)), settings_(settings) {}
 
   Counters iterate(const IterationContext& context, Image& image) override {
     const std::int64_t paths = light_paths(settings_.light_paths, image);
@@ -23,8 +24,8 @@ class Light final : public Integrator {
                                    settings_.roulette_depth,
                                    {.hit = 0, .splat = static_cast<double>(paths)}};
     return light_pass(
-        context, setting, BsdfGuide{}, paths, image,
-        [](std::size_t, const LightBatch<BsdfGuide>&, std::size_t) {}, [](const Splat&) {});
+        context, setting, this->guide_, paths, image,
+        [](std::size_t, const LightBatch<Guide>&, std::size_t) {}, [](const Splat&) {});
   }
 
  private:
@@ -34,7 +35,10 @@ class Light final : public Integrator {
 }  // namespace
 
 std::unique_ptr<Integrator> make_light(const LightSettings& settings) {
-  return std::make_unique<Light>(settings);
+  return with_light_guide(settings.light_guide,
+                          [&]<class Guide>(Guide guide) -> std::unique_ptr<Integrator> {
+                            return std::make_unique<Light<Guide>>(settings, std::move(guide));
+                          });
 }
 
 }  // namespace lacuna

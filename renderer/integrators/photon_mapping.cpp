@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "renderer/core/pass_seconds.h"
-#include "renderer/path/bsdf_guide.h"
+#include "renderer/guides/light_guide.h"
 #include "renderer/path/direct_light.h"
 #include "renderer/path/photon_map.h"
 #include "renderer/settings/photon_mapping_settings.h"
@@ -27,22 +27,29 @@ struct Density {
 /// Every path of light is counted once, by what its first rough vertex x from the eye receives:
 /// direct light; caustics, which reach x from an emitter by way of mirrors and glass only; the
 /// rest. With a final gather the rest comes from the photons at the next rough vertex.
+template <class GuideOfLight>
 class PhotonMapping final : public Integrator {
  public:
-  PhotonMapping(const PhotonTracing& settings, const Density& density)
-      : settings_(settings),
+  PhotonMapping(const PhotonTracing& settings, const Density& density, GuideOfLight light_guide)
+      : light_guide_(std::move(light_guide)),
+        settings_(settings),
         density_(density),
         least_alpha_(static_cast<float>(settings.least_roughness * settings.least_roughness)) {}
 
-  SceneNeeds needs() const override { return {.materials = true, .emission = true}; }
+  SceneNeeds needs() const override {
+    return {.materials = true, .emission = true, .space = light_guide_.needs_space()};
+  }
+  void prepare(const PrepareContext& context) override { light_guide_.prepare(context); }
 
   std::vector<std::pair<std::string, double>> statistics() const override {
-    return {{"photons", static_cast<double>(photons_.size() + caustics_.size())},
-            {"radius", photons_.radius()},
-            {"light_pass_cpu_seconds", seconds_.light},
-            {"photon_grid_cpu_seconds", seconds_.grid},
-            {"eye_pass_cpu_seconds", seconds_.eye},
-            {"look_up_cpu_seconds", seconds_.look_up}};
+    auto stats = light_guide_.statistics();
+    stats.emplace_back("photons", static_cast<double>(photons_.size() + caustics_.size()));
+    stats.emplace_back("radius", photons_.radius());
+    stats.emplace_back("light_pass_cpu_seconds", seconds_.light);
+    stats.emplace_back("photon_grid_cpu_seconds", seconds_.grid);
+    stats.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
+    stats.emplace_back("look_up_cpu_seconds", seconds_.look_up);
+    return stats;
   }
 
   Counters iterate(const IterationContext& context, Image& image) override {
@@ -74,11 +81,17 @@ class PhotonMapping final : public Integrator {
     bool caustics = false;  ///< by mirrors and glass only
     bool others = false;
     bool any() const { return direct || caustics || others; }
-    bool of(const Photon& p) const {
-      if (p.index == 1) return direct;
-      return p.caustic ? caustics : others;
+    bool of(const Photon& p) const { return of(p.index, p.caustic); }
+    /// `index`, `caustic`: of the photon.
+    bool of(int index, bool caustic) const {
+      if (index == 1) return direct;
+      return caustic ? caustics : others;
     }
   };
+  /// At the first rough vertex, of photons_.
+  Wanted at_first() const {
+    return {!settings_.next_event_estimation, density_.caustic_paths == 0, !density_.final_gather};
+  }
   struct LookUp {
     std::uint32_t path;
     int depth;
@@ -110,16 +123,18 @@ class PhotonMapping final : public Integrator {
     const LightPathSetting setting{context.scene,          context.camera,
                                    settings_.max_depth,    settings_.roulette_depth,
                                    SampleCounts{.hit = 0}, true};
+    // What is never looked up is not stored: with next event estimation, a photon of each path.
+    const Wanted kept = density_.final_gather ? Wanted{true, true, true} : at_first();
     return lacuna::light_pass(
-        context, setting, guide_, all, image,
-        [&](std::size_t path, const LightBatch<BsdfGuide>& batch, std::size_t i) {
+        context, setting, light_guide_, all, image,
+        [&](std::size_t path, const LightBatch<GuideOfLight>& batch, std::size_t i) {
           const auto number = static_cast<std::int64_t>(path);
           bool caustic = true;  // so far
           for (int s = 1; s < batch.length(i); ++s) {
             const Vertex& v = batch.vertex(i, s);
             if (!is_rough(v)) continue;
             const bool focused = caustic && s > 1;
-            if (number < paths) photons_.keep(path, v, s, focused);
+            if (number < paths && kept.of(s, focused)) photons_.keep(path, v, s, focused);
             if (focused && number < density_.caustic_paths) caustics_.keep(path, v, s, true);
             caustic = caustic && v.delta;
           }
@@ -210,7 +225,7 @@ class PhotonMapping final : public Integrator {
 
   void look_up(const IterationContext& context, double paths, Part& part) const {
     const bool apart = density_.caustic_paths > 0;
-    const Wanted at_first{!settings_.next_event_estimation, !apart, !density_.final_gather};
+    const Wanted first = at_first();
     const double begin = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
     for (const LookUp& at : part.look_ups) {
       part.stop.check(context);
@@ -219,8 +234,8 @@ class PhotonMapping final : public Integrator {
         radiance += estimate(photons_, {true, true, true}, at, part) / static_cast<float>(paths);
         continue;
       }
-      if (at_first.any()) {
-        radiance += estimate(photons_, at_first, at, part) / static_cast<float>(paths);
+      if (first.any()) {
+        radiance += estimate(photons_, first, at, part) / static_cast<float>(paths);
       }
       if (apart) {
         radiance += estimate(caustics_, {false, true, false}, at, part) /
@@ -272,7 +287,8 @@ class PhotonMapping final : public Integrator {
     return 1;
   }
 
-  BsdfGuide guide_;
+  BsdfGuide guide_;  ///< of eye paths
+  GuideOfLight light_guide_;
   PhotonTracing settings_;
   Density density_;
   float least_alpha_;
@@ -283,16 +299,22 @@ class PhotonMapping final : public Integrator {
   } seconds_;
 };
 
+std::unique_ptr<Integrator> make(const PhotonTracing& settings, const Density& density) {
+  return with_light_guide(
+      settings.light_guide, [&]<class Guide>(Guide guide) -> std::unique_ptr<Integrator> {
+        return std::make_unique<PhotonMapping<Guide>>(settings, density, std::move(guide));
+      });
+}
+
 }  // namespace
 
 std::unique_ptr<Integrator> make_sppm(const SppmSettings& settings) {
-  return std::make_unique<PhotonMapping>(settings, Density{});
+  return make(settings, Density{});
 }
 
 std::unique_ptr<Integrator> make_photon_map(const PhotonMapSettings& settings) {
-  return std::make_unique<PhotonMapping>(
-      settings, Density{static_cast<std::size_t>(settings.nearest), settings.final_gather,
-                        settings.caustic_paths});
+  return make(settings, Density{static_cast<std::size_t>(settings.nearest), settings.final_gather,
+                                settings.caustic_paths});
 }
 
 }  // namespace lacuna

@@ -50,6 +50,7 @@ struct PrepareContext {
   const Scene& scene;
   const ThreadPool& pool;
   SpaceAnalysis& space;
+  const Camera& camera;
 };
 
 }  // namespace lacuna

@@ -156,10 +156,19 @@ class LightBatch {
     return !lights.empty();
   }
 
+  std::optional<Leaving> first_edge(const EmitterPoint& e, Rng& rng) const {
+    const EmitterSet& lights = setting_.scene.emitters();
+    if constexpr (requires { guide_.sample_first_edge(lights, e, rng); }) {
+      return guide_.sample_first_edge(lights, e, rng);
+    } else {
+      return lights.sample_first_edge(e, rng);
+    }
+  }
+
   /// The first edge.
   void leave(std::size_t i, Rng& rng) {
     const EmitterPoint& e = emitters_[i];
-    const std::optional<Leaving> leaving = setting_.scene.emitters().sample_first_edge(e, rng);
+    const std::optional<Leaving> leaving = first_edge(e, rng);
     if (!leaving) return;
     const std::span<Vertex> path = std::span(vertices_).subspan(i * places_, places_);
     path[0].kind = e.infinite() ? Vertex::Kind::background : Vertex::Kind::emitter;

@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "renderer/settings/light_guide_settings.h"
 #include "renderer/settings/path_lengths.h"
 
 namespace lacuna {
@@ -17,6 +18,7 @@ struct LightSettings : PathLengths {
   static constexpr bool from_lights_only = true;
 
   int light_paths = 0;
+  LightGuideSettings light_guide = BsdfGuideSettings{};
 
   bool operator==(const LightSettings&) const = default;
 };
@@ -26,6 +28,7 @@ void describe(V& v, LightSettings& s) {
   describe_lengths(v, s);
   v("light_paths", s.light_paths,
     {.doc = "light paths per iteration; 0: one for each pixel", .min = 0, .max = 1 << 20});
+  describe_light_guide(v, s.light_guide);
 }
 
 }  // namespace lacuna

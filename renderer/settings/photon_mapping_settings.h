@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "renderer/settings/light_guide_settings.h"
 #include "renderer/settings/path_lengths.h"
 #include "renderer/settings/photon_settings.h"
 
@@ -13,6 +14,7 @@ struct PhotonTracing : PathLengths, RadiusSettings {
   bool next_event_estimation = true;
   PhotonKernel kernel = PhotonKernel::constant;
   double least_roughness = 0.3;
+  LightGuideSettings light_guide = BsdfGuideSettings{};
   bool operator==(const PhotonTracing&) const = default;
 };
 
@@ -35,6 +37,7 @@ void describe_photons(V& v, PhotonTracing& s) {
             "in a narrow lobe",
      .min = 0,
      .max = 1});
+  describe_light_guide(v, s.light_guide);
 }
 
 /// integrator: sppm.

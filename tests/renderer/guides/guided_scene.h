@@ -29,7 +29,7 @@ class GuidedScene {
                    .settings = {.resolution = resolution},
                    .byte_limit = [] { return no_memory_limit; }},
         store_, pool_);
-    directions_->prepare({scene_, pool_, *space_});
+    directions_->prepare(context());
     for (int i = 0; i < iterations; ++i) session_.iterate(static_cast<std::uint64_t>(i));
     ByteWriter saved;
     session_.integrator().save(saved);
@@ -37,6 +37,7 @@ class GuidedScene {
     directions_->load(in);
   }
 
+  PrepareContext context() { return {scene_, pool_, *space_, camera_}; }
   const GuidingDistribution& directions() const { return *directions_; }
   const Scene& scene() const { return scene_; }
 

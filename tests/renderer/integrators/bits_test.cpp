@@ -26,6 +26,7 @@ std::vector<test::Method> bidirectional(int max_depth) {
         connections);
   }
   all.push_back({"light", test::light_tracing(max_depth)});
+  all.push_back({"light_towards_eye", test::light_towards_eye(max_depth)});
   for (test::Method& m : test::guided(max_depth)) all.push_back(std::move(m));
   for (test::Method& m : test::metropolis(max_depth)) all.push_back(std::move(m));
   for (test::Method& m : test::many_lights(max_depth)) all.push_back(std::move(m));

@@ -29,12 +29,9 @@ struct Pictures {
 
 /// Standard deviation of a pixel's estimate, mean over the picture: the root weighs bright paths
 /// that are met once less.
-double noise(const Pictures& p, const GuideSettings& guide, int seed) {
-  PathSettings path = test::path_tracing(6);
-  path.roulette_depth = p.roulette_depth;
-  path.guide = guide;
+double noise(const Pictures& p, const IntegratorSettings& integrator, int seed) {
   const test::Rendering r = test::render(test::load(test::PathScene{p.scene}),
-                                         {.integrator = path,
+                                         {.integrator = integrator,
                                           .width = 24,
                                           .height = 16,
                                           .iterations = p.iterations,
@@ -42,6 +39,13 @@ double noise(const Pictures& p, const GuideSettings& guide, int seed) {
   double sum = 0;
   for (const double v : r.film.variance_of_mean()) sum += std::sqrt(v);
   return sum;
+}
+
+double noise(const Pictures& p, const GuideSettings& guide, int seed) {
+  PathSettings path = test::path_tracing(6);
+  path.roulette_depth = p.roulette_depth;
+  path.guide = guide;
+  return noise(p, IntegratorSettings{path}, seed);
 }
 
 /// Noise beside that of BSDFs alone, seed by seed.
@@ -115,6 +119,19 @@ TEST(GuideGain, WhatIsLearnedDoesNoHarm) {
     gain.expect_below(1.02, PortalsGuideSettings{});
     gain.expect_below(1.05, FaceIrradianceGuideSettings{});
   }
+}
+
+// Light paths are guided to the eye as eye paths to the light: 0.52.
+TEST(GuideGain, LightRoundCorners) {
+  const Pictures pictures{"bends", 12, 40};
+  Moments m;
+  for (int seed = 1; seed <= pictures.seeds; ++seed) {
+    SppmSettings plain = test::of_length(SppmSettings{}, 6), guided = plain;
+    guided.light_guide = SkeletonLightGuideSettings{};
+    m.add(std::log(noise(pictures, guided, seed) / noise(pictures, plain, seed)));
+  }
+  EXPECT_LT(statistics::t_test_at_least(m, std::log(0.6)), level) << fmt::format(
+      "{:.3f}; {:.2f} % of standard error", std::exp(m.mean()), 100 * m.standard_error());
 }
 
 }  // namespace

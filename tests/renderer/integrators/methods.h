@@ -32,6 +32,12 @@ inline LightSettings light_tracing(int max_depth, int paths = 0) {
   s.light_paths = paths;
   return s;
 }
+/// With paths that go to what the eye sees.
+inline LightSettings light_towards_eye(int max_depth) {
+  LightSettings s = light_tracing(max_depth);
+  s.light_guide = SkeletonLightGuideSettings{};
+  return s;
+}
 inline BdptSettings joining(int max_depth, const ConnectionsSettings& connections) {
   BdptSettings s{whole_paths(max_depth)};
   s.connections = connections;
@@ -205,6 +211,8 @@ inline std::vector<Method> merging(int max_depth) {
     s.kernel = PhotonKernel::epanechnikov;
     s.least_roughness = 0;
   });
+  add("sppm_towards_eye", SppmSettings{},
+      [](auto& s) { s.light_guide = SkeletonLightGuideSettings{}; });
   add("photon_map", PhotonMapSettings{}, [](auto&) {});
   add("photon_map_caustics", PhotonMapSettings{}, [](auto& s) {
     s.caustic_paths = 500;

@@ -70,7 +70,7 @@ class Session {
         eye_(choose_camera(data, s.camera, "test")),
         camera_(eye_, s.width, s.height, s.filter),
         scene_(std::move(data), integrator_->needs(), s.environment, pool_) {
-    integrator_->prepare({scene_, pool_, space_});
+    integrator_->prepare({scene_, pool_, space_, camera_});
     names_ = integrator_->layers(s.layers);
   }
 

@@ -34,7 +34,7 @@ class LitScene {
   /// `visibility` sees the scene's empty space, and the lights in the groups that it wants.
   template <class Visibility>
   void prepare(Visibility& visibility) {
-    visibility.prepare({scene_, pool_, space_});
+    visibility.prepare({scene_, pool_, space_, camera_});
     lights_ = walk([&](const VplGeometry& p) { return visibility.group(p); });
     const IterationContext first = context(seed_);
     visibility.begin(pass(first));
