@@ -130,6 +130,28 @@ TEST(Radius, BeyondTheSceneIsABlur) {
   }
 }
 
+// k photons in the disc up to the next one: for a uniform density that is its mean, for each
+// kernel.
+TEST(Photons, TheNearestGiveTheDensityOfAll) {
+  PhotonMapSettings photons = test::of_length(PhotonMapSettings{}, 2);
+  photons.next_event_estimation = false;
+  photons.light_paths = 2000;
+  photons.nearest = 8;
+  const auto picture = [](const IntegratorSettings& s, int n) {
+    return test::mean_over_iterations(test::render(
+        floor_below_lamp(), {.integrator = s, .width = 12, .height = 8, .iterations = n}));
+  };
+  const Moments expected = picture(test::path_tracing(2), 400);
+  for (const PhotonKernel kernel : {PhotonKernel::constant, PhotonKernel::cone}) {
+    photons.kernel = kernel;
+    const Moments found = picture(test::fixed_radius(photons, 0.5, RadiusUnit::absolute), 80);
+    EXPECT_GT(test::same_p(found, expected), 1e-4)
+        << found.mean() << " +- " << found.standard_error() << ", not " << expected.mean();
+    EXPECT_LT(std::hypot(found.standard_error(), expected.standard_error()), 0.02 * expected.mean())
+        << "the test has no power";
+  }
+}
+
 /// The lamp shines upwards, away from all else.
 SceneData turned_away() {
   test::SceneParts p;
