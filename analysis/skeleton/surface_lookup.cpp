@@ -65,7 +65,7 @@ std::optional<Imath::V3i> SurfaceLookup::voxel(Imath::V3d x, Imath::V3d n, Imath
   const auto mapped = [&](const Imath::V3i& v) {
     return in_grid(v, size) && (*map_)(v) != no_node;
   };
-  if (const auto v = best_neighbour(*s, n, mapped)) return v;
+  if (auto v = best_neighbour(*s, n, mapped)) return v;
   for (int radius = 2; radius <= lookup_reach; ++radius) {
     BestAlongNormal best;
     for_each_in_shell(radius, [&](Imath::V3i offset) {

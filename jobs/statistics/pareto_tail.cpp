@@ -22,7 +22,7 @@ double shape(std::span<const double> x, double theta) {
 double fitted_shape(std::span<const double> x) {
   constexpr double prior = 3;
   const auto n = double(x.size());
-  const double quartile = x[std::size_t(n / 4 + 0.5) - 1];
+  const double quartile = x[std::size_t(std::lround(n / 4)) - 1];
   const int points = 30 + int(std::sqrt(n));
   std::vector<double> theta, likelihood;
   for (int j = 1; j <= points; ++j) {

@@ -29,7 +29,7 @@ std::string field(const JsonValue& value) {
 /// The values in an object as settings of their own, by keys joined with '.', at any depth.
 void flatten(const std::string& name, const OrderedJson& value, JsonTable<std::string>& flat) {
   for (const auto& [key, inner] : value.items()) {
-    const std::string below = name + '.' + key;
+    const std::string below = fmt::format("{}.{}", name, key);
     if (inner.is_object()) {
       flatten(below, inner, flat);
     } else {

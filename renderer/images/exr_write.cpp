@@ -15,7 +15,7 @@ namespace {
 
 constexpr double largest_half = 65504;
 
-std::vector<std::string> channel_names(const std::vector<ExrLayer>& layers) {
+std::vector<std::string> exr_channel_names(const std::vector<ExrLayer>& layers) {
   std::vector<std::string> names;
   for (const ExrLayer& layer : layers) {
     for (const std::string& channel : layer.channels) {
@@ -59,7 +59,7 @@ std::vector<T> interleave(std::size_t pixels, const std::vector<ExrLayer>& layer
 
 template <class T>
 EncodedImage encode_as(const std::filesystem::path& file, const ExrPicture& picture) {
-  ExrContent content{picture.width,           picture.height, channel_names(picture.layers),
+  ExrContent content{picture.width,           picture.height, exr_channel_names(picture.layers),
                      std::is_same_v<T, half>, nullptr,        header_texts(picture.attributes)};
   const std::size_t pixels =
       static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);

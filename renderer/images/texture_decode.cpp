@@ -50,7 +50,7 @@ Rgba8Image decode_plain(ImageFormat format, const std::vector<std::uint8_t>& pla
 }
 
 /// Told by its magic bytes.
-ImageFormat format_of(std::span<const std::uint8_t> encoded, const std::string& label) {
+ImageFormat encoded_format(std::span<const std::uint8_t> encoded, const std::string& label) {
   constexpr std::array<std::uint8_t, 8> png{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
   constexpr std::array<std::uint8_t, 3> jpeg{0xFF, 0xD8, 0xFF};
   const auto starts_with = [&encoded](const auto& magic) {
@@ -66,12 +66,12 @@ ImageFormat format_of(std::span<const std::uint8_t> encoded, const std::string& 
 
 std::uint64_t texels_of_png_or_jpeg(std::span<const std::uint8_t> encoded,
                                     const std::string& label) {
-  return format_of(encoded, label) == ImageFormat::png ? png_texels(encoded, label)
-                                                       : jpeg_texels(encoded, label);
+  return encoded_format(encoded, label) == ImageFormat::png ? png_texels(encoded, label)
+                                                            : jpeg_texels(encoded, label);
 }
 
 Rgba8Image decode_png_or_jpeg(std::span<const std::uint8_t> encoded, const std::string& label) {
-  const ImageFormat format = format_of(encoded, label);
+  const ImageFormat format = encoded_format(encoded, label);
   return decode_plain(
       format, format == ImageFormat::png ? plain_png(encoded, label) : plain_jpeg(encoded, label),
       label);

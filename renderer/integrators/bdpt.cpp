@@ -42,22 +42,30 @@ class Bdpt : public GuidedIntegrator<Guide> {
   using GuidedIntegrator<Guide>::guide_;
 
   struct EyePaths : EyeBatch {
-    using EyeBatch::EyeBatch;
+    EyePaths(int max_depth, const SampleCounts& n) : EyeBatch(max_depth), counts(n) {}
+    SampleCounts counts;
     GatheredLight gathered{*this};  // for a guide that learns
+    ShadowQueue<Contribution> queue;
+  };
+  /// What the parts of a tile's work share.
+  struct TilePass {
+    const IterationContext& context;
+    Image& image;
+    Counters& counters;
   };
 
   /// Adds the emission at a vertex of an eye path (s = 0).
-  void gather_hit(const IterationContext& context, const SampleCounts& counts, EyePaths& batch,
-                  std::size_t i, int depth) const {
+  void gather_hit(const IterationContext& context, EyePaths& batch, std::size_t i,
+                  int depth) const {
     if (guide_.learns()) batch.gathered.reach(i, depth);
     const Vertex& v = batch.vertex(i, depth);
     const std::optional<EmitterPoint> e = emitter_at(context.scene, v);
     if (!e) return;
     const Rgb value = v.throughput * e->emission;
-    const auto w = static_cast<float>(hit_weight(v, depth, *e, counts));
+    const auto w = static_cast<float>(hit_weight(v, depth, *e, batch.counts));
     batch.radiance[i] += value * w;
     if (guide_.learns()) batch.gathered.add(i, depth, value * w);
-    layers_.strategy(context.layers, 0, depth + 1, batch.pixels[i], value, w);
+    layers_.strategy(context.layers, 0, depth + 1, {batch.pixels[i], value, w});
   }
 
   /// Largest s of connections to an eye vertex `depth` edges from the eye; 0: none.
@@ -71,15 +79,14 @@ class Bdpt : public GuidedIntegrator<Guide> {
   /// does not determine are copied from `known`.
   template <class Light>
   static void join(const SurfaceEndpoint<Guide>& eye, const Light& light, double samples,
-                   const SampleCounts& counts, Contribution known,
-                   ShadowQueue<Contribution>& queue) {
+                   Contribution known, EyePaths& batch) {
     const Connection c = connect(eye, light);
     if (!c) return;
     known.value = c.contribution / static_cast<float>(samples);
-    known.weight = static_cast<float>(weight(eye, light, c, counts));
+    known.weight = static_cast<float>(weight(eye, light, c, batch.counts));
     known.s = static_cast<std::uint16_t>(light.index + 1);
     known.t = static_cast<std::uint16_t>(eye.index + 1);
-    queue.add(shadow_ray(eye, light, c), known);
+    batch.queue.add(shadow_ray(eye, light, c), known);
   }
   /// A contribution with the pixel and index of path `i` of `batch`.
   static Contribution contribution(const EyePaths& batch, std::size_t i) {
@@ -89,29 +96,28 @@ class Bdpt : public GuidedIntegrator<Guide> {
   /// Traces the queued shadow rays of `batch`, adds the unoccluded contributions to the image and
   /// to the layers, passes each to `arrived(contribution)`, and records samples for the guide.
   template <class Arrived>
-  void finish(const IterationContext& context, ShadowQueue<Contribution>& queue, EyePaths& batch,
-              Image& image, Counters& counters, typename Guide::Accumulator& accumulator,
+  void finish(const TilePass& pass, EyePaths& batch, typename Guide::Accumulator& accumulator,
               Arrived&& arrived) const {
+    const auto& [context, image, counters] = pass;
     for (std::size_t k = 0; k < batch.states.size(); ++k) {
       accumulate(image.pixels[batch.pixels[k]], batch.radiance[k], counters);
     }
-    queue.flush(
+    batch.queue.flush(
         context.scene.rays(), counters,
         [&](const Contribution& c) {
           accumulate(image.pixels[c.pixel], c.value * c.weight, counters);
           arrived(c);
           if (guide_.learns()) batch.gathered.add(c.path, c.t - 1, c.value * c.weight);
-          layers_.strategy(context.layers, c.s, c.t, c.pixel, c.value, c.weight);
+          layers_.strategy(context.layers, c.s, c.t, {c.pixel, c.value, c.weight});
           layers_.distribution(context.layers, c.distribution, c.pixel, c.value * c.weight);
         },
         [&] { context.check_stop(); });
     if (guide_.learns()) batch.gathered.record(guide_, accumulator);
   }
   /// Starts the paths of the tile from pixel `first` on, and counts them.
-  void start(const IterationContext& context, const Image& image, const Tile& tile, int first,
-             EyePaths& batch, Counters& counters) const {
-    start_paths(context, image, tile, first, batch);
-    counters.samples += batch.states.size();
+  void start(const TilePass& pass, const Tile& tile, int first, EyePaths& batch) const {
+    start_paths(pass.context, pass.image, tile, first, batch);
+    pass.counters.samples += batch.states.size();
     if (guide_.learns()) batch.gathered.clear();
   }
   /// One accumulator for each tile.
@@ -136,7 +142,7 @@ class Bdpt : public GuidedIntegrator<Guide> {
   /// The callback of for_each_splatting_part() that adds splats to the layers.
   auto splat_layers(const IterationContext& context) const {
     return [this, &context](const Splat& s) {
-      layers_.strategy(context.layers, s.s, 1, s.pixel, s.value, s.weight);
+      layers_.strategy(context.layers, s.s, 1, {s.pixel, s.value, s.weight});
     };
   }
 
@@ -225,7 +231,6 @@ class PairedBdpt final : public Bdpt<Guide> {
     LightBatch<Guide> light;
     std::vector<Rng> rngs = {};
     std::array<std::uint32_t, EyeBatch::size> chosen = {};  // emitters of s = 1
-    ShadowQueue<Contribution> queue = {};
     std::vector<LookUp> look_ups = {};
     double look_up_seconds = 0;
     SparseStop stop = {};
@@ -254,17 +259,18 @@ class PairedBdpt final : public Bdpt<Guide> {
     typename Base::Accumulators accumulators = Base::start_accumulators(tiling);
     std::vector<double> seconds(static_cast<std::size_t>(tiling.tiles()), 0.0);
     const auto work = [&](int i, Counters& counters, Splats& splats) {
-      Pairs pairs{EyePaths(settings_.max_depth), LightBatch<Guide>(setting, guide_)};
+      Pairs pairs{EyePaths(settings_.max_depth, counts), LightBatch<Guide>(setting, guide_)};
+      const typename Base::TilePass pass{context, image, counters};
       Walk<Guide> walk(context.scene, guide_, Base::eye_limits(counts), counters);
       const Tile tile = tiling.tile(i);
       for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
-        Base::start(context, image, tile, first, pairs.eye, counters);
-        if (merging_.connect) walk_light(context, counts, pairs, counters, splats);
+        Base::start(pass, tile, first, pairs.eye);
+        if (merging_.connect) walk_light(context, pairs, counters, splats);
         do {
-          walk_eye(context, counts, walk, pairs);
-          look_up(context, counts, pairs);
-          Base::finish(context, pairs.queue, pairs.eye, image, counters,
-                       accumulators[static_cast<std::size_t>(i)], [](const Contribution&) {});
+          walk_eye(context, walk, pairs);
+          look_up(context, pairs);
+          Base::finish(pass, pairs.eye, accumulators[static_cast<std::size_t>(i)],
+                       [](const Contribution&) {});
         } while (Base::resume(walk, pairs.eye));
       }
       seconds[static_cast<std::size_t>(i)] = pairs.look_up_seconds;
@@ -277,10 +283,10 @@ class PairedBdpt final : public Bdpt<Guide> {
   }
 
   /// The light paths that the batch is connected to.
-  void walk_light(const IterationContext& context, const SampleCounts& counts, Pairs& pairs,
-                  Counters& counters, Splats& splats) const {
+  void walk_light(const IterationContext& context, Pairs& pairs, Counters& counters,
+                  Splats& splats) const {
     const std::size_t paths = pairs.eye.states.size();
-    if (counts.merge > 0) {  // photon_pass() has walked, counted and splatted them
+    if (pairs.eye.counts.merge > 0) {  // photon_pass() has walked, counted and splatted them
       for (std::size_t k = 0; k < paths; ++k) {
         photons_.restore_path(pairs.eye.pixels[k], pairs.light, k);
       }
@@ -295,9 +301,9 @@ class PairedBdpt final : public Bdpt<Guide> {
     pairs.light.splat(paths, counters, splats);
   }
 
-  void walk_eye(const IterationContext& context, const SampleCounts& counts, Walk<Guide>& walk,
-                Pairs& pairs) const {
+  void walk_eye(const IterationContext& context, Walk<Guide>& walk, Pairs& pairs) const {
     const EmitterSet& lights = context.scene.emitters();
+    const SampleCounts& counts = pairs.eye.counts;
     const auto choose = [&](std::size_t i, int depth) {
       if (counts.nee > 0 && depth < settings_.max_depth) {
         pairs.chosen[i] = lights.choose(pairs.eye.states[i].rng);
@@ -305,7 +311,7 @@ class PairedBdpt final : public Bdpt<Guide> {
     };
     walk.trace_paths(pairs.eye.states, choose, [&](std::size_t i, int depth) {
       pairs.stop.check(context);
-      Base::gather_hit(context, counts, pairs.eye, i, depth);
+      Base::gather_hit(context, pairs.eye, i, depth);
       const Vertex& v = pairs.eye.vertex(i, depth);
       const int longest = Base::longest_light_path(v, depth);
       if (longest == 0) return;
@@ -314,18 +320,19 @@ class PairedBdpt final : public Bdpt<Guide> {
       const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
       const EmitterPoint e = lights.sample(pairs.chosen[i], pairs.eye.states[i].rng);
       const Contribution known = Base::contribution(pairs.eye, i);
-      Base::join(eye, EmitterEndpoint{e}, 1, counts, known, pairs.queue);
+      Base::join(eye, EmitterEndpoint{e}, 1, known, pairs.eye);
       const std::size_t path = pairs.eye.origin[i];
       for (int s = 2; s <= std::min(longest, pairs.light.length(path)); ++s) {
         if (!pairs.light.connectible(path, s - 1)) continue;
-        Base::join(eye, pairs.light.end(path, s - 1), 1, counts, known, pairs.queue);
+        Base::join(eye, pairs.light.end(path, s - 1), 1, known, pairs.eye);
       }
     });
   }
 
   /// Merges the eye vertices of the batch with the photons around them.
-  void look_up(const IterationContext& context, const SampleCounts& counts, Pairs& pairs) const {
+  void look_up(const IterationContext& context, Pairs& pairs) const {
     if (pairs.look_ups.empty()) return;
+    const SampleCounts& counts = pairs.eye.counts;
     const double begin = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
     for (const LookUp& at : pairs.look_ups) {
       pairs.stop.check(context);
@@ -340,7 +347,7 @@ class PairedBdpt final : public Bdpt<Guide> {
             if (is_black(value)) return;
             const auto w = static_cast<float>(merge_weight(eye, p, counts));
             sum += value * w;
-            layers_.merge(context.layers, p.index + 1, at.depth + 1, pixel, value, w);
+            layers_.merge(context.layers, p.index + 1, at.depth + 1, {pixel, value, w});
           });
       pairs.eye.radiance[at.path] += sum;
       if (guide_.learns()) pairs.eye.gathered.add(at.path, at.depth, sum);
@@ -442,25 +449,23 @@ class ResampledBdpt final : public Bdpt<Guide> {
     typename Base::Accumulators guide_accumulators = Base::start_accumulators(tiling);
     const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
       const auto index = static_cast<std::size_t>(i);
-      EyePart part{counts,
-                   lights,
-                   connections_.resampling().roulette * cell_statistics_.mean(index),
-                   EyePaths(settings_.max_depth),
-                   {},
+      EyePart part{lights, connections_.resampling().roulette * cell_statistics_.mean(index),
+                   EyePaths(settings_.max_depth, counts),
                    CellStatistics::Accumulator(cell_statistics_.cells())};
+      const typename Base::TilePass pass{context, image, counters};
       Walk<Guide> walk(context.scene, guide_, Base::eye_limits(counts), counters);
       const Tile tile = tiling.tile(i);
       for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
-        Base::start(context, image, tile, first, part.batch, counters);
+        Base::start(pass, tile, first, part.batch);
         do {
           walk.trace_paths(
               part.batch.states, [](std::size_t, int) {},
               [&](std::size_t k, int depth) {
                 part.stop.check(context);
-                Base::gather_hit(context, counts, part.batch, k, depth);
+                Base::gather_hit(context, part.batch, k, depth);
                 join_lights(part, k, depth);
               });
-          Base::finish(context, part.queue, part.batch, image, counters, guide_accumulators[index],
+          Base::finish(pass, part.batch, guide_accumulators[index],
                        [&](const Contribution& c) { arrived(c, part.accumulator); });
         } while (Base::resume(walk, part.batch));
       }
@@ -475,11 +480,9 @@ class ResampledBdpt final : public Bdpt<Guide> {
 
   /// The state of a tile's eye paths.
   struct EyePart {
-    const SampleCounts& counts;
     const LightVertices& lights;
     double threshold;  // CellStatistics::survival()
     EyePaths batch;
-    ShadowQueue<Contribution> queue;
     CellStatistics::Accumulator accumulator;
     SparseStop stop = {};
   };
@@ -518,7 +521,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
                             known.survival = drawn.survival;
                             known.throughput = throughput;
                             known.cell = lookup.cell;
-                            Base::join(eye, light, samples, part.counts, known, part.queue);
+                            Base::join(eye, light, samples, known, part.batch);
                           });
                         });
   }

@@ -255,7 +255,7 @@ class PhotonMapping final : public Integrator {
     map.for_each_at(v, part.batch.states[at.path].rng,
                     [&](const Photon& p, float distance2, float count) {
                       if (p.index + at.depth > settings_.max_depth || !wanted.of(p)) return;
-                      part.found.push_back({distance2, merged(eye, p) * count});
+                      part.found.emplace_back(distance2, merged(eye, p) * count);
                     });
     double radius2 = map.radius() * map.radius();
     if (density_.nearest > 0 && part.found.size() > density_.nearest) {

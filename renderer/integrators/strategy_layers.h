@@ -20,22 +20,22 @@ class StrategyLayers {
                                   std::span<const std::string_view> distributions,
                                   bool merges = false);
 
-  /// Adds a contribution of strategy (s, t) to a pixel. `layers`: IterationContext::layers.
-  void strategy(std::span<Image> layers, int s, int t, std::uint32_t pixel, const Rgb& unweighted,
-                float weight) const {
-    if (layers.empty()) return;
-    if (weighted_ >= 0) add(layers, weighted_ + index(s, t), pixel, unweighted * weight);
-    if (unweighted_ >= 0) add(layers, unweighted_ + index(s, t), pixel, unweighted);
+  /// A contribution to a pixel.
+  struct Sample {
+    std::uint32_t pixel;
+    Rgb unweighted;
+    float weight;  ///< MIS
+  };
+
+  /// Adds a contribution of strategy (s, t). `layers`: IterationContext::layers.
+  void strategy(std::span<Image> layers, int s, int t, const Sample& sample) const {
+    if (!layers.empty()) add(layers, index(s, t), sample);
   }
   /// The same of merging vertex s of a light path with vertex t of an eye path, s >= 2, t >= 2:
   /// s + t - 2 edges. Requires choose() with `merges`.
-  void merge(std::span<Image> layers, int s, int t, std::uint32_t pixel, const Rgb& unweighted,
-             float weight) const {
-    if (layers.empty()) return;
+  void merge(std::span<Image> layers, int s, int t, const Sample& sample) const {
     const int k = s + t - 2;
-    const int at = pyramid_ + (k - 2) * (k - 1) / 2 + s - 2;
-    if (weighted_ >= 0) add(layers, weighted_ + at, pixel, unweighted * weight);
-    if (unweighted_ >= 0) add(layers, unweighted_ + at, pixel, unweighted);
+    if (!layers.empty()) add(layers, pyramid_ + (k - 2) * (k - 1) / 2 + s - 2, sample);
   }
   void distribution(std::span<Image> layers, int which, std::uint32_t pixel,
                     const Rgb& value) const {
@@ -48,6 +48,11 @@ class StrategyLayers {
   static int index(int s, int t) {
     const int k = s + t - 1;
     return (k - 1) * (k + 2) / 2 + s;
+  }
+  /// To image `at` of those of the techniques.
+  void add(std::span<Image> layers, int at, const Sample& s) const {
+    if (weighted_ >= 0) add(layers, weighted_ + at, s.pixel, s.unweighted * s.weight);
+    if (unweighted_ >= 0) add(layers, unweighted_ + at, s.pixel, s.unweighted);
   }
   static void add(std::span<Image> layers, int image, std::uint32_t pixel, const Rgb& value) {
     if (is_finite(value)) layers[static_cast<std::size_t>(image)].pixels[pixel] += value;

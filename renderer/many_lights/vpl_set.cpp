@@ -1,6 +1,7 @@
 #include "renderer/many_lights/vpl_set.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "renderer/core/morton.h"
 
@@ -37,7 +38,9 @@ std::vector<Run> near_one_another(const std::vector<Light>& lights, const LightG
     std::uint32_t group;
     std::uint64_t code;
     std::size_t light;
-    auto operator<=>(const Key&) const = default;
+    bool operator<(const Key& k) const {
+      return std::tie(group, code, light) < std::tie(k.group, k.code, k.light);
+    }
   };
   std::vector<Key> keys(lights.size());
   for (std::size_t i = 0; i < lights.size(); ++i) {

@@ -32,7 +32,8 @@ struct EyeBatch {
   /// Stores the branches of the batch's paths for resume().
   void store(std::vector<PathBranch>& branches) {
     for (PathBranch& b : branches) {
-      pending_.push_back({std::move(b), pixels[b.walk], origin[b.walk]});
+      const std::size_t i = b.walk;
+      pending_.push_back({std::move(b), pixels[i], origin[i]});
     }
     branches.clear();
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <numeric>
 #include <span>
 #include <vector>
@@ -187,7 +188,9 @@ class Walk {
       // Splitting undoes what the guide has added to the weight, and no more: to split all paths
       // that come into the light costs more time than it saves noise.
       const float excess = std::min({ratio, guiding_weight, float{max_parts}});
-      if (excess > high && carried > w.least) split(w, v, static_cast<int>(excess + 0.5F), walk);
+      if (excess > high && carried > w.least) {
+        split(w, v, static_cast<int>(std::lround(excess)), walk);
+      }
     }
     return true;
   }

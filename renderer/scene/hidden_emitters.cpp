@@ -17,8 +17,9 @@ std::vector<Place> some_emitters(const SceneData& data, std::size_t most) {
   std::size_t count = 0;
   const auto emits = [&data](const Mesh& m) { return data.materials[m.material].emits(); };
   for (const Mesh& m : data.meshes) count += emits(m) ? m.triangles.size() : 0;
-  const std::size_t step = (count + most - 1) / most;
   std::vector<Place> places;
+  if (count == 0) return places;
+  const std::size_t step = (count + most - 1) / most;
   std::size_t at = 0;
   for (std::uint32_t m = 0; m < data.meshes.size(); ++m) {
     if (!emits(data.meshes[m])) continue;

@@ -86,7 +86,7 @@ NodeMaps trace_node_maps(const Scene& scene, std::span<const V3f> points, int si
   maps.texels.resize(texels);
   const auto n = static_cast<std::size_t>(size);
   pool.for_each(static_cast<int>(points.size()) * NodeMaps::faces, [&](int part) {
-    const V3f from = points[static_cast<std::size_t>(part / NodeMaps::faces)];
+    const V3f& from = points[static_cast<std::size_t>(part / NodeMaps::faces)];
     std::uint16_t* texel = maps.texels.data() + static_cast<std::size_t>(part) * n * n;
     for (int j = 0; j < size; ++j) {
       for (int i = 0; i < size; ++i, ++texel) {

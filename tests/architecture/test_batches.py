@@ -26,16 +26,17 @@ def plain(text):
 
 
 def statements(text):
-    """The declarations of one level: what stands before the body or the `;`, and the body, if there is one."""
+    """The declarations of one level: what stands before the body or the `;`, and the body, if there is one. Braces
+    within parentheses, as of arguments, are no body."""
     depth, start, head, body = 0, 0, "", 0
     for i, c in enumerate(text):
-        if c == "{":
-            if depth == 0:
+        if c in "{(":
+            if depth == 0 and c == "{":
                 head, body = text[start:i], i + 1
             depth += 1
-        elif c == "}":
+        elif c in "})":
             depth -= 1
-            if depth == 0:
+            if depth == 0 and c == "}":
                 yield head, text[body:i]
                 start = i + 1
         elif c == ";" and depth == 0:
@@ -92,7 +93,7 @@ def violations(root, folders):
             for name in sorted(set(own_names(text))):
                 owners[name].append(source.name)
             for opened in re.findall(r"^using\s+namespace\s+([\w:]+)", text, re.MULTILINE):
-                if opened not in ("std::literals", "std::chrono_literals"):
+                if not re.fullmatch(r"std::(\w+_)?literals", opened):
                     yield f"{folder}/{source.name} opens {opened} for the sources behind it"
         for name, sources in owners.items():
             if len(sources) > 1:
@@ -126,6 +127,7 @@ bool operator<(const Row& a, const Row& b);
 template <class T>
 concept Small = sizeof(T) < 8;
 TEST(Suite, Name) { int inner; }
+INSTANTIATE_TEST_SUITE_P(All, Suite, Range(Size{0}, argument().size()), [](int i) { return name(i); });
 namespace alias = std::filesystem;  // twice the same, or it does not compile
 namespace inside { int deep() { return 1; } }
 }  // namespace

@@ -5,11 +5,10 @@
 #include "analysis/skeleton/ball_radius.h"
 #include "tests/analysis/skeleton/skeletons.h"
 
-namespace lacuna {
+namespace lacuna::testing {
 namespace {
 
 using Imath::V3i;
-using namespace testing;
 
 /// The least squared distance from a corner to a closed cube outside the domain, by all cubes.
 std::int64_t radius2_by_definition(const BitGrid3& domain, V3i corner) {
@@ -99,4 +98,4 @@ TEST(Adjacency, HasEachEdgeOnce) {
 }
 
 }  // namespace
-}  // namespace lacuna
+}  // namespace lacuna::testing

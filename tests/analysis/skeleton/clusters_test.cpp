@@ -7,11 +7,10 @@
 #include "analysis/skeleton/gates.h"
 #include "tests/analysis/skeleton/skeletons.h"
 
-namespace lacuna {
+namespace lacuna::testing {
 namespace {
 
 using Imath::V3i;
-using namespace testing;
 
 SimplifiedSkeleton as_simplified(const SkeletonGraph& graph) {
   SimplifiedSkeleton s;
@@ -20,7 +19,7 @@ SimplifiedSkeleton as_simplified(const SkeletonGraph& graph) {
   return s;
 }
 
-void expect_invariants(const SimplifiedSkeleton& s, double alpha, const std::string& name) {
+void expect_sound_clusters(const SimplifiedSkeleton& s, double alpha, const std::string& name) {
   const VisibilityClusters c = visibility_clusters(s, alpha);
   ASSERT_EQ(c.of_node.size(), s.graph.nodes()) << name;
   // Every cluster is one connected part.
@@ -64,10 +63,10 @@ void expect_invariants(const SimplifiedSkeleton& s, double alpha, const std::str
 TEST(Clusters, AreConnectedAndGatesSeparateThem) {
   for (const auto& [name, domain] : domains())
     for (const double alpha : {0.0, 0.2, 1.0})
-      expect_invariants(simplify_skeleton(space_of(domain).graph), alpha, name);
-  expect_invariants(as_simplified(make_graph({}, {}, {})), 0.2, "nothing");
-  expect_invariants(as_simplified(make_graph({{1, 1, 1}}, {0}, {})), 0.2, "one node");
-  expect_invariants(as_simplified(straight_line(100'000, 1)), 0.2, "long line");
+      expect_sound_clusters(simplify_skeleton(space_of(domain).graph), alpha, name);
+  expect_sound_clusters(as_simplified(make_graph({}, {}, {})), 0.2, "nothing");
+  expect_sound_clusters(as_simplified(make_graph({{1, 1, 1}}, {0}, {})), 0.2, "one node");
+  expect_sound_clusters(as_simplified(straight_line(100'000, 1)), 0.2, "long line");
 }
 
 /// Nodes 10 apart, so that none lies in the ball of another.
@@ -131,4 +130,4 @@ TEST(Clusters, RefuseAnAlphaThatIsNoShare) {
 }
 
 }  // namespace
-}  // namespace lacuna
+}  // namespace lacuna::testing

@@ -3,14 +3,13 @@
 #include "analysis/skeleton/filter.h"
 #include "tests/analysis/skeleton/skeletons.h"
 
-namespace lacuna {
+namespace lacuna::testing {
 namespace {
 
 using Imath::V3i;
-using namespace testing;
 
-void expect_invariants(const SkeletonGraph& graph, const FilteredSkeleton& f,
-                       const std::string& name) {
+void expect_sound_filtering(const SkeletonGraph& graph, const FilteredSkeleton& f,
+                            const std::string& name) {
   EXPECT_EQ(fault(f.graph), "") << name;
   EXPECT_EQ(count_components(f.graph), count_components(graph)) << name;
   EXPECT_LE(count_loops(f.graph), count_loops(graph)) << name;
@@ -53,7 +52,7 @@ TEST(Filter, ContractsConnectedPartsWithinBalls) {
   for (const auto& [name, domain] : domains()) {
     const SkeletonGraph graph = space_of(domain).graph;
     const FilteredSkeleton f = filter_skeleton(graph);
-    expect_invariants(graph, f, name);
+    expect_sound_filtering(graph, f, name);
     expect_connected_parts(graph, f, name);
   }
 }
@@ -96,7 +95,7 @@ TEST(Filter, IsTheAlgorithmOfTheThesis) {
 TEST(Filter, KeepsFewNodesWhereSpaceIsWide) {
   const SkeletonGraph graph = straight_line(100, 10);
   const FilteredSkeleton f = filter_skeleton(graph);
-  expect_invariants(graph, f, "line");
+  expect_sound_filtering(graph, f, "line");
   // Equal radii go by index: 0 takes 1 to 10, 11 takes the next ten, and so on.
   ASSERT_EQ(f.graph.nodes(), 10u);
   for (std::uint32_t i = 0; i < 10; ++i) EXPECT_EQ(f.source[i], 11 * i);
@@ -119,7 +118,7 @@ TEST(Filter, DoesNotReachOverWhatLiesOutsideTheBall) {
       make_graph({{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {6, 0, 0}, {4, 1, 0}, {2, 1, 0}, {0, 1, 0}},
                  {3, 1, 1, 1, 1, 1, 1}, {{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 5}, {5, 6}});
   const FilteredSkeleton f = filter_skeleton(graph);
-  expect_invariants(graph, f, "hairpin");
+  expect_sound_filtering(graph, f, "hairpin");
   EXPECT_EQ(f.parent[0], f.parent[1]);
   EXPECT_NE(f.parent[0], f.parent[6]);
 }
@@ -143,4 +142,4 @@ TEST(Filter, MovesWithTheGrid) {
 }
 
 }  // namespace
-}  // namespace lacuna
+}  // namespace lacuna::testing

@@ -7,11 +7,10 @@
 #include "analysis/skeleton/node_map.h"
 #include "tests/analysis/skeleton/skeletons.h"
 
-namespace lacuna {
+namespace lacuna::testing {
 namespace {
 
 using Imath::V3i;
-using namespace testing;
 
 struct LiteralMap {
   Grid3<std::uint32_t> node;
@@ -164,4 +163,4 @@ TEST(NodeMap, RefusesNodesOutsideTheGridAndTooMuchMemory) {
 }
 
 }  // namespace
-}  // namespace lacuna
+}  // namespace lacuna::testing

@@ -7,11 +7,10 @@
 #include "analysis/skeleton/lines.h"
 #include "tests/analysis/skeleton/skeletons.h"
 
-namespace lacuna {
+namespace lacuna::testing {
 namespace {
 
 using Imath::V3i;
-using namespace testing;
 
 /// A square ring of lattice nodes with sides of `side` edges, all of one radius.
 SkeletonGraph square_ring(int side, float radius) {
@@ -36,7 +35,7 @@ SkeletonGraph bent_line(int first, int second, float radius) {
   return make_graph(corners, std::vector<float>(corners.size(), radius), edges);
 }
 
-void expect_invariants(const SkeletonGraph& graph, const std::string& name) {
+void expect_sound_simplification(const SkeletonGraph& graph, const std::string& name) {
   const SimplifiedSkeleton s = simplify_skeleton(graph);
   EXPECT_EQ(fault(s.graph), "") << name;
   EXPECT_EQ(count_components(s.graph), count_components(graph)) << name;
@@ -72,11 +71,12 @@ void expect_invariants(const SkeletonGraph& graph, const std::string& name) {
 }
 
 TEST(Simplify, KeepsTopologyAndCoversEveryLine) {
-  for (const auto& [name, domain] : domains()) expect_invariants(space_of(domain).graph, name);
-  expect_invariants(square_ring(1, 5), "smallest ring");
-  expect_invariants(square_ring(20, 4), "ring");
-  expect_invariants(bent_line(30, 20, 6), "bend");
-  expect_invariants(straight_line(50, 0), "line that touches the scene");
+  for (const auto& [name, domain] : domains())
+    expect_sound_simplification(space_of(domain).graph, name);
+  expect_sound_simplification(square_ring(1, 5), "smallest ring");
+  expect_sound_simplification(square_ring(20, 4), "ring");
+  expect_sound_simplification(bent_line(30, 20, 6), "bend");
+  expect_sound_simplification(straight_line(50, 0), "line that touches the scene");
 }
 
 TEST(Simplify, SplitsABendAtItsCorner) {
@@ -117,16 +117,16 @@ TEST(Simplify, KeepsLinesSideBySide) {
       {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}}, std::vector<float>(6, 50),
       {{0, 1}, {0, 2}, {2, 3}, {3, 1}, {0, 4}, {4, 5}, {5, 1}});
   ASSERT_EQ(count_loops(graph), 2u);
-  expect_invariants(graph, "theta");
+  expect_sound_simplification(graph, "theta");
   EXPECT_EQ(simplify_skeleton(graph).graph.nodes(), 4u);
 }
 
 TEST(Simplify, TakesNothingOneNodeAndLongLines) {
   EXPECT_EQ(simplify_skeleton(make_graph({}, {}, {})).graph.nodes(), 0u);
-  expect_invariants(make_graph({{3, 2, 1}}, {0}, {}), "one node");
-  expect_invariants(make_graph({{3, 2, 1}, {4, 2, 1}, {9, 9, 9}}, {0, 1, 2}, {{0, 1}}),
-                    "two parts");
-  expect_invariants(straight_line(100'000, 3), "long line");
+  expect_sound_simplification(make_graph({{3, 2, 1}}, {0}, {}), "one node");
+  expect_sound_simplification(make_graph({{3, 2, 1}, {4, 2, 1}, {9, 9, 9}}, {0, 1, 2}, {{0, 1}}),
+                              "two parts");
+  expect_sound_simplification(straight_line(100'000, 3), "long line");
 }
 
 TEST(Simplify, MovesWithTheGrid) {
@@ -140,4 +140,4 @@ TEST(Simplify, MovesWithTheGrid) {
 }
 
 }  // namespace
-}  // namespace lacuna
+}  // namespace lacuna::testing

@@ -8,12 +8,11 @@
 #include "analysis/skeleton/node_map.h"
 #include "tests/analysis/skeleton/skeletons.h"
 
-namespace lacuna {
+namespace lacuna::testing {
 namespace {
 
 using Imath::V3d;
 using Imath::V3i;
-using namespace testing;
 
 /// A map where every voxel of the domain has a node of its own: its index.
 Grid3<std::uint32_t> indices(const BitGrid3& domain) {
@@ -134,4 +133,4 @@ TEST(SurfaceLookup, TakesPointsAtTheRimToTheOutermostVoxels) {
 }
 
 }  // namespace
-}  // namespace lacuna
+}  // namespace lacuna::testing

@@ -9,11 +9,10 @@
 #include "analysis/skeleton/visible_map.h"
 #include "tests/analysis/skeleton/skeletons.h"
 
-namespace lacuna {
+namespace lacuna::testing {
 namespace {
 
 using Imath::V3i;
-using namespace testing;
 
 /// Whether the line from the voxel's centre to the corner, which is left out, meets a closed cube
 /// outside the domain: for all cubes in the box around the line, in whole numbers.
@@ -146,4 +145,4 @@ TEST(VisibleMap, RefusesGridsOfDifferentSizes) {
 }
 
 }  // namespace
-}  // namespace lacuna
+}  // namespace lacuna::testing

@@ -13,9 +13,9 @@
 namespace lacuna {
 namespace {
 
-std::filesystem::path write_exr(const TemporaryFolder& folder,
-                                const std::vector<std::string>& channels,
-                                const std::vector<float>& pixels, int width, int height) {
+std::filesystem::path write_channels(const TemporaryFolder& folder,
+                                     const std::vector<std::string>& channels,
+                                     const std::vector<float>& pixels, int width, int height) {
   return test::write_exr_file(folder, "image.exr", channels, pixels, width, height);
 }
 
@@ -27,8 +27,8 @@ using test::expect_contains;
 
 TEST(ImageRead, ExrWithLayersInAnyOrder) {
   const TemporaryFolder folder;
-  const auto file = write_exr(folder, {"B", "half_a.G", "R", "G", "half_a.B", "A", "half_a.R"},
-                              {3, 20, 1, 2, 30, 9, 10, 6, 50, 4, 5, 60, 9, 40}, 2, 1);
+  const auto file = write_channels(folder, {"B", "half_a.G", "R", "G", "half_a.B", "A", "half_a.R"},
+                                   {3, 20, 1, 2, 30, 9, 10, 6, 50, 4, 5, 60, 9, 40}, 2, 1);
   const FloatImage plain = read_float_image(file);
   EXPECT_EQ(plain.width, 2);
   EXPECT_EQ(plain.height, 1);
@@ -43,8 +43,8 @@ TEST(ImageRead, ExrWithLayersInAnyOrder) {
 
 TEST(ImageRead, GreyAndMissingChannels) {
   const TemporaryFolder folder;
-  EXPECT_EQ(read_float_image(write_exr(folder, {"Y"}, {0.5F, 7}, 1, 2)).at(0, 1), Rgb(7));
-  expect_contains(image_refusal(write_exr(folder, {"R", "B"}, {1, 2}, 1, 1)),
+  EXPECT_EQ(read_float_image(write_channels(folder, {"Y"}, {0.5F, 7}, 1, 2)).at(0, 1), Rgb(7));
+  expect_contains(image_refusal(write_channels(folder, {"R", "B"}, {1, 2}, 1, 1)),
                   "lacks channel G; it has");
 }
 
@@ -119,7 +119,7 @@ TEST(ImageRead, TruncatedFilesAreRefused) {
   const TemporaryFolder folder;
   std::vector<float> pixels(64 * 64 * 3);
   for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<float>(i * 7919 % 1000);
-  const auto bytes = test::read_bytes(write_exr(folder, {"R", "G", "B"}, pixels, 64, 64));
+  const auto bytes = test::read_bytes(write_channels(folder, {"R", "G", "B"}, pixels, 64, 64));
   for (const std::size_t length : {std::size_t{5}, std::size_t{200}, bytes.size() / 2}) {
     const test::Bytes part(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length));
     expect_contains(image_refusal(folder.write("part.exr", part)), "part.exr: ");
@@ -152,7 +152,7 @@ TEST(ImageRead, RadianceMustBeFiniteAndNotNegative) {
 /// The first attribute of an EXR with another size, and what reading it says.
 std::string refusal_of_attribute_size(std::uint32_t size) {
   const TemporaryFolder folder;
-  test::Bytes bytes = test::read_bytes(write_exr(folder, {"R", "G", "B"}, {1, 2, 3}, 1, 1));
+  test::Bytes bytes = test::read_bytes(write_channels(folder, {"R", "G", "B"}, {1, 2, 3}, 1, 1));
   std::size_t at = 8;
   for (int text = 0; text < 2; ++at) text += bytes[at] == 0 ? 1 : 0;  // its name, its type
   std::memcpy(bytes.data() + at, &size, sizeof size);
@@ -171,7 +171,7 @@ TEST(ImageRead, AnAttributeLargerThanItsFileIsRefused) {
 TEST(ImageRead, AChannelOfAnUnknownTypeIsRefused) {
   // The library would end the process.
   const TemporaryFolder folder;
-  test::Bytes bytes = test::read_bytes(write_exr(folder, {"R", "G", "B"}, {1, 2, 3}, 1, 1));
+  test::Bytes bytes = test::read_bytes(write_channels(folder, {"R", "G", "B"}, {1, 2, 3}, 1, 1));
   const std::string list("chlist\0\x37\0\0\0B\0", 13);
   const auto found = std::search(bytes.begin(), bytes.end(), list.begin(), list.end());
   ASSERT_NE(found, bytes.end());
@@ -182,7 +182,7 @@ TEST(ImageRead, AChannelOfAnUnknownTypeIsRefused) {
 
 TEST(ImageRead, AHeaderThatEndsEarlyIsRefused) {
   const TemporaryFolder folder;
-  const auto bytes = test::read_bytes(write_exr(folder, {"R", "G", "B"}, {1, 2, 3}, 1, 1));
+  const auto bytes = test::read_bytes(write_channels(folder, {"R", "G", "B"}, {1, 2, 3}, 1, 1));
   for (std::size_t n = 4; n < 100; ++n) {
     const test::Bytes cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(n));
     expect_contains(image_refusal(folder.write("cut.exr", cut)), "cut.exr: OpenEXR header: ");
@@ -218,7 +218,7 @@ TEST(ImageRead, AnExrThatSaysTooMuchIsRefused) {
 
 TEST(ImageRead, TheMagicDecidesAndNotTheName) {
   const TemporaryFolder folder;
-  const auto exr = write_exr(folder, {"R", "G", "B"}, {1, 2, 3}, 1, 1);
+  const auto exr = write_channels(folder, {"R", "G", "B"}, {1, 2, 3}, 1, 1);
   EXPECT_EQ(read_float_image(folder.write("sky.hdr", test::read_bytes(exr))).at(0, 0),
             Rgb(1, 2, 3));
   for (const std::string text : {"GIF89a", "8BPS", "RIFF    WEBP", "DDS ", "II*", "BM"}) {
@@ -231,8 +231,8 @@ TEST(ImageRead, NumbersThatAreNoneComeThrough) {
   const TemporaryFolder folder;
   constexpr float inf = std::numeric_limits<float>::infinity();
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-  const FloatImage image =
-      read_float_image(write_exr(folder, {"R", "G", "B"}, {nan, inf, -inf, 1, -2, 1e-42F}, 2, 1));
+  const FloatImage image = read_float_image(
+      write_channels(folder, {"R", "G", "B"}, {nan, inf, -inf, 1, -2, 1e-42F}, 2, 1));
   EXPECT_TRUE(std::isnan(image.rgb[0]));
   EXPECT_EQ(image.rgb[1], inf);
   EXPECT_EQ(image.rgb[2], -inf);

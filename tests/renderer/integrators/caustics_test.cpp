@@ -17,7 +17,7 @@ using test::Rendering;
 // As jobs/scenes/trials.py has them; metres.
 constexpr double thickness = 0.2, ior = 1.5, lamp_height = 2, lamp_side = 0.04, radiance = 20000,
                  albedo = 0.5;
-constexpr int columns = 24, rows = 24;
+constexpr int film_side = 24;
 
 double in_glass(double a) { return std::asin(std::sin(a) / ior); }
 /// Of unpolarised light that arrives at the angle `a` (Fresnel).
@@ -63,9 +63,9 @@ double seen_along(const V3f& eye, const V3f& w) {
 
 Image exact_picture(const Camera& camera) {
   constexpr int steps = 4;
-  Image image(columns, rows);
-  for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < columns; ++x) {
+  Image image(film_side, film_side);
+  for (int y = 0; y < film_side; ++y) {
+    for (int x = 0; x < film_side; ++x) {
       double sum = 0;
       for (int i = 0; i < steps * steps; ++i) {
         const auto at = [](int pixel, int k) {
@@ -81,15 +81,16 @@ Image exact_picture(const Camera& camera) {
 }
 
 Rendering rendering(const IntegratorSettings& integrator, int iterations) {
-  return test::render(
-      "slab.glb",
-      {.integrator = integrator, .width = columns, .height = rows, .iterations = iterations});
+  return test::render("slab.glb", {.integrator = integrator,
+                                   .width = film_side,
+                                   .height = film_side,
+                                   .iterations = iterations});
 }
 
 TEST(Caustics, ThroughGlassAreExact) {
   const SceneData scene = load_gltf(test::own_scene("slab.glb"));
   const std::vector<double> expected =
-      block_means(exact_picture(Camera(scene.cameras.front(), columns, rows)));
+      block_means(exact_picture(Camera(scene.cameras.front(), film_side, film_side)));
   const double level = statistics::sidak(1e-5, test::all_tests);
   for (Method method : test::merging(6)) {
     SCOPED_TRACE(method);

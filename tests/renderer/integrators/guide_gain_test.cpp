@@ -18,7 +18,7 @@ namespace {
 using statistics::Moments;
 
 /// Probability that a gain just at its bound is taken for one beyond it.
-constexpr double level = 0.01;
+constexpr double gain_level = 0.01;
 
 /// What is compared: pictures of as many seeds, of so many iterations each.
 struct Pictures {
@@ -57,11 +57,11 @@ class Gain {
   }
   void expect_below(double bound, const GuideSettings& guide) const {
     const Moments m = logarithms(guide);
-    EXPECT_LT(statistics::t_test_at_least(m, std::log(bound)), level) << told(m, bound);
+    EXPECT_LT(statistics::t_test_at_least(m, std::log(bound)), gain_level) << told(m, bound);
   }
   void expect_above(double bound, const GuideSettings& guide) const {
     const Moments m = logarithms(guide);
-    EXPECT_GT(statistics::t_test_at_least(m, std::log(bound)), 1 - level) << told(m, bound);
+    EXPECT_GT(statistics::t_test_at_least(m, std::log(bound)), 1 - gain_level) << told(m, bound);
   }
 
  private:

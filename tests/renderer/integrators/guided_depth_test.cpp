@@ -25,7 +25,7 @@ SceneData white_furnace() {
   return std::move(p.data);
 }
 
-test::RenderSettings small_picture(const IntegratorSettings& method, int seed, int iterations) {
+test::RenderSettings tiny_picture(const IntegratorSettings& method, int seed, int iterations) {
   return {.integrator = method,
           .width = 4,
           .height = 3,
@@ -36,7 +36,7 @@ test::RenderSettings small_picture(const IntegratorSettings& method, int seed, i
 
 /// The mean of a picture over what it should be.
 double brightness(const IntegratorSettings& method, int depth, int seed, int iterations) {
-  const test::Rendering r = test::render(white_furnace(), small_picture(method, seed, iterations));
+  const test::Rendering r = test::render(white_furnace(), tiny_picture(method, seed, iterations));
   EXPECT_EQ(r.counters.rejected, 0U);
   return r.mean() / depth;
 }
@@ -116,7 +116,7 @@ TEST(GuidedDepth, PathTracingOfManyEdgesIsNotDark) {
 /// The light of the strategies s = 0 of a picture, unweighted, over what it should be: connections
 /// outweigh long eye paths, and so hide what is wrong with them.
 double brightness_of_hits(const GuideSettings& guide, int depth, int seed) {
-  test::RenderSettings settings = small_picture(guided_bdpt(guide, depth), seed, 6);
+  test::RenderSettings settings = tiny_picture(guided_bdpt(guide, depth), seed, 6);
   settings.layers = {ImageLayer::strategies_unweighted};
   test::Session session(white_furnace(), settings);
   statistics::Moments pixels;

@@ -19,7 +19,7 @@ using test::Rendering;
 using test::RenderSettings;
 using test::SceneParts;
 
-RenderSettings small_picture(const IntegratorSettings& integrator, int iterations) {
+RenderSettings guided_picture(const IntegratorSettings& integrator, int iterations) {
   return {.integrator = integrator, .width = 20, .height = 12, .iterations = iterations};
 }
 
@@ -44,13 +44,13 @@ class Guided : public testing::TestWithParam<GuidedAgreement> {};
 
 TEST_P(Guided, AgreesWithPathTracing) {
   const GuidedAgreement& a = GetParam();
-  RenderSettings plain = small_picture(test::path_tracing(a.max_depth), 4 * a.iterations);
+  RenderSettings plain = guided_picture(test::path_tracing(a.max_depth), 4 * a.iterations);
   plain.environment = environment(a.scene);
   plain.seed = 2;
   const Rendering expected = render(load(a.scene), plain);
   for (const Method& method : test::guided(a.max_depth)) {
     SCOPED_TRACE(method);
-    RenderSettings s = small_picture(method.settings, a.iterations);
+    RenderSettings s = guided_picture(method.settings, a.iterations);
     s.environment = environment(a.scene);
     expect_same_picture(render(load(a.scene), s), expected, a.useful);
   }
@@ -62,14 +62,14 @@ TEST_P(Guided, AgreesWithoutNextEventEstimation) {
   const std::set<std::string> large{"cornell", "glass", "coated", "leaning"};
   if (large.count(a.scene.name) == 0) return;
   PathSettings path = test::path_tracing(4);
-  RenderSettings plain = small_picture(path, 4 * a.iterations);
+  RenderSettings plain = guided_picture(path, 4 * a.iterations);
   plain.seed = 2;
   const Rendering expected = render(load(a.scene), plain);
   path.next_event_estimation = false;
   for (const auto& [name, guide] : test::guides()) {
     SCOPED_TRACE(name);
     path.guide = guide;
-    expect_same_picture(render(load(a.scene), small_picture(path, 8 * a.iterations)), expected,
+    expect_same_picture(render(load(a.scene), guided_picture(path, 8 * a.iterations)), expected,
                         0.06);
   }
 }
@@ -97,13 +97,13 @@ SceneData rooms(bool open, bool left, bool right) {
 
 void expect_agreement(const std::function<SceneData()>& make, const std::vector<int>& resolutions,
                       double useful) {
-  RenderSettings plain = small_picture(test::path_tracing(6), 1200);
+  RenderSettings plain = guided_picture(test::path_tracing(6), 1200);
   plain.seed = 2;
   const Rendering expected = render(make(), plain);
   for (const int resolution : resolutions) {
     for (const Method& method : test::guided(6)) {
       SCOPED_TRACE(testing::Message() << method << ", resolution " << resolution);
-      RenderSettings s = small_picture(method.settings, 200);
+      RenderSettings s = guided_picture(method.settings, 200);
       s.resolution = resolution;
       expect_same_picture(render(make(), s), expected, useful);
     }
@@ -117,7 +117,7 @@ TEST(GuidedExtremes, ALightThatTheCameraCannotReach) {
 
 TEST(GuidedExtremes, OnlyALightThatTheCameraCannotReach) {
   for (const Method& method : test::guided(4)) {
-    const Rendering r = render(rooms(false, false, true), small_picture(method.settings, 4));
+    const Rendering r = render(rooms(false, false, true), guided_picture(method.settings, 4));
     for (const double v : r.film.mean()) EXPECT_EQ(v, 0) << method;
     EXPECT_EQ(r.counters.rejected, 0U);
   }
@@ -125,7 +125,7 @@ TEST(GuidedExtremes, OnlyALightThatTheCameraCannotReach) {
 
 TEST(GuidedExtremes, NoLight) {
   for (const Method& method : test::guided(4)) {
-    const Rendering r = render(rooms(true, false, false), small_picture(method.settings, 3));
+    const Rendering r = render(rooms(true, false, false), guided_picture(method.settings, 3));
     for (const double v : r.film.mean()) EXPECT_EQ(v, 0) << method;
   }
 }
@@ -137,7 +137,7 @@ TEST(GuidedExtremes, AGridSoCoarseThatTheDoorIsClosed) {
 
 TEST(GuidedExtremes, StrengthsAndProbabilities) {
   const auto make = [] { return rooms(true, true, true); };
-  RenderSettings plain = small_picture(test::path_tracing(5), 800);
+  RenderSettings plain = guided_picture(test::path_tracing(5), 800);
   plain.seed = 2;
   const Rendering expected = render(make(), plain);
   for (const AutoNumber& strength : {AutoNumber{0}, {1e-3}, {1e4}, {}}) {
@@ -150,7 +150,7 @@ TEST(GuidedExtremes, StrengthsAndProbabilities) {
       SCOPED_TRACE(testing::Message()
                    << strength.value.value_or(-1) << " " << probability.value.value_or(-1));
       const bool few = probability.value.value_or(0) > 0.9;  // follow the surfaces
-      expect_same_picture(render(make(), small_picture(path, few ? 800 : 200)), expected,
+      expect_same_picture(render(make(), guided_picture(path, few ? 800 : 200)), expected,
                           few ? 0.1 : 0.05);
     }
   }
@@ -161,9 +161,9 @@ TEST(GuidedExtremes, ProbabilityNoneIsPathTracingItself) {
   guide.probability = {0};
   PathSettings path = test::path_tracing(5);
   const auto make = [] { return rooms(true, true, true); };
-  const Rendering expected = render(make(), small_picture(path, 2));
+  const Rendering expected = render(make(), guided_picture(path, 2));
   path.guide = guide;
-  EXPECT_EQ(render(make(), small_picture(path, 2)).film.mean(), expected.film.mean());
+  EXPECT_EQ(render(make(), guided_picture(path, 2)).film.mean(), expected.film.mean());
 }
 
 }  // namespace

@@ -21,20 +21,6 @@ using test::Rendering;
 using test::RenderSettings;
 using test::Session;
 
-/// `settings` with a fixed radius, in units of the scene.
-IntegratorSettings with_radius(IntegratorSettings settings, double radius) {
-  std::visit(
-      [&](auto& s) {
-        if constexpr (requires { s.radius_unit; }) {
-          s.radius = radius;
-          s.radius_unit = RadiusUnit::scene;
-          s.alpha = 1;
-        }
-      },
-      settings);
-  return settings;
-}
-
 /// The mean at radius 0 of a quantity whose mean is linear in the radius for small radii, as where
 /// the disc reaches over an edge: 2 m(r / 2) - m(r).
 struct Extrapolated {
@@ -78,8 +64,10 @@ TEST_P(Merging, GivesThePictureOfPathTracingAsTheRadiusVanishes) {
   const double level = statistics::sidak(1e-5, test::all_tests);
   for (const Method& method : test::merging(max_depth)) {
     SCOPED_TRACE(method);
-    const Rendering narrow = rendering(with_radius(method.settings, 0.015), place.iterations, 3);
-    const Rendering wide = rendering(with_radius(method.settings, 0.03), place.iterations, 4);
+    const Rendering narrow = rendering(
+        test::fixed_radius(method.settings, 0.015, RadiusUnit::scene), place.iterations, 3);
+    const Rendering wide = rendering(test::fixed_radius(method.settings, 0.03, RadiusUnit::scene),
+                                     place.iterations, 4);
     const Extrapolated mean(mean_over_iterations(narrow), mean_over_iterations(wide));
     const Moments reference = mean_over_iterations(expected);
     EXPECT_GT(mean.same_p(reference), level)
@@ -133,9 +121,10 @@ TEST(MergingTechniques, EachAloneGivesAllTheLightOfItsLength) {
   constexpr int max_depth = 4;
   const IntegratorSettings vcm = test::of_length(VcmSettings{}, max_depth);
   const std::string layer = "strategies_unweighted.";
-  const Layers narrow =
-      layers_of(with_radius(vcm, 0.04), ImageLayer::strategies_unweighted, 2500, 1);
-  const Layers wide = layers_of(with_radius(vcm, 0.08), ImageLayer::strategies_unweighted, 1500, 2);
+  const Layers narrow = layers_of(test::fixed_radius(vcm, 0.04, RadiusUnit::scene),
+                                  ImageLayer::strategies_unweighted, 2500, 1);
+  const Layers wide = layers_of(test::fixed_radius(vcm, 0.08, RadiusUnit::scene),
+                                ImageLayer::strategies_unweighted, 1500, 2);
   int tested = 0;
   for (int k = 2; k <= max_depth; ++k) {
     const Moments* best = nullptr;  // of the joining strategies
@@ -160,7 +149,7 @@ TEST(MergingTechniques, WeightedAddUpToThePicture) {
   VcmSettings vcm = test::of_length(VcmSettings{}, 4);
   for (const bool connect : {true, false}) {
     vcm.connect = connect;
-    const IntegratorSettings settings = with_radius(vcm, 0.05);
+    const IntegratorSettings settings = test::fixed_radius(vcm, 0.05, RadiusUnit::scene);
     const RenderSettings layered{
         .integrator = settings, .width = 12, .height = 10, .layers = {ImageLayer::strategies}};
     RenderSettings plain = layered;

@@ -50,6 +50,21 @@ void for_each_choice(const std::variant<Ts...>&, Use&& use) {
   (use(Ts{}), ...);
 }
 
+/// `settings` with a radius that does not shrink, where they merge.
+inline IntegratorSettings fixed_radius(IntegratorSettings settings, double radius,
+                                       RadiusUnit unit) {
+  std::visit(
+      [&](auto& s) {
+        if constexpr (requires { s.radius_unit; }) {
+          s.radius = radius;
+          s.radius_unit = unit;
+          s.alpha = 1;
+        }
+      },
+      settings);
+  return settings;
+}
+
 /// A guide that does something in small pictures: where it could learn to do nothing it is told.
 template <class S>
 S in_small_pictures(S s) {

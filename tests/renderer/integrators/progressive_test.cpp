@@ -39,7 +39,7 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
 /// Variance of the mean of n iterations, of which i has 1 / r_i^2 = i^(1 - alpha).
 double predicted_variance(double n, double alpha) {
   double sum = 0;
-  for (double i = 1; i <= n; ++i) sum += std::pow(i, 1 - alpha);
+  for (int i = 1; i <= n; ++i) sum += std::pow(i, 1 - alpha);
   return sum / (n * n);
 }
 
@@ -88,6 +88,7 @@ TEST(Sppm, ErrorFallsAtTheRateOfItsSchedule) {
       slopes.add(slope(iterations, errors_of(settings, seed, reference)));
     }
     std::vector<double> predicted;
+    predicted.reserve(iterations.size());
     for (const double n : iterations) predicted.push_back(predicted_variance(n, alpha));
     EXPECT_GT(statistics::t_test(slopes, slope(iterations, predicted)), 1e-4)
         << "alpha " << alpha << ": slope " << slopes.mean() << " +- " << slopes.standard_error()
@@ -96,23 +97,11 @@ TEST(Sppm, ErrorFallsAtTheRateOfItsSchedule) {
   }
 }
 
-/// A fixed radius, in units of the scene.
-IntegratorSettings with_radius(IntegratorSettings settings, double radius) {
-  std::visit(
-      [&](auto& s) {
-        if constexpr (requires { s.radius_unit; }) {
-          s.radius = radius;
-          s.radius_unit = RadiusUnit::absolute;
-        }
-      },
-      settings);
-  return settings;
-}
-
 // Below what floats tell apart, hardly a vertex is merged; the rest must be right.
 TEST(Radius, BelowTheGrainOfFloatsLeavesThePictureAlone) {
   for (const double radius : {1e-300, 1e-9}) {
-    const IntegratorSettings vcm = with_radius(test::of_length(VcmSettings{}, 4), radius);
+    const IntegratorSettings vcm =
+        test::fixed_radius(test::of_length(VcmSettings{}, 4), radius, RadiusUnit::absolute);
     const Rendering merged = test::render(
         "cornell.glb", {.integrator = vcm, .width = 20, .height = 12, .iterations = 200});
     const Rendering expected = test::render("cornell.glb", {.integrator = test::path_tracing(4),
@@ -129,14 +118,37 @@ TEST(Radius, BeyondTheSceneIsABlur) {
   for (const test::Method& method : test::merging(4)) {
     SCOPED_TRACE(method);
     for (const double radius : {1e3, 1e15}) {
-      const Rendering r =
-          test::render("cornell.glb", {.integrator = with_radius(method.settings, radius),
-                                       .width = 40,
-                                       .height = 30,
-                                       .iterations = 2});
+      const Rendering r = test::render(
+          "cornell.glb",
+          {.integrator = test::fixed_radius(method.settings, radius, RadiusUnit::absolute),
+           .width = 40,
+           .height = 30,
+           .iterations = 2});
       EXPECT_EQ(r.counters.rejected + r.counters.negative, 0U);
       EXPECT_TRUE(std::isfinite(r.mean()));
     }
+  }
+}
+
+// k photons in the disc up to the next one: for a uniform density that is its mean, for each
+// kernel.
+TEST(Photons, TheNearestGiveTheDensityOfAll) {
+  PhotonMapSettings photons = test::of_length(PhotonMapSettings{}, 2);
+  photons.next_event_estimation = false;
+  photons.light_paths = 2000;
+  photons.nearest = 8;
+  const auto picture = [](const IntegratorSettings& s, int n) {
+    return test::mean_over_iterations(test::render(
+        floor_below_lamp(), {.integrator = s, .width = 12, .height = 8, .iterations = n}));
+  };
+  const Moments expected = picture(test::path_tracing(2), 400);
+  for (const PhotonKernel kernel : {PhotonKernel::constant, PhotonKernel::cone}) {
+    photons.kernel = kernel;
+    const Moments found = picture(test::fixed_radius(photons, 0.5, RadiusUnit::absolute), 80);
+    EXPECT_GT(test::same_p(found, expected), 1e-4)
+        << found.mean() << " +- " << found.standard_error() << ", not " << expected.mean();
+    EXPECT_LT(std::hypot(found.standard_error(), expected.standard_error()), 0.02 * expected.mean())
+        << "the test has no power";
   }
 }
 
@@ -178,7 +190,8 @@ TEST(Photons, AtOnePointKeepTheirLight) {
   const auto settings = [](const IntegratorSettings& s, int n) {
     return RenderSettings{.integrator = s, .width = 24, .height = 24, .iterations = n};
   };
-  const Rendering r = test::render(bright_spot(), settings(with_radius(photons, 0.02), 60));
+  const Rendering r = test::render(
+      bright_spot(), settings(test::fixed_radius(photons, 0.02, RadiusUnit::absolute), 60));
   const Rendering expected = test::render(bright_spot(), settings(test::path_tracing(2), 4000));
   // The disc spreads the light, and loses none of it.
   const Moments found = test::mean_over_iterations(r), all = test::mean_over_iterations(expected);

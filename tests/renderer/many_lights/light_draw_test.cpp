@@ -129,8 +129,9 @@ TEST(LightDraw, LeavesOutWhatIsBeyondTheCutoff) {
       LightDraw draw(lit.terms(), {.lights = 1 << 20, .cull = false, .cutoff = reach});
       Lights drawn;
       for (const auto& d : draw.draw(std::span(&p, 1), lit.context(1))) drawn[d.block] = d.lights;
-      for (const auto& [block, bits] : candidates(lit, p, false)) {
-        for_each_bit(bits, [&](int i) {
+      for (const auto& candidate : candidates(lit, p, false)) {
+        const std::size_t block = candidate.first;
+        for_each_bit(candidate.second, [&](int i) {
           const bool within = (lit.lights().geometry(block, i).x - x).length2() <= reach * reach;
           EXPECT_EQ((drawn[block] >> i & 1) != 0, within);
           beyond += !within;

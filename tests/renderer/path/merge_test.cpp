@@ -32,10 +32,12 @@ TEST(Merged, IsBoundedWhereLightGrazesTheEyesTriangle) {
     EXPECT_GT(value.x, 0);
     EXPECT_LT(value.x, 1);  // 0.5 / pi times a quotient near 1
   }
-  p.wp = v.surface.ng;  // as on a flat surface: the BSDF itself
-  p.ng = v.surface.ng;
+  p.ng = v.surface.ng;  // as on a flat surface: the BSDF itself
   v.bsdf.emplace(lobes, v.surface.ng, v.surface.ng);
-  EXPECT_NEAR(merged(eye, p).x, 0.5 / 3.14159265, 1e-6);
+  for (const V3f& wp : {V3f(0, 0, 1), V3f(0.6F, 0, 0.8F)}) {
+    p.wp = wp;
+    EXPECT_NEAR(merged(eye, p).x, 0.5 / 3.14159265, 1e-6);
+  }
 }
 
 }  // namespace

@@ -85,7 +85,6 @@ TEST(PointGrid, HasTheSameOrderForAnyNumberOfThreads) {
   const Points points = on_two_walls(200000, 1);
   const PointGrid one = grid_of(points, 0.003, 1), three = grid_of(points, 0.003, 3);
   EXPECT_TRUE(std::ranges::equal(one.order(), three.order()));
-  Points sorted = points;
   std::vector<std::uint32_t> places(three.order().begin(), three.order().end());
   std::sort(places.begin(), places.end());
   for (std::uint32_t i = 0; i < places.size(); ++i) ASSERT_EQ(places[i], i);

@@ -33,14 +33,15 @@ double cost(const SurfacePoint& at, const SurfacePoint& p) {
 }
 
 /// What nearest() promises, as distances: equals may be found in any order.
-std::vector<double> by_brute_force(const std::vector<SurfacePoint>& points, const SurfacePoint& at,
-                                   std::size_t wanted) {
+std::vector<double> lowest_costs(const std::vector<SurfacePoint>& points, const SurfacePoint& at,
+                                 std::size_t wanted) {
   std::vector<SurfacePoint> near = points;
   std::stable_sort(near.begin(), near.end(), [&](const SurfacePoint& a, const SurfacePoint& b) {
     return (V3d(at.x) - V3d(a.x)).length2() < (V3d(at.x) - V3d(b.x)).length2();
   });
   near.resize(std::min(near.size(), 2 * wanted));
   std::vector<double> costs;
+  costs.reserve(near.size());
   for (const SurfacePoint& p : near) costs.push_back(cost(at, p));
   std::sort(costs.begin(), costs.end());
   costs.resize(std::min(costs.size(), wanted));
@@ -65,7 +66,7 @@ TEST(RecordTree, FindsWhatBruteForceFinds) {
         std::sort(once.begin(), once.end());
         EXPECT_EQ(std::unique(once.begin(), once.end()), once.end()) << "one was found twice";
         // Places in one spot are equally near: which of them are candidates is not said.
-        const std::vector<double> expected = by_brute_force(points, at, wanted);
+        const std::vector<double> expected = lowest_costs(points, at, wanted);
         const double spot = (V3d(at.x) - V3d(0.5, 0.5, 0)).length();
         for (std::size_t i = 0; i < count; ++i) {
           ASSERT_LT(found[i], n);

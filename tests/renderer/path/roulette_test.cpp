@@ -9,8 +9,6 @@
 namespace lacuna::test {
 namespace {
 
-constexpr int longest = 8;
-
 /// A closed room of one grey, seen from within.
 SceneData grey_room() {
   SceneParts p;
@@ -23,11 +21,12 @@ SceneData grey_room() {
 // what it was at its first vertex is ended or raised to that third; above it, nothing happens.
 // Splitting keeps what the guide adds to the weight below 5/3 times that.
 TEST(Roulette, KeepsGuidedPathsInTheWindow) {
+  constexpr int max_depth = 8;
   const SceneData data = grey_room();
   ThreadPool pool(1);
   const Scene scene(grey_room(), {.materials = true}, std::nullopt, pool);
   const Camera camera(data.cameras.front(), 8, 8);
-  EyeBatch batch(longest);
+  EyeBatch batch(max_depth);
   for (std::size_t i = 0; i < EyeBatch::size; ++i) {
     Rng rng(7, 0, i, Rng::Purpose::test);
     const float x = 8 * rng.next();
@@ -35,7 +34,7 @@ TEST(Roulette, KeepsGuidedPathsInTheWindow) {
   }
   const MixedGuide guide(std::make_unique<SidedDirections>());
   Counters counters;
-  Walk<MixedGuide> walk(scene, guide, {.max_depth = longest, .roulette_depth = 1}, counters);
+  Walk<MixedGuide> walk(scene, guide, {.max_depth = max_depth, .roulette_depth = 1}, counters);
   int told = 0;
   float least = 1, most = 0;
   walk.trace_paths(

@@ -38,7 +38,7 @@ TEST(Particles, LieEvenlyInTheirPartOfTheBox) {
     sum += V3d(l.intensity);
   }
   double chi2 = 0;  // of seven degrees of freedom; 1e-6 above 40
-  for (const int k : octants) chi2 += std::pow(k - n / 8, 2) / (n / 8);
+  for (const int k : octants) chi2 += std::pow(k - n / 8.0, 2) / (n / 8.0);
   EXPECT_LT(chi2, 40);
   // 40 W in all directions.
   EXPECT_NEAR(sum.x * 4 * double(pi), 40, 1e-3);

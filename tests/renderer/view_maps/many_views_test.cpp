@@ -21,6 +21,7 @@ V3f random_direction(Rng& rng) {
 Octree random_tree(int n, int levels, std::uint32_t seed) {
   Rng rng(seed, 0, 0, Rng::Purpose::test);
   std::vector<std::uint64_t> codes;
+  codes.reserve(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) codes.push_back(rng.next_u32() % (std::uint64_t{1} << (3 * levels)));
   std::sort(codes.begin(), codes.end());
   codes.erase(std::unique(codes.begin(), codes.end()), codes.end());

@@ -32,7 +32,8 @@ TEST(TestProbability, IsWhereVarianceTimesTimeIsLeast) {
       const double a = double(t) * double(t) * double(var);
       double best = 1;
       double least = std::numeric_limits<double>::infinity();
-      for (double x = 1e-4; x <= 1; x += 1e-4) {
+      for (int i = 1; i <= 10000; ++i) {
+        const double x = 1e-4 * i;
         const double cost = (1 + a * (1 - x) / x) * (double(k) + x);
         if (cost < least) least = cost, best = x;
       }
