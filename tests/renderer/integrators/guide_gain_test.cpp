@@ -130,7 +130,7 @@ TEST(GuideGain, LightRoundCorners) {
     guided.light_guide = SkeletonLightGuideSettings{};
     m.add(std::log(noise(pictures, guided, seed) / noise(pictures, plain, seed)));
   }
-  EXPECT_LT(statistics::t_test_at_least(m, std::log(0.6)), level) << fmt::format(
+  EXPECT_LT(statistics::t_test_at_least(m, std::log(0.6)), gain_level) << fmt::format(
       "{:.3f}; {:.2f} % of standard error", std::exp(m.mean()), 100 * m.standard_error());
 }
 

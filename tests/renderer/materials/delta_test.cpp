@@ -8,7 +8,7 @@
 namespace lacuna {
 namespace {
 
-const V3f ng = V3f(1, -2, 0.5F).normalized();
+const V3f slanted_normal = V3f(1, -2, 0.5F).normalized();
 
 /// Frequency of the delta lobe from `from` to `to`, and its mean weight where it is drawn.
 struct Drawn {
@@ -38,10 +38,10 @@ TEST(Delta, ProbabilitiesAreThoseOfSampling) {
   int lobes = 0, refracted = 0;
   for (const cases::Surface& surface : cases::surfaces()) {
     for (const float tilt : {1.0F, 0.9F}) {
-      const Bsdf bsdf(surface.params, ng, cases::direction(ng, tilt, 1));
+      const Bsdf bsdf(surface.params, slanted_normal, cases::direction(slanted_normal, tilt, 1));
       for (const float cos : {0.9F, 0.3F, -0.6F}) {
         for (const bool transmitted : {false, true}) {
-          const V3f wo = cases::direction(ng, cos, 2);
+          const V3f wo = cases::direction(slanted_normal, cos, 2);
           const auto lobe = bsdf.delta(wo, transmitted);
           if (!lobe) continue;
           SCOPED_TRACE(testing::Message() << surface.name << ", tilt " << tilt << ", cos " << cos
@@ -57,10 +57,11 @@ TEST(Delta, ProbabilitiesAreThoseOfSampling) {
           const double p = lobe->p_importance / lobe->jacobian;
           EXPECT_GT(p_of(light, p), 1e-6) << light.times << ", not " << p * light.of;
           // Both walks find the same light: weights times densities, in one measure, differ by the
-          // cosines with ng that the edges of a path bring.
+          // cosines with slanted_normal that the edges of a path bring.
           if (light.times > 0) {
             const double found = double(light.weight.x) * lobe->p_importance *
-                                 double(abs_dot(lobe->wi, ng)) / double(abs_dot(wo, ng));
+                                 double(abs_dot(lobe->wi, slanted_normal)) /
+                                 double(abs_dot(wo, slanted_normal));
             EXPECT_NEAR(found, lobe->value.x, 1e-3 * lobe->value.x);
           }
         }
@@ -72,11 +73,11 @@ TEST(Delta, ProbabilitiesAreThoseOfSampling) {
 }
 
 TEST(Delta, NoneWhereNothingIsSmooth) {
-  const Bsdf rough(cases::metal({1, 1, 1}, 0.3F), ng, ng);
-  const Bsdf lambert(cases::lambert({1, 1, 1}), ng, ng);
-  EXPECT_FALSE(rough.delta(ng, false));
-  EXPECT_FALSE(lambert.delta(ng, false));
-  EXPECT_FALSE(lambert.delta(ng, true));
+  const Bsdf rough(cases::metal({1, 1, 1}, 0.3F), slanted_normal, slanted_normal);
+  const Bsdf lambert(cases::lambert({1, 1, 1}), slanted_normal, slanted_normal);
+  EXPECT_FALSE(rough.delta(slanted_normal, false));
+  EXPECT_FALSE(lambert.delta(slanted_normal, false));
+  EXPECT_FALSE(lambert.delta(slanted_normal, true));
 }
 
 }  // namespace
