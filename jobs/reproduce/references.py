@@ -121,3 +121,42 @@ def fig_25(run):
     run.note("glass.glb; noise alone falls to a quarter from one column to the next, and sppm's error to 0.4; "
              "instant global illumination is that of Fig. 23")
     run.note(f"pictures: {run.folder / run.version}")
+
+
+METROPOLIS = {"path_space": {"type": "metropolis", "mutation": "path_space"},
+              "path_space, direct light apart": {"type": "metropolis", "mutation": "path_space",
+                                                 "direct_samples": 2},
+              "multiplexed": {"type": "metropolis", "mutation": "multiplexed"},
+              "primary_sample": {"type": "metropolis", "mutation": "primary_sample"},
+              "bdpt skeleton": {"type": "bdpt", "connections": "skeleton"}, "bdpt": {"type": "bdpt"},
+              "path": {"type": "path"}}
+METROPOLIS_SCENES = {"door": {"scene": "door/scene.glb", "camera": "corner"},
+                     "corridor": {"scene": "corridor/scene.glb", "camera": "far-from-light"}}
+
+
+@ENTRIES.measured(
+    "metropolis", "Veach and Guibas 1997; Noel 2015, 4.6, which measures nothing",
+    "Metropolis light transport has less error behind doors and round corners than independent samples",
+    "metropolis",
+    tuple(at_least(f"MSE of {other} / of path_space, {scene}", 1)
+          for scene in METROPOLIS_SCENES for other in ("bdpt skeleton", "multiplexed", "path")))
+def metropolis(run):
+    """Each mutation, and methods of independent samples, at equal CPU time."""
+    size, seconds = ([640, 360], 60) if run.full else ([256, 144], 8)
+    for scene, where in METROPOLIS_SCENES.items():
+        def render(name, integrator, seed, budget, where=where, scene=scene):
+            key = f"{scene}-{name.replace(' ', '-').replace(',', '')}"
+            many_lights.render(run, key, {**where, "resolution": size, "seed": seed, "budget": {"cpu_seconds": budget},
+                                          "integrator": {**integrator, "max_depth": 6}})
+            return key
+
+        exact_one = render("reference", METROPOLIS["path_space"], 0, 10 * seconds)
+        found = {name: many_lights.errors(run, render(name, integrator, 1, seconds), exact_one)
+                 for name, integrator in METROPOLIS.items()}
+        for other in ("bdpt skeleton", "multiplexed", "path"):
+            run.found(f"MSE of {other} / of path_space, {scene}",
+                      exact(found[other]["mse"] / found["path_space"]["mse"]))
+        run.tables.append(Table((f"{scene}, {seconds} CPU seconds", "MSE", "relMSE"),
+                                [(name, f"{e['mse']:.3g}", f"{e['relmse']:.3g}") for name, e in found.items()]))
+    run.note("one seed; the reference is another picture of the same method after ten times as long, and its noise is in "
+             "all errors")

@@ -80,17 +80,18 @@ class Metropolis final : public Integrator {
 
   static PathSettings direct_settings(const MetropolisSettings& s) {
     PathSettings direct;
-    direct.max_depth = std::min(2, s.max_depth);
+    direct.max_depth = std::min(s.direct_samples > 0 ? 2 : 1, s.max_depth);
     direct.roulette_depth = direct.max_depth;
     return direct;
   }
   ChainPaths paths() const { return {settings_, least_edges()}; }
-  int least_edges() const { return settings_.direct_samples > 0 ? 3 : 1; }
+  int least_edges() const { return settings_.direct_samples > 0 ? 3 : 2; }
 
-  /// Adds the mean of the path traced samples of each pixel.
+  /// Adds the mean of the path traced samples of each pixel: of the paths that chains leave out.
   void trace_direct(const IterationContext& context, Image& image, Counters& counters) {
-    const auto share = 1.0F / static_cast<float>(settings_.direct_samples);
-    for (int i = 0; i < settings_.direct_samples; ++i) {
+    const int samples = std::max(1, settings_.direct_samples);
+    const auto share = 1.0F / static_cast<float>(samples);
+    for (int i = 0; i < samples; ++i) {
       // A job's seed is below 2^53.
       const std::uint64_t seed = context.seed | static_cast<std::uint64_t>(i) << 53;
       Image sample(image.width, image.height);

@@ -89,9 +89,10 @@ bool PathSpaceMutation::propose(Chain& c, PathBuilder& builder) const {
   if (!build(c, builder, replacement, perturbation)) return false;
   if (!builder.join(c.proposed) || !measure.evaluate(c.proposed, c.pool)) return false;
   if (c.starting) {
-    const long double p = independent_density(measure, c.pool, c.proposed);
-    if (!(p > 0) || !builder.visible()) return false;
-    see(c.proposed, measure.camera(), static_cast<double>(c.proposed.luminance / p));
+    const auto contribution = static_cast<double>(c.proposed.luminance /
+                                                  independent_density(measure, c.pool, c.proposed));
+    if (!(contribution > 0) || !std::isfinite(contribution) || !builder.visible()) return false;
+    see(c.proposed, measure.camera(), contribution);
     return true;
   }
   see(c.proposed, measure.camera(), 1);

@@ -13,11 +13,11 @@ struct MetropolisSettings : PathLengths {
   static constexpr std::string_view doc =
       "Metropolis light transport: Markov chains of paths that follow the light (Noel 2015, 4.6)";
 
-  MutationSettings mutation = MultiplexedSettings{};
+  MutationSettings mutation = PathSpaceSettings{};
   int chains = 256;
   double mutations = 4;
   double bootstrap = 0.25;
-  int direct_samples = 2;
+  int direct_samples = 0;
 
   bool operator==(const MetropolisSettings&) const = default;
 };
@@ -41,8 +41,10 @@ void describe(V& v, MetropolisSettings& s) {
      .min = 0.001,
      .max = 100});
   v("direct_samples", s.direct_samples,
-    {.doc = "path traced samples for each pixel in an iteration, of emitters seen directly and of "
-            "direct light; chains follow longer paths only; 0: chains follow all paths",
+    {.doc =
+         "path traced samples for each pixel in an iteration, of emitters seen directly and of "
+         "direct light; chains follow longer paths only. 0: one sample of emitters seen directly, "
+         "and chains follow direct light, too; better where little of it is unoccluded",
      .min = 0,
      .max = 1000});
 }

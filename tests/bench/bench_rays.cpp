@@ -93,7 +93,7 @@ int main(int argc, char** argv) {
                        .byte_limit = [] { return no_memory_limit; }},
                       store,
                       pool};
-  integrator->prepare({scene, pool, space});
+  integrator->prepare({scene, pool, space, camera});
   const std::function<bool()> never = [] { return false; };
   std::vector<RecordedRay> recording;
   {

@@ -146,7 +146,7 @@ inline std::vector<Method> metropolis(int max_depth) {
       s.mutations = 4;
       s.bootstrap = 2;
       s.direct_samples = direct_samples;
-      all.push_back({std::string(S::name) + (direct_samples > 0 ? "" : "_all_light"), s});
+      all.push_back({std::string(S::name) + (direct_samples > 0 ? "_direct_light_apart" : ""), s});
     }
   });
   return all;

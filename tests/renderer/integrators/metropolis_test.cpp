@@ -73,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(All, KeepsItsDistribution,
                                          Case{{"leaning"}, 5, 60, PixelFilter::box, 0.2}),
                          [](const auto& c) { return c.param.scene.name; });
 
-RenderSettings small(const IntegratorSettings& integrator, int side, int iterations) {
+RenderSettings square_picture(const IntegratorSettings& integrator, int side, int iterations) {
   return {.integrator = integrator, .width = side, .height = side, .iterations = iterations};
 }
 
@@ -83,11 +83,11 @@ TEST(Metropolis, AnyNumberOfChains) {
   for (const auto& [number, side, iterations] :
        {std::tuple{1, 8, 400}, std::tuple{100000, 8, 4}, std::tuple{20, 1, 400}}) {
     SCOPED_TRACE(testing::Message() << number << " chains, " << side << " x " << side);
-    RenderSettings expected = small(test::path_tracing(4), side, 8000);
+    RenderSettings expected = square_picture(test::path_tracing(4), side, 8000);
     expected.seed = 2;
     MetropolisSettings s = chains(4, {});
     s.chains = number;
-    expect_same_picture(render(load(scene), small(s, side, iterations)),
+    expect_same_picture(render(load(scene), square_picture(s, side, iterations)),
                         render(load(scene), expected), 0.15);
   }
 }
@@ -96,14 +96,14 @@ TEST(Metropolis, AnyNumberOfChains) {
 // against a much better one has the mean of the variances that they estimate.
 TEST(Metropolis, ClaimsTheErrorThatItHas) {
   const PathScene scene{"cornell"};
-  RenderSettings better = small(test::path_tracing(4), 16, 20000);
+  RenderSettings better = square_picture(test::path_tracing(4), 16, 20000);
   better.seed = 9999;
   const std::vector<double> truth = render(load(scene), better).film.mean();
   statistics::Moments excess;  // of the squared error over the variance, relative to its mean
   double claimed_sum = 0;
   std::vector<std::pair<double, double>> pictures;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-    RenderSettings s = small(chains(4, {}), 16, 8);
+    RenderSettings s = square_picture(chains(4, {}), 16, 8);
     s.seed = seed;
     const Rendering r = render(load(scene), s);
     const std::vector<double> mean = r.film.mean(), variance = r.film.variance_of_mean();
