@@ -135,7 +135,7 @@ METROPOLIS_SCENES = {"door": {"scene": "door/scene.glb", "camera": "corner"},
 
 
 @ENTRIES.measured(
-    "metropolis", "Veach and Guibas 1997; Noel 2015, 4.6, which measures nothing",
+    "noel-metropolis", "Noel 2015, 4.6, which measures nothing; Veach and Guibas 1997",
     "Metropolis light transport has less error behind doors and round corners than independent samples",
     "metropolis",
     tuple(at_least(f"MSE of {other} / of path_space, {scene}", 1)
