@@ -196,10 +196,7 @@ class PairedBdpt final : public Bdpt<Guide> {
     if (!merging_.merge) return stats;
     stats.emplace_back("photons", static_cast<double>(photons_.size()));
     stats.emplace_back("radius", photons_.radius());
-    stats.emplace_back("light_pass_cpu_seconds", seconds_.light);
-    stats.emplace_back("photon_grid_cpu_seconds", seconds_.grid);
-    stats.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
-    stats.emplace_back("look_up_cpu_seconds", seconds_.look_up);
+    seconds_.append_to(stats);
     return stats;
   }
 
@@ -358,10 +355,7 @@ class PairedBdpt final : public Bdpt<Guide> {
 
   Merging merging_;
   PhotonMap photons_;
-  /// CPU seconds of all threads in the parts of an iteration.
-  struct {
-    double light = 0, grid = 0, eye = 0, look_up = 0;
-  } seconds_;
+  PhotonSeconds seconds_;
 };
 
 /// Connections to light paths that all pixels share, resampled at each eye vertex. The shared paths

@@ -131,6 +131,8 @@ class Metropolis final : public Integrator {
     return static_cast<std::uint32_t>(morton_code(brightest->index % w, brightest->index / w, 0));
   }
 
+  /// Draws the independent samples. Each depends on its number alone, so that a chain draws the one
+  /// that it starts at again.
   Counters bootstrap(const IterationContext& context, std::vector<Sample>& samples) const {
     constexpr std::size_t part = 16 * M::size;
     const int parts = static_cast<int>((samples.size() + part - 1) / part);

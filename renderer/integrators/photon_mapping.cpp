@@ -45,10 +45,7 @@ class PhotonMapping final : public Integrator {
     auto stats = light_guide_.statistics();
     stats.emplace_back("photons", static_cast<double>(photons_.size() + caustics_.size()));
     stats.emplace_back("radius", photons_.radius());
-    stats.emplace_back("light_pass_cpu_seconds", seconds_.light);
-    stats.emplace_back("photon_grid_cpu_seconds", seconds_.grid);
-    stats.emplace_back("eye_pass_cpu_seconds", seconds_.eye);
-    stats.emplace_back("look_up_cpu_seconds", seconds_.look_up);
+    seconds_.append_to(stats);
     return stats;
   }
 
@@ -293,10 +290,7 @@ class PhotonMapping final : public Integrator {
   Density density_;
   float least_alpha_;
   PhotonMap photons_, caustics_;
-  /// CPU seconds of all threads in the parts of an iteration.
-  struct {
-    double light = 0, grid = 0, eye = 0, look_up = 0;
-  } seconds_;
+  PhotonSeconds seconds_;
 };
 
 std::unique_ptr<Integrator> make(const PhotonTracing& settings, const Density& density) {

@@ -28,11 +28,16 @@ double PartReplacement::weight(int edges, int deleted, int added, bool to_end) c
   return change == 0 ? 1 : change == 1 ? 0.3 : 0.1;
 }
 
-double PartReplacement::probability(int edges, int deleted, int added, bool to_end) const {
+double PartReplacement::weight_sum(int edges, int deleted, bool to_end) const {
   double sum = 0;
   for (int n = deleted - most_change; n <= deleted + most_change; ++n) {
     sum += weight(edges, deleted, n, to_end);
   }
+  return sum;
+}
+
+double PartReplacement::probability(int edges, int deleted, int added, bool to_end) const {
+  const double sum = weight_sum(edges, deleted, to_end);
   if (!(sum > 0)) return 0;
   return deletion_weight(deleted) / deletion_sum(edges) / places(edges, deleted) *
          weight(edges, deleted, added, to_end) / sum;
@@ -46,10 +51,7 @@ bool PartReplacement::propose(const WholePath& path, PathBuilder& builder, Rng& 
   first_ = static_cast<int>(rng.below(static_cast<std::uint64_t>(places(k, deleted_))));
   const int last = first_ + deleted_ + 1;
   to_end_ = last == k + 1;
-  double sum = 0;
-  for (int n = deleted_ - most_change; n <= deleted_ + most_change; ++n) {
-    sum += weight(k, deleted_, n, to_end_);
-  }
+  const double sum = weight_sum(k, deleted_, to_end_);
   if (!(sum > 0)) return false;
   u = rng.next_choice() * sum;
   added_ = deleted_ - most_change;

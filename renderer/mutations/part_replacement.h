@@ -25,6 +25,8 @@ class PartReplacement {
   double probability(int edges, int deleted, int added, bool to_end) const;
   /// Weight of `added` in the choice that `edges` and `deleted` leave.
   double weight(int edges, int deleted, int added, bool to_end) const;
+  /// The sum of the weights of all choices.
+  double weight_sum(int edges, int deleted, bool to_end) const;
 
   ChainPaths paths_;
   int first_ = 0, deleted_ = 0, added_ = 0;

@@ -5,18 +5,6 @@
 #include "renderer/path/connect.h"
 
 namespace lacuna {
-namespace {
-
-V3f origin(const Vertex& v, const V3f& w) {
-  return offset_origin(v.surface.x, v.surface.ng, v.surface.extent, w);
-}
-
-/// A segment's end at `v`; `w` points away from it. Points in space are not moved.
-V3f segment_end(const Vertex& v, const V3f& w) {
-  return v.surface.extent > 0 ? origin(v, w) : v.surface.x;
-}
-
-}  // namespace
 
 void PathBuilder::keep(const WholePath& path, int first, int last) {
   keep_eye(path, first);
@@ -87,13 +75,13 @@ bool PathBuilder::scatter(std::vector<PathNode>& end, Transport transport, Rng& 
   PathNode& node = end.back();
   const Vertex& v = vertex(node);
   if (v.kind != Vertex::Kind::surface) return false;
-  const V3f from = span_between(v, vertex(end[end.size() - 2])).w;
+  const V3f from = edge_between(VertexPlace{v}, VertexPlace{vertex(end[end.size() - 2])}).w;
   const auto [u_lobe, u] = rng.next_choice_and_point();
   const auto next = v.bsdf->sample(from, u_lobe, u, transport);
   if (!next) return false;
   node.delta = next->delta;
   node.transmitted = next->transmitted;
-  return arrive({origin(v, next->wi), next->wi}, end);
+  return arrive({VertexPlace{v}.origin(next->wi), next->wi}, end);
 }
 
 bool PathBuilder::start_light(Rng& rng) {
@@ -103,10 +91,7 @@ bool PathBuilder::start_light(Rng& rng) {
   light_.push_back({id, false, false});
   PathVertex& p = pool_[id];
   p.emitter = emitters.sample(emitters.choose(rng), rng);
-  p.v.kind = p.emitter.infinite() ? Vertex::Kind::background : Vertex::Kind::emitter;
-  p.v.surface.x = p.emitter.x;
-  p.v.surface.ng = p.emitter.ng;
-  p.v.surface.extent = p.emitter.kind == EmitterPoint::Kind::area ? p.emitter.extent : 0.0F;
+  place_on(p.emitter, p.v);
   p.v.bsdf.reset();
   return true;
 }
@@ -119,12 +104,12 @@ bool PathBuilder::leave_light(Rng& rng) {
 
 bool PathBuilder::go_from_eye(const V3f& w) {
   eye_.back().delta = false;
-  return arrive({origin(vertex(eye_.back()), w), w}, eye_);
+  return arrive({VertexPlace{vertex(eye_.back())}.origin(w), w}, eye_);
 }
 
 bool PathBuilder::go_from_light(const V3f& w) {
   light_.back().delta = false;
-  return arrive({segment_end(vertex(light_.back()), w), w}, light_);
+  return arrive({VertexPlace{vertex(light_.back())}.origin(w), w}, light_);
 }
 
 bool PathBuilder::follow_from_eye(bool transmitted) {
@@ -135,7 +120,7 @@ bool PathBuilder::follow_from_eye(bool transmitted) {
   if (!lobe) return false;
   node.delta = true;
   node.transmitted = transmitted;
-  return arrive({origin(v, lobe->wi), lobe->wi}, eye_);
+  return arrive({VertexPlace{v}.origin(lobe->wi), lobe->wi}, eye_);
 }
 
 bool PathBuilder::follow_from_light(bool transmitted) {
@@ -148,7 +133,7 @@ bool PathBuilder::follow_from_light(bool transmitted) {
   if (!seen || (seen->wi - v.wp).length2() > 1e-6F) return false;
   node.delta = true;
   node.transmitted = transmitted;
-  return arrive({origin(v, lobe->wi), lobe->wi}, light_);
+  return arrive({VertexPlace{v}.origin(lobe->wi), lobe->wi}, light_);
 }
 
 bool PathBuilder::end_on_emitter() {
@@ -170,14 +155,9 @@ bool PathBuilder::join(WholePath& path) {
 
 bool PathBuilder::visible() const {
   if (light_.empty()) return true;
-  const Vertex& a = vertex(eye_.back());
-  const Vertex& b = vertex(light_.back());
-  const V3f w = span_between(a, b).w;
-  const V3f from = a.kind == Vertex::Kind::eye ? a.surface.x : origin(a, w);
+  const VertexPlace a{vertex(eye_.back())}, b{vertex(light_.back())};
   ++counters_.shadow_rays;
-  const Ray ray = b.kind == Vertex::Kind::background ? Ray{from, w}
-                                                     : Ray{from, segment_end(b, -w) - from, 1.0F};
-  return !measure_.scene().rays().occluded(ray);
+  return !measure_.scene().rays().occluded(shadow_ray(a, b, edge_between(a, b)));
 }
 
 void PathBuilder::abandon() {

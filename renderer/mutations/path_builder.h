@@ -54,8 +54,8 @@ class PathBuilder {
   bool eye_on_surface() const { return vertex(eye_.back()).kind == Vertex::Kind::surface; }
   bool light_is_infinite() const { return vertex(light_.back()).kind == Vertex::Kind::background; }
 
-  /// Joins the ends by a segment, if the light's is not empty, and writes the nodes to `path`. False
-  /// where the eye's end left the scene.
+  /// Joins the ends by a segment, if the light's is not empty, and writes the nodes to `path`.
+  /// False where the eye's end left the scene.
   bool join(WholePath& path);
   /// The segment that joins both parts is unoccluded.
   bool visible() const;

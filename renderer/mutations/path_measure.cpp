@@ -1,21 +1,23 @@
 #include "renderer/mutations/path_measure.h"
 
+#include "renderer/path/connect.h"
+
 namespace lacuna {
 namespace {
 
 /// The edge between x_i and x_{i+1}; false where they are in one place.
 bool make_edge(const Vertex& near_eye, const PathVertex& near_light, bool last, PathEdge& edge) {
-  const Span span = span_between(near_eye, near_light.v);
-  if (!(span.distance2 > 0)) return false;
-  edge.w = span.w;
+  const Connection c = edge_between(VertexPlace{near_eye}, VertexPlace{near_light.v});
+  if (!(c.distance2 > 0)) return false;
+  edge.w = c.w;
   // Points in space have no surface that a density is per area of.
   const bool surface = !last || near_light.emitter.kind == EmitterPoint::Kind::area;
   const float cosine = surface && near_light.v.kind != Vertex::Kind::background
                            ? abs_dot(near_light.v.surface.ng, edge.w)
                            : 1.0F;
-  edge.to_light = cosine / span.distance2;
+  edge.to_light = cosine / c.distance2;
   edge.to_eye = near_eye.kind == Vertex::Kind::surface
-                    ? abs_dot(near_eye.surface.ng, edge.w) / span.distance2
+                    ? abs_dot(near_eye.surface.ng, edge.w) / c.distance2
                     : 0.0F;
   return true;
 }
@@ -37,13 +39,6 @@ bool joinable(const WholePath& path, const VertexPool& pool, int j) {
 }
 
 }  // namespace
-
-Span span_between(const Vertex& a, const Vertex& b) {
-  if (b.kind == Vertex::Kind::background) return {b.surface.x, 1};
-  const V3f d = b.surface.x - a.surface.x;
-  const float distance2 = d.length2();
-  return {distance2 > 0 ? d / std::sqrt(distance2) : V3f(0, 0, 0), distance2};
-}
 
 PathMeasure::PathMeasure(const Scene& scene, const Camera& camera)
     : scene_(scene),

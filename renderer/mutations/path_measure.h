@@ -49,12 +49,4 @@ class PathMeasure {
   V2f film_size_;
 };
 
-/// The direction from `a` to `b`, unit, and the squared distance; 1 if `b` is at infinity. A
-/// distance of 0 has no direction.
-struct Span {
-  V3f w{0, 0, 0};
-  float distance2 = 1;
-};
-Span span_between(const Vertex& a, const Vertex& b);
-
 }  // namespace lacuna

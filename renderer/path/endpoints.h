@@ -10,6 +10,18 @@ namespace lacuna {
 // The endpoints of a connecting edge: a surface vertex, a point on an emitter, or the eye. All have
 // the members that connect.h uses; directions are unit and point away from the endpoint.
 
+/// Where a vertex of any kind is: for the geometry of an edge alone.
+struct VertexPlace {
+  const Vertex& v;
+
+  bool infinite() const { return v.kind == Vertex::Kind::background; }
+  const V3f& x() const { return v.surface.x; }
+  /// The origin of a ray along `w`. The eye and points in space have no extent: it is not moved.
+  V3f origin(const V3f& w) const {
+    return offset_origin(v.surface.x, v.surface.ng, v.surface.extent, w);
+  }
+};
+
 /// A surface vertex: vertex `index` of its path.
 template <class Guide>
 struct SurfaceEndpoint {
@@ -37,9 +49,7 @@ struct SurfaceEndpoint {
   double mis_partial() const { return v.mis_partial; }
   bool prev_connectible() const { return v.prev_connectible; }
   /// The origin of a ray along `w`, offset from the surface.
-  V3f origin(const V3f& w) const {
-    return offset_origin(v.surface.x, v.surface.ng, v.surface.extent, w);
-  }
+  V3f origin(const V3f& w) const { return VertexPlace{v}.origin(w); }
 };
 
 /// A point on an emitter: vertex 0 of a light path.
@@ -67,6 +77,14 @@ struct EmitterEndpoint {
     return e.kind == EmitterPoint::Kind::area ? offset_origin(e.x, e.ng, e.extent, w) : e.x;
   }
 };
+
+/// Makes `v` the vertex 0 of a light path that starts at `e`.
+inline void place_on(const EmitterPoint& e, Vertex& v) {
+  v.kind = e.infinite() ? Vertex::Kind::background : Vertex::Kind::emitter;
+  v.surface.x = e.x;
+  v.surface.ng = e.ng;
+  v.surface.extent = e.kind == EmitterPoint::Kind::area ? e.extent : 0.0F;
+}
 
 /// The eye, a point.
 struct EyeEndpoint {

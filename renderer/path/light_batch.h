@@ -171,9 +171,7 @@ class LightBatch {
     const std::optional<Leaving> leaving = first_edge(e, rng);
     if (!leaving) return;
     const std::span<Vertex> path = std::span(vertices_).subspan(i * places_, places_);
-    path[0].kind = e.infinite() ? Vertex::Kind::background : Vertex::Kind::emitter;
-    path[0].surface.x = e.x;
-    path[0].surface.ng = e.ng;
+    place_on(e, path[0]);
     PathState w{.rng = rng, .ray = leaving->ray, .p = leaving->pdf, .path = path};
     w.throughput = leaving->throughput;
     w.roulette_scale = 1 / max_component(leaving->throughput);

@@ -72,6 +72,13 @@ double merge_radius(const RadiusSettings& settings, const IterationContext& cont
   return r > 0 ? r : 1;  // of a scene without size, where nothing is hit
 }
 
+void PhotonSeconds::append_to(std::vector<std::pair<std::string, double>>& statistics) const {
+  statistics.emplace_back("light_pass_cpu_seconds", light);
+  statistics.emplace_back("photon_grid_cpu_seconds", grid);
+  statistics.emplace_back("eye_pass_cpu_seconds", eye);
+  statistics.emplace_back("look_up_cpu_seconds", look_up);
+}
+
 void PhotonMap::begin(std::int64_t paths) {
   require_photons(static_cast<double>(paths), 0);
   parts_.resize(static_cast<std::size_t>((paths + paths_of_part - 1) / paths_of_part));

@@ -2,6 +2,8 @@
 
 #include <atomic>
 #include <numbers>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "renderer/path/light_pass.h"
@@ -14,6 +16,15 @@ namespace lacuna {
 /// The radius within which photons count in iteration `context.iteration`, scene units, > 0
 /// (RadiusSettings).
 double merge_radius(const RadiusSettings& settings, const IterationContext& context);
+
+/// CPU seconds of all threads in the parts of the iterations of a method with photons.
+struct PhotonSeconds {
+  double light = 0, grid = 0, eye = 0;
+  double look_up = 0;  ///< a part of `eye`
+
+  /// Appends them to the statistics of an integrator.
+  void append_to(std::vector<std::pair<std::string, double>>& statistics) const;
+};
 
 /// The photons of an iteration. A member of an integrator keeps its memory between iterations.
 class PhotonMap {
