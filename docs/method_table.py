@@ -18,7 +18,8 @@ SCENES = {
     "atrium": "sun into one side of a court", "many_lights": "200 emitters among pillars",
     "door": "Veach's door ajar", "corridor": "Noel's corridor", "sponza": "sun, camera in an arcade",
 }
-METHODS = ["path", "path skeleton", "path sd_tree", "bdpt paired", "bdpt skeleton", "many_lights probabilistic"]
+METHODS = ["path", "path skeleton", "path sd_tree", "bdpt paired", "bdpt skeleton", "many_lights probabilistic",
+           "metropolis"]
 
 
 def method(integrator):

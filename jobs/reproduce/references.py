@@ -142,7 +142,7 @@ METROPOLIS_SCENES = {"door": {"scene": "door/scene.glb", "camera": "corner"},
           for scene in METROPOLIS_SCENES for other in ("bdpt skeleton", "multiplexed", "path")))
 def metropolis(run):
     """Each mutation, and methods of independent samples, at equal CPU time."""
-    size, seconds = ([640, 360], 60) if run.full else ([256, 144], 8)
+    size, seconds = ([640, 360], 30) if run.full else ([256, 144], 8)
     for scene, where in METROPOLIS_SCENES.items():
         def render(name, integrator, seed, budget, where=where, scene=scene):
             key = f"{scene}-{name.replace(' ', '-').replace(',', '')}"

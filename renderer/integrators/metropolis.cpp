@@ -8,6 +8,7 @@
 #include "renderer/core/pass_seconds.h"
 #include "renderer/integrators/integrators.h"
 #include "renderer/integrators/path_tracer.h"
+#include "renderer/integrators/seen_emission.h"
 #include "renderer/mutations/registry.h"
 
 namespace lacuna {
@@ -34,6 +35,10 @@ class Metropolis final : public Integrator {
 
   SceneNeeds needs() const override { return {.materials = true, .emission = true}; }
 
+  void prepare(const PrepareContext& context) override {
+    if (settings_.direct_samples == 0) seen_.prepare(context);
+  }
+
   Counters iterate(const IterationContext& context, Image& image) override {
     Counters counters;
     trace_direct(context, image, counters);
@@ -52,6 +57,7 @@ class Metropolis final : public Integrator {
     const std::vector<std::size_t> starts = choose_starts(context, plan, samples, sum);
     // A chain's states have the density scalar / brightness.
     const double brightness = sum / static_cast<double>(plan.samples);
+    brightness_.add(samples, sum, static_cast<double>(plan.samples));
     const double share = brightness * pixels / double(plan.chains * plan.mutations);
     counters += run_chains(context, plan, starts, share, image);
     pass.end(seconds_.chains);
@@ -63,8 +69,10 @@ class Metropolis final : public Integrator {
       return of > 0 ? double(n) / double(of) : 0.0;
     };
     std::vector<std::pair<std::string, double>> list{
-        {"mutations",
-         double(std::accumulate(proposed_.begin(), proposed_.end(), std::uint64_t{0}))},
+        {"mutations", proposed()},
+        {"uneven_pixels", static_cast<double>(seen_.uneven_pixels())},
+        {"brightness_relative_error", brightness_.relative_error()},
+        {"mutations_per_cpu_second", seconds_.chains > 0 ? proposed() / seconds_.chains : 0.0},
         {"bootstrap_cpu_seconds", seconds_.bootstrap},
         {"chains_cpu_seconds", seconds_.chains}};
     for (std::size_t i = 0; i < M::kinds.size(); ++i) {
@@ -78,20 +86,27 @@ class Metropolis final : public Integrator {
  private:
   using ByKind = std::array<std::uint64_t, M::kinds.size()>;  ///< numbers by kind of proposal
 
+  /// Mutations of all kinds.
+  double proposed() const {
+    return double(std::accumulate(proposed_.begin(), proposed_.end(), std::uint64_t{0}));
+  }
   static PathSettings direct_settings(const MetropolisSettings& s) {
     PathSettings direct;
-    direct.max_depth = std::min(s.direct_samples > 0 ? 2 : 1, s.max_depth);
+    direct.max_depth = std::min(2, s.max_depth);
     direct.roulette_depth = direct.max_depth;
     return direct;
   }
   ChainPaths paths() const { return {settings_, least_edges()}; }
   int least_edges() const { return settings_.direct_samples > 0 ? 3 : 2; }
 
-  /// Adds the mean of the path traced samples of each pixel: of the paths that chains leave out.
+  /// Adds the light of the paths that chains leave out.
   void trace_direct(const IterationContext& context, Image& image, Counters& counters) {
-    const int samples = std::max(1, settings_.direct_samples);
-    const auto share = 1.0F / static_cast<float>(samples);
-    for (int i = 0; i < samples; ++i) {
+    if (settings_.direct_samples == 0) {
+      counters += seen_.add(context, settings_.mutations, image);
+      return;
+    }
+    const auto share = 1.0F / static_cast<float>(settings_.direct_samples);
+    for (int i = 0; i < settings_.direct_samples; ++i) {
       // A job's seed is below 2^53.
       const std::uint64_t seed = context.seed | static_cast<std::uint64_t>(i) << 53;
       Image sample(image.width, image.height);
@@ -122,6 +137,21 @@ class Metropolis final : public Integrator {
     double scalar = 0;
     std::uint32_t order = 0;  ///< of its brightest pixel along a Morton curve
     std::size_t number = 0;   ///< of its generator
+  };
+  /// The brightness of the picture, over iterations.
+  struct Brightness {
+    double sum = 0, variance = 0;  ///< of the estimates of the iterations
+
+    /// `sum_`: of the scalars of all `n` samples, of which those in `found` are not 0.
+    void add(std::span<const Sample> found, double sum_, double n) {
+      const double mean = sum_ / n;
+      double squares = mean * mean * (n - static_cast<double>(found.size()));
+      for (const Sample& s : found) squares += (s.scalar - mean) * (s.scalar - mean);
+      sum += mean;
+      if (n > 1) variance += squares / (n * (n - 1));
+    }
+    /// Standard error over the value.
+    double relative_error() const { return sum > 0 ? std::sqrt(variance) / sum : 0; }
   };
   static std::uint32_t film_order(const ChainState& state, int width) {
     const auto brightest = std::ranges::max_element(
@@ -282,8 +312,10 @@ class Metropolis final : public Integrator {
 
   MetropolisSettings settings_;
   Settings mutation_;
-  PathTracer<BsdfGuide> direct_;
+  PathTracer<BsdfGuide> direct_;  // of direct_samples
+  SeenEmission seen_;             // without them
   ByKind proposed_{}, accepted_{};
+  Brightness brightness_;
   /// CPU seconds of all threads in the parts of an iteration.
   struct {
     double bootstrap = 0, chains = 0;

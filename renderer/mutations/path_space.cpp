@@ -25,16 +25,11 @@ void PathSpaceMutation::propose(std::size_t i, Rng& rng) {
   Chain& c = chains_[i];
   c.rng = &rng;
   c.starting = false;
-  double u = rng.next_choice();
-  const auto chosen = [&](double p) {
-    u -= p;
-    return u < 0;
-  };
-  if (chosen(settings_.large_steps)) {
+  if (rng.decide(static_cast<float>(settings_.large_steps))) {
     c.kind = Kind::independent;
-  } else if (chosen(settings_.bidirectional)) {
+  } else if (rng.decide(static_cast<float>(settings_.bidirectional))) {
     c.kind = Kind::bidirectional;
-  } else if (chosen(settings_.lens)) {
+  } else if (rng.decide(static_cast<float>(settings_.lens))) {
     c.kind = Kind::lens;
   } else {
     c.kind = rng.below(2) == 0 ? Kind::eye : Kind::light;

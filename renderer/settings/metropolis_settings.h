@@ -15,8 +15,8 @@ struct MetropolisSettings : PathLengths {
 
   MutationSettings mutation = PathSpaceSettings{};
   int chains = 256;
-  double mutations = 4;
-  double bootstrap = 0.25;
+  double mutations = 8;
+  double bootstrap = 1;
   int direct_samples = 0;
 
   bool operator==(const MetropolisSettings&) const = default;
@@ -43,8 +43,8 @@ void describe(V& v, MetropolisSettings& s) {
   v("direct_samples", s.direct_samples,
     {.doc =
          "path traced samples for each pixel in an iteration, of emitters seen directly and of "
-         "direct light; chains follow longer paths only. 0: one sample of emitters seen directly, "
-         "and chains follow direct light, too; better where little of it is unoccluded",
+         "direct light; chains follow longer paths only. 0: chains follow direct light, too, and "
+         "only emitters seen directly are sampled; better where little of it is unoccluded",
      .min = 0,
      .max = 1000});
 }

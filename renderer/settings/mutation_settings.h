@@ -61,7 +61,7 @@ struct PathSpaceSettings {
 
   double large_steps = 0.01;
   double bidirectional = 0.15;
-  double lens = 0.7;
+  double lens = 0.83;
   double largest_angle = 0.5;
   double largest_lens = 0.1;
   double octaves = 5;
@@ -73,12 +73,15 @@ void describe(V& v, PathSpaceSettings& s) {
   v("large_steps", s.large_steps,
     {.doc = "probability of a proposal that is independent of the state", .min = 0, .max = 1});
   v("bidirectional", s.bidirectional,
-    {.doc = "probability of replacing a part of the path; the other proposals are perturbations",
+    {.doc =
+         "probability of replacing a part of the path where the proposal is not independent; all "
+         "others are perturbations",
      .min = 0,
      .max = 1});
   v("lens", s.lens,
-    {.doc = "probability of moving the path on the film; the other perturbations turn a direction "
-            "between two of its vertices",
+    {.doc =
+         "probability that a perturbation moves the path on the film; the others turn a direction "
+         "between two of its vertices",
      .min = 0,
      .max = 1});
   v("largest_angle", s.largest_angle,

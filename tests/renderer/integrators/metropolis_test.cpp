@@ -92,6 +92,41 @@ TEST(Metropolis, AnyNumberOfChains) {
   }
 }
 
+// Chains that start in one room hardly ever come to the other: what starts there decides their
+// shares of the picture.
+TEST(Metropolis, RoomsHaveTheirShares) {
+  const PathScene scene{"two_rooms"};
+  RenderSettings expected = square_picture(test::path_tracing(5), 8, 4000);
+  expected.seed = 2;
+  const Rendering reference = render(load(scene), expected);
+  for (const int number : {1, 3, 50}) {
+    SCOPED_TRACE(testing::Message() << number << " chains");
+    MetropolisSettings s = chains(5, {});
+    s.chains = number;
+    expect_same_picture(render(load(scene), square_picture(s, 8, 1000)), reference, 0.1);
+  }
+}
+
+// At the border of a lamp most of the variance of a path tracer lies.
+TEST(Metropolis, SeesEmittersSharply) {
+  const PathScene scene{"cornell"};
+  const auto picture = [&](const IntegratorSettings& integrator, int iterations) {
+    RenderSettings s = square_picture(integrator, 32, iterations);
+    s.filter = PixelFilter::tent;
+    return render(load(scene), s);
+  };
+  MetropolisSettings s = chains(1, {});
+  s.mutations = 16;
+  const Rendering seen = picture(s, 200), path = picture(test::path_tracing(1), 800);
+  expect_same_picture(seen, path, 0.01);
+  const auto variance = [](const Rendering& r, int iterations) {
+    double sum = 0;
+    for (const double v : r.film.variance_of_mean()) sum += v * iterations;
+    return sum;
+  };
+  EXPECT_LT(variance(seen, 200), variance(path, 800) / 16);
+}
+
 // The error that a picture claims is the error that it has: over many pictures, the squared error
 // against a much better one has the mean of the variances that they estimate.
 TEST(Metropolis, ClaimsTheErrorThatItHas) {

@@ -56,6 +56,19 @@ inline SceneData leaning_room() {
   return std::move(p.data);
 }
 
+/// Two rooms with a lamp in each, one ten times as bright; the eye stands in the only gap between
+/// them and sees both. Few paths of light pass from one to the other.
+inline SceneData two_rooms() {
+  SceneParts p;
+  const auto wall = p.material(diffuse(Rgb(0.7F, 0.6F, 0.5F)));
+  p.box({-2, -1, -1}, {2, 1, 1}, false, wall);
+  p.box({-0.05F, -1, -1}, {0.05F, 1, 0.8F}, true, wall);
+  p.quad({-1.4F, 0.95F, -0.4F}, {0.8F, 0, 0}, {0, 0, 0.8F}, p.material(lamp(Rgb(20, 20, 20))));
+  p.quad({0.6F, 0.95F, -0.4F}, {0.8F, 0, 0}, {0, 0, 0.8F}, p.material(lamp(Rgb(2, 2, 2))));
+  p.eye({0, 0, 0.95}, {0, -0.2, -1}, 1.5);
+  return std::move(p.data);
+}
+
 /// A nearly black room: what a light path carries falls by eight decades at each surface.
 inline SceneData black_room() {
   SceneParts p;
@@ -67,6 +80,7 @@ inline SceneData black_room() {
 
 inline SceneData load(const PathScene& s) {
   if (s.name == "black") return black_room();
+  if (s.name == "two_rooms") return two_rooms();
   if (s.name == "leaning") return leaning_room();
   if (s.name == "particles") {
     SceneData data = load_gltf(scene_path("cornell.glb"));
