@@ -94,14 +94,10 @@ class Bdpt : public GuidedIntegrator<Guide> {
   }
 
   /// Traces the queued shadow rays of `batch`, adds the unoccluded contributions to the image and
-  /// to the layers, passes each to `arrived(contribution)`, and records samples for the guide.
+  /// to the layers, and passes each to `arrived(contribution)`.
   template <class Arrived>
-  void finish(const TilePass& pass, EyePaths& batch, typename Guide::Accumulator& accumulator,
-              Arrived&& arrived) const {
+  void flush(const TilePass& pass, EyePaths& batch, Arrived&& arrived) const {
     const auto& [context, image, counters] = pass;
-    for (std::size_t k = 0; k < batch.states.size(); ++k) {
-      accumulate(image.pixels[batch.pixels[k]], batch.radiance[k], counters);
-    }
     batch.queue.flush(
         context.scene.rays(), counters,
         [&](const Contribution& c) {
@@ -112,6 +108,22 @@ class Bdpt : public GuidedIntegrator<Guide> {
           layers_.distribution(context.layers, c.distribution, c.pixel, c.value * c.weight);
         },
         [&] { context.check_stop(); });
+  }
+  /// The same while paths of the batch go on, where so many rays wait that they take much memory:
+  /// two paths of a thousand edges are joined by a million.
+  template <class Arrived>
+  void flush_if_long(const TilePass& pass, EyePaths& batch, Arrived&& arrived) const {
+    constexpr std::size_t many = 1 << 17;
+    if (batch.queue.size() >= many) flush(pass, batch, arrived);
+  }
+  /// Adds what the paths of the batch have found, and records samples for the guide.
+  template <class Arrived>
+  void finish(const TilePass& pass, EyePaths& batch, typename Guide::Accumulator& accumulator,
+              Arrived&& arrived) const {
+    for (std::size_t k = 0; k < batch.states.size(); ++k) {
+      accumulate(pass.image.pixels[batch.pixels[k]], batch.radiance[k], pass.counters);
+    }
+    flush(pass, batch, arrived);
     if (guide_.learns()) batch.gathered.record(guide_, accumulator);
   }
   /// Starts the paths of the tile from pixel `first` on, and counts them.
@@ -264,7 +276,7 @@ class PairedBdpt final : public Bdpt<Guide> {
         Base::start(pass, tile, first, pairs.eye);
         if (merging_.connect) walk_light(context, pairs, counters, splats);
         do {
-          walk_eye(context, walk, pairs);
+          walk_eye(pass, walk, pairs);
           look_up(context, pairs);
           Base::finish(pass, pairs.eye, accumulators[static_cast<std::size_t>(i)],
                        [](const Contribution&) {});
@@ -298,7 +310,8 @@ class PairedBdpt final : public Bdpt<Guide> {
     pairs.light.splat(paths, counters, splats);
   }
 
-  void walk_eye(const IterationContext& context, Walk<Guide>& walk, Pairs& pairs) const {
+  void walk_eye(const typename Base::TilePass& pass, Walk<Guide>& walk, Pairs& pairs) const {
+    const IterationContext& context = pass.context;
     const EmitterSet& lights = context.scene.emitters();
     const SampleCounts& counts = pairs.eye.counts;
     const auto choose = [&](std::size_t i, int depth) {
@@ -323,6 +336,7 @@ class PairedBdpt final : public Bdpt<Guide> {
         if (!pairs.light.connectible(path, s - 1)) continue;
         Base::join(eye, pairs.light.end(path, s - 1), 1, known, pairs.eye);
       }
+      Base::flush_if_long(pass, pairs.eye, [](const Contribution&) {});
     });
   }
 
@@ -446,6 +460,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
       EyePart part{lights, connections_.resampling().roulette * cell_statistics_.mean(index),
                    EyePaths(settings_.max_depth, counts),
                    CellStatistics::Accumulator(cell_statistics_.cells())};
+      const auto record = [&](const Contribution& c) { arrived(c, part.accumulator); };
       const typename Base::TilePass pass{context, image, counters};
       Walk<Guide> walk(context.scene, guide_, Base::eye_limits(counts), counters);
       const Tile tile = tiling.tile(i);
@@ -458,9 +473,9 @@ class ResampledBdpt final : public Bdpt<Guide> {
                 part.stop.check(context);
                 Base::gather_hit(context, part.batch, k, depth);
                 join_lights(part, k, depth);
+                Base::flush_if_long(pass, part.batch, record);
               });
-          Base::finish(pass, part.batch, guide_accumulators[index],
-                       [&](const Contribution& c) { arrived(c, part.accumulator); });
+          Base::finish(pass, part.batch, guide_accumulators[index], record);
         } while (Base::resume(walk, part.batch));
       }
       part.accumulator.add_paths(static_cast<std::uint64_t>(tile.pixels()));
