@@ -251,7 +251,7 @@ class PairedBdpt final : public Bdpt<Guide> {
     photons_.begin(Base::pixels(image));
     const LightPathSetting setting = Base::light_setting(context, counts);
     const Counters sum = light_pass(
-        context, setting, guide_, Base::pixels(image), image,
+        {context, setting, Base::pixels(image), image}, guide_,
         [&](std::size_t path, const LightBatch<Guide>& batch, std::size_t i) {
           photons_.keep_path(path, batch, i);
         },
@@ -435,7 +435,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
     LightVertices lights(lit ? resampled : 0, std::max(1, settings_.max_depth - 1));
     const LightPathSetting setting = Base::light_setting(context, counts);
     Counters counters = light_pass(
-        context, setting, guide_, lit ? paths : 0, image,
+        {context, setting, lit ? paths : 0, image}, guide_,
         [&](std::size_t path, const LightBatch<Guide>& batch, std::size_t place) {
           if (path < resampled) lights.keep(path, batch, place);
         },

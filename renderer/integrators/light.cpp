@@ -24,7 +24,7 @@ class Light final : public GuidedIntegrator<Guide> {
                                    settings_.roulette_depth,
                                    {.hit = 0, .splat = static_cast<double>(paths)}};
     return light_pass(
-        context, setting, this->guide_, paths, image,
+        {context, setting, paths, image}, this->guide_,
         [](std::size_t, const LightBatch<Guide>&, std::size_t) {}, [](const Splat&) {});
   }
 

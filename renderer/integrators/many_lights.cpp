@@ -167,7 +167,7 @@ class ManyLights final : public Integrator {
                                    settings_.max_depth - 1, settings_.roulette_depth,
                                    SampleCounts{.hit = 0},  true};
     return light_pass(
-        context, setting, guide_, settings_.light_paths, image,
+        {context, setting, settings_.light_paths, image}, guide_,
         [&](std::size_t path, const LightBatch<BsdfGuide>& batch, std::size_t place) {
           lights.keep(path, batch, place);
         },

@@ -123,7 +123,7 @@ class PhotonMapping final : public Integrator {
     // What is never looked up is not stored: with next event estimation, a photon of each path.
     const Wanted kept = density_.final_gather ? Wanted{true, true, true} : at_first();
     return lacuna::light_pass(
-        context, setting, light_guide_, all, image,
+        {context, setting, all, image}, light_guide_,
         [&](std::size_t path, const LightBatch<GuideOfLight>& batch, std::size_t i) {
           const auto number = static_cast<std::int64_t>(path);
           bool caustic = true;  // so far

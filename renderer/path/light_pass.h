@@ -13,14 +13,21 @@ inline std::int64_t light_paths(int wanted, const Image& image) {
   return wanted > 0 ? wanted : std::int64_t{image.width} * image.height;
 }
 
-/// Traces the light paths [0, paths) of an iteration. If the strategy t = 1 has samples, adds their
-/// splats to `image` and hands each to `arrived(splat)`. Calls `keep(path, batch, i)` for each
-/// traced path, index `i` of its batch, from several threads: for the paths of a part, each
-/// `paths_of_part`, in their order.
+/// The light paths [0, paths) of an iteration, and the picture that their splats are added to.
+struct LightPathPass {
+  const IterationContext& context;
+  const LightPathSetting& setting;
+  std::int64_t paths;
+  Image& image;
+};
+
+/// Traces the light paths of `pass`. If the strategy t = 1 has samples, adds their splats to the
+/// image and hands each to `arrived(splat)`. Calls `keep(path, batch, i)` for each traced path,
+/// index `i` of its batch, from several threads: for the paths of a part, each `paths_of_part`, in
+/// their order.
 template <class Guide, class Keep, class Arrived>
-Counters light_pass(const IterationContext& context, const LightPathSetting& setting,
-                    const Guide& guide, std::int64_t paths, Image& image, Keep&& keep,
-                    Arrived&& arrived) {
+Counters light_pass(const LightPathPass& pass, const Guide& guide, Keep&& keep, Arrived&& arrived) {
+  const auto& [context, setting, paths, image] = pass;
   using Batch = LightBatch<Guide>;
   constexpr std::uint64_t no_path = (std::uint64_t{1} << 56) - 1;
   const std::uint32_t start =

@@ -80,8 +80,9 @@ class LitScene {
     const LightPathSetting setting{
         scene_, camera_, max_depth - 1, max_depth, SampleCounts{.hit = 0}, true};
     Image image(40, 30);
+    const IterationContext pass_context = context(seed_);
     light_pass(
-        context(seed_), setting, guide_, light_paths_, image,
+        {pass_context, setting, light_paths_, image}, guide_,
         [&](std::size_t path, const LightBatch<BsdfGuide>& batch, std::size_t place) {
           lights.keep(path, batch, place);
           const int length = std::min(batch.length(place), max_depth - 1);
