@@ -127,6 +127,25 @@ TEST(Metropolis, SeesEmittersSharply) {
   EXPECT_LT(variance(seen, 200), variance(path, 800) / 16);
 }
 
+// In a furnace all of the film is alike, and the picture is known.
+TEST(Metropolis, FillsAFurnaceEvenly) {
+  for (const int depth : {2, 3, 6, 20}) {
+    SCOPED_TRACE(testing::Message() << "depth " << depth);
+    const double expected = 2 - std::pow(2.0, 1 - depth);
+    RenderSettings s = square_picture(chains(depth, {}), 12, 300);
+    s.camera = "inside";
+    s.filter = PixelFilter::tent;
+    const Rendering r = test::render("furnace.glb", s);
+    for (std::size_t i = 0; i < r.blocks[0].size(); ++i) {
+      const statistics::Moments m = test::over_iterations(r, i);
+      EXPECT_GT(statistics::t_test(m, expected), 1e-7)
+          << "block " << i / 3 << ": " << m.mean() << " +- " << m.standard_error() << ", not "
+          << expected;
+      EXPECT_LT(m.standard_error(), 0.05 * expected) << "the test has no power";
+    }
+  }
+}
+
 // The error that a picture claims is the error that it has: over many pictures, the squared error
 // against a much better one has the mean of the variances that they estimate.
 TEST(Metropolis, ClaimsTheErrorThatItHas) {
