@@ -76,7 +76,7 @@ class RetentionOnDisk : public testing::Test {
     JobSpec spec;
     spec.scene = "a.glb";
     std::filesystem::create_directories(data.jobs());
-    const JobFolder folder = JobFolder::create(data.jobs() / id, spec);
+    JobFolder folder = JobFolder::create(data.jobs() / id, spec);
     set_on_disk(folder, state);
     table.rescan();
     return folder;

@@ -15,6 +15,7 @@ std::vector<double> pareto(double k, int n, std::uint64_t seed, double scale = 1
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(0, 1);
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i)
     values.push_back(scale * std::expm1(-k * std::log1p(-uniform(random))) / k);
   std::sort(values.begin(), values.end());

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace lacuna {
 namespace {
 
@@ -84,6 +86,14 @@ TEST(CellStatistics, TilesHaveTheirOwnMeans) {
   EXPECT_EQ(s.mean(3), 0);
   EXPECT_EQ(s.visits(1), 20U);
   EXPECT_EQ(s.visits(0), 0U);
+}
+
+TEST(CellStatistics, CellsAddUpOverTilesAndIterations) {
+  CellStatistics s = statistics_of({accumulator_of(16, 3), accumulator_of(16, 3)});
+  EXPECT_FLOAT_EQ(s.survival(1, 2, 0.5, 2), 0.75F);
+  s.add(std::vector{accumulator_of(96, 1)});
+  EXPECT_FLOAT_EQ(s.survival(1, 2, 0.5, 2), static_cast<float>(0.25 * std::sqrt(3.0)));
+  EXPECT_EQ(s.visits(1), 128U);
 }
 
 TEST(CellStatistics, AreSavedAndRead) {

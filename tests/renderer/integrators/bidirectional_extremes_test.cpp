@@ -101,6 +101,34 @@ TEST(BidirectionalExtremes, OnePixel) {
   }
 }
 
+/// Two halves of a room, seen from above the wall between them. In each a lamp shines on the
+/// ceiling, and what the eye sees of a half is lit from the ceiling above it.
+SceneData two_halves() {
+  SceneParts p;
+  const auto wall = p.material(grey);
+  p.box({-1, -1, -1}, {1, 1, 1}, false, wall);
+  p.box({-0.02F, -1, -1}, {0.02F, 0.2F, 1}, true, wall);
+  const auto shine = p.material(test::lamp(Rgb(300, 400, 500)));
+  for (const float x : {-0.55F, 0.45F}) p.quad({x, 0.8F, -0.3F}, {0, 0, 0.1F}, {0.1F, 0, 0}, shine);
+  p.eye({0, 0.35, 0.2}, {0, -1, -0.2}, 1.2);
+  return std::move(p.data);
+}
+
+// One pixel has the whole view. Which half its eye path goes to tells nothing of the lamp that its
+// light path starts at.
+TEST(BidirectionalExtremes, PathsThatMeetAreIndependent) {
+  RenderSettings s = small(test::path_tracing(3), 300000);
+  s.width = s.height = 1;
+  const Rendering expected = render(two_halves(), s);
+  for (const Method& m : test::connections(3, 20)) {
+    SCOPED_TRACE(m);
+    s.integrator = m.settings;
+    s.iterations = 8000;
+    s.seed = 3;
+    expect_same_picture(render(two_halves(), s), expected, 0.025);
+  }
+}
+
 TEST(BidirectionalExtremes, NoLightAtAll) {
   for (const Method& m : with_light(test::connections(5), 5)) {
     SCOPED_TRACE(m);

@@ -57,7 +57,9 @@ TEST_P(KeepsItsDistribution, ByEachKindOfProposal) {
       {"independent", {.large_steps = 1, .bidirectional = 0, .lens = 0}},
       {"bidirectional", {.large_steps = 0, .bidirectional = 1, .lens = 0}},
       {"lens", {.large_steps = 0, .bidirectional = 0, .lens = 1}},
-      {"between", {.large_steps = 0, .bidirectional = 0, .lens = 0}}};
+      {"between", {.large_steps = 0, .bidirectional = 0, .lens = 0}},
+      {"independent, shadow rays no likelier than acceptance",
+       {.large_steps = 1, .bidirectional = 0, .lens = 0, .least_tested = 1}}};
   for (const auto& [name, mutation] : kinds) {
     SCOPED_TRACE(name);
     expect_same_picture(render(load(c.scene), picture(chains(c.max_depth, mutation), c.iterations)),
