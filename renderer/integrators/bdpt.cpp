@@ -97,11 +97,11 @@ class Bdpt : public GuidedIntegrator<Guide> {
   /// to the layers, and passes each to `arrived(contribution)`.
   template <class Arrived>
   void flush(const TilePass& pass, EyePaths& batch, Arrived&& arrived) const {
-    const auto& [context, image, counters] = pass;
+    const IterationContext& context = pass.context;
     batch.queue.flush(
-        context.scene.rays(), counters,
+        context.scene.rays(), pass.counters,
         [&](const Contribution& c) {
-          accumulate(image.pixels[c.pixel], c.value * c.weight, counters);
+          accumulate(pass.image.pixels[c.pixel], c.value * c.weight, pass.counters);
           arrived(c);
           if (guide_.learns()) batch.gathered.add(c.path, c.t - 1, c.value * c.weight);
           layers_.strategy(context.layers, c.s, c.t, {c.pixel, c.value, c.weight});

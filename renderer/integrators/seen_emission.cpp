@@ -21,9 +21,11 @@ Rgb emission_along(const Scene& scene, const Ray& ray) {
 template <class At>
 void stratified(int side, Rng& rng, At&& at) {
   const auto n = static_cast<float>(side);
-  for (int i = 0; i < side * side; ++i) {
-    const V2f cell(static_cast<float>(i % side), static_cast<float>(i / side));
-    at((cell + rng.next2()) / n);
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      const V2f cell(static_cast<float>(x), static_cast<float>(y));
+      at((cell + rng.next2()) / n);
+    }
   }
 }
 

@@ -27,7 +27,9 @@ struct LightPathPass {
 /// their order.
 template <class Guide, class Keep, class Arrived>
 Counters light_pass(const LightPathPass& pass, const Guide& guide, Keep&& keep, Arrived&& arrived) {
-  const auto& [context, setting, paths, image] = pass;
+  const IterationContext& context = pass.context;
+  const LightPathSetting& setting = pass.setting;
+  const std::int64_t paths = pass.paths;
   using Batch = LightBatch<Guide>;
   constexpr std::uint64_t no_path = (std::uint64_t{1} << 56) - 1;
   const std::uint32_t start =
@@ -57,8 +59,9 @@ Counters light_pass(const LightPathPass& pass, const Guide& guide, Keep&& keep, 
       }
     }
   };
-  return for_each_splatting_part(
-      context, static_cast<int>((paths + paths_of_part - 1) / paths_of_part), image, work, arrived);
+  return for_each_splatting_part(context,
+                                 static_cast<int>((paths + paths_of_part - 1) / paths_of_part),
+                                 pass.image, work, arrived);
 }
 
 }  // namespace lacuna
