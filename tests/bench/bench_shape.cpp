@@ -73,6 +73,7 @@ void print_yardstick(int runs, const ThreadPool& pool) {
   bench::Yardstick yardstick(bench::plane_bytes, bench::sweeps);
   yardstick.measure(pool);
   std::vector<double> seconds;
+  seconds.reserve(static_cast<std::size_t>(runs));
   for (int i = 0; i < runs; ++i) seconds.push_back(yardstick.measure(pool));
   fmt::print("{}\n", seconds);
 }
