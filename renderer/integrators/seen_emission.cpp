@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "renderer/path/tiles.h"
 
@@ -29,6 +30,7 @@ void stratified(int side, Rng& rng, At&& at) {
   }
 }
 
+/// Of the luminances that are added.
 struct Range {
   float low = std::numeric_limits<float>::infinity(), high = 0;
 
