@@ -20,6 +20,7 @@ void add_check(CLI::App& app, int& code);
 void add_schema(CLI::App& app, int& code);
 void add_list(CLI::App& app, int& code);
 void add_compare(CLI::App& app, int& code);
+void add_advise(CLI::App& app, int& code);
 void add_cache(CLI::App& app, int& code);
 void add_analyze(CLI::App& app, int& code);
 void add_sweep(CLI::App& app, int& code);

@@ -34,6 +34,7 @@ int run(int argc, char** argv) {
   lacuna::add_schema(app, code);
   lacuna::add_list(app, code);
   lacuna::add_compare(app, code);
+  lacuna::add_advise(app, code);
   lacuna::add_cache(app, code);
   lacuna::add_analyze(app, code);
   lacuna::add_sweep(app, code);

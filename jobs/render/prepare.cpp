@@ -114,8 +114,10 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   return p;
 }
 
-void analyse(const Prepared& p) {
-  p.integrator->prepare({*p.scene, *p.pool, *p.space, *p.camera});
+void analyse(const Prepared& p, const Budget& budget) {
+  std::optional<double> seconds = budget.cpu_seconds;
+  if (budget.seconds && (!seconds || *budget.seconds < *seconds)) seconds = budget.seconds;
+  p.integrator->prepare({*p.scene, *p.pool, *p.space, *p.camera, seconds});
   p.space->close();
 }
 

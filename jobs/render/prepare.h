@@ -28,6 +28,6 @@ Prepared prepare(const JobSpec& spec, const RunContext& context);
 /// Lets the integrator look at the scene and at its empty space; only what it asks for is built, or
 /// loaded from the cache. Throws MemoryLimitError, GeometryError, WaitInterrupted,
 /// Stopped.
-void analyse(const Prepared& prepared);
+void analyse(const Prepared& prepared, const Budget& budget);
 
 }  // namespace lacuna

@@ -143,7 +143,7 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
   if (prepared.integrator->needs().space) running.phase("analysing");
   try {
     const ScopedSeconds timed(phases["analysis"]);
-    analyse(prepared);
+    analyse(prepared, spec.budget);
   } catch (const WaitInterrupted&) {
     return Outcome::interrupted;
   }

@@ -10,6 +10,7 @@
 #include "analysis/json/json_text.h"
 #include "analysis/storage/peak_memory.h"
 #include "jobs/results/artefacts_json.h"
+#include "jobs/results/race_json.h"
 #include "jobs/spec/version.h"
 #include "jobs/store/machine.h"
 #include "renderer/images/image_module.h"
@@ -151,6 +152,7 @@ std::string write_report(const ReportInput& input) {
   if (const auto stats = task.integrator.statistics(); !stats.empty()) {
     for (const auto& [name, value] : stats) j["integrator"][name] = value;
   }
+  if (const RaceRecord* race = task.integrator.race()) j["race"] = race_json(*race);
   j["errors"] = errors_json(task, loop);
   j["scene"] = scene(task.scene, input.camera);
   j["image_module"] = image_module(input.started);

@@ -5,7 +5,7 @@
 #include "analysis/artefacts/record.h"
 #include "jobs/run/machine_watch.h"
 #include "jobs/run/render_loop.h"
-#include "jobs/statistics/pareto_tail.h"
+#include "renderer/film/pareto_tail.h"
 
 namespace lacuna {
 

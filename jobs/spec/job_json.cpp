@@ -46,6 +46,30 @@ void check_layers_of_integrator(const JobSpec& spec, std::vector<Problem>& probl
   }
 }
 
+/// Candidates take the lengths of paths from the integrator that lets them race, and must be right
+/// on average.
+void check_candidates(const JobSpec& spec, std::vector<Problem>& problems) {
+  const auto* settings = std::get_if<AutoSettings>(&spec.integrator);
+  if (settings == nullptr || !is_good(problems, "/integrator")) return;
+  for (std::size_t i = 0; i < settings->candidates.size(); ++i) {
+    const std::string at = fmt::format("/integrator/candidates/{}", i);
+    const PathLengths& lengths =
+        std::visit([](const auto& s) -> const PathLengths& { return s; }, settings->candidates[i]);
+    if (lengths != PathLengths{} && lengths != static_cast<const PathLengths&>(*settings)) {
+      problems.push_back(
+          {at, fmt::format("found max_depth {} and roulette_depth {}; allowed: those of the "
+                           "integrator \"auto\", {} and {}, or none",
+                           lengths.max_depth, lengths.roulette_depth, settings->max_depth,
+                           settings->roulette_depth)});
+    }
+    if (biased(settings->candidates[i])) {
+      problems.push_back({at,
+                          "found settings that make the picture biased; allowed: settings "
+                          "without bias, which can be weighed by their noise"});
+    }
+  }
+}
+
 void check_layers_once(const JobSpec& spec, std::vector<Problem>& problems) {
   if (!is_good(problems, "/layers")) return;
   for (auto it = spec.layers.begin(); it != spec.layers.end(); ++it) {
@@ -93,6 +117,7 @@ JobSpec parse_job(std::string_view json) {
   read_settings(document, problems, spec);
   check_error_target(spec, problems);
   check_layers_of_integrator(spec, problems);
+  check_candidates(spec, problems);
   check_layers_once(spec, problems);
   check_crop(spec, problems);
   check_camera(spec, problems);

@@ -9,7 +9,7 @@ namespace lacuna {
 /// The squared errors of single iterations, of which `est_rmse` and the layer `variance` are means.
 /// Where their distribution has a heavy tail the mean of those seen says little: the rare ones that
 /// carry it are still to come. The largest are kept, so that the tail can be fitted
-/// (jobs/statistics/pareto_tail.h).
+/// (renderer/film/pareto_tail.h).
 ///
 /// A picture counts as 16 interleaved ones of a sixteenth of its pixels: they see the same scene,
 /// and give enough values after few iterations.

@@ -14,6 +14,8 @@
 
 namespace lacuna {
 
+struct RaceRecord;
+
 /// A rendering method. iterate() is a pure function of the scene, the settings, the seed, the
 /// iteration and the state that save() writes. A stopped iteration does not change that state.
 class Integrator {
@@ -34,6 +36,8 @@ class Integrator {
   virtual Counters iterate(const IterationContext& context, Image& image) = 0;
   /// Names and numbers for the report, of this process' iterations.
   virtual std::vector<std::pair<std::string, double>> statistics() const { return {}; }
+  /// The race of an integrator that chooses among others; null: it is no such one.
+  virtual const RaceRecord* race() const { return nullptr; }
   /// Learned state, for the checkpoint.
   virtual void save(ByteWriter&) const {}
   virtual void load(ByteReader&) {}

@@ -19,6 +19,7 @@ struct Make {
   std::unique_ptr<Integrator> operator()(const MetropolisSettings& s) const {
     return make_metropolis(s);
   }
+  std::unique_ptr<Integrator> operator()(const AutoSettings& s) const { return make_auto(s); }
   std::unique_ptr<Integrator> operator()(const InspectSettings& s) const { return make_inspect(s); }
 };
 

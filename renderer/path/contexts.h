@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "analysis/space_analysis/space_analysis.h"
@@ -51,6 +52,8 @@ struct PrepareContext {
   const ThreadPool& pool;
   SpaceAnalysis& space;
   const Camera& camera;
+  /// What the iterations may take: CPU seconds of each thread. None: not limited by time.
+  std::optional<double> budget_seconds = std::nullopt;
 };
 
 }  // namespace lacuna

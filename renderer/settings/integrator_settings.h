@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "renderer/settings/auto_settings.h"
 #include "renderer/settings/bdpt_settings.h"
 #include "renderer/settings/inspect_settings.h"
 #include "renderer/settings/light_settings.h"
@@ -18,9 +19,9 @@ namespace lacuna {
 
 /// The integrator and its settings. The order is the order in menus; the first is the default.
 /// renderer/integrators/registry.cpp makes the integrator of each alternative.
-using IntegratorSettings =
-    std::variant<PathSettings, LightSettings, BdptSettings, VcmSettings, SppmSettings,
-                 PhotonMapSettings, ManyLightsSettings, MetropolisSettings, InspectSettings>;
+using IntegratorSettings = std::variant<PathSettings, LightSettings, BdptSettings, VcmSettings,
+                                        SppmSettings, PhotonMapSettings, ManyLightsSettings,
+                                        MetropolisSettings, AutoSettings, InspectSettings>;
 
 /// The layers that the integrator of these settings fills itself. Its settings struct lists them as
 ///

@@ -34,7 +34,7 @@ JobSpec Stage::job(const Method& method, const std::string& scene) const {
 Counters Stage::iterate(const JobSpec& job, const std::function<void(const Image&)>& see) {
   const RunContext surroundings = context(never_interrupted);
   const Prepared p = prepare(job, surroundings);
-  analyse(p);
+  analyse(p, job.budget);
   Counters counters;
   for (std::int64_t i = 0; i < *job.budget.iterations; ++i) {
     Image image(job.resolution[0], job.resolution[1]);

@@ -72,6 +72,19 @@ TEST(Job, ACameraIsANameOrAPlaceOfItsOwn) {
                {"along the view"});
 }
 
+TEST(Job, CandidatesHaveTheLengthsOfTheirRaceAndNoBias) {
+  const auto with = [](const std::string& candidates) {
+    return R"({"scene": "a", "integrator": {"type": "auto", "max_depth": 5, "candidates": [)" +
+           candidates + "]}}";
+  };
+  EXPECT_NO_THROW(parse_job(with(R"("path", {"type": "bdpt", "max_depth": 5}, "metropolis")")));
+  expect_one(job_problems(with(R"("path", {"type": "bdpt", "max_depth": 7})")),
+             "/integrator/candidates/1", {"max_depth 7", "allowed: those"});
+  expect_one(job_problems(with(R"({"type": "many_lights", "compensation": false})")),
+             "/integrator/candidates/0", {"biased"});
+  expect_one(job_problems(with(R"("inspect")")), "/integrator/candidates/0", {"\"path\""});
+}
+
 TEST(Job, LayersComeOnce) {
   expect_one(job_problems(R"({"scene": "a", "layers": ["albedo", "depth", "albedo"]})"),
              "/layers/2", {"\"albedo\" again", "each layer once"});

@@ -113,6 +113,12 @@ inline JobSpec random_job(std::uint64_t seed) {
     }
   }
   if (auto& camera = spec.camera.object; camera && !frame_of(*camera)) camera = CameraSettings{};
+  if (auto* choosing = std::get_if<AutoSettings>(&spec.integrator)) {
+    for (CandidateSettings& c : choosing->candidates) {
+      std::visit([&](auto& s) { static_cast<PathLengths&>(s) = *choosing; }, c);
+    }
+    std::erase_if(choosing->candidates, [](const CandidateSettings& c) { return biased(c); });
+  }
   auto& layers = spec.layers;
   std::sort(layers.begin(), layers.end());
   layers.erase(std::unique(layers.begin(), layers.end()), layers.end());

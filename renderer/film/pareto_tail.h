@@ -13,8 +13,14 @@ struct ParetoTail {
   double index = 0;
   /// The mean of so many values can be trusted up to this index (Vehtari et al. 2024).
   double limit = 0;
+  /// Above `threshold`, which the `share` of all values exceeds, the distribution is threshold +
+  /// scale ((1 - p)^-index - 1) / index, p uniform.
+  double threshold = 0, scale = 0, share = 0;
 
   bool mean_is_known() const { return index <= limit; }
+  /// What values above the threshold add to the mean of all, up to the largest that is to be
+  /// expected among `count` values. It grows with `count`: rare values are still to come.
+  double mean_above(double count) const;
 };
 
 /// The fewest values of which a tail is fitted.

@@ -1,4 +1,4 @@
-#include "jobs/statistics/pareto_tail.h"
+#include "renderer/film/pareto_tail.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +17,13 @@ double shape(std::span<const double> x, double theta) {
   return sum / double(x.size());
 }
 
-/// k of the generalized Pareto distribution of `x` > 0, ascending: theta averaged over a grid by
-/// profile likelihood (Zhang and Stephens 2009).
-double fitted_shape(std::span<const double> x) {
+struct Fit {
+  double shape, scale;
+};
+
+/// The generalized Pareto distribution of `x` > 0, ascending: theta averaged over a grid by profile
+/// likelihood (Zhang and Stephens 2009).
+Fit fit(std::span<const double> x) {
   constexpr double prior = 3;
   const auto n = double(x.size());
   const double quartile = x[std::size_t(std::lround(n / 4)) - 1];
@@ -37,7 +41,8 @@ double fitted_shape(std::span<const double> x) {
     weights += weight;
     mean += weight * theta[j];
   }
-  return shape(x, mean / weights);
+  const double k = shape(x, mean / weights);
+  return {k, -k / (mean / weights)};
 }
 
 }  // namespace
@@ -55,11 +60,33 @@ std::optional<ParetoTail> pareto_tail(std::span<const double> largest, std::uint
   for (const double v : largest.last(tail)) {
     if (v > threshold) exceedances.push_back((v - threshold) / scale);
   }
-  ParetoTail result{std::numeric_limits<double>::infinity(), std::min(1 - 1 / std::log10(n), 0.7)};
+  ParetoTail result{.index = std::numeric_limits<double>::infinity(),
+                    .limit = std::min(1 - 1 / std::log10(n), 0.7),
+                    .threshold = threshold};
   if (exceedances.size() < least_exceedances) return result;
   const auto m = double(exceedances.size());
-  result.index = (m * fitted_shape(exceedances) + 5) / (m + 10);
+  const Fit found = fit(exceedances);
+  result.index = (m * found.shape + 5) / (m + 10);
+  result.scale = found.scale * scale;
+  result.share = m / n;
   return result;
+}
+
+double ParetoTail::mean_above(double count) const {
+  const double beyond =
+      1 / (count * share);  // the part of the tail that is not expected to be seen
+  if (!(beyond < 1) || !std::isfinite(index)) return 0;
+  const double seen = 1 - beyond;
+  const double k = index;
+  double mean = 0;  // of (1 - p)^-k - 1 over k, up to `seen`
+  if (std::abs(k) < 1e-6) {
+    mean = seen + beyond * std::log(beyond);
+  } else if (std::abs(k - 1) < 1e-6) {
+    mean = -std::log(beyond) - seen;
+  } else {
+    mean = ((1 - std::pow(beyond, 1 - k)) / (1 - k) - seen) / k;
+  }
+  return share * (seen * threshold + scale * mean);
 }
 
 }  // namespace lacuna

@@ -1,0 +1,335 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "analysis/parallel/stop.h"
+#include "renderer/core/clock_seconds.h"
+#include "renderer/integrators/candidates.h"
+#include "renderer/integrators/integrator.h"
+#include "renderer/integrators/integrators.h"
+#include "renderer/race/plan.h"
+#include "renderer/race/record.h"
+
+namespace lacuna {
+
+namespace {
+
+/// Budgets from this on are worth an analysis of the space by default, seconds.
+constexpr double worth_an_analysis = 10;
+/// Estimates that a budget is divided into. What a plan does in one is decided before it begins.
+constexpr double estimates_of_a_budget = 64;
+
+struct Candidate {
+  std::string name;
+  std::unique_ptr<Integrator> integrator;
+  bool prepared = false;
+  double preparation = 0;
+};
+
+/// The first iteration holds the race, whose pictures serve decisions alone. Every estimate of the
+/// picture, one an iteration, is made by a plan that was fixed before it began, so that it is
+/// unbiased whatever the plan. Plans are made anew after 4, 8, 16... estimates.
+class Auto final : public Integrator {
+ public:
+  explicit Auto(const AutoSettings& settings) : settings_(settings) {
+    for (const IntegratorSettings& c : candidates(settings)) {
+      candidates_.push_back({.name = candidate_name(c), .integrator = make_integrator(c)});
+    }
+  }
+
+  SceneNeeds needs() const override {
+    SceneNeeds all;
+    for (const Candidate& c : candidates_) {
+      const SceneNeeds one = c.integrator->needs();
+      all.materials |= one.materials;
+      all.emission |= one.emission;
+      all.space |= one.space;
+    }
+    return all;
+  }
+
+  void prepare(const PrepareContext& context) override;
+  Counters iterate(const IterationContext& context, Image& image) override;
+  const RaceRecord* race() const override;
+  void save(ByteWriter& out) const override;
+  void load(ByteReader& in) override;
+
+ private:
+  bool counts_rays() const { return settings_.clock == RaceClock::rays; }
+  /// Why a candidate does not take part; empty: it does.
+  std::string excluded(std::size_t k, const PrepareContext& context) const;
+  /// One iteration of a candidate. Returns its cost.
+  double render(std::size_t k, const IterationContext& context, Image& image);
+  void run_race(const IterationContext& context);
+  void run_plan(const IterationContext& context);
+  void begin_estimate();
+  void make_new_plan();
+  void drop(std::size_t k, const std::exception& e, double cost);
+
+  AutoSettings settings_;
+  std::vector<Candidate> candidates_;
+  Race race_;
+  std::optional<Plan> plan_;
+  std::uint64_t estimates_ = 0;  ///< that are finished
+  // Of the estimate in progress: it goes on where it was stopped.
+  std::vector<int> done_;
+  std::vector<Image> sums_;
+  Counters counters_;
+  mutable RaceRecord record_;
+};
+
+std::string Auto::excluded(std::size_t k, const PrepareContext& context) const {
+  if (k > 0 && context.scene.emitters().empty()) return "the scene has no light";
+  const bool chosen = !settings_.candidates.empty();
+  const bool space = candidates_[k].integrator->needs().space;
+  if (space && !chosen && context.budget_seconds && *context.budget_seconds < worth_an_analysis) {
+    return fmt::format("a budget below {:g} s is not worth an analysis of the space",
+                       worth_an_analysis);
+  }
+  return {};
+}
+
+void Auto::prepare(const PrepareContext& context) {
+  RaceLimits limits{.rounds = 3};
+  if (!counts_rays() && context.budget_seconds) {
+    limits = RaceLimits::of_seconds(*context.budget_seconds);
+  }
+  race_ = Race(candidates_.size(), context.camera.width(), context.camera.height(), limits);
+  for (std::size_t k = 0; k < candidates_.size(); ++k) {
+    if (const std::string why = excluded(k, context); !why.empty()) {
+      race_.leave(k, why);
+      continue;
+    }
+    const double start = clock_seconds(CLOCK_MONOTONIC);
+    try {
+      candidates_[k].integrator->prepare(context);
+      candidates_[k].prepared = true;
+    } catch (const Stopped&) {
+      throw;
+    } catch (const WaitInterrupted&) {
+      throw;
+    } catch (const std::exception& e) {
+      drop(k, e, 0);
+    }
+    candidates_[k].preparation = clock_seconds(CLOCK_MONOTONIC) - start;
+  }
+}
+
+void Auto::drop(std::size_t k, const std::exception& e, double cost) {
+  race_.leave(k, e.what(), cost);
+  const auto& all = race_.entrants();
+  if (std::none_of(all.begin(), all.end(), [](const Entrant& x) { return x.racing; })) throw;
+}
+
+double Auto::render(std::size_t k, const IterationContext& context, Image& image) {
+  std::fill(image.pixels.begin(), image.pixels.end(), Rgb(0, 0, 0));
+  // Streams of their own: methods that share random numbers are not independent.
+  const std::uint64_t seed = context.seed + (k + 1) * 0x9E3779B97F4A7C15;
+  const std::uint64_t iteration = race_.entrants()[k].trial.iterations();
+  const double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
+  const Counters c = candidates_[k].integrator->iterate(
+      {context.scene, context.camera, context.pool, seed, iteration, context.stop}, image);
+  counters_ += c;
+  if (counts_rays()) return static_cast<double>(c.rays + c.shadow_rays);
+  return (clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start) / context.pool.threads();
+}
+
+void Auto::run_race(const IterationContext& context) {
+  Image image(context.camera.width(), context.camera.height());
+  while (const auto k = race_.next()) {
+    const double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
+    const auto taken = [&] {
+      return (clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start) / context.pool.threads();
+    };
+    const bool may_be_late = race_.spent() == 0 || counts_rays();
+    const double rest = race_.limits().cost - race_.spent();
+    const std::function<bool()> stop = [&] {
+      return context.stop() || (!may_be_late && taken() > rest);
+    };
+    const IterationContext limited{context.scene, context.camera,    context.pool,
+                                   context.seed,  context.iteration, stop};
+    try {
+      const double cost = render(*k, limited, image);
+      race_.finished(*k, image, cost);
+    } catch (const IterationStopped&) {
+      if (context.stop()) throw;
+      race_.leave(*k, "an iteration takes longer than the race", taken());
+    } catch (const Stopped&) {
+      throw;
+    } catch (const std::exception& e) {
+      drop(*k, e, counts_rays() ? 0 : taken());
+    }
+  }
+  race_.close();
+}
+
+void Auto::make_new_plan() {
+  const double budget = race_.limits().budget;
+  plan_ = make_plan(race_, budget / estimates_of_a_budget, settings_.regions);
+  begin_estimate();
+}
+
+void Auto::begin_estimate() {
+  done_.assign(candidates_.size(), 0);
+  const BlockGrid& grid = race_.entrants()[0].trial.grid();
+  sums_.assign(candidates_.size(), Image());
+  for (std::size_t k = 0; k < sums_.size(); ++k) {
+    if (plan_->iterations[k] > 0) sums_[k] = Image(grid.width, grid.height);
+  }
+}
+
+void Auto::run_plan(const IterationContext& context) {
+  Image image(context.camera.width(), context.camera.height());
+  for (std::size_t k = 0; k < candidates_.size(); ++k) {
+    while (done_[k] < plan_->iterations[k]) {
+      const double cost = render(k, context, image);
+      Trial& trial = race_.entrants()[k].trial;
+      trial.charge(cost);
+      // One of an estimate's tells as much of the noise for a part of the time.
+      if (done_[k] == 0) trial.add(image);
+      for (std::size_t i = 0; i < image.pixels.size(); ++i) sums_[k].pixels[i] += image.pixels[i];
+      ++done_[k];
+    }
+  }
+}
+
+Counters Auto::iterate(const IterationContext& context, Image& image) {
+  if (!plan_) {
+    run_race(context);
+    make_new_plan();
+  }
+  run_plan(context);
+  combine(*plan_, race_.entrants()[0].trial.grid(), sums_, image);
+  const Counters counters = std::exchange(counters_, {});
+  ++estimates_;
+  const bool power_of_two = (estimates_ & (estimates_ - 1)) == 0;
+  if (estimates_ >= 4 && power_of_two && candidates_.size() > 1) {
+    race_.judge();
+    make_new_plan();
+  } else {
+    begin_estimate();
+  }
+  return counters;
+}
+
+const RaceRecord* Auto::race() const {
+  record_ = {.rows = race_.rows(),
+             .spent = race_.spent(),
+             .limit = race_.limits().cost,
+             .budget = race_.limits().budget,
+             .seconds = !counts_rays()};
+  for (std::size_t k = 0; k < candidates_.size(); ++k) {
+    const Entrant& e = race_.entrants()[k];
+    record_.candidates.push_back({.name = candidates_[k].name,
+                                  .racing = e.racing,
+                                  .reason = e.reason,
+                                  .left_in = e.left_in,
+                                  .iterations = e.trial.iterations(),
+                                  .cost = e.trial.cost(),
+                                  .preparation = candidates_[k].preparation,
+                                  .share = plan_ ? plan_->iterations[k] : 0,
+                                  .standing = e.standing});
+  }
+  if (!plan_) return &record_;
+  record_.error = plan_->error;
+  record_.gain = plan_->gain;
+  const BlockGrid& grid = race_.entrants()[0].trial.grid();
+  if (plan_->methods() < 2) return &record_;
+  record_.block = grid.size;
+  record_.across = grid.across;
+  for (std::size_t b = 0; b < grid.blocks(); ++b) {
+    std::size_t most = 0;
+    const auto weight = [&](std::size_t k) {
+      return plan_->iterations[k] > 0 ? plan_->weights[k][b] : 0.0F;
+    };
+    for (std::size_t k = 1; k < candidates_.size(); ++k) {
+      if (weight(k) > weight(most)) most = k;
+    }
+    record_.blocks.push_back(int(most));
+  }
+  return &record_;
+}
+
+void put_image(ByteWriter& out, const Image& image) {
+  std::vector<float> values;
+  for (const Rgb& c : image.pixels) values.insert(values.end(), {c.x, c.y, c.z});
+  out.put(values);
+}
+
+void get_image(ByteReader& in, Image& image) {
+  const std::vector<float> values = in.get_vector<float>();
+  if (values.size() != 3 * image.pixels.size()) {
+    throw std::runtime_error("saved estimate has another size");
+  }
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    image.pixels[i] = Rgb(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
+    if (!is_finite(image.pixels[i])) throw std::runtime_error("saved estimate is not finite");
+  }
+}
+
+void Auto::save(ByteWriter& out) const {
+  race_.save(out);
+  for (const Candidate& c : candidates_) {
+    out.put(c.prepared);
+    if (c.prepared) c.integrator->save(out);
+  }
+  out.put(estimates_);
+  out.put(counters_);
+  out.put(plan_.has_value());
+  if (!plan_) return;
+  out.put(plan_->iterations);
+  for (const auto& w : plan_->weights) out.put(w);
+  out.put(plan_->error);
+  out.put(plan_->gain);
+  out.put(done_);
+  for (const Image& sum : sums_) put_image(out, sum);
+}
+
+void Auto::load(ByteReader& in) {
+  race_.load(in);
+  for (std::size_t k = 0; k < candidates_.size(); ++k) {
+    Candidate& c = candidates_[k];
+    const bool saved = in.get<std::uint8_t>() != 0;
+    if (saved != c.prepared && race_.entrants()[k].racing) {
+      throw std::runtime_error("saved race has a candidate that takes no part now");
+    }
+    if (saved) c.integrator->load(in);
+  }
+  estimates_ = in.get<std::uint64_t>();
+  counters_ = in.get<Counters>();
+  if (in.get<std::uint8_t>() == 0) return;
+  plan_.emplace();
+  plan_->iterations = in.get_vector<int>();
+  if (plan_->iterations.size() != candidates_.size()) {
+    throw std::runtime_error("saved plan has another number of candidates");
+  }
+  for (std::size_t k = 0; k < candidates_.size(); ++k) {
+    plan_->weights.push_back(in.get_vector<float>());
+    const bool used = plan_->iterations[k] > 0;
+    const std::size_t blocks = race_.entrants()[k].trial.grid().blocks();
+    if (used && plan_->weights[k].size() != blocks) {
+      throw std::runtime_error("saved plan has another number of blocks");
+    }
+    if (used && !candidates_[k].prepared) {
+      throw std::runtime_error("saved plan has a candidate that takes no part now");
+    }
+  }
+  plan_->error = in.get<double>();
+  plan_->gain = in.get<double>();
+  begin_estimate();
+  done_ = in.get_vector<int>();
+  if (done_.size() != candidates_.size()) throw std::runtime_error("saved estimate is not one");
+  for (Image& sum : sums_) get_image(in, sum);
+}
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_auto(const AutoSettings& settings) {
+  return std::make_unique<Auto>(settings);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,54 @@
+#include "renderer/integrators/candidates.h"
+
+namespace lacuna {
+
+namespace {
+
+std::vector<CandidateSettings> by_default() {
+  BdptSettings skeleton;
+  skeleton.connections = SkeletonConnectionsSettings{};
+  ManyLightsSettings lights;
+  lights.visibility = ProbabilisticVisibilitySettings{};
+  // In this order they begin: what is quick and wins most often comes first.
+  return {PathSettings{}, MetropolisSettings{}, BdptSettings{}, skeleton, lights};
+}
+
+/// Collects the names of strategies that are not the first of their kind.
+struct StrategyNames {
+  std::string text;
+  template <class T>
+  void operator()(std::string_view, T&, const Field&) {}
+  template <class... Ts>
+  void operator()(std::string_view, std::variant<Ts...>& choice, const Field&) {
+    if (choice.index() == 0) return;
+    std::visit([&](const auto& s) { text += ", " + std::string(s.name); }, choice);
+  }
+};
+
+}  // namespace
+
+std::vector<IntegratorSettings> candidates(const AutoSettings& settings) {
+  std::vector<IntegratorSettings> all;
+  for (CandidateSettings c : settings.candidates.empty() ? by_default() : settings.candidates) {
+    std::visit(
+        [&](auto& s) {
+          static_cast<PathLengths&>(s) = settings;
+          all.emplace_back(s);
+        },
+        c);
+  }
+  return all;
+}
+
+std::string candidate_name(const IntegratorSettings& settings) {
+  IntegratorSettings copy = settings;
+  return std::visit(
+      [](auto& s) {
+        StrategyNames strategies{std::string(s.name)};
+        describe(strategies, s);
+        return strategies.text;
+      },
+      copy);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,292 @@
+#include "renderer/race/race.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "analysis/storage/bytes.h"
+#include "renderer/film/saved_values.h"
+#include "renderer/race/mixture.h"
+
+namespace lacuna {
+
+namespace {
+
+/// Standard deviations by which a method must be worse than the best to leave.
+constexpr double sure = 2;
+/// And, where there is one estimate of each, by which ratio.
+constexpr double sure_of_singles = 1.5;
+/// A share of the best mixture that keeps a method in the race.
+constexpr double worthwhile_share = 0.15;
+
+void put_standing(ByteWriter& out, const Standing& s) {
+  out.put(s.error);
+  out.put(s.over_best);
+  out.put(s.growth);
+  out.put(s.tail_known.has_value());
+  out.put(s.tail_known.value_or(false));
+  out.put(s.unexplained);
+}
+
+Standing get_standing(ByteReader& in) {
+  Standing s;
+  s.error = in.get<double>();
+  s.over_best = in.get<LogRatio>();
+  s.growth = in.get<double>();
+  const bool tail = in.get<std::uint8_t>() != 0;
+  const bool known = in.get<std::uint8_t>() != 0;
+  if (tail) s.tail_known = known;
+  s.unexplained = in.get<std::uint8_t>() != 0;
+  return s;
+}
+
+/// What is not known to be above 0 counts as its own standard deviation.
+void raise_to_deviation(const BlockGrid& grid, BlockSums& sums) {
+  const double sum = total(sums);
+  const double lack = standard_deviation(grid, sums) - sum;
+  if (!(lack > 0)) return;
+  for (double& v : sums) v += lack / double(sums.size());
+}
+
+}  // namespace
+
+RaceLimits RaceLimits::of_seconds(double seconds) {
+  RaceLimits limits;
+  limits.cost = 0.3 * std::pow(seconds, 0.6);
+  limits.budget = seconds;
+  return limits;
+}
+
+Race::Race(std::size_t entrants, int width, int height, const RaceLimits& limits)
+    : limits_(limits), entrants_(entrants, Entrant{.trial = Trial(width, height)}) {
+  variances_.assign(entrants, BlockSums(BlockGrid(width, height).blocks(), 0.0));
+}
+
+std::size_t Race::racing() const {
+  return std::size_t(
+      std::count_if(entrants_.begin(), entrants_.end(), [](const Entrant& e) { return e.racing; }));
+}
+
+bool Race::in_this_round(const Entrant& e) const {
+  if (!e.racing) return false;
+  const auto n = e.trial.iterations();
+  return round_ == 0 ? n == 0 : n < 2 || e.trial.cost() + e.trial.iteration_cost() <= slice_;
+}
+
+std::optional<std::size_t> Race::next() const {
+  const bool first = spent_ == 0;
+  if (racing() < 2 || round_ >= limits_.rounds) return std::nullopt;
+  if (!first && spent_ >= limits_.cost) return std::nullopt;
+  for (std::size_t k = 0; k < entrants_.size(); ++k) {
+    if (!in_this_round(entrants_[k])) continue;
+    const double more = entrants_[k].trial.iteration_cost();
+    if (round_ > 0 && spent_ + more > limits_.cost) return std::nullopt;
+    return k;
+  }
+  return std::nullopt;
+}
+
+void Race::finished(std::size_t entrant, const Image& estimate, double cost) {
+  Entrant& e = entrants_[entrant];
+  e.trial.add(estimate);
+  e.trial.charge(cost);
+  spent_ += cost;
+  end_round();
+}
+
+void Race::leave(std::size_t entrant, const std::string& reason, double cost) {
+  Entrant& e = entrants_[entrant];
+  e.racing = false;
+  e.reason = reason;
+  e.left_in = round_;
+  spent_ += cost;
+  end_round();
+}
+
+void Race::end_round() {
+  const bool more = std::any_of(entrants_.begin(), entrants_.end(),
+                                [&](const Entrant& e) { return in_this_round(e); });
+  if (more) return;
+  judge();
+  drop_losers();
+  ++round_;
+  // Equal costs, in which the slowest has one more iteration; then twice as much each time.
+  double longest = 0;
+  for (const Entrant& e : entrants_) {
+    if (e.racing) longest = std::max(longest, e.trial.iteration_cost());
+  }
+  slice_ = std::max(2 * slice_, 2 * longest);
+}
+
+void Race::close() {
+  for (Entrant& e : entrants_) {
+    if (!e.racing || e.trial.iterations() > 0 || racing() < 2) continue;
+    e.racing = false;
+    e.left_in = round_;
+    e.reason = "the race had no time left for it";
+  }
+  judge();
+}
+
+std::size_t Race::best() const {
+  std::size_t best = entrants_.size();
+  for (std::size_t k = 0; k < entrants_.size(); ++k) {
+    if (!entrants_[k].racing) continue;
+    const double error = entrants_[k].standing.error;
+    if (best == entrants_.size() || error < entrants_[best].standing.error) best = k;
+  }
+  return best;
+}
+
+void Race::estimate_variances() {
+  std::vector<std::size_t> single;
+  std::vector<const Image*> pictures;
+  for (std::size_t k = 0; k < entrants_.size(); ++k) {
+    if (!entrants_[k].racing || entrants_[k].trial.estimates() == 0) continue;
+    if (entrants_[k].trial.estimates() == 1) {
+      single.push_back(k);
+      pictures.push_back(&entrants_[k].trial.mean());
+    } else {
+      variances_[k] = entrants_[k].trial.variances();
+    }
+  }
+  // Later singles keep what the first round found.
+  if (round_ > 0 || single.size() < 3) return;
+  const auto found = variances_of_singles(entrants_[single[0]].trial.grid(), pictures);
+  for (std::size_t i = 0; i < single.size(); ++i) {
+    variances_[single[i]] = found[i];
+    raise_to_deviation(entrants_[single[i]].trial.grid(), variances_[single[i]]);
+  }
+}
+
+void Race::judge() {
+  estimate_variances();
+  std::vector<const Trial*> trials;
+  for (const Entrant& e : entrants_) trials.push_back(&e.trial);
+  const std::vector<BlockSums> own = variances_;
+  for (std::size_t k = 0; k < entrants_.size(); ++k) {
+    Entrant& e = entrants_[k];
+    if (!e.racing || e.trial.estimates() == 0) continue;
+    Standing& s = e.standing;
+    s.unexplained = false;
+    const BlockSums hidden = unexplained_error(trials, own, k);
+    // Differences of singles are in their variances already.
+    if (e.trial.estimates() > 1 && total(hidden) > 3 * standard_deviation(e.trial.grid(), hidden)) {
+      s.unexplained = true;
+      for (std::size_t b = 0; b < hidden.size(); ++b) {
+        variances_[k][b] += std::max(0.0, hidden[b]) * double(e.trial.estimates());
+      }
+    }
+    const double cost = e.trial.iteration_cost();
+    const double rest =
+        limits_.budget > 0 ? std::max(0.0, limits_.budget - spent_) : 16 * e.trial.cost();
+    s.growth = cost > 0 ? e.trial.growth(rest / cost) : 1;
+    s.tail_known = e.trial.tail_is_known();
+    for (double& v : variances_[k]) v *= s.growth;
+    s.error = std::max(0.0, total(variances_[k])) * cost / double(e.trial.grid().pixels());
+  }
+  for (Entrant& e : entrants_) {
+    if (e.beaten && e.standing.error < entrants_[best()].standing.error) {
+      e.racing = true;
+      e.beaten = false;
+    }
+  }
+  const Entrant& leader = entrants_[best()];
+  for (std::size_t k = 0; k < entrants_.size(); ++k) {
+    Entrant& e = entrants_[k];
+    if (!e.racing || e.trial.estimates() == 0) continue;
+    LogRatio& r = e.standing.over_best;
+    r = log_ratio(e.trial.grid(), variances_[k], variances_[best()]);
+    if (leader.trial.iteration_cost() > 0 && e.trial.iteration_cost() > 0) {
+      r.value += std::log(e.trial.iteration_cost() / leader.trial.iteration_cost());
+    }
+    rows_.push_back({round_, std::uint32_t(k), e.trial.iterations(), e.trial.cost(),
+                     e.standing.error, r.value, r.deviation});
+  }
+}
+
+bool Race::is_beaten(std::size_t which) const {
+  const Trial& trial = entrants_[which].trial;
+  const double least = round_ == 0 ? std::log(sure_of_singles) : 0;
+  for (std::size_t k = 0; k < entrants_.size(); ++k) {
+    const Trial& other = entrants_[k].trial;
+    if (!entrants_[k].racing || k == which) continue;
+    const LogRatio r = log_ratio(trial.grid(), variances_[which], variances_[k]);
+    const double costs = std::log(trial.iteration_cost() / other.iteration_cost());
+    if (r.value + costs - sure * r.deviation > least) return true;
+  }
+  return false;
+}
+
+void Race::drop_losers() {
+  const bool of_singles = round_ == 0;
+  if (of_singles && racing() == 2) return;  // two estimates do not say whose noise it is
+  const std::size_t leader = best();
+  std::vector<std::size_t> who;
+  std::vector<BlockSums> errors;
+  for (std::size_t k = 0; k < entrants_.size(); ++k) {
+    if (!entrants_[k].racing) continue;
+    who.push_back(k);
+    errors.push_back(smoothed(entrants_[k].trial.grid(), variances_[k]));
+    for (double& v : errors.back()) v *= entrants_[k].trial.iteration_cost();
+  }
+  const bool without_noise =
+      entrants_[leader].trial.estimates() > 1 && !(total(variances_[leader]) > 0);
+  std::vector<double> shares(who.size(), 0.0);
+  if (!without_noise) shares = best_shares(errors);
+  std::vector<std::size_t> losers;
+  for (std::size_t i = 0; i < who.size(); ++i) {
+    const bool useful = !of_singles && shares[i] >= worthwhile_share;
+    if (who[i] == leader || (!without_noise && (useful || !is_beaten(who[i])))) continue;
+    losers.push_back(who[i]);
+  }
+  for (const std::size_t k : losers) {
+    Entrant& e = entrants_[k];
+    e.racing = false;
+    e.beaten = true;
+    e.left_in = round_;
+    e.reason = without_noise ? "another has no noise" : "worse than another";
+  }
+}
+
+void Race::save(ByteWriter& out) const {
+  out.put(spent_);
+  out.put(round_);
+  out.put(slice_);
+  for (std::size_t k = 0; k < entrants_.size(); ++k) {
+    const Entrant& e = entrants_[k];
+    out.put(e.racing);
+    out.put(e.beaten);
+    out.put(std::string_view(e.reason));
+    out.put(e.left_in);
+    put_standing(out, e.standing);
+    e.trial.save(out);
+    out.put(variances_[k]);
+  }
+  out.put(rows_);
+}
+
+void Race::load(ByteReader& in) {
+  spent_ = in.get<double>();
+  round_ = in.get<int>();
+  slice_ = in.get<double>();
+  for (std::size_t k = 0; k < entrants_.size(); ++k) {
+    Entrant& e = entrants_[k];
+    e.racing = in.get<std::uint8_t>() != 0;
+    e.beaten = in.get<std::uint8_t>() != 0;
+    e.reason = in.get_string();
+    e.left_in = in.get<int>();
+    e.standing = get_standing(in);
+    e.trial.load(in);
+    variances_[k] = get_finite(in, e.trial.grid().blocks(), "variances of blocks");
+  }
+  rows_ = in.get_vector<RaceRow>();
+  for (const RaceRow& r : rows_) {
+    if (r.entrant >= entrants_.size()) throw std::runtime_error("saved race has another entrant");
+  }
+  if (!(spent_ >= 0) || !(slice_ >= 0) || racing() == 0) {
+    throw std::runtime_error("saved race is not one");
+  }
+}
+
+}  // namespace lacuna

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "renderer/race/noise.h"
+#include "renderer/race/trial.h"
+
+namespace lacuna {
+
+/// What a race may take, in the unit of costs: CPU seconds of each thread, or rays.
+struct RaceLimits {
+  double cost = std::numeric_limits<double>::infinity();
+  int rounds = 12;
+  /// What the whole picture may take, race included; 0: not known.
+  double budget = 0;
+
+  /// Of a budget of so many seconds a race takes 0.3 s^-0.4: a fifth of 2 s, a tenth of 20 s, a
+  /// hundredth of an hour.
+  static RaceLimits of_seconds(double seconds);
+};
+
+/// How a method does, by what is known now.
+struct Standing {
+  double error = 0;    ///< expected mean squared error of a pixel times cost; 0: not known
+  LogRatio over_best;  ///< log(error / error of the best)
+  double growth = 1;   ///< the part of `error` that is foreseen from the tail (Trial::growth())
+  std::optional<bool> tail_known;  ///< none: too few iterations to say
+  bool unexplained = false;  ///< `error` counts a difference to the others (unexplained_error())
+};
+
+/// One line of the race's record.
+struct RaceRow {
+  std::int32_t round = 0;
+  std::uint32_t entrant = 0;
+  std::uint64_t iterations = 0;
+  double cost = 0;
+  double error = 0;  ///< as Standing's
+  double log_ratio = 0, deviation = 0;
+};
+
+struct Entrant {
+  Trial trial;
+  bool racing = true;
+  bool beaten = false;      ///< left because of its error: comes back if the others prove worse
+  std::string reason = {};  ///< why it left
+  int left_in = -1;         ///< round
+  Standing standing = {};
+};
+
+/// Finds the method with the least error for its cost, by rounds of growing length: one iteration
+/// of each, then equal costs, doubled from round to round. A method leaves when it is known to be
+/// worse than the best, and where it is not even the best in parts of the picture.
+///
+/// It does not render: next() names the entrant whose iteration is to be rendered next, and
+/// finished(), failed() or leave() say what became of it. Given the same pictures and costs it
+/// takes the same decisions.
+class Race {
+ public:
+  Race() = default;
+  Race(std::size_t entrants, int width, int height, const RaceLimits& limits);
+
+  /// Nothing: the race is over.
+  std::optional<std::size_t> next() const;
+  /// The iteration that next() asked for.
+  void finished(std::size_t entrant, const Image& estimate, double cost);
+  /// `cost`: what the attempt took.
+  void leave(std::size_t entrant, const std::string& reason, double cost = 0);
+
+  /// After next() had nothing more: those that never began leave, and the others are judged.
+  void close();
+  /// Judges all entrants that race by all that their trials hold, after more was added to them.
+  void judge();
+
+  std::vector<Entrant>& entrants() { return entrants_; }
+  const std::vector<Entrant>& entrants() const { return entrants_; }
+  const std::vector<RaceRow>& rows() const { return rows_; }
+  double spent() const { return spent_; }
+  int round() const { return round_; }
+  const RaceLimits& limits() const { return limits_; }
+  /// The racing entrant with the least error; the first, where nothing is known.
+  std::size_t best() const;
+  /// Variances of one iteration, as far as they are known, growth and unexplained errors included.
+  const std::vector<BlockSums>& variances() const { return variances_; }
+
+  /// For checkpoints; load() into a race of the same entrants.
+  void save(class ByteWriter& out) const;
+  void load(class ByteReader& in);
+
+ private:
+  bool in_this_round(const Entrant& e) const;
+  std::size_t racing() const;
+  void end_round();
+  void estimate_variances();
+  /// Whether another is surely better.
+  bool is_beaten(std::size_t which) const;
+  void drop_losers();
+
+  RaceLimits limits_;
+  std::vector<Entrant> entrants_;
+  std::vector<BlockSums> variances_;
+  std::vector<RaceRow> rows_;
+  double spent_ = 0;
+  int round_ = 0;
+  double slice_ = 0;  ///< what each entrant may have taken at the end of this round
+};
+
+}  // namespace lacuna

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "renderer/film/image.h"
+#include "renderer/film/squared_errors.h"
+#include "renderer/race/block_grid.h"
+
+namespace lacuna {
+
+/// What iterations of one method, independent estimates of one picture, say of its noise and cost.
+/// Errors are squared errors, the mean of the three channels.
+class Trial {
+ public:
+  Trial() = default;
+  Trial(int width, int height);
+
+  /// Adds the estimate of one iteration.
+  void add(const Image& estimate);
+  /// Counts the cost of an iteration, whether its estimate is added or not: CPU seconds of each
+  /// thread, or rays.
+  void charge(double cost);
+
+  std::uint64_t estimates() const { return estimates_; }  ///< that were added
+  std::uint64_t iterations() const { return charged_; }
+  double cost() const { return cost_; }  ///< of all iterations
+  double iteration_cost() const { return charged_ > 0 ? cost_ / double(charged_) : 0; }
+  const BlockGrid& grid() const { return grid_; }
+  /// Of the estimates that were added.
+  const Image& mean() const { return mean_; }
+
+  /// The variance of one iteration, summed over the pixels of each block; unbiased. All 0 with
+  /// fewer than two estimates.
+  std::vector<double> variances() const;
+  /// The same from every other deviation, so that two halves judge each other. `half`: 0 or 1. All
+  /// 0 with fewer than two and three estimates.
+  std::vector<double> variances(int half) const;
+  /// Whether both halves have variances.
+  bool has_halves() const { return estimates_ >= 3; }
+
+  /// By what factor variances() will have grown after `iterations` more, because the rare paths
+  /// that carry much of a heavy tail are still to come (ParetoTail::mean_above()). At least 1; 1
+  /// with too few estimates to say.
+  double growth(double iterations) const;
+  /// Whether the tail lets the variance be known (ParetoTail::mean_is_known()). None with too few
+  /// estimates to say.
+  std::optional<bool> tail_is_known() const;
+
+  /// For checkpoints. load() into a trial of the same size; throws std::runtime_error on what
+  /// save() never writes.
+  void save(class ByteWriter& out) const;
+  void load(class ByteReader& in);
+
+ private:
+  BlockGrid grid_;
+  Image mean_;
+  std::uint64_t estimates_ = 0, charged_ = 0;
+  double cost_ = 0;
+  /// Sums over the pixels of a block, of deviations 0, 2, 4... and 1, 3, 5...
+  std::array<std::vector<double>, 2> sums_;
+  /// Of whole pictures: pixels differ in their noise, which is no tail.
+  SquaredErrors pictures_;
+};
+
+}  // namespace lacuna

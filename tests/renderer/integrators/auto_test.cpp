@@ -1,0 +1,141 @@
+// The integrator that chooses among others: its pictures are right whatever it chooses.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "renderer/race/record.h"
+#include "tests/renderer/integrators/methods.h"
+#include "tests/renderer/integrators/render.h"
+#include "tests/renderer/integrators/same_picture.h"
+#include "tests/renderer/path/scenes.h"
+#include "tests/statistics.h"
+
+namespace lacuna {
+namespace {
+
+using test::own_scene;
+using test::PathScene;
+using test::RenderSettings;
+using test::Session;
+
+AutoSettings choosing_among(int max_depth, std::vector<CandidateSettings> candidates) {
+  AutoSettings s = test::choosing(max_depth);
+  s.candidates = std::move(candidates);
+  return s;
+}
+
+RenderSettings picture(const IntegratorSettings& integrator, int iterations) {
+  return {.integrator = integrator, .width = 20, .height = 12, .iterations = iterations};
+}
+
+TEST(Auto, AgreesWithPathTracing) {
+  struct Row {
+    PathScene scene;
+    int max_depth;
+    int iterations;
+    double useful;
+  };
+  for (const Row& row : {Row{{"cornell"}, 4, 150, 0.02}, Row{{"ajar"}, 4, 150, 0.2},
+                         Row{{"open", true}, 4, 200, 0.1}, Row{{"many_lights"}, 4, 100, 0.07}}) {
+    SCOPED_TRACE(row.scene);
+    RenderSettings expected = picture(test::path_tracing(row.max_depth), 4 * row.iterations);
+    RenderSettings found = picture(test::choosing(row.max_depth), row.iterations);
+    expected.environment = found.environment = environment(row.scene);
+    expected.seed = 2;
+    test::expect_same_picture(test::render(load(row.scene), found),
+                              test::render(load(row.scene), expected), row.useful);
+  }
+}
+
+// A method with a heavy tail looks good as long as its rare bright paths are missing: it is chosen
+// while its pictures are too dark. No such picture may be shown for that reason.
+TEST(Auto, ItsChoiceDoesNotDarkenThePicture) {
+  constexpr int max_depth = 4;
+  statistics::Moments found, expected;
+  int chosen = 0;
+  for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+    // Path tracing with and without emitters sampled: the second is right only by rare hits.
+    PathSettings rare;
+    rare.next_event_estimation = false;
+    AutoSettings s = choosing_among(max_depth, {PathSettings{}, rare});
+    RenderSettings r{.integrator = s, .width = 6, .height = 4, .iterations = 6};
+    r.seed = seed;
+    Session session(load_gltf(own_scene("cornell.glb")), r);
+    double sum = 0;
+    for (std::uint64_t i = 0; i < 6; ++i) {
+      for (const Rgb& c : session.iterate(i).pixels) sum += double(c.x) + c.y + c.z;
+    }
+    found.add(sum / 6);
+    const RaceRecord* race = session.integrator().race();
+    ASSERT_NE(race, nullptr);
+    chosen += race->candidates[1].share > 0 ? 1 : 0;
+  }
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    RenderSettings r{.integrator = test::path_tracing(max_depth), .width = 6, .height = 4};
+    r.seed = 1000 + seed;
+    Session session(load_gltf(own_scene("cornell.glb")), r);
+    double sum = 0;
+    for (std::uint64_t i = 0; i < 40; ++i) {
+      for (const Rgb& c : session.iterate(i).pixels) sum += double(c.x) + c.y + c.z;
+    }
+    expected.add(sum / 40);
+  }
+  EXPECT_GT(statistics::t_test(found, expected), 1e-3)
+      << found.mean() << " +- " << found.standard_error() << ", " << expected.mean() << " +- "
+      << expected.standard_error();
+  EXPECT_LT(found.standard_error(), 0.015 * found.mean());
+  EXPECT_GT(chosen, 100) << "without a choice there is nothing to see";
+}
+
+TEST(Auto, OneCandidateIsRenderedAsItIs) {
+  RenderSettings s = picture(choosing_among(4, {BdptSettings{}}), 8);
+  Session session(load_gltf(own_scene("cornell.glb")), s);
+  for (std::uint64_t i = 0; i < 8; ++i) session.iterate(i);
+  const RaceRecord* race = session.integrator().race();
+  ASSERT_NE(race, nullptr);
+  EXPECT_EQ(race->spent, 0);
+  EXPECT_EQ(race->candidates[0].iterations, 8U);
+}
+
+TEST(Auto, DoesNotRaceInTheDark) {
+  SceneData data = load_gltf(own_scene("cornell.glb"));
+  for (auto& m : data.materials) m.emission = Rgb(0, 0, 0);
+  Session session(std::move(data), picture(choosing_among(4, {}), 4));
+  for (const Rgb& c : session.iterate(0).pixels) EXPECT_TRUE(is_black(c));
+  const RaceRecord* race = session.integrator().race();
+  EXPECT_EQ(race->spent, 0);
+  EXPECT_EQ(race->candidates[1].reason, "the scene has no light");
+}
+
+// The race goes on where it was stopped, in another process, too.
+TEST(Auto, GoesOnInTheMiddleOfTheRace) {
+  const RenderSettings s = picture(test::choosing(4), 3);
+  const auto start = [&] { return std::make_unique<Session>(load_gltf(own_scene("ajar.glb")), s); };
+  const auto straight = start();
+  std::vector<Image> expected;
+  for (std::uint64_t i = 0; i < 3; ++i) expected.push_back(straight->iterate(i));
+  int stops = 0;
+  for (const int after : {1, 3, 6, 12, 24, 48}) {
+    const auto stopped = start();
+    std::uint64_t next = 0;
+    try {
+      std::atomic<int> asked{0};
+      for (; next < 3; ++next) stopped->iterate(next, [&] { return ++asked > after; });
+    } catch (const IterationStopped&) {
+      ++stops;
+    }
+    ByteWriter saved;
+    stopped->integrator().save(saved);
+    const auto resumed = start();
+    ByteReader in(saved.bytes());
+    resumed->integrator().load(in);
+    EXPECT_TRUE(in.at_end());
+    for (; next < 3; ++next) EXPECT_EQ(resumed->iterate(next).pixels, expected[next].pixels);
+  }
+  EXPECT_GE(stops, 3);
+}
+
+}  // namespace
+}  // namespace lacuna
