@@ -112,6 +112,13 @@ bool PathBuilder::go_from_light(const V3f& w) {
   return arrive({VertexPlace{vertex(light_.back())}.origin(w), w}, light_);
 }
 
+bool PathBuilder::enter_scene(const V3f& at, const V3f& w) {
+  light_.back().delta = false;
+  // As far back from a surface, the ray starts beyond the scene by its radius.
+  const double back = 3 * measure_.scene().bounds().radius();
+  return arrive({V3f(V3d(at) - V3d(w) * back), w}, light_);
+}
+
 bool PathBuilder::follow_from_eye(bool transmitted) {
   PathNode& node = eye_.back();
   const Vertex& v = vertex(node);

@@ -40,6 +40,9 @@ class PathBuilder {
   /// Append the vertex that a ray from the end along unit `w` meets.
   bool go_from_eye(const V3f& w);
   bool go_from_light(const V3f& w);
+  /// Appends the vertex that a ray along unit `w` through `at` meets, from outside the scene. The
+  /// light's end is x_k, an emitter at infinity; `at` is beside a surface, across `w`.
+  bool enter_scene(const V3f& at, const V3f& w);
   /// Append the vertex behind the delta lobe at the end.
   bool follow_from_eye(bool transmitted);
   bool follow_from_light(bool transmitted);
@@ -51,6 +54,7 @@ class PathBuilder {
   const std::vector<PathNode>& eye() const { return eye_; }
   const std::vector<PathNode>& light() const { return light_; }
   const PathMeasure& measure() const { return measure_; }
+  const VertexPool& pool() const { return pool_; }
   bool eye_on_surface() const { return vertex(eye_.back()).kind == Vertex::Kind::surface; }
   bool light_is_infinite() const { return vertex(light_.back()).kind == Vertex::Kind::background; }
 

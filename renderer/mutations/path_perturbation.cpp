@@ -28,6 +28,25 @@ V2f PathPerturbation::moved(const V2f& at, const PathBuilder& builder, Rng& rng)
   return at + V2f(r * std::cos(phi), r * std::sin(phi));
 }
 
+double PathPerturbation::reach(const VertexPool& pool, const WholePath& path) const {
+  int i = path.edge_count() - 1;
+  double length = 0;
+  do {
+    const V3f& x = pool[path.node(i--).vertex].v.surface.x;
+    length += double((pool[path.node(i).vertex].v.surface.x - x).length());
+  } while (path.node(i).delta);
+  return settings_.largest_angle * length;
+}
+
+bool PathPerturbation::move_aside(const WholePath& path, PathBuilder& builder, Rng& rng) {
+  aside_ = distance(reach(builder.pool(), path), settings_.octaves, rng);
+  const auto r = static_cast<float>(aside_);
+  const float phi = 2 * pi * rng.next();
+  const V3f& w = path.edges.back().w;
+  const V3f& x = builder.pool()[path.nodes.rbegin()[1].vertex].v.surface.x;
+  return builder.enter_scene(x + Frame(w).to_world({r * std::cos(phi), r * std::sin(phi), 0}), -w);
+}
+
 bool PathPerturbation::propose_from_eye(const WholePath& path, int start, PathBuilder& builder,
                                         Rng& rng) {
   const int k = path.edge_count();
@@ -60,14 +79,20 @@ bool PathPerturbation::propose_from_eye(const WholePath& path, int start, PathBu
 bool PathPerturbation::propose_from_light(const WholePath& path, int start, PathBuilder& builder,
                                           Rng& rng) {
   from_eye_ = false;
+  aside_ = 0;
   last_ = start - 1;
   if (path.node(start).delta || start == 1) return false;
   builder.keep(path, 0, start);
-  if (builder.light_is_infinite()) return false;
   for (int i = start - 1; i > 0; --i) {
     const PathNode& before = path.node(i + 1);
-    const bool met = before.delta ? builder.follow_from_light(before.transmitted)
-                                  : builder.go_from_light(turned(-path.edge(i).w, rng));
+    bool met = false;
+    if (before.delta) {
+      met = builder.follow_from_light(before.transmitted);
+    } else if (builder.light_is_infinite()) {
+      met = move_aside(path, builder, rng);
+    } else {
+      met = builder.go_from_light(turned(-path.edge(i).w, rng));
+    }
     if (!met) return false;
     first_ = i;
     if (!path.node(i).delta && !path.node(i - 1).delta) {
@@ -80,6 +105,11 @@ bool PathPerturbation::propose_from_light(const WholePath& path, int start, Path
 
 long double PathPerturbation::reverse_ratio(const PathMeasure& measure, const VertexPool& pool,
                                             const WholePath& from, const WholePath& to) const {
+  if (aside_ > 0) {
+    // The distance is log-uniform: its density is the same both ways, where both are possible.
+    const double octave = std::log2(reach(pool, to) / aside_);
+    if (!(octave >= 0 && octave < settings_.octaves)) return 0;
+  }
   long double ratio = 1;
   for (int i = first_; i <= last_; ++i) {
     if (from_eye_) {

@@ -9,7 +9,9 @@ namespace lacuna {
 /// angle, the path is traced through as many delta lobes as before to the next vertex that scatters
 /// otherwise, and joined to the vertex behind that. Where that one has a delta lobe, one more
 /// direction is turned. Directions are turned away from the eye (from x_0, where the film position
-/// moves: lens and multi-chain perturbation) or towards it (caustic perturbation).
+/// moves: lens and multi-chain perturbation) or towards it (caustic perturbation). At infinity no
+/// direction is turned towards the eye: the ray from there moves aside instead, by such an angle
+/// times its way from x_{k-1} to the next vertex that scatters otherwise.
 class PathPerturbation {
  public:
   explicit PathPerturbation(const PathSpaceSettings& settings) : settings_(settings) {}
@@ -27,10 +29,16 @@ class PathPerturbation {
   /// Unit, near unit `w`; its density depends on the angle alone.
   V3f turned(const V3f& w, Rng& rng) const;
   V2f moved(const V2f& at, const PathBuilder& builder, Rng& rng) const;
+  /// The largest distance that the ray from infinity of `path` may move, in scene units.
+  double reach(const VertexPool& pool, const WholePath& path) const;
+  /// Appends x_{k-1} of a path whose x_k is at infinity.
+  bool move_aside(const WholePath& path, PathBuilder& builder, Rng& rng);
 
   PathSpaceSettings settings_;
   int first_ = 0, last_ = 0;  // x_first ... x_last have moved
   bool from_eye_ = true;
+  /// How far the ray from infinity has moved, in scene units; 0: it has not.
+  double aside_ = 0;
 };
 
 }  // namespace lacuna

@@ -85,7 +85,10 @@ void describe(V& v, PathSpaceSettings& s) {
      .min = 0,
      .max = 1});
   v("largest_angle", s.largest_angle,
-    {.doc = "largest angle that a direction is turned by, radians", .min = 1e-6, .max = 3});
+    {.doc = "largest angle that a direction is turned by, radians; a ray from infinity moves aside "
+            "by as much of its way to the next vertex that scatters",
+     .min = 1e-6,
+     .max = 3});
   v("largest_lens", s.largest_lens,
     {.doc = "largest distance that a path moves on the film, in heights of the picture",
      .min = 1e-6,

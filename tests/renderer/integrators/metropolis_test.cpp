@@ -75,6 +75,31 @@ INSTANTIATE_TEST_SUITE_P(All, KeepsItsDistribution,
                                          Case{{"leaning"}, 5, 60, PixelFilter::box, 0.2}),
                          [](const auto& c) { return c.param.scene.name; });
 
+// From the sun and the sky, too, light goes through glass: the ray from infinity moves aside.
+TEST(Metropolis, KeepsCausticsOfTheSun) {
+  for (const bool sky : {false, true}) {
+    SCOPED_TRACE(testing::Message() << "sky " << sky);
+    const PathScene scene{"sunlit_glass", sky};
+    const auto picture = [&](const IntegratorSettings& integrator, int iterations) {
+      return test::render(load(scene), {.integrator = integrator,
+                                        .width = 20,
+                                        .height = 12,
+                                        .iterations = iterations,
+                                        .seed = iterations < 400 ? 1U : 2U,
+                                        .environment = environment(scene)});
+    };
+    const Rendering reference = picture(test::joining(6, PairedSettings{}), 400);
+    for (const PathSpaceSettings& mutation :
+         {PathSpaceSettings{.large_steps = 0, .bidirectional = 0, .lens = 0},
+          // Most moves cannot be undone: the way to the next vertex is too short or too long then.
+          PathSpaceSettings{
+              .large_steps = 0, .bidirectional = 0, .lens = 0, .largest_angle = 1, .octaves = 0.25},
+          PathSpaceSettings{}}) {
+      expect_same_picture(picture(chains(6, mutation), 100), reference, 0.1);
+    }
+  }
+}
+
 RenderSettings square_picture(const IntegratorSettings& integrator, int side, int iterations) {
   return {.integrator = integrator, .width = side, .height = side, .iterations = iterations};
 }

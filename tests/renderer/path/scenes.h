@@ -69,6 +69,19 @@ inline SceneData two_rooms() {
   return std::move(p.data);
 }
 
+/// A block of clear glass and a box above a floor in the sun, which shines through the glass: paths
+/// of light find its caustics, paths of the eye do not.
+inline SceneData sunlit_glass() {
+  SceneParts p;
+  const auto grey = p.material(diffuse(Rgb(0.7F, 0.6F, 0.5F)));
+  p.quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, grey);
+  p.box({-0.6F, 0.4F, -0.6F}, {0.4F, 1, 0.6F}, true, p.material(glass()));
+  p.box({0.7F, 0, -0.5F}, {1.2F, 0.9F, 0.5F}, true, grey);
+  p.light(PunctualLight::Kind::directional, {0, 0, 0}, {0.4F, -1, -0.2F}, Rgb(3, 2.5F, 2));
+  p.eye({0.3, 1.6, 2.6}, {0.1, 0.3, 0}, 0.9);
+  return std::move(p.data);
+}
+
 /// A nearly black room: what a light path carries falls by eight decades at each surface.
 inline SceneData black_room() {
   SceneParts p;
@@ -88,6 +101,7 @@ inline SceneData load(const PathScene& s) {
     add_particles(data, {.count = 777, .power = 50, .alone = true});
     return data;
   }
+  if (s.name == "sunlit_glass") return sunlit_glass();
   if (s.name == "coated") return coated_box(false);
   if (s.name == "coated_points") return coated_box(true);
   return load_gltf(scene_path(s.name + ".glb"));
