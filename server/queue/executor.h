@@ -18,7 +18,9 @@ struct Ending {
   /// will not run this one. left: it goes on, and whoever runs the job next finds it.
   enum class Kind { exited, killed, not_started, out_of_memory, lost, refused, left };
   Kind kind = Kind::exited;
-  int code = 0;        ///< exit code, out_of_memory too (128 + SIGKILL if killed); signal; errno
+  /// exit code, out_of_memory too (128 + SIGKILL if killed); signal; errno; lost and refused: the
+  /// exit code if there was one, else 0
+  int code = 0;
   std::string reason;  ///< "renderer ended by signal 9 (Killed)"
 };
 

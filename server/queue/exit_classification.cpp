@@ -18,7 +18,9 @@ ExitClassification failed(JobState state, const std::string& error, const std::s
 
 /// The code of this ending is an exit code.
 bool exited(const Ending& end) {
-  return end.kind == Ending::Kind::exited || end.kind == Ending::Kind::out_of_memory;
+  const bool by_others = end.kind == Ending::Kind::lost || end.kind == Ending::Kind::refused;
+  return end.kind == Ending::Kind::exited || end.kind == Ending::Kind::out_of_memory ||
+         (by_others && end.code != 0);
 }
 
 /// Another renderer would end likewise.

@@ -50,7 +50,7 @@ Ending slurm_ending(std::optional<int> code, const std::optional<SlurmJob>& last
   constexpr int signals = 128;
   const bool stopped = !code || *code == exit_interrupted || *code > signals;
   if (state == "CANCELLED" && stopped) {
-    return {Ending::Kind::refused, 0, "it was cancelled in Slurm; " + words};
+    return {Ending::Kind::refused, code.value_or(0), "it was cancelled in Slurm; " + words};
   }
   if (state == "OUT_OF_MEMORY") {
     return {Ending::Kind::out_of_memory, code.value_or(signals + SIGKILL),

@@ -65,7 +65,8 @@ class Service:
 
     def start(self, *more):
         self.process = subprocess.Popen(
-            [BIN / "lacuna-server", *self.options, "--data", self.data, "--scenes", ROOT / "jobs/scenes", *more],
+            [BIN / "lacuna-server", *self.options, "--data", self.data, "--scenes", ROOT / "jobs/scenes", "--web",
+             ROOT / "web", *more],
             env=self.cluster.environment, stdout=subprocess.PIPE, stderr=open(self.folder / "service.log", "ab"),
             text=True)
         line = self.process.stdout.readline()
@@ -166,7 +167,7 @@ class Trial:
     def a_sweep(self):
         status, sweep = self.service.ask("/api/sweeps", {
             "job": {**spec(0), "budget": {"iterations": 20}}, "alone": False,
-            "axes": {"/seed": [1, 2, 3, 4, 5], "/integrator": ["path", "bdpt"], "/threads": [1, 2], "/label": ["a", "b"]}})
+            "axes": {"/seed": [1, 2, 3, 4, 5], "/integrator": ["path", "bdpt"], "/threads": [1, 2], "/resolution": [[32, 32], [48, 48]]}})
         check(status == 201, sweep)
         over = until(lambda: (now := self.service.ask(f"/api/sweeps/{sweep['id']}")[1])["state"] == "done" and now,
                      "the sweep is done", 600)
@@ -227,7 +228,6 @@ class Trial:
         number = str(self.service.slurm_job(name))
         self.cluster.run("scontrol", "requeue", number)
         place = until(lambda: "waits" in (text := self.service.job(name)["state"]["place"]) and text, "it waits again")
-        until(lambda: self.begin_now(number), "it may begin at once", 60)  # a requeued job waits for two minutes
         over = self.service.reaches(name, "done")
         check(over["state"]["attempts"] == 2, over["state"])
         check(len(self.submissions()[name]) == 1, "it is the same submission")
@@ -237,17 +237,6 @@ class Trial:
         subprocess.run([BIN / "lacuna", "render", file, "-q"], cwd=self.folder, env=environment, check=True)
         same_bits(self.service.dir(name), self.folder / "requeued.job")
         return f"{place!r}, then done in attempt 2 with the same bits"
-
-    def begin_now(self, number):
-        self.cluster.run("scontrol", "update", f"JobId={number}", "StartTime=now", check=False)
-        return "BeginTime" not in self.cluster.run("squeue", "-h", "-j", number, "-o", "%r", check=False)
-
-    def begin_all(self):
-        """Requeued jobs wait for two minutes: not here."""
-        for line in self.cluster.run("squeue", "-h", "-o", "%i|%r", check=False).splitlines():
-            number, reason = line.split("|", 1)
-            if reason == "BeginTime":
-                self.begin_now(number)
 
     def renderers(self):
         """Processes of `lacuna render` below the data folder."""
@@ -291,8 +280,7 @@ class Trial:
             what = random.choice(list((+left).keys()))
             if self.kill(what):
                 left[what] -= 1
-            self.begin_all()
-        over = until(lambda: self.begin_all() or all(self.service.state(name) in ENDS for _, name in wishes.values()),
+        over = until(lambda: all(self.service.state(name) in ENDS for _, name in wishes.values()),
                      "every job is over", 900)
         check(over, "over")
         listed = self.service.ask("/api/jobs?limit=1000")[1]["jobs"]
