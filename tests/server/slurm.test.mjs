@@ -127,8 +127,8 @@ for (const [when, flag] of [["before sbatch has reached Slurm", "deaf"], ["befor
     cluster.set(flag);
     const first = await cluster.service();
     const id = await first.post("gate go", { threads: 1 });
-    await until(() => fs.existsSync(recordOf(first, id)), "it is written down");
     await until(() => cluster.calls("sbatch").length === 1, "sbatch is called");
+    assert.ok(fs.existsSync(recordOf(first, id)), "it was written down before");
     if (flag === "mute") await running(cluster, 1);
     await first.stop("SIGKILL");
     cluster.unset(flag);

@@ -140,8 +140,9 @@ class SlurmScriptTest : public testing::Test {
                                                             .all_cores = true}));
     std::jthread beside;
     if (meanwhile) beside = std::jthread(meanwhile);
-    const std::string command =
-        "SLURM_CPUS_ON_NODE=5 sh '" + script.string() + "' >'" + (temp / "out").string() + "' 2>&1";
+    const std::string command = "PATH='" + temp.path().string() +
+                                "':$PATH SLURM_CPUS_ON_NODE=5 sh '" + script.string() + "' >'" +
+                                (temp / "out").string() + "' 2>&1";
     const int status = std::system(command.c_str());  // NOLINT(cert-env33-c)
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
@@ -175,6 +176,16 @@ while :; do sleep 0.05; done)"),
             75);
   EXPECT_EQ(read_submission_exit(folder, name), 75);
   EXPECT_TRUE(std::filesystem::exists(folder.file("checkpoint")));
+}
+
+TEST_F(SlurmScriptTest, ASubmissionThatWasGivenUpRendersNothing) {
+  const auto sleep = temp.write("sleep", "#!/bin/sh\necho >>\"$0.times\"\n");  // takes no time
+  std::filesystem::permissions(sleep, std::filesystem::perms::owner_all);
+  record(name + "x");
+  EXPECT_EQ(run("exit 3"), 0);
+  EXPECT_EQ(read_submission_exit(folder, name), std::nullopt);
+  EXPECT_EQ(content_of(temp / "sleep.times").size(), 60U);
+  EXPECT_NE(content_of(temp / "out").find("does not wait for " + name), std::string::npos);
 }
 
 TEST_F(SlurmScriptTest, WaitsForAFolderThatLags) {
