@@ -5,8 +5,11 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <map>
 #include <stdexcept>
+#include <utility>
 
+#include "jobs/slurm/request.h"
 #include "jobs/spec/byte_size.h"
 #include "server/service.h"
 #include "server/telemetry/log.h"
@@ -34,6 +37,27 @@ std::uint64_t memory_limit(const std::string& text) {
       fmt::format("found \"{}\"; allowed: 0, or at least {}", text, byte_size_text(least)));
 }
 
+/// Throws CLI::ValidationError: an option that Lacuna gives sbatch itself.
+void add_slurm_arguments(ServiceSettings& s, const std::string& text) {
+  try {
+    for (std::string& word : slurm_arguments(text)) s.slurm.arguments.push_back(std::move(word));
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError("--slurm-args", error.what());
+  }
+}
+
+/// What only one of the executors knows.
+void check_executor(const CLI::App& app, ServiceSettings& s) {
+  if (s.executor == ExecutorKind::slurm) {
+    constexpr int at_a_time = 64;
+    if (app.count("--jobs") == 0) s.queue.children = at_a_time;
+    return;
+  }
+  for (const char* option : {"--slurm-args", "--slurm-cores", "--slurm-poll"}) {
+    if (app.count(option) > 0) throw CLI::ValidationError(option, "needs --executor slurm");
+  }
+}
+
 void define_options(CLI::App& app, ServiceSettings& s) {
   app.set_version_flag("--version", service_version());
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
@@ -54,9 +78,37 @@ void define_options(CLI::App& app, ServiceSettings& s) {
   app.add_option("--scenes", s.scenes,
                  "folder of scenes, may be repeated; default: $LACUNA_SCENES or jobs/scenes")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  app.add_option("--jobs", s.queue.children, "renderers at a time")
-      ->check(CLI::Range(1, 256))
+  app.add_option("--jobs", s.queue.children,
+                 "renderers at a time; with Slurm, jobs that it has at a time, default 64")
+      ->check(CLI::Range(1, 4096))
       ->capture_default_str();
+  app.add_option(
+         "--executor", s.executor,
+         "who runs renderers: local (this machine) or slurm (sbatch, from a data folder that "
+         "all nodes share)")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, ExecutorKind>{
+          {"local", ExecutorKind::local}, {"slurm", ExecutorKind::slurm}}))
+      ->default_str("local");
+  app.add_option_function<std::vector<std::string>>(
+         "--slurm-args",
+         [&s](const std::vector<std::string>& texts) {
+           for (const std::string& text : texts) add_slurm_arguments(s, text);
+         },
+         "further options of sbatch, for example \"--partition=long --account=me\"; they win over "
+         "those that follow from a job")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--slurm-cores", s.slurm.cores,
+                 "cores in Slurm of a job that names no threads; 0: a node of its own")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  app.add_option_function<double>(
+         "--slurm-poll",
+         [&s](double seconds) {
+           s.slurm.poll = std::chrono::milliseconds(static_cast<std::int64_t>(1000 * seconds));
+         },
+         "seconds between two calls of squeue")
+      ->check(CLI::Range(0.05, 3600.0))
+      ->default_str("3");
   app.add_option("--max-attempts", s.queue.max_attempts,
                  "how often the renderer of a job is started if it crashes")
       ->check(CLI::Range(1, 1000))
@@ -114,6 +166,7 @@ int main(int argc, char** argv) {
   ServiceSettings settings;
   CLI::App app{"Lacuna's render service: takes jobs over HTTP and hands them to renderers."};
   define_options(app, settings);
+  app.final_callback([&] { check_executor(app, settings); });
   CLI11_PARSE(app, argc, argv);
   log::start("lacuna-server", settings.verbose);
 

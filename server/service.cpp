@@ -20,6 +20,7 @@
 #include "server/routes/routes.h"
 #include "server/routes/scene_uploads.h"
 #include "server/service_lock.h"
+#include "server/slurm/executor_slurm.h"
 #include "server/sweeps/sweep_keeper.h"
 #include "server/tables/sweep_table.h"
 #include "server/telemetry/log.h"
@@ -78,15 +79,29 @@ ScenesRoots scenes_roots(const ServiceSettings& settings, const DataRoot& data) 
   return ScenesRoots(std::move(roots));
 }
 
+std::chrono::milliseconds grace(const ServiceSettings& settings) {
+  return std::chrono::milliseconds(static_cast<std::int64_t>(1000 * settings.grace_seconds));
+}
+
+std::unique_ptr<Executor> make_executor(const ServiceSettings& settings, const DataRoot& data,
+                                        const ScenesRoots& scenes) {
+  ExecutorSettings common{.renderer = renderer(settings),
+                          .data = data.dir,
+                          .cache = data.cache(),
+                          .scenes = scenes.roots(),
+                          .grace = grace(settings),
+                          .limits = settings.limits};
+  if (settings.executor == ExecutorKind::local) {
+    return std::make_unique<LocalExecutor>(std::move(common));
+  }
+  return std::make_unique<SlurmExecutor>(std::move(common), settings.slurm);
+}
+
 DataRoot data_root(const ServiceSettings& settings) {
   DataRoot data =
       settings.data.empty() ? DataRoot::from_environment() : DataRoot::at(settings.data);
   fs::create_directories(data.jobs());
   return data;
-}
-
-std::chrono::milliseconds grace(const ServiceSettings& settings) {
-  return std::chrono::milliseconds(static_cast<std::int64_t>(1000 * settings.grace_seconds));
 }
 
 void check(const ServiceSettings& settings) {
@@ -146,16 +161,11 @@ struct Service::Parts {
         lock(data.dir),
         uploads(make_uploads(settings, data)),
         scenes(scenes_roots(settings, data)),
-        executor({.renderer = renderer(settings),
-                  .data = data.dir,
-                  .cache = data.cache(),
-                  .scenes = scenes.roots(),
-                  .grace = grace(settings),
-                  .limits = settings.limits}),
+        executor(make_executor(settings, data, scenes)),
         sweeps(data),
         table(data, sweeps),
         disk(data.jobs(), settings.care.disk_floor),
-        queue(executor, table, disk, queue_settings(settings)),
+        queue(*executor, table, disk, queue_settings(settings)),
         keeper(sweeps, table, queue, disk, settings.queue.max_waiting / 2),
         maintenance(table, queue, settings.care, [this] { look_at_lock(); }),
         files(page(settings)),
@@ -180,7 +190,7 @@ struct Service::Parts {
   ServiceLock lock;
   const std::unique_ptr<SceneUploads> uploads;
   const ScenesRoots scenes;
-  LocalExecutor executor;
+  const std::unique_ptr<Executor> executor;
   SweepTable sweeps;
   JobTable table;
   DiskWatch disk;

@@ -32,6 +32,7 @@ const jobFacts = ({ job, state, progress, sweep }) => facts([
   ["Created", when(state.created)],
   ["Started", when(state.started)],
   ["Finished", when(state.finished)],
+  ["Runs in", state.place],
   ["Attempts", state.attempts > 1 ? number(state.attempts) : ""],
   ["Exit code", state.exit_code > 0 ? state.exit_code : ""],
   ...(progress ? [

@@ -106,8 +106,8 @@ struct DataRoot {
 class ScenesRoots {
  public:
   explicit ScenesRoots(std::vector<std::filesystem::path> roots) : roots_(std::move(roots)) {}
-  /// $LACUNA_SCENES if set, else `jobs/scenes` in the working directory, then that of the source
-  /// tree this was built from, if it is there.
+  /// $LACUNA_SCENES if set, else `jobs/scenes` in the working directory, then those installed with
+  /// this program or, where it is not installed, of the source tree that it was built from.
   static ScenesRoots from_environment();
   const std::vector<std::filesystem::path>& roots() const { return roots_; }
 

@@ -28,6 +28,13 @@ const Extensions scene_extensions{".glb", ".gltf"};
 /// The folder of the scenes that come with the source tree this was built from.
 fs::path source_scenes() { return fs::path(__FILE__).parent_path().parent_path() / "scenes"; }
 
+/// Those that are installed with this program; the folder need not be there.
+fs::path installed_scenes() {
+  std::error_code ignored;
+  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+  return program.parent_path().parent_path() / "share/lacuna/scenes";
+}
+
 std::vector<std::string_view> parts_of(std::string_view name) {
   std::vector<std::string_view> parts;
   for (;;) {
@@ -146,6 +153,12 @@ ScenesRoots ScenesRoots::from_environment() {
   }
   roots.push_back(fs::absolute("jobs/scenes"));
   std::error_code ignored;  // false where either is missing
+  const fs::path installed = installed_scenes();
+  if (fs::is_directory(installed, ignored)) {
+    if (!fs::is_directory(roots.front(), ignored)) roots.clear();
+    roots.push_back(installed);
+    return ScenesRoots(std::move(roots));
+  }
   const fs::path source = source_scenes();
   if (fs::is_directory(source) && !fs::equivalent(roots.front(), source, ignored)) {
     roots.push_back(source);

@@ -40,13 +40,16 @@ struct Loaded {
   ImageModuleTimes times;
 };
 
-/// Beside the program, or for programs that test it in the folder of those that are tested.
+/// Installed, beside the program, or for programs that test it in the folder of those that are
+/// tested.
 std::filesystem::path find_module() {
   const std::filesystem::path folder =
       std::filesystem::read_symlink("/proc/self/exe").parent_path();
   std::filesystem::path beside = folder / module_name;
   std::filesystem::path near = folder.parent_path() / "bin" / module_name;
+  std::filesystem::path installed = folder.parent_path() / "lib/lacuna/modules" / module_name;
   std::error_code error;
+  if (std::filesystem::exists(installed, error)) return installed;
   return !std::filesystem::exists(beside, error) && std::filesystem::exists(near, error) ? near
                                                                                          : beside;
 }

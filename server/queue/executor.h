@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <atomic>
 #include <functional>
 #include <string>
 
@@ -13,9 +14,13 @@ namespace lacuna {
 /// How a renderer ended.
 struct Ending {
   /// out_of_memory: it reported exit_memory, or the kernel killed it for lack of memory.
-  enum class Kind { exited, killed, not_started, out_of_memory };
+  /// lost: its machine or its time was taken from it, or nobody knows. refused: who runs renderers
+  /// will not run this one. left: it goes on, and whoever runs the job next finds it.
+  enum class Kind { exited, killed, not_started, out_of_memory, lost, refused, left };
   Kind kind = Kind::exited;
-  int code = 0;        ///< exit code, out_of_memory too (128 + SIGKILL if killed); signal; errno
+  /// exit code, out_of_memory too (128 + SIGKILL if killed); signal; errno; lost and refused: the
+  /// exit code if there was one, else 0
+  int code = 0;
   std::string reason;  ///< "renderer ended by signal 9 (Killed)"
 };
 
@@ -24,21 +29,45 @@ class StopSignal {
  public:
   StopSignal();  ///< throws std::system_error
   void request() const;
-  int fd() const { return event_.get(); }  ///< readable from the request on
+  /// Not the renderer, but this service ends.
+  void leave() const;
+  bool is_requested() const { return requested_.load(); }
+  bool leaves() const { return leaves_.load(); }
+  int fd() const { return event_.get(); }  ///< readable from the first of both on
 
  private:
   FileHandle event_;
+  mutable std::atomic<bool> requested_{false}, leaves_{false};
 };
 
 /// The interface that runs renderers, for example in child processes or on a cluster.
 class Executor {
  public:
   virtual ~Executor() = default;
-  /// Called with the process that renders, the leader of its own group, once it runs.
-  using Started = std::function<void(pid_t)>;
+  /// What is told of a job while it is run. Each may be empty, and must not throw.
+  struct Notices {
+    /// The process that renders, the leader of its own group, once it runs; 0: it is not of this
+    /// machine, or it waits elsewhere.
+    std::function<void(pid_t)> started;
+    /// Where it runs or waits, for a person.
+    std::function<void(const std::string&)> place;
+  };
   /// Renders one job; returns when its renderer has ended. `stop` asks that renderer to write a
-  /// checkpoint and end. `started` may be empty, and must not throw. Called from several threads.
-  virtual Ending run(const JobFolder& folder, const StopSignal& stop, const Started& started) = 0;
+  /// checkpoint and end. Called from several threads.
+  virtual Ending run(const JobFolder& folder, const StopSignal& stop, const Notices& notices) = 0;
+
+  /// Its renderers are run by somebody else, on machines of theirs: they outlive the service, and
+  /// each job that wants a machine for itself gets one.
+  virtual bool is_remote() const { return false; }
+  /// A renderer of the job may run or wait, from an earlier service too: run() goes on with that
+  /// one, and until then the folder is not ours.
+  virtual bool holds(const JobFolder&) const { return false; }
+  /// Gives up what holds() says of a job whose renderer has ended. Throws std::system_error.
+  virtual void forget(const JobFolder&) {}
+  /// The priority of a job that it runs has changed.
+  virtual void set_priority(const JobFolder&, int) {}
+  /// What keeps it from running anything, and may pass; empty: nothing.
+  virtual std::string obstacle() const { return {}; }
 };
 
 }  // namespace lacuna

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 #include <sys/eventfd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
 
+#include "jobs/slurm/submission.h"
 #include "jobs/spec/byte_size.h"
 #include "jobs/store/exit_code.h"
 #include "server/queue/child_process.h"
@@ -16,6 +18,8 @@
 
 namespace lacuna {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// The ending, classified as out of memory where memory ran out.
 Ending name_memory(Ending end, std::uint64_t limit, bool kernel_killed) {
@@ -32,22 +36,16 @@ Ending name_memory(Ending end, std::uint64_t limit, bool kernel_killed) {
 
 /// The service's own environment, with the folders of its command line.
 std::vector<std::string> child_environment(const ExecutorSettings& settings) {
-  const std::string data = "LACUNA_DATA=", cache = "LACUNA_CACHE=", scenes = "LACUNA_SCENES=";
-  std::vector<std::string> result;
+  std::vector<std::string> result = renderer_environment(settings);
+  const std::size_t ours = result.size();
   for (char** p = ::environ; *p != nullptr; ++p) {
     const std::string_view entry = *p;
-    const bool own =
-        entry.starts_with(data) || entry.starts_with(cache) || entry.starts_with(scenes);
+    const std::string_view name = entry.substr(0, entry.find('=') + 1);
+    const auto end = result.begin() + static_cast<std::ptrdiff_t>(ours);
+    const bool own = std::any_of(result.begin(), end,
+                                 [&](const std::string& set) { return set.starts_with(name); });
     if (!own) result.emplace_back(entry);
   }
-  std::string roots;
-  for (const auto& root : settings.scenes) {
-    if (!roots.empty()) roots += ':';
-    roots += root.string();
-  }
-  result.push_back(data + settings.data.string());
-  if (!settings.cache.empty()) result.push_back(cache + settings.cache.string());
-  result.push_back(scenes + roots);
   return result;
 }
 
@@ -57,32 +55,54 @@ StopSignal::StopSignal() : event_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   if (!event_) throw std::system_error(errno, std::generic_category(), "eventfd");
 }
 
-void StopSignal::request() const { ::eventfd_write(event_.get(), 1); }
+void StopSignal::request() const {
+  requested_ = true;
+  ::eventfd_write(event_.get(), 1);
+}
 
-LocalExecutor::LocalExecutor(ExecutorSettings settings) : settings_(std::move(settings)) {
-  if (::access(settings_.renderer.c_str(), X_OK) != 0) {
-    throw std::invalid_argument(
-        fmt::format("{} is not a program that can be started", settings_.renderer.string()));
-  }
-  for (const auto& root : settings_.scenes) {
+void StopSignal::leave() const {
+  leaves_ = true;
+  ::eventfd_write(event_.get(), 1);
+}
+
+std::vector<std::string> renderer_environment(const ExecutorSettings& settings) {
+  std::string roots;
+  for (const auto& root : settings.scenes) {
     if (root.string().find(':') != std::string::npos) {
       throw std::invalid_argument(
           fmt::format("{}: a scenes folder's path may not hold ':', which separates the folders",
                       root.string()));
     }
+    if (!roots.empty()) roots += ':';
+    roots += root.string();
   }
+  const fs::path cache = settings.cache.empty() ? settings.data / "cache" : settings.cache;
+  return {"LACUNA_DATA=" + settings.data.string(), "LACUNA_CACHE=" + cache.string(),
+          "LACUNA_SCENES=" + roots};
+}
+
+void check_renderer(const ExecutorSettings& settings) {
+  if (::access(settings.renderer.c_str(), X_OK) != 0) {
+    throw std::invalid_argument(
+        fmt::format("{} is not a program that can be started", settings.renderer.string()));
+  }
+}
+
+LocalExecutor::LocalExecutor(ExecutorSettings settings) : settings_(std::move(settings)) {
+  check_renderer(settings_);
   environment_ = child_environment(settings_);
 }
 
-Ending LocalExecutor::run(const JobFolder& folder, const StopSignal& stop, const Started& started) {
+Ending LocalExecutor::run(const JobFolder& folder, const StopSignal& stop, const Notices& notices) {
   try {
+    forget_submission(folder);  // of a service that ran its jobs on a cluster
     const std::uint64_t kills_before = oom_kills();
     ChildProcess child({.arguments = {settings_.renderer.string(), "render", folder.dir().string()},
                         .environment = environment_,
                         .directory = settings_.data,
                         .output = folder.file("log.txt"),
                         .limits = settings_.limits});
-    if (started) started(child.pid());
+    if (notices.started) notices.started(child.pid());
     bool killed = false;
     if (!child.wait(stop.fd(), std::chrono::milliseconds(-1))) {
       child.signal(SIGTERM);

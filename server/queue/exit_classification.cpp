@@ -18,11 +18,14 @@ ExitClassification failed(JobState state, const std::string& error, const std::s
 
 /// The code of this ending is an exit code.
 bool exited(const Ending& end) {
-  return end.kind == Ending::Kind::exited || end.kind == Ending::Kind::out_of_memory;
+  const bool by_others = end.kind == Ending::Kind::lost || end.kind == Ending::Kind::refused;
+  return end.kind == Ending::Kind::exited || end.kind == Ending::Kind::out_of_memory ||
+         (by_others && end.code != 0);
 }
 
 /// Another renderer would end likewise.
 bool is_final(const Ending& end) {
+  if (end.kind == Ending::Kind::refused) return true;
   if (end.kind == Ending::Kind::not_started) return !may_pass(end.code);
   return end.kind == Ending::Kind::exited && (end.code == exit_bad_job || end.code == exit_asset);
 }
@@ -45,7 +48,8 @@ std::string obstacle_of(const Attempt& attempt) {
 
 /// Stopped by somebody else, but not in vain.
 bool made_progress(const Attempt& attempt) {
-  return interrupted(attempt.ending) && attempt.iteration_after > attempt.iteration_before;
+  const bool stopped = interrupted(attempt.ending) || attempt.ending.kind == Ending::Kind::lost;
+  return stopped && attempt.iteration_after > attempt.iteration_before;
 }
 
 std::string reason_of(const Attempt& attempt) {
@@ -85,9 +89,10 @@ ExitClassification classify_exit(const Attempt& attempt, int max_attempts, const
   if (exited(end)) state.exit_code = end.code;
   if (end.kind == Ending::Kind::killed) state.exit_code = 128 + end.code;  // as shells have it
   if (is_terminal(state.state)) return {state};
-  const bool started = end.kind != Ending::Kind::not_started;
+  const bool started = end.kind != Ending::Kind::not_started && end.kind != Ending::Kind::refused;
   // A renderer that died early did not count itself.
-  state.attempts = std::max(state.attempts, attempt.before.attempts + (started ? 1 : 0));
+  state.attempts =
+      std::max(state.attempts, attempt.before.attempts + (started && !attempt.found ? 1 : 0));
 
   if (attempt.cancel) return {ended(std::move(state), State::cancelled, now)};
   if (attempt.hold) return {held(std::move(state))};

@@ -22,6 +22,7 @@ struct Attempt {
   bool hold = false;      ///< a client put the job on hold
   bool stopped = false;   ///< the service is shutting down and stopped the renderer
   bool disk_low = false;  ///< free space is below the floor, so failures do not count as crashes
+  bool found = false;     ///< `before` was read after the renderer had started
   int crashes = 0;        ///< crashes of this job's earlier renderers
   /// Iteration in progress.json before the renderer started and after it ended; 0: none.
   std::int64_t iteration_before = 0, iteration_after = 0;
@@ -40,7 +41,8 @@ struct ExitClassification {
 /// nobody requested and that completed no iteration are retried from the checkpoint, up to
 /// `max_attempts` times; while the disk is low they are retried without being counted. A renderer
 /// that could not be started, or could not write its files, for a cause that may pass (may_pass())
-/// is retried without being counted; otherwise the job fails.
+/// is retried without being counted; otherwise the job fails, as one that was refused does. One
+/// that was lost is as one that nobody has asked to end.
 ExitClassification classify_exit(const Attempt& attempt, int max_attempts, const std::string& now);
 
 }  // namespace lacuna

@@ -12,6 +12,7 @@ namespace {
 // Renderers write their progress a few times a second: looking at two small files as often is
 // simpler than a notice from the kernel, and costs next to nothing.
 constexpr std::chrono::milliseconds tick{250};
+constexpr int ticks_to_remote = 8;  // two files of each job, over the network
 constexpr int ticks_to_folders = 4, ticks_to_disk = 4, ticks_to_lock = 4, ticks_to_retention = 240;
 // Temporary files are looked for at the start, and once more when all that were left then are old
 // enough to be taken away.
@@ -50,7 +51,7 @@ void MaintenanceThread::do_round(int number) {
       log::error("looking after the jobs: {}", error.what());
     }
   };
-  each(1, [&] { queue_.look_at_running(); });
+  each(queue_.is_remote() ? ticks_to_remote : 1, [&] { queue_.look_at_running(); });
   each(ticks_to_folders, [&] {
     if (table_.rescan_if_changed()) queue_.adopt();
   });

@@ -32,7 +32,12 @@ void Queue::stop() {
     const std::lock_guard lock(mutex_);
     for (std::jthread& runner : runners_) runner.request_stop();
     for (const auto& [id, work] : work_) {
-      if (work->stop) work->stop->request();
+      if (!work->stop) continue;
+      if (executor_.is_remote()) {
+        work->stop->leave();
+      } else {
+        work->stop->request();
+      }
     }
   }
   changed_.notify_all();
@@ -95,14 +100,15 @@ Queue::WorkPtr Queue::open(const JobEntry& entry, const JobControl& control) {
   auto work = std::make_shared<Work>();
   work->id = entry.id;
   work->created = entry.state.created;
-  work->exclusive = entry.exclusive;
+  work->exclusive = entry.exclusive && !executor_.is_remote();
   work->control = control;
   work_[work->id] = work;
   return work;
 }
 
 void Queue::line_up(Work& work) {
-  work.queue_key = QueueKey{-work.control.priority, work.created, work.id};
+  const bool to_submit = !executor_.holds(table_.folder(work.id));
+  work.queue_key = QueueKey{to_submit, -work.control.priority, work.created, work.id};
   line_.insert(*work.queue_key);
   changed_.notify_all();
 }
@@ -190,6 +196,7 @@ void Queue::change(const std::string& id, std::optional<int> priority, std::opti
   if (work.control.cancel) throw Conflict("The job is being cancelled.");
   if (work.stop) {  // a runner has it and looks at what was asked when its renderer has ended
     write_control(work, control);
+    executor_.set_priority(table_.folder(id), control.priority);
     if (control.held) work.stop->request();
     return;
   }
@@ -275,6 +282,7 @@ Queue::Work& Queue::reopen(const EntryPtr& entry) {
   const std::lock_guard no_forks(fork_mutex());
   const auto free = folder.try_lock();
   if (!free) throw Conflict("A renderer is still running in the job's folder.");
+  executor_.forget(folder);
   JobControl control = entry->control;
   control.cancel = control.held = false;
   control.crashes = 0;

@@ -68,6 +68,7 @@ class Queue {
   /// Puts every unfinished job of the table in the line again, and begins.
   void start();
   /// Asks all renderers to stop and waits for them; their jobs go on after the next start().
+  /// Renderers that are not of this service's machine run on, and that start() finds them.
   void stop();
 
   /// How many more jobs may wait or run.
@@ -105,6 +106,8 @@ class Queue {
   void look_at_disk();
   /// Takes over what the renderers have written about their jobs meanwhile.
   void look_at_running();
+  /// Its renderers write through a file system of many machines, where looking costs more.
+  bool is_remote() const { return executor_.is_remote(); }
   /// Tries once more to write the states that could not be written.
   void save_pending();
   /// Why the jobs that wait do not go on, for everybody: names no file. Empty: nothing keeps them.
@@ -112,7 +115,8 @@ class Queue {
 
  private:
   using Clock = std::chrono::steady_clock;
-  using QueueKey = std::tuple<int, std::string, std::string>;  // -priority, creation, id
+  // Whether it has to be submitted first, -priority, creation, id.
+  using QueueKey = std::tuple<bool, int, std::string, std::string>;
 
   /// A job that is not over.
   struct Work {
@@ -140,6 +144,7 @@ class Queue {
   WorkPtr first_ready(Clock::time_point& look_again) const;
   void attend(Work& work, const std::stop_token& ends);
   bool render(Work& work);
+  bool may_render(Work& work, Attempt& attempt);
   void read_at_last(const std::string& id);
   void hand_back(const WorkPtr& work);
   void postpone(Work& work, const std::exception& error);

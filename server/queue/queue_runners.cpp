@@ -45,6 +45,7 @@ ProcessIdentity renderer_of(const JobControl& control) {
 std::optional<JobFolder::Lock> Queue::try_folder(const Work& work) const {
   const ProcessIdentity renderer = renderer_of(work.control);
   if (renderer.pid > 0 && is_alive(renderer)) return std::nullopt;
+  if (executor_.holds(table_.folder(work.id))) return std::nullopt;
   return table_.folder(work.id).try_lock();
 }
 
@@ -120,6 +121,7 @@ void Queue::give_up(const std::string& id, const std::string& reason) {
 std::string Queue::obstacle() const {
   if (std::string shortage = disk_.shortage(); !shortage.empty()) return shortage;
   const std::lock_guard lock(mutex_);
+  if (std::string why = executor_.obstacle(); !why.empty() && !work_.empty()) return why;
   if (faults_ > 0 && !line_.empty()) return obstacle_;
   return unsaved_.empty() ? "" : "states of jobs that have ended cannot be saved";
 }
@@ -133,7 +135,7 @@ Queue::WorkPtr Queue::first_ready(Clock::time_point& look_again) const {
     return nullptr;
   }
   for (const QueueKey& key : line_) {
-    const WorkPtr& work = work_.at(std::get<2>(key));
+    const WorkPtr& work = work_.at(std::get<3>(key));
     if (work->not_before > now) {
       look_again = std::min(look_again, work->not_before);
     } else {
@@ -200,9 +202,9 @@ void Queue::attend(Work& work, const std::stop_token& ends) {
   if (const EntryPtr entry = table_.find(work.id); entry && entry->unread) {
     return read_at_last(work.id);
   }
-  if (!wait_until_free(work, ends)) return;
-  if (!work.ended && !render(work)) return;
   const JobFolder folder = table_.folder(work.id);
+  if (!executor_.holds(folder) && !wait_until_free(work, ends)) return;
+  if (!work.ended && !render(work)) return;
   try {
     work.ended->after = folder.read_state();
   } catch (const std::runtime_error& error) {
@@ -214,27 +216,42 @@ void Queue::attend(Work& work, const std::stop_token& ends) {
   settle(work, std::move(attempt), ends);
 }
 
-/// Has the job rendered, unless somebody has asked for something else, or it is over. False: so.
-bool Queue::render(Work& work) {
+/// Notes what is known before the renderer starts. False: somebody has asked for something else, or
+/// the job is over.
+bool Queue::may_render(Work& work, Attempt& attempt) {
   const JobFolder folder = table_.folder(work.id);
-  Attempt attempt;
-  {
-    const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(mutex_);
+  attempt.found = executor_.holds(folder);
+  if (attempt.found) {
+    if (work.control.cancel || work.control.held) work.stop->request();
+  } else {
     if (work.control.cancel) return withdraw(work, State::cancelled), false;
     if (work.control.held) return withdraw(work, State::held), false;
-    attempt.before = stored_state(work.id);
-    attempt.crashes = work.control.crashes;
-    if (const auto progress = folder.read_progress()) {
-      attempt.iteration_before = progress->iteration;
-    }
-    if (is_terminal(attempt.before.state)) {  // a renderer of an earlier service came to the end
-      table_.set_state(work.id, attempt.before, true);
-      return forget(work.id), false;
-    }
   }
-  log::info("{}: a renderer is started", work.id);
-  attempt.ending = executor_.run(folder, *work.stop, [&](pid_t pid) { note_start(work, pid); });
+  attempt.before = stored_state(work.id);
+  attempt.crashes = work.control.crashes;
+  if (const auto progress = folder.read_progress()) attempt.iteration_before = progress->iteration;
+  // A renderer of an earlier service came to the end.
+  if (!attempt.found && is_terminal(attempt.before.state)) {
+    table_.set_state(work.id, attempt.before, true);
+    return forget(work.id), false;
+  }
+  return true;
+}
+
+/// Has the job rendered. False: it is not to be, or its renderer goes on without this service.
+bool Queue::render(Work& work) {
+  Attempt attempt;
+  if (!may_render(work, attempt)) return false;
+  log::info("{}: {}", work.id,
+            attempt.found ? "its renderer is found again" : "a renderer is started");
+  attempt.ending =
+      executor_.run(table_.folder(work.id), *work.stop,
+                    {.started = [&](pid_t pid) { note_start(work, pid); },
+                     .place = [&](const std::string& place) { table_.set_place(work.id, place); }});
   log::info("{}: {}", work.id, attempt.ending.reason);
+  if (attempt.ending.kind == Ending::Kind::left) return false;
+  table_.set_place(work.id, "");
   work.ended = std::move(attempt);
   return true;
 }

@@ -34,7 +34,7 @@ struct ChildLimits {
   std::uint64_t file_bytes = 0;  ///< of a file that it writes, RLIMIT_FSIZE; 0: no limit
 };
 
-/// Settings of the local executor.
+/// What every executor knows of its renderers.
 struct ExecutorSettings {
   std::filesystem::path renderer;             ///< the `lacuna` command
   std::filesystem::path data;                 ///< working directory of the children

@@ -5,8 +5,11 @@
 
 #include "server/settings/http_settings.h"
 #include "server/settings/queue_settings.h"
+#include "server/settings/slurm_settings.h"
 
 namespace lacuna {
+
+enum class ExecutorKind { local, slurm };
 
 /// What the command line says; paths that are empty take their defaults.
 struct ServiceSettings {
@@ -17,6 +20,8 @@ struct ServiceSettings {
   bool uploads = false;  ///< scenes may be put
   bool verbose = false;  ///< every request is logged
   double grace_seconds = 10;
+  ExecutorKind executor = ExecutorKind::local;
+  SlurmSettings slurm;
   ChildLimits limits = ExecutorSettings{}.limits;  ///< of every renderer
   std::filesystem::path data, renderer, web;
   std::vector<std::filesystem::path> scenes;

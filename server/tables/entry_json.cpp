@@ -21,6 +21,7 @@ OrderedJson to_json(const JobState& s) {
 OrderedJson state_json(const JobEntry& e) {
   OrderedJson json = to_json(e.state);
   json["obstacle"] = e.obstacle;
+  json["place"] = e.place;
   return json;
 }
 

@@ -265,6 +265,14 @@ void JobTable::set_obstacle(const std::string& id, const std::string& obstacle) 
   });
 }
 
+void JobTable::set_place(const std::string& id, const std::string& place) {
+  change(id, [&](JobEntry& entry) -> std::optional<JobEvent::Kind> {
+    if (entry.place == place) return std::nullopt;
+    entry.place = place;
+    return JobEvent::Kind::state;
+  });
+}
+
 void JobTable::set_progress(const std::string& id, const Progress& progress) {
   const bool pictured = has_picture(folder(id));
   change(id, [&](JobEntry& entry) -> std::optional<JobEvent::Kind> {

@@ -31,6 +31,7 @@ struct JobEntry {
   bool damaged = false;   ///< its folder cannot be read; state.error says why
   bool unread = false;    ///< its folder cannot be read for now; `obstacle` says why
   std::string obstacle;   ///< what keeps it from going on, and may pass; empty: nothing
+  std::string place;      ///< where its renderer runs or waits; empty: this machine, or nowhere
 
   // Made by the table from the above:
   std::string text;      ///< as an element of the API's list, JSON
@@ -70,6 +71,7 @@ class JobTable {
   void set_state(const std::string& id, const JobState& state, bool over);
   void set_control(const std::string& id, const JobControl& control);
   void set_obstacle(const std::string& id, const std::string& obstacle);
+  void set_place(const std::string& id, const std::string& place);
   /// Looks for the picture, too.
   void set_progress(const std::string& id, const Progress& progress);
   /// Its job.json says this now.

@@ -15,7 +15,7 @@ namespace {
 class LocalExecutorTest : public testing::Test {
  protected:
   Ending run(const std::string& script, const ChildLimits& limits = {},
-             const Executor::Started& started = {}) {
+             const std::function<void(pid_t)>& started = {}) {
     const auto program = temp.write("renderer", "#!/bin/sh\n" + script);
     std::filesystem::permissions(program, std::filesystem::perms::owner_all);
     std::filesystem::create_directories(folder.dir());
@@ -24,7 +24,7 @@ class LocalExecutorTest : public testing::Test {
                             .scenes = {},
                             .grace = std::chrono::milliseconds(200),
                             .limits = limits});
-    return executor.run(folder, stop, started);
+    return executor.run(folder, stop, {.started = started, .place = {}});
   }
   std::string log() const { return content_of(folder.file("log.txt")); }
 

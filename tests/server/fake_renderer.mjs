@@ -23,7 +23,8 @@ import os from "node:os";
 import path from "node:path";
 
 const [command, folder, ...rest] = process.argv.slice(2);
-if (command !== "render" || !folder || rest.length > 0) process.exit(2);
+const threads = rest.length === 2 && rest[0] === "--threads" ? rest[1] : null;
+if (command !== "render" || !folder || (rest.length > 0 && !threads)) process.exit(2);
 
 const file = (name) => path.join(folder, name);
 const read = (name) => JSON.parse(fs.readFileSync(file(name), "utf8"));
@@ -61,7 +62,7 @@ function finish() {
   write("curve.csv", "iteration,seconds,est_rmse\n100,1,0.5\n");
   const seen = {
     directory: process.cwd(), data: process.env.LACUNA_DATA, scenes: process.env.LACUNA_SCENES,
-    cache: process.env.LACUNA_CACHE,
+    cache: process.env.LACUNA_CACHE, threads,
     descriptors: fs.readdirSync("/proc/self/fd").length, group: process.pid,
   };
   const limits = {

@@ -66,7 +66,7 @@ TEST(Retention, NoRunOfASweepThatIsNotOver) {
 /// Never asked: the queue of these tests does not begin.
 class NoExecutor final : public Executor {
  public:
-  Ending run(const JobFolder&, const StopSignal&, const Started&) override { return {}; }
+  Ending run(const JobFolder&, const StopSignal&, const Notices&) override { return {}; }
 };
 
 /// A queue over the folders of a data root.

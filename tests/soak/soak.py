@@ -1,5 +1,5 @@
-"""Long checks: many kills and resumes, faults of the machine, all tests under sanitizers, fuzzing, whether intervals hold the truth, and
-whether the tests notice faults."""
+"""Long checks: many kills and resumes, faults of the machine, all tests under sanitizers, fuzzing, whether intervals hold the
+truth, whether the tests notice faults, and the service on a real Slurm."""
 
 import argparse
 import os
@@ -44,6 +44,11 @@ def fuzz(seconds):
                     ["python3", "tests/fuzz/fuzz.py", "--grow", "--seconds", str(seconds)]))
 
 
+def slurm(count):
+    return run(f"Slurm on this machine, {count} kills of renderers, of slurmd and of the service",
+               [sys.executable, "tests/soak/slurm.py"], LACUNA_KILLS=str(count))
+
+
 CHECKS = {
     "stops": lambda _: run("seconds from SIGTERM to the end of a busy job", [sys.executable, "tests/soak/stops.py"]),
     "kills": lambda _: kills(20),
@@ -58,6 +63,7 @@ CHECKS = {
     "intervals": lambda _: run("intervals of a hundred sweeps", [sys.executable, "tests/soak/intervals.py"]),
     "planted": lambda _: run("planted faults", [sys.executable, "tests/planted/planted.py"]),
     "fuzz": lambda asked: fuzz(asked.seconds),
+    "slurm": lambda asked: slurm(asked.kills),
 }
 
 
@@ -65,6 +71,8 @@ def main():
     parser = argparse.ArgumentParser(prog="./dev soak", description=__doc__)
     parser.add_argument("checks", nargs="*", metavar="CHECK", help=f"of {', '.join(CHECKS)} (default: all)")
     parser.add_argument("--seconds", type=int, default=600, help="of fuzzing, for each target (default: %(default)s)")
+    parser.add_argument("--kills", type=int, default=20,
+                        help="on Slurm, of renderers, of slurmd and of the service each (default: %(default)s)")
     asked = parser.parse_args()
     chosen = asked.checks or list(CHECKS)
     if unknown := [c for c in chosen if c not in CHECKS]:

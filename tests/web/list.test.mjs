@@ -98,7 +98,8 @@ test("a job that waits for a fault to pass says so, in the list, above it and on
   await page.getByText(`It waits: ${full}`).waitFor();
   while (mock.listeners.size === 0) await page.waitForTimeout(20);
   mock.obstacle = "";
-  mock.update(waiting, { state: { obstacle: "" } });
+  mock.update(waiting, { state: { obstacle: "", place: "Slurm job 17 waits: Resources" } });
+  await page.getByText("Slurm job 17 waits: Resources").waitFor();
   await page.getByText("It waits:").waitFor({ state: "detached" });
   await open("/");
   await page.getByText("Jobs wait:").waitFor({ state: "detached" });

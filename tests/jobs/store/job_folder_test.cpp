@@ -205,13 +205,16 @@ TEST(JobFolder, TheManifestServesResultsAndNothingOfTheWorks) {
   Names names;
   for (const FileInfo& f : job_files()) {
     EXPECT_TRUE(names.emplace(f.name).second) << f.name;
-    EXPECT_EQ(f.served, f.name != "checkpoint.bin" && f.name != "queue.json") << f.name;
+    const bool works =
+        f.name == "checkpoint.bin" || f.name == "queue.json" || f.name.starts_with("slurm.");
+    EXPECT_EQ(f.served, !works) << f.name;
     EXPECT_NE(f.media_type.find('/'), std::string_view::npos);
     EXPECT_EQ(f.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz."), std::string_view::npos);
   }
-  EXPECT_EQ(names, (Names{"job.json", "state.json", "progress.json", "image.exr", "image.png",
-                          "layers.half", "layers.json", "curve.csv", "report.json",
-                          "checkpoint.bin", "queue.json", "log.txt"}));
+  EXPECT_EQ(names,
+            (Names{"job.json", "state.json", "progress.json", "image.exr", "image.png",
+                   "layers.half", "layers.json", "curve.csv", "report.json", "checkpoint.bin",
+                   "queue.json", "slurm.json", "slurm.sh", "slurm.exit", "log.txt"}));
 }
 
 TEST(JobFolder, WhatTheServiceWasAskedForIsKept) {

@@ -1,0 +1,191 @@
+#include "jobs/slurm/request.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+
+namespace lacuna {
+namespace {
+
+std::optional<int> minutes_of(const JobSpec& spec) {
+  const Budget& budget = spec.budget;
+  if (spec.reference == "auto") return std::nullopt;
+  std::optional<double> seconds = budget.seconds;
+  if (budget.cpu_seconds) {
+    seconds = std::min(seconds.value_or(*budget.cpu_seconds), *budget.cpu_seconds);
+  }
+  if (!seconds && (budget.iterations || budget.error)) return std::nullopt;
+  constexpr double share = 1.25, margin = 15 * 60;
+  const double all = share * seconds.value_or(Budget::default_seconds) + margin;
+  return static_cast<int>(std::ceil(all / 60));
+}
+
+/// Bytes that a renderer of the job is likely to stay below: libraries and tables, the scene as
+/// triangles, the image in film, layers, checkpoint and file, the space as voxels.
+double estimated_bytes(const JobSpec& spec, const RequestBasis& basis) {
+  constexpr double base = 1024.0 * (1 << 20), of_scene = 24, of_pixel = 400, of_layer = 64;
+  const double pixels = static_cast<double>(spec.resolution[0]) * spec.resolution[1];
+  const double layers = static_cast<double>(spec.layers.size());
+  return base + of_scene * static_cast<double>(basis.scene_bytes) +
+         pixels * (of_pixel + of_layer * layers);
+}
+
+std::int64_t megabytes_of(const JobSpec& spec, const RequestBasis& basis) {
+  constexpr double megabyte = 1 << 20;
+  // What a limit of data does not count: the program and its libraries.
+  constexpr std::int64_t beside_the_limit = 512;
+  if (basis.memory_limit > 0) {
+    return static_cast<std::int64_t>(
+               std::ceil(static_cast<double>(basis.memory_limit) / megabyte)) +
+           beside_the_limit;
+  }
+  constexpr int most_doublings = 6;
+  const double factor = std::exp2(std::clamp(basis.shortages, 0, most_doublings));
+  return static_cast<std::int64_t>(std::ceil(factor * estimated_bytes(spec, basis) / megabyte));
+}
+
+/// Options that Lacuna gives itself, or that would make it lose its jobs.
+constexpr std::string_view own_options[] = {
+    "--array",    "--chdir",  "--clusters",  "--error",    "--help",      "--input",
+    "--job-name", "--output", "--open-mode", "--parsable", "--test-only", "--usage",
+    "--version",  "--wait",   "--wrap",      "--signal",   "--quiet"};
+constexpr std::string_view own_letters = "aDMeiJohWVQ";
+
+bool is_own_option(const std::string& word) {
+  const std::string name = word.substr(0, word.find('='));
+  if (!name.starts_with("--")) {
+    return word.size() >= 2 && word[0] == '-' && own_letters.find(word[1]) != own_letters.npos;
+  }
+  constexpr std::size_t shortest = 5;  // sbatch takes a beginning of a name for the whole
+  return std::any_of(std::begin(own_options), std::end(own_options), [&](std::string_view own) {
+    return own == name || (name.size() >= shortest && own.starts_with(name));
+  });
+}
+
+}  // namespace
+
+int slurm_nice(int priority) { return max_priority - priority; }
+
+SlurmRequest slurm_request(const JobSpec& spec, const RequestBasis& basis) {
+  SlurmRequest request;
+  request.minutes = minutes_of(spec);
+  request.megabytes = megabytes_of(spec, basis);
+  request.cores = spec.threads > 0 ? spec.threads : basis.cores;
+  request.own_node = spec.exclusive || request.cores == 0;
+  request.nice = slurm_nice(basis.priority);
+  return request;
+}
+
+std::vector<std::string> request_words(const SlurmRequest& request) {
+  std::vector<std::string> words{"--nodes=1", "--ntasks=1",
+                                 fmt::format("--mem={}M", request.megabytes),
+                                 fmt::format("--nice={}", request.nice)};
+  if (request.minutes) words.push_back(fmt::format("--time={}", *request.minutes));
+  if (request.cores > 0) words.push_back(fmt::format("--cpus-per-task={}", request.cores));
+  if (request.own_node) words.emplace_back("--exclusive");
+  return words;
+}
+
+std::vector<std::string> slurm_arguments(const std::string& text) {
+  std::vector<std::string> words;
+  std::istringstream stream(text);
+  for (std::string word; stream >> word;) {
+    if (is_own_option(word)) {
+      throw std::invalid_argument(
+          fmt::format("found \"{}\", which Lacuna gives sbatch itself or cannot do with; allowed: "
+                      "other options of sbatch, such as --partition, --account, --time",
+                      word));
+    }
+    words.push_back(std::move(word));
+  }
+  if (!words.empty() && !words.front().starts_with('-')) {
+    throw std::invalid_argument(fmt::format(
+        "found \"{}\"; allowed: options of sbatch, which begin with '-'", words.front()));
+  }
+  return words;
+}
+
+std::string shell_word(const std::string& text) {
+  std::string word = "'";
+  for (const char c : text) {
+    if (c == '\'') {
+      word += "'\\''";
+    } else {
+      word += c;
+    }
+  }
+  return word + "'";
+}
+
+std::string slurm_path(const std::filesystem::path& path) {
+  std::string pattern;
+  for (const char c : path.string()) {
+    if (c == '\\' || static_cast<unsigned char>(c) < 0x20) {
+      throw std::invalid_argument(fmt::format(
+          "{}: sbatch takes no file below a folder with a backslash or a control character",
+          path.string()));
+    }
+    pattern += c;
+    if (c == '%') pattern += c;
+  }
+  return pattern;
+}
+
+std::string script_text(const SlurmScript& script) {
+  std::string exports;
+  for (const std::string& entry : script.environment) {
+    const auto equals = entry.find('=');
+    exports += fmt::format("export {}={}\n", entry.substr(0, equals),
+                           shell_word(entry.substr(equals + 1)));
+  }
+  const std::string threads =
+      script.all_cores ? " --threads \"${SLURM_CPUS_PER_TASK:-${SLURM_CPUS_ON_NODE:-0}}\"" : "";
+  return fmt::format(
+      R"(#!/bin/sh
+# The batch script of one submission to Slurm, which the service has written.
+name={name}
+folder={folder}
+{exports}
+# A shared folder may lag behind. The renderer starts only while the folder waits for this very
+# submission: one that was given up, or that nobody noticed, does nothing.
+tries=0
+until grep -qsF "\"$name\"" "$folder/slurm.json"; do
+  tries=$((tries + 1))
+  if [ "$tries" -gt 60 ]; then
+    echo "$(hostname): $folder does not wait for $name, or is not to be seen here" >&2
+    exit 0
+  fi
+  sleep 1
+done
+# A renderer of a node that was given up may still be at work.
+if command -v flock >/dev/null; then
+  flock --wait 86400 "$folder/.lock" true || exit 1
+fi
+rm -f "$folder/slurm.exit"
+child=
+asked=
+trap 'asked=1; [ -z "$child" ] || kill -TERM "$child" 2>/dev/null' TERM
+cd {data} || exit 1
+{renderer} render "$folder"{threads} &
+child=$!
+[ -z "$asked" ] || kill -TERM "$child" 2>/dev/null
+wait "$child"
+code=$?
+while kill -0 "$child" 2>/dev/null; do
+  wait "$child"
+  code=$?
+done
+printf '%s %s\n' "$name" "$code" >"$folder/.slurm.exit.$$.tmp" &&
+  mv "$folder/.slurm.exit.$$.tmp" "$folder/slurm.exit"
+exit "$code"
+)",
+      fmt::arg("name", shell_word(script.name)), fmt::arg("folder", shell_word(script.folder)),
+      fmt::arg("exports", exports), fmt::arg("data", shell_word(script.data)),
+      fmt::arg("renderer", shell_word(script.renderer)), fmt::arg("threads", threads));
+}
+
+}  // namespace lacuna

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "analysis/settings/field.h"
+#include "jobs/store/job_folder.h"
+
+namespace lacuna {
+
+/// slurm.json: one submission of a job to Slurm. It is written before sbatch is called, so that
+/// whoever comes after a crash can look the submission up by its name; and its batch script renders
+/// only while this file names it, so that of two submissions that were ever made one at most does.
+struct Submission {
+  std::string name;      ///< of the Slurm job; no other submission has it
+  std::int64_t job = 0;  ///< Slurm's number; 0: not known yet
+  std::string made;      ///< UTC, ISO 8601
+  bool operator==(const Submission&) const = default;
+};
+template <class V>
+void describe(V& v, Submission& s) {
+  v("name", s.name, {.doc = "of the Slurm job", .min = 1, .max = 128, .required = true});
+  v("job", s.job, {.doc = "Slurm's number; 0: not known yet", .min = 0});
+  v("made", s.made, {.doc = "UTC, ISO 8601"});
+}
+
+/// "lacuna-" + the job's id + random letters.
+std::string new_submission_name(const JobFolder& folder);
+
+/// Nothing if there is none. Throws std::system_error, and std::runtime_error if it is corrupt.
+std::optional<Submission> read_submission(const JobFolder& folder);
+void write_submission(const JobFolder& folder, const Submission& submission);  ///< synced
+bool has_submission(const JobFolder& folder);
+
+/// What the batch script of this submission has left as its renderer's exit code, as shells have
+/// it: 128 + the signal that ended it. Nothing: its renderer has not ended, or nobody could say so.
+std::optional<int> read_submission_exit(const JobFolder& folder, const std::string& name);
+
+/// From here on no submission of the job renders any more that has not begun. Throws
+/// std::system_error.
+void forget_submission(const JobFolder& folder);
+
+}  // namespace lacuna
