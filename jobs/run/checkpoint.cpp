@@ -14,7 +14,7 @@ namespace lacuna {
 namespace {
 
 // Changes with the layout of anything that is saved.
-constexpr std::string_view format_name = "lacuna-checkpoint-3";
+constexpr std::string_view format_name = "lacuna-checkpoint-4";
 
 }  // namespace
 
