@@ -16,6 +16,7 @@ ExitCode exit_code_of(const std::exception& e);
 /// Each function adds one subcommand, whose callback sets `code` to the exit code.
 void add_render(CLI::App& app, int& code);
 void add_extend(CLI::App& app, int& code);
+void add_merge(CLI::App& app, int& code);
 void add_check(CLI::App& app, int& code);
 void add_schema(CLI::App& app, int& code);
 void add_list(CLI::App& app, int& code);

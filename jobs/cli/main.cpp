@@ -30,6 +30,7 @@ int run(int argc, char** argv) {
   int code = lacuna::exit_done;
   lacuna::add_render(app, code);
   lacuna::add_extend(app, code);
+  lacuna::add_merge(app, code);
   lacuna::add_check(app, code);
   lacuna::add_schema(app, code);
   lacuna::add_list(app, code);

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 
 #include "analysis/storage/atomic_file.h"
 #include "jobs/cli/commands.h"
@@ -34,10 +35,43 @@ std::string memory_limit_advice() {
   return advice;
 }
 
-/// The folder of a job file's results: there already with this very job, or made now.
-JobFolder folder_for(const fs::path& job_file, const fs::path& named) {
-  const JobSpec spec = parse_job(read_file(job_file, max_job_bytes));
-  const fs::path out = results_folder(job_file, named, ".job");
+/// Makes `spec` the job of the shard `text`, "K/N". Throws BadJob.
+void choose_shard(JobSpec& spec, const std::string& text) {
+  const auto refuse = [&](const std::string& why) {
+    throw BadJob({{"", fmt::format("--shard {}: {}", text, why)}});
+  };
+  int end = 0;
+  int k = 0, n = 0;
+  if (std::sscanf(text.c_str(), "%d/%d%n", &k, &n, &end) != 2 ||
+      static_cast<std::size_t>(end) != text.size() || k < 1 || k > n) {
+    refuse("allowed: K/N, with K from 1 to N");
+  }
+  if (spec.shards > 1 && spec.shards != n) {
+    refuse(fmt::format("the job has {} shards; allowed: 1/{} to {}/{}", spec.shards, spec.shards,
+                       spec.shards, spec.shards));
+  }
+  if (spec.shard > 0 && spec.shard != k) {
+    refuse(fmt::format("the job is that of shard {}", spec.shard));
+  }
+  spec.shards = n;
+  spec.shard = k;
+  parse_job(write_job(spec));  // the ranges
+  budget_of(spec);
+}
+
+/// ".job", or of a shard ".03-of-12.job", so that they sort.
+std::string folder_ending(const JobSpec& spec) {
+  if (spec.shard == 0) return ".job";
+  const std::string all = fmt::format("{}", spec.shards);
+  return fmt::format(".{:0{}}-of-{}.job", spec.shard, all.size(), all);
+}
+
+/// The folder of a job file's results: there already with this very job, or made now. `shard`: of
+/// the command line; empty: none.
+JobFolder folder_for(const fs::path& job_file, const fs::path& named, const std::string& shard) {
+  JobSpec spec = parse_job(read_file(job_file, max_job_bytes));
+  if (!shard.empty()) choose_shard(spec, shard);
+  const fs::path out = results_folder(job_file, named, folder_ending(spec));
   if (!fs::exists(out / "job.json")) {
     if (fs::exists(out) && !fs::is_empty(out)) {
       throw BadJob({{"", fmt::format("--out {}: exists and is not a job's folder", out.string())}});
@@ -76,8 +110,12 @@ int render_folder(const JobFolder& folder, const RenderOptions& options) {
   // A full disk or a size limit must become an error, not the end of the process.
   signal(SIGXFSZ, SIG_IGN);
   Terminal terminal(folder.file("log.txt"), options.quiet);
-  const RunContext context{DataRoot::from_environment(), ScenesRoots::from_environment(),
-                           options.threads, interrupt_requested(), terminal};
+  const RunContext context{DataRoot::from_environment(),
+                           ScenesRoots::from_environment(),
+                           options.threads,
+                           interrupt_requested(),
+                           terminal,
+                           options.shards};
   try {
     if (folder.read_state().state == State::done) {
       terminal.milestone(fmt::format("{}: done already", folder.dir().string()));
@@ -99,6 +137,7 @@ int render_folder(const JobFolder& folder, const RenderOptions& options) {
 void add_render(CLI::App& app, int& code) {
   struct Options : RenderOptions {
     fs::path job, out;
+    std::string shard;
   };
   const auto o = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("render", "Render a job file, or continue a job's folder");
@@ -106,14 +145,24 @@ void add_render(CLI::App& app, int& code) {
       ->required()
       ->check(CLI::ExistingPath);
   command->add_option("-o,--out", o->out, "folder for the results (default: NAME.job)");
+  command->add_option(
+      "--shard", o->shard,
+      "K/N: render only the K-th of N parts of the iterations, into NAME.K-of-N.job; "
+      "`lacuna merge` puts all N together");
   command
       ->add_option("-t,--threads", o->threads,
                    "number of threads instead of the job's; 0: one per core")
       ->check(CLI::Range(0, 1024));
   command->add_flag("-q,--quiet", o->quiet, "show warnings and errors only");
   command->callback([o, &code] {
+    const bool is_folder = fs::is_directory(o->job);
+    if (is_folder && !o->shard.empty()) {
+      throw BadJob({{"", fmt::format("--shard {}: {} is a folder, which knows its shard; allowed: "
+                                     "with a job file",
+                                     o->shard, o->job.string())}});
+    }
     const JobFolder folder =
-        fs::is_directory(o->job) ? JobFolder(folder_path(o->job)) : folder_for(o->job, o->out);
+        is_folder ? JobFolder(folder_path(o->job)) : folder_for(o->job, o->out, o->shard);
     code = render_folder(folder, *o);
   });
 }

@@ -2,13 +2,14 @@
 
 #include <filesystem>
 
-#include "jobs/store/job_folder.h"
+#include "jobs/run/merge_shards.h"
 
 namespace lacuna {
 
 struct RenderOptions {
   int threads = -1;  ///< -1: the job's own number; 0: one per core
   bool quiet = false;
+  const std::vector<Shard>* shards = nullptr;  ///< the job is merged from these, not rendered
 };
 
 /// Renders a job's folder from where it stands, shows its progress, and returns the exit code.

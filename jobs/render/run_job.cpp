@@ -1,8 +1,10 @@
 #include "jobs/render/run_job.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <chrono>
+#include <set>
 #include <thread>
 
 #include "analysis/space/memory_limit.h"
@@ -125,6 +127,17 @@ std::optional<Reference> make_auto_reference(const JobFolder& folder, const JobS
   return read_reference("auto", job.folder.file("image.exr"), spec.resolution);
 }
 
+/// Bits are a contract on one machine, and its libraries may choose by the processor.
+void warn_of_processors(const std::vector<Shard>& shards, Running& running) {
+  std::set<std::string> names;
+  for (const Shard& shard : shards) names.insert(shard.processor);
+  if (names.size() < 2) return;
+  running.warn(fmt::format(
+      "the shards were rendered on {} kinds of processors ({}): their last bits may differ from "
+      "those of one machine",
+      names.size(), fmt::join(names, "; ")));
+}
+
 Outcome render(const JobFolder& folder, const RunContext& context, Running& running) {
   const double started = clock_seconds(CLOCK_MONOTONIC);
   // TBB loads libraries of its own when it is first used, and would wait for those of the images.
@@ -187,7 +200,12 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
                         phases,
                         prepared.content};
   RenderLoop loop(task);
-  loop.resume();
+  if (context.shards != nullptr) {
+    loop.merge(*context.shards);
+    warn_of_processors(*context.shards, running);
+  } else {
+    loop.resume();
+  }
   const MachineWatch watch;
   if (!loop.run()) return Outcome::interrupted;
   const auto disturbance = watch.disturbance();

@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 
+#include "jobs/run/merge_shards.h"
 #include "jobs/run/observer.h"
 #include "jobs/store/job_folder.h"
 
@@ -15,6 +16,7 @@ struct RunContext {
   int threads = -1;                          ///< >= 0: in place of the job's own
   const std::function<bool()>& interrupted;  ///< true asks to stop soon, from any thread
   Observer& observer;
+  const std::vector<Shard>* shards = nullptr;  ///< the job is merged from these, not rendered
 };
 
 enum class Outcome { done, interrupted };

@@ -109,6 +109,17 @@ OrderedJson errors_json(const RenderTask& task, const RenderLoop& loop) {
   return j;
 }
 
+/// Where a merged picture comes from.
+OrderedJson merged_json(const RenderLoop& loop) {
+  const MergedShards& merged = loop.merged();
+  return {{"shards", merged.shards},
+          {"iterations", merged.iterations},
+          {"longest_seconds", loop.spent().longest_seconds},
+          {"same_bits_as_one_machine", loop.same_bits_as_one()},
+          {"learned_apart", merged.learned == 1},
+          {"est_rmse", optional(estimated_rmse(merged))}};
+}
+
 OrderedJson machine(const ThreadPool& pool, const std::optional<Disturbance>& disturbance) {
   OrderedJson j{{"processor", processor_name()},
                 {"cores", sysconf(_SC_NPROCESSORS_ONLN)},
@@ -147,7 +158,9 @@ std::string write_report(const ReportInput& input) {
   j["job"] = task.folder.id();
   j["seconds"] = seconds(task.phases, loop.spent());
   j["budget"] = budget(task, loop.spent());
+  if (loop.merged().shards > 0) j["merged"] = merged_json(loop);
   j["counts"] = counts(loop);
+  j["sums_exact"] = loop.film().exact();
   j["rates"] = rates(task, loop.spent(), loop.counters());
   if (const auto stats = task.integrator.statistics(); !stats.empty()) {
     for (const auto& [name, value] : stats) j["integrator"][name] = value;

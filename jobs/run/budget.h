@@ -11,6 +11,9 @@ namespace lacuna {
 struct Spent {
   std::uint64_t iterations = 0;
   double seconds = 0, cpu_seconds = 0;
+  /// Of a picture merged from shards `seconds` is the sum of their clocks, and this the longest of
+  /// them; what is rendered after that counts in both.
+  double longest_seconds = 0;
 };
 
 /// Whether a limit of time or of iterations is reached.

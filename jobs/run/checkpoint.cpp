@@ -1,22 +1,59 @@
 #include "jobs/run/checkpoint.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 #include <xxhash.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <limits>
 #include <stdexcept>
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/bytes.h"
+#include "analysis/storage/file_handle.h"
 
 namespace lacuna {
 
 namespace {
 
 // Changes with the layout of anything that is saved.
-constexpr std::string_view format_name = "lacuna-checkpoint-3";
+constexpr std::string_view format_name = "lacuna-checkpoint-4";
+
+std::string_view take_line(std::string_view& text) {
+  const std::size_t end = std::min(text.find('\n'), text.size());
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(std::min(end + 1, text.size()));
+  return line;
+}
 
 }  // namespace
+
+std::string checkpoint_key(const CheckpointKey& key) {
+  return fmt::format("{}\n{}\n{}\n{}", key.picture, key.scene, key.version, key.layers);
+}
+
+CheckpointKey read_checkpoint_key(const std::filesystem::path& file) {
+  std::string head(std::size_t{1} << 16, '\0');  // far more than a key takes
+  FileHandle handle(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  const ssize_t size = handle ? ::read(handle.get(), head.data(), head.size()) : -1;
+  if (size < 0) throw_file_error(errno, "read", file);
+  ByteReader in(std::string_view(head).substr(0, static_cast<std::size_t>(size)));
+  try {
+    if (in.get_text() != format_name) {
+      throw std::runtime_error("not a checkpoint of this version");
+    }
+    std::string_view text = in.get_text();
+    CheckpointKey key;
+    for (std::string* part : {&key.picture, &key.scene, &key.version, &key.layers}) {
+      *part = take_line(text);
+    }
+    return key;
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error(fmt::format("{}: {}", file.string(), e.what()));
+  }
+}
 
 void write_checkpoint(const std::filesystem::path& file, const std::string& key,
                       const std::string& content) {

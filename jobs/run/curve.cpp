@@ -47,12 +47,13 @@ void Curve::add(const CurveRow& row) {
 std::string Curve::csv() const {
   std::string text = "iteration,seconds,cpu_seconds,samples,rays,shadow_rays,";
   for (const ErrorMetricRow& metric : error_metrics) text += fmt::format("{},", metric.name);
-  text += "negative,rejected,at_floor\n";
+  text += "negative,rejected,at_floor,longest_seconds\n";
   for (const CurveRow& r : rows_) {
     text += fmt::format("{},{},{},{},{},{},", r.iteration, number(r.seconds), number(r.cpu_seconds),
                         r.counters.samples, r.counters.rays, r.counters.shadow_rays);
     for (const ErrorMetricRow& metric : error_metrics) text += number(r.value(metric.value)) + ',';
-    text += fmt::format("{},{},{}\n", r.counters.negative, r.counters.rejected, r.at_floor ? 1 : 0);
+    text += fmt::format("{},{},{},{}\n", r.counters.negative, r.counters.rejected,
+                        r.at_floor ? 1 : 0, number(r.longest_seconds));
   }
   return text;
 }
@@ -63,6 +64,7 @@ void Curve::save(ByteWriter& out) const {
     out.put(r.iteration);
     out.put(r.seconds);
     out.put(r.cpu_seconds);
+    out.put(r.longest_seconds);
     out.put(r.counters);
     put_optional(out, r.errors);
     put_optional(out, r.est_rmse);
@@ -77,6 +79,7 @@ void Curve::load(ByteReader& in) {
     r.iteration = in.get<std::uint64_t>();
     r.seconds = in.get<double>();
     r.cpu_seconds = in.get<double>();
+    r.longest_seconds = in.get<double>();
     r.counters = in.get<Counters>();
     r.errors = get_optional<Errors>(in);
     r.est_rmse = get_optional<double>(in);

@@ -14,6 +14,7 @@ namespace lacuna {
 struct CurveRow {
   std::uint64_t iteration = 0;
   double seconds = 0, cpu_seconds = 0;  ///< render time; CPU divided by threads
+  double longest_seconds = 0;           ///< as Spent has it
   Counters counters;
   std::optional<Errors> errors;  ///< against the reference, if there is one
   std::optional<double> est_rmse;

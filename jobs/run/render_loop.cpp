@@ -25,38 +25,21 @@ constexpr double preview_share = 0.005;
 constexpr double progress_interval = 0.5;  // seconds
 constexpr double preview_interval = 1;  // seconds: what is done sooner has its picture at its end
 
-bool is_time(double t) { return std::isfinite(t) && t >= 0; }
-
-/// Throws std::runtime_error where the parts of a checkpoint contradict each other: its checksum
-/// knows damage, not what another program wrote.
-void check_saved(const Film& film, const Spent& spent, const ByteReader& in) {
-  if (!in.at_end()) throw std::runtime_error("saved state has extra bytes at its end");
-  if (film.iterations() != spent.iterations ||
-      film.half_iterations(0) != spent.iterations - spent.iterations / 2) {
-    throw std::runtime_error("saved film has another number of iterations");
-  }
-  if (!is_time(spent.seconds) || !is_time(spent.cpu_seconds)) {
-    throw std::runtime_error("saved times are not times");
-  }
-}
-
 }  // namespace
 
 RenderLoop::RenderLoop(const RenderTask& task)
     : task_(task),
-      budget_(task.spec.budget),
-      film_(task.spec.resolution[0], task.spec.resolution[1]),
+      budget_(budget_of(task.spec)),
+      state_(task.spec, task.integrator.layers(task.spec.layers), memory_to_take()),
       frame_(task.spec.resolution[0], task.spec.resolution[1]),
-      layers_(task.integrator.layers(task.spec.layers), task.spec.resolution[0],
-              task.spec.resolution[1], memory_to_take()),
       clock_(task.pool.threads()),
       checkpoints_(task.spec.checkpoint_seconds, checkpoint_share),
       previews_(preview_interval, preview_share),
       progress_(progress_interval, checkpoint_share) {}
 
 std::string RenderLoop::identity() const {
-  return fmt::format("{} {} {}{}{}", picture_key(task_.spec), task_.content, version(),
-                     layers_.names().empty() ? "" : " ", fmt::join(layers_.names(), " "));
+  return checkpoint_key({picture_key(task_.spec), task_.content, version(),
+                         fmt::format("{}", fmt::join(state_.layers.names(), " "))});
 }
 
 void RenderLoop::resume() {
@@ -65,64 +48,52 @@ void RenderLoop::resume() {
     const auto content = read_checkpoint(file, identity());
     if (!content) return;
     ByteReader in(*content);
-    Film film(film_.width(), film_.height());
-    film.load(in);
-    completed_ = in.get<Spent>();
-    layers_.load(in, completed_.iterations);
-    counters_ = in.get<Counters>();
-    curve_.load(in);
-    refused_before_ = in.get<std::uint64_t>();
-    task_.integrator.load(in);
-    const PhaseSeconds phases = load_phases(in);
-    check_saved(film, completed_, in);
-    for (const auto& [name, seconds] : phases) task_.phases[name] += seconds;
-    film_ = std::move(film);
-    clock_.set(completed_.seconds, completed_.cpu_seconds);
-    saved_ = completed_.iterations;
+    state_.load(in);
+    ByteReader learned(in.get_text());
+    task_.integrator.load(learned);
+    if (!in.at_end() || !learned.at_end()) {
+      throw std::runtime_error("saved state has extra bytes at its end");
+    }
+    for (const auto& [name, seconds] : state_.phases) task_.phases[name] += seconds;
+    clock_.set(state_.spent.seconds, state_.spent.cpu_seconds);
+    saved_ = state_.spent.iterations;
     report_progress();
     task_.observer.milestone(fmt::format("continuing from iteration {} ({:.1f} s)",
-                                         completed_.iterations, completed_.seconds));
+                                         state_.spent.iterations, state_.spent.seconds));
   } catch (const std::system_error&) {
     throw;  // the checkpoint may be good
   } catch (const std::runtime_error& e) {
     std::filesystem::rename(file, task_.folder.file("checkpoint.unusable"));
     task_.observer.warning(
         fmt::format("{}; kept as checkpoint.unusable, beginning anew", e.what()));
-    layers_.clear();
-    completed_ = {};
-    counters_ = {};
-    curve_ = {};
-    refused_before_ = 0;
+    state_ = RunState(task_.spec, state_.layers.names(), memory_to_take());
   }
+}
+
+void RenderLoop::merge(const std::vector<Shard>& shards) {
+  merging_ = true;
+  const std::string learned = merge_shards(shards, identity(), state_, [&] {
+    if (state_.curve.due(state_.spent.seconds)) add_row();
+    report_progress();
+  });
+  ByteReader in(learned);
+  task_.integrator.load(in);
+  for (const auto& [name, seconds] : state_.phases) task_.phases[name] += seconds;
+  clock_.set(state_.spent.seconds, state_.spent.cpu_seconds);
+}
+
+bool RenderLoop::same_bits_as_one() const {
+  return state_.merged.shards == 0 ||
+         (state_.merged.learned == 0 && state_.done.is_whole() && state_.film.exact());
 }
 
 std::uint64_t RenderLoop::refused_rays() const {
-  return refused_before_ + task_.scene.rays().refused_rays();
-}
-
-void RenderLoop::save_phases(ByteWriter& out) const {
-  out.put(static_cast<std::uint64_t>(task_.phases.size()));
-  for (const auto& [name, seconds] : task_.phases) {
-    out.put(std::string_view(name));
-    out.put(seconds);
-  }
-}
-
-PhaseSeconds RenderLoop::load_phases(ByteReader& in) {
-  PhaseSeconds phases;
-  for (auto n = in.get<std::uint64_t>(); n > 0; --n) {
-    const std::string name(in.get_text());
-    const auto seconds = in.get<double>();
-    const bool follows = phases.empty() || phases.rbegin()->first < name;
-    if (!follows || !is_time(seconds)) throw std::runtime_error("saved phases are not phases");
-    phases[name] = seconds;
-  }
-  return phases;
+  return state_.refused_rays + task_.scene.rays().refused_rays();
 }
 
 bool RenderLoop::run() {
-  while (!exhausted(budget_, completed_) && !would_overrun(budget_, completed_) &&
-         !target_met(budget_, curve_)) {
+  while (!merging_ && !exhausted(budget_, state_.spent) && !would_overrun(budget_, state_.spent) &&
+         !target_met(budget_, state_.curve)) {
     if (task_.interrupted() || !iterate()) {
       if (!task_.interrupted()) break;  // out of time
       write_checkpoint_now();
@@ -130,7 +101,7 @@ bool RenderLoop::run() {
       return false;
     }
     // An error target is looked at after each of the instants, like any other use of the error.
-    if (curve_.due(completed_.seconds)) add_row();
+    if (state_.curve.due(state_.spent.seconds)) add_row();
     if (checkpoints_.due()) write_checkpoint_now();
     if (progress_.due()) report_progress();
   }
@@ -141,7 +112,7 @@ bool RenderLoop::run() {
 }
 
 void RenderLoop::write_last_checkpoint() {
-  if (saved_ == completed_.iterations) return;
+  if (saved_ == state_.spent.iterations) return;
   try {
     write_checkpoint_now();
   } catch (const std::system_error& e) {
@@ -153,62 +124,66 @@ void RenderLoop::write_last_checkpoint() {
 
 bool RenderLoop::iterate() {
   const std::function<bool()> stop = [&] {
-    return task_.interrupted() ||
-           (completed_.iterations > 0 &&
-            out_of_time(budget_, {completed_.iterations, clock_.seconds(), clock_.cpu_seconds()}));
+    return task_.interrupted() || (state_.spent.iterations > 0 &&
+                                   out_of_time(budget_, {state_.spent.iterations, clock_.seconds(),
+                                                         clock_.cpu_seconds(), 0}));
   };
+  const std::uint64_t iteration = state_.done.next();
   std::fill(frame_.pixels.begin(), frame_.pixels.end(), Rgb(0, 0, 0));
-  const std::span<Image> layers = layers_.begin(task_.pool);
+  const std::span<Image> layers = state_.layers.begin(task_.pool);
   clock_.start();
   try {
-    counters_ += task_.integrator.iterate({task_.scene, task_.camera, task_.pool, task_.spec.seed,
-                                           completed_.iterations, stop, layers},
-                                          frame_);
+    state_.counters += task_.integrator.iterate(
+        {task_.scene, task_.camera, task_.pool, task_.spec.seed, iteration, stop, layers}, frame_);
   } catch (const Stopped&) {
     clock_.stop();
     return false;
   }
-  film_.add(completed_.iterations, frame_);
+  state_.film.add(iteration, frame_);
   clock_.stop();
-  completed_ = {completed_.iterations + 1, clock_.seconds(), clock_.cpu_seconds()};
+  state_.done.add_next();
+  Spent& spent = state_.spent;
+  const double longest = spent.longest_seconds + clock_.seconds() - spent.seconds;
+  spent = {spent.iterations + 1, clock_.seconds(), clock_.cpu_seconds(), longest};
   if (!layers.empty()) {
     const ScopedSeconds timed(task_.phases["layers"]);  // no part of the estimate
-    layers_.add(task_.pool);
+    state_.layers.add(task_.pool);
   }
   return true;
 }
 
 void RenderLoop::add_row() {
-  if (completed_.iterations == 0) return;
+  if (state_.spent.iterations == 0) return;
   double cost = 0;
   {
     const ScopedSeconds timed(cost);
-    CurveRow row{completed_.iterations,
-                 completed_.seconds,
-                 completed_.cpu_seconds,
-                 counters_,
+    CurveRow row{state_.spent.iterations,
+                 state_.spent.seconds,
+                 state_.spent.cpu_seconds,
+                 state_.spent.longest_seconds,
+                 state_.counters,
                  std::nullopt,
-                 estimated_rmse(film_),
+                 estimated_rmse(state_.film),
                  false};
     if (task_.reference != nullptr) {
-      row.errors = errors(film_.mean(), task_.reference->rgb);
+      row.errors = errors(state_.film.mean(), task_.reference->rgb);
       row.at_floor =
           task_.reference->mse && *task_.reference->mse > (*row.errors)[ErrorMetric::mse] / 2;
     }
-    curve_.add(row);
-    write_file_atomically(task_.folder.file("curve.csv"), curve_.csv(), false);
+    state_.curve.add(row);
+    write_file_atomically(task_.folder.file("curve.csv"), state_.curve.csv(), false);
   }
   task_.phases["evaluate"] += cost;
   if (previews_.due()) write_preview_now();
   std::string line =
-      fmt::format("iteration {}, {:.1f} s", completed_.iterations, completed_.seconds);
+      fmt::format("iteration {}, {:.1f} s", state_.spent.iterations, state_.spent.seconds);
   for (const ErrorMetric m : {ErrorMetric::rmse, ErrorMetric::relmse, ErrorMetric::est_rmse}) {
-    const auto error = curve_.rows().back().value(m);
+    const auto error = state_.curve.rows().back().value(m);
     if (error) line += fmt::format(", {} {:.4g}", enum_name(m), *error);
   }
-  if (curve_.rows().back().at_floor) line += ", at the reference's noise";
+  if (state_.curve.rows().back().at_floor) line += ", at the reference's noise";
   task_.observer.milestone(line);
-  if (curve_.rows().back().at_floor && !std::exchange(floor_told_, true)) {
+  if (state_.curve.rows().back().at_floor && !std::exchange(floor_told_, true)) {
     task_.observer.milestone(
         fmt::format("the reference's own noise, rmse {:.4g}, is more than half of the mse: errors "
                     "fall no further; a better reference shows more (reference_iterations)",
@@ -221,26 +196,23 @@ void RenderLoop::write_checkpoint_now() {
   {
     const ScopedSeconds timed(cost);
     ByteWriter out;
-    film_.save(out);
-    out.put(completed_);
-    layers_.save(out);
-    out.put(counters_);
-    curve_.save(out);
-    out.put(refused_rays());
-    task_.integrator.save(out);
-    save_phases(out);
+    state_.save(out, refused_rays(), task_.phases);
+    ByteWriter learned;
+    task_.integrator.save(learned);
+    out.put(std::string_view(learned.bytes()));
     write_checkpoint(task_.folder.file("checkpoint.bin"), identity(), out.bytes());
   }
   task_.phases["checkpoint"] += cost;
   checkpoints_.done(cost);
-  saved_ = completed_.iterations;
+  saved_ = state_.spent.iterations;
 }
 
 void RenderLoop::write_preview_now() {
   double cost = 0;
   {
     const ScopedSeconds timed(cost);
-    write_preview(task_.folder.file("image.png"), film_.width(), film_.height(), film_.mean());
+    write_preview(task_.folder.file("image.png"), state_.film.width(), state_.film.height(),
+                  state_.film.mean());
   }
   task_.phases["preview"] += cost;
   previews_.done(cost);
@@ -251,13 +223,13 @@ void RenderLoop::report_progress() {
   {
     const ScopedSeconds timed(cost);
     Progress p;
-    p.iteration = static_cast<std::int64_t>(completed_.iterations);
-    p.seconds = completed_.seconds;
-    p.cpu_seconds = completed_.cpu_seconds;
-    p.share = share(budget_, completed_);
-    if (p.share > 0) p.remaining_seconds = completed_.seconds * (1 - p.share) / p.share;
-    if (!curve_.rows().empty()) {
-      const CurveRow& row = curve_.rows().back();
+    p.iteration = static_cast<std::int64_t>(state_.spent.iterations);
+    p.seconds = state_.spent.seconds;
+    p.cpu_seconds = state_.spent.cpu_seconds;
+    p.share = share(budget_, state_.spent);
+    if (p.share > 0) p.remaining_seconds = state_.spent.seconds * (1 - p.share) / p.share;
+    if (!state_.curve.rows().empty()) {
+      const CurveRow& row = state_.curve.rows().back();
       const ErrorMetric metric = usual_metric(row.errors.has_value());
       p.error = row.value(metric);
       p.error_metric = enum_name(metric);

@@ -1,26 +1,17 @@
 #pragma once
 
 #include <functional>
-#include <map>
-#include <optional>
 #include <string>
+#include <vector>
 
-#include "jobs/run/budget.h"
 #include "jobs/run/clock.h"
-#include "jobs/run/curve.h"
+#include "jobs/run/merge_shards.h"
 #include "jobs/run/observer.h"
 #include "jobs/run/reference.h"
-#include "jobs/spec/job_spec.h"
-#include "jobs/store/job_folder.h"
-#include "renderer/film/film.h"
-#include "renderer/film/layer_means.h"
+#include "jobs/run/run_state.h"
 #include "renderer/integrators/integrator.h"
 
 namespace lacuna {
-
-/// The wall seconds of each phase of a job, for the report. They include those of earlier processes
-/// up to the checkpoint from which this one continues.
-using PhaseSeconds = std::map<std::string, double>;
 
 /// The input of RenderLoop. All referenced objects outlive it.
 struct RenderTask {
@@ -49,44 +40,43 @@ class RenderLoop {
   /// is reported to the observer and renamed, and rendering starts from the first iteration.
   void resume();
 
+  /// Instead of resume(): begins with what the shards of the job have rendered, all of them in
+  /// order. run() then only ends the job. Throws as merge_shards().
+  void merge(const std::vector<Shard>& shards);
+
   /// True: the budget is spent, and the checkpoint holds the final state, so that the job can
   /// continue with a larger budget. False: interrupted; a checkpoint was written.
   bool run();
 
-  const Film& film() const { return film_; }
+  const Film& film() const { return state_.film; }
   /// The means of the integrator's own layers.
-  const LayerMeans& layers() const { return layers_; }
-  const Curve& curve() const { return curve_; }
-  const Counters& counters() const { return counters_; }
-  Spent spent() const { return completed_; }
+  const LayerMeans& layers() const { return state_.layers; }
+  const Curve& curve() const { return state_.curve; }
+  const Counters& counters() const { return state_.counters; }
+  Spent spent() const { return state_.spent; }
+  const MergedShards& merged() const { return state_.merged; }
+  /// Whether this many iterations on one machine give the same bits: always, but where a merged
+  /// picture learned in its shards, has a gap, or rounded a sum.
+  bool same_bits_as_one() const;
   std::uint64_t refused_rays() const;  ///< as counted by RayCaster, of the whole job
 
  private:
-  /// Identifies the picture: rendering continues only from a checkpoint with the same value. It
-  /// includes the names of the integrator's own layers, which are means over all iterations. Other
-  /// layers are rendered at the end, so they may change.
   std::string identity() const;
   bool iterate();
   void add_row();
   void write_checkpoint_now();
   void write_last_checkpoint();
-  void save_phases(ByteWriter& out) const;
-  static PhaseSeconds load_phases(ByteReader& in);
   void write_preview_now();
   void report_progress();
 
   RenderTask task_;
   Budget budget_;
-  Film film_;
+  RunState state_;
   Image frame_;
-  LayerMeans layers_;
-  Curve curve_;
-  Counters counters_;
-  std::uint64_t refused_before_ = 0;  // by processes before this one
-  std::uint64_t saved_ = 0;           // iterations in the checkpoint
-  bool floor_told_ = false;           // that the reference bounds the errors
+  bool merging_ = false;     // run() renders nothing
+  std::uint64_t saved_ = 0;  // iterations in the checkpoint
+  bool floor_told_ = false;  // that the reference bounds the errors
   RenderClock clock_;
-  Spent completed_;  // when the last finished iteration ended
   Pace checkpoints_, previews_, progress_;
 };
 

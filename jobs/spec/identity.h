@@ -26,6 +26,8 @@ inline constexpr auto not_in_the_picture = std::to_array<std::string_view>({
     "budget",                // when to stop, not what is estimated
     "reference",             // what the estimate is compared with
     "reference_iterations",  // likewise
+    "shards",                // iterations are the same whoever renders them
+    "shard",                 // which iterations; checkpoints tell theirs apart
     "threads",               // random numbers are counted, not drawn
     "layers",                // filled beside the estimate; checkpoints tell theirs apart
     "pixel_type",            // rounds the file, not the film
@@ -42,6 +44,8 @@ inline constexpr auto not_in_a_reference = std::to_array<std::string_view>({
     "reference_iterations",  // how well the reference is known
     "analysis",              // guides the estimate; only false colours (inspect) show it
     "seed",                  // which random numbers
+    "shards",                // who renders which iterations
+    "shard",                 // likewise
     "threads",               // how many at work
     "layers",                // filled beside the estimate
     "pixel_type",            // rounds the file
@@ -66,6 +70,8 @@ inline constexpr auto not_in_a_preparation = std::to_array<std::string_view>({
     "reference",             // read or rendered afterwards
     "reference_iterations",  // likewise
     "seed",                  // of the rendering's random numbers
+    "shards",                // of the rendering's iterations
+    "shard",                 // likewise
     "layers",                // of the picture
     "pixel_filter",          // likewise
     "pixel_type",            // likewise

@@ -106,6 +106,13 @@ void check_camera(const JobSpec& spec, std::vector<Problem>& problems) {
                                                 json_text(OrderedJson(camera.up)))});
 }
 
+void check_shard(const JobSpec& spec, std::vector<Problem>& problems) {
+  if (!is_good(problems, "/shards") || !is_good(problems, "/shard")) return;
+  if (spec.shard <= spec.shards) return;
+  problems.push_back({"/shard", fmt::format("found {}; allowed: 0 to {}, the number of shards",
+                                            spec.shard, spec.shards)});
+}
+
 bool has_limit(const Budget& b) { return b.seconds || b.cpu_seconds || b.iterations || b.error; }
 
 }  // namespace
@@ -121,6 +128,7 @@ JobSpec parse_job(std::string_view json) {
   check_layers_once(spec, problems);
   check_crop(spec, problems);
   check_camera(spec, problems);
+  check_shard(spec, problems);
   throw_if_any(std::move(problems));
   if (!has_limit(spec.budget)) spec.budget.seconds = Budget::default_seconds;
   return spec;

@@ -16,7 +16,7 @@ inline constexpr int max_json_depth = 32;
 /// malformed JSON (with line and column), nesting, unknown keys (with the nearest known one),
 /// duplicate keys, wrong types, values out of range, missing keys, and conflicts between fields (an
 /// error target whose metric needs a missing reference; duplicate layers; layers that the
-/// integrator does not have). Reads no other file.
+/// integrator does not have; a shard beyond their number). Reads no other file.
 JobSpec parse_job(std::string_view json);
 
 /// The job with every default filled in, keys in the order of the tables, two spaces of indent.

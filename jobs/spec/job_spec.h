@@ -101,6 +101,9 @@ void describe(V& v, CropSettings& s) {
      .unit = "pixels"});
 }
 
+/// Shards of a job, at most.
+inline constexpr int max_shards = 1 << 16;
+
 /// One job: what is posted to the service and given to `lacuna render`.
 struct JobSpec {
   std::string scene;
@@ -117,6 +120,8 @@ struct JobSpec {
   std::optional<ParticleSettings> particles;
   std::optional<MaterialChange> material;
   std::uint64_t seed = 1;
+  int shards = 1;
+  int shard = 0;
   int threads = 0;
   std::vector<ImageLayer> layers;
   PixelFilter pixel_filter = PixelFilter::box;
@@ -155,6 +160,14 @@ void describe(V& v, JobSpec& s) {
   v("particles", s.particles, {.doc = "point lights in addition to those of the scene"});
   v("material", s.material, {.doc = "change the roughness of one of the scene's materials"});
   v("seed", s.seed, {.doc = "seed of the random numbers", .min = 0, .max = 9007199254740991.0});
+  v("shards", s.shards,
+    {.doc = "how many parts of the iterations may be rendered apart, and merged",
+     .min = 1,
+     .max = max_shards});
+  v("shard", s.shard,
+    {.doc = "render only this part, 1 to `shards`; 0: all iterations",
+     .min = 0,
+     .max = max_shards});
   v("threads", s.threads, {.doc = "number of threads; 0: one per core", .min = 0, .max = 1024});
   v("layers", s.layers,
     {.doc =

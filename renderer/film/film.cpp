@@ -1,67 +1,139 @@
 #include "renderer/film/film.h"
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 
 #include "renderer/film/saved_values.h"
 
 namespace lacuna {
 
-Film::Film(int width, int height) : width_(width), height_(height) {
-  const std::size_t n = 3 * std::size_t(width) * std::size_t(height);
-  for (Half& h : halves_) {
-    h.mean.assign(n, 0.0);
-    h.m2.assign(n, 0.0);
+namespace {
+
+/// Channels of the pixels of one period of SquaredErrors: the loops over them become vectors.
+constexpr std::size_t lanes = 3 * SquaredErrors::side;
+using Lanes = std::array<double, lanes>;
+
+/// Where the sums of one pixel's channel lie.
+struct SumPointers {
+  double *sum, *sum_low, *squares, *squares_low;
+
+  SumPointers operator+(std::size_t i) const {
+    return {sum + i, sum_low + i, squares + i, squares_low + i};
   }
+};
+
+/// One over the number of iterations of the half, before and with the one that is added.
+struct Shares {
+  double before, with;
+};
+
+/// Adds up to `lanes` neighbouring values. `deviations` gets the products of Welford (1962), whose
+/// sum over iterations is that of squared deviations.
+inline void add_values(const float* values, std::size_t count, const SumPointers& at,
+                       const Shares& shares, Lanes& deviations, Lanes& lost) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const double v = double(values[k]);
+    PairSum sum{at.sum[k], at.sum_low[k]}, squares{at.squares[k], at.squares_low[k]};
+    const double deviation = v - sum.high * shares.before;
+    lost[k] += std::abs(add_to(sum, v));
+    deviations[k] += deviation * (v - sum.high * shares.with);
+    add_to(squares, v * v);
+    at.sum[k] = sum.high;
+    at.sum_low[k] = sum.low;
+    at.squares[k] = squares.high;
+    at.squares_low[k] = squares.low;
+  }
+}
+
+/// n times the sum of squares less the square of the sum, not below 0. Where all values are equal
+/// both products are exact, and the difference is 0.
+double scaled_deviations(double n, const PairSum& squares, const PairSum& sum) {
+  PairSum d{n * squares.high, std::fma(n, squares.high, -(n * squares.high))};
+  const double square = sum.high * sum.high;
+  add_to(d, -square);
+  add_to(d, -std::fma(sum.high, sum.high, -square));
+  add_to(d, n * squares.low);
+  const double mixed = 2 * sum.high * sum.low;
+  add_to(d, -mixed);
+  add_to(d, -std::fma(2 * sum.high, sum.low, -mixed));
+  add_to(d, -sum.low * sum.low);
+  return std::max(0.0, d.high);
+}
+
+}  // namespace
+
+Film::Film(int width, int height)
+    : width_(width), height_(height), squares_(3 * std::size_t(width) * std::size_t(height)) {
+  for (Half& h : halves_) h.sums = ExactSums(squares_.size());
 }
 
 void Film::add(std::uint64_t iteration, const Image& estimate) {
   Half& h = halves_[iteration % 2];
+  const double before = h.n > 0 ? 1.0 / static_cast<double>(h.n) : 0;
   ++h.n;
-  const double share = 1.0 / static_cast<double>(h.n);
+  const Shares shares{before, 1.0 / static_cast<double>(h.n)};
+  const std::size_t row = 3 * std::size_t(width_);
+  const float* values = &estimate.pixels.data()->x;  // colours are three floats each
+  SumPointers at{h.sums.high(), h.sums.low(), squares_.high(), squares_.low()};
   SquaredErrors::Sums sums{};
-  std::size_t i = 0;
-  for (int y = 0; y < height_; ++y) {
-    double* row = &sums[std::size_t(y % SquaredErrors::side) * SquaredErrors::side];
-    for (int x = 0; x < width_; ++x) {
-      const Rgb& pixel = estimate.pixels[i / 3];
-      double squares = 0;
-      for (const float v : {pixel.x, pixel.y, pixel.z}) {
-        const double deviation = double(v) - h.mean[i];
-        h.mean[i] += deviation * share;
-        const double square = deviation * (double(v) - h.mean[i]);
-        h.m2[i] += square;
-        squares += square;
-        ++i;
-      }
-      row[x % SquaredErrors::side] += squares;
+  Lanes lost{};
+  for (int y = 0; y < height_; ++y, values += row, at = at + row) {
+    Lanes deviations{};
+    std::size_t i = 0;
+    for (; i + lanes <= row; i += lanes) {
+      add_values(values + i, lanes, at + i, shares, deviations, lost);
     }
+    add_values(values + i, row - i, at + i, shares, deviations, lost);
+    double* of_row = &sums[std::size_t(y % SquaredErrors::side) * SquaredErrors::side];
+    for (std::size_t k = 0; k < lanes; ++k) of_row[k / 3] += deviations[k];
   }
+  exact_ = exact_ && std::all_of(lost.begin(), lost.end(), [](double v) { return v == 0; });
   if (h.n < 2) return;
   for (double& sum : sums) sum /= 3;  // channels
   squared_errors_.add(sums, width_, height_);
 }
 
-std::vector<double> Film::mean() const {
-  const auto n = static_cast<double>(std::max<std::uint64_t>(1, iterations()));
-  const double even = static_cast<double>(halves_[0].n) / n;
-  const double odd = static_cast<double>(halves_[1].n) / n;
-  std::vector<double> mean(halves_[0].mean.size());
-  for (std::size_t i = 0; i < mean.size(); ++i) {
-    mean[i] = even * halves_[0].mean[i] + odd * halves_[1].mean[i];
+void Film::merge(const Film& other) {
+  if (other.width_ != width_ || other.height_ != height_) {
+    throw std::invalid_argument("the two films have different sizes");
   }
+  for (std::size_t k = 0; k < halves_.size(); ++k) {
+    halves_[k].n += other.halves_[k].n;
+    exact_ = halves_[k].sums.add(other.halves_[k].sums) && exact_;
+  }
+  exact_ = exact_ && other.exact_;
+  squares_.add(other.squares_);
+  squared_errors_.merge(other.squared_errors_);
+}
+
+PairSum Film::sum(std::size_t i) const {
+  PairSum sum = halves_[0].sums[i];
+  add_to(sum, halves_[1].sums[i]);
+  return sum;
+}
+
+std::vector<double> Film::mean() const {
+  std::vector<double> mean(squares_.size());
+  const auto n = static_cast<double>(std::max<std::uint64_t>(1, iterations()));
+  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = sum(i).high / n;
+  return mean;
+}
+
+std::vector<double> Film::half_mean(int half) const {
+  const Half& h = halves_[std::size_t(half)];
+  std::vector<double> mean(squares_.size());
+  const auto n = static_cast<double>(std::max<std::uint64_t>(1, h.n));
+  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = h.sums[i].high / n;
   return mean;
 }
 
 std::vector<double> Film::variance_of_mean() const {
-  std::vector<double> variance(halves_[0].mean.size(), 0.0);
+  std::vector<double> variance(squares_.size(), 0.0);
   const auto n = static_cast<double>(iterations());
   if (n < 2) return variance;
-  // Deviations of the union of two sets (Chan, Golub and LeVeque 1979).
-  const double between = static_cast<double>(halves_[0].n) * static_cast<double>(halves_[1].n) / n;
   for (std::size_t i = 0; i < variance.size(); ++i) {
-    const double d = halves_[0].mean[i] - halves_[1].mean[i];
-    const double m2 = halves_[0].m2[i] + halves_[1].m2[i] + d * d * between;
-    variance[i] = m2 / (n - 1) / n;
+    variance[i] = scaled_deviations(n, squares_[i], sum(i)) / n / (n - 1) / n;
   }
   return variance;
 }
@@ -71,9 +143,10 @@ void Film::save(ByteWriter& out) const {
   out.put(height_);
   for (const Half& h : halves_) {
     out.put(h.n);
-    out.put(h.mean);
-    out.put(h.m2);
+    h.sums.save(out);
   }
+  squares_.save(out);
+  out.put(static_cast<std::uint8_t>(exact_));
   squared_errors_.save(out);
 }
 
@@ -81,12 +154,14 @@ void Film::load(ByteReader& in) {
   if (in.get<int>() != width_ || in.get<int>() != height_) {
     throw std::runtime_error("saved film has another size");
   }
-  const std::size_t size = halves_[0].mean.size();
   for (Half& h : halves_) {
     h.n = in.get<std::uint64_t>();
-    h.mean = get_finite(in, size, "film");
-    h.m2 = get_finite(in, size, "film");
+    h.sums.load(in, "film");
   }
+  squares_.load(in, "film");
+  const auto exact = in.get<std::uint8_t>();
+  if (exact > 1) throw std::runtime_error("saved film has a flag that is neither 0 nor 1");
+  exact_ = exact == 1;
   squared_errors_.load(in);
 }
 

@@ -4,14 +4,16 @@
 #include <cstdint>
 #include <vector>
 
+#include "renderer/film/exact_sums.h"
 #include "renderer/film/image.h"
 #include "renderer/film/squared_errors.h"
 
 namespace lacuna {
 
-/// Accumulates iterations, each an independent estimate of the picture: mean and sum of squared
-/// deviations of each channel in double (Welford 1962), separately for even and odd iterations, so
-/// that the two halves estimate the error without a reference.
+/// Accumulates iterations, each an independent estimate of the picture: of each channel the sum and
+/// the sum of squares, in pairs of doubles, so that films of parts of the iterations merge to the
+/// bits of a film of them all. The sums of even and odd iterations are apart: the two halves
+/// estimate the error without a reference.
 class Film {
  public:
   Film() = default;
@@ -23,31 +25,42 @@ class Film {
 
   /// Adds the estimate of iteration `iteration`; its parity chooses the half.
   void add(std::uint64_t iteration, const Image& estimate);
+  /// Adds the iterations of `other`, none of which this film has. Throws std::invalid_argument on
+  /// another size.
+  void merge(const Film& other);
 
   /// Mean over all iterations, RGB interleaved, in double. All zero before the first.
   std::vector<double> mean() const;
   /// Mean of one half (0: even iterations, 1: odd).
-  const std::vector<double>& half_mean(int half) const { return halves_[std::size_t(half)].mean; }
+  std::vector<double> half_mean(int half) const;
   std::uint64_t half_iterations(int half) const { return halves_[std::size_t(half)].n; }
   /// Variance of mean() itself: the unbiased variance of one iteration divided by their number.
   /// Zero with fewer than two iterations.
   std::vector<double> variance_of_mean() const;
-  /// Of the iterations but the first of each half, which has no mean before it; a value's
-  /// expectation is the variance of one iteration, averaged over pixels and channels.
+  /// Whether every sum is exact (see ExactSums), so that means do not depend on the order in which
+  /// the iterations came. Squares need twice the bits; where theirs are rounded, that is beyond the
+  /// hundredth bit.
+  bool exact() const { return exact_; }
+  /// Of the iterations but the first of each half (of each merged film), which has no mean before
+  /// it; a value's expectation is the variance of one iteration, averaged over pixels and channels.
   const SquaredErrors& squared_errors() const { return squared_errors_; }
 
   /// The state as bytes and back, for checkpoints. load() throws std::runtime_error on another
-  /// size and on values that are not finite.
+  /// size and on values that save() never writes.
   void save(class ByteWriter& out) const;
   void load(class ByteReader& in);
 
  private:
   struct Half {
     std::uint64_t n = 0;
-    std::vector<double> mean, m2;
+    ExactSums sums;
   };
+  PairSum sum(std::size_t i) const;  ///< of both halves
+
   int width_ = 0, height_ = 0;
   std::array<Half, 2> halves_;
+  ExactSums squares_;
+  bool exact_ = true;
   SquaredErrors squared_errors_;
 };
 

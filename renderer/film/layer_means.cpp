@@ -50,6 +50,13 @@ void LayerMeans::add(const ThreadPool& pool) {
   });
 }
 
+void LayerMeans::merge(const LayerMeans& other) {
+  iterations_ += other.iterations_;
+  for (std::size_t layer = 0; layer < sums_.size(); ++layer) {
+    for (std::size_t i = 0; i < sums_[layer].size(); ++i) sums_[layer][i] += other.sums_[layer][i];
+  }
+}
+
 std::vector<double> LayerMeans::mean(std::size_t layer) const {
   const auto n = static_cast<double>(std::max<std::uint64_t>(1, iterations_));
   std::vector<double> mean = sums_[layer];

@@ -29,6 +29,10 @@ class LayerMeans {
   /// Adds the images, whose values are finite, to the means as one more iteration.
   void add(const ThreadPool& pool);
 
+  /// Adds the iterations of `other`, which has the same names and size. Sums of doubles: their last
+  /// place depends on the order.
+  void merge(const LayerMeans& other);
+
   /// Mean over all iterations, RGB interleaved. All zero before the first.
   std::vector<double> mean(std::size_t layer) const;
 

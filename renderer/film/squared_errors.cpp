@@ -29,6 +29,11 @@ void SquaredErrors::add(const Sums& sums, int width, int height) {
   }
 }
 
+void SquaredErrors::merge(const SquaredErrors& other) {
+  for (const double value : other.heap_) add(value);
+  count_ += other.count_ - other.heap_.size();  // those too small to be kept
+}
+
 std::vector<double> SquaredErrors::largest() const {
   std::vector<double> values = heap_;
   std::sort(values.begin(), values.end());

@@ -23,6 +23,9 @@ class SquaredErrors {
   /// Adds one iteration: the sums over the interleaved pictures of a picture of `width` x `height`.
   void add(const Sums& sums, int width, int height);
 
+  /// Adds the values of another.
+  void merge(const SquaredErrors& other);
+
   /// How many values were added.
   std::uint64_t count() const { return count_; }
   /// The `kept` largest values, ascending.

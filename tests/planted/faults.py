@@ -179,6 +179,9 @@ FAULTS = [
     Fault("a tent of one axis", "renderer/scene/camera.h",
           "tent(at.x - static_cast<float>(p.x)) * tent(at.y - static_cast<float>(p.y));",
           "tent(at.x - static_cast<float>(p.x)) * 0.5F;"),
+    # The film.
+    Fault("the second doubles of merged sums are lost", "renderer/film/exact_sums.h",
+          "return of_high + std::abs(add_to(sum, other.low));", "return of_high;"),
     # Loading.
     Fault("far scenes stay far", "renderer/gltf/gltf_origin.cpp",
           "constexpr double far = 32;", "constexpr double far = 1e300;"),

@@ -3,7 +3,7 @@ import { layerFiles } from "./layers.mjs";
 import { noise, radiance, room } from "./png.mjs";
 
 const columns = ["iteration", "seconds", "cpu_seconds", "samples", "rays", "shadow_rays", "mae", "rmse",
-  "mse", "relmse", "smape", "est_rmse", "negative", "rejected", "at_floor"];
+  "mse", "relmse", "smape", "est_rmse", "negative", "rejected", "at_floor", "longest_seconds"];
 
 /// curve.csv of a job with `rows` rows, an iteration lasting `cost` seconds, and the error `level`
 /// after the first. Errors against the reference stop falling at `floor`; null: there is none.
@@ -20,7 +20,7 @@ export function curve({ rows, cost, level, floor = null, seed = 1 }) {
     const seconds = iteration * cost;
     lines.push([iteration, seconds.toPrecision(6), (0.97 * seconds).toPrecision(6), iteration * 262144,
       iteration * 900000, iteration * 500000, ...errors, own.toPrecision(6), 0, 0,
-      rmse === null ? "" : Number(own < floor)].join(","));
+      rmse === null ? "" : Number(own < floor), seconds.toPrecision(6)].join(","));
   }
   return `${lines.join("\n")}\n`;
 }

@@ -49,12 +49,13 @@ TEST(Curve, CsvLeavesOutWhatIsNotKnown) {
   r.errors = Errors{0.1, 0.5, 0.25, 3, 4};
   r.est_rmse = 0.125;
   r.at_floor = true;
+  r.longest_seconds = 0.25;
   curve.add(r);
   EXPECT_EQ(curve.csv(),
             "iteration,seconds,cpu_seconds,samples,rays,shadow_rays,mae,rmse,mse,relmse,smape,"
-            "est_rmse,negative,rejected,at_floor\n"
-            "1,0.5,0,0,7,0,,,,,,,0,0,0\n"
-            "2,0.5,0,0,7,0,0.10000000000000001,0.5,0.25,3,4,0.125,0,0,1\n");
+            "est_rmse,negative,rejected,at_floor,longest_seconds\n"
+            "1,0.5,0,0,7,0,,,,,,,0,0,0,0\n"
+            "2,0.5,0,0,7,0,0.10000000000000001,0.5,0.25,3,4,0.125,0,0,1,0.25\n");
 }
 
 TEST(Curve, ComesBackFromACheckpoint) {
@@ -65,6 +66,7 @@ TEST(Curve, ComesBackFromACheckpoint) {
   r.errors = Errors{0.1, 0.5, 0.25, 3, 4};
   r.est_rmse = 0.125;
   r.at_floor = true;
+  r.longest_seconds = 0.25;
   curve.add(r);
   ByteWriter out;
   curve.save(out);

@@ -40,6 +40,8 @@ const std::map<std::string, std::function<void(JobSpec&)>> changes{
     {"particles", [](JobSpec& s) { s.particles = ParticleSettings{.count = 9, .power = 1}; }},
     {"material", [](JobSpec& s) { s.material = MaterialChange{.name = "floor"}; }},
     {"seed", [](JobSpec& s) { s.seed = 2; }},
+    {"shards", [](JobSpec& s) { s.shards = 2; }},
+    {"shard", [](JobSpec& s) { s.shard = 1; }},
     {"threads", [](JobSpec& s) { s.threads = 2; }},
     {"layers", [](JobSpec& s) { s.layers = {ImageLayer::albedo}; }},
     {"pixel_filter", [](JobSpec& s) { s.pixel_filter = PixelFilter::tent; }},

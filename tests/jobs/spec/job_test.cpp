@@ -121,6 +121,14 @@ TEST(Job, LimitsOfTheDocument) {
   expect_one(job_problems(job + std::string(max_job_bytes - job.size() + 1, ' ')), "", {"bytes"});
 }
 
+TEST(Job, AShardIsOneOfThoseThatThereAre) {
+  EXPECT_TRUE(job_problems(R"({"scene": "a", "shards": 8, "shard": 8})").empty());
+  EXPECT_TRUE(job_problems(R"({"scene": "a", "shards": 8})").empty());
+  expect_one(job_problems(R"({"scene": "a", "shards": 8, "shard": 9})"), "/shard",
+             {"found 9", "0 to 8"});
+  expect_one(job_problems(R"({"scene": "a", "shard": 2})"), "/shard", {"found 2", "0 to 1"});
+}
+
 TEST(Job, WhatIsWrittenReadsBackEqual) {
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     const JobSpec spec = random_job(seed);

@@ -112,6 +112,7 @@ inline JobSpec random_job(std::uint64_t seed) {
       crop->from[k] = std::min(crop->from[k], crop->of[k] - spec.resolution[k]);
     }
   }
+  spec.shard = std::min(spec.shard, spec.shards);
   if (auto& camera = spec.camera.object; camera && !frame_of(*camera)) camera = CameraSettings{};
   if (auto* choosing = std::get_if<AutoSettings>(&spec.integrator)) {
     for (CandidateSettings& c : choosing->candidates) {

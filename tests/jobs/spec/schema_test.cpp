@@ -173,6 +173,7 @@ TEST(Schema, AndReaderAgreeOnEveryValueInEveryPlace) {
   path.scene = "a.glb";
   path.reference = "auto";
   path.budget.iterations = 2;
+  path.shards = max_shards;
   path.budget.error = ErrorTarget{ErrorMetric::est_rmse, 1};
   path.environment = EnvironmentSettings{"e.exr", 1, 0};
   JobSpec inspect = path;
