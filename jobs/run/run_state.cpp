@@ -71,11 +71,11 @@ void RunState::save(ByteWriter& out, std::uint64_t refused, const PhaseSeconds& 
   out.put(counters);
   curve.save(out);
   out.put(refused);
-  save_phases(out, seconds);
   out.put(merged.shards);
   out.put(merged.iterations);
   out.put(merged.between);
   out.put(merged.learned);
+  save_phases(out, seconds);
 }
 
 void RunState::load(ByteReader& in) {
@@ -87,11 +87,11 @@ void RunState::load(ByteReader& in) {
   counters = in.get<Counters>();
   curve.load(in);
   refused_rays = in.get<std::uint64_t>();
-  phases = load_phases(in);
   merged.shards = in.get<std::uint32_t>();
   merged.iterations = in.get<std::uint64_t>();
   merged.between = in.get<double>();
   merged.learned = in.get<std::uint8_t>();
+  phases = load_phases(in);
   if (!done.serves(own)) throw std::runtime_error("saved iterations are those of another shard");
   if (film.iterations() != spent.iterations || film.iterations() != done.count() ||
       film.half_iterations(0) != done.count_even()) {

@@ -75,6 +75,7 @@ class Auto final : public Integrator {
   Race race_;
   std::optional<Plan> plan_;
   std::uint64_t estimates_ = 0;  ///< that are finished
+  std::uint64_t first_ = 0;      ///< iteration that the race was held in
   // Of the estimate in progress: it goes on where it was stopped.
   std::vector<int> done_;
   std::vector<Image> sums_;
@@ -127,8 +128,10 @@ void Auto::drop(std::size_t k, const std::exception& e, double cost) {
 
 double Auto::render(std::size_t k, const IterationContext& context, Image& image) {
   std::fill(image.pixels.begin(), image.pixels.end(), Rgb(0, 0, 0));
-  // Streams of their own: methods that share random numbers are not independent.
-  const std::uint64_t seed = context.seed + (k + 1) * 0x9E3779B97F4A7C15;
+  // Streams of their own: methods that share random numbers are not independent, nor are shards,
+  // which begin at different iterations.
+  const std::uint64_t seed =
+      context.seed + (k + 1 + candidates_.size() * first_) * 0x9E3779B97F4A7C15;
   const std::uint64_t iteration = race_.entrants()[k].trial.iterations();
   const double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
   const Counters c = candidates_[k].integrator->iterate(
@@ -199,6 +202,7 @@ void Auto::run_plan(const IterationContext& context) {
 
 Counters Auto::iterate(const IterationContext& context, Image& image) {
   if (!plan_) {
+    if (race_.spent() == 0) first_ = context.iteration;
     run_race(context);
     make_new_plan();
   }
@@ -278,6 +282,7 @@ void Auto::save(ByteWriter& out) const {
     if (c.prepared) c.integrator->save(out);
   }
   out.put(estimates_);
+  out.put(first_);
   out.put(counters_);
   out.put(plan_.has_value());
   if (!plan_) return;
@@ -300,6 +305,7 @@ void Auto::load(ByteReader& in) {
     if (saved) c.integrator->load(in);
   }
   estimates_ = in.get<std::uint64_t>();
+  first_ = in.get<std::uint64_t>();
   counters_ = in.get<Counters>();
   if (in.get<std::uint8_t>() == 0) return;
   plan_.emplace();

@@ -16,6 +16,9 @@ namespace {
 constexpr double sure = 2;
 /// And, where there is one estimate of each, by which ratio.
 constexpr double sure_of_singles = 1.5;
+/// A method that left comes back where its error is below this part of the best one's: few
+/// iterations are no ground for a change.
+constexpr double clearly_better = 0.5;
 /// A share of the best mixture that keeps a method in the race.
 constexpr double worthwhile_share = 0.15;
 
@@ -159,38 +162,45 @@ void Race::estimate_variances() {
   }
 }
 
+double Race::foreseen_growth(std::size_t which) const {
+  const Trial& t = entrants_[which].trial;
+  const double cost = t.iteration_cost();
+  const double rest = limits_.budget > 0 ? std::max(0.0, limits_.budget - spent_) : 16 * t.cost();
+  return cost > 0 ? t.growth(rest / cost) : 1;
+}
+
+void Race::judge_alone(std::size_t which, const BlockSums& hidden, double growth) {
+  Entrant& e = entrants_[which];
+  Standing& s = e.standing;
+  // Differences of singles are in their variances already.
+  s.unexplained =
+      e.trial.estimates() > 1 && total(hidden) > 3 * standard_deviation(e.trial.grid(), hidden);
+  for (std::size_t b = 0; s.unexplained && b < hidden.size(); ++b) {
+    variances_[which][b] += std::max(0.0, hidden[b]) * double(e.trial.estimates());
+  }
+  s.growth = growth;
+  s.tail_known = e.trial.tail_is_known();
+  for (double& v : variances_[which]) v *= growth;
+  s.error = std::max(0.0, total(variances_[which])) * e.trial.iteration_cost() /
+            double(e.trial.grid().pixels());
+}
+
 void Race::judge() {
   estimate_variances();
   std::vector<const Trial*> trials;
   for (const Entrant& e : entrants_) trials.push_back(&e.trial);
   const std::vector<BlockSums> own = variances_;
+  double most = 1;
   for (std::size_t k = 0; k < entrants_.size(); ++k) {
-    Entrant& e = entrants_[k];
+    if (entrants_[k].racing) most = std::max(most, foreseen_growth(k));
+  }
+  for (std::size_t k = 0; k < entrants_.size(); ++k) {
+    const Entrant& e = entrants_[k];
     if (!e.racing || e.trial.estimates() == 0) continue;
-    Standing& s = e.standing;
-    s.unexplained = false;
-    const BlockSums hidden = unexplained_error(trials, own, k);
-    // Differences of singles are in their variances already.
-    if (e.trial.estimates() > 1 && total(hidden) > 3 * standard_deviation(e.trial.grid(), hidden)) {
-      s.unexplained = true;
-      for (std::size_t b = 0; b < hidden.size(); ++b) {
-        variances_[k][b] += std::max(0.0, hidden[b]) * double(e.trial.estimates());
-      }
-    }
-    const double cost = e.trial.iteration_cost();
-    const double rest =
-        limits_.budget > 0 ? std::max(0.0, limits_.budget - spent_) : 16 * e.trial.cost();
-    s.growth = cost > 0 ? e.trial.growth(rest / cost) : 1;
-    s.tail_known = e.trial.tail_is_known();
-    for (double& v : variances_[k]) v *= s.growth;
-    s.error = std::max(0.0, total(variances_[k])) * cost / double(e.trial.grid().pixels());
+    const bool known = e.trial.tail_is_known().has_value();
+    judge_alone(k, unexplained_error(trials, own, k), known ? foreseen_growth(k) : most);
   }
-  for (Entrant& e : entrants_) {
-    if (e.beaten && e.standing.error < entrants_[best()].standing.error) {
-      e.racing = true;
-      e.beaten = false;
-    }
-  }
+  call_back(most);
   const Entrant& leader = entrants_[best()];
   for (std::size_t k = 0; k < entrants_.size(); ++k) {
     Entrant& e = entrants_[k];
@@ -202,6 +212,17 @@ void Race::judge() {
     }
     rows_.push_back({round_, std::uint32_t(k), e.trial.iterations(), e.trial.cost(),
                      e.standing.error, r.value, r.deviation});
+  }
+}
+
+void Race::call_back(double growth) {
+  for (Entrant& e : entrants_) {
+    if (!e.beaten) continue;
+    // It left with few iterations, which show no tail.
+    const double more = std::max(1.0, growth / e.standing.growth);
+    if (!(e.standing.error * more < clearly_better * entrants_[best()].standing.error)) continue;
+    e.racing = true;
+    e.beaten = false;
   }
 }
 

@@ -95,6 +95,13 @@ class Race {
   std::size_t racing() const;
   void end_round();
   void estimate_variances();
+  /// Of an entrant's error, by the end of the budget (Trial::growth()).
+  double foreseen_growth(std::size_t which) const;
+  /// The standing but for the comparison. `hidden`: unexplained_error(). `growth`: where few
+  /// iterations show no tail, the largest of the others', because one scene's rare bright paths
+  /// are rare for most methods.
+  void judge_alone(std::size_t which, const BlockSums& hidden, double growth);
+  void call_back(double growth);
   /// Whether another is surely better.
   bool is_beaten(std::size_t which) const;
   void drop_losers();

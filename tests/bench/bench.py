@@ -12,6 +12,7 @@ import sys
 import tempfile
 import time
 
+import regret
 import shape
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -180,24 +181,36 @@ def analysis(bench, _):
     shape.run(bench, BIN, ROOT.parent / "shared/baselines")
 
 
+def regrets(bench, options):
+    """What it costs that `auto` chooses: the table of regrets."""
+    regret.measure_all(bench, BIN, ROOT / "build/regret", options)
+
+
 CHECKS = {"service": service, "page": page, "sweeps": sweeps, "rays": rays, "guides": guides, "views": views,
           "cornell": cornell, "overhead": overhead, "corridor": corridor, "analysis": analysis}
+LONG = {"regret": regrets}  # only by name
 
 
 def main():
     parser = argparse.ArgumentParser(prog="./dev bench", description=__doc__)
-    parser.add_argument("checks", nargs="*", metavar="CHECK", help=f"of {', '.join(CHECKS)} (default: all)")
+    parser.add_argument("checks", nargs="*", metavar="CHECK",
+                        help=f"of {', '.join(CHECKS)} (default: all of these); {', '.join(LONG)}")
     parser.add_argument("--seconds", type=float, default=120, help="CPU seconds a thread for each picture")
+    parser.add_argument("--regret-seconds", type=float, default=10, help="CPU seconds a thread for each picture of regret")
+    parser.add_argument("--regret-seeds", type=int, default=3)
+    parser.add_argument("--regret-scenes", nargs="+", choices=regret.SCENES, metavar="SCENE",
+                        help=f"of {', '.join(regret.SCENES)} (default: all)")
     options = parser.parse_args()
-    if unknown := [c for c in options.checks if c not in CHECKS]:
-        parser.error(f"no check {unknown[0]}; there are {', '.join(CHECKS)}")
+    known = {**CHECKS, **LONG}
+    if unknown := [c for c in options.checks if c not in known]:
+        parser.error(f"no check {unknown[0]}; there are {', '.join(known)}")
     if not SHARED.is_dir():
         print(f"bench: the real scenes are not there ({SHARED}); nothing to measure", file=sys.stderr)
         return 1
     bench = Bench()
     try:
         for name in options.checks or CHECKS:
-            CHECKS[name](bench, options)
+            known[name](bench, options)
     finally:
         shutil.rmtree(bench.folder, ignore_errors=True)
     print(f"{bench.missed} figures missed")

@@ -30,6 +30,8 @@ S for_small_pictures(S settings) {
     settings.chains = 64;
     settings.bootstrap = settings.mutations = 8;
   }
+  // Bits are compared, and a clock decides differently each time.
+  if constexpr (std::is_same_v<S, AutoSettings>) settings.clock = RaceClock::rays;
   if constexpr (requires { settings.roulette_depth; }) settings.roulette_depth = 8;
   return settings;
 }

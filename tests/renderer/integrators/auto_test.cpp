@@ -109,6 +109,18 @@ TEST(Auto, DoesNotRaceInTheDark) {
   EXPECT_EQ(race->candidates[1].reason, "the scene has no light");
 }
 
+// Each shard of a job holds a race of its own, at its first iteration. Were its numbers those of
+// another's, the merged picture would have the noise of one.
+TEST(Auto, ShardsDoNotShareNumbers) {
+  const RenderSettings s = picture(test::choosing(4), 3);
+  Session first(load_gltf(own_scene("cornell.glb")), s),
+      second(load_gltf(own_scene("cornell.glb")), s);
+  const Image a = first.iterate(0), b = second.iterate(2);
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) same += a.pixels[i] == b.pixels[i] ? 1 : 0;
+  EXPECT_LT(same, a.pixels.size() / 2) << "nearly half show the panel or nothing";
+}
+
 // The race goes on where it was stopped, in another process, too.
 TEST(Auto, GoesOnInTheMiddleOfTheRace) {
   const RenderSettings s = picture(test::choosing(4), 3);
