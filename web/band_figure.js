@@ -44,10 +44,12 @@ export function bandFigure(cells, chosen, front, axis, metric, width = 720) {
     .filter((c) => c.curve);
   const leading = front.map((part) => [part, shown.find((c) => c.cell === part.cell)]).filter(([, c]) => c);
   const thick = { "stroke-width": 9, "stroke-opacity": 0.3, "stroke-linecap": "round" };
-  const slope = slopeLine(shown.map((c) => c.curve), metric.slope);
+  const slope = metric.slope ? slopeLine(shown.map((c) => c.curve), metric.slope) : [];
   const dashed = { "stroke-dasharray": "6 4", "stroke-width": 1 };
   const entries = picked.map((c) => ({ label: c.name, symbol: (u, v) => mark(c.index, u, v, false) }));
-  entries.push({ label: "lowest mean error (the front)", symbol: (u, v) => line([[u - 8, v], [u + 8, v]], muted, thick) });
+  if (front.length > 0) {
+    entries.push({ label: "lowest mean error (the front)", symbol: (u, v) => line([[u - 8, v], [u + 8, v]], muted, thick) });
+  }
   if (shown.length > picked.length) {
     entries.push({ label: `${shown.length - picked.length} more`, symbol: (u, v) => line([[u - 10, v], [u + 10, v]], muted, { "stroke-width": 0.7 }) });
   }

@@ -22,7 +22,7 @@ function section(title, value) {
 }
 
 /// The whole report as one element: a section for each of its parts, what stands alone first.
-export function reportView({ artefacts, ...report }) {
+export function reportView({ artefacts, race, ...report }) {
   const parts = Object.entries(report);
   const alone = parts.filter(([, v]) => v === null || typeof v !== "object");
   return h("div.report", section("job", Object.fromEntries(alone)),

@@ -95,7 +95,10 @@ function fileReader(id, view, signal) {
     }
     if (changed("report.json")) {
       const report = JSON.parse(await getText(id, "report.json", signal));
-      replace(view.report, h("h2", "Time and rays"), effortView(report),
+      // Few jobs have a race: its code is read with the first.
+      const race = report.race && (await import("./race.js")).raceView(report.race);
+      replace(view.report, race && [h("h2", "The race"), race],
+        h("h2", "Time and rays"), effortView(report),
         h("h2", "Report"), reportView(report));
     }
     versions = next;
