@@ -16,6 +16,9 @@ namespace {
 constexpr double sure = 2;
 /// And, where there is one estimate of each, by which ratio.
 constexpr double sure_of_singles = 1.5;
+/// By what factor an error is larger than it seems where the tail does not let it be known: one to
+/// five were seen.
+constexpr double doubt = 2;
 /// A method that left comes back where its error is below this part of the best one's: few
 /// iterations are no ground for a change.
 constexpr double clearly_better = 0.5;
@@ -166,7 +169,8 @@ double Race::foreseen_growth(std::size_t which) const {
   const Trial& t = entrants_[which].trial;
   const double cost = t.iteration_cost();
   const double rest = limits_.budget > 0 ? std::max(0.0, limits_.budget - spent_) : 16 * t.cost();
-  return cost > 0 ? t.growth(rest / cost) : 1;
+  const double growth = cost > 0 ? t.growth(rest / cost) : 1;
+  return t.tail_is_known().value_or(true) ? growth : doubt * growth;
 }
 
 void Race::judge_alone(std::size_t which, const BlockSums& hidden, double growth) {

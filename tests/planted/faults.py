@@ -179,6 +179,18 @@ FAULTS = [
     Fault("a tent of one axis", "renderer/scene/camera.h",
           "tent(at.x - static_cast<float>(p.x)) * tent(at.y - static_cast<float>(p.y));",
           "tent(at.x - static_cast<float>(p.x)) * 0.5F;"),
+    # The race of auto.
+    Fault("a pair's difference is one picture's noise", "renderer/race/noise.cpp",
+          "v[b] = (v[b] - all[b] / double(n - 1)) / double(n - 2);", "v[b] = v[b] / double(n - 1);"),
+    Fault("a mean that differs from the others is believed", "renderer/race/noise.cpp",
+          "if (!(weights > 0) || one.estimates() == 0) return error;", "return error;"),
+    Fault("no tail is foreseen", "renderer/race/trial.cpp",
+          "return 1 + std::max(0.0, tail->mean_above(later) - tail->mean_above(now)) / mean;", "return later > 0 ? 1 : mean;"),
+    Fault("weights of a plan do not add up to 1", "renderer/race/plan.cpp",
+          "plan.weights[k][b] = float(precision / sums[b]);", "plan.weights[k][b] = float(1.1 * precision / sums[b]);"),
+    Fault("shards race with the same numbers", "renderer/integrators/auto.cpp",
+          "context.seed + (k + 1 + candidates_.size() * first_) * 0x9E3779B97F4A7C15;",
+          "context.seed + (k + 1) * 0x9E3779B97F4A7C15;"),
     # The film.
     Fault("the second doubles of merged sums are lost", "renderer/film/exact_sums.h",
           "return of_high + std::abs(add_to(sum, other.low));", "return of_high;"),
