@@ -20,6 +20,8 @@ namespace {
 
 /// Budgets from this on are worth an analysis of the space by default, seconds.
 constexpr double worth_an_analysis = 10;
+/// The part of the race that a candidate's first iteration may take.
+constexpr double longest_first = 0.25;
 /// Estimates that a budget is divided into. What a plan does in one is decided before it begins.
 constexpr double estimates_of_a_budget = 64;
 
@@ -149,7 +151,9 @@ void Auto::run_race(const IterationContext& context) {
       return (clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start) / context.pool.threads();
     };
     const bool may_be_late = race_.spent() == 0 || counts_rays();
-    const double rest = race_.limits().cost - race_.spent();
+    const bool is_first = race_.entrants()[*k].trial.iterations() == 0;
+    const double rest = std::min(race_.limits().cost - race_.spent(),
+                                 race_.limits().cost * (is_first ? longest_first : 1));
     const std::function<bool()> stop = [&] {
       return context.stop() || (!may_be_late && taken() > rest);
     };
@@ -160,7 +164,7 @@ void Auto::run_race(const IterationContext& context) {
       race_.finished(*k, image, cost);
     } catch (const IterationStopped&) {
       if (context.stop()) throw;
-      race_.leave(*k, "an iteration takes longer than the race", taken());
+      race_.leave(*k, "an iteration takes too long for the race", taken());
     } catch (const Stopped&) {
       throw;
     } catch (const std::exception& e) {
