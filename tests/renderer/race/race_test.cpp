@@ -110,6 +110,49 @@ TEST(Noise, RatiosKnowTheirDeviation) {
   EXPECT_NEAR(squares.mean(), 1, 4 * squares.standard_error());
 }
 
+TEST(Noise, ADifferenceThatNoNoiseExplainsIsFound) {
+  Pictures pictures(3);
+  Noisy blind = even(0.05);
+  blind.mean = 0.5F;
+  const std::vector<Noisy> methods{blind, even(0.3), even(0.6)};
+  std::vector<Trial> trials(methods.size(), Trial(width, height));
+  std::vector<const Trial*> pointers;
+  std::vector<BlockSums> variances;
+  for (std::size_t k = 0; k < methods.size(); ++k) {
+    for (int i = 0; i < 5; ++i) trials[k].add(pictures(methods[k]));
+    pointers.push_back(&trials[k]);
+    variances.push_back(trials[k].variances());
+  }
+  const BlockGrid& grid = trials[0].grid();
+  const BlockSums found = unexplained_error(pointers, variances, 0);
+  EXPECT_NEAR(total(found), 0.25 * width * height, 4 * standard_deviation(grid, found));
+  // Methods that agree differ by their noise alone.
+  const std::vector<const Trial*> sound{pointers[1], pointers[2]};
+  const std::vector<BlockSums> of_sound{variances[1], variances[2]};
+  const BlockSums none = unexplained_error(sound, of_sound, 0);
+  EXPECT_LT(std::abs(total(none)), 4 * standard_deviation(grid, none));
+}
+
+// Few pictures of many are far noisier than the rest: those that are still to come count.
+TEST(Trial, ForeseesWhatIsStillToCome) {
+  statistics::Moments even_growth, heavy_growth;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Pictures pictures(seed);
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> uniform;
+    Trial same(width, height), heavy(width, height);
+    for (int i = 0; i < 64; ++i) {
+      same.add(pictures(even(1)));
+      // Squared errors with a tail of index 0.9.
+      heavy.add(pictures(even(std::pow(1 - uniform(random), -0.45))));
+    }
+    even_growth.add(same.growth(1000));
+    heavy_growth.add(heavy.growth(1000));
+  }
+  EXPECT_LT(even_growth.mean(), 1.05);
+  EXPECT_GT(heavy_growth.mean(), 1.3);
+}
+
 // Left method a is better, right method b: each gets half of the time.
 TEST(Mixture, SharesOfMirroredMethodsAreEqual) {
   const BlockSums a{1, 1, 9, 9}, b{9, 9, 1, 1}, bad{50, 50, 50, 50};
