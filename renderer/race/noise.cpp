@@ -67,6 +67,25 @@ LogRatio log_ratio(const BlockGrid& grid, std::span<const double> a, std::span<c
   return {std::log(sum_a / sum_b), jackknife(without)};
 }
 
+std::optional<double> typical_log_ratio(std::span<const double> a, std::span<const double> b) {
+  constexpr std::size_t part = 20;
+  const auto limit = [&](std::span<const double> sums) {
+    std::vector<double> sorted(sums.begin(), sums.end());
+    const auto at = sorted.end() - std::ptrdiff_t((sorted.size() + part - 1) / part);
+    std::nth_element(sorted.begin(), at, sorted.end());
+    return *at;
+  };
+  const double below_a = limit(a), below_b = limit(b);
+  double sum_a = 0, sum_b = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a[i] >= below_a || b[i] >= below_b) continue;
+    sum_a += a[i];
+    sum_b += b[i];
+  }
+  if (!(sum_a > 0) || !(sum_b > 0)) return std::nullopt;
+  return std::log(sum_a / sum_b);
+}
+
 double standard_deviation(const BlockGrid& grid, std::span<const double> sums) {
   const double sum = total(sums);
   std::vector<double> without;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,10 @@ struct LogRatio {
 /// log(total(a) / total(b)), by a jackknife over 8 x 8 parts of the picture: where a few pixels
 /// carry the sums it is not known. 0 if both are 0, infinite if one is not above 0.
 LogRatio log_ratio(const BlockGrid& grid, std::span<const double> a, std::span<const double> b);
+
+/// log(total(a) / total(b)) without the blocks that carry most of either, a twentieth of all for
+/// each: what rare bright paths do not decide. None if a total is not above 0 then.
+std::optional<double> typical_log_ratio(std::span<const double> a, std::span<const double> b);
 
 /// The variance of each of three or more independent estimates of one picture, of which there is
 /// only one each: from the squared differences of all pairs, d_ij = v_i + v_j, by least squares

@@ -22,6 +22,9 @@ constexpr double doubt = 2;
 /// A method that left comes back where its error is below this part of the best one's: few
 /// iterations are no ground for a change.
 constexpr double clearly_better = 0.5;
+/// How far the logarithms of a ratio of errors and of the typical ratio lie apart where both are
+/// known, as a standard deviation: a guess.
+constexpr double disagreement = 1;
 /// A share of the best mixture that keeps a method in the race.
 constexpr double worthwhile_share = 0.15;
 
@@ -65,7 +68,8 @@ RaceLimits RaceLimits::of_seconds(double seconds) {
 
 Race::Race(std::size_t entrants, int width, int height, const RaceLimits& limits)
     : limits_(limits), entrants_(entrants, Entrant{.trial = Trial(width, height)}) {
-  variances_.assign(entrants, BlockSums(BlockGrid(width, height).blocks(), 0.0));
+  measured_.assign(entrants, BlockSums(BlockGrid(width, height).blocks(), 0.0));
+  variances_ = measured_;
 }
 
 std::size_t Race::racing() const {
@@ -134,12 +138,36 @@ void Race::close() {
   judge();
 }
 
+double Race::log_cost_ratio(std::size_t a, std::size_t b) const {
+  const double x = entrants_[a].trial.iteration_cost(), y = entrants_[b].trial.iteration_cost();
+  return x > 0 && y > 0 ? std::log(x / y) : 0;
+}
+
+LogRatio Race::ratio(std::size_t a, std::size_t b) const {
+  LogRatio r = log_ratio(entrants_[a].trial.grid(), variances_[a], variances_[b]);
+  r.value += log_cost_ratio(a, b);
+  return r;
+}
+
+double Race::likely_ratio(std::size_t a, std::size_t b) const {
+  const LogRatio r = ratio(a, b);
+  const auto typical = typical_log_ratio(measured_[a], measured_[b]);
+  if (!typical || !(r.deviation > 0)) return r.value;
+  const double z = r.deviation / disagreement;
+  const double other = *typical + log_cost_ratio(a, b);
+  return std::isfinite(r.value) && std::isfinite(z) ? other + (r.value - other) / (1 + z * z)
+                                                    : other;
+}
+
 std::size_t Race::best() const {
   std::size_t best = entrants_.size();
   for (std::size_t k = 0; k < entrants_.size(); ++k) {
     if (!entrants_[k].racing) continue;
-    const double error = entrants_[k].standing.error;
-    if (best == entrants_.size() || error < entrants_[best].standing.error) best = k;
+    const bool known = entrants_[k].trial.estimates() > 0;
+    if (best == entrants_.size() ||
+        (known && (entrants_[best].trial.estimates() == 0 || likely_ratio(k, best) < 0))) {
+      best = k;
+    }
   }
   return best;
 }
@@ -153,15 +181,15 @@ void Race::estimate_variances() {
       single.push_back(k);
       pictures.push_back(&entrants_[k].trial.mean());
     } else {
-      variances_[k] = entrants_[k].trial.variances();
+      measured_[k] = entrants_[k].trial.variances();
     }
   }
   // Later singles keep what the first round found.
   if (round_ > 0 || single.size() < 3) return;
   const auto found = variances_of_singles(entrants_[single[0]].trial.grid(), pictures);
   for (std::size_t i = 0; i < single.size(); ++i) {
-    variances_[single[i]] = found[i];
-    raise_to_deviation(entrants_[single[i]].trial.grid(), variances_[single[i]]);
+    measured_[single[i]] = found[i];
+    raise_to_deviation(entrants_[single[i]].trial.grid(), measured_[single[i]]);
   }
 }
 
@@ -176,6 +204,7 @@ double Race::foreseen_growth(std::size_t which) const {
 void Race::judge_alone(std::size_t which, const BlockSums& hidden, double growth) {
   Entrant& e = entrants_[which];
   Standing& s = e.standing;
+  variances_[which] = measured_[which];
   // Differences of singles are in their variances already.
   s.unexplained =
       e.trial.estimates() > 1 && total(hidden) > 3 * standard_deviation(e.trial.grid(), hidden);
@@ -193,7 +222,6 @@ void Race::judge() {
   estimate_variances();
   std::vector<const Trial*> trials;
   for (const Entrant& e : entrants_) trials.push_back(&e.trial);
-  const std::vector<BlockSums> own = variances_;
   double most = 1;
   for (std::size_t k = 0; k < entrants_.size(); ++k) {
     if (entrants_[k].racing) most = std::max(most, foreseen_growth(k));
@@ -202,43 +230,37 @@ void Race::judge() {
     const Entrant& e = entrants_[k];
     if (!e.racing || e.trial.estimates() == 0) continue;
     const bool known = e.trial.tail_is_known().has_value();
-    judge_alone(k, unexplained_error(trials, own, k), known ? foreseen_growth(k) : most);
+    judge_alone(k, unexplained_error(trials, measured_, k), known ? foreseen_growth(k) : most);
   }
   call_back(most);
-  const Entrant& leader = entrants_[best()];
+  const std::size_t leader = best();
   for (std::size_t k = 0; k < entrants_.size(); ++k) {
     Entrant& e = entrants_[k];
     if (!e.racing || e.trial.estimates() == 0) continue;
-    LogRatio& r = e.standing.over_best;
-    r = log_ratio(e.trial.grid(), variances_[k], variances_[best()]);
-    if (leader.trial.iteration_cost() > 0 && e.trial.iteration_cost() > 0) {
-      r.value += std::log(e.trial.iteration_cost() / leader.trial.iteration_cost());
-    }
+    const LogRatio r = e.standing.over_best = ratio(k, leader);
     rows_.push_back({round_, std::uint32_t(k), e.trial.iterations(), e.trial.cost(),
                      e.standing.error, r.value, r.deviation});
   }
 }
 
 void Race::call_back(double growth) {
-  for (Entrant& e : entrants_) {
+  for (std::size_t k = 0; k < entrants_.size(); ++k) {
+    Entrant& e = entrants_[k];
     if (!e.beaten) continue;
     // It left with few iterations, which show no tail.
-    const double more = std::max(1.0, growth / e.standing.growth);
-    if (!(e.standing.error * more < clearly_better * entrants_[best()].standing.error)) continue;
+    const double more = std::log(std::max(1.0, growth / e.standing.growth));
+    if (!(likely_ratio(k, best()) + more < std::log(clearly_better))) continue;
     e.racing = true;
     e.beaten = false;
   }
 }
 
 bool Race::is_beaten(std::size_t which) const {
-  const Trial& trial = entrants_[which].trial;
   const double least = round_ == 0 ? std::log(sure_of_singles) : 0;
   for (std::size_t k = 0; k < entrants_.size(); ++k) {
-    const Trial& other = entrants_[k].trial;
     if (!entrants_[k].racing || k == which) continue;
-    const LogRatio r = log_ratio(trial.grid(), variances_[which], variances_[k]);
-    const double costs = std::log(trial.iteration_cost() / other.iteration_cost());
-    if (r.value + costs - sure * r.deviation > least) return true;
+    const LogRatio r = ratio(which, k);
+    if (r.value - sure * r.deviation > least) return true;
   }
   return false;
 }
@@ -286,6 +308,7 @@ void Race::save(ByteWriter& out) const {
     out.put(e.left_in);
     put_standing(out, e.standing);
     e.trial.save(out);
+    out.put(measured_[k]);
     out.put(variances_[k]);
   }
   out.put(rows_);
@@ -303,6 +326,7 @@ void Race::load(ByteReader& in) {
     e.left_in = in.get<int>();
     e.standing = get_standing(in);
     e.trial.load(in);
+    measured_[k] = get_finite(in, e.trial.grid().blocks(), "variances of blocks");
     variances_[k] = get_finite(in, e.trial.grid().blocks(), "variances of blocks");
   }
   rows_ = in.get_vector<RaceRow>();

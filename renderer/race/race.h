@@ -81,7 +81,8 @@ class Race {
   double spent() const { return spent_; }
   int round() const { return round_; }
   const RaceLimits& limits() const { return limits_; }
-  /// The racing entrant with the least error; the first, where nothing is known.
+  /// The racing entrant that is likely to have the least error for its cost; the first, where
+  /// nothing is known.
   std::size_t best() const;
   /// Variances of one iteration, as far as they are known, growth and unexplained errors included.
   const std::vector<BlockSums>& variances() const { return variances_; }
@@ -102,13 +103,19 @@ class Race {
   /// are rare for most methods.
   void judge_alone(std::size_t which, const BlockSums& hidden, double growth);
   void call_back(double growth);
+  double log_cost_ratio(std::size_t a, std::size_t b) const;
+  /// log(error a / error b) at equal cost.
+  LogRatio ratio(std::size_t a, std::size_t b) const;
+  /// The same, where few bright paths decide drawn towards the typical ratio of most blocks.
+  double likely_ratio(std::size_t a, std::size_t b) const;
   /// Whether another is surely better.
   bool is_beaten(std::size_t which) const;
   void drop_losers();
 
   RaceLimits limits_;
   std::vector<Entrant> entrants_;
-  std::vector<BlockSums> variances_;
+  std::vector<BlockSums> measured_;   ///< variances of one iteration, as far as they are known
+  std::vector<BlockSums> variances_;  ///< with growth and unexplained errors
   std::vector<RaceRow> rows_;
   double spent_ = 0;
   int round_ = 0;
