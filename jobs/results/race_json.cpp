@@ -52,6 +52,8 @@ OrderedJson break_even(const RaceRecord& race) {
       continue;
     // a / (t - used) = b / (t - c)
     const double t = (b * used->preparation - a * c.preparation) / (b - a);
+    // In less time than the race takes there is nothing to choose.
+    if (t < race.spent) continue;
     list.push_back({{"below_seconds", t}, {"better", c.name}});
   }
   return list;
