@@ -61,6 +61,7 @@ class JobFolder {
                           const JobControl& control = {});
 
   JobSpec read_job() const;                   ///< throws BadJob, std::system_error
+  std::string read_job_text() const;          ///< what read_job() parses; throws the same
   JobState read_state() const;                ///< throws std::runtime_error if missing or corrupt
   void write_job(const JobSpec& spec) const;  ///< synced
   void write_state(const JobState& s) const;  ///< synced

@@ -27,13 +27,14 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-void take_spec(JobEntry& entry, const JobSpec& spec) {
+/// `text`: of job.json.
+void take_spec(JobEntry& entry, const JobSpec& spec, const std::string& text) {
   entry.label = spec.label;
   entry.scene = spec.scene;
   entry.integrator = std::visit([](const auto& s) { return std::string(s.name); }, spec.integrator);
   entry.reference = spec.reference;
   entry.exclusive = spec.exclusive;
-  entry.job_hash = hash(write_job(spec));
+  entry.job_hash = hash(text);
 }
 
 bool has_picture(const JobFolder& folder) {
@@ -67,7 +68,10 @@ std::shared_ptr<JobEntry> read_entry(const JobFolder& folder) {
   Damage damage;
   damage.try_to([&] { entry->control = folder.read_control(); });
   damage.try_to([&] { entry->state = folder.read_state(); });
-  damage.try_to([&] { take_spec(*entry, folder.read_job()); });
+  damage.try_to([&] {
+    const std::string text = folder.read_job_text();
+    take_spec(*entry, parse_job(text), text);
+  });
   entry->progress = folder.read_progress();
   entry->pictured = has_picture(folder);
   entry->over = is_terminal(entry->state.state);
@@ -311,7 +315,7 @@ void JobTable::set_progress(const std::string& id, const Progress& progress) {
 
 void JobTable::set_job(const std::string& id, const JobSpec& spec) {
   change(id, [&](JobEntry& entry) -> std::optional<JobEvent::Kind> {
-    take_spec(entry, spec);
+    take_spec(entry, spec, write_job(spec));
     return JobEvent::Kind::control;
   });
 }
