@@ -1,8 +1,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <chrono>
 #include <deque>
+#include <map>
+#include <set>
+#include <sstream>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -11,7 +16,11 @@
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/render_process.h"
 #include "jobs/cli/results_folder.h"
+#include "jobs/cli/slurm_sweep.h"
 #include "jobs/cli/terminal.h"
+#include "jobs/slurm/request.h"
+#include "jobs/slurm/run_program.h"
+#include "jobs/slurm/submission.h"
 #include "jobs/spec/problems.h"
 #include "jobs/sweep/sweep_folder.h"
 
@@ -23,8 +32,10 @@ using Clock = std::chrono::steady_clock;
 
 struct SweepOptions {
   fs::path what, out;
-  std::size_t index = 0;
+  std::string index;
   int jobs = 1, threads = -1;
+  bool on_slurm = false;
+  SlurmSweepSettings slurm;
   bool list = false, missing = false, quiet = false;
 };
 
@@ -35,17 +46,28 @@ SweepFolder open(const SweepOptions& o) {
   return o.list || o.missing ? SweepFolder::preview(out, spec) : SweepFolder::create(out, spec);
 }
 
-/// "1,4-7,9": as array tasks are named.
-std::string ranges(const std::vector<std::size_t>& indices) {
-  std::string text;
-  for (std::size_t i = 0; i < indices.size();) {
-    std::size_t end = i;
-    while (end + 1 < indices.size() && indices[end + 1] == indices[end] + 1) ++end;
-    text += fmt::format("{}{}", text.empty() ? "" : ",", indices[i]);
-    if (end > i) text += fmt::format("-{}", indices[end]);
-    i = end + 1;
+/// Indices of runs as index_ranges() writes them, sorted. Throws BadJob.
+std::set<std::size_t> parse_indices(const std::string& text, std::size_t runs) {
+  const auto refuse = [&](const std::string& what) {
+    throw BadJob({{"", fmt::format("--index {}: {}", text, what)}});
+  };
+  std::set<std::size_t> indices;
+  std::istringstream parts(text);
+  for (std::string part; std::getline(parts, part, ',');) {
+    std::size_t first = 0, last = 0;
+    const char* end = part.data() + part.size();
+    auto read = std::from_chars(part.data(), end, first);
+    last = first;
+    if (read.ec == std::errc() && read.ptr != end && *read.ptr == '-') {
+      read = std::from_chars(read.ptr + 1, end, last);
+    }
+    if (read.ec != std::errc() || read.ptr != end || first < 1 || last < first) {
+      refuse("allowed: indices and ranges of them, such as 1,4-7");
+    }
+    if (last > runs) refuse(fmt::format("the sweep has runs 1 to {}", runs));
+    for (std::size_t i = first; i <= last; ++i) indices.insert(i);
   }
-  return text;
+  return indices;
 }
 
 void print_runs(const SweepFolder& sweep) {
@@ -154,6 +176,30 @@ class Runner {
   Clock::time_point next_show_;
 };
 
+std::vector<std::size_t> indices_of(const std::map<std::size_t, JobState>& runs) {
+  std::vector<std::size_t> indices;
+  for (const auto& [index, state] : runs) indices.push_back(index);
+  return indices;
+}
+
+int run_on_slurm(const SweepFolder& folder, const SweepOptions& o,
+                 const std::map<std::size_t, JobState>& left) {
+  check_slurm_programs("--executor slurm");
+  Terminal terminal({}, o.quiet);
+  return SlurmSweep(folder, o.slurm, spawning_runner(), terminal).run(left, interrupt_requested());
+}
+
+/// Two executors would render the same runs at once.
+void check_not_submitted(const SweepFolder& folder) {
+  const auto submission = read_submission(JobFolder(folder.dir()));
+  if (!submission) return;
+  throw BadJob(
+      {{"", fmt::format("{}: its runs are submitted to Slurm{}; allowed: to go on with "
+                        "--executor slurm, also after scancel",
+                        folder.dir().string(),
+                        submission->job > 0 ? fmt::format(" as job {}", submission->job) : "")}});
+}
+
 int sweep(const SweepOptions& o) {
   const SweepFolder folder = open(o);
   const auto& runs = folder.plan().runs;
@@ -163,24 +209,88 @@ int sweep(const SweepOptions& o) {
                                    folder.dir().string())}});
   }
   if (o.list) return print_runs(folder), exit_done;
-  std::vector<std::size_t> left;
+  std::set<std::size_t> wanted = parse_indices(o.index, runs.size());
+  std::map<std::size_t, JobState> left;
   for (std::size_t i = 1; i <= runs.size(); ++i) {
-    if (o.index != 0 && o.index != i) continue;
-    if (folder.state(runs[i - 1]).state != State::done) left.push_back(i);
+    if (!wanted.empty() && !wanted.contains(i)) continue;
+    JobState state = folder.state(runs[i - 1]);
+    if (state.state != State::done) left.emplace(i, std::move(state));
   }
-  if (o.missing) return fmt::print("{}\n", ranges(left)), exit_done;
-  if (o.index > runs.size()) {
-    throw BadJob(
-        {{"", fmt::format("--index {}: the sweep has runs 1 to {}", o.index, runs.size())}});
-  }
-  const int code = Runner(folder, o).run(left);
-  if (o.index == 0) {
+  if (o.missing) return fmt::print("{}\n", index_ranges(indices_of(left))), exit_done;
+  // Tasks of an array do parts of it.
+  if (!o.on_slurm && o.index.empty()) check_not_submitted(folder);
+  const int code =
+      o.on_slurm ? run_on_slurm(folder, o, left) : Runner(folder, o).run(indices_of(left));
+  if (o.index.empty()) {
     write_file_atomically(folder.dir() / "table.csv", sweep_table(folder));
     if (!o.quiet) {
       fmt::print(stderr, "`lacuna report {}` compares its cells\n", folder.dir().string());
     }
   }
   return code;
+}
+
+/// Options of one executor only. Throws CLI::ValidationError.
+void check_executor(const CLI::App& command, SweepOptions& o) {
+  const auto refuse = [&](const char* option, const char* why) {
+    if (command.count(option) > 0) throw CLI::ValidationError(option, why);
+  };
+  if (!o.on_slurm) {
+    for (const char* option : {"--slurm-args", "--slurm-poll", "--slurm-cores", "--chunk"}) {
+      refuse(option, "needs --executor slurm");
+    }
+    return;
+  }
+  for (const char* option : {"--threads", "--index", "--list", "--missing"}) {
+    refuse(option, "not with --executor slurm");
+  }
+  if (command.count("--jobs") > 0) o.slurm.tasks_at_a_time = o.jobs;
+}
+
+void add_slurm_options(CLI::App& command, SweepOptions& o) {
+  command
+      .add_option_function<std::string>(
+          "--executor", [&o](const std::string& name) { o.on_slurm = name == "slurm"; },
+          "who renders: local (this machine) or slurm (an array, from a folder that all nodes "
+          "share)")
+      ->check(CLI::IsMember({"local", "slurm"}))
+      ->default_str("local");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--slurm-args",
+          [&o](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) {
+              try {
+                for (std::string& word : slurm_arguments(text)) {
+                  o.slurm.arguments.push_back(std::move(word));
+                }
+              } catch (const std::invalid_argument& error) {
+                throw CLI::ValidationError("--slurm-args", error.what());
+              }
+            }
+          },
+          "further options of sbatch, for example \"--partition=long --account=me\"; they win "
+          "over those that follow from the runs")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command
+      .add_option("--slurm-cores", o.slurm.cores,
+                  "cores in Slurm of a run that names no threads; 0: a node of its own")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  command
+      .add_option_function<double>(
+          "--slurm-poll",
+          [&o](double seconds) {
+            o.slurm.poll = std::chrono::milliseconds(static_cast<std::int64_t>(1000 * seconds));
+          },
+          "seconds between two calls of squeue")
+      ->check(CLI::Range(0.05, 3600.0))
+      ->default_str("3");
+  command
+      .add_option("--chunk", o.slurm.chunk,
+                  "runs of each task of the array, one after another (default: as few as make at "
+                  "most 1000 tasks)")
+      ->check(CLI::PositiveNumber);
 }
 
 }  // namespace
@@ -202,15 +312,19 @@ void add_sweep(CLI::App& app, int& code) {
       ->add_option("-t,--threads", o->threads,
                    "number of threads instead of the jobs'; 0: one per core")
       ->check(CLI::Range(0, 1024));
-  command->add_option("--index", o->index, "only this run, from 1: for array tasks")
-      ->check(CLI::PositiveNumber);
+  command->add_option("--index", o->index,
+                      "only these runs, from 1, such as 1,4-7: for array tasks");
   command->add_flag("--list", o->list, "print all runs with their states and settings, and exit");
   command
       ->add_flag("--missing", o->missing,
                  "print the indices of runs that are not done, such as 1,4-7, and exit")
       ->excludes("--list");
   command->add_flag("-q,--quiet", o->quiet, "show warnings and errors only");
-  command->callback([o, &code] { code = sweep(*o); });
+  add_slurm_options(*command, *o);
+  command->callback([o, command, &code] {
+    check_executor(*command, *o);
+    code = sweep(*o);
+  });
 }
 
 }  // namespace lacuna

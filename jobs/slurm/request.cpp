@@ -11,6 +11,8 @@
 namespace lacuna {
 namespace {
 
+constexpr int margin_minutes = 15, further_margin_minutes = 1;
+
 std::optional<int> minutes_of(const JobSpec& spec) {
   const Budget& budget = spec.budget;
   if (spec.reference == "auto") return std::nullopt;
@@ -19,8 +21,8 @@ std::optional<int> minutes_of(const JobSpec& spec) {
     seconds = std::min(seconds.value_or(*budget.cpu_seconds), *budget.cpu_seconds);
   }
   if (!seconds && (budget.iterations || budget.error)) return std::nullopt;
-  constexpr double share = 1.25, margin = 15 * 60;
-  const double all = share * seconds.value_or(Budget::default_seconds) + margin;
+  constexpr double share = 1.25;
+  const double all = share * seconds.value_or(Budget::default_seconds) + 60.0 * margin_minutes;
   return static_cast<int>(std::ceil(all / 60));
 }
 
@@ -80,6 +82,24 @@ SlurmRequest slurm_request(const JobSpec& spec, const RequestBasis& basis) {
   return request;
 }
 
+SlurmRequest joint_request(const std::vector<SlurmRequest>& requests) {
+  if (requests.empty()) throw std::invalid_argument("a request of no jobs");
+  SlurmRequest joint = requests.front();
+  for (std::size_t i = 1; i < requests.size(); ++i) {
+    const SlurmRequest& next = requests[i];
+    if (joint.minutes && next.minutes) {
+      *joint.minutes += *next.minutes - margin_minutes + further_margin_minutes;
+    } else {
+      joint.minutes.reset();
+    }
+    joint.megabytes = std::max(joint.megabytes, next.megabytes);
+    joint.cores = std::max(joint.cores, next.cores);
+    joint.own_node = joint.own_node || next.own_node;
+    joint.nice = std::max(joint.nice, next.nice);
+  }
+  return joint;
+}
+
 std::vector<std::string> request_words(const SlurmRequest& request) {
   std::vector<std::string> words{"--nodes=1", "--ntasks=1",
                                  fmt::format("--mem={}M", request.megabytes),
@@ -109,18 +129,6 @@ std::vector<std::string> slurm_arguments(const std::string& text) {
   return words;
 }
 
-std::string shell_word(const std::string& text) {
-  std::string word = "'";
-  for (const char c : text) {
-    if (c == '\'') {
-      word += "'\\''";
-    } else {
-      word += c;
-    }
-  }
-  return word + "'";
-}
-
 std::string slurm_path(const std::filesystem::path& path) {
   std::string pattern;
   for (const char c : path.string()) {
@@ -133,59 +141,6 @@ std::string slurm_path(const std::filesystem::path& path) {
     if (c == '%') pattern += c;
   }
   return pattern;
-}
-
-std::string script_text(const SlurmScript& script) {
-  std::string exports;
-  for (const std::string& entry : script.environment) {
-    const auto equals = entry.find('=');
-    exports += fmt::format("export {}={}\n", entry.substr(0, equals),
-                           shell_word(entry.substr(equals + 1)));
-  }
-  const std::string threads =
-      script.all_cores ? " --threads \"${SLURM_CPUS_PER_TASK:-${SLURM_CPUS_ON_NODE:-0}}\"" : "";
-  return fmt::format(
-      R"(#!/bin/sh
-# The batch script of one submission to Slurm, which the service has written.
-name={name}
-folder={folder}
-{exports}
-# A shared folder may lag behind. The renderer starts only while the folder waits for this very
-# submission: one that was given up, or that nobody noticed, does nothing.
-tries=0
-until grep -qsF "\"$name\"" "$folder/slurm.json"; do
-  tries=$((tries + 1))
-  if [ "$tries" -gt 60 ]; then
-    echo "$(hostname): $folder does not wait for $name, or is not to be seen here" >&2
-    exit 0
-  fi
-  sleep 1
-done
-# A renderer of a node that was given up may still be at work.
-if command -v flock >/dev/null; then
-  flock --wait 86400 "$folder/.lock" true || exit 1
-fi
-rm -f "$folder/slurm.exit"
-child=
-asked=
-trap 'asked=1; [ -z "$child" ] || kill -TERM "$child" 2>/dev/null' TERM
-cd {data} || exit 1
-{renderer} render "$folder"{threads} &
-child=$!
-[ -z "$asked" ] || kill -TERM "$child" 2>/dev/null
-wait "$child"
-code=$?
-while kill -0 "$child" 2>/dev/null; do
-  wait "$child"
-  code=$?
-done
-printf '%s %s\n' "$name" "$code" >"$folder/.slurm.exit.$$.tmp" &&
-  mv "$folder/.slurm.exit.$$.tmp" "$folder/slurm.exit"
-exit "$code"
-)",
-      fmt::arg("name", shell_word(script.name)), fmt::arg("folder", shell_word(script.folder)),
-      fmt::arg("exports", exports), fmt::arg("data", shell_word(script.data)),
-      fmt::arg("renderer", shell_word(script.renderer)), fmt::arg("threads", threads));
 }
 
 }  // namespace lacuna

@@ -36,27 +36,16 @@ struct RequestBasis {
 SlurmRequest slurm_request(const JobSpec& spec, const RequestBasis& basis);
 int slurm_nice(int priority);
 
+/// What jobs ask for that are rendered one after another: the most of all, and the sum of their
+/// times, of which only the first has the whole margin. None: std::invalid_argument.
+SlurmRequest joint_request(const std::vector<SlurmRequest>& requests);
+
 /// As words for sbatch.
 std::vector<std::string> request_words(const SlurmRequest& request);
 
 /// Words of --slurm-args: separated by blanks. Throws std::invalid_argument for an option that
 /// Lacuna needs itself to find its jobs again.
 std::vector<std::string> slurm_arguments(const std::string& text);
-
-/// What the batch script of a submission does.
-struct SlurmScript {
-  std::string name;  ///< of the submission
-  std::filesystem::path folder, renderer, data;
-  std::vector<std::string> environment;  ///< "NAME=value", which hold whatever sbatch exports
-  bool all_cores = false;                ///< the job names no threads: what Slurm gives it
-};
-
-/// Waits until the folder is there and names this submission, and until no earlier renderer has the
-/// folder; then renders, hands SIGTERM on, and leaves the exit code in slurm.exit.
-std::string script_text(const SlurmScript& script);
-
-/// A text as one word of a shell.
-std::string shell_word(const std::string& text);
 
 /// A path as sbatch's patterns of file names take it. Throws std::invalid_argument if they cannot.
 std::string slurm_path(const std::filesystem::path& path);

@@ -62,11 +62,13 @@ std::vector<SlurmJob> parse(std::string_view text) {
   each_line(text, [&](std::string_view line) {
     std::array<std::string_view, 5> fields;
     if (!split(line, fields)) return;
-    const auto id = number(fields[0]);
+    const auto bar = std::min(fields[0].find('_'), fields[0].size());
+    const auto id = number(fields[0].substr(0, bar));
     if (!id) return;
+    const std::string_view task = fields[0].substr(std::min(bar + 1, fields[0].size()));
     const std::string_view state = fields[1].substr(0, fields[1].find(' '));  // "CANCELLED by 0"
     jobs.push_back({*id, std::string(fields[4]), std::string(state), std::string(fields[2]),
-                    std::string(fields[3]), slurm_phase(state)});
+                    std::string(fields[3]), slurm_phase(state), std::string(task)});
   });
   return jobs;
 }

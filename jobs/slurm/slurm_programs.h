@@ -10,6 +10,11 @@
 
 namespace lacuna {
 
+/// Slurm's word that a job is over is believed when so many listings say so, and what its folder
+/// has to say may be so many intervals late: shared file systems lag.
+inline constexpr int slurm_listings_to_believe = 2;
+inline constexpr int slurm_intervals_to_lag = 5;
+
 /// How a program ended.
 struct ProgramAnswer {
   int code = 0;      ///< exit code; 128 + signal
@@ -25,7 +30,7 @@ class SlurmError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What Slurm says of one job.
+/// What Slurm says of one job, or of one or more tasks of an array, whose number they all have.
 struct SlurmJob {
   enum class Phase {
     waits,  ///< not begun, or to begin once more
@@ -37,6 +42,8 @@ struct SlurmJob {
   std::string state;  ///< Slurm's word: "PENDING"
   std::string reason, nodes;
   Phase phase = Phase::runs;
+  std::string task =
+      {};  ///< of an array, as "3", or those that wait, as "[4-10%2]"; empty: no array
   bool operator==(const SlurmJob&) const = default;
 };
 /// Of a word that this version does not know: `runs`, so that nothing is taken for over that is

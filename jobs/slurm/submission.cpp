@@ -30,7 +30,13 @@ std::string new_submission_name(const JobFolder& folder) {
   constexpr std::string_view letters = "0123456789abcdefghijklmnopqrstuvwxyz";
   std::random_device random;
   std::uniform_int_distribution<std::size_t> any(0, letters.size() - 1);
-  std::string name = fmt::format("lacuna-{}-", folder.id());
+  constexpr std::size_t longest = 64;
+  std::string name = fmt::format("lacuna-{}-", folder.id().substr(0, longest));
+  // A folder that a person has named: what the batch script looks for stands in JSON as it is.
+  for (char& c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (!plain && c != '.' && c != '_') c = '-';
+  }
   for (int i = 0; i < 8; ++i) name += letters[any(random)];
   return name;
 }

@@ -9,9 +9,10 @@
 
 namespace lacuna {
 
-/// slurm.json: one submission of a job to Slurm. It is written before sbatch is called, so that
-/// whoever comes after a crash can look the submission up by its name; and its batch script renders
-/// only while this file names it, so that of two submissions that were ever made one at most does.
+/// slurm.json: one submission of a job, or of runs of a sweep as an array, to Slurm. It is written
+/// before sbatch is called, so that whoever comes after a crash can look the submission up by its
+/// name; and its batch script renders only while this file names it, so that of two submissions
+/// that were ever made one at most does.
 struct Submission {
   std::string name;      ///< of the Slurm job; no other submission has it
   std::int64_t job = 0;  ///< Slurm's number; 0: not known yet
@@ -25,7 +26,7 @@ void describe(V& v, Submission& s) {
   v("made", s.made, {.doc = "UTC, ISO 8601"});
 }
 
-/// "lacuna-" + the job's id + random letters.
+/// "lacuna-" + the folder's name, of a job or a sweep, in plain letters + random letters.
 std::string new_submission_name(const JobFolder& folder);
 
 /// Nothing if there is none. Throws std::system_error, and std::runtime_error if it is corrupt.

@@ -68,13 +68,15 @@ JobFolder JobFolder::create(const std::filesystem::path& dir, const JobSpec& spe
   return JobFolder(target);
 }
 
-JobSpec JobFolder::read_job() const {
+std::string JobFolder::read_job_text() const {
   try {
-    return parse_job(read_file(file("job.json"), max_job_bytes));
+    return read_file(file("job.json"), max_job_bytes);
   } catch (const std::length_error& e) {
     throw BadJob({Problem{"", e.what()}});
   }
 }
+
+JobSpec JobFolder::read_job() const { return parse_job(read_job_text()); }
 
 void JobFolder::write_job(const JobSpec& spec) const {
   write_file_atomically(file("job.json"), lacuna::write_job(spec));

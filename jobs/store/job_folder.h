@@ -61,6 +61,7 @@ class JobFolder {
                           const JobControl& control = {});
 
   JobSpec read_job() const;                   ///< throws BadJob, std::system_error
+  std::string read_job_text() const;          ///< what read_job() parses; throws the same
   JobState read_state() const;                ///< throws std::runtime_error if missing or corrupt
   void write_job(const JobSpec& spec) const;  ///< synced
   void write_state(const JobState& s) const;  ///< synced
@@ -137,6 +138,11 @@ std::string run_job_id(std::string_view sweep_id, std::size_t index);
 /// The inverse of run_job_id(), for any index, whether or not the sweep has such a run; none if
 /// `job_id` is not of that form.
 std::optional<std::size_t> run_index(std::string_view sweep_id, std::string_view job_id);
+/// Names of all folders below `jobs` that have the form of an id, sorted: oldest first. Looks into
+/// none of them.
+std::vector<std::string> list_job_names(const std::filesystem::path& jobs);
+/// Whether the folder holds a job.
+bool is_job(const JobFolder& folder);
 /// All jobs below `jobs`, oldest first; folders that are no jobs are left out.
 std::vector<JobFolder> list_jobs(const std::filesystem::path& jobs);
 /// A time as JobState has it: UTC, ISO 8601 with milliseconds; such texts sort by time.

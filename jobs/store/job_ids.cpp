@@ -75,19 +75,32 @@ std::optional<std::size_t> run_index(std::string_view sweep_id, std::string_view
   return (letters_value(job_id) + all - letters_value(sweep_id) + all - 1) % all;
 }
 
-std::vector<JobFolder> list_jobs(const std::filesystem::path& jobs) {
+std::vector<std::string> list_job_names(const std::filesystem::path& jobs) {
   namespace fs = std::filesystem;
-  std::vector<JobFolder> found;
-  if (!fs::exists(jobs)) return found;
+  std::vector<std::string> names;
+  if (!fs::exists(jobs)) return names;
   for (const auto& entry : fs::directory_iterator(jobs)) {
     std::error_code vanished;
-    if (!is_job_id(entry.path().filename().string())) continue;
-    if (!fs::is_directory(entry.symlink_status(vanished))) continue;
-    if (!fs::is_regular_file(fs::symlink_status(entry.path() / "job.json", vanished))) continue;
-    found.emplace_back(entry.path());
+    std::string name = entry.path().filename().string();
+    // What kind of file it is mostly stands in the folder itself, and costs no look at the file.
+    if (!is_job_id(name) || entry.is_symlink(vanished) || !entry.is_directory(vanished)) continue;
+    names.push_back(std::move(name));
   }
-  std::sort(found.begin(), found.end(),
-            [](const JobFolder& a, const JobFolder& b) { return a.id() < b.id(); });
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+bool is_job(const JobFolder& folder) {
+  namespace fs = std::filesystem;
+  std::error_code vanished;
+  return fs::is_regular_file(fs::symlink_status(folder.file("job.json"), vanished));
+}
+
+std::vector<JobFolder> list_jobs(const std::filesystem::path& jobs) {
+  std::vector<JobFolder> found;
+  for (const std::string& name : list_job_names(jobs)) {
+    if (JobFolder folder(jobs / name); is_job(folder)) found.push_back(std::move(folder));
+  }
   return found;
 }
 

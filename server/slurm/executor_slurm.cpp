@@ -13,6 +13,8 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "jobs/slurm/request.h"
+#include "jobs/slurm/run_program.h"
+#include "jobs/slurm/script.h"
 #include "server/queue/executor_local.h"
 #include "server/slurm/run_program.h"
 #include "server/telemetry/log.h"
@@ -24,12 +26,7 @@ using Clock = SlurmWatch::Clock;
 using Phase = SlurmJob::Phase;
 
 RunProgram checked_runner(const ExecutorSettings& settings) {
-  for (const char* program : {"sbatch", "squeue", "scancel", "scontrol"}) {
-    if (find_program(program).empty()) {
-      throw std::invalid_argument(
-          fmt::format("--executor slurm needs Slurm's program {}, which is not in PATH", program));
-    }
-  }
+  check_slurm_programs("--executor slurm");
   return slurm_runner(settings.data);
 }
 

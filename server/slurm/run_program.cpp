@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 #include <sys/mman.h>
-#include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <csignal>
-#include <cstdlib>
-#include <string_view>
 #include <system_error>
 
 #include "analysis/storage/file_handle.h"
+#include "jobs/slurm/run_program.h"
 #include "server/queue/child_process.h"
 
 namespace lacuna {
@@ -18,36 +17,11 @@ namespace {
 
 constexpr std::chrono::seconds patience{60};
 
-std::vector<std::string> environment() {
-  std::vector<std::string> result;
-  for (char** p = ::environ; *p != nullptr; ++p) {
-    const std::string_view entry = *p;
-    bool keep = !entry.starts_with("SLURM_") || entry.starts_with("SLURM_CONF=");
-    for (const std::string_view set : {"SQUEUE_", "SACCT_", "SCANCEL_"}) {
-      if (entry.starts_with(set)) keep = false;
-    }
-    if (keep) result.emplace_back(entry);
-  }
-  return result;
-}
-
-std::string content(int file) {
-  constexpr std::size_t at_once = 1 << 16, longest = 64 << 20;
-  std::string text;
-  for (;;) {
-    const std::size_t before = text.size();
-    text.resize(before + at_once);
-    const ssize_t n = ::pread(file, text.data() + before, at_once, static_cast<::off_t>(before));
-    text.resize(before + static_cast<std::size_t>(n > 0 ? n : 0));
-    if (n <= 0 || text.size() >= longest) return text;
-  }
-}
-
 ProgramAnswer run(const std::vector<std::string>& words, const std::filesystem::path& directory) {
   const FileHandle output(::memfd_create("answer", MFD_CLOEXEC));
   if (!output) throw std::system_error(errno, std::generic_category(), "memfd_create");
   Command command{.arguments = words,
-                  .environment = environment(),
+                  .environment = slurm_environment(),
                   .directory = directory,
                   .output = {},
                   .output_fd = output.get(),
@@ -64,23 +38,12 @@ ProgramAnswer run(const std::vector<std::string>& words, const std::filesystem::
   }
   const Ending end = child.reap();
   const int code = end.kind == Ending::Kind::exited ? end.code : 128 + end.code;
-  if (ended) return {code, content(output.get())};
-  return {code, fmt::format("no answer in {} s\n{}", patience.count(), content(output.get()))};
+  if (ended) return {code, program_output(output.get())};
+  return {code,
+          fmt::format("no answer in {} s\n{}", patience.count(), program_output(output.get()))};
 }
 
 }  // namespace
-
-std::filesystem::path find_program(const std::string& name) {
-  const char* set = std::getenv("PATH");
-  std::string_view path = set == nullptr ? "" : set;
-  while (!path.empty()) {
-    const auto end = std::min(path.find(':'), path.size());
-    const std::filesystem::path file = std::filesystem::path(path.substr(0, end)) / name;
-    if (file.is_absolute() && ::access(file.c_str(), X_OK) == 0) return file;
-    path.remove_prefix(std::min(end + 1, path.size()));
-  }
-  return {};
-}
 
 RunProgram slurm_runner(std::filesystem::path directory) {
   return [directory = std::move(directory)](const std::vector<std::string>& words) {

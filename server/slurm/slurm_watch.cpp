@@ -19,11 +19,6 @@ namespace {
 
 using Phase = SlurmJob::Phase;
 
-// Slurm's word that a job is over is believed when two listings say so, and what its folder has to
-// say may be that many intervals late: shared file systems lag.
-constexpr int listings_to_believe = 2;
-constexpr int intervals_to_lag = 5;
-
 /// "Slurm job 17: TIMEOUT"
 std::string slurm_words(const std::optional<SlurmJob>& last, bool known_now) {
   if (!last) return "Slurm knows nothing of it";
@@ -190,7 +185,7 @@ void SlurmWatch::list() {
       }
       const bool listed = found != by_name.end();
       judge(*watched, listed);
-      if (!listed && watched->gone >= listings_to_believe && !watched->asked_accounts) {
+      if (!listed && watched->gone >= slurm_listings_to_believe && !watched->asked_accounts) {
         to_ask.push_back(watched);
       }
     }
@@ -224,11 +219,11 @@ void SlurmWatch::judge(SlurmWatched& watched, bool listed) {
     return;
   }
   if (!watched.gone_since) watched.gone_since = Clock::now();
-  if (++watched.gone < listings_to_believe) return;
+  if (++watched.gone < slurm_listings_to_believe) return;
   if (!listed && !watched.asked_accounts) return;
   const auto code = read_submission_exit(watched.folder, watched.submission.name);
   const bool never = !code && !watched.last && watched.submission.job == 0;
-  const bool lags = Clock::now() - *watched.gone_since < intervals_to_lag * poll_;
+  const bool lags = Clock::now() - *watched.gone_since < slurm_intervals_to_lag * poll_;
   const bool agrees = code && (*code != exit_done || is_told(watched.folder));
   if (lags && !agrees && !never) return;
   const bool known_now = watched.last && watched.last->phase == Phase::over;

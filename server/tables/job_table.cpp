@@ -5,8 +5,9 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <atomic>
+#include <future>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <stdexcept>
 #include <variant>
 
@@ -26,13 +27,14 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-void take_spec(JobEntry& entry, const JobSpec& spec) {
+/// `text`: of job.json.
+void take_spec(JobEntry& entry, const JobSpec& spec, const std::string& text) {
   entry.label = spec.label;
   entry.scene = spec.scene;
   entry.integrator = std::visit([](const auto& s) { return std::string(s.name); }, spec.integrator);
   entry.reference = spec.reference;
   entry.exclusive = spec.exclusive;
-  entry.job_hash = hash(write_job(spec));
+  entry.job_hash = hash(text);
 }
 
 bool has_picture(const JobFolder& folder) {
@@ -66,7 +68,10 @@ std::shared_ptr<JobEntry> read_entry(const JobFolder& folder) {
   Damage damage;
   damage.try_to([&] { entry->control = folder.read_control(); });
   damage.try_to([&] { entry->state = folder.read_state(); });
-  damage.try_to([&] { take_spec(*entry, folder.read_job()); });
+  damage.try_to([&] {
+    const std::string text = folder.read_job_text();
+    take_spec(*entry, parse_job(text), text);
+  });
   entry->progress = folder.read_progress();
   entry->pictured = has_picture(folder);
   entry->over = is_terminal(entry->state.state);
@@ -83,6 +88,16 @@ std::shared_ptr<JobEntry> unread_entry(const std::string& id, const std::excepti
   entry->unread = true;
   entry->obstacle = fmt::format("the job's folder cannot be read for now: {}", error.what());
   return entry;
+}
+
+/// Makes what follows from the rest.
+void complete(JobEntry& entry) {
+  entry.text = json_text(to_json(entry));
+  entry.revision =
+      hash(fmt::format("{} {} {} {} {}", entry.job_hash, json_text(to_json(entry.state)),
+                       entry.control.priority, entry.control.held, entry.control.cancel));
+  entry.words = lower_case(
+      fmt::format("{}\n{}\n{}\n{}", entry.label, entry.scene, entry.integrator, entry.id));
 }
 
 std::int64_t time_of_change(const std::filesystem::path& folder) {
@@ -111,10 +126,8 @@ std::pair<std::string, std::string> place_of(const std::string& cursor) {
 void JobTable::rescan() {
   // Taken before the folder is read: what changes meanwhile is seen next time.
   const std::int64_t changed = time_of_change(data_.jobs());
-  std::set<std::string> there;
-  std::vector<std::string> fresh;
-  for (const JobFolder& f : list_jobs(data_.jobs())) there.insert(f.id());
-  std::vector<std::string> gone;
+  const std::vector<std::string> there = list_job_names(data_.jobs());
+  std::vector<std::string> fresh, gone;
   {
     const std::lock_guard lock(mutex_);
     scanned_ = changed;
@@ -122,14 +135,32 @@ void JobTable::rescan() {
       if (!places_.contains(id)) fresh.push_back(id);
     }
     for (const auto& [id, place] : places_) {
-      if (!there.contains(id)) gone.push_back(id);
+      if (!std::binary_search(there.begin(), there.end(), id)) gone.push_back(id);
     }
   }
-  for (const std::string& id : fresh) add(id);
+  add_all(fresh);
   for (const std::string& id : gone) {
     std::error_code ignored;  // it may have been added while the folder was read
     if (!std::filesystem::exists(folder(id).dir(), ignored)) remove(id);
   }
+}
+
+/// Reads them side by side: on a file system of many machines each file costs an answer of another
+/// machine, and the processor does nothing meanwhile.
+void JobTable::add_all(const std::vector<std::string>& ids) {
+  constexpr std::size_t most_readers = 8, for_a_reader = 64;
+  std::atomic<std::size_t> next = 0;
+  const auto read = [&] {
+    for (std::size_t i = next++; i < ids.size(); i = next++) {
+      if (is_job(folder(ids[i]))) add(ids[i]);
+    }
+  };
+  std::vector<std::future<void>> readers;
+  while (readers.size() < std::min(most_readers, ids.size() / for_a_reader)) {
+    readers.push_back(std::async(std::launch::async, read));
+  }
+  read();
+  for (std::future<void>& reader : readers) reader.get();
 }
 
 bool JobTable::rescan_if_changed() {
@@ -157,6 +188,7 @@ EntryPtr JobTable::add(const std::string& id) {
     }
   }();
   entry->sweep = sweeps_.sweep_of(id);
+  complete(*entry);
   const std::lock_guard lock(mutex_);
   if (const auto place = places_.find(id); place != places_.end()) return jobs_.at(place->second);
   put(entry, JobEvent::Kind::added);
@@ -166,6 +198,7 @@ EntryPtr JobTable::add(const std::string& id) {
 EntryPtr JobTable::reread(const std::string& id) {
   const auto entry = read_entry(folder(id));
   entry->sweep = sweeps_.sweep_of(id);
+  complete(*entry);
   const std::lock_guard lock(mutex_);
   if (!places_.contains(id)) return nullptr;
   put(entry, JobEvent::Kind::state);
@@ -214,14 +247,8 @@ JobTable::RunCounts JobTable::run_counts(const std::string& sweep) const {
   return found == run_counts_.end() ? RunCounts{} : found->second;
 }
 
-/// Only under the lock.
+/// Only under the lock. The entry is complete().
 void JobTable::put(std::shared_ptr<JobEntry> entry, JobEvent::Kind kind) {
-  entry->text = json_text(to_json(*entry));
-  entry->revision =
-      hash(fmt::format("{} {} {} {} {}", entry->job_hash, json_text(to_json(entry->state)),
-                       entry->control.priority, entry->control.held, entry->control.cancel));
-  entry->words = lower_case(
-      fmt::format("{}\n{}\n{}\n{}", entry->label, entry->scene, entry->integrator, entry->id));
   const std::string id = entry->id;
   const Place place{entry->state.created, id};
   take_out(id);
@@ -236,7 +263,10 @@ void JobTable::change(const std::string& id, Change&& change) {
   const auto place = places_.find(id);
   if (place == places_.end()) return;
   auto entry = std::make_shared<JobEntry>(*jobs_.at(place->second));
-  if (const auto kind = change(*entry)) put(std::move(entry), *kind);
+  const auto kind = change(*entry);
+  if (!kind) return;
+  complete(*entry);
+  put(std::move(entry), *kind);
 }
 
 void JobTable::set_state(const std::string& id, const JobState& state, bool over) {
@@ -285,7 +315,7 @@ void JobTable::set_progress(const std::string& id, const Progress& progress) {
 
 void JobTable::set_job(const std::string& id, const JobSpec& spec) {
   change(id, [&](JobEntry& entry) -> std::optional<JobEvent::Kind> {
-    take_spec(entry, spec);
+    take_spec(entry, spec, write_job(spec));
     return JobEvent::Kind::control;
   });
 }

@@ -117,6 +117,7 @@ class JobTable {
 
  private:
   using Place = std::pair<std::string, std::string>;  // time of creation, id
+  void add_all(const std::vector<std::string>& ids);
   std::size_t count(const Query& query) const;
   void put_in(const Place& place, EntryPtr entry);
   EntryPtr take_out(const std::string& id);

@@ -1,71 +1,29 @@
 // Jobs through Slurm, by a stand-in of its programs: submissions, states, requests, crashes of the service.
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
 import fs from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
-import { fileURLToPath } from "node:url";
 import { folders, runToEnd, Service, until } from "./service.mjs";
+import { Cluster } from "./slurm_cluster.mjs";
 
-const fake = path.join(path.dirname(fileURLToPath(import.meta.url)), "fake_slurm.mjs");
 const poll = 0.1;
 
-/// A cluster in a folder of its own.
-class Cluster {
+class ServedCluster extends Cluster {
   constructor(places) {
+    super(places.root);
     this.places = places;
-    this.folder = path.join(places.root, "slurm");
-    const bin = path.join(places.root, "bin");
-    for (const folder of [this.folder, bin]) fs.mkdirSync(folder);
-    for (const name of ["sbatch", "squeue", "sacct", "scancel", "scontrol"]) fs.symlinkSync(fake, path.join(bin, name));
-    this.environment = [`PATH=${bin}:${process.env.PATH}`, `FAKE_SLURM=${this.folder}`];
   }
 
   service(...options) {
     return Service.start(this.places, ["--executor", "slurm", "--slurm-poll", String(poll), ...options],
       ["env", ...this.environment]);
   }
-
-  set(...whats) { for (const what of whats) fs.writeFileSync(path.join(this.folder, what), ""); }
-  unset(...whats) { for (const what of whats) fs.rmSync(path.join(this.folder, what), { force: true }); }
-
-  jobs() {
-    return fs.readdirSync(this.folder).filter((n) => /^\d+\.json$/.test(n)).sort((a, b) => parseInt(a) - parseInt(b))
-      .map((n) => JSON.parse(fs.readFileSync(path.join(this.folder, n), "utf8")));
-  }
-
-  change(id, more) {
-    const file = path.join(this.folder, `${id}.json`);
-    const job = { ...JSON.parse(fs.readFileSync(file, "utf8")), ...more };
-    fs.writeFileSync(`${file}.new`, JSON.stringify(job));
-    fs.renameSync(`${file}.new`, file);
-    return job;
-  }
-
-  /// The job's machine is taken: Slurm calls that so.
-  take(id, wanted, signal = "SIGKILL") {
-    process.kill(-this.change(id, { wanted }).group, signal);
-  }
-
-  calls(program) {
-    const file = path.join(this.folder, "calls");
-    const lines = fs.existsSync(file) ? fs.readFileSync(file, "utf8").split("\n") : [];
-    return lines.filter((line) => line.startsWith(`${program} `));
-  }
-
-  async end() {
-    for (const job of this.jobs()) {
-      try {
-        if (job.group) process.kill(-job.group, "SIGKILL");
-      } catch { /* it has ended */ }
-    }
-  }
 }
 
 /// A test with a cluster; what still runs in it ends with it.
 function onCluster(name, body) {
   test(name, async (t) => {
-    const cluster = new Cluster(folders(t));
+    const cluster = new ServedCluster(folders(t));
     try {
       await body(cluster, t);
     } finally {
@@ -233,8 +191,7 @@ onCluster("a requeued job goes on as the same submission", async (cluster) => {
   await running(cluster, 1);
   cluster.take(1, "requeue", "SIGTERM");
   await until(async () => (await state(service, id)).place === "Slurm job 1 waits: BeginTime", "it waits again");
-  spawn(process.execPath, [fake, "--run", "1"], { env: { ...process.env, FAKE_SLURM: cluster.folder },
-    detached: true, stdio: "ignore" }).unref();
+  cluster.startWaiting();
   service.open("go");
   const job = await service.reaches(id, "done");
   assert.equal(job.state.attempts, 2);

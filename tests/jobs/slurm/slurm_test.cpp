@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "jobs/slurm/request.h"
+#include "jobs/slurm/script.h"
 #include "jobs/slurm/slurm_programs.h"
 #include "jobs/slurm/submission.h"
 #include "tests/temporary_folder.h"
@@ -72,6 +73,20 @@ TEST(SlurmRequest, AHigherPriorityIsLessNiceAndNeverNegative) {
   EXPECT_EQ(slurm_nice(-max_priority), 2 * max_priority);
 }
 
+TEST(SlurmRequest, RunsInTurnAskForTheSumOfTheirTimesAndTheMostOfTheRest) {
+  const SlurmRequest small{
+      .minutes = 16, .megabytes = 900, .cores = 2, .own_node = false, .nice = 3};
+  const SlurmRequest large{
+      .minutes = 20, .megabytes = 700, .cores = 4, .own_node = true, .nice = 1};
+  const SlurmRequest joint = joint_request({small, large, small});
+  EXPECT_EQ(joint.minutes, 16 + 6 + 2);  // a margin of 15 minutes once, and of one for each further
+  EXPECT_EQ(joint.megabytes, 900);
+  EXPECT_EQ(joint.cores, 4);
+  EXPECT_TRUE(joint.own_node);
+  EXPECT_EQ(joint_request({small, {}}).minutes, std::nullopt);
+  EXPECT_THROW(joint_request({}), std::invalid_argument);
+}
+
 TEST(SlurmArguments, AreWordsAndNeverThoseThatLacunaNeeds) {
   EXPECT_EQ(slurm_arguments("  --partition=long  -A me "), (Words{"--partition=long", "-A", "me"}));
   for (const char* bad : {"--job-name=x", "--job=x", "-J x", "--array=1-3", "-a1", "--wrap=ls",
@@ -91,12 +106,17 @@ TEST(SlurmAnswers, LinesOfSqueueAreReadAndOthersLeftOut) {
       "slurm_load_jobs: a warning\n"
       "8|FAILED|JobLaunchFailure|vm|lacuna-x\n"
       "9|PENDING|Resources||a|b\n"
-      "12_3|RUNNING|None|vm|an array task\n"
+      "12_3|RUNNING|None|vm|an array's task\n"
+      "12_[4-10%2]|PENDING|None||its others\n"
       "13|RUNNING|None|n[1-2]|mine\n");
-  ASSERT_EQ(jobs.size(), 3U);
-  EXPECT_EQ(jobs[0], (SlurmJob{8, "lacuna-x", "FAILED", "JobLaunchFailure", "vm", Phase::over}));
-  EXPECT_EQ(jobs[1], (SlurmJob{9, "a|b", "PENDING", "Resources", "", Phase::waits}));
-  EXPECT_EQ(jobs[2].nodes, "n[1-2]");
+  ASSERT_EQ(jobs.size(), 5U);
+  EXPECT_EQ(jobs[0],
+            (SlurmJob{8, "lacuna-x", "FAILED", "JobLaunchFailure", "vm", Phase::over, ""}));
+  EXPECT_EQ(jobs[1], (SlurmJob{9, "a|b", "PENDING", "Resources", "", Phase::waits, ""}));
+  EXPECT_EQ(jobs[2].id, 12);
+  EXPECT_EQ(jobs[2].task, "3");
+  EXPECT_EQ(jobs[3].task, "[4-10%2]");
+  EXPECT_EQ(jobs[4].nodes, "n[1-2]");
   EXPECT_EQ(parse_sacct("7|CANCELLED by 0|None|vm|x\n").at(0).state, "CANCELLED");
 }
 
@@ -212,6 +232,29 @@ TEST_F(SlurmScriptTest, WaitsForARendererThatIsStillAtWork) {
   EXPECT_TRUE(released);
 }
 
+TEST_F(SlurmScriptTest, ATaskOfAnArrayRendersItsRunsAndHandsSigtermOn) {
+  record(name);
+  const auto program = temp.write("renderer", R"(#!/bin/sh
+trap 'exit 75' TERM
+echo "$* of $LACUNA_DATA" >"$2/seen"
+kill -TERM $PPID
+while :; do sleep 0.05; done
+)");
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  const auto script = temp.write("array.sh", array_script_text({.name = name,
+                                                                .sweep = folder.dir(),
+                                                                .renderer = program,
+                                                                .directory = temp.path(),
+                                                                .environment = {"LACUNA_DATA=x y"},
+                                                                .tasks = {"1-3", "4,6"},
+                                                                .all_cores = true}));
+  const std::string command =
+      "SLURM_ARRAY_TASK_ID=2 SLURM_CPUS_PER_TASK=3 sh '" + script.string() + "'";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 75);  // NOLINT(cert-env33-c)
+  EXPECT_EQ(content_of(folder.file("seen")),
+            "sweep " + folder.dir().string() + " --index 4,6 --quiet --threads 3 of x y\n");
+}
+
 TEST_F(SlurmScriptTest, RecordsAreKeptAndForgotten) {
   EXPECT_EQ(read_submission(folder), std::nullopt);
   write_submission(folder, {name, 12, "now"});
@@ -222,6 +265,8 @@ TEST_F(SlurmScriptTest, RecordsAreKeptAndForgotten) {
   EXPECT_FALSE(has_submission(folder));
   EXPECT_EQ(read_submission_exit(folder, name), std::nullopt);
   EXPECT_NE(new_submission_name(folder), new_submission_name(folder));
+  EXPECT_TRUE(new_submission_name(JobFolder(temp / "it's \"mine\"|x.sweep"))
+                  .starts_with("lacuna-it-s--mine--x.sweep-"));
 }
 
 }  // namespace
