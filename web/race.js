@@ -27,8 +27,10 @@ function ratioText(ratio) {
   return `${number(ratio.ratio)} (${number(ratio.low)} to ${number(ratio.high)})`;
 }
 
-function fateText({ in_use, left, tail_known, unexplained }) {
-  const doubts = [tail_known === false && "rare bright paths: not sure", unexplained && "differs from the others"];
+function fateText(candidate) {
+  const { in_use, left, tail_known, unexplained } = candidate;
+  const doubts = [tail_known === false && "rare bright paths: not sure", unexplained && "differs from the others",
+    fateOfBias(candidate)];
   const fate = in_use ? "in use" : left ? `left in round ${left.round}: ${left.reason}` : "no part of the picture";
   return [fate, ...doubts.filter(Boolean)].join("; ");
 }
@@ -40,14 +42,20 @@ function candidateTable({ clock, candidates }) {
       fateText(c)]), true);
 }
 
+/// One square for each block of pixels, filled by `fill(value)`.
+function mapOfBlocks(values, across, label, fill) {
+  const map = svg("svg", { viewBox: `0 0 ${across} ${Math.ceil(values.length / across)}`, width: 320, role: "img",
+    "shape-rendering": "crispEdges", "aria-label": label });
+  values.forEach((value, i) => map.append(svg("rect", { x: i % across, y: Math.floor(i / across), width: 1, height: 1,
+    fill: fill(value) })));
+  return map;
+}
+
 /// Each block of pixels in the colour of the candidate with the largest weight there.
 function blockMap({ blocks, candidates }) {
   if (!blocks) return false;
-  const rows = Math.ceil(blocks.candidate.length / blocks.across);
-  const map = svg("svg", { viewBox: `0 0 ${blocks.across} ${rows}`, width: 320, role: "img", "shape-rendering": "crispEdges",
-    "aria-label": "Which candidate has the largest weight in each block of pixels" });
-  blocks.candidate.forEach((k, i) => map.append(svg("rect", { x: i % blocks.across, y: Math.floor(i / blocks.across),
-    width: 1, height: 1, fill: curveColour(k) })));
+  const map = mapOfBlocks(blocks.candidate, blocks.across, "Which candidate has the largest weight in each block of pixels",
+    curveColour);
   const used = [...new Set(blocks.candidate)].sort((a, b) => a - b);
   const entries = used.map((k) => {
     const swatch = h("span.swatch");
@@ -56,6 +64,22 @@ function blockMap({ blocks, candidates }) {
   });
   return h("section.stacked", h("h3", `Largest weight in each block of ${blocks.pixels} × ${blocks.pixels} pixels`), map,
     h("ul", entries));
+}
+
+/// The more samples a block gets, the lighter it is.
+function sampleMap({ samples }) {
+  if (!samples) return false;
+  const most = Math.max(...samples.iterations), least = Math.min(...samples.iterations);
+  const mean = samples.iterations.reduce((sum, n) => sum + n, 0) / samples.iterations.length;
+  const map = mapOfBlocks(samples.iterations, samples.across, "How many samples each block of pixels gets",
+    (n) => `hsl(0 0% ${Math.round(8 + 87 * n / most)}%)`);
+  return h("section.stacked", h("h3", `Samples in each block of ${samples.pixels} × ${samples.pixels} pixels`), map,
+    h("p.note", `Over the mean: ${number(least / mean)} (dark) to ${number(most / mean)} (light).`));
+}
+
+function fateOfBias({ bias_rmse, bias_known }) {
+  if (bias_rmse === undefined) return false;
+  return bias_known ? `bias: RMSE ${number(bias_rmse)} stays` : "its bias is not seen";
 }
 
 function summary({ clock, spent, plan, break_even }) {
@@ -71,4 +95,4 @@ function summary({ clock, spent, plan, break_even }) {
 
 /// `race`: report.json's.
 export const raceView = (race) => h("div.race", summary(race), candidateTable(race),
-  h("div.effort", h("section.stacked", h("h3", "Standing after each round"), figure(race)), blockMap(race)));
+  h("div.effort", h("section.stacked", h("h3", "Standing after each round"), figure(race)), blockMap(race), sampleMap(race)));

@@ -118,8 +118,11 @@ std::shared_ptr<const void> ArtefactStore::Attempt::run() {
     if (settings_.building) settings_.building(key_.type());
     return request_.build();
   };
-  if (settings_.folder.empty()) return finish(build(), ArtefactRecord::Origin::built);
+  if (settings_.folder.empty()) {
+    return request_.build ? finish(build(), ArtefactRecord::Origin::built) : nullptr;
+  }
   if (auto value = load()) return finish(std::move(value), ArtefactRecord::Origin::loaded);
+  if (!request_.build) return nullptr;
   auto lock = take_lock();
   // Whoever had the lock may have made it.
   if (lock) {
@@ -229,6 +232,7 @@ std::shared_ptr<const void> ArtefactStore::get_any(const ArtefactKey& key, const
   if (auto held = slot.value.lock()) return held;
   Attempt attempt(*this, key, request);
   auto value = attempt.run();
+  if (!value) return nullptr;
   slot.value = value;
   add(attempt.record());
   return value;

@@ -47,13 +47,17 @@ class ArtefactStore {
   template <class T>
   std::shared_ptr<const T> get(const ArtefactKey& key, const std::function<T()>& build);
 
+  /// The same, where somebody built it before; null: nobody did.
+  template <class T>
+  std::shared_ptr<const T> find(const ArtefactKey& key);
+
   /// Records that no artefact of this type was requested.
   void not_needed(const std::string& type);
   /// The outcomes of all requests so far, in the order in which they ended.
   std::vector<ArtefactRecord> records() const;
 
  private:
-  /// A type-erased request.
+  /// A type-erased request. Without `build` for what is there already.
   struct Request {
     std::type_index type;
     std::function<std::shared_ptr<const void>()> build;
@@ -69,6 +73,8 @@ class ArtefactStore {
   };
   class Attempt;
 
+  template <class T>
+  static Request request(std::function<std::shared_ptr<const void>()> build);
   std::shared_ptr<const void> get_any(const ArtefactKey& key, const Request& request);
   Slot& slot_of(const ArtefactKey& key, std::type_index type);
   void warn(const std::string& line) const;
@@ -81,13 +87,23 @@ class ArtefactStore {
 };
 
 template <class T>
-std::shared_ptr<const T> ArtefactStore::get(const ArtefactKey& key,
-                                            const std::function<T()>& build) {
-  const Request request{
-      typeid(T), [&] { return std::make_shared<const T>(build()); },
+ArtefactStore::Request ArtefactStore::request(std::function<std::shared_ptr<const void>()> build) {
+  return {
+      typeid(T), std::move(build),
       [](ArtefactWriter& out, const void* value) { encode(out, *static_cast<const T*>(value)); },
       [](ArtefactReader& in) { return std::make_shared<const T>(decode<T>(in)); }};
-  return std::static_pointer_cast<const T>(get_any(key, request));
+}
+
+template <class T>
+std::shared_ptr<const T> ArtefactStore::get(const ArtefactKey& key,
+                                            const std::function<T()>& build) {
+  return std::static_pointer_cast<const T>(
+      get_any(key, request<T>([&] { return std::make_shared<const T>(build()); })));
+}
+
+template <class T>
+std::shared_ptr<const T> ArtefactStore::find(const ArtefactKey& key) {
+  return std::static_pointer_cast<const T>(get_any(key, request<T>({})));
 }
 
 }  // namespace lacuna

@@ -12,6 +12,7 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/available_memory.h"
+#include "jobs/render/verdicts.h"
 #include "renderer/scene/scene_shape.h"
 
 namespace lacuna {
@@ -66,6 +67,14 @@ void set_up_analysis(Prepared& p, const JobSpec& spec, const RunContext& context
       *p.artefacts, *p.pool);
 }
 
+/// What a budget leaves each thread, if it is limited by time.
+std::optional<double> seconds_of(const Budget& budget) {
+  if (!budget.seconds || !budget.cpu_seconds) {
+    return budget.seconds ? budget.seconds : budget.cpu_seconds;
+  }
+  return std::min(*budget.seconds, *budget.cpu_seconds);
+}
+
 }  // namespace
 
 Prepared prepare(const JobSpec& spec, const RunContext& context) {
@@ -111,13 +120,21 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
     for (std::string& w : hidden_emitters(*p.scene)) p.warnings.push_back(std::move(w));
   }
   set_up_analysis(p, spec, context, camera);
+  if (const auto seconds = seconds_of(spec.budget)) {
+    p.verdicts =
+        std::make_unique<VerdictMemory>(cached_verdicts(*p.artefacts, spec, p.content, *seconds));
+  }
   return p;
 }
 
-void analyse(const Prepared& p, const Budget& budget) {
-  std::optional<double> seconds = budget.cpu_seconds;
-  if (budget.seconds && (!seconds || *budget.seconds < *seconds)) seconds = budget.seconds;
-  p.integrator->prepare({*p.scene, *p.pool, *p.space, *p.camera, seconds});
+void analyse(const Prepared& p, const Budget& budget, bool resumes) {
+  p.integrator->prepare({.scene = *p.scene,
+                         .pool = *p.pool,
+                         .space = *p.space,
+                         .camera = *p.camera,
+                         .budget_seconds = seconds_of(budget),
+                         .verdicts = p.verdicts.get(),
+                         .resumes = resumes});
   p.space->close();
 }
 

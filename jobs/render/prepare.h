@@ -5,6 +5,7 @@
 
 #include "jobs/render/run_job.h"
 #include "renderer/integrators/integrator.h"
+#include "renderer/race/verdict.h"
 
 namespace lacuna {
 
@@ -16,8 +17,9 @@ struct Prepared {
   std::unique_ptr<Camera> camera;
   std::string camera_name;  ///< of the camera that was chosen, also where the job names none
   std::unique_ptr<ArtefactStore> artefacts;
-  std::unique_ptr<SpaceAnalysis> space;  ///< nothing of it is built yet
-  std::string content;                   ///< hashes of the files the picture depends on
+  std::unique_ptr<SpaceAnalysis> space;     ///< nothing of it is built yet
+  std::unique_ptr<VerdictMemory> verdicts;  ///< null: the budget is not limited by time
+  std::string content;                      ///< hashes of the files the picture depends on
   std::vector<std::string> warnings;
 };
 
@@ -27,7 +29,7 @@ Prepared prepare(const JobSpec& spec, const RunContext& context);
 
 /// Lets the integrator look at the scene and at its empty space; only what it asks for is built, or
 /// loaded from the cache. Throws MemoryLimitError, GeometryError, WaitInterrupted,
-/// Stopped.
-void analyse(const Prepared& prepared, const Budget& budget);
+/// Stopped. `resumes`: a checkpoint will be loaded.
+void analyse(const Prepared& prepared, const Budget& budget, bool resumes = false);
 
 }  // namespace lacuna

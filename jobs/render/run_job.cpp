@@ -156,7 +156,8 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
   if (prepared.integrator->needs().space) running.phase("analysing");
   try {
     const ScopedSeconds timed(phases["analysis"]);
-    analyse(prepared, spec.budget);
+    const bool resumes = std::filesystem::exists(folder.file("checkpoint.bin"));
+    analyse(prepared, spec.budget, resumes);
   } catch (const WaitInterrupted&) {
     return Outcome::interrupted;
   }

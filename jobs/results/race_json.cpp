@@ -33,6 +33,10 @@ OrderedJson candidate_json(const RaceRecord::Candidate& c) {
     const auto tail = c.standing.tail_known;
     j["tail_known"] = tail ? OrderedJson(*tail) : OrderedJson(nullptr);
     j["unexplained"] = c.standing.unexplained;
+    if (c.biased) {
+      j["bias_rmse"] = std::sqrt(c.standing.bias);
+      j["bias_known"] = c.standing.bias > 2 * c.standing.bias_deviation;
+    }
   }
   return j;
 }
@@ -85,6 +89,9 @@ OrderedJson race_json(const RaceRecord& race) {
   j["break_even"] = break_even(race);
   if (!race.blocks.empty()) {
     j["blocks"] = {{"pixels", race.block}, {"across", race.across}, {"candidate", race.blocks}};
+  }
+  if (!race.samples.empty()) {
+    j["samples"] = {{"pixels", race.block}, {"across", race.across}, {"iterations", race.samples}};
   }
   return j;
 }

@@ -62,11 +62,26 @@ void check_candidates(const JobSpec& spec, std::vector<Problem>& problems) {
                            lengths.max_depth, lengths.roulette_depth, settings->max_depth,
                            settings->roulette_depth)});
     }
-    if (biased(settings->candidates[i])) {
-      problems.push_back({at,
-                          "found settings that make the picture biased; allowed: settings "
-                          "without bias, which can be weighed by their noise"});
+    if (!is_allowed(settings->candidates[i], settings->allow)) {
+      problems.push_back(
+          {at, fmt::format("found settings that make the picture biased; allowed by \"allow\": "
+                           "\"{}\" are those without more",
+                           enum_name(settings->allow))});
     }
+    const auto* path = std::get_if<PathSettings>(&settings->candidates[i]);
+    if (path != nullptr && path->sampling != Sampling::uniform) {
+      problems.push_back({at + "/sampling",
+                          "found \"adaptive\"; allowed: \"uniform\", and \"adaptive\" as the "
+                          "sampling of \"auto\""});
+    }
+  }
+  const auto& all = settings->candidates;
+  const bool one_is_right =
+      all.empty() || std::any_of(all.begin(), all.end(), [](const auto& c) { return !biased(c); });
+  if (!one_is_right) {
+    problems.push_back({"/integrator/candidates",
+                        "found none without bias; allowed: lists with one, by which the bias of "
+                        "the others is known"});
   }
 }
 

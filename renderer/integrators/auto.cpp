@@ -13,6 +13,7 @@
 #include "renderer/integrators/integrators.h"
 #include "renderer/race/plan.h"
 #include "renderer/race/record.h"
+#include "renderer/race/verdict.h"
 
 namespace lacuna {
 
@@ -22,6 +23,8 @@ namespace {
 constexpr double worth_an_analysis = 10;
 /// The part of the race that a candidate's first iteration may take.
 constexpr double longest_first = 0.25;
+/// The factor by which an entrant must surely have been worse in an earlier race to be left out.
+constexpr double surely_worse = 2;
 /// Estimates that a budget is divided into. What a plan does in one is decided before it begins.
 constexpr double estimates_of_a_budget = 64;
 
@@ -62,20 +65,32 @@ class Auto final : public Integrator {
 
  private:
   bool counts_rays() const { return settings_.clock == RaceClock::rays; }
+  bool remembers() const { return settings_.remember && !counts_rays(); }
+  /// What an earlier race found, if it counts.
+  void recall(const PrepareContext& context);
+  void keep_verdict() const;
   /// Why a candidate does not take part; empty: it does.
   std::string excluded(std::size_t k, const PrepareContext& context) const;
-  /// One iteration of a candidate. Returns its cost.
-  double render(std::size_t k, const IterationContext& context, Image& image);
+  /// One iteration of a candidate, of `parts` of the picture. Returns its cost.
+  double render(std::size_t k, const IterationContext& context, Image& image,
+                std::span<const Tile> parts = {});
   void run_race(const IterationContext& context);
   void run_plan(const IterationContext& context);
   void begin_estimate();
+  Plan new_plan() const;
   void make_new_plan();
   void drop(std::size_t k, const std::exception& e, double cost);
+  void record_blocks() const;
+  void get_plan(ByteReader& in);
 
   AutoSettings settings_;
   std::vector<Candidate> candidates_;
   Race race_;
   std::optional<Plan> plan_;
+  std::shared_ptr<const Verdict> verdict_;  ///< of an earlier race
+  std::function<void(const Verdict&)> keep_;
+  /// An earlier race decided, perhaps by the pictures of this seed: the numbers are others.
+  bool recalled_ = false;
   std::uint64_t estimates_ = 0;  ///< that are finished
   std::uint64_t first_ = 0;      ///< iteration that the race was held in
   // Of the estimate in progress: it goes on where it was stopped.
@@ -87,6 +102,14 @@ class Auto final : public Integrator {
 
 std::string Auto::excluded(std::size_t k, const PrepareContext& context) const {
   if (k > 0 && context.scene.emitters().empty()) return "the scene has no light";
+  if (verdict_ != nullptr) {
+    const LogRatio& r = (*verdict_)[k];
+    const double least = r.value - 2 * r.deviation;
+    if (least > std::log(surely_worse)) {
+      return fmt::format("an earlier job found at least {:.2g} times the best one's error",
+                         std::exp(least));
+    }
+  }
   const bool chosen = !settings_.candidates.empty();
   const bool space = candidates_[k].integrator->needs().space;
   if (space && !chosen && context.budget_seconds && *context.budget_seconds < worth_an_analysis) {
@@ -96,12 +119,34 @@ std::string Auto::excluded(std::size_t k, const PrepareContext& context) const {
   return {};
 }
 
+void Auto::recall(const PrepareContext& context) {
+  if (!remembers() || context.verdicts == nullptr) return;
+  keep_ = context.verdicts->keep;
+  if (!context.resumes) verdict_ = context.verdicts->find();
+  if (verdict_ != nullptr && verdict_->size() != candidates_.size()) verdict_ = nullptr;
+  recalled_ = verdict_ != nullptr;
+}
+
+void Auto::keep_verdict() const {
+  if (!keep_ || recalled_ || candidates_.size() < 2) return;
+  Verdict verdict(candidates_.size(), {0, std::numeric_limits<double>::infinity()});
+  for (std::size_t k = 0; k < verdict.size(); ++k) {
+    const Entrant& e = race_.entrants()[k];
+    if (e.standing.error > 0) verdict[k] = e.standing.over_best;
+  }
+  keep_(verdict);
+}
+
 void Auto::prepare(const PrepareContext& context) {
+  recall(context);
   RaceLimits limits{.rounds = 3};
   if (!counts_rays() && context.budget_seconds) {
     limits = RaceLimits::of_seconds(*context.budget_seconds);
   }
-  race_ = Race(candidates_.size(), context.camera.width(), context.camera.height(), limits);
+  std::vector<std::uint8_t> with_bias;
+  for (const IntegratorSettings& c : candidates(settings_)) with_bias.push_back(biased(c) ? 1 : 0);
+  race_ =
+      Race(candidates_.size(), context.camera.width(), context.camera.height(), limits, with_bias);
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     if (const std::string why = excluded(k, context); !why.empty()) {
       race_.leave(k, why);
@@ -128,16 +173,19 @@ void Auto::drop(std::size_t k, const std::exception& e, double cost) {
   if (std::none_of(all.begin(), all.end(), [](const Entrant& x) { return x.racing; })) throw;
 }
 
-double Auto::render(std::size_t k, const IterationContext& context, Image& image) {
+double Auto::render(std::size_t k, const IterationContext& context, Image& image,
+                    std::span<const Tile> parts) {
   std::fill(image.pixels.begin(), image.pixels.end(), Rgb(0, 0, 0));
   // Streams of their own: methods that share random numbers are not independent, nor are shards,
   // which begin at different iterations.
-  const std::uint64_t seed =
-      context.seed + (k + 1 + candidates_.size() * first_) * 0x9E3779B97F4A7C15;
+  const std::uint64_t seed = context.seed +
+                             (k + 1 + candidates_.size() * first_) * 0x9E3779B97F4A7C15 +
+                             (recalled_ ? 0xD1B54A32D192ED03 : 0);
   const std::uint64_t iteration = race_.entrants()[k].trial.iterations();
   const double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
   const Counters c = candidates_[k].integrator->iterate(
-      {context.scene, context.camera, context.pool, seed, iteration, context.stop}, image);
+      {context.scene, context.camera, context.pool, seed, iteration, context.stop, {}, parts},
+      image);
   counters_ += c;
   if (counts_rays()) return static_cast<double>(c.rays + c.shadow_rays);
   return (clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start) / context.pool.threads();
@@ -174,9 +222,19 @@ void Auto::run_race(const IterationContext& context) {
   race_.close();
 }
 
+Plan Auto::new_plan() const {
+  PlanFreedom freedom{.regions = settings_.regions};
+  // One that does not race has no cost before it begins, and estimates should be of equal length.
+  if (candidates_.size() > 1) freedom.cost = race_.limits().budget / estimates_of_a_budget;
+  for (const Candidate& c : candidates_) {
+    const bool adaptive = settings_.sampling == Sampling::adaptive;
+    freedom.by_block.push_back(adaptive && c.integrator->renders_parts() ? 1 : 0);
+  }
+  return make_plan(race_, freedom);
+}
+
 void Auto::make_new_plan() {
-  const double budget = race_.limits().budget;
-  plan_ = make_plan(race_, budget / estimates_of_a_budget, settings_.regions);
+  plan_ = new_plan();
   begin_estimate();
 }
 
@@ -193,13 +251,18 @@ void Auto::run_plan(const IterationContext& context) {
   Image image(context.camera.width(), context.camera.height());
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     while (done_[k] < plan_->iterations[k]) {
-      const double cost = render(k, context, image);
       Trial& trial = race_.entrants()[k].trial;
-      trial.charge(cost);
+      std::size_t pixels = 0;
+      const std::vector<Tile> parts = parts_of(*plan_, trial.grid(), k, done_[k], pixels);
+      const double cost = render(k, context, image, parts);
+      const bool is_first = trial.iterations() == 0;
+      trial.charge(cost, double(pixels) / double(trial.grid().pixels()));
       // One of an estimate's tells as much of the noise for a part of the time.
       if (done_[k] == 0) trial.add(image);
       for (std::size_t i = 0; i < image.pixels.size(); ++i) sums_[k].pixels[i] += image.pixels[i];
       ++done_[k];
+      // Only now it is known how many iterations the budget holds. Their cost alone decides.
+      if (is_first) plan_ = new_plan();
     }
   }
 }
@@ -208,6 +271,7 @@ Counters Auto::iterate(const IterationContext& context, Image& image) {
   if (!plan_) {
     if (race_.spent() == 0) first_ = context.iteration;
     run_race(context);
+    keep_verdict();
     make_new_plan();
   }
   run_plan(context);
@@ -215,7 +279,8 @@ Counters Auto::iterate(const IterationContext& context, Image& image) {
   const Counters counters = std::exchange(counters_, {});
   ++estimates_;
   const bool power_of_two = (estimates_ & (estimates_ - 1)) == 0;
-  if (estimates_ >= 4 && power_of_two && candidates_.size() > 1) {
+  const bool has_a_choice = candidates_.size() > 1 || settings_.sampling == Sampling::adaptive;
+  if (estimates_ >= 4 && power_of_two && has_a_choice) {
     race_.judge();
     make_new_plan();
   } else {
@@ -233,6 +298,7 @@ const RaceRecord* Auto::race() const {
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     const Entrant& e = race_.entrants()[k];
     record_.candidates.push_back({.name = candidates_[k].name,
+                                  .biased = e.biased,
                                   .racing = e.racing,
                                   .reason = e.reason,
                                   .left_in = e.left_in,
@@ -245,10 +311,20 @@ const RaceRecord* Auto::race() const {
   if (!plan_) return &record_;
   record_.error = plan_->error;
   record_.gain = plan_->gain;
+  record_blocks();
+  return &record_;
+}
+
+void Auto::record_blocks() const {
   const BlockGrid& grid = race_.entrants()[0].trial.grid();
-  if (plan_->methods() < 2) return &record_;
   record_.block = grid.size;
   record_.across = grid.across;
+  for (std::size_t b = 0; plan_->is_adaptive() && b < grid.blocks(); ++b) {
+    int n = 0;
+    for (const auto& counts : plan_->counts) n += counts.empty() ? 0 : counts[b];
+    record_.samples.push_back(n);
+  }
+  if (plan_->methods() < 2) return;
   for (std::size_t b = 0; b < grid.blocks(); ++b) {
     std::size_t most = 0;
     const auto weight = [&](std::size_t k) {
@@ -259,7 +335,6 @@ const RaceRecord* Auto::race() const {
     }
     record_.blocks.push_back(int(most));
   }
-  return &record_;
 }
 
 void put_image(ByteWriter& out, const Image& image) {
@@ -285,17 +360,46 @@ void Auto::save(ByteWriter& out) const {
     out.put(c.prepared);
     if (c.prepared) c.integrator->save(out);
   }
+  out.put(recalled_);
   out.put(estimates_);
   out.put(first_);
   out.put(counters_);
   out.put(plan_.has_value());
   if (!plan_) return;
   out.put(plan_->iterations);
+  for (const auto& n : plan_->counts) out.put(n);
   for (const auto& w : plan_->weights) out.put(w);
   out.put(plan_->error);
   out.put(plan_->gain);
   out.put(done_);
   for (const Image& sum : sums_) put_image(out, sum);
+}
+
+void Auto::get_plan(ByteReader& in) {
+  const std::size_t n = candidates_.size();
+  const std::size_t blocks = race_.entrants()[0].trial.grid().blocks();
+  plan_->iterations = in.get_vector<int>();
+  if (plan_->iterations.size() != n) {
+    throw std::runtime_error("saved plan has another number of candidates");
+  }
+  for (std::size_t k = 0; k < n; ++k) plan_->counts.push_back(in.get_vector<int>());
+  for (std::size_t k = 0; k < n; ++k) plan_->weights.push_back(in.get_vector<float>());
+  for (std::size_t k = 0; k < n; ++k) {
+    if (plan_->iterations[k] == 0) continue;
+    const std::vector<int>& counts = plan_->counts[k];
+    if (counts.size() != blocks || plan_->weights[k].size() != blocks) {
+      throw std::runtime_error("saved plan has another number of blocks");
+    }
+    const auto [least, most] = std::minmax_element(counts.begin(), counts.end());
+    if (*least < 1 || *most != plan_->iterations[k]) {
+      throw std::runtime_error("saved plan has blocks without iterations");
+    }
+    if (!candidates_[k].prepared) {
+      throw std::runtime_error("saved plan has a candidate that takes no part now");
+    }
+  }
+  plan_->error = in.get<double>();
+  plan_->gain = in.get<double>();
 }
 
 void Auto::load(ByteReader& in) {
@@ -308,28 +412,13 @@ void Auto::load(ByteReader& in) {
     }
     if (saved) c.integrator->load(in);
   }
+  recalled_ = in.get<std::uint8_t>() != 0;
   estimates_ = in.get<std::uint64_t>();
   first_ = in.get<std::uint64_t>();
   counters_ = in.get<Counters>();
   if (in.get<std::uint8_t>() == 0) return;
   plan_.emplace();
-  plan_->iterations = in.get_vector<int>();
-  if (plan_->iterations.size() != candidates_.size()) {
-    throw std::runtime_error("saved plan has another number of candidates");
-  }
-  for (std::size_t k = 0; k < candidates_.size(); ++k) {
-    plan_->weights.push_back(in.get_vector<float>());
-    const bool used = plan_->iterations[k] > 0;
-    const std::size_t blocks = race_.entrants()[k].trial.grid().blocks();
-    if (used && plan_->weights[k].size() != blocks) {
-      throw std::runtime_error("saved plan has another number of blocks");
-    }
-    if (used && !candidates_[k].prepared) {
-      throw std::runtime_error("saved plan has a candidate that takes no part now");
-    }
-  }
-  plan_->error = in.get<double>();
-  plan_->gain = in.get<double>();
+  get_plan(in);
   begin_estimate();
   done_ = in.get_vector<int>();
   if (done_.size() != candidates_.size()) throw std::runtime_error("saved estimate is not one");

@@ -4,13 +4,21 @@ namespace lacuna {
 
 namespace {
 
-std::vector<CandidateSettings> by_default() {
+std::vector<CandidateSettings> by_default(Allow allow) {
   BdptSettings skeleton;
   skeleton.connections = SkeletonConnectionsSettings{};
   ManyLightsSettings lights;
   lights.visibility = ProbabilisticVisibilitySettings{};
   // In this order they begin: what is quick and wins most often comes first.
-  return {PathSettings{}, MetropolisSettings{}, BdptSettings{}, skeleton, lights};
+  std::vector<CandidateSettings> all{PathSettings{}, MetropolisSettings{}, BdptSettings{}, skeleton,
+                                     lights};
+  if (allow == Allow::unbiased) return all;
+  all.insert(all.end(), {VcmSettings{}, SppmSettings{}});
+  if (allow == Allow::consistent) return all;
+  ManyLightsSettings views;
+  views.visibility = ViewMapsVisibilitySettings{};
+  all.insert(all.end(), {PhotonMapSettings{}, views});
+  return all;
 }
 
 /// Collects the names of strategies that are not the first of their kind.
@@ -29,7 +37,8 @@ struct StrategyNames {
 
 std::vector<IntegratorSettings> candidates(const AutoSettings& settings) {
   std::vector<IntegratorSettings> all;
-  for (CandidateSettings c : settings.candidates.empty() ? by_default() : settings.candidates) {
+  for (CandidateSettings c :
+       settings.candidates.empty() ? by_default(settings.allow) : settings.candidates) {
     std::visit(
         [&](auto& s) {
           static_cast<PathLengths&>(s) = settings;

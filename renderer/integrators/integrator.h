@@ -34,6 +34,9 @@ class Integrator {
   /// Renders one more independent estimate of the whole picture into `image` (of the film's size,
   /// black).
   virtual Counters iterate(const IterationContext& context, Image& image) = 0;
+  /// Whether iterate() can render IterationContext::parts alone, for their part of the time.
+  /// Methods whose light paths serve all pixels can not.
+  virtual bool renders_parts() const { return false; }
   /// Names and numbers for the report, of this process' iterations.
   virtual std::vector<std::pair<std::string, double>> statistics() const { return {}; }
   /// The race of an integrator that chooses among others; null: it is no such one.

@@ -21,8 +21,9 @@ class PathTracer final : public GuidedIntegrator<Guide> {
   PathTracer(const PathSettings& settings, Guide guide)
       : GuidedIntegrator<Guide>(std::move(guide)), settings_(settings) {}
 
+  bool renders_parts() const override { return true; }
   Counters iterate(const IterationContext& context, Image& image) override {
-    const Tiling tiling(image);
+    const Tiling tiling(context, image);
     std::vector<typename Guide::Accumulator> accumulators(static_cast<std::size_t>(tiling.tiles()));
     const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
       render(context, image, tiling.tile(i), counters, accumulators[static_cast<std::size_t>(i)]);

@@ -7,10 +7,13 @@
 
 #include "analysis/space_analysis/space_analysis.h"
 #include "renderer/film/image.h"
+#include "renderer/path/tile.h"
 #include "renderer/scene/camera.h"
 #include "renderer/scene/scene.h"
 
 namespace lacuna {
+
+struct VerdictMemory;
 
 /// Thrown from an iteration when IterationContext::stop returned true. Its partial image is
 /// discarded; running the iteration again gives the same result.
@@ -28,6 +31,9 @@ struct IterationContext {
   const std::function<bool()>& stop;
   /// One image for each layer that the integrator fills: black at first, of the picture's size.
   std::span<Image> layers = {};
+  /// Of an integrator that renders parts: the tiles to render, which do not overlap. Empty: the
+  /// whole picture.
+  std::span<const Tile> parts = {};
 
   void check_stop() const {
     if (stop()) throw IterationStopped{};
@@ -54,6 +60,10 @@ struct PrepareContext {
   const Camera& camera;
   /// What the iterations may take: CPU seconds of each thread. None: not limited by time.
   std::optional<double> budget_seconds = std::nullopt;
+  /// What is known of races on this picture; null: nothing, and nothing is to be kept.
+  const VerdictMemory* verdicts = nullptr;
+  /// A checkpoint will be loaded: what was prepared then is prepared again.
+  bool resumes = false;
 };
 
 }  // namespace lacuna

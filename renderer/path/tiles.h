@@ -19,15 +19,6 @@ inline void accumulate(Rgb& pixel, const Rgb& value, Counters& counters) {
   pixel += value;
 }
 
-/// A rectangle of an image, rendered by one thread.
-struct Tile {
-  V2i first{0, 0};
-  V2i size{0, 0};
-
-  int pixels() const { return size.x * size.y; }
-  V2i pixel(int i) const { return first + V2i(i % size.x, i / size.x); }
-};
-
 /// Calls `work(i, counters)` for i in [0, n) in parallel and returns the sum of the counters.
 /// Throws IterationStopped when the context's stop() returns true.
 template <class Work>
@@ -44,7 +35,7 @@ Counters for_each_part(const IterationContext& context, int n, Work&& work) {
   return sum;
 }
 
-/// Divides an image into square tiles.
+/// Divides an image into square tiles, or names the parts that an iteration is asked for.
 class Tiling {
  public:
   /// `size`: pixels along a side; by default small enough to stop quickly and large enough to be
@@ -54,15 +45,23 @@ class Tiling {
         height_(image.height),
         size_(size),
         across_((image.width + size - 1) / size) {}
+  /// IterationContext::parts, if there are any.
+  Tiling(const IterationContext& context, const Image& image) : Tiling(image) {
+    parts_ = context.parts;
+  }
 
-  int tiles() const { return across_ * ((height_ + size_ - 1) / size_); }
+  int tiles() const {
+    return parts_.empty() ? across_ * ((height_ + size_ - 1) / size_) : int(parts_.size());
+  }
   Tile tile(int i) const {
+    if (!parts_.empty()) return parts_[static_cast<std::size_t>(i)];
     const V2i first = V2i(i % across_, i / across_) * size_;
     return {first, V2i(std::min(size_, width_ - first.x), std::min(size_, height_ - first.y))};
   }
 
  private:
   int width_, height_, size_, across_;
+  std::span<const Tile> parts_;
 };
 
 /// Calls `render(tile, counters)` for all tiles of `image` in parallel (for_each_part()).

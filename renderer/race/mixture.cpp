@@ -1,43 +1,57 @@
 #include "renderer/race/mixture.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lacuna {
 
-std::vector<double> best_shares(std::span<const BlockSums> errors) {
-  constexpr int steps = 200;
-  const std::size_t n = errors.size();
-  std::vector<double> shares(n, 1 / double(n));
-  for (int step = 0; step < steps && n > 1; ++step) {
-    std::vector<double> gains(n, 0.0);
-    double all = 0;
-    for (std::size_t b = 0; b < errors[0].size(); ++b) {
-      double precision = 0;
-      for (std::size_t k = 0; k < n; ++k) precision += shares[k] / errors[k][b];
-      if (!(precision > 0)) continue;
-      all += 1 / precision;
-      for (std::size_t k = 0; k < n; ++k) {
-        gains[k] += 1 / errors[k][b] / (precision * precision);
-      }
+namespace {
+
+/// What a little more time for each method in each block would take off the variance, per block.
+void find_gains(std::span<const BlockSums> errors, const Shares& shares, Shares& gains) {
+  for (std::size_t b = 0; b < errors[0].size(); ++b) {
+    double precision = 0;
+    for (std::size_t k = 0; k < errors.size(); ++k) precision += shares[k][b] / errors[k][b];
+    for (std::size_t k = 0; k < errors.size(); ++k) {
+      gains[k][b] = precision > 0 ? 1 / errors[k][b] / (precision * precision) : 0;
     }
-    if (!(all > 0)) return shares;
+  }
+}
+
+}  // namespace
+
+double share_of(const BlockSums& in_blocks) { return total(in_blocks) / double(in_blocks.size()); }
+
+Shares best_shares(std::span<const BlockSums> errors, std::span<const std::uint8_t> by_block) {
+  constexpr int steps = 400;
+  const std::size_t n = errors.size(), blocks = errors[0].size();
+  Shares shares(n, BlockSums(blocks, 1 / double(n))), gains = shares;
+  const bool nothing_to_choose = n < 2 && (by_block.empty() || by_block[0] == 0);
+  for (int step = 0; step < steps && !nothing_to_choose; ++step) {
+    find_gains(errors, shares, gains);
     double sum = 0;
-    for (std::size_t k = 0; k < n; ++k) sum += shares[k] *= gains[k] / all;
-    for (double& s : shares) s /= sum;
+    for (std::size_t k = 0; k < n; ++k) {
+      if (by_block.empty() || by_block[k] == 0) gains[k].assign(blocks, share_of(gains[k]));
+      for (std::size_t b = 0; b < blocks; ++b) shares[k][b] *= std::sqrt(gains[k][b]);
+      sum += share_of(shares[k]);
+    }
+    for (BlockSums& share : shares) {
+      for (double& s : share) s /= sum;
+    }
   }
   return shares;
 }
 
-double mixed_error(std::span<const double> shares, std::span<const BlockSums> assumed,
+double mixed_error(const Shares& shares, std::span<const BlockSums> assumed,
                    std::span<const BlockSums> errors) {
   double sum = 0;
   for (std::size_t b = 0; b < errors[0].size(); ++b) {
     double precision = 0, variance = 0;
     for (std::size_t k = 0; k < shares.size(); ++k) {
-      if (!(shares[k] > 0)) continue;
-      const double weight = shares[k] / assumed[k][b];
+      if (!(shares[k][b] > 0)) continue;
+      const double weight = shares[k][b] / assumed[k][b];
       precision += weight;
-      variance += weight * weight * errors[k][b] / shares[k];
+      variance += weight * weight * errors[k][b] / shares[k][b];
     }
     if (precision > 0) sum += variance / (precision * precision);
   }

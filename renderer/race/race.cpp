@@ -35,6 +35,8 @@ void put_standing(ByteWriter& out, const Standing& s) {
   out.put(s.tail_known.has_value());
   out.put(s.tail_known.value_or(false));
   out.put(s.unexplained);
+  out.put(s.bias);
+  out.put(s.bias_deviation);
 }
 
 Standing get_standing(ByteReader& in) {
@@ -46,6 +48,8 @@ Standing get_standing(ByteReader& in) {
   const bool known = in.get<std::uint8_t>() != 0;
   if (tail) s.tail_known = known;
   s.unexplained = in.get<std::uint8_t>() != 0;
+  s.bias = in.get<double>();
+  s.bias_deviation = in.get<double>();
   return s;
 }
 
@@ -66,10 +70,12 @@ RaceLimits RaceLimits::of_seconds(double seconds) {
   return limits;
 }
 
-Race::Race(std::size_t entrants, int width, int height, const RaceLimits& limits)
+Race::Race(std::size_t entrants, int width, int height, const RaceLimits& limits,
+           const std::vector<std::uint8_t>& biased)
     : limits_(limits), entrants_(entrants, Entrant{.trial = Trial(width, height)}) {
   measured_.assign(entrants, BlockSums(BlockGrid(width, height).blocks(), 0.0));
   variances_ = measured_;
+  for (std::size_t k = 0; k < biased.size(); ++k) entrants_[k].biased = biased[k] != 0;
 }
 
 std::size_t Race::racing() const {
@@ -159,10 +165,10 @@ double Race::likely_ratio(std::size_t a, std::size_t b) const {
                                                     : other;
 }
 
-std::size_t Race::best() const {
+std::size_t Race::best_of(bool biased) const {
   std::size_t best = entrants_.size();
   for (std::size_t k = 0; k < entrants_.size(); ++k) {
-    if (!entrants_[k].racing) continue;
+    if (!entrants_[k].racing || (entrants_[k].biased && !biased)) continue;
     const bool known = entrants_[k].trial.estimates() > 0;
     if (best == entrants_.size() ||
         (known && (entrants_[best].trial.estimates() == 0 || likely_ratio(k, best) < 0))) {
@@ -170,6 +176,12 @@ std::size_t Race::best() const {
     }
   }
   return best;
+}
+
+std::size_t Race::yardstick() const {
+  const bool needed = std::any_of(entrants_.begin(), entrants_.end(),
+                                  [](const Entrant& e) { return e.racing && e.biased; });
+  return needed ? best_of(false) : entrants_.size();
 }
 
 void Race::estimate_variances() {
@@ -193,11 +205,14 @@ void Race::estimate_variances() {
   }
 }
 
+double Race::rest(const Trial& trial) const {
+  return limits_.budget > 0 ? std::max(0.0, limits_.budget - spent_) : 16 * trial.cost();
+}
+
 double Race::foreseen_growth(std::size_t which) const {
   const Trial& t = entrants_[which].trial;
   const double cost = t.iteration_cost();
-  const double rest = limits_.budget > 0 ? std::max(0.0, limits_.budget - spent_) : 16 * t.cost();
-  const double growth = cost > 0 ? t.growth(rest / cost) : 1;
+  const double growth = cost > 0 ? t.growth(rest(t) / cost) : 1;
   return t.tail_is_known().value_or(true) ? growth : doubt * growth;
 }
 
@@ -206,22 +221,48 @@ void Race::judge_alone(std::size_t which, const BlockSums& hidden, double growth
   Standing& s = e.standing;
   variances_[which] = measured_[which];
   // Differences of singles are in their variances already.
-  s.unexplained =
-      e.trial.estimates() > 1 && total(hidden) > 3 * standard_deviation(e.trial.grid(), hidden);
+  s.unexplained = !e.biased && e.trial.estimates() > 1 &&
+                  total(hidden) > 3 * standard_deviation(e.trial.grid(), hidden);
   for (std::size_t b = 0; s.unexplained && b < hidden.size(); ++b) {
     variances_[which][b] += std::max(0.0, hidden[b]) * double(e.trial.estimates());
   }
   s.growth = growth;
   s.tail_known = e.trial.tail_is_known();
   for (double& v : variances_[which]) v *= growth;
+  if (e.biased && e.trial.estimates() > 1) count_bias(which, hidden);
   s.error = std::max(0.0, total(variances_[which])) * e.trial.iteration_cost() /
             double(e.trial.grid().pixels());
 }
 
+BlockSums Race::hidden_error(std::size_t which) const {
+  const Trial nothing;
+  std::vector<const Trial*> trials;
+  for (std::size_t k = 0; k < entrants_.size(); ++k) {
+    trials.push_back(entrants_[k].biased && k != which ? &nothing : &entrants_[k].trial);
+  }
+  return unexplained_error(trials, measured_, which);
+}
+
+void Race::count_bias(std::size_t which, const BlockSums& hidden) {
+  Entrant& e = entrants_[which];
+  const double sum = total(hidden), deviation = standard_deviation(e.trial.grid(), hidden);
+  const auto pixels = double(e.trial.grid().pixels());
+  e.standing.bias = std::max(0.0, sum) / pixels;
+  e.standing.bias_deviation = deviation / pixels;
+  const double iterations = rest(e.trial) / std::max(1e-12, e.trial.iteration_cost());
+  // A bias that is not seen may still be as large as what would hide it.
+  const double counted = std::max(sum, deviation) * iterations;
+  BlockSums positive = hidden;
+  for (double& v : positive) v = std::max(0.0, v);
+  const double all = total(positive);
+  for (std::size_t b = 0; b < positive.size(); ++b) {
+    const double part = sum > deviation ? positive[b] / all : 1 / double(positive.size());
+    variances_[which][b] += part * counted;
+  }
+}
+
 void Race::judge() {
   estimate_variances();
-  std::vector<const Trial*> trials;
-  for (const Entrant& e : entrants_) trials.push_back(&e.trial);
   double most = 1;
   for (std::size_t k = 0; k < entrants_.size(); ++k) {
     if (entrants_[k].racing) most = std::max(most, foreseen_growth(k));
@@ -230,7 +271,7 @@ void Race::judge() {
     const Entrant& e = entrants_[k];
     if (!e.racing || e.trial.estimates() == 0) continue;
     const bool known = e.trial.tail_is_known().has_value();
-    judge_alone(k, unexplained_error(trials, measured_, k), known ? foreseen_growth(k) : most);
+    judge_alone(k, hidden_error(k), known ? foreseen_growth(k) : most);
   }
   call_back(most);
   const std::size_t leader = best();
@@ -268,7 +309,7 @@ bool Race::is_beaten(std::size_t which) const {
 void Race::drop_losers() {
   const bool of_singles = round_ == 0;
   if (of_singles && racing() == 2) return;  // two estimates do not say whose noise it is
-  const std::size_t leader = best();
+  const std::size_t leader = best(), measure = yardstick();
   std::vector<std::size_t> who;
   std::vector<BlockSums> errors;
   for (std::size_t k = 0; k < entrants_.size(); ++k) {
@@ -279,12 +320,13 @@ void Race::drop_losers() {
   }
   const bool without_noise =
       entrants_[leader].trial.estimates() > 1 && !(total(variances_[leader]) > 0);
-  std::vector<double> shares(who.size(), 0.0);
+  Shares shares;
   if (!without_noise) shares = best_shares(errors);
   std::vector<std::size_t> losers;
   for (std::size_t i = 0; i < who.size(); ++i) {
-    const bool useful = !of_singles && shares[i] >= worthwhile_share;
-    if (who[i] == leader || (!without_noise && (useful || !is_beaten(who[i])))) continue;
+    const bool useful = !of_singles && !without_noise && share_of(shares[i]) >= worthwhile_share;
+    if (who[i] == leader || who[i] == measure || (!without_noise && (useful || !is_beaten(who[i]))))
+      continue;
     losers.push_back(who[i]);
   }
   for (const std::size_t k : losers) {

@@ -30,6 +30,9 @@ struct Standing {
   double growth = 1;   ///< the part of `error` that is foreseen from the tail (Trial::growth())
   std::optional<bool> tail_known;  ///< none: too few iterations to say
   bool unexplained = false;  ///< `error` counts a difference to the others (unexplained_error())
+  /// Of a biased method: the mean squared difference of a pixel to the unbiased ones, without
+  /// noise, and its standard deviation.
+  double bias = 0, bias_deviation = 0;
 };
 
 /// One line of the race's record.
@@ -45,6 +48,7 @@ struct RaceRow {
 struct Entrant {
   Trial trial;
   bool racing = true;
+  bool biased = false;      ///< its bias counts as error, and it shares the picture with no other
   bool beaten = false;      ///< left because of its error: comes back if the others prove worse
   std::string reason = {};  ///< why it left
   int left_in = -1;         ///< round
@@ -61,7 +65,9 @@ struct Entrant {
 class Race {
  public:
   Race() = default;
-  Race(std::size_t entrants, int width, int height, const RaceLimits& limits);
+  /// `biased`: of each entrant; empty: none is.
+  Race(std::size_t entrants, int width, int height, const RaceLimits& limits,
+       const std::vector<std::uint8_t>& biased = {});
 
   /// Nothing: the race is over.
   std::optional<std::size_t> next() const;
@@ -83,7 +89,7 @@ class Race {
   const RaceLimits& limits() const { return limits_; }
   /// The racing entrant that is likely to have the least error for its cost; the first, where
   /// nothing is known.
-  std::size_t best() const;
+  std::size_t best() const { return best_of(true); }
   /// Variances of one iteration, as far as they are known, growth and unexplained errors included.
   const std::vector<BlockSums>& variances() const { return variances_; }
 
@@ -92,12 +98,22 @@ class Race {
   void load(class ByteReader& in);
 
  private:
+  /// best(), of the unbiased alone where `biased` is false; entrants().size(): there is none.
+  std::size_t best_of(bool biased) const;
+  /// The entrant that tells the bias of the others; entrants().size(): no biased one races.
+  std::size_t yardstick() const;
   bool in_this_round(const Entrant& e) const;
   std::size_t racing() const;
   void end_round();
   void estimate_variances();
   /// Of an entrant's error, by the end of the budget (Trial::growth()).
   double foreseen_growth(std::size_t which) const;
+  /// The difference to the unbiased entrants that variances do not explain.
+  BlockSums hidden_error(std::size_t which) const;
+  /// Adds the bias to the variances, as large as it is for the rest of the budget.
+  void count_bias(std::size_t which, const BlockSums& hidden);
+  /// What is left of the budget for an entrant, in costs.
+  double rest(const Trial& trial) const;
   /// The standing but for the comparison. `hidden`: unexplained_error(). `growth`: where few
   /// iterations show no tail, the largest of the others', because one scene's rare bright paths
   /// are rare for most methods.

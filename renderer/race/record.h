@@ -13,6 +13,7 @@ namespace lacuna {
 struct RaceRecord {
   struct Candidate {
     std::string name = {};
+    bool biased = false;
     bool racing = false;      ///< to the end of the race, or back since
     std::string reason = {};  ///< why it left, if it did
     int left_in = -1;         ///< round
@@ -33,6 +34,8 @@ struct RaceRecord {
   /// The candidate with the largest weight in each block, rows of `across` blocks of `block`
   /// pixels; empty: the same everywhere.
   std::vector<int> blocks = {};
+  /// Iterations of all candidates in one estimate of each block; empty: the same everywhere.
+  std::vector<int> samples = {};
   int block = 0, across = 0;
 };
 

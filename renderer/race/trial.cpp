@@ -29,8 +29,9 @@ Trial::Trial(int width, int height) : grid_(width, height), mean_(width, height)
   for (auto& s : sums_) s.assign(grid_.blocks(), 0.0);
 }
 
-void Trial::charge(double cost) {
+void Trial::charge(double cost, double share) {
   ++charged_;
+  pictures_charged_ += share;
   cost_ += cost;
 }
 
@@ -92,6 +93,7 @@ void Trial::save(ByteWriter& out) const {
   out.put(estimates_);
   out.put(charged_);
   out.put(cost_);
+  out.put(pictures_charged_);
   std::vector<float> values;
   values.reserve(3 * mean_.pixels.size());
   for (const Rgb& c : mean_.pixels) values.insert(values.end(), {c.x, c.y, c.z});
@@ -104,11 +106,14 @@ void Trial::load(ByteReader& in) {
   estimates_ = in.get<std::uint64_t>();
   charged_ = in.get<std::uint64_t>();
   cost_ = in.get<double>();
+  pictures_charged_ = in.get<double>();
   const std::vector<float> values = in.get_vector<float>();
   const bool size = values.size() == 3 * grid_.pixels();
   const bool finite =
       std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
-  if (!size || !finite || !(cost_ >= 0) || !std::isfinite(cost_) || estimates_ > charged_) {
+  const bool charged = pictures_charged_ >= 0 && pictures_charged_ <= double(charged_) * (1 + 1e-9);
+  const bool cost = cost_ >= 0 && std::isfinite(cost_);
+  if (!size || !finite || !cost || !charged || estimates_ > charged_) {
     throw std::runtime_error("saved trial of a method is not one");
   }
   for (std::size_t i = 0; i < mean_.pixels.size(); ++i) {

@@ -21,13 +21,14 @@ class Trial {
   /// Adds the estimate of one iteration.
   void add(const Image& estimate);
   /// Counts the cost of an iteration, whether its estimate is added or not: CPU seconds of each
-  /// thread, or rays.
-  void charge(double cost);
+  /// thread, or rays. `share`: the part of the picture that it rendered.
+  void charge(double cost, double share = 1);
 
   std::uint64_t estimates() const { return estimates_; }  ///< that were added
   std::uint64_t iterations() const { return charged_; }
   double cost() const { return cost_; }  ///< of all iterations
-  double iteration_cost() const { return charged_ > 0 ? cost_ / double(charged_) : 0; }
+  /// Of an iteration of the whole picture.
+  double iteration_cost() const { return pictures_charged_ > 0 ? cost_ / pictures_charged_ : 0; }
   const BlockGrid& grid() const { return grid_; }
   /// Of the estimates that were added.
   const Image& mean() const { return mean_; }
@@ -59,6 +60,7 @@ class Trial {
   Image mean_;
   std::uint64_t estimates_ = 0, charged_ = 0;
   double cost_ = 0;
+  double pictures_charged_ = 0;  ///< the sum of their shares
   /// Sums over the pixels of a block, of deviations 0, 2, 4... and 1, 3, 5...
   std::array<std::vector<double>, 2> sums_;
   /// Of whole pictures: pixels differ in their noise, which is no tail.

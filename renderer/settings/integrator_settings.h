@@ -65,6 +65,12 @@ bool consistent(const std::variant<Ts...>& settings) {
       settings);
 }
 
+/// Whether a candidate's settings have no more bias than is allowed.
+inline bool is_allowed(const CandidateSettings& settings, Allow allow) {
+  return allow == Allow::biased || !biased(settings) ||
+         (allow == Allow::consistent && consistent(settings));
+}
+
 /// All layers that a job with this integrator can request.
 template <class... Ts>
 std::vector<ImageLayer> offered_layers(const std::variant<Ts...>& settings) {

@@ -4,6 +4,7 @@
 
 #include "renderer/settings/guide_settings.h"
 #include "renderer/settings/path_lengths.h"
+#include "renderer/settings/sampling_settings.h"
 
 namespace lacuna {
 
@@ -15,6 +16,7 @@ struct PathSettings : PathLengths {
 
   GuideSettings guide = BsdfGuideSettings{};
   bool next_event_estimation = true;
+  Sampling sampling = Sampling::uniform;
 
   bool operator==(const PathSettings&) const = default;
 };
@@ -25,6 +27,7 @@ void describe(V& v, PathSettings& s) {
   v("guide", s.guide, {.doc = "how the next direction is sampled"});
   v("next_event_estimation", s.next_event_estimation,
     {.doc = "also sample a point on an emitter at every vertex"});
+  v("sampling", s.sampling, {.doc = "how many samples the pixels get"});
 }
 
 }  // namespace lacuna

@@ -13,19 +13,19 @@ const jobFolders = (service) =>
 const running = (sweep) => sweep.runs.filter((r) => r.state === "running").map((r) => r.run);
 
 test("runs become jobs a few at a time, in their order, among other people's jobs", async (t) => {
-  const service = await Service.start(folders(t));
+  const service = await Service.start(folders(t), ["--max-jobs", "16"]);
   const { id, runs } = await service.postSweep("turn go", {
-    axes: { "/integrator/max_depth": Array.from({ length: 20 }, (_, i) => i + 2) }, seeds: 2 });
-  await until(async () => (await service.json("/api/jobs")).total === 32, "as many wait as may");
+    axes: { "/integrator/max_depth": Array.from({ length: 6 }, (_, i) => i + 2) }, seeds: 2 });
+  await until(async () => (await service.json("/api/jobs")).total === 8, "as many wait as may");
   const other = await service.post("finish");
-  assert.equal((await service.sweep(id)).runs[32].job, null);
+  assert.equal((await service.sweep(id)).runs[8].job, null);
   for (const [i, run] of runs.entries()) {
-    if (i === 34) await service.reaches(other, "done");  // before the runs that were no jobs yet
+    if (i === 10) await service.reaches(other, "done");  // before the runs that were no jobs yet
     await service.runReaches(id, i, "running");
     const sweep = await service.sweep(id);
     assert.deepEqual(running(sweep), [run.run]);
     assert.equal(sweep.counts.queued, runs.length - 1 - i);
-    assert.ok((await service.json(`/api/jobs?sweep=${id}&state=queued,running`)).total <= 32);
+    assert.ok((await service.json(`/api/jobs?sweep=${id}&state=queued,running`)).total <= 8);
     service.open("go");
   }
   const done = await service.sweepReaches(id, "done");
@@ -129,17 +129,17 @@ test("killed at any moment, a sweep goes on with no run lost or doubled", async 
   const places = folders(t);
   let service = await Service.start(places, ["--max-attempts", "1000"]);
   const { id } = await service.postSweep("finish", {
-    axes: { "/integrator/max_depth": [2, 3, 4, 5] }, seeds: 20 });
+    axes: { "/integrator/max_depth": [2, 3] }, seeds: 12 });
   let over = false;
-  for (let round = 0; round < 12 && !over; round += 1) {
+  for (let round = 0; round < 6 && !over; round += 1) {
     await pause(30 + 37 * round);
     await service.stop(round % 3 === 2 ? "SIGTERM" : "SIGKILL");
     service = await Service.start(places, ["--max-attempts", "1000"]);
     over = (await service.sweep(id)).state === "done";
   }
-  const sweep = await service.sweepReaches(id, "done", 600000);  // 80 processes, on a machine that may be busy
-  assert.equal(sweep.counts.done, 80);
-  assert.equal(new Set(sweep.runs.map((r) => r.job)).size, 80);
+  const sweep = await service.sweepReaches(id, "done", 600000);  // 24 processes, on a machine that may be busy
+  assert.equal(sweep.counts.done, 24);
+  assert.equal(new Set(sweep.runs.map((r) => r.job)).size, 24);
   assert.deepEqual(jobFolders(service), sweep.runs.map((r) => r.job).sort());
   const names = fs.readdirSync(path.join(places.data, "jobs")).filter((n) => n.startsWith("."));
   assert.deepEqual(names, [], "no folder is left half-made");

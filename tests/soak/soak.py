@@ -37,6 +37,14 @@ def sanitizers(preset, options):
     return bool(results) and all(results)
 
 
+def long_tests():
+    """The tests that `./dev test` has no time for."""
+    programs = sorted((ROOT / "build/release/tests").glob("test_*"))
+    results = [run(f"long tests: {program.name}", [str(program), "--gtest_brief=1", "--gtest_filter=Long*"])
+               for program in programs if os.access(program, os.X_OK)]
+    return bool(results) and all(results)
+
+
 def fuzz(seconds):
     """Every fuzz target, going on from the corpus that earlier runs found; findings: build/fuzz/findings."""
     return (run("fuzz: build", ["./dev", "build", "fuzz", "fuzz"])
@@ -54,6 +62,7 @@ CHECKS = {
     "kills": lambda _: kills(20),
     "service": lambda _: service(200),
     "faults": lambda _: run("faults of the machine, which cost no job", ["node", "tests/soak/faults.mjs"]),
+    "long": lambda _: long_tests(),
     "asan": lambda _: sanitizers("asan", {
         "LSAN_OPTIONS": f"suppressions={ROOT}/tests/soak/lsan.txt",
     }),

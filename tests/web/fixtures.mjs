@@ -61,6 +61,7 @@ const race = {
   plan: { mse_times_cost: 0.018, over_best_alone: 0.9, expected_rmse: 0.03 },
   break_even: [{ below_seconds: 4, better: "path" }],
   blocks: { pixels: 16, across: 3, candidate: [0, 0, 1, 1, 0, 1] },
+  samples: { pixels: 16, across: 3, iterations: [8, 8, 4, 12, 8, 8] },
 };
 
 function jobFile(changes) {

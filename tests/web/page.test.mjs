@@ -120,7 +120,8 @@ test("a job that chose its method shows the race", async () => {
   assert.match(race, /bdpt, skeleton\s+unknown\s+2\s+0\.200\ss\s+1\.50\ss\s+left in round 1: worse than another/);
   assert.equal(await count(".race g.curve"), 2);
   assert.equal(await count(".race .scroll tbody tr"), 3);
-  assert.equal(await count(".race svg[shape-rendering] rect"), 6);
+  assert.equal(await count(".race svg[shape-rendering] rect"), 2 * 6);
+  assert.match(race, /Samples in each block of 16 × 16 pixels\s+Over the mean: 0\.500 \(dark\) to 1\.50 \(light\)\./);
   assert.doesNotMatch(await page.locator(".report").innerText(), /race/i);
   await screenshot(page, "race");
 });

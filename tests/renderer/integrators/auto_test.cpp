@@ -90,6 +90,52 @@ TEST(Auto, ItsChoiceDoesNotDarkenThePicture) {
   EXPECT_GT(chosen, 100) << "without a choice there is nothing to see";
 }
 
+PathSettings adaptive(int max_depth) {
+  PathSettings s = test::path_tracing(max_depth);
+  s.sampling = Sampling::adaptive;
+  return s;
+}
+
+// Where many samples are taken follows from samples that are not those.
+TEST(Auto, AdaptiveSamplingIsRight) {
+  for (const char* scene : {"cornell", "ajar"}) {
+    SCOPED_TRACE(scene);
+    RenderSettings expected = picture(test::path_tracing(4), 1600);
+    RenderSettings found = picture(adaptive(4), 200);
+    expected.width = found.width = 40;  // more than one block
+    expected.height = found.height = 24;
+    expected.seed = 2;
+    test::expect_same_picture(test::render(load(PathScene{scene}), found),
+                              test::render(load(PathScene{scene}), expected), 0.2);
+  }
+}
+
+TEST(Auto, AdaptiveSamplingHasBitsAndState) {
+  RenderSettings s = picture(adaptive(4), 12);
+  s.width = 64;
+  s.height = 48;
+  const auto start = [&](int threads) {
+    RenderSettings on = s;
+    on.threads = threads;
+    return std::make_unique<Session>(load_gltf(own_scene("ajar.glb")), on);
+  };
+  const auto straight = start(1), parallel = start(3);
+  std::vector<Image> expected;
+  for (std::uint64_t i = 0; i < 12; ++i) expected.push_back(straight->iterate(i));
+  for (std::uint64_t i = 0; i < 12; ++i) EXPECT_EQ(parallel->iterate(i).pixels, expected[i].pixels);
+  const RaceRecord* race = straight->integrator().race();
+  ASSERT_NE(race, nullptr);
+  EXPECT_FALSE(race->samples.empty()) << "the door shows more noise in some blocks";
+  const auto stopped = start(2);
+  for (std::uint64_t i = 0; i < 7; ++i) stopped->iterate(i);
+  ByteWriter saved;
+  stopped->integrator().save(saved);
+  const auto resumed = start(2);
+  ByteReader in(saved.bytes());
+  resumed->integrator().load(in);
+  for (std::uint64_t i = 7; i < 12; ++i) EXPECT_EQ(resumed->iterate(i).pixels, expected[i].pixels);
+}
+
 TEST(Auto, OneCandidateIsRenderedAsItIs) {
   RenderSettings s = picture(choosing_among(4, {BdptSettings{}}), 8);
   Session session(load_gltf(own_scene("cornell.glb")), s);

@@ -130,7 +130,7 @@ double brightness_of_hits(const GuideSettings& guide, int depth, int seed) {
   return pixels.mean();
 }
 
-TEST(GuidedDepth, BidirectionalPathTracingOfManyEdgesIsNotDark) {
+TEST(LongGuidedDepth, BidirectionalPathTracingOfManyEdgesIsNotDark) {
   constexpr int depth = 100;
   for (const GuideSettings& guide :
        {GuideSettings(test::in_small_pictures(SkeletonGuideSettings{})),

@@ -41,11 +41,14 @@ struct Place {
   friend std::ostream& operator<<(std::ostream& out, const Place& p) { return out << p.scene; }
 };
 const std::vector<Place> places{
-    {{"cornell"}, 250, 0.02},    {{"glass"}, 150, 0.04}, {{"mirror"}, 200, 0.05},
-    {{"point"}, 150, 0.04},      {{"spot"}, 150, 0.03},  {{"directional"}, 150, 0.04},
-    {{"open", true}, 250, 0.06}, {{"sides"}, 200, 0.03}, {{"coated"}, 120, 0.04},
-    {{"leaning"}, 120, 0.08},
+    {{"cornell"}, 250, 0.02}, {{"glass"}, 150, 0.04},   {{"spot"}, 150, 0.03},
+    {{"coated"}, 120, 0.04},  {{"leaning"}, 120, 0.08},
 };
+const std::vector<Place> more_places{{{"mirror"}, 200, 0.05},
+                                     {{"point"}, 150, 0.04},
+                                     {{"directional"}, 150, 0.04},
+                                     {{"open", true}, 250, 0.06},
+                                     {{"sides"}, 200, 0.03}};
 
 class Merging : public testing::TestWithParam<Place> {};
 
@@ -80,6 +83,8 @@ TEST_P(Merging, GivesThePictureOfPathTracingAsTheRadiusVanishes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Merging, testing::ValuesIn(places),
+                         [](const auto& p) { return p.param.scene.name; });
+INSTANTIATE_TEST_SUITE_P(Long, Merging, testing::ValuesIn(more_places),
                          [](const auto& p) { return p.param.scene.name; });
 
 TEST(Vcm, WithoutMergingIsBidirectionalPathTracingBitByBit) {

@@ -69,7 +69,7 @@ std::vector<double> errors_of(const SppmSettings& settings, std::uint64_t seed,
   return errors;
 }
 
-TEST(Sppm, ErrorFallsAtTheRateOfItsSchedule) {
+TEST(LongSppm, ErrorFallsAtTheRateOfItsSchedule) {
   const RenderSettings precise{.integrator = test::path_tracing(2),
                                .width = 12,
                                .height = 8,

@@ -157,10 +157,10 @@ TEST(Trial, ForeseesWhatIsStillToCome) {
 TEST(Mixture, SharesOfMirroredMethodsAreEqual) {
   const BlockSums a{1, 1, 9, 9}, b{9, 9, 1, 1}, bad{50, 50, 50, 50};
   const std::vector<BlockSums> errors{a, b, bad};
-  const std::vector<double> shares = best_shares(errors);
-  EXPECT_NEAR(shares[0], 0.5, 1e-3);
-  EXPECT_NEAR(shares[1], 0.5, 1e-3);
-  EXPECT_NEAR(shares[2], 0, 1e-3);
+  const Shares shares = best_shares(errors);
+  EXPECT_NEAR(share_of(shares[0]), 0.5, 1e-3);
+  EXPECT_NEAR(share_of(shares[1]), 0.5, 1e-3);
+  EXPECT_NEAR(share_of(shares[2]), 0, 1e-3);
   // 1 / (1/2 + 1/18) in each of four blocks.
   EXPECT_NEAR(mixed_error(shares, errors, errors), 4 * 1.8, 1e-2);
 }
@@ -174,16 +174,58 @@ TEST(Mixture, SharesAreOptimal) {
     for (auto& e : errors) {
       for (double& v : e) v = values(random);
     }
-    const std::vector<double> best = best_shares(errors);
+    const Shares best = best_shares(errors);
     const double error = mixed_error(best, errors, errors);
     for (std::size_t from = 0; from < 4; ++from) {
       for (std::size_t to = 0; to < 4; ++to) {
-        std::vector<double> moved = best;
-        const double step = std::min(0.01, moved[from]);
-        moved[from] -= step;
-        moved[to] += step;
+        Shares moved = best;
+        const double step = std::min(0.01, moved[from][0]);
+        for (double& s : moved[from]) s -= step;
+        for (double& s : moved[to]) s += step;
         EXPECT_GT(mixed_error(moved, errors, errors), error * (1 - 1e-4));
       }
+    }
+  }
+}
+
+// Alone, a method that renders blocks by themselves spends on them in proportion to their noise.
+TEST(Mixture, BlocksGetTheRootOfTheirVariance) {
+  const BlockSums noise{1, 4, 25, 100};
+  const std::vector<BlockSums> errors{noise};
+  const std::vector<std::uint8_t> by_block{1};
+  const Shares shares = best_shares(errors, by_block);
+  const double mean = (1 + 2 + 5 + 10) / 4.0;
+  for (std::size_t b = 0; b < noise.size(); ++b) {
+    EXPECT_NEAR(shares[0][b], std::sqrt(noise[b]) / mean, 1e-6);
+  }
+  // 4 blocks' time: (sum of roots)^2 / 4.
+  EXPECT_NEAR(mixed_error(shares, errors, errors), 18 * 18 / 4.0, 1e-6);
+  EXPECT_NEAR(mixed_error(best_shares(errors), errors, errors), total(noise), 1e-9);
+}
+
+// One renders whole pictures, the other blocks: no time can be moved with gain.
+TEST(Mixture, SharesOfBlocksAreOptimal) {
+  std::mt19937_64 random(6);
+  std::lognormal_distribution<double> values(0, 1);
+  const std::vector<std::uint8_t> by_block{0, 1};
+  for (int trial = 0; trial < 20; ++trial) {
+    std::vector<BlockSums> errors(2, BlockSums(12));
+    for (auto& e : errors) {
+      for (double& v : e) v = values(random);
+    }
+    const Shares best = best_shares(errors, by_block);
+    EXPECT_NEAR(share_of(best[0]) + share_of(best[1]), 1, 1e-9);
+    const double error = mixed_error(best, errors, errors);
+    for (std::size_t b = 0; b < 12; ++b) {
+      Shares moved = best;
+      const double step = std::min(0.01, moved[1][b]);
+      moved[1][b] -= step;
+      moved[1][(b + 1) % 12] += step;
+      EXPECT_GT(mixed_error(moved, errors, errors), error * (1 - 1e-3));
+      moved = best;
+      moved[1][b] -= step;
+      for (double& s : moved[0]) s += step / 12;
+      EXPECT_GT(mixed_error(moved, errors, errors), error * (1 - 1e-3));
     }
   }
 }
@@ -258,12 +300,12 @@ TEST(Plan, SharesRegions) {
   limits.cost = 60;
   limits.budget = 6000;
   const Race race = raced({on_one_side(true), on_one_side(false), even(5)}, 3, limits);
-  const Plan plan = make_plan(race, 10, true);
+  const Plan plan = make_plan(race, {.cost = 10});
   EXPECT_EQ(plan.methods(), 2);
   EXPECT_LT(plan.gain, 0.6);
   // The error of either alone is near 9/2; of both, each for half of the time, near 2 x .09.
   EXPECT_LT(plan.error, 1);
-  const Plan alone = make_plan(race, 10, false);
+  const Plan alone = make_plan(race, {.cost = 10, .regions = false});
   EXPECT_EQ(alone.methods(), 1);
   EXPECT_NEAR(alone.error, 4.5, 0.9);
   // Weights of every block add up to 1.
@@ -279,7 +321,8 @@ TEST(Plan, EqualMethodsDoNotShare) {
   limits.budget = 6000;
   int mixed = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    mixed += make_plan(raced({even(1), even(1), even(1)}, seed, limits), 10, true).methods() > 1;
+    const Race race = raced({even(1), even(1), even(1)}, seed, limits);
+    mixed += make_plan(race, {.cost = 10}).methods() > 1;
   }
   EXPECT_EQ(mixed, 0);
 }
@@ -288,6 +331,7 @@ TEST(Plan, CombinesByWeights) {
   Plan plan;
   plan.iterations = {2, 0, 1};
   const BlockGrid grid(width, height);
+  plan.counts = {std::vector<int>(grid.blocks(), 2), {}, std::vector<int>(grid.blocks(), 1)};
   plan.weights = {
       std::vector<float>(grid.blocks(), 0.25F), {}, std::vector<float>(grid.blocks(), 0.75F)};
   Image a(width, height), c(width, height), out(width, height);
@@ -295,6 +339,74 @@ TEST(Plan, CombinesByWeights) {
   for (Rgb& p : c.pixels) p = Rgb(12, 12, 12);
   combine(plan, grid, {a, Image(), c}, out);
   EXPECT_FLOAT_EQ(out.at(width - 1, height - 1).x, 10);
+}
+
+// The left half is ten times as noisy, and gets the more iterations.
+TEST(Plan, NoisyBlocksGetMoreIterations) {
+  RaceLimits limits;
+  limits.cost = 60;
+  limits.budget = 6000;
+  const Noisy one_side{[](int x) { return x < width / 2 ? 10.0 : 1.0; }, 1};
+  const Race race = raced({one_side, even(9)}, 3, limits);
+  const Plan plan = make_plan(race, {.cost = 40, .regions = false, .by_block = {1, 1}});
+  ASSERT_EQ(plan.methods(), 1);
+  ASSERT_TRUE(plan.is_adaptive());
+  const std::vector<int>& counts = plan.counts[0];
+  const BlockGrid grid(width, height);
+  // Roots of 100 and 1 about their mean, but for smoothing: 10 to 1.
+  EXPECT_GT(counts[grid.block_of(1, 1)], 60);
+  EXPECT_LT(counts[grid.block_of(width - 1, 1)], 20);
+  // (10 + 1)^2 / 4 over (100 + 1) / 2.
+  EXPECT_NEAR(plan.gain, 0.6, 0.1);
+
+  // The parts of all iterations are the blocks that they are counted for.
+  std::vector<int> found(grid.pixels(), 0);
+  std::size_t pixels = 0;
+  for (int i = 0; i < plan.iterations[0]; ++i) {
+    std::vector<Tile> parts = parts_of(plan, grid, 0, i, pixels);
+    if (parts.empty()) parts.push_back({V2i(0, 0), V2i(width, height)});
+    for (const Tile& t : parts) {
+      for (int p = 0; p < t.pixels(); ++p) {
+        ++found[std::size_t(t.pixel(p).y * width + t.pixel(p).x)];
+      }
+    }
+  }
+  std::size_t all = 0;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      ASSERT_EQ(found[std::size_t(y * width + x)], counts[grid.block_of(x, y)]);
+      all += std::size_t(counts[grid.block_of(x, y)]);
+    }
+  }
+  EXPECT_EQ(pixels, all);
+  EXPECT_FALSE(make_plan(race, {.cost = 40}).is_adaptive());
+  // Too long for many estimates in the budget.
+  const Race slow = raced({one_side, even(9)}, 3, {.cost = 60, .budget = 100});
+  EXPECT_FALSE(make_plan(slow, {.cost = 1, .by_block = {1, 1}}).is_adaptive());
+}
+
+// What a biased method saves in noise is weighed against what stays.
+TEST(Race, BiasCountsForTheRestOfTheBudget) {
+  Noisy shifted = even(0.3);
+  shifted.mean = 0.9F;
+  const auto race_of = [&](double budget) {
+    RaceLimits limits;
+    limits.cost = 60;
+    limits.budget = budget;
+    Race race(3, width, height, limits, {0, 0, 1});
+    Pictures pictures(5);
+    const std::vector<Noisy> methods{even(1), even(1.5), shifted};
+    while (const auto k = race.next()) race.finished(*k, pictures(methods[*k]), methods[*k].cost);
+    race.close();
+    return race;
+  };
+  // Squared errors: .09 / 80 + .01 against 1 / 80, and .09 / 2000 + .01 against 1 / 2000.
+  const Race brief = race_of(80), thorough = race_of(2000);
+  EXPECT_EQ(brief.best(), 2U);
+  EXPECT_EQ(thorough.best(), 0U);
+  EXPECT_NEAR(std::sqrt(brief.entrants()[2].standing.bias), 0.1, 0.02);
+  const Plan plan = make_plan(brief, {.cost = 10});
+  EXPECT_EQ(plan.methods(), 1) << "a biased method shares the picture with no other";
 }
 
 TEST(Race, GoesOnFromItsBytes) {
