@@ -67,11 +67,11 @@ def reproduce_all(options):
     except (child.Failed, KeyboardInterrupt) as stopped:
         error(f"{stopped or 'interrupted'}; the same command goes on")
         code = stopped.code if isinstance(stopped, child.Failed) and stopped.code not in everything.STOPPED else 75
+    if options.write and code == 0:
+        page.PAGE.write_text(page.text(outcomes, options.full))
     show(options, lambda: everything.text(outcomes), lambda: everything.value(outcomes))
     if code != 0:
         return code
-    if options.write:
-        page.PAGE.write_text(page.text(outcomes, options.full))
     built = [o for o in outcomes if o.entry.built]
     return 0 if all(o.run is not None and o.run.complete and not o.run.missed for o in built) else 1
 
