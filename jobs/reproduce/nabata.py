@@ -56,8 +56,8 @@ def table_1_2(run):
                              lambda e: e["rmse"] / e["mean_b"], lambda e: e["relmse"]))))
     run.tables.append(Table(("scene", "lights", "visibility", "CPU seconds", "speed-up", "tests saved",
                              "RMSE / mean", "relMSE"), rows))
-    run.note("errors are against exact visibility of the same lights; tests saved: of all lights, as the paper counts, so that "
-             "exact visibility saves those of lights that face away")
+    run.note("errors are against exact visibility of the same lights; tests saved: of all lights, as the paper counts, so "
+             "that exact visibility saves those of lights that face away")
 
 
 # What each departure from the paper does, one at a time, beginning with the published method.
@@ -85,7 +85,7 @@ def departures(run):
 
     run.found("MSE x seconds as published / with all departures", ours=gain("all"))
     run.found("MSE x seconds as published / with systematic draws", ours=gain("systematic draws"))
-    run.tables.append(Table(("departure", "CPU seconds", "tests saved", "RMSE / mean", "mean / exact", "gain in MSE x seconds"), [
+    run.tables.append(Table(("departure", "CPU seconds", "tests saved", "RMSE / mean", "mean / exact", "gain in MSE x time"), [
         (key, str(c.seconds(key)), str(c.saved(key)), str(mean_of([e["rmse"] / e["mean_b"] for e in c.errors(key)])),
          str(mean_of([e["mean_a"] / e["mean_b"] for e in c.errors(key)])), str(gain(key))) for key in how]))
     run.note("the hairball with a quarter of the lights of Table 1")
@@ -231,8 +231,9 @@ def fig_7(run):
     """Time of probabilistic against exact visibility where surfaces are glossy."""
     scene, side = "Museum", 48
     points = cached(scene, run.full, side)
-    c = Comparison(run, scene, {"published": published("probabilistic", points), "ours": visibility("probabilistic", points)},
-                   SEEDS, share=300_000 / many_lights.SCENES[scene]["lights"], side=side, material=GLOSSY)
+    how = {"published": published("probabilistic", points), "ours": visibility("probabilistic", points)}
+    c = Comparison(run, scene, how, SEEDS, share=300_000 / many_lights.SCENES[scene]["lights"], side=side,
+                   material=GLOSSY)
     for which in KINDS:
         run.found("probabilistic", **{which: c.seconds(which)})
         run.found("exact", **{which: c.seconds("exact")})

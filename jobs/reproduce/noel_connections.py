@@ -1,10 +1,11 @@
 """Resampled connections. Every entry renders by bidirectional path tracing on the thesis' scenes
-that this project has, with every kind of connections, at the project's settings and at the thesis'."""
+that this project has, with every kind of connections, at the thesis' settings (`published`) and at the project's
+(`ours`)."""
 
-from harness import layers, many_lights
+from harness import layers
 from harness.entry import Entries
-from harness.measured import error_at, exact, gain_at, median_of, speed_up_to, time_to
-from harness.run import Table, cell_with
+from harness.measured import Measured, error_at, exact, gain_at, geometric_mean_of, speed_up_to, time_to
+from harness.run import KINDS, Table, cell_with
 from harness.verdict import at_least, beside
 
 ENTRIES = Entries()
@@ -29,14 +30,27 @@ OURS = {"BPT": bdpt({"type": "paired"}), "ICBPT": bdpt({"type": "importance_cach
         "SkelBPT": bdpt({"type": "skeleton"}), "uniform": bdpt({"type": "uniform"})}
 
 
-def as_published(connections):
-    """11.3 to 11.5, and what is known of the author's code: no roulette anywhere, every light path joined to the eye."""
-    resampling = {"count_as": 0, "combination": "max", "roulette": 0, "splat_paths": 1}
+def as_published(connections, **more):
+    """11.2 to 11.5, and what is known of the author's code: all samples counted, no roulette anywhere, every light path
+    joined to the eye."""
+    resampling = {"count_as": 0, "roulette": 0, "splat_paths": 1, **more}
     return bdpt({"type": connections, **(resampling if connections != "paired" else {})}, roulette_depth=DEPTH)
 
 
-THESIS = {"BPT": as_published("paired"), "ICBPT": as_published("importance_cache"),
-          "SkelBPT": as_published("skeleton")}
+# The max heuristic over all distributions, and eq. 187 for light vertices of either side.
+THESIS = {"BPT": as_published("paired"),
+          "ICBPT": as_published("importance_cache", combination="max", unshadowed=True, bounded=True),
+          "SkelBPT": as_published("skeleton", combination="max", sides="both"),
+          "uniform": as_published("uniform")}
+
+
+def equal_work(connections):
+    """This project's distributions and counts, with as many paths and connections an iteration as all others."""
+    resampling = {"roulette": 0, "splat_paths": 1} if connections != "paired" else {}
+    return bdpt({"type": connections, **resampling}, roulette_depth=DEPTH)
+
+
+METHODS = {"published": THESIS, "ours": OURS}
 
 
 def resampling_sweep(full, methods, scenes=tuple(SCENES), seeds=3):
@@ -54,9 +68,12 @@ def resampling_sweep(full, methods, scenes=tuple(SCENES), seeds=3):
     }
 
 
-def all_methods(run):
-    """The answers to all methods on all scenes, which several entries share."""
-    return run.answers(resampling_sweep(run.full, OURS), shared="noel-resampling")
+RESAMPLED = {"published": ("door", "sponza"), "ours": tuple(SCENES)}  # the scenes of each
+
+
+def all_methods(run, which):
+    """The answers to all methods at the settings of `which` row, which several entries share."""
+    return run.answers(resampling_sweep(run.full, METHODS[which], RESAMPLED[which]), shared=f"noel-resampling-{which}")
 
 
 def resampled_cell(answers, scene, integrator):
@@ -72,14 +89,16 @@ def resampled_table(answers, scene, methods, title=""):
 
 def measure_errors(run, scene):
     """Figs 98 and 99: the errors at equal time, as ratios to that of SkelBPT."""
-    answers = all_methods(run)
-    at = {name: resampled_cell(answers, scene, value)["at"][-1] for name, value in OURS.items()}
-    best = error_at(at["SkelBPT"])
-    run.found("error of BPT / of SkelBPT", gain_at(at["SkelBPT"]))
-    cached = error_at(at["ICBPT"])
-    run.found("error of ICBPT / of SkelBPT", cached and best and cached.ratio(best))
-    run.tables.append(resampled_table(answers, scene, OURS))
-    run.note(f"MAE after {at['BPT']['seconds']:.3g} CPU seconds, {answers['seeds']} runs each; pictures: {run.runs}")
+    for which in KINDS:
+        answers = all_methods(run, which)
+        at = {name: resampled_cell(answers, scene, value)["at"][-1] for name, value in METHODS[which].items()}
+        best = error_at(at["SkelBPT"])
+        run.found("error of BPT / of SkelBPT", **{which: gain_at(at["SkelBPT"])})
+        cached = error_at(at["ICBPT"])
+        run.found("error of ICBPT / of SkelBPT", **{which: cached and best and cached.ratio(best)})
+        run.tables.append(resampled_table(answers, scene, METHODS[which], f", {which}"))
+        run.note(f"{which}: MAE after {at['BPT']['seconds']:.3g} CPU seconds, {answers['seeds']} runs each")
+        run.note(f"pictures: {run.runs}")
 
 
 def resampled(number, page, configuration, seconds, *claims):
@@ -110,8 +129,9 @@ def table_5(run):
     answers = run.answers(table_5_sweep(run.full))
     for name in ("Door", "Sponza"):
         told = run.report(resampled_cell(answers, name.lower(), SKELETON))["integrator"]
-        run.found(f"{name}, nodes", exact(told["nodes"]))
-        run.found(f"{name}, per iteration", exact(told["nodes_used"]))
+        for which in KINDS:  # no setting that differs has to do with them
+            run.found(f"{name}, nodes", **{which: exact(told["nodes"])})
+            run.found(f"{name}, per iteration", **{which: Measured(told["nodes_used"])})
         passes = {key: told[f"{key}_cpu_seconds"] for key in ("light_pass", "distributions", "eye_pass")}
         run.note(f"{name}: the distributions take {passes['distributions'] / sum(passes.values()):.1%} of an iteration")
 
@@ -126,23 +146,25 @@ FIRST = {"Door": "Door to 0.01, BPT", "Sponza": "Sponza to 0.15, BPT"}
      at_least("Door, SkelBPT: speed-up", 1.57), beside("Sponza to 0.15, BPT", 1910.39, "s"),
      beside("Sponza, ICBPT", 4731.15, "s"), beside("Sponza, SkelBPT", 675.98, "s"),
      beside("Sponza, ICBPT: speed-up", 0.40), at_least("Sponza, SkelBPT: speed-up", 2.82),
+     at_least("Door, SkelBPT over uniform: speed-up", 1), at_least("Sponza, SkelBPT over uniform: speed-up", 1),
      beside("Sibenik to 0.025, BPT", 1334.48, "s"), beside("Sibenik, ICBPT", 3114.65, "s"),
      beside("Sibenik, SkelBPT", 1298.69, "s"), beside("Sibenik, ICBPT: speed-up", 0.42),
      at_least("Sibenik, SkelBPT: speed-up", 1.02)))
 def table_6(run):
     """Time to equal L1 error of bidirectional path tracing with paired connections (BPT), importance caching (ICBPT) and
-    the skeleton (SkelBPT), all at this project's settings. The corridor, and all three at the settings of the thesis,
-    stand beside."""
-    published = run.answers(resampling_sweep(run.full, THESIS, ("door", "sponza")), shared="noel-published")
-    answers = all_methods(run)
-    for name, first in FIRST.items():
-        for method in ("BPT", "ICBPT", "SkelBPT"):
-            to = resampled_cell(answers, name.lower(), OURS[method])["to"][-1]
-            run.found(first if method == "BPT" else f"{name}, {method}", time_to(to))
-            if method != "BPT":
-                run.found(f"{name}, {method}: speed-up", speed_up_to(to))
-    run.tables += [resampled_table(answers, scene, OURS) for scene in SCENES]
-    run.tables += [resampled_table(published, scene, THESIS, ", as published") for scene in ("door", "sponza")]
+    the skeleton (SkelBPT); and the skeleton's gain alone, over resampling without any guidance with all else equal. The
+    corridor stands beside."""
+    for which in KINDS:
+        answers = all_methods(run, which)
+        for name, first in FIRST.items():
+            to = {method: resampled_cell(answers, name.lower(), value)["to"][-1] for method, value in METHODS[which].items()}
+            for method in ("BPT", "ICBPT", "SkelBPT"):
+                run.found(first if method == "BPT" else f"{name}, {method}", **{which: time_to(to[method])})
+                if method != "BPT":
+                    run.found(f"{name}, {method}: speed-up", **{which: speed_up_to(to[method])})
+            plain, guided = time_to(to["uniform"]), time_to(to["SkelBPT"])
+            run.found(f"{name}, SkelBPT over uniform: speed-up", **{which: plain and guided and plain.ratio(guided)})
+        run.tables += [resampled_table(answers, scene, METHODS[which], f", {which}") for scene in RESAMPLED[which]]
     run.note("CPU seconds of a core; equal error: the lowest MAE that every run of a scene reached; "
              f"{answers['seeds']} runs each")
 
@@ -170,14 +192,15 @@ ENTRIES.planned(*resampled(102, 175, "plants (ICBPT and SkelBPT similar, both be
         at_least("Door: error of BPT / of SkelBPT", 1), at_least("Sponza: error of BPT / of SkelBPT", 1)))
 def fig_103(run):
     """L1 error against time."""
-    answers = all_methods(run)
-    for name in ("Door", "Sponza"):
-        cells = {method: resampled_cell(answers, name.lower(), value) for method, value in OURS.items()}
-        run.found(f"{name}: error of BPT / of SkelBPT", gain_at(cells["SkelBPT"]["at"][-1]))
-        run.tables.append(Table((f"{name}, CPU seconds", *cells), [
-            (f"{at['seconds']:.3g}", *(str(error_at(c["at"][i])) for c in cells.values()))
-            for i, at in enumerate(cells["BPT"]["at"])]))
-    run.note(f"MAE, {answers['seeds']} runs each; the curves: lacuna report {run.runs}")
+    for which in KINDS:
+        answers = all_methods(run, which)
+        for name in ("Door", "Sponza"):
+            cells = {method: resampled_cell(answers, name.lower(), value) for method, value in METHODS[which].items()}
+            run.found(f"{name}: error of BPT / of SkelBPT", **{which: gain_at(cells["SkelBPT"]["at"][-1])})
+            run.tables.append(Table((f"{name}, {which}, CPU seconds", *cells), [
+                (f"{at['seconds']:.3g}", *(str(error_at(c["at"][i])) for c in cells.values()))
+                for i, at in enumerate(cells["BPT"]["at"])]))
+    run.note(f"MAE, {answers['seeds']} runs each; the curves: lacuna report of the sweeps")
 
 
 ENTRIES.planned(
@@ -186,11 +209,13 @@ ENTRIES.planned(
         at_least("Apartment: error of BPT / of SkelBPT", 1), at_least("Plants: error of BPT / of SkelBPT", 1)))
 
 
-METHODS = {name: OURS[name] for name in ("BPT", "ICBPT", "SkelBPT")}
+FIG_105 = {"published": {name: THESIS[name] for name in ("BPT", "ICBPT", "SkelBPT")},
+           "ours": {"BPT": equal_work("paired"), "ICBPT": equal_work("importance_cache"),
+                    "SkelBPT": equal_work("skeleton")}}
 
 
-def fig_105_sweep(full):
-    value = resampling_sweep(full, METHODS, ("door",), seeds=6)
+def fig_105_sweep(full, which="published"):
+    value = resampling_sweep(full, FIG_105[which], ("door",), seeds=6)
     value["job"]["budget"] = {"iterations": 64 if full else 8}
     return value
 
@@ -202,22 +227,24 @@ def fig_105_sweep(full):
         at_least("error of SkelBPT / of ICBPT, at equal iterations", 1), beside("time of ICBPT / of BPT", 2)),
     sweep=fig_105_sweep)
 def fig_105(run):
-    """Errors and times after as many iterations of each method."""
-    answers = run.answers(fig_105_sweep(run.full))
-    cells = {name: resampled_cell(answers, "door", value) for name, value in METHODS.items()}
-    reports = {name: [run.report(c, seed) for seed in range(answers["seeds"])] for name, c in cells.items()}
+    """Errors and times after as many iterations of each method, each with as many eye paths, light paths and
+    connections."""
+    for which in KINDS:
+        sweep = fig_105_sweep(run.full, which)
+        answers = run.answers(sweep)
+        cells = {name: resampled_cell(answers, "door", value) for name, value in FIG_105[which].items()}
+        reports = {name: [run.report(c, seed) for seed in range(answers["seeds"])] for name, c in cells.items()}
 
-    def ratio(of, to, value):
-        return median_of([value(a) / value(b) for a, b in zip(reports[of], reports[to])])
+        def ratio(of, to, value, reports=reports):
+            return geometric_mean_of([value(a) / value(b) for a, b in zip(reports[of], reports[to])])
 
-    def error(report):
-        return report["errors"]["mae"]
+        def error(report):
+            return report["errors"]["mae"]
 
-    run.found("error of BPT / of ICBPT, at equal iterations", ratio("BPT", "ICBPT", error))
-    run.found("error of SkelBPT / of ICBPT, at equal iterations", ratio("SkelBPT", "ICBPT", error))
-    run.found("time of ICBPT / of BPT", ratio("ICBPT", "BPT", lambda report: report["seconds"]["render_cpu"]))
-    iterations = fig_105_sweep(run.full)["job"]["budget"]["iterations"]
-    run.note(f"MAE after {iterations} iterations; medians of {answers['seeds']} runs")
+        run.found("error of BPT / of ICBPT, at equal iterations", **{which: ratio("BPT", "ICBPT", error)})
+        run.found("error of SkelBPT / of ICBPT, at equal iterations", **{which: ratio("SkelBPT", "ICBPT", error)})
+        run.found("time of ICBPT / of BPT", **{which: ratio("ICBPT", "BPT", lambda r: r["seconds"]["render_cpu"])})
+        run.note(f"{which}: MAE after {sweep['job']['budget']['iterations']} iterations; means of {answers['seeds']} runs")
 
 
 @ENTRIES.measured(
@@ -228,15 +255,18 @@ def fig_106(run):
     job = {"scene": "door/scene.glb", "camera": "corner", "resolution": [1024, 512] if run.full else [256, 128],
            "budget": {"cpu_seconds": 7200 if run.full else 30}, "layers": ["distributions"]}
     rows = []
-    for name in ("SkelBPT", "ICBPT"):
-        many_lights.render(run, name, {**job, "integrator": OURS[name]})
-        folder = run.folder / run.version / name
+    for which in KINDS:
+        for name in ("SkelBPT", "ICBPT"):
+            run.render(f"{name}-{which}", {**job, "integrator": METHODS[which][name]})
+            folder = run.place(f"{name}-{which}")
 
-        def mean(layer, folder=folder):
-            return sum(map(sum, layers.channels(folder, layer)))
+            def mean(layer, folder=folder):
+                return sum(map(sum, layers.channels(folder, layer)))
 
-        whole = mean("")
-        rows += [(name, layer.split(".")[1], f"{mean(layer) / whole:.1%}") for layer in layers.names(folder)
-                 if layer.startswith("distributions.")]
-    run.tables.append(Table(("method", "distribution", "of the picture's light"), rows))
-    run.note(f"layers of each: {run.folder / run.version}")
+            whole = mean("")
+            rows += [(name, which, layer.split(".")[1], f"{mean(layer) / whole:.1%}") for layer in layers.names(folder)
+                     if layer.startswith("distributions.")]
+    run.tables.append(Table(("method", "settings", "distribution", "of the picture's light"), rows))
+    run.note("fallback: of eye vertices whose node was not accepted. The layer of a distribution has the vertices to which it "
+             "gives the highest probability; by the max heuristic (published) no other distribution draws them")
+    run.note(f"pictures: {run.pictures}")

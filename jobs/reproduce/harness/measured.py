@@ -10,8 +10,8 @@ CONFIDENCE = 0.95  # that of jobs/statistics/estimate.h; Run.answers() compares 
 @dataclasses.dataclass(frozen=True)
 class Measured:
     """A number with the interval that holds the truth with probability CONFIDENCE, from `n` independent runs; without
-    `low` and `high` there is none: Measured(x) is that of one run. `bound`: the number is only an "at least" or an "at most". `supported` is false
-    where the reference's own noise is too large for it."""
+    `low` and `high` there is none: Measured(x) is that of one run. `bound`: the number is only an "at least" or an
+    "at most". `supported` is false where the reference's own noise is too large for it."""
 
     value: float
     low: float | None = None

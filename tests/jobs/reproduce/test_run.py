@@ -63,7 +63,7 @@ class Runs(unittest.TestCase):
         with mock.patch.object(identity, "programs", return_value={"lacuna": "another build"}):
             self.run_.render("picture", job)
             places.add(self.run_.place("picture"))
-        with mock.patch.object(identity, "file_hash", return_value="another scene"):
+        with mock.patch.object(identity, "files_named", return_value={"cornell.glb": "another scene"}):
             self.run_.render("picture", job)
             places.add(self.run_.place("picture"))
         self.assertEqual(len(places), 4)

@@ -65,6 +65,9 @@ TEST(Job, ACameraIsANameOrAPlaceOfItsOwn) {
   expect_one(job_problems(job(R"({"position": [1, 2, 3]})")), "/camera/target", {"required"});
   expect_one(job_problems(job("{" + view + R"(, "fov": 180})")), "/camera/fov", {"179"});
   expect_one(job_problems(job("{" + view + R"(, "name": "x"})")), "/camera/name", {"unknown"});
+  expect_one(
+      job_problems(job(R"({"position": [1e9, 0, 0], "target": [1000000000.0000002, 0, 0]})")),
+      "/camera/target", {"1000000000.0000002", "another point"});
   expect_one(job_problems(job(R"({"position": [1, 2, 3], "target": [1, 2, 3]})")), "/camera/target",
              {"the camera's position"});
   for (const char* up : {"[0, 0, 0]", "[0, 0, -2]"})
