@@ -1,5 +1,6 @@
 """Approximate shadows of many lights, by the thesis' own settings, which are the defaults. Every entry renders one
-iteration of many lights, with the same lights for every visibility. The thesis' own views are not known; ours are named in the notes."""
+iteration of many lights, with the same lights for every visibility. The thesis' own views are not known; ours are named in
+the notes."""
 
 from harness import many_lights
 from harness.entry import Entries
