@@ -1,7 +1,8 @@
 """Tables and figures of the papers beside ours: the paper's number, ours with its interval, their ratio, a verdict.
 
 Without NAME: the list of all, and which are built. Exit codes: 0 nothing missed; 1 a claim is missed, a run failed, or
-NAME is not built yet; 2 there is no NAME; 75 interrupted, and the same command goes on; else those of `lacuna`."""
+NAME is not built yet; 2 there is no NAME, or options that do not go together; 75 interrupted, and the same command goes on;
+else those of `lacuna`."""
 
 import argparse
 import json
@@ -10,9 +11,8 @@ import pathlib
 import sys
 
 import catalogue
-from harness import child, output
+from harness import child, everything, kept, output, page
 from harness.run import Run
-from harness.verdict import MISSED
 
 
 def arguments():
@@ -20,10 +20,19 @@ def arguments():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("name", nargs="?", metavar="NAME", help="a table or figure, as noel-table-1")
     parser.add_argument("--full", action="store_true", help="as long as it takes, instead of minutes")
+    parser.add_argument("--all", action="store_true", help="every entry, and one table of all claims; what was measured "
+                        "before with the same programs, scenes and entries is kept, so that it may be stopped")
+    parser.add_argument("--kept", action="store_true", help="with --all: measures nothing, shows what was measured before")
+    parser.add_argument("--write", action="store_true", help="with --all: writes docs/reproduction.md")
     parser.add_argument("--json", action="store_true", help="prints JSON")
     parser.add_argument("--out", type=pathlib.Path, default=child.ROOT / "build/reproduce", metavar="DIR",
                         help="folder for the runs, one below it for each NAME (default: build/reproduce)")
-    return parser.parse_args()
+    options = parser.parse_args()
+    if options.all and options.name is not None:
+        parser.error(f"--all and {options.name}: one of the two")
+    if not options.all and (options.kept or options.write):
+        parser.error(f"{'--kept' if options.kept else '--write'}: with --all only")
+    return options
 
 
 def show(options, text, value):
@@ -38,16 +47,39 @@ def reproduce(entry, options):
     try:
         child.build(entry.targets)
         run = Run(entry, options.full, options.out.absolute())
-        entry.measure(run)
+        run.measure()
     except child.Failed as failed:
         error(failed)
         return failed.code
+    kept.keep(run)
     show(options, lambda: output.run_text(run), lambda: output.run_json(run))
-    return 0 if run.complete and all(row.verdict != MISSED for row in run.rows) else 1
+    return 0 if run.complete and not run.missed else 1
+
+
+def reproduce_all(options):
+    """Every entry; where it is interrupted, the table of what is done by then."""
+    outcomes, code = [], 0
+    try:
+        if not options.kept:
+            child.build(sorted({target for entry in catalogue.ENTRIES for target in entry.targets}))
+        for outcome in everything.measure_all(catalogue.ENTRIES, options.full, options.out.absolute(), options.kept):
+            outcomes.append(outcome)
+    except (child.Failed, KeyboardInterrupt) as stopped:
+        error(f"{stopped or 'interrupted'}; the same command goes on")
+        code = stopped.code if isinstance(stopped, child.Failed) and stopped.code not in everything.STOPPED else 75
+    if options.write and code == 0:
+        page.PAGE.write_text(page.text(outcomes, options.full))
+    show(options, lambda: everything.text(outcomes), lambda: everything.value(outcomes))
+    if code != 0:
+        return code
+    built = [o for o in outcomes if o.entry.built]
+    return 0 if all(o.run is not None and o.run.complete and not o.run.missed for o in built) else 1
 
 
 def main():
     options = arguments()
+    if options.all:
+        return reproduce_all(options)
     if options.name is None:
         show(options, lambda: output.list_text(catalogue.ENTRIES), lambda: output.list_json(catalogue.ENTRIES))
         return 0

@@ -6,7 +6,7 @@ import math
 
 from harness import many_lights
 from harness.entry import Entries
-from harness.measured import Measured, exact
+from harness.measured import Measured
 from harness.run import Table
 from harness.verdict import at_least, at_most, beside
 
@@ -57,7 +57,7 @@ def fig_9(run):
         share = told["view_splats_large"] / told["view_splats"]
         rows.append((view, round(told["virtual_lights"]), f"{told['view_splats']:.3g}", f"{share:.3g}"))
         if view == "Sponza":
-            run.found("share of rendered pairs beyond a pixel", exact(share))
+            run.found("share of rendered pairs beyond a pixel", Measured(share))
     run.tables.append(Table(("scene", "lights", "rendered pairs", "beyond a texel"), rows))
 
 
@@ -128,8 +128,8 @@ def fig_10(run):
     run.found("speed-up over ManyLoDs, 1M views", Measured(seconds("many_lods", lods) * scale / seconds("megaviews", last)))
     run.found("speed-up over ManyLoDs, 2048 views", Measured(seconds("many_lods", first) / seconds("megaviews", first)))
     run.found("memory of ManyLoDs / of ours, 1M views",
-              exact(found["many_lods", lods]["view_queue_peak_pairs"] * scale /
-                    found["megaviews", last]["view_queue_peak_pairs"]))
+              Measured(found["many_lods", lods]["view_queue_peak_pairs"] * scale /
+                       found["megaviews", last]["view_queue_peak_pairs"]))
     run.tables.append(Table(("method", "lights", "maps", "view tree, CPU s", "maps, CPU s", "views sharing a splat",
                              "maps, MiB", "queue, MiB"), rows))
     run.note(f"exponent from 64k views on: {exponent(points[3:]):.2f}; sponza, one bounce, 11 levels, maps of 16 x 16")
@@ -200,7 +200,7 @@ def fig_13(run):
               Measured(map_seconds(found[11])).ratio(Measured(map_seconds(found[8]))))
     run.tables.append(Table(("levels", "maps", "CPU s", "leaves beyond a texel", "relMSE", "PSNR", "SSIM", "mean"), rows))
     run.note(f"sponza, {found[11]['virtual_lights']:.0f} lights of up to four bounces; errors against exact visibility of "
-             f"the same lights; pictures: {run.folder / run.version}")
+             f"the same lights; pictures: {run.pictures}")
 
 
 LARGEST = 256  # texels along a side of ours; the paper's are 1024
@@ -227,7 +227,7 @@ def fig_14(run):
                      f"{e['mean_relative']:+.3g}"))
     run.tables.append(Table(("texels a side", "CPU s", "relMSE", "PSNR", "SSIM", "mean"), rows))
     run.note(f"{small['virtual_lights']:.0f} lights; the time of a map of 1024 x 1024 is sixteen times that of "
-             f"{LARGEST} x {LARGEST}; pictures: {run.folder / run.version}")
+             f"{LARGEST} x {LARGEST}; pictures: {run.pictures}")
 
 
 @ENTRIES.measured(
@@ -247,10 +247,10 @@ def fig_15(run):
             found[key, size] = e["rmse"]
             rows.append((key, size, f"{map_seconds(t):.3g}", f"{e['relmse']:.3g}", f"{e['psnr']:.3g}",
                          f"{e['ssim']:.3g}", f"{e['mean_relative']:+.3g}"))
-    run.found("error of 16 x 16 / of 64 x 64", exact(found["megaviews", 16] / found["megaviews", 64]))
+    run.found("error of 16 x 16 / of 64 x 64", Measured(found["megaviews", 16] / found["megaviews", 64]))
     run.tables.append(Table(("method", "texels a side", "CPU s", "relMSE", "PSNR", "SSIM", "mean"), rows))
     run.note(f"sponza, {paths} light paths of one bounce, 9 levels; per_view: a ray for each texel; ours: the defaults; "
-             f"pictures: {run.folder / run.version}")
+             f"pictures: {run.pictures}")
 
 
 @ENTRIES.measured(
@@ -277,11 +277,11 @@ def fig_16(run):
         rows.append((name, f"{t['lights_culled']:.3g}", f"{t['eye_pass_cpu_seconds']:.3g}", f"{e['rmse']:.3g}",
                      f"{e['relmse']:.3g}", f"{e['psnr']:.3g}", f"{e['ssim']:.3g}", f"{e['mean_relative']:+.3g}"))
         if name == "culled":
-            run.found("share of leaf views culled", exact(t["lights_culled"]))
-    run.found("error without culling / with", exact(found["not culled"]["rmse"] / found["culled"]["rmse"]))
+            run.found("share of leaf views culled", Measured(t["lights_culled"]))
+    run.found("error without culling / with", Measured(found["not culled"]["rmse"] / found["culled"]["rmse"]))
     run.tables.append(Table(("64 lights a pixel", "culled", "eye pass, CPU s", "RMSE", "relMSE", "PSNR", "SSIM", "mean"),
                             rows))
-    run.note(f"against all lights with the same maps; pictures: {run.folder / run.version}")
+    run.note(f"against all lights with the same maps; pictures: {run.pictures}")
 
 
 @ENTRIES.measured(
@@ -308,4 +308,4 @@ def fig_17(run):
         e = many_lights.errors(run, name, "exact")
         rows.append((name, f"{e['relmse']:.3g}", f"{e['psnr']:.3g}", f"{e['ssim']:.3g}", f"{e['mean_relative']:+.3g}"))
     run.tables.append(Table(("1024 particles", "relMSE", "PSNR", "SSIM", "mean"), rows))
-    run.note(f"the paper's times are of San Miguel on a GPU; pictures: {run.folder / run.version}")
+    run.note(f"the paper's times are of San Miguel on a GPU; pictures: {run.pictures}")

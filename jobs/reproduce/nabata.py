@@ -1,22 +1,36 @@
 """Nabata et al.: probabilistic visibility of many lights. 512 x 512 pixels on a Xeon E5-2680v2 at 2.8 GHz."""
 
+import statistics
+
 from harness import layers, many_lights
 from harness.entry import Entries
-from harness.many_lights import visibility
-from harness.measured import exact
-from harness.run import Table
-from harness.verdict import at_least, beside
+from harness.many_lights import TESTS, Comparison, cached, published, shown, visibility
+from harness.measured import Measured, geometric_mean_of, mean_of
+from harness.run import KINDS, Table
+from harness.verdict import at_least, at_most, beside
 
 ENTRIES = Entries()
 NEEDS = "many_lights with visibility: probabilistic, roulette, exact"
+SEEDS = 3
 # Scene, and of probabilistic visibility and of Veach's roulette the speed-up over exact, and the share of tests saved.
 SCENES = (("San Miguel", 2.60, 1.21, 0.88, 0.64), ("Hairball", 6.08, 2.45, 0.90, 0.63),
           ("Sponza", 2.12, 1.47, 0.90, 0.74), ("Museum", 2.56, 1.45, 0.90, 0.83))
 
 
 def of_scene(scene, speed_up, speed_up_veach, saved, saved_veach):
-    return (at_least(f"{scene}: speed-up", speed_up), beside(f"{scene}: speed-up, Veach", speed_up_veach),
-            at_least(f"{scene}: tests saved", saved), beside(f"{scene}: tests saved, Veach", saved_veach))
+    name = shown(scene)
+    return (at_least(f"{name}: speed-up", speed_up), beside(f"{name}: speed-up, Veach", speed_up_veach),
+            at_least(f"{name}: time of Veach / of probabilistic", speed_up / speed_up_veach),
+            at_least(f"{name}: tests saved", saved), beside(f"{name}: tests saved, Veach", saved_veach))
+
+
+def both(scene, full, side=64):
+    """Probabilistic visibility and Veach's roulette, each as published and as it is by default."""
+    points = cached(scene, full, side)
+    return {"probabilistic-published": published("probabilistic", points),
+            "probabilistic-ours": visibility("probabilistic", points),
+            "roulette-published": published("roulette", points),
+            "roulette-ours": visibility("roulette", points)}
 
 
 @ENTRIES.measured(
@@ -27,26 +41,54 @@ def table_1_2(run):
     """Time and tests of probabilistic visibility and of Veach's roulette against exact
     visibility, which traces its rays in packets and evaluates eight lights at a time; all with the same lights."""
     rows = []
-    for scene in many_lights.SCENES:
-        points = many_lights.cached(scene, run.full)
-        how = {"probabilistic": visibility("probabilistic", points),
-               "as published": visibility("probabilistic", points, term_cost=0, variance="point"),
-               "Veach": visibility("roulette", points)}
-        found = many_lights.speed_up(run, scene, how, run.full)
-        for key in how:
-            e = many_lights.errors(run, f"{scene}-{key}", f"{scene}-exact")
-            rows.append((scene, round(found[key]["lights"]), key, str(found[key]["seconds"]), str(found[key]["speed_up"]),
-                         f"{found[key]['saved'].value:.1%}", f"{e['rmse'] / e['mean_b']:.2g}", f"{e['relmse']:.2g}"))
-        rows.append((scene, round(found["exact"]["lights"]), "exact", str(found["exact"]["seconds"]), "", "", "", ""))
-        if scene == "Door":
-            continue
-        run.found(f"{scene}: speed-up", found["probabilistic"]["speed_up"])
-        run.found(f"{scene}: speed-up, Veach", found["Veach"]["speed_up"])
-        run.found(f"{scene}: tests saved", found["probabilistic"]["saved"])
-        run.found(f"{scene}: tests saved, Veach", found["Veach"]["saved"])
+    for scene, *_ in SCENES:
+        c = Comparison(run, scene, both(scene, run.full), SEEDS)
+        for which in KINDS:
+            own, veach = f"probabilistic-{which}", f"roulette-{which}"
+            for quantity, value in (("speed-up", c.speed_up(own)), ("speed-up, Veach", c.speed_up(veach)),
+                                    ("time of Veach / of probabilistic", c.speed_up(own, over=veach)),
+                                    ("tests saved", c.saved(own)), ("tests saved, Veach", c.saved(veach))):
+                run.found(f"{shown(scene)}: {quantity}", **{which: value})
+        for key in c.how:
+            found = [] if key == "exact" else c.errors(key)
+            rows.append((scene, round(c.lights()), key, str(c.seconds(key)), str(c.speed_up(key)), str(c.saved(key)),
+                         *(str(mean_of(list(map(error, found)))) if found else "" for error in (
+                             lambda e: e["rmse"] / e["mean_b"], lambda e: e["relmse"]))))
     run.tables.append(Table(("scene", "lights", "visibility", "CPU seconds", "speed-up", "tests saved",
                              "RMSE / mean", "relMSE"), rows))
-    run.note("errors are against exact visibility of the same lights; tests saved: of those of lights that face the point")
+    run.note("errors are against exact visibility of the same lights; tests saved: of all lights, as the paper counts, so that "
+             "exact visibility saves those of lights that face away")
+
+
+# What each departure from the paper does, one at a time, beginning with the published method.
+STEPS = {"as published": {}, "cost of terms": {"term_cost": 0.03}, "variance of the picture": {"variance": "picture"},
+         "systematic draws": {"draws": "systematic"}, "lit lights at cache points": {"cache_lights": "lit"},
+         "negative pixels stay": {"clamp_negative": False}}
+
+
+@ENTRIES.measured(
+    "nabata-departures", "Nabata et al., sections 3 and 4, which have no such figure",
+    "each of this project's departures from probabilistic visibility as published, by itself", NEEDS,
+    (at_least("MSE x seconds as published / with all departures", 1),
+     beside("MSE x seconds as published / with systematic draws")))
+def departures(run):
+    """Error times time of the published method, with one departure each, and with all of them."""
+    scene = "Hairball"
+    first = published("probabilistic", cached(scene, run.full))
+    how = {name: {**first, **step} for name, step in STEPS.items()}
+    how["all"] = {**first, **{key: value for step in STEPS.values() for key, value in step.items()}}
+    c = Comparison(run, scene, how, SEEDS, share=0.25)
+    costs = {key: [e["mse"] * many_lights.seconds(r) for e, r in zip(c.errors(key), c.reports[key])] for key in how}
+
+    def gain(key):
+        return geometric_mean_of([a / b for a, b in zip(costs["as published"], costs[key])])
+
+    run.found("MSE x seconds as published / with all departures", ours=gain("all"))
+    run.found("MSE x seconds as published / with systematic draws", ours=gain("systematic draws"))
+    run.tables.append(Table(("departure", "CPU seconds", "tests saved", "RMSE / mean", "mean / exact", "gain in MSE x seconds"), [
+        (key, str(c.seconds(key)), str(c.saved(key)), str(mean_of([e["rmse"] / e["mean_b"] for e in c.errors(key)])),
+         str(mean_of([e["mean_a"] / e["mean_b"] for e in c.errors(key)])), str(gain(key))) for key in how]))
+    run.note("the hairball with a quarter of the lights of Table 1")
 
 
 POINTS = [125, 250, 500, 1000, 2000, 4000, 8000]  # of the whole picture
@@ -62,17 +104,19 @@ def fig_3(run):
     against exact visibility with the same lights; the paper's, against path tracing, also has the lights'."""
     side = 64
     many_lights.render(run, "exact", many_lights.job("Hairball", visibility("exact"), run.full, 0.25, side))
-    rows = []
-    for points in POINTS:
-        here = points if run.full else max(1, round(points * side * side / (512 * 512)))
-        report = many_lights.render(
-            run, f"{points}", many_lights.job("Hairball", visibility("probabilistic", here), run.full, 0.25, side))
-        rows.append((points, many_lights.seconds(report), report["integrator"]["visibility_cpu_seconds"],
-                     many_lights.errors(run, f"{points}", "exact")["rmse"]))
-    level = [a[0] for a, b in zip(rows, rows[1:]) if a[3] < LEVEL * b[3]]
-    run.found("cache points from which on the error levels off", exact(level[0]) if level else None)
-    run.tables.append(Table(("cache points", "CPU seconds", "of these for cache points", "RMSE"),
-                            [(n, f"{s:.3g}", f"{c:.3g}", f"{e:.3g}") for n, s, c, e in rows]))
+    for which in KINDS:
+        rows = []
+        for points in POINTS:
+            here = points if run.full else max(1, round(points * side * side / (512 * 512)))
+            how = published("probabilistic", here) if which == "published" else visibility("probabilistic", here)
+            name = f"{which}-{points}"
+            report = many_lights.render(run, name, many_lights.job("Hairball", how, run.full, 0.25, side))
+            rows.append((points, many_lights.seconds(report), report["integrator"]["visibility_cpu_seconds"],
+                         many_lights.errors(run, name, "exact")["rmse"]))
+        level = [a[0] for a, b in zip(rows, rows[1:]) if a[3] < LEVEL * b[3]]
+        run.found("cache points from which on the error levels off", **{which: Measured(level[0]) if level else None})
+        run.tables.append(Table((f"cache points, {which}", "CPU seconds", "of these for cache points", "RMSE"),
+                                [(n, f"{s:.3g}", f"{c:.3g}", f"{e:.3g}") for n, s, c, e in rows]))
     run.note("a quarter of the lights of Table 1" + ("" if run.full else "; a crop, with its share of the cache points"))
 
 
@@ -81,20 +125,26 @@ AT = (0.1, 0.25, 0.5, 0.75, 0.9)
 
 @ENTRIES.measured(
     "nabata-fig-4", "Nabata et al., Fig. 4, section 5",
-    "Hairball: where lights are tested; seldom on plain walls, other than with Veach", NEEDS)
+    "Hairball: where lights are tested; seldom on plain walls, other than with Veach", NEEDS,
+    (at_most("median over the pixels of the share that is tested, probabilistic / Veach", 1),))
 def fig_4(run):
     """The share of the lights that each pixel of the hairball tests."""
     side = 128
+    c = Comparison(run, "Hairball", both("Hairball", run.full, side), SEEDS, share=0.25, side=side)
+
+    def shares(key, seed):
+        return sorted(layers.channels(run.place(c.name(key, seed)), TESTS)[0])
+
+    for which in KINDS:
+        run.found("median over the pixels of the share that is tested, probabilistic / Veach", **{which: geometric_mean_of([
+            statistics.median(shares(f"probabilistic-{which}", seed)) / statistics.median(shares(f"roulette-{which}", seed))
+            for seed in range(SEEDS)])})
     rows = []
-    for key, how in (("probabilistic", visibility("probabilistic", many_lights.cached("Hairball", run.full, side))),
-                     ("as published", visibility("probabilistic", many_lights.cached("Hairball", run.full, side),
-                                                 term_cost=0, variance="point")),
-                     ("Veach", visibility("roulette", many_lights.cached("Hairball", run.full, side)))):
-        many_lights.render(run, key, many_lights.job("Hairball", how, run.full, 0.25, side, layers=["visibility_tests"]))
-        shares = sorted(layers.channels(run.folder / run.version / key, "visibility_tests")[0])
-        rows.append((key, *(f"{shares[int(q * (len(shares) - 1))]:.1%}" for q in AT)))
+    for key in c.how:
+        found = shares(key, 0)
+        rows.append((key, *(f"{found[int(q * (len(found) - 1))]:.1%}" for q in AT)))
     run.tables.append(Table(("visibility", *(f"{q:.0%} of the pixels below" for q in AT)), rows))
-    run.note(f"of all lights, those that turn away included; pictures: {run.folder / run.version}")
+    run.note(f"of all lights, those that turn away included; pictures: {run.pictures}")
 
 
 LIGHTS = 100_000  # of many_lights.job() with a share of 1
@@ -110,52 +160,84 @@ def fig_5(run):
     """How many lights probabilistic visibility affords on the hairball in the time that exact visibility
     takes for 2000."""
     side = 128
-    points = many_lights.cached("Hairball", run.full, side)
+    points = cached("Hairball", run.full, side)
 
-    def timed(how, lights):
-        name = f"{how['type']}-{lights}"
-        job = many_lights.job("Hairball", how, run.full, lights / LIGHTS, side)
-        report = many_lights.render(run, name, job)
+    def timed(how, lights, seed):
+        job = many_lights.job("Hairball", how, run.full, lights / LIGHTS, side, seed=seed)
+        report = many_lights.render(run, f"{how['type']}-{how.get('draws', '')}-{lights}-{seed}", job)
         return report["integrator"]["virtual_lights"], many_lights.seconds(report)
 
-    lights, limit = timed(visibility("exact"), EXACT)
-    rows = [timed(visibility("probabilistic", points), n) for n in TRIED]
-    affords = None
-    for (n0, t0), (n1, t1) in zip(rows, rows[1:]):
-        if t0 <= limit < t1:
-            affords = n0 + (n1 - n0) * (limit - t0) / (t1 - t0)
-    run.found("lights, exact", exact(lights))
-    if affords is not None:
-        run.found("lights, probabilistic", exact(affords))
-        run.found("lights, probabilistic / exact", exact(affords / lights))
-    run.tables.append(Table(("visibility", "lights", "CPU seconds"),
-                            [("exact", round(lights), f"{limit:.3g}")] +
-                            [("probabilistic", round(n), f"{t:.3g}") for n, t in rows]))
+    def affords(how, seed, limit):
+        """The lights in `limit` seconds, between the two nearest that were tried; beyond them, on their line."""
+        found = [timed(how, n, seed) for n in TRIED]
+        pairs = list(zip(found, found[1:]))
+        (n0, t0), (n1, t1) = next((p for p in pairs if limit < p[1][1]), pairs[-1])
+        return n0 + (n1 - n0) * (limit - t0) / (t1 - t0), found
+
+    limits = [timed(visibility("exact"), EXACT, seed) for seed in range(SEEDS)]
+    lights = mean_of([n for n, _ in limits])
+    rows = [("exact", str(lights), str(mean_of([t for _, t in limits])))]
+    run.found("lights, exact", ours=lights, published=lights)
+    for which, how in (("published", published("probabilistic", points)), ("ours", visibility("probabilistic", points))):
+        found = [affords(how, seed, limits[seed][1]) for seed in range(SEEDS)]
+        run.found("lights, probabilistic", **{which: mean_of([n for n, _ in found])})
+        run.found("lights, probabilistic / exact", **{which: geometric_mean_of(
+            [max(n, 1) / exact for (n, _), (exact, _) in zip(found, limits)])})
+        rows += [(which, round(n), f"{t:.3g}") for n, t in found[0][1]]
+    run.tables.append(Table(("visibility", "lights", "CPU seconds"), rows))
 
 
 @ENTRIES.measured(
     "nabata-fig-6", "Nabata et al., Fig. 6, section 5",
     "interpolated visibility alone has steps in brightness, probabilistic visibility has none",
-    "many_lights with visibility: probabilistic, interpolated")
+    "many_lights with visibility: probabilistic, interpolated",
+    (at_least("worst block of interpolated / of probabilistic", 1), beside("mean of interpolated / of exact")))
 def fig_6(run):
     """Steps in brightness of interpolated visibility, against none of probabilistic visibility. Both are
     compared with exact visibility of the same lights in blocks of 16 x 16 pixels, over which noise averages out and steps do
     not."""
     side = 256
-    rows = []
-    points = many_lights.cached("Hairball", run.full, side)
-    for key, how in (("exact", visibility("exact")), ("probabilistic", visibility("probabilistic", points)),
-                     ("interpolated", visibility("interpolated", points))):
-        many_lights.render(run, key, many_lights.job("Hairball", how, run.full, 0.1, side, crop={"of": [512, 512],
-                                                                                               "from": [60, 200]}))
-        if key != "exact":
-            e = many_lights.errors(run, key, "exact", "--block", 16)
-            rows.append((key, f"{e['rmse'] / e['mean_b']:.3g}", f"{e['mean_a'] / e['mean_b']:.4g}",
-                         f"{e['block_relative']:.3g}", f"{e['ssim']:.3g}"))
-    run.tables.append(Table(("visibility", "RMSE / mean", "mean / exact", "worst block, of its mean", "SSIM"), rows))
-    run.note(f"pictures: {run.folder / run.version}")
+    points = cached("Hairball", run.full, side)
+    c = Comparison(run, "Hairball", {
+        "probabilistic-published": published("probabilistic", points),
+        "probabilistic-ours": visibility("probabilistic", points),
+        "interpolated-published": published("interpolated", points),
+        "interpolated-lit": visibility("interpolated", points, cache_lights="lit")},
+        SEEDS, share=0.1, side=side, crop={"of": [512, 512], "from": [60, 200]})
+    found = {key: c.errors(key, "--block", 16) for key in c.how if key != "exact"}
+    for which in KINDS:  # interpolation has no other settings than the published ones
+        run.found("worst block of interpolated / of probabilistic", **{which: geometric_mean_of(
+            [a["block_relative"] / b["block_relative"]
+             for a, b in zip(found["interpolated-published"], found[f"probabilistic-{which}"])])})
+        run.found("mean of interpolated / of exact", **{which: mean_of(
+            [e["mean_a"] / e["mean_b"] for e in found["interpolated-published"]])})
+    run.tables.append(Table(("visibility", "RMSE / mean", "mean / exact", "worst block, of its mean", "SSIM"), [
+        (key, *(str(mean_of(list(map(value, es)))) for value in (
+            lambda e: e["rmse"] / e["mean_b"], lambda e: e["mean_a"] / e["mean_b"], lambda e: e["block_relative"],
+            lambda e: e["ssim"]))) for key, es in found.items()]))
+    run.note("interpolated-lit: where a light has no contribution to a cache point, that point says nothing of it")
+    run.note(f"pictures: {run.pictures}")
 
 
-ENTRIES.planned(
-    "nabata-fig-7", "Nabata et al., Fig. 7, section 5", "Museum, glossy, 300k lights: time at like quality",
-    NEEDS, (beside("probabilistic", 1468, "s"), beside("exact", 3822, "s"), at_least("speed-up", 3822 / 1468)))
+# A room whose walls are glossy, in place of the museum.
+GLOSSY = {"name": "white", "roughness": 0.4}
+
+
+@ENTRIES.measured(
+    "nabata-fig-7", "Nabata et al., Fig. 7, section 5",
+    f"{shown('Museum')}, glossy, 300k lights: time at like quality", NEEDS,
+    (beside("probabilistic", 1468, "s"), beside("exact", 3822, "s"), at_least("speed-up", 3822 / 1468)))
+def fig_7(run):
+    """Time of probabilistic against exact visibility where surfaces are glossy."""
+    scene, side = "Museum", 48
+    points = cached(scene, run.full, side)
+    c = Comparison(run, scene, {"published": published("probabilistic", points), "ours": visibility("probabilistic", points)},
+                   SEEDS, share=300_000 / many_lights.SCENES[scene]["lights"], side=side, material=GLOSSY)
+    for which in KINDS:
+        run.found("probabilistic", **{which: c.seconds(which)})
+        run.found("exact", **{which: c.seconds("exact")})
+        run.found("speed-up", **{which: c.speed_up(which)})
+    run.tables.append(Table(("visibility", "lights", "CPU seconds", "tests saved", "RMSE / mean"), [
+        (key, round(c.lights()), str(c.seconds(key)), str(c.saved(key)),
+         "" if key == "exact" else str(mean_of([e["rmse"] / e["mean_b"] for e in c.errors(key)]))) for key in c.how]))
+    run.note(f"the material \"{GLOSSY['name']}\" has roughness {GLOSSY['roughness']}; pictures: {run.pictures}")

@@ -1,7 +1,7 @@
 """Guided rays."""
 
 from harness.entry import Entries
-from harness.measured import error_at, gain_at, median_of
+from harness.measured import error_at, gain_at, geometric_mean_of
 from harness.run import Table, cell_with
 from harness.verdict import at_least, at_most, beside
 
@@ -34,7 +34,7 @@ def measure_iterations(run, guides, quantity):
         own = told(guide)
 
         def gain(value, own=own):
-            return median_of([value(a) / value(b) for a, b in zip(plain, own)])
+            return geometric_mean_of([value(a) / value(b) for a, b in zip(plain, own)])
 
         gains = [gain(lambda r, m=metric: r["errors"][m]) for metric in ("mae", "rmse", "relmse")]
         cost = gain(lambda r: r["seconds"]["render_cpu"])
@@ -42,7 +42,7 @@ def measure_iterations(run, guides, quantity):
             run.found(quantity, gains[0])
         rows.append((name, *map(str, gains), f"{1 / cost.value:.3g}"))
     run.tables.append(Table(("door", "gain in MAE", "in RMSE", "in relMSE", "time of an iteration"), rows))
-    run.note(f"{iterations} iterations; medians of {answers['seeds']} runs")
+    run.note(f"{iterations} iterations; means of {answers['seeds']} runs")
 
 
 def guided(number, page, configuration, minutes, *more):

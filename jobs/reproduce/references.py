@@ -5,7 +5,7 @@ import math
 
 from harness import child, many_lights
 from harness.entry import Entries
-from harness.measured import error_at, exact, gain_at, of_answer, speed_up_to, time_to
+from harness.measured import Measured, error_at, gain_at, of_answer, speed_up_to, time_to
 from harness.run import Table, cell_with
 from harness.verdict import at_least, at_most, beside, up_to
 
@@ -116,11 +116,11 @@ def fig_25(run):
         error[method] = found[1]
         rows.append((method, *(f"{e:.3g}" for e in found), f"{found[1] / found[0]:.2g}"))
     run.found("error of progressive / of photon mapping, at equal time",
-              exact(error["progressive"] / error["photon mapping"]))
+              Measured(error["progressive"] / error["photon mapping"]))
     run.tables.append(Table(("method", f"MSE, {seconds / 4:g} CPU seconds", f"{seconds}", "ratio"), rows))
     run.note("glass.glb; noise alone falls to a quarter from one column to the next, and sppm's error to 0.4; "
              "instant global illumination is that of Fig. 23")
-    run.note(f"pictures: {run.folder / run.version}")
+    run.note(f"pictures: {run.pictures}")
 
 
 METROPOLIS = {"path_space": {"type": "metropolis", "mutation": "path_space"},
@@ -155,7 +155,7 @@ def metropolis(run):
                  for name, integrator in METROPOLIS.items()}
         for other in ("bdpt skeleton", "multiplexed", "path"):
             run.found(f"MSE of {other} / of path_space, {scene}",
-                      exact(found[other]["mse"] / found["path_space"]["mse"]))
+                      Measured(found[other]["mse"] / found["path_space"]["mse"]))
         run.tables.append(Table((f"{scene}, {seconds} CPU seconds", "MSE", "relMSE"),
                                 [(name, f"{e['mse']:.3g}", f"{e['relmse']:.3g}") for name, e in found.items()]))
     run.note("one seed; the reference is another picture of the same method after ten times as long, and its noise is in "

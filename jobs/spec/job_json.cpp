@@ -112,8 +112,13 @@ void check_camera(const JobSpec& spec, std::vector<Problem>& problems) {
   if (!spec.camera.object || !is_good(problems, "/camera")) return;
   const CameraSettings& camera = *spec.camera.object;
   if (frame_of(camera)) return;
-  if (camera.position == camera.target) {
-    problems.push_back({"/camera/target", "found the camera's position; allowed: another point"});
+  CameraSettings upright = camera, sideways = camera;
+  upright.up = {0, 1, 0}, sideways.up = {1, 0, 0};
+  if (!frame_of(upright) && !frame_of(sideways)) {
+    problems.push_back({"/camera/target", fmt::format("found {}, the camera's position or nearer "
+                                                      "to it than doubles tell apart; allowed: "
+                                                      "another point",
+                                                      json_text(OrderedJson(camera.target)))});
     return;
   }
   problems.push_back({"/camera/up", fmt::format("found {}, which is 0 or along the view; allowed: "

@@ -17,9 +17,9 @@ class HybridConnections : public StrategyBase {
         skeleton_(settings.skeleton()) {}
 
   const ResamplingSettings& resampling() const { return settings_; }
-  static constexpr std::array<std::string_view, 7> distributions{
+  static constexpr std::array<std::string_view, 8> distributions{
       "cache_full", "cache_unshadowed", "cache_bounded", "cache_uniform",
-      "visible",    "unshadowed",       "uniform"};
+      "visible",    "unshadowed",       "uniform",       "fallback"};
   static constexpr bool needs_space() { return true; }
 
   void prepare(const PrepareContext& context) { skeleton_.prepare(context); }

@@ -18,8 +18,8 @@ class SkeletonConnections : public StrategyBase {
   explicit SkeletonConnections(const SkeletonConnectionsSettings& settings) : settings_(settings) {}
 
   const ResamplingSettings& resampling() const { return settings_; }
-  static constexpr std::array<std::string_view, 3> distributions{"visible", "unshadowed",
-                                                                 "uniform"};
+  static constexpr std::array<std::string_view, 4> distributions{"visible", "unshadowed", "uniform",
+                                                                 "fallback"};
   static constexpr bool needs_space() { return true; }
 
   void prepare(const PrepareContext& context);
@@ -46,7 +46,7 @@ class SkeletonConnections : public StrategyBase {
   void sample(const CellLookup& lookup, const LightRange& range, Rng& rng, Survival&& survival,
               Use&& use) const {
     if (lookup.distributions == nullptr) {
-      sample_uniformly(range, rng, uniform, survival, use);
+      sample_uniformly(range, rng, fallback, survival, use);
       return;
     }
     const ResamplingCell& cell = *lookup.distributions;
@@ -62,7 +62,8 @@ class SkeletonConnections : public StrategyBase {
   std::vector<std::pair<std::string, double>> statistics() const;
 
  private:
-  static constexpr std::uint8_t uniform = 2;  // in `distributions`
+  // In `distributions`: of eye vertices whose node has none of its own (Noel 2015, Fig. 106).
+  static constexpr std::uint8_t fallback = 3;
 
   bool accepted(std::uint64_t mapped, std::uint64_t sum) const;
   std::uint64_t build(std::size_t node, const IterationContext& context,

@@ -137,13 +137,17 @@ void CachePoints::fill(const LightPass& pass, std::size_t point, const ShadingPo
     });
   };
   for (std::size_t b = 0; b < lights.blocks(); ++b) {
+    std::uint64_t lit = 0;
     if (pass.terms.may_light(b, here) != 0) {
       pass.terms.evaluate(at, b, terms);
-      if (keep_ == Keep::visibilities) seen_[point * blocks_ + b].known = terms.lit;
-      for_each_bit(terms.lit, [&](int i) {
+      lit = terms.lit;
+      for_each_bit(lit, [&](int i) {
         queue.add(pass.terms.ray(at, b, i), {b, i, terms.luminance[i]});
       });
     }
+    const std::uint64_t dark = all_ ? lights.mask(b) & ~lit : 0;
+    for_each_bit(dark, [&](int i) { queue.add(pass.terms.ray_from_side(at, b, i), {b, i, 0}); });
+    if (keep_ == Keep::visibilities) seen_[point * blocks_ + b].known = lit | dark;
     if (b % 16 == 15) flush();
     if (b % 1024 == 1023 && pass.context.stop()) throw IterationStopped{};
   }

@@ -3,6 +3,7 @@
 #include "renderer/many_lights/vpl_contributions.h"
 #include "renderer/path/contexts.h"
 #include "renderer/path/record_tree.h"
+#include "renderer/settings/visibility_settings.h"
 
 namespace lacuna {
 
@@ -24,7 +25,7 @@ inline float eye_rays_per_light(const LightPass& pass) {
   return 1 / static_cast<float>(std::max<std::size_t>(1, pass.gathered()));
 }
 
-/// Shading points at which all virtual lights are tested: they store one bit of visibility for each
+/// Shading points at which virtual lights are tested: they store one bit of visibility for each
 /// light, and the variance of the lights' contributions (Nabata et al., 3.1). They are new in each
 /// iteration, like the lights. Where only some lights are gathered at a shading point, there are
 /// fewer cache points, so that their tests are at most a quarter of those of the gathered lights.
@@ -35,10 +36,14 @@ class CachePoints {
   /// What is stored: the variances alone, or the visibility bits too.
   enum class Keep { variances, visibilities };
 
-  CachePoints(int points, int neighbours, Keep keep)
-      : wanted_(static_cast<std::size_t>(points)), neighbours_(neighbours), keep_(keep) {}
+  /// `tested`: matters with Keep::visibilities only.
+  CachePoints(int points, int neighbours, Keep keep, CacheLights tested = CacheLights::lit)
+      : wanted_(static_cast<std::size_t>(points)),
+        neighbours_(neighbours),
+        keep_(keep),
+        all_(keep == Keep::visibilities && tested == CacheLights::all) {}
 
-  /// Chooses the points and tests all lights at them. Throws MemoryLimitError if there is no memory
+  /// Chooses the points and tests the lights at them. Throws MemoryLimitError if there is no memory
   /// for the bits.
   Counters build(const LightPass& pass);
 
@@ -56,7 +61,7 @@ class CachePoints {
   /// Its root mean square over the picture.
   float deviation() const { return static_cast<float>(std::sqrt(picture_variance_)); }
   /// q: the weighted mean of the nearest points' visibility of each light of `block`, over those at
-  /// which the light has a contribution: behind a point's horizon its visibility is not known.
+  /// which it was tested: with CacheLights::lit, those at which the light has a contribution.
   /// Returns a mask of the lights that at least one point knows; q of the others is 0. Requires
   /// Keep::visibilities.
   std::uint64_t expected(const Near& near, std::size_t block, Lanes& q) const;
@@ -77,6 +82,7 @@ class CachePoints {
   std::size_t wanted_;
   int neighbours_;
   Keep keep_;
+  bool all_;  // tests lights without a contribution, too
   RecordTree tree_;
   std::vector<SurfacePoint> points_;
   std::vector<double> variances_;  // of contributions over ShadingPoint::scale
@@ -84,7 +90,7 @@ class CachePoints {
   std::vector<double> weights_;    // share of the picture's shading points in its cluster
   double picture_variance_ = 0;
   std::size_t blocks_ = 0;
-  // For each point and block: which lights have a contribution, and which of them are visible.
+  // For each point and block: which lights were tested, and which of them are visible.
   struct Seen {
     std::uint64_t known = 0, visible = 0;
   };

@@ -6,8 +6,7 @@ namespace lacuna {
 
 void VplContributions::evaluate(const ShadingPoint& at, std::size_t block, Terms& out,
                                 std::uint64_t of, float weight) const {
-  const int count = lights_.count(block);
-  const std::uint64_t there = count < Lanes::size ? (std::uint64_t{1} << count) - 1 : all_lights;
+  const std::uint64_t there = lights_.mask(block);
   of &= there;
   out.weight = weight;
   if (const DiffuseBlock* diffuse = lights_.diffuse(block)) {
@@ -125,6 +124,23 @@ void VplContributions::finish(Terms& out) {
     out.rejected |= std::uint64_t{1} << i;
   }
   out.lit &= ~out.rejected;
+}
+
+Ray VplContributions::ray_from_side(const ShadingPoint& at, std::size_t block, int i) const {
+  const Surface& surface = at.vertex->surface;
+  const V3f n = at.vertex->side();
+  const V3f start = offset_origin(surface.x, surface.ng, surface.extent, n);
+  const VplGeometry light = lights_.geometry(block, i);
+  if (light.infinite) return {start, light.x};
+  if (const DiffuseBlock* from = lights_.diffuse(block)) {
+    const V3f end =
+        from->points ? light.x : offset_origin(light.x, light.n, from->extent[i], light.n);
+    return {start, end - start, 1.0F};
+  }
+  return lights_.general(block, i).with_end(guide_, [&](const auto& end) -> Ray {
+    const V3f side = light.n == V3f(0, 0, 0) ? start - light.x : light.n;
+    return {start, end.origin(side) - start, 1.0F};
+  });
 }
 
 Ray VplContributions::ray(const ShadingPoint& at, std::size_t block, int i) const {

@@ -89,6 +89,10 @@ class VplContributions {
                 std::uint64_t of = all_lights, float weight = 1) const;
   /// The shadow ray between light `i` of `block`, which is lit, and `at`.
   Ray ray(const ShadingPoint& at, std::size_t block, int i) const;
+  /// The same for a light that need not be lit: the ray starts on the side of `at` that the eye
+  /// sees and ends on the side of the light that shines. Whatever lies behind the horizon of one of
+  /// the two is hidden by its surface.
+  Ray ray_from_side(const ShadingPoint& at, std::size_t block, int i) const;
 
  private:
   void diffuse_terms(const ShadingPoint& at, const DiffuseBlock& from, std::uint64_t of,

@@ -103,6 +103,11 @@ class VplSet {
   std::size_t blocks() const { return blocks_.size(); }
   /// Number of lights of block `b`: 64, or fewer in the last block of a kind and group.
   int count(std::size_t b) const { return blocks_[b].count; }
+  /// Bit i is set if block `b` has a light i.
+  std::uint64_t mask(std::size_t b) const {
+    const int n = count(b);
+    return n < Lanes::size ? (std::uint64_t{1} << n) - 1 : ~std::uint64_t{0};
+  }
   /// The group of the lights of block `b`.
   std::uint32_t group(std::size_t b) const { return blocks_[b].group; }
   /// The bounds of block `b`; requires diffuse(b).

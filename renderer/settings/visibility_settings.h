@@ -43,6 +43,32 @@ struct EnumTable<VarianceOf> {
   }};
 };
 
+/// How the lights to test are drawn, each with its own probability.
+enum class TestDraws { systematic, bernoulli };
+
+template <>
+struct EnumTable<TestDraws> {
+  static constexpr std::array<EnumValue<TestDraws>, 2> values{{
+      {TestDraws::systematic, "systematic",
+       "64 neighbouring lights by one random number, so that the tests are spread evenly over "
+       "them"},
+      {TestDraws::bernoulli, "bernoulli", "each light by a random number of its own (eq. 3)"},
+  }};
+};
+
+/// Which lights a cache point tests.
+enum class CacheLights { lit, all };
+
+template <>
+struct EnumTable<CacheLights> {
+  static constexpr std::array<EnumValue<CacheLights>, 2> values{{
+      {CacheLights::lit, "lit",
+       "those that contribute to the cache point; of the others, as of those behind its horizon, "
+       "nothing is known there"},
+      {CacheLights::all, "all", "all lights (Nabata et al., 3.1)"},
+  }};
+};
+
 /// The settings of strategies that test lights at random.
 struct ChanceSettings {
   int cache_points = 2000;
@@ -51,6 +77,7 @@ struct ChanceSettings {
   // As published they are otherwise, see their tables:
   double term_cost = 0.03;
   VarianceOf variance = VarianceOf::picture;
+  TestDraws draws = TestDraws::systematic;
   bool operator==(const ChanceSettings&) const = default;
 };
 
@@ -64,7 +91,7 @@ void describe_cache(V& v, S& s, std::string_view what) {
 }
 
 template <class V>
-void describe_chance(V& v, ChanceSettings& s, std::string_view published_variance = {}) {
+void describe_chance(V& v, ChanceSettings& s) {
   v("epsilon_probability", s.epsilon_probability,
     {.doc = "least probability of a test (Nabata et al., eq. 12)",
      .min = 0,
@@ -76,8 +103,14 @@ void describe_chance(V& v, ChanceSettings& s, std::string_view published_varianc
      .min = 0,
      .max = 1e6,
      .published = "0"});
-  v("variance", s.variance,
-    {.doc = "which variance is sigma^2 (eq. 8)", .published = published_variance});
+  v("variance", s.variance, {.doc = "which variance is sigma^2 (eq. 8)", .published = "\"point\""});
+  v("draws", s.draws, {.doc = "how the lights to test are drawn", .published = "\"bernoulli\""});
+}
+
+template <class V, class S>
+void describe_cache_lights(V& v, S& s, std::string_view published = {}) {
+  v("cache_lights", s.cache_lights,
+    {.doc = "the lights that a cache point tests", .published = published});
 }
 
 /// How the probability of testing a light follows from its contribution.
@@ -121,18 +154,21 @@ struct ProbabilisticVisibilitySettings : ChanceSettings {
       "against a control variate of their mean (Nabata et al.)";
 
   double epsilon_variance = 0.1;
-  bool clamp_negative = false;  // as published it is otherwise
+  // As published they are otherwise, see their tables:
+  bool clamp_negative = false;
+  CacheLights cache_lights = CacheLights::lit;
   bool operator==(const ProbabilisticVisibilitySettings&) const = default;
 };
 
 inline constexpr std::string_view cache_points_doc =
-    "shading points at which the visibility of every light is tested: one for each cluster of the "
+    "shading points at which the visibility of lights is tested: one for each cluster of the "
     "picture's shading points, split by position and normal";
 
 template <class V>
 void describe(V& v, ProbabilisticVisibilitySettings& s) {
   describe_cache(v, s, cache_points_doc);
-  describe_chance(v, s, "\"point\"");
+  describe_chance(v, s);
+  describe_cache_lights(v, s, "\"all\"");
   v("epsilon_variance", s.epsilon_variance,
     {.doc = "least variance assumed for a visibility, even where all cache points agree (eq. 11)",
      .min = 0,
@@ -153,11 +189,13 @@ struct InterpolatedVisibilitySettings {
 
   int cache_points = ChanceSettings{}.cache_points;
   int neighbours = ChanceSettings{}.neighbours;
+  CacheLights cache_lights = CacheLights::all;
   bool operator==(const InterpolatedVisibilitySettings&) const = default;
 };
 template <class V>
 void describe(V& v, InterpolatedVisibilitySettings& s) {
   describe_cache(v, s, cache_points_doc);
+  describe_cache_lights(v, s);
 }
 
 /// How the light through a gate falls off towards its rim.

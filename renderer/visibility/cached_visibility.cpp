@@ -28,7 +28,7 @@ void ProbabilisticVisibility::decide(At& at, std::size_t block, const Terms& ter
   const auto least = static_cast<float>(settings_.epsilon_variance);
   constexpr float unknown = std::numeric_limits<float>::infinity();  // such lights are tested
   const TestProbability chance = at.chance;
-  SystematicSampler keys;
+  TestSampler keys;
   for (int k = 0; k < Lanes::groups; ++k) {
     const Float8 q = d.untested.eight(k);
     const Float8 t = terms.luminance.eight(k);
@@ -36,7 +36,7 @@ void ProbabilisticVisibility::decide(At& at, std::size_t block, const Terms& ter
     const Float8 var = select(is_known, max(least, q * (1 - q)), unknown);
     keys.set(k, chance.of(t, var, terms.weight), t);
   }
-  d.tests = keys.draw(at.rng.next_u32());
+  d.tests = keys.draw(settings_.draws, at.rng);
   for_each_bit(d.tests, [&](int i) {
     const float x = keys.probability(i);
     d.untested[i] *= (x - 1) / x;

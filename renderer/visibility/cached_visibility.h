@@ -14,7 +14,8 @@ class ProbabilisticVisibility : public VisibilityBase {
  public:
   explicit ProbabilisticVisibility(const ProbabilisticVisibilitySettings& settings)
       : settings_(settings),
-        points_(settings.cache_points, settings.neighbours, CachePoints::Keep::visibilities) {}
+        points_(settings.cache_points, settings.neighbours, CachePoints::Keep::visibilities,
+                settings.cache_lights) {}
 
   Counters begin(const LightPass& pass);
   struct At {
@@ -37,7 +38,8 @@ class ProbabilisticVisibility : public VisibilityBase {
 class InterpolatedVisibility : public VisibilityBase {
  public:
   explicit InterpolatedVisibility(const InterpolatedVisibilitySettings& settings)
-      : points_(settings.cache_points, settings.neighbours, CachePoints::Keep::visibilities) {}
+      : points_(settings.cache_points, settings.neighbours, CachePoints::Keep::visibilities,
+                settings.cache_lights) {}
 
   Counters begin(const LightPass& pass) { return points_.build(pass); }
   struct At {

@@ -22,14 +22,15 @@ RouletteVisibility::At RouletteVisibility::at(const ShadingPoint& point,
           {context.seed, context.iteration, point.pixel, Rng::Purpose::visibility}};
 }
 
-void RouletteVisibility::decide(At& at, std::size_t, const Terms& terms, VisibilityEstimate& d) {
+void RouletteVisibility::decide(At& at, std::size_t, const Terms& terms,
+                                VisibilityEstimate& d) const {
   const TestProbability chance = at.chance;
-  SystematicSampler keys;
+  TestSampler keys;
   for (int k = 0; k < Lanes::groups; ++k) {
     const Float8 t = terms.luminance.eight(k);
     keys.set(k, chance.of(t, 1, terms.weight), t);
   }
-  d.tests = keys.draw(at.rng.next_u32());
+  d.tests = keys.draw(settings_.draws, at.rng);
   d.untested.v.fill(0);
   for_each_bit(d.tests, [&](int i) { d.gain[i] = 1 / keys.probability(i); });
 }

@@ -20,7 +20,7 @@ class RouletteVisibility : public VisibilityBase {
     Rng rng;
   };
   At at(const ShadingPoint& point, const IterationContext& context) const;
-  static void decide(At& at, std::size_t block, const Terms& terms, VisibilityEstimate& d);
+  void decide(At& at, std::size_t block, const Terms& terms, VisibilityEstimate& d) const;
   std::vector<std::pair<std::string, double>> statistics() const { return points_.statistics(); }
 
  private:

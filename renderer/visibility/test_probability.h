@@ -3,6 +3,7 @@
 #include "renderer/core/rng.h"
 #include "renderer/many_lights/visibility_estimate.h"
 #include "renderer/many_lights/vpl_contributions.h"
+#include "renderer/settings/visibility_settings.h"
 
 namespace lacuna {
 
@@ -33,9 +34,9 @@ struct TestProbability {
   }
 };
 
-/// Systematic sampling of the lights of a block. Probabilities are integers, so that each light is
+/// Samples the lights of a block that are tested. Probabilities are integers, so that each light is
 /// sampled with exactly the probability that its contribution is divided by.
-struct SystematicSampler {
+struct TestSampler {
   static constexpr int bits = 20;
   static constexpr std::uint32_t one = 1U << bits;
   alignas(32) std::array<std::uint32_t, Lanes::size> v;
@@ -47,16 +48,28 @@ struct SystematicSampler {
   }
   float probability(int i) const { return float(v[static_cast<std::size_t>(i)]) / float(one); }
 
+  std::uint64_t draw(TestDraws draws, Rng& rng) const {
+    return draws == TestDraws::systematic ? systematic(rng.next_u32()) : independent(rng);
+  }
   /// Samples each light with its probability by one random number u: the lights whose intervals of
   /// the cumulative sum contain u, u + 1, ... The lights of a block are similar, and the samples
   /// are spread over the block.
-  std::uint64_t draw(std::uint32_t random) const {
+  std::uint64_t systematic(std::uint32_t random) const {
     std::uint64_t drawn = 0;
     std::uint32_t sum = random >> (32 - bits);
     for (int i = 0; i < Lanes::size; ++i) {
       sum += v[static_cast<std::size_t>(i)];
       drawn |= std::uint64_t{sum >> bits} << i;
       sum &= one - 1;
+    }
+    return drawn;
+  }
+  /// Samples each light with its probability by a random number of its own.
+  std::uint64_t independent(Rng& rng) const {
+    std::uint64_t drawn = 0;
+    for (int i = 0; i < Lanes::size; ++i) {
+      const std::uint32_t p = v[static_cast<std::size_t>(i)];
+      if (p > 0 && rng.next_u32() >> (32 - bits) < p) drawn |= std::uint64_t{1} << i;
     }
     return drawn;
   }

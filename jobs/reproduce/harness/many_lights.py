@@ -1,21 +1,38 @@
 """What the entries of Nabata et al. have in common: many lights on crops of 512 x 512 pixels. A crop keeps what the ratios
 depend on, the number of lights and the pixels of a cache point, and takes a part of the time."""
 
-import json
+import statistics
 
-from harness import child
-from harness.measured import Measured, exact
+from harness import child, layers
+from harness.measured import geometric_mean_of, mean_of
 
 FULL = [512, 512]
-# The lights that a light path gives, measured, decide how many paths the paper's number of lights takes.
+# The lights that a light path gives, measured, decide how many paths the paper's number of lights takes. San Miguel and the
+# museum are not ours to have; `stand-in` names what is rendered in their place: a court with plants and sun, and a room with
+# furniture that is lit through a door.
 SCENES = {
+    "San Miguel": {"scene": "atrium.glb", "camera": "court", "lights": 550_000, "paths": 329_000, "cache": 1885,
+                   "crop": [200, 260], "stand-in": "atrium.glb"},
     "Hairball": {"scene": "hairball.glb", "camera": "front", "lights": 100_000, "paths": 34_800, "cache": 500,
                  "crop": [350, 170]},
     "Sponza": {"scene": "sponza/scene.glb", "camera": "atrium", "lights": 300_000, "paths": 285_000, "cache": 1414,
                "crop": [200, 260]},
-    "Door": {"scene": "door/scene.glb", "camera": "corner", "lights": 100_000, "paths": 34_500, "cache": 1414,
-             "crop": [200, 200]},
+    "Museum": {"scene": "door/scene.glb", "camera": "corner", "lights": 100_000, "paths": 25_000, "cache": 1900,
+               "crop": [200, 200], "stand-in": "door/scene.glb"},
 }
+# The visibilities of Nabata et al. as published: only rays cost time, the point's own variance, a random number for each
+# light, all lights at cache points, and no pixel below 0 (sections 3.1 to 4.2). Of Veach's roulette, what of these it has.
+CHANCE = {"term_cost": 0, "variance": "point", "draws": "bernoulli"}
+PUBLISHED = {"probabilistic": {"type": "probabilistic", **CHANCE, "cache_lights": "all", "clamp_negative": True},
+             "roulette": {"type": "roulette", **CHANCE},
+             "interpolated": {"type": "interpolated", "cache_lights": "all"}}
+TESTS = "visibility_tests"
+
+
+def shown(scene):
+    """The scene's name, and what stands in for it."""
+    other = SCENES[scene].get("stand-in")
+    return f"{scene} (stand-in: {other})" if other else scene
 
 
 def visibility(name, cache_points=None, **more):
@@ -23,6 +40,11 @@ def visibility(name, cache_points=None, **more):
     if cache_points is not None:
         value["cache_points"] = cache_points
     return value
+
+
+def published(name, cache_points=None):
+    """A visibility as published."""
+    return PUBLISHED[name] if cache_points is None else {**PUBLISHED[name], "cache_points": cache_points}
 
 
 def job(scene, how, full, share=1.0, side=64, **more):
@@ -46,15 +68,8 @@ def cached(scene, full, side=64):
 
 
 def render(run, name, value):
-    """Renders a job into a folder of its own, once; gives its report."""
-    folder = run.folder / run.version / name
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    report = folder / "report.json"
-    if not report.exists():
-        file = folder.with_suffix(".json")
-        file.write_text(json.dumps(value, indent=2) + "\n")
-        child.lacuna("render", file, "--out", folder, "--quiet")
-    return json.loads(report.read_text())
+    """Run.render(): a job's report."""
+    return run.render(name, value)
 
 
 def seconds(report):
@@ -63,17 +78,45 @@ def seconds(report):
 
 def errors(run, name, exact_name, *options):
     """Every error of one picture against another of the same lights, as `lacuna compare` prints them."""
-    at = run.folder / run.version
-    lines = child.lacuna("compare", at / name / "image.exr", at / exact_name / "image.exr", *options)[0].splitlines()
+    pictures = [run.place(which) / "image.exr" for which in (name, exact_name)]
+    lines = child.lacuna("compare", *pictures, *options)[0].splitlines()
     return {words[0]: float(words[1]) for words in map(str.split, lines) if len(words) == 2}
 
 
-def speed_up(run, scene, how, full):
-    """Seconds of exact visibility over those of `how`, and the share of its tests that they save."""
-    reports = {key: render(run, f"{scene}-{key}", job(scene, value, full))
-               for key, value in {"exact": visibility("exact"), **how}.items()}
-    times = {key: Measured(seconds(r)) for key, r in reports.items()}
-    tests = {key: r["counts"]["shadow_rays"] for key, r in reports.items()}
-    return {key: {"speed_up": times["exact"].ratio(times[key]), "seconds": times[key],
-                  "saved": exact(1 - tests[key] / tests["exact"]),
-                  "lights": reports[key]["integrator"]["virtual_lights"]} for key in reports}
+def tests(run, name, exact_name):
+    """The share of *all* lights that a shading point tests, as the paper counts; shading points are the pixels at which
+    exact visibility tests any. Both jobs have the layer TESTS."""
+    own, exact = (layers.channels(run.place(which), TESTS)[0] for which in (name, exact_name))
+    return statistics.fmean(t for t, e in zip(own, exact) if e > 0)
+
+
+class Comparison:
+    """Visibilities with the same lights as `exact`, for a few seeds; `how`: their names and settings. Takes what job()
+    takes of the jobs."""
+
+    def __init__(self, run, scene, how, seeds, **more):
+        self.run, self.scene, self.seeds, self.how = run, scene, seeds, {"exact": visibility("exact"), **how}
+        self.reports = {key: run.repeated(f"{scene}-{key}", job(scene, value, run.full, layers=[TESTS], **more), seeds)
+                        for key, value in self.how.items()}
+
+    def name(self, key, seed):
+        """Of Run.place()."""
+        return f"{self.scene}-{key}-{seed}"
+
+    def lights(self):
+        return self.reports["exact"][0]["integrator"]["virtual_lights"]
+
+    def seconds(self, key):
+        return mean_of([seconds(r) for r in self.reports[key]])
+
+    def speed_up(self, key, over="exact"):
+        """Seconds of `over` / of `key`, by seeds."""
+        return geometric_mean_of([seconds(a) / seconds(b) for a, b in zip(self.reports[over], self.reports[key])])
+
+    def saved(self, key):
+        """The share of all lights that a shading point does not test."""
+        return mean_of([1 - tests(self.run, self.name(key, s), self.name("exact", s)) for s in range(self.seeds)])
+
+    def errors(self, key, *options):
+        """Those of every seed against exact visibility."""
+        return [errors(self.run, self.name(key, s), self.name("exact", s), *options) for s in range(self.seeds)]

@@ -10,7 +10,7 @@ CONFIDENCE = 0.95  # that of jobs/statistics/estimate.h; Run.answers() compares 
 @dataclasses.dataclass(frozen=True)
 class Measured:
     """A number with the interval that holds the truth with probability CONFIDENCE, from `n` independent runs; without
-    `low` and `high` there is none. `bound`: the number is only an "at least" or an "at most". `supported` is false
+    `low` and `high` there is none: Measured(x) is that of one run. `bound`: the number is only an "at least" or an "at most". `supported` is false
     where the reference's own noise is too large for it."""
 
     value: float
@@ -27,13 +27,24 @@ class Measured:
 
     def ratio(self, other):
         """Over an independent positive number: relative half widths add up as squares do. Without both intervals, or
-        where one reaches 0, there is none."""
+        where one reaches 0, there is none. None where a bound is divided by one that says nothing of the ratio."""
         value = self.value / other.value
+        if self.bound or other.bound:
+            bound = self._bound_over(other)
+            return bound and Measured(value, n=min(self.n, other.n), bound=bound,
+                                      supported=self.supported and other.supported)
         if None in (self.low, other.low) or min(self.low, other.low) <= 0:
             return Measured(value, n=min(self.n, other.n), supported=self.supported and other.supported)
         spread = math.exp(math.hypot(*(math.log(m.high / m.low) / 2 for m in (self, other))))
         return Measured(value, value / spread, value * spread, min(self.n, other.n),
                         supported=self.supported and other.supported)
+
+    def _bound_over(self, other):
+        """"at least" over a number is at least that much, and so is a number over "at most"; None where two bounds pull
+        apart."""
+        turned = {"": "", "at least": "at most", "at most": "at least"}[other.bound]
+        bounds = {self.bound, turned} - {""}
+        return bounds.pop() if len(bounds) == 1 else None
 
     def __str__(self):
         text = {"": "", "at least": ">= ", "at most": "<= "}[self.bound] + f"{self.value:.3g}"
@@ -43,8 +54,31 @@ class Measured:
 
 
 def exact(value):
-    """What no chance is in, as a count."""
+    """What no chance is in: the same from any seed, as a count of nodes. A single random number is Measured(value)."""
     return Measured(value, value, value)
+
+
+# Of Student's distribution: the half width of a two-sided interval at CONFIDENCE, in standard errors, for 1, 2, ... degrees
+# of freedom; beyond the last, that of the last.
+STUDENT = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131, 2.120,
+           2.110, 2.101, 2.093, 2.086)
+
+
+def mean_of(values):
+    """The mean of independent numbers that are spread about normally, with Student's interval; one value has none."""
+    n = len(values)
+    mean = statistics.fmean(values)
+    if n < 2:
+        return Measured(mean)
+    half = STUDENT[min(n - 1, len(STUDENT)) - 1] * statistics.stdev(values) / math.sqrt(n)
+    return Measured(mean, mean - half, mean + half, n)
+
+
+def geometric_mean_of(values):
+    """The same of the logarithms of positive numbers, as of ratios of errors of runs with the same seed."""
+    m = mean_of([math.log(v) for v in values])
+    bounds = {} if m.low is None else {"low": math.exp(m.low), "high": math.exp(m.high)}
+    return Measured(math.exp(m.value), n=m.n, **bounds)
 
 
 def median_of(values):

@@ -4,9 +4,11 @@ import dataclasses
 import math
 import textwrap
 
-from harness.verdict import NOT_MEASURED
+from harness.run import KINDS
+from harness.verdict import NOT_MEASURED, Claim
 
 WIDTH = 118
+HEADS = ("PAPER", "PUBLISHED [95 %]", "VERDICT", "OURS [95 %]", "VERDICT")
 
 
 def table_text(columns, rows):
@@ -38,12 +40,20 @@ def list_json(entries):
              "claims": [claim_json(c) for c in e.claims]} for e in entries]
 
 
+def row_cells(row):
+    """The cells of a row below HEADS: the paper's figure, and both numbers with their verdicts. A number that there is
+    not has no verdict beside one that there is."""
+    cells = [str(row.claim)]
+    for which in KINDS:
+        number = getattr(row, which)
+        cells += ["" if number is None else str(number), row.verdict(which) if which in row.measured() else ""]
+    return cells
+
+
 def run_text(run):
-    rows = [(r.claim.quantity, str(r.claim), "" if r.ours is None else str(r.ours),
-             "" if r.ratio is None else str(r.ratio), r.verdict) for r in run.rows]
     parts = [f"{run.entry.name} ({run.version}): {run.entry.text}\n{run.entry.source}"]
-    if rows:
-        parts.append(table_text(("QUANTITY", "PAPER", "OURS [95 %]", "OURS / PAPER", "VERDICT"), rows))
+    if run.rows:
+        parts.append(table_text(("QUANTITY", *HEADS), [(r.claim.quantity, *row_cells(r)) for r in run.rows]))
     parts += [table_text(t.columns, t.rows) for t in run.tables]
     parts.append("\n".join(f"note: {n}" for n in (*run.notes, *general_notes(run))))
     return "\n\n".join(parts)
@@ -52,19 +62,27 @@ def run_text(run):
 def general_notes(run):
     """What holds of every reproduction."""
     notes = []
-    missing = sum(r.verdict == NOT_MEASURED for r in run.rows)
+    missing = sum(r.published is None and r.ours is None for r in run.rows)
     if missing:
-        notes.append(f"{missing} of {len(run.rows)} not measured")
-    if any(r.ours is not None and not r.ours.supported for r in run.rows):
+        notes.append(f"{missing} of {len(run.rows)} {NOT_MEASURED}")
+    numbers = [getattr(r, which) for r in run.rows for which in KINDS]
+    if any(n is not None and not n.supported for n in numbers):
         notes.append("(in parentheses: the reference's own noise is too large to tell)")
     return notes
 
 
 def run_json(run):
     return {"name": run.entry.name, "version": run.version, "source": run.entry.source, "text": run.entry.text,
-            "rows": [{"claim": claim_json(r.claim), "ours": measured_json(r.ours), "ratio": measured_json(r.ratio),
-                      "verdict": r.verdict or None} for r in run.rows],
+            "seconds": run.seconds, "complete": run.complete, "rows": [row_json(r) for r in run.rows],
             "tables": [dataclasses.asdict(t) for t in run.tables], "notes": [*run.notes, *general_notes(run)]}
+
+
+def row_json(row):
+    value = {"claim": claim_json(row.claim)}
+    for which in KINDS:
+        value[which] = {"value": value_json(getattr(row, which)), "ratio": value_json(row.ratio(which)),
+                        "verdict": row.verdict(which) if which in row.measured() and row.claim.judged else None}
+    return value
 
 
 def claim_json(claim):
@@ -72,5 +90,11 @@ def claim_json(claim):
     return {key: None if value in (math.inf, -math.inf) else value for key, value in dataclasses.asdict(claim).items()}
 
 
-def measured_json(measured):
+def claim_of(value):
+    """The claim that claim_json() wrote."""
+    bounds = {"low": -math.inf, "high": math.inf}
+    return Claim(**{key: bounds.get(key) if v is None and key in bounds else v for key, v in value.items()})
+
+
+def value_json(measured):
     return None if measured is None else dataclasses.asdict(measured)

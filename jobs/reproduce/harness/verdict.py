@@ -3,19 +3,22 @@
 import dataclasses
 import math
 
-REACHED, MISSED, NOT_TOLD_APART, NOT_MEASURED = "reached", "missed", "not told apart", "not measured"
+REACHED, MISSED, NOT_TOLD_APART = "reached", "missed", "not told apart"
+NOT_MEASURED, ONE_RUN = "not measured", "one run"
 
 
 @dataclasses.dataclass(frozen=True)
 class Claim:
     """The paper's `figure` of a quantity, and which values of ours bear it out: those in [low, high]. Without bounds
-    the figure stands beside ours as information. `figure` may be absent, `unit` empty (a ratio or a count)."""
+    the figure stands beside ours as information. `figure` may be absent, `unit` empty (a ratio or a count). `why`: the
+    reason found where it is missed."""
 
     quantity: str
     figure: float | None
     unit: str = ""
     low: float = -math.inf
     high: float = math.inf
+    why: str = ""
 
     @property
     def judged(self):
@@ -30,12 +33,12 @@ class Claim:
         return text if relation or not self.judged else f"{text}, up to {self.high:.6g}"
 
 
-def at_least(quantity, figure, unit=""):
-    return Claim(quantity, figure, unit, low=figure)
+def at_least(quantity, figure, unit="", why=""):
+    return Claim(quantity, figure, unit, low=figure, why=why)
 
 
-def at_most(quantity, figure, unit=""):
-    return Claim(quantity, figure, unit, high=figure)
+def at_most(quantity, figure, unit="", why=""):
+    return Claim(quantity, figure, unit, high=figure, why=why)
 
 
 def up_to(quantity, figure, high, unit=""):
@@ -51,12 +54,15 @@ def verdict(claim, ours):
     """`reached` if our whole interval lies in what the claim allows, `missed` if all of it lies outside, and
     `not told apart` if it holds a border of the two: more runs would tell.
 
-    Also not told apart is what has no interval (one run, or a bound such as "at least 3 times, when time was up"), and
-    what the reference is too noisy for. `not measured` without a measurement; empty where nothing is claimed."""
+    A number of one run has no interval, and the verdict is `one run`. Also not told apart is a bound such as "at least 3
+    times, when time was up", and what the reference is too noisy for. `not measured` without a measurement; empty where
+    nothing is claimed."""
     if not claim.judged:
         return ""
     if ours is None:
         return NOT_MEASURED
+    if ours.low is None and ours.n == 1 and not ours.bound:
+        return ONE_RUN
     if ours.low is None or not ours.supported:
         return NOT_TOLD_APART
     if claim.low <= ours.low and ours.high <= claim.high:

@@ -1,8 +1,10 @@
 """`./dev reproduce` as one types it."""
 
 import json
+import re
 import subprocess
 import sys
+import tempfile
 import unittest
 
 from catalogue import ENTRIES
@@ -44,3 +46,21 @@ class Command(unittest.TestCase):
 
     def test_an_unknown_option_is_refused(self):
         self.assertEqual(reproduce("noel-table-1", "--fast").returncode, 2)
+
+    def test_options_of_all_need_it(self):
+        for options, said in ((("--all", "noel-table-1"), "--all and noel-table-1: one of the two"),
+                              (("--kept",), "--kept: with --all only"),
+                              (("noel-table-1", "--write"), "--write: with --all only")):
+            done = reproduce(*options)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertIn(said, done.stderr)
+
+    def test_all_that_is_kept_is_one_table_of_every_claim(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = reproduce("--all", "--kept", "--out", folder)
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertEqual(len(done.stdout.splitlines()), 1 + sum(len(entry.claims) for entry in ENTRIES))
+            for entry in ENTRIES:
+                for claim in entry.claims:
+                    reason = "not run" if entry.built else "not built yet"
+                    self.assertRegex(done.stdout, rf"(?m)^{entry.name} +{re.escape(claim.quantity)} .* {reason}$")

@@ -3,8 +3,9 @@
 import pathlib
 import tempfile
 import unittest
+from unittest import mock
 
-from harness import child
+from harness import child, identity
 from harness.entry import Entry
 from harness.measured import Measured, of_answer
 from harness.output import run_json, run_text
@@ -41,11 +42,45 @@ class Runs(unittest.TestCase):
         with self.assertRaises(KeyError):
             cell_with(answers)
 
-    def test_another_sweep_in_the_same_folder_is_refused(self):
+    def test_another_sweep_has_a_folder_of_its_own(self):
         self.run_.answers(SWEEP)
-        with self.assertRaises(child.Failed) as refused:
-            self.run_.answers({**SWEEP, "seeds": 3})
-        self.assertEqual(refused.exception.code, 2)
+        first = self.run_.runs
+        answers = self.run_.answers({**SWEEP, "seeds": 1})
+        self.assertEqual(answers["seeds"], 1)
+        self.assertNotEqual(self.run_.runs, first)
+        self.assertEqual(len(list(first.glob("*/image.exr"))), 4)
+
+    def test_a_report_is_used_again_only_for_the_same_job_program_and_scene(self):
+        job = {**SWEEP["job"], "integrator": {"type": "path", "max_depth": 2}, "budget": {"iterations": 2}}
+        report = self.run_.render("picture", job)
+        first = self.run_.place("picture")
+        rendered = (first / "image.exr").stat().st_mtime_ns
+        self.assertEqual(self.run_.render("picture", job), report)
+        self.assertEqual((first / "image.exr").stat().st_mtime_ns, rendered)
+        self.run_.render("picture", {**job, "seed": 7})
+        self.assertNotEqual(self.run_.place("picture"), first)
+        places = {first, self.run_.place("picture")}
+        with mock.patch.object(identity, "programs", return_value={"lacuna": "another build"}):
+            self.run_.render("picture", job)
+            places.add(self.run_.place("picture"))
+        with mock.patch.object(identity, "file_hash", return_value="another scene"):
+            self.run_.render("picture", job)
+            places.add(self.run_.place("picture"))
+        self.assertEqual(len(places), 4)
+        (first / "state.json").write_text('{"state": "running"}')  # one that was stopped is not a result
+        with mock.patch.object(child, "lacuna") as rendering:
+            self.run_.render("picture", job)
+        rendering.assert_called_once()
+
+    def test_a_scene_that_a_job_names_is_recorded(self):
+        self.assertEqual(set(self.run_.uses({"scene": "cornell.glb", "label": "no file", "list": ["mirror.glb", 3]})),
+                         {"cornell.glb", "mirror.glb"})
+        self.assertEqual(set(self.run_.inputs), {"cornell.glb", "mirror.glb"})
+
+    def test_repeated_runs_differ_by_their_seed_alone(self):
+        job = {**SWEEP["job"], "integrator": {"type": "path", "max_depth": 2}, "budget": {"iterations": 2}}
+        with mock.patch.object(self.run_, "render", side_effect=lambda name, value: (name, value)):
+            self.assertEqual(self.run_.repeated("a", job, 2), [("a-0", {**job, "seed": 0}), ("a-1", {**job, "seed": 1})])
 
     def test_a_scene_that_is_not_there_is_told(self):
         with self.assertRaisesRegex(child.Failed, "no run is done of: max_depth 2"):
@@ -57,17 +92,19 @@ class Runs(unittest.TestCase):
 
     def test_text_and_json_say_the_same(self):
         self.run_.found("gain", Measured(3.0, 2.0, 4.5, 3))
+        self.run_.found("gain", published=Measured(1.2))
         self.run_.found("seconds", Measured(10.0, 9.0, 11.0, 3, supported=False))
         self.run_.tables.append(Table(("grid", "nodes"), [("a", 12345)]))
         self.run_.note("of two scenes")
         text, value = run_text(self.run_), run_json(self.run_)
-        self.assertRegex(text, r"gain +>= 1\.5 +3 \[2, 4\.5\] +2 \[1\.33, 3\] +reached\n")
-        self.assertRegex(text, r"seconds +20 s +\(10 \[9, 11\]\) +\(0\.5 \[0\.45, 0\.55\]\)\n")
-        self.assertRegex(text, r"elsewhere +>= 1 +not measured\n")
+        self.assertRegex(text, r"gain +>= 1\.5 +1\.2 +one run +3 \[2, 4\.5\] +reached\n")
+        self.assertRegex(text, r"seconds +20 s +\(10 \[9, 11\]\)\n")
+        self.assertRegex(text, r"elsewhere +>= 1 +not measured +not measured\n")
         self.assertRegex(text, r"grid +nodes\na +12345\n")
         self.assertRegex(text, r"note: of two scenes\nnote: 1 of 3 not measured\nnote: \(in parentheses")
-        self.assertEqual([row["verdict"] for row in value["rows"]], ["reached", None, "not measured"])
-        self.assertEqual(value["rows"][0]["ratio"]["value"], 2.0)
+        self.assertEqual([row["ours"]["verdict"] for row in value["rows"]], ["reached", None, "not measured"])
+        self.assertEqual([row["published"]["verdict"] for row in value["rows"]], ["one run", None, "not measured"])
+        self.assertEqual(value["rows"][0]["ours"]["ratio"]["value"], 2.0)
         self.assertEqual(value["rows"][0]["claim"],
-                         {"quantity": "gain", "figure": 1.5, "unit": "", "low": 1.5, "high": None})
-        self.assertIsNone(value["rows"][2]["ours"])
+                         {"quantity": "gain", "figure": 1.5, "unit": "", "low": 1.5, "high": None, "why": ""})
+        self.assertIsNone(value["rows"][2]["ours"]["value"])

@@ -4,7 +4,8 @@ import math
 import random
 import unittest
 
-from harness.measured import CONFIDENCE, Measured, error_at, exact, gain_at, median_of, speed_up_to, time_to
+from harness.measured import (CONFIDENCE, Measured, error_at, exact, gain_at, geometric_mean_of, mean_of, median_of,
+                              speed_up_to, time_to)
 from harness.verdict import Claim, at_least, at_most, beside, up_to, verdict
 
 
@@ -23,7 +24,8 @@ class Verdicts(unittest.TestCase):
 
     def test_without_an_interval_nothing_is_told_apart(self):
         claim = at_least("speed-up", 1.57)
-        self.assertEqual(verdict(claim, Measured(100)), "not told apart")
+        self.assertEqual(verdict(claim, Measured(100)), "one run")
+        self.assertEqual(verdict(claim, Measured(100, n=3)), "not told apart")
         self.assertEqual(verdict(claim, Measured(100, bound="at least")), "not told apart")
         self.assertEqual(verdict(claim, Measured(100, 90, 110, 3, supported=False)), "not told apart")
         self.assertEqual(verdict(claim, None), "not measured")
@@ -61,6 +63,31 @@ class Medians(unittest.TestCase):
                 held += m.low <= 1 <= m.high
             deviation = math.sqrt(trials * probability * (1 - probability))
             self.assertLess(abs(held - trials * probability), 4 * deviation)
+
+
+    def test_means_hold_the_truth_as_often_as_they_say(self):
+        rng, trials = random.Random(2), 4000
+        for n in (2, 3, 6, 40):
+            held = [0, 0]
+            for _ in range(trials):
+                values = [rng.gauss(3, 1) for _ in range(n)]
+                for i, (m, truth) in enumerate(((mean_of(values), 3),
+                                                (geometric_mean_of([math.exp(v) for v in values]), math.exp(3)))):
+                    self.assertEqual(m.n, n)
+                    held[i] += m.low <= truth <= m.high
+            deviation = math.sqrt(trials * CONFIDENCE * (1 - CONFIDENCE))
+            for times in held:  # beyond the table the interval is wider than need be
+                self.assertGreater(times - trials * CONFIDENCE, -4 * deviation)
+                self.assertLess(times - trials * CONFIDENCE, 4 * deviation + (60 if n > 21 else 0))
+        self.assertEqual(mean_of([4.0]), Measured(4.0))
+
+    def test_ratios_of_bounds_are_bounds_or_nothing(self):
+        number, least, most = Measured(4, 2, 8), Measured(4, bound="at least"), Measured(2, bound="at most")
+        self.assertEqual(least.ratio(number).bound, "at least")
+        self.assertEqual(number.ratio(most).bound, "at least")
+        self.assertEqual(number.ratio(least).bound, "at most")
+        self.assertEqual(least.ratio(most).bound, "at least")
+        self.assertIsNone(least.ratio(least))
 
 
 class Answers(unittest.TestCase):

@@ -88,6 +88,38 @@ TEST_P(Pyramid, WeightedStrategiesAddUpToThePicture) {
   }
 }
 
+/// The light of each layer of distributions in iterations 0 and 1 of connections by the skeleton.
+std::map<std::string, std::array<double, 2>> light_of_distributions(double acceptance) {
+  Session session(
+      test::plates(),
+      with_layers(test::joining(max_depth, test::resampled<SkeletonConnectionsSettings>(
+                                               64, [&](auto& s) { s.acceptance = acceptance; })),
+                  {ImageLayer::distributions}));
+  std::map<std::string, std::array<double, 2>> light;
+  for (std::uint64_t i = 0; i < 2; ++i) {
+    session.iterate(i);
+    for (std::size_t k = 0; k < session.layers().size(); ++k) {
+      light[session.layer_names()[k]][i] = test::sum_of(session.layers()[k]);
+    }
+  }
+  return light;
+}
+
+// Uniform resampling where a node has no distributions is apart from the uniform one of a node.
+TEST(Distributions, TellTheFallbackOfNodesThatWereNotAccepted) {
+  auto light = light_of_distributions(1e6);
+  EXPECT_EQ(light.size(), 4U);
+  for (const char* own : {"visible", "unshadowed", "uniform"}) {
+    EXPECT_EQ(light.at(std::string("distributions.") + own)[1], 0) << own;
+  }
+  EXPECT_GT(light.at("distributions.fallback")[1], 0);
+  light = light_of_distributions(0);
+  EXPECT_GT(light.at("distributions.fallback")[0], 0) << "before any node is known to be used";
+  EXPECT_EQ(light.at("distributions.visible")[0], 0);
+  EXPECT_GT(light.at("distributions.visible")[1], 0);
+  EXPECT_LT(light.at("distributions.fallback")[1], 0.1 * light.at("distributions.visible")[1]);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Pyramid, testing::ValuesIn(test::connections(max_depth)),
                          [](const auto& m) { return m.param.name; });
 

@@ -67,7 +67,10 @@ TEST_P(Estimators, HaveTheMeanOfExact) {
       changed<Probabilistic>([](auto& s) { s.neighbours = 8, s.epsilon_variance = 0.25; }),
       changed<Probabilistic>([](auto& s) { s.term_cost = 0, s.epsilon_probability = 0.3; }),
       changed<Probabilistic>([](auto& s) { s.epsilon_probability = 1; }),
-      changed<Probabilistic>([](auto& s) { s.variance = VarianceOf::point; }),
+      changed<Probabilistic>([](auto& s) {  // as published
+        s.variance = VarianceOf::point, s.term_cost = 0;
+        s.draws = TestDraws::bernoulli, s.cache_lights = CacheLights::all;
+      }),
   };
   lit.with_points(400, [&](std::span<const ShadingPoint> points) {
     ASSERT_GT(points.size(), 5U);
@@ -83,6 +86,7 @@ TEST_P(Estimators, HaveTheMeanOfExact) {
     for (const RouletteRule rule : {RouletteRule::veach, RouletteRule::derived}) {
       RouletteVisibilitySettings s = changed<RouletteVisibilitySettings>(same);
       s.rule = rule;
+      s.draws = rule == RouletteRule::veach ? TestDraws::bernoulli : TestDraws::systematic;
       s.epsilon_probability = 0.05;
       RouletteVisibility visibility(s);
       const IterationContext context = lit.context(1);
@@ -242,6 +246,50 @@ TEST(CachePoints, KnowWhatTheySee) {
       EXPECT_NEAR(double(cache.deviation(p, near)), deviation, 1e-4 * deviation + 1e-12);
     }
   });
+}
+
+// A light that shines along the cache point's own wall gives it nothing and is seen all the same.
+TEST(CachePoints, KnowAllLightsIfTheyTestThem) {
+  const LitScene lit({"ajar"}, 200, 2);
+  CachePoints cache(1 << 20, 1, CachePoints::Keep::visibilities, CacheLights::all);
+  CachePoints only_lit(1 << 20, 1, CachePoints::Keep::visibilities);
+  const IterationContext context = lit.context(1);
+  cache.build(lit.pass(context));
+  only_lit.build(lit.pass(context));
+  int along = 0, visible = 0;
+  lit.with_points(200, [&](std::span<const ShadingPoint> points) {
+    for (const ShadingPoint& p : points) {
+      const CachePoints::Near near = cache.near(p);
+      EXPECT_EQ(cache.deviation(p, near), only_lit.deviation(p, only_lit.near(p)));
+      const V3f n = p.vertex->side(), x = p.vertex->surface.x;
+      Terms terms;
+      Lanes q, q_lit;
+      for (std::size_t b = 0; b < lit.lights().blocks(); ++b) {
+        lit.terms().evaluate(p, b, terms);
+        EXPECT_EQ(cache.expected(near, b, q), lit.lights().mask(b));
+        only_lit.expected(near, b, q_lit);
+        for (int i = 0; i < lit.lights().count(b); ++i) {
+          if ((terms.lit >> i & 1) != 0) {
+            EXPECT_EQ(q[i], q_lit[i]);
+            continue;
+          }
+          const VplGeometry light = lit.lights().geometry(b, i);
+          const V3f edge = light.x - x;
+          if (std::abs(dot(edge, n)) > 1e-6F || dot(light.n, n) < 0.999F) {
+            const bool behind = dot(edge, n) < -1e-3F;
+            EXPECT_FALSE(behind && q[i] > 0) << "its own wall hides what is behind it";
+            continue;
+          }
+          ++along;
+          visible += q[i] > 0;
+          const Ray above{x + 1e-4F * n, edge, 1.0F};
+          EXPECT_EQ(q[i], lit.scene().rays().occluded(above) ? 0 : 1);
+        }
+      }
+    }
+  });
+  EXPECT_GT(along, 100) << "the test has no power";
+  EXPECT_GT(visible, 10);
 }
 
 }  // namespace

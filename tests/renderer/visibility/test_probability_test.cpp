@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <limits>
 
 #include "tests/statistics.h"
@@ -18,7 +19,7 @@ float of(const TestProbability& chance, float t, float var) {
   return _mm256_cvtss_f32(chance.of(t, var).v);
 }
 std::uint32_t key(float probability, float lit = 1) {
-  SystematicSampler keys;
+  TestSampler keys;
   keys.set(3, probability, lit);
   return keys.v[24];
 }
@@ -59,31 +60,47 @@ TEST(TestProbability, AtItsEnds) {
   EXPECT_EQ(of(veach, 1e20F, 1), 1.0F);
 }
 
-TEST(SystematicSampler, HoldTheirEnds) {
-  EXPECT_EQ(key(1), SystematicSampler::one);
+TEST(TestSampler, HoldTheirEnds) {
+  EXPECT_EQ(key(1), TestSampler::one);
   EXPECT_EQ(key(1e-9F), 1U) << "never impossible";
   EXPECT_EQ(key(1, 0), 0U) << "gives nothing";
 }
 
 // Each light is drawn with its own probability, whatever those beside it have.
-TEST(SystematicSampler, DrawEachWithItsProbability) {
-  SystematicSampler keys{};
+TEST(TestSampler, DrawEachWithItsProbability) {
+  TestSampler keys{};
   Rng rng(1, 2, 3, Rng::Purpose::test);
   for (int i = 0; i < Lanes::size; ++i) {
     keys.v[static_cast<std::size_t>(i)] = i % 7 == 0 ? 0 : key(rng.next());
   }
-  keys.v[5] = SystematicSampler::one;
+  keys.v[5] = TestSampler::one;
   keys.v[11] = 1;
-  constexpr int draws = 200000;
-  std::array<int, Lanes::size> drawn{};
-  for (int n = 0; n < draws; ++n) {
-    std::uint64_t bits = keys.draw(rng.next_u32());
-    for (int i = 0; i < Lanes::size; ++i) drawn[static_cast<std::size_t>(i)] += bits >> i & 1;
+  double mean = 0, variance = 0;  // of the number that are drawn, if each is by itself
+  for (const std::uint32_t v : keys.v) {
+    const double p = double(v) / TestSampler::one;
+    mean += p, variance += p * (1 - p);
   }
-  for (int i = 0; i < Lanes::size; ++i) {
-    const double p = double(keys.v[static_cast<std::size_t>(i)]) / SystematicSampler::one;
-    const double sd = std::sqrt(draws * p * (1 - p));
-    EXPECT_NEAR(drawn[static_cast<std::size_t>(i)], draws * p, 5 * sd) << i;
+  constexpr int draws = 200000;
+  for (const TestDraws how : {TestDraws::systematic, TestDraws::bernoulli}) {
+    SCOPED_TRACE(enum_name(how));
+    std::array<int, Lanes::size> drawn{};
+    double squares = 0;
+    for (int n = 0; n < draws; ++n) {
+      const std::uint64_t bits = keys.draw(how, rng);
+      for (int i = 0; i < Lanes::size; ++i) drawn[static_cast<std::size_t>(i)] += bits >> i & 1;
+      const double off = std::popcount(bits) - mean;
+      squares += off * off;
+    }
+    for (int i = 0; i < Lanes::size; ++i) {
+      const double p = double(keys.v[static_cast<std::size_t>(i)]) / TestSampler::one;
+      const double sd = std::sqrt(draws * p * (1 - p));
+      EXPECT_NEAR(drawn[static_cast<std::size_t>(i)], draws * p, 5 * sd) << i;
+    }
+    if (how == TestDraws::systematic) {
+      EXPECT_LT(squares / draws, 1) << "one more or fewer than their mean";
+    } else {
+      EXPECT_NEAR(squares / draws, variance, 0.05 * variance);
+    }
   }
 }
 

@@ -1,0 +1,78 @@
+"""docs/reproduction.md: the table of every claim, and what each entry found."""
+
+from harness import child, everything, output
+from harness.run import KINDS
+from harness.verdict import MISSED
+
+PAGE = child.ROOT / "docs/reproduction.md"
+PAPERS = (("noel", "Noel 2015"), ("nabata", "Nabata et al."), ("kol", "Kol et al. 2018"), ("path", "Beside the papers"))
+MOST_ROWS = 40  # of a table of an entry
+
+
+def _escaped(text):
+    """Of a cell of a table: Markdown takes these characters for its own."""
+    for mark in ("\\", "|", "[", "]", "*", "_", "<"):
+        text = text.replace(mark, "\\" + mark)
+    return text
+
+
+def _table(columns, lines):
+    parts = ["| " + " | ".join(columns) + " |", "|" + " --- |" * len(columns)]
+    parts += ["| " + " | ".join(map(_escaped, line)) + " |" for line in lines]
+    return "\n".join(parts)
+
+
+def _without_paths(text):
+    return text.replace(f"{child.ROOT}/", "")
+
+
+def _claims(outcomes):
+    heads = ("entry", "quantity", "paper", "published", "verdict", "ours", "verdict")
+    for prefix, title in PAPERS:
+        lines = [(o.entry.name, row.claim.quantity, *everything.cells(row, reason))
+                 for o in outcomes if o.entry.name.startswith(prefix) for row, reason in everything.rows(o)]
+        if lines:
+            yield f"## {title}\n\n{_table(heads, lines)}"
+
+
+def _missed(outcomes):
+    lines = []
+    for o in outcomes:
+        for row, _ in everything.rows(o) if o.run else ():
+            whose = [which for which in KINDS if row.verdict(which) == MISSED]
+            if whose:
+                why = row.claim.why or "not known yet"
+                lines.append(f"- `{o.entry.name}`, {row.claim.quantity} ({', '.join(whose)}): {why}")
+    return "\n".join(lines) or "None."
+
+
+def _found(outcome):
+    run = outcome.run
+    parts = [f"### {outcome.entry.name}", f"{outcome.entry.source}: {outcome.entry.text}. The {run.version} version took "
+             f"{run.seconds:.0f} s."]
+    for table in run.tables:
+        text = output.table_text(table.columns, table.rows[:MOST_ROWS])
+        parts.append("\n".join(f"    {line}" for line in text.splitlines()))
+    notes = [_without_paths(note) for note in (*run.notes, *output.general_notes(run)) if "pictures: " not in note]
+    return "\n\n".join([*parts, "\n".join(f"- {_escaped(note)}" for note in notes)])
+
+
+def text(outcomes, full):
+    """The page."""
+    counts = ", ".join(f"{n} {verdict}" for verdict, n in everything.verdicts(outcomes).items()) or "none"
+    option = " --full" if full else ""
+    parts = [
+        "# Reproduction",
+        f"Written by `./dev reproduce --all{option} --write`; edits are lost. [The harness](../jobs/reproduce/README.md) "
+        "explains the entries.",
+        "`published`: the method with the settings that the paper names, on this project's code. `ours`: with this project's "
+        "defaults and changes. Intervals hold the truth with a probability of 95 %. A verdict is `reached` where the whole "
+        "interval bears the claim out, `missed` where none of it does, `not told apart` between the two, and `one run` where "
+        "a number has no interval; figures without a bound are information.",
+        f"Verdicts: {counts}.",
+        *_claims(outcomes),
+        "## Missed claims",
+        _missed(outcomes),
+        "## Measurements",
+        *(_found(o) for o in outcomes if o.run)]
+    return "\n\n".join(parts) + "\n"
