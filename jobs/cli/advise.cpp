@@ -69,6 +69,12 @@ void print_table(const RaceRecord& race) {
                known ? fmt::format("{:.2f}", factor(0)) : "-",
                known ? fmt::format("{:.2f} - {:.2f}", factor(-2), factor(2)) : "-", c.preparation,
                c.share > 0 ? "<- chosen" : c.reason);
+    if (!c.biased || !known) continue;
+    fmt::print("{:28} {}\n", "",
+               s.bias > 2 * s.bias_deviation
+                   ? fmt::format("bias: rmse {:.3g} stays", std::sqrt(s.bias))
+                   : fmt::format("bias: not seen, rmse below {:.3g}",
+                                 std::sqrt(s.bias + 2 * s.bias_deviation)));
   }
 }
 

@@ -78,7 +78,7 @@ void check_candidates(const JobSpec& spec, std::vector<Problem>& problems) {
   const auto& all = settings->candidates;
   const bool one_is_right =
       all.empty() || std::any_of(all.begin(), all.end(), [](const auto& c) { return !biased(c); });
-  if (!one_is_right) {
+  if (!one_is_right && settings->allow != Allow::unbiased) {
     problems.push_back({"/integrator/candidates",
                         "found none without bias; allowed: lists with one, by which the bias of "
                         "the others is known"});

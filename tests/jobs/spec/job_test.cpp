@@ -84,7 +84,19 @@ TEST(Job, CandidatesHaveTheLengthsOfTheirRaceAndNoBias) {
   expect_one(job_problems(with(R"("path", {"type": "bdpt", "max_depth": 7})")),
              "/integrator/candidates/1", {"max_depth 7", "allowed: those"});
   expect_one(job_problems(with(R"({"type": "many_lights", "compensation": false})")),
-             "/integrator/candidates/0", {"biased"});
+             "/integrator/candidates/0", {"biased", "\"unbiased\""});
+  expect_one(job_problems(with(R"({"type": "path", "sampling": "adaptive"})")),
+             "/integrator/candidates/0/sampling", {"\"uniform\""});
+  const auto allowing = [](const std::string& what, const std::string& candidates) {
+    return R"({"scene": "a", "integrator": {"type": "auto", "allow": ")" + what +
+           R"(", "candidates": [)" + candidates + "]}}";
+  };
+  EXPECT_TRUE(job_problems(allowing("consistent", R"("sppm", "path")")).empty());
+  EXPECT_TRUE(job_problems(allowing("biased", R"("photon_map", "path")")).empty());
+  expect_one(job_problems(allowing("consistent", R"("photon_map", "path")")),
+             "/integrator/candidates/0", {"\"consistent\""});
+  expect_one(job_problems(allowing("biased", R"("photon_map", "sppm")")), "/integrator/candidates",
+             {"found none without bias"});
   expect_one(job_problems(with(R"("inspect")")), "/integrator/candidates/0", {"\"path\""});
 }
 
