@@ -45,6 +45,8 @@ class AliasTable {
     if (uniform < b.threshold) return {chosen, Pdf<Count>(b.pmf)};
     return {b.alias, Pdf<Count>(b.alias_pmf)};
   }
+  /// Prefetches what pmf() reads.
+  void prefetch(std::uint32_t i) const { __builtin_prefetch(&bins_[i]); }
   Pdf<Count> pmf(std::uint32_t i) const { return Pdf<Count>(bins_[i].pmf); }
 
  private:

@@ -23,8 +23,14 @@ struct EmitterPoint {
   /// emitter. Environment: per steradian. Delta: the selection probability.
   Pdf<Area> pdf{};
   float cos_inner = 1, cos_outer = 0;  ///< of a spot's cones
+  std::uint32_t entry = ~0U;           ///< the emitter's number in its EmitterSet
+  /// The density of the point in next event estimation at one receiver, over `pdf`; 1 where both
+  /// select by power.
+  float next_event_ratio = 1;
   float across = 0;  ///< infinite: projected area of the scene's bounding box from that direction
 
+  /// Density of the point in next event estimation.
+  Pdf<Area> next_event_pdf() const { return next_event_ratio * pdf; }
   bool infinite() const { return kind == Kind::directional || kind == Kind::environment; }
   /// Paths cannot hit it.
   bool delta() const {

@@ -28,7 +28,7 @@ double power(const PunctualLight& light, double scene_radius) {
 }  // namespace
 
 EmitterSet::EmitterSet(const SceneData& scene, std::unique_ptr<Environment> environment,
-                       const Bounds& bounds)
+                       const Bounds& bounds, bool pointwise)
     : scene_(&scene),
       bounds_(bounds),
       environment_(std::move(environment)),
@@ -51,6 +51,59 @@ EmitterSet::EmitterSet(const SceneData& scene, std::unique_ptr<Environment> envi
   for (std::uint32_t i = 0; i < entries_.size(); ++i) {
     entries_[i].pdf = selection_.pmf(i) * entries_[i].pdf;
   }
+  if (pointwise) select_pointwise(powers);
+}
+
+void EmitterSet::select_pointwise(std::span<const double> powers) {
+  std::vector<TreeEmitter> finite;
+  std::vector<PointwiseSelection::Infinite> infinite;
+  for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+    if (!(powers[i] > 0)) continue;
+    const Source& source = sources_[entries_[i].source];
+    const bool everywhere = source.kind == Source::Kind::environment ||
+                            (source.kind == Source::Kind::punctual &&
+                             scene_->lights[source.index].kind == PunctualLight::Kind::directional);
+    if (everywhere) {
+      infinite.push_back({i, powers[i]});
+    } else {
+      finite.push_back(tree_emitter(i));
+    }
+  }
+  double all = 0;
+  for (const double p : powers) all += p;
+  pointwise_.emplace(std::move(finite), infinite, all, selection_);
+}
+
+TreeEmitter EmitterSet::tree_emitter(std::uint32_t entry) const {
+  const Entry& e = entries_[entry];
+  const Source& source = sources_[e.source];
+  TreeEmitter t;
+  t.entry = entry;
+  if (source.kind == Source::Kind::mesh) {
+    for (const V3f& corner : {e.p, e.p + e.e1, e.p + e.e2}) t.bounds.box.add(corner);
+    t.bounds.axes = {V3d(e.ng).normalized(), 0};
+    t.bounds.reach = std::numbers::pi / 2;
+    t.bounds.both_sides = source.both_sides;
+    t.bounds.intensity = mean_luminance(source) * e.area();
+    return t;
+  }
+  const PunctualLight& light = scene_->lights[source.index];
+  t.bounds.box.add(light.position);
+  t.bounds.axes = light.kind == PunctualLight::Kind::spot
+                      ? DirectionCone{V3d(light.direction).normalized(), double(light.outer_cone)}
+                      : DirectionCone::everything();
+  t.bounds.intensity = double(luminance(light.intensity));
+  return t;
+}
+
+double EmitterSet::mean_luminance(const Source& source) const {
+  Rgb radiance = source.emission;
+  if (source.textured) {
+    const Material& material = scene_->materials[scene_->meshes[source.index].material];
+    const auto texture = static_cast<std::size_t>(material.emission_texture.texture);
+    radiance *= scene_->textures[texture]->mean().rgb;
+  }
+  return double(luminance(radiance));
 }
 
 void EmitterSet::add_light(const Source& source, double power, std::vector<double>& powers) {
@@ -76,13 +129,7 @@ void EmitterSet::add_mesh(std::uint32_t m, std::vector<double>& powers) {
     source.mask = static_cast<std::uint32_t>(masks_.size());
     masks_.emplace_back(*scene_, mesh);
   }
-  Rgb radiance = material.emission;
-  if (source.textured) {
-    const auto texture = static_cast<std::size_t>(material.emission_texture.texture);
-    radiance *= scene_->textures[texture]->mean().rgb;
-  }
-  const double exitance =
-      std::numbers::pi * double(luminance(radiance)) * (source.both_sides ? 2 : 1);
+  const double exitance = std::numbers::pi * mean_luminance(source) * (source.both_sides ? 2 : 1);
   first_entry_[m] = source.first_entry;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     Entry e{TriangleShape(mesh, t), {}, static_cast<std::uint32_t>(sources_.size())};
@@ -101,6 +148,7 @@ EmitterPoint EmitterSet::sample(std::uint32_t chosen, Rng& rng) const {
   EmitterPoint p = source.kind == Source::Kind::punctual
                        ? sample_punctual(scene_->lights[source.index])
                        : sample_environment(rng);
+  p.entry = chosen;
   p.pdf = p.pdf.value * e.pdf;
   return p;
 }
@@ -121,6 +169,7 @@ EmitterPoint EmitterSet::sample_triangle_of(std::uint32_t chosen, const V2f& u) 
   const Source& source = sources_[e.source];
   const V2f b = sample_triangle(u);
   EmitterPoint p;
+  p.entry = chosen;
   p.both_sides = source.both_sides;
   p.extent = e.extent;
   p.x = e.at(b.x, b.y);
@@ -166,6 +215,7 @@ EmitterPoint EmitterSet::hit(const Surface& s, const Rgb& radiance) const {
   p.ng = s.ng;
   p.emission = radiance;
   p.pdf = pdf(s.mesh, s.triangle);
+  if (p.pdf.positive()) p.entry = first_entry_[s.mesh] + s.triangle;
   return p;
 }
 
@@ -176,6 +226,7 @@ EmitterPoint EmitterSet::hit_background(const V3f& w) const {
   if (environment_ == nullptr) return p;
   p.emission = environment_->radiance(w);
   if (environment_entry_ != none) {
+    p.entry = environment_entry_;
     p.pdf = environment_->pdf(w) * entries_[environment_entry_].pdf;
   }
   p.across = across(w);

@@ -9,6 +9,7 @@
 #include "renderer/emitters/emitter_point.h"
 #include "renderer/emitters/environment.h"
 #include "renderer/emitters/leaving.h"
+#include "renderer/emitters/pointwise_selection.h"
 #include "renderer/geometry/alpha_mask.h"
 #include "renderer/geometry/scene_data.h"
 #include "renderer/geometry/surface.h"
@@ -16,14 +17,16 @@
 namespace lacuna {
 
 /// All emitters of a scene. An emitter is selected with probability proportional to its power, so
-/// the density of a point on an emitter does not depend on the receiver.
+/// the density of a point on an emitter does not depend on the receiver; or, with a light tree, for
+/// a given receiver.
 class EmitterSet {
  public:
   /// `bounds` is the bounding box of all triangles. The power of an infinite emitter is the power
   /// through the great disk of the box's sphere; its light paths start on the sides of the box.
   /// Keeps a pointer to `scene`; the textures of emission and of masks must be decoded.
-  EmitterSet(const SceneData& scene, std::unique_ptr<Environment> environment,
-             const Bounds& bounds);
+  /// `pointwise`: build what selects an emitter for a receiver.
+  EmitterSet(const SceneData& scene, std::unique_ptr<Environment> environment, const Bounds& bounds,
+             bool pointwise);
 
   bool empty() const { return selection_.empty(); }
   std::size_t size() const { return entries_.size(); }
@@ -36,9 +39,13 @@ class EmitterSet {
   /// same power.
   std::uint32_t choose(std::uint32_t uniform, Rng& rng) const {
     const std::uint32_t i = selection_.resolve(selection_.choose(uniform), rng).index;
-    __builtin_prefetch(&entries_[i]);
+    prefetch(i);
     return i;
   }
+  /// Prefetches what sample() reads of the emitter `chosen`.
+  void prefetch(std::uint32_t chosen) const { __builtin_prefetch(&entries_[chosen]); }
+  /// Selects an emitter for a receiver; null unless requested.
+  const PointwiseSelection* pointwise() const { return pointwise_ ? &*pointwise_ : nullptr; }
   /// Samples a point on the emitter `chosen`; its density includes the selection.
   EmitterPoint sample(std::uint32_t chosen, Rng& rng) const;
   /// Samples the first edge of a light path from the point `e`.
@@ -46,7 +53,8 @@ class EmitterSet {
     return sample_leaving(e, bounds_, rng);
   }
 
-  /// Density with which sample() returns a point of triangle `triangle` of `mesh`.
+  /// Density with which sample() returns a point of triangle `triangle` of `mesh`, whose emitter is
+  /// selected by power.
   Pdf<Area> pdf(std::uint32_t mesh, std::uint32_t triangle) const;
   /// The point of an emitting surface that a path hit, as sample() would return it. `radiance`: the
   /// emission there.
@@ -76,6 +84,9 @@ class EmitterSet {
   };
 
   void add_mesh(std::uint32_t mesh, std::vector<double>& powers);
+  double mean_luminance(const Source& source) const;
+  TreeEmitter tree_emitter(std::uint32_t entry) const;
+  void select_pointwise(std::span<const double> powers);
   void add_light(const Source& source, double power, std::vector<double>& powers);
   EmitterPoint sample_triangle_of(std::uint32_t chosen, const V2f& u) const;
   EmitterPoint sample_environment(Rng& rng) const;
@@ -89,6 +100,7 @@ class EmitterSet {
   HugeVector<Entry> entries_;
   std::vector<AlphaMask> masks_;  // of meshes that have one: masked points do not emit
   AliasTable selection_;
+  std::optional<PointwiseSelection> pointwise_;
   std::vector<std::uint32_t> first_entry_;  // of each mesh; none: it does not emit
   std::uint32_t environment_entry_ = none;
 };

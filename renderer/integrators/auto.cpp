@@ -53,6 +53,7 @@ class Auto final : public Integrator {
       all.materials |= one.materials;
       all.emission |= one.emission;
       all.space |= one.space;
+      all.light_tree |= one.light_tree;
     }
     return all;
   }

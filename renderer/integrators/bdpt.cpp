@@ -7,6 +7,7 @@
 #include "renderer/integrators/guided_integrator.h"
 #include "renderer/integrators/strategy_layers.h"
 #include "renderer/path/light_pass.h"
+#include "renderer/path/next_event_batch.h"
 #include "renderer/path/photon_map.h"
 #include "renderer/settings/bdpt_settings.h"
 #include "renderer/settings/connections_settings.h"
@@ -55,12 +56,15 @@ class Bdpt : public GuidedIntegrator<Guide> {
   };
 
   /// Adds the emission at a vertex of an eye path (s = 0).
-  void gather_hit(const IterationContext& context, EyePaths& batch, std::size_t i,
-                  int depth) const {
+  void gather_hit(const IterationContext& context, EyePaths& batch, std::size_t i, int depth,
+                  const NextEvent& next_event) const {
     if (guide_.learns()) batch.gathered.reach(i, depth);
     const Vertex& v = batch.vertex(i, depth);
-    const std::optional<EmitterPoint> e = emitter_at(context.scene, v);
+    std::optional<EmitterPoint> e = emitter_at(context.scene, v);
     if (!e) return;
+    if (batch.counts.nee > 0) {
+      next_event.set_ratio(*e, v, batch.vertex(i, depth - 1), depth);
+    }
     const Rgb value = v.throughput * e->emission;
     const auto w = static_cast<float>(hit_weight(v, depth, *e, batch.counts));
     batch.radiance[i] += value * w;
@@ -160,7 +164,11 @@ class Bdpt : public GuidedIntegrator<Guide> {
 
   LightPathSetting light_setting(const IterationContext& context,
                                  const SampleCounts& counts) const {
-    return {context.scene, context.camera, settings_.max_depth, settings_.roulette_depth, counts};
+    return {.scene = context.scene,
+            .camera = context.camera,
+            .max_depth = settings_.max_depth,
+            .roulette_depth = settings_.roulette_depth,
+            .counts = counts};
   }
   WalkLimits eye_limits(const SampleCounts& counts) const {
     return {.max_depth = settings_.max_depth,
@@ -199,6 +207,12 @@ class PairedBdpt final : public Bdpt<Guide> {
   PairedBdpt(const BdptSettings& settings, Guide guide, const Merging& merging = {})
       : Base(settings, std::move(guide)), merging_(merging) {}
 
+  SceneNeeds needs() const override {
+    SceneNeeds needs = Base::needs();
+    needs.light_tree = emitters() != EmitterChoice::power;
+    return needs;
+  }
+
   std::vector<std::string> layers(std::span<const ImageLayer> wanted) override {
     return layers_.choose(wanted, settings_.max_depth, {}, merging_.merge);
   }
@@ -230,6 +244,18 @@ class PairedBdpt final : public Bdpt<Guide> {
   }
 
  private:
+  /// How s = 1 selects emitters. Photons have no room for EmitterPoint::next_event_ratio.
+  EmitterChoice emitters() const {
+    const auto* paired = std::get_if<PairedSettings>(&settings_.connections);
+    return merging_.merge || paired == nullptr ? EmitterChoice::power : paired->emitters;
+  }
+  LightPathSetting light_setting(const IterationContext& context,
+                                 const SampleCounts& counts) const {
+    LightPathSetting setting = Base::light_setting(context, counts);
+    setting.next_event = emitters();
+    return setting;
+  }
+
   /// An eye vertex whose photons are looked up.
   struct LookUp {
     std::uint32_t path;
@@ -239,7 +265,7 @@ class PairedBdpt final : public Bdpt<Guide> {
     EyePaths eye;
     LightBatch<Guide> light;
     std::vector<Rng> rngs = {};
-    std::array<std::uint32_t, EyeBatch::size> chosen = {};  // emitters of s = 1
+    EmittersAhead ahead = {};  // emitters of s = 1
     std::vector<LookUp> look_ups = {};
     double look_up_seconds = 0;
     SparseStop stop = {};
@@ -249,7 +275,7 @@ class PairedBdpt final : public Bdpt<Guide> {
                        Image& image) {
     PassSeconds pass;
     photons_.begin(Base::pixels(image));
-    const LightPathSetting setting = Base::light_setting(context, counts);
+    const LightPathSetting setting = light_setting(context, counts);
     const Counters sum = light_pass(
         {context, setting, Base::pixels(image), image}, guide_,
         [&](std::size_t path, const LightBatch<Guide>& batch, std::size_t i) {
@@ -263,7 +289,7 @@ class PairedBdpt final : public Bdpt<Guide> {
   }
 
   Counters eye_pass(const IterationContext& context, const SampleCounts& counts, Image& image) {
-    const LightPathSetting setting = Base::light_setting(context, counts);
+    const LightPathSetting setting = light_setting(context, counts);
     const Tiling tiling(image);
     typename Base::Accumulators accumulators = Base::start_accumulators(tiling);
     std::vector<double> seconds(static_cast<std::size_t>(tiling.tiles()), 0.0);
@@ -312,23 +338,23 @@ class PairedBdpt final : public Bdpt<Guide> {
 
   void walk_eye(const typename Base::TilePass& pass, Walk<Guide>& walk, Pairs& pairs) const {
     const IterationContext& context = pass.context;
-    const EmitterSet& lights = context.scene.emitters();
+    const NextEvent next_event(context.scene, emitters());
     const SampleCounts& counts = pairs.eye.counts;
     const auto choose = [&](std::size_t i, int depth) {
       if (counts.nee > 0 && depth < settings_.max_depth) {
-        pairs.chosen[i] = lights.choose(pairs.eye.states[i].rng);
+        pairs.ahead[i] = next_event.choose_ahead(pairs.eye.states[i].rng);
       }
     };
-    walk.trace_paths(pairs.eye.states, choose, [&](std::size_t i, int depth) {
+    const auto visit = [&](std::size_t i, int depth) {
       pairs.stop.check(context);
-      Base::gather_hit(context, pairs.eye, i, depth);
+      Base::gather_hit(context, pairs.eye, i, depth, next_event);
       const Vertex& v = pairs.eye.vertex(i, depth);
       const int longest = Base::longest_light_path(v, depth);
       if (longest == 0) return;
       if (counts.merge > 0) pairs.look_ups.push_back({static_cast<std::uint32_t>(i), depth});
       if (counts.nee == 0) return;
       const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
-      const EmitterPoint e = lights.sample(pairs.chosen[i], pairs.eye.states[i].rng);
+      const EmitterPoint e = next_event.sample(v, pairs.ahead[i], pairs.eye.states[i].rng);
       const Contribution known = Base::contribution(pairs.eye, i);
       Base::join(eye, EmitterEndpoint{e}, 1, known, pairs.eye);
       const std::size_t path = pairs.eye.origin[i];
@@ -337,7 +363,10 @@ class PairedBdpt final : public Bdpt<Guide> {
         Base::join(eye, pairs.light.end(path, s - 1), 1, known, pairs.eye);
       }
       Base::flush_if_long(pass, pairs.eye, [](const Contribution&) {});
-    });
+    };
+    walk.trace_paths(
+        pairs.eye.states, choose, visit,
+        SelectTogether(next_event, counts.nee > 0, settings_.max_depth, pairs.eye, pairs.ahead));
   }
 
   /// Merges the eye vertices of the batch with the photons around them.
@@ -463,6 +492,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
       const auto record = [&](const Contribution& c) { arrived(c, part.accumulator); };
       const typename Base::TilePass pass{context, image, counters};
       Walk<Guide> walk(context.scene, guide_, Base::eye_limits(counts), counters);
+      const NextEvent next_event(context.scene, EmitterChoice::power);
       const Tile tile = tiling.tile(i);
       for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
         Base::start(pass, tile, first, part.batch);
@@ -471,7 +501,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
               part.batch.states, [](std::size_t, int) {},
               [&](std::size_t k, int depth) {
                 part.stop.check(context);
-                Base::gather_hit(context, part.batch, k, depth);
+                Base::gather_hit(context, part.batch, k, depth, next_event);
                 join_lights(part, k, depth);
                 Base::flush_if_long(pass, part.batch, record);
               });

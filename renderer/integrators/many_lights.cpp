@@ -5,6 +5,7 @@
 #include "renderer/many_lights/light_gather.h"
 #include "renderer/path/direct_light.h"
 #include "renderer/path/light_pass.h"
+#include "renderer/path/next_event_batch.h"
 #include "renderer/settings/gather_settings.h"
 #include "renderer/settings/many_lights_settings.h"
 #include "renderer/settings/output_settings.h"
@@ -114,7 +115,7 @@ class ManyLights final : public Integrator {
   /// A few pixels.
   struct Part {
     EyeBatch batch;
-    std::array<std::uint32_t, EyeBatch::size> chosen = {};  // emitters of next event estimation
+    EmittersAhead ahead = {};                     // emitters of next event estimation
     std::array<int, EyeBatch::size> shaded = {};  // edges to the shading point; 0: none yet
     std::array<LightSum, EyeBatch::size> sums = {};
     ShadowQueue<Direct> shadows = {};
@@ -178,13 +179,13 @@ class ManyLights final : public Integrator {
   /// tracing.
   void trace(const IterationContext& context, const Gathering& with, Part& part,
              Counters& counters) const {
-    const DirectLight<BsdfGuide> direct(context.scene, guide_, true);
+    const DirectLight<BsdfGuide> direct(context.scene, guide_, true, EmitterChoice::power);
     Walk<BsdfGuide> walk(
         context.scene, guide_,
         {.max_depth = settings_.max_depth, .roulette_depth = settings_.roulette_depth}, counters);
     const auto choose = [&](std::size_t i, int depth) {
       if (direct.draws() && depth < settings_.max_depth) {
-        part.chosen[i] = context.scene.emitters().choose(part.batch.states[i].rng);
+        part.ahead[i] = direct.choose_ahead(part.batch.states[i].rng);
       }
     };
     walk.trace_paths(part.batch.states, choose, [&](std::size_t i, int depth) {
@@ -220,7 +221,7 @@ class ManyLights final : public Integrator {
     if (shared && by_lights()) {
       part.batch.radiance[i] += emitted(pass.scene, v) * missing(terms, before, v);
     } else {
-      part.batch.radiance[i] += direct.met(v, depth);
+      part.batch.radiance[i] += direct.met(v, before, depth);
     }
     if (v.kind != Vertex::Kind::surface || depth == settings_.max_depth) return false;
     const bool lit_by_lights = v.bsdf->is_vpl_receiver(least_alpha_);
@@ -235,7 +236,7 @@ class ManyLights final : public Integrator {
       part.batch.states[i].throughput *= weight;
     }
     if (v.bsdf->connectible() && direct.draws() && !(first && lit_by_lights && by_lights())) {
-      direct.draw(v, depth, part.chosen[i], part.batch.states[i].rng,
+      direct.draw(v, depth, part.ahead[i], part.batch.states[i].rng,
                   [&](const Ray& ray, const Rgb& value) {
                     part.shadows.add(ray, {value, i});
                   });

@@ -4,6 +4,7 @@
 #include "renderer/integrators/guided_integrator.h"
 #include "renderer/path/direct_light.h"
 #include "renderer/path/eye_batch.h"
+#include "renderer/path/next_event_batch.h"
 #include "renderer/path/shadow_queue.h"
 #include "renderer/path/tiles.h"
 #include "renderer/path/walk.h"
@@ -22,6 +23,14 @@ class PathTracer final : public GuidedIntegrator<Guide> {
       : GuidedIntegrator<Guide>(std::move(guide)), settings_(settings) {}
 
   bool renders_parts() const override { return true; }
+
+  SceneNeeds needs() const override {
+    SceneNeeds needs = GuidedIntegrator<Guide>::needs();
+    needs.light_tree =
+        settings_.next_event_estimation && settings_.emitters != EmitterChoice::power;
+    return needs;
+  }
+
   Counters iterate(const IterationContext& context, Image& image) override {
     const Tiling tiling(context, image);
     std::vector<typename Guide::Accumulator> accumulators(static_cast<std::size_t>(tiling.tiles()));
@@ -42,9 +51,9 @@ class PathTracer final : public GuidedIntegrator<Guide> {
 
   struct Batch : EyeBatch {
     using EyeBatch::EyeBatch;
-    std::array<std::uint32_t, size> chosen{};  // the emitters of next event estimation
-    ShadowQueue<Direct> shadows;               // and what they give
-    GatheredLight gathered{*this};             // for a guide that learns
+    EmittersAhead ahead{};          // the emitters of next event estimation
+    ShadowQueue<Direct> shadows;    // and what they give
+    GatheredLight gathered{*this};  // for a guide that learns
   };
 
   void render(const IterationContext& context, Image& image, const Tile& tile, Counters& counters,
@@ -82,15 +91,16 @@ class PathTracer final : public GuidedIntegrator<Guide> {
 
   /// One sample of each pixel of `batch`, into its `radiance` and `shadows`.
   void estimate(const Scene& scene, Walk<Guide>& walk, Batch& batch) const {
-    const DirectLight<Guide> direct(scene, guide_, settings_.next_event_estimation);
+    const DirectLight<Guide> direct(scene, guide_, settings_.next_event_estimation,
+                                    settings_.emitters);
     const auto choose_emitter = [&](std::size_t i, int depth) {
       if (direct.draws() && depth < settings_.max_depth) {
-        batch.chosen[i] = scene.emitters().choose(batch.states[i].rng);
+        batch.ahead[i] = direct.choose_ahead(batch.states[i].rng);
       }
     };
     const auto gather = [&](std::size_t i, int depth) {
       const Vertex& v = batch.vertex(i, depth);
-      const Rgb met = direct.met(v, depth);
+      const Rgb met = direct.met(v, batch.vertex(i, depth - 1), depth);
       batch.radiance[i] += met;
       if (guide_.learns()) {
         batch.gathered.reach(i, depth);
@@ -98,14 +108,16 @@ class PathTracer final : public GuidedIntegrator<Guide> {
       }
       const bool goes_on = v.kind == Vertex::Kind::surface && depth < settings_.max_depth;
       if (goes_on && direct.draws() && v.bsdf->connectible()) {
-        direct.draw(v, depth, batch.chosen[i], batch.states[i].rng,
+        direct.draw(v, depth, batch.ahead[i], batch.states[i].rng,
                     [&](const Ray& ray, const Rgb& value) {
                       batch.shadows.add(ray, {value, batch.pixels[i], static_cast<std::uint16_t>(i),
                                               static_cast<std::uint16_t>(depth)});
                     });
       }
     };
-    walk.trace_paths(batch.states, choose_emitter, gather);
+    walk.trace_paths(batch.states, choose_emitter, gather,
+                     SelectTogether(direct.next_event(), direct.draws(), settings_.max_depth, batch,
+                                    batch.ahead));
   }
 
   PathSettings settings_;

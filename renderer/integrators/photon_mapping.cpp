@@ -5,6 +5,7 @@
 #include "renderer/core/pass_seconds.h"
 #include "renderer/guides/light_guide.h"
 #include "renderer/path/direct_light.h"
+#include "renderer/path/next_event_batch.h"
 #include "renderer/path/photon_map.h"
 #include "renderer/settings/photon_mapping_settings.h"
 
@@ -101,7 +102,7 @@ class PhotonMapping final : public Integrator {
   struct Part {
     EyeBatch batch;
     std::array<Stage, EyeBatch::size> stage = {};
-    std::array<std::uint32_t, EyeBatch::size> chosen = {};  // emitters of next event estimation
+    EmittersAhead ahead = {};  // emitters of next event estimation
     ShadowQueue<Direct> shadows = {};
     std::vector<LookUp> look_ups = {};
     std::vector<std::pair<float, Rgb>> found = {};  // squared distance, and what a photon gives
@@ -162,13 +163,13 @@ class PhotonMapping final : public Integrator {
   }
 
   void trace(const IterationContext& context, Part& part, Counters& counters) const {
-    const DirectLight<BsdfGuide> direct(context.scene, guide_, true);
+    const DirectLight<BsdfGuide> direct(context.scene, guide_, true, EmitterChoice::power);
     Walk<BsdfGuide> walk(
         context.scene, guide_,
         {.max_depth = settings_.max_depth, .roulette_depth = settings_.roulette_depth}, counters);
     const auto choose = [&](std::size_t i, int depth) {
       if (direct.draws() && depth < settings_.max_depth && part.stage[i] <= Stage::at_first) {
-        part.chosen[i] = context.scene.emitters().choose(part.batch.states[i].rng);
+        part.ahead[i] = direct.choose_ahead(part.batch.states[i].rng);
       }
     };
     walk.trace_paths(part.batch.states, choose, [&](std::size_t i, int depth) {
@@ -183,14 +184,15 @@ class PhotonMapping final : public Integrator {
   bool arrive(const DirectLight<BsdfGuide>& direct, Part& part, std::size_t i, int depth) const {
     const Vertex& v = part.batch.vertex(i, depth);
     Stage& stage = part.stage[i];
-    const bool passed = part.batch.vertex(i, depth - 1).delta;
+    const Vertex& before = part.batch.vertex(i, depth - 1);
+    const bool passed = before.delta;
     if (stage == Stage::at_first && passed) stage = Stage::seeing;
     if (stage == Stage::at_second && passed) stage = Stage::gathering;
     if (stage == Stage::at_second) return false;
     const bool first_edge = stage == Stage::at_first;
     if (first_edge) stage = density_.final_gather ? Stage::gathering : Stage::last_edge;
     const bool hit = first_edge ? settings_.next_event_estimation : stage == Stage::seeing;
-    if (hit) part.batch.radiance[i] += direct.met(v, depth);
+    if (hit) part.batch.radiance[i] += direct.met(v, before, depth);
     return stage != Stage::last_edge;
   }
 
@@ -209,7 +211,7 @@ class PhotonMapping final : public Integrator {
       return true;
     }
     if (direct.draws() && v.bsdf->connectible() && (nee || !rough)) {
-      direct.draw(v, depth, part.chosen[i], part.batch.states[i].rng,
+      direct.draw(v, depth, part.ahead[i], part.batch.states[i].rng,
                   [&](const Ray& ray, const Rgb& value) {
                     part.shadows.add(ray, {value, i});
                   });

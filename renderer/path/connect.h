@@ -68,10 +68,11 @@ double light_side_sum(const Eye& eye, const Light& light, const Connection& c,
   if (light.index == 0 && !light.prev_connectible()) return 0;
   const double g = eye.pdf(c.w) * (c.infinite ? 1.0 : light.area_factor(c.w) / double(c.distance2));
   const double pdf_rev = light.mis_partial() > 0 ? light.pdf_rev(-c.w) : 0.0;
+  const TechniqueCounts side = light_side(n).with_one(light.next_event_ratio());
   return g / light.p_fwd() *
-         (mis_partial_sum(light_side(n), light.index, light.prev_connectible(), pdf_rev,
+         (mis_partial_sum(side, light.index, light.prev_connectible(), pdf_rev,
                           light.mis_partial()) +
-          merge_partial(light_side(n), light.index, true, light.p_fwd()));
+          merge_partial(side, light.index, true, light.p_fwd()));
 }
 
 /// sum_{i > s} n_i p_i / p_s: the techniques with fewer vertices on the eye's side (mis.h).
@@ -114,11 +115,13 @@ inline std::optional<EmitterPoint> emitter_at(const Scene& scene, const Vertex& 
 }
 
 /// The MIS weight of an eye path whose vertex `v`, at `index` >= 1, is the point `e` on an emitter
-/// (s = 0).
+/// (s = 0). EmitterPoint::next_event_ratio must be the one for the vertex before it, if that is
+/// connectible and not the eye.
 inline double hit_weight(const Vertex& v, int index, const EmitterPoint& e, const SampleCounts& n) {
   const double one_less = n.of(1, index);
-  // x_0 is never merged.
-  const TechniqueCounts side{.none = 0, .one = one_less, .more = one_less};
+  // x_0 is never merged, and a path of one edge has no next event estimation.
+  const TechniqueCounts side{
+      .none = 0, .one = one_less, .more = one_less * double(e.next_event_ratio)};
   const double pdf_rev = v.mis_partial > 0 ? double(e.leaving_pdf(v.wp).value) : 0.0;
   return mis_weight(n.hit, 0.0,
                     double(e.pdf.value) / double(v.p_fwd.value) *

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "renderer/path/connect.h"
+#include "renderer/path/next_event.h"
 
 namespace lacuna {
 
@@ -12,27 +13,34 @@ class DirectLight {
  public:
   /// Without `next_event`, or without emitters, no points on emitters are sampled and hits have
   /// weight 1.
-  DirectLight(const Scene& scene, const Guide& guide, bool next_event)
+  DirectLight(const Scene& scene, const Guide& guide, bool next_event, EmitterChoice emitters)
       : scene_(scene),
         guide_(guide),
+        next_event_(scene, emitters),
         counts_{.hit = 1, .nee = next_event && !scene.emitters().empty() ? 1.0 : 0.0} {}
 
   /// Whether points on emitters are sampled.
   bool draws() const { return counts_.nee > 0; }
 
-  /// The weighted contribution of the emission at vertex `v`, `depth` edges from the eye.
-  Rgb met(const Vertex& v, int depth) const {
-    const std::optional<EmitterPoint> e = emitter_at(scene_, v);
+  /// NextEvent::choose_ahead(). Requires draws().
+  NextEvent::Ahead choose_ahead(Rng& rng) const { return next_event_.choose_ahead(rng); }
+  const NextEvent& next_event() const { return next_event_; }
+
+  /// The weighted contribution of the emission at vertex `v`, `depth` edges from the eye; `before`
+  /// is the vertex before it.
+  Rgb met(const Vertex& v, const Vertex& before, int depth) const {
+    std::optional<EmitterPoint> e = emitter_at(scene_, v);
     if (!e) return Rgb(0, 0, 0);
+    if (draws()) next_event_.set_ratio(*e, v, before, depth);
     return v.throughput * e->emission * static_cast<float>(hit_weight(v, depth, *e, counts_));
   }
 
-  /// Joins the connectible vertex `v` to a point sampled on the emitter `chosen`
-  /// (EmitterSet::choose). Calls `add(ray, value)` where the contribution is not black; `value`
+  /// Joins the connectible vertex `v` to a point sampled on an emitter; `ahead` is from
+  /// choose_ahead(). Calls `add(ray, value)` where the contribution is not black; `value`
   /// counts if the shadow ray `ray` is unoccluded.
   template <class Add>
-  void draw(const Vertex& v, int depth, std::uint32_t chosen, Rng& rng, Add&& add) const {
-    const EmitterPoint e = scene_.emitters().sample(chosen, rng);
+  void draw(const Vertex& v, int depth, NextEvent::Ahead ahead, Rng& rng, Add&& add) const {
+    const EmitterPoint e = next_event_.sample(v, ahead, rng);
     const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
     const EmitterEndpoint light{e};
     if (const Connection c = connect(eye, light)) {
@@ -44,6 +52,7 @@ class DirectLight {
  private:
   const Scene& scene_;
   const Guide& guide_;
+  NextEvent next_event_;
   SampleCounts counts_;
 };
 

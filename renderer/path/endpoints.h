@@ -47,6 +47,7 @@ struct SurfaceEndpoint {
   double area_factor(const V3f& w) const { return double(abs_dot(v.surface.ng, w)); }
   double p_fwd() const { return double(v.p_fwd.value); }
   double mis_partial() const { return v.mis_partial; }
+  double next_event_ratio() const { return double(v.next_event_ratio); }
   bool prev_connectible() const { return v.prev_connectible; }
   /// The origin of a ray along `w`, offset from the surface.
   V3f origin(const V3f& w) const { return VertexPlace{v}.origin(w); }
@@ -60,16 +61,21 @@ struct EmitterEndpoint {
   bool infinite() const { return e.infinite(); }
   const V3f& x() const { return e.x; }
   Rgb scatter(const V3f& w) const {
-    if (!e.pdf.positive()) return Rgb(0, 0, 0);
+    const Pdf<Area> p = e.next_event_pdf();
+    if (!p.positive()) return Rgb(0, 0, 0);
     const float cosine = e.kind == EmitterPoint::Kind::area ? abs_dot(e.ng, w) : 1.0F;
-    return e.towards(w) * (cosine / e.pdf.value);
+    return e.towards(w) * (cosine / p.value);
   }
-  double pdf(const V3f& w) const { return double(e.leaving_pdf(w).value); }
+  /// Times the density of the point on light paths over p_fwd().
+  double pdf(const V3f& w) const {
+    return double(e.leaving_pdf(w).value) / double(e.next_event_ratio);
+  }
   static double pdf_rev(const V3f&) { return 0; }
   double area_factor(const V3f& w) const {
     return e.kind == EmitterPoint::Kind::area ? double(abs_dot(e.ng, w)) : 1.0;
   }
-  double p_fwd() const { return double(e.pdf.value); }
+  double p_fwd() const { return double(e.next_event_pdf().value); }
+  static double next_event_ratio() { return 1; }
   static double mis_partial() { return 0; }
   /// An eye path can hit the emitter: c_0 of mis.h.
   bool prev_connectible() const { return !e.delta(); }

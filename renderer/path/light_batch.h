@@ -4,6 +4,7 @@
 
 #include "renderer/path/connect.h"
 #include "renderer/path/merge.h"
+#include "renderer/path/next_event.h"
 #include "renderer/path/shadow_queue.h"
 #include "renderer/path/splats.h"
 #include "renderer/path/walk.h"
@@ -20,6 +21,8 @@ struct LightPathSetting {
   /// Choose the emitters of an iteration's paths by systematic sampling: at equal steps from a
   /// random start. Each path alone has the same distribution; together they are stratified.
   bool spread = false;
+  /// How the strategy s = 1 selects emitters; where it does, counts.nee > 0.
+  EmitterChoice next_event = EmitterChoice::power;
 };
 
 /// At most `size` light paths that are traced together. Path i of the batch has index i throughout.
@@ -32,6 +35,7 @@ class LightBatch {
       : setting_(setting),
         guide_(guide),
         places_(static_cast<std::size_t>(setting.max_depth)),
+        next_event_(setting.scene, setting.next_event),
         vertices_(places_ * size),
         hits_(places_ * size) {
     states_.reserve(size);
@@ -63,6 +67,7 @@ class LightBatch {
         [&](std::size_t i, int depth) {
           const std::size_t path = path_of_[i];
           if (vertex(path, depth).kind == Vertex::Kind::surface) length_[path] = depth + 1;
+          if (depth == 1) set_ratio(path);
           hits_[path * places_ + static_cast<std::size_t>(depth)] = states_[i].hit;
           return goes_on(path, depth + 1);
         });
@@ -148,6 +153,13 @@ class LightBatch {
     return vertices_[i * places_ + static_cast<std::size_t>(index)];
   }
 
+  /// What vertex 1 of path `i` stores of next event estimation.
+  void set_ratio(std::size_t i) {
+    if (length_[i] < 2 || !(setting_.counts.nee > 0)) return;
+    Vertex& v = vertex_to_set(i, 1);
+    if (v.connectible()) v.next_event_ratio = next_event_.ratio(emitters_[i], v);
+  }
+
   /// Vertex 0; false where there is none.
   bool start(std::size_t i, Rng& rng, std::uint32_t choice) {
     const EmitterSet& lights = setting_.scene.emitters();
@@ -197,6 +209,7 @@ class LightBatch {
   const LightPathSetting& setting_;
   const Guide& guide_;
   std::size_t places_;
+  NextEvent next_event_;
   std::vector<Vertex> vertices_;
   std::vector<Hit> hits_;  // of each vertex
   std::vector<PathState> states_;

@@ -14,6 +14,10 @@ namespace lacuna {
 // with p_j the density of vertex j on its walk, g_j the one from the other end, and c_j whether
 // x_{j-1} and x_j can be joined: neither scatters through a delta lobe only.
 //
+// With a light tree, next event estimation samples x_0 with another density than light paths do.
+// p_1 is then r times the product of densities on the walks, with r the ratio of the two, a
+// function of x_0 and x_1: n_1 r takes the place of n_1 wherever the recursion meets it.
+//
 // Vertex merging (Georgiev et al. 2012; Hachisuka et al. 2012) is one more technique for each
 // vertex x_j, 0 < j < k: both walks sample it, and it counts where the two points lie within a
 // radius r. Its density is p_{j+1} times the probability g_j pi r^2 that the walk from the other
@@ -47,6 +51,11 @@ struct TechniqueCounts {
   double none = 0, one = 0, more = 0;
   double merge = 0;  ///< SampleCounts::merge
   constexpr bool any() const { return none > 0 || one > 0 || more > 0 || merge > 0; }
+  /// The same with `ratio` times as many samples of the strategies with one vertex: the density of
+  /// a point on an emitter differs by it between next event estimation and light paths.
+  constexpr TechniqueCounts with_one(double ratio) const {
+    return {none, one * ratio, more, merge};
+  }
   constexpr double of(int vertices) const {
     return vertices == 0 ? none : vertices == 1 ? one : more;
   }

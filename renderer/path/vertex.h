@@ -28,6 +28,9 @@ struct Vertex {
   Pdf<Area> p_fwd{};        ///< density of this vertex on this walk; background: per steradian
   /// The sum over i < j in mis_partial_sum() over pdf_rev, which the next edge decides.
   double mis_partial = 0;
+  /// Vertex 1 of a light path: EmitterPoint::next_event_ratio of vertex 0 for this receiver. Of
+  /// other vertices 1.
+  float next_event_ratio = 1;
   GuidingCell guiding_cell;  ///< of the surface as seen from wp
   std::optional<Bsdf> bsdf;  ///< of a surface from which the path may go on
 

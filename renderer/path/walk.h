@@ -55,6 +55,12 @@ struct PathBranch {
   std::size_t walk = 0;  ///< index of the path that was split
 };
 
+/// What Walk::trace_paths() calls for many vertices at once: here nothing.
+struct NothingTogether {
+  static constexpr bool wanted() { return false; }
+  void operator()(std::span<const std::size_t>) const {}
+};
+
 /// Traces a batch of random walks through a scene, one edge of each at a time: the memory that a
 /// vertex needs is prefetched while the rays of the others are traced, which pays where a scene is
 /// larger than the caches. The guide (renderer/guides) samples the directions. The walks are
@@ -71,8 +77,11 @@ class Walk {
   /// densities of all vertices are per area. A `visit` that returns false ends its walk. A state
   /// whose depth is above 0 is a branch: it continues at its last vertex. New branches are appended
   /// to branches().
-  template <class Before, class Visit>
-  void trace_paths(std::span<PathState> states, Before&& before, Visit&& visit) {
+  /// `together`, if it is wanted, is called for all vertices of one length at once, before they are
+  /// visited.
+  template <class Before, class Visit, class Together = NothingTogether>
+  void trace_paths(std::span<PathState> states, Before&& before, Visit&& visit,
+                   Together&& together = {}) {
     active_.resize(states.size());
     std::iota(active_.begin(), active_.end(), std::size_t{0});
     std::erase_if(active_,
@@ -84,9 +93,14 @@ class Walk {
         trace(states[i], depth);
       }
       for (const std::size_t i : active_) on_hit(states[i], states[i].depth);
+      const bool at_once = together.wanted();
+      if (at_once) {
+        for (const std::size_t i : active_) scatter(states[i], states[i].depth);
+        together(active_);
+      }
       std::erase_if(active_, [&](std::size_t i) {
         const int depth = states[i].depth;
-        scatter(states[i], depth);
+        if (!at_once) scatter(states[i], depth);
         if constexpr (std::is_void_v<decltype(visit(i, depth))>) {
           visit(i, depth);
         } else if (!visit(i, depth)) {
@@ -113,6 +127,7 @@ class Walk {
   void on_hit(PathState& w, int depth) {
     Vertex& v = vertex(w, depth);
     v.delta = false;
+    v.next_event_ratio = 1;
     v.wp = -w.ray.d;
     v.throughput = w.throughput;
     if (v.kind == Vertex::Kind::background) {
@@ -249,7 +264,8 @@ class Walk {
           limits_.transport == Transport::radiance ? Transport::importance : Transport::radiance;
       pdf_rev = v.delta ? 1.0 : double(guide_.pdf(v, wi, v.wp, other).value);
     }
-    return (mis_partial_sum(limits_.counts, depth, connectible, pdf_rev, v.mis_partial) +
+    const TechniqueCounts counts = limits_.counts.with_one(double(v.next_event_ratio));
+    return (mis_partial_sum(counts, depth, connectible, pdf_rev, v.mis_partial) +
             merge_partial(limits_.counts, depth, v.connectible(), double(v.p_fwd.value))) /
            double(v.p_fwd.value);
   }

@@ -36,7 +36,7 @@ Scene::Scene(SceneData data, const SceneNeeds& needs,
   if (needs.materials) make_uniform_lobes();
   if (needs.emission) {
     emitters_ = std::make_unique<EmitterSet>(
-        *data_, environment ? load_environment(*environment) : nullptr, bounds_);
+        *data_, environment ? load_environment(*environment) : nullptr, bounds_, needs.light_tree);
   }
 }
 

@@ -15,9 +15,10 @@ namespace lacuna {
 /// The parts of a scene that an integrator needs; the others are not built. Alpha masks are always
 /// built, because they affect visibility.
 struct SceneNeeds {
-  bool materials = false;  ///< scattering: textures of base colour, roughness, ...
-  bool emission = false;   ///< emitters and the environment
-  bool space = false;      ///< the analysis of the empty space
+  bool materials = false;   ///< scattering: textures of base colour, roughness, ...
+  bool emission = false;    ///< emitters and the environment
+  bool space = false;       ///< the analysis of the empty space
+  bool light_tree = false;  ///< selection of emitters for a receiver; with emission
 };
 
 /// The environment light of a job.

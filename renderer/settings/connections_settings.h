@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "analysis/settings/field.h"
+#include "renderer/settings/emitter_settings.h"
 
 namespace lacuna {
 
@@ -83,10 +84,13 @@ struct PairedSettings {
       "every eye path is connected to a light path of its own and, at each vertex, to a new point "
       "on "
       "an emitter";
+  EmitterChoice emitters = EmitterChoice::automatic;
   bool operator==(const PairedSettings&) const = default;
 };
 template <class V>
-void describe(V&, PairedSettings&) {}
+void describe(V& v, PairedSettings& s) {
+  describe_emitters(v, s.emitters);
+}
 
 /// connections: uniform.
 struct UniformSettings : ResamplingSettings {

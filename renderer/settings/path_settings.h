@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "renderer/settings/emitter_settings.h"
 #include "renderer/settings/guide_settings.h"
 #include "renderer/settings/path_lengths.h"
 #include "renderer/settings/sampling_settings.h"
@@ -17,6 +18,7 @@ struct PathSettings : PathLengths {
   GuideSettings guide = BsdfGuideSettings{};
   bool next_event_estimation = true;
   Sampling sampling = Sampling::uniform;
+  EmitterChoice emitters = EmitterChoice::automatic;
 
   bool operator==(const PathSettings&) const = default;
 };
@@ -28,6 +30,7 @@ void describe(V& v, PathSettings& s) {
   v("next_event_estimation", s.next_event_estimation,
     {.doc = "also sample a point on an emitter at every vertex"});
   v("sampling", s.sampling, {.doc = "how many samples the pixels get"});
+  describe_emitters(v, s.emitters);
 }
 
 }  // namespace lacuna

@@ -12,6 +12,7 @@ import sys
 import tempfile
 import time
 
+import emitters
 import regret
 import shape
 
@@ -186,9 +187,14 @@ def regrets(bench, options):
     regret.measure_all(bench, BIN, ROOT / "build/regret", options)
 
 
+def selection(bench, options):
+    """Next event estimation by the light tree against selection by power."""
+    emitters.run(bench, BIN, options)
+
+
 CHECKS = {"service": service, "page": page, "sweeps": sweeps, "rays": rays, "guides": guides, "views": views,
           "cornell": cornell, "overhead": overhead, "corridor": corridor, "analysis": analysis}
-LONG = {"regret": regrets}  # only by name
+LONG = {"regret": regrets, "emitters": selection}  # only by name
 
 
 def main():

@@ -135,6 +135,29 @@ TEST(Agree, AllFlagsOfConnections) {
   }
 }
 
+// Selecting emitters by a light tree: area, point and spot lights, from one side and both, light
+// from infinity, glass, mirrors, few emitters and many.
+TEST(Agree, EmittersByTheTree) {
+  constexpr int max_depth = 4;
+  for (const auto& [scene, iterations, useful] :
+       {Unusual{{"many_lights"}, 600, 0.07}, Unusual{{"area"}, 100, 0.02},
+        Unusual{{"sides"}, 150, 0.02}, Unusual{{"spot"}, 100, 0.02}, Unusual{{"glass"}, 100, 0.03},
+        Unusual{{"coated"}, 100, 0.02}, Unusual{{"open", true}, 100, 0.1},
+        Unusual{{"directional"}, 50, 0.03}, Unusual{{"furnace_sphere"}, 50, 0.02}}) {
+    PathSettings by_power = test::path_tracing(max_depth);
+    by_power.emitters = EmitterChoice::power;
+    const Rendering expected = reference(scene, small_picture(scene, by_power, iterations));
+    PathSettings path = test::path_tracing(max_depth);
+    path.emitters = EmitterChoice::tree;
+    const BdptSettings bdpt = test::joining(max_depth, PairedSettings{EmitterChoice::tree});
+    for (const IntegratorSettings& integrator : {IntegratorSettings{path}, {bdpt}}) {
+      SCOPED_TRACE(testing::Message() << scene << ", " << integrator.index());
+      expect_same_picture(render(load(scene), small_picture(scene, integrator, iterations)),
+                          expected, useful);
+    }
+  }
+}
+
 // No path from the eye finds the reflection of a point of light: here bdpt agrees with itself.
 TEST(Agree, ReflectionsOfPoints) {
   const PathScene scene{"coated_points"};

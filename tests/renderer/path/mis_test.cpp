@@ -7,6 +7,7 @@
 #include <set>
 
 #include "renderer/path/bsdf_guide.h"
+#include "renderer/path/next_event.h"
 #include "tests/renderer/path/oracle.h"
 #include "tests/renderer/path/scenes.h"
 #include "tests/renderer/path/scripted.h"
@@ -34,6 +35,8 @@ const std::vector<Counts> all_counts{{"path", {1, 1, 0, 0}},
                                      {"counted as eight", {1, 1, 8, 1000}},
                                      {"merged", {1, 1, 1, side* side, 2}},
                                      {"merged more", {1, 1, 1, side* side, 30}}};
+/// Weights by a light tree, wherever next event estimation is part of them.
+const std::vector<Counts> tree_counts{{"path", {1, 1, 0, 0}}, {"paired", {1, 1, 1, side* side}}};
 /// That makes all paths.
 const SampleCounts complete_counts{1, 1, 1, side* side};
 
@@ -41,11 +44,14 @@ const SampleCounts complete_counts{1, 1, 1, side* side};
 template <class Guide>
 class Meeting {
  public:
-  Meeting(const Scene& scene, const Camera& camera, const SampleCounts& n, const Guide& guide)
+  Meeting(const Scene& scene, const Camera& camera, const SampleCounts& n, const Guide& guide,
+          EmitterChoice emitters = EmitterChoice::power)
       : scene_(scene),
         camera_(camera),
         counts_(n),
         guide_(guide),
+        emitters_(emitters),
+        next_event_(scene, emitters),
         eye_(longest),
         light_(setting_, guide_) {}
 
@@ -95,8 +101,9 @@ class Meeting {
   template <class Hit>
   void meet_emitter(std::size_t i, int depth, const Hit& hit) const {
     const Vertex& v = eye_.vertex(i, depth);
-    const auto e = emitter_at(scene_, v);
+    auto e = emitter_at(scene_, v);
     if (!e) return;
+    next_event_.set_ratio(*e, v, eye_.vertex(i, depth - 1), depth);
     const auto none = [&](int) -> const Vertex& { return v; };
     hit(from_eye(i, depth - 1, false).finish(*e, 1, none, -v.wp),
         hit_weight(v, depth, *e, counts_));
@@ -126,7 +133,9 @@ class Meeting {
     const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
     for (int s = 1; s <= std::min(longest - depth, light_.length(i)); ++s) {
       if (s == 1) {
-        use(eye, EmitterEndpoint{light_.emitter(i)}, i, depth, joined);
+        EmitterPoint e = light_.emitter(i);
+        e.next_event_ratio = next_event_.ratio(e, v);
+        use(eye, EmitterEndpoint{e}, i, depth, joined);
       } else if (light_.vertex(i, s - 1).bsdf->connectible()) {
         use(eye, light_.end(i, s - 1), i, depth, joined);
       }
@@ -151,8 +160,10 @@ class Meeting {
   const Camera& camera_;
   SampleCounts counts_;
   const Guide& guide_;
+  EmitterChoice emitters_;
+  NextEvent next_event_;
   EyeBatch eye_;
-  LightPathSetting setting_{scene_, camera_, longest, longest + 1, counts_};
+  LightPathSetting setting_{scene_, camera_, longest, longest + 1, counts_, false, emitters_};
   LightBatch<Guide> light_;
 };
 
@@ -241,6 +252,44 @@ void Weights::are_their_definition(const Guide& guide,
     EXPECT_EQ(c.apart, 0) << "of " << c.compared << "; the worst by " << c.worst;
     EXPECT_EQ(impossible, 0) << "were made by a strategy that cannot make them";
     expect_power(c, counts.n);
+  }
+}
+
+/// EmitterPoint::next_event_ratio of a whole path.
+double next_event_ratio(const Scene& scene, const WholePath& path) {
+  if (path.edges() < 2 || path.node(1).delta || !path.node(1).bsdf->connectible()) return 1;
+  Vertex v;
+  v.kind = Vertex::Kind::surface;
+  v.surface = path.node(1).surface;
+  v.bsdf = path.node(1).bsdf;
+  v.wp = path.towards_eye(1);
+  return double(NextEvent(scene, EmitterChoice::tree).ratio(path.emitter, v));
+}
+
+// The same where next event estimation selects emitters by a light tree.
+TEST_P(Weights, ByATreeAreTheirDefinition) {
+  std::set<double> ratios;
+  for (const Counts& counts : tree_counts) {
+    SCOPED_TRACE(counts.name);
+    Comparison c{.tolerance = 1e-5, .smallest = 1e-9};
+    const auto compare = [&](const WholePath& path, int s, double weight) {
+      const double ratio = next_event_ratio(scene_, path);
+      ratios.insert(ratio);
+      const double expected =
+          Oracle(scene_, camera_, path).weights(counts.n, ratio)[static_cast<std::size_t>(s)];
+      c.add(weight, expected, s, path.edges() + 1 - s);
+    };
+    const BsdfGuide guide;
+    Meeting<BsdfGuide>(scene_, camera_, counts.n, guide, EmitterChoice::tree)
+        .meet(
+            6, [&](const WholePath& path, double weight) { compare(path, 0, weight); },
+            [&](const WholePath& path, int s, double weight, bool) { compare(path, s, weight); });
+    EXPECT_EQ(c.apart, 0) << "of " << c.compared << "; the worst by " << c.worst;
+    expect_power(c, counts.n);
+  }
+  // The two triangles of a rectangle have the same bounds: the tree selects them as power does.
+  if (scene_.emitters().size() > 2) {
+    EXPECT_GT(ratios.size(), 2U) << "the test has no power";
   }
 }
 

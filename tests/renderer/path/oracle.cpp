@@ -90,7 +90,7 @@ double Oracle::product(int from_light, int from_eye) const {
   return sum;
 }
 
-std::vector<double> Oracle::weights(const SampleCounts& n) const {
+std::vector<double> Oracle::weights(const SampleCounts& n, double next_event_ratio) const {
   const int k = path_.edges();
   std::vector<double> logs;
   for (int s = 0; s <= k; ++s) {
@@ -102,7 +102,7 @@ std::vector<double> Oracle::weights(const SampleCounts& n) const {
     } else if (t == 1) {
       samples = n.splat;
     } else if (s == 1) {
-      samples = n.nee;
+      samples = n.nee * next_event_ratio;
     }
     logs.push_back(possible ? std::log(samples) + product(s, t) : -HUGE_VAL);
   }

@@ -16,7 +16,8 @@ class Oracle {
 
   /// Of all techniques under the balance heuristic: [s] of strategy s = 0 ... k, then [k + j] of
   /// merging at x_j, 0 < j < k. All 0: no technique makes this path.
-  std::vector<double> weights(const SampleCounts& n) const;
+  /// `next_event_ratio`: the density of x_0 in next event estimation over that on light paths.
+  std::vector<double> weights(const SampleCounts& n, double next_event_ratio = 1) const;
 
  private:
   double leaving(const V3f& w) const;

@@ -102,7 +102,10 @@ struct SceneParts {
 inline Scene lit_scene(SceneData data,
                        const std::optional<EnvironmentImage>& environment = std::nullopt) {
   const ThreadPool pool(1);
-  return {std::move(data), {.materials = true, .emission = true}, environment, pool};
+  return {std::move(data),
+          {.materials = true, .emission = true, .light_tree = true},
+          environment,
+          pool};
 }
 
 }  // namespace lacuna::test

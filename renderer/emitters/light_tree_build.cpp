@@ -1,0 +1,334 @@
+// Building a light tree: groups are split by the surface area orientation heuristic of Conty
+// Estevez and Kulla 2018, sec. 4.4, until a node has eight children.
+
+#include <algorithm>
+#include <limits>
+
+#include "renderer/emitters/light_tree.h"
+
+namespace lacuna {
+
+namespace {
+
+/// Rounding errors of positions, relative to the largest coordinate.
+constexpr double few_roundings = 0x1p-20;
+/// Levels of nodes that are split by cost; below them, groups are halved.
+constexpr int levels_by_cost = 24;
+constexpr int bins = 16;
+/// Groups of that many are split only along axes of at least half the longest side.
+constexpr std::size_t many = 4096;
+/// Groups of up to that many are split where their nodes get full.
+constexpr std::size_t few = 512;
+/// Half of what a number in 8 bits may differ by; less, so that those of a single axis stay.
+constexpr double half_step = 0.499 / 127;
+/// Cosine by which a reach is widened, because axes and angles are rounded to 8 bits.
+constexpr double reach_margin = 0.02;
+
+/// A box around points, in floats.
+struct FloatBox {
+  V3f low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
+
+  void add(const V3f& p) { add(p, p); }
+  void add(const V3f& a, const V3f& b) {
+    for (int k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], a[k]);
+      high[k] = std::max(high[k], b[k]);
+    }
+  }
+  void add(const FloatBox& b) { add(b.low, b.high); }
+  V3f size() const { return high - low; }
+};
+
+/// What the cost of a group is computed from.
+struct Group {
+  FloatBox box;
+  FloatBox axes;  ///< of the directions in which the emitters shine, as points
+  double intensity = 0;
+  std::size_t count = 0;
+
+  void add(const Group& g) {
+    box.add(g.box);
+    axes.add(g.axes);
+    intensity += g.intensity;
+    count += g.count;
+  }
+  /// Intensity times squared size times a measure of the solid angle it shines into: from pi, that
+  /// of a plane, to 4 pi.
+  double cost() const {
+    if (count == 0) return 0;
+    const V3d size(box.size());
+    const V3d spread(axes.size());
+    const double turned = std::min(1.0, spread.length2() / 8);
+    return intensity * size.length2() * (1 + 3 * turned);
+  }
+};
+
+/// An emitter, prepared.
+struct Item {
+  Group group;
+  V3f centre;
+  std::uint32_t emitter = 0;
+};
+
+Item item_of(const TreeEmitter& e, std::uint32_t index) {
+  Item i;
+  i.emitter = index;
+  const Bounds& box = e.bounds.box;
+  i.group.box.add(V3f(box.low), V3f(box.high));
+  i.centre = V3f((box.low + box.high) / 2);
+  V3d axis = e.bounds.axes.axis;
+  if (e.bounds.both_sides && axis.dot(V3d(1, 1e-3, 1e-6)) < 0) axis = -axis;
+  if (e.bounds.axes.spread > 2) {
+    i.group.axes.add(V3f(-1), V3f(1));
+  } else {
+    i.group.axes.add(V3f(axis));
+  }
+  i.group.intensity = e.bounds.intensity;
+  i.group.count = 1;
+  return i;
+}
+
+/// Emitters of a child in the making.
+struct Part {
+  std::size_t begin = 0, end = 0;
+  Group group;
+  std::size_t count() const { return end - begin; }
+};
+
+}  // namespace
+
+class LightTreeBuilder {
+ public:
+  LightTreeBuilder(const std::vector<TreeEmitter>& emitters, LightTree& tree)
+      : emitters_(emitters), tree_(tree) {
+    items_.reserve(emitters.size());
+    std::uint32_t entries = 0;
+    for (std::uint32_t i = 0; i < emitters.size(); ++i) {
+      items_.push_back(item_of(emitters[i], i));
+      entries = std::max(entries, emitters[i].entry + 1);
+    }
+    tree_.places_.assign(entries, LightTree::none);
+    if (items_.empty()) return;
+    build({0, items_.size(), group_of(0, items_.size())}, LightTree::none, 0);
+  }
+
+ private:
+  Group group_of(std::size_t begin, std::size_t end) const {
+    Group g;
+    for (std::size_t i = begin; i < end; ++i) g.add(items_[i].group);
+    return g;
+  }
+
+  /// Makes the node of a group and all below it; gives its bounds. `place` as LightTree::parents_.
+  EmitterBounds build(const Part& all, std::uint32_t place, int depth) {
+    const auto index = static_cast<std::uint32_t>(tree_.nodes_.size());
+    tree_.nodes_.emplace_back();
+    tree_.parents_.push_back(place);
+    const std::vector<Part> parts = children_of(all, depth);
+    std::array<EmitterBounds, LightTree::width> children;
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      const Part& part = parts[k];
+      const auto own = static_cast<std::uint32_t>(index * LightTree::width + k);
+      if (part.count() == 1) {
+        const TreeEmitter& e = emitters_[items_[part.begin].emitter];
+        children[k] = e.bounds;
+        tree_.places_[e.entry] = own;
+        set_child(index, k, e.entry, true);
+      } else {
+        const auto child = static_cast<std::uint32_t>(tree_.nodes_.size());
+        set_child(index, k, child, false);
+        children[k] = build(part, own, depth + 1);
+      }
+    }
+    return describe(tree_.nodes_[index], std::span(children).first(parts.size()));
+  }
+
+  void set_child(std::uint32_t node, std::size_t k, std::uint32_t child, bool leaf) {
+    LightTree::Node& n = tree_.nodes_[node];
+    n.child[k] = child;
+    if (leaf) n.leaves = static_cast<std::uint8_t>(n.leaves | 1U << k);
+  }
+
+  std::vector<Part> children_of(const Part& all, int depth) {
+    std::vector<Part> parts{all};
+    if (all.count() <= std::size_t{LightTree::width}) {
+      parts.clear();
+      for (std::size_t i = all.begin; i < all.end; ++i) parts.push_back({i, i + 1, {}});
+      return parts;
+    }
+    std::size_t least = 1;
+    if (all.count() <= few) {
+      while (least * LightTree::width < all.count()) least *= LightTree::width;
+    }
+    // How much is gained by splitting a part.
+    const auto worth = [&](const Part& p) {
+      if (p.count() <= least) return -1.0;
+      return depth < levels_by_cost ? p.group.cost() : static_cast<double>(p.count());
+    };
+    while (parts.size() < std::size_t{LightTree::width}) {
+      const auto next =
+          std::max_element(parts.begin(), parts.end(),
+                           [&](const Part& a, const Part& b) { return worth(a) < worth(b); });
+      if (worth(*next) < 0) break;
+      const auto [first, second] = least > 1 ? split_few(*next, least) : split(*next, depth);
+      *next = first;
+      parts.push_back(second);
+    }
+    return parts;
+  }
+
+  /// Splits at a multiple of `unit` emitters, in the order along an axis.
+  std::pair<Part, Part> split_few(const Part& p, std::size_t unit) {
+    double best = std::numeric_limits<double>::infinity();
+    int best_axis = 0;
+    std::pair<Part, Part> result;
+    const V3f size = p.group.box.size();
+    for (int axis = 0; axis < 3; ++axis) {
+      sort_along(p, axis);
+      const double elongation =
+          size[axis] > 0 ? std::min(1e6, double(max_component(size) / size[axis])) : 1e6;
+      for (std::size_t m = p.begin + unit; m < p.end; m += unit) {
+        const Part below{p.begin, m, group_of(p.begin, m)}, above{m, p.end, group_of(m, p.end)};
+        const double cost = elongation * (below.group.cost() + above.group.cost());
+        if (!(cost < best)) continue;
+        best = cost;
+        best_axis = axis;
+        result = {below, above};
+      }
+    }
+    sort_along(p, best_axis);
+    return result;
+  }
+
+  void sort_along(const Part& p, int axis) {
+    std::sort(at(p.begin), at(p.end), [axis](const Item& a, const Item& b) {
+      return std::pair(a.centre[axis], a.emitter) < std::pair(b.centre[axis], b.emitter);
+    });
+  }
+
+  std::pair<Part, Part> split(const Part& p, int depth) {
+    FloatBox centres;
+    for (std::size_t i = p.begin; i < p.end; ++i) centres.add(items_[i].centre);
+    const V3f size = centres.size();
+    const float longest = max_component(size);
+    if (depth < levels_by_cost && longest > 0) {
+      double best = std::numeric_limits<double>::infinity();
+      std::pair<Part, Part> result;
+      int best_axis = -1, best_bin = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (!(size[axis] > longest * (p.count() > many ? 0.5F : 0x1p-20F))) continue;
+        const auto binned = bin(p, centres, axis);
+        try_splits(binned, double(longest / size[axis]), axis, best, best_axis, best_bin, result);
+      }
+      if (best_axis >= 0) {
+        const auto middle = std::partition(at(p.begin), at(p.end), [&](const Item& i) {
+          return bin_of(i, centres, best_axis) <= best_bin;
+        });
+        result.first.begin = p.begin;
+        result.first.end = result.second.begin = static_cast<std::size_t>(middle - items_.begin());
+        result.second.end = p.end;
+        return result;
+      }
+    }
+    return halve(p, size);
+  }
+
+  std::vector<Item>::iterator at(std::size_t i) {
+    return items_.begin() + static_cast<std::ptrdiff_t>(i);
+  }
+
+  static int bin_of(const Item& i, const FloatBox& centres, int axis) {
+    const float low = centres.low[axis];
+    const float size = centres.high[axis] - low;
+    return std::clamp(static_cast<int>((i.centre[axis] - low) / size * float{bins}), 0, bins - 1);
+  }
+
+  std::array<Group, bins> bin(const Part& p, const FloatBox& centres, int axis) const {
+    std::array<Group, bins> result;
+    for (std::size_t i = p.begin; i < p.end; ++i) {
+      result[static_cast<std::size_t>(bin_of(items_[i], centres, axis))].add(items_[i].group);
+    }
+    return result;
+  }
+
+  /// Keeps the cheapest split into the bins up to one and the others.
+  static void try_splits(const std::array<Group, bins>& binned, double elongation, int axis,
+                         double& best, int& best_axis, int& best_bin,
+                         std::pair<Part, Part>& result) {
+    std::array<Group, bins> from_above;
+    Group sum;
+    for (std::size_t b = bins; b-- > 1;) {
+      sum.add(binned[b]);
+      from_above[b] = sum;
+    }
+    Group below;
+    for (std::size_t b = 0; b + 1 < bins; ++b) {
+      below.add(binned[b]);
+      const Group& above = from_above[b + 1];
+      if (below.count == 0 || above.count == 0) continue;
+      const double cost = elongation * (below.cost() + above.cost());
+      if (!(cost < best)) continue;
+      best = cost;
+      best_axis = axis;
+      best_bin = static_cast<int>(b);
+      result.first.group = below;
+      result.second.group = above;
+    }
+  }
+
+  /// Halves the emitters along the longest axis; in any order where all are in one place.
+  std::pair<Part, Part> halve(const Part& p, const V3f& size) {
+    const std::size_t middle = p.begin + p.count() / 2;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    if (size[axis] > 0) {
+      std::nth_element(at(p.begin), at(middle), at(p.end), [axis](const Item& a, const Item& b) {
+        return std::pair(a.centre[axis], a.emitter) < std::pair(b.centre[axis], b.emitter);
+      });
+    }
+    return {{p.begin, middle, group_of(p.begin, middle)}, {middle, p.end, group_of(middle, p.end)}};
+  }
+
+  /// Writes the bounds of a node's children; gives the bounds of all.
+  static EmitterBounds describe(LightTree::Node& node, std::span<const EmitterBounds> children) {
+    double most = 0;
+    for (const EmitterBounds& c : children) most = std::max(most, c.intensity);
+    node.count = static_cast<std::uint8_t>(children.size());
+    EmitterBounds all = children[0];
+    for (std::size_t k = 0; k < children.size(); ++k) {
+      const EmitterBounds& c = children[k];
+      if (k > 0) all = EmitterBounds::join(all, c);
+      const V3d centre = (c.box.low + c.box.high) / 2;
+      double largest = 0;
+      for (int a = 0; a < 3; ++a) {
+        largest = std::max({largest, std::abs(c.box.low[a]), std::abs(c.box.high[a])});
+      }
+      node.x[k] = static_cast<float>(centre.x);
+      node.y[k] = static_cast<float>(centre.y);
+      node.z[k] = static_cast<float>(centre.z);
+      node.r[k] = static_cast<float>(c.box.radius() + largest * few_roundings);
+      node.intensity[k] = std::max(static_cast<float>(c.intensity / most), 0x1p-100F);
+      for (std::size_t a = 0; a < 3; ++a) {
+        node.axis[a][k] = eight_bits(c.axes.axis[static_cast<int>(a)]);
+      }
+      // Rounded to a wider cone.
+      node.cos_spread[k] = eight_bits(std::cos(c.axes.spread) - half_step);
+      node.sin_spread[k] = eight_bits(std::sin(c.axes.spread) + half_step);
+      node.cos_reach[k] = eight_bits(std::cos(c.reach) - reach_margin);
+      if (c.both_sides) node.both_sides = static_cast<std::uint8_t>(node.both_sides | 1U << k);
+    }
+    return all;
+  }
+
+  /// A number in [-1, 1], times 127.
+  static std::int8_t eight_bits(double v) {
+    return static_cast<std::int8_t>(std::lround(127 * std::clamp(v, -1.0, 1.0)));
+  }
+
+  const std::vector<TreeEmitter>& emitters_;
+  LightTree& tree_;
+  std::vector<Item> items_;
+};
+
+LightTree::LightTree(std::vector<TreeEmitter> emitters) { LightTreeBuilder(emitters, *this); }
+
+}  // namespace lacuna

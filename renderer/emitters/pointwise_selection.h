@@ -1,0 +1,66 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "renderer/core/alias_table.h"
+#include "renderer/emitters/light_tree.h"
+
+namespace lacuna {
+
+/// Selects an emitter for a receiver: by a light tree among those in the scene, by power among
+/// those at infinity. Which of the two is decided by their powers, but neither gets less than an
+/// eighth: the power of light from infinity depends on the size of the scene, and indoors little of
+/// it arrives.
+class PointwiseSelection {
+ public:
+  struct Infinite {
+    std::uint32_t entry;
+    double power;  ///< > 0
+  };
+  /// `power`: that of all emitters. `by_power`: the selection that ratios are relative to, which
+  /// outlives this.
+  PointwiseSelection(std::vector<TreeEmitter> finite, std::span<const Infinite> infinite,
+                     double power, const AliasTable& by_power);
+  PointwiseSelection(const PointwiseSelection&) = delete;
+  PointwiseSelection& operator=(const PointwiseSelection&) = delete;
+
+  struct Choice {
+    std::uint32_t entry = 0;
+    /// Its probability over that of selection by power.
+    float ratio = 1;
+  };
+  Choice choose(const Receiver& at, Rng& rng) const;
+  /// A request to choose() for one of several points.
+  struct Request {
+    Receiver at;
+    Rng* rng = nullptr;
+    Choice result = {};
+  };
+  /// choose() for each request, with the same results, in less time.
+  void choose(std::span<Request> requests) const;
+  /// The ratio that choose() states where it returns `entry`.
+  float ratio(std::uint32_t entry, const Receiver& at) const;
+
+  /// Number of emitters in the scene.
+  std::size_t finite() const { return finite_; }
+  std::uint64_t bytes() const { return tree_.bytes(); }
+
+ private:
+  bool goes_to_infinity(Rng& rng) const {
+    return infinite_share_ > 0 && (tree_.empty() || rng.next_choice() < infinite_share_);
+  }
+  Choice choose_infinite(Rng& rng) const;
+  Choice relative(std::uint32_t entry, double probability) const {
+    return {entry, static_cast<float>(probability / double(by_power_.pmf(entry).value))};
+  }
+
+  const AliasTable& by_power_;
+  LightTree tree_;
+  std::size_t finite_;
+  AliasTable infinite_;
+  std::vector<std::uint32_t> infinite_entries_;
+  double infinite_share_ = 0;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <span>
+
+#include "renderer/path/vertex.h"
+#include "renderer/scene/scene.h"
+#include "renderer/settings/emitter_settings.h"
+
+namespace lacuna {
+
+/// A surface vertex as a light tree sees it. It is the same for the eye path and for the light path
+/// of one whole path: an opaque surface scatters only from one side of ng to the same side.
+inline Receiver receiver_at(const Vertex& v) {
+  // Along ng the cosine with an interpolated normal may be large.
+  constexpr float flat = 0x1p-10F, curved = 0.125F;
+  return {v.surface.x, v.side(), v.bsdf->transmits(), v.surface.ns == v.surface.ng ? flat : curved};
+}
+
+/// Selection of the emitter for next event estimation (s = 1).
+class NextEvent {
+ public:
+  /// By the light tree where `choice` says so and the scene has it (SceneNeeds::light_tree).
+  NextEvent(const Scene& scene, EmitterChoice choice)
+      : emitters_(scene.emitters()), pointwise_(by_tree(emitters_, choice)) {}
+
+  /// Whether the emitter is selected for each vertex anew.
+  bool for_each_vertex() const { return pointwise_ != nullptr; }
+  /// An emitter that was selected before its point is sampled.
+  struct Ahead {
+    std::uint32_t entry = none;
+    float ratio = 1;  ///< EmitterPoint::next_event_ratio
+  };
+  /// Selects before the vertex is known, where its selection does not depend on it: called before
+  /// the ray to it is traced. Requires emitters.
+  Ahead choose_ahead(Rng& rng) const {
+    return pointwise_ == nullptr ? Ahead{emitters_.choose(rng)} : Ahead{};
+  }
+  /// Selects for many receivers at once.
+  void choose(std::span<PointwiseSelection::Request> requests) const {
+    pointwise_->choose(requests);
+    for (const PointwiseSelection::Request& r : requests) emitters_.prefetch(r.result.entry);
+  }
+  /// Samples a point on an emitter for the connectible vertex `v`, on the emitter `ahead` if one is
+  /// selected already.
+  EmitterPoint sample(const Vertex& v, Ahead ahead, Rng& rng) const {
+    if (ahead.entry == none) {
+      const PointwiseSelection::Choice c = pointwise_->choose(receiver_at(v), rng);
+      ahead = {c.entry, c.ratio};
+    }
+    EmitterPoint e = emitters_.sample(ahead.entry, rng);
+    e.next_event_ratio = ahead.ratio;
+    return e;
+  }
+  /// EmitterPoint::next_event_ratio of the point `e`, sampled in another way, for the connectible
+  /// surface vertex `v`.
+  float ratio(const EmitterPoint& e, const Vertex& v) const {
+    if (pointwise_ == nullptr || !e.pdf.positive()) return 1;
+    return pointwise_->ratio(e.entry, receiver_at(v));
+  }
+  /// Sets it for the point `e` that an eye path hit at `v`, `depth` edges from the eye, where the
+  /// path's weight depends on it; `before` is the vertex before `v`.
+  void set_ratio(EmitterPoint& e, const Vertex& v, const Vertex& before, int depth) const {
+    if (depth > 1 && v.prev_connectible) e.next_event_ratio = ratio(e, before);
+  }
+
+ private:
+  static constexpr std::uint32_t none = ~0U;
+  static const PointwiseSelection* by_tree(const EmitterSet& emitters, EmitterChoice choice) {
+    constexpr std::size_t few = 8;
+    const PointwiseSelection* p = emitters.pointwise();
+    if (p == nullptr || choice == EmitterChoice::power) return nullptr;
+    return choice == EmitterChoice::tree || p->finite() > few ? p : nullptr;
+  }
+
+  const EmitterSet& emitters_;
+  const PointwiseSelection* pointwise_;  // null: by power
+};
+
+}  // namespace lacuna

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+
+#include "analysis/settings/field.h"
+
+namespace lacuna {
+
+/// How next event estimation selects an emitter.
+enum class EmitterChoice { automatic, tree, power };
+
+template <>
+struct EnumTable<EmitterChoice> {
+  static constexpr std::array<EnumValue<EmitterChoice>, 3> values{{
+      {EmitterChoice::automatic, "auto",
+       "`tree` in scenes of more than a few emitters, else `power`; each triangle that emits is an "
+       "emitter"},
+      {EmitterChoice::tree, "tree",
+       "by a light tree, for each vertex anew: by power, distance, and the directions of emission "
+       "and of the surface (Conty Estevez and Kulla 2018)"},
+      {EmitterChoice::power, "power", "by power, the same everywhere"},
+  }};
+};
+
+template <class V>
+void describe_emitters(V& v, EmitterChoice& choice) {
+  v("emitters", choice,
+    {.doc = "how the emitter is selected on which next event estimation samples a point"});
+}
+
+}  // namespace lacuna
