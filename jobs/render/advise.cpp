@@ -21,9 +21,14 @@ RaceRecord advise(JobSpec spec, const RunContext& context) {
   analyse(prepared, spec.budget);
   context.observer.phase("racing");
   Image image(spec.resolution[0], spec.resolution[1]);
-  prepared.integrator->iterate(
-      {*prepared.scene, *prepared.camera, *prepared.pool, spec.seed, 0, context.interrupted},
-      image);
+  prepared.integrator->iterate({.scene = *prepared.scene,
+                                .camera = *prepared.camera,
+                                .pool = *prepared.pool,
+                                .seed = spec.seed,
+                                .iteration = 0,
+                                .stop = context.interrupted,
+                                .sampler = spec.sampler},
+                               image);
   return *prepared.integrator->race();
 }
 

@@ -54,7 +54,9 @@ void add_layer(const RenderTask& task, const Film& film, ImageLayer layer,
                std::vector<ExrLayer>& out) {
   switch (layer) {
     case ImageLayer::variance:
-      out.push_back({"variance", rgb, film.variance_of_mean()});
+      out.push_back({"variance", rgb,
+                     independent_iterations(task.spec) ? film.variance_of_mean()
+                                                       : film.variance_from_halves()});
       return;
     case ImageLayer::halves:
       out.push_back({"even", rgb, film.half_mean(0)});

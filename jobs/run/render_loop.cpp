@@ -133,8 +133,15 @@ bool RenderLoop::iterate() {
   const std::span<Image> layers = state_.layers.begin(task_.pool);
   clock_.start();
   try {
-    state_.counters += task_.integrator.iterate(
-        {task_.scene, task_.camera, task_.pool, task_.spec.seed, iteration, stop, layers}, frame_);
+    state_.counters += task_.integrator.iterate({.scene = task_.scene,
+                                                 .camera = task_.camera,
+                                                 .pool = task_.pool,
+                                                 .seed = task_.spec.seed,
+                                                 .iteration = iteration,
+                                                 .stop = stop,
+                                                 .layers = layers,
+                                                 .sampler = task_.spec.sampler},
+                                                frame_);
   } catch (const Stopped&) {
     clock_.stop();
     return false;

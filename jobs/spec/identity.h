@@ -44,6 +44,7 @@ inline constexpr auto not_in_a_reference = std::to_array<std::string_view>({
     "reference_iterations",  // how well the reference is known
     "analysis",              // guides the estimate; only false colours (inspect) show it
     "seed",                  // which random numbers
+    "sampler",               // how they are spread
     "shards",                // who renders which iterations
     "shard",                 // likewise
     "threads",               // how many at work
@@ -70,6 +71,7 @@ inline constexpr auto not_in_a_preparation = std::to_array<std::string_view>({
     "reference",             // read or rendered afterwards
     "reference_iterations",  // likewise
     "seed",                  // of the rendering's random numbers
+    "sampler",               // likewise
     "shards",                // of the rendering's iterations
     "shard",                 // likewise
     "layers",                // of the picture

@@ -13,6 +13,7 @@
 #include "renderer/settings/error_metrics.h"
 #include "renderer/settings/integrator_settings.h"
 #include "renderer/settings/output_settings.h"
+#include "renderer/settings/sampler.h"
 #include "renderer/settings/scene_settings.h"
 
 namespace lacuna {
@@ -120,6 +121,7 @@ struct JobSpec {
   std::optional<ParticleSettings> particles;
   std::optional<MaterialChange> material;
   std::uint64_t seed = 1;
+  Sampler sampler = Sampler::sobol;
   int shards = 1;
   int shard = 0;
   int threads = 0;
@@ -130,6 +132,10 @@ struct JobSpec {
   bool exclusive = false;
   bool operator==(const JobSpec&) const = default;
 };
+/// Whether the iterations of a job are independent; if not, its halves are.
+inline bool independent_iterations(const JobSpec& s) {
+  return s.sampler == Sampler::independent || !spreads_samples(s.integrator);
+}
 template <class V>
 void describe(V& v, JobSpec& s) {
   v("scene", s.scene,
@@ -160,6 +166,7 @@ void describe(V& v, JobSpec& s) {
   v("particles", s.particles, {.doc = "point lights in addition to those of the scene"});
   v("material", s.material, {.doc = "change the roughness of one of the scene's materials"});
   v("seed", s.seed, {.doc = "seed of the random numbers", .min = 0, .max = 9007199254740991.0});
+  v("sampler", s.sampler, {.doc = "random numbers of eye paths and light paths"});
   v("shards", s.shards,
     {.doc = "how many parts of the iterations may be rendered apart, and merged",
      .min = 1,

@@ -45,6 +45,13 @@ class AliasTable {
     if (uniform < b.threshold) return {chosen, Pdf<Count>(b.pmf)};
     return {b.alias, Pdf<Count>(b.alias_pmf)};
   }
+  /// sample() by the 64 bits of `point.x`, which get what is left within the bin: a uniform number
+  /// again, to n 2^-32, whatever the index; and by point.besides.
+  std::uint32_t sample(Rng::FinePoint& point) const {
+    const std::uint32_t i = choose(static_cast<std::uint32_t>(point.x >> 32));
+    point.x *= bins_.size();
+    return resolve(i, point.besides).index;
+  }
   /// Prefetches what pmf() reads.
   void prefetch(std::uint32_t i) const { __builtin_prefetch(&bins_[i]); }
   Pdf<Count> pmf(std::uint32_t i) const { return Pdf<Count>(bins_[i].pmf); }

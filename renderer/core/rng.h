@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "renderer/core/sobol.h"
 #include "renderer/core/vec.h"
 
 namespace lacuna {
@@ -23,6 +24,10 @@ class RandomWords {
 /// A counter-based random number generator: Philox4x32-10 (Salmon et al. 2011, "Parallel random
 /// numbers: as easy as 1, 2, 3"). The stream is a pure function of (seed, iteration, path,
 /// purpose), so an image does not depend on threads, on their order, or on a kill and a resume.
+///
+/// The numbers may also be the dimensions of a sample of a low-discrepancy sequence. Each of them
+/// alone is uniform, and so is what next2() draws; the streams of different samples of a sequence
+/// are not independent.
 class Rng {
  public:
   /// The use of a stream; the streams of different purposes are independent.
@@ -48,13 +53,34 @@ class Rng {
                  static_cast<std::uint32_t>(iteration)} {}
 
   /// The stream of `words`, which outlives it.
-  explicit Rng(RandomWords& words) : Rng(0, 0, 0) { words_ = &words; }
+  explicit Rng(RandomWords& words) : Rng(0, 0, 0) {
+    words_ = &words;
+    source_ = Source::kept;
+    vertex_ = static_cast<std::uint8_t>(numbers_.size() - 1);
+  }
+
+  /// The dimensions of sample `index` of the sequence that `seed`, `sequence` and `purpose` name.
+  /// `sequence` < 2^56; `randomisation` < 2^31: sequences that differ in any of these are
+  /// independent. Only aligned runs of 2^m indices, m <= 32, are evenly spread.
+  static Rng of_sequence(std::uint64_t seed, std::uint64_t sequence, std::uint32_t randomisation,
+                         std::uint64_t index, Purpose purpose) {
+    Rng rng(seed, 0, sequence, purpose);
+    // Counters that no independent stream reaches: its first counter begins at 0.
+    const Block key = philox({1U << 31 | randomisation, rng.counter_[1], rng.counter_[2],
+                              static_cast<std::uint32_t>(index >> 32)},
+                             rng.key_);
+    rng.sobol_ = SobolSample({key[0], key[1]}, static_cast<std::uint32_t>(index));
+    rng.source_ = Source::sobol;
+    rng.pair_ = 1;
+    rng.vertex_ = 7;
+    return rng;
+  }
 
   /// Called at each vertex of a path. In a stream of kept words each vertex begins a block, so that
-  /// a change at one vertex leaves the others theirs; without effect in others.
-  void next_vertex() {
-    if (words_ != nullptr) used_ = numbers_.size();
-  }
+  /// a change at one vertex leaves the others theirs. In a low-discrepancy sequence each begins at
+  /// a multiple of 8 dimensions, so that paths that took other numbers of them before still agree
+  /// on what each is for. Without effect in others.
+  void next_vertex() { used_ = (used_ + vertex_) & ~std::size_t{vertex_}; }
 
   /// An independent stream, keyed by the next 64 bits of this one.
   Rng branch() {
@@ -71,8 +97,9 @@ class Rng {
   /// Uniform in [0, 1), a multiple of 2^-24: never 1.
   float next() { return unit(next_u32()); }
 
-  /// Two independent uniforms in [0, 1).
+  /// Two independent uniforms in [0, 1); of a low-discrepancy sequence, a pair of dimensions.
   V2f next2() {
+    used_ += used_ & pair_;
     const float a = next();
     return {a, next()};
   }
@@ -89,12 +116,30 @@ class Rng {
     V2f point;      ///< as next2()
   };
   ChoiceAndPoint next_choice_and_point() {
-    const std::uint64_t a = next_u32();
+    used_ += used_ & pair_;
     const std::uint32_t b = next_u32();
     const std::uint32_t c = next_u32();
+    const std::uint64_t a = next_u32();
     // The bits that the point has no use for.
     const std::uint64_t choice = a << 16 | (b & 0xff) << 8 | (c & 0xff);
     return {static_cast<double>(choice) * 0x1p-48, {unit(b), unit(c)}};
+  }
+
+  /// A point in the unit square, whose first coordinate may choose first and place by what is left,
+  /// and a number to choose by besides, all independent, from four numbers.
+  struct FinePoint {
+    std::uint64_t x;        ///< of 2^64
+    std::uint32_t y;        ///< of 2^32
+    std::uint32_t besides;  ///< of 2^32
+
+    V2f point() const { return {unit(static_cast<std::uint32_t>(x >> 32)), unit(y)}; }
+  };
+  FinePoint next_fine_point() {
+    used_ += used_ & pair_;
+    const std::uint64_t high = next_u32();
+    const std::uint32_t y = next_u32();
+    const std::uint32_t low = next_u32();
+    return {high << 32 | low, y, next_u32()};
   }
 
   /// Uniform in 0 ... n - 1, to n 2^-32 of each probability; n <= 2^32.
@@ -129,13 +174,19 @@ class Rng {
   static constexpr std::uint64_t multiplier_0 = 0xD2511F53, multiplier_1 = 0xCD9E8D57;
   static constexpr std::uint32_t weyl_0 = 0x9E3779B9, weyl_1 = 0xBB67AE85;
 
-  // Four blocks at once, one in each 64-bit lane (values in the low halves): a quarter of the work.
   void refill() {
-    if (words_ != nullptr) [[unlikely]] {
+    used_ = 0;
+    if (source_ == Source::sobol) {
+      sobol_.words(counter_[0]++, numbers_);
+    } else if (source_ == Source::kept) [[unlikely]] {
       words_->next(numbers_);
-      used_ = 0;
-      return;
+    } else {
+      refill_by_philox();
     }
+  }
+
+  // Four blocks at once, one in each 64-bit lane (values in the low halves): a quarter of the work.
+  void refill_by_philox() {
     const __m256i low = _mm256_set1_epi64x(0xffffffff);
     const auto spread = [](std::uint32_t v) { return _mm256_set1_epi64x(v); };
     __m256i c0 = _mm256_add_epi64(spread(counter_[0]), _mm256_setr_epi64x(0, 1, 2, 3));
@@ -163,11 +214,16 @@ class Rng {
     _mm256_store_si256(out, _mm256_permute2x128_si256(even, odd, 0x20));
     _mm256_store_si256(out + 1, _mm256_permute2x128_si256(even, odd, 0x31));
     counter_[0] += 4;
-    used_ = 0;
   }
+
+  enum class Source : std::uint8_t { philox, sobol, kept };
 
   alignas(32) RandomWords::Block numbers_;
   std::size_t used_ = 16;
+  Source source_ = Source::philox;
+  std::uint8_t pair_ = 0;    // 1: next2() begins at an even number
+  std::uint8_t vertex_ = 0;  // a vertex begins at a multiple of that + 1
+  SobolSample sobol_;
   RandomWords* words_ = nullptr;
   std::array<std::uint32_t, 2> key_;
   Block counter_;

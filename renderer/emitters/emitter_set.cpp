@@ -141,20 +141,21 @@ void EmitterSet::add_mesh(std::uint32_t m, std::vector<double>& powers) {
   sources_.push_back(source);
 }
 
-EmitterPoint EmitterSet::sample(std::uint32_t chosen, Rng& rng) const {
+EmitterPoint EmitterSet::sample(const Selected& selected) const {
+  const std::uint32_t chosen = selected.entry;
   const Entry& e = entries_[chosen];
   const Source& source = sources_[e.source];
-  if (source.kind == Source::Kind::mesh) return sample_triangle_of(chosen, rng.next2());
+  if (source.kind == Source::Kind::mesh) return sample_triangle_of(chosen, selected.at.point());
   EmitterPoint p = source.kind == Source::Kind::punctual
                        ? sample_punctual(scene_->lights[source.index])
-                       : sample_environment(rng);
+                       : sample_environment(selected.at);
   p.entry = chosen;
   p.pdf = p.pdf.value * e.pdf;
   return p;
 }
 
-EmitterPoint EmitterSet::sample_environment(Rng& rng) const {
-  const Environment::Sample d = environment_->sample(rng);
+EmitterPoint EmitterSet::sample_environment(const Rng::FinePoint& at) const {
+  const Environment::Sample d = environment_->sample(at);
   EmitterPoint p;
   p.kind = EmitterPoint::Kind::environment;
   p.x = d.w;

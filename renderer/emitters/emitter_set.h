@@ -31,23 +31,26 @@ class EmitterSet {
   bool empty() const { return selection_.empty(); }
   std::size_t size() const { return entries_.size(); }
 
+  /// An emitter, and the numbers that place a point on it.
+  struct Selected {
+    std::uint32_t entry = 0;
+    Rng::FinePoint at{};
+  };
   /// Selects an emitter and prefetches its memory; called before the ray to the receiver is traced.
   /// Requires !empty().
-  std::uint32_t choose(Rng& rng) const { return choose(rng.next_u32(), rng); }
-  /// Selects an emitter by 32 uniform bits; `rng` decides between the two emitters of a bin of the
-  /// alias table. n equidistant values of `uniform` select n different emitters if all n have the
-  /// same power.
-  std::uint32_t choose(std::uint32_t uniform, Rng& rng) const {
-    const std::uint32_t i = selection_.resolve(selection_.choose(uniform), rng).index;
+  Selected choose(Rng& rng) const { return choose(rng.next_fine_point()); }
+  /// n equidistant values of `at.x` select n different emitters if all n have the same power.
+  Selected choose(Rng::FinePoint at) const {
+    const std::uint32_t i = selection_.sample(at);
     prefetch(i);
-    return i;
+    return {i, at};
   }
   /// Prefetches what sample() reads of the emitter `chosen`.
   void prefetch(std::uint32_t chosen) const { __builtin_prefetch(&entries_[chosen]); }
   /// Selects an emitter for a receiver; null unless requested.
   const PointwiseSelection* pointwise() const { return pointwise_ ? &*pointwise_ : nullptr; }
-  /// Samples a point on the emitter `chosen`; its density includes the selection.
-  EmitterPoint sample(std::uint32_t chosen, Rng& rng) const;
+  /// Samples a point on the selected emitter; its density includes the selection.
+  EmitterPoint sample(const Selected& selected) const;
   /// Samples the first edge of a light path from the point `e`.
   std::optional<Leaving> sample_first_edge(const EmitterPoint& e, Rng& rng) const {
     return sample_leaving(e, bounds_, rng);
@@ -89,7 +92,7 @@ class EmitterSet {
   void select_pointwise(std::span<const double> powers);
   void add_light(const Source& source, double power, std::vector<double>& powers);
   EmitterPoint sample_triangle_of(std::uint32_t chosen, const V2f& u) const;
-  EmitterPoint sample_environment(Rng& rng) const;
+  EmitterPoint sample_environment(const Rng::FinePoint& at) const;
   EmitterPoint sample_punctual(const PunctualLight& light) const;
   float across(const V3f& w) const { return static_cast<float>(bounds_.area_across(w)); }
 

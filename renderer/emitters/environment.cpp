@@ -16,8 +16,11 @@ Environment::Environment(int width, int height, std::vector<float> rgb, float sc
   // The mean of a bilinear interpolant over a texel is (1/8, 6/8, 1/8) of the texel and its
   // neighbours, along each axis.
   constexpr std::array<double, 3> kernel{0.125, 0.75, 0.125};
-  std::vector<double> weights(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  std::vector<double> weights(static_cast<std::size_t>(width));
+  std::vector<double> of_rows;
+  texels_.reserve(static_cast<std::size_t>(height));
   for (int y = 0; y < height; ++y) {
+    double sum = 0;
     for (int x = 0; x < width; ++x) {
       double mean = 0;
       for (std::size_t j = 0; j < kernel.size(); ++j) {
@@ -27,13 +30,13 @@ Environment::Environment(int width, int height, std::vector<float> rgb, float sc
               double(luminance(texel(x + static_cast<int>(i) - 1, y + static_cast<int>(j) - 1)));
         }
       }
-      const double w = mean * texel_solid_angle(y);
-      weights[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-              static_cast<std::size_t>(x)] = w;
-      integral_ += w;
+      sum += weights[static_cast<std::size_t>(x)] = mean;
     }
+    texels_.emplace_back(weights);
+    of_rows.push_back(sum * texel_solid_angle(y));
+    integral_ += of_rows.back();
   }
-  texels_ = AliasTable(weights);
+  rows_ = InversionTable(of_rows);
 }
 
 double Environment::texel_solid_angle(int y) const {
@@ -71,23 +74,33 @@ Rgb Environment::radiance(const V3f& w) const {
          b * ((1 - a) * texel(x, y + 1) + a * texel(x + 1, y + 1));
 }
 
-Environment::Sample Environment::sample(Rng& rng) const {
-  const auto i = texels_.sample(rng);
-  const int x = static_cast<int>(i) % width_;
-  const int y = static_cast<int>(i) / width_;
-  const V2f u = rng.next2();
-  const double top = std::cos(std::numbers::pi * y / height_);
-  const double bottom = std::cos(std::numbers::pi * (y + 1) / height_);
-  const double cos_theta = top + double(u.y) * (bottom - top);
+Environment::Sample Environment::sample(const Rng::FinePoint& at) const {
+  const auto high = static_cast<std::uint32_t>(at.x >> 32);
+  const InversionTable::Draw row = rows_.draw(at.y);
+  const InversionTable::Draw column = texels_[row.index].draw(high);
+  // What is left of the numbers within their texel.
+  const double v = (double(at.y - row.begin) + 0.5) / double(row.count);
+  const double rest = double(high - column.begin) + double(at.x & 0xffffffff) * 0x1p-32;
+  const double u = rest / double(column.count);
+  const double top = std::cos(std::numbers::pi * row.index / height_);
+  const double bottom = std::cos(std::numbers::pi * (row.index + 1) / height_);
+  const double cos_theta = top + v * (bottom - top);
   const double sin_theta = std::sqrt(std::max(0.0, 1 - cos_theta * cos_theta));
-  const double phi = 2 * std::numbers::pi * ((x + double(u.x)) / width_ - 0.5);
+  const double phi = 2 * std::numbers::pi * ((column.index + u) / width_ - 0.5);
   const double local_x = sin_theta * std::sin(phi);
   const double local_z = -sin_theta * std::cos(phi);
   const double c = cos_rotation_;
   const double s = sin_rotation_;
   const V3f w(static_cast<float>(c * local_x + s * local_z), static_cast<float>(cos_theta),
               static_cast<float>(-s * local_x + c * local_z));
-  return {w, static_cast<float>(texels_.pmf(i).value / texel_solid_angle(y))};
+  return {w, pdf(column.index, row.index)};
+}
+
+float Environment::pdf(std::uint32_t x, std::uint32_t y) const {
+  const double of_row = double(rows_.pmf(y).value);
+  if (!(of_row > 0)) return 0;
+  return static_cast<float>(of_row * double(texels_[y].pmf(x).value) /
+                            texel_solid_angle(static_cast<int>(y)));
 }
 
 float Environment::pdf(const V3f& w) const {
@@ -95,8 +108,7 @@ float Environment::pdf(const V3f& w) const {
   const V2f p = to_image(w);
   const int x = std::clamp(static_cast<int>(p.x), 0, width_ - 1);
   const int y = std::clamp(static_cast<int>(p.y), 0, height_ - 1);
-  const auto i = static_cast<std::uint32_t>(y * width_ + x);
-  return static_cast<float>(texels_.pmf(i).value / texel_solid_angle(y));
+  return pdf(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
 }
 
 }  // namespace lacuna

@@ -177,7 +177,10 @@ struct LightTree::Descent {
   d.probability *= w.probability(i);
   d.node = node.child[static_cast<std::size_t>(i)];
   d.done = (node.leaves >> i & 1) != 0;
-  if (d.done) return;
+  if (d.done) {
+    d.u = std::clamp(d.u, 0.0, 1 - 0x1p-53);
+    return;
+  }
   const auto* next = reinterpret_cast<const char*>(&nodes_[d.node]);
   for (std::size_t k = 0; k < sizeof(Node); k += 64) _mm_prefetch(next + k, _MM_HINT_T0);
   if (d.grain > 0x1p-25) [[unlikely]] {
@@ -187,14 +190,14 @@ struct LightTree::Descent {
   d.u = std::min(d.u, 1 - 0x1p-53);
 }
 
-LightTree::Choice LightTree::choose(const Receiver& at, Rng& rng) const {
-  Descent d{&at, &rng, rng.next_choice()};
+LightTree::Choice LightTree::choose(const Receiver& at, double u, Rng& rng) const {
+  Descent d{&at, &rng, u};
   while (!d.done) {
     Weights w;
     weigh(nodes_[d.node], at, geometry(nodes_[d.node], at), w);
     descend(w, d);
   }
-  return {d.node, d.probability};
+  return {d.node, d.probability, d.u};
 }
 
 void LightTree::choose(std::span<Request> requests) const {
@@ -210,7 +213,7 @@ void LightTree::choose(std::span<Request> requests) const {
     const auto all = n;
     for (std::size_t k = 0; k < n; ++k) {
       Request& r = requests[first + k];
-      descents[k] = {&r.at, r.rng, r.rng->next_choice()};
+      descents[k] = {&r.at, r.rng, r.u};
       going[k] = k;
     }
     while (n > 0) {
@@ -231,7 +234,7 @@ void LightTree::choose(std::span<Request> requests) const {
       n = left;
     }
     for (std::size_t k = 0; k < all; ++k) {
-      requests[first + k].result = {descents[k].node, descents[k].probability};
+      requests[first + k].result = {descents[k].node, descents[k].probability, descents[k].u};
     }
   }
 }

@@ -35,12 +35,15 @@ class LightTree {
   struct Choice {
     std::uint32_t entry = 0;  ///< TreeEmitter::entry
     double probability = 0;   ///< > 0
+    double rest = 0;          ///< of `u`: in [0, 1), uniform whatever the entry
   };
-  /// Requires !empty().
-  Choice choose(const Receiver& at, Rng& rng) const;
+  /// By `u`, uniform in [0, 1), a multiple of 2^-53; `rng` fills it up where probabilities are
+  /// small. Requires !empty().
+  Choice choose(const Receiver& at, double u, Rng& rng) const;
   /// A request to choose() for one of many points.
   struct Request {
     Receiver at;
+    double u = 0;
     Rng* rng = nullptr;
     Choice result = {};
   };

@@ -1,6 +1,7 @@
 #include "renderer/emitters/pointwise_selection.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lacuna {
 
@@ -19,45 +20,60 @@ PointwiseSelection::PointwiseSelection(std::vector<TreeEmitter> finite,
   if (finite.empty()) {
     infinite_share_ = 1;
   } else if (!infinite.empty()) {
-    infinite_share_ = std::clamp(sum / power, 0.125, 0.875);
+    infinite_share_ = std::round(std::clamp(sum / power, 0.125, 0.875) * 0x1p32) * 0x1p-32;
   }
   tree_ = LightTree(std::move(finite));
 }
 
-PointwiseSelection::Choice PointwiseSelection::choose_infinite(Rng& rng) const {
-  const AliasTable::Draw d = infinite_.resolve(infinite_.choose(rng), rng);
-  return relative(infinite_entries_[d.index], infinite_share_ * double(d.pmf.value));
+namespace {
+
+double unit(const Rng::FinePoint& at) { return static_cast<double>(at.x >> 11) * 0x1p-53; }
+
+}  // namespace
+
+PointwiseSelection::Choice PointwiseSelection::choose_infinite(Rng::FinePoint at, Rng& rng) const {
+  at.besides = infinite_.size() > 1 ? rng.next_u32() : 0;  // it has decided for infinity
+  const std::uint32_t i = infinite_.sample(at);
+  const std::uint32_t entry = infinite_entries_[i];
+  return {entry, relative(entry, infinite_share_ * double(infinite_.pmf(i).value)), at};
 }
 
-PointwiseSelection::Choice PointwiseSelection::choose(const Receiver& at, Rng& rng) const {
-  if (goes_to_infinity(rng)) return choose_infinite(rng);
-  const LightTree::Choice c = tree_.choose(at, rng);
-  return relative(c.entry, (1 - infinite_share_) * c.probability);
+PointwiseSelection::Choice PointwiseSelection::choose_finite(const LightTree::Choice& c,
+                                                             Rng::FinePoint at) const {
+  at.x = static_cast<std::uint64_t>(c.rest * 0x1p64);
+  return {c.entry, relative(c.entry, (1 - infinite_share_) * c.probability), at};
+}
+
+PointwiseSelection::Choice PointwiseSelection::choose(const Receiver& receiver,
+                                                      const Rng::FinePoint& at, Rng& rng) const {
+  if (goes_to_infinity(at)) return choose_infinite(at, rng);
+  return choose_finite(tree_.choose(receiver, unit(at), rng), at);
 }
 
 void PointwiseSelection::choose(std::span<Request> requests) const {
   constexpr std::size_t together = 16;
   std::array<LightTree::Request, together> descents;
   std::array<Request*, together> asked{};
+  std::array<Rng::FinePoint, together> numbers;
   std::size_t n = 0;
   const auto descend = [&] {
     tree_.choose(std::span(descents).first(n));
     for (std::size_t k = 0; k < n; ++k) {
-      const LightTree::Choice& c = descents[k].result;
-      by_power_.prefetch(c.entry);
+      by_power_.prefetch(descents[k].result.entry);
     }
     for (std::size_t k = 0; k < n; ++k) {
-      const LightTree::Choice& c = descents[k].result;
-      asked[k]->result = relative(c.entry, (1 - infinite_share_) * c.probability);
+      asked[k]->result = choose_finite(descents[k].result, numbers[k]);
     }
     n = 0;
   };
   for (Request& r : requests) {
-    if (goes_to_infinity(*r.rng)) {
-      r.result = choose_infinite(*r.rng);
+    const Rng::FinePoint at = r.rng->next_fine_point();
+    if (goes_to_infinity(at)) {
+      r.result = choose_infinite(at, *r.rng);
       continue;
     }
-    descents[n] = {r.at, r.rng, {}};
+    descents[n] = {r.receiver, unit(at), r.rng, {}};
+    numbers[n] = at;
     asked[n++] = &r;
     if (n == together) descend();
   }
@@ -66,11 +82,11 @@ void PointwiseSelection::choose(std::span<Request> requests) const {
 
 float PointwiseSelection::ratio(std::uint32_t entry, const Receiver& at) const {
   const double p = tree_.probability(entry, at);
-  if (p > 0) return relative(entry, (1 - infinite_share_) * p).ratio;
+  if (p > 0) return relative(entry, (1 - infinite_share_) * p);
   const auto found = std::find(infinite_entries_.begin(), infinite_entries_.end(), entry);
   if (found == infinite_entries_.end()) return 0;
   const auto i = static_cast<std::uint32_t>(found - infinite_entries_.begin());
-  return relative(entry, infinite_share_ * double(infinite_.pmf(i).value)).ratio;
+  return relative(entry, infinite_share_ * double(infinite_.pmf(i).value));
 }
 
 }  // namespace lacuna

@@ -29,12 +29,14 @@ class PointwiseSelection {
     std::uint32_t entry = 0;
     /// Its probability over that of selection by power.
     float ratio = 1;
+    Rng::FinePoint at{};  ///< what is left of the numbers: places a point on the emitter
   };
-  Choice choose(const Receiver& at, Rng& rng) const;
+  /// By the numbers `at`; `rng` fills them up.
+  Choice choose(const Receiver& receiver, const Rng::FinePoint& at, Rng& rng) const;
   /// A request to choose() for one of several points.
   struct Request {
-    Receiver at;
-    Rng* rng = nullptr;
+    Receiver receiver;
+    Rng* rng = nullptr;  ///< gives the numbers
     Choice result = {};
   };
   /// choose() for each request, with the same results, in less time.
@@ -47,12 +49,13 @@ class PointwiseSelection {
   std::uint64_t bytes() const { return tree_.bytes(); }
 
  private:
-  bool goes_to_infinity(Rng& rng) const {
-    return infinite_share_ > 0 && (tree_.empty() || rng.next_choice() < infinite_share_);
+  bool goes_to_infinity(const Rng::FinePoint& at) const {
+    return at.besides < infinite_share_ * 0x1p32;
   }
-  Choice choose_infinite(Rng& rng) const;
-  Choice relative(std::uint32_t entry, double probability) const {
-    return {entry, static_cast<float>(probability / double(by_power_.pmf(entry).value))};
+  Choice choose_infinite(Rng::FinePoint at, Rng& rng) const;
+  Choice choose_finite(const LightTree::Choice& c, Rng::FinePoint at) const;
+  float relative(std::uint32_t entry, double probability) const {
+    return static_cast<float>(probability / double(by_power_.pmf(entry).value));
   }
 
   const AliasTable& by_power_;
@@ -60,7 +63,7 @@ class PointwiseSelection {
   std::size_t finite_;
   AliasTable infinite_;
   std::vector<std::uint32_t> infinite_entries_;
-  double infinite_share_ = 0;
+  double infinite_share_ = 0;  // a multiple of 2^-32
 };
 
 }  // namespace lacuna

@@ -138,6 +138,17 @@ std::vector<double> Film::variance_of_mean() const {
   return variance;
 }
 
+std::vector<double> Film::variance_from_halves() const {
+  std::vector<double> variance(squares_.size(), 0.0);
+  if (halves_[0].n == 0 || halves_[1].n == 0) return variance;
+  const auto even = static_cast<double>(halves_[0].n), odd = static_cast<double>(halves_[1].n);
+  for (std::size_t i = 0; i < variance.size(); ++i) {
+    const double apart = halves_[0].sums[i].high / even - halves_[1].sums[i].high / odd;
+    variance[i] = apart * apart * scale_from_halves(even, odd);
+  }
+  return variance;
+}
+
 void Film::save(ByteWriter& out) const {
   out.put(width_);
   out.put(height_);

@@ -10,8 +10,12 @@
 
 namespace lacuna {
 
-/// Accumulates iterations, each an independent estimate of the picture: of each channel the sum and
-/// the sum of squares, in pairs of doubles, so that films of parts of the iterations merge to the
+/// E (a - b)^2 = s^2 (1/na + 1/nb) for the means a and b of two independent parts of `na` and `nb`
+/// samples, and the variance of the mean of all is s^2 / (na + nb): the ratio of the two.
+inline double scale_from_halves(double na, double nb) { return na * nb / ((na + nb) * (na + nb)); }
+
+/// Accumulates iterations, each an estimate of the picture: of each channel the sum and the sum of
+/// squares, in pairs of doubles, so that films of parts of the iterations merge to the
 /// bits of a film of them all. The sums of even and odd iterations are apart: the two halves
 /// estimate the error without a reference.
 class Film {
@@ -35,8 +39,11 @@ class Film {
   std::vector<double> half_mean(int half) const;
   std::uint64_t half_iterations(int half) const { return halves_[std::size_t(half)].n; }
   /// Variance of mean() itself: the unbiased variance of one iteration divided by their number.
-  /// Zero with fewer than two iterations.
+  /// Zero with fewer than two iterations. Requires that iterations are independent.
   std::vector<double> variance_of_mean() const;
+  /// The same where only the two halves are independent, from their difference: unbiased, but of
+  /// one degree of freedom. Zero before both have an iteration.
+  std::vector<double> variance_from_halves() const;
   /// Whether every sum is exact (see ExactSums), so that means do not depend on the order in which
   /// the iterations came. Squares need twice the bits; where theirs are rounded, that is beyond the
   /// hundredth bit.

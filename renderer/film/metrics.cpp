@@ -40,7 +40,7 @@ Errors errors(std::span<const double> estimate, std::span<const double> referenc
 }
 
 double mse_from_halves(std::span<const double> a, double na, std::span<const double> b, double nb) {
-  return errors(a, b)[ErrorMetric::mse] * na * nb / ((na + nb) * (na + nb));
+  return errors(a, b)[ErrorMetric::mse] * scale_from_halves(na, nb);
 }
 
 std::optional<double> estimated_rmse(const Film& film) {

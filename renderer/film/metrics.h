@@ -23,7 +23,7 @@ struct Errors {
 Errors errors(std::span<const double> estimate, std::span<const double> reference);
 
 /// Mean squared error of the mean of all `na` + `nb` samples, estimated from the means `a` and `b`
-/// of two independent parts: E (a - b)^2 = s^2 (1/na + 1/nb), and the mean's is s^2 / (na + nb).
+/// of two independent parts (scale_from_halves()).
 double mse_from_halves(std::span<const double> a, double na, std::span<const double> b, double nb);
 
 /// RMSE of the film's mean, from its halves; none before both halves have an iteration.

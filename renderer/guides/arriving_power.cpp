@@ -51,7 +51,7 @@ std::vector<double> arriving_power(const Scene& scene, const SurfaceLookup& look
   const EmitterSet& lights = scene.emitters();
   if (lights.empty()) return std::vector<double>(count, 0.0);
   return arriving(scene, lookup, count, rays, pool, [&](Rng& rng) -> std::optional<Sent> {
-    const EmitterPoint e = lights.sample(lights.choose(rng), rng);
+    const EmitterPoint e = lights.sample(lights.choose(rng));
     const std::optional<Leaving> leaving = lights.sample_first_edge(e, rng);
     if (!leaving) return std::nullopt;
     return Sent{leaving->ray, double(luminance(leaving->throughput))};

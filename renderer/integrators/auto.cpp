@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -25,8 +26,14 @@ constexpr double worth_an_analysis = 10;
 constexpr double longest_first = 0.25;
 /// The factor by which an entrant must surely have been worse in an earlier race to be left out.
 constexpr double surely_worse = 2;
+/// The sequences of the race's pictures; 0 and 1 are those of the film's halves.
+constexpr std::uint32_t of_the_race = 2;
 /// Estimates that a budget is divided into. What a plan does in one is decided before it begins.
 constexpr double estimates_of_a_budget = 64;
+
+std::uint32_t half_of(const IterationContext& context) {
+  return SampleNumber::of_iteration(context.iteration).randomisation;
+}
 
 struct Candidate {
   std::string name;
@@ -44,6 +51,7 @@ class Auto final : public Integrator {
     for (const IntegratorSettings& c : candidates(settings)) {
       candidates_.push_back({.name = candidate_name(c), .integrator = make_integrator(c)});
     }
+    for (auto& half : drawn_) half.assign(candidates_.size(), 0);
   }
 
   SceneNeeds needs() const override {
@@ -73,7 +81,8 @@ class Auto final : public Integrator {
   /// Why a candidate does not take part; empty: it does.
   std::string excluded(std::size_t k, const PrepareContext& context) const;
   /// One iteration of a candidate, of `parts` of the picture. Returns its cost.
-  double render(std::size_t k, const IterationContext& context, Image& image,
+  /// `sample`: its number in the sequences of `sobol`.
+  double render(std::size_t k, const IterationContext& context, SampleNumber sample, Image& image,
                 std::span<const Tile> parts = {});
   void run_race(const IterationContext& context);
   void run_plan(const IterationContext& context);
@@ -93,7 +102,9 @@ class Auto final : public Integrator {
   /// An earlier race decided, perhaps by the pictures of this seed: the numbers are others.
   bool recalled_ = false;
   std::uint64_t estimates_ = 0;  ///< that are finished
-  std::uint64_t first_ = 0;      ///< iteration that the race was held in
+  /// In the sequences of the film's halves, the samples of each candidate for finished estimates.
+  std::array<std::vector<std::uint64_t>, 2> drawn_;
+  std::uint64_t first_ = 0;  ///< iteration that the race was held in
   // Of the estimate in progress: it goes on where it was stopped.
   std::vector<int> done_;
   std::vector<Image> sums_;
@@ -174,8 +185,8 @@ void Auto::drop(std::size_t k, const std::exception& e, double cost) {
   if (std::none_of(all.begin(), all.end(), [](const Entrant& x) { return x.racing; })) throw;
 }
 
-double Auto::render(std::size_t k, const IterationContext& context, Image& image,
-                    std::span<const Tile> parts) {
+double Auto::render(std::size_t k, const IterationContext& context, SampleNumber sample,
+                    Image& image, std::span<const Tile> parts) {
   std::fill(image.pixels.begin(), image.pixels.end(), Rgb(0, 0, 0));
   // Streams of their own: methods that share random numbers are not independent, nor are shards,
   // which begin at different iterations.
@@ -184,9 +195,16 @@ double Auto::render(std::size_t k, const IterationContext& context, Image& image
                              (recalled_ ? 0xD1B54A32D192ED03 : 0);
   const std::uint64_t iteration = race_.entrants()[k].trial.iterations();
   const double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
-  const Counters c = candidates_[k].integrator->iterate(
-      {context.scene, context.camera, context.pool, seed, iteration, context.stop, {}, parts},
-      image);
+  const Counters c = candidates_[k].integrator->iterate({.scene = context.scene,
+                                                         .camera = context.camera,
+                                                         .pool = context.pool,
+                                                         .seed = seed,
+                                                         .iteration = iteration,
+                                                         .stop = context.stop,
+                                                         .parts = parts,
+                                                         .sampler = context.sampler,
+                                                         .sample = sample},
+                                                        image);
   counters_ += c;
   if (counts_rays()) return static_cast<double>(c.rays + c.shadow_rays);
   return (clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start) / context.pool.threads();
@@ -206,10 +224,16 @@ void Auto::run_race(const IterationContext& context) {
     const std::function<bool()> stop = [&] {
       return context.stop() || (!may_be_late && taken() > rest);
     };
-    const IterationContext limited{context.scene, context.camera,    context.pool,
-                                   context.seed,  context.iteration, stop};
+    const IterationContext limited{.scene = context.scene,
+                                   .camera = context.camera,
+                                   .pool = context.pool,
+                                   .seed = context.seed,
+                                   .iteration = context.iteration,
+                                   .stop = stop,
+                                   .sampler = context.sampler};
+    const SampleNumber sample{of_the_race, race_.entrants()[*k].trial.iterations()};
     try {
-      const double cost = render(*k, limited, image);
+      const double cost = render(*k, limited, sample, image);
       race_.finished(*k, image, cost);
     } catch (const IterationStopped&) {
       if (context.stop()) throw;
@@ -255,7 +279,8 @@ void Auto::run_plan(const IterationContext& context) {
       Trial& trial = race_.entrants()[k].trial;
       std::size_t pixels = 0;
       const std::vector<Tile> parts = parts_of(*plan_, trial.grid(), k, done_[k], pixels);
-      const double cost = render(k, context, image, parts);
+      const std::uint64_t index = drawn_[half_of(context)][k] + std::uint64_t(done_[k]);
+      const double cost = render(k, context, {half_of(context), index}, image, parts);
       const bool is_first = trial.iterations() == 0;
       trial.charge(cost, double(pixels) / double(trial.grid().pixels()));
       // One of an estimate's tells as much of the noise for a part of the time.
@@ -278,6 +303,9 @@ Counters Auto::iterate(const IterationContext& context, Image& image) {
   run_plan(context);
   combine(*plan_, race_.entrants()[0].trial.grid(), sums_, image);
   const Counters counters = std::exchange(counters_, {});
+  for (std::size_t k = 0; k < candidates_.size(); ++k) {
+    drawn_[half_of(context)][k] += std::uint64_t(plan_->iterations[k]);
+  }
   ++estimates_;
   const bool power_of_two = (estimates_ & (estimates_ - 1)) == 0;
   const bool has_a_choice = candidates_.size() > 1 || settings_.sampling == Sampling::adaptive;
@@ -363,6 +391,7 @@ void Auto::save(ByteWriter& out) const {
   }
   out.put(recalled_);
   out.put(estimates_);
+  for (const auto& half : drawn_) out.put(half);
   out.put(first_);
   out.put(counters_);
   out.put(plan_.has_value());
@@ -415,6 +444,11 @@ void Auto::load(ByteReader& in) {
   }
   recalled_ = in.get<std::uint8_t>() != 0;
   estimates_ = in.get<std::uint64_t>();
+  for (auto& half : drawn_) {
+    half = in.get_vector<std::uint64_t>();
+    if (half.size() != candidates_.size())
+      throw std::runtime_error("saved samples are not counted");
+  }
   first_ = in.get<std::uint64_t>();
   counters_ = in.get<Counters>();
   if (in.get<std::uint8_t>() == 0) return;

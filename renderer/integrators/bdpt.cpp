@@ -329,8 +329,7 @@ class PairedBdpt final : public Bdpt<Guide> {
     }
     pairs.rngs.clear();
     for (std::size_t k = 0; k < paths; ++k) {
-      pairs.rngs.emplace_back(context.seed, context.iteration, pairs.eye.pixels[k],
-                              Rng::Purpose::light_path);
+      pairs.rngs.push_back(context.path_numbers(pairs.eye.pixels[k], Rng::Purpose::light_path));
     }
     pairs.light.walk(pairs.rngs, counters);
     pairs.light.splat(paths, counters, splats);

@@ -90,7 +90,7 @@ bool PathBuilder::start_light(Rng& rng) {
   const std::uint32_t id = pool_.take();
   light_.push_back({id, false, false});
   PathVertex& p = pool_[id];
-  p.emitter = emitters.sample(emitters.choose(rng), rng);
+  p.emitter = emitters.sample(emitters.choose(rng));
   place_on(p.emitter, p.v);
   p.v.bsdf.reset();
   return true;

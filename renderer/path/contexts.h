@@ -6,10 +6,12 @@
 #include <span>
 
 #include "analysis/space_analysis/space_analysis.h"
+#include "renderer/core/rng.h"
 #include "renderer/film/image.h"
 #include "renderer/path/tile.h"
 #include "renderer/scene/camera.h"
 #include "renderer/scene/scene.h"
+#include "renderer/settings/sampler.h"
 
 namespace lacuna {
 
@@ -18,6 +20,17 @@ struct VerdictMemory;
 /// Thrown from an iteration when IterationContext::stop returned true. Its partial image is
 /// discarded; running the iteration again gives the same result.
 struct IterationStopped : Stopped {};
+
+/// The number of a sample of each pixel in its low-discrepancy sequence.
+struct SampleNumber {
+  std::uint32_t randomisation;  ///< < 2^31; samples of different ones are independent
+  std::uint64_t index;
+
+  /// The two halves of a film are independent, and each has a sequence without gaps.
+  static SampleNumber of_iteration(std::uint64_t iteration) {
+    return {static_cast<std::uint32_t>(iteration % 2), iteration / 2};
+  }
+};
 
 /// The inputs of one iteration.
 struct IterationContext {
@@ -34,10 +47,32 @@ struct IterationContext {
   /// Of an integrator that renders parts: the tiles to render, which do not overlap. Empty: the
   /// whole picture.
   std::span<const Tile> parts = {};
+  Sampler sampler = Sampler::independent;
+  /// With `sobol`; none: of_iteration().
+  std::optional<SampleNumber> sample = std::nullopt;
 
   void check_stop() const {
     if (stop()) throw IterationStopped{};
   }
+
+  /// The random numbers of path `path` < 2^56 of this iteration. With `sobol` the paths of this
+  /// number share a sequence over iterations.
+  Rng path_numbers(std::uint64_t path, Rng::Purpose purpose) const {
+    if (sampler == Sampler::independent) return Rng(seed, iteration, path, purpose);
+    const SampleNumber n = number();
+    return Rng::of_sequence(seed, path, n.randomisation, n.index, purpose);
+  }
+  /// The same of one of `paths` that serve the whole picture. With `sobol` all of them are one
+  /// sequence, over iterations.
+  Rng shared_path_numbers(std::uint64_t path, std::uint64_t paths, Rng::Purpose purpose) const {
+    if (sampler == Sampler::independent) return Rng(seed, iteration, path, purpose);
+    constexpr std::uint64_t shared = (std::uint64_t{1} << 56) - 1;  // no path has this number
+    const SampleNumber n = number();
+    return Rng::of_sequence(seed, shared, n.randomisation, n.index * paths + path, purpose);
+  }
+
+ private:
+  SampleNumber number() const { return sample.value_or(SampleNumber::of_iteration(iteration)); }
 };
 
 /// Asks whether to stop at one of 64 calls: asking reads a clock, which a short step must not pay.

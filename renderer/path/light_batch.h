@@ -53,8 +53,9 @@ class LightBatch {
     counters.samples += rngs.size();
     for (std::size_t i = 0; i < rngs.size(); ++i) {
       Rng rng = rngs[i];
-      const std::uint32_t own = rng.next_u32();
-      if (start(i, rng, choices.empty() ? own : choices[i]) && goes_on(i, 1)) leave(i, rng);
+      Rng::FinePoint at = rng.next_fine_point();
+      if (!choices.empty()) at.x = std::uint64_t{choices[i]} << 32 | (at.x & 0xffffffff);
+      if (start(i, at) && goes_on(i, 1)) leave(i, rng);
     }
     const WalkLimits limits{.max_depth = setting_.max_depth - 1,
                             .last_scatters = true,
@@ -161,10 +162,10 @@ class LightBatch {
   }
 
   /// Vertex 0; false where there is none.
-  bool start(std::size_t i, Rng& rng, std::uint32_t choice) {
+  bool start(std::size_t i, const Rng::FinePoint& at) {
     const EmitterSet& lights = setting_.scene.emitters();
     length_[i] = lights.empty() ? 0 : 1;
-    if (!lights.empty()) emitters_[i] = lights.sample(lights.choose(choice, rng), rng);
+    if (!lights.empty()) emitters_[i] = lights.sample(lights.choose(at));
     return !lights.empty();
   }
 

@@ -48,8 +48,9 @@ Counters light_pass(const LightPathPass& pass, const Guide& guide, Keep&& keep, 
       rngs.clear();
       choices.clear();
       for (std::int64_t j = first; j < std::min(end, first + Batch::size); ++j) {
-        rngs.emplace_back(context.seed, context.iteration, static_cast<std::uint64_t>(j),
-                          Rng::Purpose::light_path);
+        rngs.push_back(context.shared_path_numbers(static_cast<std::uint64_t>(j),
+                                                   static_cast<std::uint64_t>(paths),
+                                                   Rng::Purpose::light_path));
         if (setting.spread) choices.push_back(choice(j));
       }
       batch.walk(rngs, counters, choices);

@@ -27,7 +27,7 @@ class NextEvent {
   bool for_each_vertex() const { return pointwise_ != nullptr; }
   /// An emitter that was selected before its point is sampled.
   struct Ahead {
-    std::uint32_t entry = none;
+    EmitterSet::Selected selected{.entry = none};
     float ratio = 1;  ///< EmitterPoint::next_event_ratio
   };
   /// Selects before the vertex is known, where its selection does not depend on it: called before
@@ -35,6 +35,7 @@ class NextEvent {
   Ahead choose_ahead(Rng& rng) const {
     return pointwise_ == nullptr ? Ahead{emitters_.choose(rng)} : Ahead{};
   }
+  static Ahead made(const PointwiseSelection::Choice& c) { return {{c.entry, c.at}, c.ratio}; }
   /// Selects for many receivers at once.
   void choose(std::span<PointwiseSelection::Request> requests) const {
     pointwise_->choose(requests);
@@ -43,11 +44,11 @@ class NextEvent {
   /// Samples a point on an emitter for the connectible vertex `v`, on the emitter `ahead` if one is
   /// selected already.
   EmitterPoint sample(const Vertex& v, Ahead ahead, Rng& rng) const {
-    if (ahead.entry == none) {
-      const PointwiseSelection::Choice c = pointwise_->choose(receiver_at(v), rng);
-      ahead = {c.entry, c.ratio};
+    if (ahead.selected.entry == none) {
+      const Rng::FinePoint at = rng.next_fine_point();
+      ahead = made(pointwise_->choose(receiver_at(v), at, rng));
     }
-    EmitterPoint e = emitters_.sample(ahead.entry, rng);
+    EmitterPoint e = emitters_.sample(ahead.selected);
     e.next_event_ratio = ahead.ratio;
     return e;
   }

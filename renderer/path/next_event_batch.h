@@ -40,7 +40,7 @@ class SelectTogether {
     }
     next_event_.choose(std::span(requests).first(n));
     for (std::size_t k = 0; k < n; ++k) {
-      ahead_[path_of[k]] = {requests[k].result.entry, requests[k].result.ratio};
+      ahead_[path_of[k]] = NextEvent::made(requests[k].result);
     }
   }
 

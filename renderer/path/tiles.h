@@ -78,7 +78,7 @@ struct CameraSample {
   Ray ray;
 
   CameraSample(const IterationContext& context, std::size_t pixel)
-      : rng(context.seed, context.iteration, pixel),
+      : rng(context.path_numbers(pixel, Rng::Purpose::eye_path)),
         ray(context.camera.sample(column_row(pixel, context.camera.width()), rng.next2())) {}
 
  private:

@@ -65,6 +65,18 @@ bool consistent(const std::variant<Ts...>& settings) {
       settings);
 }
 
+/// Whether a job's `sampler` spreads the samples of these settings: always, but where they have a
+/// `static constexpr bool spreads_samples = false`.
+template <class... Ts>
+bool spreads_samples(const std::variant<Ts...>& settings) {
+  return std::visit(
+      []<class S>(const S&) {
+        if constexpr (requires { S::spreads_samples; }) return S::spreads_samples;
+        return true;
+      },
+      settings);
+}
+
 /// Whether a candidate's settings have no more bias than is allowed.
 inline bool is_allowed(const CandidateSettings& settings, Allow allow) {
   return allow == Allow::biased || !biased(settings) ||

@@ -23,7 +23,9 @@ enum class ImageLayer {
 template <>
 struct EnumTable<ImageLayer> {
   static constexpr std::array<EnumValue<ImageLayer>, 10> values{{
-      {ImageLayer::variance, "variance", "variance of the pixel's mean"},
+      {ImageLayer::variance, "variance",
+       "variance of the pixel's mean: from all iterations where they are independent, from the two "
+       "halves with sampler `sobol`"},
       {ImageLayer::halves, "halves",
        "means of the even and of the odd iterations, two independent estimates"},
       {ImageLayer::albedo, "albedo", "base reflectance of the first hit"},

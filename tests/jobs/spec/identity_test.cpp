@@ -40,6 +40,7 @@ const std::map<std::string, std::function<void(JobSpec&)>> changes{
     {"particles", [](JobSpec& s) { s.particles = ParticleSettings{.count = 9, .power = 1}; }},
     {"material", [](JobSpec& s) { s.material = MaterialChange{.name = "floor"}; }},
     {"seed", [](JobSpec& s) { s.seed = 2; }},
+    {"sampler", [](JobSpec& s) { s.sampler = Sampler::independent; }},
     {"shards", [](JobSpec& s) { s.shards = 2; }},
     {"shard", [](JobSpec& s) { s.shard = 1; }},
     {"threads", [](JobSpec& s) { s.threads = 2; }},
@@ -71,8 +72,8 @@ std::set<std::string> keys_that_change(Name name) {
 TEST(Identity, is_changed_by_what_decides_and_by_nothing_else) {
   EXPECT_EQ(keys_that_change([](const JobSpec& s) { return picture_key(s); }),
             (std::set<std::string>{"scene", "camera", "resolution", "integrator", "analysis",
-                                   "environment", "seed", "pixel_filter", "crop", "particles",
-                                   "material"}));
+                                   "environment", "seed", "sampler", "pixel_filter", "crop",
+                                   "particles", "material"}));
   EXPECT_EQ(keys_that_change([](const JobSpec& s) { return picture_name(s); }),
             (std::set<std::string>{"scene", "camera", "resolution", "integrator", "environment",
                                    "reference", "pixel_filter", "crop", "particles", "material"}));

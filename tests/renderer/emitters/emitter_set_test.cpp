@@ -20,7 +20,7 @@ Scene load(const char* name) {
 }
 
 EmitterPoint draw(const Scene& scene, Rng& rng) {
-  return scene.emitters().sample(scene.emitters().choose(rng), rng);
+  return scene.emitters().sample(scene.emitters().choose(rng));
 }
 
 // E 1/pdf over draws is the measure of all that can be drawn: the emitters' area. It fails if a
@@ -121,7 +121,7 @@ TEST(Environment, DensityIsThatOfItsDraws) {
       return static_cast<std::size_t>(j * across + i);
     };
     for (int k = 0; k < draws; ++k) {
-      const Environment::Sample s = e.sample(rng);
+      const Environment::Sample s = e.sample(rng.next_fine_point());
       ASSERT_NEAR(s.pdf / e.pdf(s.w), 1, 0.02) << "at a texel's border the two may round apart";
       observed[cell(s.w)] += 1;
     }

@@ -13,7 +13,7 @@ namespace {
 enum class Sort { points, lamps, signs, spots, mixed };
 constexpr std::array all_sorts{Sort::points, Sort::lamps, Sort::signs, Sort::spots, Sort::mixed};
 
-V3f direction(Rng& rng) {
+V3f any_direction(Rng& rng) {
   const V2f u = rng.next2();
   const float z = 1 - 2 * u.x;
   const float s = std::sqrt(std::max(0.0F, 1 - z * z));
@@ -38,10 +38,10 @@ std::vector<TreeEmitter> scatter(int n, Sort sort, double decades, std::uint64_t
     const Sort one = sort == Sort::mixed ? all_sorts[rng.below(4)] : sort;
     if (one == Sort::points) e.bounds.axes = DirectionCone::everything();
     if (one == Sort::spots) {
-      e.bounds.axes = {V3d(direction(rng)), rng.next_choice()};
+      e.bounds.axes = {V3d(any_direction(rng)), rng.next_choice()};
     } else if (one != Sort::points) {
-      e.bounds.box.add(x + 0.1F * direction(rng));
-      e.bounds.axes = {V3d(direction(rng)), 0};
+      e.bounds.box.add(x + 0.1F * any_direction(rng));
+      e.bounds.axes = {V3d(any_direction(rng)), 0};
       e.bounds.reach = std::numbers::pi / 2;
       e.bounds.both_sides = one == Sort::signs;
     }
@@ -54,7 +54,7 @@ Receiver receiver(Rng& rng, int kind) {
   Receiver r;
   r.x = place(rng);
   if (kind > 0) {
-    r.n = direction(rng);
+    r.n = any_direction(rng);
     r.least_cosine = 0.06F;
     r.both_sides = kind == 2;
   }
@@ -96,7 +96,7 @@ TEST(LightTree, DrawsStateTheirProbability) {
   Rng rng(3, 0, 0, Rng::Purpose::test);
   for (int i = 0; i < 5000; ++i) {
     const Receiver at = receiver(rng, i % 3);
-    const LightTree::Choice c = tree.choose(at, rng);
+    const LightTree::Choice c = tree.choose(at, rng.next_choice(), rng);
     ASSERT_EQ(c.probability, tree.probability(c.entry, at));
   }
 }
@@ -110,7 +110,7 @@ TEST(LightTree, DrawsFollowTheProbabilities) {
       const LightTree tree(emitters);
       const Receiver at = receiver(rng, n % 3);
       std::map<std::uint32_t, double> count;
-      for (int i = 0; i < draws; ++i) ++count[tree.choose(at, rng).entry];
+      for (int i = 0; i < draws; ++i) ++count[tree.choose(at, rng.next_choice(), rng).entry];
       double chi2 = 0, rest = 0, rest_expected = 0;
       int cells = 0;
       for (const TreeEmitter& e : emitters) {
@@ -143,7 +143,8 @@ TEST(LightTree, RareEmittersAreDrawnAsRarely) {
   Rng rng(5, 0, 0, Rng::Purpose::test);
   const Receiver at{V3f(5, 5, 1)};
   statistics::Moments inverse;
-  for (int i = 0; i < 200000; ++i) inverse.add(1 / tree.choose(at, rng).probability);
+  for (int i = 0; i < 200000; ++i)
+    inverse.add(1 / tree.choose(at, rng.next_choice(), rng).probability);
   EXPECT_GT(statistics::z_test(inverse, 4096), 1e-5);
 }
 
@@ -156,13 +157,15 @@ TEST(LightTree, InterleavedDescentsAreTheSame) {
   for (std::size_t i = 0; i < requests.size(); ++i) {
     together.emplace_back(7, 0, i, Rng::Purpose::test);
     requests[i].at = receiver(points, static_cast<int>(i % 3));
+    requests[i].u = points.next_choice();
   }
   alone = together;
   for (std::size_t i = 0; i < requests.size(); ++i) requests[i].rng = &together[i];
   tree.choose(requests);
   for (std::size_t i = 0; i < requests.size(); ++i) {
-    const LightTree::Choice c = tree.choose(requests[i].at, alone[i]);
+    const LightTree::Choice c = tree.choose(requests[i].at, requests[i].u, alone[i]);
     EXPECT_EQ(requests[i].result.entry, c.entry);
+    EXPECT_EQ(requests[i].result.rest, c.rest);
     EXPECT_EQ(requests[i].result.probability, c.probability);
     EXPECT_EQ(together[i].next_u32(), alone[i].next_u32());
   }
@@ -234,8 +237,8 @@ TEST(LightTree, NoEmitters) {
 TEST(DirectionCone, JoinedConesContainBoth) {
   Rng rng(9, 0, 0, Rng::Purpose::test);
   for (int i = 0; i < 2000; ++i) {
-    const DirectionCone a{V3d(direction(rng)).normalized(), rng.next_choice() * 2};
-    const DirectionCone b{V3d(direction(rng)).normalized(), rng.next_choice() * 2};
+    const DirectionCone a{V3d(any_direction(rng)).normalized(), rng.next_choice() * 2};
+    const DirectionCone b{V3d(any_direction(rng)).normalized(), rng.next_choice() * 2};
     const DirectionCone both = DirectionCone::join(a, b);
     for (const DirectionCone& c : {a, b}) {
       const double angle = std::acos(std::clamp(c.axis.dot(both.axis), -1.0, 1.0));

@@ -58,7 +58,7 @@ TEST(PointwiseSelection, DrawsFollowTheirProbabilities) {
     }
     EXPECT_NEAR(sum, 1, 1e-5);
     for (int k = 0; k < draws; ++k) {
-      const PointwiseSelection::Choice c = site.selection->choose(at, rng);
+      const PointwiseSelection::Choice c = site.selection->choose(at, rng.next_fine_point(), rng);
       ASSERT_EQ(c.ratio, site.selection->ratio(c.entry, at));
       ++observed[c.entry];
     }
@@ -82,14 +82,16 @@ TEST(PointwiseSelection, TogetherAsAlone) {
   std::vector<PointwiseSelection::Request> requests(50);
   for (std::size_t i = 0; i < requests.size(); ++i) {
     together.emplace_back(2, 0, i, Rng::Purpose::test);
-    requests[i].at.x = V3f(static_cast<float>(2 * i), 1, 0);
+    requests[i].receiver.x = V3f(static_cast<float>(2 * i), 1, 0);
   }
   alone = together;
   for (std::size_t i = 0; i < requests.size(); ++i) requests[i].rng = &together[i];
   site.selection->choose(requests);
   for (std::size_t i = 0; i < requests.size(); ++i) {
-    const PointwiseSelection::Choice c = site.selection->choose(requests[i].at, alone[i]);
+    const PointwiseSelection::Choice c =
+        site.selection->choose(requests[i].receiver, alone[i].next_fine_point(), alone[i]);
     EXPECT_EQ(requests[i].result.entry, c.entry);
+    EXPECT_EQ(requests[i].result.at.x, c.at.x);
     EXPECT_EQ(requests[i].result.ratio, c.ratio);
     EXPECT_EQ(together[i].next_u32(), alone[i].next_u32());
   }

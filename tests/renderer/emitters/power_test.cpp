@@ -26,7 +26,7 @@ void expect_power(const Scene& scene, const Power& expected, int draws, double u
   std::array<statistics::Moments, 3> carried;
   Rng rng(51, 0, 0, Rng::Purpose::test);
   for (int i = 0; i < draws; ++i) {
-    const EmitterPoint e = scene.emitters().sample(scene.emitters().choose(rng), rng);
+    const EmitterPoint e = scene.emitters().sample(scene.emitters().choose(rng));
     const auto l = scene.emitters().sample_first_edge(e, rng);
     for (std::size_t c = 0; c < 3; ++c) {
       carried[c].add(l ? double(l->throughput[static_cast<int>(c)]) : 0.0);
@@ -176,7 +176,7 @@ TEST(Hit, FindsThePointThatIsDrawn) {
     Rng rng(52, 0, 0, Rng::Purpose::test);
     int found = 0;
     for (int i = 0; i < 2000; ++i) {
-      const EmitterPoint e = scene.emitters().sample(scene.emitters().choose(rng), rng);
+      const EmitterPoint e = scene.emitters().sample(scene.emitters().choose(rng));
       if (e.delta()) continue;
       // From a little way in front of it, straight back.
       const float away = 1e-3F * e.extent;
@@ -207,7 +207,7 @@ TEST(Hit, FindsTheDirectionThatIsDrawn) {
   int apart = 0;
   constexpr int draws = 20000;
   for (int i = 0; i < draws; ++i) {
-    const EmitterPoint e = scene.emitters().sample(scene.emitters().choose(rng), rng);
+    const EmitterPoint e = scene.emitters().sample(scene.emitters().choose(rng));
     const EmitterPoint h = scene.emitters().hit_background(e.x);
     ASSERT_EQ(h.kind, e.kind);
     ASSERT_EQ(h.x, e.x);

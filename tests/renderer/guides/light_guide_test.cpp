@@ -43,7 +43,7 @@ TEST(LightGuide, FirstEdgesHaveTheirDensity) {
     const EmitterSet& lights = site.scene.scene().emitters();
     Rng rng(7, 0, 0, Rng::Purpose::test);
     for (std::size_t i = 0; i < sites; ++i) {
-      const EmitterPoint e = lights.sample(lights.choose(rng), rng);
+      const EmitterPoint e = lights.sample(lights.choose(rng));
       if (e.kind != EmitterPoint::Kind::area) continue;
       SCOPED_TRACE(testing::Message() << name << " at " << e.x);
       std::size_t wrong = 0, unlike = 0;

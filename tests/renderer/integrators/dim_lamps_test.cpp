@@ -36,7 +36,7 @@ TEST(DimLamps, AreAsBrightAsAlone) {
   methods.push_back({"light", test::light_tracing(2)});
   for (const test::Method& m : methods) {
     SCOPED_TRACE(testing::Message() << m);
-    const test::RenderSettings s{.integrator = m.settings, .iterations = 64};
+    const test::RenderSettings s{.integrator = m.settings, .iterations = 80};
     const statistics::Moments beside = test::mean_over_iterations(render(floor_between(10), s));
     const statistics::Moments alone = test::mean_over_iterations(render(floor_between(0), s));
     const double deviation = std::hypot(beside.standard_error(), alone.standard_error());
@@ -49,8 +49,10 @@ TEST(DimLamps, AreDrawnNoMoreOftenThanTheirPowerAllows) {
   // Of 2e7 samples, 0.002 are expected to choose a dim lamp; when choices were made in steps of
   // 2^-24, three were, and the floor was 560 times too bright.
   constexpr int side = 1000;
+  PathSettings by_power = test::path_tracing(2);
+  by_power.emitters = EmitterChoice::power;
   test::Session session(floor_between(1e10),
-                        {.integrator = test::path_tracing(2), .width = side, .height = side});
+                        {.integrator = by_power, .width = side, .height = side});
   int lit = 0;
   for (std::uint64_t i = 0; i < 20; ++i) {
     for (const Rgb& pixel : session.iterate(i).pixels) lit += is_black(pixel) ? 0 : 1;

@@ -49,6 +49,7 @@ struct RenderSettings {
   int iterations = 16;
   std::string camera = {};
   std::uint64_t seed = 1;
+  Sampler sampler = Sampler::independent;
   int threads = 2;
   std::optional<EnvironmentImage> environment = {};
   PixelFilter filter = PixelFilter::box;
@@ -79,8 +80,15 @@ class Session {
       std::uint64_t i, const std::function<bool()>& stop = [] { return false; }) {
     Image image(settings_.width, settings_.height);
     layers_.assign(names_.size(), image);
-    counters_ +=
-        integrator_->iterate({scene_, camera_, pool_, settings_.seed, i, stop, layers_}, image);
+    counters_ += integrator_->iterate({.scene = scene_,
+                                       .camera = camera_,
+                                       .pool = pool_,
+                                       .seed = settings_.seed,
+                                       .iteration = i,
+                                       .stop = stop,
+                                       .layers = layers_,
+                                       .sampler = settings_.sampler},
+                                      image);
     return image;
   }
   /// The layers that the integrator fills, and those of the latest iteration.

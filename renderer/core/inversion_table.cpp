@@ -1,0 +1,59 @@
+#include "renderer/core/inversion_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace lacuna {
+
+InversionTable::InversionTable(std::span<const double> weights) {
+  // Scaled by the largest first, so that neither tiny nor huge weights overflow their sum.
+  double largest = 0;
+  for (const double w : weights) {
+    if (!(w >= 0) || !std::isfinite(w)) {
+      throw std::invalid_argument("a weight of a distribution is negative or not finite");
+    }
+    largest = std::max(largest, w);
+  }
+  if (largest == 0) return;
+  double sum = 0;
+  for (const double w : weights) sum += w / largest;
+
+  // Ends of the intervals, of 2^32; then every weight above 0 gets at least one number, from the
+  // left, and from the right where that passed the end.
+  constexpr std::uint64_t all = std::uint64_t{1} << 32;
+  const std::size_t n = weights.size();
+  std::vector<std::uint64_t> ends(n);
+  double before = 0;
+  std::uint64_t end = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    before += weights[i] / largest;
+    const auto rounded = static_cast<std::uint64_t>(std::round(before / sum * 0x1p32));
+    end = weights[i] > 0 ? std::max(end + 1, rounded) : end;
+    ends[i] = end;
+  }
+  std::uint64_t limit = all;
+  for (std::size_t i = n; i-- > 0;) {
+    ends[i] = std::min(ends[i], limit);
+    if (weights[i] > 0) {
+      if (limit == all) ends[i] = all;  // the last one gets what rounding left
+      limit = ends[i] - 1;
+    }
+  }
+  while (weights[first_] == 0) ++first_;
+  last_.resize(n);
+  std::uint64_t last_end = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (weights[i] > 0) last_end = ends[i];
+    last_[i] = static_cast<std::uint32_t>(std::max<std::uint64_t>(1, last_end) - 1);
+  }
+  cutpoints_.resize(n);
+  std::uint32_t at = first_;
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto number = static_cast<std::uint32_t>(((k << 32) + n - 1) / n);
+    while (last_[at] < number) ++at;
+    cutpoints_[k] = at;
+  }
+}
+
+}  // namespace lacuna
