@@ -30,6 +30,7 @@ OrderedJson candidate_json(const RaceRecord::Candidate& c) {
     j["mse_times_cost"] = c.standing.error;
     j["over_best"] = ratio(c.standing.over_best.value, c.standing.over_best.deviation);
     j["growth"] = c.standing.growth;
+    j["spread"] = c.standing.spread;
     const auto tail = c.standing.tail_known;
     j["tail_known"] = tail ? OrderedJson(*tail) : OrderedJson(nullptr);
     j["unexplained"] = c.standing.unexplained;

@@ -9,6 +9,7 @@
 
 #include "analysis/parallel/stop.h"
 #include "renderer/core/clock_seconds.h"
+#include "renderer/film/saved_values.h"
 #include "renderer/integrators/candidates.h"
 #include "renderer/integrators/integrator.h"
 #include "renderer/integrators/integrators.h"
@@ -26,7 +27,7 @@ constexpr double worth_an_analysis = 10;
 constexpr double longest_first = 0.25;
 /// The factor by which an entrant must surely have been worse in an earlier race to be left out.
 constexpr double surely_worse = 2;
-/// The sequences of the race's pictures; 0 and 1 are those of the film's halves.
+/// The first of the two sequences of the race's pictures; 0 and 1 are those of the film's halves.
 constexpr std::uint32_t of_the_race = 2;
 /// Estimates that a budget is divided into. What a plan does in one is decided before it begins.
 constexpr double estimates_of_a_budget = 64;
@@ -38,6 +39,7 @@ std::uint32_t half_of(const IterationContext& context) {
 struct Candidate {
   std::string name;
   std::unique_ptr<Integrator> integrator;
+  bool spreads = true;  ///< its samples, with `sobol`
   bool prepared = false;
   double preparation = 0;
 };
@@ -49,9 +51,10 @@ class Auto final : public Integrator {
  public:
   explicit Auto(const AutoSettings& settings) : settings_(settings) {
     for (const IntegratorSettings& c : candidates(settings)) {
-      candidates_.push_back({.name = candidate_name(c), .integrator = make_integrator(c)});
+      candidates_.push_back({.name = candidate_name(c),
+                             .integrator = make_integrator(c),
+                             .spreads = spreads_samples(c)});
     }
-    for (auto& half : drawn_) half.assign(candidates_.size(), 0);
   }
 
   SceneNeeds needs() const override {
@@ -81,6 +84,7 @@ class Auto final : public Integrator {
   /// Why a candidate does not take part; empty: it does.
   std::string excluded(std::size_t k, const PrepareContext& context) const;
   /// One iteration of a candidate, of `parts` of the picture. Returns its cost.
+  std::vector<std::uint64_t>& drawn(std::uint32_t half, std::size_t k) { return drawn_[half][k]; }
   /// `sample`: its number in the sequences of `sobol`.
   double render(std::size_t k, const IterationContext& context, SampleNumber sample, Image& image,
                 std::span<const Tile> parts = {});
@@ -102,8 +106,9 @@ class Auto final : public Integrator {
   /// An earlier race decided, perhaps by the pictures of this seed: the numbers are others.
   bool recalled_ = false;
   std::uint64_t estimates_ = 0;  ///< that are finished
-  /// In the sequences of the film's halves, the samples of each candidate for finished estimates.
-  std::array<std::vector<std::uint64_t>, 2> drawn_;
+  /// In the sequences of the film's halves, the samples that each block has of each candidate in
+  /// finished estimates.
+  std::array<std::vector<std::vector<std::uint64_t>>, 2> drawn_;
   std::uint64_t first_ = 0;  ///< iteration that the race was held in
   // Of the estimate in progress: it goes on where it was stopped.
   std::vector<int> done_;
@@ -159,6 +164,8 @@ void Auto::prepare(const PrepareContext& context) {
   for (const IntegratorSettings& c : candidates(settings_)) with_bias.push_back(biased(c) ? 1 : 0);
   race_ =
       Race(candidates_.size(), context.camera.width(), context.camera.height(), limits, with_bias);
+  const std::size_t blocks = race_.entrants()[0].trial.grid().blocks();
+  for (auto& half : drawn_) half.assign(candidates_.size(), std::vector<std::uint64_t>(blocks));
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     if (const std::string why = excluded(k, context); !why.empty()) {
       race_.leave(k, why);
@@ -231,10 +238,12 @@ void Auto::run_race(const IterationContext& context) {
                                    .iteration = context.iteration,
                                    .stop = stop,
                                    .sampler = context.sampler};
-    const SampleNumber sample{of_the_race, race_.entrants()[*k].trial.iterations()};
+    SampleNumber sample = SampleNumber::of_iteration(race_.entrants()[*k].trial.iterations());
+    sample.randomisation += of_the_race;
+    const bool spread = context.sampler == Sampler::sobol && candidates_[*k].spreads;
     try {
       const double cost = render(*k, limited, sample, image);
-      race_.finished(*k, image, cost);
+      race_.finished(*k, image, cost, spread);
     } catch (const IterationStopped&) {
       if (context.stop()) throw;
       race_.leave(*k, "an iteration takes too long for the race", taken());
@@ -277,10 +286,17 @@ void Auto::run_plan(const IterationContext& context) {
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     while (done_[k] < plan_->iterations[k]) {
       Trial& trial = race_.entrants()[k].trial;
+      const BlockGrid& grid = trial.grid();
       std::size_t pixels = 0;
-      const std::vector<Tile> parts = parts_of(*plan_, trial.grid(), k, done_[k], pixels);
-      const std::uint64_t index = drawn_[half_of(context)][k] + std::uint64_t(done_[k]);
-      const double cost = render(k, context, {half_of(context), index}, image, parts);
+      std::vector<Tile> parts;
+      SampleNumber sample{half_of(context), 0};
+      if (candidates_[k].integrator->renders_parts()) {
+        parts = parts_of(*plan_, grid, k, done_[k], drawn(sample.randomisation, k), pixels);
+      } else {
+        sample.index = drawn(sample.randomisation, k)[0] + std::uint64_t(done_[k]);
+        pixels = grid.pixels();
+      }
+      const double cost = render(k, context, sample, image, parts);
       const bool is_first = trial.iterations() == 0;
       trial.charge(cost, double(pixels) / double(trial.grid().pixels()));
       // One of an estimate's tells as much of the noise for a part of the time.
@@ -304,7 +320,10 @@ Counters Auto::iterate(const IterationContext& context, Image& image) {
   combine(*plan_, race_.entrants()[0].trial.grid(), sums_, image);
   const Counters counters = std::exchange(counters_, {});
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
-    drawn_[half_of(context)][k] += std::uint64_t(plan_->iterations[k]);
+    std::vector<std::uint64_t>& count = drawn(half_of(context), k);
+    for (std::size_t b = 0; b < plan_->counts[k].size(); ++b) {
+      count[b] += std::uint64_t(plan_->counts[k][b]);
+    }
   }
   ++estimates_;
   const bool power_of_two = (estimates_ & (estimates_ - 1)) == 0;
@@ -366,23 +385,6 @@ void Auto::record_blocks() const {
   }
 }
 
-void put_image(ByteWriter& out, const Image& image) {
-  std::vector<float> values;
-  for (const Rgb& c : image.pixels) values.insert(values.end(), {c.x, c.y, c.z});
-  out.put(values);
-}
-
-void get_image(ByteReader& in, Image& image) {
-  const std::vector<float> values = in.get_vector<float>();
-  if (values.size() != 3 * image.pixels.size()) {
-    throw std::runtime_error("saved estimate has another size");
-  }
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    image.pixels[i] = Rgb(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
-    if (!is_finite(image.pixels[i])) throw std::runtime_error("saved estimate is not finite");
-  }
-}
-
 void Auto::save(ByteWriter& out) const {
   race_.save(out);
   for (const Candidate& c : candidates_) {
@@ -391,7 +393,9 @@ void Auto::save(ByteWriter& out) const {
   }
   out.put(recalled_);
   out.put(estimates_);
-  for (const auto& half : drawn_) out.put(half);
+  for (const auto& half : drawn_) {
+    for (const auto& counts : half) out.put(counts);
+  }
   out.put(first_);
   out.put(counters_);
   out.put(plan_.has_value());
@@ -445,9 +449,11 @@ void Auto::load(ByteReader& in) {
   recalled_ = in.get<std::uint8_t>() != 0;
   estimates_ = in.get<std::uint64_t>();
   for (auto& half : drawn_) {
-    half = in.get_vector<std::uint64_t>();
-    if (half.size() != candidates_.size())
-      throw std::runtime_error("saved samples are not counted");
+    for (auto& counts : half) {
+      const std::size_t blocks = counts.size();
+      counts = in.get_vector<std::uint64_t>();
+      if (counts.size() != blocks) throw std::runtime_error("saved samples are of other blocks");
+    }
   }
   first_ = in.get<std::uint64_t>();
   counters_ = in.get<Counters>();
@@ -457,7 +463,7 @@ void Auto::load(ByteReader& in) {
   begin_estimate();
   done_ = in.get_vector<int>();
   if (done_.size() != candidates_.size()) throw std::runtime_error("saved estimate is not one");
-  for (Image& sum : sums_) get_image(in, sum);
+  for (Image& sum : sums_) get_image(in, sum, "estimate");
 }
 
 }  // namespace

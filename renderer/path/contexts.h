@@ -56,11 +56,11 @@ struct IterationContext {
   }
 
   /// The random numbers of path `path` < 2^56 of this iteration. With `sobol` the paths of this
-  /// number share a sequence over iterations.
-  Rng path_numbers(std::uint64_t path, Rng::Purpose purpose) const {
+  /// number share a sequence over iterations; `before` is added to the number in it.
+  Rng path_numbers(std::uint64_t path, Rng::Purpose purpose, std::uint64_t before = 0) const {
     if (sampler == Sampler::independent) return Rng(seed, iteration, path, purpose);
     const SampleNumber n = number();
-    return Rng::of_sequence(seed, path, n.randomisation, n.index, purpose);
+    return Rng::of_sequence(seed, path, n.randomisation, n.index + before, purpose);
   }
   /// The same of one of `paths` that serve the whole picture. With `sobol` all of them are one
   /// sequence, over iterations.

@@ -77,8 +77,8 @@ struct CameraSample {
   Rng rng;
   Ray ray;
 
-  CameraSample(const IterationContext& context, std::size_t pixel)
-      : rng(context.path_numbers(pixel, Rng::Purpose::eye_path)),
+  CameraSample(const IterationContext& context, std::size_t pixel, std::uint64_t before = 0)
+      : rng(context.path_numbers(pixel, Rng::Purpose::eye_path, before)),
         ray(context.camera.sample(column_row(pixel, context.camera.width()), rng.next2())) {}
 
  private:
@@ -97,7 +97,7 @@ inline void start_paths(const IterationContext& context, const Image& image, con
   for (int i = first; i < std::min(first + int{EyeBatch::size}, tile.pixels()); ++i) {
     const V2i at = tile.pixel(i);
     const std::size_t pixel = image.index(at.x, at.y);
-    const CameraSample sample(context, pixel);
+    const CameraSample sample(context, pixel, tile.samples_before);
     batch.start(context.camera, sample.rng, sample.ray, pixel);
   }
 }

@@ -175,30 +175,27 @@ Plan make_plan(const Race& race, const PlanFreedom& freedom) {
 }
 
 std::vector<Tile> parts_of(const Plan& plan, const BlockGrid& grid, std::size_t entrant, int i,
-                           std::size_t& pixels) {
+                           std::span<const std::uint64_t> drawn, std::size_t& pixels) {
   constexpr int widest = 64;  // pixels: neighbours' rays are coherent
   const std::vector<int>& counts = plan.counts[entrant];
   std::vector<Tile> parts;
-  bool all = true;
   for (std::size_t b = 0; b < counts.size(); ++b) {
-    if (counts[b] <= i) {
-      all = false;
-      continue;
-    }
+    if (counts[b] <= i) continue;
+    const std::uint64_t before = drawn[b] + std::uint64_t(i);
     const V2i first = V2i(int(b) % grid.across, int(b) / grid.across) * grid.size;
     const V2i size(std::min(grid.size, grid.width - first.x),
                    std::min(grid.size, grid.height - first.y));
     pixels += std::size_t(size.x) * std::size_t(size.y);
     const bool joins = !parts.empty() && parts.back().first.y == first.y &&
                        parts.back().first.x + parts.back().size.x == first.x &&
-                       parts.back().size.x + size.x <= widest;
+                       parts.back().size.x + size.x <= widest &&
+                       parts.back().samples_before == before;
     if (joins) {
       parts.back().size.x += size.x;
     } else {
-      parts.push_back({first, size});
+      parts.push_back({first, size, before});
     }
   }
-  if (all) parts.clear();
   return parts;
 }
 

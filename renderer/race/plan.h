@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "renderer/film/image.h"
@@ -44,9 +45,10 @@ struct PlanFreedom {
 Plan make_plan(const Race& race, const PlanFreedom& freedom);
 
 /// The parts of the picture that an entrant's iteration number `i` of an estimate renders, in rows;
-/// empty: all. Adds their pixels to `pixels`.
+/// `drawn`: the samples of each block in earlier estimates, which come before these in their
+/// sequences (Tile::samples_before). Adds their pixels to `pixels`.
 std::vector<Tile> parts_of(const Plan& plan, const BlockGrid& grid, std::size_t entrant, int i,
-                           std::size_t& pixels);
+                           std::span<const std::uint64_t> drawn, std::size_t& pixels);
 
 /// The estimate of a plan: `sums` holds the sum of the iterations of each entrant that takes part.
 void combine(const Plan& plan, const BlockGrid& grid, const std::vector<Image>& sums, Image& out);

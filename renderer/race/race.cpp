@@ -32,6 +32,7 @@ void put_standing(ByteWriter& out, const Standing& s) {
   out.put(s.error);
   out.put(s.over_best);
   out.put(s.growth);
+  out.put(s.spread);
   out.put(s.tail_known.has_value());
   out.put(s.tail_known.value_or(false));
   out.put(s.unexplained);
@@ -44,6 +45,7 @@ Standing get_standing(ByteReader& in) {
   s.error = in.get<double>();
   s.over_best = in.get<LogRatio>();
   s.growth = in.get<double>();
+  s.spread = in.get<double>();
   const bool tail = in.get<std::uint8_t>() != 0;
   const bool known = in.get<std::uint8_t>() != 0;
   if (tail) s.tail_known = known;
@@ -75,6 +77,7 @@ Race::Race(std::size_t entrants, int width, int height, const RaceLimits& limits
     : limits_(limits), entrants_(entrants, Entrant{.trial = Trial(width, height)}) {
   measured_.assign(entrants, BlockSums(BlockGrid(width, height).blocks(), 0.0));
   variances_ = measured_;
+  gauges_.assign(entrants, SpreadGauge(width, height));
   for (std::size_t k = 0; k < biased.size(); ++k) entrants_[k].biased = biased[k] != 0;
 }
 
@@ -102,9 +105,10 @@ std::optional<std::size_t> Race::next() const {
   return std::nullopt;
 }
 
-void Race::finished(std::size_t entrant, const Image& estimate, double cost) {
+void Race::finished(std::size_t entrant, const Image& estimate, double cost, bool spread) {
   Entrant& e = entrants_[entrant];
   e.trial.add(estimate);
+  if (spread) gauges_[entrant].add(estimate);
   e.trial.charge(cost);
   spent_ += cost;
   end_round();
@@ -142,6 +146,7 @@ void Race::close() {
     e.reason = "the race had no time left for it";
   }
   judge();
+  gauges_.clear();
 }
 
 double Race::log_cost_ratio(std::size_t a, std::size_t b) const {
@@ -209,6 +214,12 @@ double Race::rest(const Trial& trial) const {
   return limits_.budget > 0 ? std::max(0.0, limits_.budget - spent_) : 16 * trial.cost();
 }
 
+double Race::foreseen_spread(std::size_t which) const {
+  const Entrant& e = entrants_[which];
+  const double cost = e.trial.iteration_cost();
+  return e.rough && cost > 0 ? SpreadGauge::left_of(*e.rough, rest(e.trial) / cost) : 1;
+}
+
 double Race::foreseen_growth(std::size_t which) const {
   const Trial& t = entrants_[which].trial;
   const double cost = t.iteration_cost();
@@ -228,7 +239,9 @@ void Race::judge_alone(std::size_t which, const BlockSums& hidden, double growth
   }
   s.growth = growth;
   s.tail_known = e.trial.tail_is_known();
-  for (double& v : variances_[which]) v *= growth;
+  if (!gauges_.empty()) e.rough = gauges_[which].rough_part(total(measured_[which]));
+  s.spread = foreseen_spread(which);
+  for (double& v : variances_[which]) v *= growth * s.spread;
   if (e.biased && e.trial.estimates() > 1) count_bias(which, hidden);
   s.error = std::max(0.0, total(variances_[which])) * e.trial.iteration_cost() /
             double(e.trial.grid().pixels());
@@ -350,9 +363,12 @@ void Race::save(ByteWriter& out) const {
     out.put(e.left_in);
     put_standing(out, e.standing);
     e.trial.save(out);
+    out.put(e.rough.value_or(-1.0));
     out.put(measured_[k]);
     out.put(variances_[k]);
   }
+  out.put(!gauges_.empty());
+  for (const SpreadGauge& g : gauges_) g.save(out);
   out.put(rows_);
 }
 
@@ -368,9 +384,14 @@ void Race::load(ByteReader& in) {
     e.left_in = in.get<int>();
     e.standing = get_standing(in);
     e.trial.load(in);
+    const auto rough = in.get<double>();
+    if (!(rough <= 1)) throw std::runtime_error("saved race is not one");
+    e.rough = rough >= 0 ? std::optional(rough) : std::nullopt;
     measured_[k] = get_finite(in, e.trial.grid().blocks(), "variances of blocks");
     variances_[k] = get_finite(in, e.trial.grid().blocks(), "variances of blocks");
   }
+  if (in.get<std::uint8_t>() == 0) gauges_.clear();
+  for (SpreadGauge& g : gauges_) g.load(in);
   rows_ = in.get_vector<RaceRow>();
   for (const RaceRow& r : rows_) {
     if (r.entrant >= entrants_.size()) throw std::runtime_error("saved race has another entrant");

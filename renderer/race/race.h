@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "renderer/race/noise.h"
+#include "renderer/race/spread_gauge.h"
 #include "renderer/race/trial.h"
 
 namespace lacuna {
@@ -28,6 +29,7 @@ struct Standing {
   double error = 0;    ///< expected mean squared error of a pixel times cost; 0: not known
   LogRatio over_best;  ///< log(error / error of the best)
   double growth = 1;   ///< the part of `error` that is foreseen from the tail (Trial::growth())
+  double spread = 1;   ///< and from samples that are spread evenly (SpreadGauge)
   std::optional<bool> tail_known;  ///< none: too few iterations to say
   bool unexplained = false;  ///< `error` counts a difference to the others (unexplained_error())
   /// Of a biased method: the mean squared difference of a pixel to the unbiased ones, without
@@ -52,6 +54,7 @@ struct Entrant {
   bool beaten = false;      ///< left because of its error: comes back if the others prove worse
   std::string reason = {};  ///< why it left
   int left_in = -1;         ///< round
+  std::optional<double> rough = {};  ///< SpreadGauge::rough_part()
   Standing standing = {};
 };
 
@@ -71,8 +74,8 @@ class Race {
 
   /// Nothing: the race is over.
   std::optional<std::size_t> next() const;
-  /// The iteration that next() asked for.
-  void finished(std::size_t entrant, const Image& estimate, double cost);
+  /// The iteration that next() asked for. `spread`: it is the next sample of evenly spread ones.
+  void finished(std::size_t entrant, const Image& estimate, double cost, bool spread = false);
   /// `cost`: what the attempt took.
   void leave(std::size_t entrant, const std::string& reason, double cost = 0);
 
@@ -106,6 +109,8 @@ class Race {
   std::size_t racing() const;
   void end_round();
   void estimate_variances();
+  /// SpreadGauge::left_of() by the end of the budget.
+  double foreseen_spread(std::size_t which) const;
   /// Of an entrant's error, by the end of the budget (Trial::growth()).
   double foreseen_growth(std::size_t which) const;
   /// The difference to the unbiased entrants that variances do not explain.
@@ -132,6 +137,7 @@ class Race {
   std::vector<Entrant> entrants_;
   std::vector<BlockSums> measured_;   ///< variances of one iteration, as far as they are known
   std::vector<BlockSums> variances_;  ///< with growth and unexplained errors
+  std::vector<SpreadGauge> gauges_;   ///< of each entrant, until the race is over
   std::vector<RaceRow> rows_;
   double spent_ = 0;
   int round_ = 0;

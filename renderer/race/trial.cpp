@@ -94,10 +94,7 @@ void Trial::save(ByteWriter& out) const {
   out.put(charged_);
   out.put(cost_);
   out.put(pictures_charged_);
-  std::vector<float> values;
-  values.reserve(3 * mean_.pixels.size());
-  for (const Rgb& c : mean_.pixels) values.insert(values.end(), {c.x, c.y, c.z});
-  out.put(values);
+  put_image(out, mean_);
   for (const auto& s : sums_) out.put(s);
   pictures_.save(out);
 }
@@ -107,17 +104,11 @@ void Trial::load(ByteReader& in) {
   charged_ = in.get<std::uint64_t>();
   cost_ = in.get<double>();
   pictures_charged_ = in.get<double>();
-  const std::vector<float> values = in.get_vector<float>();
-  const bool size = values.size() == 3 * grid_.pixels();
-  const bool finite =
-      std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
+  get_image(in, mean_, "trial of a method");
   const bool charged = pictures_charged_ >= 0 && pictures_charged_ <= double(charged_) * (1 + 1e-9);
   const bool cost = cost_ >= 0 && std::isfinite(cost_);
-  if (!size || !finite || !cost || !charged || estimates_ > charged_) {
+  if (!cost || !charged || estimates_ > charged_) {
     throw std::runtime_error("saved trial of a method is not one");
-  }
-  for (std::size_t i = 0; i < mean_.pixels.size(); ++i) {
-    mean_.pixels[i] = Rgb(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
   }
   for (auto& s : sums_) s = get_finite(in, grid_.blocks(), "variances of blocks");
   pictures_.load(in);

@@ -118,7 +118,7 @@ test("extend: a done job goes on from its checkpoint to the bits of one run", as
 
 test("render: errors that the reference's own noise bounds are marked", async (t) => {
   const folder = temporaryFolder(t);
-  job(folder, "a.json", { reference: "auto", reference_iterations: 2, budget: { iterations: 200 } });
+  job(folder, "a.json", { reference: "auto", reference_iterations: 16, budget: { iterations: 200 } });
   const done = await run(folder, "render", "a.json");
   assert.equal(done.code, 0, done.err);
   assert.match(done.err, /^iteration 200, .*, at the reference's noise$/m);

@@ -95,7 +95,9 @@ TEST(Metropolis, KeepsCausticsOfTheSun) {
           PathSpaceSettings{
               .large_steps = 0, .bidirectional = 0, .lens = 0, .largest_angle = 1, .octaves = 0.25},
           PathSpaceSettings{}}) {
-      expect_same_picture(picture(chains(6, mutation), 100), reference, 0.1);
+      MetropolisSettings often = chains(6, mutation);
+      often.bootstrap = 40;  // rare starts at a caustic are found in most iterations
+      expect_same_picture(picture(often, 100), reference, 0.1);
     }
   }
 }

@@ -362,11 +362,14 @@ TEST(Plan, NoisyBlocksGetMoreIterations) {
   // The parts of all iterations are the blocks that they are counted for.
   std::vector<int> found(grid.pixels(), 0);
   std::size_t pixels = 0;
+  std::vector<std::uint64_t> drawn(grid.blocks());
+  for (std::size_t b = 0; b < drawn.size(); ++b) drawn[b] = 3 * b % 7;
   for (int i = 0; i < plan.iterations[0]; ++i) {
-    std::vector<Tile> parts = parts_of(plan, grid, 0, i, pixels);
-    if (parts.empty()) parts.push_back({V2i(0, 0), V2i(width, height)});
-    for (const Tile& t : parts) {
+    for (const Tile& t : parts_of(plan, grid, 0, i, drawn, pixels)) {
       for (int p = 0; p < t.pixels(); ++p) {
+        // Each pixel's samples follow one another.
+        const std::size_t block = grid.block_of(t.pixel(p).x, t.pixel(p).y);
+        ASSERT_EQ(t.samples_before, drawn[block] + std::uint64_t(i));
         ++found[std::size_t(t.pixel(p).y * width + t.pixel(p).x)];
       }
     }
