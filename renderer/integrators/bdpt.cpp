@@ -329,7 +329,10 @@ class PairedBdpt final : public Bdpt<Guide> {
     }
     pairs.rngs.clear();
     for (std::size_t k = 0; k < paths; ++k) {
-      pairs.rngs.push_back(context.path_numbers(pairs.eye.pixels[k], Rng::Purpose::light_path));
+      pairs.rngs.push_back(context.shared_path_numbers(
+          pairs.eye.pixels[k],
+          std::uint64_t(context.camera.width()) * std::uint64_t(context.camera.height()),
+          Rng::Purpose::light_path));
     }
     pairs.light.walk(pairs.rngs, counters);
     pairs.light.splat(paths, counters, splats);

@@ -62,8 +62,8 @@ struct IterationContext {
     const SampleNumber n = number();
     return Rng::of_sequence(seed, path, n.randomisation, n.index + before, purpose);
   }
-  /// The same of one of `paths` that serve the whole picture. With `sobol` all of them are one
-  /// sequence, over iterations.
+  /// The same of one of `paths` whose contributions go to the whole picture. With `sobol` all of
+  /// them are one sequence, over iterations.
   Rng shared_path_numbers(std::uint64_t path, std::uint64_t paths, Rng::Purpose purpose) const {
     if (sampler == Sampler::independent) return Rng(seed, iteration, path, purpose);
     constexpr std::uint64_t shared = (std::uint64_t{1} << 56) - 1;  // no path has this number

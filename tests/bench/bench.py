@@ -14,6 +14,7 @@ import time
 
 import emitters
 import regret
+import sampler
 import shape
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -192,9 +193,14 @@ def selection(bench, options):
     emitters.run(bench, BIN, options)
 
 
+def spreading(bench, _):
+    """Samples that are spread evenly against independent ones."""
+    sampler.run(bench)
+
+
 CHECKS = {"service": service, "page": page, "sweeps": sweeps, "rays": rays, "guides": guides, "views": views,
           "cornell": cornell, "overhead": overhead, "corridor": corridor, "analysis": analysis}
-LONG = {"regret": regrets, "emitters": selection}  # only by name
+LONG = {"regret": regrets, "emitters": selection, "sampler": spreading}  # only by name
 
 
 def main():
