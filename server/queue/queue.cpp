@@ -167,8 +167,8 @@ void Queue::forget(const std::string& id) {
 EntryPtr Queue::checked(const std::string& id, const std::string& revision) const {
   EntryPtr entry = table_.find(id);
   if (!entry) throw Conflict("The job no longer exists.");
-  if (!revision.empty() && revision != "*" && revision != entry->revision) {
-    throw Changed(fmt::format("The job has changed: its revision is now {}.", entry->revision));
+  if (!revision.empty() && revision != "*" && revision != entry->revision()) {
+    throw Changed(fmt::format("The job has changed: its revision is now {}.", entry->revision()));
   }
   if (entry->unread) throw Unavailable(entry->obstacle);
   return entry;

@@ -69,7 +69,7 @@ Response JobRoutes::list(const Request& request) {
 
 Response JobRoutes::answer(const Request& request, int status, const std::string& id) {
   const EntryPtr entry = find_job(table_, id);
-  return with_tag(request, json_response(status, job_detail(table_, *entry)), entry->revision);
+  return with_tag(request, json_response(status, job_detail(table_, *entry)), entry->revision());
 }
 
 Response JobRoutes::detail(const Request& request, const std::string& id) {

@@ -12,33 +12,11 @@
 #include <vector>
 
 #include "jobs/store/job_folder.h"
+#include "server/tables/job_entry.h"
 #include "server/tables/journal.h"
 #include "server/tables/sweep_table.h"
 
 namespace lacuna {
-
-/// The data of one job that the service holds in memory.
-struct JobEntry {
-  std::string id, label, scene, integrator, reference;
-  std::string sweep;  ///< that it is a run of; empty: none
-  bool exclusive = false;
-  std::string job_hash;  ///< of job.json
-  JobState state;
-  JobControl control;
-  std::optional<Progress> progress;
-  bool pictured = false;  ///< image.png is there: the first comes after the first progress
-  bool over = false;      ///< terminal, and the queue has nothing more to say about it
-  bool damaged = false;   ///< its folder cannot be read; state.error says why
-  bool unread = false;    ///< its folder cannot be read for now; `obstacle` says why
-  std::string obstacle;   ///< what keeps it from going on, and may pass; empty: nothing
-  std::string place;      ///< where its renderer runs or waits; empty: this machine, or nowhere
-
-  // Made by the table from the above:
-  std::string text;      ///< as an element of the API's list, JSON
-  std::string revision;  ///< changes with the job, its state and the requests for it
-  std::string words;     ///< in lower case: what a search by words looks at
-};
-using EntryPtr = std::shared_ptr<const JobEntry>;
 
 /// All jobs of a service in memory, and the journal of their changes. The folders are the source of
 /// truth, from which the table is read at the start and updated. Thread-safe; a returned entry
@@ -48,8 +26,12 @@ class JobTable {
   /// `sweeps` outlives it, and knows a sweep before any of its jobs is there.
   JobTable(DataRoot data, const SweepTable& sweeps) : data_(std::move(data)), sweeps_(sweeps) {}
 
-  /// Reads every folder that is not known yet and forgets those that are gone.
+  /// Reads every folder that is not known yet and forgets those that are gone. The first time it
+  /// takes from the index what that still knows.
   void rescan();
+  /// Writes the index of the jobs that are over, if enough has changed since it was written or
+  /// read, and there are so many jobs that it pays: for the next start. Throws std::system_error.
+  void save_index();
   /// rescan(), if a folder was added or removed by somebody since the last one.
   /// Whether it was.
   bool rescan_if_changed();
@@ -60,7 +42,7 @@ class JobTable {
 
   /// A job whose folder is complete on disk: reads it. Where that fails for a reason that may pass,
   /// the entry is `unread` until reread().
-  EntryPtr add(const std::string& id);
+  EntryPtr add(const std::string& id) { return add(id, 0); }
   /// Reads the folder of a job anew; nothing if the table has no such job any more. Throws what may
   /// pass (may_pass()).
   EntryPtr reread(const std::string& id);
@@ -116,10 +98,25 @@ class JobTable {
   const Journal& journal() const { return journal_; }
 
  private:
-  using Place = std::pair<std::string, std::string>;  // time of creation, id
-  void add_all(const std::vector<std::string>& ids);
+  using Place = std::pair<std::string_view, std::string_view>;  // time of creation, id
+  struct ByPlace {
+    using is_transparent = void;
+    static Place place(const EntryPtr& entry) { return {entry->state.created, entry->id}; }
+    static const Place& place(const Place& place) { return place; }
+    template <class A, class B>
+    bool operator()(const A& a, const B& b) const {
+      return place(a) < place(b);
+    }
+  };
+  std::filesystem::path index_file() const { return data_.dir / "jobs.index"; }
+  void add_indexed(const std::vector<std::string>& there, std::int64_t now);
+  void add_all(const std::vector<std::string>& ids, std::int64_t now);
+  EntryPtr add(const std::string& id, std::int64_t now);
+  std::pair<std::vector<std::string>, std::vector<std::string>> compare(
+      const std::vector<std::string>& there) const;
+  EntryPtr stamped(const EntryPtr& entry, std::int64_t now);
   std::size_t count(const Query& query) const;
-  void put_in(const Place& place, EntryPtr entry);
+  void put_in(EntryPtr entry);
   EntryPtr take_out(const std::string& id);
   template <class Change>
   void change(const std::string& id, Change&& change);
@@ -129,11 +126,12 @@ class JobTable {
   const SweepTable& sweeps_;
   Journal journal_;
   mutable std::mutex mutex_;  // guards all below
-  std::map<Place, EntryPtr> jobs_;
-  std::map<std::string, Place, std::less<>> places_;
+  std::set<EntryPtr, ByPlace> jobs_;
+  std::map<std::string_view, EntryPtr> by_id_;  // a key lies in its entry
   Counts counts_;
   std::map<std::string, RunCounts> run_counts_;  // of sweeps; "": of jobs of none
-  std::int64_t scanned_ = -1;  // the folder's time of change when it was last read
+  std::int64_t scanned_ = -1;    // the folder's time of change when it was last read
+  std::size_t not_indexed_ = 0;  // jobs that have come to an end, or are gone, since the index
 };
 
 }  // namespace lacuna
