@@ -42,10 +42,11 @@ constexpr std::int64_t max_page = 1000;
 
 }  // namespace
 
-JobRoutes::JobRoutes(DataRoot data, const ScenesRoots& scenes, JobTable& table, Queue& queue)
+JobRoutes::JobRoutes(DataRoot data, const ScenesRoots& scenes, JobTable& table, Queue& queue,
+                     SweepTable& sweeps, SweepKeeper& keeper)
     : table_(table),
       queue_(queue),
-      posting_(std::move(data), scenes, table, queue),
+      posting_(std::move(data), scenes, table, queue, sweeps, keeper),
       events_(table) {}
 
 Response JobRoutes::list(const Request& request) {

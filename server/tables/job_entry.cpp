@@ -67,11 +67,11 @@ bool has_picture(const JobFolder& folder) {
   return std::filesystem::exists(folder.file("image.png"), unknown);
 }
 
-std::shared_ptr<JobEntry> read_entry(const JobFolder& folder, std::int64_t now) {
+std::shared_ptr<JobEntry> read_entry(const JobFolder& folder, std::int64_t settled_before) {
   auto entry = std::make_shared<JobEntry>();
   entry->id = folder.id();
   // Taken first: what changes meanwhile makes it void.
-  if (now != 0) entry->stamp = folder_stamp(folder, now);
+  if (settled_before != 0) entry->stamp = folder_stamp(folder, settled_before);
   Damage damage;
   damage.try_to([&] { entry->control = folder.read_control(); });
   damage.try_to([&] { entry->state = folder.read_state(); });

@@ -49,9 +49,9 @@ void take_spec(JobEntry& entry, const JobSpec& spec, const std::string& text);
 bool has_picture(const JobFolder& folder);
 
 /// What a job's folder says, but complete(). A damaged folder tells what it can: its key still
-/// counts. `now`: the file system's time before the call (file_system_time()); 0: the entry gets no
-/// stamp. Throws what may pass (may_pass()).
-std::shared_ptr<JobEntry> read_entry(const JobFolder& folder, std::int64_t now = 0);
+/// counts. `settled_before`: as folder_stamp() has it; 0: the entry gets no stamp. Throws what may
+/// pass (may_pass()).
+std::shared_ptr<JobEntry> read_entry(const JobFolder& folder, std::int64_t settled_before = 0);
 
 /// Of a folder that cannot be read for now.
 std::shared_ptr<JobEntry> unread_entry(const std::string& id, const std::exception& error);

@@ -23,13 +23,12 @@ namespace lacuna {
 namespace {
 
 constexpr std::size_t buffer_bytes = 1 << 20, entries_at_once = 64;
-constexpr std::uint32_t most_entry_bytes = 1 << 22;  // more is damage
+constexpr std::uint64_t most_entry_bytes = 1 << 22;  // more is damage
 
 std::int64_t nanoseconds(const timespec& t) { return t.tv_sec * 1'000'000'000 + t.tv_nsec; }
 
 struct RecordHead {
-  std::uint32_t bytes = 0, zero = 0;
-  std::uint64_t hash = 0;
+  std::uint64_t bytes = 0, hash = 0;
 };
 
 template <class Visit>
@@ -37,7 +36,7 @@ void visit_texts(JobEntry& e, Visit&& visit) {
   for (std::string* text : {&e.id, &e.label, &e.scene, &e.integrator, &e.reference, &e.sweep,
                             &e.state.created, &e.state.started, &e.state.finished, &e.state.phase,
                             &e.state.error, &e.control.renderer_boot, &e.control.idempotency_key,
-                            &e.control.body_hash, &e.text, &e.words}) {
+                            &e.control.body_hash, &e.control.shards, &e.text, &e.words}) {
     visit(*text);
   }
 }
@@ -159,9 +158,7 @@ std::int64_t file_system_time(const std::filesystem::path& folder) {
   return nanoseconds(status.st_ctim);
 }
 
-std::uint64_t folder_stamp(const JobFolder& folder, std::int64_t now) {
-  // Coarser than any file system's clock in use: NFS and FAT count in up to two seconds.
-  constexpr std::int64_t settled = 3'000'000'000;
+std::uint64_t folder_stamp(const JobFolder& folder, std::int64_t settled_before) {
   struct File {
     std::string_view name;
     bool required;
@@ -181,7 +178,7 @@ std::uint64_t folder_stamp(const JobFolder& folder, std::int64_t now) {
       status = {};
     }
     const std::int64_t changed = nanoseconds(status.st_ctim);
-    if (changed > now - settled) return 0;
+    if (changed >= settled_before) return 0;
     facts[at++] = static_cast<std::int64_t>(status.st_ino);
     facts[at++] = name.empty() ? 0 : status.st_size;
     facts[at++] = changed;
@@ -233,7 +230,7 @@ void write_job_index(const std::filesystem::path& file,
   for (const auto& entry : entries) {
     const std::string bytes = record(*entry);
     RecordHead head;
-    head.bytes = static_cast<std::uint32_t>(bytes.size());
+    head.bytes = bytes.size();
     head.hash = XXH3_64bits(bytes.data(), bytes.size());
     if (bytes.size() > most_entry_bytes) continue;
     out.append({reinterpret_cast<const char*>(&head), sizeof head});

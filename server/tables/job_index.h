@@ -21,9 +21,9 @@ std::int64_t file_system_time(const std::filesystem::path& folder);
 /// A number that changes with each change of the job's folder: of the folder itself, job.json,
 /// state.json and queue.json, by their inodes, sizes and times of change (ctime, which no program
 /// can set). 0, which stands for no such number: a file of these is missing where there has to be
-/// one, or the latest change is so close to `now`, the file system's time before the call, that a
-/// later one might have the same time.
-std::uint64_t folder_stamp(const JobFolder& folder, std::int64_t now);
+/// one, or one has changed at `settled_before` or later, on the file system's clock. That must be
+/// so long ago that a change after this call gets another time.
+std::uint64_t folder_stamp(const JobFolder& folder, std::int64_t settled_before);
 
 /// The index of jobs that are over: what a start of the service would read from their folders,
 /// each with the stamp that its folder had. It is only ever a copy: an entry counts if its folder

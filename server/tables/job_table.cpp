@@ -33,10 +33,10 @@ EntryPtr JobTable::find(const std::string& id) const {
   return found == by_id_.end() ? nullptr : found->second;
 }
 
-EntryPtr JobTable::add(const std::string& id, std::int64_t now) {
+EntryPtr JobTable::add(const std::string& id, std::int64_t settled_before) {
   const auto entry = [&] {
     try {
-      return read_entry(folder(id), now);
+      return read_entry(folder(id), settled_before);
     } catch (const std::exception& error) {
       return unread_entry(id, error);
     }
@@ -72,6 +72,10 @@ void JobTable::put_in(EntryPtr entry) {
   RunCounts& run_counts = run_counts_[entry->sweep];
   ++run_counts.counts[entry->state.state];
   if (!entry->over) run_counts.unfinished.insert(entry->id);
+  if (!entry->control.shards.empty()) {
+    merged_[entry->control.shards] = entry->id;
+    if (!entry->over) unmerged_.insert(entry->id);
+  }
   by_id_[entry->id] = entry;
   jobs_.insert(std::move(entry));
 }
@@ -85,6 +89,8 @@ EntryPtr JobTable::take_out(const std::string& id) {
   --run_counts.counts[entry->state.state];
   run_counts.unfinished.erase(id);
   if (run_counts.jobs() == 0) run_counts_.erase(entry->sweep);
+  if (!entry->control.shards.empty()) merged_.erase(entry->control.shards);
+  unmerged_.erase(id);
   jobs_.erase(entry);
   by_id_.erase(found);
   return entry;
@@ -100,6 +106,31 @@ JobTable::RunCounts JobTable::run_counts(const std::string& sweep) const {
   const std::lock_guard lock(mutex_);
   const auto found = run_counts_.find(sweep);
   return found == run_counts_.end() ? RunCounts{} : found->second;
+}
+
+EntryPtr JobTable::merged_from(const std::string& sweep) const {
+  const std::lock_guard lock(mutex_);
+  const auto merged = merged_.find(sweep);
+  return merged == merged_.end() ? nullptr : by_id_.at(merged->second);
+}
+
+std::vector<EntryPtr> JobTable::without_shards() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<EntryPtr> jobs;
+  for (const std::string& id : unmerged_) {
+    const EntryPtr& entry = by_id_.at(id);
+    if (!sweeps_.find(entry->control.shards)) jobs.push_back(entry);
+  }
+  return jobs;
+}
+
+bool JobTable::waits_for_shards(const JobEntry& entry) const {
+  const std::string& sweep = entry.control.shards;
+  if (sweep.empty()) return false;
+  if (!sweeps_.find(sweep) || sweeps_.is_unfinished(sweep)) return true;
+  const std::lock_guard lock(mutex_);
+  const auto runs = run_counts_.find(sweep);
+  return runs != run_counts_.end() && !runs->second.unfinished.empty();
 }
 
 /// Only under the lock. The entry is complete().
@@ -166,6 +197,15 @@ void JobTable::set_progress(const std::string& id, const Progress& progress) {
     entry.progress = progress;
     entry.pictured = pictured;
     return JobEvent::Kind::progress;
+  });
+}
+
+void JobTable::find_sweep(const std::string& id) {
+  const std::string sweep = sweeps_.sweep_of(id);
+  change(id, [&](JobEntry& entry) -> std::optional<JobEvent::Kind> {
+    if (entry.sweep == sweep) return std::nullopt;
+    entry.sweep = sweep;
+    return JobEvent::Kind::state;
   });
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -18,13 +19,25 @@
 
 namespace lacuna {
 
+/// When the index of jobs is used and written.
+struct IndexSettings {
+  std::size_t least_jobs = 1000;  ///< fewer are read as fast from their folders
+  /// Each index is written as a whole: only once so many jobs, or a hundredth of all, are not in
+  /// it.
+  std::size_t least_missing = 100;
+  /// A folder that has changed within this time is not taken into it, or from it: longer than the
+  /// steps of any file system's clock in use; those of FAT are two seconds.
+  std::chrono::nanoseconds settled = std::chrono::seconds(3);
+};
+
 /// All jobs of a service in memory, and the journal of their changes. The folders are the source of
 /// truth, from which the table is read at the start and updated. Thread-safe; a returned entry
 /// never changes.
 class JobTable {
  public:
   /// `sweeps` outlives it, and knows a sweep before any of its jobs is there.
-  JobTable(DataRoot data, const SweepTable& sweeps) : data_(std::move(data)), sweeps_(sweeps) {}
+  JobTable(DataRoot data, const SweepTable& sweeps, IndexSettings index = {})
+      : data_(std::move(data)), sweeps_(sweeps), index_(index) {}
 
   /// Reads every folder that is not known yet and forgets those that are gone. The first time it
   /// takes from the index what that still knows.
@@ -56,6 +69,8 @@ class JobTable {
   void set_place(const std::string& id, const std::string& place);
   /// Looks for the picture, too.
   void set_progress(const std::string& id, const Progress& progress);
+  /// Looks for its sweep, which may have been made after it.
+  void find_sweep(const std::string& id);
   /// Its job.json says this now.
   void set_job(const std::string& id, const JobSpec& spec);
 
@@ -91,6 +106,13 @@ class JobTable {
     std::size_t jobs() const;
   };
   RunCounts run_counts(const std::string& sweep) const;
+  /// The job that the runs of this sweep are shards of; nothing: they are of none.
+  EntryPtr merged_from(const std::string& sweep) const;
+  /// Jobs that are not over and whose sweep of shards is not there.
+  std::vector<EntryPtr> without_shards() const;
+  /// Whether its shards are still to be rendered: their sweep, or a run of it, is not over, or is
+  /// not made yet.
+  bool waits_for_shards(const JobEntry& entry) const;
   const SweepTable& sweeps() const { return sweeps_; }
   const DataRoot& data() const { return data_; }
 
@@ -109,12 +131,13 @@ class JobTable {
     }
   };
   std::filesystem::path index_file() const { return data_.dir / "jobs.index"; }
-  void add_indexed(const std::vector<std::string>& there, std::int64_t now);
-  void add_all(const std::vector<std::string>& ids, std::int64_t now);
-  EntryPtr add(const std::string& id, std::int64_t now);
+  std::int64_t settled_before() const;
+  void add_indexed(const std::vector<std::string>& there, std::int64_t settled_before);
+  void add_all(const std::vector<std::string>& ids, std::int64_t settled_before);
+  EntryPtr add(const std::string& id, std::int64_t settled_before);
   std::pair<std::vector<std::string>, std::vector<std::string>> compare(
       const std::vector<std::string>& there) const;
-  EntryPtr stamped(const EntryPtr& entry, std::int64_t now);
+  EntryPtr stamped(const EntryPtr& entry, std::int64_t settled_before);
   std::size_t count(const Query& query) const;
   void put_in(EntryPtr entry);
   EntryPtr take_out(const std::string& id);
@@ -124,12 +147,15 @@ class JobTable {
 
   const DataRoot data_;
   const SweepTable& sweeps_;
+  const IndexSettings index_;
   Journal journal_;
   mutable std::mutex mutex_;  // guards all below
   std::set<EntryPtr, ByPlace> jobs_;
   std::map<std::string_view, EntryPtr> by_id_;  // a key lies in its entry
   Counts counts_;
   std::map<std::string, RunCounts> run_counts_;  // of sweeps; "": of jobs of none
+  std::map<std::string, std::string> merged_;    // sweeps of shards, and the job of each
+  std::set<std::string> unmerged_;               // those jobs that are not over
   std::int64_t scanned_ = -1;    // the folder's time of change when it was last read
   std::size_t not_indexed_ = 0;  // jobs that have come to an end, or are gone, since the index
 };

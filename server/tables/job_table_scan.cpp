@@ -20,11 +20,6 @@ std::int64_t time_of_change(const std::filesystem::path& folder) {
   return status.st_mtim.tv_sec * 1'000'000'000 + status.st_mtim.tv_nsec;
 }
 
-// Fewer jobs are read as fast from their folders.
-constexpr std::size_t least_indexed = 1000;
-// Each index is written as a whole: only once so many jobs, or a hundredth of all, are not in it.
-constexpr std::size_t least_not_indexed = 100, index_share = 100;
-
 /// Calls `work` on this thread and some others: on a file system of many machines each file costs
 /// an answer of another machine, and the processor does nothing meanwhile.
 void on_readers(std::size_t jobs, const std::function<void()>& work) {
@@ -37,17 +32,17 @@ void on_readers(std::size_t jobs, const std::function<void()>& work) {
   for (std::future<void>& reader : readers) reader.get();
 }
 
-/// 0: it cannot be told, and there are no stamps.
-std::int64_t time_in(const std::filesystem::path& folder) {
+}  // namespace
+
+/// Folders that changed earlier are settled; 0: the time cannot be told, and there are no stamps.
+std::int64_t JobTable::settled_before() const {
   try {
-    return file_system_time(folder);
+    return file_system_time(data_.dir) - index_.settled.count();
   } catch (const std::exception& error) {
     log::warn("the index of jobs is not used: {}", error.what());
     return 0;
   }
 }
-
-}  // namespace
 
 void JobTable::rescan() {
   // Taken before the folder is read: what changes meanwhile is seen next time.
@@ -59,10 +54,10 @@ void JobTable::rescan() {
     first = scanned_ == -1;
     scanned_ = changed;
   }
-  const std::int64_t now = first && there.size() >= least_indexed ? time_in(data_.dir) : 0;
-  if (now != 0) add_indexed(there, now);
+  const std::int64_t settled = first && there.size() >= index_.least_jobs ? settled_before() : 0;
+  if (settled != 0) add_indexed(there, settled);
   const auto [fresh, gone] = compare(there);
-  add_all(fresh, now);
+  add_all(fresh, settled);
   for (const std::string& id : gone) {
     std::error_code ignored;  // it may have been added while the folder was read
     if (!std::filesystem::exists(folder(id).dir(), ignored)) remove(id);
@@ -96,13 +91,13 @@ std::pair<std::vector<std::string>, std::vector<std::string>> JobTable::compare(
 }
 
 /// Adds what the index knows of the folders `there`, sorted, and that has not changed since.
-void JobTable::add_indexed(const std::vector<std::string>& there, std::int64_t now) {
+void JobTable::add_indexed(const std::vector<std::string>& there, std::int64_t settled_before) {
   JobIndexReader index(index_file());
   on_readers(there.size(), [&] {
     for (auto entries = index.next(); !entries.empty(); entries = index.next()) {
       for (const std::shared_ptr<JobEntry>& entry : entries) {
         if (!std::binary_search(there.begin(), there.end(), entry->id)) continue;
-        if (folder_stamp(folder(entry->id), now) != entry->stamp) continue;
+        if (folder_stamp(folder(entry->id), settled_before) != entry->stamp) continue;
         const std::string sweep = sweeps_.sweep_of(entry->id);
         if (sweep != entry->sweep) {
           entry->sweep = sweep;
@@ -117,21 +112,21 @@ void JobTable::add_indexed(const std::vector<std::string>& there, std::int64_t n
   not_indexed_ = there.size() - by_id_.size();
 }
 
-void JobTable::add_all(const std::vector<std::string>& ids, std::int64_t now) {
+void JobTable::add_all(const std::vector<std::string>& ids, std::int64_t settled_before) {
   std::atomic<std::size_t> next = 0;
   on_readers(ids.size(), [&] {
     for (std::size_t i = next++; i < ids.size(); i = next++) {
-      if (is_job(folder(ids[i]))) add(ids[i], now);
+      if (is_job(folder(ids[i]))) add(ids[i], settled_before);
     }
   });
 }
 
 /// The entry with a stamp, so that it can go into the index: read anew, as it may have been changed
 /// on disk by somebody else. Nothing if the folder is not settled yet, or says something else.
-EntryPtr JobTable::stamped(const EntryPtr& entry, std::int64_t now) {
+EntryPtr JobTable::stamped(const EntryPtr& entry, std::int64_t settled_before) {
   std::shared_ptr<JobEntry> read;
   try {
-    read = read_entry(folder(entry->id), now);
+    read = read_entry(folder(entry->id), settled_before);
   } catch (const std::exception&) {  // it will be read another time
     return nullptr;
   }
@@ -152,18 +147,21 @@ void JobTable::save_index() {
   {
     const std::lock_guard lock(mutex_);
     const std::size_t jobs = by_id_.size();
-    if (jobs < least_indexed) return;
-    if (not_indexed_ < std::max(least_not_indexed, jobs / index_share)) return;
-    not_indexed_ = 0;
+    constexpr std::size_t index_share = 100;
+    if (jobs < index_.least_jobs) return;
+    if (not_indexed_ < std::max(index_.least_missing, jobs / index_share)) return;
   }
-  const std::int64_t now = file_system_time(data_.dir);
+  const std::int64_t settled = settled_before();
+  if (settled == 0) return;
   std::vector<EntryPtr> indexed;
   for (EntryPtr& entry : all()) {
     if (!entry->over || entry->damaged) continue;
-    if (entry->stamp == 0) entry = stamped(entry, now);
+    if (entry->stamp == 0) entry = stamped(entry, settled);
     if (entry) indexed.push_back(std::move(entry));
   }
   write_job_index(index_file(), indexed);
+  const std::lock_guard lock(mutex_);
+  not_indexed_ = 0;
 }
 
 bool JobTable::rescan_if_changed() {
