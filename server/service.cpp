@@ -227,6 +227,11 @@ void Service::stop() {
   parts_->keeper.stop();
   parts_->queue.stop();
   parts_->maintenance.stop();
+  try {
+    parts_->table.save_index();
+  } catch (const std::exception& error) {
+    log::warn("the next start reads every folder: {}", error.what());
+  }
 }
 
 std::string Service::lost() const { return parts_->lost; }

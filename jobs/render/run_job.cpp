@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <chrono>
+#include <optional>
 #include <set>
 #include <thread>
 
@@ -18,6 +19,7 @@
 #include "jobs/run/obstacle.h"
 #include "jobs/run/reference.h"
 #include "jobs/run/render_loop.h"
+#include "jobs/run/shard_folders.h"
 #include "jobs/spec/byte_size.h"
 #include "renderer/images/image_module.h"
 #include "renderer/integrators/integrator.h"
@@ -146,6 +148,12 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
   PhaseSeconds phases;
   running.phase("loading");
   const JobSpec spec = folder.read_job();
+  std::optional<std::vector<Shard>> shards;
+  if (context.shards != nullptr) {
+    shards = *context.shards;
+  } else {
+    shards = shards_to_merge(folder);
+  }
   Prepared prepared;
   {
     const ScopedSeconds timed(phases["load"]);
@@ -201,9 +209,9 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
                         phases,
                         prepared.content};
   RenderLoop loop(task);
-  if (context.shards != nullptr) {
-    loop.merge(*context.shards);
-    warn_of_processors(*context.shards, running);
+  if (shards) {
+    loop.merge(*shards);
+    warn_of_processors(*shards, running);
   } else {
     loop.resume();
   }

@@ -75,6 +75,7 @@ void RenderLoop::merge(const std::vector<Shard>& shards) {
   const std::string learned = merge_shards(shards, identity(), state_, [&] {
     if (state_.curve.due(state_.spent.seconds)) add_row();
     report_progress();
+    if (task_.interrupted()) throw Stopped();
   });
   ByteReader in(learned);
   task_.integrator.load(in);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "jobs/spec/job_json.h"
 #include "jobs/spec/problems.h"
 
 namespace lacuna {
@@ -49,7 +50,7 @@ Budget budget_of(const JobSpec& spec) {
   if (*budget.iterations > 0) return budget;
   throw BadJob({{"/shards", fmt::format("shard {} of {} has none of {} iterations, which are dealt "
                                         "in pairs; allowed: 1 to {} shards",
-                                        spec.shard, spec.shards, all, (all + 1) / 2)}});
+                                        spec.shard, spec.shards, all, most_shards(all))}});
 }
 
 std::optional<double> estimated_rmse(const MergedShards& merged) {

@@ -130,4 +130,15 @@ std::vector<Shard> read_shards(const std::vector<std::filesystem::path>& folders
   return reader.take();
 }
 
+std::optional<std::vector<Shard>> shards_to_merge(const JobFolder& folder) {
+  const std::string sweep = folder.read_control().shards;
+  if (sweep.empty() || std::filesystem::exists(folder.file("checkpoint.bin"))) return std::nullopt;
+  const auto count = static_cast<std::size_t>(folder.read_job().shards);
+  std::vector<std::filesystem::path> folders;
+  for (std::size_t i = 0; i < count; ++i) {
+    folders.push_back(folder.dir().parent_path() / run_job_id(sweep, i));
+  }
+  return read_shards(folders);
+}
+
 }  // namespace lacuna

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "jobs/run/merge_shards.h"
@@ -12,5 +13,10 @@ namespace lacuna {
 /// shard, one that is missing, and shards of another job, scene, version or other layers, by the
 /// names and values of what differs. Reads no picture.
 std::vector<Shard> read_shards(const std::vector<std::filesystem::path>& folders);
+
+/// The shards that a service has had rendered for the job of `folder`, as read_shards(): runs of
+/// the sweep that queue.json names, beside `folder`. Nothing if it names none, or the job has a
+/// checkpoint of its own, from which it goes on.
+std::optional<std::vector<Shard>> shards_to_merge(const JobFolder& folder);
 
 }  // namespace lacuna

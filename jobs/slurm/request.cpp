@@ -13,6 +13,15 @@ namespace {
 
 constexpr int margin_minutes = 15, further_margin_minutes = 1;
 
+/// Seconds that merging the job from its shards takes at most, several times of what docs/scaling.md
+/// has measured.
+double merging_seconds(const JobSpec& spec) {
+  constexpr double of_shard = 0.05, of_pixel = 2e-6;
+  if (spec.shards == 1 || spec.shard != 0) return 0;
+  const double pixels = static_cast<double>(spec.resolution[0]) * spec.resolution[1];
+  return spec.shards * (of_shard + of_pixel * pixels);
+}
+
 std::optional<int> minutes_of(const JobSpec& spec) {
   const Budget& budget = spec.budget;
   if (spec.reference == "auto") return std::nullopt;
@@ -22,7 +31,8 @@ std::optional<int> minutes_of(const JobSpec& spec) {
   }
   if (!seconds && (budget.iterations || budget.error)) return std::nullopt;
   constexpr double share = 1.25;
-  const double all = share * seconds.value_or(Budget::default_seconds) + 60.0 * margin_minutes;
+  const double all = share * seconds.value_or(Budget::default_seconds) + merging_seconds(spec) +
+                     60.0 * margin_minutes;
   return static_cast<int>(std::ceil(all / 60));
 }
 

@@ -137,6 +137,8 @@ bool has_limit(const Budget& b) { return b.seconds || b.cpu_seconds || b.iterati
 
 }  // namespace
 
+std::int64_t most_shards(std::int64_t iterations) { return (iterations + 1) / 2; }
+
 JobSpec parse_job(std::string_view json) {
   std::vector<Problem> problems;
   const Json document = parse_document(json, {max_job_bytes, max_json_depth}, problems);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -22,6 +23,10 @@ JobSpec parse_job(std::string_view json);
 /// The job with every default filled in, keys in the order of the tables, two spaces of indent.
 /// parse_job(write_job(s)) == s.
 std::string write_job(const JobSpec& spec);
+
+/// The most shards of a job with so many iterations: these are dealt in pairs, and each shard gets
+/// some.
+std::int64_t most_shards(std::int64_t iterations);
 
 /// JSON Schema 2020-12 of the job file, made from the settings tables.
 std::string job_schema();

@@ -19,6 +19,7 @@ struct JobControl {
   std::string renderer_boot;
   std::string idempotency_key;
   std::string body_hash;
+  std::string shards;
   bool operator==(const JobControl&) const = default;
 };
 inline constexpr int max_priority = 100;
@@ -35,6 +36,9 @@ void describe(V& v, JobControl& s) {
   v("renderer_boot", s.renderer_boot, {.doc = "the kernel's name of that boot", .max = 64});
   v("idempotency_key", s.idempotency_key, {.doc = "the poster's own name for it", .max = 128});
   v("body_hash", s.body_hash, {.doc = "of the posted text, in hexadecimal", .max = 32});
+  v("shards", s.shards,
+    {.doc = "the sweep whose runs are its shards, which it is merged from; empty: none",
+     .max = 64});
 }
 
 }  // namespace lacuna

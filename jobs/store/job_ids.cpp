@@ -1,11 +1,15 @@
+#include <dirent.h>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <ctime>
+#include <memory>
 #include <random>
 
+#include "analysis/storage/file_handle.h"
 #include "jobs/store/job_folder.h"
 
 namespace lacuna {
@@ -76,15 +80,26 @@ std::optional<std::size_t> run_index(std::string_view sweep_id, std::string_view
 }
 
 std::vector<std::string> list_job_names(const std::filesystem::path& jobs) {
-  namespace fs = std::filesystem;
   std::vector<std::string> names;
-  if (!fs::exists(jobs)) return names;
-  for (const auto& entry : fs::directory_iterator(jobs)) {
-    std::error_code vanished;
-    std::string name = entry.path().filename().string();
+  const std::unique_ptr<DIR, int (*)(DIR*)> folder(::opendir(jobs.c_str()), &::closedir);
+  if (!folder) {
+    if (errno == ENOENT) return names;
+    throw_file_error(errno, "read", jobs);
+  }
+  for (;;) {
+    errno = 0;
+    const dirent* entry = ::readdir(folder.get());
+    if (entry == nullptr && errno != 0) throw_file_error(errno, "read", jobs);
+    if (entry == nullptr) break;
+    if (!is_job_id(entry->d_name)) continue;
     // What kind of file it is mostly stands in the folder itself, and costs no look at the file.
-    if (!is_job_id(name) || entry.is_symlink(vanished) || !entry.is_directory(vanished)) continue;
-    names.push_back(std::move(name));
+    bool is_folder = entry->d_type == DT_DIR;
+    if (entry->d_type == DT_UNKNOWN) {
+      std::error_code vanished;
+      is_folder = std::filesystem::is_directory(
+          std::filesystem::symlink_status(jobs / entry->d_name, vanished));
+    }
+    if (is_folder) names.emplace_back(entry->d_name);
   }
   std::sort(names.begin(), names.end());
   return names;

@@ -17,6 +17,8 @@ constexpr int ticks_to_folders = 4, ticks_to_disk = 4, ticks_to_lock = 4, ticks_
 // Temporary files are looked for at the start, and once more when all that were left then are old
 // enough to be taken away.
 constexpr int ticks_to_tidy = 480;
+// The index of jobs that are over, for the next start: soon after a start that had to read folders.
+constexpr int first_index = 8, ticks_to_index = 1200;
 
 }  // namespace
 
@@ -61,25 +63,27 @@ void MaintenanceThread::do_round(int number) {
   each(ticks_to_retention, [&] { remove_old(); });
   if (number == 1 || number == ticks_to_tidy) list_folders();
   each(1, [&] { tidy_some(); });
+  if (number == first_index) each(1, [&] { table_.save_index(); });
+  each(ticks_to_index, [&] { table_.save_index(); });
 }
 
 /// Those in which a killed write may have left its temporary file.
 void MaintenanceThread::list_folders() {
-  to_tidy_.clear();
-  for (const EntryPtr& entry : table_.all()) to_tidy_.push_back(table_.folder(entry->id).dir());
+  jobs_to_tidy_ = table_.all();
   for (const SweepEntryPtr& sweep : table_.sweeps().all()) {
-    to_tidy_.push_back(table_.sweeps().dir(sweep->id));
+    remove_stale_temporaries(table_.sweeps().dir(sweep->id));
   }
-  to_tidy_.push_back(table_.data().dir);
+  remove_stale_temporaries(table_.data().dir);
 }
 
 void MaintenanceThread::tidy_some() {
   constexpr int at_once = 200;  // a round stays short
-  for (int i = 0; i < at_once && !to_tidy_.empty(); ++i) {
-    const std::filesystem::path folder = std::move(to_tidy_.back());
-    to_tidy_.pop_back();
+  for (int i = 0; i < at_once && !jobs_to_tidy_.empty(); ++i) {
+    const std::filesystem::path folder = table_.folder(jobs_to_tidy_.back()->id).dir();
+    jobs_to_tidy_.pop_back();
     if (std::filesystem::exists(folder)) remove_stale_temporaries(folder);
   }
+  if (jobs_to_tidy_.empty()) jobs_to_tidy_.shrink_to_fit();
 }
 
 void MaintenanceThread::remove_old() {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <condition_variable>
-#include <filesystem>
 #include <functional>
 #include <mutex>
 #include <stop_token>
@@ -15,7 +14,8 @@
 namespace lacuna {
 
 /// Periodic maintenance: reads the progress of renderers, finds folders added or removed by others,
-/// checks the disk space, and removes outdated jobs.
+/// checks the disk space, removes outdated jobs, and saves the
+/// index of jobs.
 class MaintenanceThread {
  public:
   /// `look`: called about once a second, too.
@@ -39,7 +39,7 @@ class MaintenanceThread {
   Queue& queue_;
   const CareSettings settings_;
   const std::function<void()> look_;
-  std::vector<std::filesystem::path> to_tidy_;  // folders, the last first
+  std::vector<EntryPtr> jobs_to_tidy_;  // the last first
 
   std::mutex mutex_;
   std::condition_variable_any ended_;

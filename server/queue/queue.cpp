@@ -110,6 +110,10 @@ void Queue::line_up(Work& work) {
   const bool to_submit = !executor_.holds(table_.folder(work.id));
   work.queue_key = QueueKey{to_submit, -work.control.priority, work.created, work.id};
   line_.insert(*work.queue_key);
+  if (waits_for_shards(work)) {
+    table_.set_place(work.id, fmt::format("nowhere yet: it waits for its shards, the runs of {}",
+                                          work.control.shards));
+  }
   changed_.notify_all();
 }
 
@@ -167,8 +171,8 @@ void Queue::forget(const std::string& id) {
 EntryPtr Queue::checked(const std::string& id, const std::string& revision) const {
   EntryPtr entry = table_.find(id);
   if (!entry) throw Conflict("The job no longer exists.");
-  if (!revision.empty() && revision != "*" && revision != entry->revision) {
-    throw Changed(fmt::format("The job has changed: its revision is now {}.", entry->revision));
+  if (!revision.empty() && revision != "*" && revision != entry->revision()) {
+    throw Changed(fmt::format("The job has changed: its revision is now {}.", entry->revision()));
   }
   if (entry->unread) throw Unavailable(entry->obstacle);
   return entry;
@@ -305,9 +309,19 @@ std::map<std::string, std::string> Queue::references() const {
   return users;
 }
 
+/// Sweeps whose runs are shards of unfinished jobs, and those jobs. Only under the lock.
+std::map<std::string, std::string> Queue::unmerged() const {
+  std::map<std::string, std::string> users;
+  for (const auto& [id, work] : work_) {
+    if (!work->control.shards.empty()) users.emplace(work->control.shards, id);
+  }
+  return users;
+}
+
 /// Only under the lock.
 void Queue::check_all_removable(const std::vector<std::string>& ids) const {
   const auto in_use = references();
+  const auto merged = unmerged();
   for (const std::string& id : ids) {
     const EntryPtr entry = checked(id, {});
     if (!entry->over) {
@@ -316,6 +330,9 @@ void Queue::check_all_removable(const std::vector<std::string>& ids) const {
     }
     if (table_.sweeps().is_unfinished(entry->sweep)) {
       throw Conflict(fmt::format("Sweep {}, which it is a run of, is not over.", entry->sweep));
+    }
+    if (const auto user = merged.find(entry->sweep); user != merged.end()) {
+      throw Conflict(fmt::format("Job {} is to be merged from {}.", user->second, id));
     }
     if (const auto user = in_use.find(id); user != in_use.end()) {
       throw Conflict(fmt::format("Job {} measures its error against {}.", user->second, id));

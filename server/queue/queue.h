@@ -149,6 +149,7 @@ class Queue {
   void hand_back(const WorkPtr& work);
   void postpone(Work& work, const std::exception& error);
   void note_obstacle(Work& work, const std::string& what, const std::string& for_all);
+  bool waits_for_shards(const Work& work) const;
   bool wait_until_free(const Work& work, const std::stop_token& ends);
   void note_start(Work& work, pid_t pid);
   void settle(Work& work, Attempt attempt, const std::stop_token& ends);
@@ -170,6 +171,7 @@ class Queue {
   Work& reopen(const EntryPtr& entry);
   EntryPtr checked(const std::string& id, const std::string& revision) const;
   std::map<std::string, std::string> references() const;
+  std::map<std::string, std::string> unmerged() const;
   void check_all_removable(const std::vector<std::string>& ids) const;
   void take_away(const std::vector<std::string>& ids);
   bool is_over_on_disk(const std::string& id) const;

@@ -16,6 +16,8 @@ namespace {
 
 // How often a folder that another renderer holds is looked at again.
 constexpr std::chrono::milliseconds look_again_at_lock{200};
+// How often it is looked whether the shards of a job are over.
+constexpr std::chrono::seconds look_again_at_shards{1};
 
 /// The wait after the n-th crash or fault of a job: what brought it down may pass.
 std::chrono::milliseconds back_off(int n, std::chrono::milliseconds longest) {
@@ -138,11 +140,21 @@ Queue::WorkPtr Queue::first_ready(Clock::time_point& look_again) const {
     const WorkPtr& work = work_.at(std::get<3>(key));
     if (work->not_before > now) {
       look_again = std::min(look_again, work->not_before);
+    } else if (waits_for_shards(*work)) {
+      look_again = std::min(look_again, now + look_again_at_shards);
     } else {
       return work->exclusive && running_ > 0 ? nullptr : work;
     }
   }
   return nullptr;
+}
+
+/// A job is merged once its shards are rendered; one with a checkpoint was merged before.
+bool Queue::waits_for_shards(const Work& work) const {
+  if (work.control.shards.empty()) return false;
+  const EntryPtr entry = table_.find(work.id);
+  if (!entry || !table_.waits_for_shards(*entry)) return false;
+  return !std::filesystem::exists(table_.folder(work.id).file("checkpoint.bin"));
 }
 
 Queue::WorkPtr Queue::take(const std::stop_token& ends) {
@@ -243,6 +255,7 @@ bool Queue::may_render(Work& work, Attempt& attempt) {
 bool Queue::render(Work& work) {
   Attempt attempt;
   if (!may_render(work, attempt)) return false;
+  table_.set_place(work.id, "");
   log::info("{}: {}", work.id,
             attempt.found ? "its renderer is found again" : "a renderer is started");
   attempt.ending =

@@ -29,6 +29,10 @@ OrderedJson files_of(const JobFolder& folder) {
   return files;
 }
 
+OrderedJson or_null(const std::string& text) {
+  return text.empty() ? OrderedJson(nullptr) : OrderedJson(text);
+}
+
 }  // namespace
 
 EntryPtr find_job(JobTable& table, const std::string& id) {
@@ -72,6 +76,7 @@ OrderedJson job_detail(const JobTable& table, const JobEntry& entry) {
   }
   return {{"id", entry.id},
           {"sweep", sweep_json(entry)},
+          {"shards", or_null(entry.control.shards)},
           {"job", std::move(job)},
           {"state", std::move(state)},
           {"progress", entry.progress ? to_json(*entry.progress) : OrderedJson(nullptr)},

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <system_error>
 #include <vector>
 
+#include "jobs/plan/expand.h"
+#include "jobs/plan/shard_sweep.h"
 #include "jobs/spec/job_json.h"
 #include "server/http/conditional.h"
 #include "server/routes/catalogue.h"
@@ -13,13 +16,34 @@
 #include "server/telemetry/log.h"
 
 namespace lacuna {
+namespace {
 
-JobPosting::JobPosting(DataRoot data, const ScenesRoots& scenes, JobTable& table, Queue& queue)
+bool has_shards(const JobSpec& spec) { return spec.shards > 1 && spec.shard == 0; }
+
+/// Throws BadJob: more than a sweep has runs, or than there are iterations to share.
+void check_shards(const JobSpec& spec) {
+  auto most = static_cast<std::int64_t>(max_sweep_runs);
+  std::string reason = "runs of a sweep";
+  if (spec.budget.iterations && most_shards(*spec.budget.iterations) < most) {
+    most = most_shards(*spec.budget.iterations);
+    reason = fmt::format("as {} iterations are dealt in pairs", *spec.budget.iterations);
+  }
+  if (!has_shards(spec) || spec.shards <= most) return;
+  throw BadJob(
+      {{"/shards", fmt::format("found {}; allowed: 1 to {}, {}", spec.shards, most, reason)}});
+}
+
+}  // namespace
+
+JobPosting::JobPosting(DataRoot data, const ScenesRoots& scenes, JobTable& table, Queue& queue,
+                       SweepTable& sweeps, SweepKeeper& keeper)
     : Posting("job", "/api/jobs/", max_job_bytes),
       data_(std::move(data)),
       scenes_(scenes),
       table_(table),
-      queue_(queue) {}
+      queue_(queue),
+      sweeps_(sweeps),
+      keeper_(keeper) {}
 
 Response JobPosting::dry_run(const Request& request) const {
   const JobSpec spec = checked_spec(read_body(request));
@@ -53,6 +77,28 @@ std::string JobPosting::new_id() const {
   }
 }
 
+/// The job's folder and, if it has shards, their sweep. In this order: a crash in between leaves a
+/// job whose sweep the keeper makes. Throws std::system_error.
+JobFolder JobPosting::create(const JobSpec& spec, JobControl control) {
+  const auto place = [&] { return data_.jobs() / new_id(); };
+  if (!has_shards(spec)) return JobFolder::create(place(), spec, control);
+  const SweepSpec shards = shard_sweep(spec);
+  std::optional<JobFolder> folder;
+  try {
+    sweeps_.create(shards, expand(shards), {}, [&](const std::string& sweep) {
+      control.shards = sweep;
+      auto dir = place();
+      while (run_index(sweep, dir.filename().string())) dir = place();
+      folder = JobFolder::create(dir, spec, control);
+    });
+  } catch (...) {
+    std::error_code ignored;  // the first error is the one to tell
+    if (folder) std::filesystem::remove_all(folder->dir(), ignored);
+    throw;
+  }
+  return *folder;
+}
+
 std::string JobPosting::make(const std::string& body, const Key& key) {
   const JobSpec spec = checked_spec(body);
   JobControl control;
@@ -65,13 +111,14 @@ std::string JobPosting::make(const std::string& body, const Key& key) {
   }
   const JobFolder folder = [&] {
     try {
-      return JobFolder::create(data_.jobs() / new_id(), spec, control);
+      return create(spec, control);
     } catch (const std::system_error& error) {
       log::error("a job could not be stored: {}", error.what());
       throw storage_error(error, "The job could not be stored");
     }
   }();
   queue_.add(folder.id());
+  keeper_.notice();
   log::info("{}: queued ({})", folder.id(), spec.scene);
   return folder.id();
 }
@@ -80,6 +127,7 @@ std::string JobPosting::make(const std::string& body, const Key& key) {
 JobSpec JobPosting::checked_spec(const std::string& body) const {
   try {
     JobSpec spec = parse_job(body);
+    check_shards(spec);
     const auto missing = NamedFiles(scenes_).missing(spec);
     if (missing.empty()) return spec;
     throw HttpError(400, "The job names a missing file.", missing);

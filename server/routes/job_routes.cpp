@@ -42,10 +42,11 @@ constexpr std::int64_t max_page = 1000;
 
 }  // namespace
 
-JobRoutes::JobRoutes(DataRoot data, const ScenesRoots& scenes, JobTable& table, Queue& queue)
+JobRoutes::JobRoutes(DataRoot data, const ScenesRoots& scenes, JobTable& table, Queue& queue,
+                     SweepTable& sweeps, SweepKeeper& keeper)
     : table_(table),
       queue_(queue),
-      posting_(std::move(data), scenes, table, queue),
+      posting_(std::move(data), scenes, table, queue, sweeps, keeper),
       events_(table) {}
 
 Response JobRoutes::list(const Request& request) {
@@ -69,7 +70,7 @@ Response JobRoutes::list(const Request& request) {
 
 Response JobRoutes::answer(const Request& request, int status, const std::string& id) {
   const EntryPtr entry = find_job(table_, id);
-  return with_tag(request, json_response(status, job_detail(table_, *entry)), entry->revision);
+  return with_tag(request, json_response(status, job_detail(table_, *entry)), entry->revision());
 }
 
 Response JobRoutes::detail(const Request& request, const std::string& id) {

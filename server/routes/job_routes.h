@@ -12,7 +12,8 @@ namespace lacuna {
 /// The addresses below /api/jobs, and /api/events. All references outlive it.
 class JobRoutes {
  public:
-  JobRoutes(DataRoot data, const ScenesRoots& scenes, JobTable& table, Queue& queue);
+  JobRoutes(DataRoot data, const ScenesRoots& scenes, JobTable& table, Queue& queue,
+            SweepTable& sweeps, SweepKeeper& keeper);
   void add_to(Router& router);
 
  private:

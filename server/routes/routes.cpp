@@ -3,7 +3,7 @@
 namespace lacuna {
 
 Routes::Routes(const ServiceFacts& facts, const ServiceWork& work, const StaticFiles& page)
-    : jobs_(facts.data, facts.scenes, work.jobs, work.queue),
+    : jobs_(facts.data, facts.scenes, work.jobs, work.queue, work.sweeps, work.keeper),
       sweeps_(facts.scenes, work.sweeps, work.jobs, work.keeper),
       service_(facts) {
   jobs_.add_to(router_);

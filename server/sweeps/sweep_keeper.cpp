@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "analysis/storage/passing_error.h"
+#include "jobs/plan/shard_sweep.h"
 #include "server/telemetry/log.h"
 
 namespace lacuna {
@@ -57,6 +58,7 @@ void SweepKeeper::run(const std::stop_token& ends) {
 
 /// A run of each in turn, so that all sweeps come on together.
 void SweepKeeper::look_after_all(const std::stop_token& ends) {
+  make_missing();
   const auto unfinished = sweeps_.unfinished();
   std::erase_if(feeds_, [&](const auto& feed) { return !unfinished.contains(feed.first); });
   for (bool busy = true; busy;) {
@@ -68,10 +70,34 @@ void SweepKeeper::look_after_all(const std::stop_token& ends) {
   }
 }
 
+void SweepKeeper::make_missing() {
+  for (const EntryPtr& job : jobs_.without_shards()) {
+    if (std::filesystem::exists(jobs_.folder(job->id).file("checkpoint.bin"))) continue;
+    try {
+      const std::string& id = job->control.shards;
+      const SweepSpec shards = shard_sweep(jobs_.folder(job->id).read_job());
+      const SweepEntryPtr sweep = sweeps_.create_again(id, shards, expand(shards));
+      for (std::size_t i = 0; i < sweep->state.runs; ++i) {
+        jobs_.find_sweep(run_job_id(id, i));
+      }
+      log::info("{}: its shards are the runs of {}", job->id, id);
+    } catch (const std::exception& error) {  // the next look may bring more
+      log::warn("{}: its shards are not made: {}", job->id, error.what());
+    }
+  }
+}
+
+/// The job that is to be merged from its runs has come to another end.
+bool SweepKeeper::is_in_vain(const std::string& id) const {
+  const EntryPtr job = jobs_.merged_from(id);
+  return job && job->over && job->state.state != State::done;
+}
+
 /// Whether it may be worth while to look again at once.
 bool SweepKeeper::look_after(const std::string& id) {
   const SweepEntryPtr sweep = sweeps_.find(id);
   if (!sweep || is_over(sweep->state.state)) return false;
+  if (sweep->state.state == SweepStage::running && is_in_vain(id)) cancel(id);
   if (sweep->state.state == SweepStage::cancelling) {
     cancel_runs(id);
     if (jobs_.run_counts(id).unfinished.empty()) sweeps_.set_stage(id, SweepStage::cancelled);

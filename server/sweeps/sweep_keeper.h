@@ -17,8 +17,9 @@
 namespace lacuna {
 
 /// Feeds the runs of sweeps into the queue as jobs, a few at a time and in the plan's order, and
-/// detects when a sweep is over. Its state is in the folders: a run that exists as a job is not
-/// created again, even after a restart.
+/// detects when a sweep is over. Makes the sweep of a job's shards if a crash, or somebody, has
+/// left the job without, and stops it with its job. Its state is in the folders: a run that exists
+/// as a job is not created again, even after a restart.
 class SweepKeeper {
  public:
   /// Runs of one sweep that are jobs and not over: the queue never has to wait for the next, and
@@ -54,6 +55,8 @@ class SweepKeeper {
 
   void run(const std::stop_token& ends);
   void look_after_all(const std::stop_token& ends);
+  void make_missing();
+  bool is_in_vain(const std::string& id) const;
   bool look_after(const std::string& id);
   bool make_next(const std::string& id, Feed& feed);
   void make(const Feed& feed, const SweepRun& run);

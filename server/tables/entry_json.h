@@ -2,7 +2,7 @@
 
 #include "analysis/json/json_text.h"
 #include "jobs/store/job_folder.h"
-#include "server/tables/job_table.h"
+#include "server/tables/job_entry.h"
 
 namespace lacuna {
 

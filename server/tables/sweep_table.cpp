@@ -109,13 +109,28 @@ bool SweepTable::is_taken(const std::string& id, std::size_t runs) const {
   });
 }
 
-SweepEntryPtr SweepTable::create(const SweepSpec& spec, SweepPlan plan, SweepState state) {
+SweepEntryPtr SweepTable::create(const SweepSpec& spec, SweepPlan plan, SweepState state,
+                                 const std::function<void(const std::string& id)>& before) {
   const std::lock_guard one_at_a_time(creating_);
+  const std::size_t runs = plan.runs.size();
+  const std::string id = new_sweep_id(
+      data_, runs, [&](const std::string& candidate) { return is_taken(candidate, runs); });
+  before(id);
+  return make(id, spec, std::move(plan), std::move(state));
+}
+
+SweepEntryPtr SweepTable::create_again(const std::string& id, const SweepSpec& spec,
+                                       SweepPlan plan) {
+  const std::lock_guard one_at_a_time(creating_);
+  if (SweepEntryPtr there = find(id)) return there;
+  return make(id, spec, std::move(plan), {});
+}
+
+/// Only while creating_ is held.
+SweepEntryPtr SweepTable::make(const std::string& id, const SweepSpec& spec, SweepPlan plan,
+                               SweepState state) {
   state.created = utc_now();
   state.runs = plan.runs.size();
-  const std::string id = new_sweep_id(data_, state.runs, [&](const std::string& candidate) {
-    return is_taken(candidate, state.runs);
-  });
   keep(std::make_shared<const SweepFolder>(
       SweepFolder::create_served(data_, id, spec, std::move(plan), state)));
   auto entry = std::make_shared<SweepEntry>();

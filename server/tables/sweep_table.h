@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <list>
 #include <map>
 #include <memory>
@@ -47,7 +48,14 @@ class SweepTable {
 
   /// A new sweep, once its folder is complete on disk. `state` says its key, if it has one. Throws
   /// std::system_error.
-  SweepEntryPtr create(const SweepSpec& spec, SweepPlan plan, SweepState state);
+  SweepEntryPtr create(const SweepSpec& spec, SweepPlan plan, SweepState state) {
+    return create(spec, std::move(plan), std::move(state), [](const std::string&) {});
+  }
+  /// The same; `before` gets its id before its folder is made, which is not if it throws.
+  SweepEntryPtr create(const SweepSpec& spec, SweepPlan plan, SweepState state,
+                       const std::function<void(const std::string& id)>& before);
+  /// The same of an id that create() has given to `before`; the sweep, if it is there by now.
+  SweepEntryPtr create_again(const std::string& id, const SweepSpec& spec, SweepPlan plan);
   /// Where it stands now: on disk first. Throws std::system_error.
   void set_stage(const std::string& id, SweepStage stage);
   /// Marks a sweep that cannot continue as failed, in memory only.
@@ -58,6 +66,8 @@ class SweepTable {
  private:
   using FolderPtr = std::shared_ptr<const SweepFolder>;
   bool is_taken(const std::string& id, std::size_t runs) const;
+  SweepEntryPtr make(const std::string& id, const SweepSpec& spec, SweepPlan plan,
+                     SweepState state);
   void keep(const FolderPtr& folder);
 
   const DataRoot data_;

@@ -198,9 +198,14 @@ def spreading(bench, _):
     sampler.run(bench)
 
 
+def scale(bench, _):
+    """100,000 job folders with a stand-in for Slurm, and merging: docs/scaling.md."""
+    node(bench, "scale.mjs")
+
+
 CHECKS = {"service": service, "page": page, "sweeps": sweeps, "rays": rays, "guides": guides, "views": views,
           "cornell": cornell, "overhead": overhead, "corridor": corridor, "analysis": analysis}
-LONG = {"regret": regrets, "emitters": selection, "sampler": spreading}  # only by name
+LONG = {"regret": regrets, "emitters": selection, "sampler": spreading, "scale": scale}  # only by name
 
 
 def main():

@@ -30,7 +30,7 @@ async function makeJobs(places) {
   for (let i = 0; i < compared; i += 1) ids.push(await service.post(`measured ${i + 1}`, { ...spec, seed: i + 1 }));
   for (const id of ids) await service.reaches(id, "done", 600_000);
   await service.stop();
-  fill(places.data, service.folder(ids[0]), ["image.png"]);
+  fill(places.data, service.folder(ids[0]), { more: ["image.png"] });
   return ids;
 }
 

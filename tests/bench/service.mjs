@@ -3,48 +3,15 @@
 // prints the figures below and ends with 1 if one is missed.
 import { spawnSync } from "node:child_process";
 import fs from "node:fs";
-import net from "node:net";
 import path from "node:path";
 import { setTimeout as pause } from "node:timers/promises";
 import { lacuna, ownScenes, startReal } from "../server/real_service.mjs";
 import { folders, Service, until } from "../server/service.mjs";
 import { bench, figure, quantile } from "./figures.mjs";
 import { fill, many } from "./many_jobs.mjs";
+import { cpu, poll } from "./polling.mjs";
 
 const clients = 64, window = 8000, pairs = 4;
-
-/// One request, by a client that costs next to nothing: it shares its cores with the renderers.
-function get(service, target) {
-  const begin = performance.now();
-  return new Promise((resolve, reject) => {
-    const socket = net.connect(service.port, "127.0.0.1");
-    let first = null;
-    socket.on("data", (d) => { first ??= d.subarray(0, 16).toString("latin1"); });
-    socket.on("error", reject);
-    socket.on("close", () => (first?.startsWith("HTTP/1.1 200")
-      ? resolve(performance.now() - begin) : reject(new Error(`answer ${first}`))));
-    socket.end(`GET ${target} HTTP/1.1\r\nHost: localhost\r\n\r\n`);
-  });
-}
-
-/// CPU seconds that the service has used.
-async function cpuSeconds(service) {
-  const text = await (await service.fetch("/metrics")).text();
-  return Number(/^lacuna_cpu_seconds_total\{of="service"\} (\S+)$/m.exec(text)[1]);
-}
-
-/// `clients` of them ask for the list once a second; gives the times of the answers.
-async function poll(service, ms) {
-  const times = [], end = performance.now() + ms;
-  await Promise.all(Array.from({ length: clients }, async (_, i) => {
-    await pause(1000 * i / clients);
-    while (performance.now() < end) {
-      times.push(await get(service, "/api/jobs"));
-      await pause(1000);
-    }
-  }));
-  return times;
-}
 
 /// Render time's iterations a second of both jobs together, over `ms`.
 async function speed(service, ids, ms, meanwhile) {
@@ -77,19 +44,19 @@ async function measure(test) {
   }
   await pause(3000);
   const quiet = [], asked = [], times = [];
-  let cpu = 0;
+  let used = 0;
   for (let i = 0; i < pairs; i += 1) {
     quiet.push((await speed(service, ids, window, pause)).rate);
-    const before = await cpuSeconds(service);
-    const busy = await speed(service, ids, window, (ms) => poll(service, ms));
-    cpu += await cpuSeconds(service) - before;
+    const before = cpu(service);
+    const busy = await speed(service, ids, window, (ms) => poll(service, ms, clients));
+    used += cpu(service) - before;
     asked.push(busy.rate);
     times.push(...busy.times);
   }
   const sum = (list) => list.reduce((a, b) => a + b, 0);
   console.log(`  GET /api/jobs: ${times.length} answers, p50 ${quantile(times, 0.5).toFixed(1)} ms, max ${quantile(times, 1).toFixed(1)} ms`);
   figure(`GET /api/jobs, p99, ${clients} clients once a second, two jobs rendering`, quantile(times, 0.99), "ms", 20);
-  console.log(`  meanwhile the service used ${(1000 * cpu / times.length).toFixed(2)} ms of CPU time an answer`);
+  console.log(`  meanwhile the service used ${(1000 * used / times.length).toFixed(2)} ms of CPU time an answer`);
   figure("the two jobs are slower by", 100 * (1 - sum(asked) / sum(quiet)), "%", 3);
   await service.stop();
 }

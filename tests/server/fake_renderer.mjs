@@ -16,8 +16,10 @@
 //   full NAME         state interrupted because its disk is full, until the file NAME is there; then done
 //   mute NAME         likewise, but it could not even write its state
 //   linger            done, and ends a little later
+//   lag               ends as done, and its state says so half a second later, as through a shared folder
 //   limits            done; its limits, niceness and oom_score_adj go to report.json
 //   environment       done; its environment goes to report.json
+import { spawn } from "node:child_process";
 import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
@@ -120,6 +122,11 @@ switch (word) {
   case "linger":
     state({ state: "done", phase: "", finished: now(), exit_code: -1 });
     setTimeout(() => process.exit(0), 600);
+    break;
+  case "lag":
+    fs.writeFileSync(file(".late"), JSON.stringify({ ...read("state.json"), state: "done", phase: "", finished: now() }));
+    spawn("/bin/sh", ["-c", "sleep 0.5; mv .late state.json"], { cwd: folder, detached: true, stdio: "ignore" }).unref();
+    process.exit(0);
     break;
   case "gate":
     setInterval(() => { if (fs.existsSync(argument)) finish(); }, 10);

@@ -7,6 +7,7 @@
 //   lose          sbatch makes a job, and its answer is lost
 //   deaf          sbatch takes long before it makes a job; mute: after it has
 //   accounts      sacct has accounts
+//   quota         no more jobs may be submitted
 // A job's file may be changed by a test: what runs looks at nothing but `wanted` in it.
 import { spawn } from "node:child_process";
 import fs from "node:fs";
@@ -74,6 +75,13 @@ async function sbatch() {
   if (options.partition === "nowhere") {
     fail(1, "sbatch: error: invalid partition specified: nowhere",
       "sbatch: error: Batch job submission failed: Invalid partition name specified");
+  }
+  if (options.partition === "closed") {
+    fail(1, "sbatch: error: Batch job submission failed: User's group not permitted to use this partition");
+  }
+  if (is("quota")) {
+    fail(1, "sbatch: error: QOSMaxSubmitJobPerUserLimit", "sbatch: error: Batch job submission failed: Job violates "
+      + "accounting/QOS policy (job submit limit, user's size and/or time limits)");
   }
   if (is("deaf")) await pause(3000);
   const id = 1 + Math.max(0, ...ids());

@@ -223,6 +223,31 @@ onCluster("what sbatch refuses is told in its own words", async (cluster) => {
   assert.match(over.state.error, /sbatch: error: Memory specification can not be satisfied/);
 });
 
+onCluster("without rights a job waits and says so; with room in the quota again it goes on", async (cluster) => {
+  const closed = await cluster.service("--slurm-args", "--partition=closed");
+  const id = await closed.post("finish", { threads: 1 });
+  const told = async (service, words) => until(async () => words.test((await state(service, id)).obstacle), `${words}`);
+  await told(closed, /User's group not permitted to use this partition/);
+  await closed.stop();
+  cluster.set("quota");
+  const service = await cluster.service();
+  await told(service, /QOSMaxSubmitJobPerUserLimit; .*Job violates accounting\/QOS policy/);
+  assert.equal((await state(service, id)).state, "queued");
+  cluster.unset("quota");
+  const job = await service.reaches(id, "done");
+  assert.equal(job.state.attempts, 1);
+  assert.equal(cluster.jobs().length, 1);
+});
+
+onCluster("a shared folder that lags is waited for", async (cluster) => {
+  // The last --slurm-poll counts: five of these are ten seconds.
+  const service = await cluster.service("--slurm-poll", "2");
+  const id = await service.post("lag", { threads: 1 });
+  const job = await service.reaches(id, "done");
+  assert.equal(job.state.attempts, 1);
+  assert.equal(cluster.jobs().length, 1);
+});
+
 onCluster("a controller that is away is waited for", async (cluster) => {
   const service = await cluster.service();
   const first = await service.post("gate go", { threads: 1 });

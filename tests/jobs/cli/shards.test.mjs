@@ -217,6 +217,18 @@ test("a damaged shard, and one of another version, are named", async (t) => {
   await sameBits(folder, "a.job", "m.job");
 });
 
+test("shards of another kind of processor are merged with a warning", async (t) => {
+  const folder = temporaryFolder(t);
+  job(folder, "a.json", spec);
+  const made = await shards(folder, 2);
+  const file = join(folder, made[1], "report.json");
+  const report = read(folder, `${made[1]}/report.json`);
+  writeFileSync(file, JSON.stringify({ ...report, machine: { ...report.machine, processor: "Another 9000" } }));
+  await done(folder, "merge", "m.job", ...made);
+  const [warning] = read(folder, "m.job/state.json").warnings.filter((w) => /processors/.test(w));
+  assert.match(warning, /on 2 kinds of processors \(.*Another 9000.*\): their last bits may differ/);
+});
+
 test("--shard: bad values, and what a job says itself", async (t) => {
   const folder = temporaryFolder(t);
   job(folder, "a.json", spec);

@@ -46,6 +46,11 @@ TEST(SlurmRequest, TimeFollowsFromTheShorterBudget) {
   JobSpec with_reference = job(budget(60));
   with_reference.reference = "auto";
   EXPECT_EQ(slurm_request(with_reference, {}).minutes, std::nullopt);
+  JobSpec merged = job(budget(3600));
+  merged.shards = 1000;  // 0.07 s each
+  EXPECT_EQ(slurm_request(merged, {}).minutes, 92);
+  merged.shard = 7;
+  EXPECT_EQ(slurm_request(merged, {}).minutes, 90);
 }
 
 TEST(SlurmRequest, MemoryIsTheLimitOrAnEstimateThatDoublesWithEachShortage) {
