@@ -248,7 +248,7 @@ inline void ViewRendering::fill_cap(int half, const Paraboloid::Rectangle& r, co
   const Float8x3 axis{w.x, w.y, w.z};
   for (int v = r.v_first; v < r.v_end; ++v) {
     for (int u = r.u_first; u < r.u_end; u += 8) {
-      const auto at = static_cast<std::size_t>(map_.index(half, v, u));
+      const auto at = static_cast<std::size_t>(map_.index(half, u, v));
       const auto depth = Float8::load_unaligned(&depths[at]);
       const Float8x3 to{Float8::load_unaligned(&x_[at]), Float8::load_unaligned(&y_[at]),
                         Float8::load_unaligned(&z_[at])};

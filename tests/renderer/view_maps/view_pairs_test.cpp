@@ -158,8 +158,6 @@ TEST(ViewPairs, AreCulledOnlyIfNoViewSeesAnyLeaf) {
                           << name << ", view node " << view << ", scene node " << node;
                     });
     }
-    std::printf("%s: %d pairs of %d that no view sees are culled by spheres, %d by boxes\n", name,
-                culled[0], unseen, culled[1]);
     EXPECT_GT(culled[0], 0);
     EXPECT_GT(culled[1], culled[0]);
     EXPECT_GT(culled[1], 0.5 * unseen) << name;
