@@ -2,6 +2,7 @@
 
 #include <immintrin.h>
 
+#include <array>
 #include <cstdint>
 
 namespace lacuna {
@@ -90,6 +91,7 @@ struct Int8 {
 };
 inline Int8 operator+(Int8 a, Int8 b) { return _mm256_add_epi32(a.v, b.v); }
 inline Int8 operator-(Int8 a, Int8 b) { return _mm256_sub_epi32(a.v, b.v); }
+inline Int8 operator&(Int8 a, Int8 b) { return _mm256_and_si256(a.v, b.v); }
 inline Int8 operator<<(Int8 a, int bits) { return _mm256_slli_epi32(a.v, bits); }
 inline Int8 operator>>(Int8 a, int bits) { return _mm256_srai_epi32(a.v, bits); }
 inline Int8 operator*(Int8 a, Int8 b) { return _mm256_mullo_epi32(a.v, b.v); }
@@ -108,6 +110,28 @@ inline Float8 to_float(Int8 a) { return _mm256_cvtepi32_ps(a.v); }
 /// The same bits.
 inline Int8 as_int(Float8 a) { return _mm256_castps_si256(a.v); }
 inline Float8 as_float(Int8 a) { return _mm256_castsi256_ps(a.v); }
+/// 0, 1, ..., 7
+inline Int8 lane_numbers() { return _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7); }
+/// a[order[i]] for each i; the lowest three bits of `order` count.
+inline Float8 permute(Float8 a, Int8 order) { return _mm256_permutevar8x32_ps(a.v, order.v); }
+inline Int8 permute(Int8 a, Int8 order) { return _mm256_permutevar8x32_epi32(a.v, order.v); }
+
+/// Of each eight bits the numbers of those that are set, ascending, one a byte.
+inline constexpr std::array<std::uint64_t, 256> set_lanes = [] {
+  std::array<std::uint64_t, 256> table{};
+  for (unsigned bits = 0; bits < 256; ++bits) {
+    int at = 0;
+    for (unsigned i = 0; i < 8; ++i) {
+      if ((bits >> i & 1) != 0) table[bits] |= std::uint64_t{i} << (8 * at++);
+    }
+  }
+  return table;
+}();
+/// For permute(): moves the elements whose bits are set to the front.
+inline Int8 to_front(unsigned bits) {
+  return _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(set_lanes[bits])));
+}
+
 /// from[i] for each of eight indices.
 inline Float8 gather(const float* from, Int8 i) { return _mm256_i32gather_ps(from, i.v, 4); }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "analysis/geometry/morton.h"
@@ -17,12 +18,11 @@ constexpr int chunks = 64;  // into which the triangles are cut, whatever the th
 
 /// Calls `use(axis, first, count)` for the lines of cells that the triangles of a chunk meet.
 template <class Use>
-void for_each_line(const TriangleSoup& soup, const OctreeCube& cube, int levels, int chunk,
-                   Use&& use) {
+void for_each_line(const TriangleSoup& soup, const OctreeCube& cube, int chunk, Use&& use) {
   const std::size_t n = soup.triangles.size();
   const auto part = [&](int c) { return n * static_cast<std::size_t>(c) / chunks; };
-  const GridTransform cells{cube.corner, cube.side / (1 << levels)};
-  const CellBox all{Imath::V3i(0), Imath::V3i(1 << levels)};
+  const GridTransform cells{cube.corner, cube.side / (1 << cube.levels)};
+  const CellBox all{Imath::V3i(0), Imath::V3i(1 << cube.levels)};
   for (std::size_t t = part(chunk); t < part(chunk + 1); ++t) {
     std::array<Imath::V3d, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -34,7 +34,7 @@ void for_each_line(const TriangleSoup& soup, const OctreeCube& cube, int levels,
 
 }  // namespace
 
-OctreeCube octree_cube(const TriangleSoup& soup) {
+OctreeCube octree_cube(const TriangleSoup& soup, double levels) {
   Imath::V3d low(std::numeric_limits<double>::infinity());
   Imath::V3d high(-std::numeric_limits<double>::infinity());
   for (const auto& t : soup.triangles) {
@@ -45,27 +45,28 @@ OctreeCube octree_cube(const TriangleSoup& soup) {
       }
     }
   }
-  if (soup.triangles.empty()) return {};
-  return octree_cube(low, high);
+  if (soup.triangles.empty()) low = Imath::V3d(0.0), high = Imath::V3d(1.0);
+  return octree_cube(low, high, levels);
 }
 
-OctreeCube octree_cube(const Imath::V3d& low, const Imath::V3d& high) {
+OctreeCube octree_cube(const Imath::V3d& low, const Imath::V3d& high, double levels) {
   const Imath::V3d size = high - low;
   double longest = std::max({size.x, size.y, size.z});
   if (!(longest > 0)) longest = 1;
   // Room for what rounding puts outside: no cell is cut off.
   OctreeCube cube;
-  cube.side = longest * (1 + 0x1p-16);
+  cube.levels = static_cast<int>(std::ceil(levels));
+  cube.side = longest * (1 + 0x1p-16) * std::exp2(cube.levels - levels);
   cube.corner = (low + high) / 2 - Imath::V3d(cube.side / 2);
   return cube;
 }
 
-Octree surface_octree(const TriangleSoup& soup, int levels, const ThreadPool& pool,
+Octree surface_octree(const TriangleSoup& soup, double levels, const ThreadPool& pool,
                       std::uint64_t byte_limit) {
-  const OctreeCube cube = octree_cube(soup);
+  const OctreeCube cube = octree_cube(soup, levels);
   std::array<std::uint64_t, chunks> counts{};
   pool.for_each(chunks, [&](int c) {
-    for_each_line(soup, cube, levels, c, [&](int, Imath::V3i, int count) {
+    for_each_line(soup, cube, c, [&](int, Imath::V3i, int count) {
       counts[static_cast<std::size_t>(c)] += static_cast<std::uint64_t>(count);
     });
   });
@@ -82,7 +83,7 @@ Octree surface_octree(const TriangleSoup& soup, int levels, const ThreadPool& po
   pool.for_each(chunks, [&](int c) {
     auto& codes = parts[static_cast<std::size_t>(c)];
     codes.reserve(counts[static_cast<std::size_t>(c)]);
-    for_each_line(soup, cube, levels, c, [&](int axis, Imath::V3i cell, int count) {
+    for_each_line(soup, cube, c, [&](int axis, Imath::V3i cell, int count) {
       for (; count > 0; --count, ++cell[axis]) {
         codes.push_back(morton_code(static_cast<std::uint64_t>(cell.x),
                                     static_cast<std::uint64_t>(cell.y),
@@ -100,7 +101,7 @@ Octree surface_octree(const TriangleSoup& soup, int levels, const ThreadPool& po
     std::inplace_merge(all.begin(), all.begin() + middle, all.end());
   }
   all.erase(std::unique(all.begin(), all.end()), all.end());
-  return build_octree(all, levels, cube.corner, cube.side);
+  return build_octree(all, cube.levels, cube.corner, cube.side);
 }
 
 }  // namespace lacuna

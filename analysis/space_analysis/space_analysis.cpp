@@ -214,7 +214,7 @@ const Portals& SpaceAnalysis::portals() {
                       });
 }
 
-std::shared_ptr<const Octree> SpaceAnalysis::octree(int levels) {
+std::shared_ptr<const Octree> SpaceAnalysis::octree(double levels) {
   const ArtefactKey key = ArtefactKey("octree", octree_version, fmt::format("levels={}", levels))
                               .from("geometry", input_.geometry);
   return store_.get<Octree>(key, [&] {

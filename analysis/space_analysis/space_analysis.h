@@ -61,7 +61,7 @@ class SpaceAnalysis {
   Borders borders(BorderFaces which);
 
   /// The octree of the scene's surfaces with `levels` in [0, Octree::most_levels].
-  std::shared_ptr<const Octree> octree(int levels);
+  std::shared_ptr<const Octree> octree(double levels);
   /// An artefact of another module, computed for the nodes of filtered(). `type`, `version` and
   /// `settings`: as for ArtefactKey; `scene`: a hash (lower-case hexadecimal) of all its other
   /// inputs. `build(byte_limit)` computes it and throws MemoryLimitError.

@@ -167,6 +167,42 @@ bool RayCaster::intersect(const Ray& ray, Hit& hit) const {
   return true;
 }
 
+void RayCaster::intersect(std::span<const Ray> rays, std::span<Hit> hits,
+                          std::span<std::uint8_t> result) const {
+  if (impl_->recorded != nullptr) [[unlikely]] {
+    for (const Ray& ray : rays) impl_->recorded->push_back({ray, false});
+  }
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  for (std::size_t first = 0; first < rays.size(); first += 8) {
+    RTCRayHit8 q{};
+    alignas(32) std::array<int, 8> valid{};
+    for (std::size_t i = 0; i < std::min<std::size_t>(8, rays.size() - first); ++i) {
+      const Ray& ray = rays[first + i];
+      q.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+      if (!acceptable(ray)) {
+        ++impl_->refused;
+        continue;
+      }
+      valid[i] = -1;
+      q.ray.org_x[i] = ray.o.x, q.ray.org_y[i] = ray.o.y, q.ray.org_z[i] = ray.o.z;
+      q.ray.dir_x[i] = ray.d.x, q.ray.dir_y[i] = ray.d.y, q.ray.dir_z[i] = ray.d.z;
+      q.ray.tfar[i] = ray.tmax;
+      q.ray.mask[i] = ~0U;
+    }
+    rtcIntersect8(valid.data(), impl_->scene, &context, &q);
+    for (std::size_t i = 0; i < std::min<std::size_t>(8, rays.size() - first); ++i) {
+      const bool met = q.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+      result[first + i] = met ? 1 : 0;
+      if (met) {
+        hits[first + i] = {q.ray.tfar[i], q.hit.geomID[i], q.hit.primID[i], q.hit.u[i],
+                           q.hit.v[i]};
+      }
+    }
+  }
+}
+
 bool RayCaster::occluded(const Ray& ray) const {
   if (impl_->recorded != nullptr) [[unlikely]]
     impl_->recorded->push_back({ray, true});

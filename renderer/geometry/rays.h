@@ -51,6 +51,10 @@ class RayCaster {
 
   /// Finds the nearest hit in (0, tmax]; false if there is none.
   bool intersect(const Ray& ray, Hit& hit) const;
+  /// intersect() for coherent rays, as those of one origin through neighbouring texels, in packets
+  /// of eight. All spans have one element for each ray; `result` 1: there is a hit.
+  void intersect(std::span<const Ray> rays, std::span<Hit> hits,
+                 std::span<std::uint8_t> result) const;
   /// Whether the ray hits anything in (0, tmax].
   bool occluded(const Ray& ray) const;
   /// occluded() for many rays; `result` has one element for each, 1: occluded.

@@ -268,6 +268,41 @@ struct EnumTable<ViewMapMethod> {
   }};
 };
 
+/// Which lights have a map of their own.
+enum class ViewSharing { cells, none };
+
+template <>
+struct EnumTable<ViewSharing> {
+  static constexpr std::array<EnumValue<ViewSharing>, 2> values{{
+      {ViewSharing::cells, "cells", "the lights in a leaf of their octree have one map"},
+      {ViewSharing::none, "none", "every light has a map of its own. Not for megaviews"},
+  }};
+};
+
+/// By what bounds of both nodes a pair is culled.
+enum class ViewBounds { boxes, spheres };
+
+template <>
+struct EnumTable<ViewBounds> {
+  static constexpr std::array<EnumValue<ViewBounds>, 2> values{{
+      {ViewBounds::boxes, "boxes",
+       "the boxes of the leaves and of the lights below them: coarse nodes of the wall that a "
+       "light is on are behind it"},
+      {ViewBounds::spheres, "spheres", "the spheres around their cubes and lights"},
+  }};
+};
+
+/// How rays are traced.
+enum class ViewRays { packets, single };
+
+template <>
+struct EnumTable<ViewRays> {
+  static constexpr std::array<EnumValue<ViewRays>, 2> values{{
+      {ViewRays::packets, "packets", "eight neighbours at once, as coherent packets"},
+      {ViewRays::single, "single", "one by one"},
+  }};
+};
+
 /// The order in which pairs of a scene node and a light node are processed.
 enum class ViewTraversal { depth_first, breadth_first };
 
@@ -293,12 +328,15 @@ struct ViewMapsVisibilitySettings {
 
   ViewMapMethod method = ViewMapMethod::megaviews;
   int map_size = 16;
-  int levels = 9;
+  double levels = 9;
   double memory = 4;
   bool cull = true;
+  ViewRays rays = ViewRays::packets;
   // As published they are otherwise, see their tables:
   double node_texels = 1.75;
   double cover = 0.82;
+  ViewSharing share = ViewSharing::cells;
+  ViewBounds bounds = ViewBounds::boxes;
   ViewTraversal traversal = ViewTraversal::depth_first;
   bool operator==(const ViewMapsVisibilitySettings&) const = default;
 };
@@ -308,9 +346,10 @@ void describe(V& v, ViewMapsVisibilitySettings& s) {
   v("map_size", s.map_size,
     {.doc = "texels along a side of each half of a light's dual paraboloid map; 2 bytes each",
      .min = 8,
-     .max = 256});
+     .max = 1024});
   v("levels", s.levels,
-    {.doc = "levels of the octrees: the scene's longest side has 2^levels cubes",
+    {.doc = "levels of the octrees: the scene's longest side has 2^levels cubes, which need not "
+            "be a whole number",
      .min = 1,
      .max = 11});
   v("node_texels", s.node_texels,
@@ -340,6 +379,13 @@ void describe(V& v, ViewMapsVisibilitySettings& s) {
   v("cull", s.cull,
     {.doc = "skip scene nodes that lie behind all lights of a node: the same picture, faster. Not "
             "for per_view"});
+  v("share", s.share,
+    {.doc = "which lights share a map; the paper's many_lods, and its rays, have none that do",
+     .published = "\"none\""});
+  v("bounds", s.bounds,
+    {.doc = "bounds of nodes by which pairs are culled. Not for per_view",
+     .published = "\"spheres\""});
+  v("rays", s.rays, {.doc = "how per_view traces its rays"});
   v("traversal", s.traversal,
     {.doc = "order in which pairs of nodes of both octrees are processed. Not for per_view",
      .published = "\"breadth_first\""});

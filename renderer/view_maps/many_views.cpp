@@ -13,7 +13,7 @@ namespace {
 /// A view node to render: the undecided nodes and the map of its parent.
 struct Work {
   std::uint32_t view;
-  std::shared_ptr<const std::vector<Siblings>> waiting;
+  std::shared_ptr<const NodeLevels> waiting;
   std::vector<float> depths;
 };
 
@@ -25,37 +25,39 @@ class Branch {
 
   ManyViewsCounts counts;
 
-  void descend(std::uint32_t view, std::span<const Siblings> waiting, std::span<float> depths) {
+  void descend(std::uint32_t view, const NodeLevels& waiting, std::span<float> depths) {
+    view = rendering_.fork(view);
     const Octree::Node& node = views_.tree().nodes[view];
     Level& below = levels_[node.level];
-    below.left.later.clear();
-    rendering_.render(view, waiting, depths, below.left, counts);
+    rendering_.render(view, waiting, depths, below.later, scratch_, counts);
     if (node.children == 0) {
-      use_(view - views_.first_leaf(), depths.first(rendering_.texels()));
+      rendering_.to_scene_units(depths.first(rendering_.texels()), below.depths);
+      use_(view - views_.first_leaf(), below.depths);
       return;
     }
     below.depths.resize(rendering_.map_floats());
     for (std::uint32_t c = 0; c < node.children; ++c) {
       const std::uint32_t child = node.first_child + c;
       rendering_.hand_down(view, depths, child, below.depths);
-      descend(child, below.left.later, below.depths);
+      descend(child, below.later, below.depths);
     }
   }
 
  private:
   struct Level {
-    ViewRendering::Undecided left;  // by the node of this level, for its children
-    std::vector<float> depths;      // of one of them
+    NodeLevels later;           // left by the node of this level, for its children
+    std::vector<float> depths;  // of one of them
   };
   const ViewRendering& rendering_;
   const ViewTree& views_;
   const UseMap& use_;
+  ViewRendering::Scratch scratch_;
   std::array<Level, Octree::most_levels + 1> levels_;
 };
 
 }  // namespace
 
-ManyViewsCounts render_views(const Octree& scene, const ViewTree& views,
+ManyViewsCounts render_views(const SceneNodes& scene, const ViewTree& views,
                              const ManyViewsSettings& settings, const ThreadPool& pool,
                              const UseMap& use) {
   if (views.tree().empty()) return {};
@@ -64,7 +66,8 @@ ManyViewsCounts render_views(const Octree& scene, const ViewTree& views,
     return render_breadth_first(rendering, views, settings.share, pool, use);
   }
   const std::vector<float> empty(rendering.map_floats(), std::numeric_limits<float>::infinity());
-  const std::vector<Siblings> whole(scene.empty() ? 0 : 1, Siblings::root());
+  NodeLevels whole;
+  if (!scene.empty()) scene.append_root(whole[0]);
   ManyViewsCounts total;
   std::mutex mutex;  // of total
   const auto in_parallel = [&](std::size_t n, auto&& body) {
@@ -74,7 +77,7 @@ ManyViewsCounts render_views(const Octree& scene, const ViewTree& views,
       total += counts;
     });
   };
-  const auto descend = [&](std::uint32_t view, std::span<const Siblings> waiting,
+  const auto descend = [&](std::uint32_t view, const NodeLevels& waiting,
                            std::vector<float> depths) {
     Branch branch(rendering, views, use);
     branch.descend(view, waiting, depths);
@@ -88,7 +91,7 @@ ManyViewsCounts render_views(const Octree& scene, const ViewTree& views,
   }
   // Level by level until there is work for all threads; then each part separately.
   constexpr std::size_t enough = 256;
-  std::vector<Work> works{{0, std::make_shared<const std::vector<Siblings>>(whole), empty}};
+  std::vector<Work> works{{rendering.fork(0), std::make_shared<const NodeLevels>(whole), empty}};
   bool forked = true;
   while (works.size() < enough && forked) {
     std::vector<std::vector<Work>> next(works.size());
@@ -99,13 +102,13 @@ ManyViewsCounts render_views(const Octree& scene, const ViewTree& views,
         return ManyViewsCounts{};
       }
       ManyViewsCounts counts;
-      ViewRendering::Undecided left;
-      rendering.render(work.view, *work.waiting, work.depths, left, counts);
-      const auto later = std::make_shared<const std::vector<Siblings>>(std::move(left.later));
+      ViewRendering::Scratch scratch;
+      const auto later = std::make_shared<NodeLevels>();
+      rendering.render(work.view, *work.waiting, work.depths, *later, scratch, counts);
       const Octree::Node& node = views.tree().nodes[work.view];
       for (std::uint32_t c = 0; c < node.children; ++c) {
         const std::uint32_t child = node.first_child + c;
-        next[k].push_back({child, later, empty});
+        next[k].push_back({rendering.fork(child), later, empty});
         rendering.hand_down(work.view, work.depths, child, next[k].back().depths);
       }
       return counts;

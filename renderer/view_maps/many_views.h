@@ -19,7 +19,7 @@ using UseMap = std::function<void(std::uint32_t leaf, std::span<const float> dep
 /// `breadth_first`. Scene nodes that a view node cannot decide for all its views wait in one list
 /// that its children share, and the map of a node is copied to its children (the paper's fusion),
 /// so only the maps between the root and one leaf are in memory at a time.
-ManyViewsCounts render_views(const Octree& scene, const ViewTree& views,
+ManyViewsCounts render_views(const SceneNodes& scene, const ViewTree& views,
                              const ManyViewsSettings& settings, const ThreadPool& pool,
                              const UseMap& use);
 

@@ -94,48 +94,28 @@ struct Paraboloid {
   /// stretched by 1 / (1 + cos) towards the rim.
   float stretch(float cosine) const { return static_cast<float>(size) / (2 * (1 + cosine)); }
 
-  /// Calls `use(first, n)` for the runs of texels whose centres lie in the cap around the unit
-  /// direction `w` whose half angle has this cosine and sine. Each texel is visited once, except
-  /// for some at the squares' corners.
-  template <class Use>
-  void for_each_run(const V3f& w, float cosine, float sine, Use&& use) const {
-    for (int half = 0; half < 2; ++half) {
-      run_half(half, {half == 0 ? w.x : -w.x, w.y, w.z}, cosine, sine, use);
-    }
-  }
-
- private:
-  /// The projection is stereographic: the cap's image is the disk, or where it holds the opposite
-  /// pole all but the disk, of a (y^2 + z^2) - 2 (y w.y + z w.z) + cosine - w.x <= 0.
-  template <class Use>
-  void run_half(int half, const V3f& w, float cosine, float sine, Use&& use) const {
-    if (w.x < -sine) return;  // behind the rim
-    const float a = cosine + w.x;
-    // The first texel whose centre is at a coordinate or beyond it.
-    const auto after = [&](float at) {
-      const float texel = std::ceil(coordinate(at) - 0.5F);
+  /// A rectangle of texels of one half: rows [v_first, v_end), columns [u_first, u_end).
+  struct Rectangle {
+    int v_first = 0, v_end = 0, u_first = 0, u_end = 0;
+  };
+  /// A rectangle with all texels of a half whose centres lie in the cap around the unit direction
+  /// `w` whose half angle has this cosine and sine.
+  Rectangle cap(int half, const V3f& w, float cosine, float sine) const {
+    const float x = half == 0 ? w.x : -w.x;
+    if (x < -sine) return {};  // behind the rim
+    // The projection is stereographic: the cap's image is the disk, or where it holds the opposite
+    // pole all but the disk, of a (y^2 + z^2) - 2 (y w.y + z w.z) + cosine - x <= 0.
+    const float a = cosine + x;
+    if (!(a > 1e-3F)) return {0, size, 0, size};  // nearly half of everything, or more
+    const float scale = 1 / a;
+    // The first texel whose centre is at a coordinate or beyond it, a little more.
+    const auto after = [&](float at, float rounding) {
+      const float texel = std::ceil(coordinate(at) - 0.5F + rounding);
       return static_cast<int>(std::clamp(texel, 0.0F, static_cast<float>(size)));
     };
-    const bool disk = a > 1e-3F;  // else nearly half of everything, or more
-    const int from = disk ? after((w.z - sine) / a) : 0;
-    const int to = disk ? after((w.z + sine) / a) : size;
-    for (int j = from; j < to; ++j) {
-      const float z = on_plane(static_cast<float>(j) + 0.5F);
-      const float rest = a * z * z - 2 * z * w.z + cosine - w.x;
-      if (!disk) {
-        for (int i = 0; i < size; ++i) {
-          const float y = on_plane(static_cast<float>(i) + 0.5F);
-          if (a * y * y - 2 * y * w.y + rest <= 0) use(index(half, i, j), 1);
-        }
-        continue;
-      }
-      const float root2 = w.y * w.y - a * rest;
-      if (root2 < 0) continue;
-      const float root = std::sqrt(root2);
-      const int first = after((w.y - root) / a);
-      const int end = after((w.y + root) / a);
-      if (end > first) use(index(half, first, j), end - first);
-    }
+    constexpr float rounding = 1e-3F;
+    return {after((w.z - sine) * scale, -rounding), after((w.z + sine) * scale, rounding),
+            after((w.y - sine) * scale, -rounding), after((w.y + sine) * scale, rounding)};
   }
 };
 

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <numeric>
 
 #include "renderer/core/free_memory.h"
 
@@ -52,22 +55,39 @@ bool unseen(const ViewTree::Node& v, const MapTexel& t) {
 }  // namespace
 
 std::uint64_t trace_views(const RayCaster& rays, const ViewTree& views,
-                          std::span<const MapTexel> texels, const ThreadPool& pool,
+                          std::span<const MapTexel> texels, bool packets, const ThreadPool& pool,
                           const UseMap& use) {
+  // Blocks of 4 x 2 texels, each a packet.
+  std::vector<std::size_t> order(texels.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto side = static_cast<std::size_t>(std::lround(std::sqrt(double(texels.size()) / 2)));
+  std::stable_sort(order.begin(), order.end(), [side](std::size_t a, std::size_t b) {
+    const auto block = [side](std::size_t i) { return std::pair(i / side / 2, i % side / 4); };
+    return block(a) < block(b);
+  });
   std::atomic<std::uint64_t> sent = 0;
   pool.for_each(static_cast<int>(views.leaf_count()), [&](int k) {
     const auto leaf = static_cast<std::uint32_t>(k);
     const ViewTree::Node& v = views.node(views.first_leaf() + leaf);
-    std::vector<float> depths(texels.size(), std::numeric_limits<float>::infinity());
-    std::uint64_t own = 0;
-    for (std::size_t i = 0; i < texels.size(); ++i) {
-      const MapTexel& t = texels[i];
-      if (!t.reachable || unseen(v, t)) continue;
-      Hit hit;
-      if (rays.intersect({v.centre, t.direction}, hit)) depths[i] = hit.t;
-      ++own;
+    std::vector<Ray> own;
+    std::vector<std::size_t> asked;
+    for (const std::size_t i : order) {
+      if (!texels[i].reachable || unseen(v, texels[i])) continue;
+      own.push_back({v.centre, texels[i].direction});
+      asked.push_back(i);
     }
-    sent += own;
+    std::vector<Hit> hits(own.size());
+    std::vector<std::uint8_t> hit(own.size());
+    if (packets) {
+      rays.intersect(own, hits, hit);
+    } else {
+      for (std::size_t i = 0; i < own.size(); ++i) hit[i] = rays.intersect(own[i], hits[i]) ? 1 : 0;
+    }
+    std::vector<float> depths(texels.size(), std::numeric_limits<float>::infinity());
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      if (hit[i] != 0) depths[asked[i]] = hits[i].t;
+    }
+    sent += own.size();
     use(leaf, depths);
   });
   return sent;

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "renderer/core/huge_pages.h"
 #include "renderer/scene/scene.h"
 #include "renderer/view_maps/many_views.h"
 #include "renderer/view_maps/nearness.h"
@@ -38,13 +39,14 @@ class ViewMaps {
  private:
   Paraboloid map_;
   Nearness nearness_;
-  std::vector<std::uint16_t> texels_;
+  HugeVector<std::uint16_t> texels_;
 };
 
 /// Like render_views(), but traces a ray from the centre of each leaf's views through each texel
-/// that one of them may see: one map per view. Returns the number of rays.
+/// that one of them may see: one map per view. `packets`: eight neighbouring rays at once. Returns
+/// the number of rays.
 std::uint64_t trace_views(const RayCaster& rays, const ViewTree& views,
-                          std::span<const MapTexel> texels, const ThreadPool& pool,
+                          std::span<const MapTexel> texels, bool packets, const ThreadPool& pool,
                           const UseMap& use);
 
 }  // namespace lacuna

@@ -11,12 +11,20 @@ namespace lacuna {
 
 namespace {
 
-/// Pairs: siblings of the scene's octree to process for a view node.
-struct Waiting {
-  std::uint32_t view;
-  Siblings siblings;
+/// A scene node to process for a view node, with the centre of its cube in the grid.
+struct Pair {
+  std::uint32_t view, node;
+  std::uint16_t x, y, z;
 };
-bool by_view(const Waiting& a, const Waiting& b) { return a.view < b.view; }
+bool by_view(const Pair& a, const Pair& b) { return a.view < b.view; }
+
+/// Appends the pairs of a view node with `nodes`.
+void append_pairs(std::uint32_t view, const NodeList& nodes, std::vector<Pair>& to) {
+  const auto whole = [](float at) { return static_cast<std::uint16_t>(at); };
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    to.push_back({view, nodes.node[i], whole(nodes.x[i]), whole(nodes.y[i]), whole(nodes.z[i])});
+  }
+}
 
 class ViewQueue {
  public:
@@ -36,10 +44,15 @@ class ViewQueue {
 
   /// Runs until the queue is empty.
   void empty_queue() {
-    std::vector<Waiting> queue;
+    std::vector<Pair> queue;
+    NodeList root;
+    rendering_.scene().append_root(root);
     const auto roots = first_ == 0 ? 1 : views_.leaf_count();
-    for (std::uint32_t i = 0; i < roots; ++i) queue.push_back({first_ + i, Siblings::root()});
-    while (!queue.empty()) queue = next_generation(queue);
+    for (std::uint32_t i = 0; i < roots; ++i)
+      append_pairs(rendering_.fork(first_ + i), root, queue);
+    for (int generation = 0; !queue.empty(); ++generation) {
+      queue = next_generation(queue, generation);
+    }
   }
 
   /// Calls `use` with the map of each leaf.
@@ -63,52 +76,50 @@ class ViewQueue {
   }
 
   void fuse_one(std::uint32_t view, const UseMap& use) {
+    if (rendering_.fork(view) != view) return;  // has no map of its own
+    std::vector<float> handed(rendering_.map_floats());
     if (rendering_.is_leaf(view)) {
-      return use(view - views_.first_leaf(), map(view).first(rendering_.texels()));
+      rendering_.to_scene_units(map(view).first(rendering_.texels()), handed);
+      return use(view - views_.first_leaf(), handed);
     }
     const Octree::Node& node = views_.tree().nodes[view];
-    std::vector<float> handed(rendering_.map_floats());
     for (std::uint32_t c = 0; c < node.children; ++c) {
-      const std::uint32_t child = node.first_child + c;
+      const std::uint32_t child = rendering_.fork(node.first_child + c);
       rendering_.hand_down(view, map(view), child, handed);
       const std::span<float> own = map(child);
       for (std::size_t i = 0; i < own.size(); ++i) own[i] = std::min(own[i], handed[i]);
     }
   }
 
-  /// The pairs that a part of a generation leaves for the next; both sorted by view.
+  /// What a part of a generation leaves for the next.
   struct Left {
-    std::vector<Waiting> here, later;
+    std::vector<Pair> pairs;
     ManyViewsCounts counts;
   };
 
   /// `queue` is sorted by view, and so is the result.
-  std::vector<Waiting> next_generation(const std::vector<Waiting>& queue) {
-    // View nodes are numbered by level, children as their parents, so what is left for children
-    // is sorted by view, too.
+  std::vector<Pair> next_generation(const std::vector<Pair>& queue, int generation) {
     const std::vector<std::size_t> ends = parts(queue);
     std::vector<Left> left(ends.size());
     pool_.for_each(static_cast<int>(ends.size()), [&](int k) {
       const auto i = static_cast<std::size_t>(k);
       const std::size_t first = i == 0 ? 0 : ends[i - 1];
-      render({queue.data() + first, ends[i] - first}, left[i]);
+      render({queue.data() + first, ends[i] - first}, generation, left[i]);
     });
-    std::vector<Waiting> here, later;
+    std::vector<Pair> next;
     for (Left& part : left) {
-      here.insert(here.end(), part.here.begin(), part.here.end());
-      later.insert(later.end(), part.later.begin(), part.later.end());
+      next.insert(next.end(), part.pairs.begin(), part.pairs.end());
       counts_ += part.counts;
       part = {};
     }
-    std::vector<Waiting> next(here.size() + later.size());
-    std::merge(here.begin(), here.end(), later.begin(), later.end(), next.begin(), by_view);
-    counts_.queue_bytes = std::max<std::uint64_t>(counts_.queue_bytes,
-                                                  (queue.size() + next.size()) * sizeof(Waiting));
+    std::sort(next.begin(), next.end(), by_view);
+    counts_.queue_bytes =
+        std::max<std::uint64_t>(counts_.queue_bytes, (queue.size() + next.size()) * sizeof(Pair));
     return next;
   }
 
   /// Ends of parts of similar length; all pairs of a view are in one part.
-  std::vector<std::size_t> parts(const std::vector<Waiting>& queue) const {
+  std::vector<std::size_t> parts(const std::vector<Pair>& queue) const {
     const auto most = static_cast<std::size_t>(pool_.threads()) * 16;
     const std::size_t length = std::max<std::size_t>(64, queue.size() / most);
     std::vector<std::size_t> ends;
@@ -121,22 +132,41 @@ class ViewQueue {
     return ends;
   }
 
-  void render(std::span<const Waiting> part, Left& left) {
-    std::vector<Siblings> own;  // of one view
-    ViewRendering::Undecided undecided;
+  void render(std::span<const Pair> part, int generation, Left& left) {
+    NodeList own, later, children;  // of one view
+    ViewRendering::Scratch scratch;
     for (std::size_t i = 0; i < part.size();) {
       const std::uint32_t view = part[i].view;
-      own.clear();
-      for (; i < part.size() && part[i].view == view; ++i) own.push_back(part[i].siblings);
-      undecided.here.clear();
-      undecided.later.clear();
-      rendering_.render_once(view, own, map(view), undecided, left.counts);
-      for (const Siblings& s : undecided.here) left.here.push_back({view, s});
+      // A generation has as many subdivisions behind it as its number; the others were of views.
+      const int level = generation - rendering_.depth(view);
+      for (NodeList* list : {&own, &later, &children, &scratch.split}) list->clear();
+      std::size_t n = 0;
+      while (i + n < part.size() && part[i + n].view == view) ++n;
+      gather(part.subspan(i, n), own);
+      i += n;
+      rendering_.render_once(view, level, own, map(view), later, scratch, left.counts);
+      if (!scratch.split.empty()) {
+        rendering_.scene().append_children(scratch.split, level, children);
+      }
+      append_pairs(view, children, left.pairs);
       const Octree::Node& node = views_.tree().nodes[view];
-      for (std::uint32_t c = 0; c < node.children; ++c) {
-        for (const Siblings& s : undecided.later) left.later.push_back({node.first_child + c, s});
+      for (std::uint32_t c = 0; c < node.children && !later.empty(); ++c) {
+        append_pairs(rendering_.fork(node.first_child + c), later, left.pairs);
       }
     }
+  }
+
+  void gather(std::span<const Pair> pairs, NodeList& to) const {
+    to.make_room(pairs.size());
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const Pair& p = pairs[i];
+      to.x[i] = p.x;
+      to.y[i] = p.y;
+      to.z[i] = p.z;
+      to.node[i] = p.node;
+      to.shape[i] = rendering_.scene().shape(p.node);
+    }
+    to.resize(pairs.size());
   }
 
   const ViewRendering& rendering_;
@@ -152,7 +182,7 @@ class ViewQueue {
 ManyViewsCounts render_breadth_first(const ViewRendering& rendering, const ViewTree& views,
                                      bool share, const ThreadPool& pool, const UseMap& use) {
   ViewQueue queue(rendering, views, share, pool);
-  if (!rendering.scene_empty()) queue.empty_queue();
+  if (!rendering.scene().empty()) queue.empty_queue();
   queue.fuse(use);
   return queue.counts();
 }

@@ -1,8 +1,7 @@
 #include "renderer/view_maps/view_rendering.h"
 
 #include <bit>
-
-#include "analysis/geometry/bits.h"
+#include <limits>
 
 namespace lacuna {
 
@@ -19,63 +18,33 @@ ManyViewsCounts& ManyViewsCounts::operator+=(const ManyViewsCounts& o) {
   return *this;
 }
 
-/// Siblings relative to a view node, one lane for each octant; some lanes are empty.
-struct ViewRendering::Eight {
-  Float8x3 d;       // from the view node's centre to theirs
-  Float8 distance;  // the length of that
-  float radius;     // of their spheres
-  int level;
-  unsigned there;             // bit i: octant i is
-  std::uint32_t first_child;  // of their parent
-  unsigned octants;           // of all its children
-
-  std::uint32_t node(int lane) const {
-    return first_child + static_cast<std::uint32_t>(std::popcount(octants & ((1U << lane) - 1)));
-  }
-};
-
 namespace {
 
 constexpr float nothing = std::numeric_limits<float>::infinity();
 
-Float8x3 octant_signs() {
-  return {_mm256_setr_ps(-1, 1, -1, 1, -1, 1, -1, 1), _mm256_setr_ps(-1, -1, 1, 1, -1, -1, 1, 1),
-          _mm256_setr_ps(-1, -1, -1, -1, 1, 1, 1, 1)};
-}
-
-/// Fig. 4: no view below sees any part of a sphere. The region that none of them sees is a cone;
-/// the spheres of both nodes must fit between its rim and the scene node's centre.
-unsigned outside(const ViewTree::Node& v, const Float8x3& d, Float8 distance, float radius) {
-  if (v.cosine <= -1) return 0;
-  const Float8 cosine(v.cosine), sine(v.sine);
-  const Float8 along = dot(d, Float8x3{v.n.x, v.n.y, v.n.z});
-  const Mask8 unseen = cosine * distance > along;  // alpha > psi, without a division
-  if (!any(unseen)) return 0;
-  // |d| sin(alpha - psi), the distance to the rim, or that to the apex where it is nearer.
-  const Float8 across = sqrt(max(Float8(0.0F), distance * distance - along * along));
-  const Mask8 beyond = Float8(0.0F) > along * cosine + across * sine;
-  const Float8 to_rim = select(beyond, distance, across * cosine - along * sine);
-  return movemask(unseen && to_rim > Float8((radius + v.radius) * (1 + 1e-5F)));
-}
-
-/// Fig. 6: a scene node is smaller than `node_texels` for all views below, and none of them is
-/// further from their centre than its size, so it fills the same texel in all of them. `size`:
-/// of the map, over `node_texels`.
-unsigned same_texel(float size, const ViewTree::Node& v, const Float8x3& d, Float8 distance,
-                    float radius) {
-  if (v.radius > radius) return 0;
-  const Float8 nearest = distance - Float8(v.radius);
-  // 2 radius / nearest Paraboloid::stretch() < node_texels, without a division
-  const Float8 bound = nearest * (distance + abs(d.x));
-  return movemask(nearest > Float8(radius) && bound > Float8(radius * size) * distance);
-}
+/// Four bits of each shape, see SceneNodes::Node.
+Float8 sixteenth(Int8 shape, int bit) { return to_float((shape >> bit) & Int8(15)); }
 
 }  // namespace
 
-ViewRendering::ViewRendering(const Octree& scene, const ViewTree& views,
+/// A view node in the grid of the scene's nodes.
+struct ViewRendering::Visit {
+  V3f centre;
+  float radius;
+  V3f n;
+  float cosine, sine2;  // of the half angle of the normals' cone, and the square of its sine
+  /// Of n' in the normals' cone, the largest |n'| in each coordinate.
+  V3f widest;
+  float width;  // how far views lie before or behind the centre, along any n'
+  bool everywhere;
+  bool leaf;
+  int depth;  // forks above
+};
+
+ViewRendering::ViewRendering(const SceneNodes& scene, const ViewTree& views,
                              const ManyViewsSettings& settings)
     : scene_(scene), views_(views), settings_(settings), map_{settings.map_size} {
-  const std::size_t floats = (texels() + 7) / 8 * 8;
+  const std::size_t floats = (texels() + 7) / 8 * 8 + 8;  // see fill_cap()
   for (std::vector<float>* v : {&x_, &y_, &z_}) v->assign(floats, 0.0F);
   for (int i = 0; i < map_.texels(); ++i) {
     const V3f w = map_.direction(i);
@@ -83,162 +52,216 @@ ViewRendering::ViewRendering(const Octree& scene, const ViewTree& views,
     y_[static_cast<std::size_t>(i)] = w.y;
     z_[static_cast<std::size_t>(i)] = w.z;
   }
-  for (int level = 0; level <= scene.levels(); ++level) {
-    sizes_.push_back({scene.radius(level), static_cast<float>(std::ldexp(scene.side, -level - 1))});
-  }
-  below_.assign(views.tree().nodes.size(), 0);
-  for (auto i = static_cast<std::uint32_t>(below_.size()); i-- > 0;) {
-    const Octree::Node& v = views.tree().nodes[i];
-    if (v.children == 0) below_[i] = 1;
-    for (std::uint32_t c = 0; c < v.children; ++c) below_[i] += below_[v.first_child + c];
+  const std::vector<Octree::Node>& nodes = views.tree().nodes;
+  depth_.assign(nodes.size(), 0);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (std::uint32_t c = 0; c < nodes[i].children; ++c) {
+      depth_[nodes[i].first_child + c] =
+          static_cast<std::uint8_t>(depth_[i] + (nodes[i].children > 1 ? 1 : 0));
+    }
   }
 }
 
-inline ViewRendering::Eight ViewRendering::eight(const Siblings& s, const ViewTree::Node& v) const {
-  Eight e;
-  V3f middle;  // of the parent's cube
-  if (s.parent == Siblings::no_parent) {
-    e.level = 0;
-    e.first_child = 0;
-    e.octants = 1;
-    middle = scene_.nodes[0].centre + V3f(static_cast<float>(scene_.side) / 2);
-  } else {
-    const Octree::Node& parent = scene_.nodes[s.parent];
-    e.level = parent.level + 1;
-    e.first_child = parent.first_child;
-    e.octants = parent.octants;
-    middle = parent.centre;
-  }
-  e.there = s.octants & e.octants;
-  const LevelSize& size = sizes_[static_cast<std::size_t>(e.level)];
-  e.radius = size.radius;
-  const V3f d = middle - v.centre;
-  e.d = Float8x3{d.x, d.y, d.z} + octant_signs() * Float8(size.half_side);
-  e.distance = sqrt(length2(e.d));
-  return e;
+std::uint32_t ViewRendering::fork(std::uint32_t view) const {
+  const std::vector<Octree::Node>& nodes = views_.tree().nodes;
+  while (nodes[view].children == 1) view = nodes[view].first_child;
+  return view;
 }
 
-/// The data of a view node that all of its pairs share.
-struct ViewRendering::Visit {
-  const ViewTree::Node& v;
-  bool leaf;
-  int level;   // of the views' octree
-  float size;  // of the map, over node_texels
-  std::span<float> depths;
-  Undecided& left;
-  ManyViewsCounts counts = {};
-
-  void splat(int texel, float distance) const {
-    float& depth = depths[static_cast<std::size_t>(texel)];
-    depth = std::min(depth, distance);
-  }
-};
-
-inline ViewRendering::Visit ViewRendering::visit(std::uint32_t view, std::span<float> depths,
-                                                 Undecided& left) const {
-  return {.v = views_.node(view),
+inline ViewRendering::Visit ViewRendering::visit(std::uint32_t view) const {
+  const ViewTree::Node& node = views_.node(view);
+  const auto unit = static_cast<float>(scene_.unit());
+  Visit v{.centre = scene_.to_grid(node.centre),
+          .radius = node.radius / unit,
+          .n = node.n,
+          .cosine = node.sine,
+          .sine2 = node.cosine * node.cosine,
+          .widest = V3f(1.0F),
+          .width = node.radius / unit,
+          .everywhere = node.cosine <= -1,
           .leaf = is_leaf(view),
-          .level = settings_.share ? views_.tree().nodes[view].level : 0,
-          .size = static_cast<float>(map_.size) / settings_.node_texels,
-          .depths = depths,
-          .left = left};
+          .depth = depth(view)};
+  if (v.everywhere || !settings_.boxes) return v;
+  for (int k = 0; k < 3; ++k) {
+    const float n = std::min(1.0F, std::abs(v.n[k]));
+    // cos(angle to the axis - half angle of the cone); within the cone it is 1.
+    if (n < v.cosine) v.widest[k] = n * v.cosine - std::sqrt(1 - n * n) * node.cosine;
+  }
+  v.width = std::min(v.width, v.widest.dot(node.half) / unit);
+  return v;
 }
 
-inline void ViewRendering::look(const Siblings& siblings, Visit& visit) const {
-  const Eight e = eight(siblings, visit.v);
-  const bool scene_leaves = e.level == scene_.levels();
-  ManyViewsCounts& counts = visit.counts;
-  const auto looked = static_cast<std::uint64_t>(std::popcount(e.there));
-  counts.pairs += looked;
-  counts.generations[static_cast<std::size_t>(e.level + visit.level)] += looked;
-  const unsigned out = settings_.cull ? e.there & outside(visit.v, e.d, e.distance, e.radius) : 0;
-  counts.culled += static_cast<std::uint64_t>(std::popcount(out));
-  unsigned rest = e.there & ~out;
-  unsigned same = 0;
-  if (settings_.merge || scene_leaves) {
-    same = rest & same_texel(visit.size, visit.v, e.d, e.distance, e.radius);
+/// No view below sees any part of a scene node: for no n' in the cone of their normals, and from no
+/// place x of a view, a point p of the node has n' (p - x) > 0. Of p - x that is the difference of
+/// both centres plus what either centre may be off, by the boxes, or by the spheres (Fig. 4; the
+/// angle of the cone that no view sees is below a right angle here). The difference d lies beyond
+/// all planes if |d| cos(angle to n - half angle of the cone) is negative.
+inline unsigned ViewRendering::culled(const Visit& v, int level, const NodeList::Eight& e,
+                                      const Float8x3& d, Float8 length2) const {
+  Float8x3 centre = d;
+  Float8 off(v.width + scene_.radius(level));
+  if (settings_.boxes) {
+    const float size = scene_.half_side(level) / 16;
+    const Float8x3 from{sixteenth(e.shape, 8), sixteenth(e.shape, 16), sixteenth(e.shape, 24)};
+    const Float8x3 to{sixteenth(e.shape, 12), sixteenth(e.shape, 20), sixteenth(e.shape, 28)};
+    const Float8 middle(15.0F), one(1.0F), scale(size);
+    centre.x = d.x + (from.x + to.x - middle) * scale;
+    centre.y = d.y + (from.y + to.y - middle) * scale;
+    centre.z = d.z + (from.z + to.z - middle) * scale;
+    length2 = lacuna::length2(centre);
+    off = ((to.x - from.x + one) * Float8(v.widest.x) + (to.y - from.y + one) * Float8(v.widest.y) +
+           (to.z - from.z + one) * Float8(v.widest.z)) *
+              scale +
+          Float8(v.width);
   }
-  if (same != 0) {
-    alignas(32) std::array<float, 8> distances;
-    alignas(32) std::array<int, 8> texels;
-    e.distance.store(distances.data());
-    const Paraboloid::TexelCoord8 coords = map_.coords(e.d, e.distance);
-    map_.texel(coords).store(texels.data());
-    const float cover = settings_.cover;
-    const unsigned shown =
-        cover > 0 ? same & movemask(map_.covers_middle(coords, e.radius * cover)) : same;
-    for_each_bit(shown, [&](int i) {
-      visit.splat(texels[static_cast<std::size_t>(i)], distances[static_cast<std::size_t>(i)]);
-    });
-  }
-  rest &= ~same;
-  unsigned rendered = same;
-  if (visit.leaf && scene_leaves) {
-    if (rest != 0) fill(e, rest, visit.depths);
-    counts.large += static_cast<std::uint64_t>(std::popcount(rest));
-    rendered |= rest;
-  } else if (!visit.leaf && (scene_leaves || e.radius / 2 < visit.v.radius)) {  // Fig. 8
-    if (rest != 0) {
-      visit.left.later.push_back({siblings.parent, static_cast<std::uint8_t>(rest)});
-    }
-  } else {
-    for_each_bit(rest, [&](int i) { visit.left.here.push_back(Siblings::all_of(e.node(i))); });
-  }
-  counts.splats += static_cast<std::uint64_t>(std::popcount(rendered));
+  constexpr float rounding = 1 + 1e-5F, margin = 1.0F / 256;  // of half a leaf's side
+  const Float8 along = dot(centre, Float8x3{v.n.x, v.n.y, v.n.z});
+  const Float8 beyond =
+      Float8(0.0F) - along * Float8(v.cosine) - (off * Float8(rounding) + Float8(margin));
+  const Float8 across2 = length2 - along * along;
+  return movemask(beyond > Float8(0.0F) && beyond * beyond > across2 * Float8(v.sine2));
 }
 
-void ViewRendering::render(std::uint32_t view, std::span<const Siblings> waiting,
-                           std::span<float> depths, Undecided& left,
-                           ManyViewsCounts& counts) const {
-  Visit own = visit(view, depths, left);
-  for (const Siblings& first : waiting) {
-    look(first, own);
-    while (!left.here.empty()) {
-      const Siblings next = left.here.back();
-      left.here.pop_back();
-      look(next, own);
-    }
-  }
-  own.counts.sharing = own.counts.splats * below_[view];
-  counts += own.counts;
-}
-
-void ViewRendering::render_once(std::uint32_t view, std::span<const Siblings> waiting,
-                                std::span<float> depths, Undecided& left,
+inline void ViewRendering::look(const Visit& v, int level, const NodeList& nodes,
+                                std::span<float> depths, NodeList& later, Scratch& scratch,
                                 ManyViewsCounts& counts) const {
-  Visit own = visit(view, depths, left);
-  for (const Siblings& siblings : waiting) look(siblings, own);
-  own.counts.sharing = own.counts.splats * below_[view];
-  counts += own.counts;
+  if (nodes.empty()) return;
+  const bool scene_leaves = level == scene_.levels();
+  const float radius = scene_.radius(level);
+  const bool cull = settings_.cull && !v.everywhere;
+  // Fig. 6: a scene node is smaller than `node_texels` for all views below, and none of them is
+  // further from their centre than its size, so it fills the same texel in all of them.
+  const bool can_share = (settings_.merge || scene_leaves) && v.radius <= radius;
+  const float size = static_cast<float>(map_.size) / settings_.node_texels;
+  const bool defer = !v.leaf && (scene_leaves || radius / 2 < v.radius);  // Fig. 8
+  NodeList& rest = defer ? later : scratch.split;
+  rest.make_room(nodes.size());
+  const std::size_t before = rest.size();
+  if (scratch.texels.size() < nodes.size() + 8) {
+    scratch.texels.resize(2 * nodes.size() + 8);
+    scratch.distances.resize(2 * nodes.size() + 8);
+  }
+  std::size_t splats = 0, same_texel = 0, out_of_sight = 0;
+  for (std::size_t i = 0; i < nodes.size(); i += 8) {
+    const NodeList::Eight e = nodes.eight(i);
+    unsigned lanes = nodes.size() - i < 8 ? (1U << (nodes.size() - i)) - 1 : 0xff;
+    const Float8x3 d{e.x - Float8(v.centre.x), e.y - Float8(v.centre.y), e.z - Float8(v.centre.z)};
+    const Float8 squared = length2(d);
+    if (cull) {
+      const unsigned out = lanes & culled(v, level, e, d, squared);
+      out_of_sight += static_cast<std::size_t>(std::popcount(out));
+      lanes &= ~out;
+    }
+    if (can_share) {
+      const Float8 distance = sqrt(squared);
+      const Float8 nearest = distance - Float8(v.radius);
+      // 2 radius / nearest Paraboloid::stretch() < node_texels, without a division
+      const Float8 bound = nearest * (distance + abs(d.x));
+      const unsigned same =
+          lanes & movemask(nearest > Float8(radius) && bound > Float8(radius * size) * distance);
+      lanes &= ~same;
+      same_texel += static_cast<std::size_t>(std::popcount(same));
+      const Paraboloid::TexelCoord8 coords = map_.coords(d, distance);
+      const unsigned shown =
+          settings_.cover > 0
+              ? same & movemask(map_.covers_middle(coords, radius * settings_.cover))
+              : same;
+      const Int8 order = to_front(shown);
+      permute(map_.texel(coords), order).store_unaligned(&scratch.texels[splats]);
+      permute(distance, order).store_unaligned(&scratch.distances[splats]);
+      splats += static_cast<std::size_t>(std::popcount(shown));
+    }
+    rest.append(e, lanes);
+  }
+  for (std::size_t i = 0; i < splats; ++i) {
+    float& depth = depths[scratch.texels[i]];
+    depth = std::min(depth, scratch.distances[i]);
+  }
+  const std::size_t left = rest.size() - before;
+  counts.pairs += nodes.size();
+  counts.generations[static_cast<std::size_t>(level + v.depth)] += nodes.size();
+  counts.culled += out_of_sight;
+  counts.splats += same_texel;
+  if (v.leaf && scene_leaves) {
+    fill(v, rest, before, depths);
+    rest.resize(before);
+    counts.large += left;
+    counts.splats += left;
+  }
 }
 
-/// Fills all texels whose centre the sphere covers (3.2.4); as published, also that of its centre.
-void ViewRendering::fill(const Eight& e, unsigned lanes, std::span<float> depths) const {
-  alignas(32) std::array<float, 8> x, y, z, distances;
-  e.d.x.store(x.data());
-  e.d.y.store(y.data());
-  e.d.z.store(z.data());
-  e.distance.store(distances.data());
-  const float radius = settings_.cover > 0 ? settings_.cover * e.radius : e.radius;
-  for_each_bit(lanes, [&](int lane) {
-    const auto i = static_cast<std::size_t>(lane);
-    const float distance = distances[i];
-    const auto run = [&](int first, int n) {
-      float* const from = depths.data() + first;
-      for (int k = 0; k < n; ++k) from[k] = std::min(from[k], distance);
-    };
-    if (distance == 0) return run(0, map_.texels());
-    const V3f d(x[i], y[i], z[i]);
-    if (settings_.cover == 0) run(map_.texel(d), 1);
+void ViewRendering::render(std::uint32_t view, const NodeLevels& waiting, std::span<float> depths,
+                           NodeLevels& later, Scratch& scratch, ManyViewsCounts& counts) const {
+  const Visit v = visit(view);
+  const std::uint64_t splats = counts.splats;
+  scratch.fresh[0].clear();
+  for (int level = 0; level <= scene_.levels(); ++level) {
+    const auto l = static_cast<std::size_t>(level);
+    NodeList& below = scratch.fresh[(l + 1) % 2];
+    later[l].clear();
+    scratch.split.clear();
+    look(v, level, waiting[l], depths, later[l], scratch, counts);
+    look(v, level, scratch.fresh[l % 2], depths, later[l], scratch, counts);
+    below.clear();
+    if (!scratch.split.empty()) scene_.append_children(scratch.split, level, below);
+  }
+  counts.sharing += (counts.splats - splats) * views_.node(view).views;
+}
+
+void ViewRendering::render_once(std::uint32_t view, int level, const NodeList& nodes,
+                                std::span<float> depths, NodeList& later, Scratch& scratch,
+                                ManyViewsCounts& counts) const {
+  const std::uint64_t splats = counts.splats;
+  look(visit(view), level, nodes, depths, later, scratch, counts);
+  counts.sharing += (counts.splats - splats) * views_.node(view).views;
+}
+
+/// For leaves from number `first` on fills all texels whose centre the sphere covers (3.2.4); as
+/// published, also that of its centre.
+void ViewRendering::fill(const Visit& v, const NodeList& nodes, std::size_t first,
+                         std::span<float> depths) const {
+  const float whole = scene_.radius(scene_.levels());
+  const float radius = settings_.cover > 0 ? settings_.cover * whole : whole;
+  for (std::size_t i = first; i < nodes.size(); ++i) {
+    const V3f d = V3f(nodes.x[i], nodes.y[i], nodes.z[i]) - v.centre;
+    const float distance = d.length();
+    if (distance == 0) {
+      for (float& depth : depths) depth = 0;
+      continue;
+    }
+    if (settings_.cover == 0) {
+      float& depth = depths[static_cast<std::size_t>(map_.texel(d))];
+      depth = std::min(depth, distance);
+    }
     const float sine = distance > radius ? radius / distance : 1;
     const float cosine = std::sqrt(std::max(0.0F, 1 - sine * sine));
-    map_.for_each_run(d / distance, cosine, sine, run);
-  });
+    const V3f w = d / distance;
+    for (int half = 0; half < 2; ++half) {
+      fill_cap(half, map_.cap(half, w, cosine, sine), w, cosine, distance, depths);
+    }
+  }
+}
+
+/// Eight texels at a time, some of them beside the rectangle, where the cap is not.
+inline void ViewRendering::fill_cap(int half, const Paraboloid::Rectangle& r, const V3f& w,
+                                    float cosine, float distance, std::span<float> depths) const {
+  const Float8x3 axis{w.x, w.y, w.z};
+  for (int v = r.v_first; v < r.v_end; ++v) {
+    for (int u = r.u_first; u < r.u_end; u += 8) {
+      const auto at = static_cast<std::size_t>(map_.index(half, u, v));
+      const auto depth = Float8::load_unaligned(&depths[at]);
+      const Float8x3 to{Float8::load_unaligned(&x_[at]), Float8::load_unaligned(&y_[at]),
+                        Float8::load_unaligned(&z_[at])};
+      const Mask8 covered = dot(to, axis) >= Float8(cosine);
+      select(covered, min(depth, Float8(distance)), depth).store_unaligned(&depths[at]);
+    }
+  }
 }
 
 void ViewRendering::hand_down(std::uint32_t parent, std::span<const float> from,
                               std::uint32_t child, std::span<float> to) const {
-  const V3f step = views_.node(parent).centre - views_.node(child).centre;
+  const V3f step =
+      scene_.to_grid(views_.node(parent).centre) - scene_.to_grid(views_.node(child).centre);
   const Float8x3 s{step.x, step.y, step.z};
   for (std::size_t i = 0; i < from.size(); i += 8) {
     const auto depth = Float8::load_unaligned(&from[i]);
@@ -247,6 +270,12 @@ void ViewRendering::hand_down(std::uint32_t parent, std::span<const float> from,
     const Float8 moved = sqrt(length2(s + w * depth));
     select(Float8(nothing) > depth, moved, Float8(nothing)).store_unaligned(&to[i]);
   }
+}
+
+void ViewRendering::to_scene_units(std::span<const float> depths, std::vector<float>& to) const {
+  const auto unit = static_cast<float>(scene_.unit());
+  to.resize(depths.size());
+  for (std::size_t i = 0; i < depths.size(); ++i) to[i] = depths[i] * unit;
 }
 
 }  // namespace lacuna

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "renderer/view_maps/paraboloid.h"
+#include "renderer/view_maps/scene_nodes.h"
 #include "renderer/view_maps/view_tree.h"
 
 namespace lacuna {
@@ -14,7 +15,7 @@ struct ManyViewsCounts {
   std::uint64_t culled = 0;   ///< pairs that were culled
   std::uint64_t splats = 0;   ///< scene nodes that were rendered
   std::uint64_t large = 0;    ///< splats of leaves that may fill several texels
-  std::uint64_t sharing = 0;  ///< view leaves that share a splat, summed over splats
+  std::uint64_t sharing = 0;  ///< single views that share a splat, summed over splats
   /// Pairs by the number of subdivisions that led to them.
   std::array<std::uint64_t, 2 * Octree::most_levels + 1> generations{};
   /// Of a breadth-first traversal: the largest size of its queue and of its maps of view nodes, and
@@ -41,69 +42,74 @@ struct ManyViewsSettings {
   bool share = true;  ///< false: every view leaf by itself, ManyLoDs (Hollaender et al. 2011)
   bool merge = true;  ///< false: every leaf is rendered, no inner node
   bool cull = true;
+  /// Culls a scene node by the box of the leaves below it and the box of the views; false: by the
+  /// spheres of both nodes, as in the paper.
+  bool boxes = true;
   bool breadth_first = false;  ///< use a queue, as in the paper; the same maps
 };
 
-/// Some children of a node of the scene's octree.
-struct Siblings {
-  std::uint32_t parent;  ///< no_parent: the root alone
-  std::uint8_t octants;
+/// Scene nodes by level.
+using NodeLevels = std::array<NodeList, Octree::most_levels + 1>;
 
-  static constexpr std::uint32_t no_parent = ~std::uint32_t{0};
-  static constexpr Siblings root() { return {no_parent, 1}; }
-  static constexpr Siblings all_of(std::uint32_t parent) { return {parent, 0xff}; }
-};
-
-/// Renders nodes of a scene into the map of one view node at a time (Kol et al. 2018, 3.2). Works
-/// on eight siblings at once, which have the same level and size.
+/// Renders nodes of a scene into the map of one view node at a time (Kol et al. 2018, 3.2), level
+/// by level, eight scene nodes at once. Lengths are in the grid of SceneNodes, those of maps too.
 class ViewRendering {
  public:
   /// The references outlive it.
-  ViewRendering(const Octree& scene, const ViewTree& views, const ManyViewsSettings& settings);
+  ViewRendering(const SceneNodes& scene, const ViewTree& views, const ManyViewsSettings& settings);
 
-  /// Whether there is nothing to render.
-  bool scene_empty() const { return scene_.empty(); }
-  /// Length of a map in floats: its texels, rounded up to whole vectors of eight.
+  const SceneNodes& scene() const { return scene_; }
+  /// Length of a map in floats: its texels, rounded up to whole vectors of eight, and one more.
   std::size_t map_floats() const { return x_.size(); }
   std::size_t texels() const { return static_cast<std::size_t>(map_.texels()); }
   bool is_leaf(std::uint32_t view) const { return views_.tree().nodes[view].children == 0; }
+  /// The first node at or below `view` that has several children, or none: those between have the
+  /// same views, and so the same bounds and the same map.
+  std::uint32_t fork(std::uint32_t view) const;
+  /// Number of subdivisions of views before a view node.
+  int depth(std::uint32_t view) const { return settings_.share ? depth_[view] : 0; }
 
-  /// Nodes of the scene that a view node leaves undecided.
-  struct Undecided {
-    std::vector<Siblings> here;   ///< to be subdivided for this view node
-    std::vector<Siblings> later;  ///< to be decided by the views below it
+  /// Memory of a traversal, which render() uses anew each time.
+  struct Scratch {
+    NodeList split;                     ///< nodes of a level that are subdivided
+    std::array<NodeList, 2> fresh;      ///< their children, and those of the level above
+    std::vector<std::uint32_t> texels;  ///< splats of a level
+    std::vector<float> distances;       ///< of the splats
   };
-  /// Renders the scene nodes `waiting`, with all nodes below them, into the map of a view node;
-  /// `left.here` ends empty. Adds the nodes that its children must decide to `left.later`.
-  void render(std::uint32_t view, std::span<const Siblings> waiting, std::span<float> depths,
-              Undecided& left, ManyViewsCounts& counts) const;
-  /// render() without the nodes below `waiting`.
-  void render_once(std::uint32_t view, std::span<const Siblings> waiting, std::span<float> depths,
-                   Undecided& left, ManyViewsCounts& counts) const;
+  /// Renders the scene nodes `waiting`, with all nodes below them, into the map of a view node,
+  /// which is a fork(). Replaces `later` by the nodes that the views below must decide.
+  void render(std::uint32_t view, const NodeLevels& waiting, std::span<float> depths,
+              NodeLevels& later, Scratch& scratch, ManyViewsCounts& counts) const;
+  /// render() for nodes of one level, without what is below them: appends nodes that are to be
+  /// subdivided for this view node to scratch.split, others that it cannot decide to `later`.
+  void render_once(std::uint32_t view, int level, const NodeList& nodes, std::span<float> depths,
+                   NodeList& later, Scratch& scratch, ManyViewsCounts& counts) const;
 
   /// Copies the map of `parent` to its `child` (3.2.5): distances to the same points from the
   /// child's own centre, in the same texels. Both spans have map_floats() elements.
   void hand_down(std::uint32_t parent, std::span<const float> from, std::uint32_t child,
                  std::span<float> to) const;
+  /// The distances of a map in scene units.
+  void to_scene_units(std::span<const float> depths, std::vector<float>& to) const;
 
  private:
-  struct Eight;
-  struct LevelSize {
-    float radius, half_side;  // of the spheres and of the cubes
-  };
   struct Visit;  // of a view node
-  Visit visit(std::uint32_t view, std::span<float> depths, Undecided& left) const;
-  void look(const Siblings& siblings, Visit& visit) const;
-  Eight eight(const Siblings& s, const ViewTree::Node& v) const;
-  void fill(const Eight& e, unsigned lanes, std::span<float> depths) const;
+  Visit visit(std::uint32_t view) const;
+  unsigned culled(const Visit& v, int level, const NodeList::Eight& e, const Float8x3& d,
+                  Float8 length2) const;
+  void look(const Visit& v, int level, const NodeList& nodes, std::span<float> depths,
+            NodeList& later, Scratch& scratch, ManyViewsCounts& counts) const;
+  void fill(const Visit& v, const NodeList& nodes, std::size_t first,
+            std::span<float> depths) const;
+  void fill_cap(int half, const Paraboloid::Rectangle& r, const V3f& w, float cosine,
+                float distance, std::span<float> depths) const;
 
-  const Octree& scene_;
+  const SceneNodes& scene_;
   const ViewTree& views_;
   ManyViewsSettings settings_;
   Paraboloid map_;
-  std::vector<LevelSize> sizes_;      // of the scene's levels
-  std::vector<float> x_, y_, z_;      // of the directions of the texels
-  std::vector<std::uint32_t> below_;  // of each view node, its leaves
+  std::vector<float> x_, y_, z_;     // of the directions of the texels
+  std::vector<std::uint8_t> depth_;  // of each view node, forks above it
 };
 
 }  // namespace lacuna

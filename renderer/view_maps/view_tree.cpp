@@ -1,6 +1,7 @@
 #include "renderer/view_maps/view_tree.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "analysis/geometry/morton.h"
 #include "renderer/core/sampling.h"
@@ -15,6 +16,7 @@ struct Sum {
   V3f high{-std::numeric_limits<float>::infinity()};
   V3d n{0.0};
   bool everywhere = false;
+  std::uint32_t views = 0;
 
   void add(const Sum& o) {
     for (int k = 0; k < 3; ++k) {
@@ -23,6 +25,7 @@ struct Sum {
     }
     n += o.n;
     everywhere = everywhere || o.everywhere;
+    views += o.views;
   }
 };
 
@@ -48,13 +51,27 @@ ViewTree::ViewTree(std::span<const View> views, int levels, V3d corner, double s
     leaf_of_[view] = static_cast<std::uint32_t>(leaves.size()) - 1;
   }
   tree_ = build_octree(leaves, levels, corner, side);
+  bound(views);
+}
+
+ViewTree ViewTree::of_single_views(std::span<const View> views) {
+  ViewTree single;
+  single.tree_.nodes.resize(views.size());
+  single.tree_.first = {0, static_cast<std::uint32_t>(views.size())};
+  single.leaf_of_.resize(views.size());
+  std::iota(single.leaf_of_.begin(), single.leaf_of_.end(), 0U);
+  single.bound(views);
+  return single;
+}
+
+/// Computes the bounds of all nodes of the tree.
+void ViewTree::bound(std::span<const View> views) {
   nodes_.resize(tree_.nodes.size());
   if (views.empty()) return;
-
   std::vector<Sum> sums(nodes_.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
     const View& v = views[i];
-    sums[first_leaf() + leaf_of_[i]].add({v.x, v.x, V3d(v.n), v.n == V3f(0.0F)});
+    sums[first_leaf() + leaf_of_[i]].add({v.x, v.x, V3d(v.n), v.n == V3f(0.0F), 1});
   }
   for (std::size_t i = nodes_.size(); i-- > 0;) {
     const Octree::Node& node = tree_.nodes[i];
@@ -68,6 +85,8 @@ ViewTree::ViewTree(std::span<const View> views, int levels, V3d corner, double s
     const float radius = (s.high - s.low).length() * 0.5F;
     nodes_[i].centre = centre;
     nodes_[i].radius = radius * (1 + 1e-6F);
+    nodes_[i].half = (s.high - s.low) * (0.5F * (1 + 1e-6F));
+    nodes_[i].views = s.views;
     nodes_[i].n = s.n.length2() > 0 ? V3f(s.n.normalized()) : V3f(1, 0, 0);
   }
   for (std::size_t i = 0; i < views.size(); ++i) {

@@ -22,15 +22,19 @@ class ViewTree {
   struct Node {
     V3f centre;    ///< of their bounding sphere
     float radius;  ///< of their bounding sphere; 0 for a single view
+    V3f half;      ///< half the size of their bounding box, which has the same centre
     V3f n;         ///< axis of the cone around their normals, unit
     /// Cosine and sine of the largest angle between n and a direction that one of them sees: the
     /// half angle of the normals' cone plus a right angle. cosine -1: all directions.
     float cosine, sine;
+    std::uint32_t views;  ///< number of views
   };
 
   /// `levels` in [0, Octree::most_levels] of the octree. The cube at `corner` with `side` contains
   /// all views.
   ViewTree(std::span<const View> views, int levels, V3d corner, double side);
+  /// Leaves alone, one for each view, in the order of `views`.
+  static ViewTree of_single_views(std::span<const View> views);
 
   const Octree& tree() const { return tree_; }
   const Node& node(std::uint32_t i) const { return nodes_[i]; }
@@ -41,6 +45,9 @@ class ViewTree {
   std::uint32_t leaf_of(std::size_t view) const { return leaf_of_[view]; }
 
  private:
+  ViewTree() = default;
+  void bound(std::span<const View> views);
+
   Octree tree_;
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> leaf_of_;

@@ -16,9 +16,14 @@ constexpr std::uint32_t maps_between_stops = 256;
 
 void ViewMapVisibility::prepare(const PrepareContext& context) {
   const Bounds& box = context.scene.bounds();
-  cube_ = octree_cube(box.low, box.high);
-  cell_ = Octree::radius(cube_.side, settings_.levels);
-  if (settings_.method != ViewMapMethod::per_view) scene_ = context.space.octree(settings_.levels);
+  cube_ = octree_cube(box.low, box.high, settings_.levels);
+  cell_ = Octree::radius(cube_.side, cube_.levels);
+  if (settings_.method != ViewMapMethod::per_view) {
+    const std::shared_ptr<const Octree> scene = context.space.octree(settings_.levels);
+    PassSeconds seconds;
+    scene_ = std::make_unique<SceneNodes>(*scene, context.pool);
+    seconds.end(scene_seconds_);
+  }
   texels_ = map_texels({settings_.map_size});
 }
 
@@ -53,7 +58,11 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
       views.push_back({p.x + p.n * (before_surface * cell_), p.n});
     }
   }
-  views_ = std::make_unique<ViewTree>(views, settings_.levels, cube_.corner, cube_.side);
+  const bool single =
+      settings_.share == ViewSharing::none && settings_.method != ViewMapMethod::megaviews;
+  views_ =
+      std::make_unique<ViewTree>(single ? ViewTree::of_single_views(views)
+                                        : ViewTree(views, cube_.levels, cube_.corner, cube_.side));
   seconds.end(tree_seconds_);
   leaves_ += views_->leaf_count();
   ++passes_;
@@ -67,7 +76,8 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
   };
   const ThreadPool& pool = pass.context.pool;
   if (settings_.method == ViewMapMethod::per_view) {
-    counters.rays += trace_views(pass.context.scene.rays(), *views_, texels_, pool, take);
+    counters.rays += trace_views(pass.context.scene.rays(), *views_, texels_,
+                                 settings_.rays == ViewRays::packets, pool, take);
   } else {
     const ManyViewsCounts counts =
         render_views(*scene_, *views_,
@@ -77,6 +87,7 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
                       .share = settings_.method == ViewMapMethod::megaviews,
                       .merge = settings_.method != ViewMapMethod::per_view_splats,
                       .cull = settings_.cull,
+                      .boxes = settings_.bounds == ViewBounds::boxes,
                       .breadth_first = settings_.traversal == ViewTraversal::breadth_first},
                      pool, take);
     queue_peak_ = std::max(queue_peak_, counts.queue_peak());
@@ -119,10 +130,11 @@ std::vector<std::pair<std::string, double>> ViewMapVisibility::statistics() cons
   const auto number = [](auto n) { return static_cast<double>(n); };
   const auto splats = number(std::max<std::uint64_t>(1, counts_.splats));
   std::vector<std::pair<std::string, double>> stats{
-      {"scene_leaves", number(scene_ ? scene_->leaves().size() : 0)},
+      {"scene_leaves", number(scene_ ? scene_->leaf_count() : 0)},
       {"view_leaves", number(leaves_)},
       {"view_passes", number(passes_)},
       {"view_map_bytes", number(maps_->bytes())},
+      {"view_scene_cpu_seconds", scene_seconds_},
       {"view_tree_cpu_seconds", tree_seconds_},
       {"view_map_cpu_seconds", map_seconds_},
       {"view_pairs", number(counts_.pairs)},

@@ -35,9 +35,9 @@ class ViewMapVisibility : public VisibilityBase {
   bool sees(std::uint32_t leaf, const At& at) const;
 
   ViewMapsVisibilitySettings settings_;
-  OctreeCube cube_;                      // of both octrees
-  std::shared_ptr<const Octree> scene_;  // null for per_view, which traces rays
-  float cell_ = 0;                       // radius of the scene's leaves
+  OctreeCube cube_;                    // of both octrees
+  std::unique_ptr<SceneNodes> scene_;  // null for per_view, which traces rays
+  float cell_ = 0;                     // radius of the scene's leaves
   std::unique_ptr<ViewTree> views_;
   std::unique_ptr<ViewMaps> maps_;
   std::vector<MapTexel> texels_;      // of a map
@@ -47,7 +47,7 @@ class ViewMapVisibility : public VisibilityBase {
   std::uint64_t queue_peak_ = 0;  // largest of all passes
   std::uint64_t leaves_ = 0;      // of all passes of an iteration
   int passes_ = 0;
-  double tree_seconds_ = 0, map_seconds_ = 0;
+  double scene_seconds_ = 0, tree_seconds_ = 0, map_seconds_ = 0;
 };
 
 }  // namespace lacuna

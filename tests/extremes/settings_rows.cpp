@@ -22,13 +22,20 @@ bool has_too_many_lights(const Method& method) {
   const auto* lights = std::get_if<ManyLightsSettings>(&method.settings);
   return lights != nullptr && lights->light_paths > 1 << 14;
 }
+/// Maps of megabytes, each for a light: few lights will do.
+bool has_large_maps(const Method& method) {
+  const auto* lights = std::get_if<ManyLightsSettings>(&method.settings);
+  if (lights == nullptr) return false;
+  const auto* maps = std::get_if<ViewMapsVisibilitySettings>(&lights->visibility);
+  return maps != nullptr && maps->map_size > 256;
+}
 void check_many_lights(Stage& stage, JobSpec job, const Furnace& furnace, bool quick,
                        const Method& method, Check& check) {
   auto& lights = std::get<ManyLightsSettings>(job.integrator);
   // Lights of one cell share a map: few cells, few maps.
   if (auto* maps = std::get_if<ViewMapsVisibilitySettings>(&lights.visibility)) maps->levels = 5;
   if (quick) {
-    lights.light_paths = 1 << 14;
+    lights.light_paths = has_large_maps(method) ? 1 << 7 : 1 << 14;
     job.resolution = {4, 4};
     check_furnace(stage.render(job), method, furnace, check);
   } else {
@@ -71,7 +78,7 @@ Row at(End end, const std::string& name, const Effort& effort) {
               JobSpec job = stage.job(m, scene);
               if (has_no_known_mean(m)) job.budget.iterations = 2;
               check.or_refused([&] {
-                if (has_too_many_lights(m)) {
+                if (has_too_many_lights(m) || has_large_maps(m)) {
                   check_many_lights(stage, job, f, effort.quick, m, check);
                 } else if (effort.quick && spare_connections(job)) {
                   check.sound(stage.render(job));

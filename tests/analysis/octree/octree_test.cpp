@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <set>
 
@@ -61,7 +62,7 @@ TEST_P(SurfaceOctree, LeavesAreTheCubesThatTrianglesMeet) {
     const Octree tree = surface_octree(soup, levels, pool, no_memory_limit);
     expect_whole(tree, levels);
     // Every cube of the grid, one after another.
-    const OctreeCube cube = octree_cube(soup);
+    const OctreeCube cube = octree_cube(soup, levels);
     const int n = 1 << levels;
     const GridTransform cells{cube.corner, cube.side / n};
     std::set<std::array<int, 3>> expected;
@@ -99,6 +100,22 @@ TEST(SurfaceOctree, IsTheSameForAnyNumberOfThreads) {
   for (std::size_t i = 0; i < one.nodes.size(); ++i) {
     EXPECT_EQ(one.nodes[i].centre, two.nodes[i].centre);
     EXPECT_EQ(one.nodes[i].first_child, two.nodes[i].first_child);
+  }
+}
+
+// A resolution between powers of two: 2^levels leaves along the longest side, in a larger root.
+TEST(SurfaceOctree, LevelsNeedNotBeWhole) {
+  const TriangleSoup soup = random_soup(60, 3, 5);
+  const double longest = octree_cube(soup, 5).side;
+  std::size_t before = surface_octree(soup, 5, ThreadPool(1), no_memory_limit).leaves().size();
+  for (const double levels : {5.3, 5.6, 5.9}) {
+    const OctreeCube cube = octree_cube(soup, levels);
+    EXPECT_EQ(cube.levels, 6);
+    EXPECT_NEAR(longest / (cube.side / 64), std::exp2(levels), 1e-9);
+    const Octree tree = surface_octree(soup, levels, ThreadPool(2), no_memory_limit);
+    expect_whole(tree, 6);
+    EXPECT_GT(tree.leaves().size(), before);
+    before = tree.leaves().size();
   }
 }
 

@@ -49,7 +49,8 @@ using Maps = std::vector<std::vector<float>>;
 Maps maps_of(const Octree& scene, const ViewTree& views, const ManyViewsSettings& settings,
              int threads = 2, ManyViewsCounts* counts = nullptr) {
   Maps maps(views.leaf_count());
-  const auto told = render_views(scene, views, settings, ThreadPool(threads),
+  const SceneNodes nodes(scene, ThreadPool(threads));
+  const auto told = render_views(nodes, views, settings, ThreadPool(threads),
                                  [&](std::uint32_t leaf, std::span<const float> depths) {
                                    maps[leaf].assign(depths.begin(), depths.end());
                                  });
@@ -140,24 +141,62 @@ TEST(Paraboloid, LeavesOutTheCornersOfTheSquares) {
   }
 }
 
-// The texels of a cap are those whose middles lie in it, each once.
-TEST(Paraboloid, FillsCaps) {
+// The rectangles of a cap have all texels whose middles lie in it, and few more than its image.
+TEST(Paraboloid, FindsCaps) {
   const Paraboloid map{16};
   Rng rng(4, 0, 0, Rng::Purpose::test);
+  std::size_t inside = 0, held = 0;
   for (int n = 0; n < 3000; ++n) {
     const V3f w = random_direction(rng);
     const float angle = rng.next() * pi / 2;
     const float cosine = std::cos(angle);
-    std::vector<int> times(static_cast<std::size_t>(map.texels()), 0);
-    map.for_each_run(w, cosine, std::sin(angle), [&](int first, int count) {
-      for (int t = first; t < first + count; ++t) ++times[static_cast<std::size_t>(t)];
-    });
-    for (int t = 0; t < map.texels(); ++t) {
-      const float off = map.direction(t).dot(w) - cosine;
-      const bool corner = map.coord(map.direction(t)).half != t / 256;
-      if (std::abs(off) < 1e-4F || corner) continue;
-      EXPECT_EQ(times[static_cast<std::size_t>(t)], off > 0 ? 1 : 0) << t << " " << off;
+    for (int half = 0; half < 2; ++half) {
+      const Paraboloid::Rectangle r = map.cap(half, w, cosine, std::sin(angle));
+      held += static_cast<std::size_t>((r.v_end - r.v_first) * (r.u_end - r.u_first));
+      for (int t = half * 256; t < half * 256 + 256; ++t) {
+        const bool corner = map.coord(map.direction(t)).half != half;
+        if (corner || map.direction(t).dot(w) < cosine) continue;
+        ++inside;
+        const int v = t / 16 % 16, u = t % 16;
+        EXPECT_TRUE(v >= r.v_first && v < r.v_end && u >= r.u_first && u < r.u_end) << t;
+      }
     }
+  }
+  EXPECT_LT(double(held), 3 * double(inside));
+}
+
+// A leaf nearby fills exactly the texels whose middles its sphere covers, in maps of any size.
+TEST(ManyViews, FillWhatALeafCovers) {
+  const std::vector<std::uint64_t> codes{0};
+  const Octree voxel = build_octree(codes, 3, V3d(0.0), 1);
+  const V3f middle = voxel.leaves()[0].centre;
+  Rng rng(8, 0, 0, Rng::Purpose::test);
+  for (const int size : {8, 16, 21, 64}) {
+    const Paraboloid map{size};
+    int filled = 0;
+    for (int n = 0; n < 40; ++n) {
+      const V3f x = middle + random_direction(rng) * (0.05F + 0.3F * rng.next());
+      const V3f d = middle - x;
+      const std::vector<View> view{{x, V3f(0.0F)}};
+      ManyViewsCounts counts;
+      const Maps maps = maps_of(voxel, ViewTree(view, 3, V3d(0.0), 1),
+                                {.map_size = size, .cover = 0.7F}, 1, &counts);
+      if (counts.large == 0) continue;
+      const float sine = 0.7F * voxel.radius(3) / d.length();
+      const float cosine = sine < 1 ? std::sqrt(1 - sine * sine) : 0;
+      for (int t = 0; t < map.texels(); ++t) {
+        const float off = map.direction(t).dot(d.normalized()) - cosine;
+        if (std::abs(off) < 1e-4F || map.coord(map.direction(t)).half != t / (size * size))
+          continue;
+        const float shown = maps[0][static_cast<std::size_t>(t)];
+        EXPECT_EQ(shown<nothing, off> 0) << t << " of " << size;
+        if (off > 0) {
+          EXPECT_NEAR(shown, d.length(), 1e-5);
+        }
+        filled += off > 0;
+      }
+    }
+    EXPECT_GT(filled, 100);
   }
 }
 
@@ -189,14 +228,16 @@ TEST(ViewTree, SpheresAndConesHoldAllViewsBelow) {
   }
 }
 
-// What a view may see is never culled, whatever node it is culled for.
+// What a view may see is never culled, whatever node it is culled for: by spheres, which also are
+// what nodes are rendered as. (By boxes some are culled whose spheres alone are seen, see
+// view_pairs_test.cpp.)
 TEST(ManyViews, CullOnlyWhatNoViewSees) {
   for (const Facing facing : {Facing::anywhere, Facing::alike, Facing::everywhere}) {
     const Octree scene = random_tree(400, 4, 11);
     const auto views = random_views(60, facing, 12);
     const ViewTree tree(views, 4, V3d(0.0), 1);
     ManyViewsCounts counts;
-    const Maps culled = maps_of(scene, tree, {.cull = true}, 2, &counts);
+    const Maps culled = maps_of(scene, tree, {.cull = true, .boxes = false}, 2, &counts);
     const Maps all = maps_of(scene, tree, {.cull = false});
     const Paraboloid map{16};
     for (std::size_t i = 0; i < views.size(); ++i) {
@@ -258,7 +299,8 @@ TEST(ManyViews, SharedOrNotAreAlike) {
   EXPECT_LT(double(different), 0.3 * double(texels)) << different << " of " << texels;
   EXPECT_LT(together.splats, apart.splats);
   EXPECT_GT(double(together.sharing) / double(together.splats), 1.5);
-  EXPECT_EQ(apart.sharing, apart.splats);
+  // Apart, only the views of a leaf share.
+  EXPECT_LT(double(apart.sharing), 1.2 * double(apart.splats));
   EXPECT_LT(together.queue_peak(), apart.queue_peak());
 }
 
@@ -323,11 +365,11 @@ TEST(ManyViews, AreTheSameBreadthFirst) {
     EXPECT_EQ(wide.generations, deep.generations);
     EXPECT_EQ(wide.sharing, deep.sharing);
     EXPECT_EQ(wide.queue_bytes, wide_alone.queue_bytes);
-    // A generation and the next; up to eight pairs in twelve bytes.
-    EXPECT_GE(wide.queue_bytes, deep.queue_peak() * 12 / 8);
-    EXPECT_LE(wide.queue_bytes, 2 * deep.queue_peak() * 12);
+    // A generation and the next; sixteen bytes a pair.
+    EXPECT_GE(wide.queue_bytes, deep.queue_peak() * 16);
+    EXPECT_LE(wide.queue_bytes, 2 * deep.queue_peak() * 16);
     const std::size_t maps = share ? tree.tree().nodes.size() : tree.leaf_count();
-    EXPECT_EQ(wide.unfused_bytes, maps * 512 * sizeof(float));
+    EXPECT_EQ(wide.unfused_bytes, maps * (512 + 8) * sizeof(float));
     EXPECT_EQ(deep.queue_bytes + deep.unfused_bytes, 0U);
   }
 }

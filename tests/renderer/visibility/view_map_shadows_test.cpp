@@ -66,7 +66,7 @@ TEST_P(ViewMapShadows, AreNearlyThoseOfRays) {
     change(s);
     return s;
   };
-  Moments fine, coarser, views, gain, lods, larger, covering;
+  Moments fine, coarser, views, gain, lods, alone, larger, covering;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     LitScene lit({GetParam()}, 100, 2, true, seed);
     const auto wrong = [&](const ViewMapsVisibilitySettings& s) {
@@ -79,6 +79,11 @@ TEST_P(ViewMapShadows, AreNearlyThoseOfRays) {
     views.add(plain.wrong);
     gain.add(plain.wrong / plain.unseen);
     lods.add(wrong(changed([](auto& s) { s.method = M::many_lods; })) - plain.wrong);
+    alone.add(wrong(changed([](auto& s) {
+                s.method = M::many_lods;
+                s.share = ViewSharing::none;
+              })) -
+              plain.wrong);
     larger.add((wrong(changed([](auto& s) { s.node_texels = 1.75; })) - plain.wrong) /
                plain.unseen);
     covering.add((wrong(changed([](auto& s) { s.cover = 0.82; })) - plain.wrong) / plain.unseen);
@@ -89,12 +94,45 @@ TEST_P(ViewMapShadows, AreNearlyThoseOfRays) {
   expect_below(gain, 0.7, "views beside what calls everything seen");
   expect_below(lods, 0.02, "the two orders of traversal");
   EXPECT_GT(statistics::t_test_at_least(lods, -0.02), 1 - level);
+  expect_below(alone, 0.02, "a map for each light");
   expect_below(larger, 0.1, "larger nodes, over what is not seen");
   expect_below(covering, 0.05, "covering nodes, over what is not seen");
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ViewMapShadows, testing::Values("ajar", "atrium", "bends"),
                          [](const auto& s) { return std::string(s.param); });
+
+// Rays of one origin in packets hit what they hit one by one.
+TEST(ViewMapRays, InPacketsAreAsOneByOne) {
+  const LitScene lit({"atrium"}, 100, 2);
+  const RayCaster& rays = lit.scene().rays();
+  const std::vector<MapTexel> texels = map_texels({16});
+  Rng rng(3, 0, 0, Rng::Purpose::test);
+  const Bounds& box = lit.scene().bounds();
+  std::size_t met = 0, missed = 0, apart = 0;
+  for (int k = 0; k < 40; ++k) {
+    const V3d size = box.high - box.low;
+    const V3f o(box.low + V3d(rng.next(), rng.next(), rng.next()) * size);
+    std::vector<Ray> asked;
+    for (const MapTexel& t : texels) asked.push_back({o, t.direction});
+    asked.resize(asked.size() - 3);  // the last packet is not full
+    asked[100].d = V3f(std::numeric_limits<float>::quiet_NaN());
+    std::vector<Hit> hits(asked.size());
+    std::vector<std::uint8_t> found(asked.size());
+    rays.intersect(asked, hits, found);
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      Hit alone;
+      const bool hit = rays.intersect(asked[i], alone);
+      // Rays through the edge of two triangles may hit either.
+      apart += found[i] != hit || (hit && std::abs(hits[i].t - alone.t) > 1e-4F * alone.t);
+      (hit ? met : missed) += 1;
+    }
+    EXPECT_EQ(found[100], 0) << "not finite";
+  }
+  EXPECT_GT(met, 10000U);
+  EXPECT_GT(missed, 10U);
+  EXPECT_LE(apart, met / 1000);
+}
 
 }  // namespace
 }  // namespace lacuna
