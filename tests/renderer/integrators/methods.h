@@ -113,6 +113,7 @@ Settings resampled(int light_paths, const Change& change) {
   Settings s;
   s.light_paths = light_paths;
   if constexpr (requires { s.record_density; }) s.record_density = 0.03;  // of small pictures
+  if constexpr (requires { s.draws; }) s.draws = 4;  // about as many connections as others make
   change(s);
   return s;
 }
@@ -290,6 +291,23 @@ inline std::vector<Method> unusual_connections(int max_depth, int light_paths = 
   });
   add("cache, more neighbours than records", Cache{}, [](auto& s) {
     s.neighbours = 64;
+    s.record_density = 0.005;
+  });
+  using Probabilistic = ProbabilisticConnectionsSettings;
+  add("probabilistic, as published", Probabilistic{}, [](auto& s) {
+    s.count_as = 1;
+    s.draws = s.neighbours = 1;
+    s.roulette = 0;
+    s.splat_paths = 1;
+  });
+  add("probabilistic, unweighted, several draws and records", Probabilistic{}, [](auto& s) {
+    s.weighted = false;
+    s.draws = 3;
+    s.neighbours = 4;
+  });
+  add("probabilistic, all uniform", Probabilistic{}, [](auto& s) { s.uniform = 1; });
+  add("probabilistic, hardly any uniform, few records", Probabilistic{}, [](auto& s) {
+    s.uniform = 0.05;
     s.record_density = 0.005;
   });
   return all;
