@@ -113,7 +113,6 @@ Settings resampled(int light_paths, const Change& change) {
   Settings s;
   s.light_paths = light_paths;
   if constexpr (requires { s.record_density; }) s.record_density = 0.03;  // of small pictures
-  if constexpr (requires { s.draws; }) s.draws = 4;  // about as many connections as others make
   change(s);
   return s;
 }
