@@ -54,7 +54,8 @@ bool spare_connections(JobSpec& job) {
       [most_paths]<class S>(S& s) {
         if constexpr (requires { s.light_paths; })
           s.light_paths = std::min(s.light_paths, most_paths);
-        return requires { s.record_density; } && !requires { s.cached_depth; };
+        constexpr bool hybrid = requires { s.cached_depth; };
+        return !hybrid && requires { s.record_density; };
       },
       bdpt->connections);
   if (!records || bdpt->max_depth <= most_tables) return false;
