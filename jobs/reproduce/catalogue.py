@@ -1,4 +1,4 @@
-"""Everything that the three papers claim of their methods, and what is compared beside it."""
+"""Everything that the papers claim of their methods, and what is compared beside it."""
 
 import kol
 import nabata
@@ -6,10 +6,11 @@ import noel_connections
 import noel_guides
 import noel_shadows
 import noel_shape
+import popov
 import references
 
 ENTRIES = (*references.ENTRIES, *noel_shape.ENTRIES, *noel_shadows.ENTRIES, *noel_guides.ENTRIES,
-           *noel_connections.ENTRIES, *nabata.ENTRIES, *kol.ENTRIES)
+           *noel_connections.ENTRIES, *popov.ENTRIES, *nabata.ENTRIES, *kol.ENTRIES)
 
 
 def find(name):

@@ -12,6 +12,7 @@ import sys
 sys.dont_write_bytecode = True  # no cache folder beside the scenes
 
 import rooms
+import stand_ins
 import trials
 from hairball import hairball
 from images import sky
@@ -23,6 +24,7 @@ TRIALS = [trials.furnace, trials.furnace_sphere, trials.mirror, trials.glass_roo
 TRIALS += [trials.many_lights, trials.sides, trials.open_air]
 TRIALS += [trials.point, trials.spot, trials.directional, trials.area]
 TRIALS += [hairball]
+TRIALS += [stand_ins.nave, stand_ins.flat, stand_ins.plants]
 
 README_HEAD = """# Scenes
 

@@ -25,10 +25,11 @@ struct PairedConnections : StrategyBase {
 ///   the distributions of the iteration.
 /// - find(): looks up the distributions for an eye vertex, `depth` edges from the eye: a struct
 ///   with a member `cell` < cells().
-/// - sample(): samples one light vertex for each s of the LightRange that has any, each with
-///   probability `survival(s)`, and calls `use(s, drawn)`. VertexSample::probability is the exact
-///   probability, > 0, of this vertex among those of its s; otherwise the method is biased. Every
-///   vertex that can contribute has a probability above 0.
+/// - sample(): samples light vertices of the LightRange, one of each s that has any or some of all
+///   lengths, each with probability `survival(s)`, and calls `use(s, drawn)`.
+///   VertexSample::probability is the exact number of times, > 0, that this vertex is expected to
+///   be sampled, `survival(s)` apart; otherwise the method is biased. It is above 0 for every
+///   vertex that can contribute.
 ///
 /// find() and sample() are const and are called by many threads; they use the given generator only,
 /// so that the bits do not depend on the threads.

@@ -3,9 +3,8 @@
 #include <limits>
 
 #include "renderer/connections/cell_statistics.h"
+#include "renderer/connections/eye_records.h"
 #include "renderer/connections/resampling_cell.h"
-#include "renderer/path/bsdf_guide.h"
-#include "renderer/path/record_tree.h"
 #include "renderer/path/strategy.h"
 #include "renderer/settings/connections_settings.h"
 
@@ -42,9 +41,8 @@ class ImportanceCacheConnections : public StrategyBase {
   };
   CellLookup find(const Vertex& v, int /*depth*/, Rng& rng) const {
     CellLookup lookup;
-    lookup.n =
-        tree_.nearest(surface_point(v),
-                      std::span(lookup.near).first(static_cast<std::size_t>(settings_.neighbours)));
+    lookup.n = records_.nearest(
+        v, std::span(lookup.near).first(static_cast<std::size_t>(settings_.neighbours)));
     if (lookup.n > 0) {
       lookup.drawn = &cells_of_records_[lookup.near[rng.below(lookup.n)]];
     }
@@ -81,16 +79,13 @@ class ImportanceCacheConnections : public StrategyBase {
  private:
   static constexpr std::uint8_t uniform = 3;  // in `distributions`
 
-  void place_records(const IterationContext& context, int longest, Counters& counters);
-  std::uint64_t build(const Vertex& record, ResamplingCell& cell, const IterationContext& context,
-                      const LightVertices& lights) const;
+  std::uint64_t build(const EyeRecords::Record& record, ResamplingCell& cell,
+                      const IterationContext& context, const LightVertices& lights) const;
 
   ImportanceCacheSettings settings_;
   int record_depth_;
-  BsdfGuide guide_;
-  std::vector<Vertex> records_;
+  EyeRecords records_;
   std::vector<ResamplingCell> cells_of_records_;
-  RecordTree tree_;
 };
 
 }  // namespace lacuna

@@ -2,6 +2,7 @@
 
 #include "renderer/connections/connections.h"
 #include "renderer/connections/hybrid_connections.h"
+#include "renderer/connections/probabilistic_connections.h"
 #include "renderer/connections/uniform_connections.h"
 
 namespace lacuna {
@@ -11,6 +12,7 @@ using ConnectionsRegistry =
     Registry<Entry<PairedSettings, PairedConnections>, Entry<UniformSettings, UniformConnections>,
              Entry<SkeletonConnectionsSettings, SkeletonConnections>,
              Entry<ImportanceCacheSettings, ImportanceCacheConnections>,
+             Entry<ProbabilisticConnectionsSettings, ProbabilisticConnections>,
              Entry<HybridSettings, HybridConnections>>;
 
 static_assert(std::is_same_v<ConnectionsRegistry::Settings, ConnectionsSettings>,

@@ -10,7 +10,7 @@ namespace lacuna {
 /// A light vertex sampled for an eye vertex.
 struct VertexSample {
   std::uint32_t index = 0;        ///< LightVertices::at(s, index)
-  float probability = 0;          ///< of this one among those of its length, > 0
+  float probability = 0;          ///< the expected number of samples of this one, > 0
   std::uint8_t distribution = 0;  ///< which of a site's distributions it belongs to
   float survival = 1;             ///< probability of making it, > 0
 };

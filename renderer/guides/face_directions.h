@@ -33,8 +33,10 @@ class FaceDirections final : public GuidingDistribution {
     lookup_.emplace(transform_, *label_);
     lattice_ = RegionLattice(*label_, settings_.mixing);
     faces_.prepare(context, *lookup_);
-    // Faces have no strength.
-    tuning_ = Tuning({1}, settings_.probability, context.space.regions().regions.size());
+    // Faces have no strength. Where the guide draws alone there is no probability to learn.
+    const AutoNumber probability =
+        settings_.guide_only ? AutoNumber{most_guided} : settings_.probability;
+    tuning_ = Tuning({1}, probability, context.space.regions().regions.size());
   }
   void save(ByteWriter& out) const override {
     faces_.save(out);
@@ -57,7 +59,8 @@ class FaceDirections final : public GuidingDistribution {
     if (!voxel) return {};
     const auto index = static_cast<std::uint32_t>(label_->index(*voxel));
     const RegionMixture regions = mixture(transform_.to_grid(V3d(s.x)), index);
-    return {static_cast<float>(sum_of(regions, as_used())), index};
+    const double sum = sum_of(regions, as_used());
+    return {settings_.guide_only && sum > 0 ? 1.0F : static_cast<float>(sum), index};
   }
 
   std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const override {

@@ -9,7 +9,8 @@ namespace lacuna {
 /// One-sample MIS of a GuidingDistribution and the BSDF (Noel 2015, 9.4). On the paths it guides,
 /// those from the eye unless told otherwise, a direction is sampled from the distribution with
 /// probability c of its guiding cell, else from the BSDF; its density is c p_guide + (1 - c)
-/// p_bsdf, which makes the weight the balance heuristic. Delta lobes are sampled by the BSDF alone.
+/// p_bsdf, which makes the weight the balance heuristic. Delta lobes are sampled by the BSDF alone;
+/// where c is 1 they are lost, and so is what the distribution misses.
 /// Paths of the other transport follow the BSDF. pdf() takes the transport, so each walk can
 /// evaluate the densities of the other.
 class MixedGuide {

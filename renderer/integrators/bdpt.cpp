@@ -463,7 +463,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
             : SampleCounts{};
 
     PassSeconds pass;
-    LightVertices lights(lit ? resampled : 0, std::max(1, settings_.max_depth - 1));
+    LightVertices lights(lit ? resampled : 0, std::max(1, settings_.max_depth - 1), counts);
     const LightPathSetting setting = Base::light_setting(context, counts);
     Counters counters = light_pass(
         {context, setting, lit ? paths : 0, image}, guide_,

@@ -12,14 +12,17 @@ namespace lacuna {
 /// with up to `longest` vertices. s counts the vertices from the light; s = 1 is on the emitter.
 class LightVertices {
  public:
-  LightVertices(std::size_t paths, int longest)
+  /// `counts`: the sample counts that the paths' Vertex::mis_partial are made with.
+  LightVertices(std::size_t paths, int longest, const SampleCounts& counts = {})
       : paths_(paths),
         longest_(longest),
+        counts_(counts),
         kept_(paths),
         vertices_(static_cast<std::size_t>(std::max(0, longest - 1))) {}
 
   std::size_t paths() const { return paths_; }
   int longest() const { return longest_; }
+  const SampleCounts& counts() const { return counts_; }
 
   /// Stores path `i` of `batch` as path number `path`. Several threads may store different paths at
   /// once.
@@ -76,6 +79,7 @@ class LightVertices {
 
   std::size_t paths_;
   int longest_;
+  SampleCounts counts_;
   std::vector<Path> kept_;
   std::vector<EmitterPoint> emitters_;
   std::vector<std::vector<Vertex>> vertices_;  // from s = 2 on

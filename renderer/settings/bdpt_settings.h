@@ -22,6 +22,7 @@ struct BdptSettings : PathLengths {
   ConnectionsSettings connections = PairedSettings{};
   GuideSettings guide = BsdfGuideSettings{};
 
+  bool biased() const { return lacuna::biased(guide); }
   bool operator==(const BdptSettings&) const = default;
 };
 

@@ -44,8 +44,9 @@ struct ResamplingSettings {
   bool operator==(const ResamplingSettings&) const = default;
 };
 
+/// `published_count`: what `count_as` is as published.
 template <class V>
-void describe_resampling(V& v, ResamplingSettings& s) {
+void describe_resampling(V& v, ResamplingSettings& s, std::string_view published_count = "0") {
   v("light_paths", s.light_paths,
     {.doc = "light paths per iteration that eye paths are connected to, shared by all pixels",
      .min = 1,
@@ -64,7 +65,7 @@ void describe_resampling(V& v, ResamplingSettings& s) {
          "are light_paths (Noel 2015, 11.5)",
      .min = 0,
      .max = 1 << 16,
-     .published = "0"});
+     .published = published_count});
   v("roulette", s.roulette,
     {.doc =
          "Russian roulette of connections: a connection is made with a probability proportional to "
@@ -180,6 +181,37 @@ void describe(V& v, ImportanceCacheSettings& s) {
     {.doc = "how F, U, B and the uniform distribution C are combined", .published = "\"max\""});
 }
 
+/// connections: probabilistic.
+struct ProbabilisticConnectionsSettings : ResamplingSettings {
+  static constexpr std::string_view name = "probabilistic";
+  static constexpr std::string_view doc =
+      "light vertices of any length for each eye vertex, drawn by what they give to records on "
+      "surfaces, MIS weight included (Popov et al. 2015)";
+
+  /// What an iteration spends on distributions grows with records times light paths.
+  ProbabilisticConnectionsSettings() { light_paths = 256; }
+
+  double record_density = ImportanceCacheSettings{}.record_density;
+  int neighbours = ImportanceCacheSettings{}.neighbours;
+  int draws = 1;
+  double uniform = 0.2;
+  bool weighted = true;
+  bool operator==(const ProbabilisticConnectionsSettings&) const = default;
+};
+template <class V>
+void describe(V& v, ProbabilisticConnectionsSettings& s) {
+  describe_resampling(v, s, "1");
+  describe_records(v, s);
+  v("draws", s.draws,
+    {.doc = "connections of an eye vertex, to light vertices of any length", .min = 1, .max = 64});
+  v("uniform", s.uniform,
+    {.doc = "share of the draws in which all light vertices are equally probable",
+     .min = 0.01,
+     .max = 1});
+  v("weighted", s.weighted,
+    {.doc = "the contributions to a record include the MIS weights of the connections"});
+}
+
 /// connections: hybrid. Records are dense on visible surfaces and sparse elsewhere; skeleton nodes
 /// are everywhere.
 struct HybridSettings : ResamplingSettings {
@@ -227,6 +259,6 @@ void describe(V& v, HybridSettings& s) {
 /// How light vertices are sampled for an eye vertex.
 using ConnectionsSettings =
     std::variant<PairedSettings, UniformSettings, SkeletonConnectionsSettings,
-                 ImportanceCacheSettings, HybridSettings>;
+                 ImportanceCacheSettings, ProbabilisticConnectionsSettings, HybridSettings>;
 
 }  // namespace lacuna

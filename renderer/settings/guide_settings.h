@@ -6,6 +6,7 @@
 
 #include "analysis/settings/auto_number.h"
 #include "analysis/settings/field.h"
+#include "renderer/settings/bias.h"
 
 namespace lacuna {
 
@@ -82,6 +83,8 @@ void describe(V& v, SkeletonGuideSettings& s) {
 struct RegionGuideSettings {
   AutoNumber probability;
   int mixing = 4;
+  bool guide_only = false;
+  bool biased() const { return guide_only; }
   bool operator==(const RegionGuideSettings&) const = default;
 };
 
@@ -97,7 +100,13 @@ void describe_region_guide(V& v, RegionGuideSettings& s) {
             "interpolation, which shows as a border in the picture's noise",
      .min = 0,
      .max = 64,
-     .unit = "voxels"});
+     .unit = "voxels",
+     .published = "0"});
+  v("guide_only", s.guide_only,
+    {.doc =
+         "never sample the BSDF in a region that has a distribution, whatever `probability` says: "
+         "biased, because light that comes past its faces is missed (Noel 2015, 10.4, SIS1 and "
+         "FIS1)"});
 }
 
 /// The portal on a shortest path that rays are sent through.

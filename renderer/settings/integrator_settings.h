@@ -6,6 +6,7 @@
 
 #include "renderer/settings/auto_settings.h"
 #include "renderer/settings/bdpt_settings.h"
+#include "renderer/settings/bias.h"
 #include "renderer/settings/inspect_settings.h"
 #include "renderer/settings/light_settings.h"
 #include "renderer/settings/many_lights_settings.h"
@@ -37,30 +38,6 @@ std::span<const ImageLayer> filled_layers(const std::variant<Ts...>& settings) {
         } else {
           return {};
         }
-      },
-      settings);
-}
-
-/// Whether the expected picture differs from the radiance of the scene. Such settings have a member
-/// `bool biased() const`.
-template <class... Ts>
-bool biased(const std::variant<Ts...>& settings) {
-  return std::visit(
-      []<class S>(const S& s) {
-        if constexpr (requires { s.biased(); }) return s.biased();
-        return false;
-      },
-      settings);
-}
-
-/// Whether the picture of biased settings converges to the radiance, because the bias of an
-/// iteration vanishes with its number. Such settings have a member `bool consistent() const`.
-template <class... Ts>
-bool consistent(const std::variant<Ts...>& settings) {
-  return std::visit(
-      []<class S>(const S& s) {
-        if constexpr (requires { s.consistent(); }) return s.consistent();
-        return false;
       },
       settings);
 }

@@ -20,6 +20,7 @@ struct PathSettings : PathLengths {
   Sampling sampling = Sampling::uniform;
   EmitterChoice emitters = EmitterChoice::automatic;
 
+  bool biased() const { return lacuna::biased(guide); }
   bool operator==(const PathSettings&) const = default;
 };
 

@@ -22,8 +22,9 @@ struct VcmSettings : PathLengths, RadiusSettings {
   bool connect = true;
   GuideSettings guide = BsdfGuideSettings{};
 
-  /// By the radius of each iteration; see RadiusSettings::consistent().
-  bool biased() const { return merge; }
+  bool biased() const { return merge || lacuna::biased(guide); }
+  /// The bias of merging vanishes with the radius of an iteration, that of a guide does not.
+  bool consistent() const { return RadiusSettings::consistent() && !lacuna::biased(guide); }
   bool operator==(const VcmSettings&) const = default;
 };
 

@@ -57,14 +57,15 @@ bool spare_connections(JobSpec& job) {
   auto* bdpt = std::get_if<BdptSettings>(&job.integrator);
   if (bdpt == nullptr) return false;
   const int most_paths = 1 << 13, most_tables = 100;
-  std::visit(
+  const bool records = std::visit(
       [most_paths]<class S>(S& s) {
         if constexpr (requires { s.light_paths; })
           s.light_paths = std::min(s.light_paths, most_paths);
+        constexpr bool hybrid = requires { s.cached_depth; };
+        return !hybrid && requires { s.record_density; };
       },
       bdpt->connections);
-  if (!std::holds_alternative<ImportanceCacheSettings>(bdpt->connections)) return false;
-  if (bdpt->max_depth <= most_tables) return false;
+  if (!records || bdpt->max_depth <= most_tables) return false;
   job.budget.iterations = 2;
   return true;
 }

@@ -5,7 +5,8 @@ from harness.run import KINDS
 from harness.verdict import MISSED
 
 PAGE = child.ROOT / "docs/reproduction.md"
-PAPERS = (("noel", "Noel 2015"), ("nabata", "Nabata et al."), ("kol", "Kol et al. 2018"), ("path", "Beside the papers"))
+PAPERS = (("noel", "Noel 2015"), ("nabata", "Nabata et al."), ("kol", "Kol et al. 2018"), ("popov", "Popov et al. 2015"),
+          ("path", "Beside the papers"))
 MOST_ROWS = 40  # of a table of an entry
 
 

@@ -18,7 +18,7 @@ class Catalogue(unittest.TestCase):
         names = [entry.name for entry in ENTRIES]
         self.assertEqual(len(set(names)), len(names))
         for entry in ENTRIES:
-            self.assertRegex(entry.name, r"^(noel|nabata|kol|path)-[a-z0-9-]+$")
+            self.assertRegex(entry.name, r"^(noel|nabata|kol|popov|path)-[a-z0-9-]+$")
             self.assertIs(find(entry.name), entry)
             self.assertIs(find(entry.name.replace("-", "_")), entry)
             self.assertTrue(entry.source and entry.text and entry.needs, entry.name)

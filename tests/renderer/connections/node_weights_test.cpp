@@ -4,46 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/path/bsdf_guide.h"
-#include "tests/renderer/path/scenes.h"
+#include "tests/renderer/connections/lit_scene.h"
 
 namespace lacuna {
 namespace {
 
-constexpr int most_edges = 5, paths = 256;
-
-/// The light vertices of a scene, as an iteration keeps them, and the walks they come from.
-struct Lit {
-  explicit Lit(const test::PathScene& s)
-      : data(test::load(s)),
-        camera(data.cameras.front(), 8, 8),
-        scene(test::lit_scene(std::move(data), test::environment(s))) {
-    const LightPathSetting setting{scene, camera, most_edges, most_edges + 1, {1, 1, 1, 64}};
-    LightBatch<BsdfGuide> batch(setting, guide);
-    Counters counters;
-    for (std::uint64_t first = 0; first < paths; first += LightBatch<BsdfGuide>::size) {
-      std::vector<Rng> rngs;
-      for (std::uint64_t j = 0; j < LightBatch<BsdfGuide>::size; ++j) {
-        rngs.emplace_back(101, 0, first + j, Rng::Purpose::light_path);
-      }
-      batch.walk(rngs, counters);
-      for (std::size_t k = 0; k < rngs.size(); ++k) {
-        lights.keep(first + k, batch, k);
-        std::vector<Vertex> path;
-        for (int i = 1; i < batch.length(k); ++i) path.push_back(batch.vertex(k, i));
-        walked.push_back(std::move(path));
-      }
-    }
-    lights.arrange();
-  }
-
-  SceneData data;
-  Camera camera;
-  Scene scene;
-  BsdfGuide guide;
-  LightVertices lights{paths, most_edges - 1};
-  std::vector<std::vector<Vertex>> walked;  ///< of each path vertices 2, 3, ...
-};
+using test::Lit;
 
 double lum(const Rgb& c) {
   return 0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z);
@@ -72,7 +38,7 @@ TEST(LightVertices, ListWhatCanBeJoined) {
   for (const test::PathScene& s : test::path_scenes()) {
     SCOPED_TRACE(s.name);
     const Lit lit(s);
-    EXPECT_LE(lit.lights.count(1), std::size_t{paths});
+    EXPECT_LE(lit.lights.count(1), std::size_t{Lit::paths});
     for (int count = 2; count <= lit.lights.longest(); ++count) {
       std::size_t i = 0;
       for (const auto& path : lit.walked) {

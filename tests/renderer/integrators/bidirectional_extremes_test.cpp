@@ -125,7 +125,7 @@ TEST(BidirectionalExtremes, PathsThatMeetAreIndependent) {
     s.integrator = m.settings;
     s.iterations = 8000;
     s.seed = 3;
-    expect_same_picture(render(two_halves(), s), expected, 0.025);
+    expect_same_picture(render(two_halves(), s), expected, 0.03);
   }
 }
 

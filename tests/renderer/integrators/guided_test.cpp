@@ -76,6 +76,27 @@ TEST_P(Guided, AgreesWithoutNextEventEstimation) {
   }
 }
 
+// The thesis' SIS1 and FIS1: what does not come through the faces of a region's border is missed.
+TEST(GuideOnly, MissesLightAndSaysSo) {
+  PathSettings path = test::path_tracing(5);
+  const PathScene scene{"ajar"};
+  RenderSettings plain = guided_picture(path, 400);
+  plain.seed = 2;
+  const statistics::Moments all = test::mean_over_iterations(render(load(scene), plain));
+  PortalsGuideSettings portals;
+  portals.mixing = 0;
+  portals.portal = PortalChoice::next;
+  path.guide = portals;
+  EXPECT_FALSE(biased(IntegratorSettings(path)));
+  portals.guide_only = true;
+  path.guide = portals;
+  EXPECT_TRUE(biased(IntegratorSettings(path)));
+  const statistics::Moments part =
+      test::mean_over_iterations(render(load(scene), guided_picture(path, 400)));
+  EXPECT_LT(part.mean(), all.mean());
+  EXPECT_LT(statistics::t_test(part, all), 1e-4) << part.mean() << " of " << all.mean();
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Guided, testing::ValuesIn(guided_agreements),
                          [](const auto& a) { return a.param.scene.name; });
 INSTANTIATE_TEST_SUITE_P(Long, Guided, testing::ValuesIn(more_guided_agreements),

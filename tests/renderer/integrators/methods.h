@@ -292,6 +292,23 @@ inline std::vector<Method> unusual_connections(int max_depth, int light_paths = 
     s.neighbours = 64;
     s.record_density = 0.005;
   });
+  using Probabilistic = ProbabilisticConnectionsSettings;
+  add("probabilistic, as published", Probabilistic{}, [](auto& s) {
+    s.count_as = 1;
+    s.draws = s.neighbours = 1;
+    s.roulette = 0;
+    s.splat_paths = 1;
+  });
+  add("probabilistic, unweighted, several draws and records", Probabilistic{}, [](auto& s) {
+    s.weighted = false;
+    s.draws = 3;
+    s.neighbours = 4;
+  });
+  add("probabilistic, all uniform", Probabilistic{}, [](auto& s) { s.uniform = 1; });
+  add("probabilistic, hardly any uniform, few records", Probabilistic{}, [](auto& s) {
+    s.uniform = 0.05;
+    s.record_density = 0.005;
+  });
   return all;
 }
 

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "renderer/path/bsdf_guide.h"
+#include "renderer/path/light_vertices.h"
+#include "renderer/path/record_tree.h"
+#include "renderer/path/strategy.h"
+
+namespace lacuna {
+
+/// Vertices of a few eye paths, traced anew in each iteration, at which distributions over light
+/// vertices are stored (Georgiev et al. 2012, "Importance Caching for Complex Illumination").
+class EyeRecords {
+ public:
+  struct Record {
+    Vertex vertex;
+    int depth;  ///< edges from the eye
+  };
+
+  /// Traces `density` eye paths per pixel, up to `deepest` edges or as far as light vertices reach.
+  void place(const IterationContext& context, const LightVertices& lights, double density,
+             int deepest, Counters& counters);
+
+  std::size_t size() const { return records_.size(); }
+  const Record& operator[](std::size_t i) const { return records_[i]; }
+  /// RecordTree::nearest() of an eye vertex.
+  std::size_t nearest(const Vertex& v, std::span<std::uint32_t> found) const {
+    return tree_.nearest(surface_point(v), found);
+  }
+
+ private:
+  std::vector<Record> records_;
+  RecordTree tree_;
+};
+
+/// Throws MemoryLimitError, in the name of the connections `who`, if there is no memory for
+/// `bytes_each` for each record and light vertex.
+void require_distributions(std::string_view who, std::size_t records, std::size_t bytes_each,
+                           const LightVertices& lights);
+
+/// What the light vertices of one length give to a record per unit of its throughput, as luminance;
+/// 0 where that is not finite.
+struct RecordContributions {
+  std::vector<double> full;        ///< with visibility
+  std::vector<double> unshadowed;  ///< without
+  std::vector<double> bounded;     ///< also without the record's BSDF and the distance
+  std::uint64_t rays = 0;          ///< that were traced
+};
+
+/// The contributions that are wanted; those of the others are 0.
+struct WantedContributions {
+  bool full = true;
+  bool unshadowed = false;
+  bool bounded = false;
+  bool weighted = false;  ///< times the MIS weight of the connection; not `bounded`
+};
+
+/// The contributions of all vertices LightVertices::at(s, .) to `record`.
+RecordContributions contributions_to(const EyeRecords::Record& record,
+                                     const IterationContext& context, const LightVertices& lights,
+                                     int s, const WantedContributions& wanted);
+
+}  // namespace lacuna
