@@ -41,8 +41,8 @@ class RenderLoop {
   void resume();
 
   /// Instead of resume(): begins with what the shards of the job have rendered, all of them in
-  /// order. run() then only ends the job. Throws as merge_shards(), and Stopped if it is interrupted: then
-  /// merging begins anew another time.
+  /// order. run() then only ends the job. Throws as merge_shards(), and Stopped if it is
+  /// interrupted: then merging begins anew another time.
   void merge(const std::vector<Shard>& shards);
 
   /// True: the budget is spent, and the checkpoint holds the final state, so that the job can

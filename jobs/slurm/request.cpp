@@ -13,8 +13,8 @@ namespace {
 
 constexpr int margin_minutes = 15, further_margin_minutes = 1;
 
-/// Seconds that merging the job from its shards takes at most, several times of what docs/scaling.md
-/// has measured.
+/// Seconds that merging the job from its shards takes at most, several times of what
+/// docs/scaling.md has measured.
 double merging_seconds(const JobSpec& spec) {
   constexpr double of_shard = 0.05, of_pixel = 2e-6;
   if (spec.shards == 1 || spec.shard != 0) return 0;

@@ -42,12 +42,13 @@ class Data {
     write(job(i).file("job.json"), fmt::format(R"({{"scene": "a.glb", "label": "job {}"}})", i));
     set(i, State::done);
   }
-  /// Not synced, as JobFolder would have it: these are many.
   void set(int i, State state) const {
-    write(job(i).file("state.json"),
-          fmt::format(R"({{"state": "{}", "attempts": 1, "created": "2026-01-01T00:00:{:02}.000Z",)"
-                      R"( "warnings": ["it is a test"]}})",
-                      enum_name(state), i % 60));
+    JobState s;
+    s.state = state;
+    s.created = fmt::format("2026-01-01T00:00:{:02}.000Z", i % 60);
+    s.attempts = 1;
+    s.warnings = {"it is a test"};
+    job(i).write_state(s);
   }
 
   /// What a start of the service finds, an entry of the list each. It has an index of any number
@@ -162,18 +163,18 @@ TEST(JobIndex, HoldsOnlyJobsThatAreOver) {
 
 /// A kill leaves the old index, or the new one, and a power cut anything.
 TEST(JobIndex, DamageCostsOnlyTime) {
-  const Data data(8);
+  const Data data(10);
   const auto from_folders = data.start(true);
   const std::string whole = read_file(data.index(), 1 << 20);
-  for (std::size_t i = 0; i < whole.size(); i += 101) {
+  for (std::size_t i = 0; i < whole.size(); i += 7) {
     std::string damaged = whole;
     damaged[i] = static_cast<char>(damaged[i] ^ 0x10);
     write(data.index(), damaged);
-    EXPECT_LT(read_all(data.index()).size(), 8u) << i;
+    EXPECT_LT(read_all(data.index()).size(), 10u) << i;
   }
-  for (std::size_t size = 0; size < whole.size(); size += 499) {
+  for (std::size_t size = 0; size < whole.size(); size += 61) {
     write(data.index(), whole.substr(0, size));
-    EXPECT_LT(read_all(data.index()).size(), 8u) << size;
+    EXPECT_LT(read_all(data.index()).size(), 10u) << size;
   }
   for (const std::size_t size : {std::size_t{0}, whole.size() / 2, whole.size() - 1}) {
     write(data.index(), whole.substr(0, size));
