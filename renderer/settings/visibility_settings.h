@@ -331,7 +331,7 @@ struct ViewMapsVisibilitySettings {
   double levels = 9;
   double memory = 4;
   bool cull = true;
-  ViewRays rays = ViewRays::packets;
+  ViewRays rays = ViewRays::single;
   // As published they are otherwise, see their tables:
   double node_texels = 1.75;
   double cover = 0.82;
