@@ -196,8 +196,7 @@ void RayCaster::intersect(std::span<const Ray> rays, std::span<Hit> hits,
       const bool met = q.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
       result[first + i] = met ? 1 : 0;
       if (met) {
-        hits[first + i] = {q.ray.tfar[i], q.hit.geomID[i], q.hit.primID[i], q.hit.u[i],
-                           q.hit.v[i]};
+        hits[first + i] = {q.ray.tfar[i], q.hit.geomID[i], q.hit.primID[i], q.hit.u[i], q.hit.v[i]};
       }
     }
   }

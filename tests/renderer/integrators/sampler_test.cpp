@@ -105,7 +105,7 @@ std::vector<double> squared_errors(const Seeds& seeds) {
 }
 
 TEST(Sobol, ClaimsTheErrorThatItHas) {
-  constexpr int seeds = 60, iterations = 32;
+  constexpr int seeds = 90, iterations = 32;
   for (const PathScene& scene : {PathScene{"cornell"}, PathScene{"open", true}}) {
     for (const IntegratorSettings& method :
          {IntegratorSettings{test::path_tracing(4)},
