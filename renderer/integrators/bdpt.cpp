@@ -78,9 +78,8 @@ class Bdpt : public GuidedIntegrator<Guide> {
     return v.bsdf->connectible() ? settings_.max_depth - depth : 0;
   }
 
-  /// Connects `eye` and `light` and queues the contribution divided by `samples`, the expected
-  /// number of samples of this light vertex. The fields of the contribution that the connection
-  /// does not determine are copied from `known`.
+  /// Connects `eye` and `light` and queues the contribution, over `samples`: the expected number of
+  /// samples of this light vertex. What the connection does not determine is as in `known`.
   template <class Light>
   static void join(const SurfaceEndpoint<Guide>& eye, const Light& light, double samples,
                    Contribution known, EyePaths& batch) {
@@ -321,18 +320,16 @@ class PairedBdpt final : public Bdpt<Guide> {
   void walk_light(const IterationContext& context, Pairs& pairs, Counters& counters,
                   Splats& splats) const {
     const std::size_t paths = pairs.eye.states.size();
+    pairs.rngs.clear();
     if (pairs.eye.counts.merge > 0) {  // photon_pass() has walked, counted and splatted them
-      for (std::size_t k = 0; k < paths; ++k) {
-        photons_.restore_path(pairs.eye.pixels[k], pairs.light, k);
-      }
+      const auto& pixels = pairs.eye.pixels;
+      for (std::size_t k = 0; k < paths; ++k) photons_.restore_path(pixels[k], pairs.light, k);
       return;
     }
-    pairs.rngs.clear();
+    const std::size_t all = std::size_t(context.camera.width()) * context.camera.height();
     for (std::size_t k = 0; k < paths; ++k) {
-      pairs.rngs.push_back(context.shared_path_numbers(
-          pairs.eye.pixels[k],
-          std::uint64_t(context.camera.width()) * std::uint64_t(context.camera.height()),
-          Rng::Purpose::light_path));
+      const std::size_t pixel = pairs.eye.pixels[k];
+      pairs.rngs.push_back(context.shared_path_numbers(pixel, all, Rng::Purpose::light_path));
     }
     pairs.light.walk(pairs.rngs, counters);
     pairs.light.splat(paths, counters, splats);

@@ -259,8 +259,8 @@ FAULTS = [
     Fault("half of the learned counts is lost", "renderer/connections/cell_statistics.cpp",
           "tiles_ = in.get_vector<TileSums>();", "in.get_vector<TileSums>();"),
     Fault("both paths of a pair have the same numbers", "renderer/integrators/bdpt.cpp",
-          "std::uint64_t(context.camera.height()),\n          Rng::Purpose::light_path));",
-          "std::uint64_t(context.camera.height()),\n          Rng::Purpose::eye_path));"),
+          "context.shared_path_numbers(pixel, all, Rng::Purpose::light_path)",
+          "context.shared_path_numbers(pixel, all, Rng::Purpose::eye_path)"),
     # Guides.
     Fault("a guide's density on the wrong side", "renderer/guides/mixed_guide.h",
           "return mixed(v, wo, this_side ? v.guiding_cell : directions_->cell(v.surface, wo), wi, bsdf);",
