@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+
+#include "renderer/core/weights.h"
 
 namespace lacuna {
 
@@ -17,17 +18,8 @@ std::uint32_t threshold(double weight, double scaled) {
 }  // namespace
 
 AliasTable::AliasTable(std::span<const double> weights) {
-  // Scaled by the largest first, so that neither tiny nor huge weights overflow their sum.
-  double largest = 0;
-  for (const double w : weights) {
-    if (!(w >= 0) || !std::isfinite(w)) {
-      throw std::invalid_argument("a weight of a distribution is negative or not finite");
-    }
-    largest = std::max(largest, w);
-  }
+  const auto [largest, sum] = WeightSum(weights);
   if (largest == 0) return;
-  double sum = 0;
-  for (const double w : weights) sum += w / largest;
 
   const auto n = weights.size();
   bins_.resize(n);

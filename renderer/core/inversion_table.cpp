@@ -2,22 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+
+#include "renderer/core/weights.h"
 
 namespace lacuna {
 
 InversionTable::InversionTable(std::span<const double> weights) {
-  // Scaled by the largest first, so that neither tiny nor huge weights overflow their sum.
-  double largest = 0;
-  for (const double w : weights) {
-    if (!(w >= 0) || !std::isfinite(w)) {
-      throw std::invalid_argument("a weight of a distribution is negative or not finite");
-    }
-    largest = std::max(largest, w);
-  }
+  const auto [largest, sum] = WeightSum(weights);
   if (largest == 0) return;
-  double sum = 0;
-  for (const double w : weights) sum += w / largest;
 
   // Ends of the intervals, of 2^32; then every weight above 0 gets at least one number, from the
   // left, and from the right where that passed the end.

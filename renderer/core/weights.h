@@ -1,0 +1,29 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <stdexcept>
+
+namespace lacuna {
+
+/// The largest of a distribution's weights, and the sum of all divided by it: so neither tiny nor
+/// huge weights overflow their sum.
+struct WeightSum {
+  double largest = 0;  ///< 0: all are
+  double sum = 0;      ///< of weight / largest
+
+  /// Throws std::invalid_argument on a negative or non-finite weight.
+  explicit WeightSum(std::span<const double> weights) {
+    for (const double w : weights) {
+      if (!(w >= 0) || !std::isfinite(w)) {
+        throw std::invalid_argument("a weight of a distribution is negative or not finite");
+      }
+      largest = std::max(largest, w);
+    }
+    if (largest == 0) return;
+    for (const double w : weights) sum += w / largest;
+  }
+};
+
+}  // namespace lacuna
