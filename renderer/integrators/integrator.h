@@ -31,8 +31,8 @@ class Integrator {
   /// one image for each name in IterationContext::layers and adds only finite values to it. The
   /// settings list the layers that an integrator fills (filled_layers()).
   virtual std::vector<std::string> layers(std::span<const ImageLayer> /*wanted*/) { return {}; }
-  /// Renders one more independent estimate of the whole picture into `image` (of the film's size,
-  /// black).
+  /// Renders one more estimate of the whole picture into `image` (of the film's size, black):
+  /// independent of the others, but for numbers that IterationContext::sampler spreads over them.
   virtual Counters iterate(const IterationContext& context, Image& image) = 0;
   /// Whether iterate() can render IterationContext::parts alone, for their part of the time.
   /// Methods whose light paths serve all pixels can not.
