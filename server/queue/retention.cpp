@@ -1,5 +1,6 @@
 #include "server/queue/retention.h"
 
+#include <algorithm>
 #include <set>
 
 namespace lacuna {
@@ -24,7 +25,9 @@ std::vector<std::string> outdated(const std::vector<EntryPtr>& jobs,
   const std::string too_old = utc_text(now - age);
   std::vector<std::string> ids;
   for (std::size_t i = 0; i < over.size(); ++i) {
-    const bool old = settings.keep_days > 0 && over[i]->state.finished < too_old;
+    // The clock of the machine that rendered it may be behind.
+    const JobState& state = over[i]->state;
+    const bool old = settings.keep_days > 0 && std::max(state.finished, state.created) < too_old;
     if (i < surplus || old) ids.push_back(over[i]->id);
   }
   return ids;

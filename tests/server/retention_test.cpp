@@ -46,6 +46,14 @@ TEST(Retention, ThoseThatEndedLongAgoGo) {
   EXPECT_EQ(outdated(jobs, {}, keep(0, 5), now), Ids{});
 }
 
+TEST(Retention, AMachineWhoseClockIsBehindEndsNoJobBeforeItWasPosted) {
+  auto behind = std::make_shared<JobEntry>(*job("a", 9));
+  behind->state.created = utc_text(now - std::chrono::hours(1));
+  EXPECT_EQ(outdated({behind}, {}, keep(0, 2), now), Ids{});
+  behind->state.created = utc_text(now - std::chrono::hours(24 * 3));
+  EXPECT_EQ(outdated({behind}, {}, keep(0, 2), now), Ids{"a"});
+}
+
 TEST(Retention, NeverAReferenceNorADamagedOne) {
   auto damaged = std::make_shared<JobEntry>(*job("d", 100));
   damaged->damaged = true;
@@ -111,7 +119,8 @@ TEST_F(RetentionOnDisk, AJobThatOnlyTheTableSaysIsOverStays) {
   const JobFolder folder = make_job(id, State::done);
   for (const State state : {State::interrupted, State::running, State::queued}) {
     set_on_disk(folder, state);
-    ASSERT_EQ(outdated(table.all(), {}, keep(0, 1), now + std::chrono::hours(48)), Ids{id});
+    const auto later = std::chrono::system_clock::now() + std::chrono::hours(48);
+    ASSERT_EQ(outdated(table.all(), {}, keep(0, 1), later), Ids{id});
     EXPECT_THROW(queue.remove_outdated(id), Conflict) << enum_name(state);
     EXPECT_TRUE(std::filesystem::exists(folder.file("job.json")));
     EXPECT_NE(table.find(id), nullptr);

@@ -248,6 +248,23 @@ onCluster("a shared folder that lags is waited for", async (cluster) => {
   assert.equal(cluster.jobs().length, 1);
 });
 
+onCluster("clocks of nodes may be days ahead or behind", async (cluster) => {
+  const service = await cluster.service("--keep-days", "1");
+  const names = ["clock 72", "clock -72", "finish"];
+  const ids = [];
+  for (const name of names) ids.push(await service.post(name, { threads: 1 }));
+  for (const id of ids) await service.reaches(id, "done");
+  await service.stop("SIGKILL");
+  const again = await cluster.service("--keep-days", "1");
+  for (const id of ids) {
+    assert.equal((await state(again, id)).state, "done");
+    assert.equal((await state(again, id)).attempts, 1);
+  }
+  const listed = (await again.json("/api/jobs")).jobs.map((job) => job.id);
+  assert.deepEqual(listed, ids.toReversed(), "in the order in which they were posted");
+  assert.equal(cluster.jobs().length, names.length);
+});
+
 onCluster("a controller that is away is waited for", async (cluster) => {
   const service = await cluster.service();
   const first = await service.post("gate go", { threads: 1 });

@@ -126,6 +126,17 @@ test("a job that chose its method shows the race", async () => {
   await screenshot(page, "race");
 });
 
+test("a job says which machine it runs in, and follows when it moves", async () => {
+  const facts = () => page.locator("article").innerText();
+  await open(views.running);
+  assert.doesNotMatch(await facts(), /Runs in/);
+  for (const place of ["Slurm job 7 on node1", "Slurm job 8 waits: Resources"]) {
+    mock.update(running, { state: { place } });
+    await page.getByText(place).waitFor();
+    assert.match(await facts(), new RegExp(`Runs in\\s+${place}`));
+  }
+});
+
 test("a job shows where its time and rays went, and what was built, loaded and left out", async () => {
   await open(views.job);
   const effort = await page.locator(".effort").innerText();
