@@ -82,9 +82,9 @@ function fateOfBias({ bias_rmse, bias_known }) {
   return bias_known ? `bias: RMSE ${number(bias_rmse)} stays` : "its bias is not seen";
 }
 
-function summary({ clock, spent, plan, break_even }) {
+function summary({ clock, spent, reduction, plan, break_even }) {
   const cost = clock === "rays" ? `${number(spent)} rays` : seconds(spent);
-  const parts = [`The race took ${cost}.`];
+  const parts = [`The race took ${cost}${reduction > 1 ? `, of pixels ${reduction} times as wide` : ""}.`];
   if (plan.expected_rmse) parts.push(`RMSE expected at the end of the budget: ${number(plan.expected_rmse)}.`);
   if (plan.over_best_alone < 1) {
     parts.push(`Several methods share the picture: ${number(plan.over_best_alone)} of the MSE of the best alone.`);

@@ -91,7 +91,9 @@ void print_advice(const RaceRecord& race) {
   if (race.error > 0 && left > 0) {
     fmt::print(", rmse {:.3g} expected", std::sqrt(race.error / left));
   }
-  fmt::print(". The race took {:.2f} s.\n", race.spent);
+  fmt::print(". The race took {:.2f} s", race.spent);
+  if (race.reduction > 1) fmt::print(", of pixels {} times as wide", race.reduction);
+  fmt::print(".\n");
   if (!known) {
     fmt::print("Not sure: rare bright paths carry much of the error, and more may be to come.\n");
   }

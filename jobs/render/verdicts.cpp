@@ -16,7 +16,7 @@ VerdictMemory cached_verdicts(ArtefactStore& store, const JobSpec& spec, const s
   JobSpec any_seed = spec;
   any_seed.seed = JobSpec{}.seed;
   const int magnitude = int(std::floor(std::log2(budget_seconds) / 2));
-  const ArtefactKey key = ArtefactKey("race_verdict", 1, fmt::format("magnitude={}", magnitude))
+  const ArtefactKey key = ArtefactKey("race_verdict", 2, fmt::format("magnitude={}", magnitude))
                               .from("picture", picture_key(any_seed))
                               .from("files", key_hash(content));
   return {.find = [&store, key] { return store.find<Verdict>(key); },

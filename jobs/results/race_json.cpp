@@ -69,6 +69,7 @@ OrderedJson break_even(const RaceRecord& race) {
 OrderedJson race_json(const RaceRecord& race) {
   OrderedJson j{{"clock", race.seconds ? "cpu_seconds" : "rays"},
                 {"spent", race.spent},
+                {"reduction", race.reduction},
                 {"limit", finite(race.limit)}};
   for (const auto& c : race.candidates) j["candidates"].push_back(candidate_json(c));
   j["rounds"] = OrderedJson::array();

@@ -27,10 +27,15 @@ constexpr double worth_an_analysis = 10;
 constexpr double longest_first = 0.25;
 /// The factor by which an entrant must surely have been worse in an earlier race to be left out.
 constexpr double surely_worse = 2;
+/// Estimates of both from which on an earlier race counts: fewer may have missed all bright paths.
+constexpr std::uint64_t worth_keeping = 4;
+/// Pixels of the pictures that tell what an iteration costs.
+constexpr std::size_t probe_pixels = 2048;
 /// The first of the two sequences of the race's pictures; 0 and 1 are those of the film's halves.
 constexpr std::uint32_t of_the_race = 2;
 /// Estimates that a budget is divided into. What a plan does in one is decided before it begins.
 constexpr double estimates_of_a_budget = 64;
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 std::uint32_t half_of(const IterationContext& context) {
   return SampleNumber::of_iteration(context.iteration).randomisation;
@@ -88,6 +93,13 @@ class Auto final : public Integrator {
   /// `sample`: its number in the sequences of `sobol`.
   double render(std::size_t k, const IterationContext& context, SampleNumber sample, Image& image,
                 std::span<const Tile> parts = {});
+  /// Renders one of the race's iterations and calls `finished(image, cost)`; a candidate that takes
+  /// longer than `longest` or fails leaves.
+  template <class Finished>
+  void attempt(std::size_t k, const IterationContext& context, const Camera& camera, double longest,
+               Finished&& finished);
+  /// Lets the race choose the size of its pictures by what iterations cost.
+  void probe(const IterationContext& context);
   void run_race(const IterationContext& context);
   void run_plan(const IterationContext& context);
   void begin_estimate();
@@ -146,10 +158,15 @@ void Auto::recall(const PrepareContext& context) {
 
 void Auto::keep_verdict() const {
   if (!keep_ || recalled_ || candidates_.size() < 2) return;
+  const auto counts = [&](std::size_t k) {
+    return race_.entrants()[k].trial.estimates() >= worth_keeping;
+  };
+  if (!counts(race_.best())) return;
   Verdict verdict(candidates_.size(), {0, std::numeric_limits<double>::infinity()});
   for (std::size_t k = 0; k < verdict.size(); ++k) {
     const Entrant& e = race_.entrants()[k];
-    if (e.standing.error > 0) verdict[k] = e.standing.over_best;
+    if (counts(k) && e.standing.error > 0 && std::isfinite(e.standing.over_best.value))
+      verdict[k] = e.standing.over_best;
   }
   keep_(verdict);
 }
@@ -164,7 +181,7 @@ void Auto::prepare(const PrepareContext& context) {
   for (const IntegratorSettings& c : candidates(settings_)) with_bias.push_back(biased(c) ? 1 : 0);
   race_ =
       Race(candidates_.size(), context.camera.width(), context.camera.height(), limits, with_bias);
-  const std::size_t blocks = race_.entrants()[0].trial.grid().blocks();
+  const std::size_t blocks = race_.grid().blocks();
   for (auto& half : drawn_) half.assign(candidates_.size(), std::vector<std::uint64_t>(blocks));
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     if (const std::string why = excluded(k, context); !why.empty()) {
@@ -217,41 +234,61 @@ double Auto::render(std::size_t k, const IterationContext& context, SampleNumber
   return (clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start) / context.pool.threads();
 }
 
+template <class Finished>
+void Auto::attempt(std::size_t k, const IterationContext& context, const Camera& camera,
+                   double longest, Finished&& finished) {
+  const double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
+  const auto taken = [&] {
+    return (clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start) / context.pool.threads();
+  };
+  const std::function<bool()> stop = [&] { return context.stop() || taken() > longest; };
+  const IterationContext limited{.scene = context.scene,
+                                 .camera = camera,
+                                 .pool = context.pool,
+                                 .seed = context.seed,
+                                 .iteration = context.iteration,
+                                 .stop = stop,
+                                 .sampler = context.sampler};
+  SampleNumber sample = SampleNumber::of_iteration(race_.entrants()[k].trial.iterations());
+  sample.randomisation += of_the_race;
+  try {
+    Image image(camera.width(), camera.height());
+    const double cost = render(k, limited, sample, image);
+    finished(image, cost);
+  } catch (const IterationStopped&) {
+    if (context.stop()) throw;
+    race_.leave(k, "an iteration takes too long for the race", taken());
+  } catch (const Stopped&) {
+    throw;
+  } catch (const std::exception& e) {
+    drop(k, e, counts_rays() ? 0 : taken());
+  }
+}
+
+void Auto::probe(const IterationContext& context) {
+  BlockGrid grid = race_.grid();
+  while (grid.trial_pixels() > probe_pixels) ++grid.reduction;
+  const Camera camera = context.camera.reduced(grid.reduction);
+  std::vector<double> costs(candidates_.size());
+  for (std::size_t k = 0; k < candidates_.size(); ++k) {
+    if (!race_.entrants()[k].racing) continue;
+    const double longest = k == 0 ? infinite : race_.limits().cost * longest_first;
+    attempt(k, context, camera, longest, [&](const Image&, double cost) { costs[k] = cost; });
+  }
+  race_.choose_reduction(costs, grid.reduction);
+}
+
 void Auto::run_race(const IterationContext& context) {
-  Image image(context.camera.width(), context.camera.height());
+  if (!counts_rays() && race_.wants_smaller_pictures()) probe(context);
+  const Camera camera = context.camera.reduced(race_.reduction());
   while (const auto k = race_.next()) {
-    const double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
-    const auto taken = [&] {
-      return (clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start) / context.pool.threads();
-    };
     const bool may_be_late = race_.spent() == 0 || counts_rays();
     const bool is_first = race_.entrants()[*k].trial.iterations() == 0;
     const double rest = std::min(race_.limits().cost - race_.spent(),
                                  race_.limits().cost * (is_first ? longest_first : 1));
-    const std::function<bool()> stop = [&] {
-      return context.stop() || (!may_be_late && taken() > rest);
-    };
-    const IterationContext limited{.scene = context.scene,
-                                   .camera = context.camera,
-                                   .pool = context.pool,
-                                   .seed = context.seed,
-                                   .iteration = context.iteration,
-                                   .stop = stop,
-                                   .sampler = context.sampler};
-    SampleNumber sample = SampleNumber::of_iteration(race_.entrants()[*k].trial.iterations());
-    sample.randomisation += of_the_race;
     const bool spread = context.sampler == Sampler::sobol && candidates_[*k].spreads;
-    try {
-      const double cost = render(*k, limited, sample, image);
-      race_.finished(*k, image, cost, spread);
-    } catch (const IterationStopped&) {
-      if (context.stop()) throw;
-      race_.leave(*k, "an iteration takes too long for the race", taken());
-    } catch (const Stopped&) {
-      throw;
-    } catch (const std::exception& e) {
-      drop(*k, e, counts_rays() ? 0 : taken());
-    }
+    attempt(*k, context, camera, may_be_late ? infinite : rest,
+            [&](const Image& image, double cost) { race_.finished(*k, image, cost, spread); });
   }
   race_.close();
 }
@@ -274,7 +311,7 @@ void Auto::make_new_plan() {
 
 void Auto::begin_estimate() {
   done_.assign(candidates_.size(), 0);
-  const BlockGrid& grid = race_.entrants()[0].trial.grid();
+  const BlockGrid& grid = race_.grid();
   sums_.assign(candidates_.size(), Image());
   for (std::size_t k = 0; k < sums_.size(); ++k) {
     if (plan_->iterations[k] > 0) sums_[k] = Image(grid.width, grid.height);
@@ -286,7 +323,7 @@ void Auto::run_plan(const IterationContext& context) {
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     while (done_[k] < plan_->iterations[k]) {
       Trial& trial = race_.entrants()[k].trial;
-      const BlockGrid& grid = trial.grid();
+      const BlockGrid& grid = race_.grid();
       std::size_t pixels = 0;
       std::vector<Tile> parts;
       SampleNumber sample{half_of(context), 0};
@@ -298,7 +335,8 @@ void Auto::run_plan(const IterationContext& context) {
       }
       const double cost = render(k, context, sample, image, parts);
       const bool is_first = trial.iterations() == 0;
-      trial.charge(cost, double(pixels) / double(trial.grid().pixels()));
+      if (trial.grid().reduction > 1) trial.restart_whole();
+      trial.charge(cost, double(pixels) / double(grid.pixels()));
       // One of an estimate's tells as much of the noise for a part of the time.
       if (done_[k] == 0) trial.add(image);
       for (std::size_t i = 0; i < image.pixels.size(); ++i) sums_[k].pixels[i] += image.pixels[i];
@@ -317,7 +355,7 @@ Counters Auto::iterate(const IterationContext& context, Image& image) {
     make_new_plan();
   }
   run_plan(context);
-  combine(*plan_, race_.entrants()[0].trial.grid(), sums_, image);
+  combine(*plan_, race_.grid(), sums_, image);
   const Counters counters = std::exchange(counters_, {});
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     std::vector<std::uint64_t>& count = drawn(half_of(context), k);
@@ -340,6 +378,7 @@ Counters Auto::iterate(const IterationContext& context, Image& image) {
 const RaceRecord* Auto::race() const {
   record_ = {.rows = race_.rows(),
              .spent = race_.spent(),
+             .reduction = race_.reduction(),
              .limit = race_.limits().cost,
              .budget = race_.limits().budget,
              .seconds = !counts_rays()};
@@ -364,7 +403,7 @@ const RaceRecord* Auto::race() const {
 }
 
 void Auto::record_blocks() const {
-  const BlockGrid& grid = race_.entrants()[0].trial.grid();
+  const BlockGrid& grid = race_.grid();
   record_.block = grid.size;
   record_.across = grid.across;
   for (std::size_t b = 0; plan_->is_adaptive() && b < grid.blocks(); ++b) {
@@ -411,7 +450,7 @@ void Auto::save(ByteWriter& out) const {
 
 void Auto::get_plan(ByteReader& in) {
   const std::size_t n = candidates_.size();
-  const std::size_t blocks = race_.entrants()[0].trial.grid().blocks();
+  const std::size_t blocks = race_.grid().blocks();
   plan_->iterations = in.get_vector<int>();
   if (plan_->iterations.size() != n) {
     throw std::runtime_error("saved plan has another number of candidates");

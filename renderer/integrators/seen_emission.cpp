@@ -46,7 +46,7 @@ void SeenEmission::prepare(const PrepareContext& context) {
   uneven_.clear();
   if (context.scene.emitters().empty()) return;
   const Camera& camera = context.camera;
-  const int width = camera.width(), height = camera.height();
+  const int width = width_ = camera.width(), height = height_ = camera.height();
   const auto index = [&](int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
            static_cast<std::size_t>(x);
@@ -76,6 +76,20 @@ void SeenEmission::prepare(const PrepareContext& context) {
   });
 }
 
+bool SeenEmission::is_uneven(const Image& image, const V2i& pixel) const {
+  const auto first = [](int at, int all, int of) { return int(std::int64_t(at) * all / of); };
+  const auto end = [&](int at, int all, int of) {
+    return std::max(first(at, all, of) + 1, first(at + 1, all, of));
+  };
+  for (int y = first(pixel.y, height_, image.height); y < end(pixel.y, height_, image.height);
+       ++y) {
+    for (int x = first(pixel.x, width_, image.width); x < end(pixel.x, width_, image.width); ++x) {
+      if (uneven_[std::size_t(y) * std::size_t(width_) + std::size_t(x)] != 0) return true;
+    }
+  }
+  return false;
+}
+
 Counters SeenEmission::add(const IterationContext& context, double samples, Image& image) const {
   if (uneven_.empty()) return {};
   const int side = static_cast<int>(std::ceil(std::sqrt(samples)));
@@ -86,7 +100,7 @@ Counters SeenEmission::add(const IterationContext& context, double samples, Imag
       Rng rng(context.seed, context.iteration, index);
       Rgb sum(0, 0, 0);
       float n = 0;
-      stratified(uneven_[index] != 0 ? side : 1, rng, [&](const V2f& u) {
+      stratified(is_uneven(image, pixel) ? side : 1, rng, [&](const V2f& u) {
         sum += emission_along(context.scene, context.camera.sample(pixel, u));
         ++n;
       });

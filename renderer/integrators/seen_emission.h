@@ -15,15 +15,20 @@ class SeenEmission {
  public:
   /// Finds the pixels that see several values.
   void prepare(const PrepareContext& context);
-  /// Adds an unbiased estimate to `image`, of the size of the film that was prepared: one sample of
-  /// a pixel that sees one value, `samples` or a few more, stratified, of the others.
+  /// Adds an unbiased estimate to `image`, the film that was prepared or fewer pixels of the same
+  /// view: one sample of a pixel that sees one value, `samples` or a few more, stratified, of the
+  /// others.
   Counters add(const IterationContext& context, double samples, Image& image) const;
 
   /// Number of pixels that see several values.
   std::size_t uneven_pixels() const;
 
  private:
+  /// Whether a pixel of `image` covers one that sees several values.
+  bool is_uneven(const Image& image, const V2i& pixel) const;
+
   std::vector<char> uneven_;  // of each pixel; empty where nothing emits
+  int width_ = 0, height_ = 0;
 };
 
 }  // namespace lacuna

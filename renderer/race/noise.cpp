@@ -32,14 +32,14 @@ double jackknife(std::span<const double> without_one) {
   return std::sqrt((n - 1) / n * squares);
 }
 
-void add_squared_difference(const BlockGrid& grid, const Image& a, const Image& b, double share,
+void add_squared_difference(const BlockGrid& grid, const Image& a, const Image& b,
                             BlockSums& sums) {
   std::size_t i = 0;
-  for (int y = 0; y < grid.height; ++y) {
-    for (int x = 0; x < grid.width; ++x, ++i) {
+  for (int y = 0; y < grid.trial_height(); ++y) {
+    for (int x = 0; x < grid.trial_width(); ++x, ++i) {
       const Rgb d = a.pixels[i] - b.pixels[i];
       const double square = double(d.x) * d.x + double(d.y) * d.y + double(d.z) * d.z;
-      sums[grid.block_of(x, y)] += square / 3 * share;
+      sums[grid.block_of(x, y)] += square / 3 * grid.weight(x, y);
     }
   }
 }
@@ -101,7 +101,7 @@ std::vector<BlockSums> variances_of_singles(const BlockGrid& grid,
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
       BlockSums d(grid.blocks(), 0.0);
-      add_squared_difference(grid, *estimates[i], *estimates[j], 1, d);
+      add_squared_difference(grid, *estimates[i], *estimates[j], d);
       for (std::size_t b = 0; b < d.size(); ++b) {
         variances[i][b] += d[b];
         variances[j][b] += d[b];
@@ -122,12 +122,13 @@ BlockSums unexplained_error(std::span<const Trial* const> trials,
   const Trial& one = *trials[which];
   const BlockGrid& grid = one.grid();
   BlockSums error(grid.blocks(), 0.0);
-  Image others(grid.width, grid.height);
+  Image others(grid.trial_width(), grid.trial_height());
   BlockSums variance(grid.blocks(), 0.0);  // of `others`, times the square of the weights' sum
   double weights = 0;
   for (std::size_t j = 0; j < trials.size(); ++j) {
     const double v = total(variances[j]);
-    if (j == which || trials[j]->estimates() < 2 || !(v > 0)) continue;
+    const bool same_pixels = trials[j]->grid().reduction == grid.reduction;
+    if (j == which || trials[j]->estimates() < 2 || !(v > 0) || !same_pixels) continue;
     const double n = double(trials[j]->estimates());
     const double weight = n / v;
     weights += weight;
@@ -140,7 +141,7 @@ BlockSums unexplained_error(std::span<const Trial* const> trials,
     }
   }
   if (!(weights > 0) || one.estimates() == 0) return error;
-  add_squared_difference(grid, one.mean(), others, 1, error);
+  add_squared_difference(grid, one.mean(), others, error);
   for (std::size_t b = 0; b < error.size(); ++b) {
     error[b] -= variance[b] / (weights * weights) + variances[which][b] / double(one.estimates());
   }

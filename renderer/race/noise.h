@@ -39,7 +39,8 @@ std::vector<BlockSums> variances_of_singles(const BlockGrid& grid,
 /// difference to the mean of others, weighted by their precision, less the variances of both. A
 /// method that has not yet found a bright path, or never finds it, shows none in its own variance.
 /// `variances`: of one iteration of each trial; trials with fewer than two estimates or without
-/// variance do not count among the others. All 0 where there are no others.
+/// variance do not count among the others, nor do those whose pictures have pixels of another size.
+/// All 0 where there are no others.
 BlockSums unexplained_error(std::span<const Trial* const> trials,
                             std::span<const BlockSums> variances, std::size_t which);
 

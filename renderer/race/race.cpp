@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "analysis/storage/bytes.h"
 #include "renderer/film/saved_values.h"
@@ -25,6 +27,12 @@ constexpr double clearly_better = 0.5;
 /// How far the logarithms of a ratio of errors and of the typical ratio lie apart where both are
 /// known, as a standard deviation: a guess.
 constexpr double disagreement = 1;
+/// Iterations of each entrant that a race should afford; its pictures are smaller where it cannot.
+constexpr double least_iterations = 4;
+/// The fewest pixels of its pictures, whatever they cost.
+constexpr std::size_t least_pixels = 1024;
+/// The part of the variance that is not spread, as small as it may be while it is not known.
+constexpr double least_rough = 0.1;
 /// A share of the best mixture that keeps a method in the race.
 constexpr double worthwhile_share = 0.15;
 
@@ -67,15 +75,17 @@ void raise_to_deviation(const BlockGrid& grid, BlockSums& sums) {
 
 RaceLimits RaceLimits::of_seconds(double seconds) {
   RaceLimits limits;
-  limits.cost = 0.3 * std::pow(seconds, 0.6);
+  limits.cost = 0.12 * std::pow(seconds, 0.6);
   limits.budget = seconds;
   return limits;
 }
 
 Race::Race(std::size_t entrants, int width, int height, const RaceLimits& limits,
            const std::vector<std::uint8_t>& biased)
-    : limits_(limits), entrants_(entrants, Entrant{.trial = Trial(width, height)}) {
-  measured_.assign(entrants, BlockSums(BlockGrid(width, height).blocks(), 0.0));
+    : limits_(limits),
+      grid_(width, height),
+      entrants_(entrants, Entrant{.trial = Trial(width, height)}) {
+  measured_.assign(entrants, BlockSums(grid_.blocks(), 0.0));
   variances_ = measured_;
   gauges_.assign(entrants, SpreadGauge(width, height));
   for (std::size_t k = 0; k < biased.size(); ++k) entrants_[k].biased = biased[k] != 0;
@@ -86,10 +96,32 @@ std::size_t Race::racing() const {
       std::count_if(entrants_.begin(), entrants_.end(), [](const Entrant& e) { return e.racing; }));
 }
 
+bool Race::wants_smaller_pictures() const {
+  const bool begun = spent_ > 0 || probed_ > 0;
+  const bool any_biased = std::any_of(entrants_.begin(), entrants_.end(),
+                                      [](const Entrant& e) { return e.racing && e.biased; });
+  return !begun && racing() > 1 && !any_biased && std::isfinite(limits_.cost);
+}
+
+void Race::choose_reduction(std::span<const double> costs, int reduction) {
+  BlockGrid grid = grid_;
+  grid.reduction = reduction;
+  const double pixels = double(grid.trial_pixels());
+  probed_ = std::accumulate(costs.begin(), costs.end(), 0.0);
+  const double each = probed_ / pixels * least_iterations;
+  const double cost = limits_.cost - probed_;
+  const auto too_long = [&] { return each * double(grid.trial_pixels()) > cost; };
+  for (grid.reduction = 1; too_long() && grid.trial_pixels() > least_pixels;) ++grid.reduction;
+  reduction_ = grid.reduction;
+  for (Entrant& e : entrants_) e.trial = Trial(grid.width, grid.height, reduction_);
+  gauges_.assign(entrants_.size(), SpreadGauge(grid.trial_width(), grid.trial_height()));
+  limits_.cost = std::max(0.0, cost);
+}
+
 bool Race::in_this_round(const Entrant& e) const {
   if (!e.racing) return false;
   const auto n = e.trial.iterations();
-  return round_ == 0 ? n == 0 : n < 2 || e.trial.cost() + e.trial.iteration_cost() <= slice_;
+  return round_ == 0 ? n == 0 : n < 2 || e.trial.cost() + e.trial.next_cost() <= slice_;
 }
 
 std::optional<std::size_t> Race::next() const {
@@ -98,7 +130,7 @@ std::optional<std::size_t> Race::next() const {
   if (!first && spent_ >= limits_.cost) return std::nullopt;
   for (std::size_t k = 0; k < entrants_.size(); ++k) {
     if (!in_this_round(entrants_[k])) continue;
-    const double more = entrants_[k].trial.iteration_cost();
+    const double more = entrants_[k].trial.next_cost();
     if (round_ > 0 && spent_ + more > limits_.cost) return std::nullopt;
     return k;
   }
@@ -109,7 +141,8 @@ void Race::finished(std::size_t entrant, const Image& estimate, double cost, boo
   Entrant& e = entrants_[entrant];
   e.trial.add(estimate);
   if (spread) gauges_[entrant].add(estimate);
-  e.trial.charge(cost);
+  e.spreads = spread;
+  e.trial.charge(cost, e.trial.grid().trial_share());
   spent_ += cost;
   end_round();
 }
@@ -133,7 +166,7 @@ void Race::end_round() {
   // Equal costs, in which the slowest has one more iteration; then twice as much each time.
   double longest = 0;
   for (const Entrant& e : entrants_) {
-    if (e.racing) longest = std::max(longest, e.trial.iteration_cost());
+    if (e.racing) longest = std::max(longest, e.trial.next_cost());
   }
   slice_ = std::max(2 * slice_, 2 * longest);
 }
@@ -147,6 +180,7 @@ void Race::close() {
   }
   judge();
   gauges_.clear();
+  spent_ += std::exchange(probed_, 0);
 }
 
 double Race::log_cost_ratio(std::size_t a, std::size_t b) const {
@@ -170,13 +204,17 @@ double Race::likely_ratio(std::size_t a, std::size_t b) const {
                                                     : other;
 }
 
+bool Race::is_known(std::size_t which) const {
+  const Trial& t = entrants_[which].trial;
+  return t.estimates() > 1 || (t.estimates() == 1 && total(measured_[which]) > 0);
+}
+
 std::size_t Race::best_of(bool biased) const {
   std::size_t best = entrants_.size();
   for (std::size_t k = 0; k < entrants_.size(); ++k) {
     if (!entrants_[k].racing || (entrants_[k].biased && !biased)) continue;
-    const bool known = entrants_[k].trial.estimates() > 0;
     if (best == entrants_.size() ||
-        (known && (entrants_[best].trial.estimates() == 0 || likely_ratio(k, best) < 0))) {
+        (is_known(k) && (!is_known(best) || likely_ratio(k, best) < 0))) {
       best = k;
     }
   }
@@ -222,7 +260,7 @@ double Race::foreseen_spread(std::size_t which) const {
 
 double Race::foreseen_growth(std::size_t which) const {
   const Trial& t = entrants_[which].trial;
-  const double cost = t.iteration_cost();
+  const double cost = t.next_cost();
   const double growth = cost > 0 ? t.growth(rest(t) / cost) : 1;
   return t.tail_is_known().value_or(true) ? growth : doubt * growth;
 }
@@ -239,7 +277,9 @@ void Race::judge_alone(std::size_t which, const BlockSums& hidden, double growth
   }
   s.growth = growth;
   s.tail_known = e.trial.tail_is_known();
-  if (!gauges_.empty()) e.rough = gauges_[which].rough_part(total(measured_[which]));
+  if (!gauges_.empty()) {
+    e.rough = gauges_[which].rough_part(total(measured_[which]) * e.trial.grid().trial_share());
+  }
   s.spread = foreseen_spread(which);
   for (double& v : variances_[which]) v *= growth * s.spread;
   if (e.biased && e.trial.estimates() > 1) count_bias(which, hidden);
@@ -282,7 +322,7 @@ void Race::judge() {
   }
   for (std::size_t k = 0; k < entrants_.size(); ++k) {
     const Entrant& e = entrants_[k];
-    if (!e.racing || e.trial.estimates() == 0) continue;
+    if (!e.racing || !is_known(k)) continue;
     const bool known = e.trial.tail_is_known().has_value();
     judge_alone(k, hidden_error(k), known ? foreseen_growth(k) : most);
   }
@@ -290,7 +330,7 @@ void Race::judge() {
   const std::size_t leader = best();
   for (std::size_t k = 0; k < entrants_.size(); ++k) {
     Entrant& e = entrants_[k];
-    if (!e.racing || e.trial.estimates() == 0) continue;
+    if (!e.racing || !is_known(k)) continue;
     const LogRatio r = e.standing.over_best = ratio(k, leader);
     rows_.push_back({round_, std::uint32_t(k), e.trial.iterations(), e.trial.cost(),
                      e.standing.error, r.value, r.deviation});
@@ -309,28 +349,38 @@ void Race::call_back(double growth) {
   }
 }
 
+double Race::unknown_gain(std::size_t which) const {
+  const Entrant& e = entrants_[which];
+  const double cost = e.trial.iteration_cost();
+  if (e.rough || !e.spreads || !(cost > 0)) return 0;
+  return -std::log(SpreadGauge::left_of(least_rough, rest(e.trial) / cost));
+}
+
 bool Race::is_beaten(std::size_t which) const {
   const double least = round_ == 0 ? std::log(sure_of_singles) : 0;
   for (std::size_t k = 0; k < entrants_.size(); ++k) {
-    if (!entrants_[k].racing || k == which) continue;
+    if (!entrants_[k].racing || k == which || !is_known(k)) continue;
     const LogRatio r = ratio(which, k);
-    if (r.value - sure * r.deviation > least) return true;
+    if (r.value - sure * r.deviation > least + unknown_gain(which)) return true;
   }
   return false;
 }
 
 void Race::drop_losers() {
   const bool of_singles = round_ == 0;
-  if (of_singles && racing() == 2) return;  // two estimates do not say whose noise it is
+  // Two estimates do not say whose noise it is; and where smaller pictures leave time for more than
+  // one of each, one is no ground: it may have missed all bright paths.
+  if (of_singles && (racing() == 2 || probed_ > 0)) return;
   const std::size_t leader = best(), measure = yardstick();
   std::vector<std::size_t> who;
   std::vector<BlockSums> errors;
   for (std::size_t k = 0; k < entrants_.size(); ++k) {
-    if (!entrants_[k].racing) continue;
+    if (!entrants_[k].racing || !is_known(k)) continue;
     who.push_back(k);
     errors.push_back(smoothed(entrants_[k].trial.grid(), variances_[k]));
     for (double& v : errors.back()) v *= entrants_[k].trial.iteration_cost();
   }
+  if (who.empty()) return;
   const bool without_noise =
       entrants_[leader].trial.estimates() > 1 && !(total(variances_[leader]) > 0);
   Shares shares;
@@ -352,6 +402,8 @@ void Race::drop_losers() {
 }
 
 void Race::save(ByteWriter& out) const {
+  out.put(reduction_);
+  out.put(probed_);
   out.put(spent_);
   out.put(round_);
   out.put(slice_);
@@ -373,6 +425,8 @@ void Race::save(ByteWriter& out) const {
 }
 
 void Race::load(ByteReader& in) {
+  reduction_ = in.get<int>();
+  probed_ = in.get<double>();
   spent_ = in.get<double>();
   round_ = in.get<int>();
   slice_ = in.get<double>();
@@ -390,7 +444,15 @@ void Race::load(ByteReader& in) {
     measured_[k] = get_finite(in, e.trial.grid().blocks(), "variances of blocks");
     variances_[k] = get_finite(in, e.trial.grid().blocks(), "variances of blocks");
   }
-  if (in.get<std::uint8_t>() == 0) gauges_.clear();
+  BlockGrid grid = grid_;
+  if (reduction_ < 1 || reduction_ > std::max(grid.width, grid.height) || !(probed_ >= 0)) {
+    throw std::runtime_error("saved race is not one");
+  }
+  grid.reduction = reduction_;
+  gauges_.clear();
+  if (in.get<std::uint8_t>() != 0) {
+    gauges_.assign(entrants_.size(), SpreadGauge(grid.trial_width(), grid.trial_height()));
+  }
   for (SpreadGauge& g : gauges_) g.load(in);
   rows_ = in.get_vector<RaceRow>();
   for (const RaceRow& r : rows_) {

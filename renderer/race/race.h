@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,8 @@ struct RaceLimits {
   /// What the whole picture may take, race included; 0: not known.
   double budget = 0;
 
-  /// Of a budget of so many seconds a race takes 0.3 s^-0.4: a fifth of 2 s, a tenth of 20 s, a
-  /// hundredth of an hour.
+  /// Of a budget of so many seconds a race takes at most 0.12 s^-0.4: a tenth of 2 s, a twentieth
+  /// of 10 s, a two-hundredth of an hour.
   static RaceLimits of_seconds(double seconds);
 };
 
@@ -54,6 +55,7 @@ struct Entrant {
   bool beaten = false;      ///< left because of its error: comes back if the others prove worse
   std::string reason = {};  ///< why it left
   int left_in = -1;         ///< round
+  bool spreads = false;     ///< its samples are spread evenly
   std::optional<double> rough = {};  ///< SpreadGauge::rough_part()
   Standing standing = {};
 };
@@ -71,6 +73,14 @@ class Race {
   /// `biased`: of each entrant; empty: none is.
   Race(std::size_t entrants, int width, int height, const RaceLimits& limits,
        const std::vector<std::uint8_t>& biased = {});
+
+  /// Before the first iteration: what one of each entrant took for pictures with pixels `reduction`
+  /// times as wide (BlockGrid), 0 for those that did not race. The race then has the largest
+  /// pictures of which it can afford some of each. Biased entrants need whole pictures.
+  void choose_reduction(std::span<const double> costs, int reduction);
+  bool wants_smaller_pictures() const;
+  int reduction() const { return reduction_; }
+  const BlockGrid& grid() const { return grid_; }  ///< of whole pictures
 
   /// Nothing: the race is over.
   std::optional<std::size_t> next() const;
@@ -107,6 +117,8 @@ class Race {
   std::size_t yardstick() const;
   bool in_this_round(const Entrant& e) const;
   std::size_t racing() const;
+  /// Whether its variance is: of one estimate only where three or more tell it.
+  bool is_known(std::size_t which) const;
   void end_round();
   void estimate_variances();
   /// SpreadGauge::left_of() by the end of the budget.
@@ -129,16 +141,22 @@ class Race {
   LogRatio ratio(std::size_t a, std::size_t b) const;
   /// The same, where few bright paths decide drawn towards the typical ratio of most blocks.
   double likely_ratio(std::size_t a, std::size_t b) const;
+  /// The logarithm by which spread samples may err less than they seem to, while the gauge does not
+  /// tell.
+  double unknown_gain(std::size_t which) const;
   /// Whether another is surely better.
   bool is_beaten(std::size_t which) const;
   void drop_losers();
 
   RaceLimits limits_;
+  BlockGrid grid_;
   std::vector<Entrant> entrants_;
   std::vector<BlockSums> measured_;   ///< variances of one iteration, as far as they are known
   std::vector<BlockSums> variances_;  ///< with growth and unexplained errors
   std::vector<SpreadGauge> gauges_;   ///< of each entrant, until the race is over
   std::vector<RaceRow> rows_;
+  int reduction_ = 1;  ///< of its pictures
+  double probed_ = 0;  ///< cost of what choose_reduction() was told
   double spent_ = 0;
   int round_ = 0;
   double slice_ = 0;  ///< what each entrant may have taken at the end of this round

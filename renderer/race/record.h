@@ -26,6 +26,7 @@ struct RaceRecord {
   std::vector<Candidate> candidates = {};
   std::vector<RaceRow> rows = {};
   double spent = 0;     ///< by the race itself
+  int reduction = 1;    ///< of its pictures (BlockGrid)
   double limit = 0;     ///< what it might have spent; infinite: no limit
   double budget = 0;    ///< 0: not known
   bool seconds = true;  ///< costs are CPU seconds of each thread, otherwise rays

@@ -25,8 +25,18 @@ double total_of(const std::array<std::vector<double>, 2>& sums) {
 
 }  // namespace
 
-Trial::Trial(int width, int height) : grid_(width, height), mean_(width, height) {
+Trial::Trial(int width, int height, int reduction) : grid_(width, height) {
+  grid_.reduction = reduction;
+  mean_ = Image(grid_.trial_width(), grid_.trial_height());
   for (auto& s : sums_) s.assign(grid_.blocks(), 0.0);
+}
+
+void Trial::restart_whole() {
+  const std::uint64_t iterations = charged_;
+  const double cost = cost_;
+  *this = Trial(grid_.width, grid_.height);
+  charged_ = iterations;
+  cost_ = cost_of_smaller_ = cost;
 }
 
 void Trial::charge(double cost, double share) {
@@ -47,17 +57,18 @@ void Trial::add(const Image& estimate) {
   std::vector<double>& sums = sums_[(estimates_ % 2 == 0) ? 0 : 1];
   SquaredErrors::Sums pictures{};
   std::size_t i = 0;
-  for (int y = 0; y < grid_.height; ++y) {
+  const int width = grid_.trial_width(), height = grid_.trial_height();
+  for (int y = 0; y < height; ++y) {
     double* row = &pictures[std::size_t(y % SquaredErrors::side) * SquaredErrors::side];
-    for (int x = 0; x < grid_.width; ++x, ++i) {
+    for (int x = 0; x < width; ++x, ++i) {
       const Rgb d = estimate.pixels[i] - mean_.pixels[i];
       const double square = (double(d.x) * d.x + double(d.y) * d.y + double(d.z) * d.z) * unbiased;
       mean_.pixels[i] += d * share;
-      sums[grid_.block_of(x, y)] += square;
+      sums[grid_.block_of(x, y)] += square * grid_.weight(x, y);
       row[x % SquaredErrors::side] += square;
     }
   }
-  pictures_.add(pictures, grid_.width, grid_.height);
+  pictures_.add(pictures, width, height);
 }
 
 std::vector<double> Trial::variances(int half) const {
@@ -90,9 +101,11 @@ std::optional<bool> Trial::tail_is_known() const {
 }
 
 void Trial::save(ByteWriter& out) const {
+  out.put(grid_.reduction);
   out.put(estimates_);
   out.put(charged_);
   out.put(cost_);
+  out.put(cost_of_smaller_);
   out.put(pictures_charged_);
   put_image(out, mean_);
   for (const auto& s : sums_) out.put(s);
@@ -100,13 +113,19 @@ void Trial::save(ByteWriter& out) const {
 }
 
 void Trial::load(ByteReader& in) {
+  const auto reduction = in.get<int>();
+  if (reduction < 1 || reduction > std::max(grid_.width, grid_.height)) {
+    throw std::runtime_error("saved trial of a method has pictures of another size");
+  }
+  *this = Trial(grid_.width, grid_.height, reduction);
   estimates_ = in.get<std::uint64_t>();
   charged_ = in.get<std::uint64_t>();
   cost_ = in.get<double>();
+  cost_of_smaller_ = in.get<double>();
   pictures_charged_ = in.get<double>();
   get_image(in, mean_, "trial of a method");
   const bool charged = pictures_charged_ >= 0 && pictures_charged_ <= double(charged_) * (1 + 1e-9);
-  const bool cost = cost_ >= 0 && std::isfinite(cost_);
+  const bool cost = cost_of_smaller_ >= 0 && cost_ >= cost_of_smaller_ && std::isfinite(cost_);
   if (!cost || !charged || estimates_ > charged_) {
     throw std::runtime_error("saved trial of a method is not one");
   }

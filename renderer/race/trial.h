@@ -12,13 +12,20 @@
 namespace lacuna {
 
 /// What iterations of one method, independent estimates of one picture, say of its noise and cost.
-/// Errors are squared errors, the mean of the three channels.
+/// Errors are squared errors, the mean of the three channels. While time is short, the estimates
+/// are of smaller pictures: errors and costs are always those of the whole picture's pixels, as if
+/// each of them had the error of the larger pixel that it lies in.
 class Trial {
  public:
   Trial() = default;
-  Trial(int width, int height);
+  /// `width` x `height`: of the whole picture. `reduction`: BlockGrid's.
+  Trial(int width, int height, int reduction = 1);
 
-  /// Adds the estimate of one iteration.
+  /// Forgets the estimates of smaller pictures: from here on they are whole. Iterations and costs
+  /// go on. charge() is to be called next.
+  void restart_whole();
+
+  /// Adds the estimate of one iteration, of grid().trial_width() x trial_height() pixels.
   void add(const Image& estimate);
   /// Counts the cost of an iteration, whether its estimate is added or not: CPU seconds of each
   /// thread, or rays. `share`: the part of the picture that it rendered.
@@ -28,7 +35,11 @@ class Trial {
   std::uint64_t iterations() const { return charged_; }
   double cost() const { return cost_; }  ///< of all iterations
   /// Of an iteration of the whole picture.
-  double iteration_cost() const { return pictures_charged_ > 0 ? cost_ / pictures_charged_ : 0; }
+  double iteration_cost() const {
+    return pictures_charged_ > 0 ? (cost_ - cost_of_smaller_) / pictures_charged_ : 0;
+  }
+  /// Of one more iteration, of a smaller picture where those are.
+  double next_cost() const { return iteration_cost() * grid_.trial_share(); }
   const BlockGrid& grid() const { return grid_; }
   /// Of the estimates that were added.
   const Image& mean() const { return mean_; }
@@ -60,7 +71,8 @@ class Trial {
   Image mean_;
   std::uint64_t estimates_ = 0, charged_ = 0;
   double cost_ = 0;
-  double pictures_charged_ = 0;  ///< the sum of their shares
+  double cost_of_smaller_ = 0;   ///< before restart_whole()
+  double pictures_charged_ = 0;  ///< the sum of their shares, since then
   /// Sums over the pixels of a block, of deviations 0, 2, 4... and 1, 3, 5...
   std::array<std::vector<double>, 2> sums_;
   /// Of whole pictures: pixels differ in their noise, which is no tail.

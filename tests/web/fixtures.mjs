@@ -46,7 +46,7 @@ export const report = {
 
 /// Of a job that chose between three methods, of which two share the picture.
 const race = {
-  clock: "cpu_seconds", spent: 1.8, limit: 2.1,
+  clock: "cpu_seconds", spent: 1.8, reduction: 3, limit: 2.1,
   candidates: [
     { name: "path", in_use: true, left: null, iterations: 40, cost: 1.9, preparation_seconds: 0, mse_times_cost: 0.02,
       over_best: { ratio: 1, low: 1, high: 1 }, growth: 1, tail_known: true, unexplained: false },

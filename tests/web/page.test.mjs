@@ -114,7 +114,7 @@ test("a job shows its report with units, its files and its settings", async () =
 test("a job that chose its method shows the race", async () => {
   await open(views.race);
   const race = await page.locator(".race").innerText();
-  assert.match(race, /The race took 1\.80\ss\. RMSE expected at the end of the budget: 0\.0300\./);
+  assert.match(race, /The race took 1\.80\ss, of pixels 3 times as wide\. RMSE expected at the end of the budget: 0\.0300\./);
   assert.match(race, /0\.900 of the MSE of the best alone\. Below 4\.00\ss, preparation included: path\./);
   assert.match(race, /metropolis, path_space\s+1\.30 \(1\.10 to 1\.54\)\s+30\s+2\.10\ss\s+0\.0200\ss\s+in use; rare bright paths: not sure; differs from the others/);
   assert.match(race, /bdpt, skeleton\s+unknown\s+2\s+0\.200\ss\s+1\.50\ss\s+left in round 1: worse than another/);

@@ -16,7 +16,7 @@ test("a scene: every candidate with its fate, and the advice", async (t) => {
   }
   assert.match(told.out, /bdpt, skeleton .*a budget below 10 s is not worth an analysis of the space/);
   assert.match(told.out, /<- chosen/);
-  assert.match(told.out, /^0\.5 s: .*The race took [0-9.]+ s\.$/m);
+  assert.match(told.out, /^0\.5 s: .*The race took [0-9.]+ s(, of pixels [0-9]+ times as wide)?\.$/m);
 });
 
 test("a job: its own candidates, and the JSON of a report", async (t) => {

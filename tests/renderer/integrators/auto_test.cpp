@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "analysis/space/memory_limit.h"
+#include "renderer/integrators/candidates.h"
 #include "renderer/race/record.h"
 #include "tests/renderer/integrators/methods.h"
 #include "tests/renderer/integrators/render.h"
@@ -49,6 +50,25 @@ TEST(Auto, AgreesWithBidirectionalPathTracing) {
     expected.seed = 2;
     test::expect_same_picture(test::render(load(row.scene), found),
                               test::render(load(row.scene), expected), row.useful);
+  }
+}
+
+// A race may render smaller pictures than candidates were prepared for.
+TEST(Auto, CandidatesRenderSmallerPictures) {
+  constexpr int max_depth = 4;
+  const auto small = [](const IntegratorSettings& integrator, int iterations) {
+    return RenderSettings{.integrator = integrator,
+                          .width = 58,
+                          .height = 34,
+                          .reduction = 3,
+                          .iterations = iterations};
+  };
+  RenderSettings plain = small(test::path_tracing(max_depth), 400);
+  plain.seed = 2;
+  const auto expected = test::render("cornell.glb", plain);
+  for (const IntegratorSettings& c : candidates(test::choosing(max_depth))) {
+    SCOPED_TRACE(candidate_name(c));
+    test::expect_same_picture(test::render("cornell.glb", small(c, 60)), expected, 0.05);
   }
 }
 

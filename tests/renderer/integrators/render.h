@@ -46,6 +46,7 @@ struct Rendering {
 struct RenderSettings {
   IntegratorSettings integrator = PathSettings{};
   int width = 32, height = 32;
+  int reduction = 1;  ///< the pictures have pixels so many times as wide (Camera::reduced())
   int iterations = 16;
   std::string camera = {};
   std::uint64_t seed = 1;
@@ -70,6 +71,7 @@ class Session {
         integrator_(make_integrator(s.integrator)),
         eye_(choose_camera(data, s.camera, "test")),
         camera_(eye_, s.width, s.height, s.filter),
+        seen_through_(camera_.reduced(s.reduction)),
         scene_(std::move(data), integrator_->needs(), s.environment, pool_) {
     integrator_->prepare({scene_, pool_, space_, camera_});
     names_ = integrator_->layers(s.layers);
@@ -78,10 +80,10 @@ class Session {
   /// `stop`: as IterationContext's.
   Image iterate(
       std::uint64_t i, const std::function<bool()>& stop = [] { return false; }) {
-    Image image(settings_.width, settings_.height);
+    Image image(seen_through_.width(), seen_through_.height());
     layers_.assign(names_.size(), image);
     counters_ += integrator_->iterate({.scene = scene_,
-                                       .camera = camera_,
+                                       .camera = seen_through_,
                                        .pool = pool_,
                                        .seed = settings_.seed,
                                        .iteration = i,
@@ -97,13 +99,14 @@ class Session {
   Integrator& integrator() { return *integrator_; }
   const Scene& scene() const { return scene_; }
   const Counters& counters() const { return counters_; }
+  const Camera& camera() const { return seen_through_; }
 
  private:
   RenderSettings settings_;
   ThreadPool pool_;
   std::unique_ptr<Integrator> integrator_;
   CameraData eye_;
-  Camera camera_;
+  Camera camera_, seen_through_;
   Scene scene_;
   ArtefactStore store_{{}};
   SpaceAnalysis space_{
@@ -123,7 +126,7 @@ class Session {
 inline Rendering render(SceneData data, const RenderSettings& s) {
   Session session(std::move(data), s);
   Rendering r;
-  r.film = Film(s.width, s.height);
+  r.film = Film(session.camera().width(), session.camera().height());
   r.textures_decoded = session.scene().textures_decoded();
   r.filters = session.scene().rays().filters();
   r.emitters_built = session.scene().has_emitters();
