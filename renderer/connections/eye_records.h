@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -26,9 +27,20 @@ class EyeRecords {
 
   std::size_t size() const { return records_.size(); }
   const Record& operator[](std::size_t i) const { return records_[i]; }
-  /// RecordTree::nearest() of an eye vertex.
-  std::size_t nearest(const Vertex& v, std::span<std::uint32_t> found) const {
-    return tree_.nearest(surface_point(v), found);
+
+  /// The records that an eye vertex is connected by.
+  struct Near {
+    static constexpr std::size_t most = 64;
+    std::uint32_t cell = 0;  ///< of CellStatistics: records are new in each iteration
+    std::size_t n = 0;
+    std::array<std::uint32_t, most> near{};  ///< the nearest n records
+  };
+  /// The nearest `neighbours` records, or as many as there are. Requires neighbours <= Near::most.
+  Near nearest(const Vertex& v, int neighbours) const {
+    Near found;
+    const auto wanted = std::span(found.near).first(static_cast<std::size_t>(neighbours));
+    found.n = tree_.nearest(surface_point(v), wanted);
+    return found;
   }
 
  private:

@@ -14,8 +14,6 @@ namespace lacuna {
 /// are the vertices of a few eye paths, traced anew in each iteration (Georgiev et al. 2012,
 /// "Importance Caching for Complex Illumination"; on bidirectional path tracing: Noel 2015, 11.5).
 class ImportanceCacheConnections : public StrategyBase {
-  static constexpr std::size_t max_neighbours = 64;
-
  public:
   /// Records are placed up to `record_depth` edges from the eye.
   explicit ImportanceCacheConnections(const ImportanceCacheSettings& settings,
@@ -32,17 +30,11 @@ class ImportanceCacheConnections : public StrategyBase {
   void begin(const IterationContext& context, const LightVertices& lights, const CellStatistics&,
              Counters& counters);
 
-  /// The records that an eye vertex is connected by.
-  struct CellLookup {
-    std::uint32_t cell = 0;  ///< of CellStatistics
-    std::size_t n = 0;
-    std::array<std::uint32_t, max_neighbours> near{};  // the nearest n records
-    const ResamplingCell* drawn = nullptr;             // of one of them, chosen at random
+  struct CellLookup : EyeRecords::Near {
+    const ResamplingCell* drawn = nullptr;  ///< of one of them, chosen at random
   };
   CellLookup find(const Vertex& v, int /*depth*/, Rng& rng) const {
-    CellLookup lookup;
-    lookup.n = records_.nearest(
-        v, std::span(lookup.near).first(static_cast<std::size_t>(settings_.neighbours)));
+    CellLookup lookup{records_.nearest(v, settings_.neighbours)};
     if (lookup.n > 0) {
       lookup.drawn = &cells_of_records_[lookup.near[rng.below(lookup.n)]];
     }

@@ -57,8 +57,6 @@ class JointDistribution {
 /// the count of correlated samples Grittmann et al. 2021, who take the paper's bound of the
 /// variance to be the count of one sample.
 class ProbabilisticConnections : public StrategyBase {
-  static constexpr std::size_t max_neighbours = 64;
-
  public:
   explicit ProbabilisticConnections(const ProbabilisticConnectionsSettings& settings)
       : settings_(settings) {}
@@ -72,17 +70,9 @@ class ProbabilisticConnections : public StrategyBase {
   void begin(const IterationContext& context, const LightVertices& lights, const CellStatistics&,
              Counters& counters);
 
-  /// The records that an eye vertex is connected by.
-  struct CellLookup {
-    std::uint32_t cell = 0;  ///< of CellStatistics
-    std::size_t n = 0;
-    std::array<std::uint32_t, max_neighbours> near{};  // the nearest n records
-  };
+  using CellLookup = EyeRecords::Near;
   CellLookup find(const Vertex& v, int /*depth*/, Rng&) const {
-    CellLookup lookup;
-    lookup.n = records_.nearest(
-        v, std::span(lookup.near).first(static_cast<std::size_t>(settings_.neighbours)));
-    return lookup;
+    return records_.nearest(v, settings_.neighbours);
   }
 
   /// SharedConnections::sample().
