@@ -42,6 +42,8 @@ Mixable mixable(const Race& race, const PlanFreedom& freedom, bool adapts) {
     const Entrant& e = race.entrants()[k];
     const bool noisy = total(race.variances()[k]) > 0;
     if (!e.racing || e.biased || !e.trial.has_halves() || !noisy) continue;
+    // Bright paths that are still to come may come in any block.
+    if (k != race.best() && !e.standing.tail_known.value_or(true)) continue;
     if (!freedom.regions && k != race.best()) continue;
     const double cost = e.trial.iteration_cost();
     const auto error = [&](const BlockSums& variances, double factor) {

@@ -91,7 +91,7 @@ TEST(Reduction, IsAsLittleAsTheRaceCanAfford) {
     const double rest = RaceLimits::of_seconds(budget).cost - 4 * probe.trial_share();
     EXPECT_NEAR(race.limits().cost, std::max(0.0, rest), 1e-12);
     const BlockGrid found = grid_of(race.reduction());
-    if (found.trial_pixels() > 1024) {
+    if (found.trial_pixels() > 4096) {
       EXPECT_LE(4 * 4 * found.trial_share(), rest);
     }
     if (race.reduction() > 1) {
@@ -105,7 +105,18 @@ TEST(Reduction, IsAsLittleAsTheRaceCanAfford) {
   EXPECT_GE(at_1000, 1);
   EXPECT_GT(at_100, at_1000);
   EXPECT_GT(at_nothing, at_100);
-  EXPECT_GE(grid_of(at_nothing).trial_pixels(), 512) << "and no smaller";
+  EXPECT_GE(grid_of(at_nothing).trial_pixels(), 2048) << "and no smaller";
+}
+
+TEST(Reduction, WhatIsSlowInSmallPicturesLeaves) {
+  Race race = race_of(100, 3);
+  const double slow = RaceLimits::of_seconds(100).cost / 10;
+  race.choose_reduction(std::vector<double>{0.001, slow, 0.002}, 5);
+  EXPECT_TRUE(race.entrants()[0].racing);
+  EXPECT_FALSE(race.entrants()[1].racing);
+  EXPECT_EQ(race.entrants()[1].reason, "an iteration takes too long for the race");
+  EXPECT_TRUE(race.entrants()[2].racing);
+  EXPECT_EQ(race.reduction(), 1) << "it does not count";
 }
 
 TEST(Reduction, BiasNeedsWholePictures) {
