@@ -234,7 +234,7 @@ def main():
     parser.add_argument("--regret-seeds", type=int, default=3)
     parser.add_argument("--regret-scenes", nargs="+", choices=regret.SCENES, metavar="SCENE",
                         help=f"of {', '.join(regret.SCENES)} (default: all)")
-    parser.add_argument("--peers-seconds", type=float, default=8, help="CPU seconds of all threads for each picture of peers")
+    parser.add_argument("--peers-seconds", type=float, default=6, help="CPU seconds of all threads for each picture of peers")
     parser.add_argument("--peers-scenes", nargs="+", choices=peers.SCENES, metavar="SCENE",
                         help=f"of {', '.join(peers.SCENES)} (default: all)")
     options = parser.parse_args()

@@ -4,7 +4,7 @@ First, scenes of known answers: does Cycles read materials, lights and lengths a
 means of 16 x 16 pixels of both agree with those of one reference to their noise; only then are errors compared.
 Materials that only one of the two has (rough gloss) are made diffuse for both.
 
-CPU seconds are those of a process's threads while it renders. Cycles tells no such thing: it renders 1 sample and n
+CPU seconds are those of a process's threads while it renders. Cycles reports none: it renders 1 sample and n
 samples a pixel with the scene prepared, and the difference is the time of n - 1. Writes a page with the pictures to
 build/peers."""
 
@@ -36,14 +36,16 @@ SCENES = {
     "sponza, arcade": {"scene": "sponza/scene.glb", "camera": "directional-light-from-power"},
     "sponza, nave": {"scene": "sponza/scene.glb", "camera": "atrium"},
     "atrium": {"scene": "atrium.glb", "camera": "arcade"},
-    "furnished room": {"scene": "furnished.glb", "camera": "room"},
+    "room by day": {"scene": "day.glb", "camera": "room"},
+    "room by day, a bulb": {"scene": "bulb.glb", "camera": "room"},
 }
 # Scenes of known answers, and the edges of their paths.
 KNOWN = (("furnace.glb", 2), ("furnace.glb", 6), ("directional.glb", 2), ("point.glb", 2), ("area.glb", 2))
 
 
-def furnished():
-    """A room with a table, books, a cabinet, a stool and a picture, a window and a bulb of 224 triangles."""
+def furnished(with_bulb):
+    """A room with a table, books, a cabinet, a stool, a picture and a window, and perhaps a bulb of 224 triangles with a
+    fourth of the light of the window and 1 % of its area."""
     s = glb.Glb("furnished", "", "", "closed")
     white = s.material(glb.diffuse("white", (0.78, 0.77, 0.74)))
     boards = s.material(glb.diffuse("boards", (0.42, 0.30, 0.20)))
@@ -57,8 +59,9 @@ def furnished():
     s.add("window's wall", shapes.wall("-x", x[1], *cuts, [(1, 1)]), white)
     day = s.material(glb.emitter("day", (6.0, 7.0, 8.0)))
     s.add("window", shapes.wall("-x", x[1] + 0.01, cuts[0][1:3], cuts[1][1:3]), day)
-    bulb = s.material(glb.emitter("bulb", (160.0, 120.0, 70.0)))
-    s.add("bulb", shapes.sphere(0.05, 16, 8), bulb, at=(-1.6, 1.7, 1.0))
+    if with_bulb:
+        bulb = s.material(glb.emitter("bulb", (160.0, 120.0, 70.0)))
+        s.add("bulb", shapes.sphere(0.05, 16, 8), bulb, at=(-1.6, 1.7, 1.0))
     rooms.ajar_furniture(s)
     s.camera("room", (-1.2, 1.6, 4.6), (0.45, 0.75, 1.2), 52, 16 / 9)
     return s.bytes()
@@ -223,7 +226,8 @@ def run(bench, options):
     seconds = options.peers_seconds
     folder = ROOT / "build/peers"
     folder.mkdir(parents=True, exist_ok=True)
-    (bench.folder / "furnished.glb").write_bytes(furnished())
+    for name, with_bulb in (("day", False), ("bulb", True)):
+        (bench.folder / f"{name}.glb").write_bytes(furnished(with_bulb))
     os.environ["LACUNA_SCENES"] += f":{bench.folder}"
     known_answers(bench)
     rows, gallery, told = [], [], {}
