@@ -207,14 +207,14 @@ struct LightTree::Descent {
 /// Ends a descent at a bundle.
 void LightTree::draw(std::uint32_t node, Descent& d) const {
   const Bundle& bundle = bundles_[bundle_of_[node]];
-  if (d.grain > 0x1p-25) [[unlikely]]
+  constexpr double coarse = 0x1p-44;  // tables have bins, and parts of bins down to 2^-32
+  if (d.grain > coarse) [[unlikely]]
     d.u += d.grain * d.rng->next_choice();
   d.u = std::clamp(d.u, 0.0, 1 - 0x1p-53);
-  Rng::FinePoint at{static_cast<std::uint64_t>(d.u * 0x1p64), 0, d.rng->next_u32()};
-  const std::uint32_t member = bundle.by_intensity.sample(at);
-  d.probability *= double(bundle.by_intensity.pmf(member).value);
-  d.node = bundle.entries[member];
-  d.u = static_cast<double>(at.x >> 11) * 0x1p-53;
+  const AliasTable::Draw drawn = bundle.by_intensity.sample(d.u);
+  d.probability *= double(drawn.pmf.value);
+  d.node = bundle.entries[drawn.index];
+  d.u = std::min(d.u, 1 - 0x1p-53);
   d.done = true;
 }
 

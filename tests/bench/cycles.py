@@ -202,7 +202,9 @@ def set_renderer(spec):
     c.caustics_reflective = c.caustics_refractive = True
     c.pixel_filter_type = "BOX"
     c.film_exposure = 1
-    bounces = spec["max_depth"] - 2  # direct light, two edges, is what Cycles calls no bounce
+    if spec["max_depth"] < 2:
+        raise SystemExit("cycles: has direct light, two edges, at least")
+    bounces = spec["max_depth"] - 2  # direct light is what Cycles calls no bounce
     c.max_bounces = c.diffuse_bounces = c.glossy_bounces = c.transmission_bounces = bounces
     c.transparent_max_bounces = 1024
     return scene
