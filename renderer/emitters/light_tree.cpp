@@ -99,7 +99,8 @@ struct LightTree::Descent {
   double grain = 0x1p-53;  // what `u` is a multiple of
   double probability = 1;
   std::uint32_t node = 0;
-  bool done = false;  // `node` is an entry
+  bool done = false;    // `node` is an entry, or a bundle
+  bool bundle = false;  // draw() has still to be called
 };
 
 [[gnu::always_inline]] inline LightTree::Geometry LightTree::geometry(const Node& node,
@@ -192,7 +193,8 @@ struct LightTree::Descent {
     return;
   }
   if ((w.ends >> i & 1) != 0) {
-    draw(d.node, d);
+    d.done = d.bundle = true;
+    __builtin_prefetch(&bundle_of_[d.node]);
     return;
   }
   const auto* next = reinterpret_cast<const char*>(&nodes_[d.node]);
@@ -205,8 +207,9 @@ struct LightTree::Descent {
 }
 
 /// Ends a descent at a bundle.
-void LightTree::draw(std::uint32_t node, Descent& d) const {
-  const Bundle& bundle = bundles_[bundle_of_[node]];
+void LightTree::draw(Descent& d) const {
+  if (!d.bundle) return;
+  const Bundle& bundle = bundles_[bundle_of_[d.node]];
   constexpr double coarse = 0x1p-44;  // tables have bins, and parts of bins down to 2^-32
   if (d.grain > coarse) [[unlikely]]
     d.u += d.grain * d.rng->next_choice();
@@ -215,7 +218,6 @@ void LightTree::draw(std::uint32_t node, Descent& d) const {
   d.probability *= double(drawn.pmf.value);
   d.node = bundle.entries[drawn.index];
   d.u = std::min(d.u, 1 - 0x1p-53);
-  d.done = true;
 }
 
 LightTree::Choice LightTree::choose(const Receiver& at, double u, Rng& rng) const {
@@ -225,6 +227,7 @@ LightTree::Choice LightTree::choose(const Receiver& at, double u, Rng& rng) cons
     weigh(nodes_[d.node], at, geometry(nodes_[d.node], at), w);
     descend(w, d);
   }
+  draw(d);
   return {d.node, d.probability, d.u};
 }
 
@@ -262,6 +265,7 @@ void LightTree::choose(std::span<Request> requests) const {
       n = left;
     }
     for (std::size_t k = 0; k < all; ++k) {
+      draw(descents[k]);
       requests[first + k].result = {descents[k].node, descents[k].probability, descents[k].u};
     }
   }

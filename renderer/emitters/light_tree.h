@@ -95,7 +95,7 @@ class LightTree {
   static Geometry geometry(const Node& node, const Receiver& at);
   static void weigh(const Node& node, const Receiver& at, const Geometry& g, Weights& w);
   void descend(const Weights& w, Descent& d) const;
-  void draw(std::uint32_t node, Descent& d) const;
+  void draw(Descent& d) const;
 
   HugeVector<Node> nodes_;              // 0: the root
   std::vector<std::uint32_t> parents_;  // of each node: 8 times the parent, plus the child's place

@@ -72,7 +72,9 @@ void PointwiseSelection::choose(std::span<Request> requests) const {
       r.result = choose_infinite(at, *r.rng);
       continue;
     }
-    descents[n] = {r.receiver, unit(at), r.rng, {}};
+    descents[n].at = r.receiver;
+    descents[n].u = unit(at);
+    descents[n].rng = r.rng;
     numbers[n] = at;
     asked[n++] = &r;
     if (n == together) descend();
