@@ -181,9 +181,13 @@ def measure(bench, job, scene, seconds):
     return pictures, references, told
 
 
-def errors(bench, pictures, references):
-    """relMSE of a method, without the references' own."""
-    noise = bench.compare(references[0].file, references[1].file, BLOCK)["relmse"] / 2
+def noise_of(bench, references):
+    """relMSE of a reference, from two."""
+    return bench.compare(references[0].file, references[1].file, BLOCK)["relmse"] / 2
+
+
+def errors(bench, pictures, references, noise):
+    """relMSE of a method, without the references' own, `noise`."""
     return statistics.mean(bench.compare(p.file, r.file, BLOCK)["relmse"] for p in pictures for r in references) - noise
 
 
@@ -247,7 +251,10 @@ def run(bench, options):
             ratio, beyond = agreement(bench, of_method, references)
             bench.figure(f"{name}: blocks of {method} against the reference / noise", f"{ratio:.2f}",
                          f"at most 1.5, or 1 % of the mean beyond noise ({100 * beyond:.2f} %)", ratio <= 1.5 or beyond <= 0.01)
-        relmse = {m: errors(bench, p, references) for m, p in pictures.items()}
+        noise = noise_of(bench, references)
+        relmse = {m: errors(bench, p, references, noise) for m, p in pictures.items()}
+        share = noise / min(relmse.values())
+        bench.figure(f"{name}: relMSE of the reference / of the best", f"{share:.2f}", "at most 0.25", 0 <= share <= 0.25)
         rates = {m: rate(p) for m, p in pictures.items()}
         judge(bench, name, relmse, rates)
         rows.append(row(name, relmse, rates))
