@@ -81,8 +81,10 @@ void print_blocks(const CompareOptions& o, const Crop& crop, const std::vector<d
   }
   const std::vector<double> variance = variance_of_difference(o, crop);
   const BlockStatistics s = block_statistics({a, b, variance, crop.width, crop.height}, o.block);
-  fmt::print("blocks  {} of {} x {} pixels\nblock_relative {:.6g}\nworst_block {}, {}\n", s.blocks,
-             o.block, o.block, s.largest_relative, crop.x + s.worst_x, crop.y + s.worst_y);
+  fmt::print(
+      "blocks  {} of {} x {} pixels\nblock_rms {:.9g}\nblock_relative {:.6g}\nworst_block {}, {}\n",
+      s.blocks, o.block, o.block, s.rms, s.largest_relative, crop.x + s.worst_x,
+      crop.y + s.worst_y);
   if (variance.empty()) return;
   fmt::print("z_mean {:.4f}\nz_deviation {:.4f}\nz_beyond_1.96 {:.4f}\n", s.z_mean, s.z_deviation,
              s.z_beyond);

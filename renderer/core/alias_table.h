@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -51,6 +52,20 @@ class AliasTable {
     const std::uint32_t i = choose(static_cast<std::uint32_t>(point.x >> 32));
     point.x *= bins_.size();
     return resolve(i, point.besides).index;
+  }
+  /// By `u` alone, uniform in [0, 1), which gets what is left within the part of the bin: a uniform
+  /// number again, with as many bits fewer as the index takes.
+  Draw sample(double& u) const {
+    const double at = u * static_cast<double>(bins_.size());
+    const auto i = std::min(static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(size() - 1));
+    const Bin& b = bins_[i];
+    const double rest = at - i, split = b.threshold * 0x1p-32;
+    if (rest < split) {
+      u = rest / split;
+      return {i, Pdf<Count>(b.pmf)};
+    }
+    u = (rest - split) / (1 - split);
+    return {b.alias, Pdf<Count>(b.alias_pmf)};
   }
   /// Prefetches what pmf() reads.
   void prefetch(std::uint32_t i) const { __builtin_prefetch(&bins_[i]); }

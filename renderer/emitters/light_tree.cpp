@@ -19,6 +19,9 @@ constexpr std::array uniform_parts = [] {
 }();
 /// Weight of an emitter seen from behind, against one seen from its axis.
 constexpr float least_emission = 0x1p-10F;
+/// Radius over distance up to which a bundle is drawn from by intensity: what it looks like from
+/// there varies by a fourth over the bundle.
+constexpr float narrow = 0x1p-3F;
 /// Squared distances below it would overflow the weights.
 constexpr float least_distance2 = 1e-36F;
 
@@ -74,6 +77,7 @@ struct LightTree::Weights {
   __m256 sums;
   alignas(32) std::array<float, 16> up_to;  // [7 + i]: the sum of the children before i
   int count;
+  unsigned ends;  // a bit for each child that is a bundle and is seen under a small angle
 
   float before(int i) const { return up_to[static_cast<std::size_t>(7 + i)]; }
   float total() const { return before(count); }
@@ -95,7 +99,8 @@ struct LightTree::Descent {
   double grain = 0x1p-53;  // what `u` is a multiple of
   double probability = 1;
   std::uint32_t node = 0;
-  bool done = false;  // `node` is an entry
+  bool done = false;    // `node` is an entry, or a bundle
+  bool bundle = false;  // draw() has still to be called
 };
 
 [[gnu::always_inline]] inline LightTree::Geometry LightTree::geometry(const Node& node,
@@ -148,6 +153,12 @@ struct LightTree::Descent {
                     _mm256_mul_ps(intensity, _mm256_mul_ps(g.inverse, g.inverse)));
   w.count = node.count;
   w.sums = sums_up_to(weight);
+  w.ends = node.bundles;
+  if (w.ends != 0) {
+    const __m256 angle = _mm256_mul_ps(_mm256_load_ps(node.r.data()), g.inverse);
+    w.ends &= static_cast<unsigned>(
+        _mm256_movemask_ps(_mm256_cmp_ps(angle, _mm256_set1_ps(narrow), _CMP_LE_OQ)));
+  }
   w.up_to[7] = 0;
   _mm256_store_ps(&w.up_to[8], w.sums);
   if (!(w.total() > 0)) [[unlikely]] {  // too far away for floats
@@ -181,12 +192,31 @@ struct LightTree::Descent {
     d.u = std::clamp(d.u, 0.0, 1 - 0x1p-53);
     return;
   }
+  if ((w.ends >> i & 1) != 0) {
+    d.done = d.bundle = true;
+    __builtin_prefetch(&bundle_of_[d.node]);
+    return;
+  }
   const auto* next = reinterpret_cast<const char*>(&nodes_[d.node]);
   for (std::size_t k = 0; k < sizeof(Node); k += 64) _mm_prefetch(next + k, _MM_HINT_T0);
   if (d.grain > 0x1p-25) [[unlikely]] {
     d.u += d.grain * d.rng->next_choice();
     d.grain *= 0x1p-53;
   }
+  d.u = std::min(d.u, 1 - 0x1p-53);
+}
+
+/// Ends a descent at a bundle.
+void LightTree::draw(Descent& d) const {
+  if (!d.bundle) return;
+  const Bundle& bundle = bundles_[bundle_of_[d.node]];
+  constexpr double coarse = 0x1p-44;  // tables have bins, and parts of bins down to 2^-32
+  if (d.grain > coarse) [[unlikely]]
+    d.u += d.grain * d.rng->next_choice();
+  d.u = std::clamp(d.u, 0.0, 1 - 0x1p-53);
+  const AliasTable::Draw drawn = bundle.by_intensity.sample(d.u);
+  d.probability *= double(drawn.pmf.value);
+  d.node = bundle.entries[drawn.index];
   d.u = std::min(d.u, 1 - 0x1p-53);
 }
 
@@ -197,6 +227,7 @@ LightTree::Choice LightTree::choose(const Receiver& at, double u, Rng& rng) cons
     weigh(nodes_[d.node], at, geometry(nodes_[d.node], at), w);
     descend(w, d);
   }
+  draw(d);
   return {d.node, d.probability, d.u};
 }
 
@@ -234,6 +265,7 @@ void LightTree::choose(std::span<Request> requests) const {
       n = left;
     }
     for (std::size_t k = 0; k < all; ++k) {
+      draw(descents[k]);
       requests[first + k].result = {descents[k].node, descents[k].probability, descents[k].u};
     }
   }
@@ -256,7 +288,12 @@ double LightTree::probability(std::uint32_t entry, const Receiver& at) const {
     const Node& node = nodes_[place / width];
     Weights w;
     weigh(node, at, geometry(node, at), w);
-    p *= w.probability(static_cast<int>(place % width));
+    const auto child = static_cast<int>(place % width);
+    p *= w.probability(child);
+    if ((w.ends >> child & 1) != 0) {
+      const Bundle& bundle = bundles_[bundle_of_[node.child[place % width]]];
+      return p * double(bundle.by_intensity.pmf(member_of_[entry]).value);
+    }
   }
   return p;
 }

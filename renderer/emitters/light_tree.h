@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "renderer/core/alias_table.h"
 #include "renderer/core/huge_pages.h"
 #include "renderer/core/rng.h"
 #include "renderer/emitters/emitter_bounds.h"
@@ -23,12 +24,16 @@ namespace lacuna {
 /// between an axis of the child and a direction from its sphere to the point (1 up to the cone of
 /// axes, `least` beyond the reach), and b the same at the receiver. A share 2^-16 of each node's
 /// choices is uniform, so no emitter has probability 0, whatever the point.
+///
+/// Where a lamp is a mesh of many triangles, little is gained by descending to each of them: a
+/// bundle is a group of emitters that is small beside the scene and faces one way. For a point that
+/// sees it under a small angle the descent ends there, and an emitter is drawn by intensity.
 class LightTree {
  public:
   LightTree() = default;
   /// The same tree for any number of threads. Intensities must be finite and > 0; `emitters` may be
-  /// empty.
-  explicit LightTree(std::vector<TreeEmitter> emitters);
+  /// empty. `extent`: the scene's radius, that bundles are small beside; 0: without bundles.
+  explicit LightTree(std::vector<TreeEmitter> emitters, double extent = 0);
 
   bool empty() const { return nodes_.empty(); }
 
@@ -55,13 +60,14 @@ class LightTree {
   double probability(std::uint32_t entry, const Receiver& at) const;
 
   std::uint64_t bytes() const {
-    return nodes_.size() * sizeof(Node) + (parents_.size() + places_.size()) * 4;
+    return nodes_.size() * (sizeof(Node) + 8) + places_.size() * 8 + bundled_ * bytes_bundled;
   }
 
  private:
   friend class LightTreeBuilder;
   static constexpr int width = 8;
   static constexpr std::uint32_t none = ~0U;
+  static constexpr std::uint64_t bytes_bundled = AliasTable::bytes_each + 4;
 
   /// Eight children: what their weights are computed from, and where they are.
   struct alignas(64) Node {
@@ -74,8 +80,14 @@ class LightTree {
     std::uint8_t leaves = 0;      // a bit for each child that is an entry
     std::uint8_t both_sides = 0;  // a bit for each child that emits along its axes and against them
     std::uint8_t count = 0;
+    std::uint8_t bundles = 0;  // a bit for each child that is a node and a bundle
   };
   static_assert(sizeof(Node) == 256);
+
+  struct Bundle {
+    AliasTable by_intensity;  // of `entries`, in their order
+    std::vector<std::uint32_t> entries;
+  };
 
   struct Geometry;
   struct Weights;
@@ -83,10 +95,15 @@ class LightTree {
   static Geometry geometry(const Node& node, const Receiver& at);
   static void weigh(const Node& node, const Receiver& at, const Geometry& g, Weights& w);
   void descend(const Weights& w, Descent& d) const;
+  void draw(Descent& d) const;
 
   HugeVector<Node> nodes_;              // 0: the root
   std::vector<std::uint32_t> parents_;  // of each node: 8 times the parent, plus the child's place
   std::vector<std::uint32_t> places_;   // of each entry: 8 times its node, plus its place; or none
+  std::vector<Bundle> bundles_;
+  std::vector<std::uint32_t> bundle_of_;  // of each node: in bundles_; or none
+  std::vector<std::uint32_t> member_of_;  // of each entry: its place in its bundle
+  std::uint64_t bundled_ = 0;             // entries in bundles
 };
 
 }  // namespace lacuna

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numbers>
 
 #include "renderer/emitters/light_tree.h"
 
@@ -23,6 +24,8 @@ constexpr std::size_t few = 512;
 constexpr double half_step = 0.499 / 127;
 /// Cosine by which a reach is widened, because axes and angles are rounded to 8 bits.
 constexpr double reach_margin = 0.02;
+/// A bundle's axes are within that angle, and its radius is at most that share of the scene's.
+constexpr double bundle_spread = std::numbers::pi / 3, bundle_size = 1.0 / 32;
 
 /// A box around points, in floats.
 struct FloatBox {
@@ -99,8 +102,8 @@ struct Part {
 
 class LightTreeBuilder {
  public:
-  LightTreeBuilder(const std::vector<TreeEmitter>& emitters, LightTree& tree)
-      : emitters_(emitters), tree_(tree) {
+  LightTreeBuilder(const std::vector<TreeEmitter>& emitters, double extent, LightTree& tree)
+      : emitters_(emitters), tree_(tree), largest_bundle_(extent * bundle_size) {
     items_.reserve(emitters.size());
     std::uint32_t entries = 0;
     for (std::uint32_t i = 0; i < emitters.size(); ++i) {
@@ -109,7 +112,8 @@ class LightTreeBuilder {
     }
     tree_.places_.assign(entries, LightTree::none);
     if (items_.empty()) return;
-    build({0, items_.size(), group_of(0, items_.size())}, LightTree::none, 0);
+    tree_.member_of_.assign(entries, 0);
+    build({0, items_.size(), group_of(0, items_.size())}, LightTree::none, 0, false);
   }
 
  private:
@@ -120,10 +124,12 @@ class LightTreeBuilder {
   }
 
   /// Makes the node of a group and all below it; gives its bounds. `place` as LightTree::parents_.
-  EmitterBounds build(const Part& all, std::uint32_t place, int depth) {
+  /// `bundled`: it is in a bundle.
+  EmitterBounds build(const Part& all, std::uint32_t place, int depth, bool bundled) {
     const auto index = static_cast<std::uint32_t>(tree_.nodes_.size());
     tree_.nodes_.emplace_back();
     tree_.parents_.push_back(place);
+    tree_.bundle_of_.push_back(LightTree::none);
     const std::vector<Part> parts = children_of(all, depth);
     std::array<EmitterBounds, LightTree::width> children;
     for (std::size_t k = 0; k < parts.size(); ++k) {
@@ -137,10 +143,44 @@ class LightTreeBuilder {
       } else {
         const auto child = static_cast<std::uint32_t>(tree_.nodes_.size());
         set_child(index, k, child, false);
-        children[k] = build(part, own, depth + 1);
+        const bool bundle = !bundled && is_bundle(part);
+        if (bundle) {
+          LightTree::Node& n = tree_.nodes_[index];
+          n.bundles = static_cast<std::uint8_t>(n.bundles | 1U << k);
+        }
+        children[k] = build(part, own, depth + 1, bundled || bundle);
+        if (bundle) add_bundle(child, part);
       }
     }
     return describe(tree_.nodes_[index], std::span(children).first(parts.size()));
+  }
+
+  /// Small beside the scene, and of surfaces that face one way.
+  bool is_bundle(const Part& part) const {
+    if (!(largest_bundle_ > 0)) return false;
+    EmitterBounds all = emitters_[items_[part.begin].emitter].bounds;
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      const EmitterBounds& b = emitters_[items_[i].emitter].bounds;
+      if (b.reach < std::numbers::pi / 2 || b.axes.spread > 0) return false;
+      all = EmitterBounds::join(all, b);
+      if (all.axes.spread > bundle_spread || all.box.radius() > largest_bundle_) return false;
+    }
+    return true;
+  }
+
+  void add_bundle(std::uint32_t node, const Part& part) {
+    LightTree::Bundle bundle;
+    std::vector<double> intensities;
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      const TreeEmitter& e = emitters_[items_[i].emitter];
+      tree_.member_of_[e.entry] = static_cast<std::uint32_t>(bundle.entries.size());
+      bundle.entries.push_back(e.entry);
+      intensities.push_back(e.bounds.intensity);
+    }
+    bundle.by_intensity = AliasTable(intensities);
+    tree_.bundle_of_[node] = static_cast<std::uint32_t>(tree_.bundles_.size());
+    tree_.bundled_ += part.count();
+    tree_.bundles_.push_back(std::move(bundle));
   }
 
   void set_child(std::uint32_t node, std::size_t k, std::uint32_t child, bool leaf) {
@@ -327,8 +367,11 @@ class LightTreeBuilder {
   const std::vector<TreeEmitter>& emitters_;
   LightTree& tree_;
   std::vector<Item> items_;
+  double largest_bundle_;
 };
 
-LightTree::LightTree(std::vector<TreeEmitter> emitters) { LightTreeBuilder(emitters, *this); }
+LightTree::LightTree(std::vector<TreeEmitter> emitters, double extent) {
+  LightTreeBuilder(emitters, extent, *this);
+}
 
 }  // namespace lacuna

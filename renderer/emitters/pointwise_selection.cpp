@@ -7,7 +7,7 @@ namespace lacuna {
 
 PointwiseSelection::PointwiseSelection(std::vector<TreeEmitter> finite,
                                        std::span<const Infinite> infinite, double power,
-                                       const AliasTable& by_power)
+                                       double extent, const AliasTable& by_power)
     : by_power_(by_power), finite_(finite.size()) {
   std::vector<double> powers;
   double sum = 0;
@@ -22,7 +22,7 @@ PointwiseSelection::PointwiseSelection(std::vector<TreeEmitter> finite,
   } else if (!infinite.empty()) {
     infinite_share_ = std::round(std::clamp(sum / power, 0.125, 0.875) * 0x1p32) * 0x1p-32;
   }
-  tree_ = LightTree(std::move(finite));
+  tree_ = LightTree(std::move(finite), extent);
 }
 
 namespace {
@@ -72,7 +72,9 @@ void PointwiseSelection::choose(std::span<Request> requests) const {
       r.result = choose_infinite(at, *r.rng);
       continue;
     }
-    descents[n] = {r.receiver, unit(at), r.rng, {}};
+    descents[n].at = r.receiver;
+    descents[n].u = unit(at);
+    descents[n].rng = r.rng;
     numbers[n] = at;
     asked[n++] = &r;
     if (n == together) descend();

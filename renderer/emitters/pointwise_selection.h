@@ -18,10 +18,10 @@ class PointwiseSelection {
     std::uint32_t entry;
     double power;  ///< > 0
   };
-  /// `power`: that of all emitters. `by_power`: the selection that ratios are relative to, which
-  /// outlives this.
+  /// `power`: that of all emitters. `extent`: the scene's radius, as of LightTree. `by_power`: the
+  /// selection that ratios are relative to, which outlives this.
   PointwiseSelection(std::vector<TreeEmitter> finite, std::span<const Infinite> infinite,
-                     double power, const AliasTable& by_power);
+                     double power, double extent, const AliasTable& by_power);
   PointwiseSelection(const PointwiseSelection&) = delete;
   PointwiseSelection& operator=(const PointwiseSelection&) = delete;
 

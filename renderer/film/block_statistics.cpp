@@ -19,6 +19,7 @@ BlockStatistics block_statistics(const PicturePair& pair, int size) {
   const auto& [a, b, variance, width, height] = pair;
   BlockStatistics s;
   std::vector<double> z;
+  double sum_of_squares = 0;
   for (int y0 = 0; y0 + size <= height; y0 += size) {
     for (int x0 = 0; x0 + size <= width; x0 += size) {
       Block block;
@@ -43,11 +44,14 @@ BlockStatistics block_statistics(const PicturePair& pair, int size) {
         s.worst_y = y0;
       }
       for (std::size_t c = 0; c < 3; ++c) {
+        const double difference = (block.a[c] - block.b[c]) / (double(size) * size);
+        sum_of_squares += difference * difference;
         if (block.variance[c] > 0)
           z.push_back((block.a[c] - block.b[c]) / std::sqrt(block.variance[c]));
       }
     }
   }
+  if (s.blocks > 0) s.rms = std::sqrt(sum_of_squares / (3.0 * s.blocks));
   if (z.empty()) return s;
   const auto n = static_cast<double>(z.size());
   for (const double v : z) s.z_mean += v / n;

@@ -9,7 +9,8 @@ namespace lacuna {
 struct BlockStatistics {
   int blocks = 0;  ///< whole blocks; the rest of the picture is left out
   double largest_relative =
-      0;  ///< largest |mean a - mean b| / mean b of a block, over RGB together
+      0;           ///< largest |mean a - mean b| / mean b of a block, over RGB together
+  double rms = 0;  ///< root of the mean of (mean a - mean b)^2 over blocks and channels
   int worst_x = 0, worst_y = 0;  ///< upper left pixel of that block
   /// Statistics of z = (mean a - mean b) / sqrt(variance of the means) over all blocks and
   /// channels. Pure noise has mean 0, standard deviation 1 and 5 % of |z| beyond 1.96.

@@ -10,7 +10,7 @@ namespace lacuna {
 
 /// A surface vertex as a light tree sees it. It is the same for the eye path and for the light path
 /// of one whole path: an opaque surface scatters only from one side of ng to the same side.
-inline Receiver receiver_at(const Vertex& v) {
+[[gnu::always_inline]] inline Receiver receiver_at(const Vertex& v) {
   // Along ng the cosine with an interpolated normal may be large.
   constexpr float flat = 0x1p-10F, curved = 0.125F;
   return {v.surface.x, v.side(), v.bsdf->transmits(), v.surface.ns == v.surface.ng ? flat : curved};
@@ -35,7 +35,14 @@ class NextEvent {
   Ahead choose_ahead(Rng& rng) const {
     return pointwise_ == nullptr ? Ahead{emitters_.choose(rng)} : Ahead{};
   }
-  static Ahead made(const PointwiseSelection::Choice& c) { return {{c.entry, c.at}, c.ratio}; }
+  /// Member by member: a copy of the whole would wait for its parts to be written.
+  static void set(Ahead& ahead, const PointwiseSelection::Choice& c) {
+    ahead.selected.entry = c.entry;
+    ahead.selected.at.x = c.at.x;
+    ahead.selected.at.y = c.at.y;
+    ahead.selected.at.besides = c.at.besides;
+    ahead.ratio = c.ratio;
+  }
   /// Selects for many receivers at once.
   void choose(std::span<PointwiseSelection::Request> requests) const {
     pointwise_->choose(requests);
@@ -46,7 +53,7 @@ class NextEvent {
   EmitterPoint sample(const Vertex& v, Ahead ahead, Rng& rng) const {
     if (ahead.selected.entry == none) {
       const Rng::FinePoint at = rng.next_fine_point();
-      ahead = made(pointwise_->choose(receiver_at(v), at, rng));
+      set(ahead, pointwise_->choose(receiver_at(v), at, rng));
     }
     EmitterPoint e = emitters_.sample(ahead.selected);
     e.next_event_ratio = ahead.ratio;

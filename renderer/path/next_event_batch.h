@@ -35,12 +35,13 @@ class SelectTogether {
       if (state.depth >= max_depth_ || v.kind != Vertex::Kind::surface || !v.bsdf->connectible()) {
         continue;
       }
-      requests[n] = {receiver_at(v), &state.rng, {}};
+      requests[n].receiver = receiver_at(v);
+      requests[n].rng = &state.rng;
       path_of[n++] = i;
     }
     next_event_.choose(std::span(requests).first(n));
     for (std::size_t k = 0; k < n; ++k) {
-      ahead_[path_of[k]] = NextEvent::made(requests[k].result);
+      NextEvent::set(ahead_[path_of[k]], requests[k].result);
     }
   }
 

@@ -13,6 +13,7 @@ import tempfile
 import time
 
 import emitters
+import peers
 import regret
 import sampler
 import shape
@@ -209,6 +210,11 @@ def spreading(bench, _):
     sampler.run(bench)
 
 
+def beside(bench, options):
+    """Lacuna beside Blender's Cycles at equal CPU time."""
+    peers.run(bench, options)
+
+
 def scale(bench, _):
     """100,000 job folders with a stand-in for Slurm, and merging: docs/scaling.md."""
     node(bench, "scale.mjs")
@@ -216,7 +222,7 @@ def scale(bench, _):
 
 CHECKS = {"service": service, "page": page, "sweeps": sweeps, "rays": rays, "guides": guides, "views": views,
           "cornell": cornell, "overhead": overhead, "corridor": corridor, "analysis": analysis}
-LONG = {"regret": regrets, "emitters": selection, "sampler": spreading, "scale": scale}  # only by name
+LONG = {"regret": regrets, "emitters": selection, "sampler": spreading, "scale": scale, "peers": beside}  # only by name
 
 
 def main():
@@ -228,6 +234,9 @@ def main():
     parser.add_argument("--regret-seeds", type=int, default=3)
     parser.add_argument("--regret-scenes", nargs="+", choices=regret.SCENES, metavar="SCENE",
                         help=f"of {', '.join(regret.SCENES)} (default: all)")
+    parser.add_argument("--peers-seconds", type=float, default=6, help="CPU seconds of all threads for each picture of peers")
+    parser.add_argument("--peers-scenes", nargs="+", choices=peers.SCENES, metavar="SCENE",
+                        help=f"of {', '.join(peers.SCENES)} (default: all)")
     options = parser.parse_args()
     known = {**CHECKS, **LONG}
     if unknown := [c for c in options.checks if c not in known]:

@@ -36,6 +36,33 @@ TEST(AliasTable, DrawsInProportion) {
   EXPECT_LT(chi_square({1e300, 2e300, 0, 3e300, 1e301, 4e300}, 200000), 23.5);
 }
 
+// By one number: indices in proportion, what is left of it uniform, pmf() as stated.
+TEST(AliasTable, OneNumberDrawsAndIsLeft) {
+  const std::vector<double> weights{1, 2, 0, 3, 10, 4};
+  const AliasTable table(weights);
+  Rng rng(4, 0, 0, Rng::Purpose::test);
+  constexpr int draws = 200000, parts = 4;
+  std::vector<int> count(weights.size() * parts);
+  for (int i = 0; i < draws; ++i) {
+    double u = rng.next_choice();
+    const AliasTable::Draw d = table.sample(u);
+    ASSERT_EQ(d.pmf.value, table.pmf(d.index).value);
+    ASSERT_GE(u, 0);
+    ASSERT_LE(u, 1);
+    ++count[d.index * parts + std::min(static_cast<std::size_t>(u * parts), std::size_t{3})];
+  }
+  double chi2 = 0;
+  for (std::size_t k = 0; k < count.size(); ++k) {
+    const double expected = draws * weights[k / parts] / 20 / parts;
+    if (expected == 0) {
+      EXPECT_EQ(count[k], 0);
+      continue;
+    }
+    chi2 += (count[k] - expected) * (count[k] - expected) / expected;
+  }
+  EXPECT_LT(chi2, 49.6);  // 19 degrees of freedom: the 99.99 % quantile
+}
+
 TEST(AliasTable, TellsAMillionBinsApart) {
   // Half the bins weigh three times as much as the others; with coarse random numbers they would
   // not.

@@ -10,8 +10,11 @@
 namespace lacuna {
 namespace {
 
-enum class Sort { points, lamps, signs, spots, mixed };
-constexpr std::array all_sorts{Sort::points, Sort::lamps, Sort::signs, Sort::spots, Sort::mixed};
+enum class Sort { points, lamps, signs, spots, mixed, meshes };
+constexpr std::array all_sorts{Sort::points, Sort::lamps, Sort::signs,
+                               Sort::spots,  Sort::mixed, Sort::meshes};
+constexpr double extent = 10;       ///< of the box below, for bundles
+constexpr int triangles_each = 64;  ///< of a mesh
 
 V3f any_direction(Rng& rng) {
   const V2f u = rng.next2();
@@ -25,14 +28,19 @@ V3f place(Rng& rng) {
   return {10 * a.x, 10 * a.y, 2 * rng.next()};
 }
 
-/// Emitters in a box of 10 x 10 x 2; powers of `decades` decades.
+/// Emitters in a box of 10 x 10 x 2; powers of `decades` decades. Meshes are round and of 5 cm.
 std::vector<TreeEmitter> scatter(int n, Sort sort, double decades, std::uint64_t seed = 1) {
   Rng rng(seed, 0, 0, Rng::Purpose::test);
   std::vector<TreeEmitter> emitters;
   for (int i = 0; i < n; ++i) {
     TreeEmitter e;
     e.entry = static_cast<std::uint32_t>(2 * i + 1);  // others are not in the tree
-    const V3f x = place(rng);
+    V3f x = place(rng);
+    const V3f outwards = any_direction(rng);
+    if (sort == Sort::meshes) {
+      Rng mesh(seed, 1, static_cast<std::uint64_t>(i / triangles_each), Rng::Purpose::test);
+      x = place(mesh) + 0.05F * outwards;
+    }
     e.bounds.box.add(x);
     e.bounds.intensity = std::pow(10, decades * (rng.next_choice() - 0.5));
     const Sort one = sort == Sort::mixed ? all_sorts[rng.below(4)] : sort;
@@ -40,8 +48,8 @@ std::vector<TreeEmitter> scatter(int n, Sort sort, double decades, std::uint64_t
     if (one == Sort::spots) {
       e.bounds.axes = {V3d(any_direction(rng)), rng.next_choice()};
     } else if (one != Sort::points) {
-      e.bounds.box.add(x + 0.1F * any_direction(rng));
-      e.bounds.axes = {V3d(any_direction(rng)), 0};
+      if (sort != Sort::meshes) e.bounds.box.add(x + 0.1F * any_direction(rng));
+      e.bounds.axes = {V3d(sort == Sort::meshes ? outwards : any_direction(rng)), 0};
       e.bounds.reach = std::numbers::pi / 2;
       e.bounds.both_sides = one == Sort::signs;
     }
@@ -79,9 +87,10 @@ TEST(LightTree, ProbabilitiesAddUpToOne) {
     for (const Sort sort : all_sorts) {
       for (const double decades : {0.0, 24.0}) {
         const auto emitters = scatter(n, sort, decades);
-        const LightTree tree(emitters);
+        const LightTree tree(emitters, extent);
         for (int kind = 0; kind < 3; ++kind) {
-          EXPECT_NEAR(sum_of_probabilities(tree, emitters, receiver(rng, kind)), 1, 1e-9)
+          const double rounding = sort == Sort::meshes ? 1e-6 : 1e-9;  // bundles: floats
+          EXPECT_NEAR(sum_of_probabilities(tree, emitters, receiver(rng, kind)), 1, rounding)
               << n << " emitters of sort " << static_cast<int>(sort) << ", receiver " << kind;
         }
       }
@@ -91,13 +100,17 @@ TEST(LightTree, ProbabilitiesAddUpToOne) {
 
 // The number that choose() gives is that of probability(), bit by bit.
 TEST(LightTree, DrawsStateTheirProbability) {
-  const auto emitters = scatter(500, Sort::mixed, 6);
-  const LightTree tree(emitters);
-  Rng rng(3, 0, 0, Rng::Purpose::test);
-  for (int i = 0; i < 5000; ++i) {
-    const Receiver at = receiver(rng, i % 3);
-    const LightTree::Choice c = tree.choose(at, rng.next_choice(), rng);
-    ASSERT_EQ(c.probability, tree.probability(c.entry, at));
+  for (const Sort sort : {Sort::mixed, Sort::meshes}) {
+    const auto emitters = scatter(500, sort, 6);
+    const LightTree tree(emitters, extent);
+    Rng rng(3, 0, 0, Rng::Purpose::test);
+    for (int i = 0; i < 5000; ++i) {
+      const Receiver at = receiver(rng, i % 3);
+      const LightTree::Choice c = tree.choose(at, rng.next_choice(), rng);
+      ASSERT_EQ(c.probability, tree.probability(c.entry, at));
+      ASSERT_GE(c.rest, 0);
+      ASSERT_LT(c.rest, 1);
+    }
   }
 }
 
@@ -107,7 +120,7 @@ TEST(LightTree, DrawsFollowTheProbabilities) {
   for (const int n : {1, 7, 300}) {
     for (const Sort sort : all_sorts) {
       const auto emitters = scatter(n, sort, sort == Sort::mixed ? 12 : 1);
-      const LightTree tree(emitters);
+      const LightTree tree(emitters, extent);
       const Receiver at = receiver(rng, n % 3);
       std::map<std::uint32_t, double> count;
       for (int i = 0; i < draws; ++i) ++count[tree.choose(at, rng.next_choice(), rng).entry];
@@ -148,9 +161,12 @@ TEST(LightTree, RareEmittersAreDrawnAsRarely) {
   EXPECT_GT(statistics::z_test(inverse, 4096), 1e-5);
 }
 
-TEST(LightTree, InterleavedDescentsAreTheSame) {
-  const auto emitters = scatter(3000, Sort::mixed, 4);
-  const LightTree tree(emitters);
+class InterleavedLightTree : public testing::TestWithParam<Sort> {};
+INSTANTIATE_TEST_SUITE_P(Sorts, InterleavedLightTree, testing::Values(Sort::mixed, Sort::meshes));
+
+TEST_P(InterleavedLightTree, DescentsAreTheSame) {
+  const auto emitters = scatter(3000, GetParam(), 4);
+  const LightTree tree(emitters, extent);
   Rng points(6, 0, 0, Rng::Purpose::test);
   std::vector<LightTree::Request> requests(101);
   std::vector<Rng> together, alone;
@@ -169,6 +185,42 @@ TEST(LightTree, InterleavedDescentsAreTheSame) {
     EXPECT_EQ(requests[i].result.probability, c.probability);
     EXPECT_EQ(together[i].next_u32(), alone[i].next_u32());
   }
+}
+
+// A mesh of many triangles is drawn from by intensity from afar, and by what each looks like close
+// by.
+TEST(LightTree, MeshesAreOneEmitterFromAfar) {
+  const auto emitters = scatter(triangles_each, Sort::meshes, 1);
+  const LightTree whole(emitters, extent), each(emitters, 0);
+  const auto ratios = [&](const LightTree& tree, const V3f& x) {
+    std::map<long, int> count;  // of probabilities over intensities, in steps of a thousandth
+    for (const TreeEmitter& e : emitters) {
+      const double p = tree.probability(e.entry, {x});
+      ++count[std::lround(1000 * std::log(p / e.bounds.intensity))];
+    }
+    return count.size();
+  };
+  const V3f centre(emitters[0].bounds.box.low);
+  // Eight children, two triangles at least in each that is a bundle.
+  EXPECT_LT(ratios(whole, centre + V3f(5, 0, 0)), emitters.size() / 2);
+  EXPECT_GT(ratios(each, centre + V3f(5, 0, 0)), emitters.size() / 2);
+  EXPECT_EQ(ratios(whole, centre), ratios(each, centre));
+}
+
+// What is left of the number that selects is uniform: it places the point on the emitter.
+TEST(LightTree, TheRestIsUniform) {
+  const auto emitters = scatter(300, Sort::meshes, 3);
+  const LightTree tree(emitters, extent);
+  Rng rng(8, 0, 0, Rng::Purpose::test);
+  const Receiver at = receiver(rng, 1);
+  statistics::Moments rest, square;
+  for (int i = 0; i < 200000; ++i) {
+    const double r = tree.choose(at, rng.next_choice(), rng).rest;
+    rest.add(r);
+    square.add(r * r);
+  }
+  EXPECT_GT(statistics::z_test(rest, 0.5), 1e-5);
+  EXPECT_GT(statistics::z_test(square, 1.0 / 3), 1e-5);
 }
 
 // Emitters in one place differ by their power only.

@@ -34,7 +34,7 @@ struct Site {
     double all = 0;
     for (const double p : powers) all += p;
     by_power = AliasTable(powers);
-    selection.emplace(std::move(finite), far, all, by_power);
+    selection.emplace(std::move(finite), far, all, 0, by_power);
   }
   double probability(std::uint32_t entry, const Receiver& at) const {
     return double(selection->ratio(entry, at)) * double(by_power.pmf(entry).value);

@@ -194,10 +194,13 @@ TEST(BlockStatistics, NoiseLooksLikeNoiseAndADifferenceDoesNot) {
   EXPECT_EQ(noise.blocks, 256);
   EXPECT_NEAR(noise.z_mean, 0, 4 / std::sqrt(768.0));
   EXPECT_NEAR(noise.z_deviation, 1, 4 / std::sqrt(2 * 768.0));
+  const double of_block = 1.0 / 12 / 16;  // variance of a block's mean
+  EXPECT_NEAR(noise.rms * noise.rms / of_block, 1, 4 * std::sqrt(2 / 768.0));
   for (double& v : a) v += 0.2;
   const BlockStatistics biased = block_statistics({a, b, variance, side, side}, 4);
   EXPECT_NEAR(biased.z_mean, 0.2 * 4 * std::sqrt(12.0), 0.2);
   EXPECT_GT(biased.largest_relative, 0.1);
+  EXPECT_NEAR(biased.rms * biased.rms, 0.04 + of_block, 0.004);
 }
 
 TEST(Exr, LayersAndAttributesComeBack) {
