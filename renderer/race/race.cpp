@@ -144,13 +144,22 @@ std::optional<std::size_t> Race::next() const {
   const bool first = spent_ == 0;
   if (racing() < 2 || round_ >= limits_.rounds) return std::nullopt;
   if (!first && spent_ >= limits_.cost) return std::nullopt;
+  // Those first of which nothing is known, then that which has had the least time.
+  std::optional<std::size_t> chosen;
+  const auto before = [&](std::size_t a, std::size_t b) {
+    const Trial &x = entrants_[a].trial, &y = entrants_[b].trial;
+    const auto key = [](const Trial& t) {
+      return std::pair(std::min<std::uint64_t>(t.iterations(), 2), t.cost());
+    };
+    return key(x) < key(y);
+  };
   for (std::size_t k = 0; k < entrants_.size(); ++k) {
-    if (!in_this_round(entrants_[k])) continue;
-    const double more = entrants_[k].trial.next_cost();
-    if (round_ > 0 && spent_ + more > limits_.cost) return std::nullopt;
-    return k;
+    if (in_this_round(entrants_[k]) && (!chosen || before(k, *chosen))) chosen = k;
   }
-  return std::nullopt;
+  if (chosen && round_ > 0 && spent_ + entrants_[*chosen].trial.next_cost() > limits_.cost) {
+    return std::nullopt;
+  }
+  return chosen;
 }
 
 void Race::finished(std::size_t entrant, const Image& estimate, double cost, bool spread) {
