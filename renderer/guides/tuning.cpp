@@ -23,7 +23,7 @@ constexpr double least_paths = 16384, known_share_of_all = 0.02;
 /// Largest square over the mean of those that are not 0, below which spread samples
 /// (Sampler::sobol) of the BSDF do better than any guide: 2 on a scene where guides quadruple the
 /// error (area), 200 to 5000 on others.
-constexpr double smooth_peak = 16;
+constexpr double smooth_peak = 16, least_smooth_paths = 1024;
 
 std::uint32_t nearest(const std::vector<float>& values, float wanted) {
   const auto closer = [wanted](float a, float b) {
@@ -137,6 +137,10 @@ void Tuning::stop_if_useless() {
     largest = std::max(largest, moments_[cell * stride() + candidates()]);
     all += paths(cell);
   }
+  if (all >= least_smooth_paths && largest * all < smooth_peak * plain) {
+    idle_ = true;
+    return;
+  }
   // Decided at each doubling only: of many decisions by chance one would be wrong.
   const bool known =
       all >= std::max(least_paths, 2 * decided_) && largest < known_share_of_all * plain;
@@ -144,7 +148,7 @@ void Tuning::stop_if_useless() {
   decided_ = all;
   // The noise was measured with the guide: without it, it would be that and the gain.
   const double noise = noise_ > 0 ? noise_ : chosen, gain = plain - chosen;
-  idle_ = noise * guided_cost > noise + gain || largest * all < smooth_peak * plain;
+  idle_ = noise * guided_cost > noise + gain;
 }
 
 void Tuning::divide(std::size_t cell) {

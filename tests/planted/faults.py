@@ -291,7 +291,7 @@ FAULTS = [
     Fault("cells are divided where vertices are alike", "renderer/guides/cell_forest.cpp",
           "if (variance > widest) {", "if (widest == 0 || variance < widest) {"),
     Fault("a guide that does not pay goes on", "renderer/guides/tuning.cpp",
-          "idle_ = noise * guided_cost > noise + gain || largest", "idle_ = largest < 0 && largest"),
+          "idle_ = noise * guided_cost > noise + gain;", "idle_ = noise * guided_cost < 0 * gain;"),
     Fault("what is left of a number that chose is not stretched", "renderer/guides/direction_tree.cpp",
           "(u - share) / (1 - share) : u / share", "(u - share) / (1 - share) : u"),
     Fault("importance does not fall off", "renderer/guides/importance_points.cpp",
