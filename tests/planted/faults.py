@@ -297,7 +297,7 @@ FAULTS = [
     Fault("importance does not fall off", "renderer/guides/importance_points.cpp",
           "importance_[v] / (d * d)", "importance_[v] / std::max(1.0, 0 * d)"),
     Fault("walks from lights are guided in the weights", "renderer/guides/mixed_guide.h",
-          "if (transport != guided_) return bsdf;", ""),
+          "if (transport != guided_ || idle_) return bsdf;", "if (idle_) return bsdf;"),
     # Many lights.
     Fault("no cosine at a virtual light", "renderer/many_lights/vpl_contributions.cpp",
           "const Float8 over_d2 = cos_g * inv * inv;", "const Float8 over_d2 = abs(cos_g) / cos_g * inv * inv;"),
