@@ -16,6 +16,15 @@ V2f corner_of(std::size_t quarter) {
   return {quarter % 2 == 1 ? 0.5F : 0.0F, quarter / 2 == 1 ? 0.5F : 0.0F};
 }
 
+/// Chooses between two halves of these weights by uniform `u`, which gets what is left: 1 for the
+/// second.
+std::size_t upper_half(double& u, double first, double second) {
+  const double share = first / (first + second);
+  const bool upper = u >= share;
+  u = std::min(upper ? (u - share) / (1 - share) : u / share, 1 - 0x1p-53);
+  return upper ? 1 : 0;
+}
+
 }  // namespace
 
 V2f to_square(const V3f& w) {
@@ -97,26 +106,23 @@ double DirectionTree::build(std::uint32_t node) {
   return sum(nodes_[node]);
 }
 
-V3f DirectionTree::sample(Rng& rng) const {
+V3f DirectionTree::sample(const Rng::FinePoint& u) const {
+  double x = static_cast<double>(u.x) * 0x1p-64, y = double(u.y) * 0x1p-32;
   V2f low(0, 0);
   float size = 1;
   std::uint32_t node = 0;
   for (;;) {
-    const Node& n = nodes_[node];
-    double left = rng.next_choice() * sum(n);
-    std::size_t q = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (!(n.energy[i] > 0)) continue;
-      q = i;  // the last one, where rounding leaves a little
-      if (left < double(n.energy[i])) break;
-      left -= double(n.energy[i]);
-    }
+    const std::array<float, 4>& e = nodes_[node].energy;
+    const std::size_t column =
+        upper_half(x, double(e[0]) + double(e[2]), double(e[1]) + double(e[3]));
+    const std::size_t row = upper_half(y, double(e[column]), double(e[column + 2]));
+    const std::size_t q = column + 2 * row;
     low += corner_of(q) * size;
     size /= 2;
-    if (n.child[q] == 0) break;
-    node = n.child[q];
+    if (nodes_[node].child[q] == 0) break;
+    node = nodes_[node].child[q];
   }
-  const V2f p = low + rng.next2() * size;
+  const V2f p = low + V2f(static_cast<float>(x), static_cast<float>(y)) * size;
   return from_square({std::min(p.x, below_one), std::min(p.y, below_one)});
 }
 

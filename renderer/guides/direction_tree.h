@@ -35,8 +35,10 @@ class DirectionTree {
   /// Nothing can be sampled.
   bool empty() const { return !(energy() > 0); }
 
-  /// Requires a tree that is not empty().
-  V3f sample(Rng& rng) const;
+  /// Requires a tree that is not empty(). Maps the unit square to itself, piecewise linear: a
+  /// quarter's column is chosen by the first coordinate, its row by the second.
+  V3f sample(const Rng::FinePoint& u) const;
+  V3f sample(Rng& rng) const { return sample(rng.next_fine_point()); }
   Pdf<SolidAngle> pdf(const V3f& w) const;
 
   /// The tree of the next round, without energy: nodes with more than `share` of all energy are

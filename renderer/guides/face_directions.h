@@ -63,7 +63,7 @@ class FaceDirections final : public GuidingDistribution {
     return {settings_.guide_only && sum > 0 ? 1.0F : static_cast<float>(sum), index};
   }
 
-  std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const override {
+  std::optional<V3f> sample(const GuidedVertex& at, Rng::FinePoint, Rng& rng) const override {
     const V3d from = transform_.to_grid(V3d(at.x()));
     const RegionMixture regions = mixture(from, at.cell.index);
     const auto used = as_used();
@@ -90,6 +90,7 @@ class FaceDirections final : public GuidingDistribution {
     return density(at.cell.index, at.x(), w, as_used());
   }
 
+  bool idle() const override { return tuning_.idle(); }
   bool learns() const override { return Faces::learns || tuning_.learns(); }
   std::unique_ptr<Accumulator> accumulator() const override {
     return std::make_unique<FaceAccumulator>();
@@ -119,6 +120,9 @@ class FaceDirections final : public GuidingDistribution {
       });
     }
   }
+  void record_noise(double variance, Accumulator& accumulator) const override {
+    static_cast<FaceAccumulator&>(accumulator).tuning.noise += variance;
+  }
   void update(std::span<const std::unique_ptr<Accumulator>> accumulators,
               const ThreadPool& pool) override {
     std::vector<const typename Faces::Accumulator*> of_faces;
@@ -128,7 +132,9 @@ class FaceDirections final : public GuidingDistribution {
       of_tuning.push_back(&static_cast<const FaceAccumulator&>(*t).tuning);
     }
     faces_.update(of_faces, pool);
-    if (tuning_.learns()) tuning_.update(of_tuning);
+    if (!tuning_.learns()) return;
+    tuning_.update(of_tuning);
+    tuning_.stop_if_useless();
   }
 
  private:

@@ -36,6 +36,7 @@ class GatheredLight {
   /// its later contributions are multiplied by their number.
   template <class Guide>
   void record(const Guide& guide, typename Guide::Accumulator& accumulator) const {
+    record_noise(guide, accumulator);
     for (std::size_t i = 0; i < batch_.states.size(); ++i) {
       Rgb behind(0, 0, 0);
       for (int depth = last_[i]; depth >= std::max(1, first_[i]); --depth) {
@@ -68,6 +69,32 @@ class GatheredLight {
     const Pdf<SolidAngle> p(next.p_fwd / to_area(Pdf<SolidAngle>(1.0F), v, wi, next));
     guide.accumulate({v, wi, p, luminance(arrived), contribution(guide, i, depth + 1, behind)},
                      accumulator);
+  }
+
+  /// Half of the squared difference of two neighbouring pixels that show one material: the
+  /// variance of their samples, and what the picture changes from one to the other. Branches of
+  /// split paths are no pixels.
+  template <class Guide>
+  void record_noise(const Guide& guide, typename Guide::Accumulator& accumulator) const {
+    if constexpr (Guide::has_expected) {
+      for (std::size_t i = 1; i < batch_.states.size(); ++i) {
+        if (first_[i] > 0 || first_[i - 1] > 0) continue;
+        const Vertex &a = batch_.vertex(i - 1, 1), &b = batch_.vertex(i, 1);
+        const bool alike = a.kind == Vertex::Kind::surface && b.kind == Vertex::Kind::surface &&
+                           a.surface.material == b.surface.material;
+        if (!alike) continue;
+        const double difference = double(gathered(i)) - double(gathered(i - 1));
+        guide.record_noise(difference * difference / 2, accumulator);
+      }
+    }
+  }
+  /// Luminance of all that path `i` gathered.
+  float gathered(std::size_t i) const {
+    Rgb sum(0, 0, 0);
+    for (int depth = 1; depth <= last_[i]; ++depth) {
+      sum += light_[index(i, depth)] * split_[index(i, depth)];
+    }
+    return luminance(sum);
   }
 
   template <class Guide>

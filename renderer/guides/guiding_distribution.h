@@ -46,17 +46,24 @@ class GuidingDistribution {
 
   /// The cell of the distribution at surface `s`, on the side of unit `w`.
   virtual GuidingCell cell(const Surface& s, const V3f& w) const = 0;
-  /// Samples a unit direction; nothing where the sample fails. Requires a cell whose probability is
-  /// above 0.
-  virtual std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const = 0;
+  /// Samples a unit direction by the uniform point `u`, and `rng` if that is not enough; nothing
+  /// where the sample fails. Requires a cell whose probability is above 0. A direction that changes
+  /// continuously with `u` nearly everywhere keeps points evenly spread (Sampler::sobol).
+  virtual std::optional<V3f> sample(const GuidedVertex& at, Rng::FinePoint u, Rng& rng) const = 0;
   /// Density with which sample() returns unit `w`. Its integral over the sphere is 1 less the
   /// probability of failure. sample() returns a direction of density 0 only by rounding.
   virtual Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const = 0;
+
+  /// All cells have probability 0, and will have: nothing of the guide is needed any more. Changes
+  /// only in update() and load().
+  virtual bool idle() const { return false; }
 
   /// Whether accumulate() and update() need to be called in the coming iteration.
   virtual bool learns() const { return false; }
   virtual std::unique_ptr<Accumulator> accumulator() const { return nullptr; }
   virtual void accumulate(const GuidingSample&, Accumulator&) const {}
+  /// An estimate of the variance of one sample of a pixel, of squared luminance.
+  virtual void record_noise(double, Accumulator&) const {}
   virtual void update(std::span<const std::unique_ptr<Accumulator>>, const ThreadPool&) {}
 };
 

@@ -23,9 +23,9 @@ LobeSet::LobeSet(std::span<const Target> targets) {
   }
 }
 
-std::optional<V3f> LobeSet::sample(const V3f& x, float s, Rng& rng) const {
-  const V3f& to = points_[choice_.sample(rng)];
-  const V2f u = rng.next2();
+std::optional<V3f> LobeSet::sample(const V3f& x, float s, Rng::FinePoint point) const {
+  const V3f& to = points_[choice_.sample(point)];
+  const V2f u = point.point();
   // cos^(s+1) is uniform. Near the axis 1 - cos is more precise than the cosine.
   const double power = std::log1p(-double(u.x)) / (double(s) + 1);
   const double versine = -std::expm1(power);

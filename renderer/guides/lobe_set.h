@@ -33,7 +33,10 @@ class LobeSet {
 
   /// Samples a unit direction at `x` with strength `s` >= 0; nothing if the sampled point is `x`
   /// itself.
-  std::optional<V3f> sample(const V3f& x, float s, Rng& rng) const;
+  std::optional<V3f> sample(const V3f& x, float s, Rng::FinePoint u) const;
+  std::optional<V3f> sample(const V3f& x, float s, Rng& rng) const {
+    return sample(x, s, rng.next_fine_point());
+  }
   /// Density with which sample() returns unit `w`.
   Pdf<SolidAngle> pdf(const V3f& x, const V3f& w, float s) const {
     Float8 sum;

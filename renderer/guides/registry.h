@@ -4,6 +4,7 @@
 
 #include "renderer/guides/border_faces.h"
 #include "renderer/guides/face_directions.h"
+#include "renderer/guides/learned_skeleton.h"
 #include "renderer/guides/portal_faces.h"
 #include "renderer/guides/sd_tree.h"
 #include "renderer/guides/skeleton_directions.h"
@@ -18,7 +19,8 @@ using GuideRegistry =
     Registry<Entry<BsdfGuideSettings, BsdfGuide>, Entry<SkeletonGuideSettings, SkeletonDirections>,
              Entry<PortalsGuideSettings, FaceDirections<PortalFaces>>,
              Entry<FaceIrradianceGuideSettings, FaceDirections<BorderFaceLight>>,
-             Entry<SdTreeGuideSettings, SdTree>>;
+             Entry<SdTreeGuideSettings, SdTree>,
+             Entry<LearnedSkeletonGuideSettings, LearnedSkeleton>>;
 
 static_assert(std::is_same_v<GuideRegistry::Settings, GuideSettings>,
               "the registry and the settings list the same guides in the same order");

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "renderer/guides/direction_tree.h"
-#include "renderer/guides/guiding_distribution.h"
+#include "renderer/guides/learned_cells.h"
 #include "renderer/guides/tuning.h"
 #include "renderer/settings/guide_settings.h"
 
@@ -25,19 +24,21 @@ class SdTree final : public GuidingDistribution {
 
   GuidingCell cell(const Surface& s, const V3f&) const override {
     const std::uint32_t leaf = leaf_at(s.x);
-    const bool known = !leaves_[leaf].sampling.empty();
+    const bool known = !leaves_.tree(leaf).empty();
     return {known ? tuning_.probability(leaf) : 0.0F, leaf};
   }
-  std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const override {
-    return leaves_[at.cell.index].sampling.sample(rng);
+  std::optional<V3f> sample(const GuidedVertex& at, Rng::FinePoint u, Rng&) const override {
+    return leaves_.tree(at.cell.index).sample(u);
   }
   Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const override {
-    return leaves_[at.cell.index].sampling.pdf(w);
+    return leaves_.tree(at.cell.index).pdf(w);
   }
 
+  bool idle() const override { return tuning_.idle(); }
   bool learns() const override { return true; }
   std::unique_ptr<Accumulator> accumulator() const override;
   void accumulate(const GuidingSample& sample, Accumulator& accumulator) const override;
+  void record_noise(double variance, Accumulator& accumulator) const override;
   void update(std::span<const std::unique_ptr<Accumulator>> accumulators,
               const ThreadPool& pool) override;
 
@@ -46,29 +47,17 @@ class SdTree final : public GuidingDistribution {
     std::array<std::uint32_t, 2> child{};  // 0: a leaf
     std::uint32_t leaf = 0;
   };
-  struct Leaf {
-    DirectionTree sampling, building;
-    double vertices = 0;  // of this round
-  };
-  /// The energy, radiance / pdf, that arrived at a vertex.
-  struct EnergySample {
-    std::uint32_t leaf;
-    V3f w;
-    float energy;
-  };
   struct SampleAccumulator;
 
   std::uint32_t leaf_at(const V3f& x) const;
-  void next_round(const ThreadPool& pool);
   void divide(std::uint32_t node, int depth, double most);
 
   SdTreeGuideSettings settings_;
   V3d low_{0.0};
   double side_ = 1;  // of the cube around the scene
   std::vector<Node> nodes_;
-  std::vector<Leaf> leaves_;
-  Tuning tuning_;                       // a cell for each leaf
-  std::uint64_t round_ = 0, done_ = 0;  // iterations done of 2^round_
+  LearnedCells leaves_;
+  Tuning tuning_;  // a cell for each leaf
 };
 
 }  // namespace lacuna

@@ -25,24 +25,29 @@ class SkeletonDirections final : public GuidingDistribution {
     if (node == no_node || lobes_[node].empty()) return {};
     return {tuning_.probability(node), node};
   }
-  std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const override {
-    return lobes_[at.cell.index].sample(at.x(), tuning_.strength(at.cell.index), rng);
+  std::optional<V3f> sample(const GuidedVertex& at, Rng::FinePoint u, Rng&) const override {
+    return lobes_[at.cell.index].sample(at.x(), tuning_.strength(at.cell.index), u);
   }
   Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const override {
     return lobes_[at.cell.index].pdf(at.x(), w, tuning_.strength(at.cell.index));
   }
 
+  bool idle() const override { return tuning_.idle(); }
   bool learns() const override { return tuning_.learns(); }
   std::unique_ptr<Accumulator> accumulator() const override {
     return std::make_unique<TuningAccumulator>();
   }
   void accumulate(const GuidingSample& sample, Accumulator& accumulator) const override;
+  void record_noise(double variance, Accumulator& accumulator) const override {
+    static_cast<TuningAccumulator&>(accumulator).tuning.noise += variance;
+  }
   void update(std::span<const std::unique_ptr<Accumulator>> accumulators,
               const ThreadPool&) override {
     std::vector<const Tuning::Accumulator*> own;
     for (const auto& t : accumulators)
       own.push_back(&static_cast<const TuningAccumulator&>(*t).tuning);
     tuning_.update(own);
+    tuning_.stop_if_useless();
   }
 
  private:

@@ -23,8 +23,8 @@ class SkeletonToEye final : public GuidingDistribution {
     if (node == no_node || lobes_[node].empty()) return {};
     return {static_cast<float>(settings_.probability), node};
   }
-  std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const override {
-    return lobes_[at.cell.index].sample(at.x(), strength(), rng);
+  std::optional<V3f> sample(const GuidedVertex& at, Rng::FinePoint u, Rng&) const override {
+    return lobes_[at.cell.index].sample(at.x(), strength(), u);
   }
   Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const override {
     return lobes_[at.cell.index].pdf(at.x(), w, strength());

@@ -13,8 +13,12 @@ namespace lacuna {
 /// contribution to its pixel for every candidate pair (strength, probability): a path that
 /// contributed g, and whose direction was sampled with density q, adds g^2 q / p to the moment of a
 /// candidate that has density p there. All candidates use the same paths, and the one with the
-/// smallest moment is chosen. As the tails of such sums are heavy, each cell adds one more path
-/// like its largest, from a direction that the guide does not sample.
+/// smallest product of moment and cost is chosen. As the tails of such sums are heavy, each cell
+/// adds one more path like its largest, from a direction that the guide does not sample. The cost
+/// is that of a vertex over one that follows the BSDF, a constant: clocks would change the bits.
+///
+/// Where the choices of all cells together gain little, the guide is left alone from then on:
+/// idle().
 class Tuning {
  public:
   Tuning() = default;
@@ -23,31 +27,48 @@ class Tuning {
 
   bool learns() const { return strengths_.size() * probabilities_.size() > 1; }
   float strength(std::size_t cell) const { return strengths_[chosen_[cell] / count()]; }
-  float probability(std::size_t cell) const { return probabilities_[chosen_[cell] % count()]; }
+  float probability(std::size_t cell) const {
+    return idle_ ? 0 : probabilities_[chosen_[cell] % count()];
+  }
 
   struct Accumulator {
     std::unordered_map<std::uint32_t, std::vector<double>>
         moments;  // by cell, laid out as moments_
+    double noise = 0;
   };
   /// Whether the cell still learns. Each sample costs a density, so learning ends with enough
   /// paths.
-  bool wants(std::uint32_t cell) const { return learns() && paths(cell) < enough_paths; }
+  bool wants(std::uint32_t cell) const { return learns() && !idle_ && paths(cell) < enough_paths; }
   /// Requires wants(cell). `densities`: of sample.wi by the guide alone, for each strength.
   void accumulate(const GuidingSample& sample, std::uint32_t cell, std::span<const float> densities,
                   Accumulator& accumulator) const;
   void update(std::span<const Accumulator* const> accumulators);
 
+  /// All cells follow the BSDF, and nothing is learned any more.
+  bool idle() const { return idle_; }
+  /// Makes it idle() if the moments of all cells are known, and what the choices take off the
+  /// variance of the pixels does not pay for the time of guiding. Only a probability that is
+  /// learned can be 0. Call when the guide has had densities to judge by.
+  void stop_if_useless();
+
   /// Adds a cell that starts as a copy of `cell`.
   void divide(std::size_t cell);
   /// Call when the guide's densities have changed: cells learn anew and keep their choice until
   /// they have.
-  void forget();
+  void forget() { fade(0); }
+  /// The same, but what was learned counts as `share` of its paths.
+  void fade(double share);
+  /// Whether the cell's choice is one of the guide's directions, not the BSDF alone.
+  bool guides(std::size_t cell) const { return !idle_ && probability(cell) > 0; }
 
   /// Writes nothing if it does not learn.
   void save(ByteWriter& out) const {
     if (!learns()) return;
     out.put(chosen_);
     out.put(moments_);
+    out.put(noise_);
+    out.put(decided_);
+    out.put(std::uint8_t{idle_});
   }
   void load(ByteReader& in);
   std::vector<std::pair<std::string, double>> statistics() const;
@@ -60,6 +81,11 @@ class Tuning {
   std::size_t candidates() const { return strengths_.size() * count(); }
   std::size_t stride() const { return candidates() + 2; }
   double paths(std::size_t cell) const { return moments_[cell * stride() + candidates() + 1]; }
+  /// The cell's moment of a candidate, with the path that was not sampled; and times its cost.
+  double moment(std::size_t cell, std::size_t candidate) const;
+  double expense(std::size_t cell, std::size_t candidate) const;
+  std::uint32_t cheapest(std::size_t cell) const;
+  std::uint32_t carefully(std::size_t cell) const;
   void choose(std::size_t cell);
 
   std::vector<float> strengths_, probabilities_;
@@ -67,6 +93,9 @@ class Tuning {
   /// For each cell: the second moment of each strength and probability; the largest g^2 of a path;
   /// the number of paths.
   std::vector<double> moments_;
+  double noise_ = 0;    // variances of pixels' samples, summed over the paths of the moments
+  double decided_ = 0;  // paths when stop_if_useless() last decided
+  bool idle_ = false;
 };
 
 }  // namespace lacuna

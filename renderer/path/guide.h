@@ -26,7 +26,8 @@ namespace lacuna {
 /// - has_expected: whether expected(v) exists: the luminance that a path of throughput 1 is
 /// expected
 ///   to gather behind the connectible vertex `v`; below 0 while that is unknown. Walks use it for
-///   roulette and splitting. record(v, value, accumulator) adds the value of one path.
+///   roulette and splitting, unless the guide is idle(). record(v, value, accumulator) adds the
+///   value of one path.
 ///
 /// sample(), pdf(), on_hit() and accumulate() are const and are called by many threads.
 template <class G>

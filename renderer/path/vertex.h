@@ -13,6 +13,7 @@ struct GuidingCell {
   /// Probability of sampling the cell's distribution instead of the BSDF, < 1; 0: no distribution.
   float probability = 0;
   std::uint32_t index = 0xffffffff;  ///< the guide's own number of the cell; 0xffffffff: none
+  std::uint32_t node = 0xffffffff;   ///< of the skeleton, for a guide that needs it; or none
 };
 
 /// One vertex of an eye path or a light path.

@@ -160,7 +160,8 @@ class Walk {
     const Vertex& v = vertex(w, w.depth);
     if (v.kind == Vertex::Kind::background || w.depth == limits_.max_depth) return false;
     if constexpr (Guide::has_expected) {
-      return limits_.transport == Transport::importance || keep_expected(w, v, walk);
+      return limits_.transport == Transport::importance || guide_.idle() ||
+             keep_expected(w, v, walk);
     }
     return true;
   }

@@ -175,8 +175,34 @@ void describe(V& v, SdTreeGuideSettings& s) {
      .max = 1 << 30});
 }
 
+/// guide: learned_skeleton.
+struct LearnedSkeletonGuideSettings : LightRays {
+  static constexpr std::string_view name = "learned_skeleton";
+  static constexpr std::string_view doc =
+      "incident radiance learned in cells of the empty space, from the skeleton's lobes on";
+  AutoNumber probability;
+  int leaf_vertices = 4000;
+  bool operator==(const LearnedSkeletonGuideSettings&) const = default;
+};
+template <class V>
+void describe(V& v, LearnedSkeletonGuideSettings& s) {
+  v("probability", s.probability,
+    {.doc = "probability of sampling a direction from the guide instead of the BSDF; \"auto\": "
+            "learned for each cell while rendering, 0 where the guide does not pay",
+     .min = 0,
+     .max = most_guided});
+  v("leaf_vertices", s.leaf_vertices,
+    {.doc = "vertices above which a cell is divided after the first iteration",
+     .min = 1,
+     .max = 1 << 30});
+  describe_light_rays(v, s,
+                      "rays from the lights that estimate the power arriving at each node, for the "
+                      "lobes of the first iterations");
+}
+
 /// How the next direction of an eye path is sampled. A new guide is one more alternative here.
-using GuideSettings = std::variant<BsdfGuideSettings, SkeletonGuideSettings, PortalsGuideSettings,
-                                   FaceIrradianceGuideSettings, SdTreeGuideSettings>;
+using GuideSettings =
+    std::variant<BsdfGuideSettings, SkeletonGuideSettings, PortalsGuideSettings,
+                 FaceIrradianceGuideSettings, SdTreeGuideSettings, LearnedSkeletonGuideSettings>;
 
 }  // namespace lacuna

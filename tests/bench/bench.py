@@ -13,6 +13,7 @@ import tempfile
 import time
 
 import emitters
+import guides as guide_gains
 import peers
 import regret
 import sampler
@@ -72,7 +73,8 @@ def medians(bench, jobs, seconds, rounds=3):
 
 def guides(bench, _):
     """An iteration of guided path tracing against one of BSDF sampling; learning takes its time, too."""
-    guides = {"bsdf": {}, "skeleton": {"strength": 16}, "portals": {}, "face_irradiance": {}, "sd_tree": {}}
+    guides = {"bsdf": {}, "skeleton": {"strength": 16}, "portals": {}, "face_irradiance": {}, "sd_tree": {},
+              "learned_skeleton": {}}
     for scene, camera in (("door", "corner"), ("corridor", "far-from-light")):
         cpu = medians(bench, {name: {"scene": f"{scene}/scene.glb", "camera": camera, "resolution": [512, 256],
                                      "integrator": {"type": "path", "max_depth": 6, "guide": {"type": name, **more}},
@@ -205,6 +207,11 @@ def selection(bench, options):
     emitters.run(bench, BIN, options)
 
 
+def gains(bench, options):
+    """Guides against BSDF sampling and each other at equal CPU time."""
+    guide_gains.run(bench, options.guide_seconds, options.guide_seeds)
+
+
 def spreading(bench, _):
     """Samples that are spread evenly against independent ones."""
     sampler.run(bench)
@@ -222,7 +229,8 @@ def scale(bench, _):
 
 CHECKS = {"service": service, "page": page, "sweeps": sweeps, "rays": rays, "guides": guides, "views": views,
           "cornell": cornell, "overhead": overhead, "corridor": corridor, "analysis": analysis}
-LONG = {"regret": regrets, "emitters": selection, "sampler": spreading, "scale": scale, "peers": beside}  # only by name
+LONG = {"regret": regrets, "guide_gains": gains, "emitters": selection, "sampler": spreading, "scale": scale,
+        "peers": beside}  # only by name
 
 
 def main():
@@ -237,6 +245,8 @@ def main():
     parser.add_argument("--peers-seconds", type=float, default=6, help="CPU seconds of all threads for each picture of peers")
     parser.add_argument("--peers-scenes", nargs="+", choices=peers.SCENES, metavar="SCENE",
                         help=f"of {', '.join(peers.SCENES)} (default: all)")
+    parser.add_argument("--guide-seconds", type=float, default=6, help="CPU seconds for each picture of guide_gains")
+    parser.add_argument("--guide-seeds", type=int, default=3)
     options = parser.parse_args()
     known = {**CHECKS, **LONG}
     if unknown := [c for c in options.checks if c not in known]:

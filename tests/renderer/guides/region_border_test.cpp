@@ -21,7 +21,7 @@ double difference(const GuidingDistribution& d, const GuidedVertex& a, const Gui
   for (int i = 0; i < n; ++i) {
     // Half the draws from either, so that no ratio is large.
     const bool first = i % 2 == 0;
-    const auto w = d.sample(first ? a : b, rng);
+    const auto w = d.sample(first ? a : b, rng.next_fine_point(), rng);
     if (!w) continue;
     const double pa = double(a.cell.probability) * double(d.pdf(a, *w).value);
     const double pb = double(b.cell.probability) * double(d.pdf(b, *w).value);

@@ -93,6 +93,7 @@ TEST(GuideGain, RoundCorners) {
   // Measured, and without splitting: 0.58 and 0.63, 0.56 and 0.60, 0.59 and 0.63, 0.56 and 0.60.
   gain.expect_below(0.64, skeleton({8}, {0.5}));
   gain.expect_below(0.62, skeleton({}, {}));
+  gain.expect_below(0.85, LearnedSkeletonGuideSettings{});
 }
 
 TEST(LongGuideGain, RoundCorners) {
@@ -122,6 +123,25 @@ TEST(GuideGain, WhatIsLearnedDoesNoHarm) {
     gain.expect_below(1.05, skeleton({}, {}));
     gain.expect_below(1.02, PortalsGuideSettings{});
     gain.expect_below(1.05, FaceIrradianceGuideSettings{});
+  }
+}
+
+// Where a guide cannot pay, it ends: what follows are the bits of the BSDF's own paths.
+TEST(GuideGain, EndsWhereItDoesNotPay) {
+  const auto session = [](const GuideSettings& guide) {
+    PathSettings path = test::path_tracing(6);
+    path.guide = guide;
+    return std::make_unique<test::Session>(
+        test::load(test::PathScene{"atrium"}),
+        test::RenderSettings{.integrator = path, .width = 64, .height = 48});
+  };
+  const auto plain = session(BsdfGuideSettings{});
+  for (const GuideSettings& guide :
+       {skeleton({}, {}), GuideSettings{LearnedSkeletonGuideSettings{}}}) {
+    const auto guided = session(guide);
+    EXPECT_NE(guided->iterate(0).pixels, plain->iterate(0).pixels);
+    for (std::uint64_t i = 1; i < 15; ++i) guided->iterate(i);
+    EXPECT_EQ(guided->iterate(15).pixels, plain->iterate(15).pixels);
   }
 }
 

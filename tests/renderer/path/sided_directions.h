@@ -15,7 +15,7 @@ class SidedDirections final : public GuidingDistribution {
   GuidingCell cell(const Surface& s, const V3f& w) const override {
     return dot(w, s.ng) < 0 ? GuidingCell{0.7F, 1} : GuidingCell{0.3F, 0};
   }
-  std::optional<V3f> sample(const GuidedVertex& at, Rng& rng) const override {
+  std::optional<V3f> sample(const GuidedVertex& at, Rng::FinePoint, Rng& rng) const override {
     const V2f u = rng.next2();
     const float z = std::cbrt(1 - u.x);
     const float r = std::sqrt(std::max(0.0F, 1 - z * z)), phi = 2 * pi * u.y;

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "analysis/storage/bytes.h"
+
+namespace lacuna {
+
+/// Divides the surfaces of each region of the empty space into cells: one binary tree for each
+/// region over the places of vertices and the normals there. A cell is divided across the dimension
+/// in which its vertices vary most, at their mean.
+class CellForest {
+ public:
+  /// A place over the scale of the region, and a unit normal.
+  using Key = std::array<float, 6>;
+  /// The vertices of a cell: their number, the sums of their keys and of the keys' squares.
+  struct Spread {
+    double count = 0;
+    std::array<double, 6> sum{}, square{};
+
+    void add(const Key& key);
+    void add(const Spread& other);
+  };
+
+  CellForest() = default;
+  /// One cell for each region, of the region's number.
+  explicit CellForest(std::size_t regions);
+
+  std::size_t cells() const { return cells_; }
+  std::uint32_t cell(std::uint32_t region, const Key& key) const {
+    std::uint32_t node = region;
+    while (nodes_[node].low != 0) {
+      const Node& n = nodes_[node];
+      node = n.low + (key[n.axis] >= n.at ? 1 : 0);
+    }
+    return nodes_[node].cell;
+  }
+
+  /// Divides every cell with more than `most` vertices once; at most `limit` cells in all.
+  /// `spreads`: of each cell. `divided(cell)` is called for each division, after which the new cell
+  /// is cells() - 1.
+  void divide(std::span<const Spread> spreads, double most, std::size_t limit,
+              const std::function<void(std::uint32_t)>& divided);
+
+  void save(ByteWriter& out) const { out.put(nodes_); }
+  /// Throws std::runtime_error unless the data is a forest of as many regions.
+  void load(ByteReader& in, std::size_t regions);
+
+ private:
+  struct Node {
+    std::uint32_t low = 0;  ///< the first of two children side by side; 0: a cell
+    std::uint32_t axis = 0;
+    std::uint32_t cell = 0;
+    float at = 0;
+  };
+
+  std::vector<Node> nodes_;
+  std::size_t cells_ = 0;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "renderer/guides/direction_tree.h"
+#include "renderer/guides/guiding_distribution.h"
+
+namespace lacuna {
+
+/// The light that paths found at the vertices of each cell of a guide, as quadtrees of directions
+/// (Mueller, Gross and Novak 2017). It is learned in rounds of 1, 2, 4, ... iterations: a round
+/// samples the directions of the round before, and builds those of the next one.
+class LearnedCells {
+ public:
+  LearnedCells() = default;
+  explicit LearnedCells(std::size_t cells) : cells_(cells) {}
+
+  std::size_t size() const { return cells_.size(); }
+  /// What the last round found; empty where it found nothing.
+  const DirectionTree& tree(std::size_t cell) const { return cells_[cell].sampling; }
+  /// Vertices of paths in this round.
+  double vertices(std::size_t cell) const { return cells_[cell].vertices; }
+  /// Rounds that have ended.
+  std::uint64_t rounds() const { return round_; }
+
+  /// The light that arrived at a vertex.
+  struct EnergySample {
+    std::uint32_t cell;
+    V3f w;
+    float energy;  ///< over the density with which `w` was sampled
+  };
+  /// The samples of one part of an iteration.
+  struct Accumulator {
+    explicit Accumulator(std::size_t cells) : vertices(cells, 0) {}
+    std::vector<std::uint32_t> vertices;  // of each cell
+    std::vector<EnergySample> samples;
+  };
+  Accumulator accumulator() const { return Accumulator(cells_.size()); }
+  /// A vertex of `cell` < size() from which `energy` was found in direction `w`, which was sampled
+  /// with density `p`.
+  static void accumulate(std::uint32_t cell, const V3f& w, float energy, Pdf<SolidAngle> p,
+                         Accumulator& accumulator);
+  /// Adds the samples of an iteration, in the order of its parts. True: a round has ended. Cells
+  /// may then be divided, and next_round() must be called.
+  bool update(std::span<const Accumulator* const> accumulators, const ThreadPool& pool);
+  /// Adds a cell that starts as a copy of `cell`; each has half of its vertices.
+  void divide(std::size_t cell);
+  void next_round(const ThreadPool& pool);
+
+  void save(ByteWriter& out) const;
+  /// Throws std::runtime_error if the data is not valid.
+  void load(ByteReader& in);
+  /// Nodes of all trees() together.
+  std::size_t direction_nodes() const;
+
+ private:
+  struct Cell {
+    DirectionTree sampling, building;
+    double vertices = 0;
+  };
+  std::vector<Cell> cells_;
+  std::uint64_t round_ = 0, done_ = 0;  // iterations done of 2^round_
+};
+
+}  // namespace lacuna

@@ -1,0 +1,189 @@
+#include "renderer/guides/learned_skeleton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "renderer/guides/arriving_power.h"
+#include "renderer/guides/skeleton_lobes.h"
+
+namespace lacuna {
+
+namespace {
+
+constexpr std::array<std::size_t, 4> doublings{1, 3, 5, 7};  // of the lobes' strength
+/// One of so many vertices is learned from: learning from all takes longer than it gains.
+constexpr std::uint32_t learned_share = 4;
+constexpr std::size_t most_cells = std::size_t{1} << 18;
+
+}  // namespace
+
+struct LearnedSkeleton::SampleAccumulator final : Accumulator {
+  LearnedCells::Accumulator cells;
+  std::vector<CellForest::Spread> spreads;
+  Tuning::Accumulator tuning;
+  std::uint64_t met = 0;  // samples
+  explicit SampleAccumulator(LearnedCells::Accumulator empty)
+      : cells(std::move(empty)), spreads(cells.vertices.size()) {}
+};
+
+std::vector<float> LearnedSkeleton::distributions() {
+  std::vector<float> all;
+  for (const std::size_t k : doublings) all.push_back(LobeSet::powers()[k]);
+  all.push_back(-1);
+  return all;
+}
+
+Tuning LearnedSkeleton::new_tuning(std::size_t cells) const {
+  return {distributions(), settings_.probability, cells};
+}
+
+bool LearnedSkeleton::samples_tree(std::uint32_t cell) const { return tuning_.strength(cell) < 0; }
+
+void LearnedSkeleton::prepare(const PrepareContext& context) {
+  const SkeletonGraph& graph = context.space.skeleton();
+  const RegionLabels& regions = context.space.regions();
+  transform_ = context.space.voxels().transform;
+  node_map_ = &context.space.node_map();
+  label_ = &regions.label;
+  lookup_.emplace(transform_, *label_);
+  for (const Region& r : regions.regions)
+    scale_.push_back(1 / static_cast<float>(std::max<int>(r.opening, 1)));
+  const SurfaceLookup nodes(transform_, *node_map_);
+  lobes_ = skeleton_lobes(
+      context,
+      arriving_power(context.scene, nodes, graph.nodes(), settings_.light_rays, context.pool),
+      ImportanceAim::last);
+  forest_ = CellForest(regions.regions.size());
+  region_.resize(forest_.cells());
+  std::iota(region_.begin(), region_.end(), 0U);
+  spreads_.assign(forest_.cells(), {});
+  cells_ = LearnedCells(forest_.cells());
+  tuning_ = new_tuning(forest_.cells());
+}
+
+CellForest::Key LearnedSkeleton::key(std::uint32_t region, const V3f& x, const V3f& n) const {
+  const V3f p = V3f(transform_.to_grid(V3d(x))) * scale_[region];
+  return {p.x, p.y, p.z, n.x, n.y, n.z};
+}
+
+GuidingCell LearnedSkeleton::cell(const Surface& s, const V3f& w) const {
+  const std::optional<Imath::V3i> voxel = lookup_->voxel(V3d(s.x), V3d(s.ng), V3d(w));
+  if (!voxel) return {};
+  const std::size_t at = label_->index(*voxel);
+  const std::uint32_t region = (*label_)[at];
+  const std::uint32_t cell =
+      forest_.cell(region, key(region, s.x, dot(s.ng, w) < 0 ? -s.ng : s.ng));
+  const std::uint32_t node = (*node_map_)[at];
+  const bool known =
+      samples_tree(cell) ? !cells_.tree(cell).empty() : node != no_node && !lobes_[node].empty();
+  return {known ? tuning_.probability(cell) : 0.0F, cell, node};
+}
+
+std::optional<V3f> LearnedSkeleton::sample(const GuidedVertex& at, Rng::FinePoint u, Rng&) const {
+  const std::uint32_t cell = at.cell.index;
+  if (samples_tree(cell)) return cells_.tree(cell).sample(u);
+  return lobes_[at.cell.node].sample(at.x(), tuning_.strength(cell), u);
+}
+
+Pdf<SolidAngle> LearnedSkeleton::pdf(const GuidedVertex& at, const V3f& w) const {
+  const std::uint32_t cell = at.cell.index;
+  if (samples_tree(cell)) return cells_.tree(cell).pdf(w);
+  return lobes_[at.cell.node].pdf(at.x(), w, tuning_.strength(cell));
+}
+
+std::unique_ptr<GuidingDistribution::Accumulator> LearnedSkeleton::accumulator() const {
+  return std::make_unique<SampleAccumulator>(cells_.accumulator());
+}
+
+void LearnedSkeleton::accumulate(const GuidingSample& sample, Accumulator& accumulator) const {
+  auto& own = static_cast<SampleAccumulator&>(accumulator);
+  const Vertex& v = sample.v;
+  const auto [probability, cell, node] = v.guiding_cell;
+  if (cell >= cells_.size()) return;
+  if (own.met++ % learned_share != 0) return;
+  own.spreads[cell].add(key(region_[cell], v.surface.x, v.side()));
+  const float arriving = sample.radiance * abs_dot(v.surface.ns, sample.wi);
+  LearnedCells::accumulate(cell, sample.wi, arriving, sample.pdf, own.cells);
+  if (!tuning_.wants(cell)) return;
+  std::array<float, doublings.size() + 1> densities{};
+  if (node != no_node && !lobes_[node].empty()) {
+    const auto of_lobes = lobes_[node].pdf_of_powers(v.surface.x, sample.wi);
+    for (std::size_t i = 0; i < doublings.size(); ++i) densities[i] = of_lobes[doublings[i]];
+  }
+  if (!cells_.tree(cell).empty()) densities.back() = cells_.tree(cell).pdf(sample.wi).value;
+  tuning_.accumulate(sample, cell, densities, own.tuning);
+}
+
+void LearnedSkeleton::record_noise(double variance, Accumulator& accumulator) const {
+  static_cast<SampleAccumulator&>(accumulator).tuning.noise += variance / double{learned_share};
+}
+
+void LearnedSkeleton::update(std::span<const std::unique_ptr<Accumulator>> accumulators,
+                             const ThreadPool& pool) {
+  std::vector<const LearnedCells::Accumulator*> cells;
+  std::vector<const Tuning::Accumulator*> tuning;
+  for (const auto& a : accumulators) {
+    const auto& own = static_cast<const SampleAccumulator&>(*a);
+    cells.push_back(&own.cells);
+    tuning.push_back(&own.tuning);
+    for (std::size_t c = 0; c < spreads_.size(); ++c) spreads_[c].add(own.spreads[c]);
+  }
+  tuning_.update(tuning);
+  if (!cells_.update(cells, pool)) return;
+  if (cells_.rounds() > 0) tuning_.stop_if_useless();
+  const double most = double(settings_.leaf_vertices) *
+                      std::sqrt(std::ldexp(1.0, static_cast<int>(cells_.rounds())));
+  forest_.divide(spreads_, most, most_cells, [this](std::uint32_t cell) {
+    cells_.divide(cell);
+    tuning_.divide(cell);
+    region_.push_back(region_[cell]);
+  });
+  spreads_.assign(forest_.cells(), {});
+  tuning_.fade(0.5);
+  cells_.next_round(pool);
+}
+
+void LearnedSkeleton::save(ByteWriter& out) const {
+  forest_.save(out);
+  out.put(region_);
+  out.put(spreads_);
+  cells_.save(out);
+  tuning_.save(out);
+}
+
+void LearnedSkeleton::load(ByteReader& in) {
+  forest_.load(in, scale_.size());
+  std::vector<std::uint32_t> region = in.get_vector<std::uint32_t>();
+  std::vector<CellForest::Spread> spreads = in.get_vector<CellForest::Spread>();
+  cells_.load(in);
+  const bool known = std::all_of(region.begin(), region.end(),
+                                 [this](std::uint32_t r) { return r < scale_.size(); });
+  const std::size_t n = forest_.cells();
+  if (!known || region.size() != n || spreads.size() != n || cells_.size() != n) {
+    throw std::runtime_error("saved cells belong to another scene");
+  }
+  region_ = std::move(region);
+  spreads_ = std::move(spreads);
+  tuning_ = new_tuning(forest_.cells());
+  tuning_.load(in);
+}
+
+std::vector<std::pair<std::string, double>> LearnedSkeleton::statistics() const {
+  double trees = 0, lobes = 0, shares = 0;
+  for (std::uint32_t c = 0; c < cells_.size(); ++c) {
+    if (!tuning_.guides(c)) continue;
+    (samples_tree(c) ? trees : lobes) += 1;
+    shares += double(tuning_.probability(c));
+  }
+  return {{"regions", static_cast<double>(scale_.size())},
+          {"cells", static_cast<double>(cells_.size())},
+          {"cells_of_lobes", lobes},
+          {"cells_of_learned_directions", trees},
+          {"mean_probability", shares / std::max(1.0, trees + lobes)},
+          {"direction_nodes", static_cast<double>(cells_.direction_nodes())},
+          {"rounds", static_cast<double>(cells_.rounds())}};
+}
+
+}  // namespace lacuna
