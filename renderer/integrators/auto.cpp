@@ -27,7 +27,8 @@ constexpr double worth_an_analysis = 10;
 constexpr double longest_first = 0.25;
 /// The factor by which an entrant must surely have been worse in an earlier race to be left out.
 constexpr double surely_worse = 2;
-/// Estimates of both from which on an earlier race counts: fewer may have missed all bright paths.
+/// Estimates of both from which on an earlier race counts, if the best's tail is known, too: fewer
+/// may have missed all bright paths.
 constexpr std::uint64_t worth_keeping = 4;
 /// Pixels of the pictures that tell what an iteration costs.
 constexpr std::size_t probe_pixels = 2048;
@@ -161,7 +162,8 @@ void Auto::keep_verdict() const {
   const auto counts = [&](std::size_t k) {
     return race_.entrants()[k].trial.estimates() >= worth_keeping;
   };
-  if (!counts(race_.best())) return;
+  const std::size_t best = race_.best();
+  if (!counts(best) || !race_.entrants()[best].standing.tail_known.value_or(false)) return;
   Verdict verdict(candidates_.size(), {0, std::numeric_limits<double>::infinity()});
   for (std::size_t k = 0; k < verdict.size(); ++k) {
     const Entrant& e = race_.entrants()[k];

@@ -126,7 +126,7 @@ test("a report is one file that needs no server and says the same", async () => 
 test("its runs are jobs, which lead back to it", async () => {
   const page = await openPage(browser, `${address}/#/sweep/${id}`);
   await page.getByRole("link", { name: "Its runs in the list of jobs" }).click();
-  await page.getByText("12 of 12", { exact: true }).waitFor();
+  await page.getByText("12 of 12", { exact: true }).waitFor(patience);
   await page.locator(".jobs tbody tr").first().getByRole("link").first().click();
   await page.getByRole("link", { name: id }).click();
   await page.waitForSelector(".plot svg .front");

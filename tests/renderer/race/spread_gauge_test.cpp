@@ -41,7 +41,7 @@ TEST(SpreadGauge, TellsWhichPartOfTheVarianceIsNotSpread) {
 
 TEST(SpreadGauge, SaysNothingOfFewSamples) {
   SpreadGauge gauge(2, 2);
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 7; ++i) {
     gauge.add(Image(2, 2));
     EXPECT_FALSE(gauge.rough_part(1));
   }
