@@ -183,6 +183,10 @@ void Auto::prepare(const PrepareContext& context) {
   for (const IntegratorSettings& c : candidates(settings_)) with_bias.push_back(biased(c) ? 1 : 0);
   race_ =
       Race(candidates_.size(), context.camera.width(), context.camera.height(), limits, with_bias);
+  const std::vector<IntegratorSettings> all = candidates(settings_);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    race_.entrants()[k].shares_starts = shares_starts(all[k]);
+  }
   const std::size_t blocks = race_.grid().blocks();
   for (auto& half : drawn_) half.assign(candidates_.size(), std::vector<std::uint64_t>(blocks));
   for (std::size_t k = 0; k < candidates_.size(); ++k) {

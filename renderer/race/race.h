@@ -55,7 +55,8 @@ struct Entrant {
   bool beaten = false;      ///< left because of its error: comes back if the others prove worse
   std::string reason = {};  ///< why it left
   int left_in = -1;         ///< round
-  bool spreads = false;     ///< its samples are spread evenly
+  bool shares_starts = false;        ///< shares_starts() of its settings
+  bool spreads = false;              ///< its samples are spread evenly
   std::optional<double> rough = {};  ///< SpreadGauge::rough_part()
   Standing standing = {};
 };
@@ -121,6 +122,8 @@ class Race {
   bool is_known(std::size_t which) const;
   void end_round();
   void estimate_variances();
+  /// The variance of whole pictures over that of smaller ones, where the race has them.
+  double of_whole_pictures(std::size_t which) const;
   /// SpreadGauge::left_of() by the end of the budget.
   double foreseen_spread(std::size_t which) const;
   /// Of an entrant's error, by the end of the budget (Trial::growth()).

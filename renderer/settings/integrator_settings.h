@@ -54,6 +54,18 @@ bool spreads_samples(const std::variant<Ts...>& settings) {
       settings);
 }
 
+/// Whether the pixels of a picture share a noise that falls with their number: where the settings
+/// have a `static constexpr bool shares_starts = true`.
+template <class... Ts>
+bool shares_starts(const std::variant<Ts...>& settings) {
+  return std::visit(
+      []<class S>(const S&) {
+        if constexpr (requires { S::shares_starts; }) return S::shares_starts;
+        return false;
+      },
+      settings);
+}
+
 /// Whether a candidate's settings have no more bias than is allowed.
 inline bool is_allowed(const CandidateSettings& settings, Allow allow) {
   return allow == Allow::biased || !biased(settings) ||

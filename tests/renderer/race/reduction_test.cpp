@@ -154,6 +154,22 @@ TEST(Reduction, ShortRacesFindTheBest) {
   }
 }
 
+TEST(Reduction, SharedStartsMakeLessNoiseInWholePictures) {
+  std::mt19937_64 random(1);
+  Race race = race_of(60);
+  race.entrants()[1].shares_starts = true;
+  race.choose_reduction(std::vector<double>{0.06, 0.06}, 8);
+  const int reduction = race.reduction();
+  ASSERT_GT(reduction, 1);
+  while (const auto k = race.next()) {
+    race.finished(*k, noisy(race.entrants()[*k].trial.grid(), 1, random), 0.1);
+  }
+  race.close();
+  EXPECT_EQ(race.best(), 1U);
+  EXPECT_NEAR(race.entrants()[1].standing.over_best.value, 0, 1e-12);
+  EXPECT_NEAR(race.entrants()[0].standing.over_best.value, std::log(reduction), 0.1);
+}
+
 TEST(Reduction, WholePicturesBeginAnew) {
   std::mt19937_64 random(1);
   Race race = short_race({4, 1}, 1);
