@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "renderer/guides/direction_tree.h"
 #include "renderer/guides/guiding_distribution.h"
 
@@ -10,6 +12,8 @@ namespace lacuna {
 /// samples the directions of the round before, and builds those of the next one.
 class LearnedCells {
  public:
+  static constexpr std::size_t most = std::size_t{1} << 18;  ///< cells that a guide may divide into
+
   LearnedCells() = default;
   explicit LearnedCells(std::size_t cells) : cells_(cells) {}
 
@@ -18,6 +22,11 @@ class LearnedCells {
   const DirectionTree& tree(std::size_t cell) const { return cells_[cell].sampling; }
   /// Vertices of paths in this round.
   double vertices(std::size_t cell) const { return cells_[cell].vertices; }
+  /// Vertices above which a cell is divided at the end of this round, where `first` are in the
+  /// first: the paper's c sqrt(2^k) grows with the number of samples.
+  double most_vertices(int first) const {
+    return double(first) * std::sqrt(std::ldexp(1.0, static_cast<int>(round_)));
+  }
   /// Rounds that have ended.
   std::uint64_t rounds() const { return round_; }
 

@@ -1,7 +1,6 @@
 #include "renderer/guides/learned_skeleton.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <stdexcept>
 
@@ -15,7 +14,6 @@ namespace {
 constexpr std::array<std::size_t, 4> doublings{1, 3, 5, 7};  // of the lobes' strength
 /// One of so many vertices is learned from: learning from all takes longer than it gains.
 constexpr std::uint32_t learned_share = 4;
-constexpr std::size_t most_cells = std::size_t{1} << 18;
 
 }  // namespace
 
@@ -133,9 +131,8 @@ void LearnedSkeleton::update(std::span<const std::unique_ptr<Accumulator>> accum
   tuning_.update(tuning);
   if (!cells_.update(cells, pool)) return;
   if (cells_.rounds() > 0) tuning_.stop_if_useless();
-  const double most = double(settings_.leaf_vertices) *
-                      std::sqrt(std::ldexp(1.0, static_cast<int>(cells_.rounds())));
-  forest_.divide(spreads_, most, most_cells, [this](std::uint32_t cell) {
+  const double most = cells_.most_vertices(settings_.leaf_vertices);
+  forest_.divide(spreads_, most, LearnedCells::most, [this](std::uint32_t cell) {
     cells_.divide(cell);
     tuning_.divide(cell);
     region_.push_back(region_[cell]);

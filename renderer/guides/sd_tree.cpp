@@ -1,7 +1,6 @@
 #include "renderer/guides/sd_tree.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 namespace lacuna {
@@ -9,7 +8,6 @@ namespace lacuna {
 namespace {
 
 constexpr int deepest_places = 40;
-constexpr std::size_t most_leaves = std::size_t{1} << 18;
 
 }  // namespace
 
@@ -71,10 +69,7 @@ void SdTree::update(std::span<const std::unique_ptr<Accumulator>> accumulators,
   tuning_.update(tuning);
   if (!leaves_.update(cells, pool)) return;
   if (leaves_.rounds() > 0) tuning_.stop_if_useless();
-  // The paper's c sqrt(2^k): the limit grows with the number of samples.
-  divide(0, 0,
-         double(settings_.leaf_vertices) *
-             std::sqrt(std::ldexp(1.0, static_cast<int>(leaves_.rounds()))));
+  divide(0, 0, leaves_.most_vertices(settings_.leaf_vertices));
   tuning_.forget();
   leaves_.next_round(pool);
 }
@@ -82,7 +77,7 @@ void SdTree::update(std::span<const std::unique_ptr<Accumulator>> accumulators,
 void SdTree::divide(std::uint32_t node, int depth, double most) {
   if (nodes_[node].child[0] == 0) {
     const std::uint32_t leaf = nodes_[node].leaf;
-    if (leaves_.vertices(leaf) <= most || leaves_.size() >= most_leaves) return;
+    if (leaves_.vertices(leaf) <= most || leaves_.size() >= LearnedCells::most) return;
     if (depth >= deepest_places) return;
     leaves_.divide(leaf);
     tuning_.divide(leaf);

@@ -179,11 +179,11 @@ void Auto::prepare(const PrepareContext& context) {
   if (!counts_rays() && context.budget_seconds) {
     limits = RaceLimits::of_seconds(*context.budget_seconds);
   }
+  const std::vector<IntegratorSettings> all = candidates(settings_);
   std::vector<std::uint8_t> with_bias;
-  for (const IntegratorSettings& c : candidates(settings_)) with_bias.push_back(biased(c) ? 1 : 0);
+  for (const IntegratorSettings& c : all) with_bias.push_back(biased(c) ? 1 : 0);
   race_ =
       Race(candidates_.size(), context.camera.width(), context.camera.height(), limits, with_bias);
-  const std::vector<IntegratorSettings> all = candidates(settings_);
   for (std::size_t k = 0; k < all.size(); ++k) {
     race_.entrants()[k].shares_starts = shares_starts(all[k]);
   }

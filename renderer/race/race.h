@@ -77,8 +77,11 @@ class Race {
 
   /// Before the first iteration: what one of each entrant took for pictures with pixels `reduction`
   /// times as wide (BlockGrid), 0 for those that did not race. The race then has the largest
-  /// pictures of which it can afford some of each. Biased entrants need whole pictures.
+  /// pictures of which it can afford enough of each; an entrant whose pictures are too slow even so
+  /// leaves.
   void choose_reduction(std::span<const double> costs, int reduction);
+  /// Whether choose_reduction() has still to be called. Never with biased entrants: bias is told by
+  /// whole pictures. Nor without a limit of costs.
   bool wants_smaller_pictures() const;
   int reduction() const { return reduction_; }
   const BlockGrid& grid() const { return grid_; }  ///< of whole pictures

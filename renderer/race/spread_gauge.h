@@ -27,7 +27,7 @@ class SpreadGauge {
   /// The part of the variance that is not spread: `variance`, of one estimate, summed over pixels
   /// as the mean of three channels, is a part that falls as 1 / n and one that falls as 1 / n^2,
   /// slower than that of smooth integrands and faster than that of edges. In [0, 1]; none before
-  /// each sequence has four estimates: of two each, a few bright paths have told anything.
+  /// each sequence has four estimates: with two each, a few bright paths decide.
   std::optional<double> rough_part(double variance) const {
     const auto odd = double(count_ / 2), even = double(count_) - odd;
     if (odd < 4 || !(variance > 0)) return std::nullopt;

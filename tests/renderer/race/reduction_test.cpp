@@ -102,7 +102,6 @@ TEST(Reduction, IsAsLittleAsTheRaceCanAfford) {
   };
   EXPECT_EQ(reduction(1e6), 1);
   const int long_race = reduction(3e4), shorter = reduction(3e3), at_nothing = reduction(1e-3);
-  EXPECT_GE(long_race, 1);
   EXPECT_GT(shorter, long_race);
   EXPECT_GE(at_nothing, shorter);
   EXPECT_GE(grid_of(at_nothing).trial_pixels(), 2048) << "and no smaller";
