@@ -23,15 +23,18 @@ def arguments():
     parser.add_argument("--all", action="store_true", help="every entry, and one table of all claims; what was measured "
                         "before with the same programs, scenes and entries is kept, so that it may be stopped")
     parser.add_argument("--kept", action="store_true", help="with --all: measures nothing, shows what was measured before")
-    parser.add_argument("--write", action="store_true", help="with --all: writes docs/reproduction.md")
+    parser.add_argument("--write", action="store_true", help="puts what was found into docs/reproduction, and writes "
+                        "docs/reproduction.md of all that is there")
     parser.add_argument("--json", action="store_true", help="prints JSON")
     parser.add_argument("--out", type=pathlib.Path, default=child.ROOT / "build/reproduce", metavar="DIR",
                         help="folder for the runs, one below it for each NAME (default: build/reproduce)")
     options = parser.parse_args()
     if options.all and options.name is not None:
         parser.error(f"--all and {options.name}: one of the two")
-    if not options.all and (options.kept or options.write):
-        parser.error(f"{'--kept' if options.kept else '--write'}: with --all only")
+    if not options.all and options.kept:
+        parser.error("--kept: with --all only")
+    if options.write and options.name is None and not options.all:
+        parser.error("--write: with --all or NAME")
     return options
 
 
@@ -43,6 +46,16 @@ def error(text):
     print(f"reproduce: {text}", file=sys.stderr)
 
 
+def write(runs):
+    """Puts runs into the tree; 0, or the exit code of what failed."""
+    try:
+        page.write(catalogue.ENTRIES, runs)
+    except child.Failed as failed:
+        error(failed)
+        return failed.code
+    return 0
+
+
 def reproduce(entry, options):
     try:
         child.build(entry.targets)
@@ -52,6 +65,8 @@ def reproduce(entry, options):
         error(failed)
         return failed.code
     kept.keep(run)
+    if options.write and (code := write([run])) != 0:
+        return code
     show(options, lambda: output.run_text(run), lambda: output.run_json(run))
     return 0 if run.complete and not run.missed else 1
 
@@ -67,8 +82,8 @@ def reproduce_all(options):
     except (child.Failed, KeyboardInterrupt) as stopped:
         error(f"{stopped or 'interrupted'}; the same command goes on")
         code = stopped.code if isinstance(stopped, child.Failed) and stopped.code not in everything.STOPPED else 75
-    if options.write and code == 0:
-        page.PAGE.write_text(page.text(outcomes, options.full))
+    if options.write:
+        code = write([o.run for o in outcomes if o.run is not None]) or code
     show(options, lambda: everything.text(outcomes), lambda: everything.value(outcomes))
     if code != 0:
         return code

@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 import pathlib
+import subprocess
 
 from harness import child
 
@@ -59,3 +60,14 @@ def files_named(value):
 def key(*parts):
     """Twelve digits that stand for these values."""
     return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:12]
+
+
+@functools.lru_cache(maxsize=None)
+def commit():
+    """That of the tree, as "1a2b3c4", or "1a2b3c4 with changes"; "no commit" outside a repository."""
+    def git(*arguments):
+        return subprocess.run(["git", *arguments], cwd=child.ROOT, capture_output=True, text=True, check=False).stdout.strip()
+
+    name = git("rev-parse", "--short=7", "HEAD")
+    changes = git("status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs") if name else ""
+    return f"{name or 'no commit'}{' with changes' if changes else ''}"

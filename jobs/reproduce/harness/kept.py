@@ -29,13 +29,34 @@ def _file(run):
     return run.folder / f"{run.version}.result.json"
 
 
+def write_json(file, value):
+    """As a whole or not at all."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    fresh = file.with_suffix(".new")
+    fresh.write_text(json.dumps(value, indent=1) + "\n")
+    os.replace(fresh, file)
+
+
 def keep(run):
     """Writes what a run found."""
-    run.folder.mkdir(parents=True, exist_ok=True)
-    value = {"key": _key(run.entry, run.inputs), "inputs": sorted(run.inputs), **output.run_json(run)}
-    fresh = _file(run).with_suffix(".new")
-    fresh.write_text(json.dumps(value, indent=1) + "\n")
-    os.replace(fresh, _file(run))
+    write_json(_file(run), {"key": _key(run.entry, run.inputs), "inputs": sorted(run.inputs), **output.run_json(run)})
+
+
+def fill(run, value):
+    """Gives `run` what output.run_json() wrote. A claim that the entry has no longer is left out, one that it did not have
+    yet is not measured."""
+    claims = {c.quantity: c for c in run.entry.claims}
+    for row in value["rows"]:
+        stored = output.claim_of(row["claim"])
+        claim = claims.get(stored.quantity) or (None if stored.judged else stored)
+        if claim is not None:
+            numbers = {which: row[which]["value"] and Measured(**row[which]["value"]) for which in KINDS}
+            run._rows[claim.quantity] = Row(claim, **numbers)
+    run.tables = [Table(tuple(t["columns"]), t["rows"]) for t in value["tables"]]
+    run.notes = value["notes"]
+    run.shown = [(picture["caption"], picture["file"]) for picture in value["pictures"]]
+    run.seconds, run.complete, run.commit = value["seconds"], value["complete"], value["commit"]
+    return run
 
 
 def load(entry, full, out):
@@ -44,20 +65,9 @@ def load(entry, full, out):
     run = Run(entry, full, out)
     try:
         value = json.loads(_file(run).read_text())
-        if value["key"] != _key(entry, value["inputs"]):
-            return None
+        return fill(run, value) if value["key"] == _key(entry, value["inputs"]) else None
     except (FileNotFoundError, KeyError, json.JSONDecodeError):
         return None
-    claims = {c.quantity: c for c in entry.claims}
-    run._rows = {}
-    for row in value["rows"]:
-        claim = claims.get(row["claim"]["quantity"]) or output.claim_of(row["claim"])
-        numbers = {which: row[which]["value"] and Measured(**row[which]["value"]) for which in KINDS}
-        run._rows[claim.quantity] = Row(claim, **numbers)
-    run.tables = [Table(tuple(t["columns"]), t["rows"]) for t in value["tables"]]
-    run.notes = [n for n in value["notes"] if n not in output.general_notes(run)]
-    run.seconds, run.complete = value["seconds"], value["complete"]
-    return run
 
 
 @dataclasses.dataclass(frozen=True)

@@ -74,7 +74,9 @@ def general_notes(run):
 def run_json(run):
     return {"name": run.entry.name, "version": run.version, "source": run.entry.source, "text": run.entry.text,
             "seconds": run.seconds, "complete": run.complete, "rows": [row_json(r) for r in run.rows],
-            "tables": [dataclasses.asdict(t) for t in run.tables], "notes": [*run.notes, *general_notes(run)]}
+            "tables": [dataclasses.asdict(t) for t in run.tables], "notes": run.notes,
+            "general_notes": general_notes(run),
+            "pictures": [{"caption": caption, "file": file} for caption, file in run.shown], "commit": run.commit}
 
 
 def row_json(row):

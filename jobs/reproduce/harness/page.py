@@ -1,6 +1,6 @@
 """docs/reproduction.md: the table of every claim, and what each entry found."""
 
-from harness import child, everything, output
+from harness import child, everything, output, stored
 from harness.run import KINDS
 from harness.verdict import MISSED
 
@@ -21,10 +21,6 @@ def _table(columns, lines):
     parts = ["| " + " | ".join(columns) + " |", "|" + " --- |" * len(columns)]
     parts += ["| " + " | ".join(map(_escaped, line)) + " |" for line in lines]
     return "\n".join(parts)
-
-
-def _without_paths(text):
-    return text.replace(f"{child.ROOT}/", "")
 
 
 def _claims(outcomes):
@@ -50,22 +46,24 @@ def _missed(outcomes):
 def _found(outcome):
     run = outcome.run
     parts = [f"### {outcome.entry.name}", f"{outcome.entry.source}: {outcome.entry.text}. The {run.version} version took "
-             f"{run.seconds:.0f} s."]
+             f"{run.seconds:.0f} s at {run.commit}."]
     for table in run.tables:
         text = output.table_text(table.columns, table.rows[:MOST_ROWS])
         parts.append("\n".join(f"    {line}" for line in text.splitlines()))
-    notes = [_without_paths(note) for note in (*run.notes, *output.general_notes(run)) if "pictures: " not in note]
-    return "\n\n".join([*parts, "\n".join(f"- {_escaped(note)}" for note in notes)])
+    if run.shown:
+        captions = "; ".join(_escaped(caption) for caption, _ in run.shown)
+        row = stored.row_of_pictures(outcome.entry).relative_to(PAGE.parent)
+        parts.append(f"![From the left: {captions}]({row})\n\nFrom the left: {captions}.")
+    return "\n\n".join([*parts, "\n".join(f"- {_escaped(note)}" for note in (*run.notes, *output.general_notes(run)))])
 
 
-def text(outcomes, full):
-    """The page."""
+def text(outcomes):
+    """The page of what the tree has (stored.py)."""
     counts = ", ".join(f"{n} {verdict}" for verdict, n in everything.verdicts(outcomes).items()) or "none"
-    option = " --full" if full else ""
     parts = [
         "# Reproduction",
-        f"Written by `./dev reproduce --all{option} --write`; edits are lost. [The harness](../jobs/reproduce/README.md) "
-        "explains the entries.",
+        "Written by `./dev reproduce --all --write` and `./dev reproduce NAME --write` from the results in `reproduction`; edits "
+        "are lost. [The harness](../jobs/reproduce/README.md) explains the entries.",
         "`published`: the method with the settings that the paper names, on this project's code. `ours`: with this project's "
         "defaults and changes. Intervals hold the truth with a probability of 95 %. A verdict is `reached` where the whole "
         "interval bears the claim out, `missed` where none of it does, `not told apart` between the two, and `one run` where "
@@ -77,3 +75,10 @@ def text(outcomes, full):
         "## Measurements",
         *(_found(o) for o in outcomes if o.run)]
     return "\n\n".join(parts) + "\n"
+
+
+def write(entries, runs):
+    """Puts runs into the tree, and writes the page of all entries."""
+    for run in runs:
+        stored.write(run)
+    PAGE.write_text(text(list(stored.outcomes(entries))))

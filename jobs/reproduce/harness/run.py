@@ -53,6 +53,8 @@ class Run:
     def __init__(self, entry, full, out):
         self.entry, self.full, self.folder = entry, full, out / entry.name
         self.tables, self.notes, self.complete = [], [child.machine()], True
+        self.shown = []  # a caption and the file of each picture for the page
+        self.commit = identity.commit()
         self.inputs = {}  # the hash of every scene and reference that was used
         self.seconds = 0.0
         self._rows = {claim.quantity: Row(claim) for claim in entry.claims}
@@ -88,6 +90,10 @@ class Run:
 
     def note(self, text):
         self.notes.append(text)
+
+    def show(self, caption, folder):
+        """Puts the picture of a result folder on the page, in a row with the others of this entry."""
+        self.shown.append((caption, str(folder / "image.png")))
 
     @property
     def pictures(self):
@@ -145,9 +151,13 @@ class Run:
         self.notes += answers["warnings"]
         return answers
 
+    def run_folder(self, cell, seed=0):
+        """That of one of the runs of a cell of the last answers."""
+        return self.runs / cell["runs"][seed]["name"]
+
     def report(self, cell, seed=0):
         """The report of one of the runs of a cell of the last answers."""
-        return json.loads((self.runs / cell["runs"][seed]["name"] / "report.json").read_text())
+        return json.loads((self.run_folder(cell, seed) / "report.json").read_text())
 
 
 def _state(folder):

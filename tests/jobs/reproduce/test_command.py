@@ -50,7 +50,7 @@ class Command(unittest.TestCase):
     def test_options_of_all_need_it(self):
         for options, said in ((("--all", "noel-table-1"), "--all and noel-table-1: one of the two"),
                               (("--kept",), "--kept: with --all only"),
-                              (("noel-table-1", "--write"), "--write: with --all only")):
+                              (("--write",), "--write: with --all or NAME")):
             done = reproduce(*options)
             self.assertEqual((done.returncode, done.stdout), (2, ""))
             self.assertIn(said, done.stderr)

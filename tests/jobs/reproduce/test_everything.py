@@ -7,7 +7,8 @@ import tempfile
 import unittest
 from unittest import mock
 
-from harness import child, everything, identity, kept, page
+from catalogue import ENTRIES
+from harness import child, everything, identity, kept, page, stored
 from harness.entry import Entries
 from harness.measured import Measured
 from harness.run import Table
@@ -21,7 +22,12 @@ class Everything(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.out = pathlib.Path(folder.name)
-        self.measured, self.failing = [], {}
+        self.measured, self.failing, self.captions = [], {}, ()
+        tree = mock.patch.multiple(stored, FOLDER=self.out / "tree")
+        written = mock.patch.multiple(page, PAGE=self.out / "tree.md")
+        for patch in (tree, written):
+            patch.start()
+            self.addCleanup(patch.stop)
         self.entries = Entries()
         for name in NAMES:
             self.entries.measured(name, "a paper", f"what {name} claims", "path",
@@ -38,6 +44,8 @@ class Everything(unittest.TestCase):
         run.tables.append(Table(("scene", "value"), [["a", 1]]))
         run.note(f"pictures: {child.ROOT}/build")
         run.note(f"the file {child.ROOT}/build/a_b")
+        for caption in self.captions:
+            run.show(caption, child.ROOT / "docs" / caption)
 
     def all(self, **options):
         with contextlib.redirect_stderr(io.StringIO()):
@@ -81,7 +89,8 @@ class Everything(unittest.TestCase):
         self.assertEqual(self.measured, list(NAMES))
 
     def test_the_page_has_every_claim_and_the_reasons_of_those_missed(self):
-        text = page.text(self.all(), False)
+        page.write(self.entries, [o.run for o in self.all() if o.run])
+        text = page.PAGE.read_text()
         self.assertIn("| noel-a | gain | >= 2 | 1 \\[0.9, 1.1\\] | missed | 3 \\[2.5, 3.5\\] | reached |", text)
         self.assertIn("| kol-d | gain | >= 2 |  | not built yet |  |  |", text)
         self.assertIn("- `noel-b`, gain (published): too *few*", text)
@@ -91,3 +100,60 @@ class Everything(unittest.TestCase):
         self.assertNotIn(str(child.ROOT), text)
         headings = [line for line in text.splitlines() if line.startswith("#")]
         self.assertEqual(len(set(headings)), len(headings))
+
+    def test_the_page_keeps_what_was_measured_before_and_elsewhere(self):
+        page.write(self.entries, [self.all()[0].run])
+        first = page.PAGE.read_text()
+        self.assertIn("| noel-b | gain | >= 2 |  | not run |  |  |", first)
+        self.measured.clear()
+        with mock.patch.object(identity, "programs", return_value={"lacuna": "other"}):
+            page.write(self.entries, [self.all()[1].run])
+        text = page.PAGE.read_text()
+        for name in ("noel-a", "noel-b"):
+            self.assertIn(f"| {name} | gain | >= 2 | 1 \\[0.9, 1.1\\] | missed | 3 \\[2.5, 3.5\\] | reached |", text)
+        page.write(self.entries, [])
+        self.assertEqual(page.PAGE.read_text(), text)
+
+    def test_a_claim_that_is_new_or_gone(self):
+        self.all()
+        page.write(self.entries, [self.all()[0].run])
+        others = Entries()
+        others.measured("noel-a", "a paper", "what it claims", "path", (at_least("gain", 4), at_least("new", 1)))(print)
+        page.write(others, [])
+        text = page.PAGE.read_text()
+        self.assertIn("| noel-a | gain | >= 4 | 1 \\[0.9, 1.1\\] | missed | 3 \\[2.5, 3.5\\] | missed |", text)
+        self.assertIn("| noel-a | new | >= 1 |  | not measured |  | not measured |", text)
+
+    def test_pictures_stand_in_a_row(self):
+        self.captions = ("one", "two_2")
+        run = self.all()[0].run
+        with mock.patch("harness.stored.subprocess.run") as oiiotool:
+            oiiotool.return_value.returncode = 0
+            page.write(self.entries, [run])
+            arguments = oiiotool.call_args.args[0]
+        self.assertEqual(arguments[1:3], [f"{child.ROOT}/docs/{name}/image.png" for name in self.captions])
+        self.assertIn("2x1", arguments)
+        text = page.PAGE.read_text()
+        self.assertIn("![From the left: one; two\\_2](tree/noel-a.jpg)", text)
+        self.assertNotIn(str(child.ROOT), text)
+
+    def test_a_row_that_cannot_be_drawn_is_an_error(self):
+        self.captions = ("one",)
+        with mock.patch("harness.stored.subprocess.run") as oiiotool:
+            oiiotool.return_value = mock.Mock(returncode=1, stdout="", stderr="no such file")
+            with self.assertRaisesRegex(child.Failed, "oiiotool ended with 1: no such file"):
+                page.write(self.entries, [self.all()[0].run])
+
+
+class Tree(unittest.TestCase):
+    def test_the_page_is_that_of_the_results_in_the_tree(self):
+        self.assertEqual(page.PAGE.read_text(), page.text(list(stored.outcomes(ENTRIES))),
+                         "./dev reproduce --all --kept --write writes it anew")
+
+    def test_every_result_in_the_tree_is_of_an_entry_and_tells_its_commit(self):
+        names = {entry.name for entry in ENTRIES}
+        for file in stored.FOLDER.iterdir():
+            self.assertIn(file.stem, names)
+        for outcome in stored.outcomes(ENTRIES):
+            if outcome.run:
+                self.assertRegex(outcome.run.commit, "^[0-9a-f]{7}( with changes)?$")

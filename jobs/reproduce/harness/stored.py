@@ -1,0 +1,60 @@
+"""Results in the tree, docs/reproduction/NAME.json with a row of pictures, NAME.jpg: what the page is made of. Each tells
+the commit that it was measured at, so that an entry can be measured again without the others."""
+
+import json
+import pathlib
+import subprocess
+
+from harness import child, output
+from harness.kept import Outcome, fill, write_json
+from harness.run import Run
+
+FOLDER = child.ROOT / "docs/reproduction"
+ROW_WIDTH, ROW_HEIGHT, QUALITY = 1200, 200, 80  # of the pictures: pixels at most, JPEG
+
+
+def file(entry):
+    return FOLDER / f"{entry.name}.json"
+
+
+def row_of_pictures(entry):
+    return FOLDER / f"{entry.name}.jpg"
+
+
+def write(run):
+    """Puts a run into the tree."""
+    value = output.run_json(run)
+    value["notes"] = [note.replace(f"{child.ROOT}/", "") for note in value["notes"] if "pictures: " not in note]
+    for picture in value["pictures"]:
+        picture["file"] = pathlib.Path(picture["file"]).parent.name
+    write_json(file(run.entry), value)
+    _draw(run)
+
+
+def _draw(run):
+    """The pictures side by side, as large as each other."""
+    row = row_of_pictures(run.entry)
+    if not run.shown:
+        row.unlink(missing_ok=True)
+        return
+    fit = f"{ROW_WIDTH // len(run.shown)}x{ROW_HEIGHT}"
+    done = subprocess.run(["oiiotool", *(picture for _, picture in run.shown), f"--mosaic:pad=2:fit={fit}",
+                           f"{len(run.shown)}x1", "--nosoftwareattrib", "--compression", f"jpeg:{QUALITY}", "-o", str(row)],
+                          capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise child.Failed(f"oiiotool ended with {done.returncode}: {done.stdout}{done.stderr}", done.returncode)
+
+
+def load(entry):
+    """The run of an entry in the tree; None: there is none."""
+    if not file(entry).is_file():
+        return None
+    value = json.loads(file(entry).read_text())
+    return fill(Run(entry, value["version"] == "full", child.ROOT), value)
+
+
+def outcomes(entries):
+    """Of each entry what the tree has of it."""
+    for entry in entries:
+        run = load(entry) if entry.built else None
+        yield Outcome(entry, run, "" if run else "not run" if entry.built else "not built yet")
