@@ -4,12 +4,13 @@ import kol
 import nabata
 import noel_connections
 import noel_guides
+import noel_mapping
 import noel_shadows
 import noel_shape
 import popov
 import references
 
-ENTRIES = (*references.ENTRIES, *noel_shape.ENTRIES, *noel_shadows.ENTRIES, *noel_guides.ENTRIES,
+ENTRIES = (*references.ENTRIES, *noel_shape.ENTRIES, *noel_shadows.ENTRIES, *noel_guides.ENTRIES, *noel_mapping.ENTRIES,
            *noel_connections.ENTRIES, *popov.ENTRIES, *nabata.ENTRIES, *kol.ENTRIES)
 
 

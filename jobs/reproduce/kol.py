@@ -9,7 +9,7 @@ import math
 
 from harness import many_lights
 from harness.entry import Entries
-from harness.measured import Measured, exact
+from harness.measured import Measured, exact, geometric_mean_of, mean_of
 from harness.run import Table
 from harness.verdict import at_least, at_most, beside
 
@@ -55,6 +55,32 @@ def map_statistics(run, name, value):
 
 def map_seconds(told):
     return told["view_map_cpu_seconds"]
+
+
+SEEDS = 3
+
+
+def repeated(run, name, value):
+    """map_statistics() of the seeds 0, 1, ...; they are called NAME-SEED."""
+    return [report["integrator"] for report in run.repeated(name, value, SEEDS)]
+
+
+def ratio(above, below, value=map_seconds):
+    """Of a number of two lists of statistics, seed by seed."""
+    return geometric_mean_of([value(a) / value(b) for a, b in zip(above, below)])
+
+
+def mean_error(run, name, exact_name, metric):
+    """Of the pictures of repeated() against those of the same lights."""
+    return mean_of([many_lights.errors(run, f"{name}-{seed}", f"{exact_name}-{seed}")[metric] for seed in range(SEEDS)])
+
+
+ERRORS = ("relmse", "psnr", "ssim", "mean_relative")
+ERROR_HEADS = ("relMSE", "PSNR", "SSIM", "mean")
+
+
+def error_cells(run, name, exact_name, metrics=ERRORS):
+    return [str(mean_error(run, name, exact_name, metric)) for metric in metrics]
 
 
 @ENTRIES.measured(
@@ -216,12 +242,11 @@ def fig_11(run):
     views = 65536
     jobs = {"one bounce": map_job("Sponza", 68800, {}), "four bounces": map_job("Sponza", 62500, {}, edges=6),
             "random": particles("Sponza", views, {})}
-    told = {key: map_statistics(run, key, value) for key, value in jobs.items()}
-    run.found("time of random views / of one bounce",
-              published=Measured(map_seconds(told["random"])).ratio(Measured(map_seconds(told["one bounce"]))))
-    run.tables.append(Table(("views", "number", "maps", "CPU s", "views sharing a splat"),
-                            [(key, round(t["virtual_lights"]), round(t["view_leaves"]), f"{map_seconds(t):.3g}",
-                              f"{t['views_sharing_a_splat']:.3g}") for key, t in told.items()]))
+    told = {key: repeated(run, key, value) for key, value in jobs.items()}
+    run.found("time of random views / of one bounce", published=ratio(told["random"], told["one bounce"]))
+    run.tables.append(Table(("views", "number", "maps", "CPU s", "views sharing a splat"), [
+        (key, round(t[0]["virtual_lights"]), round(t[0]["view_leaves"]), str(mean_of(list(map(map_seconds, t)))),
+         f"{t[0]['views_sharing_a_splat']:.3g}") for key, t in told.items()]))
     run.note("ours at random see in all directions, those of one bounce half of them")
 
 
@@ -236,13 +261,12 @@ def fig_12(run):
         for size in sizes:
             if method == "many_lods" and size > 64:
                 continue
-            t = map_statistics(run, f"{method}-{size}",
-                                     map_job("Sponza", views, {"method": method, "map_size": size}))
-            found[method, size] = map_seconds(t)
-            rows.append((method, size, round(t["view_leaves"]), f"{map_seconds(t):.3g}",
+            told = found[method, size] = repeated(run, f"{method}-{size}",
+                                                  map_job("Sponza", views, {"method": method, "map_size": size}))
+            t = told[0]
+            rows.append((method, size, round(t["view_leaves"]), str(mean_of(list(map(map_seconds, told)))),
                          f"{t['views_sharing_a_splat']:.3g}", f"{t['view_map_bytes'] / 2**20:.3g}"))
-    run.found("time at twice the resolution / at one",
-              published=Measured(found["megaviews", 32]).ratio(Measured(found["megaviews", 16])))
+    run.found("time at twice the resolution / at one", published=ratio(found["megaviews", 32], found["megaviews", 16]))
     run.tables.append(Table(("method", "texels a side", "maps", "CPU s", "views sharing a splat", "maps, MiB"), rows))
     if not run.full:
         run.note("64K views in place of 1M")
@@ -256,24 +280,24 @@ def fig_12(run):
 def fig_13(run):
     """Error and time of the maps against the depth of both octrees."""
     paths, at = 62500, (256, 128) if run.full else (96, 48)
-    map_statistics(run, "exact", map_job("Sponza", paths, {"type": "exact"}, at, edges=6))
+    repeated(run, "exact", map_job("Sponza", paths, {"type": "exact"}, at, edges=6))
     rows, found = [], {}
     for levels in (7, 8, 9, 10, 11):
         name = f"levels-{levels}"
-        t = found[levels] = map_statistics(run, name, map_job("Sponza", paths, {"levels": levels}, at, edges=6))
-        e = many_lights.errors(run, name, "exact")
-        rows.append((levels, round(t["view_leaves"]), f"{map_seconds(t):.3g}",
-                     f"{t['view_splats_large'] / t['view_splats']:.3g}", f"{e['relmse']:.3g}", f"{e['psnr']:.3g}",
-                     f"{e['ssim']:.3g}", f"{e['mean_relative']:+.3g}"))
-    run.found("time at 11 levels / at 8",
-              published=Measured(map_seconds(found[11])).ratio(Measured(map_seconds(found[8]))))
+        told = found[levels] = repeated(run, name, map_job("Sponza", paths, {"levels": levels}, at, edges=6))
+        t = told[0]
+        rows.append((levels, round(t["view_leaves"]), str(mean_of(list(map(map_seconds, told)))),
+                     f"{t['view_splats_large'] / t['view_splats']:.3g}", *error_cells(run, name, "exact")))
+        run.show(f"{levels} levels", run.place(f"{name}-0"))
+    run.show("exact", run.place("exact-0"))
+    run.found("time at 11 levels / at 8", published=ratio(found[11], found[8]))
     run.found("leaves beyond a pixel, 8 levels / 11",
-              published=exact(found[8]["view_splats_large"] / found[11]["view_splats_large"]))
+              published=ratio(found[8], found[11], lambda t: t["view_splats_large"]))
     for levels in (8, 11):
-        run.found(f"{levels} levels", published=Measured(1000 * map_seconds(found[levels])))
-    run.tables.append(Table(("levels", "maps", "CPU s", "leaves beyond a texel", "relMSE", "PSNR", "SSIM", "mean"), rows))
-    run.note(f"sponza, {found[11]['virtual_lights']:.0f} lights of up to four bounces; errors against exact visibility of "
-             f"the same lights; pictures: {run.pictures}")
+        run.found(f"{levels} levels", published=mean_of([1000 * map_seconds(t) for t in found[levels]]))
+    run.tables.append(Table(("levels", "maps", "CPU s", "leaves beyond a texel", *ERROR_HEADS), rows))
+    run.note(f"sponza, {found[11][0]['virtual_lights']:.0f} lights of up to four bounces; errors against exact visibility of "
+             "the same lights")
 
 
 LARGEST = 1024  # texels along a side
@@ -287,19 +311,20 @@ def fig_14(run):
     """Many small maps against a few large ones in the same time."""
     at = (128, 128) if run.full else (64, 64)
     paths = 32768 if run.full else 8192
-    map_statistics(run, "exact", map_job("Hairball", paths, {"type": "exact"}, at))
-    small = map_statistics(run, "small", map_job("Hairball", paths, {}, at))
-    large = map_statistics(run, "large", map_job("Hairball", 16, {"map_size": LARGEST}, at))
-    each = map_seconds(large) / large["virtual_lights"]
-    run.found("lights of 1024 x 1024 at equal time", published=Measured(map_seconds(small) / each))
+    repeated(run, "exact", map_job("Hairball", paths, {"type": "exact"}, at))
+    large = repeated(run, "large", map_job("Hairball", 16, {"map_size": LARGEST}, at))
     rows = []
     for size in (16, 32, 64):
-        t = map_statistics(run, f"size-{size}", map_job("Hairball", paths, {"map_size": size}, at))
-        e = many_lights.errors(run, f"size-{size}", "exact")
-        rows.append((size, f"{map_seconds(t):.3g}", f"{e['relmse']:.3g}", f"{e['psnr']:.3g}", f"{e['ssim']:.3g}",
-                     f"{e['mean_relative']:+.3g}"))
-    run.tables.append(Table(("texels a side", "CPU s", "relMSE", "PSNR", "SSIM", "mean"), rows))
-    run.note(f"{small['virtual_lights']:.0f} lights, in full 64K as in the paper; pictures: {run.pictures}")
+        name = f"size-{size}"
+        told = repeated(run, name, map_job("Hairball", paths, {"map_size": size}, at))
+        if size == 16:
+            run.found("lights of 1024 x 1024 at equal time", published=geometric_mean_of(
+                [map_seconds(a) / map_seconds(b) * b["virtual_lights"] for a, b in zip(told, large)]))
+        rows.append((size, str(mean_of(list(map(map_seconds, told)))), *error_cells(run, name, "exact")))
+        run.show(f"{size} x {size}", run.place(f"{name}-0"))
+    run.show("exact", run.place("exact-0"))
+    run.tables.append(Table(("texels a side", "CPU s", *ERROR_HEADS), rows))
+    run.note(f"{told[0]['virtual_lights']:.0f} lights, in full 64K as in the paper")
 
 
 @ENTRIES.measured(
@@ -309,21 +334,21 @@ def fig_14(run):
 def fig_15(run):
     """Error of the maps against their resolution, with both hierarchies and with one."""
     paths, at = 8192, (512, 256) if run.full else (192, 96)
-    map_statistics(run, "exact", map_job("Sponza", paths, {"type": "exact"}, at))
-    rows, found = [], {}
+    repeated(run, "exact", map_job("Sponza", paths, {"type": "exact"}, at))
+    rows = []
     for key, how in (*((m, {"method": m}) for m in ("megaviews", "many_lods", "per_view")), ("ours", OURS)):
         for size in (16, 32, 64):
             name = f"{key}-{size}"
-            t = map_statistics(run, name, map_job("Sponza", paths, {**how, "map_size": size, "levels": 9}, at))
-            e = many_lights.errors(run, name, "exact")
-            found[key, size] = e["rmse"]
-            rows.append((key, size, f"{map_seconds(t):.3g}", f"{e['relmse']:.3g}", f"{e['psnr']:.3g}",
-                         f"{e['ssim']:.3g}", f"{e['mean_relative']:+.3g}"))
-    run.found("error of 16 x 16 / of 64 x 64", published=Measured(found["megaviews", 16] / found["megaviews", 64]),
-              ours=Measured(found["ours", 16] / found["ours", 64]))
-    run.tables.append(Table(("method", "texels a side", "CPU s", "relMSE", "PSNR", "SSIM", "mean"), rows))
-    run.note(f"sponza, {paths} light paths of one bounce, 9 levels; per_view: a ray for each texel; ours: the defaults; "
-             f"pictures: {run.pictures}")
+            told = repeated(run, name, map_job("Sponza", paths, {**how, "map_size": size, "levels": 9}, at))
+            rows.append((key, size, str(mean_of(list(map(map_seconds, told)))), *error_cells(run, name, "exact")))
+            if key != "per_view" and size != 32:
+                run.show(f"{key}, {size} x {size}", run.place(f"{name}-0"))
+    run.show("exact", run.place("exact-0"))
+    for which, key in (("published", "megaviews"), ("ours", "ours")):
+        small, large = (mean_error(run, f"{key}-{size}", "exact", "rmse") for size in (16, 64))
+        run.found("error of 16 x 16 / of 64 x 64", **{which: small.ratio(large)})
+    run.tables.append(Table(("method", "texels a side", "CPU s", *ERROR_HEADS), rows))
+    run.note(f"sponza, {paths} light paths of one bounce, 9 levels; per_view: a ray for each texel; ours: the defaults")
 
 
 @ENTRIES.measured(
@@ -335,8 +360,7 @@ def fig_16(run):
     paths, at = 1048576, (256, 128) if run.full else (96, 48)
 
     def picture(name, **gather):
-        value = map_job("Sponza", paths, OURS, at, integrator={"gather": gather})
-        return map_statistics(run, name, value)
+        return repeated(run, name, map_job("Sponza", paths, OURS, at, integrator={"gather": gather}))
 
     picture("all", type="all")
     rows, found = [], {}
@@ -345,16 +369,17 @@ def fig_16(run):
                          # A sixth of the length of the atrium, and a twelfth.
                          ("culled, cutoff 600", {"cutoff": 600}), ("culled, cutoff 300", {"cutoff": 300})):
         key = name.replace(", ", "-").replace(" ", "-")
-        t = picture(key, type="random", lights=64, **gather)
-        e = found[name] = many_lights.errors(run, key, "all")
-        rows.append((name, f"{t['lights_culled']:.3g}", f"{t['eye_pass_cpu_seconds']:.3g}", f"{e['rmse']:.3g}",
-                     f"{e['relmse']:.3g}", f"{e['psnr']:.3g}", f"{e['ssim']:.3g}", f"{e['mean_relative']:+.3g}"))
+        told = picture(key, type="random", lights=64, **gather)
+        found[name] = mean_error(run, key, "all", "rmse")
+        rows.append((name, *(str(mean_of([t[value] for t in told])) for value in ("lights_culled", "eye_pass_cpu_seconds")),
+                     str(found[name]), *error_cells(run, key, "all")))
+        run.show(name, run.place(f"{key}-0"))
         if name == "culled":
-            run.found("share of leaf views culled", Measured(t["lights_culled"]))
-    run.found("error without culling / with", Measured(found["not culled"]["rmse"] / found["culled"]["rmse"]))
-    run.tables.append(Table(("64 lights a pixel", "culled", "eye pass, CPU s", "RMSE", "relMSE", "PSNR", "SSIM", "mean"),
-                            rows))
-    run.note(f"against all lights with the same maps; pictures: {run.pictures}")
+            run.found("share of leaf views culled", mean_of([t["lights_culled"] for t in told]))
+    run.show("all lights", run.place("all-0"))
+    run.found("error without culling / with", found["not culled"].ratio(found["culled"]))
+    run.tables.append(Table(("64 lights a pixel", "culled", "eye pass, CPU s", "RMSE", *ERROR_HEADS), rows))
+    run.note("against all lights with the same maps")
 
 
 @ENTRIES.measured(
@@ -367,19 +392,20 @@ def fig_17(run):
     rows, found = [], {}
     for method in ("megaviews", "many_lods"):
         for count in (4096, 65536):
-            t = map_statistics(run, f"{method}-{count}", particles("Sponza", count, {"method": method}))
-            found[method, count] = Measured(map_seconds(t))
-            rows.append((method, count, round(t["view_leaves"]), f"{map_seconds(t):.3g}",
-                         f"{t['views_sharing_a_splat']:.3g}"))
+            told = found[method, count] = repeated(run, f"{method}-{count}",
+                                                   particles("Sponza", count, {"method": method}))
+            seconds = mean_of(list(map(map_seconds, told)))
+            rows.append((method, count, round(told[0]["view_leaves"]), str(seconds),
+                         f"{told[0]['views_sharing_a_splat']:.3g}"))
+            if method == "megaviews":
+                run.found(f"{count // 1024}K particles", published=seconds.scaled(1000))
     run.found("speed-up over ManyLoDs, 64K particles",
-              published=found["many_lods", 65536].ratio(found["megaviews", 65536]))
+              published=ratio(found["many_lods", 65536], found["megaviews", 65536]))
     run.tables.append(Table(("method", "particles", "maps", "CPU s", "views sharing a splat"), rows))
     at = (640, 360) if run.full else (320, 180)
     for name, how in (("exact", {"type": "exact"}), ("none", {"type": "none"}), ("maps", {"map_size": 32, "levels": 9})):
-        map_statistics(run, name, particles("Sponza", 1024, how, resolution=at))
-    rows = []
-    for name in ("none", "maps"):
-        e = many_lights.errors(run, name, "exact")
-        rows.append((name, f"{e['relmse']:.3g}", f"{e['psnr']:.3g}", f"{e['ssim']:.3g}", f"{e['mean_relative']:+.3g}"))
-    run.tables.append(Table(("1024 particles", "relMSE", "PSNR", "SSIM", "mean"), rows))
-    run.note(f"the paper's times are of San Miguel on a GPU; pictures: {run.pictures}")
+        repeated(run, name, particles("Sponza", 1024, how, resolution=at))
+        run.show(f"1024 particles, visibility {name}", run.place(f"{name}-0"))
+    run.tables.append(Table(("1024 particles", *ERROR_HEADS), [
+        (name, *error_cells(run, name, "exact")) for name in ("none", "maps")]))
+    run.note("the paper's times are of San Miguel on a GPU")

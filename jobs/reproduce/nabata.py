@@ -142,9 +142,10 @@ def fig_4(run):
     rows = []
     for key in c.how:
         found = shares(key, 0)
+        run.show(key, run.place(c.name(key, 0)))
         rows.append((key, *(f"{found[int(q * (len(found) - 1))]:.1%}" for q in AT)))
     run.tables.append(Table(("visibility", *(f"{q:.0%} of the pixels below" for q in AT)), rows))
-    run.note(f"of all lights, those that turn away included; pictures: {run.pictures}")
+    run.note("of all lights, those that turn away included")
 
 
 LIGHTS = 100_000  # of many_lights.job() with a share of 1
@@ -215,8 +216,9 @@ def fig_6(run):
         (key, *(str(mean_of(list(map(value, es)))) for value in (
             lambda e: e["rmse"] / e["mean_b"], lambda e: e["mean_a"] / e["mean_b"], lambda e: e["block_relative"],
             lambda e: e["ssim"]))) for key, es in found.items()]))
+    for key in c.how:
+        run.show(key, run.place(c.name(key, 0)))
     run.note("interpolated-lit: where a light has no contribution to a cache point, that point says nothing of it")
-    run.note(f"pictures: {run.pictures}")
 
 
 # A room whose walls are glossy, in place of the museum.
@@ -241,4 +243,4 @@ def fig_7(run):
     run.tables.append(Table(("visibility", "lights", "CPU seconds", "tests saved", "RMSE / mean"), [
         (key, round(c.lights()), str(c.seconds(key)), str(c.saved(key)),
          "" if key == "exact" else str(mean_of([e["rmse"] / e["mean_b"] for e in c.errors(key)]))) for key in c.how]))
-    run.note(f"the material \"{GLOSSY['name']}\" has roughness {GLOSSY['roughness']}; pictures: {run.pictures}")
+    run.note(f"the material \"{GLOSSY['name']}\" has roughness {GLOSSY['roughness']}")

@@ -87,6 +87,12 @@ def resampled_table(answers, scene, methods, title=""):
         for name, c in ((name, resampled_cell(answers, scene, value)) for name, value in methods.items())])
 
 
+def show_pictures(run, which, cells):
+    """Of BPT, SkelBPT and ICBPT, as the thesis' figures have them."""
+    for name in ("BPT", "SkelBPT", "ICBPT"):
+        run.show(f"{name}, {which}", run.run_folder(cells[name]))
+
+
 def measure_errors(run, scene):
     """Figs 98 and 99: the errors at equal time, as ratios to that of SkelBPT."""
     for which in KINDS:
@@ -98,7 +104,7 @@ def measure_errors(run, scene):
         run.found("error of ICBPT / of SkelBPT", **{which: cached and best and cached.ratio(best)})
         run.tables.append(resampled_table(answers, scene, METHODS[which], f", {which}"))
         run.note(f"{which}: MAE after {at['BPT']['seconds']:.3g} CPU seconds, {answers['seeds']} runs each")
-        run.note(f"pictures: {run.runs}")
+        show_pictures(run, which, {name: resampled_cell(answers, scene, value) for name, value in METHODS[which].items()})
 
 
 def resampled(number, page, configuration, seconds, *claims):
@@ -223,7 +229,9 @@ def on_stand_in(run, which, name):
 
 def measure_stand_in(run, name):
     for which in KINDS:
-        at = {m: c["at"][-1] for m, c in on_stand_in(run, which, name).items()}
+        cells = on_stand_in(run, which, name)
+        show_pictures(run, which, cells)
+        at = {m: c["at"][-1] for m, c in cells.items()}
         best, cached = error_at(at["SkelBPT"]), error_at(at["ICBPT"])
         found = {BPT.quantity: gain_at(at["SkelBPT"]), ICBPT.quantity: cached and best and cached.ratio(best)}
         for claim in run.entry.claims:
@@ -330,6 +338,7 @@ def fig_106(run):
         for name in ("SkelBPT", "ICBPT"):
             run.render(f"{name}-{which}", {**job, "integrator": METHODS[which][name]})
             folder = run.place(f"{name}-{which}")
+            run.show(f"{name}, {which}", folder)
 
             def mean(layer, folder=folder):
                 return sum(map(sum, layers.channels(folder, layer)))
@@ -340,4 +349,3 @@ def fig_106(run):
     run.tables.append(Table(("method", "settings", "distribution", "of the picture's light"), rows))
     run.note("fallback: of eye vertices whose node was not accepted. The layer of a distribution has the vertices to which it "
              "gives the highest probability; by the max heuristic (published) no other distribution draws them")
-    run.note(f"pictures: {run.pictures}")

@@ -6,8 +6,7 @@ import statistics
 
 from harness import child, layers, many_lights
 from harness.entry import Entries
-from harness.measured import (Measured, error_at, gain_at, geometric_mean_of, mean_of, of_answer, speed_up_to,
-                              time_to)
+from harness.measured import error_at, gain_at, geometric_mean_of, mean_of, of_answer, speed_up_to, time_to
 from harness.run import Table, cell_with
 from harness.verdict import at_least, at_most, beside, up_to
 
@@ -96,7 +95,10 @@ def fig_20_sweep(full):
     (at_least("error of path tracing / of bidirectional, at equal time", 1),), sweep=fig_20_sweep)
 def fig_20(run):
     """Path tracing against bidirectional path tracing with caustics of a small lamp."""
-    at = cell_with(run.answers(fig_20_sweep(run.full)), integrator=BPT)["at"][-1]
+    answers = run.answers(fig_20_sweep(run.full))
+    at = cell_with(answers, integrator=BPT)["at"][-1]
+    for name, integrator in (("path tracing", PATH), ("bidirectional path tracing", BPT)):
+        run.show(name, run.run_folder(cell_with(answers, integrator=integrator)))
     for which in ("published", "ours"):  # the method has no settings that differ
         run.found("error of path tracing / of bidirectional, at equal time", **{which: gain_at(at)})
     run.note(f"MAE after {at['seconds']:.3g} CPU seconds; {CHAPTER_4}")
@@ -145,14 +147,16 @@ def fig_22(run):
     run.note(f"variance between pictures of different seeds, over all pixels; {CHAPTER_4}")
 
 
-def neighbours_correlation(a, b):
-    """Of the difference of two pictures, rows of channels in order: that of pixels side by side."""
-    products = squares = 0.0
+def neighbours_correlation(a, b, width):
+    """Of the signs of the difference of two pictures about its median: that of pixels side by side. Signs, because few
+    bright pixels hold a large part of all squares."""
+    found = []
     for one, other in zip(a, b):
         error = [x - y for x, y in zip(one, other)]
-        products += sum(x * y for x, y in zip(error, error[1:]))
-        squares += sum(x * x for x in error)
-    return products / squares
+        middle = statistics.median(error)
+        signs = [1 if e > middle else -1 for e in error]
+        found.append(statistics.fmean(x * y for i, (x, y) in enumerate(zip(signs, signs[1:])) if (i + 1) % width != 0))
+    return statistics.fmean(found)
 
 
 @ENTRIES.measured(
@@ -166,23 +170,24 @@ def fig_23(run):
     """Whether errors of pixels side by side are alike: by differences of pictures with different seeds."""
     side, pairs = (512 if run.full else 128), 3
     job = {"scene": "cornell.glb", "resolution": [side, side], "budget": {"cpu_seconds": 90 if run.full else 2}}
-    lights = {"type": "many_lights", "max_depth": 6, "light_paths": 64, "visibility": {"type": "exact"}}
+    lights = {"type": "many_lights", "max_depth": 6, "light_paths": 64, "direct": "lights", "compensation": False,
+              "visibility": {"type": "exact"}}
     found = {}
     for name, integrator in (("bidirectional", BPT), ("virtual lights", lights)):
         more = {"budget": {"iterations": 1}} if name == "virtual lights" else {}  # the same lights for every pixel
         run.repeated(name, {**job, **more, "integrator": integrator}, 2 * pairs)
         folders = [run.place(f"{name}-{seed}") for seed in range(2 * pairs)]
-        found[name] = [neighbours_correlation(layers.channels(a, ""), layers.channels(b, ""))
+        run.show(name, folders[0])
+        found[name] = [neighbours_correlation(layers.channels(a, ""), layers.channels(b, ""), side)
                        for a, b in zip(folders[::2], folders[1::2])]
     for which in ("published", "ours"):
         for name, values in found.items():
             run.found(f"correlation of neighbouring pixels' errors, {name}", **{which: mean_of(values)})
         run.found("correlation of neighbouring pixels' errors, virtual lights less bidirectional",
                   **{which: mean_of([a - b for a, b in zip(found["virtual lights"], found["bidirectional"])])})
-    run.note("virtual lights: 64 light paths, one iteration, as instant global illumination has them; bidirectional: equal in "
-             f"nothing but the scene: what is compared is the kind of error, not its size; {CHAPTER_4}")
-    run.note(f"pictures: {run.pictures}")
-
+    run.note("correlation of signs; virtual lights: 64 light paths, one iteration, as instant global illumination has them; "
+             "bidirectional: equal in nothing but the scene: what is compared is the kind of error, not its size; "
+             f"{CHAPTER_4}")
 
 
 # The thesis' scene and radii are not known. In ours the lamp is so large that path tracing, too, finds its
@@ -201,29 +206,28 @@ FIG_25 = {
     (at_most("error of progressive / of photon mapping, at equal time", 1),))
 def fig_25(run):
     """Each method at two times, against bidirectional path tracing: the error of photon mapping levels off."""
-    side, seconds, iterations = (512, 90, 20000) if run.full else (128, 6, 1000)
-
-    def render(name, integrator, budget):
-        many_lights.render(run, name, {
-            "scene": "glass.glb", "resolution": [side, side], "seed": 0 if name == "reference" else 1,
-            "integrator": {**integrator, "max_depth": 8}, "budget": budget})
-
-    render("reference", {"type": "bdpt"}, {"iterations": iterations})
+    side, seconds, iterations, seeds = (512, 90, 20000, 5) if run.full else (128, 4, 1000, 3)
+    job = {"scene": "glass.glb", "resolution": [side, side]}
+    run.render("reference", {**job, "seed": 1000, "integrator": {"type": "bdpt", "max_depth": 8},
+                             "budget": {"iterations": iterations}})
     error, rows = {}, []
     for method, integrator in FIG_25.items():
         found = []
         for share in (1 / 4, 1):
             name = f"{method.replace(' ', '-')}-{share:g}"
-            render(name, integrator, {"cpu_seconds": seconds * share})
-            found.append(many_lights.errors(run, name, "reference")["mse"])
+            run.repeated(name, {**job, "integrator": {**integrator, "max_depth": 8},
+                                "budget": {"cpu_seconds": seconds * share}}, seeds)
+            found.append([many_lights.errors(run, f"{name}-{seed}", "reference")["mse"] for seed in range(seeds)])
+        run.show(method, run.place(f"{name}-0"))
         error[method] = found[1]
-        rows.append((method, *(f"{e:.3g}" for e in found), f"{found[1] / found[0]:.2g}"))
-    run.found("error of progressive / of photon mapping, at equal time",
-              Measured(error["progressive"] / error["photon mapping"]))
+        rows.append((method, *(str(geometric_mean_of(e)) for e in found),
+                     str(geometric_mean_of([b / a for a, b in zip(*found)]))))
+    for which in ("published", "ours"):
+        run.found("error of progressive / of photon mapping, at equal time", **{which: geometric_mean_of(
+            [a / b for a, b in zip(error["progressive"], error["photon mapping"])])})
     run.tables.append(Table(("method", f"MSE, {seconds / 4:g} CPU seconds", f"{seconds}", "ratio"), rows))
     run.note("glass.glb; noise alone falls to a quarter from one column to the next, and sppm's error to 0.4; "
-             "instant global illumination is that of Fig. 23")
-    run.note(f"pictures: {run.pictures}")
+             "instant global illumination is that of Fig. 23; the reference's noise is in all errors")
 
 
 METROPOLIS = {"path_space": {"type": "metropolis", "mutation": "path_space"},
@@ -245,21 +249,25 @@ METROPOLIS_SCENES = {"door": {"scene": "door/scene.glb", "camera": "corner"},
           for scene in METROPOLIS_SCENES for other in ("bdpt skeleton", "multiplexed", "path")))
 def metropolis(run):
     """Each mutation, and methods of independent samples, at equal CPU time."""
-    size, seconds = ([640, 360], 30) if run.full else ([256, 144], 8)
+    size, seconds, seeds = ([640, 360], 30, 5) if run.full else ([192, 108], 3, 3)
     for scene, where in METROPOLIS_SCENES.items():
-        def render(name, integrator, seed, budget, where=where, scene=scene):
-            key = f"{scene}-{name.replace(' ', '-').replace(',', '')}"
-            many_lights.render(run, key, {**where, "resolution": size, "seed": seed, "budget": {"cpu_seconds": budget},
-                                          "integrator": {**integrator, "max_depth": 6}})
-            return key
+        def job(integrator, budget, where=where):
+            return {**where, "resolution": size, "budget": {"cpu_seconds": budget}, "integrator": {**integrator, "max_depth": 6}}
 
-        exact_one = render("reference", METROPOLIS["path_space"], 0, 10 * seconds)
-        found = {name: many_lights.errors(run, render(name, integrator, 1, seconds), exact_one)
-                 for name, integrator in METROPOLIS.items()}
+        exact_one = f"{scene}-reference"
+        run.render(exact_one, {**job(METROPOLIS["path_space"], 20 * seconds), "seed": 1000})
+        found = {}
+        for name, integrator in METROPOLIS.items():
+            key = f"{scene}-{name.replace(' ', '-').replace(',', '')}"
+            run.repeated(key, job(integrator, seconds), seeds)
+            found[name] = [many_lights.errors(run, f"{key}-{seed}", exact_one) for seed in range(seeds)]
+            if scene == "door":
+                run.show(name, run.place(f"{key}-0"))
         for other in ("bdpt skeleton", "multiplexed", "path"):
-            run.found(f"MSE of {other} / of path_space, {scene}",
-                      Measured(found[other]["mse"] / found["path_space"]["mse"]))
-        run.tables.append(Table((f"{scene}, {seconds} CPU seconds", "MSE", "relMSE"),
-                                [(name, f"{e['mse']:.3g}", f"{e['relmse']:.3g}") for name, e in found.items()]))
-    run.note("one seed; the reference is another picture of the same method after ten times as long, and its noise is in "
-             "all errors")
+            run.found(f"MSE of {other} / of path_space, {scene}", geometric_mean_of(
+                [a["mse"] / b["mse"] for a, b in zip(found[other], found["path_space"])]))
+        run.tables.append(Table((f"{scene}, {seconds} CPU seconds", "MSE", "relMSE"), [
+            (name, *(str(geometric_mean_of([e[metric] for e in errors])) for metric in ("mse", "relmse")))
+            for name, errors in found.items()]))
+    run.note(f"{seeds} seeds; the reference is another picture of the same method after twenty times as long, and its noise is "
+             "in all errors")
