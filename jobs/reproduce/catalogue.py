@@ -1,6 +1,7 @@
 """Everything that the papers claim of their methods, and what is compared beside it."""
 
 import kol
+import kol_front
 import nabata
 import noel_connections
 import noel_guides
@@ -11,7 +12,7 @@ import popov
 import references
 
 ENTRIES = (*references.ENTRIES, *noel_shape.ENTRIES, *noel_shadows.ENTRIES, *noel_guides.ENTRIES, *noel_mapping.ENTRIES,
-           *noel_connections.ENTRIES, *popov.ENTRIES, *nabata.ENTRIES, *kol.ENTRIES)
+           *noel_connections.ENTRIES, *popov.ENTRIES, *nabata.ENTRIES, *kol.ENTRIES, *kol_front.ENTRIES)
 
 
 def find(name):
