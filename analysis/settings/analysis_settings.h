@@ -32,11 +32,29 @@ struct EnumTable<NodeMapping> {
   }};
 };
 
+/// The radius of a node of the skeleton, a corner of the lattice: that of its maximal ball.
+enum class NodeRadius { corner, voxel };
+
+template <>
+struct EnumTable<NodeRadius> {
+  static constexpr std::array<EnumValue<NodeRadius>, 2> values{{
+      {NodeRadius::corner, "corner",
+       "from the node itself to the nearest closed voxel of the scene: 0 where a passage is one "
+       "voxel wide"},
+      {NodeRadius::voxel, "voxel",
+       "the largest distance from a voxel at the node to the scene, between centres of voxels "
+       "(thesis 6.2.2, 6.3): at least 1"},
+  }};
+};
+
 /// Shape analysis of the scene, for the integrators that use it.
 struct AnalysisSettings {
   int resolution = 128;
   ThinningDistance distance = ThinningDistance::l1;
   NodeMapping mapping = NodeMapping::geodesic;
+  double cluster_alpha = 0.2;
+  // As published it is otherwise, see its table:
+  NodeRadius node_radius = NodeRadius::corner;
   bool operator==(const AnalysisSettings&) const = default;
 };
 
@@ -49,6 +67,15 @@ void describe(V& v, AnalysisSettings& s) {
      .unit = "voxels"});
   v("distance", s.distance, {.doc = "the distance that decides which curves thinning keeps"});
   v("mapping", s.mapping, {.doc = "the skeleton node that a voxel of empty space belongs to"});
+  v("cluster_alpha", s.cluster_alpha,
+    {.doc = "by which share of its visibility cluster's largest radius a node's radius may fall "
+            "short of it (alpha of thesis 7.2.2)",
+     .min = 0,
+     .max = 1});
+  v("node_radius", s.node_radius,
+    {.doc = "the radius of a skeleton node, by which the skeleton is filtered and simplified and "
+            "visibility clusters and gates are made",
+     .published = "\"voxel\""});
 }
 
 }  // namespace lacuna

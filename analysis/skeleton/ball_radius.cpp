@@ -4,11 +4,19 @@
 #include <bit>
 #include <limits>
 
+#include "analysis/space/sweep.h"
+
 namespace lacuna {
 namespace {
 
 /// The least distance along one axis from lattice position p to the closed voxels [a, b).
 int gap(int p, int a, int b) { return a >= p ? a - p : b <= p ? p - b : 0; }
+
+/// Calls `use` with the 8 voxels that meet at a lattice corner; some may lie outside the grid.
+template <class Use>
+void for_each_voxel_at(Imath::V3i corner, Use&& use) {
+  for (int i = 0; i < 8; ++i) use(corner - Imath::V3i(i & 1, i >> 1 & 1, i >> 2));
+}
 
 /// Looks for the nearest scene voxel in boxes of voxels, halved again and again. A box is left out
 /// if it lies no nearer than what was found, or if the ball of L1 distance around its middle voxel
@@ -61,10 +69,9 @@ std::int64_t squared_ball_radius(const Grid3<std::uint16_t>& l1, Imath::V3i corn
   // The nearest scene voxel is the one nearest to any of the 8 voxels around the corner, and their
   // L1 distances are no less than their Euclidean ones.
   int bound = std::numeric_limits<int>::max();
-  for (int i = 0; i < 8; ++i) {
-    const Imath::V3i v = corner - Imath::V3i(i & 1, i >> 1 & 1, i >> 2);
+  for_each_voxel_at(corner, [&](Imath::V3i v) {
     bound = std::min(bound, in_grid(v, l1.size()) ? int{l1(v)} : 0);
-  }
+  });
   Search search(l1, corner, std::int64_t{bound} * bound);
   if (bound <= 1) return search.best();
   const int side = static_cast<int>(std::bit_floor(static_cast<unsigned>(bound)));
@@ -72,6 +79,29 @@ std::int64_t squared_ball_radius(const Grid3<std::uint16_t>& l1, Imath::V3i corn
     for (const int y : {-1, 0, -2, 1})
       for (const int x : {-1, 0, -2, 1}) search.visit(corner + side * Imath::V3i(x, y, z), side);
   return search.best();
+}
+
+std::vector<std::int64_t> squared_ball_radii(const Grid3<std::uint16_t>& l1,
+                                             std::span<const Imath::V3i> corners,
+                                             const ThreadPool& pool) {
+  constexpr std::size_t at_a_time = 64;
+  std::vector<std::int64_t> squares(corners.size());
+  const auto parts = static_cast<int>((corners.size() + at_a_time - 1) / at_a_time);
+  run_parallel(pool, parts, [&](int part) {
+    const std::size_t first = static_cast<std::size_t>(part) * at_a_time;
+    for (std::size_t i = first; i < std::min(corners.size(), first + at_a_time); ++i) {
+      squares[i] = squared_ball_radius(l1, corners[i]);
+    }
+  });
+  return squares;
+}
+
+std::int64_t squared_voxel_radius(const Grid3<std::uint32_t>& squares, Imath::V3i corner) {
+  std::int64_t most = 0;
+  for_each_voxel_at(corner, [&](Imath::V3i v) {
+    if (in_grid(v, squares.size())) most = std::max(most, std::int64_t{squares(v)});
+  });
+  return most;
 }
 
 }  // namespace lacuna

@@ -87,15 +87,14 @@ Vertices::Vertices(const CubicalComplex& complex, const ThreadPool& pool)
   }
 }
 
-}  // namespace
-
-SkeletonGraph build_graph(const CubicalComplex& skeleton, const Grid3<std::uint16_t>& l1,
-                          const ThreadPool& pool) {
-  if (skeleton.size() != l1.size())
+/// The graph without radii. `distances`: the size of the grid that they will be read from.
+SkeletonGraph nodes_and_edges(const CubicalComplex& skeleton, Imath::V3i distances,
+                              const ThreadPool& pool) {
+  if (skeleton.size() != distances)
     throw std::invalid_argument(
         fmt::format("a skeleton in a grid of {} x {} x {} voxels, distances in one of {} x {} x {}",
-                    skeleton.size().x, skeleton.size().y, skeleton.size().z, l1.size().x,
-                    l1.size().y, l1.size().z));
+                    skeleton.size().x, skeleton.size().y, skeleton.size().z, distances.x,
+                    distances.y, distances.z));
   const Vertices vertices(skeleton, pool);
   SkeletonGraph graph;
   graph.corners = vertices.cells();
@@ -109,17 +108,28 @@ SkeletonGraph build_graph(const CubicalComplex& skeleton, const Grid3<std::uint1
         edges.push_back({n, vertices.at(end)});
       }
   set_edges(graph, edges);
+  return graph;
+}
 
-  graph.radii.resize(graph.nodes());
-  constexpr int at_a_time = 64;
-  const int nodes = static_cast<int>(graph.nodes());
-  run_parallel(pool, (nodes + at_a_time - 1) / at_a_time, [&](int part) {
-    for (int i = part * at_a_time; i < std::min(nodes, (part + 1) * at_a_time); ++i) {
-      const auto n = static_cast<std::size_t>(i);
-      const std::int64_t r2 = squared_ball_radius(l1, graph.corners[n]);
-      graph.radii[n] = static_cast<float>(std::sqrt(static_cast<double>(r2)));
-    }
-  });
+float radius(std::int64_t square) {
+  return static_cast<float>(std::sqrt(static_cast<double>(square)));
+}
+
+}  // namespace
+
+SkeletonGraph build_graph(const CubicalComplex& skeleton, const Grid3<std::uint16_t>& l1,
+                          const ThreadPool& pool) {
+  SkeletonGraph graph = nodes_and_edges(skeleton, l1.size(), pool);
+  for (const std::int64_t square : squared_ball_radii(l1, graph.corners, pool))
+    graph.radii.push_back(radius(square));
+  return graph;
+}
+
+SkeletonGraph build_graph_by_voxels(const CubicalComplex& skeleton,
+                                    const Grid3<std::uint32_t>& squares, const ThreadPool& pool) {
+  SkeletonGraph graph = nodes_and_edges(skeleton, squares.size(), pool);
+  for (const Imath::V3i& corner : graph.corners)
+    graph.radii.push_back(radius(squared_voxel_radius(squares, corner)));
   return graph;
 }
 

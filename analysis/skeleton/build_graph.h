@@ -17,4 +17,9 @@ namespace lacuna {
 SkeletonGraph build_graph(const CubicalComplex& skeleton, const Grid3<std::uint16_t>& l1,
                           const ThreadPool& pool);
 
+/// The same graph with the radii of squared_voxel_radius(), which are at least 1:
+/// NodeRadius::voxel. `squares` is squared_distance() of the domain.
+SkeletonGraph build_graph_by_voxels(const CubicalComplex& skeleton,
+                                    const Grid3<std::uint32_t>& squares, const ThreadPool& pool);
+
 }  // namespace lacuna

@@ -13,9 +13,9 @@ namespace lacuna {
 
 /// A disk that separates two visibility clusters.
 struct VisibilityGate {
-  Imath::V3f centre;                      ///< voxels
-  Imath::V3f axis;                        ///< unit length, from clusters[0] to clusters[1]
-  float radius;                           ///< voxels; 0 where the skeleton touches the scene
+  Imath::V3f centre;  ///< voxels
+  Imath::V3f axis;    ///< unit length, from clusters[0] to clusters[1]
+  float radius;       ///< voxels; 0 where a node touches the scene (NodeRadius::corner)
   std::array<std::uint32_t, 2> clusters;  ///< of nodes[0] and of nodes[1], different
   std::array<std::uint32_t, 2> nodes;     ///< of the simplified skeleton, ascending
 };

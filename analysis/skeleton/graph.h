@@ -14,7 +14,7 @@ namespace lacuna {
 /// node and without double edges; every list of neighbours ascends.
 struct SkeletonGraph {
   std::vector<Imath::V3i> corners;   ///< position of each node, in voxels
-  std::vector<float> radii;          ///< Euclidean distance to the scene's voxels, in voxels
+  std::vector<float> radii;          ///< Euclidean, in voxels: NodeRadius
   std::vector<std::uint32_t> first;  ///< nodes + 1 offsets into `neighbours`
   std::vector<std::uint32_t> neighbours;
 

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "analysis/skeleton/ball_radius.h"
 #include "analysis/skeleton/sight.h"
 #include "analysis/space/sweep.h"
 
@@ -66,8 +67,10 @@ struct Unseeing {
 /// Some planes of the map.
 class Slab {
  public:
-  Slab(Grid3<std::uint32_t>& map, const SkeletonGraph& graph, const Grid3<std::uint16_t>& l1)
-      : map_(map), graph_(graph), l1_(l1) {}
+  /// `clear`: of each node the square of a radius within which nothing is.
+  Slab(Grid3<std::uint32_t>& map, const SkeletonGraph& graph, const Grid3<std::uint16_t>& l1,
+       const std::vector<std::int64_t>& clear)
+      : map_(map), graph_(graph), l1_(l1), clear_(clear) {}
 
   SightReport improve(int z0, int z1) {
     for (int z = z0; z < z1; ++z)
@@ -98,7 +101,7 @@ class Slab {
       unseeing_.push_back({n, v});
   }
   bool in_sight(Imath::V3i v, std::uint32_t n) const {
-    return sees(l1_, v, graph_.corners[n], graph_.squared_radius(n));
+    return sees(l1_, v, graph_.corners[n], clear_[n]);
   }
   bool choose(Imath::V3i v, const std::vector<std::uint32_t>& around) {
     order_.clear();
@@ -116,6 +119,7 @@ class Slab {
   Grid3<std::uint32_t>& map_;
   const SkeletonGraph& graph_;
   const Grid3<std::uint16_t>& l1_;
+  const std::vector<std::int64_t>& clear_;
   SightReport report_;
   std::vector<Unseeing> unseeing_;
   std::vector<std::pair<std::int64_t, std::uint32_t>> order_;
@@ -129,12 +133,14 @@ SightReport prefer_visible_nodes(Grid3<std::uint32_t>& map, const SkeletonGraph&
     throw std::invalid_argument(
         fmt::format("a node map of {} x {} x {} voxels, distances of {} x {} x {}", map.size().x,
                     map.size().y, map.size().z, l1.size().x, l1.size().y, l1.size().z));
+  // Not the nodes' own radii, which may reach into the scene (NodeRadius::voxel).
+  const std::vector<std::int64_t> clear = squared_ball_radii(l1, graph.corners, pool);
   const int depth = map.size().z;
   const int slabs = (depth + planes_at_a_time - 1) / planes_at_a_time;
   std::vector<SightReport> reports(static_cast<std::size_t>(slabs));
   run_parallel(pool, slabs, [&](int s) {
     reports[static_cast<std::size_t>(s)] =
-        Slab(map, graph, l1)
+        Slab(map, graph, l1, clear)
             .improve(s * planes_at_a_time, std::min(depth, (s + 1) * planes_at_a_time));
   });
   SightReport sum;

@@ -21,9 +21,6 @@ constexpr std::uint32_t voxels_version = 1, domain_version = 1, skeleton_version
                         clusters_version = 1, gates_version = 1, regions_version = 1,
                         portals_version = 1, octree_version = 1;
 
-/// By how much a node's radius may fall short of its cluster's (thesis 7.2.2).
-constexpr double cluster_alpha = 0.2;
-
 template <class T>
 void append(std::string& bytes, const T& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -85,7 +82,8 @@ ArtefactKey SpaceAnalysis::of_domain(const char* type, std::uint32_t version,
 
 ArtefactKey SpaceAnalysis::skeleton_key() {
   return of_domain(skeleton_.type, skeleton_version,
-                   fmt::format("distance={}", enum_name(input_.settings.distance)));
+                   fmt::format("distance={} node_radius={}", enum_name(input_.settings.distance),
+                               enum_name(input_.settings.node_radius)));
 }
 ArtefactKey SpaceAnalysis::filtered_key() {
   return ArtefactKey(filtered_.type, filtered_version).from(skeleton_key());
@@ -94,7 +92,8 @@ ArtefactKey SpaceAnalysis::simplified_key() {
   return ArtefactKey(simplified_.type, simplified_version).from(skeleton_key());
 }
 ArtefactKey SpaceAnalysis::clusters_key() {
-  return ArtefactKey(clusters_.type, clusters_version, fmt::format("alpha={}", cluster_alpha))
+  return ArtefactKey(clusters_.type, clusters_version,
+                     fmt::format("alpha={}", input_.settings.cluster_alpha))
       .from(simplified_key());
 }
 ArtefactKey SpaceAnalysis::regions_key() { return of_domain(regions_.type, regions_version); }
@@ -145,8 +144,13 @@ CubicalComplex SpaceAnalysis::thin_space() {
 }
 
 const SkeletonGraph& SpaceAnalysis::skeleton() {
-  return get<SkeletonGraph>(skeleton_, skeleton_key(),
-                            [this] { return build_graph(thin_space(), distance(), pool_); });
+  return get<SkeletonGraph>(skeleton_, skeleton_key(), [this] {
+    const CubicalComplex thin = thin_space();
+    if (input_.settings.node_radius == NodeRadius::corner)
+      return build_graph(thin, distance(), pool_);
+    const auto squares = squared_distance(domain().voxels, pool_, input_.byte_limit());
+    return build_graph_by_voxels(thin, squares, pool_);
+  });
 }
 
 const FilteredSkeleton& SpaceAnalysis::filtered() {
@@ -187,7 +191,7 @@ const SimplifiedSkeleton& SpaceAnalysis::simplified() {
 
 const VisibilityClusters& SpaceAnalysis::clusters() {
   return get<VisibilityClusters>(clusters_, clusters_key(), [this] {
-    return visibility_clusters(simplified(), cluster_alpha);
+    return visibility_clusters(simplified(), input_.settings.cluster_alpha);
   });
 }
 

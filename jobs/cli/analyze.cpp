@@ -53,6 +53,13 @@ struct GraphCounts {
   }
 };
 
+/// Gates that let no light through: a node beside them touches the scene.
+std::size_t gates_of_radius_0(const VisibilityGates& gates) {
+  return static_cast<std::size_t>(
+      std::count_if(gates.gates.begin(), gates.gates.end(),
+                    [](const VisibilityGate& gate) { return gate.radius == 0; }));
+}
+
 /// What a scene's empty space is like, in numbers.
 OrderedJson shape(const AnalyzeOptions& o, SpaceAnalysis& space) {
   const Voxels& v = space.voxels();
@@ -76,6 +83,7 @@ OrderedJson shape(const AnalyzeOptions& o, SpaceAnalysis& space) {
           {"loops", counts.loops},
           {"clusters", space.clusters().count},
           {"gates", space.gates().gates.size()},
+          {"gates_of_radius_0", gates_of_radius_0(space.gates())},
           {"regions", space.regions().regions.size()},
           {"portals", space.portals().portals.size()}};
 }

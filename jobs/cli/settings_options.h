@@ -1,6 +1,9 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <map>
 #include <string>
 #include <type_traits>
@@ -9,14 +12,16 @@
 
 namespace lacuna {
 
-/// Adds an option --NAME to a command for each field of a settings struct.
+/// Adds an option --NAME to a command for each field of a settings struct, with - for _.
 class SettingsOptions {
  public:
   explicit SettingsOptions(CLI::App& command) : command_(command) {}
 
   template <class T>
   void operator()(std::string_view name, T& value, const Field& field) {
-    const std::string option = "--" + std::string(name), doc(field.doc);
+    std::string option = "--" + std::string(name);
+    std::replace(option.begin(), option.end(), '_', '-');
+    const std::string doc(field.doc);
     if constexpr (std::is_enum_v<T>) {
       std::map<std::string, T> values;
       std::string names;
@@ -29,10 +34,18 @@ class SettingsOptions {
           ->type_name(names)
           ->default_str(std::string(enum_name(value)));
     } else {
-      static_assert(std::is_integral_v<T>, "add what else a settings struct holds");
-      command_.add_option(option, value, doc)
-          ->check(CLI::Range(static_cast<T>(field.min), static_cast<T>(field.max)))
-          ->capture_default_str();
+      static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool>,
+                    "add what else a settings struct holds");
+      CLI::Option* const added =
+          command_.add_option(option, value, doc)
+              ->check(CLI::Range(static_cast<T>(field.min), static_cast<T>(field.max)))
+              ->capture_default_str();
+      if constexpr (std::is_floating_point_v<T>) {
+        added->check([](const std::string& text) {  // a NaN lies in every CLI::Range
+          return std::isnan(std::strtod(text.c_str(), nullptr)) ? text + " is not a number"
+                                                                : std::string();
+        });
+      }
     }
   }
 

@@ -37,6 +37,16 @@ void expect_sound_clusters(const SimplifiedSkeleton& s, double alpha, const std:
   EXPECT_EQ(count_components(parts), c.count) << name;
   EXPECT_TRUE(std::is_sorted(widest.rbegin(), widest.rend())) << name;
 
+  // A node that is much narrower than its cluster lies in the ball of another of its nodes.
+  for (std::uint32_t n = 0; n < s.graph.nodes(); ++n) {
+    const auto radius = static_cast<double>(s.graph.radii[n]);
+    if (radius >= (1 - alpha) * static_cast<double>(widest[c.of_node[n]])) continue;
+    bool held = false;
+    for (std::uint32_t m = 0; m < s.graph.nodes() && !held; ++m)
+      held = m != n && c.of_node[m] == c.of_node[n] && s.graph.in_ball(n, m);
+    ASSERT_TRUE(held) << name << ", alpha " << alpha << ", node " << n;
+  }
+
   // Gates separate clusters: they are the edges that are not inner, and no others.
   const VisibilityGates g = visibility_gates(s.graph, c);
   EXPECT_EQ(g.gates.size() + parts.edges(), s.graph.edges()) << name;
@@ -54,6 +64,9 @@ void expect_sound_clusters(const SimplifiedSkeleton& s, double alpha, const std:
     ASSERT_NEAR(gate.axis.length(), 1, 1e-6) << name;
     ASSERT_NEAR(gate.axis.dot(to - from), (to - from).length(), 1e-4) << name;
     for (const std::uint32_t k : gate.clusters) leaving[k].push_back(i);
+    if (alpha == 1) {  // nothing else stops a cluster
+      ASSERT_TRUE(s.kinds[a] == NodeKind::curvature || s.kinds[b] == NodeKind::curvature) << name;
+    }
   }
   for (std::uint32_t k = 0; k < c.count; ++k)
     ASSERT_TRUE(std::equal(leaving[k].begin(), leaving[k].end(), g.of(k).begin(), g.of(k).end()))
@@ -62,8 +75,9 @@ void expect_sound_clusters(const SimplifiedSkeleton& s, double alpha, const std:
 
 TEST(Clusters, AreConnectedAndGatesSeparateThem) {
   for (const auto& [name, domain] : domains())
-    for (const double alpha : {0.0, 0.2, 1.0})
-      expect_sound_clusters(simplify_skeleton(space_of(domain).graph), alpha, name);
+    for (const SkeletonGraph& graph : {space_of(domain).graph, graph_by_voxels(domain)})
+      for (const double alpha : {0.0, 0.2, 1.0})
+        expect_sound_clusters(simplify_skeleton(graph), alpha, name);
   expect_sound_clusters(as_simplified(make_graph({}, {}, {})), 0.2, "nothing");
   expect_sound_clusters(as_simplified(make_graph({{1, 1, 1}}, {0}, {})), 0.2, "one node");
   expect_sound_clusters(as_simplified(straight_line(100'000, 1)), 0.2, "long line");
@@ -122,6 +136,29 @@ TEST(Clusters, TellTwoRoomsFromTheDoorBetween) {
   const VisibilityGates g = visibility_gates(s.graph, c);
   ASSERT_FALSE(g.gates.empty());
   for (const VisibilityGate& gate : g.gates) EXPECT_LE(gate.radius, 11);
+}
+
+TEST(Gates, OfAOneVoxelPassageAreOpenByTheRadiiOfVoxels) {
+  // The passage lies at low corners, at high ones, and between.
+  for (const int y : {1, 11, 20}) {
+    BitGrid3 domain({52, 22, 22});
+    add_box(domain, {1, 1, 1}, {24, 21, 21});
+    add_box(domain, {24, y, 6}, {28, y + 1, 7});
+    add_box(domain, {28, 1, 1}, {51, 21, 21});
+    const auto radii = [](const SkeletonGraph& graph) {
+      const SimplifiedSkeleton s = simplify_skeleton(graph);
+      std::vector<float> all;
+      for (const VisibilityGate& g : visibility_gates(s.graph, visibility_clusters(s, 0.2)).gates)
+        all.push_back(g.radius);
+      return all;
+    };
+    const std::vector<float> corner = radii(space_of(domain).graph);
+    const std::vector<float> voxel = radii(graph_by_voxels(domain));
+    ASSERT_FALSE(corner.empty());
+    ASSERT_FALSE(voxel.empty());
+    EXPECT_EQ(*std::min_element(corner.begin(), corner.end()), 0) << y;
+    EXPECT_EQ(*std::min_element(voxel.begin(), voxel.end()), 1) << y;
+  }
 }
 
 TEST(Clusters, RefuseAnAlphaThatIsNoShare) {

@@ -43,6 +43,13 @@ inline Space space_of(BitGrid3 domain) {
   return space;
 }
 
+/// The graph of space_of() with the radii of voxels.
+inline SkeletonGraph graph_by_voxels(const BitGrid3& domain) {
+  const auto l1 = l1_distance(domain, threads(), no_memory_limit);
+  return build_graph_by_voxels(thinned(domain, l1),
+                               squared_distance(domain, threads(), no_memory_limit), threads());
+}
+
 /// Voxels [low, high).
 inline void add_box(BitGrid3& domain, Imath::V3i low, Imath::V3i high) {
   for (int z = low.z; z < high.z; ++z)

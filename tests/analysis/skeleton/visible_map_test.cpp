@@ -137,6 +137,20 @@ TEST(VisibleMap, IsTheSameForAnyNumberOfThreads) {
   EXPECT_GT(one.seen_after, one.seen_before);
 }
 
+TEST(VisibleMap, DoesNotDependOnTheNodesRadii) {
+  const BitGrid3 domain = random_voxels({40, 30, 30}, 0.001, 6, 5);
+  const auto l1 = l1_distance(domain, threads(), no_memory_limit);
+  const SkeletonGraph graph = space_of(domain).graph;
+  SkeletonGraph wide = graph_by_voxels(domain);
+  for (float& r : wide.radii) r += 3;
+  auto a = node_map(domain, graph, threads(), no_memory_limit);
+  auto b = node_map(domain, graph, threads(), no_memory_limit);
+  const SightReport report = prefer_visible_nodes(a, graph, l1, threads());
+  EXPECT_EQ(prefer_visible_nodes(b, wide, l1, threads()).seen_after, report.seen_after);
+  EXPECT_EQ(std::memcmp(a.data(), b.data(), a.count() * sizeof(std::uint32_t)), 0);
+  EXPECT_LT(report.seen_before, report.mapped) << "all voxels see their node";
+}
+
 TEST(VisibleMap, RefusesGridsOfDifferentSizes) {
   Grid3<std::uint32_t> map(V3i(2, 2, 2));
   EXPECT_THROW(prefer_visible_nodes(map, make_graph({}, {}, {}), Grid3<std::uint16_t>(V3i(2, 2, 3)),

@@ -128,6 +128,31 @@ TEST_F(SpaceAnalysisTest, CamerasInOneRoomShareASkeleton) {
   EXPECT_NE(closet.skeleton().corners, a.skeleton().corners);
 }
 
+TEST_F(SpaceAnalysisTest, TellsSettingsApartInTheCache) {
+  const auto built_with = [&](auto change) {
+    SpaceInput changed = input({2, 2, 1});
+    change(changed.settings);
+    ArtefactStore s = store();
+    SpaceAnalysis space(std::move(changed), s, pool_);
+    space.filtered(), space.gates();
+    return std::tuple{types(s, ArtefactRecord::Origin::built), space.skeleton().radii};
+  };
+  using Types = std::multiset<std::string>;
+  const auto [first, corner] = built_with([](AnalysisSettings&) {});
+  EXPECT_EQ(first.size(), 7u);
+  const auto [again, voxel] =
+      built_with([](AnalysisSettings& s) { s.node_radius = NodeRadius::voxel; });
+  EXPECT_EQ(again, (Types{"skeleton", "filtered_skeleton", "simplified_skeleton",
+                          "visibility_clusters", "visibility_gates"}));
+  ASSERT_EQ(voxel.size(), corner.size());
+  EXPECT_NE(voxel, corner);
+  for (std::size_t n = 0; n < voxel.size(); ++n) EXPECT_GE(voxel[n], std::max(1.0F, corner[n]));
+  const auto [wide, same] = built_with([](AnalysisSettings& s) { s.cluster_alpha = 1; });
+  EXPECT_EQ(wide, (Types{"visibility_clusters", "visibility_gates"}));
+  EXPECT_EQ(same, corner);
+  EXPECT_THROW(built_with([](AnalysisSettings& s) { s.cluster_alpha = 2; }), std::invalid_argument);
+}
+
 TEST_F(SpaceAnalysisTest, RefusesWhatMemoryCannotHold) {
   ArtefactStore s = store();
   SpaceInput tight = input({2, 2, 1}, 1024);

@@ -40,6 +40,25 @@ test("analyze: overlays are scenes that can be rendered", async (t) => {
   }
 });
 
+test("analyze: the radii of voxels and alpha, by their options", async (t) => {
+  const folder = temporaryFolder(t);
+  const shape = async (...options) => JSON.parse((await run(folder, ...quick, "--json", ...options)).out);
+  const corner = await shape(), voxel = await shape("--node-radius", "voxel");
+  assert.ok(corner.gates_of_radius_0 > 0 && corner.gates_of_radius_0 < corner.gates, JSON.stringify(corner));
+  assert.equal(voxel.gates_of_radius_0, 0);
+  assert.equal(voxel.nodes, corner.nodes);
+  assert.notEqual(voxel.filtered_nodes, corner.filtered_nodes);
+  const wide = await shape("--cluster-alpha", "1");
+  assert.deepEqual(new Set(wide.steps.filter((s) => s.origin === "built").map((s) => s.name)),
+    new Set(["visibility_clusters", "visibility_gates"]));
+  assert.notEqual(wide.clusters, corner.clusters);
+  for (const alpha of ["-0.1", "1.5", "nan"]) {
+    const refused = await run(folder, ...quick, "--cluster-alpha", alpha);
+    assert.equal(refused.code, 2, alpha);
+    assert.match(refused.err, /--cluster-alpha/);
+  }
+});
+
 test("analyze: what cannot be is said", async (t) => {
   const folder = temporaryFolder(t);
   const missing = await run(folder, "analyze", "nowhere.glb");

@@ -182,9 +182,12 @@ TEST(PictureKey, sees_settings_of_any_depth) {
   JobSpec d, e;
   d.environment = EnvironmentSettings{"e.exr", 1, 0};
   e.environment = EnvironmentSettings{"e.exr", 1, 1e-12};
-  const std::set<std::string> keys{picture_key(a), picture_key(b), picture_key(c), picture_key(d),
-                                   picture_key(e)};
-  EXPECT_EQ(keys.size(), 5u);
+  JobSpec f, g;
+  f.analysis.node_radius = NodeRadius::voxel;
+  g.analysis.cluster_alpha = 0.1;
+  std::set<std::string> keys;
+  for (const JobSpec& job : {a, b, c, d, e, f, g}) keys.insert(picture_key(job));
+  EXPECT_EQ(keys.size(), 7u);
 }
 
 }  // namespace
