@@ -222,11 +222,16 @@ struct GatesVisibilitySettings {
   static constexpr bool biased = true;
 
   GateFalloff falloff = GateFalloff::cosine;
+  bool through_gates = true;
   bool operator==(const GatesVisibilitySettings&) const = default;
 };
 template <class V>
 void describe(V& v, GatesVisibilitySettings& s) {
   v("falloff", s.falloff, {.doc = "how the light through a gate falls off towards its rim"});
+  v("through_gates", s.through_gates,
+    {.doc =
+         "lights illuminate other clusters through gates; without, none but their own: less time, "
+         "and less light from afar (Noel 2015, 7.4.1)"});
 }
 
 /// visibility: node_maps.

@@ -30,6 +30,8 @@ void GateVisibility::prepare(const PrepareContext& context) {
   for (const std::uint32_t n : space.simplified().parent) {
     cluster_of_.push_back(clusters.of_node[n]);
   }
+  clusters_ = clusters.count;
+  if (!settings_.through_gates) return;  // and no gates are made
   const VisibilityGates& all = space.gates();
   first_ = all.first;
   for (const std::uint32_t i : all.by_cluster) {
@@ -82,7 +84,7 @@ void GateVisibility::decide(const At& at, std::size_t block, const Terms& terms,
 }
 
 std::vector<std::pair<std::string, double>> GateVisibility::statistics() const {
-  return {{"visibility_clusters", static_cast<double>(first_.size()) - 1},
+  return {{"visibility_clusters", static_cast<double>(clusters_)},
           {"visibility_gates", static_cast<double>(gates_.size()) / 2}};
 }
 

@@ -325,6 +325,8 @@ FAULTS = [
           "if (!(h < 0)) return 0;", "if (h > 1e30F) return 0;"),
     Fault("gates let through what passes beside them", "renderer/visibility/gate_visibility.cpp",
           "t > 0 && Float8(gate.radius2) >= r2;", "t > 0;"),
+    Fault("without gates light leaves no cluster of its own", "renderer/visibility/gate_visibility.h",
+          "cluster != at.cluster && cluster != no_group &&", "cluster != no_group &&"),
     Fault("views of a node are culled as one", "renderer/view_maps/view_rendering.cpp",
           "Float8 off(v.width + scene_.radius(level));", "Float8 off(scene_.radius(level));"),
     Fault("views of a box are culled as one", "renderer/view_maps/view_rendering.cpp",

@@ -50,6 +50,23 @@ void expect_sums(const LitScene& lit, const Visibility& visibility, V&& expected
   EXPECT_GT(shadowed, 20) << "nothing was in shadow";
 }
 
+/// The visibility clusters of a scene's nodes.
+class NodeClusters {
+ public:
+  explicit NodeClusters(SpaceAnalysis& space)
+      : lookup(space.voxels().transform, space.node_map()),
+        clusters_(space.clusters()),
+        simplified_(space.simplified()) {}
+  std::uint32_t operator()(std::uint32_t node) const {
+    return clusters_.of_node[simplified_.parent[node]];
+  }
+  const SurfaceLookup lookup;
+
+ private:
+  const VisibilityClusters& clusters_;
+  const SimplifiedSkeleton& simplified_;
+};
+
 class SkeletonShadows : public testing::TestWithParam<test::PathScene> {};
 
 TEST_P(SkeletonShadows, OfNodeMapsAreThoseOfTheLightsNodes) {
@@ -80,13 +97,9 @@ TEST_P(SkeletonShadows, OfGatesAreClustersAndCones) {
     lit.prepare(visibility);
     SpaceAnalysis& space = lit.space();
     const GridTransform transform = space.voxels().transform;
-    const SurfaceLookup lookup(transform, space.node_map());
+    const NodeClusters cluster_of(space);
+    const SurfaceLookup& lookup = cluster_of.lookup;
     const VisibilityGates& gates = space.gates();
-    const VisibilityClusters& clusters = space.clusters();
-    const SimplifiedSkeleton& simplified = space.simplified();
-    const auto cluster_of = [&](std::uint32_t node) {
-      return clusters.of_node[simplified.parent[node]];
-    };
     expect_sums(lit, visibility, [&](const ShadingPoint& at, const VplGeometry& light) {
       const std::uint32_t from = node_of(lookup, light), to = node_of(lookup, at);
       if (from == no_node || to == no_node) return -1.0;
@@ -107,6 +120,22 @@ TEST_P(SkeletonShadows, OfGatesAreClustersAndCones) {
       return most;
     });
   }
+}
+
+TEST_P(SkeletonShadows, WithoutGatesAreClustersAlone) {
+  LitScene lit(GetParam(), 200, 2);
+  GateVisibility visibility({.through_gates = false});
+  lit.prepare(visibility);
+  const NodeClusters cluster_of(lit.space());
+  expect_sums(lit, visibility, [&](const ShadingPoint& at, const VplGeometry& light) {
+    const std::uint32_t from = node_of(cluster_of.lookup, light),
+                        to = node_of(cluster_of.lookup, at);
+    if (from == no_node || to == no_node) return -1.0;
+    return cluster_of(from) == cluster_of(to) ? 1.0 : 0.0;
+  });
+  const auto told = visibility.statistics();
+  EXPECT_EQ(told[0].second, lit.space().clusters().count);
+  EXPECT_EQ(told[1].second, 0) << told[1].first;
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SkeletonShadows,
