@@ -3,6 +3,7 @@
 import kol
 import kol_front
 import nabata
+import noel_clusters
 import noel_connections
 import noel_guides
 import noel_mapping
@@ -11,8 +12,8 @@ import noel_shape
 import popov
 import references
 
-ENTRIES = (*references.ENTRIES, *noel_shape.ENTRIES, *noel_shadows.ENTRIES, *noel_guides.ENTRIES, *noel_mapping.ENTRIES,
-           *noel_connections.ENTRIES, *popov.ENTRIES, *nabata.ENTRIES, *kol.ENTRIES, *kol_front.ENTRIES)
+ENTRIES = (*references.ENTRIES, *noel_shape.ENTRIES, *noel_shadows.ENTRIES, *noel_clusters.ENTRIES, *noel_guides.ENTRIES,
+           *noel_mapping.ENTRIES, *noel_connections.ENTRIES, *popov.ENTRIES, *nabata.ENTRIES, *kol.ENTRIES, *kol_front.ENTRIES)
 
 
 def find(name):

@@ -1,6 +1,6 @@
-"""Approximate shadows of many lights, by the thesis' own settings, which are the defaults. Every entry renders one
-iteration of many lights, with the same lights for every visibility. The thesis' own views are not known; ours are named in
-the notes."""
+"""Approximate shadows of many lights, by the thesis' own settings, which are the defaults but for the radius of the
+skeleton's nodes (noel-radii compares both). Every entry renders one iteration of many lights, with the same lights for
+every visibility. The thesis' own views are not known; ours are named in the notes."""
 
 from harness import many_lights
 from harness.entry import Entries
@@ -26,10 +26,12 @@ VIEWS = {"Sponza": {"scene": SPONZA, "camera": "atrium"},
 
 
 def job(view, how, paths, edges, seed=0, **more):
-    """Light after at most `edges` edges, of which the first and the last are no light path's."""
-    return {**VIEWS[view], "resolution": RESOLUTION, "analysis": GRID, "seed": seed, "budget": {"iterations": 1}, "checkpoint_seconds": 86400,
+    """Light after at most `edges` edges, of which the first and the last are no light path's. `how`: a visibility's name,
+    or its settings."""
+    return {**VIEWS[view], "resolution": RESOLUTION, "analysis": GRID, "seed": seed, "budget": {"iterations": 1},
+            "checkpoint_seconds": 86400,
             "integrator": {"type": "many_lights", "max_depth": edges, "light_paths": paths, "compensation": False,
-                           "visibility": visibility(how)}, **more}
+                           "visibility": visibility(how) if isinstance(how, str) else how}, **more}
 
 
 def shadow_report(run, view, how, paths, edges, seed=0):

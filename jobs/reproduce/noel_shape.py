@@ -28,9 +28,9 @@ GROWTH = (("Door", *ROWS[:2]), ("Sponza", *ROWS[2:]))
 COUNTED = ("voxels", "domain", "skeleton")  # what the thesis' seconds hold
 
 
-def analyse(scene, camera, resolution):
+def analyse(scene, camera, resolution, *options):
     return child.lacuna_json("analyze", scene, "--resolution", resolution, "--no-cache",
-                             *(("--camera", camera) if camera else ()))
+                             *(("--camera", camera) if camera else ()), *options)
 
 
 def counted_seconds(told):
