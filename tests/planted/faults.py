@@ -321,7 +321,7 @@ FAULTS = [
           "return ends_[std::min(static_cast<std::size_t>(edges) + 1, ends_.size() - 1)];"),
     Fault("a block's lights of two groups", "renderer/many_lights/vpl_set.cpp",
           "runs.empty() || runs.back().group != k.group ||", "runs.empty() ||"),
-    Fault("nodes see through surfaces from behind", "renderer/visibility/node_maps.cpp",
+    Fault("nodes see through surfaces from behind", "renderer/view_maps/node_maps.cpp",
           "if (!(h < 0)) return 0;", "if (h > 1e30F) return 0;"),
     Fault("gates let through what passes beside them", "renderer/visibility/gate_visibility.cpp",
           "t > 0 && Float8(gate.radius2) >= r2;", "t > 0;"),
