@@ -4,7 +4,7 @@ that this project has, with every kind of connections, at the thesis' settings (
 
 from harness import layers
 from harness.entry import Entries
-from harness.measured import Measured, error_at, exact, gain_at, geometric_mean_of, speed_up_to, time_to
+from harness.measured import Measured, error_at, exact, gain_at, geometric_mean_of, mean_of, speed_up_to, time_to
 from harness.run import KINDS, Table, cell_with
 from harness.verdict import at_least, beside
 
@@ -88,9 +88,10 @@ def resampled_table(answers, scene, methods, title=""):
 
 
 def show_pictures(run, which, cells):
-    """Of BPT, SkelBPT and ICBPT, as the thesis' figures have them."""
+    """Of BPT, SkelBPT and ICBPT, as the thesis' figures have them, as far as there are cells of them."""
     for name in ("BPT", "SkelBPT", "ICBPT"):
-        run.show(f"{name}, {which}", run.run_folder(cells[name]))
+        if name in cells:
+            run.show(f"{name}, {which}", run.run_folder(cells[name]))
 
 
 def measure_errors(run, scene):
@@ -115,11 +116,17 @@ def resampled(number, page, configuration, seconds, *claims):
 SKELETON = OURS["SkelBPT"]
 
 
+def share_of_distributions(told):
+    """Of the CPU seconds of iterations; `told`: the integrator's part of a report."""
+    return told["distributions_cpu_seconds"] / sum(
+        told[f"{key}_cpu_seconds"] for key in ("light_pass", "distributions", "eye_pass"))
+
+
 def table_5_sweep(full):
-    value = resampling_sweep(full, {"SkelBPT": SKELETON}, ("door", "sponza"), seeds=1)
+    value = resampling_sweep(full, {"SkelBPT": SKELETON}, seeds=1)
     del value["compare_at"], value["baseline"]
-    for scene in value["zip"]:
-        del scene["/reference"]
+    scenes = (SCENES["door"], SCENES["sponza"], STAND_INS["Sibenik"])
+    value["zip"] = [{pointer: [s[pointer] for s in scenes] for pointer in ("/scene", "/camera", "/resolution")}]
     value["job"]["budget"] = {"iterations": 16 if full else 4}
     return value
 
@@ -133,13 +140,21 @@ def table_5_sweep(full):
 def table_5(run):
     """Nodes of the filtered skeleton, and how many of them have distributions in an iteration."""
     answers = run.answers(table_5_sweep(run.full))
-    for name in ("Door", "Sponza"):
-        told = run.report(resampled_cell(answers, name.lower(), SKELETON))["integrator"]
+    for name, scene in (("Door", SCENES["door"]), ("Sponza", SCENES["sponza"]), ("Sibenik", STAND_INS["Sibenik"])):
+        told = run.report(cell_with(answers, scene=scene["/scene"], integrator=SKELETON))["integrator"]
         for which in KINDS:  # no setting that differs has to do with them
             run.found(f"{name}, nodes", **{which: exact(told["nodes"])})
             run.found(f"{name}, per iteration", **{which: Measured(told["nodes_used"])})
-        passes = {key: told[f"{key}_cpu_seconds"] for key in ("light_pass", "distributions", "eye_pass")}
-        run.note(f"{name}: the distributions take {passes['distributions'] / sum(passes.values()):.1%} of an iteration")
+        run.note(f"{name}: the distributions take {share_of_distributions(told):.1%} of an iteration")
+    run.note(f"Sibenik: {STAND_INS['Sibenik']['/scene']}, {STAND_IN}")
+
+
+def find_times(run, which, name, first, to):
+    """The rows of Table 6 of a scene. `to`: of each method its member of `to`; `first`: what the row of BPT is called."""
+    for method in ("BPT", "ICBPT", "SkelBPT"):
+        run.found(first if method == "BPT" else f"{name}, {method}", **{which: time_to(to[method])})
+        if method != "BPT":
+            run.found(f"{name}, {method}: speed-up", **{which: speed_up_to(to[method])})
 
 
 FIRST = {"Door": "Door to 0.01, BPT", "Sponza": "Sponza to 0.15, BPT"}
@@ -164,13 +179,14 @@ def table_6(run):
         answers = all_methods(run, which)
         for name, first in FIRST.items():
             to = {method: resampled_cell(answers, name.lower(), value)["to"][-1] for method, value in METHODS[which].items()}
-            for method in ("BPT", "ICBPT", "SkelBPT"):
-                run.found(first if method == "BPT" else f"{name}, {method}", **{which: time_to(to[method])})
-                if method != "BPT":
-                    run.found(f"{name}, {method}: speed-up", **{which: speed_up_to(to[method])})
+            find_times(run, which, name, first, to)
             plain, guided = time_to(to["uniform"]), time_to(to["SkelBPT"])
             run.found(f"{name}, SkelBPT over uniform: speed-up", **{which: plain and guided and plain.ratio(guided)})
         run.tables += [resampled_table(answers, scene, METHODS[which], f", {which}") for scene in RESAMPLED[which]]
+        stand_in = {method: cell["to"][-1] for method, cell in on_stand_in(run, which, "Sibenik").items()}
+        find_times(run, which, "Sibenik", "Sibenik to 0.025, BPT", stand_in)
+    run.note(f"Sibenik: {STAND_INS['Sibenik']['/scene']}, {STAND_IN}; in the quick form, smaller pictures and less time "
+             "than door's and sponza's")
     run.note("CPU seconds of a core; equal error: the lowest MAE that every run of a scene reached; "
              f"{answers['seeds']} runs each")
 
@@ -286,6 +302,89 @@ def fig_104(run):
             cells = on_stand_in(run, which, name)
             run.found(f"{name}: error of BPT / of SkelBPT", **{which: gain_at(cells["SkelBPT"]["at"][-1])})
     run.note(STAND_IN)
+
+
+# Fig. 96: BPT and SkelBPT where draperies stand between the eye and most of the light. Which view it is the thesis does not
+# say; this one is of ours.
+DRAPES = {"/scene": "sponza/scene.glb", "/camera": {"position": [200, 190, 480], "target": [1100, 170, 400], "fov": 50},
+          "/resolution": [1024, 512], "/reference": "auto"}
+TWO = ("BPT", "SkelBPT")
+
+
+def fig_96_sweep(full, which="published"):
+    value = with_scenes(resampling_sweep(full, {name: METHODS[which][name] for name in TWO}, seeds=5 if full else 3),
+                        [DRAPES], full)
+    value["job"]["budget"] = {"cpu_seconds": 60 if full else 4}
+    return value
+
+
+@ENTRIES.measured(
+    "noel-fig-96", "Noel 2015, Fig. 96, p. 161",
+    "behind draperies that hide most light vertices SkelBPT has less noise than BPT after 60 s", RESAMPLING,
+    (at_least(BPT.quantity, 1),), sweep=fig_96_sweep)
+def fig_96(run):
+    """BPT and SkelBPT on sponza behind the drapes at equal time."""
+    for which in KINDS:
+        answers = run.answers(fig_96_sweep(run.full, which))
+        cells = {name: cell_with(answers, integrator=METHODS[which][name]) for name in TWO}
+        show_pictures(run, which, cells)
+        at = {name: cell["at"][-1] for name, cell in cells.items()}
+        run.found(BPT.quantity, **{which: gain_at(at["SkelBPT"])})
+        run.tables.append(Table((f"drapes, {which}", "MAE"), [(name, str(error_at(a))) for name, a in at.items()]))
+        run.note(f"{which}: MAE after {at['BPT']['seconds']:.3g} CPU seconds, {answers['seeds']} runs each")
+        run.note(f"pictures: {run.runs}")
+    run.note("the thesis names no view: this one of ours looks along an arcade of sponza behind its drapes")
+
+
+def by_node_maps(integrator):
+    """11.6: node maps in place of shadow rays."""
+    return {**integrator, "connections": {**integrator["connections"], "node_visibility": "node_maps"}}
+
+
+SEEN_BY = {which: {"rays": METHODS[which]["SkelBPT"], "node maps": by_node_maps(METHODS[which]["SkelBPT"])}
+           for which in KINDS}
+SEEN_IN = {"Door": SCENES["door"], "Sponza": SCENES["sponza"]}
+
+
+def node_visibility_sweep(full, which="published"):
+    return with_scenes(resampling_sweep(full, SEEN_BY[which], seeds=5 if full else 3), SEEN_IN.values(), full)
+
+
+@ENTRIES.measured(
+    "noel-node-visibility", "Noel 2015, 11.6, p. 169, which measures nothing",
+    "a shadow map for each node instead of shadow rays makes the distributions of SkelBPT in less time",
+    "bdpt with connections: skeleton, node_visibility: node_maps",
+    tuple(claim(f"{name}: {text}", *figure) for name in SEEN_IN for claim, text, figure in (
+        (at_least, "time of distributions by rays / by node maps", (1,)),
+        (beside, "share of decisions by maps that differ", ()),
+        (at_least, "error by rays / by node maps, at equal time", (1,)))),
+    sweep=node_visibility_sweep)
+def node_visibility(run):
+    """SkelBPT with what nodes see decided by shadow rays and by node maps."""
+    for which in KINDS:
+        answers = run.answers(node_visibility_sweep(run.full, which))
+        for name, scene in SEEN_IN.items():
+            cells = {by: cell_with(answers, scene=scene["/scene"], integrator=value) for by, value in SEEN_BY[which].items()}
+            reports = {by: [run.report(c, seed) for seed in range(answers["seeds"])] for by, c in cells.items()}
+            times = {by: [r["integrator"]["distributions_cpu_seconds"] / r["counts"]["iterations"] for r in each]
+                     for by, each in reports.items()}
+            run.found(f"{name}: time of distributions by rays / by node maps",
+                      **{which: geometric_mean_of([a / b for a, b in zip(times["rays"], times["node maps"])])})
+            run.found(f"{name}: share of decisions by maps that differ", **{which: mean_of(
+                [r["integrator"]["map_decisions_wrong"] / r["integrator"]["map_decisions_checked"]
+                 for r in reports["node maps"]])})
+            run.found(f"{name}: error by rays / by node maps, at equal time",
+                      **{which: gain_at(cells["node maps"]["at"][-1])})
+            shares = {by: mean_of([share_of_distributions(r["integrator"]) for r in each]) for by, each in reports.items()}
+            run.tables.append(Table((f"{name}, {which}", "distributions, CPU ms an iteration", "of an iteration", "MAE"), [
+                (by, f"{1000 * mean_of(times[by]).value:.3g}", f"{shares[by].value:.1%}",
+                 str(error_at(cells[by]["at"][-1]))) for by in cells]))
+            for built in (a for r in reports["node maps"] for a in r["artefacts"]["built"] if a["name"] == "node_maps"):
+                run.note(f"{name}, {which}: the maps of all nodes took {built['seconds']:.3g} s once, before rendering, and "
+                         f"{built['disk_bytes'] / 1e6:.3g} MB on disk")
+    run.note("equal time is that of rendering; the maps are part of what is prepared once for a scene. A decision in 64 is "
+             f"checked by a shadow ray; MAE after {answers['cells'][0]['at'][-1]['seconds']:.3g} CPU seconds, "
+             f"{answers['seeds']} runs each")
 
 
 FIG_105 = {"published": {name: THESIS[name] for name in ("BPT", "ICBPT", "SkelBPT")},

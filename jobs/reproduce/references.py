@@ -147,6 +147,119 @@ def fig_22(run):
     run.note(f"variance between pictures of different seeds, over all pixels; {CHAPTER_4}")
 
 
+# Veach's plates. The thesis' are Mitsuba's; which is the shiniest, its caption says: the farthest.
+PLATES = {"scene": "plates.glb", "camera": "front"}
+PLATE_BLUES = (0.4, 0.5, 0.6, 0.7)  # of the base colours, from the shiniest plate to the roughest
+LIGHTS = 4  # from large to small, a quarter of a plate's width each
+PLACES = {"shiniest plate, largest light": (0, 0), "roughest plate, smallest light": (3, 3)}
+PLATES_SEEDS, PLATES_PARTS = 16, 4
+
+
+def plates_job(full, integrator):
+    """One sample of each strategy an iteration, independent of all others; lights are selected by their power, which is
+    the same for all."""
+    return {**PLATES, "resolution": [512, 384] if full else [160, 120], "budget": {"iterations": 512 if full else 24},
+            "sampler": "independent", "layers": ["albedo"], "integrator": {"max_depth": 2, **integrator}}
+
+
+def places_of(folder, width):
+    """The pixels of each plate where it mirrors each light, by (plate, light)."""
+    found = {}
+    blues = layers.channels(folder, "albedo")[2]
+    for plate, blue in enumerate(PLATE_BLUES):
+        pixels = [i for i, b in enumerate(blues) if abs(b - blue) < 0.01]
+        left, right = min(i % width for i in pixels), max(i % width for i in pixels) + 1
+        for i in pixels:
+            light = (i % width - left) * LIGHTS // (right - left)
+            found.setdefault((plate, light), []).append(i)
+    return found
+
+
+def plates_variances(run):
+    """By place: of each part of the seeds, the variance of the strategies p_{0,3} and p_{1,2} alone, that of their weighted
+    sum, and what the balance heuristic guarantees of the latter."""
+    power = {"connections": {"type": "paired", "emitters": "power"}}
+    alone = {**plates_job(run.full, {"type": "bdpt", **power}), "layers": ["albedo", "strategies_unweighted"]}
+    run.repeated("alone", alone, PLATES_SEEDS)
+    together = plates_job(run.full, {"type": "path", "emitters": "power"})
+    run.repeated("weighted", together, PLATES_SEEDS)
+    pictures = {name: [layers.channels(run.place(f"{kind}-{seed}"), layer) for seed in range(PLATES_SEEDS)]
+                for name, kind, layer in (("p_{0,3}", "alone", "strategies_unweighted.s0t3"),
+                                          ("p_{1,2}", "alone", "strategies_unweighted.s1t2"), ("weighted", "weighted", ""))}
+
+    found = {}
+    for place, pixels in places_of(run.place("alone-0"), together["resolution"][0]).items():
+        at = {name: [[[channel[i] for i in pixels] for channel in picture] for picture in each]
+              for name, each in pictures.items()}
+        means = [statistics.fmean(values) for channels in zip(*at["weighted"]) for values in zip(*channels)]
+        squares = sum(m * m for m in means) / together["budget"]["iterations"]
+        found[place] = []
+        for part in range(PLATES_PARTS):
+            of = {name: variances(each[part::PLATES_PARTS]) for name, each in at.items()}
+            # Veach 1997, theorem 9.2, of one sample each: 1 / min n - 1 / sum n = 1/2.
+            of["bound"] = min(of["p_{0,3}"], of["p_{1,2}"]) + squares / 2
+            found[place].append(of)
+    return found
+
+
+def ratio_of(parts, above, below):
+    return geometric_mean_of([of[above] / of[below] for of in parts])
+
+
+def strategies_of(parts):
+    """The names of the better strategy at a place and of the worse one, by all seeds."""
+    return sorted(("p_{0,3}", "p_{1,2}"), key=lambda name: sum(of[name] for of in parts))
+
+
+def plates_table(run, found):
+    columns = ("plate, light", "p_{1,2} / p_{0,3}", "weighted / better", "bound / better", "weighted / worse")
+    run.tables.append(Table(columns, [
+        (f"{plate + 1}, {light + 1}", str(ratio_of(parts, "p_{1,2}", "p_{0,3}")),
+         *(str(ratio_of(parts, of, strategies_of(parts)[worse])) for of, worse in
+           (("weighted", 0), ("bound", 0), ("weighted", 1)))) for (plate, light), parts in sorted(found.items())]))
+    run.note(f"variance between pictures of different seeds, summed over the pixels of a place: a quarter of a plate; "
+             f"{PLATES_SEEDS} seeds in {PLATES_PARTS} parts; plates from shiny to rough, lights from large to small")
+    run.note("plates.glb is a stand-in of ours: the thesis' scene is Mitsuba's")
+    run.note(f"pictures: {run.pictures}")
+
+
+@ENTRIES.measured(
+    "noel-fig-18", "Noel 2015, Fig. 18, p. 47",
+    "hitting lights (p_{0,3}) has less noise on shiny plates and large lights, sampling them (p_{1,2}) on rough plates and "
+    "small lights", "bdpt with layers of strategies",
+    (at_least("shiniest plate, largest light: variance of p_{1,2} / of p_{0,3}", 1),
+     at_most("roughest plate, smallest light: variance of p_{1,2} / of p_{0,3}", 1)))
+def fig_18(run):
+    """The two strategies of direct light alone, where plates mirror lights."""
+    found = plates_variances(run)
+    for name, place in PLACES.items():
+        for which in ("published", "ours"):  # strategies have no settings that differ
+            run.found(f"{name}: variance of p_{{1,2}} / of p_{{0,3}}",
+                      **{which: ratio_of(found[place], "p_{1,2}", "p_{0,3}")})
+    plates_table(run, found)
+
+
+@ENTRIES.measured(
+    "noel-fig-19", "Noel 2015, Fig. 19, p. 47",
+    "multiple importance sampling has low variance at every point: never that of the worse strategy", "path",
+    tuple(claim(f"{place}: variance weighted / of the {strategy} strategy", *figure) for place in PLACES
+          for claim, strategy, figure in ((at_most, "worse", (1,)), (beside, "better", ()))))
+def fig_19(run):
+    """The weighted sum of the two strategies, against each alone with as many samples."""
+    found = plates_variances(run)
+    for name, place in PLACES.items():
+        better, worse = strategies_of(found[place])
+        for which in ("published", "ours"):  # as in Fig. 18
+            run.found(f"{name}: variance weighted / of the worse strategy",
+                      **{which: ratio_of(found[place], "weighted", worse)})
+            run.found(f"{name}: variance weighted / of the better strategy",
+                      **{which: ratio_of(found[place], "weighted", better)})
+        run.note(f"{name}: {better} is the better; the balance heuristic guarantees at most "
+                 f"{ratio_of(found[place], 'bound', better).value:.3g} times its variance (Veach 1997, theorem 9.2)")
+    run.show("weighted", run.place("weighted-0"))
+    plates_table(run, found)
+
+
 def neighbours_correlation(a, b, width):
     """Of the signs of the difference of two pictures about its median: that of pixels side by side. Signs, because few
     bright pixels hold a large part of all squares."""
@@ -188,7 +301,6 @@ def fig_23(run):
     run.note("correlation of signs; virtual lights: 64 light paths, one iteration, as instant global illumination has them; "
              "bidirectional: equal in nothing but the scene: what is compared is the kind of error, not its size; "
              f"{CHAPTER_4}")
-
 
 # The thesis' scene and radii are not known. In ours the lamp is so large that path tracing, too, finds its
 # caustics, and the radius so large that its blur shows.

@@ -24,7 +24,7 @@ TRIALS = [trials.furnace, trials.furnace_sphere, trials.mirror, trials.glass_roo
 TRIALS += [trials.many_lights, trials.sides, trials.open_air]
 TRIALS += [trials.point, trials.spot, trials.directional, trials.area]
 TRIALS += [hairball]
-TRIALS += [stand_ins.nave, stand_ins.flat, stand_ins.plants]
+TRIALS += [stand_ins.nave, stand_ins.flat, stand_ins.plants, stand_ins.plates]
 
 README_HEAD = """# Scenes
 

@@ -4,9 +4,9 @@ not the papers' numbers."""
 import math
 import random
 
-from glb import Glb, diffuse, emitter, metal, plastic
+from glb import Glb, cross, diffuse, emitter, metal, plastic, subtract, unit
 from hairball import any_frame
-from shapes import Shape, arch_soffit, arch_wall, block, box, cylinder, flipped, joined, moved, quad, room, sphere, wall
+from shapes import Shape, arch_soffit, arch_wall, block, box, cylinder, disc, flipped, joined, moved, quad, room, sphere, wall
 
 
 def nave():
@@ -170,3 +170,39 @@ def foliage(draw, count, radii):
             positions.append(tuple(at[k] * radii[k] + half * (a * along[k] + b * side[k]) for k in range(3)))
         triangles += [(first, first + 1, first + 2), (first, first + 2, first + 3)]
     return Shape(positions, triangles)
+
+
+# `plates`: the lights' row and the camera, and (y, z) of the plates' middles with their roughness, the farthest first.
+PLATES_LIGHTS, PLATES_EYE, PLATES_POWER = (1.7, 0.0), (0, 2.4, 6.2), 10.0
+PLATES = [((0.72, 0.0), 0.08), ((0.46, 0.45), 0.15), ((0.27, 1.0), 0.25), ((0.14, 1.6), 0.4)]
+PLATES_RADII = (0.36, 0.12, 0.04, 0.0133)
+
+
+def plates():
+    s = Glb(
+        "plates",
+        "Stand-in for Veach's scene of multiple importance sampling: four metal plates, the farthest the shiniest (roughness "
+        "0.08, 0.15, 0.25, 0.4), mirror four lights of equal power. Each quarter of a plate's width has the image of one "
+        "light. The blue of a plate's base colour, 0.4, 0.5, 0.6 or 0.7, tells which it is.",
+        "discs of radius 0.36, 0.12, 0.04 and 0.0133 m from left to right, of radiance 10 / (pi radius)^2 each",
+        "open",
+    )
+    grey = s.material(diffuse("grey", (0.4, 0.4, 0.4)))
+    s.add("floor", wall("+y", 0.0, (-5, 5), (-1.2, 7)), grey)
+    s.add("wall", wall("+z", -1.2, (-5, 5), (0.0, 5)), grey)
+    for i, ((y, z), roughness) in enumerate(PLATES):
+        to_eye, to_light = (subtract(end, (0, y, z)) for end in (PLATES_EYE, (0, *PLATES_LIGHTS)))
+        far, near = (math.sqrt(sum(c * c for c in d)) for d in (to_eye, to_light))
+        facing = unit(tuple(a + b for a, b in zip(unit(to_eye), unit(to_light))))
+        half = 2 * far / (far + near)  # the images of lights that are 1 apart
+        up = tuple(0.42 * c for c in cross(facing, (1, 0, 0)))
+        corner = subtract((-half, y, z), tuple(c / 2 for c in up))
+        s.add(f"plate {i}", quad(corner, (2 * half, 0, 0), up),
+              s.material(metal(f"plate {i}", (0.7, 0.7, 0.4 + 0.1 * i), roughness)))
+    shape, turn = disc(1.0, 24), math.radians(148.5)  # down to the plates
+    for i, radius in enumerate(PLATES_RADII):
+        light = s.material(emitter(f"light {i}", (PLATES_POWER / (math.pi * radius) ** 2,) * 3))
+        s.node(f"light {i}", s.mesh(f"light {i}", shape, light), (i - 1.5, *PLATES_LIGHTS),
+               (math.sin(turn / 2), 0, 0, math.cos(turn / 2)), radius)
+    s.camera("front", PLATES_EYE, (0, 0.8, 0.6), 32, 4 / 3)
+    return s

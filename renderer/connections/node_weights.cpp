@@ -39,22 +39,23 @@ std::vector<double> node_weights(const LightVertices& lights, int s, const V3f& 
   return weights;
 }
 
-std::vector<Ray> rays_to(const LightVertices& lights, int s, const V3f& x) {
-  std::vector<Ray> rays;
+Ray ray_to(const LightVertices& lights, int s, std::size_t i, const V3f& x) {
   const auto to = [&](const V3f& y, const auto& origin) {
     const V3f end = origin((x - y).normalized());
-    rays.push_back({x, end - x, 1.0F});
+    return Ray{x, end - x, 1.0F};
   };
-  for (std::size_t i = 0; i < lights.count(s); ++i) {
-    if (s > 1) {
-      const Surface& y = lights.at(s, i).surface;
-      to(y.x, [&](const V3f& w) { return offset_origin(y.x, y.ng, y.extent, w); });
-    } else if (const EmitterPoint& e = lights.emitter(i); e.infinite()) {
-      rays.push_back({x, e.x});
-    } else {
-      to(e.x, [&](const V3f& w) { return EmitterEndpoint{e}.origin(w); });
-    }
+  if (s > 1) {
+    const Surface& y = lights.at(s, i).surface;
+    return to(y.x, [&](const V3f& w) { return offset_origin(y.x, y.ng, y.extent, w); });
   }
+  const EmitterPoint& e = lights.emitter(i);
+  if (e.infinite()) return {x, e.x};
+  return to(e.x, [&](const V3f& w) { return EmitterEndpoint{e}.origin(w); });
+}
+
+std::vector<Ray> rays_to(const LightVertices& lights, int s, const V3f& x) {
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < lights.count(s); ++i) rays.push_back(ray_to(lights, s, i, x));
   return rays;
 }
 

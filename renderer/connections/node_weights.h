@@ -12,7 +12,9 @@ namespace lacuna {
 std::vector<double> node_weights(const LightVertices& lights, int s, const V3f& x,
                                  double least_distance, LightSides sides);
 
-/// Shadow rays from `x`, a point in empty space, to these vertices.
+/// The shadow ray from `x`, a point in empty space, to LightVertices::at(s, i).
+Ray ray_to(const LightVertices& lights, int s, std::size_t i, const V3f& x);
+/// The shadow rays to all vertices LightVertices::at(s, .).
 std::vector<Ray> rays_to(const LightVertices& lights, int s, const V3f& x);
 
 }  // namespace lacuna

@@ -1,18 +1,16 @@
 #include "renderer/connections/skeleton_connections.h"
 
-#include <numeric>
-
 #include "renderer/connections/node_weights.h"
+#include "renderer/view_maps/filtered_node_maps.h"
 
 namespace lacuna {
 
 void SkeletonConnections::prepare(const PrepareContext& context) {
+  positions_ = filtered_nodes(context.space);
   const GridTransform transform = context.space.voxels().transform;
-  for (const Imath::V3i& corner : context.space.filtered().graph.corners) {
-    positions_.emplace_back(transform.to_world(V3d(corner)));
-  }
   least_distance_ = transform.voxel_size / 2;
   lookup_.emplace(transform, context.space.filtered_map());
+  visibility_.prepare(context, positions_, settings_);
   cells_of_nodes_.resize(positions_.size());
 }
 
@@ -34,17 +32,20 @@ void SkeletonConnections::begin(const IterationContext& context, const LightVert
     if (accepted(statistics.visits(static_cast<std::uint32_t>(n)), sum)) used.push_back(n);
   }
   used_ = used.size();
-  std::vector<std::uint64_t> rays(used.size());
+  std::vector<NodeVisibility::Tests> tests(used.size());
   context.pool.for_each(static_cast<int>(used.size()), [&](int i) {
     const auto k = static_cast<std::size_t>(i);
-    rays[k] = build(used[k], context, lights);
+    tests[k] = build(used[k], context, lights);
   });
-  counters.shadow_rays += std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
+  for (const NodeVisibility::Tests& of_node : tests) {
+    counters.shadow_rays += of_node.rays;
+    tests_ += of_node;
+  }
 }
 
-std::uint64_t SkeletonConnections::build(std::size_t node, const IterationContext& context,
-                                         const LightVertices& lights) {
-  std::uint64_t rays_sent = 0;
+NodeVisibility::Tests SkeletonConnections::build(std::size_t node, const IterationContext& context,
+                                                 const LightVertices& lights) {
+  NodeVisibility::Tests tests;
   for (int s = 1; s <= lights.longest(); ++s) {
     context.check_stop();
     const std::size_t n = lights.count(s);
@@ -54,23 +55,26 @@ std::uint64_t SkeletonConnections::build(std::size_t node, const IterationContex
       weights = node_weights(lights, s, positions_[node], least_distance_, settings_.sides);
     }
     if (settings_.visible) {
-      const std::vector<Ray> rays = rays_to(lights, s, positions_[node]);
-      std::vector<std::uint8_t> occluded(n);
-      context.scene.rays().occluded(rays, occluded);
-      rays_sent += n;
-      for (std::size_t i = 0; i < n; ++i) visible[i] = occluded[i] != 0 ? 0 : weights[i];
+      visible = visibility_.between(context, node, lights, s, tests);
+      for (std::size_t i = 0; i < n; ++i) visible[i] *= weights[i];
     }
     if (!settings_.unshadowed) weights.assign(n, 0.0);
     const std::vector<double> same(n, 1.0);
     const std::array<std::span<const double>, 3> all{visible, weights, same};
     cells_of_nodes_[node].set(s, ResamplingTable(all, settings_.combination));
   }
-  return rays_sent;
+  return tests;
 }
 
 std::vector<std::pair<std::string, double>> SkeletonConnections::statistics() const {
-  return {{"nodes", static_cast<double>(positions_.size())},
-          {"nodes_used", static_cast<double>(used_)}};
+  std::vector<std::pair<std::string, double>> stats{
+      {"nodes", static_cast<double>(positions_.size())},
+      {"nodes_used", static_cast<double>(used_)}};
+  if (visibility_.by_maps()) {
+    stats.emplace_back("map_decisions_checked", static_cast<double>(tests_.checked));
+    stats.emplace_back("map_decisions_wrong", static_cast<double>(tests_.wrong));
+  }
+  return stats;
 }
 
 }  // namespace lacuna

@@ -4,6 +4,7 @@
 
 #include "analysis/skeleton/surface_lookup.h"
 #include "renderer/connections/cell_statistics.h"
+#include "renderer/connections/node_visibility.h"
 #include "renderer/connections/resampling_cell.h"
 #include "renderer/path/strategy.h"
 #include "renderer/settings/connections_settings.h"
@@ -66,13 +67,15 @@ class SkeletonConnections : public StrategyBase {
   static constexpr std::uint8_t fallback = 3;
 
   bool accepted(std::uint64_t mapped, std::uint64_t sum) const;
-  std::uint64_t build(std::size_t node, const IterationContext& context,
-                      const LightVertices& lights);
+  NodeVisibility::Tests build(std::size_t node, const IterationContext& context,
+                              const LightVertices& lights);
 
   SkeletonConnectionsSettings settings_;
   std::vector<V3f> positions_;  // of the nodes, scene units
   double least_distance_ = 0;
   std::optional<SurfaceLookup> lookup_;
+  NodeVisibility visibility_;
+  NodeVisibility::Tests tests_;  // of all iterations of this process
   std::vector<ResamplingCell> cells_of_nodes_;
   std::size_t used_ = 0;
 };

@@ -6,6 +6,7 @@
 
 #include "analysis/settings/field.h"
 #include "renderer/settings/emitter_settings.h"
+#include "renderer/settings/node_map_settings.h"
 
 namespace lacuna {
 
@@ -31,6 +32,19 @@ struct EnumTable<LightSides> {
   static constexpr std::array<EnumValue<LightSides>, 2> values{{
       {LightSides::facing, "facing", "those that scatter towards the node or record"},
       {LightSides::both, "both", "all, including those that face away from it"},
+  }};
+};
+
+/// How it is decided which light vertices a node of the skeleton sees.
+enum class NodeVisibilityTest { rays, node_maps };
+
+template <>
+struct EnumTable<NodeVisibilityTest> {
+  static constexpr std::array<EnumValue<NodeVisibilityTest>, 2> values{{
+      {NodeVisibilityTest::rays, "rays", "by a shadow ray to each, in each iteration"},
+      {NodeVisibilityTest::node_maps, "node_maps",
+       "by a cube map of depths around the node, made once and kept on disk (Noel 2015, 11.6). "
+       "Wrong where an edge passes between texels; only probabilities depend on it"},
   }};
 };
 
@@ -113,6 +127,8 @@ struct SkeletonConnectionsSettings : ResamplingSettings {
 
   double acceptance = 1;
   bool visible = true;
+  NodeVisibilityTest node_visibility = NodeVisibilityTest::rays;
+  int map_size = node_map_size;
   bool unshadowed = true;
   Combination combination = Combination::mixture;  // as published it is otherwise
   LightSides sides = LightSides::facing;
@@ -135,6 +151,8 @@ void describe(V& v, SkeletonConnectionsSettings& s) {
   v("visible", s.visible,
     {.doc = "distribution V: throughput over squared distance of the light vertices that the node "
             "sees (eq. 188)"});
+  v("node_visibility", s.node_visibility, {.doc = "how V decides what the node sees"});
+  describe_node_map_size(v, s.map_size);
   v("unshadowed", s.unshadowed,
     {.doc = "distribution U: the same for all light vertices, without visibility (eq. 189)"});
   v("combination", s.combination,

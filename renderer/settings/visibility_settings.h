@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "analysis/settings/field.h"
+#include "renderer/settings/node_map_settings.h"
 
 namespace lacuna {
 
@@ -242,14 +243,13 @@ struct NodeMapsVisibilitySettings {
       "map of depths around each node, kept on disk (biased; Noel 2015, ch. 8)";
   static constexpr bool biased = true;
 
-  int map_size = 128;
+  int map_size = node_map_size;
   int filter = 5;
   bool operator==(const NodeMapsVisibilitySettings&) const = default;
 };
 template <class V>
 void describe(V& v, NodeMapsVisibilitySettings& s) {
-  v("map_size", s.map_size,
-    {.doc = "texels along a side of a map's six faces; 2 bytes each", .min = 8, .max = 1024});
+  describe_node_map_size(v, s.map_size);
   v("filter", s.filter,
     {.doc = "side, in texels, of the square over which depth comparisons are averaged "
             "(percentage-closer filtering)",

@@ -1,33 +1,11 @@
 #include "renderer/visibility/node_map_visibility.h"
 
-#include <fmt/format.h>
-
-#include "renderer/scene/scene_shape.h"
-
 namespace lacuna {
 
-namespace {
-
-/// Increased when the same inputs give other bits.
-constexpr std::uint32_t node_maps_version = 1;
-
-}  // namespace
-
 void NodeMapVisibility::prepare(const PrepareContext& context) {
-  SpaceAnalysis& space = context.space;
-  const GridTransform transform = space.voxels().transform;
-  for (const Imath::V3i& corner : space.filtered().graph.corners) {
-    nodes_.emplace_back(transform.to_world(V3d(corner)));
-  }
-  lookup_.emplace(transform, space.filtered_map());
-  maps_ = space.for_filtered<NodeMaps>(
-      "node_maps", node_maps_version, fmt::format("map_size={}", settings_.map_size),
-      occluder_key(context.scene.data()), [&](std::uint64_t byte_limit) {
-        return trace_node_maps(context.scene, nodes_, settings_.map_size, context.pool, byte_limit);
-      });
-  if (maps_->points() != nodes_.size() || maps_->size != settings_.map_size) {
-    throw std::runtime_error("the cache's node maps are not of its skeleton");
-  }
+  nodes_ = filtered_nodes(context.space);
+  lookup_.emplace(context.space.voxels().transform, context.space.filtered_map());
+  maps_ = filtered_node_maps(context, nodes_, settings_.map_size);
 }
 
 Counters NodeMapVisibility::begin(const LightPass& pass) {

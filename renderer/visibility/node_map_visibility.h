@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "renderer/settings/visibility_settings.h"
-#include "renderer/visibility/node_maps.h"
+#include "renderer/view_maps/filtered_node_maps.h"
 #include "renderer/visibility/skeleton_node.h"
 #include "renderer/visibility/visibility_base.h"
 

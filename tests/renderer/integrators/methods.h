@@ -276,6 +276,14 @@ inline std::vector<Method> unusual_connections(int max_depth, int light_paths = 
     s.combination = Combination::max;
     s.sides = LightSides::both;
   });
+  for (const int size : {8, 64}) {
+    add(size == 8 ? "skeleton, coarse node maps" : "skeleton, node maps", Skeleton{},
+        [size](auto& s) {
+          s.node_visibility = NodeVisibilityTest::node_maps;
+          s.map_size = size;
+          s.acceptance = 0;
+        });
+  }
   add("cache, counted as a thousand", Cache{}, [](auto& s) { s.count_as = 1000; });
   add("cache, all four", Cache{}, [](auto& s) { s.unshadowed = s.bounded = true; });
   add("cache, most of all four", Cache{}, [](auto& s) {

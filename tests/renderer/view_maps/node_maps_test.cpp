@@ -1,4 +1,4 @@
-#include "renderer/visibility/node_maps.h"
+#include "renderer/view_maps/node_maps.h"
 
 #include <gtest/gtest.h>
 
@@ -41,6 +41,18 @@ bool sees(const Scene& scene, const V3f& place, const HitPoint& p) {
   return dot(place - p.x, p.n) > 0 && !scene.rays().occluded({start, place - start, 1.0F});
 }
 
+/// Places around corners: each is seen from the one before.
+std::vector<V3f> places_from(const Scene& scene, const V3f& eye) {
+  std::vector<V3f> places{eye};
+  while (places.size() < 8) {
+    const V3f from = places.back();
+    const auto met = points_around(scene, from, static_cast<int>(3 * places.size()));
+    if (!met.empty()) places.push_back(from + (met.back().x - from) * 0.8F);
+    if (places.back() == from) places.push_back(eye);
+  }
+  return places;
+}
+
 const ThreadPool pool(2);
 
 NodeMaps maps_of(const Scene& scene, const std::vector<V3f>& places, int size) {
@@ -76,14 +88,7 @@ TEST_P(NodeMapsIn, SeeWhatRaysSee) {
   const SceneData data = test::load({GetParam()});
   const V3f eye(data.cameras.front().to_world.translation());
   const Scene scene = scene_of(test::load({GetParam()}));
-  // Around corners: each place is seen from the one before.
-  std::vector<V3f> places{eye};
-  while (places.size() < 8) {
-    const V3f from = places.back();
-    const auto met = points_around(scene, from, static_cast<int>(3 * places.size()));
-    if (!met.empty()) places.push_back(from + (met.back().x - from) * 0.8F);
-    if (places.back() == from) places.push_back(eye);
-  }
+  const std::vector<V3f> places = places_from(scene, eye);
   const NodeMaps maps = maps_of(scene, places, 128);
   ASSERT_EQ(maps.points(), places.size());
   int seen = 0, unseen = 0;
@@ -107,6 +112,39 @@ TEST_P(NodeMapsIn, SeeWhatRaysSee) {
 
 INSTANTIATE_TEST_SUITE_P(All, NodeMapsIn, testing::Values("ajar", "atrium"),
                          [](const auto& s) { return std::string(s.param); });
+
+// Lights without a surface: points in empty space, and directions to what is infinitely far.
+TEST(NodeMaps, SeePointsAndTheSkyAsRaysDo) {
+  const SceneData data = test::load({"atrium"});
+  const V3f eye(data.cameras.front().to_world.translation());
+  const Scene scene = scene_of(test::load({"atrium"}));
+  const std::vector<V3f> places = places_from(scene, eye);
+  const NodeMaps maps = maps_of(scene, places, 128);
+  Rng rng(8, 0, 0, Rng::Purpose::test);
+  int clear = 0, hidden = 0;
+  Moments wrong_points, wrong_directions;  // shares of each place
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const NodeView view(maps, k, places[k], 1);
+    EXPECT_EQ(view.seen(places[k]), 1) << "the place itself";
+    Moments points, directions;
+    for (int i = 0; i < 4000; ++i) {
+      const V3f d = V3f(rng.next() - 0.5F, rng.next() - 0.5F, rng.next() - 0.5F).normalized();
+      const V3f to = d * (12 * rng.next());
+      const bool sees_point = !scene.rays().occluded({places[k], to, 1.0F});
+      points.add((view.seen(places[k] + to) > 0.5F) != sees_point ? 1 : 0);
+      const bool sees_sky = !scene.rays().occluded({places[k], d});
+      directions.add((view.open(d) > 0.5F) != sees_sky ? 1 : 0);
+      for (const bool sees : {sees_point, sees_sky}) (sees ? clear : hidden) += 1;
+    }
+    wrong_points.add(points.mean());
+    wrong_directions.add(directions.mean());
+  }
+  EXPECT_GT(std::min(clear, hidden), 4000);
+  for (const Moments& wrong : {wrong_points, wrong_directions}) {
+    EXPECT_LT(statistics::t_test_at_least(wrong, 0.025), 0.01)
+        << wrong.mean() << " +- " << wrong.standard_error();
+  }
+}
 
 TEST(NodeMaps, ScaleWithTheScene) {
   const auto room = [](float scale) {

@@ -37,7 +37,9 @@ struct NodeMaps {
 NodeMaps trace_node_maps(const Scene& scene, std::span<const V3f> points, int size,
                          const ThreadPool& pool, std::uint64_t byte_limit);
 
-/// The visibility from the centre of one cube map.
+/// The visibility from the centre of one cube map. Each texel around a direction is compared with
+/// the depth of a plane, and the results are averaged (percentage-closer filtering, Reeves et al.
+/// 1987): shares in [0, 1].
 class NodeView {
  public:
   /// `point`: the centre of map `index` of `maps`. `filter`: side of the filter's square in texels,
@@ -45,10 +47,13 @@ class NodeView {
   NodeView(const NodeMaps& maps, std::size_t index, const V3f& point, int filter)
       : maps_(&maps), index_(index), point_(point), filter_(filter) {}
 
-  /// The visible share, in [0, 1], of the surface around `x` with unit normal `n`, on the side of
-  /// n: each texel around the direction of x is compared with the depth of the surface's plane, and
-  /// the results are averaged (percentage-closer filtering, Reeves et al. 1987).
+  const V3f& point() const { return point_; }
+  /// The visible share of the surface around `x` with unit normal `n`, on the side of n.
   float seen(const V3f& x, const V3f& n) const;
+  /// The same of `x` in empty space: of the plane across the direction to it.
+  float seen(const V3f& x) const;
+  /// The share of the directions around unit `w` in which nothing is met.
+  float open(const V3f& w) const;
 
  private:
   NodeView() = default;

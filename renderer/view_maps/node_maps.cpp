@@ -1,4 +1,4 @@
-#include "renderer/visibility/node_maps.h"
+#include "renderer/view_maps/node_maps.h"
 
 #include <fmt/format.h>
 
@@ -105,14 +105,20 @@ namespace {
 /// Evaluates a node's map around a direction.
 class Comparison {
  public:
-  /// The plane: points p with p . n = h, seen from the node.
-  Comparison(const NodeMaps& maps, std::size_t index, const V3f& n, float h)
+  /// The plane: points p with p . n = h, seen from the node. `over_h`: maps.scale / h.
+  Comparison(const NodeMaps& maps, std::size_t index, const V3f& n, float over_h)
       : maps_(maps),
         texels_(maps.texels.data() + index * maps.texels_of_point()),
         n_(n),
-        // Plus half a texel's width: points closer to the plane count as on it.
-        over_h_(maps.scale * (1 + 1 / static_cast<float>(maps.size)) / h) {}
+        over_h_(over_h) {}
 
+  /// The visible share of what the plane shows around direction `d`.
+  float share(const V3f& d, int filter) const {
+    const Sums sums = around(CubePoint(d), filter);
+    return sums.all > 0 ? sums.seen / sums.all : 0;
+  }
+
+ private:
   Sums around(const CubePoint& p, int filter) const {
     const Window across(p.u, maps_.size, filter), down(p.v, maps_.size, filter);
     const auto inside = [&](int first) { return first >= 0 && first + filter < maps_.size; };
@@ -126,8 +132,6 @@ class Comparison {
     }
     return sums;
   }
-
- private:
   const std::uint16_t* texel(int face, int i, int j) const {
     const auto n = static_cast<std::size_t>(maps_.size);
     return texels_ + (static_cast<std::size_t>(face) * n + static_cast<std::size_t>(j)) * n +
@@ -180,8 +184,20 @@ float NodeView::seen(const V3f& x, const V3f& n) const {
   const V3f d = x - point_;
   const float h = d.dot(n);
   if (!(h < 0)) return 0;  // the point lies behind the surface
-  const Sums sums = Comparison(*maps_, index_, n, h).around(CubePoint(d), filter_);
-  return sums.all > 0 ? sums.seen / sums.all : 0;
+  // Plus half a texel's width: points closer to the plane count as on it.
+  const float over_h = maps_->scale * (1 + 1 / static_cast<float>(maps_->size)) / h;
+  return Comparison(*maps_, index_, n, over_h).share(d, filter_);
+}
+
+float NodeView::seen(const V3f& x) const {
+  const V3f d = x - point_;
+  return d == V3f(0.0F) ? 1.0F : seen(x, -d.normalized());
+}
+
+float NodeView::open(const V3f& w) const {
+  // A plane behind all that a texel can hold but 0, which is 6e-8 and more (Nearness).
+  constexpr float over_h = -1e-20F;
+  return Comparison(*maps_, index_, -w, over_h).share(w, filter_);
 }
 
 void Codec<NodeMaps>::write(ArtefactWriter& out, const NodeMaps& maps) {

@@ -1,0 +1,73 @@
+#include "renderer/connections/node_visibility.h"
+
+#include "renderer/connections/node_weights.h"
+#include "renderer/view_maps/filtered_node_maps.h"
+
+namespace lacuna {
+
+namespace {
+
+/// Of so many decisions by maps one is checked by a ray: too few for the time to matter.
+constexpr std::size_t check_every = 64;
+/// The decision is that of the nearest texels, bilinearly: the maps of many lights' visibility blur
+/// shadows' edges, which a probability need not.
+constexpr int filter_of_decisions = 1;
+
+}  // namespace
+
+std::vector<double> seen_from(const LightVertices& lights, int s, const NodeView& view) {
+  const auto on_surface = [&](const V3f& y, const V3f& ng) {
+    return double(view.seen(y, dot(view.point() - y, ng) < 0 ? -ng : ng));
+  };
+  std::vector<double> seen;
+  for (std::size_t i = 0; i < lights.count(s); ++i) {
+    if (s > 1) {
+      const Surface& y = lights.at(s, i).surface;
+      seen.push_back(on_surface(y.x, y.ng));
+    } else if (const EmitterPoint& e = lights.emitter(i); e.infinite()) {
+      seen.push_back(double(view.open(e.x)));
+    } else if (e.kind == EmitterPoint::Kind::area) {
+      seen.push_back(on_surface(e.x, e.ng));
+    } else {
+      seen.push_back(double(view.seen(e.x)));
+    }
+  }
+  return seen;
+}
+
+void NodeVisibility::prepare(const PrepareContext& context, std::span<const V3f> nodes,
+                             const SkeletonConnectionsSettings& settings) {
+  nodes_ = nodes;
+  maps_.reset();
+  if (settings.visible && settings.node_visibility == NodeVisibilityTest::node_maps) {
+    maps_ = filtered_node_maps(context, nodes, settings.map_size);
+  }
+}
+
+std::vector<double> NodeVisibility::between(const IterationContext& context, std::size_t node,
+                                            const LightVertices& lights, int s,
+                                            Tests& tests) const {
+  if (maps_ != nullptr) return by_map(context, node, lights, s, tests);
+  const std::vector<Ray> rays = rays_to(lights, s, nodes_[node]);
+  std::vector<std::uint8_t> occluded(rays.size());
+  context.scene.rays().occluded(rays, occluded);
+  tests.rays += rays.size();
+  std::vector<double> visible;
+  for (const std::uint8_t hidden : occluded) visible.push_back(hidden != 0 ? 0 : 1);
+  return visible;
+}
+
+std::vector<double> NodeVisibility::by_map(const IterationContext& context, std::size_t node,
+                                           const LightVertices& lights, int s, Tests& tests) const {
+  const NodeView view(*maps_, node, nodes_[node], filter_of_decisions);
+  const std::vector<double> visible = seen_from(lights, s, view);
+  for (std::size_t i = context.iteration % check_every; i < visible.size(); i += check_every) {
+    const bool clear = !context.scene.rays().occluded(ray_to(lights, s, i, nodes_[node]));
+    ++tests.rays;
+    ++tests.checked;
+    if (clear != (visible[i] > 0.5)) ++tests.wrong;
+  }
+  return visible;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "renderer/path/contexts.h"
+#include "renderer/view_maps/node_maps.h"
+
+namespace lacuna {
+
+/// The positions of the nodes of the filtered skeleton, in scene units.
+std::vector<V3f> filtered_nodes(SpaceAnalysis& space);
+
+/// Cube maps of depth around `nodes`, those of filtered_nodes(), from the cache or traced (Noel
+/// 2015, 8.3). `size`: texels along a side of a face, in [8, 1024]. Throws MemoryLimitError, and
+/// std::runtime_error if the cache's maps are of other nodes.
+std::shared_ptr<const NodeMaps> filtered_node_maps(const PrepareContext& context,
+                                                   std::span<const V3f> nodes, int size);
+
+}  // namespace lacuna
