@@ -4,13 +4,14 @@ import kol
 import nabata
 import noel_connections
 import noel_guides
+import noel_regions
 import noel_shadows
 import noel_shape
 import popov
 import references
 
 ENTRIES = (*references.ENTRIES, *noel_shape.ENTRIES, *noel_shadows.ENTRIES, *noel_guides.ENTRIES,
-           *noel_connections.ENTRIES, *popov.ENTRIES, *nabata.ENTRIES, *kol.ENTRIES)
+           *noel_regions.ENTRIES, *noel_connections.ENTRIES, *popov.ENTRIES, *nabata.ENTRIES, *kol.ENTRIES)
 
 
 def find(name):
