@@ -7,13 +7,15 @@ import noel_clusters
 import noel_connections
 import noel_guides
 import noel_mapping
+import noel_regions
 import noel_shadows
 import noel_shape
 import popov
 import references
 
-ENTRIES = (*references.ENTRIES, *noel_shape.ENTRIES, *noel_shadows.ENTRIES, *noel_clusters.ENTRIES, *noel_guides.ENTRIES,
-           *noel_mapping.ENTRIES, *noel_connections.ENTRIES, *popov.ENTRIES, *nabata.ENTRIES, *kol.ENTRIES, *kol_front.ENTRIES)
+MODULES = (references, noel_shape, noel_shadows, noel_clusters, noel_guides, noel_regions, noel_mapping, noel_connections, popov,
+           nabata, kol, kol_front)
+ENTRIES = tuple(entry for module in MODULES for entry in module.ENTRIES)
 
 
 def find(name):

@@ -1,5 +1,5 @@
-"""Guided rays: the skeleton's lobes (chapter 9) and the faces of regions (chapter 10). `published` has the thesis' settings,
-`ours` this project's, which it learns while it renders."""
+"""Guided rays: the skeleton's lobes (chapter 9). `published` has the thesis' settings, `ours` this project's, which it learns
+while it renders."""
 
 import statistics
 
@@ -14,7 +14,6 @@ SKELETON_GUIDE = "path with guide: skeleton"
 GAIN = "error of BSDF sampling / of skeleton guiding, at equal time"
 BSDF = {"type": "bsdf"}
 GUIDE = "/integrator/guide"
-DOOR = {"/scene": "door/scene.glb", "/camera": "corner", "/resolution": [1024, 512], "/reference": "auto"}
 SPONZA = {"/scene": "sponza/scene.glb", "/resolution": [1024, 512], "/reference": "auto"}
 
 # The configurations of 9.3 and the strength s that its text names: None where only the figure has it. Two small lights that
@@ -261,81 +260,3 @@ def guides_beside(run):
     run.found("corridor: error of the best skeleton guide / of the SD-tree",
               ours=error_at(at[fixed]).ratio(error_at(at["SD-tree"])))
     run.note(f"the best skeleton guide by the same seeds: {fixed}, which flatters it")
-
-
-REGIONS = {  # chapter 10: the next portal, half of the rays, and nothing between regions
-    "published": {"portals": {"type": "portals", "portal": "next", "probability": 0.5, "mixing": 0},
-                  "face_irradiance": {"type": "face_irradiance", "probability": 0.5, "mixing": 0}},
-    "ours": {"portals": {"type": "portals"}, "face_irradiance": {"type": "face_irradiance"}},
-}
-
-
-def region_sweep(full, guide):
-    alone = {**REGIONS["published"][guide], "guide_only": True}
-    return {
-        "label": f"{guide} at equal iterations",
-        "job": {**{p.lstrip("/"): v for p, v in DOOR.items()}, "resolution": [1024, 512] if full else [256, 128],
-                "integrator": {"type": "path", "max_depth": 6}, "analysis": {"resolution": 128},
-                "budget": {"iterations": 4096 if full else 32}, "reference_iterations": 4000 if full else 160},
-        "axes": {GUIDE: [BSDF, REGIONS["published"][guide], REGIONS["ours"][guide], alone]},
-        "seeds": 5 if full else 3,
-    }
-
-
-def measure_regions(run, guide, name):
-    """Errors after as many iterations, the thesis' settings and ours; and what is lost where the guide draws alone."""
-    sweep = region_sweep(run.full, guide)
-    answers = run.answers(sweep)
-    folders = {str(g): [run.runs / cell_with(answers, guide=g)["runs"][k]["name"] for k in range(answers["seeds"])]
-               for g in sweep["axes"][GUIDE]}
-
-    def told(g):
-        return [run.report(cell_with(answers, guide=g), seed) for seed in range(answers["seeds"])]
-
-    plain, rows = told(BSDF), []
-    for which in KINDS:
-        own = told(REGIONS[which][guide])
-
-        def gain(value, own=own):
-            return geometric_mean_of([value(a) / value(b) for a, b in zip(plain, own)])
-
-        gains = [gain(lambda r, m=metric: r["errors"][m]) for metric in ("mae", "rmse", "relmse")]
-        run.found(f"error of BSDF sampling / of {name}, at equal iterations", **{which: gains[0]})
-        rows.append((which, *map(str, gains), f"{1 / gain(lambda r: r['seconds']['render_cpu']).value:.3g}"))
-    run.tables.append(Table(("door", "gain in MAE", "in RMSE", "in relMSE", "time of an iteration"), rows))
-
-    def light(folder):
-        return sum(map(sum, layers.channels(folder, "")))
-
-    alone = sweep["axes"][GUIDE][-1]
-    run.found("light of the picture by guided rays alone / of the unbiased picture", published=geometric_mean_of(
-        [light(a) / light(b) for a, b in zip(folders[str(alone)], folders[str(BSDF)])]))
-    run.note(f"{sweep['job']['budget']['iterations']} iterations, {answers['seeds']} runs; published: next portal, no mixing, "
-             "half of the rays; rays of the guide alone: `guide_only`")
-    run.note("a portal that is forced for all points, or the border of one region (SIS3 and 4, FIS3 and 4), is not a setting; "
-             "nor are d_t and o_t, in place of which regions are mixed (docs/methods.md)")
-
-
-LOST = at_most("light of the picture by guided rays alone / of the unbiased picture", 1)
-
-
-@ENTRIES.measured(
-    "noel-fig-91", "Noel 2015, Fig. 91, p. 155",
-    "door, rays through portals: less noise than BSDF sampling after 4096 iterations (SIS2); alone they are biased (SIS1)",
-    "path with guide: portals", (at_least("error of BSDF sampling / of portals, at equal iterations", 1), LOST),
-    sweep=lambda full: region_sweep(full, "portals"))
-def fig_91(run):
-    """Rays through portals against BSDF sampling on door, after as many iterations of each."""
-    measure_regions(run, "portals", "portals")
-
-
-@ENTRIES.measured(
-    "noel-fig-94", "Noel 2015, Fig. 94, p. 158 (too bright there: section 10.4.2)",
-    "door, face irradiance: less noise than BSDF sampling after 4096 iterations (FIS2); alone it is biased (FIS1)",
-    "path with guide: face_irradiance",
-    (at_least("error of BSDF sampling / of face irradiance, at equal iterations", 1), LOST),
-    sweep=lambda full: region_sweep(full, "face_irradiance"))
-def fig_94(run):
-    """Rays towards bright faces against BSDF sampling on door, after as many iterations of each. The thesis' pictures are
-    too bright; ours have the densities that it got wrong (10.4.2)."""
-    measure_regions(run, "face_irradiance", "face irradiance")

@@ -11,7 +11,7 @@ from harness import child
 from harness.entry import Entries
 from harness.measured import exact, median_of
 from harness.run import Table
-from harness.verdict import at_least, at_most
+from harness.verdict import at_most
 
 ENTRIES = Entries()
 
@@ -145,11 +145,3 @@ def skeletons(run):
             rows += compare(run, name, pathlib.Path(folder))
     run.tables.append(Table(("grid", "", "nodes", "edges", "surface", "his to ours", "90 %", "ours to his", "90 %",
                              "in ball"), rows))
-
-
-ENTRIES.planned(
-    "noel-fig-86", "Noel 2015, Fig. 86, p. 151",
-    "rays through a portal leave the region: from the back room of door, from under the table",
-    "path with guide: portals",
-    (at_least("share of 128 rays from the back room that reach the main room", 1),
-     at_least("share of rays from under the table that leave the region", 1)))

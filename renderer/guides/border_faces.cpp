@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <span>
 
+#include "renderer/guides/named_region.h"
+
 namespace lacuna {
 
 void BorderFaceLight::prepare(const PrepareContext& context, const SurfaceLookup&) {
@@ -12,6 +14,10 @@ void BorderFaceLight::prepare(const PrepareContext& context, const SurfaceLookup
   light_.assign(borders_.voxels.size(), 0.0);
   tables_.resize(labels.regions.size());
   boxes_.resize(labels.regions.size());
+  lit_portal_faces_.resize(labels.regions.size());
+  least_distance_ = settings_.least_distance * double(context.scene.bounds().size().length()) /
+                    context.space.voxels().transform.voxel_size;
+  if (settings_.through) through_ = named_region(*settings_.through, context).region;
   for (std::uint32_t r = 0; r < boxes_.size(); ++r) {
     for (std::uint64_t i = 0; i < borders_.faces(r); ++i) {
       const VoxelFace face = borders_.face(r, i);
@@ -20,6 +26,58 @@ void BorderFaceLight::prepare(const PrepareContext& context, const SurfaceLookup
       boxes_[r].add(voxel + Imath::V3i(face.normal()));
     }
   }
+}
+
+VoxelFace BorderFaceLight::draw(std::uint32_t region, const V3d& from, Rng& rng) const {
+  const std::uint32_t own = drawn_by(region);
+  const VoxelFace face = borders_.face(own, tables_[own].sample(rng));
+  if (!has_thresholds()) return face;
+  const std::uint32_t next = beyond(face);
+  if (!is_replaced(face, next, from)) return face;
+  return borders_.face(next, tables_[next].sample(rng));
+}
+
+void BorderFaceLight::add_parts(std::uint32_t region, const V3d& from, double weight,
+                                FaceParts& parts) const {
+  const std::uint32_t own = drawn_by(region);
+  parts.add(boxes_[own], own, weight);
+  const std::vector<LitPortalFace>& lit = lit_portal_faces_[own];
+  const auto regions = static_cast<std::uint32_t>(tables_.size());
+  for (std::size_t i = 0; i < lit.size();) {
+    const std::uint32_t next = lit[i].beyond;
+    double replaced = 0;  // Q_n
+    for (; i < lit.size() && lit[i].beyond == next; ++i) {
+      if (!suits(lit[i].centre, lit[i].axis, from)) replaced += lit[i].probability;
+    }
+    if (replaced > 0 && !tables_[next].empty())
+      parts.add(boxes_[next], regions + next, weight * replaced);
+  }
+}
+
+double BorderFaceLight::probability(std::uint32_t part, const CrossedFace& face, std::uint32_t near,
+                                    std::uint32_t far, const V3d& from) const {
+  const auto regions = static_cast<std::uint32_t>(tables_.size());
+  const bool first_drawn = part < regions;
+  const std::uint32_t region = first_drawn ? part : part - regions;
+  if (region != near) return 0;
+  const VoxelFace own{static_cast<std::uint32_t>(label_->index(face.from)), face.side_of_from()};
+  if (first_drawn && has_thresholds() && is_replaced(own, far, from)) return 0;
+  return probability(region, own);
+}
+
+/// "Too close, or located at a grazing angle" is why the thesis replaces a face (10.4.2). Its
+/// conditions, a distance "larger than d_t" and a cosine "greater than o_t", say the opposite: with
+/// its d_t, about one voxel and a half of its grid, they would keep only the faces beside the
+/// point, edge-on. So they are read as its reason says.
+bool BorderFaceLight::suits(const V3d& centre, int axis, const V3d& from) const {
+  const V3d apart = centre - from;
+  const double distance = apart.length();
+  return distance >= least_distance_ && std::abs(apart[axis]) >= settings_.least_cosine * distance;
+}
+
+std::uint32_t BorderFaceLight::beyond(const VoxelFace& face) const {
+  const Imath::V3i voxel = label_->voxel(face.voxel) + Imath::V3i(face.normal());
+  return in_grid(voxel, label_->size()) ? (*label_)(voxel) : no_region;
 }
 
 std::uint64_t BorderFaceLight::index(std::uint32_t region, const VoxelFace& face) const {
@@ -49,6 +107,23 @@ void BorderFaceLight::update(std::span<const Accumulator* const> accumulators,
 
 void BorderFaceLight::make_table(std::uint32_t region) {
   tables_[region] = AliasTable(std::span(light_).subspan(first(region), borders_.faces(region)));
+  if (has_thresholds()) find_lit_portal_faces(region);
+}
+
+void BorderFaceLight::find_lit_portal_faces(std::uint32_t region) {
+  std::vector<LitPortalFace>& lit = lit_portal_faces_[region];
+  lit.clear();
+  const AliasTable& table = tables_[region];
+  for (std::uint32_t i = 0; i < table.size(); ++i) {
+    const auto probability = double(table.pmf(i).value);
+    if (!(probability > 0)) continue;
+    const VoxelFace face = borders_.face(region, i);
+    const std::uint32_t next = beyond(face);
+    if (next != no_region) lit.push_back({centre(face), face.axis(), next, probability});
+  }
+  std::stable_sort(lit.begin(), lit.end(), [](const LitPortalFace& a, const LitPortalFace& b) {
+    return a.beyond < b.beyond;
+  });
 }
 
 void BorderFaceLight::load(ByteReader& in) {

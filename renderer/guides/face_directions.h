@@ -77,7 +77,7 @@ class FaceDirections final : public GuidingDistribution {
       left -= part;
     }
     if (region == no_region) return std::nullopt;
-    const VoxelFace face = faces_.draw(region, rng);
+    const VoxelFace face = faces_.draw(region, from, rng);
     const V2f u = rng.next2();
     const V3d d = face.point(label_->voxel(face.voxel), double(u.x), double(u.y)) - from;
     const double ahead = d.dot(face.normal());
@@ -170,7 +170,7 @@ class FaceDirections final : public GuidingDistribution {
     parts.clear();
     for (const auto& share : regions) {
       const double often = drawn(share.region);
-      if (often > 0) faces_.add_parts(share.region, share.weight * often, parts);
+      if (often > 0) faces_.add_parts(share.region, from, share.weight * often, parts);
     }
     const GridRay ray(from, V3d(w));
     double sum = 0;
@@ -180,7 +180,7 @@ class FaceDirections final : public GuidingDistribution {
         const std::uint32_t near = last ? *last : label_at(face.from), far = label_at(face.to);
         last = far;
         if (near == far) return true;
-        const double p = faces_.probability(part.index, face, near, far);
+        const double p = faces_.probability(part.index, face, near, far, from);
         sum += part.weight * p * face.t * face.t * std::abs(ray.inverse[face.axis]);
         return true;
       });

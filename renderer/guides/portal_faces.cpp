@@ -1,8 +1,11 @@
 #include "renderer/guides/portal_faces.h"
 
+#include <cmath>
 #include <map>
 
+#include "renderer/core/scene_error.h"
 #include "renderer/guides/arriving_power.h"
+#include "renderer/guides/named_region.h"
 #include "renderer/guides/shortest_paths.h"
 
 namespace lacuna {
@@ -38,6 +41,36 @@ VoxelBox box_around(const PortalGrid& grid, const Portal& portal) {
     box.add(voxel + Imath::V3i(face.normal()));
   }
   return box;
+}
+
+/// The squared distance of `x`, in voxels, from the nearest point of a portal.
+double squared_distance(const PortalGrid& grid, const Portal& portal, const V3d& x) {
+  double least = HUGE_VAL;
+  for (std::uint64_t i = 0; i < portal.faces(); ++i) {
+    const int axis = grid.portals.face(portal, i).axis();
+    V3d apart = x - grid.face_centre(portal, i);
+    for (int a = 0; a < 3; ++a) {  // a face is flat along its axis, half a voxel wide each way else
+      apart[a] = std::max(0.0, std::abs(apart[a]) - (a == axis ? 0.0 : 0.5));
+    }
+    least = std::min(least, apart.length2());
+  }
+  return least;
+}
+
+/// The portal nearest to a point of the empty space; among equals the first. Throws SceneError.
+std::uint32_t nearest_portal(const PortalGrid& grid, const NamedRegion& place) {
+  const std::vector<Portal>& all = grid.portals.portals;
+  if (all.empty()) {
+    throw SceneError(
+        "guide: \"through\" names no portal: at this resolution the empty space has none");
+  }
+  std::uint32_t nearest = 0;
+  double least = HUGE_VAL;
+  for (std::uint32_t p = 0; p < all.size(); ++p) {
+    const double distance = squared_distance(grid, all[p], place.point);
+    if (distance < least) least = distance, nearest = p;
+  }
+  return nearest;
 }
 
 /// Whether half of a portal or more is seen from `eye`, in voxels, by some of its faces.
@@ -77,14 +110,27 @@ std::vector<V3d> centres_of(const RegionLabels& labels) {
 void PortalFaces::prepare(const PrepareContext& context, const SurfaceLookup& lookup) {
   const RegionLabels& labels = context.space.regions();
   portals_ = &context.space.portals();
-  const std::vector<double> power = arriving_power(context.scene, lookup, labels.regions.size(),
-                                                   settings_.light_rays, context.pool);
-  const std::vector<V3d> centres = centres_of(labels);
   const PortalGrid grid{*portals_, labels.label, context.space.voxels().transform};
+  voxel_size_ = grid.transform.voxel_size;
   for (const Portal& p : portals_->portals) {
     middles_.push_back(middle(grid, p));
     boxes_.push_back(box_around(grid, p));
   }
+  if (settings_.through) {
+    const std::uint32_t p = nearest_portal(grid, named_region(*settings_.through, context));
+    const double each = 1 / static_cast<double>(portals_->portals[p].faces());
+    exits_.assign(labels.regions.size(), {.exits = {{p, 1, each}}, .mass = 1});
+  } else {
+    find_all_exits(context, lookup);
+  }
+}
+
+void PortalFaces::find_all_exits(const PrepareContext& context, const SurfaceLookup& lookup) {
+  const RegionLabels& labels = context.space.regions();
+  const PortalGrid grid{*portals_, labels.label, context.space.voxels().transform};
+  const std::vector<double> power = arriving_power(context.scene, lookup, labels.regions.size(),
+                                                   settings_.light_rays, context.pool);
+  const std::vector<V3d> centres = centres_of(labels);
   exits_.resize(labels.regions.size());
   context.pool.for_each(static_cast<int>(exits_.size()), [&](int i) {
     const auto r = static_cast<std::uint32_t>(i);
@@ -139,7 +185,7 @@ void PortalFaces::find_exits(std::uint32_t region, const std::vector<V3d>& centr
   }
 }
 
-VoxelFace PortalFaces::draw(std::uint32_t region, Rng& rng) const {
+VoxelFace PortalFaces::draw(std::uint32_t region, const V3d&, Rng& rng) const {
   const std::vector<Exit>& exits = exits_[region].exits;
   double left = rng.next_choice();
   std::size_t i = 0;
@@ -154,11 +200,17 @@ std::vector<std::pair<std::string, double>> PortalFaces::statistics() const {
     guided += e.mass > 0 ? 1 : 0;
     exits += e.exits.size();
   }
-  return {
+  std::vector<std::pair<std::string, double>> all{
       {"regions", static_cast<double>(exits_.size())},
       {"portals", static_cast<double>(middles_.size())},
       {"guided_regions", static_cast<double>(guided)},
       {"exits_mean", guided > 0 ? static_cast<double>(exits) / static_cast<double>(guided) : 0}};
+  if (settings_.through) {
+    const Portal& portal = portals_->portals[exits_.front().exits.front().portal];
+    all.emplace_back("through_area",
+                     static_cast<double>(portal.faces()) * voxel_size_ * voxel_size_);
+  }
+  return all;
 }
 
 }  // namespace lacuna

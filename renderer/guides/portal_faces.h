@@ -12,7 +12,8 @@ namespace lacuna {
 /// arrives. One portal on each path is sampled with weight f / d^2, where f is the power that
 /// arrives in the region at its end and d its length, as in skeleton guiding (Noel 2015, eq. 164);
 /// the faces of a portal have equal probability (10.4.1, for one light). Power that arrives in the
-/// region itself lowers the region's mass().
+/// region itself lowers the region's mass(). Where the settings name a portal (`through`), it is
+/// the only one of every region, whose mass() is 1 (SIS3 and SIS4).
 class PortalFaces {
  public:
   static constexpr bool learns = false;
@@ -27,14 +28,14 @@ class PortalFaces {
 
   /// Share of a region's light that comes from other regions, in [0, 1]; 0: nothing is sampled.
   double mass(std::uint32_t region) const { return exits_[region].mass; }
-  void add_parts(std::uint32_t region, double weight, FaceParts& parts) const {
+  void add_parts(std::uint32_t region, const V3d&, double weight, FaceParts& parts) const {
     for (const Exit& e : exits_[region].exits)
       parts.add(boxes_[e.portal], e.portal, weight * e.each);
   }
-  VoxelFace draw(std::uint32_t region, Rng& rng) const;
+  VoxelFace draw(std::uint32_t region, const V3d& from, Rng& rng) const;
   /// 1 for a face of `portal`, that is, between its two regions `near` and `far`; else 0.
   double probability(std::uint32_t portal, const CrossedFace&, std::uint32_t near,
-                     std::uint32_t far) const {
+                     std::uint32_t far, const V3d&) const {
     const Portal& p = portals_->portals[portal];
     return (p.a == near && p.b == far) || (p.a == far && p.b == near) ? 1 : 0;
   }
@@ -53,12 +54,14 @@ class PortalFaces {
     double mass = 0;
   };
 
+  void find_all_exits(const PrepareContext& context, const SurfaceLookup& lookup);
   void find_exits(std::uint32_t region, const std::vector<V3d>& centres,
                   const std::vector<double>& power, const RegionLabels& labels,
                   const std::function<bool(const Portal&)>& sees);
 
   PortalsGuideSettings settings_;
   const Portals* portals_ = nullptr;
+  double voxel_size_ = 0;        // scene units
   std::vector<V3d> middles_;     // of the portals, voxels
   std::vector<VoxelBox> boxes_;  // of the portals
   std::vector<Exits> exits_;     // of each region

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string_view>
 #include <variant>
 
@@ -84,12 +85,16 @@ struct RegionGuideSettings {
   AutoNumber probability;
   int mixing = 4;
   bool guide_only = false;
+  /// A point in the coordinates of the scene's file: the faces that it names are those of all
+  /// regions.
+  std::optional<std::array<double, 3>> through;
   bool biased() const { return guide_only; }
   bool operator==(const RegionGuideSettings&) const = default;
 };
 
+/// `through`: the documentation of that field, which names other faces for each guide.
 template <class V>
-void describe_region_guide(V& v, RegionGuideSettings& s) {
+void describe_region_guide(V& v, RegionGuideSettings& s, const char* through) {
   v("probability", s.probability,
     {.doc = "probability of sampling a direction through a face instead of from the BSDF; "
             "\"auto\": learned for each region while rendering",
@@ -107,6 +112,7 @@ void describe_region_guide(V& v, RegionGuideSettings& s) {
          "never sample the BSDF in a region that has a distribution, whatever `probability` says: "
          "biased, because light that comes past its faces is missed (Noel 2015, 10.4, SIS1 and "
          "FIS1)"});
+  v("through", s.through, {.doc = through, .min = -1e15, .max = 1e15});
 }
 
 /// The portal on a shortest path that rays are sent through.
@@ -131,7 +137,11 @@ struct PortalsGuideSettings : RegionGuideSettings, LightRays {
 };
 template <class V>
 void describe(V& v, PortalsGuideSettings& s) {
-  describe_region_guide(v, s);
+  describe_region_guide(v, s,
+                        "a point of the empty space, in the coordinates of the scene's file: all "
+                        "guided rays, of every region, go through the portal nearest to it (Noel "
+                        "2015, 10.4.1, SIS3 and SIS4), and `portal` and `light_rays` have no "
+                        "effect");
   v("portal", s.portal,
     {.doc = "the portal on a shortest path that rays are sent through", .published = "\"next\""});
   describe_light_rays(v, s, "rays from the lights that estimate the power arriving in each region");
@@ -143,11 +153,29 @@ struct FaceIrradianceGuideSettings : RegionGuideSettings {
   static constexpr std::string_view doc =
       "rays through the faces of a region's border, in proportion to the light found through each "
       "(Noel 2015, 10.4.2)";
+  double least_distance = 0;
+  double least_cosine = 0;
   bool operator==(const FaceIrradianceGuideSettings&) const = default;
 };
 template <class V>
 void describe(V& v, FaceIrradianceGuideSettings& s) {
-  describe_region_guide(v, s);
+  describe_region_guide(v, s,
+                        "a point of the empty space, in the coordinates of the scene's file: all "
+                        "guided rays, of every region, go through faces of the border of the "
+                        "region that it lies in (Noel 2015, 10.4.2, FIS3 and FIS4)");
+  v("least_distance", s.least_distance,
+    {.doc = "where the centre of the chosen face is nearer than this share of the diagonal of the "
+            "scene's box, a face of the border of the region behind it takes its place (d_t, "
+            "10.4.2); 0: never",
+     .min = 0,
+     .max = 1,
+     .published = "0.01"});
+  v("least_cosine", s.least_cosine,
+    {.doc = "the same where the cosine between the face's normal and the direction to its centre "
+            "is below this (o_t); 0: never",
+     .min = 0,
+     .max = 1,
+     .published = "0.5"});
 }
 
 /// guide: sd_tree.

@@ -17,6 +17,7 @@ using test::PathScene;
 struct Case {
   std::string name;
   GuideSettings guide;
+  bool through = false;  ///< the guide's `through` is a portal's of each scene
   friend std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 };
 
@@ -34,7 +35,31 @@ std::vector<Case> cases() {
   all.push_back({"half_spheres", skeleton(0, ImportanceAim::tightest)});
   all.push_back({"blunt", skeleton(1e-3, ImportanceAim::mean)});
   all.push_back({"narrow", skeleton(100, ImportanceAim::last)});
+  // Half of all faces are replaced, also near ones alone and slanting ones alone.
+  auto thresholds = test::in_small_pictures(FaceIrradianceGuideSettings{});
+  thresholds.least_distance = 0.1;
+  all.push_back({"far_faces", thresholds});
+  thresholds.least_cosine = 0.5;
+  all.push_back({"far_facing_faces", thresholds});
+  all.push_back({"far_facing_faces_through_one_border", thresholds, true});
+  all.push_back({"through_one_portal", test::in_small_pictures(PortalsGuideSettings{}), true});
+  all.push_back(
+      {"through_one_border", test::in_small_pictures(FaceIrradianceGuideSettings{}), true});
   return all;
+}
+
+/// The guide of a case in a scene; none: it needs a portal, and the scene has none.
+std::optional<GuideSettings> guide_in(const PathScene& s, const Case& c) {
+  if (!c.through) return c.guide;
+  const auto point = test::portal_point([&] { return load(s); }, environment(s));
+  if (!point) return {};
+  GuideSettings guide = c.guide;
+  std::visit(
+      [&](auto& settings) {
+        if constexpr (requires { settings.through; }) settings.through = point;
+      },
+      guide);
+  return guide;
 }
 
 constexpr std::size_t points = 4;
@@ -49,7 +74,9 @@ TEST_P(Density, IsThatOfItsSamples) {
   const double level = statistics::sidak(1e-3, scenes.size() * cases().size() * points * 2);
   std::size_t checked = 0;
   for (const PathScene& s : scenes) {
-    const GuidedScene scene([&] { return load(s); }, GetParam().guide, 3, environment(s));
+    const auto settings = guide_in(s, GetParam());
+    if (!settings) continue;
+    const GuidedScene scene([&] { return load(s); }, *settings, 3, environment(s));
     const GuidingDistribution& directions = scene.directions();
     for (const Vertex& v : scene.guided_vertices(points)) {
       SCOPED_TRACE(testing::Message() << s << " at " << v.surface.x);
@@ -80,7 +107,9 @@ TEST_P(Density, WithTheSurfaceIsThatOfItsSamples) {
   std::uint64_t checked = 0;
   bool learns = false;
   for (const PathScene& s : scenes) {
-    const GuidedScene scene([&] { return load(s); }, GetParam().guide, 3, environment(s));
+    const auto settings = guide_in(s, GetParam());
+    if (!settings) continue;
+    const GuidedScene scene([&] { return load(s); }, *settings, 3, environment(s));
     learns = learns || scene.directions().learns();
     // As MixedGuide's own directions: those of the scene.
     class Lent final : public GuidingDistribution {

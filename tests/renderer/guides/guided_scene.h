@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <memory>
 
 #include "renderer/guides/make_guide.h"
@@ -38,6 +40,7 @@ class GuidedScene {
   }
 
   PrepareContext context() { return {scene_, pool_, *space_, camera_}; }
+  SpaceAnalysis& space() { return *space_; }
   const GuidingDistribution& directions() const { return *directions_; }
   const Scene& scene() const { return scene_; }
 
@@ -93,5 +96,36 @@ class GuidedScene {
   std::unique_ptr<SpaceAnalysis> space_;
   std::unique_ptr<GuidingDistribution> directions_;
 };
+
+/// The largest portal of the regions of a scene's empty space, the first of equals; none: it has
+/// no portals.
+inline std::optional<Portal> largest_portal(SpaceAnalysis& space) {
+  const std::vector<Portal>& all = space.portals().portals;
+  const auto most = std::max_element(all.begin(), all.end(), [](const Portal& a, const Portal& b) {
+    return a.faces() < b.faces();
+  });
+  return most == all.end() ? std::nullopt : std::optional(*most);
+}
+
+/// A point that names a portal and one of its regions (RegionGuideSettings::through): the middle of
+/// its middle face.
+inline std::array<double, 3> point_of(GuidedScene& scene, const Portal& portal) {
+  SpaceAnalysis& space = scene.space();
+  const VoxelFace face = space.portals().face(portal, portal.faces() / 2);
+  const V3d in_voxels = face.point(space.regions().label.voxel(face.voxel), 0.5, 0.5);
+  const V3d at = space.voxels().transform.to_world(in_voxels) + scene.scene().data().origin;
+  return {at.x, at.y, at.z};
+}
+
+/// That of the largest portal; none: there is no portal.
+inline std::optional<std::array<double, 3>> portal_point(
+    const std::function<SceneData()>& make, const std::optional<EnvironmentImage>& environment,
+    int resolution = 24) {
+  PortalsGuideSettings any;
+  any.light_rays = 1;
+  GuidedScene scene(make, any, 0, environment, resolution);
+  const auto portal = largest_portal(scene.space());
+  return portal ? std::optional(point_of(scene, *portal)) : std::nullopt;
+}
 
 }  // namespace lacuna::test

@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "tests/renderer/guides/guided_scene.h"
 #include "tests/renderer/integrators/methods.h"
 #include "tests/renderer/integrators/same_picture.h"
 #include "tests/renderer/path/scenes.h"
@@ -97,6 +98,35 @@ TEST(GuideOnly, MissesLightAndSaysSo) {
       test::mean_over_iterations(render(load(scene), guided_picture(path, 400)));
   EXPECT_LT(part.mean(), all.mean());
   EXPECT_LT(statistics::t_test(part, all), 1e-4) << part.mean() << " of " << all.mean();
+}
+
+// SIS4 and FIS4, and the thresholds of 10.4.2, of which half of all faces fall below one.
+TEST(NamedFaces, AgreeWithPathTracing) {
+  const PathScene scene{"ajar"};
+  const auto make = [&] { return load(scene); };
+  RenderSettings plain = guided_picture(test::path_tracing(5), 800);
+  plain.seed = 2;
+  const Rendering expected = render(make(), plain);
+  const auto point = test::portal_point(make, std::nullopt, plain.resolution);
+  ASSERT_TRUE(point);
+  const auto expect_agreement_of = [&](auto guide, const auto& change, const char* name) {
+    SCOPED_TRACE(name);
+    change(guide);
+    PathSettings path = test::path_tracing(5);
+    path.guide = guide;
+    expect_same_picture(render(make(), guided_picture(path, 200)), expected, 0.09);
+  };
+  const auto half = [](auto guide) { return test::in_small_pictures(guide); };
+  const auto through = [&](auto& guide) { guide.through = point; };
+  expect_agreement_of(half(PortalsGuideSettings{}), through, "portal");
+  expect_agreement_of(PortalsGuideSettings{}, through, "portal, learned probability");
+  expect_agreement_of(half(FaceIrradianceGuideSettings{}), through, "border");
+  const auto thresholds = [](auto& guide) {
+    guide.least_distance = 0.1;
+    guide.least_cosine = 0.5;
+    guide.mixing = 0;
+  };
+  expect_agreement_of(half(FaceIrradianceGuideSettings{}), thresholds, "thresholds");
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Guided, testing::ValuesIn(guided_agreements),

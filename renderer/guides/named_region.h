@@ -1,0 +1,21 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "renderer/core/vec.h"
+#include "renderer/path/contexts.h"
+
+namespace lacuna {
+
+/// A point of the empty space that a guide's settings name (RegionGuideSettings::through).
+struct NamedRegion {
+  V3d point;             ///< in voxels
+  std::uint32_t region;  ///< that the point lies in
+};
+
+/// `through`: in the coordinates of the scene's file. Builds the regions. Throws SceneError, which
+/// says why, where the point lies in no region.
+NamedRegion named_region(const std::array<double, 3>& through, const PrepareContext& context);
+
+}  // namespace lacuna
