@@ -75,7 +75,7 @@ FAULTS = [
     Fault("chains start anywhere", "renderer/integrators/metropolis.cpp",
           "starts.push_back(samples[n].number);", "starts.push_back(samples.back().number);"),
     Fault("borders of emitters take one sample", "renderer/integrators/seen_emission.cpp",
-          "uneven_[index] != 0 ? side : 1", "uneven_[index] != 0 ? std::min(side, 1) : 1"),
+          "is_uneven(image, pixel) ? side : 1", "is_uneven(image, pixel) ? std::min(side, 1) : 1"),
     Fault("samples of emitters lie at the corners of cells", "renderer/integrators/seen_emission.cpp",
           "at((cell + rng.next2()) / n);", "at((cell + 0.0F * rng.next2()) / n);"),
     Fault("the probability of a path's length is forgotten", "renderer/mutations/primary_sample.h",
