@@ -310,6 +310,10 @@ FAULTS = [
           "(first || seen[before] != 0) && sees(last)", "sees(last)"),
     Fault("the next portal is taken for the last", "renderer/guides/portal_faces.cpp",
           "settings_.portal == PortalChoice::last &&", "settings_.portal == PortalChoice::next &&"),
+    Fault("faces learn radiance however it was drawn", "renderer/guides/border_faces.cpp",
+          "double(sample.radiance) / double(sample.pdf.value);", "double(sample.radiance);"),
+    Fault("faces forget earlier iterations", "renderer/guides/border_faces.cpp",
+          "light_[face] += light;", "light_[face] = light;"),
     Fault("walks from lights are guided in the weights", "renderer/guides/mixed_guide.h",
           "if (transport != guided_ || idle_) return bsdf;", "if (idle_) return bsdf;"),
     # Many lights.
