@@ -34,11 +34,12 @@ class LitScene {
   /// `visibility` sees the scene's empty space, and the lights in the groups that it wants.
   template <class Visibility>
   void prepare(Visibility& visibility) {
-    visibility.prepare({scene_, pool_, space_, camera_});
+    visibility.prepare(prepare_context());
     lights_ = walk([&](const VplGeometry& p) { return visibility.group(p); });
     const IterationContext first = context(seed_);
     visibility.begin(pass(first));
   }
+  PrepareContext prepare_context() { return {scene_, pool_, space_, camera_}; }
   SpaceAnalysis& space() { return space_; }
   const ThreadPool& pool() const { return pool_; }
 
