@@ -1,12 +1,11 @@
 #include "renderer/guides/portal_faces.h"
 
 #include <cmath>
-#include <map>
 
 #include "renderer/core/scene_error.h"
 #include "renderer/guides/arriving_power.h"
 #include "renderer/guides/named_region.h"
-#include "renderer/guides/shortest_paths.h"
+#include "renderer/guides/portal_exits.h"
 
 namespace lacuna {
 
@@ -143,45 +142,17 @@ void PortalFaces::find_all_exits(const PrepareContext& context, const SurfaceLoo
   });
 }
 
-/// By the shortest paths over regions, from centre to portal to centre.
 void PortalFaces::find_exits(std::uint32_t region, const std::vector<V3d>& centres,
                              const std::vector<double>& power, const RegionLabels& labels,
                              const std::function<bool(const Portal&)>& sees) {
-  ShortestPaths paths(centres.size());                 // their edges are portals
-  std::vector<std::uint32_t> exit(centres.size(), 0);  // the portal to aim at on the way there
-  std::vector<char> seen(centres.size(), 0);           // all portals on the way are
   const double own_size = std::max(1.0, double(labels.regions[region].opening));
-  std::map<std::uint32_t, double> by_portal;
-  double elsewhere = 0;
-  const auto other_side = [&](std::uint32_t portal, std::uint32_t of) {
-    const Portal& p = portals_->portals[portal];
-    return p.a == of ? p.b : p.a;
-  };
-  paths.find(region, [&](std::uint32_t at, double d, const auto& reach) {
-    if (at != region) {
-      const std::uint32_t last = paths.last[at], before = other_side(last, at);
-      const bool first = before == region;
-      seen[at] = (first || seen[before] != 0) && sees(portals_->portals[last]) ? 1 : 0;
-      exit[at] = first || seen[at] != 0 ? last : exit[before];
-      if (power[at] > 0) {
-        const double length = std::max(d, own_size);
-        by_portal[exit[at]] += power[at] / (length * length);
-        elsewhere += power[at] / (length * length);
-      }
-    }
-    for (const std::uint32_t p : portals_->of(at)) {
-      const std::uint32_t next = other_side(p, at);
-      reach(next, d + (middles_[p] - centres[at]).length() + (centres[next] - middles_[p]).length(),
-            p);
-    }
-  });
-  if (!(elsewhere > 0)) return;
-  Exits& exits = exits_[region];
-  exits.mass = elsewhere / (elsewhere + power[region] / (own_size * own_size));
-  for (const auto& [p, weight] : by_portal) {
-    const Portal& portal = portals_->portals[p];
-    const double share = weight / elsewhere;
-    exits.exits.push_back({p, share, share / static_cast<double>(portal.faces())});
+  const PortalExits found =
+      find_portal_exits({*portals_, centres, middles_}, region, power, own_size,
+                        [&](std::uint32_t p) { return sees(portals_->portals[p]); });
+  exits_[region].mass = found.mass;
+  for (const auto& [p, share] : found.exits) {
+    const double each = share / static_cast<double>(portals_->portals[p].faces());
+    exits_[region].exits.push_back({p, share, each});
   }
 }
 
