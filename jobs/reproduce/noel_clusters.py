@@ -7,7 +7,7 @@ from harness.many_lights import visibility
 from harness.measured import exact, geometric_mean_of, mean_of, median_of
 from harness.run import Table
 from harness.verdict import at_least, at_most, beside
-from noel_shadows import EDGES, GRID, PATHS, SEEDS, job
+from noel_shadows import EDGES, GRID, PATHS, RADII, SEEDS, job
 from noel_shape import ROWS, analyse
 
 ENTRIES = Entries()
@@ -15,8 +15,6 @@ ENTRIES = Entries()
 # the coarser grid.
 DOOR, _, SPONZA, _ = ROWS
 VIEWS = {"Sponza": SPONZA, "Arcade": SPONZA, "Door": DOOR}
-# The setting of the thesis (6.3), and that of this project.
-RADII = {"published": "voxel", "ours": "corner"}
 
 
 def thesis_picture(run, view, key, how, seed, analysis=None):

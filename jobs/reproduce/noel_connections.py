@@ -7,6 +7,7 @@ from harness.entry import Entries
 from harness.measured import Measured, error_at, exact, gain_at, geometric_mean_of, mean_of, speed_up_to, time_to
 from harness.run import KINDS, Table, cell_with
 from harness.verdict import at_least, beside
+from noel_shadows import GRID, RADII
 
 ENTRIES = Entries()
 RESAMPLING = "bdpt with connections: skeleton, importance_cache"
@@ -53,12 +54,12 @@ def equal_work(connections):
 METHODS = {"published": THESIS, "ours": OURS}
 
 
-def resampling_sweep(full, methods, scenes=tuple(SCENES), seeds=3):
+def resampling_sweep(full, methods, scenes=tuple(SCENES), seeds=3, which="ours"):
     """The value of a sweep file; the first of the methods is the baseline. CPU seconds are the clock: they hold on a busy
-    machine, too."""
+    machine, too. `which`: whose radius the skeleton's nodes have."""
     return {
         "label": "connections of bidirectional path tracing",
-        "job": {"analysis": {"resolution": 128}, "budget": {"cpu_seconds": 300 if full else 15},
+        "job": {"analysis": {"resolution": 128, "node_radius": RADII[which]}, "budget": {"cpu_seconds": 300 if full else 15},
                 "reference_iterations": 4000 if full else 64},
         "axes": {"/integrator": list(methods.values())},
         "zip": [{pointer: [SCENES[s][pointer] for s in scenes] for pointer in SCENES["door"]}],
@@ -73,7 +74,8 @@ RESAMPLED = {"published": ("door", "sponza"), "ours": tuple(SCENES)}  # the scen
 
 def all_methods(run, which):
     """The answers to all methods at the settings of `which` row, which several entries share."""
-    return run.answers(resampling_sweep(run.full, METHODS[which], RESAMPLED[which]), shared=f"noel-resampling-{which}")
+    return run.answers(resampling_sweep(run.full, METHODS[which], RESAMPLED[which], which=which),
+                       shared=f"noel-resampling-{which}")
 
 
 def resampled_cell(answers, scene, integrator):
@@ -125,6 +127,8 @@ def share_of_distributions(told):
 def table_5_sweep(full):
     value = resampling_sweep(full, {"SkelBPT": SKELETON}, seeds=1)
     del value["compare_at"], value["baseline"]
+    value["job"]["analysis"] = GRID
+    value["axes"]["/analysis/node_radius"] = list(RADII.values())
     scenes = (SCENES["door"], SCENES["sponza"], STAND_INS["Sibenik"])
     value["zip"] = [{pointer: [s[pointer] for s in scenes] for pointer in ("/scene", "/camera", "/resolution")}]
     value["job"]["budget"] = {"iterations": 16 if full else 4}
@@ -141,11 +145,12 @@ def table_5(run):
     """Nodes of the filtered skeleton, and how many of them have distributions in an iteration."""
     answers = run.answers(table_5_sweep(run.full))
     for name, scene in (("Door", SCENES["door"]), ("Sponza", SCENES["sponza"]), ("Sibenik", STAND_INS["Sibenik"])):
-        told = run.report(cell_with(answers, scene=scene["/scene"], integrator=SKELETON))["integrator"]
-        for which in KINDS:  # no setting that differs has to do with them
+        for which, radius in RADII.items():
+            told = run.report(cell_with(answers, scene=scene["/scene"], node_radius=radius))["integrator"]
             run.found(f"{name}, nodes", **{which: exact(told["nodes"])})
             run.found(f"{name}, per iteration", **{which: Measured(told["nodes_used"])})
         run.note(f"{name}: the distributions take {share_of_distributions(told):.1%} of an iteration")
+    run.note(f"{GRID['resolution']} voxels along the longest side, as in Table 1: the thesis does not tell those of Table 5")
     run.note(f"Sibenik: {STAND_INS['Sibenik']['/scene']}, {STAND_IN}")
 
 
@@ -229,7 +234,7 @@ def with_scenes(value, scenes, full):
 
 def stand_in_sweep(full, which="published"):
     three = {name: METHODS[which][name] for name in ("BPT", "ICBPT", "SkelBPT")}
-    return with_scenes(resampling_sweep(full, three, seeds=5 if full else 3), STAND_INS.values(), full)
+    return with_scenes(resampling_sweep(full, three, seeds=5 if full else 3, which=which), STAND_INS.values(), full)
 
 
 def on_stand_in(run, which, name):
@@ -312,8 +317,8 @@ TWO = ("BPT", "SkelBPT")
 
 
 def fig_96_sweep(full, which="published"):
-    value = with_scenes(resampling_sweep(full, {name: METHODS[which][name] for name in TWO}, seeds=5 if full else 3),
-                        [DRAPES], full)
+    two = {name: METHODS[which][name] for name in TWO}
+    value = with_scenes(resampling_sweep(full, two, seeds=5 if full else 3, which=which), [DRAPES], full)
     value["job"]["budget"] = {"cpu_seconds": 60 if full else 4}
     return value
 
@@ -332,7 +337,6 @@ def fig_96(run):
         run.found(BPT.quantity, **{which: gain_at(at["SkelBPT"])})
         run.tables.append(Table((f"drapes, {which}", "MAE"), [(name, str(error_at(a))) for name, a in at.items()]))
         run.note(f"{which}: MAE after {at['BPT']['seconds']:.3g} CPU seconds, {answers['seeds']} runs each")
-        run.note(f"pictures: {run.runs}")
     run.note("the thesis names no view: this one of ours looks along an arcade of sponza behind its drapes")
 
 
@@ -347,7 +351,7 @@ SEEN_IN = {"Door": SCENES["door"], "Sponza": SCENES["sponza"]}
 
 
 def node_visibility_sweep(full, which="published"):
-    return with_scenes(resampling_sweep(full, SEEN_BY[which], seeds=5 if full else 3), SEEN_IN.values(), full)
+    return with_scenes(resampling_sweep(full, SEEN_BY[which], seeds=5 if full else 3, which=which), SEEN_IN.values(), full)
 
 
 @ENTRIES.measured(
@@ -393,7 +397,7 @@ FIG_105 = {"published": {name: THESIS[name] for name in ("BPT", "ICBPT", "SkelBP
 
 
 def fig_105_sweep(full, which="published"):
-    value = resampling_sweep(full, FIG_105[which], ("door",), seeds=6)
+    value = resampling_sweep(full, FIG_105[which], ("door",), seeds=6, which=which)
     value["job"]["budget"] = {"iterations": 64 if full else 8}
     return value
 
@@ -435,7 +439,7 @@ def fig_106(run):
     rows = []
     for which in KINDS:
         for name in ("SkelBPT", "ICBPT"):
-            run.render(f"{name}-{which}", {**job, "integrator": METHODS[which][name]})
+            run.render(f"{name}-{which}", {**job, "analysis": {"node_radius": RADII[which]}, "integrator": METHODS[which][name]})
             folder = run.place(f"{name}-{which}")
             run.show(f"{name}, {which}", folder)
 

@@ -18,7 +18,7 @@ COMPARED = ("door", "sponza")
 
 
 def popov_sweep(full, which="published"):
-    sweep = resampling_sweep(full, METHODS[which], COMPARED, seeds=5 if full else 3)
+    sweep = resampling_sweep(full, METHODS[which], COMPARED, seeds=5 if full else 3, which=which)
     return with_scenes(sweep, [SCENES[s] for s in COMPARED], full)
 
 

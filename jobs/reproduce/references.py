@@ -220,7 +220,7 @@ def plates_table(run, found):
     run.note(f"variance between pictures of different seeds, summed over the pixels of a place: a quarter of a plate; "
              f"{PLATES_SEEDS} seeds in {PLATES_PARTS} parts; plates from shiny to rough, lights from large to small")
     run.note("plates.glb is a stand-in of ours: the thesis' scene is Mitsuba's")
-    run.note(f"pictures: {run.pictures}")
+    run.show("both strategies, weighted", run.place("weighted-0"))
 
 
 @ENTRIES.measured(

@@ -52,8 +52,8 @@ def _found(outcome):
         parts.append("\n".join(f"    {line}" for line in text.splitlines()))
     if run.shown:
         captions = "; ".join(_escaped(caption) for caption, _ in run.shown)
-        row = stored.row_of_pictures(outcome.entry).relative_to(PAGE.parent)
-        parts.append(f"![From the left: {captions}]({row})\n\nFrom the left: {captions}.")
+        together = stored.pictures(outcome.entry).relative_to(PAGE.parent)
+        parts.append(f"![{outcome.entry.name}]({together})\n\nFrom the left, row by row: {captions}.")
     return "\n\n".join([*parts, "\n".join(f"- {_escaped(note)}" for note in (*run.notes, *output.general_notes(run)))])
 
 

@@ -2,6 +2,7 @@
 the commit that it was measured at, so that an entry can be measured again without the others."""
 
 import json
+import math
 import pathlib
 import subprocess
 
@@ -10,14 +11,14 @@ from harness.kept import Outcome, fill, write_json
 from harness.run import Run
 
 FOLDER = child.ROOT / "docs/reproduction"
-ROW_WIDTH, ROW_HEIGHT, QUALITY = 1200, 200, 80  # of the pictures: pixels at most, JPEG
+WIDTH, ROW_HEIGHT, COLUMNS, QUALITY = 1200, 200, 6, 80  # of the pictures together: pixels and columns at most, JPEG
 
 
 def file(entry):
     return FOLDER / f"{entry.name}.json"
 
 
-def row_of_pictures(entry):
+def pictures(entry):
     return FOLDER / f"{entry.name}.jpg"
 
 
@@ -32,14 +33,16 @@ def write(run):
 
 
 def _draw(run):
-    """The pictures side by side, as large as each other."""
-    row = row_of_pictures(run.entry)
+    """The pictures side by side in as few rows as hold them, as large as each other."""
+    together = pictures(run.entry)
     if not run.shown:
-        row.unlink(missing_ok=True)
+        together.unlink(missing_ok=True)
         return
-    fit = f"{ROW_WIDTH // len(run.shown)}x{ROW_HEIGHT}"
-    done = subprocess.run(["oiiotool", *(picture for _, picture in run.shown), f"--mosaic:pad=2:fit={fit}",
-                           f"{len(run.shown)}x1", "--nosoftwareattrib", "--compression", f"jpeg:{QUALITY}", "-o", str(row)],
+    rows = math.ceil(len(run.shown) / COLUMNS)
+    columns = math.ceil(len(run.shown) / rows)
+    done = subprocess.run(["oiiotool", *(picture for _, picture in run.shown),
+                           f"--mosaic:pad=2:fit={WIDTH // columns}x{ROW_HEIGHT}", f"{columns}x{rows}", "--nosoftwareattrib",
+                           "--compression", f"jpeg:{QUALITY}", "-o", str(together)],
                           capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise child.Failed(f"oiiotool ended with {done.returncode}: {done.stdout}{done.stderr}", done.returncode)

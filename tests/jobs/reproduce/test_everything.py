@@ -134,7 +134,7 @@ class Everything(unittest.TestCase):
         self.assertEqual(arguments[1:3], [f"{child.ROOT}/docs/{name}/image.png" for name in self.captions])
         self.assertIn("2x1", arguments)
         text = page.PAGE.read_text()
-        self.assertIn("![From the left: one; two\\_2](tree/noel-a.jpg)", text)
+        self.assertIn("![noel-a](tree/noel-a.jpg)\n\nFrom the left, row by row: one; two\\_2.", text)
         self.assertNotIn(str(child.ROOT), text)
 
     def test_a_row_that_cannot_be_drawn_is_an_error(self):
