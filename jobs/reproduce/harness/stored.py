@@ -11,7 +11,7 @@ from harness.kept import Outcome, fill, write_json
 from harness.run import Run
 
 FOLDER = child.ROOT / "docs/reproduction"
-WIDTH, ROW_HEIGHT, COLUMNS, QUALITY = 1200, 200, 6, 80  # of the pictures together: pixels and columns at most, JPEG
+WIDTH, MOST_WIDTH, COLUMNS, QUALITY = 1200, 300, 6, 80  # pixels of all pictures and of one, columns at most, JPEG
 
 
 def file(entry):
@@ -33,17 +33,17 @@ def write(run):
 
 
 def _draw(run):
-    """The pictures side by side in as few rows as hold them, as large as each other."""
+    """The pictures side by side in as few rows as hold them, as wide as each other."""
     together = pictures(run.entry)
     if not run.shown:
         together.unlink(missing_ok=True)
         return
     rows = math.ceil(len(run.shown) / COLUMNS)
     columns = math.ceil(len(run.shown) / rows)
-    done = subprocess.run(["oiiotool", *(picture for _, picture in run.shown),
-                           f"--mosaic:pad=2:fit={WIDTH // columns}x{ROW_HEIGHT}", f"{columns}x{rows}", "--nosoftwareattrib",
-                           "--compression", f"jpeg:{QUALITY}", "-o", str(together)],
-                          capture_output=True, text=True, check=False)
+    width = f"{min(WIDTH // columns, MOST_WIDTH)}x0"  # 0: in proportion
+    scaled = [part for _, picture in run.shown for part in (picture, "--resize", width)]
+    done = subprocess.run(["oiiotool", *scaled, "--mosaic:pad=2", f"{columns}x{rows}", "--nosoftwareattrib", "--compression",
+                           f"jpeg:{QUALITY}", "-o", str(together)], capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise child.Failed(f"oiiotool ended with {done.returncode}: {done.stdout}{done.stderr}", done.returncode)
 

@@ -131,7 +131,7 @@ class Everything(unittest.TestCase):
             oiiotool.return_value.returncode = 0
             page.write(self.entries, [run])
             arguments = oiiotool.call_args.args[0]
-        self.assertEqual(arguments[1:3], [f"{child.ROOT}/docs/{name}/image.png" for name in self.captions])
+        self.assertEqual(arguments[1:6:3], [f"{child.ROOT}/docs/{name}/image.png" for name in self.captions])
         self.assertIn("2x1", arguments)
         text = page.PAGE.read_text()
         self.assertIn("![noel-a](tree/noel-a.jpg)\n\nFrom the left, row by row: one; two\\_2.", text)
