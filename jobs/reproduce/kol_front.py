@@ -31,7 +31,7 @@ def front_sweep(full):
     return {
         "label": "the trade of many lights",
         "job": {"resolution": [1024, 512] if full else [192, 96], "reference": "auto",
-                "reference_iterations": 4000 if full else 400, "budget": {"cpu_seconds": 120 if full else 4}},
+                "reference_iterations": 4000 if full else 400, "budget": {"cpu_seconds": 120 if full else 3}},
         "axes": {"/integrator": list(METHODS.values())},
         "zip": [{pointer: [s[pointer] for s in SCENES.values()] for pointer in SCENES["sponza"]}],
         "seeds": 5 if full else 3,

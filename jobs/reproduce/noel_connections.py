@@ -59,7 +59,7 @@ def resampling_sweep(full, methods, scenes=tuple(SCENES), seeds=3, which="ours")
     machine, too. `which`: whose radius the skeleton's nodes have."""
     return {
         "label": "connections of bidirectional path tracing",
-        "job": {"analysis": {"resolution": 128, "node_radius": RADII[which]}, "budget": {"cpu_seconds": 300 if full else 15},
+        "job": {"analysis": {"resolution": 128, "node_radius": RADII[which]}, "budget": {"cpu_seconds": 300 if full else 10},
                 "reference_iterations": 4000 if full else 64},
         "axes": {"/integrator": list(methods.values())},
         "zip": [{pointer: [SCENES[s][pointer] for s in scenes] for pointer in SCENES["door"]}],
