@@ -47,9 +47,10 @@ struct BorderScene {
   double probability(std::uint32_t region, const VoxelFace& face, std::uint32_t near) const {
     const CrossedFace crossed = crossing(face);
     const bool inside = in_grid(crossed.to, labels.label.size());
-    return faces.probability(region, crossed, near, inside ? labels.label(crossed.to) : no_region);
+    const std::uint32_t far = inside ? labels.label(crossed.to) : no_region;
+    return faces.probability(region, crossed, near, far, anywhere);
   }
-  VoxelFace draw(std::uint32_t region, Rng& rng) const { return faces.draw(region, rng); }
+  VoxelFace draw(std::uint32_t region, Rng& rng) const { return faces.draw(region, anywhere, rng); }
 
   void expect_shares(const std::vector<FaceLight>& light) const {
     for (std::uint32_t r = 0; r < border.size(); ++r) {
@@ -65,6 +66,9 @@ struct BorderScene {
       }
     }
   }
+
+  // Without thresholds, faces do not depend on the point.
+  inline static const V3d anywhere{0.0};
 
   test::GuidedScene scene;
   const RegionLabels& labels;
@@ -84,9 +88,8 @@ void update(BorderFaceLight& faces, const Accumulators& accumulators) {
 /// A sample of one face, through which a path found `radiance`, its direction drawn with `pdf`.
 void add(const BorderScene& s, std::uint32_t region, const VoxelFace& face, float radiance,
          float pdf, BorderFaceLight::Accumulator& to) {
-  static const Vertex anywhere{};
-  s.faces.accumulate(region, face, {anywhere, V3f(0, 0, 1), Pdf<SolidAngle>(pdf), radiance, 77},
-                     to);
+  static const Vertex any{};
+  s.faces.accumulate(region, face, {any, V3f(0, 0, 1), Pdf<SolidAngle>(pdf), radiance, 77}, to);
 }
 
 /// `n` samples of random faces of `region`, split over the accumulators; adds radiance / pdf of

@@ -153,7 +153,7 @@ TEST(PortalExits, AreNoNearerThanTheLeastDistance) {
 /// The exits of a region, as the guide's density sums over them.
 FaceParts exits_of(const PortalFaces& faces, std::uint32_t region) {
   FaceParts parts;
-  faces.add_parts(region, 1.0, parts);
+  faces.add_parts(region, V3d(0.0), 1.0, parts);
   return parts;
 }
 
