@@ -43,8 +43,12 @@ def mapping_sweep(full):
     return value
 
 
+LITTLE = ("what changes is little: 96.6 % of door's picture sees its node by the geodesic mapping and 98 % by the visible one "
+          "(noel-fig-46), and the errors differ by 2 %")
+
+
 def gain_claim(method, where):
-    return at_least(f"{method}, {where}: error with geodesic / with visible", 1)
+    return at_least(f"{method}, {where}: error with geodesic / with visible", 1, why=LITTLE if where.lower() == "door" else "")
 
 
 def measure_sampled(run):
