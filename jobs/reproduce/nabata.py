@@ -152,7 +152,7 @@ def fig_4(run):
     rows = []
     for key in c.how:
         found = shares(key, 0)
-        run.show(key, run.place(c.name(key, 0)))
+        run.show(f"{key}, share of the lights that is tested", run.place(c.name(key, 0)), TESTS)
         rows.append((key, *(f"{found[int(q * (len(found) - 1))]:.1%}" for q in AT)))
     run.tables.append(Table(("visibility", *(f"{q:.0%} of the pixels below" for q in AT)), rows))
     run.note("of all lights, those that turn away included")

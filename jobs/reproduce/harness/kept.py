@@ -8,7 +8,7 @@ import sys
 
 from harness import identity, output
 from harness.measured import Measured
-from harness.run import KINDS, Row, Run, Table
+from harness.run import KINDS, Picture, Row, Run, Table
 
 
 def _sources(entry):
@@ -54,7 +54,7 @@ def fill(run, value):
             run._rows[claim.quantity] = Row(claim, **numbers)
     run.tables = [Table(tuple(t["columns"]), t["rows"]) for t in value["tables"]]
     run.notes = value["notes"]
-    run.shown = [(picture["caption"], picture["file"]) for picture in value["pictures"]]
+    run.shown = [Picture(**picture) for picture in value["pictures"]]
     run.seconds, run.complete, run.commit = value["seconds"], value["complete"], value["commit"]
     return run
 

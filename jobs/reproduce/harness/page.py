@@ -51,7 +51,7 @@ def _found(outcome):
         text = output.table_text(table.columns, table.rows[:MOST_ROWS])
         parts.append("\n".join(f"    {line}" for line in text.splitlines()))
     if run.shown:
-        captions = "; ".join(_escaped(caption) for caption, _ in run.shown)
+        captions = "; ".join(_escaped(picture.caption) for picture in run.shown)
         together = stored.pictures(outcome.entry).relative_to(PAGE.parent)
         parts.append(f"![{outcome.entry.name}]({together})\n\nFrom the left, row by row: {captions}.")
     return "\n\n".join([*parts, "\n".join(f"- {_escaped(note)}" for note in (*run.notes, *output.general_notes(run)))])

@@ -36,6 +36,15 @@ KINDS = ("published", "ours")
 
 
 @dataclasses.dataclass(frozen=True)
+class Picture:
+    """A picture's file, and of an EXR the layer that is shown."""
+
+    caption: str
+    file: str
+    layer: str = ""
+
+
+@dataclasses.dataclass(frozen=True)
 class Table:
     """More than fits beside the paper's figures: columns, and rows of numbers and texts."""
 
@@ -53,7 +62,7 @@ class Run:
     def __init__(self, entry, full, out):
         self.entry, self.full, self.folder = entry, full, out / entry.name
         self.tables, self.notes, self.complete = [], [child.machine()], True
-        self.shown = []  # a caption and the file of each picture for the page
+        self.shown = []  # the Pictures for the page
         self.commit = identity.commit()
         self.inputs = {}  # the hash of every scene and reference that was used
         self.seconds = 0.0
@@ -91,9 +100,9 @@ class Run:
     def note(self, text):
         self.notes.append(text)
 
-    def show(self, caption, folder):
-        """Puts the picture of a result folder on the page, in a row with the others of this entry."""
-        self.shown.append((caption, str(folder / "image.png")))
+    def show(self, caption, folder, layer=""):
+        """Puts the picture of a result folder on the page, or one of its layers, in a row with the others of this entry."""
+        self.shown.append(Picture(caption, str(folder / ("image.exr" if layer else "image.png")), layer))
 
     @property
     def pictures(self):

@@ -32,6 +32,14 @@ def write(run):
     _draw(run)
 
 
+def _opened(picture):
+    """The arguments of oiiotool. A layer is linear: shares and others from 0 to 1."""
+    if not picture.layer:
+        return [picture.file]
+    channels = ",".join(f"{channel}={picture.layer}.{channel}" for channel in "RGB")
+    return [picture.file, "--ch", channels, "--colorconvert", "linear", "sRGB"]
+
+
 def _draw(run):
     """The pictures side by side in as few rows as hold them, as wide as each other."""
     together = pictures(run.entry)
@@ -41,7 +49,7 @@ def _draw(run):
     rows = math.ceil(len(run.shown) / COLUMNS)
     columns = math.ceil(len(run.shown) / rows)
     width = f"{min(WIDTH // columns, MOST_WIDTH)}x0"  # 0: in proportion
-    scaled = [part for _, picture in run.shown for part in (picture, "--resize", width)]
+    scaled = [part for picture in run.shown for part in (*_opened(picture), "--resize", width)]
     done = subprocess.run(["oiiotool", *scaled, "--mosaic:pad=2", f"{columns}x{rows}", "--nosoftwareattrib", "--compression",
                            f"jpeg:{QUALITY}", "-o", str(together)], capture_output=True, text=True, check=False)
     if done.returncode != 0:

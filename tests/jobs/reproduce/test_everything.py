@@ -137,6 +137,16 @@ class Everything(unittest.TestCase):
         self.assertIn("![noel-a](tree/noel-a.jpg)\n\nFrom the left, row by row: one; two\\_2.", text)
         self.assertNotIn(str(child.ROOT), text)
 
+    def test_a_layer_is_shown_by_its_channels(self):
+        run = self.all()[0].run
+        run.show("tests", self.out, "visibility_tests")
+        with mock.patch("harness.stored.subprocess.run") as oiiotool:
+            oiiotool.return_value.returncode = 0
+            page.write(self.entries, [run])
+            arguments = oiiotool.call_args.args[0]
+        self.assertEqual(arguments[1:4], [str(self.out / "image.exr"), "--ch",
+                                          "R=visibility_tests.R,G=visibility_tests.G,B=visibility_tests.B"])
+
     def test_a_row_that_cannot_be_drawn_is_an_error(self):
         self.captions = ("one",)
         with mock.patch("harness.stored.subprocess.run") as oiiotool:
