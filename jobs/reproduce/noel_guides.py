@@ -187,40 +187,53 @@ def block_variances(folders, width, height):
     return sums
 
 
+FRAME_SEEDS = 12
+
+
+def frames(run, job, first, second):
+    """Of the tenth of the picture's blocks that gains most by `second`, and of the tenth that loses most: the variance by
+    `first` over that by `second`. Both are a name and an integrator. Half of the seeds choose the blocks, each of the others
+    judges them. Numbers are independent, as the thesis' are, so that each picture knows its own variance."""
+    for name, integrator in (first, second):
+        run.repeated(name, {**job, "sampler": "independent", "layers": ["variance"], "integrator": integrator}, FRAME_SEEDS)
+
+    def ratios(seeds):
+        low, high = (block_variances([run.place(f"{name}-{seed}") for seed in seeds], *job["resolution"])
+                     for name, _ in (first, second))
+        return [a / b if a > 0 and b > 0 else 1.0 for a, b in zip(low, high)]
+
+    order = ratios(range(FRAME_SEEDS // 2))
+    ranked = sorted(range(len(order)), key=order.__getitem__)
+    tenth = max(1, len(ranked) // 10)
+    judges = [ratios([seed]) for seed in range(FRAME_SEEDS // 2, FRAME_SEEDS)]
+    return tuple(geometric_mean_of([geometric_mean_of([judge[b] for b in blocks]).value for judge in judges])
+                 for blocks in (ranked[-tenth:], ranked[:tenth]))
+
+
+def note_frames(run, job):
+    run.note(f"blocks of {BLOCK} pixels; median of the pixels' variances between {job['budget']['iterations']} iterations; "
+             f"geometric means over the blocks of a frame: a tenth of all, chosen by {FRAME_SEEDS // 2} seeds, judged by "
+             f"{FRAME_SEEDS - FRAME_SEEDS // 2} others")
+
+
 @ENTRIES.measured(
     "noel-fig-76", "Noel 2015, Fig. 76, p. 137",
     "sponza dark after 15 min: a larger strength lessens noise in one part and adds it in another",
     SKELETON_GUIDE, (at_least("blue frame: variance at least strength / at largest", 1),
                      at_most("red frame: variance at least strength / at largest", 1)))
 def fig_76(run):
-    """The tenth of the picture's blocks that gains most from a large strength, and the tenth that loses most. Half of the
-    seeds choose the blocks, each of the others judges them. Numbers are independent, as the thesis' are, so that each picture
-    knows its own variance."""
-    width, height = (1024, 512) if run.full else (256, 128)
+    """The part of the picture that gains most from a large strength, and the part that loses most."""
     scene = {pointer.lstrip("/"): value for pointer, value in SCENES["sponza dark"].items() if pointer != "/reference"}
-    job = {**scene, "resolution": [width, height], "analysis": {"resolution": 128}, "sampler": "independent",
-           "layers": ["variance"], "budget": {"iterations": 512 if run.full else 32}}
-    seeds, ends = 12, (STRENGTHS[0], STRENGTHS[-1])
-    for s in ends:
-        integrator = {"type": "path", "max_depth": 6, "guide": as_published(s)}
-        run.repeated(f"s-{s}", {**job, "integrator": integrator}, seeds)
-        run.show(f"s = {s}", run.place(f"s-{s}-0"))
-
-    def ratios(part):
-        low, high = (block_variances([run.place(f"s-{s}-{seed}") for seed in part], width, height) for s in ends)
-        return [a / b if a > 0 and b > 0 else 1.0 for a, b in zip(low, high)]
-
-    order = ratios(range(6))
-    ranked = sorted(range(len(order)), key=order.__getitem__)
-    tenth = max(1, len(ranked) // 10)
-    judges = [ratios([seed]) for seed in range(6, seeds)]
-    for quantity, blocks in (("blue frame: variance at least strength / at largest", ranked[-tenth:]),
-                             ("red frame: variance at least strength / at largest", ranked[:tenth])):
-        run.found(quantity, published=geometric_mean_of(
-            [geometric_mean_of([judge[b] for b in blocks]).value for judge in judges]))
-    run.note(f"s = {ends[0]} and {ends[1]}; blocks of {BLOCK} pixels; median of the pixels' variances between "
-             f"{job['budget']['iterations']} iterations; geometric means over the blocks of a frame: a tenth of all, chosen by "
-             "six seeds, judged by six others")
+    job = {**scene, "resolution": [1024, 512] if run.full else [256, 128], "analysis": {"resolution": 128},
+           "budget": {"iterations": 512 if run.full else 32}}
+    ends = [(f"s-{s}", {"type": "path", "max_depth": 6, "guide": as_published(s)}) for s in (STRENGTHS[0], STRENGTHS[-1])]
+    blue, red = frames(run, job, *ends)
+    run.found("blue frame: variance at least strength / at largest", published=blue)
+    run.found("red frame: variance at least strength / at largest", published=red)
+    for name, _ in ends:
+        run.show(name, run.place(f"{name}-0"))
+    run.note(f"s = {STRENGTHS[0]} and {STRENGTHS[-1]}")
+    note_frames(run, job)
     run.note(f"sponza dark: {WHAT['sponza dark']}")
 
 

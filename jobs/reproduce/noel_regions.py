@@ -9,6 +9,7 @@ from harness.entry import Entries
 from harness.measured import exact, geometric_mean_of, mean_of
 from harness.run import KINDS, Table, cell_with
 from harness.verdict import at_least, at_most, beside
+from noel_guides import frames, note_frames
 
 ENTRIES = Entries()
 BSDF = {"type": "bsdf"}
@@ -122,6 +123,32 @@ def fig_94(run):
     too bright; ours have the densities that it got wrong (10.4.2). d_t and o_t are read as its reason for them says, not as
     its inequalities do (renderer/guides/border_faces.cpp)."""
     measure_regions(run, "face_irradiance", "face irradiance", [claim.quantity for claim in FIS])
+
+
+@ENTRIES.measured(
+    "noel-fig-95", "Noel 2015, Fig. 95, p. 159, and 10.4.1",
+    "door: both strategies have less noise than BSDF sampling where they are smooth (blue frame), and add some elsewhere (red "
+    "frame)", "path with guide: portals, face_irradiance",
+    tuple(claim for title in FACES for claim in (
+        at_least(f"{title}, blue frame: variance of BSDF sampling / of the guide", 1),
+        at_most(f"{title}, red frame: variance of BSDF sampling / of the guide", 1))))
+def fig_95(run):
+    """The part of the picture that gains most from guided rays, and the part that loses most, after as many iterations."""
+    job = {key: value for key, value in door_job(run.full).items() if key != "integrator"}
+    job["budget"] = {"iterations": 4096 if run.full else 32}
+
+    def path(guide):
+        return {"type": "path", "max_depth": 6, "guide": guide}
+
+    for title, guides in FACES.items():
+        for which in KINDS:
+            name = f"{title}-{which}"
+            found = frames(run, job, ("bsdf", path(BSDF)), (name, path(guides[which])))
+            for frame, ratio in zip(("blue", "red"), found):
+                run.found(f"{title}, {frame} frame: variance of BSDF sampling / of the guide", **{which: ratio})
+            run.show(name, run.place(f"{name}-0"))
+    run.show("BSDF sampling", run.place("bsdf-0"))
+    note_frames(run, job)
 
 
 def guide_rays(run, guide, place, n, seed=0, resolution=GRID):
