@@ -207,14 +207,14 @@ def fig_6(run):
     """Steps in brightness of interpolated visibility, against none of probabilistic visibility. Both are
     compared with exact visibility of the same lights in blocks of 16 x 16 pixels, over which noise averages out and steps do
     not."""
-    side = 256
+    side = 192
     points = cached("Hairball", run.full, side)
     c = Comparison(run, "Hairball", {
         "probabilistic-published": published("probabilistic", points),
         "probabilistic-ours": visibility("probabilistic", points),
         "interpolated-published": published("interpolated", points),
         "interpolated-lit": visibility("interpolated", points, cache_lights="lit")},
-        SEEDS, share=0.1, side=side, crop={"of": [512, 512], "from": [60, 200]})
+        SEEDS, share=0.1 if run.full else 0.06, side=side, crop={"of": [512, 512], "from": [60, 200]})
     found = {key: c.errors(key, "--block", 16) for key in c.how if key != "exact"}
     for which in KINDS:  # interpolation has no other settings than the published ones
         run.found("worst block of interpolated / of probabilistic", **{which: geometric_mean_of(
