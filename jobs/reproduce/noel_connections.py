@@ -267,13 +267,23 @@ def fig_100(run):
     measure_stand_in(run, "Sibenik")
 
 
-@ENTRIES.measured(*resampled(101, 174, "apartment (ICBPT beats BPT, SkelBPT both)", 900, BPT, ICBPT))
+# Why these are missed on stand-ins.
+NEAR_RECORDS = ("another scene: rooms in a row are lit so smoothly that what light vertices give to a record nearby holds for an eye "
+                "vertex better than what they give to a node")
+SHARED_POINTS = ("another scene: bulbs among the leaves light most of the picture directly. BPT draws a new, evenly spread point on an "
+                 "emitter at each vertex, resampled connections choose among those that all pixels share: with direct light alone "
+                 "(2 edges, 1 CPU second, one run) the ratio is 0.49, too")
+
+
+@ENTRIES.measured(*resampled(101, 174, "apartment (ICBPT beats BPT, SkelBPT both)", 900, BPT,
+                             at_least(ICBPT.quantity, 1, why=NEAR_RECORDS)))
 def fig_101(run):
     """BPT, SkelBPT and ICBPT in rooms in a row at equal time."""
     measure_stand_in(run, "Apartment")
 
 
-@ENTRIES.measured(*resampled(102, 175, "plants (ICBPT and SkelBPT similar, both beat BPT)", 900, BPT))
+@ENTRIES.measured(*resampled(102, 175, "plants (ICBPT and SkelBPT similar, both beat BPT)", 900,
+                             at_least(BPT.quantity, 1, why=SHARED_POINTS)))
 def fig_102(run):
     """BPT, SkelBPT and ICBPT among leaves at equal time."""
     measure_stand_in(run, "Plants")
@@ -299,7 +309,8 @@ def fig_103(run):
 @ENTRIES.measured(
     "noel-fig-104", "Noel 2015, Fig. 104, p. 177",
     "L1 error curves of 900 s: SkelBPT below BPT on apartment and plants", RESAMPLING, (
-        at_least("Apartment: error of BPT / of SkelBPT", 1), at_least("Plants: error of BPT / of SkelBPT", 1)))
+        at_least("Apartment: error of BPT / of SkelBPT", 1),
+        at_least("Plants: error of BPT / of SkelBPT", 1, why=SHARED_POINTS)))
 def fig_104(run):
     """L1 error against time, on stand-ins."""
     for which in KINDS:
