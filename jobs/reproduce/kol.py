@@ -193,7 +193,7 @@ class Growth:
 # Why less is reached as published.
 PAIRS = ("times are in proportion to pairs of nodes, and ManyLoDs have five times as many for each light; by this project's rules, "
          "whose boxes cull what spheres keep, ten times is reached")
-QUEUE = "a queue at 8 bytes a pair, counted when it is longest; the paper does not say what its memory holds"
+QUEUE = "the queue shrinks where views share what they see, as pairs do, and falls short of the paper's tenth as they do"
 
 
 @ENTRIES.measured(
