@@ -56,19 +56,31 @@ def equal_work(connections):
 METHODS = {"published": THESIS, "ours": OURS}
 
 
-def resampling_sweep(full, methods, scenes=tuple(SCENES), seeds=3, which="ours"):
+def smaller(scene, full):
+    """A scene of a sweep in a sixteenth of the pixels, where there is little time. The light paths are as many: what an
+    iteration spends on distributions over them weighs more than in a large picture."""
+    return scene if full else {**scene, "/resolution": [side // 4 for side in scene["/resolution"]], "/reference": "auto"}
+
+
+def with_scenes(value, scenes, full):
+    """A sweep on these scenes, in its quick form on smaller pictures and in less time."""
+    value["job"] |= {"budget": {"cpu_seconds": 300 if full else 3}, "reference_iterations": 4000 if full else 160}
+    small = [smaller(s, full) for s in scenes]
+    value["zip"] = [{pointer: [s[pointer] for s in small] for pointer in small[0]}]
+    return value
+
+
+def resampling_sweep(full, methods, scenes, seeds=3, which="ours"):
     """The value of a sweep file; the first of the methods is the baseline. CPU seconds are the clock: they hold on a busy
     machine, too. `which`: whose radius the skeleton's nodes have."""
-    return {
+    return with_scenes({
         "label": "connections of bidirectional path tracing",
-        "job": {"analysis": {"resolution": 128, "node_radius": RADII[which]}, "budget": {"cpu_seconds": 300 if full else 10},
-                "reference_iterations": 4000 if full else 64},
+        "job": {"analysis": {"resolution": 128, "node_radius": RADII[which]}},
         "axes": {"/integrator": list(methods.values())},
-        "zip": [{pointer: [SCENES[s][pointer] for s in scenes] for pointer in SCENES["door"]}],
         "seeds": seeds,
         "baseline": {"/integrator": next(iter(methods.values()))},
         "compare_at": {"clock": "cpu_seconds", "metric": "mae"},
-    }
+    }, scenes, full)
 
 
 RESAMPLED = ("door", "sponza")
@@ -76,8 +88,7 @@ RESAMPLED = ("door", "sponza")
 
 def all_methods(run, which):
     """The answers to all methods at the settings of `which` row, which several entries share."""
-    sweep = with_scenes(resampling_sweep(run.full, METHODS[which], RESAMPLED, which=which), [SCENES[s] for s in RESAMPLED],
-                        run.full)
+    sweep = resampling_sweep(run.full, METHODS[which], [SCENES[s] for s in RESAMPLED], which=which)
     return run.answers(sweep, shared=f"noel-resampling-{which}")
 
 
@@ -128,11 +139,11 @@ def share_of_distributions(told):
 
 
 def table_5_sweep(full):
-    value = resampling_sweep(full, {"SkelBPT": SKELETON}, seeds=1)
-    del value["compare_at"], value["baseline"]
+    scenes = (SCENES["door"], SCENES["sponza"], STAND_INS["Sibenik"])
+    value = resampling_sweep(full, {"SkelBPT": SKELETON}, scenes, seeds=1)
+    del value["compare_at"], value["baseline"], value["job"]["reference_iterations"]
     value["job"]["analysis"] = GRID
     value["axes"]["/analysis/node_radius"] = list(RADII.values())
-    scenes = (SCENES["door"], SCENES["sponza"], STAND_INS["Sibenik"])
     value["zip"] = [{pointer: [s[pointer] for s in scenes] for pointer in ("/scene", "/camera", "/resolution")}]
     value["job"]["budget"] = {"iterations": 16 if full else 4}
     return value
@@ -219,23 +230,9 @@ STAND_IN = ("stand-in: the thesis' scene is not to be had, and this one is of ou
             "no reproduction of the paper's")
 
 
-def smaller(scene, full):
-    """A scene of a sweep in a sixteenth of the pixels, where there is little time. The light paths are as many: what an
-    iteration spends on distributions over them weighs more than in a large picture."""
-    return scene if full else {**scene, "/resolution": [side // 4 for side in scene["/resolution"]], "/reference": "auto"}
-
-
-def with_scenes(value, scenes, full):
-    """A resampling sweep on other scenes, in its quick form on smaller pictures and in less time."""
-    value["job"] |= {"budget": {"cpu_seconds": 300 if full else 3}, "reference_iterations": 4000 if full else 160}
-    small = [smaller(s, full) for s in scenes]
-    value["zip"] = [{pointer: [s[pointer] for s in small] for pointer in small[0]}]
-    return value
-
-
 def stand_in_sweep(full, which="published"):
     three = {name: METHODS[which][name] for name in ("BPT", "ICBPT", "SkelBPT")}
-    return with_scenes(resampling_sweep(full, three, seeds=5 if full else 3, which=which), STAND_INS.values(), full)
+    return resampling_sweep(full, three, STAND_INS.values(), seeds=5 if full else 3, which=which)
 
 
 def on_stand_in(run, which, name):
@@ -329,7 +326,7 @@ TWO = ("BPT", "SkelBPT")
 
 def fig_96_sweep(full, which="published"):
     two = {name: METHODS[which][name] for name in TWO}
-    value = with_scenes(resampling_sweep(full, two, seeds=5 if full else 3, which=which), [DRAPES], full)
+    value = resampling_sweep(full, two, [DRAPES], seeds=5 if full else 3, which=which)
     value["job"]["budget"] = {"cpu_seconds": 60 if full else 4}
     return value
 
@@ -366,7 +363,7 @@ FEW_SAVED = ("the distributions are 4 % of an iteration, so that little time is 
 
 
 def node_visibility_sweep(full, which="published"):
-    return with_scenes(resampling_sweep(full, SEEN_BY[which], seeds=5 if full else 3, which=which), SEEN_IN.values(), full)
+    return resampling_sweep(full, SEEN_BY[which], SEEN_IN.values(), seeds=5 if full else 3, which=which)
 
 
 @ENTRIES.measured(
@@ -412,7 +409,7 @@ FIG_105 = {"published": {name: THESIS[name] for name in ("BPT", "ICBPT", "SkelBP
 
 
 def fig_105_sweep(full, which="published"):
-    value = with_scenes(resampling_sweep(full, FIG_105[which], ("door",), seeds=6, which=which), [SCENES["door"]], full)
+    value = resampling_sweep(full, FIG_105[which], [SCENES["door"]], seeds=6, which=which)
     value["job"]["budget"] = {"iterations": 64 if full else 8}
     return value
 

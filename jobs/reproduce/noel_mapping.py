@@ -7,7 +7,7 @@ from harness.measured import error_at, exact, gain_at, geometric_mean_of
 from harness.run import Table, cell_with
 from harness.verdict import at_least, beside
 from noel_connections import SCENES, bdpt, with_scenes
-from noel_guides import as_published, skeleton
+from noel_guides import OURS, as_published
 from noel_shadows import job
 
 ENTRIES = Entries()
@@ -17,7 +17,7 @@ POINTER = "/analysis/mapping"
 # Sampling methods, which stay unbiased by either: their error at equal time.
 SAMPLED = {
     "guide skeleton, as published": {"type": "path", "max_depth": 6, "guide": as_published(8)},
-    "guide skeleton, ours": {"type": "path", "max_depth": 6, "guide": skeleton("auto", probability="auto")},
+    "guide skeleton, ours": {"type": "path", "max_depth": 6, "guide": OURS},
     "guide learned_skeleton": {"type": "path", "max_depth": 6, "guide": {"type": "learned_skeleton"}},
     "connections skeleton": bdpt({"type": "skeleton"}),
     "light_guide skeleton": {"type": "sppm", "max_depth": 6, "light_guide": {"type": "skeleton"}},

@@ -69,7 +69,7 @@ def measure_regions(run, name, title, claims):
         return [run.report(cell_with(answers, guide=guide), seed) for seed in seeds]
 
     def pictures(guide):
-        return [run.runs / cell_with(answers, guide=guide)["runs"][seed]["name"] for seed in seeds]
+        return [run.run_folder(cell_with(answers, guide=guide), seed) for seed in seeds]
 
     def gain(guide, value):
         return geometric_mean_of([value(a) / value(b) for a, b in zip(told(BSDF), told(guide))])

@@ -105,7 +105,8 @@ namespace {
 /// Evaluates a node's map around a direction.
 class Comparison {
  public:
-  /// The plane: points p with p . n = h, seen from the node. `over_h`: maps.scale / h.
+  /// The plane: points p with p . n = h, seen from the node. `over_h`: maps.scale / h, larger where
+  /// points in front of the plane are to count as on it.
   Comparison(const NodeMaps& maps, std::size_t index, const V3f& n, float over_h)
       : maps_(maps),
         texels_(maps.texels.data() + index * maps.texels_of_point()),
@@ -132,6 +133,7 @@ class Comparison {
     }
     return sums;
   }
+
   const std::uint16_t* texel(int face, int i, int j) const {
     const auto n = static_cast<std::size_t>(maps_.size);
     return texels_ + (static_cast<std::size_t>(face) * n + static_cast<std::size_t>(j)) * n +

@@ -44,11 +44,11 @@ def keep(run):
 
 def fill(run, value):
     """Gives `run` what output.run_json() wrote. A claim that the entry has no longer is left out, one that it did not have
-    yet is not measured."""
+    yet is not measured. Only an entry without claims of its own has those that Run.stands_beside() found."""
     claims = {c.quantity: c for c in run.entry.claims}
     for row in value["rows"]:
         stored = output.claim_of(row["claim"])
-        claim = claims.get(stored.quantity) or (None if stored.judged else stored)
+        claim = claims.get(stored.quantity) or (None if claims else stored)
         if claim is not None:
             numbers = {which: row[which]["value"] and Measured(**row[which]["value"]) for which in KINDS}
             run._rows[claim.quantity] = Row(claim, **numbers)

@@ -25,7 +25,7 @@ def pictures(entry):
 def write(run):
     """Puts a run into the tree."""
     value = output.run_json(run)
-    value["notes"] = [note.replace(f"{child.ROOT}/", "") for note in value["notes"] if "pictures: " not in note]
+    value["notes"] = [note.replace(f"{child.ROOT}/", "") for note in value["notes"]]
     for picture in value["pictures"]:
         picture["file"] = pathlib.Path(picture["file"]).parent.name
     write_json(file(run.entry), value)
