@@ -134,26 +134,19 @@ void PortalFaces::find_all_exits(const PrepareContext& context, const SurfaceLoo
   context.pool.for_each(static_cast<int>(exits_.size()), [&](int i) {
     const auto r = static_cast<std::uint32_t>(i);
     const V3d eye = V3d(labels.label.voxel(labels.regions[r].root)) + V3d(0.5);
-    const auto sees = [&](const Portal& portal) {
+    const auto sees = [&](std::uint32_t p) {
       return settings_.portal == PortalChoice::last &&
-             mostly_seen(context.scene.rays(), eye, grid, portal);
+             mostly_seen(context.scene.rays(), eye, grid, portals_->portals[p]);
     };
-    find_exits(r, centres, power, labels, sees);
+    const double own_size = std::max(1.0, double(labels.regions[r].opening));
+    const PortalExits found =
+        find_portal_exits({*portals_, centres, middles_}, r, power, own_size, sees);
+    exits_[r].mass = found.mass;
+    for (const auto& [p, share] : found.exits) {
+      const double each = share / static_cast<double>(portals_->portals[p].faces());
+      exits_[r].exits.push_back({p, share, each});
+    }
   });
-}
-
-void PortalFaces::find_exits(std::uint32_t region, const std::vector<V3d>& centres,
-                             const std::vector<double>& power, const RegionLabels& labels,
-                             const std::function<bool(const Portal&)>& sees) {
-  const double own_size = std::max(1.0, double(labels.regions[region].opening));
-  const PortalExits found =
-      find_portal_exits({*portals_, centres, middles_}, region, power, own_size,
-                        [&](std::uint32_t p) { return sees(portals_->portals[p]); });
-  exits_[region].mass = found.mass;
-  for (const auto& [p, share] : found.exits) {
-    const double each = share / static_cast<double>(portals_->portals[p].faces());
-    exits_[region].exits.push_back({p, share, each});
-  }
 }
 
 VoxelFace PortalFaces::draw(std::uint32_t region, const V3d&, Rng& rng) const {

@@ -55,9 +55,6 @@ class PortalFaces {
   };
 
   void find_all_exits(const PrepareContext& context, const SurfaceLookup& lookup);
-  void find_exits(std::uint32_t region, const std::vector<V3d>& centres,
-                  const std::vector<double>& power, const RegionLabels& labels,
-                  const std::function<bool(const Portal&)>& sees);
 
   PortalsGuideSettings settings_;
   const Portals* portals_ = nullptr;
