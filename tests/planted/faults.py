@@ -303,7 +303,7 @@ FAULTS = [
           "std::abs(ray.inverse[face.axis]);\n        return true;",
           "std::abs(ray.inverse[face.axis]);\n        return false;"),
     Fault("a replaced face keeps its density", "renderer/guides/border_faces.cpp",
-          "if (first_drawn && has_thresholds() && is_replaced(own, far, from)) return 0;", ""),
+          "is_replaced(own, far, from)) return 0;", "is_replaced(own, far, from)) return probability(region, own);"),
     Fault("faces in place of others have half their density", "renderer/guides/border_faces.cpp",
           "regions + next, weight * replaced);", "regions + next, 0.5 * weight * replaced);"),
     Fault("the point that names a portal is not the file's", "renderer/guides/named_region.cpp",
