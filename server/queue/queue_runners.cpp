@@ -313,14 +313,14 @@ void Queue::settle(Work& work, Attempt attempt, const std::stop_token& ends) {
     }
     work.not_before = Clock::now() + back_off(control.crashes, longest_after_crash);
   }
-  const bool over = is_terminal(exit.state.state);
-  write_state(work.id, exit.state, over);
   if (exit.obstacle.empty() || attempt.iteration_after > attempt.iteration_before) {
     work.faults = 0;
   }
-  if (!exit.obstacle.empty()) {
+  if (!exit.obstacle.empty()) {  // before the state: who sees that the job waits also sees why
     note_obstacle(work, exit.obstacle, "renderers cannot be started or cannot write their files");
   }
+  const bool over = is_terminal(exit.state.state);
+  write_state(work.id, exit.state, over);
   if (over) forget(work.id);
 }
 

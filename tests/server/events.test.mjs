@@ -147,6 +147,24 @@ test("who comes back with the last event it saw misses nothing, and hears nothin
   assert.deepEqual(other.events.map((e) => e.name), ["progress", "state"], "of another run: what is now");
 });
 
+test("the change that tells that a job waits again says for what", async (t) => {
+  const service = await Service.start(folders(t), ["--max-attempts", "1"]);
+  const { last_event } = await service.json("/api/jobs");
+  const id = await service.post("full later");
+  const abort = new AbortController();
+  const { events, end } = await followAll(service, `/api/events?after=${last_event}`, abort.signal);
+  end.catch(() => {});
+  const first = (attempts) => events.find((e) => e.name === "job" && e.data.attempts === attempts);
+  await until(() => first(3), "three attempts");
+  for (const attempts of [1, 2, 3]) {
+    assert.equal(first(attempts).data.state, "queued");
+    assert.match(first(attempts).data.obstacle, /No space left on device/);
+  }
+  abort.abort();
+  service.open("later");
+  await service.reaches(id, "done", 60000);
+});
+
 test("one stream tells of all jobs, from the list on", async (t) => {
   const service = await Service.start(folders(t));
   const old = await service.post("finish");
