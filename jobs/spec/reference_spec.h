@@ -34,7 +34,7 @@ Job reference_spec(const Job& job) {
   r.reference.clear();
   // Light does not depend on the analysis; some false colours do, as a guide's density may.
   if (const auto* s = std::get_if<InspectSettings>(&job.integrator)) {
-    const bool analysed = shows_space(s->show) || s->show == InspectQuantity::guide_density;
+    const bool analysed = shows_space(s->show) || shows_guide(s->show);
     if (analysed) r.analysis = job.analysis;
   }
   r.seed = reference_seed;

@@ -15,6 +15,7 @@ class GuidedIntegrator : public Integrator {
     return {.materials = true, .emission = true, .space = guide_.needs_space()};
   }
   void prepare(const PrepareContext& context) override { guide_.prepare(context); }
+  const Guide& guide() const { return guide_; }
   std::vector<std::pair<std::string, double>> statistics() const override {
     return guide_.statistics();
   }

@@ -1,6 +1,5 @@
 #include "renderer/integrators/integrators.h"
 
-#include "renderer/guides/make_guide.h"
 #include "renderer/integrators/inspect_guide.h"
 #include "renderer/integrators/inspect_space.h"
 #include "renderer/path/tiles.h"
@@ -15,15 +14,15 @@ class Inspect final : public Integrator {
   explicit Inspect(const InspectSettings& settings) : settings_(settings), show_(settings.show) {}
 
   SceneNeeds needs() const override {
-    const bool guide = show_ == InspectQuantity::guide_density;
-    return {.materials = guide || show_ == InspectQuantity::albedo,
-            .emission = guide || show_ == InspectQuantity::emission,
-            .space = shows_space(show_) || (guide && guide_needs_space())};
+    if (shows_guide(show_)) return GuideView::needs(settings_.guide);
+    return {.materials = show_ == InspectQuantity::albedo,
+            .emission = show_ == InspectQuantity::emission,
+            .space = shows_space(show_)};
   }
 
   void prepare(const PrepareContext& context) override {
     if (shows_space(show_)) space_.emplace(show_, context);
-    if (show_ == InspectQuantity::guide_density) guide_.emplace(settings_, context);
+    if (shows_guide(show_)) guide_.emplace(settings_, context);
   }
 
   Counters iterate(const IterationContext& context, Image& image) override {
@@ -44,10 +43,6 @@ class Inspect final : public Integrator {
   }
 
  private:
-  bool guide_needs_space() const {
-    return with_guide(settings_.guide, [](const auto& guide) { return guide.needs_space(); });
-  }
-
   Rgb background(const Scene& scene, const Ray& ray) const {
     return show_ == InspectQuantity::emission ? scene.emitters().background(ray.d) : Rgb(0, 0, 0);
   }
@@ -56,7 +51,7 @@ class Inspect final : public Integrator {
                Counters& counters) const {
     const Scene& scene = context.scene;
     const Surface s = scene.surface(hit);
-    if (guide_) return guide_->colour(scene, s, ray.d, counters);
+    if (guide_) return guide_->colour(scene, s, ray.d, context.seed, counters);
     if (space_) return space_->colour(scene, s, ray.d, context.seed, counters);
     switch (show_) {
       case InspectQuantity::normal:

@@ -1,37 +1,62 @@
 #include "renderer/integrators/inspect_guide.h"
 
+#include "renderer/core/false_colour.h"
 #include "renderer/guides/make_guide.h"
-#include "renderer/settings/inspect_settings.h"
+#include "renderer/integrators/integrators.h"
+#include "renderer/integrators/path_tracer.h"
 
 namespace lacuna {
 
 GuideView::GuideView(const InspectSettings& settings, const PrepareContext& context)
-    : from_(settings.from) {
+    : settings_(settings) {
   with_guide(settings.guide, [&]<class Guide>(Guide guide) {
-    guide.prepare(context);
-    const auto shared = std::make_shared<const Guide>(std::move(guide));
-    on_hit_ = [shared](Vertex& v) { shared->on_hit(v); };
-    density_ = [shared](const Vertex& v, const V3f& w) {
-      return shared->pdf(v, v.wp, w, Transport::radiance).value;
+    const auto tracer = std::make_shared<PathTracer<Guide>>(PathSettings{}, std::move(guide));
+    tracer->prepare(context);
+    trace_ = [tracer](const IterationContext& c, Image& image) { tracer->iterate(c, image); };
+    on_hit_ = [tracer](Vertex& v) { tracer->guide().on_hit(v); };
+    density_ = [tracer](const Vertex& v, const V3f& w) {
+      return tracer->guide().pdf(v, v.wp, w, Transport::radiance).value;
     };
   });
 }
 
+SceneNeeds GuideView::needs(const GuideSettings& guide) {
+  PathSettings path;
+  path.guide = guide;
+  return make_path(path)->needs();
+}
+
+void GuideView::learn(const IterationContext& context, const Image& image) {
+  for (; learned_ < settings_.learn; ++learned_) {
+    Image ignored(image.width, image.height);
+    IterationContext iteration = context;
+    iteration.iteration = static_cast<std::uint64_t>(learned_);
+    trace_(iteration, ignored);
+  }
+}
+
+Vertex GuideView::vertex(const Scene& scene, const Surface& s, const V3f& d) const {
+  Vertex v;
+  v.kind = Vertex::Kind::surface;
+  v.surface = s;
+  v.wp = -d;
+  scene.make_bsdf(v.surface, v.bsdf);
+  on_hit_(v);
+  return v;
+}
+
 void GuideView::start(const IterationContext& context, const Image& image) {
-  const Ray ray = context.camera.ray(static_cast<float>(from_[0] * image.width),
-                                     static_cast<float>(from_[1] * image.height));
+  learn(context, image);
+  const Ray ray = context.camera.ray(static_cast<float>(settings_.from[0] * image.width),
+                                     static_cast<float>(settings_.from[1] * image.height));
   Hit hit;
   point_.bsdf.reset();
   if (!context.scene.rays().intersect(ray, hit)) return;
-  point_.kind = Vertex::Kind::surface;
-  point_.surface = context.scene.surface(hit);
-  point_.wp = -ray.d;
-  context.scene.make_bsdf(point_.surface, point_.bsdf);
-  on_hit_(point_);
+  point_ = vertex(context.scene, context.scene.surface(hit), ray.d);
 }
 
-Rgb GuideView::colour(const Scene& scene, const Surface& s, const V3f& d,
-                      Counters& counters) const {
+Rgb GuideView::density(const Scene& scene, const Surface& s, const V3f& d,
+                       Counters& counters) const {
   if (!point_.bsdf) return {0, 0, 0};
   const V3f towards = s.x - point_.surface.x;
   const float length = towards.length();
@@ -42,6 +67,14 @@ Rgb GuideView::colour(const Scene& scene, const Surface& s, const V3f& d,
   ++counters.shadow_rays;
   if (scene.rays().occluded({from, to - from, 1.0F})) return {0, 0, 0};
   return Rgb(density_(point_, w));
+}
+
+Rgb GuideView::colour(const Scene& scene, const Surface& s, const V3f& d, std::uint64_t seed,
+                      Counters& counters) const {
+  if (settings_.show == InspectQuantity::guide_density) return density(scene, s, d, counters);
+  const GuidingCell cell = vertex(scene, s, d).guiding_cell;
+  if (settings_.show == InspectQuantity::guide_probability) return Rgb(cell.probability);
+  return cell.index == GuidingCell{}.index ? Rgb(0, 0, 0) : false_colour(cell.index, seed);
 }
 
 }  // namespace lacuna

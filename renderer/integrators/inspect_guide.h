@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 
 #include "renderer/integrators/integrator.h"
 #include "renderer/path/vertex.h"
@@ -9,20 +8,34 @@
 
 namespace lacuna {
 
-/// The density of a guide for integrator `inspect`: at one surface point, visible at a position of
-/// the picture, for the directions to all other visible points (as Noel 2015, Fig. 70b and 86).
+/// A guide for integrator `inspect`: its cells, their probabilities, or its density at one surface
+/// point, visible at a position of the picture, for the directions to all other visible points (as
+/// Noel 2015, Fig. 70b and 86).
 class GuideView {
  public:
   GuideView(const InspectSettings& settings, const PrepareContext& context);
 
-  /// Call before colour(), for the iteration's picture.
+  /// What path tracing with this guide needs.
+  static SceneNeeds needs(const GuideSettings& guide);
+
+  /// Call before colour(), for the iteration's picture. The first call lets the guide learn. Throws
+  /// IterationStopped.
   void start(const IterationContext& context, const Image& image);
-  /// Density per steradian of the guide's directions towards `s`, which the eye sees along `d`;
-  /// black where `s` is occluded from the point.
-  Rgb colour(const Scene& scene, const Surface& s, const V3f& d, Counters& counters) const;
+  /// At `s`, which the eye sees along unit `d`.
+  Rgb colour(const Scene& scene, const Surface& s, const V3f& d, std::uint64_t seed,
+             Counters& counters) const;
 
  private:
-  std::array<double, 2> from_;
+  void learn(const IterationContext& context, const Image& image);
+  /// `s` as a vertex that is seen along `d`.
+  Vertex vertex(const Scene& scene, const Surface& s, const V3f& d) const;
+  /// Density per steradian of the guide's directions towards `s`; black where `s` is occluded from
+  /// the point.
+  Rgb density(const Scene& scene, const Surface& s, const V3f& d, Counters& counters) const;
+
+  InspectSettings settings_;
+  int learned_ = 0;  // iterations
+  std::function<void(const IterationContext&, Image&)> trace_;
   std::function<void(Vertex&)> on_hit_;
   std::function<float(const Vertex&, const V3f&)> density_;
   Vertex point_;  // without Bsdf: the eye ray hit nothing

@@ -19,12 +19,14 @@ enum class InspectQuantity {
   region_labels,
   visibility_clusters,
   nearest_node_visible,
-  guide_density
+  guide_density,
+  guide_cells,
+  guide_probability
 };
 
 template <>
 struct EnumTable<InspectQuantity> {
-  static constexpr std::array<EnumValue<InspectQuantity>, 11> values{{
+  static constexpr std::array<EnumValue<InspectQuantity>, 13> values{{
       {InspectQuantity::normal, "normal", "shading normal, world space, components in [-1, 1]"},
       {InspectQuantity::albedo, "albedo", "base reflectance"},
       {InspectQuantity::depth, "depth", "distance from the eye, scene units"},
@@ -45,6 +47,11 @@ struct EnumTable<InspectQuantity> {
        "density per steradian of the guide's directions from the point `from` to the surface; "
        "black "
        "where the surface is occluded from it"},
+      {InspectQuantity::guide_cells, "guide_cells",
+       "the cell of the guide that the surface lies in, one colour per cell, black where it has "
+       "none"},
+      {InspectQuantity::guide_probability, "guide_probability",
+       "the probability with which a direction is sampled from the guide instead of the BSDF"},
   }};
 };
 
@@ -63,6 +70,18 @@ constexpr bool shows_space(InspectQuantity quantity) {
   }
 }
 
+/// It shows a guide.
+constexpr bool shows_guide(InspectQuantity quantity) {
+  switch (quantity) {
+    case InspectQuantity::guide_density:
+    case InspectQuantity::guide_cells:
+    case InspectQuantity::guide_probability:
+      return true;
+    default:
+      return false;
+  }
+}
+
 /// integrator: inspect.
 struct InspectSettings {
   static constexpr std::string_view name = "inspect";
@@ -71,6 +90,7 @@ struct InspectSettings {
 
   InspectQuantity show = InspectQuantity::normal;
   GuideSettings guide = BsdfGuideSettings{};
+  int learn = 0;
   std::array<double, 2> from{0.5, 0.5};
 
   bool operator==(const InspectSettings&) const = default;
@@ -79,7 +99,12 @@ struct InspectSettings {
 template <class V>
 void describe(V& v, InspectSettings& s) {
   v("show", s.show, {.doc = "the quantity shown"});
-  v("guide", s.guide, {.doc = "the guide whose density is shown, as prepared, without learning"});
+  v("guide", s.guide, {.doc = "the guide that is shown"});
+  v("learn", s.learn,
+    {.doc = "iterations of `path` with its defaults that the guide learns from before it is shown; "
+            "0: as prepared",
+     .min = 0,
+     .max = 65536});
   v("from", s.from,
     {.doc =
          "the point at which the guide is evaluated: the visible surface at this fraction of the "

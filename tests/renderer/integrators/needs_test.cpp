@@ -49,33 +49,5 @@ TEST(Needs, EmissionOpensEmissionTexturesOnly) {
   EXPECT_TRUE(r.emitters_built);
 }
 
-TEST(Inspect, ShowsWhatItSays) {
-  // The floor of `point.glb` seen from straight above: one normal, a known depth in the middle.
-  const Rendering normal = render("point.glb", {.integrator = show(InspectQuantity::normal),
-                                                .width = 9,
-                                                .height = 9,
-                                                .iterations = 1,
-                                                .camera = "above"});
-  const std::vector<double> n = normal.film.mean();
-  for (std::size_t i = 0; i < n.size(); i += 3) {
-    EXPECT_NEAR(n[i + 1], 1, 1e-6);
-    EXPECT_NEAR(n[i], 0, 1e-6);
-  }
-  const SceneData scene = load_gltf(test::own_scene("point.glb"));
-  const double height = scene.cameras.front().to_world[3][1];
-  const Rendering depth = render("point.glb", {.integrator = show(InspectQuantity::depth),
-                                               .width = 9,
-                                               .height = 9,
-                                               .iterations = 64,
-                                               .camera = "above"});
-  EXPECT_NEAR(depth.film.mean()[3 * (4 * 9 + 4)], height, 0.01 * height);
-  const Rendering albedo = render("point.glb", {.integrator = show(InspectQuantity::albedo),
-                                                .width = 9,
-                                                .height = 9,
-                                                .iterations = 1,
-                                                .camera = "above"});
-  for (const double v : albedo.film.mean()) EXPECT_NEAR(v, 0.5, 1e-6);
-}
-
 }  // namespace
 }  // namespace lacuna

@@ -43,7 +43,7 @@ double predicted_variance(double n, double alpha) {
   return sum / (n * n);
 }
 
-const std::vector<double> iterations{16, 32, 64, 128, 256, 512, 1024};
+const std::vector<double> numbers_of_iterations{16, 32, 64, 128, 256, 512, 1024};
 
 /// The error after so many iterations, of one seed.
 std::vector<double> errors_of(const SppmSettings& settings, std::uint64_t seed,
@@ -51,7 +51,7 @@ std::vector<double> errors_of(const SppmSettings& settings, std::uint64_t seed,
   test::Session session(floor_below_lamp(),
                         {.integrator = settings, .width = 12, .height = 8, .seed = seed});
   std::vector<double> sum(reference.size(), 0.0), errors;
-  for (std::uint64_t i = 0; static_cast<double>(i) < iterations.back(); ++i) {
+  for (std::uint64_t i = 0; static_cast<double>(i) < numbers_of_iterations.back(); ++i) {
     const Image image = session.iterate(i);
     for (std::size_t p = 0; p < image.pixels.size(); ++p) {
       for (int c = 0; c < 3; ++c) {
@@ -59,7 +59,7 @@ std::vector<double> errors_of(const SppmSettings& settings, std::uint64_t seed,
       }
     }
     const auto n = static_cast<double>(i + 1);
-    if (n != iterations[errors.size()]) continue;
+    if (n != numbers_of_iterations[errors.size()]) continue;
     double mse = 0;
     for (std::size_t k = 0; k < sum.size(); ++k) {
       mse += (sum[k] / n - reference[k]) * (sum[k] / n - reference[k]);
@@ -85,14 +85,14 @@ TEST(LongSppm, ErrorFallsAtTheRateOfItsSchedule) {
     settings.alpha = alpha;
     Moments slopes;
     for (std::uint64_t seed = 1; seed <= 16; ++seed) {
-      slopes.add(slope(iterations, errors_of(settings, seed, reference)));
+      slopes.add(slope(numbers_of_iterations, errors_of(settings, seed, reference)));
     }
     std::vector<double> predicted;
-    predicted.reserve(iterations.size());
-    for (const double n : iterations) predicted.push_back(predicted_variance(n, alpha));
-    EXPECT_GT(statistics::t_test(slopes, slope(iterations, predicted)), 1e-4)
+    predicted.reserve(numbers_of_iterations.size());
+    for (const double n : numbers_of_iterations) predicted.push_back(predicted_variance(n, alpha));
+    EXPECT_GT(statistics::t_test(slopes, slope(numbers_of_iterations, predicted)), 1e-4)
         << "alpha " << alpha << ": slope " << slopes.mean() << " +- " << slopes.standard_error()
-        << ", not " << slope(iterations, predicted);
+        << ", not " << slope(numbers_of_iterations, predicted);
     EXPECT_LT(slopes.standard_error(), 0.05) << "the test has no power";
   }
 }
