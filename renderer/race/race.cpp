@@ -34,8 +34,8 @@ constexpr double enough_iterations = 16;
 constexpr double fewest_iterations = 4;
 /// The fewest pixels of its pictures, whatever they cost.
 constexpr std::size_t least_pixels = 4096;
-/// The part of the variance that is not spread, as small as it may be while it is not known.
-constexpr double least_rough = 0.1;
+/// What even spread may leave of the variance, while it is not known: as little as .004 was seen.
+constexpr double least_left = 0.1;
 /// A share of the best mixture that keeps a method in the race.
 constexpr double worthwhile_share = 0.15;
 
@@ -63,6 +63,14 @@ Standing get_standing(ByteReader& in) {
   s.unexplained = in.get<std::uint8_t>() != 0;
   s.bias = in.get<double>();
   s.bias_deviation = in.get<double>();
+  return s;
+}
+
+std::optional<Spread> get_gauged(ByteReader& in) {
+  if (in.get<std::uint8_t>() == 0) return std::nullopt;
+  const auto s = in.get<Spread>();
+  const bool valid = s.left > 0 && s.left <= 1 && s.count >= 1 && s.later >= 0 && s.later <= 1;
+  if (!valid || !std::isfinite(s.count)) throw std::runtime_error("saved race is not one");
   return s;
 }
 
@@ -292,7 +300,7 @@ double Race::of_whole_pictures(std::size_t which) const {
 double Race::foreseen_spread(std::size_t which) const {
   const Entrant& e = entrants_[which];
   const double cost = e.trial.iteration_cost();
-  return e.rough && cost > 0 ? SpreadGauge::left_of(*e.rough, rest(e.trial) / cost) : 1;
+  return e.gauged && cost > 0 ? e.gauged->left_of(rest(e.trial) / cost) : 1;
 }
 
 double Race::foreseen_growth(std::size_t which) const {
@@ -315,7 +323,7 @@ void Race::judge_alone(std::size_t which, const BlockSums& hidden, double growth
   s.growth = growth;
   s.tail_known = e.trial.tail_is_known();
   if (!gauges_.empty()) {
-    e.rough = gauges_[which].rough_part(total(measured_[which]) * e.trial.grid().trial_share());
+    e.gauged = gauges_[which].spread(total(measured_[which]) * e.trial.grid().trial_share());
   }
   s.spread = foreseen_spread(which);
   const double factor = growth * s.spread * of_whole_pictures(which);
@@ -389,9 +397,8 @@ void Race::call_back(double growth) {
 
 double Race::unknown_gain(std::size_t which) const {
   const Entrant& e = entrants_[which];
-  const double cost = e.trial.iteration_cost();
-  if (e.rough || !e.spreads || !(cost > 0)) return 0;
-  return -std::log(SpreadGauge::left_of(least_rough, rest(e.trial) / cost));
+  const bool unknown = !e.gauged && e.spreads && e.trial.iteration_cost() > 0;
+  return unknown ? -std::log(least_left) : 0;
 }
 
 bool Race::is_beaten(std::size_t which) const {
@@ -453,7 +460,8 @@ void Race::save(ByteWriter& out) const {
     out.put(e.left_in);
     put_standing(out, e.standing);
     e.trial.save(out);
-    out.put(e.rough.value_or(-1.0));
+    out.put(e.gauged.has_value());
+    if (e.gauged) out.put(*e.gauged);
     out.put(measured_[k]);
     out.put(variances_[k]);
   }
@@ -476,9 +484,7 @@ void Race::load(ByteReader& in) {
     e.left_in = in.get<int>();
     e.standing = get_standing(in);
     e.trial.load(in);
-    const auto rough = in.get<double>();
-    if (!(rough <= 1)) throw std::runtime_error("saved race is not one");
-    e.rough = rough >= 0 ? std::optional(rough) : std::nullopt;
+    e.gauged = get_gauged(in);
     measured_[k] = get_finite(in, e.trial.grid().blocks(), "variances of blocks");
     variances_[k] = get_finite(in, e.trial.grid().blocks(), "variances of blocks");
   }

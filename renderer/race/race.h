@@ -55,9 +55,9 @@ struct Entrant {
   bool beaten = false;      ///< left because of its error: comes back if the others prove worse
   std::string reason = {};  ///< why it left
   int left_in = -1;         ///< round
-  bool shares_starts = false;        ///< shares_starts() of its settings
-  bool spreads = false;              ///< its samples are spread evenly
-  std::optional<double> rough = {};  ///< SpreadGauge::rough_part()
+  bool shares_starts = false;         ///< shares_starts() of its settings
+  bool spreads = false;               ///< its samples are spread evenly
+  std::optional<Spread> gauged = {};  ///< of its pictures in the race
   Standing standing = {};
 };
 
@@ -127,7 +127,7 @@ class Race {
   void estimate_variances();
   /// The variance of whole pictures over that of smaller ones, where the race has them.
   double of_whole_pictures(std::size_t which) const;
-  /// SpreadGauge::left_of() by the end of the budget.
+  /// Spread::left_of() by the end of the budget.
   double foreseen_spread(std::size_t which) const;
   /// Of an entrant's error, by the end of the budget (Trial::growth()).
   double foreseen_growth(std::size_t which) const;

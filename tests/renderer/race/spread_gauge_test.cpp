@@ -30,30 +30,64 @@ SpreadGauge fed(double spread) {
   return gauge;
 }
 
-TEST(SpreadGauge, TellsWhichPartOfTheVarianceIsNotSpread) {
+TEST(SpreadGauge, TellsWhatIsLeftOfTheVariance) {
   // The mean of 4096 pixels has 2 % of deviation.
-  EXPECT_GT(*fed(0).rough_part(gauge_variance), 0.93);
-  EXPECT_EQ(*fed(1).rough_part(gauge_variance), 0);
-  // Antithetic samples leave nothing, not the 1 / n of the model.
-  const double model = (0.5 - 2.0 / gauge_samples) / (1 - 2.0 / gauge_samples);
-  EXPECT_NEAR(*fed(0.5).rough_part(gauge_variance), model, 0.05);
+  const Spread none = *fed(0).spread(gauge_variance);
+  EXPECT_GT(none.left, 0.93);
+  EXPECT_EQ(none.count, gauge_samples);
+  EXPECT_NEAR(none.left_of(1000), 1, 0.1);
+  EXPECT_EQ(fed(1).spread(gauge_variance)->left, 1.0 / gauge_samples) << "the least that it tells";
+  // Antithetic samples leave nothing.
+  EXPECT_NEAR(fed(0.5).spread(gauge_variance)->left, 0.5, 0.05);
 }
 
 TEST(SpreadGauge, SaysNothingOfFewSamples) {
   SpreadGauge gauge(2, 2);
   for (int i = 0; i < 7; ++i) {
     gauge.add(Image(2, 2));
-    EXPECT_FALSE(gauge.rough_part(1));
+    EXPECT_FALSE(gauge.spread(1));
   }
   gauge.add(Image(2, 2));
-  EXPECT_TRUE(gauge.rough_part(1));
-  EXPECT_FALSE(gauge.rough_part(0));
+  EXPECT_TRUE(gauge.spread(1));
+  EXPECT_FALSE(gauge.spread(0));
 }
 
-TEST(SpreadGauge, WhatIsLeftFallsToTheRoughPart) {
-  EXPECT_EQ(SpreadGauge::left_of(1, 1000), 1);
-  EXPECT_EQ(SpreadGauge::left_of(0.25, 1), 1);
-  EXPECT_NEAR(SpreadGauge::left_of(0.25, 1e9), 0.25, 1e-6);
+TEST(SpreadGauge, WhatIsLeftGoesOnFalling) {
+  const Spread s{.left = 0.25, .count = 16, .later = 0.5};
+  EXPECT_EQ(s.left_of(1), 1);
+  EXPECT_NEAR(s.left_of(4), 0.5, 1e-12);
+  EXPECT_NEAR(s.left_of(16), 0.25, 1e-12);
+  EXPECT_NEAR(s.left_of(1600), 0.025, 1e-12);
+  EXPECT_EQ(Spread{}.left_of(1000), 1);
+}
+
+/// Of each sequence of spread samples the mean of n has the error of a deviation that falls as
+/// n^-(1 + fall) / 2.
+Spread after(std::uint64_t samples, double fall, double variance) {
+  SpreadGauge gauge(gauge_side, gauge_side);
+  std::array<Image, 2> sums{Image(gauge_side, gauge_side), Image(gauge_side, gauge_side)};
+  for (std::uint64_t i = 0; i < samples; ++i) {
+    const double n = double(i / 2 + 1);
+    Image estimate(gauge_side, gauge_side);
+    Image& sum = sums[i % 2];
+    for (std::size_t p = 0; p < estimate.pixels.size(); ++p) {
+      Rng rng(1 + i % 2, 0, p, Rng::Purpose::test);
+      const float deviation = (rng.next() - 0.5F) * float(std::pow(n, (1 - fall) / 2));
+      estimate.pixels[p] = Rgb(deviation) - sum.pixels[p];
+      sum.pixels[p] = Rgb(deviation);
+    }
+    gauge.add(estimate);
+  }
+  return *gauge.spread(variance);
+}
+
+TEST(SpreadGauge, SeesHowFastTheErrorFalls) {
+  for (const double fall : {0.0, 0.3, 0.8}) {
+    // Half of the mean fall, which the first samples do not decide here, and the last slope.
+    const Spread s = after(128, fall, gauge_variance);
+    const double mean_fall = -std::log(s.left) / std::log(128.0);
+    EXPECT_NEAR(s.later, (mean_fall / 2 + fall) / 2, 0.02) << fall;
+  }
 }
 
 TEST(SpreadGauge, IsSaved) {
@@ -65,7 +99,8 @@ TEST(SpreadGauge, IsSaved) {
   loaded.load(in);
   EXPECT_TRUE(in.at_end());
   EXPECT_EQ(loaded.count(), gauge.count());
-  EXPECT_EQ(loaded.rough_part(gauge_variance), gauge.rough_part(gauge_variance));
+  EXPECT_EQ(loaded.spread(gauge_variance)->left, gauge.spread(gauge_variance)->left);
+  EXPECT_EQ(loaded.spread(gauge_variance)->later, gauge.spread(gauge_variance)->later);
   SpreadGauge other(gauge_side, 1);
   ByteReader again(out.bytes());
   EXPECT_THROW(other.load(again), std::runtime_error);
