@@ -13,6 +13,7 @@
 #include "renderer/integrators/candidates.h"
 #include "renderer/integrators/integrator.h"
 #include "renderer/integrators/integrators.h"
+#include "renderer/race/picture_halves.h"
 #include "renderer/race/plan.h"
 #include "renderer/race/record.h"
 #include "renderer/race/verdict.h"
@@ -89,9 +90,8 @@ class Auto final : public Integrator {
   void keep_verdict() const;
   /// Why a candidate does not take part; empty: it does.
   std::string excluded(std::size_t k, const PrepareContext& context) const;
-  /// One iteration of a candidate, of `parts` of the picture. Returns its cost.
-  std::vector<std::uint64_t>& drawn(std::uint32_t half, std::size_t k) { return drawn_[half][k]; }
-  /// `sample`: its number in the sequences of `sobol`.
+  /// One iteration of a candidate, of `parts` of the picture. Returns its cost. `sample`: its
+  /// number in the sequences of `sobol`.
   double render(std::size_t k, const IterationContext& context, SampleNumber sample, Image& image,
                 std::span<const Tile> parts = {});
   /// Renders one of the race's iterations and calls `finished(image, cost)`; a candidate that takes
@@ -118,11 +118,9 @@ class Auto final : public Integrator {
   std::function<void(const Verdict&)> keep_;
   /// An earlier race decided, perhaps by the pictures of this seed: the numbers are others.
   bool recalled_ = false;
-  std::uint64_t estimates_ = 0;  ///< that are finished
-  /// In the sequences of the film's halves, the samples that each block has of each candidate in
-  /// finished estimates.
-  std::array<std::vector<std::vector<std::uint64_t>>, 2> drawn_;
-  std::uint64_t first_ = 0;  ///< iteration that the race was held in
+  std::uint64_t estimates_ = 0;        ///< that are finished
+  std::vector<PictureHalves> halves_;  // of each candidate, in finished estimates
+  std::uint64_t first_ = 0;            ///< iteration that the race was held in
   // Of the estimate in progress: it goes on where it was stopped.
   std::vector<int> done_;
   std::vector<Image> sums_;
@@ -187,8 +185,7 @@ void Auto::prepare(const PrepareContext& context) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     race_.entrants()[k].shares_starts = shares_starts(all[k]);
   }
-  const std::size_t blocks = race_.grid().blocks();
-  for (auto& half : drawn_) half.assign(candidates_.size(), std::vector<std::uint64_t>(blocks));
+  halves_.assign(candidates_.size(), PictureHalves(race_.grid()));
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     if (const std::string why = excluded(k, context); !why.empty()) {
       race_.leave(k, why);
@@ -292,9 +289,8 @@ void Auto::run_race(const IterationContext& context) {
     const bool is_first = race_.entrants()[*k].trial.iterations() == 0;
     const double rest = std::min(race_.limits().cost - race_.spent(),
                                  race_.limits().cost * (is_first ? longest_first : 1));
-    const bool spread = context.sampler == Sampler::sobol && candidates_[*k].spreads;
     attempt(*k, context, camera, may_be_late ? infinite : rest,
-            [&](const Image& image, double cost) { race_.finished(*k, image, cost, spread); });
+            [&](const Image& image, double cost) { race_.finished(*k, image, cost); });
   }
   race_.close();
 }
@@ -334,9 +330,9 @@ void Auto::run_plan(const IterationContext& context) {
       std::vector<Tile> parts;
       SampleNumber sample{half_of(context), 0};
       if (candidates_[k].integrator->renders_parts()) {
-        parts = parts_of(*plan_, grid, k, done_[k], drawn(sample.randomisation, k), pixels);
+        parts = parts_of(*plan_, grid, k, done_[k], halves_[k].drawn(sample.randomisation), pixels);
       } else {
-        sample.index = drawn(sample.randomisation, k)[0] + std::uint64_t(done_[k]);
+        sample.index = halves_[k].drawn(sample.randomisation)[0] + std::uint64_t(done_[k]);
         pixels = grid.pixels();
       }
       const double cost = render(k, context, sample, image, parts);
@@ -354,6 +350,9 @@ void Auto::run_plan(const IterationContext& context) {
 }
 
 Counters Auto::iterate(const IterationContext& context, Image& image) {
+  for (std::size_t k = 0; k < candidates_.size(); ++k) {
+    race_.entrants()[k].spreads = context.sampler == Sampler::sobol && candidates_[k].spreads;
+  }
   if (!plan_) {
     if (race_.spent() == 0) first_ = context.iteration;
     run_race(context);
@@ -364,15 +363,15 @@ Counters Auto::iterate(const IterationContext& context, Image& image) {
   combine(*plan_, race_.grid(), sums_, image);
   const Counters counters = std::exchange(counters_, {});
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
-    std::vector<std::uint64_t>& count = drawn(half_of(context), k);
-    for (std::size_t b = 0; b < plan_->counts[k].size(); ++b) {
-      count[b] += std::uint64_t(plan_->counts[k][b]);
-    }
+    if (plan_->iterations[k] > 0) halves_[k].add(half_of(context), sums_[k], plan_->counts[k]);
   }
   ++estimates_;
   const bool power_of_two = (estimates_ & (estimates_ - 1)) == 0;
   const bool has_a_choice = candidates_.size() > 1 || settings_.sampling == Sampling::adaptive;
   if (estimates_ >= 4 && power_of_two && has_a_choice) {
+    for (std::size_t k = 0; k < candidates_.size(); ++k) {
+      if (const auto found = halves_[k].variances()) race_.observe(k, *found, halves_[k].samples());
+    }
     race_.judge();
     make_new_plan();
   } else {
@@ -438,9 +437,7 @@ void Auto::save(ByteWriter& out) const {
   }
   out.put(recalled_);
   out.put(estimates_);
-  for (const auto& half : drawn_) {
-    for (const auto& counts : half) out.put(counts);
-  }
+  for (const PictureHalves& h : halves_) h.save(out);
   out.put(first_);
   out.put(counters_);
   out.put(plan_.has_value());
@@ -493,13 +490,7 @@ void Auto::load(ByteReader& in) {
   }
   recalled_ = in.get<std::uint8_t>() != 0;
   estimates_ = in.get<std::uint64_t>();
-  for (auto& half : drawn_) {
-    for (auto& counts : half) {
-      const std::size_t blocks = counts.size();
-      counts = in.get_vector<std::uint64_t>();
-      if (counts.size() != blocks) throw std::runtime_error("saved samples are of other blocks");
-    }
-  }
+  for (PictureHalves& h : halves_) h.load(in);
   first_ = in.get<std::uint64_t>();
   counters_ = in.get<Counters>();
   if (in.get<std::uint8_t>() == 0) return;

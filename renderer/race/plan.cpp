@@ -46,20 +46,23 @@ Mixable mixable(const Race& race, const PlanFreedom& freedom, bool adapts) {
     if (k != race.best() && !e.standing.tail_known.value_or(true)) continue;
     if (!freedom.regions && k != race.best()) continue;
     const double cost = e.trial.iteration_cost();
-    const auto error = [&](const BlockSums& variances, double factor) {
-      BlockSums sums = smoothed(e.trial.grid(), variances);
-      for (double& v : sums) v *= cost * factor;
-      return sums;
-    };
+    const BlockGrid& grid = e.trial.grid();
     const BlockSums halves[2] = {e.trial.variances(0), e.trial.variances(1)};
     if (!(total(halves[0]) > 0) || !(total(halves[1]) > 0)) continue;
-    // What is foreseen or unexplained is in the variances, not in those of halves.
-    const double hidden = total(race.variances()[k]) / total(e.trial.variances());
     if (k == race.best()) m.best = m.who.size();
     m.who.push_back(k);
-    m.by_block.push_back(adapts ? freedom.by_block[k] : 0);
-    m.errors.push_back(error(race.variances()[k], 1));
-    for (int h = 0; h < 2; ++h) m.halves[h].push_back(error(halves[h], hidden));
+    // Where spread samples err is not where one errs: that must have been seen.
+    const bool seen = !e.spreads || !e.observed.empty();
+    m.by_block.push_back(adapts && seen ? freedom.by_block[k] : 0);
+    const BlockSums one = smoothed(grid, e.trial.variances());
+    BlockSums all = smoothed(grid, race.variances()[k]);
+    for (double& v : all) v *= cost;
+    for (int h = 0; h < 2; ++h) {
+      // What is foreseen, observed or unexplained is in the variances, not in those of halves.
+      m.halves[h].push_back(smoothed(grid, halves[h]));
+      for (std::size_t b = 0; b < one.size(); ++b) m.halves[h].back()[b] *= all[b] / one[b];
+    }
+    m.errors.push_back(std::move(all));
   }
   return m;
 }

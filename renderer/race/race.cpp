@@ -171,11 +171,10 @@ std::optional<std::size_t> Race::next() const {
   return chosen;
 }
 
-void Race::finished(std::size_t entrant, const Image& estimate, double cost, bool spread) {
+void Race::finished(std::size_t entrant, const Image& estimate, double cost) {
   Entrant& e = entrants_[entrant];
   e.trial.add(estimate);
-  if (spread) gauges_[entrant].add(estimate);
-  e.spreads = spread;
+  if (e.spreads) gauges_[entrant].add(estimate);
   e.trial.charge(cost, e.trial.grid().trial_share());
   spent_ += cost;
   end_round();
@@ -303,6 +302,17 @@ double Race::foreseen_spread(std::size_t which) const {
   return e.gauged && cost > 0 ? e.gauged->left_of(rest(e.trial) / cost) : 1;
 }
 
+void Race::observe(std::size_t entrant, const BlockSums& variances, double samples) {
+  Entrant& e = entrants_[entrant];
+  const double independent = total(measured_[entrant]), found = total(variances);
+  if (!(independent > 0) || !(found > 0)) return;
+  const bool again = !e.observed.empty();
+  Spread now = Spread::of(found / independent, samples);
+  if (again) now.steepen(total(e.observed), e.gauged->count, found);
+  e.observed = variances;
+  e.gauged = now;
+}
+
 double Race::foreseen_growth(std::size_t which) const {
   const Trial& t = entrants_[which].trial;
   const double cost = t.next_cost();
@@ -313,7 +323,7 @@ double Race::foreseen_growth(std::size_t which) const {
 void Race::judge_alone(std::size_t which, const BlockSums& hidden, double growth) {
   Entrant& e = entrants_[which];
   Standing& s = e.standing;
-  variances_[which] = measured_[which];
+  variances_[which] = e.observed.empty() ? measured_[which] : e.observed;
   // Differences of singles are in their variances already.
   s.unexplained = !e.biased && e.trial.estimates() > 1 &&
                   total(hidden) > 3 * standard_deviation(e.trial.grid(), hidden);
@@ -322,11 +332,13 @@ void Race::judge_alone(std::size_t which, const BlockSums& hidden, double growth
   }
   s.growth = growth;
   s.tail_known = e.trial.tail_is_known();
-  if (!gauges_.empty()) {
+  if (!gauges_.empty() && e.observed.empty()) {
     e.gauged = gauges_[which].spread(total(measured_[which]) * e.trial.grid().trial_share());
   }
   s.spread = foreseen_spread(which);
-  const double factor = growth * s.spread * of_whole_pictures(which);
+  // What was observed has all of that but what is still to come.
+  const double seen = e.observed.empty() ? 1 : e.gauged->left;
+  const double factor = growth * s.spread / seen * of_whole_pictures(which);
   for (double& v : variances_[which]) v *= factor;
   if (e.biased && e.trial.estimates() > 1) count_bias(which, hidden);
   s.error = std::max(0.0, total(variances_[which])) * e.trial.iteration_cost() /
@@ -462,6 +474,7 @@ void Race::save(ByteWriter& out) const {
     e.trial.save(out);
     out.put(e.gauged.has_value());
     if (e.gauged) out.put(*e.gauged);
+    out.put(e.observed);
     out.put(measured_[k]);
     out.put(variances_[k]);
   }
@@ -485,6 +498,11 @@ void Race::load(ByteReader& in) {
     e.standing = get_standing(in);
     e.trial.load(in);
     e.gauged = get_gauged(in);
+    e.observed = in.get_vector<double>();
+    const std::size_t seen = e.observed.size();
+    if ((seen != 0 && seen != e.trial.grid().blocks()) || (seen != 0 && !e.gauged)) {
+      throw std::runtime_error("saved race is not one");
+    }
     measured_[k] = get_finite(in, e.trial.grid().blocks(), "variances of blocks");
     variances_[k] = get_finite(in, e.trial.grid().blocks(), "variances of blocks");
   }

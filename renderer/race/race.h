@@ -56,8 +56,9 @@ struct Entrant {
   std::string reason = {};  ///< why it left
   int left_in = -1;         ///< round
   bool shares_starts = false;         ///< shares_starts() of its settings
-  bool spreads = false;               ///< its samples are spread evenly
-  std::optional<Spread> gauged = {};  ///< of its pictures in the race
+  bool spreads = false;               ///< its estimates are evenly spread samples, one by one
+  std::optional<Spread> gauged = {};  ///< of its pictures, once there are enough
+  BlockSums observed = {};            ///< of Race::observe(); empty: not yet
   Standing standing = {};
 };
 
@@ -88,13 +89,17 @@ class Race {
 
   /// Nothing: the race is over.
   std::optional<std::size_t> next() const;
-  /// The iteration that next() asked for. `spread`: it is the next sample of evenly spread ones.
-  void finished(std::size_t entrant, const Image& estimate, double cost, bool spread = false);
+  /// The iteration that next() asked for.
+  void finished(std::size_t entrant, const Image& estimate, double cost);
   /// `cost`: what the attempt took.
   void leave(std::size_t entrant, const std::string& reason, double cost = 0);
 
   /// After next() had nothing more: those that never began leave, and the others are judged.
   void close();
+  /// What the entrant's estimates of the picture tell: their squared error in each block times the
+  /// mean number `samples` of them. It counts in judge() in place of what its pictures in the race
+  /// told, because spread samples err less the more they are, and not alike everywhere.
+  void observe(std::size_t entrant, const BlockSums& variances, double samples);
   /// Judges all entrants that race by all that their trials hold, after more was added to them.
   void judge();
 

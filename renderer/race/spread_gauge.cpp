@@ -15,6 +15,18 @@ constexpr std::uint64_t fewest = 8;  // estimates that tell anything
 
 }  // namespace
 
+Spread Spread::of(double left, double count) {
+  Spread s{.left = std::clamp(left, 1 / count, 1.0), .count = count};
+  if (count > 1) s.later = -std::log(s.left) / std::log(count) / 2;
+  return s;
+}
+
+void Spread::steepen(double before, double count_before, double now) {
+  if (!(before > 0) || !(now > 0) || !(count > count_before)) return;
+  const double slope = std::log(before / now) / std::log(count / count_before);
+  later = (later + std::clamp(slope, 0.0, 1.0)) / 2;
+}
+
 double Spread::left_of(double n) const {
   if (!(count > 1) || !(n > 1)) return 1;
   if (n < count) return std::pow(left, std::log(n) / std::log(count));
@@ -37,22 +49,14 @@ double SpreadGauge::error() const {
   return apart * scale_from_halves(even, odd);
 }
 
-/// A straight line in logarithms from one estimate on falls too fast later, and the slope at the
-/// end is noisy: the mean of half of the one and of the other is within 1.5 of the error after 64
-/// times as many estimates, for path tracing on cornell-box, area, atrium, door and the
-/// bidirectional method on cornell and atrium.
 std::optional<Spread> SpreadGauge::spread(double variance) const {
   if (count_ < fewest || !(variance > 0)) return std::nullopt;
-  const auto n = double(count_);
-  const double now = error() * n;
-  Spread s{.left = std::clamp(now / variance, 1 / n, 1.0), .count = n};
-  s.later = -std::log(s.left) / std::log(n) / 2;
-  const auto fourth = std::bit_width(count_ / 4 / fewest);  // marks of at most n / 4
-  if (fourth > 0 && now > 0) {
-    const auto m = double(fewest << (fourth - 1));
-    const double before = errors_[std::size_t(fourth) - 1] * m;
-    const double slope = before > 0 ? std::log(before / now) / std::log(n / m) : 0;
-    s.later = (s.later + std::clamp(slope, 0.0, 1.0)) / 2;
+  const double now = error() * double(count_);
+  Spread s = Spread::of(now / variance, double(count_));
+  const auto marks = std::bit_width(count_ / 4 / fewest);  // of at most a quarter of all
+  if (marks > 0) {
+    const double before = double(fewest << (marks - 1));
+    s.steepen(errors_[std::size_t(marks) - 1] * before, before, now);
   }
   return s;
 }

@@ -194,7 +194,8 @@ TEST(Reduction, IsSavedWithTheRace) {
   Race race = race_of(20);
   race.choose_reduction(std::vector<double>{0.001, 0.003}, 8);
   const std::size_t first = *race.next();
-  race.finished(first, noisy(race.entrants()[0].trial.grid(), 1, random), 0.01, true);
+  race.entrants()[first].spreads = true;
+  race.finished(first, noisy(race.entrants()[0].trial.grid(), 1, random), 0.01);
   race.entrants()[1].trial.restart_whole();
   race.entrants()[1].trial.charge(1);
   ByteWriter out;
