@@ -121,7 +121,7 @@ class FaceDirections final : public GuidingDistribution {
     }
   }
   void record_noise(double variance, Accumulator& accumulator) const override {
-    static_cast<FaceAccumulator&>(accumulator).tuning.noise += variance;
+    static_cast<FaceAccumulator&>(accumulator).tuning.noise.add(variance);
   }
   void update(std::span<const std::unique_ptr<Accumulator>> accumulators,
               const ThreadPool& pool) override {

@@ -115,7 +115,7 @@ void LearnedSkeleton::accumulate(const GuidingSample& sample, Accumulator& accum
 }
 
 void LearnedSkeleton::record_noise(double variance, Accumulator& accumulator) const {
-  static_cast<SampleAccumulator&>(accumulator).tuning.noise += variance / double{learned_share};
+  static_cast<SampleAccumulator&>(accumulator).tuning.noise.add(variance / double{learned_share});
 }
 
 void LearnedSkeleton::update(std::span<const std::unique_ptr<Accumulator>> accumulators,

@@ -54,7 +54,7 @@ void SdTree::accumulate(const GuidingSample& sample, Accumulator& accumulator) c
 }
 
 void SdTree::record_noise(double variance, Accumulator& accumulator) const {
-  static_cast<SampleAccumulator&>(accumulator).tuning.noise += variance;
+  static_cast<SampleAccumulator&>(accumulator).tuning.noise.add(variance);
 }
 
 void SdTree::update(std::span<const std::unique_ptr<Accumulator>> accumulators,

@@ -39,7 +39,7 @@ class SkeletonDirections final : public GuidingDistribution {
   }
   void accumulate(const GuidingSample& sample, Accumulator& accumulator) const override;
   void record_noise(double variance, Accumulator& accumulator) const override {
-    static_cast<TuningAccumulator&>(accumulator).tuning.noise += variance;
+    static_cast<TuningAccumulator&>(accumulator).tuning.noise.add(variance);
   }
   void update(std::span<const std::unique_ptr<Accumulator>> accumulators,
               const ThreadPool&) override {

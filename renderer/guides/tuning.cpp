@@ -1,7 +1,9 @@
 #include "renderer/guides/tuning.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <utility>
 
 namespace lacuna {
 
@@ -14,6 +16,19 @@ constexpr float first_strength = 8, first_probability = 0.25F;
 constexpr double min_paths = 8;
 /// Time of a vertex with a guide over one without; measured 1.2 to 1.6, learning included.
 constexpr double guided_cost = 1.4;
+/// The same of an iteration whose vertices are all guided, learning included: 1.5 to 2 were
+/// measured with lobes and learned directions on six scenes.
+constexpr double guided_iteration_cost = 1.75;
+/// A guide that seems to pay so many times needs no comparison; twice as many where that is not
+/// known.
+constexpr double surely_pays = 2;
+/// One of so many iterations at most follows the BSDF for comparison.
+constexpr std::uint64_t rests_of = 16;
+/// The relative deviation of the ratio of two noises up to which it is known well enough; above, it
+/// must differ from 1 by as much.
+constexpr double comparable = 0.25;
+/// Pairs of pixels that tell anything of a noise: few meet no bright path.
+constexpr double least_pairs = 16384;
 /// A sum of squares is known if its largest term has at most this share.
 constexpr double known_share = 0.05;
 /// The probability of a cell whose moments are not known.
@@ -70,8 +85,9 @@ void Tuning::accumulate(const GuidingSample& sample, std::uint32_t cell,
 
 void Tuning::update(std::span<const Accumulator* const> accumulators) {
   std::vector<char> met(chosen_.size(), 0);
+  Noise noise;
   for (const Accumulator* t : accumulators) {
-    noise_ += t->noise;
+    noise.add(t->noise);
     for (const auto& [cell, moments] : t->moments) {
       met[cell] = 1;
       double* const all = moments_.data() + cell * stride();
@@ -83,6 +99,30 @@ void Tuning::update(std::span<const Accumulator* const> accumulators) {
   for (std::size_t cell = 0; cell < met.size(); ++cell) {
     if (met[cell] != 0) choose(cell);
   }
+  ++iterations_;
+  if (std::exchange(rests_, false)) {
+    ++rested_;
+    without_.add(noise);
+    compare();
+    return;
+  }
+  noise_ += noise.sum;
+  with_.add(noise);
+  // What the guide did long ago counts little.
+  if (std::has_single_bit(iterations_)) {
+    for (double* v : {&with_.sum, &with_.squares, &with_.pairs}) *v /= 4;
+  }
+}
+
+void Tuning::compare() {
+  if (std::min(with_.pairs, without_.pairs) < least_pairs) return;
+  if (!(with_.sum > 0) || !(without_.sum > 0)) return;
+  const double gain = std::log(without_.mean() / (with_.mean() * guided_iteration_cost));
+  const double deviation = std::sqrt(with_.doubt() + without_.doubt());
+  if (deviation > comparable && std::abs(gain) < deviation) return;
+  idle_ = gain < 0;
+  decided_ = 0;
+  for (std::size_t cell = 0; cell < chosen_.size(); ++cell) decided_ += paths(cell);
 }
 
 double Tuning::moment(std::size_t cell, std::size_t candidate) const {
@@ -142,13 +182,19 @@ void Tuning::stop_if_useless() {
     return;
   }
   // Decided at each doubling only: of many decisions by chance one would be wrong.
-  const bool known =
-      all >= std::max(least_paths, 2 * decided_) && largest < known_share_of_all * plain;
-  if (!known) return;
-  decided_ = all;
+  if (all < std::max(least_paths, 2 * decided_)) return;
   // The noise was measured with the guide: without it, it would be that and the gain.
   const double noise = noise_ > 0 ? noise_ : chosen, gain = plain - chosen;
-  idle_ = noise * guided_cost > noise + gain;
+  const bool known = largest < known_share_of_all * plain;
+  if (with_.pairs < least_pairs) {
+    if (!known) return;
+    idle_ = noise * guided_cost > noise + gain;
+    decided_ = all;
+  } else if (noise + gain > noise * guided_iteration_cost * (known ? 1 : 2) * surely_pays) {
+    decided_ = all;
+  } else {
+    rests_ = rested_ * rests_of < iterations_;
+  }
 }
 
 void Tuning::divide(std::size_t cell) {
@@ -169,17 +215,25 @@ void Tuning::load(ByteReader& in) {
   std::vector<std::uint32_t> chosen = in.get_vector<std::uint32_t>();
   std::vector<double> moments = in.get_vector<double>();
   const auto noise = in.get<double>(), decided = in.get<double>();
+  const auto with = in.get<Noise>(), without = in.get<Noise>();
+  const auto iterations = in.get<std::uint64_t>(), rested = in.get<std::uint64_t>();
+  const bool rests = in.get<std::uint8_t>() != 0;
   const bool idle = in.get<std::uint8_t>() != 0;
   const bool valid = std::all_of(chosen.begin(), chosen.end(),
                                  [this](std::uint32_t i) { return i < candidates(); });
-  if (!valid || !(noise >= 0) || !(decided >= 0) || chosen.size() != chosen_.size() ||
-      moments.size() != moments_.size()) {
+  if (!valid || !(noise >= 0) || !(decided >= 0) || !(with.sum >= 0) || !(without.sum >= 0) ||
+      chosen.size() != chosen_.size() || moments.size() != moments_.size()) {
     throw std::runtime_error("saved strengths belong to another scene");
   }
   chosen_ = std::move(chosen);
   moments_ = std::move(moments);
   noise_ = noise;
   decided_ = decided;
+  with_ = with;
+  without_ = without;
+  iterations_ = iterations;
+  rested_ = rested;
+  rests_ = rests;
   idle_ = idle;
 }
 

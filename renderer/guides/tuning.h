@@ -17,8 +17,10 @@ namespace lacuna {
 /// adds one more path like its largest, from a direction that the guide does not sample. The cost
 /// is that of a vertex over one that follows the BSDF, a constant: clocks would change the bits.
 ///
-/// Where the choices of all cells together gain little, the guide is left alone from then on:
-/// idle().
+/// Where the choices of all cells together seem to gain little, an iteration follows the BSDF
+/// alone, and the noise of its pixels is compared with that of the others: moments tell what a
+/// vertex gains if all others stay as they are, and along a path gains multiply. Where the guide
+/// does not pay for its time it is left alone from then on: idle().
 class Tuning {
  public:
   Tuning() = default;
@@ -28,13 +30,30 @@ class Tuning {
   bool learns() const { return strengths_.size() * probabilities_.size() > 1; }
   float strength(std::size_t cell) const { return strengths_[chosen_[cell] / count()]; }
   float probability(std::size_t cell) const {
-    return idle_ ? 0 : probabilities_[chosen_[cell] % count()];
+    return idle_ || rests_ ? 0 : probabilities_[chosen_[cell] % count()];
   }
 
+  /// Variances of single samples of pixels, each estimated from one pair of them.
+  struct Noise {
+    double sum = 0, squares = 0, pairs = 0;
+    void add(double variance) {
+      sum += variance;
+      squares += variance * variance;
+      ++pairs;
+    }
+    void add(const Noise& other) {
+      sum += other.sum;
+      squares += other.squares;
+      pairs += other.pairs;
+    }
+    double mean() const { return sum / pairs; }
+    /// The squared deviation of mean() over its square.
+    double doubt() const { return squares / (sum * sum); }
+  };
   struct Accumulator {
     std::unordered_map<std::uint32_t, std::vector<double>>
         moments;  // by cell, laid out as moments_
-    double noise = 0;
+    Noise noise;
   };
   /// Whether the cell still learns. Each sample costs a density, so learning ends with enough
   /// paths.
@@ -46,9 +65,10 @@ class Tuning {
 
   /// All cells follow the BSDF, and nothing is learned any more.
   bool idle() const { return idle_; }
-  /// Makes it idle() if the moments of all cells are known, and what the choices take off the
-  /// variance of the pixels does not pay for the time of guiding. Only a probability that is
-  /// learned can be 0. Call when the guide has had densities to judge by.
+  /// Lets the coming iteration follow the BSDF where the moments of all cells do not tell that the
+  /// choices surely pay for the time of guiding;
+  /// update() then decides whether it is idle(). Only a probability that is learned can be 0. Call
+  /// when the guide has had densities to judge by.
   void stop_if_useless();
 
   /// Adds a cell that starts as a copy of `cell`.
@@ -68,6 +88,11 @@ class Tuning {
     out.put(moments_);
     out.put(noise_);
     out.put(decided_);
+    out.put(with_);
+    out.put(without_);
+    out.put(iterations_);
+    out.put(rested_);
+    out.put(std::uint8_t{rests_});
     out.put(std::uint8_t{idle_});
   }
   void load(ByteReader& in);
@@ -87,14 +112,18 @@ class Tuning {
   std::uint32_t cheapest(std::size_t cell) const;
   std::uint32_t carefully(std::size_t cell) const;
   void choose(std::size_t cell);
+  void compare();
 
   std::vector<float> strengths_, probabilities_;
   std::vector<std::uint32_t> chosen_;  // of each cell
   /// For each cell: the second moment of each strength and probability; the largest g^2 of a path;
   /// the number of paths.
   std::vector<double> moments_;
-  double noise_ = 0;    // variances of pixels' samples, summed over the paths of the moments
-  double decided_ = 0;  // paths when stop_if_useless() last decided
+  double noise_ = 0;      // variances of pixels' samples, summed over the paths of the moments
+  double decided_ = 0;    // paths when it was last decided whether the guide pays
+  Noise with_, without_;  // of iterations with the guide, the latest most, and of the others
+  std::uint64_t iterations_ = 0, rested_ = 0;
+  bool rests_ = false;  // the coming iteration follows the BSDF
   bool idle_ = false;
 };
 
