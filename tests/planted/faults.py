@@ -381,6 +381,8 @@ FAULTS = [
           "t > 0 && Float8(gate.radius2) >= r2;", "t > 0;"),
     Fault("without gates light leaves no cluster of its own", "renderer/visibility/gate_visibility.h",
           "cluster != at.cluster && cluster != no_group &&", "cluster != no_group &&"),
+    Fault("a leaf hides half of what a view within it sees", "renderer/view_maps/view_rendering.cpp",
+          "std::abs(d.z)}) < half_a_leaf) continue;", "std::abs(d.z)}) < 0 * half_a_leaf) continue;"),
     Fault("views of a node are culled as one", "renderer/view_maps/view_rendering.cpp",
           "Float8 off(v.width + scene_.radius(level));", "Float8 off(scene_.radius(level));"),
     Fault("views of a box are culled as one", "renderer/view_maps/view_rendering.cpp",
