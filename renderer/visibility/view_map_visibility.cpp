@@ -60,9 +60,11 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
   }
   const bool single =
       settings_.share == ViewSharing::none && settings_.method != ViewMapMethod::megaviews;
-  views_ =
-      std::make_unique<ViewTree>(single ? ViewTree::of_single_views(views)
-                                        : ViewTree(views, cube_.levels, cube_.corner, cube_.side));
+  const auto split =
+      settings_.split == ViewSplit::facing ? ViewTree::Split::facing : ViewTree::Split::position;
+  views_ = std::make_unique<ViewTree>(
+      single ? ViewTree::of_single_views(views)
+             : ViewTree(views, cube_.levels, cube_.corner, cube_.side, split));
   seconds.end(tree_seconds_);
   leaves_ += views_->leaf_count();
   ++passes_;

@@ -383,6 +383,8 @@ FAULTS = [
           "cluster != at.cluster && cluster != no_group &&", "cluster != no_group &&"),
     Fault("a leaf hides half of what a view within it sees", "renderer/view_maps/view_rendering.cpp",
           "std::abs(d.z)}) < half_a_leaf) continue;", "std::abs(d.z)}) < 0 * half_a_leaf) continue;"),
+    Fault("views of both sides of a wall are of one facing", "renderer/view_maps/view_tree.cpp",
+          "2 * axis + (n[axis] < 0 ? 1 : 0)", "2 * axis"),
     Fault("views of a node are culled as one", "renderer/view_maps/view_rendering.cpp",
           "Float8 off(v.width + scene_.radius(level));", "Float8 off(scene_.radius(level));"),
     Fault("views of a box are culled as one", "renderer/view_maps/view_rendering.cpp",
