@@ -71,6 +71,7 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
   maps_.reset();
   maps_ = std::make_unique<ViewMaps>(views_->leaf_count(), settings_.map_size,
                                      static_cast<float>(2 * cube_.side));
+  seconds.end(memory_seconds_);
   Counters counters;
   const auto take = [&](std::uint32_t leaf, std::span<const float> depths) {
     if (leaf % maps_between_stops == 0 && pass.context.stop()) throw IterationStopped{};
@@ -138,6 +139,7 @@ std::vector<std::pair<std::string, double>> ViewMapVisibility::statistics() cons
       {"view_map_bytes", number(maps_->bytes())},
       {"view_scene_cpu_seconds", scene_seconds_},
       {"view_tree_cpu_seconds", tree_seconds_},
+      {"view_memory_cpu_seconds", memory_seconds_},
       {"view_map_cpu_seconds", map_seconds_},
       {"view_pairs", number(counts_.pairs)},
       {"view_pairs_culled", number(counts_.culled)},
