@@ -25,8 +25,9 @@ struct View {
 class ViewTree {
  public:
   enum class Split { position, facing };
-  /// Above it nodes have views of all facings anyway, and share more; below 7, 1 % to 4 % of the
-  /// pairs come back (sponza, a million lights).
+  /// Measured on sponza with a million lights: divided higher, fewer views share a splat (by up to
+  /// a quarter); divided at level 8, pairs grow by up to 4 %, and below the smallest cubes by 14 to
+  /// 24 %.
   static constexpr int facing_level = 6;
 
   /// Bounds of the views below a node.
