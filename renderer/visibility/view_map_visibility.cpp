@@ -25,6 +25,7 @@ void ViewMapVisibility::prepare(const PrepareContext& context) {
     seconds.end(scene_seconds_);
   }
   texels_ = map_texels({settings_.map_size});
+  maps_ = std::make_unique<ViewMaps>(settings_.map_size, static_cast<float>(2 * cube_.side));
 }
 
 std::vector<BlockRange> ViewMapVisibility::passes(const VplSet& lights) const {
@@ -68,9 +69,7 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
   seconds.end(tree_seconds_);
   leaves_ += views_->leaf_count();
   ++passes_;
-  maps_.reset();
-  maps_ = std::make_unique<ViewMaps>(views_->leaf_count(), settings_.map_size,
-                                     static_cast<float>(2 * cube_.side));
+  maps_->resize(views_->leaf_count());
   seconds.end(memory_seconds_);
   Counters counters;
   const auto take = [&](std::uint32_t leaf, std::span<const float> depths) {
@@ -129,7 +128,7 @@ void ViewMapVisibility::decide(const At& at, std::size_t block, const Terms& ter
 }
 
 std::vector<std::pair<std::string, double>> ViewMapVisibility::statistics() const {
-  if (!maps_) return {};
+  if (!views_) return {};
   const auto number = [](auto n) { return static_cast<double>(n); };
   const auto splats = number(std::max<std::uint64_t>(1, counts_.splats));
   std::vector<std::pair<std::string, double>> stats{

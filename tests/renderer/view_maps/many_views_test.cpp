@@ -7,6 +7,7 @@
 
 #include "renderer/core/rng.h"
 #include "renderer/core/sampling.h"
+#include "renderer/view_maps/view_maps.h"
 
 namespace lacuna {
 namespace {
@@ -422,6 +423,26 @@ TEST(ManyViews, WithoutMergingShowEveryLeaf) {
     }
   }
   EXPECT_EQ(counts.splats, scene.leaves().size() * tree.leaf_count());
+}
+
+// Memory of earlier maps holds later ones, fewer or more.
+TEST(ViewMaps, KeepTheirMemory) {
+  ViewMaps maps(8, 100);
+  std::size_t bytes = 0;
+  for (const std::uint32_t leaves : {100U, 30U, 103U, 400U, 1U}) {
+    maps.resize(leaves);
+    EXPECT_GE(maps.bytes(), bytes);
+    bytes = std::max(bytes, std::size_t{leaves} * 128 * sizeof(std::uint16_t));
+    EXPECT_EQ(maps.bytes(), bytes);
+    for (std::uint32_t i = 0; i < leaves; ++i) {
+      const float distance = i % 3 == 0 ? std::numeric_limits<float>::infinity() : float(i);
+      maps.set(i, std::vector<float>(128, distance));
+    }
+    for (std::uint32_t i = 0; i < leaves; ++i) {
+      const float expected = i % 3 == 0 ? 0 : maps.scale() / float(i);
+      EXPECT_NEAR(maps.nearness(i, static_cast<int>(i % 128)), expected, expected / 1024);
+    }
+  }
 }
 
 TEST(ManyViews, AtTheirEnds) {
