@@ -21,7 +21,7 @@ VIEWS = {"Sponza": {"scene": "sponza/scene.glb", "camera": "atrium"},
 
 
 OURS = {"type": "view_maps"}  # its defaults
-RULES = {"node_texels": 1, "cover": 0, "bounds": "spheres"}
+RULES = {"node_texels": 1, "cover": 0, "bounds": "spheres", "split": "position"}
 LEVELS = {"Sponza": 9.675, "Hairball": 9.385, "Door": 10}  # 6.0 and 6.9 million leaves, as in the paper (section 4.1)
 SINGLE = {"many_lods", "per_view", "per_view_splats"}  # methods that the paper has for each single view
 

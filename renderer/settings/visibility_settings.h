@@ -297,6 +297,19 @@ struct EnumTable<ViewBounds> {
   }};
 };
 
+/// How the octree of the lights is divided.
+enum class ViewSplit { facing, position };
+
+template <>
+struct EnumTable<ViewSplit> {
+  static constexpr std::array<EnumValue<ViewSplit>, 2> values{{
+      {ViewSplit::facing, "facing",
+       "by their positions into 64^3 cubes, then by the largest coordinate of their normals, then "
+       "by their positions again: lights of a node see less that others do not"},
+      {ViewSplit::position, "position", "by their positions"},
+  }};
+};
+
 /// How rays are traced.
 enum class ViewRays { packets, single };
 
@@ -342,6 +355,7 @@ struct ViewMapsVisibilitySettings {
   double cover = 0.82;
   ViewSharing share = ViewSharing::cells;
   ViewBounds bounds = ViewBounds::boxes;
+  ViewSplit split = ViewSplit::facing;
   ViewTraversal traversal = ViewTraversal::depth_first;
   bool operator==(const ViewMapsVisibilitySettings&) const = default;
 };
@@ -390,6 +404,9 @@ void describe(V& v, ViewMapsVisibilitySettings& s) {
   v("bounds", s.bounds,
     {.doc = "bounds of nodes by which pairs are culled. Not for per_view",
      .published = "\"spheres\""});
+  v("split", s.split,
+    {.doc = "how lights are divided into nodes and cells. Not for lights that share no maps",
+     .published = "\"position\""});
   v("rays", s.rays, {.doc = "how per_view traces its rays"});
   v("traversal", s.traversal,
     {.doc = "order in which pairs of nodes of both octrees are processed. Not for per_view",

@@ -11,15 +11,19 @@
 
 namespace lacuna {
 
-ViewMaps::ViewMaps(std::uint32_t leaves, int map_size, float extent)
-    : map_{map_size}, nearness_(Nearness::within(extent)) {
+void ViewMaps::resize(std::uint32_t leaves) {
   const std::size_t texels = std::size_t{leaves} * static_cast<std::size_t>(map_.texels());
-  require_free(double(texels) * sizeof(std::uint16_t), [&] {
+  if (texels <= texels_.size()) return;
+  if (texels > texels_.capacity()) texels_ = {};  // before there is memory for others
+  require_free(double(texels - texels_.size()) * sizeof(std::uint16_t), [&] {
     return fmt::format(
         "view_maps: maps of 2 x {0} x {0} texels of {1} views; lower map_size, levels "
         "or light_paths",
-        map_size, leaves);
+        map_.size, leaves);
   });
+  // Numbers of lights differ a little between iterations. Room beyond `texels` takes memory only
+  // when it is used, and of the address space no more than require_free() leaves.
+  if (texels > texels_.capacity()) texels_.reserve(texels + texels / 16);
   texels_.resize(texels);
 }
 

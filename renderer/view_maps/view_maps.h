@@ -21,12 +21,15 @@ std::vector<MapTexel> map_texels(const Paraboloid& map);
 
 /// The finished maps of all leaves of a view tree, as half floats: a texel of 16 x 16 spans an
 /// eighth of a right angle, within which a distance is far less certain than its eleven bits.
+/// Memory is kept from one tree to the next, so that the system clears its pages once.
 class ViewMaps {
  public:
-  /// `extent`: the largest distance, scene units. Throws MemoryLimitError if there is no memory for
-  /// the maps.
-  ViewMaps(std::uint32_t leaves, int map_size, float extent);
+  /// `extent`: the largest distance, scene units.
+  ViewMaps(int map_size, float extent) : map_{map_size}, nearness_(Nearness::within(extent)) {}
 
+  /// Makes room for `leaves` maps, each to be set before it is read. Throws MemoryLimitError if
+  /// there is no memory for them.
+  void resize(std::uint32_t leaves);
   const Paraboloid& map() const { return map_; }
   /// Stores a map: for each texel its distance, or infinity. Several threads may set different
   /// leaves.
@@ -34,12 +37,13 @@ class ViewMaps {
   /// scale() / distance; 0 where the texel shows nothing.
   float nearness(std::uint32_t leaf, int texel) const;
   float scale() const { return nearness_.scale; }
+  /// Memory held, that of the most maps so far.
   std::size_t bytes() const { return texels_.size() * sizeof(texels_[0]); }
 
  private:
   Paraboloid map_;
   Nearness nearness_;
-  HugeVector<std::uint16_t> texels_;
+  HugeVector<std::uint16_t> texels_;  // of the most maps so far
 };
 
 /// Like render_views(), but traces a ray from the centre of each leaf's views through each texel

@@ -217,18 +217,17 @@ void ViewRendering::render_once(std::uint32_t view, int level, const NodeList& n
 }
 
 /// For leaves from number `first` on fills all texels whose centre the sphere covers (3.2.4); as
-/// published, also that of its centre.
+/// published, also that of its centre. A leaf whose cube the view is in fills none: it would hide
+/// half of all directions, and where in the cube its surface is, is not known.
 void ViewRendering::fill(const Visit& v, const NodeList& nodes, std::size_t first,
                          std::span<float> depths) const {
   const float whole = scene_.radius(scene_.levels());
   const float radius = settings_.cover > 0 ? settings_.cover * whole : whole;
+  const float half_a_leaf = scene_.half_side(scene_.levels());
   for (std::size_t i = first; i < nodes.size(); ++i) {
     const V3f d = V3f(nodes.x[i], nodes.y[i], nodes.z[i]) - v.centre;
+    if (std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) < half_a_leaf) continue;
     const float distance = d.length();
-    if (distance == 0) {
-      for (float& depth : depths) depth = 0;
-      continue;
-    }
     if (settings_.cover == 0) {
       float& depth = depths[static_cast<std::size_t>(map_.texel(d))];
       depth = std::min(depth, distance);

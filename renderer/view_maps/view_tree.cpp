@@ -29,9 +29,26 @@ struct Sum {
   }
 };
 
+/// The axis and the sign of the largest coordinate of a normal, one of six; 6: no normal.
+std::uint64_t facing(const V3f& n) {
+  if (n == V3f(0.0F)) return 6;
+  int axis = 0;
+  for (int k = 1; k < 3; ++k) {
+    if (std::abs(n[k]) > std::abs(n[axis])) axis = k;
+  }
+  return static_cast<std::uint64_t>(2 * axis + (n[axis] < 0 ? 1 : 0));
+}
+
+/// Inserts three bits of `facing` into a Morton code, above its lowest `levels` levels.
+std::uint64_t insert_facing(std::uint64_t code, std::uint64_t facing, int levels) {
+  const int bits = 3 * levels;
+  const std::uint64_t low = code & ((std::uint64_t{1} << bits) - 1);
+  return ((code >> bits) << 3 | facing) << bits | low;
+}
+
 }  // namespace
 
-ViewTree::ViewTree(std::span<const View> views, int levels, V3d corner, double side) {
+ViewTree::ViewTree(std::span<const View> views, int levels, V3d corner, double side, Split split) {
   const double cells = std::ldexp(1.0, levels);
   std::vector<std::pair<std::uint64_t, std::uint32_t>> codes(views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -41,7 +58,11 @@ ViewTree::ViewTree(std::span<const View> views, int levels, V3d corner, double s
       cell[static_cast<std::size_t>(k)] =
           static_cast<std::uint64_t>(std::clamp(at, 0.0, cells - 1));
     }
-    codes[i] = {morton_code(cell[0], cell[1], cell[2]), static_cast<std::uint32_t>(i)};
+    std::uint64_t code = morton_code(cell[0], cell[1], cell[2]);
+    if (split == Split::facing) {
+      code = insert_facing(code, facing(views[i].n), std::max(0, levels - facing_level));
+    }
+    codes[i] = {code, static_cast<std::uint32_t>(i)};
   }
   std::sort(codes.begin(), codes.end());
   std::vector<std::uint64_t> leaves;
@@ -50,7 +71,7 @@ ViewTree::ViewTree(std::span<const View> views, int levels, V3d corner, double s
     if (leaves.empty() || leaves.back() != code) leaves.push_back(code);
     leaf_of_[view] = static_cast<std::uint32_t>(leaves.size()) - 1;
   }
-  tree_ = build_octree(leaves, levels, corner, side);
+  tree_ = build_octree(leaves, split == Split::facing ? levels + 1 : levels, corner, side);
   bound(views);
 }
 

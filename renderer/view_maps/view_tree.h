@@ -16,8 +16,20 @@ struct View {
 
 /// An octree of views (Kol et al. 2018, 3.1.2). A leaf is a cube with one view or several, which
 /// share a map.
+///
+/// With `Split::facing` (not in the paper), nodes of level `facing_level` are divided by the facing
+/// of their views before smaller cubes: by the axis and the sign of the normal's largest
+/// coordinate. Both sides of a thin wall, or the walls of a corner, then are not in one node, whose
+/// cone of normals would cull little. tree() has one level more, and its cubes are not those of the
+/// views.
 class ViewTree {
  public:
+  enum class Split { position, facing };
+  /// Measured on sponza with a million lights: divided higher, fewer views share a splat (by up to
+  /// a quarter); divided at level 8, pairs grow by up to 4 %, and below the smallest cubes by 14 to
+  /// 24 %.
+  static constexpr int facing_level = 6;
+
   /// Bounds of the views below a node.
   struct Node {
     V3f centre;    ///< of their bounding sphere
@@ -30,9 +42,10 @@ class ViewTree {
     std::uint32_t views;  ///< number of views
   };
 
-  /// `levels` in [0, Octree::most_levels] of the octree. The cube at `corner` with `side` contains
-  /// all views.
-  ViewTree(std::span<const View> views, int levels, V3d corner, double side);
+  /// `levels` in [0, Octree::most_levels) of cubes. The cube at `corner` with `side` contains all
+  /// views.
+  ViewTree(std::span<const View> views, int levels, V3d corner, double side,
+           Split split = Split::facing);
   /// Leaves alone, one for each view, in the order of `views`.
   static ViewTree of_single_views(std::span<const View> views);
 

@@ -25,6 +25,7 @@ void ViewMapVisibility::prepare(const PrepareContext& context) {
     seconds.end(scene_seconds_);
   }
   texels_ = map_texels({settings_.map_size});
+  maps_ = std::make_unique<ViewMaps>(settings_.map_size, static_cast<float>(2 * cube_.side));
 }
 
 std::vector<BlockRange> ViewMapVisibility::passes(const VplSet& lights) const {
@@ -60,15 +61,16 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
   }
   const bool single =
       settings_.share == ViewSharing::none && settings_.method != ViewMapMethod::megaviews;
-  views_ =
-      std::make_unique<ViewTree>(single ? ViewTree::of_single_views(views)
-                                        : ViewTree(views, cube_.levels, cube_.corner, cube_.side));
+  const auto split =
+      settings_.split == ViewSplit::facing ? ViewTree::Split::facing : ViewTree::Split::position;
+  views_ = std::make_unique<ViewTree>(
+      single ? ViewTree::of_single_views(views)
+             : ViewTree(views, cube_.levels, cube_.corner, cube_.side, split));
   seconds.end(tree_seconds_);
   leaves_ += views_->leaf_count();
   ++passes_;
-  maps_.reset();
-  maps_ = std::make_unique<ViewMaps>(views_->leaf_count(), settings_.map_size,
-                                     static_cast<float>(2 * cube_.side));
+  maps_->resize(views_->leaf_count());
+  seconds.end(memory_seconds_);
   Counters counters;
   const auto take = [&](std::uint32_t leaf, std::span<const float> depths) {
     if (leaf % maps_between_stops == 0 && pass.context.stop()) throw IterationStopped{};
@@ -126,7 +128,7 @@ void ViewMapVisibility::decide(const At& at, std::size_t block, const Terms& ter
 }
 
 std::vector<std::pair<std::string, double>> ViewMapVisibility::statistics() const {
-  if (!maps_) return {};
+  if (!views_) return {};
   const auto number = [](auto n) { return static_cast<double>(n); };
   const auto splats = number(std::max<std::uint64_t>(1, counts_.splats));
   std::vector<std::pair<std::string, double>> stats{
@@ -136,6 +138,7 @@ std::vector<std::pair<std::string, double>> ViewMapVisibility::statistics() cons
       {"view_map_bytes", number(maps_->bytes())},
       {"view_scene_cpu_seconds", scene_seconds_},
       {"view_tree_cpu_seconds", tree_seconds_},
+      {"view_memory_cpu_seconds", memory_seconds_},
       {"view_map_cpu_seconds", map_seconds_},
       {"view_pairs", number(counts_.pairs)},
       {"view_pairs_culled", number(counts_.culled)},

@@ -48,6 +48,7 @@ class ViewMapVisibility : public VisibilityBase {
   std::uint64_t leaves_ = 0;      // of all passes of an iteration
   int passes_ = 0;
   double scene_seconds_ = 0, tree_seconds_ = 0, map_seconds_ = 0;
+  double memory_seconds_ = 0;  // of allocating the maps, whose pages the system clears
 };
 
 }  // namespace lacuna

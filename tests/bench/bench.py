@@ -92,7 +92,7 @@ def guides(bench, _):
 def views(bench, _):
     """Maps of the lights of sponza as published, with the paper's six million leaves of the scene, and with the defaults:
     through both hierarchies, through that of the scene for each single view, and by rays."""
-    kinds = {"published": {"levels": 9.675, "node_texels": 1, "cover": 0, "bounds": "spheres"}, "defaults": {}}
+    kinds = {"published": {"levels": 9.675, "node_texels": 1, "cover": 0, "bounds": "spheres", "split": "position"}, "defaults": {}}
 
     def job(kind, method, paths):
         single = {} if method == "megaviews" else {"share": "none"}
