@@ -22,13 +22,18 @@ constexpr double guided_iteration_cost = 1.75;
 /// A guide that seems to pay so many times needs no comparison; twice as many where that is not
 /// known.
 constexpr double surely_pays = 2;
+/// Nor does one that is known to promise no more than this part of the noise.
+constexpr double promises_nothing = 0.1;
 /// One of so many iterations at most follows the BSDF for comparison.
 constexpr std::uint64_t rests_of = 16;
 /// The relative deviation of the ratio of two noises up to which it is known well enough; above, it
 /// must differ from 1 by as much.
 constexpr double comparable = 0.25;
-/// Pairs of pixels that tell anything of a noise: few meet no bright path.
-constexpr double least_pairs = 16384;
+/// Pairs of pixels that tell anything of a noise: few meet no bright path. And those of an
+/// iteration below which a picture is too small for that.
+constexpr double least_pairs = 16384, least_pairs_of_one = 1024;
+/// Iterations before the first that follows the BSDF: the guide begins to learn.
+constexpr std::uint64_t before_rests = 3;
 /// A sum of squares is known if its largest term has at most this share.
 constexpr double known_share = 0.05;
 /// The probability of a cell whose moments are not known.
@@ -106,6 +111,7 @@ void Tuning::update(std::span<const Accumulator* const> accumulators) {
     compare();
     return;
   }
+  pairs_ = noise.pairs;
   noise_ += noise.sum;
   with_.add(noise);
   // What the guide did long ago counts little.
@@ -115,8 +121,7 @@ void Tuning::update(std::span<const Accumulator* const> accumulators) {
 }
 
 void Tuning::compare() {
-  if (std::min(with_.pairs, without_.pairs) < least_pairs) return;
-  if (!(with_.sum > 0) || !(without_.sum > 0)) return;
+  if (without_.pairs < least_pairs || !(with_.sum > 0) || !(without_.sum > 0)) return;
   const double gain = std::log(without_.mean() / (with_.mean() * guided_iteration_cost));
   const double deviation = std::sqrt(with_.doubt() + without_.doubt());
   if (deviation > comparable && std::abs(gain) < deviation) return;
@@ -186,14 +191,16 @@ void Tuning::stop_if_useless() {
   // The noise was measured with the guide: without it, it would be that and the gain.
   const double noise = noise_ > 0 ? noise_ : chosen, gain = plain - chosen;
   const bool known = largest < known_share_of_all * plain;
-  if (with_.pairs < least_pairs) {
+  if (pairs_ < least_pairs_of_one) {
     if (!known) return;
     idle_ = noise * guided_cost > noise + gain;
     decided_ = all;
   } else if (noise + gain > noise * guided_iteration_cost * (known ? 1 : 2) * surely_pays) {
     decided_ = all;
+  } else if (known && gain < promises_nothing * noise) {
+    idle_ = true;
   } else {
-    rests_ = rested_ * rests_of < iterations_;
+    rests_ = iterations_ >= before_rests && rested_ * rests_of < iterations_;
   }
 }
 
@@ -216,6 +223,7 @@ void Tuning::load(ByteReader& in) {
   std::vector<double> moments = in.get_vector<double>();
   const auto noise = in.get<double>(), decided = in.get<double>();
   const auto with = in.get<Noise>(), without = in.get<Noise>();
+  const auto pairs = in.get<double>();
   const auto iterations = in.get<std::uint64_t>(), rested = in.get<std::uint64_t>();
   const bool rests = in.get<std::uint8_t>() != 0;
   const bool idle = in.get<std::uint8_t>() != 0;
@@ -231,6 +239,7 @@ void Tuning::load(ByteReader& in) {
   decided_ = decided;
   with_ = with;
   without_ = without;
+  pairs_ = pairs;
   iterations_ = iterations;
   rested_ = rested;
   rests_ = rests;

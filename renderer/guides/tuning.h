@@ -90,6 +90,7 @@ class Tuning {
     out.put(decided_);
     out.put(with_);
     out.put(without_);
+    out.put(pairs_);
     out.put(iterations_);
     out.put(rested_);
     out.put(std::uint8_t{rests_});
@@ -122,6 +123,7 @@ class Tuning {
   double noise_ = 0;      // variances of pixels' samples, summed over the paths of the moments
   double decided_ = 0;    // paths when it was last decided whether the guide pays
   Noise with_, without_;  // of iterations with the guide, the latest most, and of the others
+  double pairs_ = 0;      // of the last iteration with the guide
   std::uint64_t iterations_ = 0, rested_ = 0;
   bool rests_ = false;  // the coming iteration follows the BSDF
   bool idle_ = false;
