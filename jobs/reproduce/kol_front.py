@@ -57,7 +57,8 @@ def front(run):
             rows.append((f"{at['seconds']:.3g}", *(str(errors[name] or "") for name in METHODS),
                          min(known, key=lambda name, known=known: known[name].value) if known else ""))
         run.tables.append(Table((f"{scene}, CPU seconds", *METHODS, "leads"), rows))
-        last = {name: error_at(cells[name]["at"][-1]) for name in ("path", "view_maps")}
+        # Where a method's first iteration takes longer than the budget, there is no common time.
+        last = {name: error_at(cells[name]["at"][-1]) if cells[name]["at"] else None for name in ("path", "view_maps")}
         run.found(f"{scene}: error of path / of view_maps, at equal time",
                   ours=last["path"] and last["view_maps"] and last["path"].ratio(last["view_maps"]))
     run.note(f"relMSE, {answers['seeds']} runs each; virtual lights with compensation; references by bidirectional path tracing")
