@@ -16,8 +16,8 @@ constexpr float first_strength = 8, first_probability = 0.25F;
 constexpr double min_paths = 8;
 /// Time of a vertex with a guide over one without; measured 1.2 to 1.6, learning included.
 constexpr double guided_cost = 1.4;
-/// The same of an iteration whose vertices are all guided, learning included: 1.5 to 2 were
-/// measured with lobes and learned directions on six scenes.
+/// The same of an iteration, learning included: 1.4 to 2 with lobes and learned directions on five
+/// scenes, 2.1 to 3.2 on atrium.
 constexpr double guided_iteration_cost = 1.75;
 /// A guide that seems to pay so many times needs no comparison; twice as many where that is not
 /// known.

@@ -120,7 +120,7 @@ class Tuning {
   /// For each cell: the second moment of each strength and probability; the largest g^2 of a path;
   /// the number of paths.
   std::vector<double> moments_;
-  double noise_ = 0;      // variances of pixels' samples, summed over the paths of the moments
+  double noise_ = 0;      // variances of pixels' samples with the guide, summed, faded as moments_
   double decided_ = 0;    // paths when it was last decided whether the guide pays
   Noise with_, without_;  // of iterations with the guide, the latest most, and of the others
   double pairs_ = 0;      // of the last iteration with the guide
