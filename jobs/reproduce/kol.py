@@ -9,7 +9,7 @@ import math
 
 from harness import many_lights
 from harness.entry import Entries
-from harness.measured import Measured, exact, geometric_mean_of, mean_of
+from harness.measured import exact, geometric_mean_of, mean_of
 from harness.run import Table
 from harness.verdict import at_least, at_most, beside
 
@@ -118,26 +118,28 @@ def traversals(run):
     """What culling saves, and what a breadth-first traversal holds."""
 
     def told(name, method, **how):
-        return map_statistics(run, f"{name}-{method}", map_job("Sponza", WHOLE, {"method": method, **how}))
+        return repeated(run, f"{name}-{method}", map_job("Sponza", WHOLE, {"method": method, **how}))
+
+    def saved(culled, all_seen):
+        return mean_of([1 - map_seconds(a) / map_seconds(b) for a, b in zip(culled, all_seen)])
 
     rows = []
     for method in ("megaviews", "many_lods"):
         plain, all_seen = told("culled", method), told("not-culled", method, cull=False)
         boxes = told("boxes", method, bounds="boxes")
         queue = told("queue", method, traversal="breadth_first")
-        rows.append((method, *(f"{map_seconds(t):.3g}" for t in (plain, boxes, all_seen, queue)),
-                     f"{queue['view_fusion_cpu_seconds']:.3g}", f"{queue['view_queue_bytes'] / 2**20:.4g}",
-                     f"{queue['view_unfused_bytes'] / 2**20:.4g}"))
+        rows.append((method, *(str(mean_of(list(map(map_seconds, t)))) for t in (plain, boxes, all_seen, queue)),
+                     f"{queue[0]['view_fusion_cpu_seconds']:.3g}", f"{queue[0]['view_queue_bytes'] / 2**20:.4g}",
+                     f"{queue[0]['view_unfused_bytes'] / 2**20:.4g}"))
         if method == "megaviews":
-            run.found("share of time that culling saves",
-                      ours=Measured(1 - map_seconds(boxes) / map_seconds(all_seen)),
-                      published=Measured(1 - map_seconds(plain) / map_seconds(all_seen)))
+            run.found("share of time that culling saves", ours=saved(boxes, all_seen), published=saved(plain, all_seen))
     run.tables.append(Table((f"{WHOLE} light paths", "culled by spheres, CPU s", "by boxes", "not culled", "breadth-first",
                              "of it fusion", "queue held, MiB", "maps of nodes, MiB"), rows))
 
 
 class Growth:
-    """Time and memory of each method against the number of views, with the settings of one kind."""
+    """Time and memory of each method against the number of views, with the settings of one kind; numbers are those of each
+    seed, with an interval."""
 
     def __init__(self, run, kind, view="Sponza", edges=3, methods=METHODS, paths=PATHS):
         self.found, self.rows = {}, []
@@ -146,48 +148,50 @@ class Growth:
             own = {"method": method, **({"share": "none"} if method in SINGLE else {})}
             how = published(view, own) if kind == "published" else {**OURS, **own}
             for n in (paths if method == "megaviews" else some):
-                t = map_statistics(run, f"{kind}-{view}-{edges}-{method}-{n}", map_job(view, n, how, edges=edges))
-                self.found[method, n] = t
+                told = repeated(run, f"{kind}-{view}-{edges}-{method}-{n}", map_job(view, n, how, edges=edges))
+                self.found[method, n] = told
+                t = told[0]
                 self.rows.append((kind, method, round(t["virtual_lights"]), round(t["view_leaves"]),
-                                  f"{t['scene_leaves']:.3g}", f"{t['view_tree_cpu_seconds']:.2g}", f"{map_seconds(t):.3g}",
+                                  f"{t['scene_leaves']:.3g}", f"{t['view_tree_cpu_seconds']:.2g}",
+                                  str(mean_of(list(map(map_seconds, told)))),
                                   f"{t['view_pairs'] / t['virtual_lights']:.4g}", f"{t['views_sharing_a_splat']:.3g}",
                                   f"{t['view_map_bytes'] / 2**20:.3g}",
                                   f"{t['view_queue_peak_pairs'] * PAIR_BYTES / 2**20:.3g}"))
         self.first, self.last, self.lods = paths[0], paths[-1], some[-1]
-        #: ManyLoDs grow in proportion to the views, as the paper extrapolates.
-        self.scale = self.lights("megaviews", self.last) / self.lights("many_lods", self.lods)
 
-    def lights(self, method, n):
-        return self.found[method, n]["virtual_lights"]
-
-    def seconds(self, method, n):
-        return map_seconds(self.found[method, n])
+    def scaled(self, value):
+        """Of each seed `value` of ManyLoDs at most views, and of ours. ManyLoDs grow in proportion to the views, as the
+        paper extrapolates."""
+        for all_views, lods in zip(self.found["megaviews", self.last], self.found["many_lods", self.lods]):
+            yield value(lods) * all_views["virtual_lights"] / lods["virtual_lights"], value(all_views)
 
     def exponent(self, least=0):
-        return exponent([(self.lights(m, n), self.seconds(m, n)) for m, n in self.found
-                         if m == "megaviews" and n >= least])
+        kept = [told for (m, n), told in self.found.items() if m == "megaviews" and n >= least]
+        return mean_of([exponent([(t["virtual_lights"], map_seconds(t)) for t in one]) for one in zip(*kept)])
 
     def speed_up(self):
         """Over ManyLoDs, at most views."""
-        return self.seconds("many_lods", self.lods) * self.scale / self.seconds("megaviews", self.last)
+        return geometric_mean_of([lods / ours for lods, ours in self.scaled(map_seconds)])
 
     def queue(self):
         """Of ManyLoDs over ours, at most views."""
-        return (self.found["many_lods", self.lods]["view_queue_peak_pairs"] * self.scale /
-                self.found["megaviews", self.last]["view_queue_peak_pairs"])
+        return geometric_mean_of([lods / ours for lods, ours in self.scaled(lambda t: t["view_queue_peak_pairs"])])
 
     def memory(self):
         """The same with the maps of single views in 32 bits, and with the maps of all nodes of the view tree; the
         scene's octree is in both."""
         maps = 2 * 16 * 16 * 4
-        lods = (self.found["many_lods", self.lods]["view_queue_peak_pairs"] * PAIR_BYTES * self.scale +
-                maps * self.lights("megaviews", self.last))
-        ours = self.found["megaviews", self.last]
-        return lods / (ours["view_queue_peak_pairs"] * PAIR_BYTES + maps * ours["view_leaves"])
 
-    def rays(self, n):
-        """Time of a ray for each texel over ours."""
-        return self.seconds("per_view", n) / self.seconds("megaviews", n)
+        def held(t, views):
+            return t["view_queue_peak_pairs"] * PAIR_BYTES + maps * t[views]
+
+        return geometric_mean_of([
+            lods / held(ours, "view_leaves") for (lods, _), ours in
+            zip(self.scaled(lambda t: held(t, "virtual_lights")), self.found["megaviews", self.last])])
+
+    def over(self, method, n):
+        """Time of another method over ours."""
+        return ratio(self.found[method, n], self.found["megaviews", n])
 
 
 # Why less is reached as published.
@@ -216,11 +220,10 @@ def fig_10(run):
         found = {"exponent of time in views, 2k to 1M": one.exponent(), "speed-up over ManyLoDs, 1M views": one.speed_up(),
                  "queue of ManyLoDs / of ours, 1M views": one.queue(),
                  "queue and maps of ManyLoDs / of ours, 1M views": one.memory(),
-                 "speed-up over ManyLoDs, 2048 views":
-                     one.seconds("many_lods", one.first) / one.seconds("megaviews", one.first),
-                 "time of a ray a texel / of ours, 128k views": one.rays(131072)}
-        run.note(f"{kind}: exponent from 32k views on {one.exponent(32768):.2f}; time of rays / of ours: " +
-                 ", ".join(f"{one.rays(n):.2g} at {n}" for m, n in one.found if m == "per_view"))
+                 "speed-up over ManyLoDs, 2048 views": one.over("many_lods", one.first),
+                 "time of a ray a texel / of ours, 128k views": one.over("per_view", 131072)}
+        run.note(f"{kind}: exponent from 32k views on {one.exponent(32768)}; time of rays / of ours: " +
+                 ", ".join(f"{one.over('per_view', n)} at {n}" for m, n in one.found if m == "per_view"))
         some, two = [n for n in PATHS if n >= 32768], ("megaviews", "many_lods")
         for name, view, edges, paths in (("four bounces", "Sponza", 6, [n * 61 // 64 for n in some]),
                                          ("hairball", "Hairball", 3, some)):
@@ -228,7 +231,7 @@ def fig_10(run):
             rows += [(f"{row[0]}, {name}", *row[1:]) for row in other.rows]
             found[f"speed-up over ManyLoDs, 1M views, {name}"] = other.speed_up()
         for quantity, value in found.items():
-            run.found(quantity, **{kind: Measured(value)})
+            run.found(quantity, **{kind: value})
     traversals(run)
     run.tables.append(Table(COLUMNS, rows))
     if run.full:

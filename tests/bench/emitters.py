@@ -83,21 +83,46 @@ def integrators(method):
             yield emitters, {"type": "bdpt", "max_depth": 4, "connections": {"type": "paired", "emitters": emitters}}
 
 
-def gain(bench, name, job, method, seconds):
-    """MSE by power over MSE by the tree, at equal CPU time."""
+def squared_errors(bench, name, job, integrators, seconds):
+    """The MSE of each of the named integrators at equal CPU time."""
     reference, report = bench.render(f"{name}-reference", {
         **job, "seed": 77, "integrator": {"type": "path", "max_depth": 4, "emitters": "tree"},
         "budget": {"cpu_seconds": LONGER * seconds}})
     noise = report["errors"]["est_rmse"] ** 2
-    mse, samples = {}, {}
-    for emitters, integrator in integrators(method):
-        out, report = bench.render(f"{name}-{emitters}", {**job, "integrator": integrator,
-                                                          "budget": {"cpu_seconds": seconds}})
-        mse[emitters] = bench.compare(out / "image.exr", reference / "image.exr", 16)["mse"] - noise
-        samples[emitters] = report["speed"]["samples_per_second"] if "speed" in report else 0
-    print(f"  {name}, {method}: MSE by power {mse['power']:.4g}, by the tree {mse['tree']:.4g}; of the reference "
-          f"{noise:.2g}", flush=True)
+    mse = {}
+    for which, integrator in integrators.items():
+        out = bench.render(f"{name}-{which}", {**job, "integrator": integrator, "budget": {"cpu_seconds": seconds}})[0]
+        mse[which] = bench.compare(out / "image.exr", reference / "image.exr", 16)["mse"] - noise
+    print(f"  {name}: MSE " + ", ".join(f"{which} {value:.4g}" for which, value in mse.items()) +
+          f"; of the reference {noise:.2g}", flush=True)
+    return mse
+
+
+def gain(bench, name, job, method, seconds):
+    """MSE by power over MSE by the tree, at equal CPU time."""
+    mse = squared_errors(bench, f"{name}-{method}", job, dict(integrators(method)), seconds)
     return mse["power"] / mse["tree"]
+
+
+# Ten thousand lamps and their light of up to two bounces as virtual lights, of which a pixel gathers a few.
+MANY = {"type": "many_lights", "max_depth": 4, "light_paths": 65536, "direct": "lights"}
+FEW = {"gather": {"type": "random", "lights": 64}}
+BESIDE = {"path-tree": {"type": "path", "max_depth": 4, "emitters": "tree"},
+          "bdpt-tree": {"type": "bdpt", "max_depth": 4, "connections": {"type": "paired", "emitters": "tree"}},
+          "random-lights": {**MANY, **FEW},
+          "random-lights-without-compensation": {**MANY, **FEW, "compensation": False},
+          "random-lights-view-maps": {**MANY, **FEW, "visibility": {"type": "view_maps"}},
+          "all-lights-view-maps": {**MANY, "light_paths": 8192, "visibility": {"type": "view_maps"}}}
+
+
+def beside_virtual_lights(bench, seconds):
+    """Many emitters by the tree, and as virtual lights."""
+    for name, job in (("lamps10000", {"scene": "lamps10000.glb", "resolution": [128, 128]}),
+                      ("many_lights", {"scene": "many_lights.glb", "camera": "corner", "resolution": [128, 96]})):
+        mse = squared_errors(bench, f"{name}-virtual", job, BESIDE, seconds)
+        best = min(value for which, value in mse.items() if which not in ("path-tree", "bdpt-tree"))
+        ratio = best / min(mse["path-tree"], mse["bdpt-tree"])
+        bench.figure(f"{name}: MSE of the best by virtual lights / of the best by the tree", f"{ratio:.2f}", "-", True)
 
 
 def gains(bench, folder, seconds):
@@ -113,6 +138,7 @@ def gains(bench, folder, seconds):
     for method in ("path", "bdpt"):
         ratio = gain(bench, "many_lights", job, method, seconds)
         bench.figure(f"many_lights, {method}: MSE by power / by the tree", f"{ratio:.2f}", "at least 1", ratio >= 1)
+    beside_virtual_lights(bench, seconds)
     for count in (1000, 100000):
         job = {"scene": "sponza/scene.glb", "camera": "atrium", "resolution": [128, 64],
                "particles": {"count": count, "power": 3e5, "alone": True}}
