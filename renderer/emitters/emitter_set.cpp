@@ -141,11 +141,10 @@ void EmitterSet::add_mesh(std::uint32_t m, std::vector<double>& powers) {
   sources_.push_back(source);
 }
 
-EmitterPoint EmitterSet::sample(const Selected& selected) const {
+EmitterPoint EmitterSet::sample_light(const Selected& selected) const {
   const std::uint32_t chosen = selected.entry;
   const Entry& e = entries_[chosen];
   const Source& source = sources_[e.source];
-  if (source.kind == Source::Kind::mesh) return sample_triangle_of(chosen, selected.at.point());
   EmitterPoint p = source.kind == Source::Kind::punctual
                        ? sample_punctual(scene_->lights[source.index])
                        : sample_environment(selected.at);
@@ -165,26 +164,13 @@ EmitterPoint EmitterSet::sample_environment(const Rng::FinePoint& at) const {
   return p;
 }
 
-EmitterPoint EmitterSet::sample_triangle_of(std::uint32_t chosen, const V2f& u) const {
-  const Entry& e = entries_[chosen];
-  const Source& source = sources_[e.source];
-  const V2f b = sample_triangle(u);
-  EmitterPoint p;
-  p.entry = chosen;
-  p.both_sides = source.both_sides;
-  p.extent = e.extent;
-  p.x = e.at(b.x, b.y);
-  p.ng = e.ng;
-  p.pdf = e.pdf;
-  p.emission = source.emission;
-  if (source.mask != none && !masks_[source.mask].opaque(chosen - source.first_entry, b.x, b.y)) {
-    p.emission = Rgb(0, 0, 0);
-  } else if (source.textured) {
-    const Mesh& mesh = scene_->meshes[source.index];
-    p.emission = lacuna::emission(scene_->materials[mesh.material], scene_->textures,
-                                  mesh.uvs_at(chosen - source.first_entry, b.x, b.y));
-  }
-  return p;
+Rgb EmitterSet::varying_emission(const Source& source, std::uint32_t chosen, const V2f& b) const {
+  const std::uint32_t triangle = chosen - source.first_entry;
+  if (source.mask != none && !masks_[source.mask].opaque(triangle, b.x, b.y)) return Rgb(0, 0, 0);
+  if (!source.textured) return source.emission;
+  const Mesh& mesh = scene_->meshes[source.index];
+  return lacuna::emission(scene_->materials[mesh.material], scene_->textures,
+                          mesh.uvs_at(triangle, b.x, b.y));
 }
 
 EmitterPoint EmitterSet::sample_punctual(const PunctualLight& light) const {

@@ -49,8 +49,26 @@ class EmitterSet {
   void prefetch(std::uint32_t chosen) const { __builtin_prefetch(&entries_[chosen]); }
   /// Selects an emitter for a receiver; null unless requested.
   const PointwiseSelection* pointwise() const { return pointwise_ ? &*pointwise_ : nullptr; }
-  /// Samples a point on the selected emitter; its density includes the selection.
-  EmitterPoint sample(const Selected& selected) const;
+  /// Samples a point on the selected emitter; its density includes the selection. Inline, because
+  /// next event estimation calls it at every vertex, nearly always for a triangle.
+  EmitterPoint sample(const Selected& selected) const {
+    const Entry& e = entries_[selected.entry];
+    const Source& source = sources_[e.source];
+    if (source.kind != Source::Kind::mesh) [[unlikely]]
+      return sample_light(selected);
+    const V2f b = sample_triangle(selected.at.point());
+    EmitterPoint p;
+    p.entry = selected.entry;
+    p.both_sides = source.both_sides;
+    p.extent = e.extent;
+    p.x = e.at(b.x, b.y);
+    p.ng = e.ng;
+    p.pdf = e.pdf;
+    p.emission = source.emission;
+    if (source.textured || source.mask != none) [[unlikely]]
+      p.emission = varying_emission(source, selected.entry, b);
+    return p;
+  }
   /// Samples the first edge of a light path from the point `e`.
   std::optional<Leaving> sample_first_edge(const EmitterPoint& e, Rng& rng) const {
     return sample_leaving(e, bounds_, rng);
@@ -91,7 +109,10 @@ class EmitterSet {
   TreeEmitter tree_emitter(std::uint32_t entry) const;
   void select_pointwise(std::span<const double> powers);
   void add_light(const Source& source, double power, std::vector<double>& powers);
-  EmitterPoint sample_triangle_of(std::uint32_t chosen, const V2f& u) const;
+  /// sample() of an emitter that is no triangle.
+  EmitterPoint sample_light(const Selected& selected) const;
+  /// At barycentric `b` of the triangle `chosen` of a mesh with a texture of emission or a mask.
+  Rgb varying_emission(const Source& source, std::uint32_t chosen, const V2f& b) const;
   EmitterPoint sample_environment(const Rng::FinePoint& at) const;
   EmitterPoint sample_punctual(const PunctualLight& light) const;
   float across(const V3f& w) const { return static_cast<float>(bounds_.area_across(w)); }

@@ -129,9 +129,9 @@ class Bdpt : public GuidedIntegrator<Guide> {
     flush(pass, batch, arrived);
     if (guide_.learns()) batch.gathered.record(guide_, accumulator);
   }
-  /// Starts the paths of the tile from pixel `first` on, and counts them.
-  void start(const TilePass& pass, const Tile& tile, int first, EyePaths& batch) const {
-    start_paths(pass.context, pass.image, tile, first, batch);
+  /// Starts the paths of a Tile::block(), and counts them.
+  void start(const TilePass& pass, const Tile& block, EyePaths& batch) const {
+    start_paths(pass.context, pass.image, block, batch);
     pass.counters.samples += batch.states.size();
     if (guide_.learns()) batch.gathered.clear();
   }
@@ -172,6 +172,7 @@ class Bdpt : public GuidedIntegrator<Guide> {
   WalkLimits eye_limits(const SampleCounts& counts) const {
     return {.max_depth = settings_.max_depth,
             .roulette_depth = settings_.roulette_depth,
+            .packets = true,
             .counts = eye_side(counts)};
   }
   static std::int64_t pixels(const Image& image) {
@@ -297,8 +298,8 @@ class PairedBdpt final : public Bdpt<Guide> {
       const typename Base::TilePass pass{context, image, counters};
       Walk<Guide> walk(context.scene, guide_, Base::eye_limits(counts), counters);
       const Tile tile = tiling.tile(i);
-      for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
-        Base::start(pass, tile, first, pairs.eye);
+      for (int b = 0; b < tile.blocks(); ++b) {
+        Base::start(pass, tile.block(b), pairs.eye);
         if (merging_.connect) walk_light(context, pairs, counters, splats);
         do {
           walk_eye(pass, walk, pairs);
@@ -493,8 +494,8 @@ class ResampledBdpt final : public Bdpt<Guide> {
       Walk<Guide> walk(context.scene, guide_, Base::eye_limits(counts), counters);
       const NextEvent next_event(context.scene, EmitterChoice::power);
       const Tile tile = tiling.tile(i);
-      for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
-        Base::start(pass, tile, first, part.batch);
+      for (int b = 0; b < tile.blocks(); ++b) {
+        Base::start(pass, tile.block(b), part.batch);
         do {
           walk.trace_paths(
               part.batch.states, [](std::size_t, int) {},

@@ -92,8 +92,7 @@ class ManyLights final : public Integrator {
   }
 
  private:
-  static constexpr int batch_side = 8;  // pixels
-  static_assert(batch_side * batch_side == EyeBatch::size);
+  static constexpr int batch_side = Tile::block_side;
 
   /// The bound of the geometric term, 1 / scene units^2.
   static float bound_of(const ManyLightsSettings& s, double radius) {
@@ -139,7 +138,7 @@ class ManyLights final : public Integrator {
     const Tiling tiling(image, batch_side);
     return for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
       Part part{EyeBatch(settings_.max_depth)};
-      start_paths(context, image, tiling.tile(i), 0, part.batch);
+      start_paths(context, image, tiling.tile(i), part.batch);
       if (with.range.is_first()) count.samples += part.batch.states.size();
       trace(context, with, part, count);
       shine(context, with, part, count);
@@ -180,9 +179,11 @@ class ManyLights final : public Integrator {
   void trace(const IterationContext& context, const Gathering& with, Part& part,
              Counters& counters) const {
     const DirectLight<BsdfGuide> direct(context.scene, guide_, true, EmitterChoice::power);
-    Walk<BsdfGuide> walk(
-        context.scene, guide_,
-        {.max_depth = settings_.max_depth, .roulette_depth = settings_.roulette_depth}, counters);
+    Walk<BsdfGuide> walk(context.scene, guide_,
+                         {.max_depth = settings_.max_depth,
+                          .roulette_depth = settings_.roulette_depth,
+                          .packets = true},
+                         counters);
     const auto choose = [&](std::size_t i, int depth) {
       if (direct.draws() && depth < settings_.max_depth) {
         part.ahead[i] = direct.choose_ahead(part.batch.states[i].rng);

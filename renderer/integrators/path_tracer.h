@@ -62,7 +62,9 @@ class PathTracer final : public GuidedIntegrator<Guide> {
     if (learns) accumulator = guide_.accumulator();
     Batch batch(settings_.max_depth);
     Walk walk(context.scene, guide_,
-              {.max_depth = settings_.max_depth, .roulette_depth = settings_.roulette_depth},
+              {.max_depth = settings_.max_depth,
+               .roulette_depth = settings_.roulette_depth,
+               .packets = true},
               counters);
     const auto flush = [&] {
       batch.shadows.flush(context.scene.rays(), counters, [&](const Direct& d) {
@@ -70,8 +72,8 @@ class PathTracer final : public GuidedIntegrator<Guide> {
         if (learns) batch.gathered.add(d.path, d.depth, d.value);
       });
     };
-    for (int first = 0; first < tile.pixels(); first += int{Batch::size}) {
-      start_paths(context, image, tile, first, batch);
+    for (int b = 0; b < tile.blocks(); ++b) {
+      start_paths(context, image, tile.block(b), batch);
       counters.samples += batch.states.size();
       do {
         if (learns) batch.gathered.clear();

@@ -146,8 +146,8 @@ class PhotonMapping final : public Integrator {
     const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
       Part part{EyeBatch(settings_.max_depth)};
       const Tile tile = tiling.tile(i);
-      for (int first = 0; first < tile.pixels(); first += int{EyeBatch::size}) {
-        start_paths(context, image, tile, first, part.batch);
+      for (int b = 0; b < tile.blocks(); ++b) {
+        start_paths(context, image, tile.block(b), part.batch);
         counters.samples += part.batch.states.size();
         part.stage.fill(Stage::seeing);
         trace(context, part, counters);
@@ -164,9 +164,11 @@ class PhotonMapping final : public Integrator {
 
   void trace(const IterationContext& context, Part& part, Counters& counters) const {
     const DirectLight<BsdfGuide> direct(context.scene, guide_, true, EmitterChoice::power);
-    Walk<BsdfGuide> walk(
-        context.scene, guide_,
-        {.max_depth = settings_.max_depth, .roulette_depth = settings_.roulette_depth}, counters);
+    Walk<BsdfGuide> walk(context.scene, guide_,
+                         {.max_depth = settings_.max_depth,
+                          .roulette_depth = settings_.roulette_depth,
+                          .packets = true},
+                         counters);
     const auto choose = [&](std::size_t i, int depth) {
       if (direct.draws() && depth < settings_.max_depth && part.stage[i] <= Stage::at_first) {
         part.ahead[i] = direct.choose_ahead(part.batch.states[i].rng);

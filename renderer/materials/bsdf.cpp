@@ -168,6 +168,24 @@ Rgb Bsdf::eval_any(const V3f& wo, const V3f& wi, Transport transport) const {
   return scatter<true, false>(from, nullptr, wi, wo).f * std::abs(side_i / side);
 }
 
+Bsdf::Evaluated Bsdf::evaluate_any(const V3f& wo, const V3f& wi, Transport transport) const {
+  if (transport != Transport::radiance && !flat_) {
+    return {eval_any(wo, wi, transport), pdf_any(wo, wi, transport)};
+  }
+  const float side = dot(wo, ng_);
+  if (lobes_.kind == Lobes::Kind::black || side == 0) return {};
+  const V3f n = facing_normal(wo, side);
+  const bool front = side > 0;
+  // Before what the lobes need is computed: half of all directions lie behind an opaque surface.
+  if (!transmits() && passage({n, front, 0, 1}, wi) <= 0) return {};
+  const Seen from = seen(n, wo);
+  const Choice c = choice(from);
+  Scatter s = scatter<true, true>(from, &c, wo, wi);
+  const bool crosses = front != (dot(wi, ng_) > 0);
+  if (transport == Transport::importance && crosses) s.f *= from.eta * from.eta;
+  return {s.f, Pdf<SolidAngle>(s.pdf)};
+}
+
 std::optional<LambertLit> Bsdf::lambert_lit(const V3f& from) const {
   if (lobes_.kind != Lobes::Kind::lambert) return std::nullopt;
   const float side = dot(from, ng_);

@@ -89,6 +89,19 @@ class Bsdf {
     return pdf_any(wo, wi, transport);
   }
 
+  /// eval() and pdf() of one direction.
+  struct Evaluated {
+    Rgb value{0, 0, 0};
+    Pdf<SolidAngle> pdf{};
+  };
+  /// Both at once, with the same bits: they share most of their terms. Where the value is black,
+  /// the density may be left at 0.
+  Evaluated evaluate(const V3f& wo, const V3f& wi, Transport transport) const {
+    if (!plain_lambert(transport)) return evaluate_any(wo, wi, transport);
+    const float l = lambert(wo, wi);
+    return {lobes_.diffuse * l, Pdf<SolidAngle>(l)};
+  }
+
   /// Samples wi. `u_lobe` and `u` are uniform in [0, 1). Nothing where the sample fails (below the
   /// surface) or the surface is black.
   std::optional<BsdfSample> sample(const V3f& wo, double u_lobe, const V2f& u,
@@ -184,6 +197,7 @@ class Bsdf {
     return dot(w, ng_) < 0 ? dot(w, ns_) < 0 : dot(w, ns_) > 0;
   }
 
+  Evaluated evaluate_any(const V3f& wo, const V3f& wi, Transport transport) const;
   Rgb eval_any(const V3f& wo, const V3f& wi, Transport transport) const;
   Pdf<SolidAngle> pdf_any(const V3f& wo, const V3f& wi, Transport transport) const;
   std::optional<BsdfSample> sample_any(const V3f& wo, double u_lobe, const V2f& u,

@@ -15,6 +15,8 @@ struct Connection {
   bool infinite = false;  ///< the light's endpoint is at infinity
   /// scatter() of both endpoints over distance2: without MIS weight and visibility.
   Rgb contribution{0, 0, 0};
+  /// Density with which the eye's walk would continue along w; below 0: not evaluated yet.
+  double eye_pdf = -1;
 
   explicit operator bool() const { return !is_black(contribution); }
 };
@@ -49,7 +51,13 @@ Connection connect(const Eye& eye, const Light& light) {
   if (!(c.distance2 > 0)) return c;
   const Rgb emitted = light.scatter(-c.w);
   if (is_black(emitted)) return c;
-  c.contribution = eye.scatter(c.w) * emitted / c.distance2;
+  Rgb scattered;
+  if constexpr (requires { eye.scatter(c.w, c.eye_pdf); }) {
+    scattered = eye.scatter(c.w, c.eye_pdf);
+  } else {
+    scattered = eye.scatter(c.w);
+  }
+  c.contribution = scattered * emitted / c.distance2;
   return c;
 }
 
@@ -66,7 +74,8 @@ template <class Eye, class Light>
 double light_side_sum(const Eye& eye, const Light& light, const Connection& c,
                       const SampleCounts& n) {
   if (light.index == 0 && !light.prev_connectible()) return 0;
-  const double g = eye.pdf(c.w) * (c.infinite ? 1.0 : light.area_factor(c.w) / double(c.distance2));
+  const double p = c.eye_pdf < 0 ? eye.pdf(c.w) : c.eye_pdf;
+  const double g = p * (c.infinite ? 1.0 : light.area_factor(c.w) / double(c.distance2));
   const double pdf_rev = light.mis_partial() > 0 ? light.pdf_rev(-c.w) : 0.0;
   const TechniqueCounts side = light_side(n).with_one(light.next_event_ratio());
   return g / light.p_fwd() *

@@ -39,7 +39,8 @@ class DirectLight {
   /// choose_ahead(). Calls `add(ray, value)` where the contribution is not black; `value`
   /// counts if the shadow ray `ray` is unoccluded.
   template <class Add>
-  void draw(const Vertex& v, int depth, NextEvent::Ahead ahead, Rng& rng, Add&& add) const {
+  [[gnu::flatten]] void draw(const Vertex& v, int depth, NextEvent::Ahead ahead, Rng& rng,
+                             Add&& add) const {
     const EmitterPoint e = next_event_.sample(v, ahead, rng);
     const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
     const EmitterEndpoint light{e};

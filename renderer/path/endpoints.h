@@ -34,6 +34,15 @@ struct SurfaceEndpoint {
   const V3f& x() const { return v.surface.x; }
   /// throughput f(wp, w) |cos|: what the path scatters along `w`.
   Rgb scatter(const V3f& w) const { return v.throughput * v.bsdf->eval(v.wp, w, transport); }
+  /// scatter(), with pdf() where that comes with it; else `p` is left as it is.
+  Rgb scatter(const V3f& w, double& p) const {
+    if constexpr (requires { guide.evaluate(v, v.wp, w, transport); }) {
+      const Bsdf::Evaluated e = guide.evaluate(v, v.wp, w, transport);
+      p = double(e.pdf.value);
+      return v.throughput * e.value;
+    }
+    return scatter(w);
+  }
   /// Density per steradian with which this walk would continue along `w`.
   double pdf(const V3f& w) const { return guide.pdf(v, v.wp, w, transport).value; }
   /// Density per steradian with which the walk from the other side, arriving from `w`, would

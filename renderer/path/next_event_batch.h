@@ -25,9 +25,7 @@ class SelectTogether {
         ahead_(ahead) {}
 
   bool wanted() const { return active_; }
-  void operator()(std::span<const std::size_t> paths) const {
-    std::array<PointwiseSelection::Request, EyeBatch::size> requests;
-    std::array<std::size_t, EyeBatch::size> path_of{};
+  void operator()(std::span<const std::size_t> paths) {
     std::size_t n = 0;
     for (const std::size_t i : paths) {
       PathState& state = batch_.states[i];
@@ -35,13 +33,13 @@ class SelectTogether {
       if (state.depth >= max_depth_ || v.kind != Vertex::Kind::surface || !v.bsdf->connectible()) {
         continue;
       }
-      requests[n].receiver = receiver_at(v);
-      requests[n].rng = &state.rng;
-      path_of[n++] = i;
+      requests_[n].receiver = receiver_at(v);
+      requests_[n].rng = &state.rng;
+      path_of_[n++] = i;
     }
-    next_event_.choose(std::span(requests).first(n));
+    next_event_.choose(std::span(requests_).first(n));
     for (std::size_t k = 0; k < n; ++k) {
-      NextEvent::set(ahead_[path_of[k]], requests[k].result);
+      NextEvent::set(ahead_[path_of_[k]], requests_[k].result);
     }
   }
 
@@ -51,6 +49,9 @@ class SelectTogether {
   int max_depth_;
   EyeBatch& batch_;
   EmittersAhead& ahead_;
+  // Here, so that they are initialised once for a batch and not at each of its vertices.
+  std::array<PointwiseSelection::Request, EyeBatch::size> requests_;
+  std::array<std::size_t, EyeBatch::size> path_of_{};
 };
 
 }  // namespace lacuna

@@ -88,16 +88,18 @@ struct CameraSample {
   }
 };
 
-/// Starts a path for each pixel of the tile from number `first` on, as many as fit into `batch`.
-/// Throws IterationStopped: a tile of long paths takes minutes.
-inline void start_paths(const IterationContext& context, const Image& image, const Tile& tile,
-                        int first, EyeBatch& batch) {
+static_assert(Tile::block_side * Tile::block_side == EyeBatch::size);
+
+/// Starts a path for each pixel of a Tile::block(). Their walk may trace the camera rays together
+/// (WalkLimits::packets). Throws IterationStopped: a tile of long paths takes minutes.
+inline void start_paths(const IterationContext& context, const Image& image, const Tile& block,
+                        EyeBatch& batch) {
   context.check_stop();
   batch.states.clear();
-  for (int i = first; i < std::min(first + int{EyeBatch::size}, tile.pixels()); ++i) {
-    const V2i at = tile.pixel(i);
+  for (int i = 0; i < block.pixels(); ++i) {
+    const V2i at = block.pixel_of_block(i);
     const std::size_t pixel = image.index(at.x, at.y);
-    const CameraSample sample(context, pixel, tile.samples_before);
+    const CameraSample sample(context, pixel, block.samples_before);
     batch.start(context.camera, sample.rng, sample.ray, pixel);
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <span>
@@ -19,6 +20,8 @@ struct WalkLimits {
   bool last_scatters = false;  ///< make a Bsdf at the last vertex too, because it will be connected
   int roulette_depth = 1;      ///< edges before Russian roulette may end the path
   Transport transport = Transport::radiance;
+  /// The walks begin with the coherent rays of start_paths(), which are traced in packets.
+  bool packets = false;
   /// Sample counts of this side's strategies; all 0: Vertex::mis_partial is not computed.
   TechniqueCounts counts = {};
 };
@@ -86,12 +89,15 @@ class Walk {
     std::iota(active_.begin(), active_.end(), std::size_t{0});
     std::erase_if(active_,
                   [&](std::size_t i) { return states[i].depth > 0 && !sample_next(states[i]); });
+    bool packets = limits_.packets && !states.empty() && states[0].depth == 0;
     while (!active_.empty()) {
       for (const std::size_t i : active_) {
         const int depth = ++states[i].depth;
         before(i, depth);
-        trace(states[i], depth);
+        if (!packets) trace(states[i], depth);
       }
+      if (packets) trace_first(states);
+      packets = false;
       for (const std::size_t i : active_) on_hit(states[i], states[i].depth);
       const bool at_once = together.wanted();
       if (at_once) {
@@ -122,6 +128,29 @@ class Walk {
     const bool met = scene_.rays().intersect(w.ray, w.hit);
     vertex(w, depth).kind = met ? Vertex::Kind::surface : Vertex::Kind::background;
     if (met) scene_.prefetch(w.hit);
+  }
+
+  /// trace() of all first edges, eight at a time. In a packet the nearest of two triangles that a
+  /// ray hits at the same distance may be the other one: which rays are in one must not depend on
+  /// threads or tiles.
+  void trace_first(std::span<PathState> states) {
+    constexpr std::size_t together = 8;
+    std::array<Ray, together> rays;
+    std::array<Hit, together> hits;
+    std::array<std::uint8_t, together> met{};
+    counters_.rays += states.size();
+    for (std::size_t first = 0; first < states.size(); first += together) {
+      const std::span<PathState> some =
+          states.subspan(first, std::min(together, states.size() - first));
+      for (std::size_t k = 0; k < some.size(); ++k) rays[k] = some[k].ray;
+      scene_.rays().intersect(std::span(rays).first(some.size()), hits, met);
+      for (std::size_t k = 0; k < some.size(); ++k) {
+        vertex(some[k], 1).kind = met[k] != 0 ? Vertex::Kind::surface : Vertex::Kind::background;
+        if (met[k] == 0) continue;
+        some[k].hit = hits[k];
+        scene_.prefetch(hits[k]);
+      }
+    }
   }
 
   void on_hit(PathState& w, int depth) {

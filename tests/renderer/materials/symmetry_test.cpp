@@ -55,6 +55,33 @@ TEST_P(Symmetry, Reciprocal) {
   }
 }
 
+/// Value and density at once are those that are asked for one by one, to the bit.
+TEST_P(Symmetry, EvaluatedAtOnce) {
+  Rng random = cases::rng(GetParam());
+  int lit = 0;
+  for (const cases::View& view : views()) {
+    const Bsdf bsdf(surface_.params, view.ng, view.ns);
+    for (int i = 0; i < 400; ++i) {
+      for (const Transport transport : {Transport::radiance, Transport::importance}) {
+        V3f wi = cases::uniform_direction(random);
+        if (const auto s = cases::sample(bsdf, view.wo, random, transport); s && i % 2 == 0) {
+          wi = s->wi;
+        }
+        const Bsdf::Evaluated e = bsdf.evaluate(view.wo, wi, transport);
+        ASSERT_EQ(e.value, bsdf.eval(view.wo, wi, transport)) << view.name;
+        if (is_black(e.value)) continue;
+        ASSERT_EQ(e.pdf.value, bsdf.pdf(view.wo, wi, transport).value) << view.name;
+        ++lit;
+      }
+    }
+  }
+  const Bsdf bsdf(surface_.params, views()[0].ng, views()[0].ng);
+  // Without a boundary everything passes straight through.
+  if (bsdf.connectible() && surface_.name != "glass_ior_1") {
+    EXPECT_GT(lit, 1000);
+  }
+}
+
 /// The light that arrives at eyes, measured from both ends: paths that start at random eyes e and
 /// sample the light's direction l, and paths that start at l and sample e, both estimate
 ///   integral of g(e) F(e, l) h(l) |e.ng| de dl   over the sphere.
