@@ -178,7 +178,6 @@ class Bdpt : public GuidedIntegrator<Guide> {
   static std::int64_t pixels(const Image& image) {
     return std::int64_t{image.width} * image.height;
   }
-
   BdptSettings settings_;
   StrategyLayers layers_;
 };
