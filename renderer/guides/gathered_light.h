@@ -17,6 +17,8 @@ class GatheredLight {
   void clear() {
     light_.assign(batch_.stride * EyeBatch::size, Rgb(0, 0, 0));
     split_.assign(batch_.stride * EyeBatch::size, 1.0F);
+    carried_.assign(batch_.stride * EyeBatch::size, 0.0F);
+    shadow_rays_.assign(batch_.stride * EyeBatch::size, std::uint8_t{0});
     for (std::size_t i = 0; i < batch_.states.size(); ++i) {
       first_[i] = last_[i] = batch_.states[i].depth;
     }
@@ -24,11 +26,25 @@ class GatheredLight {
   /// Path `i` has reached its vertex `depth`.
   void reach(std::size_t i, int depth) {
     last_[i] = depth;
+    carried_[index(i, depth - 1)] = batch_.states[i].carried;
     split_[index(i, depth)] = batch_.states[i].split;
   }
   /// Adds the contribution `value` to the pixel, by emission or a connection at vertex `depth`.
   void add(std::size_t i, int depth, const Rgb& value) {
     if (is_finite(value)) light_[index(i, depth)] += value;
+  }
+  /// A shadow ray is traced for vertex `depth` of path `i`.
+  void cast(std::size_t i, int depth) { ++shadow_rays_[index(i, depth)]; }
+
+  int last(std::size_t i) const { return last_[i]; }
+  const Rgb& light(std::size_t i, int depth) const { return light_[index(i, depth)]; }
+  int shadow_rays(std::size_t i, int depth) const { return shadow_rays_[index(i, depth)]; }
+  /// PathState::carried of that vertex.
+  float carried(std::size_t i, int depth) const {
+    return depth < last_[i] ? carried_[index(i, depth)] : batch_.states[i].carried;
+  }
+  static bool connectible(const Vertex& v) {
+    return v.kind == Vertex::Kind::surface && v.bsdf && v.bsdf->connectible();
   }
 
   /// Passes to `guide` a GuidingSample for every edge that was not sampled from a delta lobe, and
@@ -50,9 +66,6 @@ class GatheredLight {
  private:
   std::size_t index(std::size_t i, int depth) const {
     return i * batch_.stride + static_cast<std::size_t>(depth);
-  }
-  static bool connectible(const Vertex& v) {
-    return v.kind == Vertex::Kind::surface && v.bsdf && v.bsdf->connectible();
   }
 
   /// Of the edge from vertex `depth` of path `i` to the next.
@@ -132,7 +145,9 @@ class GatheredLight {
 
   const EyeBatch& batch_;
   std::vector<Rgb> light_;
-  std::vector<float> split_;                          // PathState::split at each vertex
+  std::vector<float> split_;    // PathState::split at each vertex
+  std::vector<float> carried_;  // and PathState::carried
+  std::vector<std::uint8_t> shadow_rays_;
   std::array<int, EyeBatch::size> first_{}, last_{};  // depths of the vertices recorded
 };
 

@@ -6,15 +6,17 @@
 
 namespace lacuna {
 
-ReflectedRadiance::ReflectedRadiance(const V3d& low, const V3d& size) : low_(low) {
+ReflectedRadiance::ReflectedRadiance(const V3d& low, const V3d& size, std::uint32_t classes,
+                                     double enough_samples)
+    : low_(low), enough_(enough_samples) {
   const double longest = std::max({size.x, size.y, size.z});
   scale_ = longest > 0 ? side / longest : 0;
-  known_.assign(std::size_t{sides} * side * side * side, {});
+  known_.assign(std::size_t{classes} * sides * side * side * side, {});
   learning_ = known_;
-  make_means();
+  make_moments();
 }
 
-ReflectedRadiance::Cell ReflectedRadiance::cell(const Vertex& v) const {
+ReflectedRadiance::Cell ReflectedRadiance::cell(const Vertex& v, std::uint32_t of_class) const {
   Cell c{};
   const V3d p = (V3d(v.surface.x) - low_) * scale_;
   for (unsigned axis = 0; axis < 3; ++axis) {
@@ -23,73 +25,64 @@ ReflectedRadiance::Cell ReflectedRadiance::cell(const Vertex& v) const {
   const V3f n = v.side();
   int longest = std::abs(n.y) > std::abs(n.x) ? 1 : 0;
   if (std::abs(n.z) > std::abs(n[longest])) longest = 2;
-  c.normal = static_cast<std::uint32_t>(2 * longest + (n[longest] < 0 ? 1 : 0));
+  c.side = of_class * sides + static_cast<std::uint32_t>(2 * longest + (n[longest] < 0 ? 1 : 0));
   return c;
 }
 
-std::size_t ReflectedRadiance::index(const Cell& c, std::size_t level) {
-  const std::size_t n = std::size_t{side} >> level;
-  std::size_t i = c.normal;
-  for (const std::uint32_t x : c.at) i = i * n + (x >> level);
+std::size_t ReflectedRadiance::index(const Cell& c) {
+  std::size_t i = c.side;
+  for (const std::uint32_t x : c.at) i = i * side + x;
   return i;
-}
-
-float ReflectedRadiance::at(const Vertex& v) const {
-  if (samples_ == 0) return -1;
-  const Cell c = cell(v);
-  for (std::size_t level = 0; level < levels; ++level) {
-    const float mean = means_[level][index(c, level)];
-    if (mean >= 0) return mean;
-  }
-  return mean_;
-}
-
-void ReflectedRadiance::record(const Vertex& v, double value, Accumulator& accumulator) const {
-  if (std::isfinite(value)) {
-    accumulator.add(static_cast<std::uint32_t>(index(cell(v), 0)), value);
-  }
 }
 
 void ReflectedRadiance::update(std::span<const Accumulator* const> accumulators) {
   for (const Accumulator* a : accumulators) {
-    for (const auto& [i, met] : a->cells_) {
-      learning_[i].sum += met.sum;
-      learning_[i].samples += met.samples;
-    }
+    for (const auto& [i, met] : a->cells_) learning_[i] += met;
   }
+  end_iteration();
+}
+
+void ReflectedRadiance::end_iteration() {
   if (++iteration_ < std::uint64_t{1} << round_) return;
   iteration_ = 0;
   ++round_;
   std::swap(known_, learning_);
   std::fill(learning_.begin(), learning_.end(), Samples{});
-  make_means();
+  make_moments();
 }
 
-void ReflectedRadiance::make_means() {
-  std::vector<Samples> sums = known_;
-  samples_ = 0;
-  double sum = 0;
-  for (const Samples& s : known_) {
-    sum += s.sum;
-    samples_ += s.samples;
+ReflectedRadiance::Moments ReflectedRadiance::moments(const Samples& s) {
+  return {static_cast<float>(s.sum / s.samples), static_cast<float>(s.squares / s.samples),
+          static_cast<float>(s.rays / s.samples)};
+}
+
+std::size_t ReflectedRadiance::above(std::size_t i, std::size_t n) {
+  const std::size_t z = i % n, y = i / n % n, x = i / (n * n) % n, face = i / (n * n * n);
+  return ((face * (n / 2) + x / 2) * (n / 2) + y / 2) * (n / 2) + z / 2;
+}
+
+void ReflectedRadiance::make_moments() {
+  std::array<std::vector<Samples>, levels> sums;
+  sums[0] = known_;
+  for (std::size_t level = 1; level < levels; ++level) {
+    const std::vector<Samples>& below = sums[level - 1];
+    sums[level].resize(below.size() / 8);
+    const std::size_t n = std::size_t{side} >> (level - 1);
+    for (std::size_t i = 0; i < below.size(); ++i) sums[level][above(i, n)] += below[i];
   }
-  mean_ = static_cast<float>(sum / samples_);
-  for (std::size_t level = 0; level < levels; ++level) {
+  Samples all;
+  for (const Samples& s : sums[levels - 1]) all += s;
+  samples_ = all.samples;
+  moments_.assign(1, moments(all));
+  for (std::size_t level = levels; level-- > 0;) {
+    const std::vector<Samples>& here = sums[level];
     const std::size_t n = std::size_t{side} >> level;
-    means_[level].resize(sums.size());
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-      const Samples& s = sums[i];
-      means_[level][i] = s.samples >= least_samples ? static_cast<float>(s.sum / s.samples) : -1;
+    std::vector<Moments> found(here.size());
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      found[i] =
+          here[i].samples >= least_samples ? moments(here[i]) : moments_[n > 1 ? above(i, n) : 0];
     }
-    if (n == 1) break;
-    std::vector<Samples> above(sums.size() / 8);
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-      const std::size_t z = i % n, y = i / n % n, x = i / (n * n) % n, normal = i / (n * n * n);
-      auto& to = above[((normal * (n / 2) + x / 2) * (n / 2) + y / 2) * (n / 2) + z / 2];
-      to.sum += sums[i].sum;
-      to.samples += sums[i].samples;
-    }
-    sums = std::move(above);
+    moments_ = std::move(found);
   }
 }
 
@@ -107,7 +100,7 @@ void ReflectedRadiance::save(ByteWriter& out) const {
 }
 
 void ReflectedRadiance::load(ByteReader& in) {
-  if (in.get<std::array<double, 4>>() != grid()) {
+  if (in.get<std::array<double, 5>>() != grid()) {
     throw std::runtime_error("saved radiance belongs to another scene");
   }
   round_ = in.get<std::uint64_t>();
@@ -116,13 +109,14 @@ void ReflectedRadiance::load(ByteReader& in) {
   for (auto* cells : {&known_, &learning_}) {
     for (const Saved& s : in.get_vector<Saved>()) {
       good = good && s.cell < cells->size() && std::isfinite(s.met.sum) && s.met.samples > 0 &&
-             std::isfinite(s.met.samples);
+             std::isfinite(s.met.samples) && s.met.squares >= 0 && std::isfinite(s.met.squares) &&
+             s.met.rays >= 0 && std::isfinite(s.met.rays);
       if (!good) break;
       (*cells)[s.cell] = s.met;
     }
   }
   if (!good) throw std::runtime_error("saved radiance is not valid");
-  make_means();
+  make_moments();
 }
 
 }  // namespace lacuna

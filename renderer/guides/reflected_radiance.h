@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <unordered_map>
@@ -17,24 +18,36 @@ namespace lacuna {
 /// adjoint (Vorba and Krivanek 2016, "Adjoint-driven Russian roulette and splitting").
 ///
 /// A grid of 32^3 cells over the scene, each with six sides for the normals, and coarser grids of
-/// 16^3 to 1 cells: a look-up returns the mean of the finest cell with enough samples. It learns
-/// from all vertices in rounds of 1, 2, 4, ... iterations; each round replaces the one before,
-/// because the first paths have the heaviest tails. The picture's mean does not depend on its
-/// values.
+/// 16^3 to 1 cells: a look-up returns the moments of the finest cell with enough samples. Vertices
+/// may be of several classes, which share no cell. It learns from all vertices in rounds of 1, 2,
+/// 4, ... iterations; each round replaces the one before, because the first paths have the heaviest
+/// tails. The picture's mean does not depend on its values.
 class ReflectedRadiance {
  public:
+  /// What one path gathered behind a vertex, and the rays that it took.
+  struct Sample {
+    double value, rays = 0;
+  };
   /// The samples of a cell.
   struct Samples {
-    double sum = 0, samples = 0;
+    double sum = 0, squares = 0, rays = 0, samples = 0;
+    static Samples of(const Sample& s) { return {s.value, s.value * s.value, s.rays, 1}; }
+    void operator+=(const Samples& o) {
+      sum += o.sum;
+      squares += o.squares;
+      rays += o.rays;
+      samples += o.samples;
+    }
+  };
+  /// Of one sample of a cell.
+  struct Moments {
+    float mean = -1;  ///< below 0 while nothing is known
+    float square = 0, rays = 0;
   };
   /// The samples of one part of an iteration, by cell of the finest grid.
   class Accumulator {
    public:
-    void add(std::uint32_t cell, double value) {
-      Samples& c = cells_[cell];
-      c.sum += value;
-      c.samples += 1;
-    }
+    void add(std::uint32_t cell, const Sample& s) { cells_[cell] += Samples::of(s); }
 
    private:
     friend class ReflectedRadiance;
@@ -42,16 +55,32 @@ class ReflectedRadiance {
   };
 
   ReflectedRadiance() = default;
-  /// Over the box of a scene, low corner and size, in scene units.
-  ReflectedRadiance(const V3d& low, const V3d& size);
+  /// Over the box of a scene, low corner and size, in scene units. Learning ends after a round of
+  /// `enough_samples`.
+  ReflectedRadiance(const V3d& low, const V3d& size, std::uint32_t classes = 1,
+                    double enough_samples = 1 << 18);
 
   /// Mean at `v`, a surface; below 0 while nothing is known.
-  float at(const Vertex& v) const;
-  bool learns() const { return samples_ < enough_samples || round_ < least_rounds; }
+  float at(const Vertex& v) const { return moments(v, 0).mean; }
+  Moments moments(const Vertex& v, std::uint32_t of_class) const {
+    return samples_ == 0 ? Moments{} : moments_[index(cell(v, of_class))];
+  }
+  bool learns() const { return samples_ < enough_ || round_ < least_rounds; }
   /// One path's value at `v`; only while it learns().
-  void record(const Vertex& v, double value, Accumulator& accumulator) const;
+  void record(const Vertex& v, double value, Accumulator& accumulator) const {
+    if (std::isfinite(value)) accumulator.add(key(v, 0), {value});
+  }
+  /// The finest cell of `v`, for a sample that is known later.
+  std::uint32_t key(const Vertex& v, std::uint32_t of_class) const {
+    return static_cast<std::uint32_t>(index(cell(v, of_class)));
+  }
   /// Adds the samples of the parts of an iteration, in their order.
   void update(std::span<const Accumulator* const> accumulators);
+  /// The same, one by one and then once for the iteration.
+  void add(std::uint32_t key, const Sample& sample) {
+    if (std::isfinite(sample.value)) learning_[key] += Samples::of(sample);
+  }
+  void end_iteration();
 
   void save(ByteWriter& out) const;
   /// Throws std::runtime_error for the state of another scene.
@@ -62,21 +91,24 @@ class ReflectedRadiance {
   static constexpr std::size_t levels = 6;  // 32, 16, ..., 1 cells along a side
   /// Samples below which a look-up uses the coarser cell.
   static constexpr double least_samples = 128;
-  /// Samples of a round after which learning ends.
-  static constexpr double enough_samples = 1 << 18;
   static constexpr std::uint64_t least_rounds = 3;
 
   struct Cell {
     std::array<std::uint32_t, 3> at;
-    std::uint32_t normal;
+    std::uint32_t side;  // of the normal, and the class
   };
-  std::array<double, 4> grid() const { return {low_.x, low_.y, low_.z, scale_}; }
-  Cell cell(const Vertex& v) const;
-  static std::size_t index(const Cell& c, std::size_t level);
-  void make_means();
+  std::array<double, 5> grid() const {
+    return {low_.x, low_.y, low_.z, scale_, double(known_.size())};
+  }
+  Cell cell(const Vertex& v, std::uint32_t of_class) const;
+  static std::size_t index(const Cell& c);
+  static Moments moments(const Samples& s);
+  /// The place in the next coarser grid of place `i` in one of `n` cells along a side.
+  static std::size_t above(std::size_t i, std::size_t n);
+  void make_moments();
 
   V3d low_{0.0};
-  double scale_ = 0;
+  double scale_ = 0, enough_ = 0;
   struct Saved {
     Samples met;
     std::uint64_t cell;
@@ -84,9 +116,7 @@ class ReflectedRadiance {
   std::uint64_t round_ = 0, iteration_ = 0;  // iterations done of 2^round_
   double samples_ = 0;                       // in known_
   std::vector<Samples> known_, learning_;    // of the finest grid: the last round's, and this one's
-  float mean_ = 0;                           // of all samples in known_
-  /// Of each grid: the means, below 0 where too few samples were met.
-  std::array<std::vector<float>, levels> means_;
+  std::vector<Moments> moments_;             // of the finest grid, from where enough were met
 };
 
 }  // namespace lacuna

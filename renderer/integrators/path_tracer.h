@@ -1,6 +1,10 @@
 #pragma once
 
+#include <optional>
+
+#include "renderer/guides/efficiency_roulette.h"
 #include "renderer/guides/gathered_light.h"
+#include "renderer/guides/path_trees.h"
 #include "renderer/integrators/guided_integrator.h"
 #include "renderer/path/direct_light.h"
 #include "renderer/path/eye_batch.h"
@@ -31,13 +35,45 @@ class PathTracer final : public GuidedIntegrator<Guide> {
     return needs;
   }
 
+  void prepare(const PrepareContext& context) override {
+    GuidedIntegrator<Guide>::prepare(context);
+    if (settings_.roulette == RouletteChoice::efficiency) {
+      roulette_.emplace(context.scene,
+                        std::size_t(context.camera.width()) * std::size_t(context.camera.height()));
+    }
+  }
+  std::vector<std::pair<std::string, double>> statistics() const override {
+    auto all = GuidedIntegrator<Guide>::statistics();
+    if (roulette_) {
+      for (const auto& row : roulette_->statistics()) all.push_back(row);
+    }
+    return all;
+  }
+  void save(ByteWriter& out) const override {
+    GuidedIntegrator<Guide>::save(out);
+    if (roulette_) roulette_->save(out);
+  }
+  void load(ByteReader& in) override {
+    GuidedIntegrator<Guide>::load(in);
+    if (roulette_) roulette_->load(in);
+  }
+
   Counters iterate(const IterationContext& context, Image& image) override {
     const Tiling tiling(context, image);
-    std::vector<typename Guide::Accumulator> accumulators(static_cast<std::size_t>(tiling.tiles()));
+    const auto tiles = static_cast<std::size_t>(tiling.tiles());
+    std::vector<typename Guide::Accumulator> accumulators(tiles);
+    // Roulette learns from whole pictures.
+    const bool observes =
+        roulette_ && roulette_->observes() && context.parts.empty() && roulette_->fits(image);
+    std::vector<EfficiencyRoulette::Accumulator> continuations(
+        observes && roulette_->learns() ? tiles : 0);
     const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
-      render(context, image, tiling.tile(i), counters, accumulators[static_cast<std::size_t>(i)]);
+      const auto k = static_cast<std::size_t>(i);
+      render(context, image, tiling.tile(i), counters,
+             {accumulators[k], continuations.empty() ? nullptr : &continuations[k]});
     });
     if (guide_.learns()) guide_.update(accumulators, context.pool);
+    if (observes) roulette_->update(continuations, context, image, sum);
     return sum;
   }
 
@@ -53,42 +89,71 @@ class PathTracer final : public GuidedIntegrator<Guide> {
     using EyeBatch::EyeBatch;
     EmittersAhead ahead{};          // the emitters of next event estimation
     ShadowQueue<Direct> shadows;    // and what they give
-    GatheredLight gathered{*this};  // for a guide that learns
+    GatheredLight gathered{*this};  // for what learns
+    bool gathers = false;
+    bool grows = false;  // `trees`
+    PathTrees trees;     // for roulette
+  };
+
+  /// What is learned from a part of an iteration.
+  struct Learning {
+    typename Guide::Accumulator& guide;
+    EfficiencyRoulette::Accumulator* roulette;  // null: it does not learn
   };
 
   void render(const IterationContext& context, Image& image, const Tile& tile, Counters& counters,
-              typename Guide::Accumulator& accumulator) const {
-    const bool learns = guide_.learns();
-    if (learns) accumulator = guide_.accumulator();
+              Learning learning) const {
+    if (guide_.learns()) learning.guide = guide_.accumulator();
+    const bool decides = roulette_ && roulette_->active() && roulette_->fits(image);
     Batch batch(settings_.max_depth);
     Walk walk(context.scene, guide_,
               {.max_depth = settings_.max_depth,
                .roulette_depth = settings_.roulette_depth,
-               .packets = true},
+               .packets = true,
+               .roulette = decides ? &*roulette_ : nullptr},
               counters);
     const auto flush = [&] {
       batch.shadows.flush(context.scene.rays(), counters, [&](const Direct& d) {
         accumulate(image.pixels[d.pixel], d.value, counters);
-        if (learns) batch.gathered.add(d.path, d.depth, d.value);
+        if (batch.gathers) batch.gathered.add(d.path, d.depth, d.value);
       });
     };
     for (int b = 0; b < tile.blocks(); ++b) {
       start_paths(context, image, tile.block(b), batch);
       counters.samples += batch.states.size();
+      const bool grows = learning.roulette != nullptr &&
+                         roulette_->learns_from(batch.pixels[0], context.iteration);
+      // What waits for its shadow rays is of other paths.
+      if (grows && !batch.gathers) flush();
+      batch.grows = grows;
+      batch.gathers = grows || guide_.learns();
       do {
-        if (learns) batch.gathered.clear();
+        if (batch.gathers) batch.gathered.clear();
+        if (batch.grows) batch.trees.begin(batch.states);
         estimate(context.scene, walk, batch);
         for (std::size_t i = 0; i < batch.states.size(); ++i) {
           accumulate(image.pixels[batch.pixels[i]], batch.radiance[i], counters);
         }
-        if (learns) {
+        if (batch.gathers) {
           flush();
-          batch.gathered.record(guide_, accumulator);
+          if (guide_.learns()) batch.gathered.record(guide_, learning.guide);
+          if (batch.grows) collect(batch);
         }
         batch.store(walk.branches());
       } while (batch.resume());
+      if (batch.grows) {
+        batch.trees.record([&](std::uint32_t key, double value, double rays) {
+          learning.roulette->push_back({key, static_cast<float>(rays), value});
+        });
+      }
     }
     flush();
+  }
+
+  void collect(Batch& batch) const {
+    batch.trees.collect(batch, batch.gathered, [&](const Vertex& v, int depth) {
+      return roulette_->key(v, settings_.max_depth - depth);
+    });
   }
 
   /// One sample of each pixel of `batch`, into its `radiance` and `shadows`.
@@ -104,7 +169,7 @@ class PathTracer final : public GuidedIntegrator<Guide> {
       const Vertex& v = batch.vertex(i, depth);
       const Rgb met = direct.met(v, batch.vertex(i, depth - 1), depth);
       batch.radiance[i] += met;
-      if (guide_.learns()) {
+      if (batch.gathers) {
         batch.gathered.reach(i, depth);
         batch.gathered.add(i, depth, met);
       }
@@ -112,6 +177,7 @@ class PathTracer final : public GuidedIntegrator<Guide> {
       if (goes_on && direct.draws() && v.bsdf->connectible()) {
         direct.draw(v, depth, batch.ahead[i], batch.states[i].rng,
                     [&](const Ray& ray, const Rgb& value) {
+                      if (batch.gathers) batch.gathered.cast(i, depth);
                       batch.shadows.add(ray, {value, batch.pixels[i], static_cast<std::uint16_t>(i),
                                               static_cast<std::uint16_t>(depth)});
                     });
@@ -123,6 +189,7 @@ class PathTracer final : public GuidedIntegrator<Guide> {
   }
 
   PathSettings settings_;
+  std::optional<EfficiencyRoulette> roulette_;
 };
 
 }  // namespace lacuna

@@ -9,6 +9,7 @@
 #include "renderer/core/rng.h"
 #include "renderer/path/counters.h"
 #include "renderer/path/mis.h"
+#include "renderer/path/roulette.h"
 #include "renderer/path/vertex.h"
 #include "renderer/scene/scene.h"
 
@@ -24,6 +25,8 @@ struct WalkLimits {
   bool packets = false;
   /// Sample counts of this side's strategies; all 0: Vertex::mis_partial is not computed.
   TechniqueCounts counts = {};
+  /// Takes the place of the other kinds of roulette where it knows enough; null: there is none.
+  const Roulette* roulette = nullptr;
 };
 
 /// The state of a random walk between two edges.
@@ -48,7 +51,10 @@ struct PathState {
   float expected = -1;
   float least = 0;  ///< luminance of throughput below which the path is not split
   float split = 1;  ///< number of equal parts it was split into since it started or branched off
-  bool windowed = false;  ///< keep_expected() has replaced roulette at the last vertex
+  /// Roulette by what is known of the light has replaced that by throughput at the last vertex.
+  bool windowed = false;
+  float carried = 0;  ///< luminance of throughput when it left the last vertex; 0: it did not
+  std::uint32_t segment = 0;  ///< of PathTrees; a branch has that of the path that was split
 };
 
 /// One part of a path that was split at its last vertex. It continues there on its own.
@@ -187,11 +193,44 @@ class Walk {
   /// False where the walk ends before a direction is sampled. May split the path.
   bool continues(PathState& w, std::size_t walk) {
     const Vertex& v = vertex(w, w.depth);
+    w.carried = 0;
     if (v.kind == Vertex::Kind::background || w.depth == limits_.max_depth) return false;
+    if (!keep(w, v, walk)) return false;
+    w.carried = luminance(w.throughput);
+    return true;
+  }
+
+  bool keep(PathState& w, const Vertex& v, std::size_t walk) {
+    if (limits_.roulette != nullptr) return keep_efficient(w, v, walk);
     if constexpr (Guide::has_expected) {
       return limits_.transport == Transport::importance || guide_.idle() ||
              keep_expected(w, v, walk);
     }
+    return true;
+  }
+
+  /// As many continuations as Roulette advises.
+  bool keep_efficient(PathState& w, const Vertex& v, std::size_t walk) {
+    w.windowed = false;
+    if (!v.bsdf->connectible()) return true;
+    const float carried = luminance(w.throughput);
+    if (w.reference == 0) {
+      w.reference = w.depth;
+      w.least = carried * least_part;
+    }
+    const float parts = limits_.roulette->continuations(v, limits_.max_depth - w.depth, carried);
+    if (parts < 0) return true;
+    w.windowed = true;
+    if (parts < 1) return survive(w, parts);
+    if (carried > w.least && parts > 1) split(w, v, static_cast<int>(std::lround(parts)), walk);
+    return true;
+  }
+
+  /// Russian roulette.
+  static bool survive(PathState& w, float survival) {
+    if (!w.rng.decide(survival)) return false;
+    w.throughput /= survival;
+    w.roulette_scale *= survival;
     return true;
   }
 
@@ -203,9 +242,6 @@ class Walk {
     constexpr float low = 1.0F / 3, high = 5.0F / 3;  // 2 / (1 + s) and 2 s / (1 + s), s = 5
     constexpr float min_survival = 0.1F;
     constexpr int max_parts = 16;
-    // The throughputs of all parts of a path sum to at most its own, on average. A least part
-    // therefore bounds their number, and the time that wrong expectations cost.
-    constexpr float least_part = 1.0F / 64;
     w.windowed = false;
     if (!v.bsdf->connectible()) return true;
     if (w.reference == 0) {
@@ -225,10 +261,7 @@ class Walk {
     const float ratio = carried * expected_behind(v) / w.expected;
     w.windowed = true;
     if (ratio < low && w.depth >= limits_.roulette_depth) {
-      const float survival = std::max(ratio / low, min_survival);
-      if (!w.rng.decide(survival)) return false;
-      w.throughput /= survival;
-      w.roulette_scale *= survival;
+      return survive(w, std::max(ratio / low, min_survival));
     } else {
       // Splitting undoes what the guide has added to the weight, and no more: to split all paths
       // that come into the light costs more time than it saves noise.
@@ -252,6 +285,7 @@ class Walk {
     const float share = 1.0F / static_cast<float>(parts);
     w.throughput *= share;
     w.roulette_scale *= static_cast<float>(parts);
+    w.carried = luminance(w.throughput);
     for (int k = 1; k < parts; ++k) {
       PathBranch& b = branches_.emplace_back();
       b.state = w;
@@ -299,6 +333,10 @@ class Walk {
             merge_partial(limits_.counts, depth, v.connectible(), double(v.p_fwd.value))) /
            double(v.p_fwd.value);
   }
+
+  // The throughputs of all parts of a path sum to at most its own, on average. A least part
+  // therefore bounds their number, and the time that wrong expectations cost.
+  static constexpr float least_part = 1.0F / 64;
 
   const Scene& scene_;
   const Guide& guide_;

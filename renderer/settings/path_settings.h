@@ -5,6 +5,7 @@
 #include "renderer/settings/emitter_settings.h"
 #include "renderer/settings/guide_settings.h"
 #include "renderer/settings/path_lengths.h"
+#include "renderer/settings/roulette_settings.h"
 #include "renderer/settings/sampling_settings.h"
 
 namespace lacuna {
@@ -19,6 +20,7 @@ struct PathSettings : PathLengths {
   bool next_event_estimation = true;
   Sampling sampling = Sampling::uniform;
   EmitterChoice emitters = EmitterChoice::automatic;
+  RouletteChoice roulette = RouletteChoice::throughput;
 
   bool biased() const { return lacuna::biased(guide); }
   bool operator==(const PathSettings&) const = default;
@@ -32,6 +34,7 @@ void describe(V& v, PathSettings& s) {
     {.doc = "also sample a point on an emitter at every vertex"});
   v("sampling", s.sampling, {.doc = "how many samples the pixels get"});
   describe_emitters(v, s.emitters);
+  v("roulette", s.roulette, {.doc = "what decides how often a path goes on"});
 }
 
 }  // namespace lacuna

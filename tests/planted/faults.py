@@ -70,6 +70,15 @@ FAULTS = [
           "light_side(n).with_one(light.next_event_ratio());", "light_side(n);"),
     Fault("the eye's side forgets the tree", "renderer/path/endpoints.h",
           "double(e.leaving_pdf(w).value) / double(e.next_event_ratio);", "double(e.leaving_pdf(w).value);"),
+    # Roulette and splitting.
+    Fault("paths that survive forget what has ended", "renderer/path/walk.h",
+          "return false;\n    w.throughput /= survival;", "return false;\n    w.throughput /= 1;"),
+    Fault("parts of a path weigh as much as it did", "renderer/path/walk.h",
+          "const float share = 1.0F / static_cast<float>(parts);", "const float share = 1.0F;"),
+    Fault("roulette goes by shadow rays alone", "renderer/guides/path_trees.h",
+          "n.rays = 1 + gathered", "n.rays = 0 + gathered"),
+    Fault("branches are learned from apart from their paths", "renderer/guides/path_trees.h",
+          "at.light += light;", "at.light += 0 * light;"),
     # Metropolis.
     Fault("every proposal is accepted", "renderer/integrators/metropolis.cpp",
           "std::min(1.0, m.acceptance_ratio(k))", "std::min(1.0, 1e30 * m.acceptance_ratio(k))"),

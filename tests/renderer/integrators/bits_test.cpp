@@ -30,6 +30,9 @@ std::vector<test::Method> bidirectional(int max_depth) {
   for (test::Method& m : test::guided(max_depth)) all.push_back(std::move(m));
   for (test::Method& m : test::metropolis(max_depth)) all.push_back(std::move(m));
   all.push_back({"auto", test::choosing(max_depth)});
+  PathSettings efficient = test::path_tracing(max_depth);
+  efficient.roulette = RouletteChoice::efficiency;
+  all.push_back({"path_efficiency", efficient});
   for (test::Method& m : test::many_lights(max_depth)) all.push_back(std::move(m));
   for (test::Method& m : test::approximate_lights(max_depth)) all.push_back(std::move(m));
   for (test::Method& m : test::merging(max_depth)) all.push_back(std::move(m));

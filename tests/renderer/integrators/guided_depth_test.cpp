@@ -88,6 +88,15 @@ TEST(GuidedDepth, BidirectionalPathTracingHasTheMeanOfAWhiteFurnace) {
   }
 }
 
+// Paths that are ended and split for efficiency, from their first edge on and of many.
+TEST(GuidedDepth, EfficientPathsHaveTheMeanOfAWhiteFurnace) {
+  for (const int depth : {6, 100}) {
+    PathSettings path = guided_path(BsdfGuideSettings{}, depth);
+    path.roulette = RouletteChoice::efficiency;
+    expect_mean_one(path, depth);
+  }
+}
+
 /// Every guide of the registry, which draws nine of ten directions where it has any to draw.
 std::vector<std::pair<std::string, GuideSettings>> mostly_guided() {
   std::vector<std::pair<std::string, GuideSettings>> all;
