@@ -28,7 +28,7 @@ SCENES = {
 
 
 def front_sweep(full):
-    seconds = 120 if full else 8  # where an iteration takes longer, its method has no error yet
+    seconds = 120 if full else 4  # where an iteration takes longer, its method has no error yet
     return {
         "label": "the trade of many lights",
         "job": {"resolution": [1024, 512] if full else [192, 96], "reference": "auto",
