@@ -26,10 +26,10 @@ namespace lacuna {
 /// picture's relative error small where this makes the squared error small.
 ///
 /// Samples that are spread evenly (Sampler::sobol) have a smaller error than their variance says,
-/// and what roulette adds is not spread: roulette goes by the variance that the differences of the
-/// picture's two halves tell. Even so it may cost more than it saves. So a first span of iterations
-/// has none, a second one tries it, and it stays where the product of variance and rays has become
-/// smaller.
+/// and what roulette adds is not spread. So a first span of iterations has none, and where the
+/// picture's two halves differ by clearly less than the variance of samples says, that is the end
+/// of it. Else a second span tries it, and it stays unless the product of variance and rays has
+/// become clearly larger.
 class EfficiencyRoulette final : public Roulette {
  public:
   /// What one continuation of a path gathered.

@@ -1,6 +1,8 @@
 // Path tracing with efficiency-aware roulette and splitting: the same picture as without, and the
 // same bits for any number of threads and after a pause.
 
+#include <cmath>
+
 #include "renderer/guides/efficiency_roulette.h"
 #include "tests/renderer/integrators/methods.h"
 #include "tests/renderer/integrators/same_picture.h"
@@ -32,6 +34,7 @@ struct LitRoom {
 // Whole paths and those that are ended and split are estimates of one picture, block by block, with
 // glass and mirrors, too.
 TEST(Efficiency, RouletteChangesNothing) {
+  int active = 0;
   for (const auto& [scene, iterations] :
        {LitRoom{"cornell", 200}, LitRoom{"glass", 300}, LitRoom{"mirror", 200},
         LitRoom{"area", 200}, LitRoom{"ajar", 400}}) {
@@ -43,9 +46,11 @@ TEST(Efficiency, RouletteChangesNothing) {
     s.integrator = efficient(test::whole_paths(8));
     const Rendering found = test::render(test::load(shown), s);
     test::expect_same_picture(found, expected, 0.1);
-    // It has decided something.
-    EXPECT_NE(found.counters.rays, expected.counters.rays);
+    // Beyond what differs by chance.
+    const double rays = double(found.counters.rays) / double(expected.counters.rays);
+    active += std::abs(std::log(rays)) > 0.02 ? 1 : 0;
   }
+  EXPECT_GE(active, 3) << "it decides nothing";
 }
 
 TEST(Efficiency, GuidedPathsHaveThePictureOfOthers) {
