@@ -122,7 +122,7 @@ def beside_virtual_lights(bench, seconds):
         mse = squared_errors(bench, f"{name}-virtual", job, BESIDE, seconds)
         best = min(value for which, value in mse.items() if which not in ("path-tree", "bdpt-tree"))
         ratio = best / min(mse["path-tree"], mse["bdpt-tree"])
-        bench.figure(f"{name}: MSE of the best by virtual lights / of the best by the tree", f"{ratio:.2f}", "-", True)
+        print(f"  {name}: MSE of the best by virtual lights / of the best by the tree: {ratio:.3g}", flush=True)
 
 
 def gains(bench, folder, seconds):
