@@ -5,9 +5,9 @@
 
 namespace lacuna {
 
-/// The two strategies of unidirectional path tracing, combined by MIS: the eye path hits an emitter
-/// (s = 0), or a point on an emitter is sampled at one of its vertices (s = 1, next event
-/// estimation).
+/// The two strategies of unidirectional path tracing, combined by the power heuristic: the eye path
+/// hits an emitter (s = 0), or a point on an emitter is sampled at one of its vertices (s = 1, next
+/// event estimation).
 template <class Guide>
 class DirectLight {
  public:
@@ -32,7 +32,8 @@ class DirectLight {
     std::optional<EmitterPoint> e = emitter_at(scene_, v);
     if (!e) return Rgb(0, 0, 0);
     if (draws()) next_event_.set_ratio(*e, v, before, depth);
-    return v.throughput * e->emission * static_cast<float>(hit_weight(v, depth, *e, counts_));
+    const double w = power_of_two(hit_weight(v, depth, *e, counts_));
+    return v.throughput * e->emission * static_cast<float>(w);
   }
 
   /// Joins the connectible vertex `v` to a point sampled on an emitter; `ahead` is from
@@ -45,8 +46,8 @@ class DirectLight {
     const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
     const EmitterEndpoint light{e};
     if (const Connection c = connect(eye, light)) {
-      const auto w = static_cast<float>(weight(eye, light, c, counts_));
-      add(shadow_ray(eye, light, c), c.contribution * w);
+      const double w = power_of_two(weight(eye, light, c, counts_));
+      add(shadow_ray(eye, light, c), c.contribution * static_cast<float>(w));
     }
   }
 

@@ -293,6 +293,17 @@ TEST_P(Weights, ByATreeAreTheirDefinition) {
   }
 }
 
+// The power heuristic of two techniques, from the weights of the balance heuristic.
+TEST(PowerHeuristic, IsThatOfSquaredDensities) {
+  for (const double p : {1e-9, 0.1, 1.0, 3.0, 1e9}) {
+    const double q = 1;
+    EXPECT_NEAR(power_of_two(p / (p + q)) / (p * p / (p * p + q * q)), 1, 1e-12);
+    EXPECT_NEAR(power_of_two(p / (p + q)) + power_of_two(q / (p + q)), 1, 1e-12);
+  }
+  EXPECT_EQ(power_of_two(0), 0);
+  EXPECT_EQ(power_of_two(1), 1);
+}
+
 // Whole paths, each made once more by every technique: what one walk knows of the other's densities
 // is what the other has.
 TEST_P(Weights, OfAllStrategiesAddUpToOne) {
