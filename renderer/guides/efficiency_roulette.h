@@ -20,7 +20,9 @@ namespace lacuna {
 ///
 /// times, with S the second moment (q < 1) or the variance (q > 1) of what one continuation gathers
 /// for throughput 1, C its rays, V_I the variance of a sample of a pixel, mean over the picture,
-/// and C_I its rays: that minimises V_I C_I. S and C are learned in cells (ReflectedRadiance), from
+/// and C_I its rays: that minimises V_I C_I. A path ends by the V_I without the pixels that differ
+/// most, and splits by that of all of them: where one rare path is most of the noise so far, V_I is
+/// not known, and a path that goes on as it is costs little either way. S and C are learned in cells (ReflectedRadiance), from
 /// paths that were ended and split by the q before (a fixed point). Costs are counted in rays,
 /// because clocks would change the bits. The paper divides T by the pixel, which makes the
 /// picture's relative error small where this makes the squared error small.
@@ -95,6 +97,7 @@ class EfficiencyRoulette final : public Roulette {
   struct Efficiency {
     double variance = 0;  ///< of one, mean over the pixels
     double spread = 0;    ///< the same as the halves tell: less, where samples are spread
+    double trimmed = 0;   ///< `spread` without the pixels whose halves differ most
     double doubt = 0;     ///< the squared deviation of `spread` over its square
     double rays = 0;
     double expense() const { return spread * rays; }
@@ -109,7 +112,7 @@ class EfficiencyRoulette final : public Roulette {
     double squares = 0;                         // of all samples of this span
     double rays = 0, samples = 0;               // of this span
     Efficiency plain, tried;
-    float for_survival = 0, for_splitting = 0;  // sqrt(C_I / V_I), by `spread` and by `variance`
+    float for_survival = 0, for_splitting = 0;  // sqrt(C_I / V_I), by `trimmed` and by `variance`
   };
   State state_;
   std::size_t pixels_ = 0;

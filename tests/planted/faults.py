@@ -76,6 +76,8 @@ FAULTS = [
     # Roulette and splitting.
     Fault("parts of a path weigh as much as it did", "renderer/path/walk.h",
           "const float share = 1.0F / static_cast<float>(parts);", "const float share = 1.0F;"),
+    Fault("rare paths end all others", "renderer/guides/efficiency_roulette.cpp",
+          "constexpr double trimmed_share = 1.0 / 32;", "constexpr double trimmed_share = 0;"),
     Fault("roulette goes by shadow rays alone", "renderer/guides/path_trees.h",
           "n.rays = 1 + gathered", "n.rays = 0 + gathered"),
     Fault("branches are learned from apart from their paths", "renderer/guides/path_trees.h",

@@ -1,10 +1,13 @@
-// The number of continuations against brute force.
+// The number of continuations: against brute force, and where rare paths are most of the noise.
 
 #include "renderer/guides/efficiency_roulette.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+
+#include "tests/renderer/path/scenes.h"
 
 namespace lacuna {
 namespace {
@@ -57,6 +60,44 @@ TEST(EfficiencyRoulette, AdvisesWhatBruteForceFinds) {
     EXPECT_NEAR(splits.advised(), best, 2e-3) << square;
     EXPECT_GT(best, 1.6) << "the toy tells nothing";
   }
+}
+
+/// What it has learned from eight iterations in which paths went on at one vertex and gathered about
+/// as much as the pixels' deviation, while one pixel met `rare` in the first of each four.
+float continuations_beside(float rare, float throughput) {
+  constexpr int side = 16;
+  const ThreadPool pool(1);
+  const Scene scene(test::load({"cornell"}), {}, {}, pool);
+  const Camera camera(scene.data().cameras.front(), side, side);
+  Vertex v;
+  v.surface.x = V3f((scene.bounds().low + scene.bounds().high) / 2);
+  v.surface.ng = v.wp = V3f(0, 1, 0);
+  EfficiencyRoulette roulette(scene, std::size_t{side} * side);
+  const std::function<bool()> never = [] { return false; };
+  Rng rng(1, 0, 0, Rng::Purpose::test);
+  for (std::uint64_t i = 0; i < 8; ++i) {
+    Image image(side, side);
+    for (Rgb& pixel : image.pixels) pixel = Rgb(rng.next() < 0.5F ? 1.0F : 3.0F);
+    if (i % 4 == 0) image.pixels[77] = Rgb(rare);
+    std::array<EfficiencyRoulette::Accumulator, 1> all;
+    for (int k = 0; k < 1000; ++k) {
+      all[0].push_back({.cell = roulette.key(v, 4), .rays = 4, .value = k % 2 == 0 ? 0 : 1.4});
+    }
+    roulette.update(all, {scene, camera, pool, 1, i, never}, image,
+                    {.samples = image.pixels.size(), .rays = 4 * image.pixels.size()});
+  }
+  return roulette.continuations(v, 4, throughput);
+}
+
+// A pixel that one path has made the whole noise of the picture tells nothing of what the others
+// need: paths go on as without it. Nor are they split for it.
+TEST(EfficiencyRoulette, RarePathsEndNoOthers) {
+  const float usual = continuations_beside(1, 0.7F);
+  EXPECT_LT(usual, 0.95F) << "the test has no power";
+  EXPECT_GT(usual, 0.5F) << "the test has no power";
+  EXPECT_NEAR(continuations_beside(1e4F, 0.7F), usual, 0.1F);
+  EXPECT_GT(continuations_beside(1, 30), 4) << "the test has no power";
+  EXPECT_EQ(continuations_beside(1e4F, 30), 1);
 }
 
 TEST(EfficiencyRoulette, IsBounded) {
