@@ -10,12 +10,16 @@ namespace lacuna {
 namespace {
 
 /// The share of each node's choices that is uniform.
-constexpr double uniform_share = 0x1p-16;
-/// Of one of so many children.
-constexpr std::array uniform_parts = [] {
-  std::array<double, 9> parts{};
-  for (std::size_t n = 1; n < parts.size(); ++n) parts[n] = uniform_share / static_cast<double>(n);
-  return parts;
+constexpr float uniform_share = 0x1p-16F;
+/// What it adds to the sums over the children up to each of so many, of their total.
+constexpr auto uniform_sums = [] {
+  std::array<std::array<float, 8>, 9> sums{};
+  for (std::size_t n = 1; n < sums.size(); ++n) {
+    for (std::size_t i = 0; i < 8; ++i) {
+      sums[n][i] = uniform_share * static_cast<float>(std::min(i + 1, n)) / static_cast<float>(n);
+    }
+  }
+  return sums;
 }();
 /// Weight of an emitter seen from behind, against one seen from its axis.
 constexpr float least_emission = 0x1p-10F;
@@ -23,19 +27,11 @@ constexpr float least_emission = 0x1p-10F;
 /// there varies by a fourth over the bundle.
 constexpr float narrow = 0x1p-3F;
 /// Squared distances below it would overflow the weights.
-constexpr float least_distance2 = 1e-36F;
-
-__m256 widen(const std::array<std::int8_t, 8>& v) {
-  const __m128i bytes = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(v.data()));
-  return _mm256_cvtepi32_ps(_mm256_cvtepi8_epi32(bytes));
-}
-
-/// 1 / sqrt(v) by one step of Newton's method.
-__m256 reciprocal_root(__m256 v) {
-  const __m256 y = _mm256_rsqrt_ps(v);
-  const __m256 half = _mm256_mul_ps(_mm256_mul_ps(_mm256_set1_ps(0.5F), v), _mm256_mul_ps(y, y));
-  return _mm256_mul_ps(y, _mm256_sub_ps(_mm256_set1_ps(1.5F), half));
-}
+constexpr float least_distance2 = 1e-32F;
+/// Sums of weights below it have no room for a uniform share.
+constexpr float least_total = 0x1p-100F;
+/// Of a sine, times 127, whose root is taken.
+constexpr float least_sine2 = 1e-12F;
 
 /// All ones in the lanes whose bit is set.
 __m256 lanes(std::uint8_t bits) {
@@ -65,29 +61,29 @@ float round_down(double v) {
 
 }  // namespace
 
-/// A receiver as the children of a node see it.
+/// A receiver as the children of a node see it, and what they weigh for it.
 struct LightTree::Geometry {
   __m256 inverse;  // of the distance
-  __m256 along;    // the cosine, at most, at the receiver
-  __m256 back;     // the cosine, at most, of the angle to the axis of emission
+  __m256 along;    // the cosine, at most, at the receiver; may be above 1
+  __m256 back;     // the cosine, at most, of the angle to the axis of emission, times 127
+  __m256 weight;   // of each child: see weigh()
 };
 
-/// The weights of a node's children for one receiver, summed.
-struct LightTree::Weights {
-  __m256 sums;
+/// The sums of the weights of a node's children for one receiver, with the uniform share.
+struct LightTree::Sums {
   alignas(32) std::array<float, 16> up_to;  // [7 + i]: the sum of the children before i
   int count;
   unsigned ends;  // a bit for each child that is a bundle and is seen under a small angle
 
-  float before(int i) const { return up_to[static_cast<std::size_t>(7 + i)]; }
-  float total() const { return before(count); }
-  /// The weight of child `i`.
-  double part(int i) const { return double(before(i + 1)) - double(before(i)); }
-  double probability(int i) const {
-    return uniform_parts[static_cast<std::size_t>(count)] +
-           (1 - uniform_share) * (part(i) / double(total()));
-  }
+  __m256 sums() const { return _mm256_load_ps(&up_to[8]); }
+  double before(int i) const { return double(up_to[static_cast<std::size_t>(7 + i)]); }
+  double total() const { return before(count); }
+  /// The weight of child `i`, > 0.
+  double part(int i) const { return before(i + 1) - before(i); }
 };
+
+/// Where a descent is; enter() makes it from a bit.
+enum class LightTree::State : std::uint8_t { at_node, at_entry, at_bundle };
 
 /// The state of one choice. A uniform number is used level by level: what is left of it within the
 /// chosen child's interval is the number of the next level, and is filled up with new bits before
@@ -95,178 +91,211 @@ struct LightTree::Weights {
 struct LightTree::Descent {
   const Receiver* at;
   Rng* rng;
-  double u;                // in [0, 1)
-  double grain = 0x1p-53;  // what `u` is a multiple of
-  double probability = 1;
-  std::uint32_t node = 0;
-  bool done = false;    // `node` is an entry, or a bundle
-  bool bundle = false;  // draw() has still to be called
+  Choice* result;
+  double u;             // in [0, 1)
+  double bits;          // `u` is a multiple of that over `probability`
+  double probability;   // of the way so far
+  double drawn;         // pick(): u times the sum of all weights
+  int child;            // pick(): the next one
+  std::uint32_t where;  // the number of a node or bundle, or a place in entries_
+  State state;
+
+  Descent() = default;
+  Descent(const Receiver& receiver, double uniform, Rng& numbers, Choice& choice)
+      : at(&receiver),
+        rng(&numbers),
+        result(&choice),
+        u(uniform),
+        bits(0x1p-53),
+        probability(1),
+        drawn(0),
+        child(0),
+        where(0),
+        state(State::at_node) {}
+
+  /// Fills `u` up where it is a multiple of more than `coarse`.
+  void refine(double coarse) {
+    if (bits > coarse * probability) [[unlikely]] {
+      u += bits / probability * rng->next_choice();
+      bits *= 0x1p-53;
+    }
+    u = std::min(u, 1 - 0x1p-53);
+  }
 };
 
-[[gnu::always_inline]] inline LightTree::Geometry LightTree::geometry(const Node& node,
+[[gnu::always_inline]] inline LightTree::Geometry LightTree::geometry(const LightNode& node,
                                                                       const Receiver& at) {
-  const auto load = [](const std::array<float, width>& v) { return _mm256_load_ps(v.data()); };
-  const __m256 dx = _mm256_sub_ps(load(node.x), _mm256_set1_ps(at.x.x));
-  const __m256 dy = _mm256_sub_ps(load(node.y), _mm256_set1_ps(at.x.y));
-  const __m256 dz = _mm256_sub_ps(load(node.z), _mm256_set1_ps(at.x.z));
-  const __m256 r = load(node.r);
+  const __m256 dx = node.centres(0, at.x.x);
+  const __m256 dy = node.centres(1, at.x.y);
+  const __m256 dz = node.centres(2, at.x.z);
+  const __m256 r = node.radii();
   const auto dot3 = [&](__m256 x, __m256 y, __m256 z) {
     return _mm256_fmadd_ps(dz, z, _mm256_fmadd_ps(dy, y, _mm256_mul_ps(dx, x)));
   };
   const __m256 distance2 = _mm256_max_ps(_mm256_max_ps(dot3(dx, dy, dz), _mm256_mul_ps(r, r)),
                                          _mm256_set1_ps(least_distance2));
-  const __m256 inverse = reciprocal_root(distance2);
-  // To a point of the sphere, the cosine is at most that of the centre plus r / d.
-  const auto most_cosine = [&](__m256 along) {
-    return _mm256_min_ps(_mm256_mul_ps(_mm256_add_ps(along, r), inverse), _mm256_set1_ps(1));
-  };
+  // To 12 bits: a weight may be any number, if it is the same one everywhere.
+  const __m256 inverse = _mm256_rsqrt_ps(distance2);
   const __m256 sign = _mm256_set1_ps(-0.0F);
   __m256 along = dot3(_mm256_set1_ps(at.n.x), _mm256_set1_ps(at.n.y), _mm256_set1_ps(at.n.z));
   if (at.both_sides) along = _mm256_andnot_ps(sign, along);
-  __m256 back = dot3(widen(node.axis[0]), widen(node.axis[1]), widen(node.axis[2]));
-  back = _mm256_mul_ps(back, _mm256_set1_ps(-1.0F / 127));
-  back = _mm256_andnot_ps(_mm256_and_ps(lanes(node.both_sides), sign), back);
-  return {inverse, most_cosine(along), most_cosine(back)};
+  __m256 back = dot3(LightNode::signed_bytes(node.back[0]), LightNode::signed_bytes(node.back[1]),
+                     LightNode::signed_bytes(node.back[2]));
+  if (node.both_sides != 0) [[unlikely]]
+    back = _mm256_andnot_ps(_mm256_and_ps(lanes(node.both_sides), sign), back);
+  // To a point of the sphere, a cosine is at most that of the centre plus r / d.
+  along = _mm256_mul_ps(_mm256_add_ps(along, r), inverse);
+  back = _mm256_mul_ps(_mm256_fmadd_ps(r, _mm256_set1_ps(127), back), inverse);
+  return {inverse, along, back, _mm256_setzero_ps()};
 }
 
-[[gnu::always_inline]] inline void LightTree::weigh(const Node& node, const Receiver& at,
-                                                    const Geometry& g, Weights& w) {
+[[gnu::always_inline]] inline void LightTree::weigh(const LightNode& node, const Receiver& at,
+                                                    Geometry& g) {
   const __m256 one = _mm256_set1_ps(1);
-  const __m256 received = _mm256_max_ps(g.along, _mm256_set1_ps(at.least_cosine));
-  // Cosines and sines are stored times 127.
-  const __m256 unit = _mm256_set1_ps(1.0F / 127);
-  const __m256 sine2 =
-      _mm256_max_ps(_mm256_fnmadd_ps(g.back, g.back, one), _mm256_set1_ps(least_distance2));
+  const __m256 received =
+      _mm256_max_ps(_mm256_min_ps(g.along, one), _mm256_set1_ps(at.least_cosine));
+  // Cosines and sines are times 127. Within the cone of axes the angle to it is 0.
+  const __m256 cos_spread = LightNode::signed_bytes(node.cos_spread);
+  const __m256 cosine = _mm256_min_ps(g.back, cos_spread);
+  const __m256 sine2 = _mm256_max_ps(_mm256_fnmadd_ps(cosine, cosine, _mm256_set1_ps(127 * 127)),
+                                     _mm256_set1_ps(least_sine2));
   const __m256 sine = _mm256_mul_ps(sine2, _mm256_rsqrt_ps(sine2));
-  const __m256 cos_spread = widen(node.cos_spread);
-  const __m256 beyond =
-      _mm256_fmadd_ps(g.back, cos_spread, _mm256_mul_ps(sine, widen(node.sin_spread)));
-  const __m256 reached = _mm256_cmp_ps(beyond, widen(node.cos_reach), _CMP_GE_OQ);
-  __m256 emitted = _mm256_max_ps(_mm256_mul_ps(_mm256_and_ps(beyond, reached), unit),
-                                 _mm256_set1_ps(least_emission));
-  const __m256 within =
-      _mm256_cmp_ps(_mm256_mul_ps(g.back, _mm256_set1_ps(127)), cos_spread, _CMP_GE_OQ);
-  emitted = _mm256_blendv_ps(emitted, one, within);
-  const __m256 intensity = _mm256_load_ps(node.intensity.data());
-  const __m256 weight =
-      _mm256_mul_ps(_mm256_mul_ps(emitted, received),
-                    _mm256_mul_ps(intensity, _mm256_mul_ps(g.inverse, g.inverse)));
-  w.count = node.count;
-  w.sums = sums_up_to(weight);
-  w.ends = node.bundles;
-  if (w.ends != 0) {
-    const __m256 angle = _mm256_mul_ps(_mm256_load_ps(node.r.data()), g.inverse);
-    w.ends &= static_cast<unsigned>(
+  __m256 beyond = _mm256_fmadd_ps(cosine, cos_spread,
+                                  _mm256_mul_ps(sine, LightNode::signed_bytes(node.sin_spread)));
+  if (node.spots) [[unlikely]] {
+    const __m256 reach =
+        _mm256_mul_ps(LightNode::signed_bytes(node.cos_reach), _mm256_set1_ps(127));
+    beyond = _mm256_and_ps(beyond, _mm256_cmp_ps(beyond, reach, _CMP_GE_OQ));
+  }
+  const __m256 emitted = _mm256_max_ps(beyond, _mm256_set1_ps(127 * 127 * least_emission));
+  g.weight = _mm256_mul_ps(_mm256_mul_ps(emitted, received),
+                           _mm256_mul_ps(node.intensities(), _mm256_mul_ps(g.inverse, g.inverse)));
+}
+
+[[gnu::always_inline]] inline void LightTree::add_up(const LightNode& node, const Geometry& g,
+                                                     Sums& s) {
+  s.count = node.count;
+  s.ends = node.bundles;
+  if (s.ends != 0) {
+    const __m256 angle = _mm256_mul_ps(node.radii(), g.inverse);
+    s.ends &= static_cast<unsigned>(
         _mm256_movemask_ps(_mm256_cmp_ps(angle, _mm256_set1_ps(narrow), _CMP_LE_OQ)));
   }
-  w.up_to[7] = 0;
-  _mm256_store_ps(&w.up_to[8], w.sums);
-  if (!(w.total() > 0)) [[unlikely]] {  // too far away for floats
-    w.sums = sums_up_to(intensity);
-    _mm256_store_ps(&w.up_to[8], w.sums);
+  __m256 sums = sums_up_to(g.weight);
+  const auto total = [&] {
+    return _mm256_permutevar8x32_ps(sums, _mm256_set1_epi32(node.count - 1));
+  };
+  __m256 all = total();
+  if (!(_mm256_cvtss_f32(all) >= least_total)) [[unlikely]] {  // too far away for floats
+    sums = sums_up_to(node.intensities());
+    all = total();
   }
+  s.up_to[7] = 0;
+  _mm256_store_ps(&s.up_to[8],
+                  _mm256_fmadd_ps(all, _mm256_loadu_ps(uniform_sums[node.count].data()), sums));
 }
 
-[[gnu::always_inline]] inline void LightTree::descend(const Weights& w, Descent& d) const {
-  const Node& node = nodes_[d.node];
-  int i = 0;
-  if (d.u < uniform_share) [[unlikely]] {
-    const double at = d.u * (w.count / uniform_share);
-    i = std::min(static_cast<int>(at), w.count - 1);
-    d.u = at - i;
-    d.grain *= w.count / uniform_share;
+[[gnu::always_inline]] inline void LightTree::sum_up(const LightNode& node, const Receiver& at,
+                                                     Sums& s) {
+  Geometry g = geometry(node, at);
+  weigh(node, at, g);
+  add_up(node, g, s);
+}
+
+/// Selects a child.
+[[gnu::always_inline]] inline void LightTree::pick(const Sums& s, Descent& d) {
+  d.drawn = d.u * s.total();  // below it, whatever the rounding: floats have 24 bits
+  const __m256 passed = _mm256_cmp_ps(s.sums(), _mm256_set1_ps(round_down(d.drawn)), _CMP_LE_OQ);
+  d.child = std::popcount(static_cast<unsigned>(_mm256_movemask_ps(passed)));
+}
+
+/// Goes on to the child that is picked.
+[[gnu::always_inline]] inline void LightTree::enter(const Sums& s, Descent& d) const {
+  const LightNode& node = nodes_[d.where];
+  const int i = d.child;
+  const double part = s.part(i);
+  d.u = (d.drawn - s.before(i)) / part;
+  d.probability *= part / s.total();
+  // Without a branch: where a way ends is not foreseeable.
+  const std::uint32_t place = d.where * width + static_cast<std::uint32_t>(i);
+  const std::uint32_t is_node = 0U - (node.nodes >> i & 1U);
+  const std::uint32_t next = (node.node(i) & is_node) | (d.where & ~is_node);
+  d.where = (next & is_node) | (place & ~is_node);
+  d.state = static_cast<State>(is_node + 1);
+  // The node that is read next, and its entries, of which one may be; at an entry both are there.
+  const auto* lines = reinterpret_cast<const char*>(nodes_.data() + next);
+  for (std::size_t k = 0; k < sizeof(LightNode); k += 64) _mm_prefetch(lines + k, _MM_HINT_T0);
+  _mm_prefetch(entries_.data() + std::size_t{next} * width, _MM_HINT_T0);
+  if ((s.ends >> i & 1) != 0) {
+    d.state = State::at_bundle;
+    _mm_prefetch(&bundle_of_[d.where], _MM_HINT_T0);
+  }
+  d.refine(0x1p-25);
+}
+
+/// Ends a descent at an entry, of a bundle by intensity.
+void LightTree::end(Descent& d) const {
+  if (d.state == State::at_bundle) {
+    const Bundle& bundle = bundles_[bundle_of_[d.where]];
+    d.refine(0x1p-44);  // tables have bins, and parts of bins down to 2^-32
+    const AliasTable::Draw drawn = bundle.by_intensity.sample(d.u);
+    d.probability *= double(drawn.pmf.value);
+    d.u = std::min(d.u, 1 - 0x1p-53);
+    *d.result = {bundle.entries[drawn.index], d.probability, d.u};
   } else {
-    const double scale = double(w.total()) * (1 / (1 - uniform_share));
-    // Below the total, whatever the rounding.
-    const double at = std::min((d.u - uniform_share) * scale, double(w.total()) * (1 - 0x1p-53));
-    const __m256 passed = _mm256_cmp_ps(w.sums, _mm256_set1_ps(round_down(at)), _CMP_LE_OQ);
-    i = std::popcount(static_cast<unsigned>(_mm256_movemask_ps(passed)));
-    const double per_part = 1 / w.part(i);
-    d.u = (at - double(w.before(i))) * per_part;
-    d.grain *= scale * per_part;
+    *d.result = {entries_[d.where], d.probability, d.u};
   }
-  d.probability *= w.probability(i);
-  d.node = node.child[static_cast<std::size_t>(i)];
-  d.done = (node.leaves >> i & 1) != 0;
-  if (d.done) {
-    d.u = std::clamp(d.u, 0.0, 1 - 0x1p-53);
-    return;
-  }
-  if ((w.ends >> i & 1) != 0) {
-    d.done = d.bundle = true;
-    __builtin_prefetch(&bundle_of_[d.node]);
-    return;
-  }
-  const auto* next = reinterpret_cast<const char*>(&nodes_[d.node]);
-  for (std::size_t k = 0; k < sizeof(Node); k += 64) _mm_prefetch(next + k, _MM_HINT_T0);
-  if (d.grain > 0x1p-25) [[unlikely]] {
-    d.u += d.grain * d.rng->next_choice();
-    d.grain *= 0x1p-53;
-  }
-  d.u = std::min(d.u, 1 - 0x1p-53);
-}
-
-/// Ends a descent at a bundle.
-void LightTree::draw(Descent& d) const {
-  if (!d.bundle) return;
-  const Bundle& bundle = bundles_[bundle_of_[d.node]];
-  constexpr double coarse = 0x1p-44;  // tables have bins, and parts of bins down to 2^-32
-  if (d.grain > coarse) [[unlikely]]
-    d.u += d.grain * d.rng->next_choice();
-  d.u = std::clamp(d.u, 0.0, 1 - 0x1p-53);
-  const AliasTable::Draw drawn = bundle.by_intensity.sample(d.u);
-  d.probability *= double(drawn.pmf.value);
-  d.node = bundle.entries[drawn.index];
-  d.u = std::min(d.u, 1 - 0x1p-53);
 }
 
 LightTree::Choice LightTree::choose(const Receiver& at, double u, Rng& rng) const {
-  Descent d{&at, &rng, u};
-  while (!d.done) {
-    Weights w;
-    weigh(nodes_[d.node], at, geometry(nodes_[d.node], at), w);
-    descend(w, d);
+  Choice result;
+  Descent d(at, u, rng, result);
+  while (d.state == State::at_node) {
+    const LightNode& node = nodes_[d.where];
+    Sums s;
+    sum_up(node, at, s);
+    pick(s, d);
+    enter(s, d);
   }
-  draw(d);
-  return {d.node, d.probability, d.u};
+  end(d);
+  return result;
 }
 
 void LightTree::choose(std::span<Request> requests) const {
-  // A level in three loops: each is short enough for the processor to work on several descents at
-  // once.
+  // A level in five loops: each is short enough for the processor to work on several descents at
+  // once. A descent that ends gives its place to the next request, so that the loops keep their
+  // length.
   constexpr std::size_t together = 16;
   std::array<Descent, together> descents;
   std::array<Geometry, together> geometries;
-  std::array<Weights, together> weights;
-  std::array<std::size_t, together> going{};
-  for (std::size_t first = 0; first < requests.size(); first += together) {
-    std::size_t n = std::min(together, requests.size() - first);
-    const auto all = n;
+  std::array<Sums, together> sums;
+  std::array<std::size_t, together> ended;
+  std::size_t n = std::min(together, requests.size());
+  std::size_t next = n;
+  const auto start = [](Request& r) { return Descent(r.at, r.u, *r.rng, r.result); };
+  for (std::size_t k = 0; k < n; ++k) descents[k] = start(requests[k]);
+  while (n > 0) {
     for (std::size_t k = 0; k < n; ++k) {
-      Request& r = requests[first + k];
-      descents[k] = {&r.at, r.rng, r.u};
-      going[k] = k;
+      geometries[k] = geometry(nodes_[descents[k].where], *descents[k].at);
     }
-    while (n > 0) {
-      for (std::size_t k = 0; k < n; ++k) {
-        const Descent& d = descents[going[k]];
-        geometries[k] = geometry(nodes_[d.node], *d.at);
-      }
-      for (std::size_t k = 0; k < n; ++k) {
-        const Descent& d = descents[going[k]];
-        weigh(nodes_[d.node], *d.at, geometries[k], weights[k]);
-      }
-      std::size_t left = 0;
-      for (std::size_t k = 0; k < n; ++k) {
-        descend(weights[k], descents[going[k]]);
-        going[left] = going[k];
-        left += descents[going[k]].done ? 0 : 1;
-      }
-      n = left;
+    for (std::size_t k = 0; k < n; ++k) {
+      weigh(nodes_[descents[k].where], *descents[k].at, geometries[k]);
     }
-    for (std::size_t k = 0; k < all; ++k) {
-      draw(descents[k]);
-      requests[first + k].result = {descents[k].node, descents[k].probability, descents[k].u};
+    for (std::size_t k = 0; k < n; ++k) {
+      add_up(nodes_[descents[k].where], geometries[k], sums[k]);
+    }
+    for (std::size_t k = 0; k < n; ++k) pick(sums[k], descents[k]);
+    std::size_t m = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      enter(sums[k], descents[k]);
+      ended[m] = k;
+      m += descents[k].state == State::at_node ? 0 : 1;
+    }
+    // From the last on: what fills a gap has not ended.
+    while (m-- > 0) {
+      Descent& d = descents[ended[m]];
+      end(d);
+      d = next < requests.size() ? start(requests[next++]) : descents[--n];
     }
   }
 }
@@ -278,20 +307,20 @@ double LightTree::probability(std::uint32_t entry, const Receiver& at) const {
   std::array<std::uint32_t, most> way;
   int n = 0;
   for (std::uint32_t place = places_[entry]; place != none; place = parents_[place / width]) {
-    const auto* node = reinterpret_cast<const char*>(&nodes_[place / width]);
-    for (std::size_t k = 0; k < sizeof(Node); k += 64) _mm_prefetch(node + k, _MM_HINT_T0);
+    const auto* lines = reinterpret_cast<const char*>(&nodes_[place / width]);
+    for (std::size_t k = 0; k < sizeof(LightNode); k += 64) _mm_prefetch(lines + k, _MM_HINT_T0);
     way[static_cast<std::size_t>(n++)] = place;
   }
   double p = 1;
   while (n-- > 0) {
     const std::uint32_t place = way[static_cast<std::size_t>(n)];
-    const Node& node = nodes_[place / width];
-    Weights w;
-    weigh(node, at, geometry(node, at), w);
+    const LightNode& node = nodes_[place / width];
+    Sums s;
+    sum_up(node, at, s);
     const auto child = static_cast<int>(place % width);
-    p *= w.probability(child);
-    if ((w.ends >> child & 1) != 0) {
-      const Bundle& bundle = bundles_[bundle_of_[node.child[place % width]]];
+    p *= s.part(child) / s.total();
+    if ((s.ends >> child & 1) != 0) {
+      const Bundle& bundle = bundles_[bundle_of_[node.node(child)]];
       return p * double(bundle.by_intensity.pmf(member_of_[entry]).value);
     }
   }

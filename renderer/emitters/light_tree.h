@@ -9,6 +9,7 @@
 #include "renderer/core/huge_pages.h"
 #include "renderer/core/rng.h"
 #include "renderer/emitters/emitter_bounds.h"
+#include "renderer/emitters/light_node.h"
 #include "renderer/emitters/receiver.h"
 
 namespace lacuna {
@@ -60,29 +61,15 @@ class LightTree {
   double probability(std::uint32_t entry, const Receiver& at) const;
 
   std::uint64_t bytes() const {
-    return nodes_.size() * (sizeof(Node) + 8) + places_.size() * 8 + bundled_ * bytes_bundled;
+    return nodes_.size() * bytes_node + places_.size() * 8 + bundled_ * bytes_bundled;
   }
 
  private:
   friend class LightTreeBuilder;
-  static constexpr int width = 8;
+  static constexpr int width = LightNode::width;
   static constexpr std::uint32_t none = ~0U;
+  static constexpr std::uint64_t bytes_node = sizeof(LightNode) + 4 * width + 8;
   static constexpr std::uint64_t bytes_bundled = AliasTable::bytes_each + 4;
-
-  /// Eight children: what their weights are computed from, and where they are.
-  struct alignas(64) Node {
-    std::array<float, width> x{}, y{}, z{};    // centre of the child's box
-    std::array<float, width> r{};              // half its diagonal
-    std::array<float, width> intensity{};      // over the largest of the node; 0: no child
-    std::array<std::uint32_t, width> child{};  // a node, or an entry
-    std::array<std::array<std::int8_t, width>, 3> axis{};                    // times 127
-    std::array<std::int8_t, width> cos_spread{}, sin_spread{}, cos_reach{};  // times 127
-    std::uint8_t leaves = 0;      // a bit for each child that is an entry
-    std::uint8_t both_sides = 0;  // a bit for each child that emits along its axes and against them
-    std::uint8_t count = 0;
-    std::uint8_t bundles = 0;  // a bit for each child that is a node and a bundle
-  };
-  static_assert(sizeof(Node) == 256);
 
   struct Bundle {
     AliasTable by_intensity;  // of `entries`, in their order
@@ -90,14 +77,19 @@ class LightTree {
   };
 
   struct Geometry;
-  struct Weights;
+  struct Sums;
+  enum class State : std::uint8_t;
   struct Descent;
-  static Geometry geometry(const Node& node, const Receiver& at);
-  static void weigh(const Node& node, const Receiver& at, const Geometry& g, Weights& w);
-  void descend(const Weights& w, Descent& d) const;
-  void draw(Descent& d) const;
+  static Geometry geometry(const LightNode& node, const Receiver& at);
+  static void weigh(const LightNode& node, const Receiver& at, Geometry& g);
+  static void add_up(const LightNode& node, const Geometry& g, Sums& s);
+  static void sum_up(const LightNode& node, const Receiver& at, Sums& s);
+  static void pick(const Sums& s, Descent& d);
+  void enter(const Sums& s, Descent& d) const;
+  void end(Descent& d) const;
 
-  HugeVector<Node> nodes_;              // 0: the root
+  HugeVector<LightNode> nodes_;         // 0: the root
+  HugeVector<std::uint32_t> entries_;   // of each node's children, where they are none themselves
   std::vector<std::uint32_t> parents_;  // of each node: 8 times the parent, plus the child's place
   std::vector<std::uint32_t> places_;   // of each entry: 8 times its node, plus its place; or none
   std::vector<Bundle> bundles_;

@@ -11,8 +11,6 @@ namespace lacuna {
 
 namespace {
 
-/// Rounding errors of positions, relative to the largest coordinate.
-constexpr double few_roundings = 0x1p-20;
 /// Levels of nodes that are split by cost; below them, groups are halved.
 constexpr int levels_by_cost = 24;
 constexpr int bins = 16;
@@ -20,10 +18,6 @@ constexpr int bins = 16;
 constexpr std::size_t many = 4096;
 /// Groups of up to that many are split where their nodes get full.
 constexpr std::size_t few = 512;
-/// Half of what a number in 8 bits may differ by; less, so that those of a single axis stay.
-constexpr double half_step = 0.499 / 127;
-/// Cosine by which a reach is widened, because axes and angles are rounded to 8 bits.
-constexpr double reach_margin = 0.02;
 /// A bundle's axes are within that angle, and its radius is at most that share of the scene's.
 constexpr double bundle_spread = std::numbers::pi / 3, bundle_size = 1.0 / 32;
 
@@ -113,7 +107,7 @@ class LightTreeBuilder {
     tree_.places_.assign(entries, LightTree::none);
     if (items_.empty()) return;
     tree_.member_of_.assign(entries, 0);
-    build({0, items_.size(), group_of(0, items_.size())}, LightTree::none, 0, false);
+    build({0, items_.size(), group_of(0, items_.size())}, add_nodes(1), 0, false);
   }
 
  private:
@@ -123,15 +117,26 @@ class LightTreeBuilder {
     return g;
   }
 
-  /// Makes the node of a group and all below it; gives its bounds. `place` as LightTree::parents_.
-  /// `bundled`: it is in a bundle.
-  EmitterBounds build(const Part& all, std::uint32_t place, int depth, bool bundled) {
-    const auto index = static_cast<std::uint32_t>(tree_.nodes_.size());
-    tree_.nodes_.emplace_back();
-    tree_.parents_.push_back(place);
-    tree_.bundle_of_.push_back(LightTree::none);
+  /// Adds `n` nodes, of which the first gets this number; children of one node lie side by side.
+  std::uint32_t add_nodes(std::size_t n) {
+    const std::size_t size = tree_.nodes_.size() + n;
+    tree_.nodes_.resize(size);
+    tree_.parents_.resize(size, LightTree::none);
+    tree_.bundle_of_.resize(size, LightTree::none);
+    tree_.entries_.resize(size * LightTree::width, LightTree::none);
+    return static_cast<std::uint32_t>(size - n);
+  }
+
+  /// Makes the node `index` of a group and all below it; gives its bounds. `bundled`: it is in a
+  /// bundle.
+  EmitterBounds build(const Part& all, std::uint32_t index, int depth, bool bundled) {
     const std::vector<Part> parts = children_of(all, depth);
     std::array<EmitterBounds, LightTree::width> children;
+    std::uint8_t nodes = 0, bundles = 0;
+    const auto inner = std::count_if(parts.begin(), parts.end(),
+                                     [](const Part& part) { return part.count() > 1; });
+    const std::uint32_t first = add_nodes(static_cast<std::size_t>(inner));
+    std::uint32_t child = first;
     for (std::size_t k = 0; k < parts.size(); ++k) {
       const Part& part = parts[k];
       const auto own = static_cast<std::uint32_t>(index * LightTree::width + k);
@@ -139,20 +144,25 @@ class LightTreeBuilder {
         const TreeEmitter& e = emitters_[items_[part.begin].emitter];
         children[k] = e.bounds;
         tree_.places_[e.entry] = own;
-        set_child(index, k, e.entry, true);
-      } else {
-        const auto child = static_cast<std::uint32_t>(tree_.nodes_.size());
-        set_child(index, k, child, false);
-        const bool bundle = !bundled && is_bundle(part);
-        if (bundle) {
-          LightTree::Node& n = tree_.nodes_[index];
-          n.bundles = static_cast<std::uint8_t>(n.bundles | 1U << k);
-        }
-        children[k] = build(part, own, depth + 1, bundled || bundle);
-        if (bundle) add_bundle(child, part);
+        tree_.entries_[own] = e.entry;
+        continue;
       }
+      const bool bundle = !bundled && is_bundle(part);
+      nodes = static_cast<std::uint8_t>(nodes | 1U << k);
+      if (bundle) bundles = static_cast<std::uint8_t>(bundles | 1U << k);
+      tree_.parents_[child] = own;
+      children[k] = build(part, child, depth + 1, bundled || bundle);
+      if (bundle) add_bundle(child, part);
+      ++child;
     }
-    return describe(tree_.nodes_[index], std::span(children).first(parts.size()));
+    const auto bounds = std::span(children).first(parts.size());
+    LightNode& node = tree_.nodes_[index] = LightNode(bounds);
+    node.first = first;
+    node.nodes = nodes;
+    node.bundles = bundles;
+    EmitterBounds joined = bounds[0];
+    for (const EmitterBounds& b : bounds.subspan(1)) joined = EmitterBounds::join(joined, b);
+    return joined;
   }
 
   /// Small beside the scene, and of surfaces that face one way.
@@ -181,12 +191,6 @@ class LightTreeBuilder {
     tree_.bundle_of_[node] = static_cast<std::uint32_t>(tree_.bundles_.size());
     tree_.bundled_ += part.count();
     tree_.bundles_.push_back(std::move(bundle));
-  }
-
-  void set_child(std::uint32_t node, std::size_t k, std::uint32_t child, bool leaf) {
-    LightTree::Node& n = tree_.nodes_[node];
-    n.child[k] = child;
-    if (leaf) n.leaves = static_cast<std::uint8_t>(n.leaves | 1U << k);
   }
 
   std::vector<Part> children_of(const Part& all, int depth) {
@@ -326,42 +330,6 @@ class LightTreeBuilder {
       });
     }
     return {{p.begin, middle, group_of(p.begin, middle)}, {middle, p.end, group_of(middle, p.end)}};
-  }
-
-  /// Writes the bounds of a node's children; gives the bounds of all.
-  static EmitterBounds describe(LightTree::Node& node, std::span<const EmitterBounds> children) {
-    double most = 0;
-    for (const EmitterBounds& c : children) most = std::max(most, c.intensity);
-    node.count = static_cast<std::uint8_t>(children.size());
-    EmitterBounds all = children[0];
-    for (std::size_t k = 0; k < children.size(); ++k) {
-      const EmitterBounds& c = children[k];
-      if (k > 0) all = EmitterBounds::join(all, c);
-      const V3d centre = (c.box.low + c.box.high) / 2;
-      double largest = 0;
-      for (int a = 0; a < 3; ++a) {
-        largest = std::max({largest, std::abs(c.box.low[a]), std::abs(c.box.high[a])});
-      }
-      node.x[k] = static_cast<float>(centre.x);
-      node.y[k] = static_cast<float>(centre.y);
-      node.z[k] = static_cast<float>(centre.z);
-      node.r[k] = static_cast<float>(c.box.radius() + largest * few_roundings);
-      node.intensity[k] = std::max(static_cast<float>(c.intensity / most), 0x1p-100F);
-      for (std::size_t a = 0; a < 3; ++a) {
-        node.axis[a][k] = eight_bits(c.axes.axis[static_cast<int>(a)]);
-      }
-      // Rounded to a wider cone.
-      node.cos_spread[k] = eight_bits(std::cos(c.axes.spread) - half_step);
-      node.sin_spread[k] = eight_bits(std::sin(c.axes.spread) + half_step);
-      node.cos_reach[k] = eight_bits(std::cos(c.reach) - reach_margin);
-      if (c.both_sides) node.both_sides = static_cast<std::uint8_t>(node.both_sides | 1U << k);
-    }
-    return all;
-  }
-
-  /// A number in [-1, 1], times 127.
-  static std::int8_t eight_bits(double v) {
-    return static_cast<std::int8_t>(std::lround(127 * std::clamp(v, -1.0, 1.0)));
   }
 
   const std::vector<TreeEmitter>& emitters_;

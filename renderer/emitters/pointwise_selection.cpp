@@ -51,7 +51,7 @@ PointwiseSelection::Choice PointwiseSelection::choose(const Receiver& receiver,
 }
 
 void PointwiseSelection::choose(std::span<Request> requests) const {
-  constexpr std::size_t together = 16;
+  constexpr std::size_t together = 64;
   std::array<LightTree::Request, together> descents;
   std::array<Request*, together> asked{};
   std::array<Rng::FinePoint, together> numbers;

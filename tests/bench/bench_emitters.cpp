@@ -44,7 +44,7 @@ std::vector<TreeEmitter> lamps(std::uint32_t n) {
 template <class Body>
 double nanoseconds(std::size_t n, Body&& body) {
   double best = 1e30;
-  for (int round = 0; round < 5; ++round) {
+  for (int round = 0; round < 20; ++round) {
     const double begin = cpu_seconds();
     body();
     best = std::min(best, (cpu_seconds() - begin) * 1e9 / static_cast<double>(n));

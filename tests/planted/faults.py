@@ -53,9 +53,9 @@ FAULTS = [
           "const std::uint64_t before = drawn[b] + std::uint64_t(i);", "const std::uint64_t before = std::uint64_t(i);"),
     # The light tree.
     Fault("a descent states the weight of the child beside", "renderer/emitters/light_tree.cpp",
-          "d.probability *= w.probability(i);", "d.probability *= w.probability(i > 0 ? i - 1 : i);"),
+          "d.probability *= part / s.total();", "d.probability *= s.part(i > 0 ? i - 1 : i) / s.total();"),
     Fault("emitters behind a surface have probability 0", "renderer/emitters/light_tree.cpp",
-          "constexpr double uniform_share = 0x1p-16;", "constexpr double uniform_share = 0;"),
+          "constexpr float uniform_share = 0x1p-16F;", "constexpr float uniform_share = 0;"),
     Fault("light from infinity is selected by power alone", "renderer/emitters/pointwise_selection.cpp",
           "std::clamp(sum / power, 0.125, 0.875)", "std::clamp(sum / power, 0.0, 1.0)"),
     Fault("next event estimation divides by the density of light paths", "renderer/path/endpoints.h",

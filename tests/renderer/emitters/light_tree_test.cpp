@@ -223,7 +223,35 @@ TEST(LightTree, TheRestIsUniform) {
   EXPECT_GT(statistics::z_test(square, 1.0 / 3), 1e-5);
 }
 
-// Emitters in one place differ by their power only.
+// At an emitter, and as far away as floats reach: neither weights nor the uniform share get lost.
+TEST(LightTree, NoProbabilityIsZeroAtAnyDistance) {
+  std::vector<TreeEmitter> emitters;
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    TreeEmitter e;
+    e.entry = i;
+    e.bounds.box.add(V3f(i == 0 ? 0 : static_cast<float>(i) * 0.01F, 0, 0));
+    e.bounds.axes = {V3d(0, 0, 1), 0};
+    e.bounds.reach = std::numbers::pi / 2;
+    e.bounds.intensity = std::pow(10.0, -12 + 24 * double(i) / 100);
+    emitters.push_back(e);
+  }
+  const LightTree tree(emitters);
+  for (const float x : {0.0F, 1e-30F, 1e-18F, 1e-16F, 1e-12F, 1.0F, 1e9F, 1e12F, 1e15F, 1e16F,
+                        1e17F, 1e18F, 1e19F, 1.8e19F, 1e20F, 1e30F, 1e37F}) {
+    for (const V3f& at : {V3f(x, 0, 0), V3f(0, 0, -x)}) {
+      double sum = 0;
+      for (const TreeEmitter& e : emitters) {
+        const double p = tree.probability(e.entry, {at, V3f(0, 0, 1), false, 1e-3F});
+        ASSERT_GT(p, 0) << x << ' ' << e.entry;
+        sum += p;
+      }
+      ASSERT_NEAR(sum, 1, 1e-6) << x;
+    }
+  }
+}
+
+// Emitters in one place differ by their power only: to the rounding of a node's intensities, 2^-10,
+// of four levels.
 TEST(LightTree, EqualPositionsAreChosenByPower) {
   constexpr int n = 1000;
   std::vector<TreeEmitter> emitters;
@@ -240,7 +268,7 @@ TEST(LightTree, EqualPositionsAreChosenByPower) {
   const LightTree tree(emitters);
   for (const V3f& x : {V3f(1, 2, 3), V3f(0, 0, 0), V3f(1e18F, 0, 0)}) {
     for (const TreeEmitter& e : emitters) {
-      ASSERT_NEAR(tree.probability(e.entry, {x}) / (e.bounds.intensity / sum), 1, 1e-3);
+      ASSERT_NEAR(tree.probability(e.entry, {x}) / (e.bounds.intensity / sum), 1, 4 * 0x1p-10);
     }
   }
 }
