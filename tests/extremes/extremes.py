@@ -74,6 +74,9 @@ CHECKS = {"methods": methods, "resolutions": resolutions, "pebbles": pebbles}
 
 
 def main():
+    if {"-h", "--help"} & set(sys.argv):
+        print(f"usage: ./dev extremes [CHECK ...]\n\nchecks, all without a name: {', '.join(CHECKS)}")
+        return 0
     wanted = sys.argv[1:] or CHECKS
     if unknown := [c for c in wanted if c not in CHECKS]:
         print(f"extremes: there is no {unknown[0]}; there are {', '.join(CHECKS)}", file=sys.stderr)
