@@ -91,6 +91,8 @@ class FaceDirections final : public GuidingDistribution {
   }
 
   bool idle() const override { return tuning_.idle(); }
+  std::optional<std::uint64_t> due_pilot() const override { return tuning_.due_pilot(); }
+  void begin_pilot() override { tuning_.begin_pilot(); }
   bool learns() const override { return Faces::learns || tuning_.learns(); }
   std::unique_ptr<Accumulator> accumulator() const override {
     return std::make_unique<FaceAccumulator>();
@@ -123,8 +125,8 @@ class FaceDirections final : public GuidingDistribution {
   void record_noise(double variance, Accumulator& accumulator) const override {
     static_cast<FaceAccumulator&>(accumulator).tuning.noise.add(variance);
   }
-  void update(std::span<const std::unique_ptr<Accumulator>> accumulators,
-              const ThreadPool& pool) override {
+  void update(std::span<const std::unique_ptr<Accumulator>> accumulators, const ThreadPool& pool,
+              double iterations) override {
     std::vector<const typename Faces::Accumulator*> of_faces;
     std::vector<const Tuning::Accumulator*> of_tuning;
     for (const auto& t : accumulators) {
@@ -133,7 +135,7 @@ class FaceDirections final : public GuidingDistribution {
     }
     faces_.update(of_faces, pool);
     if (!tuning_.learns()) return;
-    tuning_.update(of_tuning);
+    tuning_.update(of_tuning, iterations);
     tuning_.stop_if_useless();
   }
 

@@ -64,7 +64,15 @@ class GuidingDistribution {
   virtual void accumulate(const GuidingSample&, Accumulator&) const {}
   /// An estimate of the variance of one sample of a pixel, of squared luminance.
   virtual void record_noise(double, Accumulator&) const {}
-  virtual void update(std::span<const std::unique_ptr<Accumulator>>, const ThreadPool&) {}
+  /// `iterations`: as many as the accumulators hold, below 1 of a pilot.
+  virtual void update(std::span<const std::unique_ptr<Accumulator>>, const ThreadPool&,
+                      double /*iterations*/) {}
+
+  /// The number of the pilot that is due before the coming iteration; none: no pilot is. A pilot
+  /// renders a small part of the picture with random numbers of its own, only to be learned from.
+  virtual std::optional<std::uint64_t> due_pilot() const { return std::nullopt; }
+  /// What is sampled until update() is that pilot.
+  virtual void begin_pilot() {}
 };
 
 }  // namespace lacuna

@@ -20,8 +20,8 @@ void LearnedCells::accumulate(std::uint32_t cell, const V3f& w, float energy, Pd
   }
 }
 
-bool LearnedCells::update(std::span<const Accumulator* const> accumulators,
-                          const ThreadPool& pool) {
+bool LearnedCells::update(std::span<const Accumulator* const> accumulators, const ThreadPool& pool,
+                          double iterations) {
   // By cell, each in the order of the accumulators: cells can then be filled in parallel.
   std::vector<std::size_t> first(cells_.size() + 1, 0);
   for (const Accumulator* a : accumulators) {
@@ -40,7 +40,7 @@ bool LearnedCells::update(std::span<const Accumulator* const> accumulators,
       cells_[c].building.add(sorted[k]->w, double(sorted[k]->energy), true);
     }
   });
-  return ++done_ == std::uint64_t{1} << round_;
+  return rounds_.add(iterations);
 }
 
 void LearnedCells::divide(std::size_t cell) {
@@ -58,13 +58,11 @@ void LearnedCells::next_round(const ThreadPool& pool) {
     cell.building = cell.sampling.refined(leaf_share, deepest_directions);
     cell.vertices = 0;
   });
-  ++round_;
-  done_ = 0;
+  rounds_.next();
 }
 
 void LearnedCells::save(ByteWriter& out) const {
-  out.put(round_);
-  out.put(done_);
+  rounds_.save(out);
   out.put(static_cast<std::uint64_t>(cells_.size()));
   for (const Cell& c : cells_) {
     c.sampling.save(out);
@@ -74,18 +72,15 @@ void LearnedCells::save(ByteWriter& out) const {
 }
 
 void LearnedCells::load(ByteReader& in) {
-  const auto round = in.get<std::uint64_t>(), done = in.get<std::uint64_t>();
+  LearningRounds rounds;
+  rounds.load(in);
   std::vector<Cell> cells(in.get_length(sizeof(std::uint64_t)));
   for (Cell& c : cells) {
     c.sampling.load(in);
     c.building.load(in);
     c.vertices = in.get<double>();
   }
-  if (!(round < 63 && done < std::uint64_t{1} << round)) {
-    throw std::runtime_error("saved guide is not valid");
-  }
-  round_ = round;
-  done_ = done;
+  rounds_ = rounds;
   cells_ = std::move(cells);
 }
 

@@ -4,11 +4,12 @@
 
 #include "renderer/guides/direction_tree.h"
 #include "renderer/guides/guiding_distribution.h"
+#include "renderer/guides/learning_rounds.h"
 
 namespace lacuna {
 
 /// The light that paths found at the vertices of each cell of a guide, as quadtrees of directions
-/// (Mueller, Gross and Novak 2017). It is learned in rounds of 1, 2, 4, ... iterations: a round
+/// (Mueller, Gross and Novak 2017). It is learned in LearningRounds: a round
 /// samples the directions of the round before, and builds those of the next one.
 class LearnedCells {
  public:
@@ -22,13 +23,11 @@ class LearnedCells {
   const DirectionTree& tree(std::size_t cell) const { return cells_[cell].sampling; }
   /// Vertices of paths in this round.
   double vertices(std::size_t cell) const { return cells_[cell].vertices; }
-  /// Vertices above which a cell is divided at the end of this round, where `first` are in the
-  /// first: the paper's c sqrt(2^k) grows with the number of samples.
-  double most_vertices(int first) const {
-    return double(first) * std::sqrt(std::ldexp(1.0, static_cast<int>(round_)));
-  }
+  /// Vertices above which a cell is divided at the end of this round, where `first` are of a round
+  /// of one iteration: the paper's c sqrt(2^k) grows with the number of samples.
+  double most_vertices(int first) const { return double(first) * std::sqrt(rounds_.length()); }
   /// Rounds that have ended.
-  std::uint64_t rounds() const { return round_; }
+  std::uint64_t rounds() const { return rounds_.ended(); }
 
   /// The light that arrived at a vertex.
   struct EnergySample {
@@ -47,9 +46,10 @@ class LearnedCells {
   /// with density `p`.
   static void accumulate(std::uint32_t cell, const V3f& w, float energy, Pdf<SolidAngle> p,
                          Accumulator& accumulator);
-  /// Adds the samples of an iteration, in the order of its parts. True: a round has ended. Cells
+  /// Adds the samples of `iterations`, in the order of their parts. True: a round has ended. Cells
   /// may then be divided, and next_round() must be called.
-  bool update(std::span<const Accumulator* const> accumulators, const ThreadPool& pool);
+  bool update(std::span<const Accumulator* const> accumulators, const ThreadPool& pool,
+              double iterations);
   /// Adds a cell that starts as a copy of `cell`; each has half of its vertices.
   void divide(std::size_t cell);
   void next_round(const ThreadPool& pool);
@@ -66,7 +66,7 @@ class LearnedCells {
     double vertices = 0;
   };
   std::vector<Cell> cells_;
-  std::uint64_t round_ = 0, done_ = 0;  // iterations done of 2^round_
+  LearningRounds rounds_;
 };
 
 }  // namespace lacuna

@@ -119,7 +119,7 @@ void LearnedSkeleton::record_noise(double variance, Accumulator& accumulator) co
 }
 
 void LearnedSkeleton::update(std::span<const std::unique_ptr<Accumulator>> accumulators,
-                             const ThreadPool& pool) {
+                             const ThreadPool& pool, double iterations) {
   std::vector<const LearnedCells::Accumulator*> cells;
   std::vector<const Tuning::Accumulator*> tuning;
   for (const auto& a : accumulators) {
@@ -128,8 +128,8 @@ void LearnedSkeleton::update(std::span<const std::unique_ptr<Accumulator>> accum
     tuning.push_back(&own.tuning);
     for (std::size_t c = 0; c < spreads_.size(); ++c) spreads_[c].add(own.spreads[c]);
   }
-  tuning_.update(tuning);
-  if (!cells_.update(cells, pool)) return;
+  tuning_.update(tuning, iterations);
+  if (!cells_.update(cells, pool, iterations)) return;
   if (cells_.rounds() > 0) tuning_.stop_if_useless();
   const double most = cells_.most_vertices(settings_.leaf_vertices);
   forest_.divide(spreads_, most, LearnedCells::most, [this](std::uint32_t cell) {

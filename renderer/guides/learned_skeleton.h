@@ -29,12 +29,14 @@ class LearnedSkeleton final : public GuidingDistribution {
   Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const override;
 
   bool idle() const override { return tuning_.idle(); }
+  std::optional<std::uint64_t> due_pilot() const override { return tuning_.due_pilot(); }
+  void begin_pilot() override { tuning_.begin_pilot(); }
   bool learns() const override { return true; }
   std::unique_ptr<Accumulator> accumulator() const override;
   void accumulate(const GuidingSample& sample, Accumulator& accumulator) const override;
   void record_noise(double variance, Accumulator& accumulator) const override;
-  void update(std::span<const std::unique_ptr<Accumulator>> accumulators,
-              const ThreadPool& pool) override;
+  void update(std::span<const std::unique_ptr<Accumulator>> accumulators, const ThreadPool& pool,
+              double iterations) override;
 
  private:
   struct SampleAccumulator;

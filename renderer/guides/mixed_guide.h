@@ -63,19 +63,22 @@ class MixedGuide {
   void record_noise(double variance, Accumulator& accumulator) const {
     if (accumulator.directions) directions_->record_noise(variance, *accumulator.directions);
   }
-  void update(std::span<Accumulator> accumulators, const ThreadPool& pool) {
+  void update(std::span<Accumulator> accumulators, const ThreadPool& pool, double iterations) {
     if (directions_->learns()) {
       std::vector<std::unique_ptr<GuidingDistribution::Accumulator>> directions;
       for (Accumulator& a : accumulators) directions.push_back(std::move(a.directions));
-      directions_->update(directions, pool);
+      directions_->update(directions, pool, iterations);
       idle_ = directions_->idle();
     }
     if (reflected_.learns()) {
       std::vector<const ReflectedRadiance::Accumulator*> reflected;
       for (const Accumulator& a : accumulators) reflected.push_back(&a.reflected);
-      reflected_.update(reflected);
+      reflected_.update(reflected, iterations);
     }
   }
+
+  std::optional<std::uint64_t> due_pilot() const { return directions_->due_pilot(); }
+  void begin_pilot() { directions_->begin_pilot(); }
 
   /// Looks up the guiding cell of `v`, on the side of v.wp.
   void on_hit(Vertex& v) const {

@@ -35,17 +35,17 @@ std::size_t ReflectedRadiance::index(const Cell& c) {
   return i;
 }
 
-void ReflectedRadiance::update(std::span<const Accumulator* const> accumulators) {
+void ReflectedRadiance::update(std::span<const Accumulator* const> accumulators,
+                               double iterations) {
   for (const Accumulator* a : accumulators) {
     for (const auto& [i, met] : a->cells_) learning_[i] += met;
   }
-  end_iteration();
+  end(iterations);
 }
 
-void ReflectedRadiance::end_iteration() {
-  if (++iteration_ < std::uint64_t{1} << round_) return;
-  iteration_ = 0;
-  ++round_;
+void ReflectedRadiance::end(double iterations) {
+  if (!rounds_.add(iterations)) return;
+  rounds_.next();
   std::swap(known_, learning_);
   std::fill(learning_.begin(), learning_.end(), Samples{});
   make_moments();
@@ -88,8 +88,7 @@ void ReflectedRadiance::make_moments() {
 
 void ReflectedRadiance::save(ByteWriter& out) const {
   out.put(grid());
-  out.put(round_);
-  out.put(iteration_);
+  rounds_.save(out);
   for (const auto* cells : {&known_, &learning_}) {
     std::vector<Saved> met;
     for (std::size_t i = 0; i < cells->size(); ++i) {
@@ -103,9 +102,8 @@ void ReflectedRadiance::load(ByteReader& in) {
   if (in.get<std::array<double, 5>>() != grid()) {
     throw std::runtime_error("saved radiance belongs to another scene");
   }
-  round_ = in.get<std::uint64_t>();
-  iteration_ = in.get<std::uint64_t>();
-  bool good = round_ < 63 && iteration_ < std::uint64_t{1} << round_;
+  rounds_.load(in);
+  bool good = true;
   for (auto* cells : {&known_, &learning_}) {
     for (const Saved& s : in.get_vector<Saved>()) {
       good = good && s.cell < cells->size() && std::isfinite(s.met.sum) && s.met.samples > 0 &&

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analysis/storage/bytes.h"
+#include "renderer/guides/learning_rounds.h"
 #include "renderer/path/vertex.h"
 
 namespace lacuna {
@@ -19,8 +20,8 @@ namespace lacuna {
 ///
 /// A grid of 32^3 cells over the scene, each with six sides for the normals, and coarser grids of
 /// 16^3 to 1 cells: a look-up returns the moments of the finest cell with enough samples. Vertices
-/// may be of several classes, which share no cell. It learns from all vertices in rounds of 1, 2,
-/// 4, ... iterations; each round replaces the one before, because the first paths have the heaviest
+/// may be of several classes, which share no cell. It learns from all vertices in
+/// LearningRounds; each round replaces the one before, because the first paths have the heaviest
 /// tails. The picture's mean does not depend on its values.
 class ReflectedRadiance {
  public:
@@ -65,7 +66,7 @@ class ReflectedRadiance {
   Moments moments(const Vertex& v, std::uint32_t of_class) const {
     return samples_ == 0 ? Moments{} : moments_[index(cell(v, of_class))];
   }
-  bool learns() const { return samples_ < enough_ || round_ < least_rounds; }
+  bool learns() const { return samples_ < enough_ || rounds_.ended() < least_rounds; }
   /// One path's value at `v`; only while it learns().
   void record(const Vertex& v, double value, Accumulator& accumulator) const {
     if (std::isfinite(value)) accumulator.add(key(v, 0), {value});
@@ -74,13 +75,13 @@ class ReflectedRadiance {
   std::uint32_t key(const Vertex& v, std::uint32_t of_class) const {
     return static_cast<std::uint32_t>(index(cell(v, of_class)));
   }
-  /// Adds the samples of the parts of an iteration, in their order.
-  void update(std::span<const Accumulator* const> accumulators);
-  /// The same, one by one and then once for the iteration.
+  /// Adds the samples of `iterations`, in the order of their parts.
+  void update(std::span<const Accumulator* const> accumulators, double iterations);
+  /// The same, one by one and then once for an iteration.
   void add(std::uint32_t key, const Sample& sample) {
     if (std::isfinite(sample.value)) learning_[key] += Samples::of(sample);
   }
-  void end_iteration();
+  void end_iteration() { end(1); }
 
   void save(ByteWriter& out) const;
   /// Throws std::runtime_error for the state of another scene.
@@ -106,6 +107,7 @@ class ReflectedRadiance {
   /// The place in the next coarser grid of place `i` in one of `n` cells along a side.
   static std::size_t above(std::size_t i, std::size_t n);
   void make_moments();
+  void end(double iterations);
 
   V3d low_{0.0};
   double scale_ = 0, enough_ = 0;
@@ -113,10 +115,10 @@ class ReflectedRadiance {
     Samples met;
     std::uint64_t cell;
   };
-  std::uint64_t round_ = 0, iteration_ = 0;  // iterations done of 2^round_
-  double samples_ = 0;                       // in known_
-  std::vector<Samples> known_, learning_;    // of the finest grid: the last round's, and this one's
-  std::vector<Moments> moments_;             // of the finest grid, from where enough were met
+  LearningRounds rounds_;
+  double samples_ = 0;                     // in known_
+  std::vector<Samples> known_, learning_;  // of the finest grid: the last round's, and this one's
+  std::vector<Moments> moments_;           // of the finest grid, from where enough were met
 };
 
 }  // namespace lacuna

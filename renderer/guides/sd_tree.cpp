@@ -58,7 +58,7 @@ void SdTree::record_noise(double variance, Accumulator& accumulator) const {
 }
 
 void SdTree::update(std::span<const std::unique_ptr<Accumulator>> accumulators,
-                    const ThreadPool& pool) {
+                    const ThreadPool& pool, double iterations) {
   std::vector<const LearnedCells::Accumulator*> cells;
   std::vector<const Tuning::Accumulator*> tuning;
   for (const auto& a : accumulators) {
@@ -66,8 +66,8 @@ void SdTree::update(std::span<const std::unique_ptr<Accumulator>> accumulators,
     cells.push_back(&own.cells);
     tuning.push_back(&own.tuning);
   }
-  tuning_.update(tuning);
-  if (!leaves_.update(cells, pool)) return;
+  tuning_.update(tuning, iterations);
+  if (!leaves_.update(cells, pool, iterations)) return;
   if (leaves_.rounds() > 0) tuning_.stop_if_useless();
   divide(0, 0, leaves_.most_vertices(settings_.leaf_vertices));
   tuning_.forget();

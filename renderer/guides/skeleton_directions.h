@@ -33,6 +33,8 @@ class SkeletonDirections final : public GuidingDistribution {
   }
 
   bool idle() const override { return tuning_.idle(); }
+  std::optional<std::uint64_t> due_pilot() const override { return tuning_.due_pilot(); }
+  void begin_pilot() override { tuning_.begin_pilot(); }
   bool learns() const override { return tuning_.learns(); }
   std::unique_ptr<Accumulator> accumulator() const override {
     return std::make_unique<TuningAccumulator>();
@@ -41,12 +43,12 @@ class SkeletonDirections final : public GuidingDistribution {
   void record_noise(double variance, Accumulator& accumulator) const override {
     static_cast<TuningAccumulator&>(accumulator).tuning.noise.add(variance);
   }
-  void update(std::span<const std::unique_ptr<Accumulator>> accumulators,
-              const ThreadPool&) override {
+  void update(std::span<const std::unique_ptr<Accumulator>> accumulators, const ThreadPool&,
+              double iterations) override {
     std::vector<const Tuning::Accumulator*> own;
     for (const auto& t : accumulators)
       own.push_back(&static_cast<const TuningAccumulator&>(*t).tuning);
-    tuning_.update(own);
+    tuning_.update(own, iterations);
     tuning_.stop_if_useless();
   }
 

@@ -24,7 +24,19 @@ constexpr double guided_iteration_cost = 1.75;
 constexpr double surely_pays = 2;
 /// Nor does one that is known to promise no more than this part of the noise.
 constexpr double promises_nothing = 0.1;
-/// One of so many iterations at most follows the BSDF for comparison.
+/// Pilots are of a sixteenth of the picture each. So many are made before the first iteration, and
+/// more where they do not decide, of which the first follow the BSDF: what vertices gather behind
+/// them is known after one, and directions that were learned from it are judged by the next two.
+constexpr std::uint64_t first_pilots = 16, most_first_pilots = 32, plain_pilots = 3;
+/// And so many of all: a scene of which they say nothing keeps its guide.
+constexpr std::uint64_t most_pilots = 96;
+/// What the ratio of noises must be: guided iterations take more time, and samples of the BSDF
+/// alone are spread better, which one sample of each pixel does not show.
+constexpr double worth_guiding = 2.25;
+/// Deviations that the ratio of two noises must differ from 1 by; and where the BSDF has found so
+/// few bright paths that it has more noise than is known.
+constexpr double decisive = 2, decisive_of_unknown = 3;
+/// Without pilots, one of so many iterations at most follows the BSDF for comparison.
 constexpr std::uint64_t rests_of = 16;
 /// The relative deviation of the ratio of two noises up to which it is known well enough; above, it
 /// must differ from 1 by as much.
@@ -88,7 +100,7 @@ void Tuning::accumulate(const GuidingSample& sample, std::uint32_t cell,
   moments[i + 1] += 1;
 }
 
-void Tuning::update(std::span<const Accumulator* const> accumulators) {
+void Tuning::update(std::span<const Accumulator* const> accumulators, double iterations) {
   std::vector<char> met(chosen_.size(), 0);
   Noise noise;
   for (const Accumulator* t : accumulators) {
@@ -104,6 +116,15 @@ void Tuning::update(std::span<const Accumulator* const> accumulators) {
   for (std::size_t cell = 0; cell < met.size(); ++cell) {
     if (met[cell] != 0) choose(cell);
   }
+  const bool plain = follows_bsdf();
+  pairs_ = noise.pairs / iterations;
+  if (std::exchange(in_pilot_, false)) {
+    ++pilots_;
+    (plain ? without_ : with_).add(noise);
+    noise_ += noise.sum;
+    if (iterations_ == 0) judge_pilots();
+    return;
+  }
   ++iterations_;
   if (std::exchange(rests_, false)) {
     ++rested_;
@@ -111,13 +132,40 @@ void Tuning::update(std::span<const Accumulator* const> accumulators) {
     compare();
     return;
   }
-  pairs_ = noise.pairs;
   noise_ += noise.sum;
   with_.add(noise);
+  if (!std::has_single_bit(iterations_)) return;
+  if (pilots_ > 0) judge_pilots();
   // What the guide did long ago counts little.
-  if (std::has_single_bit(iterations_)) {
-    for (double* v : {&with_.sum, &with_.squares, &with_.pairs}) *v /= 4;
-  }
+  for (double* v : {&with_.sum, &with_.squares, &with_.pairs}) *v /= 4;
+}
+
+std::optional<std::uint64_t> Tuning::due_pilot() const {
+  if (idle_ || !learns() || probabilities_.front() > 0) return std::nullopt;
+  const bool small = pilots_ > 0 && pairs_ < least_pairs_of_one;
+  const bool first = iterations_ == 0 && pilots_ < (small ? first_pilots : most_first_pilots);
+  // Later ones take as many sixteenths of an iteration as there were iterations, at most.
+  const bool later = iterations_ > 0 && pilots_ > 0 && !small &&
+                     pilots_ < std::min(most_first_pilots + iterations_, most_pilots);
+  return !pays_ && (first || later) ? std::optional(pilots_) : std::nullopt;
+}
+
+bool Tuning::pilot_is_guided() const {
+  return iterations_ == 0 && pilots_ >= plain_pilots && pilots_ % 2 != 0;
+}
+
+void Tuning::judge_pilots() {
+  if (pilots_ < first_pilots || pairs_ < least_pairs_of_one) return;
+  if (!(with_.sum > 0) || !(without_.sum > 0)) return;
+  const double gain = std::log(without_.mean() / (with_.mean() * worth_guiding));
+  const double deviation = std::sqrt(with_.doubt() + without_.doubt());
+  const bool last = iterations_ == 0 && pilots_ == most_first_pilots;
+  const bool known = without_.doubt() < comparable * comparable;
+  const double wanted = (known ? decisive : decisive_of_unknown) * deviation;
+  const bool shown = std::abs(gain) > wanted, sees = 2 * without_.lit > without_.pairs;
+  if (!shown && !(last && sees)) return;
+  idle_ = gain < 0 || !(shown || known);
+  pays_ = !idle_;
 }
 
 void Tuning::compare() {
@@ -186,6 +234,7 @@ void Tuning::stop_if_useless() {
     idle_ = true;
     return;
   }
+  if (pilots_ > 0 && pairs_ >= least_pairs_of_one) return;  // they decide
   // Decided at each doubling only: of many decisions by chance one would be wrong.
   if (all < std::max(least_paths, 2 * decided_)) return;
   // The noise was measured with the guide: without it, it would be that and the gain.
@@ -225,6 +274,8 @@ void Tuning::load(ByteReader& in) {
   const auto with = in.get<Noise>(), without = in.get<Noise>();
   const auto pairs = in.get<double>();
   const auto iterations = in.get<std::uint64_t>(), rested = in.get<std::uint64_t>();
+  const auto pilots = in.get<std::uint64_t>();
+  const bool pays = in.get<std::uint8_t>() != 0;
   const bool rests = in.get<std::uint8_t>() != 0;
   const bool idle = in.get<std::uint8_t>() != 0;
   const bool valid = std::all_of(chosen.begin(), chosen.end(),
@@ -242,6 +293,8 @@ void Tuning::load(ByteReader& in) {
   pairs_ = pairs;
   iterations_ = iterations;
   rested_ = rested;
+  pilots_ = pilots;
+  pays_ = pays;
   rests_ = rests;
   idle_ = idle;
 }
@@ -259,7 +312,8 @@ std::vector<std::pair<std::string, double>> Tuning::statistics() const {
   const auto n = static_cast<double>(std::max<std::size_t>(learned, 1));
   return {{"places_learned", static_cast<double>(learned)},
           {"mean_strength", std::exp2(logs / n)},
-          {"mean_probability", shares / n}};
+          {"mean_probability", shares / n},
+          {"pilots", static_cast<double>(pilots_)}};
 }
 
 }  // namespace lacuna

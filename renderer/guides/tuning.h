@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <unordered_map>
 
 #include "renderer/guides/guiding_distribution.h"
@@ -17,10 +18,16 @@ namespace lacuna {
 /// adds one more path like its largest, from a direction that the guide does not sample. The cost
 /// is that of a vertex over one that follows the BSDF, a constant: clocks would change the bits.
 ///
-/// Where the choices of all cells together seem to gain little, an iteration follows the BSDF
-/// alone, and the noise of its pixels is compared with that of the others: moments tell what a
-/// vertex gains if all others stay as they are, and along a path gains multiply. Where the guide
+/// Moments tell what a vertex gains if all others stay as they are, and along a path gains
+/// multiply. So the noise of pixels is measured with and without the guide, and where the guide
 /// does not pay for its time it is left alone from then on: idle().
+///
+/// Pilots (GuidingDistribution::due_pilot()) compare before the first iteration, whose paths count
+/// in the picture: the first follow the BSDF, the others by turns the guide and the BSDF. A guide
+/// that has not shown a gain by their end is idle, unless the BSDF finds no light in most pixels:
+/// then the guide begins, and later pilots follow the BSDF until more is known. An integrator
+/// without pilots compares where the choices of all cells together seem to gain little: an
+/// iteration then follows the BSDF.
 class Tuning {
  public:
   Tuning() = default;
@@ -30,21 +37,23 @@ class Tuning {
   bool learns() const { return strengths_.size() * probabilities_.size() > 1; }
   float strength(std::size_t cell) const { return strengths_[chosen_[cell] / count()]; }
   float probability(std::size_t cell) const {
-    return idle_ || rests_ ? 0 : probabilities_[chosen_[cell] % count()];
+    return idle_ || follows_bsdf() ? 0 : probabilities_[chosen_[cell] % count()];
   }
 
   /// Variances of single samples of pixels, each estimated from one pair of them.
   struct Noise {
-    double sum = 0, squares = 0, pairs = 0;
+    double sum = 0, squares = 0, pairs = 0, lit = 0;  // lit: pairs that differ
     void add(double variance) {
       sum += variance;
       squares += variance * variance;
       ++pairs;
+      if (variance > 0) ++lit;
     }
     void add(const Noise& other) {
       sum += other.sum;
       squares += other.squares;
       pairs += other.pairs;
+      lit += other.lit;
     }
     double mean() const { return sum / pairs; }
     /// The squared deviation of mean() over its square.
@@ -61,7 +70,12 @@ class Tuning {
   /// Requires wants(cell). `densities`: of sample.wi by the guide alone, for each strength.
   void accumulate(const GuidingSample& sample, std::uint32_t cell, std::span<const float> densities,
                   Accumulator& accumulator) const;
-  void update(std::span<const Accumulator* const> accumulators);
+  /// `iterations`: as many as the accumulators hold, below 1 of a pilot.
+  void update(std::span<const Accumulator* const> accumulators, double iterations);
+
+  /// See GuidingDistribution.
+  std::optional<std::uint64_t> due_pilot() const;
+  void begin_pilot() { in_pilot_ = true; }
 
   /// All cells follow the BSDF, and nothing is learned any more.
   bool idle() const { return idle_; }
@@ -93,6 +107,8 @@ class Tuning {
     out.put(pairs_);
     out.put(iterations_);
     out.put(rested_);
+    out.put(pilots_);
+    out.put(std::uint8_t{pays_});
     out.put(std::uint8_t{rests_});
     out.put(std::uint8_t{idle_});
   }
@@ -113,6 +129,10 @@ class Tuning {
   std::uint32_t cheapest(std::size_t cell) const;
   std::uint32_t carefully(std::size_t cell) const;
   void choose(std::size_t cell);
+  /// What is sampled now follows the BSDF for comparison.
+  bool follows_bsdf() const { return in_pilot_ ? !pilot_is_guided() : rests_; }
+  bool pilot_is_guided() const;
+  void judge_pilots();
   void compare();
 
   std::vector<float> strengths_, probabilities_;
@@ -123,9 +143,11 @@ class Tuning {
   double noise_ = 0;      // variances of pixels' samples with the guide, summed, faded as moments_
   double decided_ = 0;    // paths when it was last decided whether the guide pays
   Noise with_, without_;  // of iterations with the guide, the latest most, and of the others
-  double pairs_ = 0;      // of the last iteration with the guide
-  std::uint64_t iterations_ = 0, rested_ = 0;
-  bool rests_ = false;  // the coming iteration follows the BSDF
+  double pairs_ = 0;      // of a whole iteration, from the last update
+  std::uint64_t iterations_ = 0, rested_ = 0, pilots_ = 0;
+  bool pays_ = false;      // pilots have shown that the guide does
+  bool in_pilot_ = false;  // what is sampled now is a pilot
+  bool rests_ = false;     // the coming iteration follows the BSDF
   bool idle_ = false;
 };
 

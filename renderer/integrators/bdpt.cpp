@@ -152,7 +152,7 @@ class Bdpt : public GuidedIntegrator<Guide> {
     return accumulators;
   }
   void update_guide(const IterationContext& context, Accumulators& accumulators) {
-    if (guide_.learns()) guide_.update(accumulators, context.pool);
+    if (guide_.learns()) guide_.update(accumulators, context.pool, 1);
   }
   /// The callback of for_each_splatting_part() that adds splats to the layers.
   auto splat_layers(const IterationContext& context) const {

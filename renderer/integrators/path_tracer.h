@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "renderer/guides/efficiency_roulette.h"
 #include "renderer/guides/gathered_light.h"
@@ -51,14 +52,17 @@ class PathTracer final : public GuidedIntegrator<Guide> {
   }
   void save(ByteWriter& out) const override {
     GuidedIntegrator<Guide>::save(out);
+    if constexpr (Guide::has_expected) out.put(pilots_);
     if (roulette_) roulette_->save(out);
   }
   void load(ByteReader& in) override {
     GuidedIntegrator<Guide>::load(in);
+    if constexpr (Guide::has_expected) pilots_ = in.get<Counters>();
     if (roulette_) roulette_->load(in);
   }
 
   Counters iterate(const IterationContext& context, Image& image) override {
+    render_pilots(context, image);
     const Tiling tiling(context, image);
     const auto tiles = static_cast<std::size_t>(tiling.tiles());
     std::vector<typename Guide::Accumulator> accumulators(tiles);
@@ -67,17 +71,50 @@ class PathTracer final : public GuidedIntegrator<Guide> {
         roulette_ && roulette_->observes() && context.parts.empty() && roulette_->fits(image);
     std::vector<EfficiencyRoulette::Accumulator> continuations(
         observes && roulette_->learns() ? tiles : 0);
-    const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
+    Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
       const auto k = static_cast<std::size_t>(i);
       render(context, image, tiling.tile(i), counters,
              {accumulators[k], continuations.empty() ? nullptr : &continuations[k]});
     });
-    if (guide_.learns()) guide_.update(accumulators, context.pool);
+    if (guide_.learns()) guide_.update(accumulators, context.pool, 1);
     if (observes) roulette_->update(continuations, context, image, sum);
+    sum += std::exchange(pilots_, {});
     return sum;
   }
 
  private:
+  /// Renders the pilots that the guide asks for before this iteration. One that has finished stays
+  /// learned if the iteration is stopped: pilots depend on nothing but those before them.
+  void render_pilots(const IterationContext& context, const Image& image) {
+    if constexpr (Guide::has_expected) {
+      while (const std::optional<std::uint64_t> number = guide_.due_pilot()) {
+        guide_.begin_pilot();
+        pilots_ += render_pilot(context, image, *number);
+      }
+    }
+  }
+  /// One block of each tile, into a picture that is thrown away. Two pilots after each other, one
+  /// with the guide and one without, have the same blocks.
+  Counters render_pilot(IterationContext context, const Image& picture, std::uint64_t number) {
+    context.layers = {};
+    context.parts = {};
+    // Numbers of no iteration, whatever the sampler.
+    context.sampler = Sampler::sobol;
+    context.sample = SampleNumber{SampleNumber::of_pilots, number};
+    Image scratch(picture.width, picture.height);
+    const Tiling tiling(scratch);
+    std::vector<typename Guide::Accumulator> accumulators(static_cast<std::size_t>(tiling.tiles()));
+    const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
+      const Tile tile = tiling.tile(i);
+      const std::uint64_t turn = 7 * ((number + 1) / 2);
+      const auto block = static_cast<int>(turn % static_cast<std::uint64_t>(tile.blocks()));
+      render(context, scratch, tile.block(block), counters,
+             {accumulators[static_cast<std::size_t>(i)], nullptr});
+    });
+    guide_.update(accumulators, context.pool, double(sum.samples) / double(scratch.pixels.size()));
+    return sum;
+  }
+
   /// A contribution of next event estimation, pending its shadow ray.
   struct Direct {
     Rgb value;
@@ -190,6 +227,7 @@ class PathTracer final : public GuidedIntegrator<Guide> {
 
   PathSettings settings_;
   std::optional<EfficiencyRoulette> roulette_;
+  Counters pilots_;  // of those since the last iteration that was finished
 };
 
 }  // namespace lacuna

@@ -12,7 +12,7 @@ struct BsdfGuide : StrategyBase {
   static constexpr bool learns() { return false; }
   static Accumulator accumulator() { return {}; }
   static void accumulate(const GuidingSample&, Accumulator&) {}
-  static void update(std::span<Accumulator>, const ThreadPool&) {}
+  static void update(std::span<Accumulator>, const ThreadPool&, double) {}
 
   static void on_hit(Vertex&) {}
   static std::optional<BsdfSample> sample(const Vertex& v, Rng& rng, Transport transport) {

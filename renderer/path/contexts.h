@@ -26,6 +26,10 @@ struct SampleNumber {
   std::uint32_t randomisation;  ///< < 2^31; samples of different ones are independent
   std::uint64_t index;
 
+  /// The randomisation of what a guide learns from before it guides. 0 and 1 are those of a film's
+  /// halves, 2 and 3 those of a race's pictures.
+  static constexpr std::uint32_t of_pilots = 4;
+
   /// The two halves of a film are independent, and each has a sequence without gaps.
   static SampleNumber of_iteration(std::uint64_t iteration) {
     return {static_cast<std::uint32_t>(iteration % 2), iteration / 2};

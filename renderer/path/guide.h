@@ -34,7 +34,8 @@ template <class G>
 concept Guide = Strategy<G> &&
     requires(G g, const G& k, Vertex& v, const V3f& w, Rng& rng, Transport transport,
              const GuidingSample& sample, typename G::Accumulator& accumulator,
-             std::span<typename G::Accumulator> accumulators, const ThreadPool& pool) {
+             std::span<typename G::Accumulator> accumulators, const ThreadPool& pool,
+             double iterations) {
   k.on_hit(v);
   { k.sample(v, rng, transport) } -> std::same_as<std::optional<BsdfSample>>;
   { k.pdf(v, w, w, transport) } -> std::same_as<Pdf<SolidAngle>>;
@@ -42,7 +43,7 @@ concept Guide = Strategy<G> &&
   { G::has_expected } -> std::convertible_to<bool>;
   { k.accumulator() } -> std::same_as<typename G::Accumulator>;
   k.accumulate(sample, accumulator);
-  g.update(accumulators, pool);
+  g.update(accumulators, pool, iterations);
 };
 
 }  // namespace lacuna

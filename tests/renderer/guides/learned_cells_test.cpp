@@ -31,7 +31,7 @@ LearnedCells learned(int rounds, int samples, std::uint64_t seed, const ThreadPo
       LearnedCells::accumulate(1, w, static_cast<float>(radiance(w)), p, part);
     }
     const LearnedCells::Accumulator* parts[] = {&part};
-    if (cells.update(parts, pool)) cells.next_round(pool);
+    if (cells.update(parts, pool, 1)) cells.next_round(pool);
   }
   return cells;
 }
@@ -77,7 +77,7 @@ TEST(LearnedCells, CountAndDivideVertices) {
   LearnedCells::accumulate(0, {0, 0, 1}, 0, Pdf<SolidAngle>(1.0F), b);
   LearnedCells::accumulate(0, {0, 0, 1}, INFINITY, Pdf<SolidAngle>(1.0F), b);
   const LearnedCells::Accumulator* parts[] = {&a, &b};
-  ASSERT_TRUE(cells.update(parts, pool));
+  ASSERT_TRUE(cells.update(parts, pool, 1));
   EXPECT_EQ(cells.vertices(0), 3);
   cells.divide(0);
   EXPECT_EQ(cells.vertices(1), 1.5);
@@ -88,8 +88,8 @@ TEST(LearnedCells, CountAndDivideVertices) {
   // The second round has two iterations.
   const LearnedCells::Accumulator empty = cells.accumulator();
   const LearnedCells::Accumulator* none[] = {&empty};
-  EXPECT_FALSE(cells.update(none, pool));
-  EXPECT_TRUE(cells.update(none, pool));
+  EXPECT_FALSE(cells.update(none, pool, 1));
+  EXPECT_TRUE(cells.update(none, pool, 1));
   cells.next_round(pool);
   EXPECT_FALSE(cells.tree(0).empty()) << "without samples the old tree stays";
 }

@@ -12,18 +12,22 @@ class TunedGuide {
 
   /// An iteration in which each pixel has this variance.
   void iterate(double variance) {
-    Tuning::Accumulator one;
-    // Probabilities 0, 1/8, ...: with the guide .6 of the moment, so that it is chosen; then the
-    // largest square and the number of paths.
-    std::vector<double>& moments = one.moments[0];
-    moments.assign(10, 1200.0);
-    moments[0] = 2000;
-    moments[8] = 10;
-    moments[9] = 20000;
+    Tuning::Accumulator one = moments(1);
     for (int i = 0; i < pairs_; ++i) one.noise.add(variance);
-    const Tuning::Accumulator* const all[] = {&one};
-    tuning.update(all);
-    tuning.stop_if_useless();
+    update(one, 1);
+  }
+  /// The pilots that are due: pixels' variances with the guide and without. How many they are.
+  int fly(double guided, double plain) {
+    int n = 0;
+    for (; n < 1000 && tuning.due_pilot(); ++n) {
+      tuning.begin_pilot();
+      const bool follows_bsdf = tuning.probability(0) == 0;
+      Tuning::Accumulator one = moments(1.0 / 16);
+      for (int i = 0; i < pairs_ / 16; ++i) one.noise.add(follows_bsdf ? plain : guided);
+      if (n == 0 && bright > 0) one.noise.add(bright);
+      update(one, 1.0 / 16);
+    }
+    return n;
   }
   bool rests() const { return !tuning.idle() && tuning.probability(0) == 0; }
   /// Iterates with the guide until it is to be compared; how often.
@@ -34,8 +38,28 @@ class TunedGuide {
   }
 
   Tuning tuning{{8}, AutoNumber{}, 1};
+  double bright = 0;  // variance of one pair more, of the first of the pilots
 
  private:
+  static Tuning::Accumulator moments(double iterations) {
+    Tuning::Accumulator one;
+    // Probabilities 0, 1/8, ...: with the guide .6 of the moment, so that it is chosen; then the
+    // largest square and the number of paths.
+    std::vector<double>& moments = one.moments[0];
+    moments.assign(10, 1200.0);
+    moments[0] = 2000;
+    moments[8] = 10;
+    moments[9] = 20000;
+    for (double& m : moments) m *= iterations;
+    moments[8] = 10;
+    return one;
+  }
+  void update(const Tuning::Accumulator& one, double iterations) {
+    const Tuning::Accumulator* const all[] = {&one};
+    tuning.update(all, iterations);
+    tuning.stop_if_useless();
+  }
+
   int pairs_;
 };
 
@@ -93,6 +117,93 @@ TEST(Tuning, IsSavedWhileItRests) {
   EXPECT_TRUE(loaded.rests());
   loaded.iterate(0.13);
   EXPECT_TRUE(loaded.tuning.idle());
+}
+
+TEST(Tuning, EndsBeforeTheFirstIterationWherePilotsHaveHardlyMoreNoiseWithoutIt) {
+  TunedGuide guide;
+  EXPECT_EQ(guide.fly(0.1, 0.2), 16);
+  EXPECT_TRUE(guide.tuning.idle()) << "a gain of 2.25 is wanted";
+}
+
+TEST(Tuning, GoesOnWherePilotsHaveMoreNoiseWithoutIt) {
+  TunedGuide guide;
+  EXPECT_EQ(guide.fly(0.1, 0.4), 16);
+  EXPECT_FALSE(guide.tuning.idle());
+  for (int i = 0; i < 40; ++i) {
+    guide.iterate(0.1);
+    ASSERT_GT(guide.tuning.probability(0), 0) << "iteration " << i;
+    ASSERT_EQ(guide.fly(0.1, 0.4), 0) << "it is decided";
+  }
+}
+
+TEST(Tuning, EndsWhereIterationsHaveMoreNoiseThanPilotsHad) {
+  TunedGuide guide;
+  guide.fly(0.1, 0.4);
+  for (int i = 0; i < 8; ++i) guide.iterate(0.5);
+  EXPECT_TRUE(guide.tuning.idle());
+}
+
+// Pilots that follow the BSDF meet few bright paths there, or none: of what they did not meet
+// nothing is known, and the guide must not end.
+TEST(Tuning, GoesOnWhereTheBsdfFindsNoLight) {
+  for (const double one_path : {0.0, 2000.0}) {
+    TunedGuide guide;
+    guide.bright = one_path;
+    int pilots = guide.fly(0.1, 0);
+    guide.bright = 0;
+    EXPECT_EQ(pilots, 32);
+    for (int i = 0; i < 200; ++i) {
+      guide.iterate(0.1);
+      ASSERT_GT(guide.tuning.probability(0), 0) << "iteration " << i;
+      const int later = guide.fly(0.1, 0);
+      EXPECT_LE(later, 1);
+      pilots += later;
+    }
+    EXPECT_EQ(pilots, 96) << "not for ever";
+  }
+}
+
+// One path makes most of the noise: nothing is known of a gain, and the BSDF sees light everywhere.
+TEST(Tuning, EndsWherePilotsHaveShownNoGain) {
+  TunedGuide guide;
+  guide.bright = 1e4;
+  EXPECT_EQ(guide.fly(0.1, 0.1), 32);
+  EXPECT_TRUE(guide.tuning.idle());
+}
+
+TEST(Tuning, EndsWhenLaterPilotsKnowTheBsdf) {
+  TunedGuide guide;
+  guide.fly(0.1, 0);
+  for (int i = 0; i < 40 && !guide.tuning.idle(); ++i) {
+    guide.iterate(0.1);
+    guide.fly(0.1, 0.1);
+  }
+  EXPECT_TRUE(guide.tuning.idle());
+}
+
+TEST(Tuning, JudgesSmallPicturesByMomentsAfterPilotsToo) {
+  TunedGuide guide(100);
+  EXPECT_LE(guide.fly(100, 1e6), 16);
+  EXPECT_TRUE(guide.tuning.idle()) << "moments promise little";
+}
+
+TEST(Tuning, HasNoPilotsWhereItsProbabilityIsGiven) {
+  const Tuning tuning({2, 8}, AutoNumber{0.5}, 1);
+  EXPECT_TRUE(tuning.learns());
+  EXPECT_FALSE(tuning.due_pilot());
+}
+
+TEST(Tuning, IsSavedBetweenPilots) {
+  TunedGuide guide, loaded;
+  guide.fly(0.1, 0);
+  guide.iterate(0.1);
+  ByteWriter out;
+  guide.tuning.save(out);
+  ByteReader in(out.bytes());
+  loaded.tuning.load(in);
+  EXPECT_TRUE(in.at_end());
+  EXPECT_EQ(loaded.tuning.due_pilot(), guide.tuning.due_pilot());
+  EXPECT_TRUE(loaded.tuning.due_pilot().has_value());
 }
 
 }  // namespace

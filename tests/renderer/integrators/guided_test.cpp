@@ -223,5 +223,33 @@ TEST(GuidedExtremes, ProbabilityNoneIsPathTracingItself) {
   EXPECT_EQ(render(make(), guided_picture(path, 2)).film.mean(), expected.film.mean());
 }
 
+// Where a guide does not pay, pilots have ended it before a path counts: the picture has the bits
+// of one without a guide.
+TEST(Pilots, EndAGuideBeforeItSpoilsThePicture) {
+  PathSettings guided = test::path_tracing(5);
+  guided.guide = LearnedSkeletonGuideSettings{};
+  test::RenderSettings s{.integrator = guided, .width = 96, .height = 96, .iterations = 2};
+  const test::Rendering with = test::render("cornell.glb", s);
+  s.integrator = test::path_tracing(5);
+  const test::Rendering without = test::render("cornell.glb", s);
+  EXPECT_EQ(with.film.mean(), without.film.mean());
+  // They count as samples: 16 to 32, of a sixteenth of the picture each.
+  const std::uint64_t iteration = 96 * 96;
+  EXPECT_GE(with.counters.samples, without.counters.samples + iteration);
+  EXPECT_LE(with.counters.samples, without.counters.samples + 2 * iteration);
+  EXPECT_GT(with.counters.rays, without.counters.rays);
+}
+
+// Where light comes through few gaps it is kept.
+TEST(Pilots, KeepAGuideThatPays) {
+  PathSettings guided = test::path_tracing(5);
+  guided.guide = LearnedSkeletonGuideSettings{};
+  test::RenderSettings s{.integrator = guided, .width = 96, .height = 96, .iterations = 1};
+  s.camera = "entrance";
+  const test::Rendering with = test::render("bends.glb", s);
+  s.integrator = test::path_tracing(5);
+  EXPECT_NE(with.film.mean(), test::render("bends.glb", s).film.mean());
+}
+
 }  // namespace
 }  // namespace lacuna
