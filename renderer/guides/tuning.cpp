@@ -30,9 +30,6 @@ constexpr double promises_nothing = 0.1;
 constexpr std::uint64_t first_pilots = 16, most_first_pilots = 32, plain_pilots = 3;
 /// And so many of all: a scene of which they say nothing keeps its guide.
 constexpr std::uint64_t most_pilots = 96;
-/// What the ratio of noises must be: guided iterations take more time, and samples of the BSDF
-/// alone are spread better, which one sample of each pixel does not show.
-constexpr double worth_guiding = 2.25;
 /// Deviations that the ratio of two noises must differ from 1 by; and where the BSDF has found so
 /// few bright paths that it has more noise than is known.
 constexpr double decisive = 2, decisive_of_unknown = 3;
@@ -157,7 +154,7 @@ bool Tuning::pilot_is_guided() const {
 void Tuning::judge_pilots() {
   if (pilots_ < first_pilots || pairs_ < least_pairs_of_one) return;
   if (!(with_.sum > 0) || !(without_.sum > 0)) return;
-  const double gain = std::log(without_.mean() / (with_.mean() * worth_guiding));
+  const double gain = std::log(without_.mean() / (with_.mean() * guided_iteration_cost));
   const double deviation = std::sqrt(with_.doubt() + without_.doubt());
   const bool last = iterations_ == 0 && pilots_ == most_first_pilots;
   const bool known = without_.doubt() < comparable * comparable;
