@@ -54,6 +54,13 @@ constexpr double least_paths = 16384, known_share_of_all = 0.02;
 /// error (area), 200 to 5000 on others.
 constexpr double smooth_peak = 16, least_smooth_paths = 1024;
 
+/// Whether surely fewer pairs of pixels are lit with the guide than without.
+bool finds_less_light(const Tuning::Noise& with, const Tuning::Noise& without) {
+  const double share = without.lit / without.pairs;
+  const double variance = share * (1 - share) * (1 / with.pairs + 1 / without.pairs);
+  return share - with.lit / with.pairs > decisive * std::sqrt(variance);
+}
+
 std::uint32_t nearest(const std::vector<float>& values, float wanted) {
   const auto closer = [wanted](float a, float b) {
     return std::abs(a - wanted) < std::abs(b - wanted);
@@ -134,7 +141,7 @@ void Tuning::update(std::span<const Accumulator* const> accumulators, double ite
   if (!std::has_single_bit(iterations_)) return;
   if (pilots_ > 0) judge_pilots();
   // What the guide did long ago counts little.
-  for (double* v : {&with_.sum, &with_.squares, &with_.pairs}) *v /= 4;
+  for (double* v : {&with_.sum, &with_.squares, &with_.pairs, &with_.lit}) *v /= 4;
 }
 
 std::optional<std::uint64_t> Tuning::due_pilot() const {
@@ -158,9 +165,14 @@ void Tuning::judge_pilots() {
   const double deviation = std::sqrt(with_.doubt() + without_.doubt());
   const bool last = iterations_ == 0 && pilots_ == most_first_pilots;
   const bool known = without_.doubt() < comparable * comparable;
+  // One bright path may make the noise of either, and tells nothing. How often light is found does.
+  if (!known && finds_less_light(with_, without_)) {
+    idle_ = true;
+    return;
+  }
   const double wanted = (known ? decisive : decisive_of_unknown) * deviation;
   const bool shown = std::abs(gain) > wanted, sees = 2 * without_.lit > without_.pairs;
-  if (!shown && !(last && sees)) return;
+  if (!shown && !(last && (sees || known))) return;
   idle_ = gain < 0 || !(shown || known);
   pays_ = !idle_;
 }

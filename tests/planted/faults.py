@@ -349,6 +349,8 @@ FAULTS = [
           "idle_ = noise * guided_cost > noise + gain;", "idle_ = noise * guided_cost < 0 * gain;"),
     Fault("a guide is compared with itself", "renderer/guides/tuning.cpp",
           "without_.add(noise);", "without_.add(with_);"),
+    Fault("guides that find less light go on", "renderer/guides/tuning.cpp",
+          "return share - with.lit / with.pairs > decisive * std::sqrt(variance);", "return share > 2;"),
     Fault("pilots are taken for each other", "renderer/guides/tuning.cpp",
           "(plain ? without_ : with_).add(noise);", "(plain ? with_ : without_).add(noise);"),
     Fault("a guide ends where the BSDF finds no light", "renderer/guides/tuning.cpp",

@@ -23,7 +23,10 @@ class TunedGuide {
       tuning.begin_pilot();
       const bool follows_bsdf = tuning.probability(0) == 0;
       Tuning::Accumulator one = moments(1.0 / 16);
-      for (int i = 0; i < pairs_ / 16; ++i) one.noise.add(follows_bsdf ? plain : guided);
+      const double lit = follows_bsdf ? plain_lit : guided_lit;
+      for (int i = 0; i < pairs_ / 16; ++i) {
+        one.noise.add(i < lit * pairs_ / 16 ? (follows_bsdf ? plain : guided) : 0);
+      }
       if (n == 0 && bright > 0) one.noise.add(bright);
       update(one, 1.0 / 16);
     }
@@ -39,6 +42,7 @@ class TunedGuide {
 
   Tuning tuning{{8}, AutoNumber{}, 1};
   double bright = 0;  // variance of one pair more, of the first of the pilots
+  double guided_lit = 1, plain_lit = 1;  // shares of the pairs that differ in pilots
 
  private:
   static Tuning::Accumulator moments(double iterations) {
@@ -169,6 +173,30 @@ TEST(Tuning, EndsWherePilotsHaveShownNoGain) {
   guide.bright = 1e4;
   EXPECT_EQ(guide.fly(0.1, 0.1), 32);
   EXPECT_TRUE(guide.tuning.idle());
+}
+
+// One path of the BSDF would make the gain large, but the guide finds light less often than it.
+TEST(Tuning, EndsWherePilotsFindLessLight) {
+  for (const double guided_lit : {0.3, 0.4, 0.8}) {
+    TunedGuide guide;
+    guide.bright = 1e4;
+    guide.plain_lit = 0.4;
+    guide.guided_lit = guided_lit;
+    guide.fly(0.1, 0.1);
+    EXPECT_EQ(guide.tuning.idle(), guided_lit < 0.4) << guided_lit;
+  }
+}
+
+// Few pixels are lit, but so many that both noises are known, nearly in the ratio that guiding
+// costs.
+TEST(Tuning, PilotsDecideWhereNoiseIsKnown) {
+  for (const double plain : {0.16, 0.19}) {
+    TunedGuide guide;
+    guide.plain_lit = guide.guided_lit = 0.02;
+    EXPECT_EQ(guide.fly(0.1, plain), 32) << "the test has no power";
+    EXPECT_EQ(guide.tuning.idle(), plain < 0.175);
+    EXPECT_FALSE(guide.tuning.due_pilot());
+  }
 }
 
 TEST(Tuning, EndsWhenLaterPilotsKnowTheBsdf) {
