@@ -23,8 +23,8 @@ constexpr double well_spread = 1.15;
 /// Of a round; with fewer the fixed point is not reached: on corridor the variance falls until
 /// some 60 iterations of 30,000 continuations.
 constexpr double enough_samples = 1 << 20;
-/// The share of the pixels that differ most, without which paths end. With none `nave` has a third of
-/// its efficiency, as rare paths decide; with 1/128 sponza gains half as much.
+/// The share of the pixels that differ most, without which paths end. With none `nave` has a third
+/// of its efficiency, as rare paths decide; with 1/128 sponza gains half as much.
 constexpr double trimmed_share = 1.0 / 32;
 /// Of `spread`: the least V_I by which paths end, where most pixels are black.
 constexpr double least_trimmed = 0x1p-20;
@@ -126,7 +126,8 @@ void EfficiencyRoulette::end_span() {
   if (state_.stage == Stage::stays) state_.span *= 2;
   // Without noise, or where no light was found, there is nothing to gain.
   if (!(e.spread > 0)) state_.stage = Stage::ended;
-  state_.for_survival = static_cast<float>(std::sqrt(e.rays / std::max(e.trimmed, e.spread * least_trimmed)));
+  state_.for_survival =
+      static_cast<float>(std::sqrt(e.rays / std::max(e.trimmed, e.spread * least_trimmed)));
   state_.for_splitting = static_cast<float>(std::sqrt(e.rays / e.variance));
   if (state_.stage == Stage::ended) state_.for_survival = state_.for_splitting = 0;
   state_.iterations = {};

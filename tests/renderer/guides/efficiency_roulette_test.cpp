@@ -62,8 +62,8 @@ TEST(EfficiencyRoulette, AdvisesWhatBruteForceFinds) {
   }
 }
 
-/// What it has learned from eight iterations in which paths went on at one vertex and gathered about
-/// as much as the pixels' deviation, while one pixel met `rare` in the first of each four.
+/// What it has learned from eight iterations in which paths went on at one vertex and gathered
+/// about as much as the pixels' deviation, while one pixel met `rare` in the first of each four.
 float continuations_beside(float rare, float throughput) {
   constexpr int side = 16;
   const ThreadPool pool(1);

@@ -41,7 +41,7 @@ class TunedGuide {
   }
 
   Tuning tuning{{8}, AutoNumber{}, 1};
-  double bright = 0;  // variance of one pair more, of the first of the pilots
+  double bright = 0;                     // variance of one pair more, of the first of the pilots
   double guided_lit = 1, plain_lit = 1;  // shares of the pairs that differ in pilots
 
  private:
