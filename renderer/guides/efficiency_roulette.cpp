@@ -59,8 +59,6 @@ float EfficiencyRoulette::continuations(const ReflectedRadiance::Moments& m, flo
   const float rays = std::max(m.rays, 1.0F);
   const float survival = for_survival * std::sqrt(m.square / rays);
   if (!(survival >= 1)) return std::max(survival, min_survival);
-  // Enough by one V_I and too much by the other: nothing is known.
-  if (for_splitting * std::sqrt(m.square / rays) < 1) return -1;
   const float variance = std::max(m.square - m.mean * m.mean, 0.0F);
   const float parts = for_splitting * std::sqrt(variance / rays);
   return parts < split_from ? 1 : std::min(parts, max_parts);

@@ -22,10 +22,10 @@ namespace lacuna {
 /// for throughput 1, C its rays, V_I the variance of a sample of a pixel, mean over the picture,
 /// and C_I its rays: that minimises V_I C_I. A path ends by the V_I without the pixels that differ
 /// most, and splits by that of all of them: where one rare path is most of the noise so far, V_I is
-/// not known. Between the two nothing is advised. S and C are learned in cells (ReflectedRadiance),
-/// from paths that were ended and split by the q before (a fixed point). Costs are counted in rays,
-/// because clocks would change the bits. The paper divides T by the pixel, which makes the
-/// picture's relative error small where this makes the squared error small.
+/// not known, and a path that goes on as it is costs little either way. S and C are learned in
+/// cells (ReflectedRadiance), from paths that were ended and split by the q before (a fixed point).
+/// Costs are counted in rays, because clocks would change the bits. The paper divides T by the
+/// pixel, which makes the picture's relative error small where this makes the squared error small.
 ///
 /// Samples that are spread evenly (Sampler::sobol) have a smaller error than their variance says,
 /// and what roulette adds is not spread. So a first span of iterations has none, and where the
