@@ -125,7 +125,7 @@ void Tuning::update(std::span<const Accumulator* const> accumulators, double ite
   if (std::exchange(in_pilot_, false)) {
     ++pilots_;
     (plain ? without_ : with_).add(noise);
-    noise_ += noise.sum;
+    if (!plain) noise_ += noise.sum;
     if (iterations_ == 0) judge_pilots();
     return;
   }
@@ -146,8 +146,9 @@ void Tuning::update(std::span<const Accumulator* const> accumulators, double ite
 
 std::optional<std::uint64_t> Tuning::due_pilot() const {
   if (idle_ || !learns() || probabilities_.front() > 0) return std::nullopt;
+  // The first tells how large the picture is.
   const bool small = pilots_ > 0 && pairs_ < least_pairs_of_one;
-  const bool first = iterations_ == 0 && pilots_ < (small ? first_pilots : most_first_pilots);
+  const bool first = iterations_ == 0 && !small && pilots_ < most_first_pilots;
   // Later ones take as many sixteenths of an iteration as there were iterations, at most.
   const bool later = iterations_ > 0 && pilots_ > 0 && !small &&
                      pilots_ < std::min(most_first_pilots + iterations_, most_pilots);
