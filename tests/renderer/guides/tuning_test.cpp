@@ -209,7 +209,7 @@ TEST(Tuning, EndsWhenLaterPilotsKnowTheBsdf) {
   EXPECT_TRUE(guide.tuning.idle());
 }
 
-TEST(Tuning, JudgesSmallPicturesByMoments) {
+TEST(Tuning, SmallPicturesHaveOnePilot) {
   TunedGuide guide(100);
   EXPECT_EQ(guide.fly(100, 1e6), 1) << "of the first it is known that they are small";
   for (int i = 0; i < 8 && !guide.tuning.idle(); ++i) guide.iterate(100);
