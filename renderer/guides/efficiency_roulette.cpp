@@ -92,6 +92,7 @@ EfficiencyRoulette::Efficiency EfficiencyRoulette::measured() const {
   const double pixels = double(pixels_);
   double squared_means = 0, squares = 0;
   std::vector<double> differences;  // variances of a sample, by the halves of each pixel
+  differences.reserve(pixels_);
   for (std::size_t i = 0; i < pixels_; ++i) {
     const double mean = (sums_[0][i] + sums_[1][i]) / n;
     squared_means += mean * mean;

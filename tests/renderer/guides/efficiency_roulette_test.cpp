@@ -90,7 +90,7 @@ float continuations_beside(float rare, float throughput) {
 }
 
 // A pixel that one path has made the whole noise of the picture tells nothing of what the others
-// need: paths go on as without it. Nor are they split for it.
+// need: paths end as often as without it, and are not split for it.
 TEST(EfficiencyRoulette, RarePathsEndNoOthers) {
   const float usual = continuations_beside(1, 0.7F);
   EXPECT_LT(usual, 0.95F) << "the test has no power";
