@@ -87,28 +87,33 @@ class PathTracer final : public GuidedIntegrator<Guide> {
   /// learned if the iteration is stopped: pilots depend on nothing but those before them.
   void render_pilots(const IterationContext& context, const Image& image) {
     if constexpr (Guide::has_expected) {
+      Image scratch;  // thrown away
       while (const std::optional<std::uint64_t> number = guide_.due_pilot()) {
+        if (scratch.pixels.empty()) scratch = Image(image.width, image.height);
         guide_.begin_pilot();
-        pilots_ += render_pilot(context, image, *number);
+        pilots_ += render_pilot(context, scratch, *number);
       }
     }
   }
-  /// One block of each tile, into a picture that is thrown away. Two pilots after each other, one
-  /// with the guide and one without, have the same blocks.
-  Counters render_pilot(IterationContext context, const Image& picture, std::uint64_t number) {
+  /// One block of each tile, in a large picture of some of them: what a pilot tells depends on how
+  /// many pixels it has, not on how many there are. Two pilots after each other, one with the guide
+  /// and one without, have the same blocks.
+  Counters render_pilot(IterationContext context, Image& scratch, std::uint64_t number) {
+    constexpr int enough_tiles = 24;
     context.layers = {};
     context.parts = {};
     // Numbers of no iteration, whatever the sampler.
     context.sampler = Sampler::sobol;
     context.sample = SampleNumber{SampleNumber::of_pilots, number};
-    Image scratch(picture.width, picture.height);
     const Tiling tiling(scratch);
-    std::vector<typename Guide::Accumulator> accumulators(static_cast<std::size_t>(tiling.tiles()));
-    const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
-      const Tile tile = tiling.tile(i);
-      const std::uint64_t turn = 7 * ((number + 1) / 2);
-      const auto block = static_cast<int>(turn % static_cast<std::uint64_t>(tile.blocks()));
-      render(context, scratch, tile.block(block), counters,
+    const int apart = std::max(1, tiling.tiles() / enough_tiles);
+    const int turn = static_cast<int>((number + 1) / 2 % (std::uint64_t{1} << 16));
+    const int first = 5 * turn % apart;
+    const int tiles = (tiling.tiles() - first + apart - 1) / apart;
+    std::vector<typename Guide::Accumulator> accumulators(static_cast<std::size_t>(tiles));
+    const Counters sum = for_each_part(context, tiles, [&](int i, Counters& counters) {
+      const Tile tile = tiling.tile(first + i * apart);
+      render(context, scratch, tile.block(7 * turn % tile.blocks()), counters,
              {accumulators[static_cast<std::size_t>(i)], nullptr});
     });
     guide_.update(accumulators, context.pool, double(sum.samples) / double(scratch.pixels.size()));

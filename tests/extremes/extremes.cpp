@@ -55,18 +55,25 @@ int run(bool quick, std::string_view wanted) {
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const Row& row = rows[r];
     if (row.name.find(wanted) == std::string::npos) continue;
-    const auto begin = std::chrono::steady_clock::now();
     std::vector<Verdict> verdicts;
+    double took = 0, longest = 0;  // s
+    std::string_view slowest;
     for (std::size_t c = 0; c < columns.size(); ++c) {
       if (is_left_to_long_runs(effort, r, c, columns[c])) {
         verdicts.push_back({.kind = Verdict::Kind::left_out, .why = "left to ./dev extremes"});
         continue;
       }
       watchdog.begin(row.name + ", " + columns[c].name);
+      const auto begin = std::chrono::steady_clock::now();
       verdicts.push_back(verdict(stage, row, columns[c]));
+      const std::chrono::duration<double> cell = std::chrono::steady_clock::now() - begin;
+      took += cell.count();
+      if (cell.count() > longest) {
+        longest = cell.count();
+        slowest = columns[c].name;
+      }
     }
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-    fmt::print("{:<34} {:7.2f} s\n", row.name, took.count());
+    fmt::print("{:<34} {:7.2f} s, of these {:.2f} s by {}\n", row.name, took, longest, slowest);
     std::fflush(stdout);
     matrix.add_row(row.name, std::move(verdicts));
   }

@@ -70,6 +70,12 @@ std::vector<Method> methods(bool flags) {
   return all;
 }
 
+void let_few_race(IntegratorSettings& settings) {
+  auto* race = std::get_if<AutoSettings>(&settings);
+  if (race == nullptr) return;
+  race->candidates = {PathSettings{}, BdptSettings{}, for_small_pictures(MetropolisSettings{})};
+}
+
 std::optional<int> max_depth(const Method& method) {
   if (biased(method.settings)) return std::nullopt;
   const auto* lights = std::get_if<ManyLightsSettings>(&method.settings);

@@ -26,6 +26,7 @@ JobSpec Stage::job(const Method& method, const std::string& scene) const {
   job.scene = scene;
   job.resolution = {effort_.side(), effort_.side()};
   job.integrator = method.settings;
+  if (effort_.quick) let_few_race(job.integrator);
   job.budget.iterations = effort_.iterations();
   job.analysis.resolution = effort_.resolution();
   return job;

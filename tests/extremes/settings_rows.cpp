@@ -35,7 +35,7 @@ void check_many_lights(Stage& stage, JobSpec job, const Furnace& furnace, bool q
   // Lights of one cell share a map: few cells, few maps.
   if (auto* maps = std::get_if<ViewMapsVisibilitySettings>(&lights.visibility)) maps->levels = 5;
   if (quick) {
-    lights.light_paths = has_large_maps(method) ? 1 << 7 : 1 << 14;
+    lights.light_paths = has_large_maps(method) ? 1 << 6 : 1 << 14;
     job.resolution = {4, 4};
     check_furnace(stage.render(job), method, furnace, check);
   } else {
@@ -70,6 +70,14 @@ bool spare_connections(JobSpec& job) {
   return true;
 }
 
+/// In a quick run: many chains, and long ones, without a mean.
+bool spare_chains(JobSpec& job) {
+  const auto* chains = std::get_if<MetropolisSettings>(&job.integrator);
+  if (chains == nullptr || (chains->chains <= 1 << 14 && chains->mutations <= 100)) return false;
+  job.budget.iterations = 2;
+  return true;
+}
+
 Row at(End end, const std::string& name, const Effort& effort) {
   return {name,
           [=](Stage& stage, const Method& method, Check& check) {
@@ -77,11 +85,11 @@ Row at(End end, const std::string& name, const Effort& effort) {
             const std::string& scene = stage.scene("furnace", [&] { return furnace(f); });
             for (const Method& m : with_numbers_at(method, end)) {
               JobSpec job = stage.job(m, scene);
-              if (has_no_known_mean(m)) job.budget.iterations = 2;
+              if (has_no_known_mean(m)) job.budget.iterations = effort.quick ? 1 : 2;
               check.or_refused([&] {
                 if (has_too_many_lights(m) || has_large_maps(m)) {
                   check_many_lights(stage, job, f, effort.quick, m, check);
-                } else if (effort.quick && spare_connections(job)) {
+                } else if (effort.quick && (spare_connections(job) || spare_chains(job))) {
                   check.sound(stage.render(job));
                 } else {
                   check_furnace(stage.render(job), m, f, check);
