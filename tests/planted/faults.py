@@ -346,7 +346,7 @@ FAULTS = [
     Fault("cells are divided where vertices are alike", "renderer/guides/cell_forest.cpp",
           "if (variance > widest) {", "if (widest == 0 || variance < widest) {"),
     Fault("a guide that does not pay goes on", "renderer/guides/tuning.cpp",
-          "idle_ = noise * guided_cost > noise + gain;", "idle_ = noise * guided_cost < 0 * gain;"),
+          "idle_ = guided_cost > promised * promised;", "idle_ = guided_cost < 0 * promised;"),
     Fault("a guide is compared with itself", "renderer/guides/tuning.cpp",
           "without_.add(noise);", "without_.add(with_);"),
     Fault("guides that find less light go on", "renderer/guides/tuning.cpp",

@@ -92,7 +92,7 @@ TEST(GuideGain, RoundCorners) {
   const Gain gain({"bends", 12, 160});
   // Measured, and without splitting: 0.58 and 0.63, 0.56 and 0.60, 0.59 and 0.63, 0.56 and 0.60.
   gain.expect_below(0.64, skeleton({8}, {0.5}));
-  gain.expect_below(0.70, skeleton({}, {}));  // 36 seeds: 0.61 +- 0.02; it was 0.56
+  gain.expect_below(0.62, skeleton({}, {}));
   gain.expect_below(0.85, LearnedSkeletonGuideSettings{});
 }
 
