@@ -61,6 +61,14 @@ bool finds_less_light(const Tuning::Noise& with, const Tuning::Noise& without) {
   return share - with.lit / with.pairs > decisive * std::sqrt(variance);
 }
 
+/// Whether with the guide surely more than twice as many pairs are lit as would pay for its time.
+bool finds_far_more_light(const Tuning::Noise& with, const Tuning::Noise& without) {
+  if (!(with.lit > 0) || !(without.lit > 0)) return false;
+  const double ratio = std::log(with.lit / with.pairs / (without.lit / without.pairs));
+  const double deviation = std::sqrt(1 / with.lit + 1 / without.lit);
+  return ratio - std::log(surely_pays * guided_iteration_cost) > decisive * deviation;
+}
+
 std::uint32_t nearest(const std::vector<float>& values, float wanted) {
   const auto closer = [wanted](float a, float b) {
     return std::abs(a - wanted) < std::abs(b - wanted);
@@ -171,6 +179,11 @@ void Tuning::judge_pilots() {
     idle_ = true;
     return;
   }
+  // Nor does one bright path of the guide tell against it. Its iterations will.
+  if (iterations_ == 0 && finds_far_more_light(with_, without_)) {
+    pays_ = true;
+    return;
+  }
   const double wanted = (known ? decisive : decisive_of_unknown) * deviation;
   const bool shown = std::abs(gain) > wanted, sees = 2 * without_.lit > without_.pairs;
   if (!shown && !(last && (sees || known))) return;
@@ -252,8 +265,8 @@ void Tuning::stop_if_useless() {
   const bool known = largest < known_share_of_all * plain;
   if (pairs_ < least_pairs_of_one) {
     if (!known) return;
-    // Gains multiply along a path: what is measured (bends: 2.2 to 3) is at least the square of what
-    // moments promise (1.35).
+    // Gains multiply along a path: what is measured (bends: 2.2 to 3) is at least the square of
+    // what moments promise (1.35).
     const double promised = 1 + gain / noise;
     idle_ = guided_cost > promised * promised;
     decided_ = all;
