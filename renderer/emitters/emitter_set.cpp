@@ -71,7 +71,7 @@ void EmitterSet::select_pointwise(std::span<const double> powers) {
   }
   double all = 0;
   for (const double p : powers) all += p;
-  pointwise_.emplace(std::move(finite), infinite, all, bounds_.radius(), selection_);
+  pointwise_.emplace(finite, infinite, all, bounds_.radius(), selection_);
 }
 
 TreeEmitter EmitterSet::tree_emitter(std::uint32_t entry) const {

@@ -34,7 +34,7 @@ class LightTree {
   LightTree() = default;
   /// The same tree for any number of threads. Intensities must be finite and > 0; `emitters` may be
   /// empty. `extent`: the scene's radius, that bundles are small beside; 0: without bundles.
-  explicit LightTree(std::vector<TreeEmitter> emitters, double extent = 0);
+  explicit LightTree(const std::vector<TreeEmitter>& emitters, double extent = 0);
 
   bool empty() const { return nodes_.empty(); }
 

@@ -338,7 +338,7 @@ class LightTreeBuilder {
   double largest_bundle_;
 };
 
-LightTree::LightTree(std::vector<TreeEmitter> emitters, double extent) {
+LightTree::LightTree(const std::vector<TreeEmitter>& emitters, double extent) {
   LightTreeBuilder(emitters, extent, *this);
 }
 

@@ -5,7 +5,7 @@
 
 namespace lacuna {
 
-PointwiseSelection::PointwiseSelection(std::vector<TreeEmitter> finite,
+PointwiseSelection::PointwiseSelection(const std::vector<TreeEmitter>& finite,
                                        std::span<const Infinite> infinite, double power,
                                        double extent, const AliasTable& by_power)
     : by_power_(by_power), finite_(finite.size()) {
@@ -22,7 +22,7 @@ PointwiseSelection::PointwiseSelection(std::vector<TreeEmitter> finite,
   } else if (!infinite.empty()) {
     infinite_share_ = std::round(std::clamp(sum / power, 0.125, 0.875) * 0x1p32) * 0x1p-32;
   }
-  tree_ = LightTree(std::move(finite), extent);
+  tree_ = LightTree(finite, extent);
 }
 
 namespace {

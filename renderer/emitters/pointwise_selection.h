@@ -20,7 +20,7 @@ class PointwiseSelection {
   };
   /// `power`: that of all emitters. `extent`: the scene's radius, as of LightTree. `by_power`: the
   /// selection that ratios are relative to, which outlives this.
-  PointwiseSelection(std::vector<TreeEmitter> finite, std::span<const Infinite> infinite,
+  PointwiseSelection(const std::vector<TreeEmitter>& finite, std::span<const Infinite> infinite,
                      double power, double extent, const AliasTable& by_power);
   PointwiseSelection(const PointwiseSelection&) = delete;
   PointwiseSelection& operator=(const PointwiseSelection&) = delete;

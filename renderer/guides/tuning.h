@@ -26,8 +26,9 @@ namespace lacuna {
 /// in the picture: the first follow the BSDF, the others by turns the guide and the BSDF. A guide
 /// that has not shown a gain by their end is idle, unless the BSDF finds no light in most pixels
 /// and its noise is not known: then the guide begins, and later pilots follow the BSDF until more
-/// is known, but for one that finds light in fewer pixels. An integrator without pilots compares
-/// where the choices of all cells together seem to gain little: an iteration then follows the BSDF.
+/// is known, but for one that finds light in fewer pixels. One that finds it in far more begins. An
+/// integrator without pilots compares where the choices of all cells together seem to gain little:
+/// an iteration then follows the BSDF.
 class Tuning {
  public:
   Tuning() = default;
