@@ -117,7 +117,10 @@ void EfficiencyRoulette::end_span() {
   const Efficiency e = measured();
   if (state_.stage == Stage::plain) {
     state_.plain = e;
-    state_.stage = e.variance > well_spread * e.spread ? Stage::ended : Stage::trial;
+    state_.stage = e.variance > well_spread * e.spread ? Stage::early_trial : Stage::trial;
+  } else if (state_.stage == Stage::early_trial) {
+    state_.tried = e;
+    state_.stage = e.expense() < state_.plain.expense() ? Stage::early : Stage::ended;
   } else if (state_.stage == Stage::trial) {
     state_.tried = e;
     const double doubt = std::sqrt(state_.plain.doubt + e.doubt);
@@ -130,7 +133,7 @@ void EfficiencyRoulette::end_span() {
   state_.for_survival =
       static_cast<float>(std::sqrt(e.rays / std::max(e.trimmed, e.spread * least_trimmed)));
   state_.for_splitting = static_cast<float>(std::sqrt(e.rays / e.variance));
-  if (state_.stage == Stage::ended) state_.for_survival = state_.for_splitting = 0;
+  if (!active()) state_.for_survival = state_.for_splitting = 0;
   state_.iterations = {};
   state_.squares = state_.rays = state_.samples = 0;
   for (auto& half : sums_) std::fill(half.begin(), half.end(), 0.0);
@@ -141,7 +144,8 @@ std::vector<std::pair<std::string, double>> EfficiencyRoulette::statistics() con
            state_.plain.spread > 0 ? state_.plain.variance / state_.plain.spread : 1.0},
           {"roulette_tried", state_.tried.rays > 0 ? 1.0 : 0.0},
           {"roulette_stays", state_.stage == Stage::stays ? 1.0 : 0.0},
-          {"roulette_expense", state_.stage > Stage::trial && state_.plain.expense() > 0
+          {"roulette_early", state_.stage == Stage::early ? 1.0 : 0.0},
+          {"roulette_expense", state_.tried.rays > 0 && state_.plain.expense() > 0
                                    ? state_.tried.expense() / state_.plain.expense()
                                    : 1.0}};
 }

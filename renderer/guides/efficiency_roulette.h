@@ -28,10 +28,11 @@ namespace lacuna {
 /// pixel, which makes the picture's relative error small where this makes the squared error small.
 ///
 /// Samples that are spread evenly (Sampler::sobol) have a smaller error than their variance says,
-/// and what roulette adds is not spread. So a first span of iterations has none, and where the
-/// picture's two halves differ by clearly less than the variance of samples says, that is the end
-/// of it. Else a second span tries it, and it stays unless the product of variance and rays has
-/// become clearly larger.
+/// and what such roulette adds is not spread. So a first span of iterations has none, and where the
+/// picture's two halves differ by clearly less than the variance of samples says, a second span
+/// tries roulette by throughput from early_depth edges on instead, whose decisions are spread: it
+/// stays if the product of variance and rays has become smaller. Elsewhere the second span tries
+/// what was learned, and it stays unless that product has become clearly larger.
 class EfficiencyRoulette final : public Roulette {
  public:
   /// What one continuation of a path gathered.
@@ -48,12 +49,17 @@ class EfficiencyRoulette final : public Roulette {
 
   /// Whether it is made for this picture; it serves and learns from no other.
   bool fits(const Image& image) const { return image.pixels.size() == pixels_; }
+  /// Edges after which paths end by their throughput while ends_early().
+  static constexpr int early_depth = 3;
+  bool ends_early() const {
+    return state_.stage == Stage::early_trial || state_.stage == Stage::early;
+  }
   /// Whether it decides in the coming iteration.
   bool active() const { return state_.stage == Stage::trial || state_.stage == Stage::stays; }
   /// Whether update() wants a coming iteration.
   bool observes() const { return state_.stage < Stage::stays || learns(); }
   /// Whether update() wants its continuations, too.
-  bool learns() const { return state_.stage != Stage::ended && moments_.learns(); }
+  bool learns() const { return !ends_early() && state_.stage != Stage::ended && moments_.learns(); }
 
   /// Whether update() wants those of the batch of paths whose first one is of `pixel`: where the
   /// pictures are large, or many, a share is enough.
@@ -81,7 +87,7 @@ class EfficiencyRoulette final : public Roulette {
   void load(ByteReader& in);
 
  private:
-  enum class Stage : std::uint32_t { plain, trial, stays, ended };
+  enum class Stage : std::uint32_t { plain, trial, early_trial, stays, early, ended };
 
   /// Of an iteration that are learned from: their continuations take some megabytes.
   static constexpr std::uint64_t most_paths = std::uint64_t{1} << 16;

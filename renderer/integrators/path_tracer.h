@@ -146,11 +146,15 @@ class PathTracer final : public GuidedIntegrator<Guide> {
   void render(const IterationContext& context, Image& image, const Tile& tile, Counters& counters,
               Learning learning) const {
     if (guide_.learns()) learning.guide = guide_.accumulator();
-    const bool decides = roulette_ && roulette_->active() && roulette_->fits(image);
+    const bool advised = roulette_ && roulette_->fits(image);
+    const bool decides = advised && roulette_->active();
+    const bool early = advised && roulette_->ends_early();
     Batch batch(settings_.max_depth);
     Walk walk(context.scene, guide_,
               {.max_depth = settings_.max_depth,
-               .roulette_depth = settings_.roulette_depth,
+               .roulette_depth =
+                   early ? std::min(settings_.roulette_depth, EfficiencyRoulette::early_depth)
+                         : settings_.roulette_depth,
                .packets = true,
                .roulette = decides ? &*roulette_ : nullptr},
               counters);

@@ -18,7 +18,8 @@ struct EnumTable<RouletteChoice> {
       {RouletteChoice::efficiency, "efficiency",
        "at every vertex, by the variance and the rays of what is behind it: it ends or splits "
        "where that makes the picture more efficient (Rath et al. 2022); as throughput until "
-       "enough paths are known, and again where the first iterations tell that it would lose"},
+       "enough paths are known, and again where the first iterations tell that it would lose. "
+       "Where the sampler spreads the light evenly, by throughput from 3 edges on if that pays"},
   }};
 };
 

@@ -354,6 +354,8 @@ FAULTS = [
     Fault("one bright path ends a guide that finds far more light", "renderer/guides/tuning.cpp",
           "return ratio - std::log(surely_pays * guided_iteration_cost) > decisive * deviation;",
           "return ratio > 99 + deviation;"),
+    Fault("roulette ends paths early whether that pays or not", "renderer/guides/efficiency_roulette.cpp",
+          "state_.stage = e.expense() < state_.plain.expense() ?", "state_.stage = e.expense() > 0 ?"),
     Fault("pilots are taken for each other", "renderer/guides/tuning.cpp",
           "(plain ? without_ : with_).add(noise);", "(plain ? with_ : without_).add(noise);"),
     Fault("a guide ends where the BSDF finds no light", "renderer/guides/tuning.cpp",

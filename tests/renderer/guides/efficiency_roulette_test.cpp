@@ -100,6 +100,43 @@ TEST(EfficiencyRoulette, RarePathsEndNoOthers) {
   EXPECT_EQ(continuations_beside(1e4F, 30), 1);
 }
 
+/// After eight iterations whose samples are spread: of each pixel, two of a half have the mean 2,
+/// give or take `noise`, with `rays` a sample in the last four.
+EfficiencyRoulette of_spread_samples(float noise, std::uint64_t rays) {
+  constexpr int side = 16;
+  const ThreadPool pool(1);
+  const Scene scene(test::load({"cornell"}), {}, {}, pool);
+  const Camera camera(scene.data().cameras.front(), side, side);
+  EfficiencyRoulette roulette(scene, std::size_t{side} * side);
+  const std::function<bool()> never = [] { return false; };
+  Rng rng(1, 0, 0, Rng::Purpose::test);
+  for (std::uint64_t i = 0; i < 8; ++i) {
+    const bool tried = i >= 4;
+    Image image(side, side);
+    for (Rgb& pixel : image.pixels) {
+      const float jitter = (rng.next() - 0.5F) * (tried ? noise : 0.5F);
+      pixel = Rgb((i % 4 < 2 ? 1.0F : 3.0F) + jitter);
+    }
+    EXPECT_EQ(roulette.ends_early(), tried);
+    roulette.update(
+        {}, {scene, camera, pool, 1, i, never}, image,
+        {.samples = image.pixels.size(), .rays = (tried ? rays : 6) * image.pixels.size()});
+  }
+  EXPECT_FALSE(roulette.active());
+  EXPECT_FALSE(roulette.learns());
+  EXPECT_FALSE(roulette.observes());
+  return roulette;
+}
+
+// Where samples are spread, roulette by throughput is tried, and stays where it saves more than it
+// adds.
+TEST(EfficiencyRoulette, EndsPathsEarlyWhereThatPays) {
+  EXPECT_TRUE(of_spread_samples(0.5F, 4).ends_early());
+  EXPECT_FALSE(of_spread_samples(0.5F, 8).ends_early());
+  EXPECT_FALSE(of_spread_samples(1, 4).ends_early())
+      << "a third fewer rays for four times the noise";
+}
+
 TEST(EfficiencyRoulette, IsBounded) {
   EXPECT_EQ(EfficiencyRoulette::continuations({0, 0, 3}, 1, 1),
             EfficiencyRoulette::continuations({1e-6F, 1e-12F, 3}, 1, 1));
