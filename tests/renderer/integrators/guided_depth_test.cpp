@@ -89,12 +89,17 @@ TEST(GuidedDepth, BidirectionalPathTracingHasTheMeanOfAWhiteFurnace) {
 }
 
 // Paths that are ended and split for efficiency, from their first edge on and of many.
+void expect_mean_one_of_efficient_paths(int depth) {
+  PathSettings path = guided_path(BsdfGuideSettings{}, depth);
+  path.roulette = RouletteChoice::efficiency;
+  expect_mean_one(path, depth);
+}
 TEST(GuidedDepth, EfficientPathsHaveTheMeanOfAWhiteFurnace) {
-  for (const int depth : {6, 100}) {
-    PathSettings path = guided_path(BsdfGuideSettings{}, depth);
-    path.roulette = RouletteChoice::efficiency;
-    expect_mean_one(path, depth);
-  }
+  expect_mean_one_of_efficient_paths(6);
+  expect_mean_one_of_efficient_paths(20);
+}
+TEST(LongGuidedDepth, EfficientPathsHaveTheMeanOfAWhiteFurnace) {
+  expect_mean_one_of_efficient_paths(100);
 }
 
 /// Every guide of the registry, which draws nine of ten directions where it has any to draw.

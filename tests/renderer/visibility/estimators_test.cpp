@@ -98,7 +98,9 @@ TEST_P(Estimators, HaveTheMeanOfExact) {
 
 INSTANTIATE_TEST_SUITE_P(All, Estimators,
                          testing::Values(test::PathScene{"cornell"}, test::PathScene{"ajar"},
-                                         test::PathScene{"coated"}, test::PathScene{"open", true}),
+                                         test::PathScene{"open", true}),
+                         [](const auto& s) { return s.param.name; });
+INSTANTIATE_TEST_SUITE_P(Long, Estimators, testing::Values(test::PathScene{"coated"}),
                          [](const auto& s) { return s.param.name; });
 
 // All cache points in another room, where none of the lights is seen as from here.
