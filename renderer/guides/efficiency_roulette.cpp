@@ -160,7 +160,7 @@ void EfficiencyRoulette::load(ByteReader& in) {
   moments_.load(in);
   state_ = in.get<State>();
   const auto positive = [](double x) { return std::isfinite(x) && x >= 0; };
-  bool good = state_.stage <= Stage::ended &&
+  bool good = state_.stage <= Stage::early &&
               state_.iterations[0] + state_.iterations[1] < state_.span &&
               positive(state_.squares) && positive(state_.rays) && positive(state_.samples) &&
               state_.span > 0 && positive(double(state_.for_survival)) &&

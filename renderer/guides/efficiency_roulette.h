@@ -28,11 +28,11 @@ namespace lacuna {
 /// pixel, which makes the picture's relative error small where this makes the squared error small.
 ///
 /// Samples that are spread evenly (Sampler::sobol) have a smaller error than their variance says,
-/// and what such roulette adds is not spread. So a first span of iterations has none, and where the
-/// picture's two halves differ by clearly less than the variance of samples says, a second span
-/// tries roulette by throughput from early_depth edges on instead, whose decisions are spread: it
-/// stays if the product of variance and rays has become smaller. Elsewhere the second span tries
-/// what was learned, and it stays unless that product has become clearly larger.
+/// and such roulette loses by it. So a first span of iterations has none, and where the picture's
+/// two halves differ by clearly less than the variance of samples says, a second span tries
+/// roulette by throughput from early_roulette_depth edges on instead, which leaves the first edges
+/// as they are: it stays if the product of squared error and rays has become smaller. Elsewhere the
+/// second span tries what was learned, and it stays unless that product has become clearly larger.
 class EfficiencyRoulette final : public Roulette {
  public:
   /// What one continuation of a path gathered.
@@ -49,15 +49,15 @@ class EfficiencyRoulette final : public Roulette {
 
   /// Whether it is made for this picture; it serves and learns from no other.
   bool fits(const Image& image) const { return image.pixels.size() == pixels_; }
-  /// Edges after which paths end by their throughput while ends_early().
-  static constexpr int early_depth = 3;
+  /// Whether paths of the coming iteration end by their throughput from early_roulette_depth edges
+  /// on.
   bool ends_early() const {
     return state_.stage == Stage::early_trial || state_.stage == Stage::early;
   }
   /// Whether it decides in the coming iteration.
   bool active() const { return state_.stage == Stage::trial || state_.stage == Stage::stays; }
   /// Whether update() wants a coming iteration.
-  bool observes() const { return state_.stage < Stage::stays || learns(); }
+  bool observes() const { return in_first_spans() || learns(); }
   /// Whether update() wants its continuations, too.
   bool learns() const { return !ends_early() && state_.stage != Stage::ended && moments_.learns(); }
 
@@ -87,7 +87,20 @@ class EfficiencyRoulette final : public Roulette {
   void load(ByteReader& in);
 
  private:
-  enum class Stage : std::uint32_t { plain, trial, early_trial, stays, early, ended };
+  /// Checkpoints hold these numbers.
+  enum class Stage : std::uint32_t {
+    plain = 0,
+    trial = 1,
+    stays = 2,
+    ended = 3,
+    early_trial = 4,
+    early = 5
+  };
+  /// It is not decided yet what stays.
+  bool in_first_spans() const {
+    return state_.stage == Stage::plain || state_.stage == Stage::trial ||
+           state_.stage == Stage::early_trial;
+  }
 
   /// Of an iteration that are learned from: their continuations take some megabytes.
   static constexpr std::uint64_t most_paths = std::uint64_t{1} << 16;

@@ -61,9 +61,9 @@ bool finds_less_light(const Tuning::Noise& with, const Tuning::Noise& without) {
   return share - with.lit / with.pairs > decisive * std::sqrt(variance);
 }
 
-/// Whether with the guide surely more than twice as many pairs are lit as would pay for its time.
+/// Whether with the guide surely more than surely_pays times as many pairs are lit as would pay for
+/// its time. Requires lit pairs with it and without.
 bool finds_far_more_light(const Tuning::Noise& with, const Tuning::Noise& without) {
-  if (!(with.lit > 0) || !(without.lit > 0)) return false;
   const double ratio = std::log(with.lit / with.pairs / (without.lit / without.pairs));
   const double deviation = std::sqrt(1 / with.lit + 1 / without.lit);
   return ratio - std::log(surely_pays * guided_iteration_cost) > decisive * deviation;
@@ -179,7 +179,7 @@ void Tuning::judge_pilots() {
     idle_ = true;
     return;
   }
-  // Nor does one bright path of the guide tell against it. Its iterations will.
+  // Nor does one bright path of the guide tell against it; its iterations are judged later.
   if (iterations_ == 0 && finds_far_more_light(with_, without_)) {
     pays_ = true;
     return;

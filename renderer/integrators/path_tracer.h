@@ -108,7 +108,9 @@ class PathTracer final : public GuidedIntegrator<Guide> {
     const Tiling tiling(scratch);
     const int apart = std::max(1, tiling.tiles() / enough_tiles);
     const int turn = static_cast<int>((number + 1) / 2 % (std::uint64_t{1} << 16));
-    const int first = 5 * turn % apart;
+    // The fractions of multiples of the golden ratio come everywhere, however many tiles there are.
+    const std::uint64_t fraction = static_cast<std::uint32_t>(turn) * 0x9E3779B9U;
+    const int first = static_cast<int>(fraction * static_cast<std::uint64_t>(apart) >> 32);
     const int tiles = (tiling.tiles() - first + apart - 1) / apart;
     std::vector<typename Guide::Accumulator> accumulators(static_cast<std::size_t>(tiles));
     const Counters sum = for_each_part(context, tiles, [&](int i, Counters& counters) {
@@ -152,9 +154,8 @@ class PathTracer final : public GuidedIntegrator<Guide> {
     Batch batch(settings_.max_depth);
     Walk walk(context.scene, guide_,
               {.max_depth = settings_.max_depth,
-               .roulette_depth =
-                   early ? std::min(settings_.roulette_depth, EfficiencyRoulette::early_depth)
-                         : settings_.roulette_depth,
+               .roulette_depth = early ? std::min(settings_.roulette_depth, early_roulette_depth)
+                                       : settings_.roulette_depth,
                .packets = true,
                .roulette = decides ? &*roulette_ : nullptr},
               counters);

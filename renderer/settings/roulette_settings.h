@@ -9,6 +9,10 @@ namespace lacuna {
 /// What decides how often a path goes on.
 enum class RouletteChoice { throughput, efficiency };
 
+/// Edges before `efficiency` may end paths by their throughput (EfficiencyRoulette); its text below
+/// says so.
+inline constexpr int early_roulette_depth = 3;
+
 template <>
 struct EnumTable<RouletteChoice> {
   static constexpr std::array<EnumValue<RouletteChoice>, 2> values{{

@@ -37,10 +37,6 @@ constexpr int most_after_stop = 8;
 /// its first, asks more than 50,000 times.
 constexpr int most_patience = 1'000'000;
 
-/// More of the largest budgets than anybody sees: of 1e7 s 1000 s, which the watchdog does not
-/// allow, and of iterations hundreds of thousands.
-constexpr double most_share = 1e-4;
-
 /// The largest budget that is allowed: the job stops soon after it is told to, keeps what it has,
 /// and its estimates of what remains are numbers.
 Row stopped(const std::string& name, const Budget& budget) {
@@ -62,7 +58,10 @@ Row stopped(const std::string& name, const Budget& budget) {
               check.require(patience < most_patience, "nothing was done until then");
               if (patience >= most_patience) return;
             }
-            check.require(progress->share >= 0 && progress->share < most_share,
+            const double used = budget.seconds
+                                    ? progress->seconds / *budget.seconds
+                                    : double(progress->iteration) / double(*budget.iterations);
+            check.require(used > 0 && std::abs(progress->share - used) <= 1e-9 * used,
                           "a share of the budget");
             check.require(
                 !progress->remaining_seconds || (std::isfinite(*progress->remaining_seconds) &&

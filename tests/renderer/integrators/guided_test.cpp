@@ -240,6 +240,18 @@ TEST(Pilots, EndAGuideBeforeItSpoilsThePicture) {
   EXPECT_GT(with.counters.rays, without.counters.rays);
 }
 
+// Of a large picture a pilot is a few tiles: 32 of them, of 47 blocks at most, are no iteration.
+TEST(Pilots, TakeNoMoreOfALargePicture) {
+  PathSettings guided = test::path_tracing(3);
+  guided.guide = SdTreeGuideSettings{};
+  std::get<SdTreeGuideSettings>(guided.guide).probability = AutoNumber{};
+  test::RenderSettings s{.integrator = guided, .width = 512, .height = 512, .iterations = 1};
+  const std::uint64_t samples = test::render("cornell.glb", s).counters.samples;
+  const std::uint64_t iteration = 512 * 512, block = 64;
+  EXPECT_GE(samples, iteration + 16 * 24 * block);
+  EXPECT_LE(samples, iteration + 32 * 47 * block);
+}
+
 // Where light comes through few gaps it is kept.
 TEST(Pilots, KeepAGuideThatPays) {
   PathSettings guided = test::path_tracing(5);
