@@ -108,7 +108,7 @@ class PathTracer final : public GuidedIntegrator<Guide> {
     const Tiling tiling(scratch);
     const int apart = std::max(1, tiling.tiles() / enough_tiles);
     const int turn = static_cast<int>((number + 1) / 2 % (std::uint64_t{1} << 16));
-    // The fractions of multiples of the golden ratio come everywhere, however many tiles there are.
+    // Multiples of the golden ratio modulo 1 are spread evenly, however many tiles there are.
     const std::uint64_t fraction = static_cast<std::uint32_t>(turn) * 0x9E3779B9U;
     const int first = static_cast<int>(fraction * static_cast<std::uint64_t>(apart) >> 32);
     const int tiles = (tiling.tiles() - first + apart - 1) / apart;
