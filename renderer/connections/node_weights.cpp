@@ -50,7 +50,7 @@ Ray ray_to(const LightVertices& lights, int s, std::size_t i, const V3f& x) {
   }
   const EmitterPoint& e = lights.emitter(i);
   if (e.infinite()) return {x, e.x};
-  return to(e.x, [&](const V3f& w) { return EmitterEndpoint{e}.origin(w); });
+  return to(e.x, [&](const V3f& w) { return origin_on(e, w); });
 }
 
 std::vector<Ray> rays_to(const LightVertices& lights, int s, const V3f& x) {

@@ -1,6 +1,7 @@
 #include "renderer/guides/make_guide.h"
 
 #include "renderer/guides/registry.h"
+#include "renderer/guides/skeleton_to_eye.h"
 
 namespace lacuna {
 
@@ -14,6 +15,11 @@ std::unique_ptr<GuidingDistribution> make_guiding_distribution(const GuideSettin
                                   return nullptr;
                                 }
                               });
+}
+
+std::unique_ptr<GuidingDistribution> make_guiding_distribution(const LightGuideSettings& settings) {
+  const auto* s = std::get_if<SkeletonLightGuideSettings>(&settings);
+  return s == nullptr ? nullptr : std::make_unique<SkeletonToEye>(*s);
 }
 
 }  // namespace lacuna

@@ -2,42 +2,58 @@
 
 #include <algorithm>
 
+#include "renderer/emitters/emitter_set.h"
 #include "renderer/guides/guiding_distribution.h"
 #include "renderer/guides/reflected_radiance.h"
 #include "renderer/path/bsdf_guide.h"
 
 namespace lacuna {
 
-/// One-sample MIS of a GuidingDistribution and the BSDF (Noel 2015, 9.4). On the paths it guides,
-/// those from the eye unless told otherwise, a direction is sampled from the distribution with
-/// probability c of its guiding cell, else from the BSDF; its density is c p_guide + (1 - c)
-/// p_bsdf, which makes the weight the balance heuristic. Delta lobes are sampled by the BSDF alone;
-/// where c is 1 they are lost, and so is what the distribution misses.
-/// Paths of the other transport follow the BSDF. pdf() takes the transport, so each walk can
-/// evaluate the densities of the other.
+/// One-sample MIS of a GuidingDistribution and the BSDF (Noel 2015, 9.4). A direction is sampled
+/// from the distribution with probability c of its guiding cell, else from the BSDF; its density is
+/// c p_guide + (1 - c) p_bsdf, which makes the weight the balance heuristic. Delta lobes are
+/// sampled by the BSDF alone; where c is 1 they are lost, and so is what the distribution misses.
+/// Paths from the eye and paths from the lights have a distribution each, or none, and follow the
+/// BSDF. pdf() takes the transport, so each walk can evaluate the densities of the other. Only the
+/// distribution of eye paths learns.
+///
+/// Light paths are guided from their first edge on, but for emitters without area and those that
+/// emit on both sides.
 class MixedGuide {
  public:
-  explicit MixedGuide(std::unique_ptr<GuidingDistribution> directions,
-                      Transport guided = Transport::radiance)
-      : directions_(std::move(directions)), guided_(guided) {}
+  /// Either may be null: those paths follow the BSDF.
+  explicit MixedGuide(std::unique_ptr<GuidingDistribution> eye,
+                      std::unique_ptr<GuidingDistribution> light = nullptr)
+      : eye_(std::move(eye)), light_(std::move(light)), idle_(eye_ == nullptr) {}
 
-  bool needs_space() const { return directions_->needs_space(); }
+  bool needs_space() const {
+    return (eye_ && eye_->needs_space()) || (light_ && light_->needs_space());
+  }
   void prepare(const PrepareContext& context) {
     const Bounds& box = context.scene.bounds();
     reflected_ = ReflectedRadiance(box.low, box.size());
-    directions_->prepare(context);
+    if (eye_) eye_->prepare(context);
+    if (light_) light_->prepare(context);
   }
   void save(ByteWriter& out) const {
-    directions_->save(out);
+    if (!eye_) return;
+    eye_->save(out);
     reflected_.save(out);
   }
   void load(ByteReader& in) {
-    directions_->load(in);
+    if (!eye_) return;
+    eye_->load(in);
     reflected_.load(in);
-    idle_ = directions_->idle();
+    idle_ = eye_->idle();
   }
   std::vector<std::pair<std::string, double>> statistics() const {
-    return directions_->statistics();
+    std::vector<std::pair<std::string, double>> all;
+    if (eye_) all = eye_->statistics();
+    if (!light_) return all;
+    for (const auto& [name, value] : light_->statistics()) {
+      all.emplace_back("light_guide_" + name, value);
+    }
+    return all;
   }
 
   static constexpr bool has_expected = true;
@@ -47,28 +63,28 @@ class MixedGuide {
     std::unique_ptr<GuidingDistribution::Accumulator> directions;  // null: they do not learn
     ReflectedRadiance::Accumulator reflected;
   };
-  /// It samples the BSDF alone and learns nothing: the same as BsdfGuide.
+  /// Eye paths follow the BSDF alone, and nothing is learned.
   bool idle() const { return idle_; }
-  bool learns() const { return !idle_ && (directions_->learns() || reflected_.learns()); }
+  bool learns() const { return !idle_ && (eye_->learns() || reflected_.learns()); }
   Accumulator accumulator() const {
-    return {directions_->learns() ? directions_->accumulator() : nullptr, {}};
+    return {eye_ && eye_->learns() ? eye_->accumulator() : nullptr, {}};
   }
   void accumulate(const GuidingSample& sample, Accumulator& accumulator) const {
-    if (accumulator.directions) directions_->accumulate(sample, *accumulator.directions);
+    if (accumulator.directions) eye_->accumulate(sample, *accumulator.directions);
   }
   void record(const Vertex& v, double value, Accumulator& accumulator) const {
     if (reflected_.learns()) reflected_.record(v, value, accumulator.reflected);
   }
   /// The variance of one sample of a pixel, estimated from one pair of pixels.
   void record_noise(double variance, Accumulator& accumulator) const {
-    if (accumulator.directions) directions_->record_noise(variance, *accumulator.directions);
+    if (accumulator.directions) eye_->record_noise(variance, *accumulator.directions);
   }
   void update(std::span<Accumulator> accumulators, const ThreadPool& pool, double iterations) {
-    if (directions_->learns()) {
+    if (eye_ && eye_->learns()) {
       std::vector<std::unique_ptr<GuidingDistribution::Accumulator>> directions;
       for (Accumulator& a : accumulators) directions.push_back(std::move(a.directions));
-      directions_->update(directions, pool, iterations);
-      idle_ = directions_->idle();
+      eye_->update(directions, pool, iterations);
+      idle_ = eye_->idle();
     }
     if (reflected_.learns()) {
       std::vector<const ReflectedRadiance::Accumulator*> reflected;
@@ -77,29 +93,31 @@ class MixedGuide {
     }
   }
 
-  std::optional<std::uint64_t> due_pilot() const { return directions_->due_pilot(); }
-  void begin_pilot() { directions_->begin_pilot(); }
+  std::optional<std::uint64_t> due_pilot() const { return eye_ ? eye_->due_pilot() : std::nullopt; }
+  void begin_pilot() { eye_->begin_pilot(); }
 
-  /// Looks up the guiding cell of `v`, on the side of v.wp.
+  /// Looks up the guiding cells of `v`, on the side of v.wp.
   void on_hit(Vertex& v) const {
-    const bool looked_up = !idle_ && v.bsdf->connectible();
-    v.guiding_cell = looked_up ? directions_->cell(v.surface, v.wp) : GuidingCell{};
+    const bool guided = v.bsdf->connectible();
+    v.guiding_cell = guided && !idle_ ? eye_->cell(v.surface, v.wp) : GuidingCell{};
+    v.light_cell = guided && light_ ? light_->cell(v.surface, v.wp) : GuidingCell{};
   }
 
   std::optional<BsdfSample> sample(const Vertex& v, Rng& rng, Transport transport) const {
-    const float c = v.guiding_cell.probability;
-    if (transport != guided_ || c == 0) return bsdf_.sample(v, rng, transport);
+    const GuidingCell& cell = cell_of(v, transport);
+    const float c = cell.probability;
+    if (c == 0) return bsdf_.sample(v, rng, transport);
+    const GuidingDistribution& directions = *of(transport);
     // One point chooses and places, so that the points of both stay evenly spread.
     Rng::FinePoint u = fine_point(rng);
     if (choose(u.x, double(c))) {
-      const std::optional<V3f> w =
-          directions_->sample({v.surface, *v.bsdf, v.wp, v.guiding_cell}, u, rng);
+      const std::optional<V3f> w = directions.sample({v.surface, *v.bsdf, v.wp, cell}, u, rng);
       if (!w) return std::nullopt;
       const Rgb f = v.bsdf->eval(v.wp, *w, transport);
       // A direction below the surface scatters nothing; it counts as a failed sample.
       if (is_black(f)) return std::nullopt;
       const Pdf<SolidAngle> bsdf = bsdf_.pdf(v, v.wp, *w, transport);
-      const Pdf<SolidAngle> p = mixed(v, v.wp, v.guiding_cell, *w, bsdf);
+      const Pdf<SolidAngle> p = mixed(directions, {v.surface, *v.bsdf, v.wp, cell}, *w, bsdf);
       if (!p.positive()) return std::nullopt;
       const bool transmitted = dot(*w, v.surface.ng) * dot(v.wp, v.surface.ng) < 0;
       const float pdf_ratio = bsdf.positive() ? p / bsdf : 1;
@@ -113,7 +131,7 @@ class MixedGuide {
       s->pdf_ratio = 1 - c;
       return s;
     }
-    const Pdf<SolidAngle> p = mixed(v, v.wp, v.guiding_cell, s->wi, s->pdf);
+    const Pdf<SolidAngle> p = mixed(directions, {v.surface, *v.bsdf, v.wp, cell}, s->wi, s->pdf);
     s->pdf_ratio = p / s->pdf;
     s->weight /= s->pdf_ratio;
     s->pdf = p;
@@ -123,9 +141,34 @@ class MixedGuide {
   /// Density of `wi` for a walk of the given transport that arrived at `v` from `wo`.
   Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport) const {
     const Pdf<SolidAngle> bsdf = bsdf_.pdf(v, wo, wi, transport);
-    if (transport != guided_ || idle_) return bsdf;
+    const GuidingDistribution* const directions = of(transport);
+    if (directions == nullptr) return bsdf;
     const bool this_side = (dot(wo, v.surface.ng) < 0) == (dot(v.wp, v.surface.ng) < 0);
-    return mixed(v, wo, this_side ? v.guiding_cell : directions_->cell(v.surface, wo), wi, bsdf);
+    const GuidingCell cell = this_side ? cell_of(v, transport) : directions->cell(v.surface, wo);
+    return mixed(*directions, {v.surface, *v.bsdf, wo, cell}, wi, bsdf);
+  }
+
+  /// The first edge of a light path from the point `e` on one of `lights`. A surface emits as a
+  /// white Lambertian one scatters what arrives along its normal, but for the factor pi.
+  std::optional<Leaving> sample_first_edge(const EmitterSet& lights, const EmitterPoint& e,
+                                           Rng& rng) const {
+    if (!guides(e)) return lights.sample_first_edge(e, rng);
+    Vertex v;
+    make_white(e, v);
+    const std::optional<BsdfSample> s = sample(v, rng, Transport::importance);
+    if (!s || !e.pdf.positive()) return std::nullopt;
+    const Rgb emitted = e.towards(s->wi);
+    if (is_black(emitted)) return std::nullopt;
+    return Leaving{{offset_origin(e.x, e.ng, e.extent, s->wi), s->wi},
+                   s->pdf,
+                   emitted * s->weight * (pi / e.pdf.value)};
+  }
+  /// Density of unit `w` with which sample_first_edge() leaves `e`, as EmitterPoint::leaving_pdf().
+  Pdf<SolidAngle> leaving_pdf(const EmitterPoint& e, const V3f& w) const {
+    if (!guides(e)) return e.leaving_pdf(w);
+    Vertex v;
+    make_white(e, v);
+    return pdf(v, e.ng, w, Transport::importance);
   }
 
  private:
@@ -150,18 +193,38 @@ class MixedGuide {
     u = static_cast<std::uint64_t>(std::min(left, 1 - 0x1p-53) * 0x1p64);
     return chosen;
   }
-  Pdf<SolidAngle> mixed(const Vertex& v, const V3f& wo, const GuidingCell& cell, const V3f& wi,
-                        Pdf<SolidAngle> bsdf) const {
-    const float c = cell.probability;
+  /// The distribution of paths of this transport; null: they follow the BSDF.
+  const GuidingDistribution* of(Transport transport) const {
+    if (transport == Transport::importance) return light_.get();
+    return idle_ ? nullptr : eye_.get();
+  }
+  static const GuidingCell& cell_of(const Vertex& v, Transport transport) {
+    return transport == Transport::importance ? v.light_cell : v.guiding_cell;
+  }
+  static Pdf<SolidAngle> mixed(const GuidingDistribution& directions, const GuidedVertex& at,
+                               const V3f& wi, Pdf<SolidAngle> bsdf) {
+    const float c = at.cell.probability;
     if (c == 0) return bsdf;
-    return c * directions_->pdf({v.surface, *v.bsdf, wo, cell}, wi) + (1 - c) * bsdf;
+    return c * directions.pdf(at, wi) + (1 - c) * bsdf;
   }
 
-  std::unique_ptr<GuidingDistribution> directions_;
-  Transport guided_;
+  bool guides(const EmitterPoint& e) const {
+    return light_ && e.kind == EmitterPoint::Kind::area && !e.both_sides;
+  }
+  void make_white(const EmitterPoint& e, Vertex& v) const {
+    v.kind = Vertex::Kind::surface;
+    v.surface.x = e.x;
+    v.surface.ng = v.surface.ns = v.wp = e.ng;
+    v.surface.extent = e.extent;
+    v.bsdf.emplace(white_, e.ng, e.ng);
+    v.light_cell = light_->cell(v.surface, v.wp);
+  }
+
+  std::unique_ptr<GuidingDistribution> eye_, light_;
   ReflectedRadiance reflected_;
   BsdfGuide bsdf_;
-  bool idle_ = false;
+  Lobes white_{SurfaceParams{.f0 = Rgb(0, 0, 0), .f90 = 0}};
+  bool idle_;
 };
 static_assert(Guide<MixedGuide>);
 

@@ -66,7 +66,7 @@ class Bdpt : public GuidedIntegrator<Guide> {
       next_event.set_ratio(*e, v, batch.vertex(i, depth - 1), depth);
     }
     const Rgb value = v.throughput * e->emission;
-    const auto w = static_cast<float>(hit_weight(v, depth, *e, batch.counts));
+    const auto w = static_cast<float>(hit_weight(v, depth, *e, batch.counts, guide_));
     batch.radiance[i] += value * w;
     if (guide_.learns()) batch.gathered.add(i, depth, value * w);
     layers_.strategy(context.layers, 0, depth + 1, {batch.pixels[i], value, w});
@@ -355,7 +355,7 @@ class PairedBdpt final : public Bdpt<Guide> {
       const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
       const EmitterPoint e = next_event.sample(v, pairs.ahead[i], pairs.eye.states[i].rng);
       const Contribution known = Base::contribution(pairs.eye, i);
-      Base::join(eye, EmitterEndpoint{e}, 1, known, pairs.eye);
+      Base::join(eye, EmitterEndpoint<Guide>{e, guide_}, 1, known, pairs.eye);
       const std::size_t path = pairs.eye.origin[i];
       for (int s = 2; s <= std::min(longest, pairs.light.length(path)); ++s) {
         if (!pairs.light.connectible(path, s - 1)) continue;
@@ -575,7 +575,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
 }  // namespace
 
 std::unique_ptr<Integrator> make_bdpt(const BdptSettings& settings) {
-  return with_guide(settings.guide, [&]<class Guide>(Guide guide) {
+  return with_guides(settings.guide, settings.light_guide, [&]<class Guide>(Guide guide) {
     return ConnectionsRegistry::visit(
         settings.connections,
         [&]<Connections C>(const auto& connections) -> std::unique_ptr<Integrator> {
@@ -591,10 +591,12 @@ std::unique_ptr<Integrator> make_bdpt(const BdptSettings& settings) {
 
 std::unique_ptr<Integrator> make_vcm(const VcmSettings& settings) {
   const BdptSettings bdpt{static_cast<const PathLengths&>(settings)};
-  return with_guide(settings.guide, [&]<class Guide>(Guide guide) -> std::unique_ptr<Integrator> {
-    return std::make_unique<PairedBdpt<Guide>>(bdpt, std::move(guide),
-                                               Merging{settings.merge, settings.connect, settings});
-  });
+  return with_guides(settings.guide, settings.light_guide,
+                     [&]<class Guide>(Guide guide) -> std::unique_ptr<Integrator> {
+                       return std::make_unique<PairedBdpt<Guide>>(
+                           bdpt, std::move(guide),
+                           Merging{settings.merge, settings.connect, settings});
+                     });
 }
 
 }  // namespace lacuna

@@ -1,6 +1,6 @@
 #include "renderer/integrators/integrators.h"
 
-#include "renderer/guides/light_guide.h"
+#include "renderer/guides/make_guide.h"
 #include "renderer/integrators/guided_integrator.h"
 #include "renderer/path/light_pass.h"
 #include "renderer/settings/light_settings.h"

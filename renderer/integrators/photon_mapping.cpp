@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "renderer/core/pass_seconds.h"
-#include "renderer/guides/light_guide.h"
+#include "renderer/guides/make_guide.h"
 #include "renderer/path/direct_light.h"
 #include "renderer/path/next_event_batch.h"
 #include "renderer/path/photon_map.h"

@@ -46,7 +46,8 @@ struct GeneralLight {
   /// Calls `use(endpoint)` with the endpoint of a connecting edge (endpoints.h).
   template <class Guide, class Use>
   decltype(auto) with_end(const Guide& guide, Use&& use) const {
-    if (const auto* e = std::get_if<EmitterPoint>(&at)) return use(EmitterEndpoint{*e});
+    if (const auto* e = std::get_if<EmitterPoint>(&at))
+      return use(EmitterEndpoint<Guide>{*e, guide});
     return use(SurfaceEndpoint<Guide>{std::get<Vertex>(at), index, Transport::importance, guide});
   }
 };

@@ -127,7 +127,7 @@ void PathEvaluator::gather(const Point& point, std::size_t i, int depth) {
   const int t = depth + 1;
   if (point.wanted.wants(0, t)) {
     if (const std::optional<EmitterPoint> e = emitter_at(context_.scene, v)) {
-      const auto weight = static_cast<float>(hit_weight(v, depth, *e, counts_));
+      const auto weight = static_cast<float>(hit_weight(v, depth, *e, counts_, guide_));
       eyes_.radiance[i] += v.throughput * e->emission * weight;
     }
   }
@@ -146,7 +146,7 @@ void PathEvaluator::gather(const Point& point, std::size_t i, int depth) {
   for (int s = 1; s <= lights_.length(light); ++s) {
     if (!point.wanted.wants(s, t)) continue;
     if (s == 1) {
-      join(EmitterEndpoint{lights_.emitter(light)});
+      join(EmitterEndpoint<BsdfGuide>{lights_.emitter(light), guide_});
     } else if (lights_.connectible(light, s - 1)) {
       join(lights_.end(light, s - 1));
     }

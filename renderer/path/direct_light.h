@@ -32,7 +32,7 @@ class DirectLight {
     std::optional<EmitterPoint> e = emitter_at(scene_, v);
     if (!e) return Rgb(0, 0, 0);
     if (draws()) next_event_.set_ratio(*e, v, before, depth);
-    const double w = power_of_two(hit_weight(v, depth, *e, counts_));
+    const double w = power_of_two(hit_weight(v, depth, *e, counts_, guide_));
     return v.throughput * e->emission * static_cast<float>(w);
   }
 
@@ -44,7 +44,7 @@ class DirectLight {
                              Add&& add) const {
     const EmitterPoint e = next_event_.sample(v, ahead, rng);
     const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
-    const EmitterEndpoint light{e};
+    const EmitterEndpoint<Guide> light{e, guide_};
     if (const Connection c = connect(eye, light)) {
       const double w = power_of_two(weight(eye, light, c, counts_));
       add(shadow_ray(eye, light, c), c.contribution * static_cast<float>(w));

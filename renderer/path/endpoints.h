@@ -62,9 +62,26 @@ struct SurfaceEndpoint {
   V3f origin(const V3f& w) const { return VertexPlace{v}.origin(w); }
 };
 
+/// Density of unit `w` with which light paths leave the point `e`.
+template <class Guide>
+Pdf<SolidAngle> leaving_pdf(const Guide& guide, const EmitterPoint& e, const V3f& w) {
+  if constexpr (requires { guide.leaving_pdf(e, w); }) {
+    return guide.leaving_pdf(e, w);
+  } else {
+    return e.leaving_pdf(w);
+  }
+}
+
+/// The origin of a ray along `w` from the finite point `e` on an emitter.
+inline V3f origin_on(const EmitterPoint& e, const V3f& w) {
+  return e.kind == EmitterPoint::Kind::area ? offset_origin(e.x, e.ng, e.extent, w) : e.x;
+}
+
 /// A point on an emitter: vertex 0 of a light path.
+template <class Guide>
 struct EmitterEndpoint {
   const EmitterPoint& e;
+  const Guide& guide;
   static constexpr int index = 0;
 
   bool infinite() const { return e.infinite(); }
@@ -77,7 +94,7 @@ struct EmitterEndpoint {
   }
   /// Times the density of the point on light paths over p_fwd().
   double pdf(const V3f& w) const {
-    return double(e.leaving_pdf(w).value) / double(e.next_event_ratio);
+    return double(leaving_pdf(guide, e, w).value) / double(e.next_event_ratio);
   }
   static double pdf_rev(const V3f&) { return 0; }
   double area_factor(const V3f& w) const {
@@ -88,9 +105,7 @@ struct EmitterEndpoint {
   static double mis_partial() { return 0; }
   /// An eye path can hit the emitter: c_0 of mis.h.
   bool prev_connectible() const { return !e.delta(); }
-  V3f origin(const V3f& w) const {
-    return e.kind == EmitterPoint::Kind::area ? offset_origin(e.x, e.ng, e.extent, w) : e.x;
-  }
+  V3f origin(const V3f& w) const { return origin_on(e, w); }
 };
 
 /// Makes `v` the vertex 0 of a light path that starts at `e`.

@@ -143,7 +143,7 @@ class LightBatch {
   template <class Joined>
   void join_eye(std::size_t i, int index, Joined&& joined) const {
     if (index == 0) {
-      if (!emitters_[i].delta()) join_eye(EmitterEndpoint{emitters_[i]}, joined);
+      if (!emitters_[i].delta()) join_eye(EmitterEndpoint<Guide>{emitters_[i], guide_}, joined);
     } else if (connectible(i, index)) {
       join_eye(end(i, index), joined);
     }

@@ -67,7 +67,7 @@ class LightVertices {
   /// Calls `use(endpoint)` for connectible vertex `i`: an EmitterEndpoint or a SurfaceEndpoint.
   template <class Guide, class Use>
   decltype(auto) with_end(int s, std::size_t i, const Guide& guide, Use&& use) const {
-    if (s == 1) return use(EmitterEndpoint{emitters_[i]});
+    if (s == 1) return use(EmitterEndpoint<Guide>{emitters_[i], guide});
     return use(SurfaceEndpoint<Guide>{at(s, i), s - 1, Transport::importance, guide});
   }
 

@@ -32,7 +32,8 @@ struct Vertex {
   /// Vertex 1 of a light path: EmitterPoint::next_event_ratio of vertex 0 for this receiver. Of
   /// other vertices 1.
   float next_event_ratio = 1;
-  GuidingCell guiding_cell;  ///< of the surface as seen from wp
+  GuidingCell guiding_cell;  ///< of the surface as seen from wp, for eye paths
+  GuidingCell light_cell;    ///< the same for light paths
   std::optional<Bsdf> bsdf;  ///< of a surface from which the path may go on
 
   /// The geometric normal on the side of wp.

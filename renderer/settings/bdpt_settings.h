@@ -4,6 +4,7 @@
 
 #include "renderer/settings/connections_settings.h"
 #include "renderer/settings/guide_settings.h"
+#include "renderer/settings/light_guide_settings.h"
 #include "renderer/settings/output_settings.h"
 #include "renderer/settings/path_lengths.h"
 
@@ -21,6 +22,7 @@ struct BdptSettings : PathLengths {
 
   ConnectionsSettings connections = PairedSettings{};
   GuideSettings guide = BsdfGuideSettings{};
+  LightGuideSettings light_guide = BsdfGuideSettings{};
 
   bool biased() const { return lacuna::biased(guide); }
   bool operator==(const BdptSettings&) const = default;
@@ -31,6 +33,7 @@ void describe(V& v, BdptSettings& s) {
   describe_lengths(v, s);
   v("connections", s.connections, {.doc = "how light vertices are sampled for an eye vertex"});
   v("guide", s.guide, {.doc = "how the next direction of an eye path is sampled"});
+  describe_light_guide(v, s.light_guide);
 }
 
 }  // namespace lacuna

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "renderer/settings/guide_settings.h"
+#include "renderer/settings/light_guide_settings.h"
 #include "renderer/settings/output_settings.h"
 #include "renderer/settings/path_lengths.h"
 #include "renderer/settings/photon_settings.h"
@@ -21,6 +22,7 @@ struct VcmSettings : PathLengths, RadiusSettings {
   bool merge = true;
   bool connect = true;
   GuideSettings guide = BsdfGuideSettings{};
+  LightGuideSettings light_guide = BsdfGuideSettings{};
 
   bool biased() const { return merge || lacuna::biased(guide); }
   /// The bias of merging vanishes with the radius of an iteration, that of a guide does not.
@@ -40,6 +42,7 @@ void describe(V& v, VcmSettings& s) {
   describe_radius(v, s);
   describe_alpha(v, s);
   v("guide", s.guide, {.doc = "how the next direction of an eye path is sampled"});
+  describe_light_guide(v, s.light_guide);
 }
 
 }  // namespace lacuna

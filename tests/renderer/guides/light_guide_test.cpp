@@ -3,7 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/guides/light_guide.h"
+#include "renderer/guides/mixed_guide.h"
+#include "renderer/guides/skeleton_to_eye.h"
 #include "tests/renderer/guides/density_check.h"
 #include "tests/renderer/guides/guided_scene.h"
 #include "tests/renderer/path/scenes.h"
@@ -20,12 +21,12 @@ constexpr std::size_t sites = 4;
 struct Site {
   explicit Site(const PathScene& s)
       : scene([&] { return load(s); }, SkeletonGuideSettings{}, 0, environment(s)),
-        guide(std::make_unique<SkeletonToEye>(
-            SkeletonLightGuideSettings{.probability = 0.5, .strength = 8})) {
+        guide(nullptr, std::make_unique<SkeletonToEye>(
+                           SkeletonLightGuideSettings{.probability = 0.5, .strength = 8})) {
     guide.prepare(scene.context());
   }
   test::GuidedScene scene;
-  LightGuide guide;
+  MixedGuide guide;
 };
 
 void expect_density(const DensityCheck& c) {
@@ -76,7 +77,7 @@ TEST(LightGuide, ScattersWithItsDensity) {
     for (Vertex& v : site.scene.guided_vertices(sites)) {
       SCOPED_TRACE(testing::Message() << name << " at " << v.surface.x);
       site.guide.on_hit(v);
-      guided += v.guiding_cell.probability > 0 ? 1 : 0;
+      guided += v.light_cell.probability > 0 ? 1 : 0;
       const V3f along = v.side();
       EXPECT_EQ(site.guide.pdf(v, v.wp, along, Transport::radiance).value,
                 BsdfGuide::pdf(v, v.wp, along, Transport::radiance).value);

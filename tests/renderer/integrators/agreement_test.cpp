@@ -41,8 +41,8 @@ const std::vector<Agreement> agreements{
     {{"coated"}, 4, 120, false},
 };
 const std::vector<Agreement> more_agreements{
-    {{"furnace_sphere"}, 3, 200},       {{"directional"}, 3, 150, true, 0.015}, {{"area"}, 4, 200},
-    {{"leaning"}, 5, 200, true, 0.035}, {{"bends"}, 7, 100, true, 0.07},
+    {{"furnace_sphere"}, 3, 200},      {{"directional"}, 3, 150, true, 0.015}, {{"area"}, 4, 200},
+    {{"leaning"}, 5, 200, true, 0.04}, {{"bends"}, 7, 100, true, 0.08},
 };
 
 constexpr int columns = 20, rows = 12;
@@ -74,6 +74,11 @@ TEST_P(Agrees, WithPathTracing) {
     methods.push_back({"light", test::light_tracing(a.max_depth)});
     methods.push_back({"light, 500 paths", test::light_tracing(a.max_depth, 500)});
     methods.push_back({"light, towards the eye", test::light_towards_eye(a.max_depth)});
+    methods.push_back(
+        {"paired, towards the eye", test::joining_towards_eye(a.max_depth, PairedSettings{})});
+    methods.push_back(
+        {"resampled, towards the eye",
+         test::joining_towards_eye(a.max_depth, test::resampled<UniformSettings>(64))});
   }
   for (const Method& method : methods) {
     SCOPED_TRACE(method.name);
@@ -209,6 +214,7 @@ TEST(Agree, WhereRouletteEndsWalksEarly) {
   std::vector<Method> methods = test::connections(8);
   methods.push_back({"light", test::light_tracing(8)});
   methods.push_back({"light, towards the eye", test::light_towards_eye(8)});
+  methods.push_back({"paired, towards the eye", test::joining_towards_eye(8, PairedSettings{})});
   for (Method& method : methods) {
     SCOPED_TRACE(method);
     std::visit(

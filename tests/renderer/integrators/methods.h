@@ -43,6 +43,12 @@ inline BdptSettings joining(int max_depth, const ConnectionsSettings& connection
   s.connections = connections;
   return s;
 }
+/// The same, with light paths that go to what the eye sees.
+inline BdptSettings joining_towards_eye(int max_depth, const ConnectionsSettings& connections) {
+  BdptSettings s = joining(max_depth, connections);
+  s.light_guide = SkeletonLightGuideSettings{};
+  return s;
+}
 
 /// `use(S{})` for each alternative of a variant of settings, that is for each row of a registry.
 template <class... Ts, class Use>
@@ -230,8 +236,10 @@ inline std::vector<Method> merging(int max_depth) {
   };
   add("vcm", VcmSettings{}, [](auto&) {});
   add("vcm_merges_only", VcmSettings{}, [](auto& s) { s.connect = false; });
-  add("vcm_guided", VcmSettings{},
-      [](auto& s) { s.guide = in_small_pictures(SdTreeGuideSettings{}); });
+  add("vcm_guided", VcmSettings{}, [](auto& s) {
+    s.guide = in_small_pictures(SdTreeGuideSettings{});
+    s.light_guide = SkeletonLightGuideSettings{};
+  });
   add("sppm", SppmSettings{}, [](auto& s) { s.light_paths = 300; });
   add("sppm_photons_only", SppmSettings{}, [](auto& s) {
     s.next_event_estimation = false;

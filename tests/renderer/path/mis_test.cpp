@@ -16,6 +16,7 @@
 namespace lacuna {
 namespace {
 
+using test::DirectionsOf;
 using test::Oracle;
 using test::PathFromEye;
 using test::PathScene;
@@ -106,7 +107,7 @@ class Meeting {
     next_event_.set_ratio(*e, v, eye_.vertex(i, depth - 1), depth);
     const auto none = [&](int) -> const Vertex& { return v; };
     hit(from_eye(i, depth - 1, false).finish(*e, 1, none, -v.wp),
-        hit_weight(v, depth, *e, counts_));
+        hit_weight(v, depth, *e, counts_, guide_));
   }
 
   /// t = 1.
@@ -119,7 +120,7 @@ class Meeting {
       const V3f w = s == 1 && e.infinite() ? x : (x - camera_.position()).normalized();
       if (!camera_.project(w)) continue;
       if (s == 1) {
-        if (!e.delta()) use(eye, EmitterEndpoint{e}, i, 0, joined);
+        if (!e.delta()) use(eye, EmitterEndpoint<Guide>{e, guide_}, i, 0, joined);
       } else if (light_.vertex(i, s - 1).bsdf->connectible()) {
         use(eye, light_.end(i, s - 1), i, 0, joined);
       }
@@ -135,7 +136,7 @@ class Meeting {
       if (s == 1) {
         EmitterPoint e = light_.emitter(i);
         e.next_event_ratio = next_event_.ratio(e, v);
-        use(eye, EmitterEndpoint{e}, i, depth, joined);
+        use(eye, EmitterEndpoint<Guide>{e, guide_}, i, depth, joined);
       } else if (light_.vertex(i, s - 1).bsdf->connectible()) {
         use(eye, light_.end(i, s - 1), i, depth, joined);
       }
@@ -167,29 +168,33 @@ class Meeting {
   LightBatch<Guide> light_;
 };
 
-/// Calls `test(guide, mixed, directions)` with the guide that follows the BSDF, and with one that
-/// mixes `directions` in.
+/// Calls `test(guide, mixed, directions)` with the guide that follows the BSDF, and with those that
+/// mix `directions` in: from the eye, from the lights, other ones from both.
 template <class Test>
-void for_both_guides(const Test& test) {
+void for_all_guides(const Test& test) {
   {
     SCOPED_TRACE("bsdf");
-    test(BsdfGuide{}, nullptr, nullptr);
+    test(BsdfGuide{}, nullptr, DirectionsOf{});
   }
-  auto own = std::make_unique<test::SidedDirections>();
-  const GuidingDistribution* directions = own.get();
-  const MixedGuide guide(std::move(own));
-  SCOPED_TRACE("guided");
-  test(guide, &guide, directions);
+  for (const auto& [name, from_eye, from_light] :
+       {std::tuple{"eye", true, false}, {"light", false, true}, {"both", true, true}}) {
+    SCOPED_TRACE(name);
+    auto eye = from_eye ? std::make_unique<test::SidedDirections>() : nullptr;
+    auto light = from_light ? std::make_unique<test::SidedDirections>(-1.0F) : nullptr;
+    const DirectionsOf directions{eye.get(), light.get()};
+    const MixedGuide guide(std::move(eye), std::move(light));
+    test(guide, &guide, directions);
+  }
 }
 
 class Weights : public testing::TestWithParam<PathScene> {
  protected:
   Weights() : data_(load(GetParam())) {}
   template <class Guide>
-  void are_their_definition(const Guide& guide, const GuidingDistribution* directions) const;
+  void are_their_definition(const Guide& guide, const DirectionsOf& directions) const;
   template <class Guide>
   void add_up_to_one(const Guide& guide, const MixedGuide* mixed,
-                     const GuidingDistribution* directions) const;
+                     const DirectionsOf& directions) const;
 
   SceneData data_;
   const Camera camera_{data_.cameras.front(), side, side};
@@ -223,15 +228,13 @@ void expect_power(const Comparison& c, const SampleCounts& n) {
 // Real walks: what the renderer weighs, along the walks' own directions, so that only rounding is
 // left.
 TEST_P(Weights, AreTheirDefinition) {
-  for_both_guides(
-      [this](const auto& guide, const MixedGuide*, const GuidingDistribution* directions) {
-        are_their_definition(guide, directions);
-      });
+  for_all_guides([this](const auto& guide, const MixedGuide*, const DirectionsOf& directions) {
+    are_their_definition(guide, directions);
+  });
 }
 
 template <class Guide>
-void Weights::are_their_definition(const Guide& guide,
-                                   const GuidingDistribution* directions) const {
+void Weights::are_their_definition(const Guide& guide, const DirectionsOf& directions) const {
   for (const Counts& counts : all_counts) {
     SCOPED_TRACE(counts.name);
     Comparison c{.tolerance = 1e-5, .smallest = 1e-9};
@@ -307,15 +310,15 @@ TEST(PowerHeuristic, IsThatOfSquaredDensities) {
 // Whole paths, each made once more by every technique: what one walk knows of the other's densities
 // is what the other has.
 TEST_P(Weights, OfAllStrategiesAddUpToOne) {
-  for_both_guides(
-      [this](const auto& guide, const MixedGuide* mixed, const GuidingDistribution* directions) {
+  for_all_guides(
+      [this](const auto& guide, const MixedGuide* mixed, const DirectionsOf& directions) {
         add_up_to_one(guide, mixed, directions);
       });
 }
 
 template <class Guide>
 void Weights::add_up_to_one(const Guide& guide, const MixedGuide* mixed,
-                            const GuidingDistribution* directions) const {
+                            const DirectionsOf& directions) const {
   std::vector<Counts> counts_and_photons = all_counts;
   counts_and_photons.push_back({"photons", {1, 0, 0, 0, 0.5}});  // which join nothing
   for (const Counts& counts : counts_and_photons) {

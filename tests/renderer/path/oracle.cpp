@@ -12,10 +12,20 @@ double squared_distance(const WholePath& p, int i) {
   return (V3d(p.x(i + 1)) - V3d(p.x(i))).length2();
 }
 
+/// Density of `w` after `wo` where `directions` are mixed with the BSDF.
+double mixed(const GuidingDistribution* directions, const Surface& s, const Bsdf& b, const V3f& wo,
+             const V3f& w, double bsdf) {
+  if (directions == nullptr) return bsdf;
+  const GuidingCell cell = directions->cell(s, wo);
+  const auto guided = double(directions->pdf({s, b, wo, cell}, w).value);
+  const auto c = double(cell.probability);
+  return c * guided + (1 - c) * bsdf;
+}
+
 }  // namespace
 
 Oracle::Oracle(const Scene& scene, const Camera& camera, const WholePath& path,
-               const GuidingDistribution* directions)
+               const DirectionsOf& directions)
     : scene_(scene), camera_(camera), path_(path), directions_(directions) {
   const int k = path.edges();
   for (int i = 0; i <= k; ++i) {
@@ -29,9 +39,15 @@ double Oracle::leaving(const V3f& w) const {
   const EmitterPoint& e = path_.emitter;
   const double c = V3d(e.ng).dot(V3d(w));
   switch (e.kind) {
-    case EmitterPoint::Kind::area:
-      return e.both_sides ? std::abs(c) / (2 * std::numbers::pi)
-                          : std::max(c, 0.0) / std::numbers::pi;
+    case EmitterPoint::Kind::area: {
+      if (e.both_sides) return std::abs(c) / (2 * std::numbers::pi);
+      Surface s;
+      s.x = e.x;
+      s.ng = s.ns = e.ng;
+      const Lobes white{SurfaceParams{}};
+      return mixed(directions_.light, s, Bsdf(white, e.ng, e.ng), e.ng, w,
+                   std::max(c, 0.0) / std::numbers::pi);
+    }
     case EmitterPoint::Kind::point:
       return 1 / (4 * std::numbers::pi);
     case EmitterPoint::Kind::spot:
@@ -55,7 +71,9 @@ double Oracle::light_step(int i) const {
   if (i == 1) return leaving(w) * there;
   const WholePath::Node& from = path_.node(i - 1);
   if (from.delta) return there;
-  return double(from.bsdf->pdf(-path_.towards_eye(i - 2), w, Transport::importance).value) * there;
+  const V3f wo = -path_.towards_eye(i - 2);
+  const auto bsdf = double(from.bsdf->pdf(wo, w, Transport::importance).value);
+  return mixed(directions_.light, from.surface, *from.bsdf, wo, w, bsdf) * there;
 }
 
 /// The same of a path that comes from the eye.
@@ -73,11 +91,7 @@ double Oracle::eye_step(int i) const {
   if (from.delta) return there;
   const V3f& wo = path_.towards_eye(i + 1);
   const auto bsdf = double(from.bsdf->pdf(wo, w, Transport::radiance).value);
-  if (directions_ == nullptr) return bsdf * there;
-  const GuidingCell cell = directions_->cell(from.surface, wo);
-  const auto guided = double(directions_->pdf({from.surface, *from.bsdf, wo, cell}, w).value);
-  const auto c = double(cell.probability);
-  return (c * guided + (1 - c) * bsdf) * there;
+  return mixed(directions_.eye, from.surface, *from.bsdf, wo, w, bsdf) * there;
 }
 
 /// Logarithm of the density with which a walk makes the first `from_light` vertices and one from

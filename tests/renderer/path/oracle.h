@@ -6,13 +6,18 @@
 
 namespace lacuna::test {
 
+/// What guides the paths from either end; null: they follow the BSDF.
+struct DirectionsOf {
+  const GuidingDistribution* eye = nullptr;
+  const GuidingDistribution* light = nullptr;
+};
+
 /// The definition of the weights, with nothing of the recursion in it: the density of every vertex
 /// from either end, the strategies' densities as plain products, each times its number of samples.
 class Oracle {
  public:
-  /// `directions`: those of the guide of paths from the eye; null: they follow the BSDF.
   Oracle(const Scene& scene, const Camera& camera, const WholePath& path,
-         const GuidingDistribution* directions = nullptr);
+         const DirectionsOf& directions = {});
 
   /// Of all techniques under the balance heuristic: [s] of strategy s = 0 ... k, then [k + j] of
   /// merging at x_j, 0 < j < k. All 0: no technique makes this path.
@@ -28,7 +33,7 @@ class Oracle {
   const Scene& scene_;
   const Camera& camera_;
   const WholePath& path_;
-  const GuidingDistribution* directions_;
+  DirectionsOf directions_;
   /// [i] per area at x_i, of a walk that comes from there; in logarithms, -inf: never.
   std::vector<double> from_light_, from_eye_;
 };

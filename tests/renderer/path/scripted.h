@@ -35,6 +35,9 @@ struct ScriptedGuide {
     if (densities != nullptr) return densities->pdf(v, wo, wi, transport);
     return v.bsdf->pdf(wo, wi, transport);
   }
+  Pdf<SolidAngle> leaving_pdf(const EmitterPoint& e, const V3f& w) const {
+    return densities != nullptr ? densities->leaving_pdf(e, w) : e.leaving_pdf(w);
+  }
 };
 
 /// Makes whole paths once more, vertex by vertex, by walks from either end.
@@ -76,10 +79,10 @@ class Remake {
     if (s == 0) {
       const Vertex& v = eye_.vertex(0, k);
       const auto e = emitter_at(scene_, v);
-      return e ? std::optional(hit_weight(v, k, *e, counts_)) : std::nullopt;
+      return e ? std::optional(hit_weight(v, k, *e, counts_, light_guide_)) : std::nullopt;
     }
     if (s > 1 && !walk_light(s)) return std::nullopt;
-    if (s == 1) return joined(EmitterEndpoint{path_.emitter}, s);
+    if (s == 1) return joined(EmitterEndpoint<ScriptedGuide>{path_.emitter, light_guide_}, s);
     return joined(SurfaceEndpoint<ScriptedGuide>{light_[static_cast<std::size_t>(s) - 1], s - 1,
                                                  Transport::importance, light_guide_},
                   s);
@@ -139,7 +142,8 @@ class Remake {
     light_[0].kind = e.infinite() ? Vertex::Kind::background : Vertex::Kind::emitter;
     light_[0].surface.x = e.x;
     light_[0].surface.ng = e.ng;
-    PathState walker{.rng = rng_, .ray = {from, w}, .p = e.leaving_pdf(w), .path = light_};
+    PathState walker{
+        .rng = rng_, .ray = {from, w}, .p = leaving_pdf(light_guide_, e, w), .path = light_};
     if (!e.delta()) walker.mis_partial = counts_.hit / double(e.pdf.value);
     int reached = 0;
     trace_paths(std::span(&walker, 1), light_guide_, s - 1, Transport::importance,

@@ -11,6 +11,9 @@ namespace lacuna::test {
 /// drawn with another probability on each side: as little alike as densities from both ends can be.
 class SidedDirections final : public GuidingDistribution {
  public:
+  /// `place`: of the far points; another for another distribution.
+  explicit SidedDirections(float place = 1) : place_(place) {}
+
   bool needs_space() const override { return false; }
   GuidingCell cell(const Surface& s, const V3f& w) const override {
     return dot(w, s.ng) < 0 ? GuidingCell{0.7F, 1} : GuidingCell{0.3F, 0};
@@ -27,9 +30,11 @@ class SidedDirections final : public GuidingDistribution {
   }
 
  private:
-  static V3f axis(const GuidingCell& cell, const V3f& x) {
-    return ((cell.index == 0 ? V3f(40, 90, -30) : V3f(-70, 20, 50)) - x).normalized();
+  V3f axis(const GuidingCell& cell, const V3f& x) const {
+    return (place_ * (cell.index == 0 ? V3f(40, 90, -30) : V3f(-70, 20, 50)) - x).normalized();
   }
+
+  float place_;
 };
 
 }  // namespace lacuna::test
