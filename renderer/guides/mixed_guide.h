@@ -94,7 +94,7 @@ class MixedGuide {
   }
 
   std::optional<std::uint64_t> due_pilot() const { return eye_ ? eye_->due_pilot() : std::nullopt; }
-  void begin_pilot() { eye_->begin_pilot(); }
+  void begin_pilot() { eye_->begin_pilot(); }  ///< requires due_pilot()
 
   /// Looks up the guiding cells of `v`, on the side of v.wp.
   void on_hit(Vertex& v) const {

@@ -125,7 +125,7 @@ inline std::optional<EmitterPoint> emitter_at(const Scene& scene, const Vertex& 
 
 /// The MIS weight of an eye path whose vertex `v`, at `index` >= 1, is the point `e` on an emitter
 /// (s = 0). EmitterPoint::next_event_ratio must be the one for the vertex before it, if that is
-/// connectible and not the eye.
+/// connectible and not the eye. `guide`: of the light paths that the hit is weighed against.
 template <class Guide>
 double hit_weight(const Vertex& v, int index, const EmitterPoint& e, const SampleCounts& n,
                   const Guide& guide) {

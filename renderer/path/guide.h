@@ -29,6 +29,10 @@ namespace lacuna {
 ///   roulette and splitting, unless the guide is idle(). record(v, value, accumulator) adds the
 ///   value of one path.
 ///
+/// - sample_first_edge(lights, e, rng) and leaving_pdf(e, w), both or neither: the first edge of a
+///   light path from the point `e` on an emitter, and its density per steradian. Without them light
+///   paths leave as emitters emit.
+///
 /// sample(), pdf(), on_hit() and accumulate() are const and are called by many threads.
 template <class G>
 concept Guide = Strategy<G> &&

@@ -172,6 +172,8 @@ class LightBatch {
   std::optional<Leaving> first_edge(const EmitterPoint& e, Rng& rng) const {
     const EmitterSet& lights = setting_.scene.emitters();
     if constexpr (requires { guide_.sample_first_edge(lights, e, rng); }) {
+      static_assert(
+          requires { guide_.leaving_pdf(e, V3f()); }, "weights need its density");
       return guide_.sample_first_edge(lights, e, rng);
     } else {
       return lights.sample_first_edge(e, rng);

@@ -41,8 +41,8 @@ const std::vector<Agreement> agreements{
     {{"coated"}, 4, 120, false},
 };
 const std::vector<Agreement> more_agreements{
-    {{"furnace_sphere"}, 3, 200},      {{"directional"}, 3, 150, true, 0.015}, {{"area"}, 4, 200},
-    {{"leaning"}, 5, 200, true, 0.04}, {{"bends"}, 7, 100, true, 0.08},
+    {{"furnace_sphere"}, 3, 200},       {{"directional"}, 3, 150, true, 0.015}, {{"area"}, 4, 200},
+    {{"leaning"}, 5, 240, true, 0.035}, {{"bends"}, 7, 120, true, 0.07},
 };
 
 constexpr int columns = 20, rows = 12;

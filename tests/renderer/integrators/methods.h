@@ -236,7 +236,9 @@ inline std::vector<Method> merging(int max_depth) {
   };
   add("vcm", VcmSettings{}, [](auto&) {});
   add("vcm_merges_only", VcmSettings{}, [](auto& s) { s.connect = false; });
-  add("vcm_guided", VcmSettings{}, [](auto& s) {
+  add("vcm_guided", VcmSettings{},
+      [](auto& s) { s.guide = in_small_pictures(SdTreeGuideSettings{}); });
+  add("vcm_guided_from_both_ends", VcmSettings{}, [](auto& s) {
     s.guide = in_small_pictures(SdTreeGuideSettings{});
     s.light_guide = SkeletonLightGuideSettings{};
   });

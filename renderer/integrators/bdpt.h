@@ -1,0 +1,177 @@
+#pragma once
+
+#include "renderer/guides/gathered_light.h"
+#include "renderer/integrators/guided_integrator.h"
+#include "renderer/integrators/strategy_layers.h"
+#include "renderer/path/eye_batch.h"
+#include "renderer/path/light_batch.h"
+#include "renderer/path/tiles.h"
+#include "renderer/settings/bdpt_settings.h"
+
+namespace lacuna {
+
+/// A contribution of a strategy to a pixel of the tile, pending its shadow ray.
+struct BdptContribution {
+  std::uint32_t pixel = 0;
+  std::uint8_t path = 0;  ///< of the eye's path, in its batch
+  std::uint8_t distribution = 0;
+  float survival = 1;          ///< probability of making the connection; `value` is divided by it
+  float throughput = 0;        ///< luminance of the eye vertex' throughput
+  std::uint32_t cell = 0;      ///< of the eye vertex, for CellStatistics
+  Rgb value{0, 0, 0};          ///< unweighted
+  float weight = 0;            ///< MIS
+  std::uint16_t s = 0, t = 0;  ///< vertices sampled from the light and from the eye
+};
+
+/// Bidirectional path tracing (Noel 2015, 4.3 and ch. 11), apart from the choice of the light
+/// vertices that an eye vertex is connected to.
+template <class Guide>
+class Bdpt : public GuidedIntegrator<Guide> {
+ public:
+  Bdpt(const BdptSettings& settings, Guide guide)
+      : GuidedIntegrator<Guide>(std::move(guide)), settings_(settings) {}
+
+ protected:
+  using GuidedIntegrator<Guide>::guide_;
+
+  struct EyePaths : EyeBatch {
+    EyePaths(int max_depth, const SampleCounts& n) : EyeBatch(max_depth), counts(n) {}
+    SampleCounts counts;
+    GatheredLight gathered{*this};  // for a guide that learns
+    ShadowQueue<BdptContribution> queue;
+  };
+  /// What the parts of a tile's work share.
+  struct TilePass {
+    const IterationContext& context;
+    Image& image;
+    Counters& counters;
+  };
+
+  /// Adds the emission at a vertex of an eye path (s = 0).
+  void gather_hit(const IterationContext& context, EyePaths& batch, std::size_t i, int depth,
+                  const NextEvent& next_event) const {
+    if (guide_.learns()) batch.gathered.reach(i, depth);
+    const Vertex& v = batch.vertex(i, depth);
+    std::optional<EmitterPoint> e = emitter_at(context.scene, v);
+    if (!e) return;
+    if (batch.counts.nee > 0) {
+      next_event.set_ratio(*e, v, batch.vertex(i, depth - 1), depth);
+    }
+    const Rgb value = v.throughput * e->emission;
+    const auto w = static_cast<float>(hit_weight(v, depth, *e, batch.counts, guide_));
+    batch.radiance[i] += value * w;
+    if (guide_.learns()) batch.gathered.add(i, depth, value * w);
+    layers_.strategy(context.layers, 0, depth + 1, {batch.pixels[i], value, w});
+  }
+
+  /// Largest s of connections to an eye vertex `depth` edges from the eye; 0: none.
+  int longest_light_path(const Vertex& v, int depth) const {
+    if (v.kind != Vertex::Kind::surface || depth >= settings_.max_depth) return 0;
+    return v.bsdf->connectible() ? settings_.max_depth - depth : 0;
+  }
+
+  /// Connects `eye` and `light` and queues the contribution, over `samples`: the expected number of
+  /// samples of this light vertex. What the connection does not determine is as in `known`.
+  template <class Light>
+  static void join(const SurfaceEndpoint<Guide>& eye, const Light& light, double samples,
+                   BdptContribution known, EyePaths& batch) {
+    const Connection c = connect(eye, light);
+    if (!c) return;
+    known.value = c.contribution / static_cast<float>(samples);
+    known.weight = static_cast<float>(weight(eye, light, c, batch.counts));
+    known.s = static_cast<std::uint16_t>(light.index + 1);
+    known.t = static_cast<std::uint16_t>(eye.index + 1);
+    batch.queue.add(shadow_ray(eye, light, c), known);
+  }
+  /// A contribution with the pixel and index of path `i` of `batch`.
+  static BdptContribution contribution(const EyePaths& batch, std::size_t i) {
+    return {.pixel = batch.pixels[i], .path = static_cast<std::uint8_t>(i)};
+  }
+
+  /// Traces the queued shadow rays of `batch`, adds the unoccluded contributions to the image and
+  /// to the layers, and passes each to `arrived(contribution)`.
+  template <class Arrived>
+  void flush(const TilePass& pass, EyePaths& batch, Arrived&& arrived) const {
+    const IterationContext& context = pass.context;
+    batch.queue.flush(
+        context.scene.rays(), pass.counters,
+        [&](const BdptContribution& c) {
+          accumulate(pass.image.pixels[c.pixel], c.value * c.weight, pass.counters);
+          arrived(c);
+          if (guide_.learns()) batch.gathered.add(c.path, c.t - 1, c.value * c.weight);
+          layers_.strategy(context.layers, c.s, c.t, {c.pixel, c.value, c.weight});
+          layers_.distribution(context.layers, c.distribution, c.pixel, c.value * c.weight);
+        },
+        [&] { context.check_stop(); });
+  }
+  /// The same while paths of the batch go on, where so many rays wait that they take much memory:
+  /// two paths of a thousand edges are joined by a million.
+  template <class Arrived>
+  void flush_if_long(const TilePass& pass, EyePaths& batch, Arrived&& arrived) const {
+    constexpr std::size_t many = 1 << 17;
+    if (batch.queue.size() >= many) flush(pass, batch, arrived);
+  }
+  /// Adds what the paths of the batch have found, and records samples for the guide.
+  template <class Arrived>
+  void finish(const TilePass& pass, EyePaths& batch, typename Guide::Accumulator& accumulator,
+              Arrived&& arrived) const {
+    for (std::size_t k = 0; k < batch.states.size(); ++k) {
+      accumulate(pass.image.pixels[batch.pixels[k]], batch.radiance[k], pass.counters);
+    }
+    flush(pass, batch, arrived);
+    if (guide_.learns()) batch.gathered.record(guide_, accumulator);
+  }
+  /// Starts the paths of a Tile::block(), and counts them.
+  void start(const TilePass& pass, const Tile& block, EyePaths& batch) const {
+    start_paths(pass.context, pass.image, block, batch);
+    pass.counters.samples += batch.states.size();
+    if (guide_.learns()) batch.gathered.clear();
+  }
+  /// One accumulator for each tile.
+  using Accumulators = std::vector<typename Guide::Accumulator>;
+  /// Continues with the branches of the paths; false if there are none left.
+  bool resume(Walk<Guide>& walk, EyePaths& batch) const {
+    batch.store(walk.branches());
+    if (!batch.resume()) return false;
+    if (guide_.learns()) batch.gathered.clear();
+    return true;
+  }
+  Accumulators start_accumulators(const Tiling& tiling) const {
+    Accumulators accumulators(static_cast<std::size_t>(tiling.tiles()));
+    if (guide_.learns()) {
+      for (auto& t : accumulators) t = guide_.accumulator();
+    }
+    return accumulators;
+  }
+  void update_guide(const IterationContext& context, Accumulators& accumulators) {
+    if (guide_.learns()) guide_.update(accumulators, context.pool, 1);
+  }
+  /// The callback of for_each_splatting_part() that adds splats to the layers.
+  auto splat_layers(const IterationContext& context) const {
+    return [this, &context](const Splat& s) {
+      layers_.strategy(context.layers, s.s, 1, {s.pixel, s.value, s.weight});
+    };
+  }
+
+  LightPathSetting light_setting(const IterationContext& context,
+                                 const SampleCounts& counts) const {
+    return {.scene = context.scene,
+            .camera = context.camera,
+            .max_depth = settings_.max_depth,
+            .roulette_depth = settings_.roulette_depth,
+            .counts = counts};
+  }
+  WalkLimits eye_limits(const SampleCounts& counts) const {
+    return {.max_depth = settings_.max_depth,
+            .roulette_depth = settings_.roulette_depth,
+            .packets = true,
+            .counts = eye_side(counts)};
+  }
+  static std::int64_t pixels(const Image& image) {
+    return std::int64_t{image.width} * image.height;
+  }
+  BdptSettings settings_;
+  StrategyLayers layers_;
+};
+
+}  // namespace lacuna
