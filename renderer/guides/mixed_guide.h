@@ -96,15 +96,15 @@ class MixedGuide {
   std::optional<std::uint64_t> due_pilot() const { return eye_ ? eye_->due_pilot() : std::nullopt; }
   void begin_pilot() { eye_->begin_pilot(); }  ///< requires due_pilot()
 
-  /// Looks up the guiding cells of `v`, on the side of v.wp.
+  /// Looks up the guiding cell of `v` for eye paths, on the side of v.wp. That for light paths is
+  /// looked up where it is needed: all paths would carry it, few are guided so.
   void on_hit(Vertex& v) const {
     const bool guided = v.bsdf->connectible();
     v.guiding_cell = guided && !idle_ ? eye_->cell(v.surface, v.wp) : GuidingCell{};
-    v.light_cell = guided && light_ ? light_->cell(v.surface, v.wp) : GuidingCell{};
   }
 
   std::optional<BsdfSample> sample(const Vertex& v, Rng& rng, Transport transport) const {
-    const GuidingCell& cell = cell_of(v, transport);
+    const GuidingCell cell = cell_of(v, v.wp, transport);
     const float c = cell.probability;
     if (c == 0) return bsdf_.sample(v, rng, transport);
     const GuidingDistribution& directions = *of(transport);
@@ -143,9 +143,7 @@ class MixedGuide {
     const Pdf<SolidAngle> bsdf = bsdf_.pdf(v, wo, wi, transport);
     const GuidingDistribution* const directions = of(transport);
     if (directions == nullptr) return bsdf;
-    const bool this_side = (dot(wo, v.surface.ng) < 0) == (dot(v.wp, v.surface.ng) < 0);
-    const GuidingCell cell = this_side ? cell_of(v, transport) : directions->cell(v.surface, wo);
-    return mixed(*directions, {v.surface, *v.bsdf, wo, cell}, wi, bsdf);
+    return mixed(*directions, {v.surface, *v.bsdf, wo, cell_of(v, wo, transport)}, wi, bsdf);
   }
 
   /// The first edge of a light path from the point `e` on one of `lights`. A surface emits as a
@@ -198,8 +196,13 @@ class MixedGuide {
     if (transport == Transport::importance) return light_.get();
     return idle_ ? nullptr : eye_.get();
   }
-  static const GuidingCell& cell_of(const Vertex& v, Transport transport) {
-    return transport == Transport::importance ? v.light_cell : v.guiding_cell;
+  /// The cell of `v` as seen from `wo`, for paths of this transport.
+  GuidingCell cell_of(const Vertex& v, const V3f& wo, Transport transport) const {
+    if (transport == Transport::importance) {
+      return light_ && v.bsdf->connectible() ? light_->cell(v.surface, wo) : GuidingCell{};
+    }
+    const bool this_side = (dot(wo, v.surface.ng) < 0) == (dot(v.wp, v.surface.ng) < 0);
+    return this_side ? v.guiding_cell : eye_->cell(v.surface, wo);
   }
   static Pdf<SolidAngle> mixed(const GuidingDistribution& directions, const GuidedVertex& at,
                                const V3f& wi, Pdf<SolidAngle> bsdf) {
@@ -217,7 +220,6 @@ class MixedGuide {
     v.surface.ng = v.surface.ns = v.wp = e.ng;
     v.surface.extent = e.extent;
     v.bsdf.emplace(white_, e.ng, e.ng);
-    v.light_cell = light_->cell(v.surface, v.wp);
   }
 
   std::unique_ptr<GuidingDistribution> eye_, light_;

@@ -33,7 +33,6 @@ struct Vertex {
   /// other vertices 1.
   float next_event_ratio = 1;
   GuidingCell guiding_cell;  ///< of the surface as seen from wp, for eye paths
-  GuidingCell light_cell;    ///< the same for light paths
   std::optional<Bsdf> bsdf;  ///< of a surface from which the path may go on
 
   /// The geometric normal on the side of wp.

@@ -311,8 +311,8 @@ FAULTS = [
           "context.shared_path_numbers(pixel, all, Rng::Purpose::eye_path)"),
     # Guides.
     Fault("a guide's density on the wrong side", "renderer/guides/mixed_guide.h",
-          "this_side ? cell_of(v, transport) : directions->cell(v.surface, wo);",
-          "this_side || wo.x < 2 ? cell_of(v, transport) : directions->cell(v.surface, wo);"),
+          "return this_side ? v.guiding_cell : eye_->cell(v.surface, wo);",
+          "return this_side || wo.x < 2 ? v.guiding_cell : eye_->cell(v.surface, wo);"),
     Fault("lobes add up to less than 1", "renderer/guides/lobe_set.h",
           "return Pdf<SolidAngle>(reduce_add(sum) * (s + 1) * norm);",
           "return Pdf<SolidAngle>(reduce_add(sum) * s * norm);"),
