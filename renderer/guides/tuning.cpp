@@ -47,8 +47,10 @@ constexpr std::uint64_t before_rests = 3;
 constexpr double known_share = 0.05;
 /// The probability of a cell whose moments are not known.
 constexpr float careful_probability = 0.5F;
-/// Paths of all cells from which a guide may be left alone, and the largest share of one of them.
-constexpr double least_paths = 16384, known_share_of_all = 0.02;
+/// Paths of all cells from which a guide may be left alone, and where moments alone decide: an end
+/// is final, and at 16384 one of 12 pictures of bends ended a guide that pays, at 32768 none of
+/// 144. And the largest share of one path.
+constexpr double least_paths = 16384, least_paths_of_small = 32768, known_share_of_all = 0.02;
 /// Largest square over the mean of those that are not 0, below which spread samples
 /// (Sampler::sobol) of the BSDF do better than any guide: 2 on a scene where guides quadruple the
 /// error (area), 200 to 5000 on others.
@@ -259,11 +261,12 @@ void Tuning::stop_if_useless() {
   }
   if (pilots_ > 0 && pairs_ >= least_pairs_of_one) return;  // they decide
   // Decided at each doubling only: of many decisions by chance one would be wrong.
-  if (all < std::max(least_paths, 2 * decided_)) return;
+  const bool small = pairs_ < least_pairs_of_one;
+  if (all < std::max(small ? least_paths_of_small : least_paths, 2 * decided_)) return;
   // The noise was measured with the guide: without it, it would be that and the gain.
   const double noise = noise_ > 0 ? noise_ : chosen, gain = plain - chosen;
   const bool known = largest < known_share_of_all * plain;
-  if (pairs_ < least_pairs_of_one) {
+  if (small) {
     if (!known) return;
     // Gains multiply along a path: what is measured (bends: 2.2 to 3) is at least the square of
     // what moments promise (1.35).
