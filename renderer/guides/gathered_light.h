@@ -80,8 +80,11 @@ class GatheredLight {
     const Rgb arrived(over(behind.x, carried.x), over(behind.y, carried.y),
                       over(behind.z, carried.z));
     const Pdf<SolidAngle> p(next.p_fwd / to_area(Pdf<SolidAngle>(1.0F), v, wi, next));
-    guide.accumulate({v, wi, p, luminance(arrived), contribution(guide, i, depth + 1, behind)},
-                     accumulator);
+    const float distance =
+        next.kind == Vertex::Kind::background ? HUGE_VALF : (next.surface.x - v.surface.x).length();
+    guide.accumulate(
+        {v, wi, p, distance, luminance(arrived), contribution(guide, i, depth + 1, behind)},
+        accumulator);
   }
 
   /// Half of the squared difference of two neighbouring pixels that show one material: the

@@ -2,25 +2,28 @@
 
 #include <cmath>
 
+#include "renderer/guides/aimed_lobes.h"
 #include "renderer/guides/direction_tree.h"
 #include "renderer/guides/guiding_distribution.h"
 #include "renderer/guides/learning_rounds.h"
 
 namespace lacuna {
 
-/// The light that paths found at the vertices of each cell of a guide, as quadtrees of directions
-/// (Mueller, Gross and Novak 2017). It is learned in LearningRounds: a round
+/// A guide divides into at most so many cells.
+inline constexpr std::size_t most_learned_cells = std::size_t{1} << 18;
+
+/// The light that paths found at the vertices of each cell of a guide: `Directions` are AimedLobes,
+/// or DirectionTrees (Mueller, Gross and Novak 2017). It is learned in LearningRounds: a round
 /// samples the directions of the round before, and builds those of the next one.
+template <class Directions>
 class LearnedCells {
  public:
-  static constexpr std::size_t most = std::size_t{1} << 18;  ///< cells that a guide may divide into
-
   LearnedCells() = default;
   explicit LearnedCells(std::size_t cells) : cells_(cells) {}
 
   std::size_t size() const { return cells_.size(); }
   /// What the last round found; empty where it found nothing.
-  const DirectionTree& tree(std::size_t cell) const { return cells_[cell].sampling; }
+  const Directions& directions(std::size_t cell) const { return cells_[cell].sampling; }
   /// Vertices of paths in this round.
   double vertices(std::size_t cell) const { return cells_[cell].vertices; }
   /// Vertices above which a cell is divided at the end of this round, where `first` are of a round
@@ -29,22 +32,19 @@ class LearnedCells {
   /// Rounds that have ended.
   std::uint64_t rounds() const { return rounds_.ended(); }
 
-  /// The light that arrived at a vertex.
-  struct EnergySample {
+  struct Found {
     std::uint32_t cell;
-    V3f w;
-    float energy;  ///< over the density with which `w` was sampled
+    FoundLight light;
   };
   /// The samples of one part of an iteration.
   struct Accumulator {
     explicit Accumulator(std::size_t cells) : vertices(cells, 0) {}
     std::vector<std::uint32_t> vertices;  // of each cell
-    std::vector<EnergySample> samples;
+    std::vector<Found> samples;
   };
   Accumulator accumulator() const { return Accumulator(cells_.size()); }
-  /// A vertex of `cell` < size() from which `energy` was found in direction `w`, which was sampled
-  /// with density `p`.
-  static void accumulate(std::uint32_t cell, const V3f& w, float energy, Pdf<SolidAngle> p,
+  /// A vertex of `cell` < size() from which `light` was found in the direction of `sample`.
+  static void accumulate(std::uint32_t cell, const GuidingSample& sample, float light,
                          Accumulator& accumulator);
   /// Adds the samples of `iterations`, in the order of their parts. True: a round has ended. Cells
   /// may then be divided, and next_round() must be called.
@@ -57,12 +57,10 @@ class LearnedCells {
   void save(ByteWriter& out) const;
   /// Throws std::runtime_error if the data is not valid.
   void load(ByteReader& in);
-  /// Nodes of all trees() together.
-  std::size_t direction_nodes() const;
 
  private:
   struct Cell {
-    DirectionTree sampling, building;
+    Directions sampling, building;
     double vertices = 0;
   };
   std::vector<Cell> cells_;

@@ -18,11 +18,11 @@ constexpr std::uint32_t learned_share = 4;
 }  // namespace
 
 struct LearnedSkeleton::SampleAccumulator final : Accumulator {
-  LearnedCells::Accumulator cells;
+  Cells::Accumulator cells;
   std::vector<CellForest::Spread> spreads;
   Tuning::Accumulator tuning;
   std::uint64_t met = 0;  // samples
-  explicit SampleAccumulator(LearnedCells::Accumulator empty)
+  explicit SampleAccumulator(Cells::Accumulator empty)
       : cells(std::move(empty)), spreads(cells.vertices.size()) {}
 };
 
@@ -37,7 +37,9 @@ Tuning LearnedSkeleton::new_tuning(std::size_t cells) const {
   return {distributions(), settings_.probability, cells};
 }
 
-bool LearnedSkeleton::samples_tree(std::uint32_t cell) const { return tuning_.strength(cell) < 0; }
+bool LearnedSkeleton::samples_learned(std::uint32_t cell) const {
+  return tuning_.strength(cell) < 0;
+}
 
 void LearnedSkeleton::prepare(const PrepareContext& context) {
   const SkeletonGraph& graph = context.space.skeleton();
@@ -57,7 +59,7 @@ void LearnedSkeleton::prepare(const PrepareContext& context) {
   region_.resize(forest_.cells());
   std::iota(region_.begin(), region_.end(), 0U);
   spreads_.assign(forest_.cells(), {});
-  cells_ = LearnedCells(forest_.cells());
+  cells_ = Cells(forest_.cells());
   tuning_ = new_tuning(forest_.cells());
 }
 
@@ -74,20 +76,20 @@ GuidingCell LearnedSkeleton::cell(const Surface& s, const V3f& w) const {
   const std::uint32_t cell =
       forest_.cell(region, key(region, s.x, dot(s.ng, w) < 0 ? -s.ng : s.ng));
   const std::uint32_t node = (*node_map_)[at];
-  const bool known =
-      samples_tree(cell) ? !cells_.tree(cell).empty() : node != no_node && !lobes_[node].empty();
+  const bool known = samples_learned(cell) ? !cells_.directions(cell).empty()
+                                           : node != no_node && !lobes_[node].empty();
   return {known ? tuning_.probability(cell) : 0.0F, cell, node};
 }
 
 std::optional<V3f> LearnedSkeleton::sample(const GuidedVertex& at, Rng::FinePoint u, Rng&) const {
   const std::uint32_t cell = at.cell.index;
-  if (samples_tree(cell)) return cells_.tree(cell).sample(u);
+  if (samples_learned(cell)) return cells_.directions(cell).sample(at.x(), u);
   return lobes_[at.cell.node].sample(at.x(), tuning_.strength(cell), u);
 }
 
 Pdf<SolidAngle> LearnedSkeleton::pdf(const GuidedVertex& at, const V3f& w) const {
   const std::uint32_t cell = at.cell.index;
-  if (samples_tree(cell)) return cells_.tree(cell).pdf(w);
+  if (samples_learned(cell)) return cells_.directions(cell).pdf(at.x(), w);
   return lobes_[at.cell.node].pdf(at.x(), w, tuning_.strength(cell));
 }
 
@@ -103,14 +105,15 @@ void LearnedSkeleton::accumulate(const GuidingSample& sample, Accumulator& accum
   if (own.met++ % learned_share != 0) return;
   own.spreads[cell].add(key(region_[cell], v.surface.x, v.side()));
   const float arriving = sample.radiance * abs_dot(v.surface.ns, sample.wi);
-  LearnedCells::accumulate(cell, sample.wi, arriving, sample.pdf, own.cells);
+  Cells::accumulate(cell, sample, arriving, own.cells);
   if (!tuning_.wants(cell)) return;
   std::array<float, doublings.size() + 1> densities{};
   if (node != no_node && !lobes_[node].empty()) {
     const auto of_lobes = lobes_[node].pdf_of_powers(v.surface.x, sample.wi);
     for (std::size_t i = 0; i < doublings.size(); ++i) densities[i] = of_lobes[doublings[i]];
   }
-  if (!cells_.tree(cell).empty()) densities.back() = cells_.tree(cell).pdf(sample.wi).value;
+  const AimedLobes& learned = cells_.directions(cell);
+  if (!learned.empty()) densities.back() = learned.pdf(v.surface.x, sample.wi).value;
   tuning_.accumulate(sample, cell, densities, own.tuning);
 }
 
@@ -120,7 +123,7 @@ void LearnedSkeleton::record_noise(double variance, Accumulator& accumulator) co
 
 void LearnedSkeleton::update(std::span<const std::unique_ptr<Accumulator>> accumulators,
                              const ThreadPool& pool, double iterations) {
-  std::vector<const LearnedCells::Accumulator*> cells;
+  std::vector<const Cells::Accumulator*> cells;
   std::vector<const Tuning::Accumulator*> tuning;
   for (const auto& a : accumulators) {
     const auto& own = static_cast<const SampleAccumulator&>(*a);
@@ -132,7 +135,7 @@ void LearnedSkeleton::update(std::span<const std::unique_ptr<Accumulator>> accum
   if (!cells_.update(cells, pool, iterations)) return;
   if (cells_.rounds() > 0) tuning_.stop_if_useless();
   const double most = cells_.most_vertices(settings_.leaf_vertices);
-  forest_.divide(spreads_, most, LearnedCells::most, [this](std::uint32_t cell) {
+  forest_.divide(spreads_, most, most_learned_cells, [this](std::uint32_t cell) {
     cells_.divide(cell);
     tuning_.divide(cell);
     region_.push_back(region_[cell]);
@@ -168,18 +171,17 @@ void LearnedSkeleton::load(ByteReader& in) {
 }
 
 std::vector<std::pair<std::string, double>> LearnedSkeleton::statistics() const {
-  double trees = 0, lobes = 0, shares = 0;
+  double learned = 0, lobes = 0, shares = 0;
   for (std::uint32_t c = 0; c < cells_.size(); ++c) {
     if (!tuning_.guides(c)) continue;
-    (samples_tree(c) ? trees : lobes) += 1;
+    (samples_learned(c) ? learned : lobes) += 1;
     shares += double(tuning_.probability(c));
   }
   return {{"regions", static_cast<double>(scale_.size())},
           {"cells", static_cast<double>(cells_.size())},
           {"cells_of_lobes", lobes},
-          {"cells_of_learned_directions", trees},
-          {"mean_probability", shares / std::max(1.0, trees + lobes)},
-          {"direction_nodes", static_cast<double>(cells_.direction_nodes())},
+          {"cells_of_learned_directions", learned},
+          {"mean_probability", shares / std::max(1.0, learned + lobes)},
           {"rounds", static_cast<double>(cells_.rounds())}};
 }
 

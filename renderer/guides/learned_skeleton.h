@@ -12,8 +12,9 @@ namespace lacuna {
 /// guide: learned_skeleton. Directions are learned in cells of the empty space: its regions, which
 /// walls and narrow passages bound, divided further by place and normal where paths are many
 /// (CellForest). Each cell chooses, by the second moment of what its paths give, between the lobes
-/// of the skeleton's nodes (SkeletonDirections), the directions learned in the last round
-/// (LearnedCells), and the BSDF alone. Before anything is learned, lobes are sampled.
+/// of the skeleton's nodes (SkeletonDirections), lobes fitted to the light that was found up to the
+/// last round (AimedLobes), and the BSDF alone. Before anything is learned, the skeleton's are
+/// sampled.
 class LearnedSkeleton final : public GuidingDistribution {
  public:
   explicit LearnedSkeleton(const LearnedSkeletonGuideSettings& settings) : settings_(settings) {}
@@ -39,11 +40,13 @@ class LearnedSkeleton final : public GuidingDistribution {
               double iterations) override;
 
  private:
+  using Cells = LearnedCells<AimedLobes>;
   struct SampleAccumulator;
 
-  /// What a cell samples: lobes of one of the strengths, or the tree, which comes last.
+  /// What a cell samples: the skeleton's lobes with one of the strengths, or the learned ones,
+  /// which come last.
   static std::vector<float> distributions();
-  bool samples_tree(std::uint32_t cell) const;
+  bool samples_learned(std::uint32_t cell) const;
   Tuning new_tuning(std::size_t cells) const;
   CellForest::Key key(std::uint32_t region, const V3f& x, const V3f& n) const;
 
@@ -56,7 +59,7 @@ class LearnedSkeleton final : public GuidingDistribution {
   CellForest forest_;
   std::vector<std::uint32_t> region_;        // of each cell
   std::vector<CellForest::Spread> spreads_;  // of each cell, in this round
-  LearnedCells cells_;
+  Cells cells_;
   Tuning tuning_;  // of each cell
 };
 

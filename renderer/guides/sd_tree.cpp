@@ -12,9 +12,9 @@ constexpr int deepest_places = 40;
 }  // namespace
 
 struct SdTree::SampleAccumulator final : Accumulator {
-  LearnedCells::Accumulator cells;
+  Leaves::Accumulator cells;
   Tuning::Accumulator tuning;
-  explicit SampleAccumulator(LearnedCells::Accumulator empty) : cells(std::move(empty)) {}
+  explicit SampleAccumulator(Leaves::Accumulator empty) : cells(std::move(empty)) {}
 };
 
 void SdTree::prepare(const PrepareContext& context) {
@@ -23,7 +23,7 @@ void SdTree::prepare(const PrepareContext& context) {
   low_ = box.low;
   side_ = std::max({size.x, size.y, size.z});
   nodes_ = {Node{}};
-  leaves_ = LearnedCells(1);
+  leaves_ = Leaves(1);
   tuning_ = Tuning({1}, settings_.probability, 1);  // a tree has no strength
 }
 
@@ -46,8 +46,8 @@ void SdTree::accumulate(const GuidingSample& sample, Accumulator& accumulator) c
   auto& own = static_cast<SampleAccumulator&>(accumulator);
   const std::uint32_t leaf = sample.v.guiding_cell.index;
   if (leaf >= leaves_.size()) return;
-  LearnedCells::accumulate(leaf, sample.wi, sample.radiance, sample.pdf, own.cells);
-  const DirectionTree& tree = leaves_.tree(leaf);
+  Leaves::accumulate(leaf, sample, sample.radiance, own.cells);
+  const DirectionTree& tree = leaves_.directions(leaf);
   if (tree.empty() || !tuning_.wants(leaf)) return;
   const float density = tree.pdf(sample.wi).value;
   tuning_.accumulate(sample, leaf, std::span(&density, 1), own.tuning);
@@ -59,7 +59,7 @@ void SdTree::record_noise(double variance, Accumulator& accumulator) const {
 
 void SdTree::update(std::span<const std::unique_ptr<Accumulator>> accumulators,
                     const ThreadPool& pool, double iterations) {
-  std::vector<const LearnedCells::Accumulator*> cells;
+  std::vector<const Leaves::Accumulator*> cells;
   std::vector<const Tuning::Accumulator*> tuning;
   for (const auto& a : accumulators) {
     const auto& own = static_cast<const SampleAccumulator&>(*a);
@@ -77,7 +77,7 @@ void SdTree::update(std::span<const std::unique_ptr<Accumulator>> accumulators,
 void SdTree::divide(std::uint32_t node, int depth, double most) {
   if (nodes_[node].child[0] == 0) {
     const std::uint32_t leaf = nodes_[node].leaf;
-    if (leaves_.vertices(leaf) <= most || leaves_.size() >= LearnedCells::most) return;
+    if (leaves_.vertices(leaf) <= most || leaves_.size() >= most_learned_cells) return;
     if (depth >= deepest_places) return;
     leaves_.divide(leaf);
     tuning_.divide(leaf);
@@ -115,9 +115,13 @@ void SdTree::load(ByteReader& in) {
 }
 
 std::vector<std::pair<std::string, double>> SdTree::statistics() const {
+  double nodes = 0;
+  for (std::size_t l = 0; l < leaves_.size(); ++l) {
+    nodes += static_cast<double>(leaves_.directions(l).nodes());
+  }
   std::vector<std::pair<std::string, double>> stats{
       {"sd_leaves", static_cast<double>(leaves_.size())},
-      {"sd_direction_nodes", static_cast<double>(leaves_.direction_nodes())},
+      {"sd_direction_nodes", nodes},
       {"sd_rounds", static_cast<double>(leaves_.rounds())}};
   for (auto& s : tuning_.statistics()) stats.push_back(std::move(s));
   return stats;

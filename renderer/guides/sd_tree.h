@@ -24,14 +24,14 @@ class SdTree final : public GuidingDistribution {
 
   GuidingCell cell(const Surface& s, const V3f&) const override {
     const std::uint32_t leaf = leaf_at(s.x);
-    const bool known = !leaves_.tree(leaf).empty();
+    const bool known = !leaves_.directions(leaf).empty();
     return {known ? tuning_.probability(leaf) : 0.0F, leaf};
   }
   std::optional<V3f> sample(const GuidedVertex& at, Rng::FinePoint u, Rng&) const override {
-    return leaves_.tree(at.cell.index).sample(u);
+    return leaves_.directions(at.cell.index).sample(u);
   }
   Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const override {
-    return leaves_.tree(at.cell.index).pdf(w);
+    return leaves_.directions(at.cell.index).pdf(w);
   }
 
   bool idle() const override { return tuning_.idle(); }
@@ -49,6 +49,7 @@ class SdTree final : public GuidingDistribution {
     std::array<std::uint32_t, 2> child{};  // 0: a leaf
     std::uint32_t leaf = 0;
   };
+  using Leaves = LearnedCells<DirectionTree>;
   struct SampleAccumulator;
 
   std::uint32_t leaf_at(const V3f& x) const;
@@ -58,7 +59,7 @@ class SdTree final : public GuidingDistribution {
   V3d low_{0.0};
   double side_ = 1;  // of the cube around the scene
   std::vector<Node> nodes_;
-  LearnedCells leaves_;
+  Leaves leaves_;
   Tuning tuning_;  // a cell for each leaf
 };
 

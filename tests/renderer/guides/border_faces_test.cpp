@@ -89,7 +89,7 @@ void update(BorderFaceLight& faces, const Accumulators& accumulators) {
 void add(const BorderScene& s, std::uint32_t region, const VoxelFace& face, float radiance,
          float pdf, BorderFaceLight::Accumulator& to) {
   static const Vertex any{};
-  s.faces.accumulate(region, face, {any, V3f(0, 0, 1), Pdf<SolidAngle>(pdf), radiance, 77}, to);
+  s.faces.accumulate(region, face, {any, V3f(0, 0, 1), Pdf<SolidAngle>(pdf), 1, radiance, 77}, to);
 }
 
 /// `n` samples of random faces of `region`, split over the accumulators; adds radiance / pdf of

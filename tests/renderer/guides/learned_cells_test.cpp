@@ -21,23 +21,44 @@ std::pair<V3f, Pdf<SolidAngle>> from_above(Rng& rng) {
   return {w, Pdf<SolidAngle>((w.z > 0 ? 0.9F : 0.1F) / (2 * pi))};
 }
 
-LearnedCells learned(int rounds, int samples, std::uint64_t seed, const ThreadPool& pool) {
-  LearnedCells cells(2);
+/// A vertex at the origin from which light came from infinitely far.
+GuidingSample found(const Vertex& v, const V3f& w, Pdf<SolidAngle> p) {
+  return {v, w, p, HUGE_VALF, 0, 0};
+}
+
+float density(const DirectionTree& tree, const V3f& w) { return tree.pdf(w).value; }
+float density(const AimedLobes& lobes, const V3f& w) { return lobes.pdf({0, 0, 0}, w).value; }
+
+/// What is lost of a window's sharp borders.
+template <class Directions>
+constexpr double smears = std::is_same_v<Directions, DirectionTree> ? 0.02 : 0.04;
+
+template <class Directions>
+class LearnedCellsOf : public testing::Test {};
+using AllDirections = testing::Types<DirectionTree, AimedLobes>;
+TYPED_TEST_SUITE(LearnedCellsOf, AllDirections);
+
+template <class Directions>
+LearnedCells<Directions> learned(int rounds, int samples, std::uint64_t seed,
+                                 const ThreadPool& pool) {
+  using Cells = LearnedCells<Directions>;
+  const Vertex v;
+  Cells cells(2);
   for (std::uint64_t i = 0; cells.rounds() < static_cast<std::uint64_t>(rounds); ++i) {
     Rng rng(seed, i, 0, Rng::Purpose::test);
-    LearnedCells::Accumulator part = cells.accumulator();
+    typename Cells::Accumulator part = cells.accumulator();
     for (int k = 0; k < samples; ++k) {
       const auto [w, p] = from_above(rng);
-      LearnedCells::accumulate(1, w, static_cast<float>(radiance(w)), p, part);
+      Cells::accumulate(1, found(v, w, p), static_cast<float>(radiance(w)), part);
     }
-    const LearnedCells::Accumulator* parts[] = {&part};
+    const typename Cells::Accumulator* parts[] = {&part};
     if (cells.update(parts, pool, 1)) cells.next_round(pool);
   }
   return cells;
 }
 
-/// Light from the window, from above and from below, far from their borders, which the filter of
-/// the tree smears: shares of these three.
+/// Light from the window, from above and from below, far from their borders, which the tree's
+/// filter and the lobes smear: shares of these three.
 std::array<double, 3> shares(const std::function<double(const V3f&)>& light) {
   Rng rng(34, 0, 0, Rng::Purpose::test);
   std::array<double, 3> sums{};
@@ -54,44 +75,48 @@ std::array<double, 3> shares(const std::function<double(const V3f&)>& light) {
   return sums;
 }
 
-TEST(LearnedCells, LearnTheLightThatArrives) {
+TYPED_TEST(LearnedCellsOf, LearnTheLightThatArrives) {
   const ThreadPool pool(2);
   const std::array<double, 3> expected = shares(radiance);
   std::array<statistics::Moments, 3> found;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    const LearnedCells cells = learned(4, 4000, seed, pool);
-    EXPECT_TRUE(cells.tree(0).empty());
-    const auto of_tree = shares([&](const V3f& w) { return double(cells.tree(1).pdf(w).value); });
-    for (std::size_t i = 0; i < 3; ++i) found[i].add(of_tree[i]);
+    const auto cells = learned<TypeParam>(4, 4000, seed, pool);
+    EXPECT_TRUE(cells.directions(0).empty());
+    const auto now = shares([&](const V3f& w) { return double(density(cells.directions(1), w)); });
+    for (std::size_t i = 0; i < 3; ++i) found[i].add(now[i]);
   }
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_NEAR(found[i].mean(), expected[i], 0.02 + 5 * found[i].standard_error()) << i;
+    EXPECT_NEAR(found[i].mean(), expected[i], smears<TypeParam> + 5 * found[i].standard_error())
+        << i;
   }
 }
 
-TEST(LearnedCells, CountAndDivideVertices) {
+TYPED_TEST(LearnedCellsOf, CountAndDivideVertices) {
+  using Cells = LearnedCells<TypeParam>;
+  const Vertex v;
+  const GuidingSample up = found(v, {0, 0, 1}, Pdf<SolidAngle>(1.0F));
   const ThreadPool pool(1);
-  LearnedCells cells(1);
-  LearnedCells::Accumulator a = cells.accumulator(), b = cells.accumulator();
-  LearnedCells::accumulate(0, {0, 0, 1}, 1, Pdf<SolidAngle>(1.0F), a);
-  LearnedCells::accumulate(0, {0, 0, 1}, 0, Pdf<SolidAngle>(1.0F), b);
-  LearnedCells::accumulate(0, {0, 0, 1}, INFINITY, Pdf<SolidAngle>(1.0F), b);
-  const LearnedCells::Accumulator* parts[] = {&a, &b};
+  Cells cells(1);
+  typename Cells::Accumulator a = cells.accumulator(), b = cells.accumulator();
+  Cells::accumulate(0, up, 1, a);
+  Cells::accumulate(0, up, 0, b);
+  Cells::accumulate(0, up, INFINITY, b);
+  const typename Cells::Accumulator* parts[] = {&a, &b};
   ASSERT_TRUE(cells.update(parts, pool, 1));
   EXPECT_EQ(cells.vertices(0), 3);
   cells.divide(0);
   EXPECT_EQ(cells.vertices(1), 1.5);
   cells.next_round(pool);
   EXPECT_EQ(cells.vertices(0), 0);
-  EXPECT_FALSE(cells.tree(0).empty());
-  EXPECT_FALSE(cells.tree(1).empty());
+  EXPECT_FALSE(cells.directions(0).empty());
+  EXPECT_FALSE(cells.directions(1).empty());
   // The second round has two iterations.
-  const LearnedCells::Accumulator empty = cells.accumulator();
-  const LearnedCells::Accumulator* none[] = {&empty};
+  const typename Cells::Accumulator empty = cells.accumulator();
+  const typename Cells::Accumulator* none[] = {&empty};
   EXPECT_FALSE(cells.update(none, pool, 1));
   EXPECT_TRUE(cells.update(none, pool, 1));
   cells.next_round(pool);
-  EXPECT_FALSE(cells.tree(0).empty()) << "without samples the old tree stays";
+  EXPECT_FALSE(cells.directions(0).empty()) << "without samples the old tree stays";
 }
 
 }  // namespace

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "analysis/storage/bytes.h"
+#include "renderer/core/density.h"
+#include "renderer/core/power8.h"
+#include "renderer/core/rng.h"
+#include "renderer/guides/found_light.h"
+
+namespace lacuna {
+
+/// A mixture of von Mises-Fisher lobes, each aimed at a point, so that its direction depends on
+/// where it is sampled: parallax (Ruppert, Herholz and Lensch 2020, 5). It is fitted to light that
+/// was found, by expectation maximisation batch by batch: of earlier batches only sums are kept.
+class AimedLobes {
+ public:
+  static constexpr std::size_t count = 8;
+
+  /// Nothing has been learned, and nothing can be sampled.
+  bool empty() const { return !(evidence_.weight > 0); }
+
+  /// Samples a unit direction at `x`; nothing where the chosen lobe is aimed at `x` itself.
+  /// Requires lobes that are not empty().
+  std::optional<V3f> sample(const V3f& x, Rng::FinePoint u) const;
+  /// Density with which sample() returns unit `w`.
+  Pdf<SolidAngle> pdf(const V3f& x, const V3f& w) const {
+    return Pdf<SolidAngle>(reduce_add(packed_.densities(x - pivot_, w)));
+  }
+
+  /// Fits to the light of `batch`, all at places near each other, and to what was learned before.
+  void learn(std::span<const FoundLight> batch);
+  /// What has been learned so far counts half from here on, and distances are kept as seen from the
+  /// middle of the places since the last call.
+  void next_round();
+
+  void save(ByteWriter& out) const;
+  /// Throws std::runtime_error if the data is not valid.
+  void load(ByteReader& in);
+
+ private:
+  /// Seen from pivot_ + d, the lobe's direction is that of axis - inverse_distance d.
+  struct Lobe {
+    V3d axis{0, 0, 1};                       ///< unit
+    double concentration = 1;                ///< kappa
+    double inverse_distance = 0, share = 0;  ///< of the point; of all samples
+  };
+  /// All lobes side by side.
+  struct alignas(32) Packed {
+    std::array<float, count> x{}, y{}, z{}, inverse_distance{};
+    std::array<float, count> fall{};  ///< minus kappa / (2 ln 2)
+    std::array<float, count> peak{};  ///< share times the density on the axis
+
+    /// exp(kappa (cos - 1)), where 2 (1 - cos) is the squared distance of the unit vectors: near
+    /// the axis that is more precise than the cosine.
+    Float8 densities(const V3f& from, const V3f& w) const {
+      const Float8 i = Float8::load(inverse_distance.data());
+      const Float8x3 to{Float8::load(x.data()) - i * from.x, Float8::load(y.data()) - i * from.y,
+                        Float8::load(z.data()) - i * from.z};
+      const Float8 square = length2(to);
+      const Float8 scale = 1.0F / sqrt(square);
+      const Float8x3 apart = to * scale + Float8x3{-w.x, -w.y, -w.z};
+      const Float8 bits = Float8::load(fall.data()) * length2(apart);
+      return keep_where(square > 0.0F, Float8::load(peak.data()) * exp2(bits));
+    }
+  };
+  static_assert(count == 8);
+  /// Sums over samples: of each lobe, by how much they belong to it.
+  struct Evidence {
+    double weight = 0, squares = 0;  // of all samples
+    struct OfLobe {
+      double weight = 0, inverse_distance = 0;
+      V3d direction{0, 0, 0};
+    };
+    std::array<OfLobe, count> lobes{};
+
+    void add(const Evidence& other, double scale);
+  };
+  /// A sample as seen from the pivot.
+  struct Seen {
+    V3f w;
+    float inverse_distance, weight;
+  };
+
+  double most_weight(std::span<const FoundLight> batch) const;
+  void begin(const V3f& pivot);
+  Seen seen(const FoundLight& light) const;
+  Evidence expect(std::span<const Seen> batch) const;
+  void maximise(const Evidence& evidence);
+  void move_pivot(const V3f& to);
+  void pack();
+  template <class Self, class Use>
+  static void for_each_number(Self& self, const Use& use);
+
+  V3f pivot_{0, 0, 0};
+  std::array<Lobe, count> lobes_{};
+  Packed packed_;
+  Evidence evidence_;
+  V3d places_{0, 0, 0};  // of the samples of this round, summed
+  double placed_ = 0;    // their number
+};
+
+}  // namespace lacuna
