@@ -115,6 +115,24 @@ TEST(AimedLobes, FollowThePlace) {
   EXPECT_GT(gain.mean() - 5 * gain.standard_error(), std::log(10.0));
 }
 
+// What was learned from one place is seen from another one later: the parts of a cell that was
+// divided begin with its lobes.
+TEST(AimedLobes, AreTheSameSeenFromElsewhere) {
+  const V3f target(0.5F, 1.5F, 1);
+  AimedLobes lobes = aimed(target, true, 100);
+  std::vector<FoundLight> elsewhere;
+  for (int i = 0; i < 100; ++i) elsewhere.push_back({{0.2F, 0.8F, 0.1F}, {0, 0, 1}, 3, 1});
+  lobes.learn(elsewhere);
+  const AimedLobes before = lobes;
+  lobes.next_round();
+  Rng rng(48, 0, 0, Rng::Purpose::test);
+  for (int i = 0; i < 1000; ++i) {
+    const V3f x = place(rng, 1), w = i % 2 == 0 ? (target - x).normalized() : uniform(rng);
+    const float p = before.pdf(x, w).value;
+    EXPECT_NEAR(lobes.pdf(x, w).value, p, 1e-3F * p + 1e-6F) << x << w;
+  }
+}
+
 TEST(AimedLobes, AreNotCarriedAwayByOneSample) {
   const auto light = [](const V3f& w) { return w.x > 0.9F ? 1.0F : 0; };
   AimedLobes lobes = taught(light, 4000);
