@@ -31,8 +31,7 @@ std::optional<Imath::V3i> best_neighbour(const Imath::V3i& s, const Imath::V3d& 
                                          Mapped&& mapped) {
   // The largest product is almost always that of the corner, edge or face which n points to, and
   // mapped; of those along which n has no part none is nearer.
-  const auto sign = [](double v) { return (v > 0) - (v < 0); };
-  const Imath::V3i corner(sign(n.x), sign(n.y), sign(n.z));
+  const Imath::V3i corner = sign_of(n);
   const double most = Imath::V3d(corner).dot(n);
   const auto is_needed = [&](int a) {  // not lost in rounding
     Imath::V3i nearer = corner;

@@ -13,6 +13,12 @@ namespace lacuna {
 /// Largest distance, in voxels, from a surface point's own voxel to its mapped voxel.
 inline constexpr int lookup_reach = 4;
 
+/// The offset to the corner, edge or face of a voxel that `n` points to.
+inline Imath::V3i sign_of(const Imath::V3d& n) {
+  const auto sign = [](double v) { return (v > 0) - (v < 0); };
+  return {sign(n.x), sign(n.y), sign(n.z)};
+}
+
 /// Finds the skeleton node that a surface point belongs to (Noel 2015, eq. 151-155).
 class SurfaceLookup {
  public:
@@ -30,6 +36,21 @@ class SurfaceLookup {
   /// half a voxel outside the grid (nearer ones, by rounding, belong to the outermost voxels), if
   /// `n` is 0, or if x, n or w is not finite.
   std::optional<Imath::V3i> voxel(Imath::V3d x, Imath::V3d n, Imath::V3d w) const;
+
+  /// Prefetches from the map what voxel() of the same arguments looks at first, and returns the
+  /// index of the voxel that it most often finds; none, if it finds none.
+  std::optional<std::size_t> prefetch(const Imath::V3d& x, const Imath::V3d& n,
+                                      const Imath::V3d& w) const {
+    const Imath::V3i size = map_->size();
+    const std::optional<Imath::V3i> s = voxel_at(transform_.to_grid(x), size);
+    if (!s) return {};
+    const double side = n.dot(w) < 0 ? -1 : 1;
+    const Imath::V3i front = *s + sign_of(n * side);
+    __builtin_prefetch(&(*map_)(*s));
+    const std::size_t i = map_->index(in_grid(front, size) ? front : *s);
+    __builtin_prefetch(&(*map_)[i]);
+    return i;
+  }
 
   /// The node of that voxel (eq. 155), or no_node.
   std::uint32_t node(Imath::V3d x, Imath::V3d n, Imath::V3d w) const {

@@ -46,6 +46,8 @@ class GuidingDistribution {
 
   /// The cell of the distribution at surface `s`, on the side of unit `w`.
   virtual GuidingCell cell(const Surface& s, const V3f& w) const = 0;
+  /// Prefetches what cell() of the same arguments reads first.
+  virtual void prefetch(const Surface&, const V3f&) const {}
   /// Samples a unit direction by the uniform point `u`, and `rng` if that is not enough; nothing
   /// where the sample fails. Requires a cell whose probability is above 0. A direction that changes
   /// continuously with `u` nearly everywhere keeps points evenly spread (Sampler::sobol).

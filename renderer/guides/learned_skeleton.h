@@ -26,6 +26,11 @@ class LearnedSkeleton final : public GuidingDistribution {
   std::vector<std::pair<std::string, double>> statistics() const override;
 
   GuidingCell cell(const Surface& s, const V3f& w) const override;
+  void prefetch(const Surface& s, const V3f& w) const override {
+    if (const auto at = lookup_->prefetch(V3d(s.x), V3d(s.ng), V3d(w))) {
+      __builtin_prefetch(&(*node_map_)[*at]);
+    }
+  }
   std::optional<V3f> sample(const GuidedVertex& at, Rng::FinePoint u, Rng&) const override;
   Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const override;
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <optional>
 #include <span>
 #include <vector>
@@ -40,8 +41,15 @@ class LobeSet {
   /// Density with which sample() returns unit `w`.
   Pdf<SolidAngle> pdf(const V3f& x, const V3f& w, float s) const {
     Float8 sum;
-    for_each_cosine(x, w,
-                    [&](Float8 cosine, Float8 share) { sum = sum + share * power8(cosine, s); });
+    if (const std::optional<int> squares = squares_of(s)) {
+      for_each_cosine(x, w, [&](Float8 power, Float8 share) {
+        for (int i = 0; i < *squares; ++i) power = power * power;
+        sum = sum + share * power;
+      });
+    } else {
+      for_each_cosine(x, w,
+                      [&](Float8 cosine, Float8 share) { sum = sum + share * power8(cosine, s); });
+    }
     return Pdf<SolidAngle>(reduce_add(sum) * (s + 1) * norm);
   }
 
@@ -58,6 +66,14 @@ class LobeSet {
     std::array<float, 8> x, y, z, share;
   };
 
+  /// How often a number is squared for its power `s`, if it is one of powers(): cheaper than
+  /// others.
+  static std::optional<int> squares_of(float s) {
+    const auto bits = std::bit_cast<std::uint32_t>(s);
+    const int exponent = static_cast<int>(bits >> 23) - 127;
+    const bool is_power = (bits & 0x7fffff) == 0 && exponent >= 0 && exponent < int{doublings};
+    return is_power ? std::optional(exponent) : std::nullopt;
+  }
   /// Calls `use(cosine, share)` for all blocks: max(0, w_i . w), and c_i.
   template <class Use>
   void for_each_cosine(const V3f& x, const V3f& w, const Use& use) const {

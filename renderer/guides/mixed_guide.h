@@ -96,6 +96,10 @@ class MixedGuide {
   std::optional<std::uint64_t> due_pilot() const { return eye_ ? eye_->due_pilot() : std::nullopt; }
   void begin_pilot() { eye_->begin_pilot(); }  ///< requires due_pilot()
 
+  /// Prefetches what on_hit() reads of `v`, whose surface and wp are known.
+  void prefetch(const Vertex& v) const {
+    if (!idle_) eye_->prefetch(v.surface, v.wp);
+  }
   /// Looks up the guiding cell of `v` for eye paths, on the side of v.wp. That for light paths is
   /// looked up where it is needed: all paths would carry it, few are guided so.
   void on_hit(Vertex& v) const {

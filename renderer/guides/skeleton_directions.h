@@ -25,6 +25,9 @@ class SkeletonDirections final : public GuidingDistribution {
     if (node == no_node || lobes_[node].empty()) return {};
     return {tuning_.probability(node), node};
   }
+  void prefetch(const Surface& s, const V3f& w) const override {
+    lookup_->prefetch(V3d(s.x), V3d(s.ng), V3d(w));
+  }
   std::optional<V3f> sample(const GuidedVertex& at, Rng::FinePoint u, Rng&) const override {
     return lobes_[at.cell.index].sample(at.x(), tuning_.strength(at.cell.index), u);
   }

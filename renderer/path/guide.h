@@ -13,6 +13,7 @@ namespace lacuna {
 ///
 /// - on_hit(v): called when a walk reaches the surface `v` and its BSDF is set. Stores the guiding
 ///   cell in `v`.
+/// - prefetch(v), or none: called when the surface and wp of `v` are known, before its BSDF is.
 /// - sample(v, rng, transport): a direction with its weight f cos / pdf and its density; nothing
 ///   where the sample fails. Eye paths (Transport::radiance) are guided; light paths may be.
 /// - pdf(v, wo, wi, transport): the density per steradian with which sample() returns unit `wi` for

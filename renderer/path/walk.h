@@ -169,7 +169,10 @@ class Walk {
       v.surface.x = w.ray.d;
     } else {
       v.surface = scene_.surface(w.hit);
-      if (scatters(depth)) scene_.prefetch_bsdf(v.surface);
+      if (scatters(depth)) {
+        scene_.prefetch_bsdf(v.surface);
+        if constexpr (requires { guide_.prefetch(v); }) guide_.prefetch(v);
+      }
     }
     const Vertex& before = vertex(w, depth - 1);
     v.p_fwd = to_area(w.p, before, w.ray.d, v);

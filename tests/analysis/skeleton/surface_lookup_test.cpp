@@ -49,6 +49,23 @@ TEST(SurfaceLookup, TakesTheVoxelAlongTheNormalOnTheSideOfTheViewer) {
   EXPECT_EQ(lookup.node(at({4.1, 4.5, 4.5}), {-1, 0, 0}, {-1, 0, 0}), map.index(3, 4, 4));
 }
 
+TEST(SurfaceLookup, PrefetchesWhatItMostOftenTakes) {
+  const BitGrid3 domain = wall();
+  const auto map = indices(domain);
+  const SurfaceLookup lookup({}, map);
+  const auto expect_taken = [&](const V3d& x, const V3d& n, const V3d& w) {
+    const auto voxel = lookup.voxel(x, n, w);
+    ASSERT_TRUE(voxel);
+    EXPECT_EQ(lookup.prefetch(x, n, w), map.index(*voxel));
+  };
+  for (const double side : {-1.0, 1.0}) expect_taken({4.1, 4.5, 4.5}, {side, 0, 0}, {-3, 1, 0});
+  expect_taken({6.9, 4.5, 4.5}, {1, 0, 0}, {0.1, 0, 0});
+  expect_taken({4.1, 4.5, 4.5}, {-1, 0.9, 0.2}, {-1, 0, 0});
+  EXPECT_EQ(lookup.prefetch({4.1, -3, 4.5}, {1, 0, 0}, {1, 0, 0}), std::nullopt);
+  EXPECT_TRUE(lookup.prefetch({0, 0, 0}, {-1, 0, 0}, {-1, 0, 0}))
+      << "what is in front lies outside";
+}
+
 TEST(SurfaceLookup, WidensTheShellButNotToWhatLiesBehind) {
   const BitGrid3 domain = wall();
   const auto map = indices(domain);

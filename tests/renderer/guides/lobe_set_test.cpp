@@ -81,8 +81,10 @@ TEST(LobeSet, PowersAreStrengths) {
     ASSERT_TRUE(w);
     const auto powers = lobes.pdf_of_powers(x, *w);
     for (std::size_t i = 0; i < powers.size(); ++i) {
-      const float p = lobes.pdf(x, *w, float(1U << i)).value;
+      const float s = float(1U << i), p = lobes.pdf(x, *w, s).value;
       EXPECT_NEAR(powers[i], p, 1e-4F * p + 1e-20F);
+      // Of a strength between, which is no power of 2.
+      EXPECT_NEAR(lobes.pdf(x, *w, std::nextafter(s, 2 * s)).value, p, 1e-4F * p + 1e-20F);
     }
   }
 }
