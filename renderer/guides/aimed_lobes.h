@@ -94,12 +94,12 @@ class AimedLobes {
   template <class Self, class Use>
   static void for_each_number(Self& self, const Use& use);
 
-  V3f pivot_{0, 0, 0};
-  std::array<Lobe, count> lobes_{};
   Packed packed_;
+  std::array<Lobe, count> lobes_{};
   Evidence evidence_;
   V3d places_{0, 0, 0};  // of the samples of this round, summed
   double placed_ = 0;    // their number
+  V3f pivot_{0, 0, 0};
 };
 
 }  // namespace lacuna

@@ -34,7 +34,7 @@ std::vector<float> LearnedSkeleton::distributions() {
 }
 
 Tuning LearnedSkeleton::new_tuning(std::size_t cells) const {
-  return {distributions(), settings_.probability, cells};
+  return {distributions(), settings_.probability, cells, Tuning::Directions::learned};
 }
 
 bool LearnedSkeleton::samples_learned(std::uint32_t cell) const {

@@ -24,7 +24,7 @@ void SdTree::prepare(const PrepareContext& context) {
   side_ = std::max({size.x, size.y, size.z});
   nodes_ = {Node{}};
   leaves_ = Leaves(1);
-  tuning_ = Tuning({1}, settings_.probability, 1);  // a tree has no strength
+  tuning_ = new_tuning();
 }
 
 std::uint32_t SdTree::leaf_at(const V3f& x) const {
@@ -110,7 +110,7 @@ void SdTree::load(ByteReader& in) {
   }
   if (!good) throw std::runtime_error("saved guide is not a valid tree");
   nodes_ = std::move(nodes);
-  tuning_ = Tuning({1}, settings_.probability, leaves_.size());
+  tuning_ = new_tuning();
   tuning_.load(in);
 }
 

@@ -52,6 +52,9 @@ class SdTree final : public GuidingDistribution {
   using Leaves = LearnedCells<DirectionTree>;
   struct SampleAccumulator;
 
+  Tuning new_tuning() const {  // a tree has no strength
+    return {{1}, settings_.probability, leaves_.size(), Tuning::Directions::learned};
+  }
   std::uint32_t leaf_at(const V3f& x) const;
   void divide(std::uint32_t node, int depth, double most);
 

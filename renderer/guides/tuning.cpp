@@ -30,9 +30,13 @@ constexpr double promises_nothing = 0.1;
 constexpr std::uint64_t first_pilots = 16, most_first_pilots = 32, plain_pilots = 3;
 /// And so many of all: a scene of which they say nothing keeps its guide.
 constexpr std::uint64_t most_pilots = 96;
-/// Deviations that the ratio of two noises must differ from 1 by; and where the BSDF has found so
-/// few bright paths that it has more noise than is known.
+/// Deviations that the ratio of two noises must differ from 1 by; and where the BSDF or the guide
+/// has found so few bright paths that it has more noise than is known.
 constexpr double decisive = 2, decisive_of_unknown = 3;
+/// What the logarithm of the gain of directions that are learned is expected to grow by with each
+/// doubling of the iterations, and until when: on door and bends by .6 from the first to the 128th.
+/// Half of it is counted, because until then each iteration may lose.
+constexpr double grows_by = 0.05, grows_until = 256;
 /// Without pilots, one of so many iterations at most follows the BSDF for comparison.
 constexpr std::uint64_t rests_of = 16;
 /// The relative deviation of the ratio of two noises up to which it is known well enough; above, it
@@ -81,8 +85,9 @@ std::uint32_t nearest(const std::vector<float>& values, float wanted) {
 
 }  // namespace
 
-Tuning::Tuning(std::vector<float> strengths, const AutoNumber& probability, std::size_t cells)
-    : strengths_(std::move(strengths)) {
+Tuning::Tuning(std::vector<float> strengths, const AutoNumber& probability, std::size_t cells,
+               Directions directions)
+    : strengths_(std::move(strengths)), directions_(directions) {
   if (probability.is_auto()) {
     probabilities_ = {0, 0.125F, 0.25F, 0.375F, 0.5F, 0.625F, 0.75F, 0.875F};
   } else {
@@ -169,10 +174,16 @@ bool Tuning::pilot_is_guided() const {
   return iterations_ == 0 && pilots_ >= plain_pilots && pilots_ % 2 != 0;
 }
 
+double Tuning::hoped() const {
+  if (directions_ == Directions::fixed) return 0;
+  const double doublings = std::log2(grows_until / double(std::max<std::uint64_t>(iterations_, 1)));
+  return grows_by * std::max(doublings, 0.0);
+}
+
 void Tuning::judge_pilots() {
   if (pilots_ < first_pilots || pairs_ < least_pairs_of_one) return;
   if (!(with_.sum > 0) || !(without_.sum > 0)) return;
-  const double gain = std::log(without_.mean() / (with_.mean() * guided_iteration_cost));
+  const double gain = std::log(without_.mean() / (with_.mean() * guided_iteration_cost)) + hoped();
   const double deviation = std::sqrt(with_.doubt() + without_.doubt());
   const bool last = iterations_ == 0 && pilots_ == most_first_pilots;
   const bool known = without_.doubt() < comparable * comparable;
@@ -186,9 +197,10 @@ void Tuning::judge_pilots() {
     pays_ = true;
     return;
   }
-  const double wanted = (known ? decisive : decisive_of_unknown) * deviation;
+  const bool sure = known && with_.doubt() < comparable * comparable;
+  const double wanted = (sure ? decisive : decisive_of_unknown) * deviation;
   const bool shown = std::abs(gain) > wanted, sees = 2 * without_.lit > without_.pairs;
-  if (!shown && !(last && (sees || known))) return;
+  if (!shown && !(last && (sees || sure))) return;
   idle_ = gain < 0 || !(shown || known);
   pays_ = !idle_;
 }

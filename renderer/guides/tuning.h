@@ -32,8 +32,11 @@ namespace lacuna {
 class Tuning {
  public:
   Tuning() = default;
+  /// Those that are learned are expected to gain more with time.
+  enum class Directions : std::uint8_t { fixed, learned };
   /// `strengths`: one or more candidates; `probability`: as in the settings.
-  Tuning(std::vector<float> strengths, const AutoNumber& probability, std::size_t cells);
+  Tuning(std::vector<float> strengths, const AutoNumber& probability, std::size_t cells,
+         Directions directions = Directions::fixed);
 
   bool learns() const { return strengths_.size() * probabilities_.size() > 1; }
   float strength(std::size_t cell) const { return strengths_[chosen_[cell] / count()]; }
@@ -134,6 +137,8 @@ class Tuning {
   bool follows_bsdf() const { return in_pilot_ ? !pilot_is_guided() : rests_; }
   bool pilot_is_guided() const;
   void judge_pilots();
+  /// What the logarithm of the gain may be expected to grow by.
+  double hoped() const;
   void compare();
 
   std::vector<float> strengths_, probabilities_;
@@ -146,6 +151,7 @@ class Tuning {
   Noise with_, without_;  // of iterations with the guide, the latest most, and of the others
   double pairs_ = 0;      // of a whole iteration, from the last update
   std::uint64_t iterations_ = 0, rested_ = 0, pilots_ = 0;
+  Directions directions_ = Directions::fixed;
   bool pays_ = false;      // pilots have shown that the guide does
   bool in_pilot_ = false;  // what is sampled now is a pilot
   bool rests_ = false;     // the coming iteration follows the BSDF

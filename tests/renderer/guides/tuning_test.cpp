@@ -9,6 +9,9 @@ namespace {
 class TunedGuide {
  public:
   explicit TunedGuide(int pairs = 20000) : pairs_(pairs) {}
+  explicit TunedGuide(Tuning::Directions directions) : TunedGuide() {
+    tuning = Tuning({8}, AutoNumber{}, 1, directions);
+  }
 
   /// An iteration in which each pixel has this variance.
   void iterate(double variance) {
@@ -132,6 +135,19 @@ TEST(Tuning, EndsBeforeTheFirstIterationWherePilotsHaveHardlyMoreNoiseWithoutIt)
   EXPECT_TRUE(guide.tuning.idle()) << "a guided iteration takes 1.75 times as long";
 }
 
+// Directions that are learned are expected to become better, until they should have.
+TEST(Tuning, WaitsForDirectionsThatAreLearned) {
+  TunedGuide guide(Tuning::Directions::learned);
+  EXPECT_EQ(guide.fly(0.1, 0.13), 16);
+  EXPECT_FALSE(guide.tuning.idle());
+  int iterations = 0;
+  for (; iterations < 512 && !guide.tuning.idle(); ++iterations) guide.iterate(0.1);
+  EXPECT_EQ(iterations, 8) << "a gain of .3 less than it costs, .25 of which may come yet";
+  TunedGuide poor(Tuning::Directions::learned);
+  EXPECT_EQ(poor.fly(0.1, 0.1), 16);
+  EXPECT_TRUE(poor.tuning.idle()) << ".4 would not make up for .56";
+}
+
 TEST(Tuning, GoesOnWherePilotsHaveMoreNoiseWithoutIt) {
   TunedGuide guide;
   EXPECT_EQ(guide.fly(0.1, 0.4), 16);
@@ -167,6 +183,16 @@ TEST(Tuning, GoesOnWhereTheBsdfFindsNoLight) {
       pilots += later;
     }
     EXPECT_EQ(pilots, one_path > 0 ? 16 : 96) << "not for ever";
+  }
+}
+
+// One path of the guide makes its noise, which is not known then: twice its deviation decides
+// nothing.
+TEST(Tuning, DoesNotDecideByAFewPathsOfTheGuide) {
+  for (const double guided_bright : {0.0, 5000.0}) {
+    TunedGuide guide(Tuning::Directions::learned);
+    guide.guided_bright = guided_bright;
+    EXPECT_EQ(guide.fly(0.1, 0.1), guided_bright > 0 ? 32 : 16);
   }
 }
 
