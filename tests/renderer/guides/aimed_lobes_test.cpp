@@ -12,7 +12,7 @@ namespace {
 
 constexpr float uniform_density = 1 / (4 * pi);
 
-V3f uniform(Rng& rng) { return from_square(rng.next2()); }
+V3f direction(Rng& rng) { return from_square(rng.next2()); }
 
 /// A place in the cube of half-width `r` around the origin.
 V3f place(Rng& rng, float r) {
@@ -23,13 +23,13 @@ V3f place(Rng& rng, float r) {
 using Light = std::function<float(const V3f&)>;
 
 /// Learned in four rounds from as many uniform directions each; a black one is not light.
-AimedLobes taught(const Light& light, int samples) {
+AimedLobes lobes_of(const Light& light, int samples) {
   AimedLobes lobes;
   for (std::uint64_t round = 0; round < 4; ++round) {
     Rng rng(41, round, 0, Rng::Purpose::test);
     std::vector<FoundLight> batch;
     for (int i = 0; i < samples; ++i) {
-      const V3f w = uniform(rng);
+      const V3f w = direction(rng);
       if (light(w) > 0) batch.push_back({{0, 0, 0}, w, HUGE_VALF, light(w) / uniform_density});
     }
     lobes.learn(batch);
@@ -57,9 +57,9 @@ AimedLobes aimed(const V3f& target, bool distances, int places) {
 TEST(AimedLobes, DrawWithTheirDensity) {
   const V3f target(0.5F, 1.5F, 1);
   const AimedLobes wide =
-      taught([](const V3f& w) { return w.x > 0.7F ? 9.0F
-                                       : w.z > 0  ? 1.0F
-                                                  : 0.1F; }, 2000);
+      lobes_of([](const V3f& w) { return w.x > 0.7F ? 9.0F
+                                         : w.z > 0  ? 1.0F
+                                                    : 0.1F; }, 2000);
   const AimedLobes narrow = aimed(target, true, 4000), blurred = aimed(target, false, 300);
   const std::array<V3f, 4> places{V3f(0, 0, 0), V3f(0.4F, 0.3F, -0.4F), V3f(-3, 2, 7),
                                   V3f(0.48F, 1.4F, 0.95F)};
@@ -84,12 +84,12 @@ TEST(AimedLobes, FitTheLight) {
   const Light light = [&](const V3f& w) {
     return 8 * std::exp(60 * (dot(a, w) - 1)) + 3 * std::exp(8 * (dot(b, w) - 1)) + 0.02F;
   };
-  const AimedLobes lobes = taught(light, 20000);
+  const AimedLobes lobes = lobes_of(light, 20000);
   Rng rng(44, 0, 0, Rng::Purpose::test);
   double all = 0;
   std::vector<std::pair<V3f, double>> samples;
   for (int i = 0; i < 400000; ++i) {
-    const V3f w = uniform(rng);
+    const V3f w = direction(rng);
     samples.emplace_back(w, double(light(w)));
     all += samples.back().second;
   }
@@ -127,7 +127,7 @@ TEST(AimedLobes, AreTheSameSeenFromElsewhere) {
   lobes.next_round();
   Rng rng(48, 0, 0, Rng::Purpose::test);
   for (int i = 0; i < 1000; ++i) {
-    const V3f x = place(rng, 1), w = i % 2 == 0 ? (target - x).normalized() : uniform(rng);
+    const V3f x = place(rng, 1), w = i % 2 == 0 ? (target - x).normalized() : direction(rng);
     const float p = before.pdf(x, w).value;
     EXPECT_NEAR(lobes.pdf(x, w).value, p, 1e-3F * p + 1e-6F) << x << w;
   }
@@ -135,7 +135,7 @@ TEST(AimedLobes, AreTheSameSeenFromElsewhere) {
 
 TEST(AimedLobes, AreNotCarriedAwayByOneSample) {
   const auto light = [](const V3f& w) { return w.x > 0.9F ? 1.0F : 0; };
-  AimedLobes lobes = taught(light, 4000);
+  AimedLobes lobes = lobes_of(light, 4000);
   const float before = lobes.pdf({0, 0, 0}, {1, 0, 0}).value;
   const std::array<FoundLight, 1> rare{FoundLight{{0, 0, 0}, {-1, 0, 0}, 2, 1e12F}};
   lobes.learn(rare);
@@ -169,7 +169,7 @@ TEST(AimedLobes, AreTheSameAtEachScale) {
     std::vector<FoundLight> batch;
     for (int i = 0; i < 500; ++i) {
       const V3f x = place(rng, 1) * places;
-      batch.push_back({x, uniform(rng), places * (1 + rng.next()), weights * rng.next()});
+      batch.push_back({x, direction(rng), places * (1 + rng.next()), weights * rng.next()});
     }
     lobes.learn(batch);
     lobes.next_round();
@@ -181,7 +181,7 @@ TEST(AimedLobes, AreTheSameAtEachScale) {
     const AimedLobes other = scaled(s, w);
     Rng rng(47, 0, 0, Rng::Purpose::test);
     for (int i = 0; i < 100; ++i) {
-      const V3f x = place(rng, 1), d = uniform(rng);
+      const V3f x = place(rng, 1), d = direction(rng);
       EXPECT_EQ(plain.pdf(x, d).value, other.pdf(x * s, d).value);
     }
   }
