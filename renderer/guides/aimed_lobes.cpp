@@ -5,8 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "renderer/core/frame.h"
-#include "renderer/core/sampling.h"
+#include "renderer/core/direction_around.h"
 
 namespace lacuna {
 
@@ -20,7 +19,8 @@ constexpr double given_directions = 0.5, given_share = 0.05;
 /// The widest and the narrowest lobe: of a degree.
 constexpr double least_concentrated = 1e-2, most_concentrated = 5000;
 /// The largest share of one sample in all: one rare path must not carry all lobes away. MSE without
-/// it over that with it: 1.3 on corridor, 1.0 elsewhere.
+/// it over that with it: 1.3 on corridor, 1.0 elsewhere. It is found by repeated reduction, until
+/// that changes it by less than a tenth.
 constexpr double most_of_all = 0.01, near_enough = 0.9;
 /// Of expectation and maximisation, of the first batch and of later ones.
 constexpr int first_fits = 8, later_fits = 2;
@@ -44,10 +44,7 @@ std::optional<V3f> AimedLobes::sample(const V3f& x, Rng::FinePoint u) const {
   // the cosine.
   const double k = lobe.concentration;
   const double versine = std::min(-std::log1p(left * std::expm1(-2 * k)) / k, 2.0);
-  const auto sine = static_cast<float>(std::sqrt(versine * (2 - versine)));
-  const float phi = 2 * pi * u.point().y;
-  return Frame(d / length)
-      .to_world({sine * std::cos(phi), sine * std::sin(phi), static_cast<float>(1 - versine)});
+  return direction_around(d / length, versine, u.point().y);
 }
 
 void AimedLobes::learn(std::span<const FoundLight> batch) {

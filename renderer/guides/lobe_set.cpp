@@ -1,7 +1,6 @@
 #include "renderer/guides/lobe_set.h"
 
-#include "renderer/core/frame.h"
-#include "renderer/core/sampling.h"
+#include "renderer/core/direction_around.h"
 
 namespace lacuna {
 
@@ -29,13 +28,10 @@ std::optional<V3f> LobeSet::sample(const V3f& x, float s, Rng::FinePoint point) 
   // cos^(s+1) is uniform. Near the axis 1 - cos is more precise than the cosine.
   const double power = std::log1p(-double(u.x)) / (double(s) + 1);
   const double versine = -std::expm1(power);
-  const auto sine = static_cast<float>(std::sqrt(versine * (2 - versine)));
-  const float phi = 2 * pi * u.y;
   const V3f d = to - x;
   const float length = std::sqrt(dot(d, d));
   if (!(length > 0)) return std::nullopt;
-  return Frame(d / length)
-      .to_world({sine * std::cos(phi), sine * std::sin(phi), static_cast<float>(1 - versine)});
+  return direction_around(d / length, versine, u.y);
 }
 
 std::vector<float> LobeSet::powers() {
