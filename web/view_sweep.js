@@ -68,7 +68,9 @@ export async function show(main, { params, query, signal }) {
   const view = answersView(query, () => remember(query), cellPictures(query, signal, say));
   main.append(
     h("div.title", heading, state.element, bar.element, h("div.tools.actions",
-      h("a", { href: tableUrl(id), download: `${id}.csv` }, "table.csv"), cancel, remove)),
+      // Above what is drawn late: a link that a picture moves is missed.
+      h("a", { href: `#/?sweep=${id}` }, "its runs"), h("a", { href: tableUrl(id), download: `${id}.csv` }, "table.csv"),
+      cancel, remove)),
     h("p.id", id), refusal, about, view.element, runs, source);
 
   let took = 0;
@@ -85,7 +87,7 @@ export async function show(main, { params, query, signal }) {
     remove.hidden = !over;
     setText(about, `${summary(answers)}. Created ${when(sweep.created)}.`);
     view.show(answers);
-    replace(runs, doubtfulRuns(answers), h("p", h("a", { href: `#/?sweep=${id}` }, "Its runs in the list of jobs")));
+    replace(runs, doubtfulRuns(answers));
     if (!source.firstChild) {
       const command = sweepCurl(withoutNulls(sweep.spec));
       source.append(h("details", h("summary", "Sweep file"), h("pre.tall", { tabIndex: 0 }, prettyJob(sweep.spec)),
