@@ -103,15 +103,16 @@ class MixedGuide {
   /// Looks up the guiding cell of `v` for eye paths, on the side of v.wp. That for light paths is
   /// looked up where it is needed: all paths would carry it, few are guided so.
   void on_hit(Vertex& v) const {
-    const bool guided = v.bsdf->connectible();
-    v.guiding_cell = guided && !idle_ ? eye_->cell(v.surface, v.wp) : GuidingCell{};
+    if (idle_) return;  // nothing reads it
+    v.guiding_cell = v.bsdf->connectible() ? eye_->cell(v.surface, v.wp) : GuidingCell{};
   }
 
   std::optional<BsdfSample> sample(const Vertex& v, Rng& rng, Transport transport) const {
+    if (of(transport) == nullptr) return bsdf_.sample(v, rng, transport);
+    const GuidingDistribution& directions = *of(transport);
     const GuidingCell cell = cell_of(v, v.wp, transport);
     const float c = cell.probability;
     if (c == 0) return bsdf_.sample(v, rng, transport);
-    const GuidingDistribution& directions = *of(transport);
     // One point chooses and places, so that the points of both stay evenly spread.
     Rng::FinePoint u = fine_point(rng);
     if (choose(u.x, double(c))) {
@@ -144,7 +145,10 @@ class MixedGuide {
 
   /// Density of `wi` for a walk of the given transport that arrived at `v` from `wo`.
   Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport) const {
-    const Pdf<SolidAngle> bsdf = bsdf_.pdf(v, wo, wi, transport);
+    return pdf(v, wo, wi, transport, bsdf_.pdf(v, wo, wi, transport));
+  }
+  Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport,
+                      Pdf<SolidAngle> bsdf) const {
     const GuidingDistribution* const directions = of(transport);
     if (directions == nullptr) return bsdf;
     return mixed(*directions, {v.surface, *v.bsdf, wo, cell_of(v, wo, transport)}, wi, bsdf);
@@ -200,10 +204,10 @@ class MixedGuide {
     if (transport == Transport::importance) return light_.get();
     return idle_ ? nullptr : eye_.get();
   }
-  /// The cell of `v` as seen from `wo`, for paths of this transport.
+  /// The cell of `v` as seen from `wo`, for paths of this transport. Requires of(transport).
   GuidingCell cell_of(const Vertex& v, const V3f& wo, Transport transport) const {
     if (transport == Transport::importance) {
-      return light_ && v.bsdf->connectible() ? light_->cell(v.surface, wo) : GuidingCell{};
+      return v.bsdf->connectible() ? light_->cell(v.surface, wo) : GuidingCell{};
     }
     const bool this_side = (dot(wo, v.surface.ng) < 0) == (dot(v.wp, v.surface.ng) < 0);
     return this_side ? v.guiding_cell : eye_->cell(v.surface, wo);

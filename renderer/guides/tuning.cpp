@@ -197,7 +197,8 @@ void Tuning::judge_pilots() {
     pays_ = true;
     return;
   }
-  const bool sure = known && with_.doubt() < comparable * comparable;
+  // What the guide has put into the picture is an error of it, known or not.
+  const bool sure = known && (iterations_ > 0 || with_.doubt() < comparable * comparable);
   const double wanted = (sure ? decisive : decisive_of_unknown) * deviation;
   const bool shown = std::abs(gain) > wanted, sees = 2 * without_.lit > without_.pairs;
   if (!shown && !(last && (sees || sure))) return;

@@ -19,14 +19,13 @@ struct BsdfGuide : StrategyBase {
     const auto [u_lobe, u] = rng.next_choice_and_point();
     return v.bsdf->sample(v.wp, u_lobe, u, transport);
   }
-  /// What a surface scatters, and pdf(), from one evaluation.
-  static Bsdf::Evaluated evaluate(const Vertex& v, const V3f& wo, const V3f& wi,
-                                  Transport transport) {
-    return v.bsdf->evaluate(wo, wi, transport);
-  }
   /// Density of `wi` for a walk of the given transport that arrived at `v` from `wo`.
   static Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport) {
     return v.bsdf->pdf(wo, wi, transport);
+  }
+  static Pdf<SolidAngle> pdf(const Vertex&, const V3f&, const V3f&, Transport,
+                             Pdf<SolidAngle> bsdf) {
+    return bsdf;
   }
 };
 static_assert(Guide<BsdfGuide>);

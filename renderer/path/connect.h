@@ -15,8 +15,8 @@ struct Connection {
   bool infinite = false;  ///< the light's endpoint is at infinity
   /// scatter() of both endpoints over distance2: without MIS weight and visibility.
   Rgb contribution{0, 0, 0};
-  /// Density with which the eye's walk would continue along w; below 0: not evaluated yet.
-  double eye_pdf = -1;
+  /// Density of w by the BSDF of the eye's endpoint; none: not evaluated yet.
+  std::optional<Pdf<SolidAngle>> eye_bsdf_pdf;
 
   explicit operator bool() const { return !is_black(contribution); }
 };
@@ -52,8 +52,8 @@ Connection connect(const Eye& eye, const Light& light) {
   const Rgb emitted = light.scatter(-c.w);
   if (is_black(emitted)) return c;
   Rgb scattered;
-  if constexpr (requires { eye.scatter(c.w, c.eye_pdf); }) {
-    scattered = eye.scatter(c.w, c.eye_pdf);
+  if constexpr (requires { eye.scatter(c.w, c.eye_bsdf_pdf.emplace()); }) {
+    scattered = eye.scatter(c.w, c.eye_bsdf_pdf.emplace());
   } else {
     scattered = eye.scatter(c.w);
   }
@@ -69,13 +69,22 @@ Ray shadow_ray(const Eye& eye, const Light& light, const Connection& c) {
   return {from, light.origin(-c.w) - from, 1.0F};
 }
 
+/// Density with which the eye's walk would continue along the connection.
+template <class Eye>
+double eye_pdf(const Eye& eye, const Connection& c) {
+  if constexpr (requires { eye.pdf(c.w, *c.eye_bsdf_pdf); }) {
+    if (c.eye_bsdf_pdf) return eye.pdf(c.w, *c.eye_bsdf_pdf);
+  }
+  return eye.pdf(c.w);
+}
+
 /// sum_{i < s} n_i p_i / p_s: the techniques with fewer vertices on the light's side (mis.h).
 template <class Eye, class Light>
 double light_side_sum(const Eye& eye, const Light& light, const Connection& c,
                       const SampleCounts& n) {
   if (light.index == 0 && !light.prev_connectible()) return 0;
-  const double p = c.eye_pdf < 0 ? eye.pdf(c.w) : c.eye_pdf;
-  const double g = p * (c.infinite ? 1.0 : light.area_factor(c.w) / double(c.distance2));
+  const double g =
+      eye_pdf(eye, c) * (c.infinite ? 1.0 : light.area_factor(c.w) / double(c.distance2));
   const double pdf_rev = light.mis_partial() > 0 ? light.pdf_rev(-c.w) : 0.0;
   const TechniqueCounts side = light_side(n).with_one(light.next_event_ratio());
   return g / light.p_fwd() *

@@ -34,17 +34,19 @@ struct SurfaceEndpoint {
   const V3f& x() const { return v.surface.x; }
   /// throughput f(wp, w) |cos|: what the path scatters along `w`.
   Rgb scatter(const V3f& w) const { return v.throughput * v.bsdf->eval(v.wp, w, transport); }
-  /// scatter(), with pdf() where that comes with it; else `p` is left as it is.
-  Rgb scatter(const V3f& w, double& p) const {
-    if constexpr (requires { guide.evaluate(v, v.wp, w, transport); }) {
-      const Bsdf::Evaluated e = guide.evaluate(v, v.wp, w, transport);
-      p = double(e.pdf.value);
-      return v.throughput * e.value;
-    }
-    return scatter(w);
+  /// scatter(), and the density of `w` by the BSDF, which comes with it; where the surface scatters
+  /// nothing, that may be left at 0.
+  Rgb scatter(const V3f& w, Pdf<SolidAngle>& bsdf) const {
+    const Bsdf::Evaluated e = v.bsdf->evaluate(v.wp, w, transport);
+    bsdf = e.pdf;
+    return v.throughput * e.value;
   }
-  /// Density per steradian with which this walk would continue along `w`.
+  /// Density per steradian with which this walk would continue along `w`; where that by the BSDF is
+  /// known, from there.
   double pdf(const V3f& w) const { return guide.pdf(v, v.wp, w, transport).value; }
+  double pdf(const V3f& w, Pdf<SolidAngle> bsdf) const {
+    return guide.pdf(v, v.wp, w, transport, bsdf).value;
+  }
   /// Density per steradian with which the walk from the other side, arriving from `w`, would
   /// continue to the previous vertex.
   double pdf_rev(const V3f& w) const {

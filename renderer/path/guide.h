@@ -19,7 +19,8 @@ namespace lacuna {
 /// - pdf(v, wo, wi, transport): the density per steradian with which sample() returns unit `wi` for
 ///   a walk that arrived from unit `wo`. Defined for any `wo` and `wi`, because MIS weights need
 ///   the reverse densities. Its integral over the sphere is 1 less the probability of failure. It
-///   is above 0 wherever the BSDF is.
+///   is above 0 wherever the BSDF is. pdf(v, wo, wi, transport, bsdf): the same where the density
+///   of `wi` by the BSDF is known.
 /// - learns(), accumulator(), accumulate(), update(): each part of an iteration accumulates its
 ///   samples separately. update() adds the accumulators in the order of the parts, so the state has
 ///   the same bits for any number of threads.
@@ -44,6 +45,7 @@ concept Guide = Strategy<G> &&
   k.on_hit(v);
   { k.sample(v, rng, transport) } -> std::same_as<std::optional<BsdfSample>>;
   { k.pdf(v, w, w, transport) } -> std::same_as<Pdf<SolidAngle>>;
+  { k.pdf(v, w, w, transport, Pdf<SolidAngle>()) } -> std::same_as<Pdf<SolidAngle>>;
   { k.learns() } -> std::same_as<bool>;
   { G::has_expected } -> std::convertible_to<bool>;
   { k.accumulator() } -> std::same_as<typename G::Accumulator>;

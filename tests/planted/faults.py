@@ -374,6 +374,8 @@ FAULTS = [
           "(plain ? without_ : with_).add(noise);", "(plain ? with_ : without_).add(noise);"),
     Fault("a guide ends where the BSDF finds no light", "renderer/guides/tuning.cpp",
           "(sure ? decisive : decisive_of_unknown) * deviation;", "0.5 * deviation;"),
+    Fault("a guide goes on that its own bright paths spoil", "renderer/guides/tuning.cpp",
+          "known && (iterations_ > 0 || with_.doubt()", "known && (with_.doubt()"),
     Fault("a guide goes on that has shown no gain", "renderer/guides/tuning.cpp",
           "gain < 0 || !(shown || known);", "gain < 0;"),
     Fault("pilots cost no samples", "renderer/integrators/path_tracer.h",

@@ -35,6 +35,10 @@ struct ScriptedGuide {
     if (densities != nullptr) return densities->pdf(v, wo, wi, transport);
     return v.bsdf->pdf(wo, wi, transport);
   }
+  Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport,
+                      Pdf<SolidAngle>) const {
+    return pdf(v, wo, wi, transport);
+  }
   Pdf<SolidAngle> leaving_pdf(const EmitterPoint& e, const V3f& w) const {
     return densities != nullptr ? densities->leaving_pdf(e, w) : e.leaving_pdf(w);
   }
