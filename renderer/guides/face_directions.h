@@ -122,8 +122,8 @@ class FaceDirections final : public GuidingDistribution {
       });
     }
   }
-  void record_noise(double variance, Accumulator& accumulator) const override {
-    static_cast<FaceAccumulator&>(accumulator).tuning.noise.add(variance);
+  void record_noise(double variance, double by_bsdf, Accumulator& accumulator) const override {
+    static_cast<FaceAccumulator&>(accumulator).tuning.noise.add(variance, by_bsdf);
   }
   void update(std::span<const std::unique_ptr<Accumulator>> accumulators, const ThreadPool& pool,
               double iterations) override {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 
 #include "renderer/guides/guiding_distribution.h"
 #include "renderer/path/eye_batch.h"
@@ -18,6 +19,7 @@ class GatheredLight {
     light_.assign(batch_.stride * EyeBatch::size, Rgb(0, 0, 0));
     split_.assign(batch_.stride * EyeBatch::size, 1.0F);
     carried_.assign(batch_.stride * EyeBatch::size, 0.0F);
+    ratio_.assign(batch_.stride * EyeBatch::size, 1.0F);
     shadow_rays_.assign(batch_.stride * EyeBatch::size, std::uint8_t{0});
     for (std::size_t i = 0; i < batch_.states.size(); ++i) {
       first_[i] = last_[i] = batch_.states[i].depth;
@@ -28,6 +30,9 @@ class GatheredLight {
     last_[i] = depth;
     carried_[index(i, depth - 1)] = batch_.states[i].carried;
     split_[index(i, depth)] = batch_.states[i].split;
+    // A product over very long paths may leave the range.
+    ratio_[index(i, depth)] = std::min(batch_.states[i].roulette_scale / batch_.states[i].split,
+                                       std::numeric_limits<float>::max());
   }
   /// Adds the contribution `value` to the pixel, by emission or a connection at vertex `depth`.
   void add(std::size_t i, int depth, const Rgb& value) {
@@ -100,9 +105,25 @@ class GatheredLight {
                            a.surface.material == b.surface.material;
         if (!alike) continue;
         const double difference = double(gathered(i)) - double(gathered(i - 1));
-        guide.record_noise(difference * difference / 2, accumulator);
+        const double noise = difference * difference / 2;
+        guide.record_noise(noise, noise + (excess_by_bsdf(i) + excess_by_bsdf(i - 1)) / 2,
+                           accumulator);
       }
     }
+  }
+  /// What the second moment of path `i` would have more if it followed the BSDF: the contributions
+  /// would be ratio_ times as large, and as many times rarer. Weights against next event estimation
+  /// are taken as they are.
+  double excess_by_bsdf(std::size_t i) const {
+    double excess = 0, before = 0, before_by_bsdf = 0;
+    for (int depth = 1; depth <= last_[i]; ++depth) {
+      const std::size_t k = index(i, depth);
+      const double c = double(luminance(light_[k] * split_[k])), by_bsdf = c * double(ratio_[k]);
+      excess += c * (by_bsdf + 2 * before_by_bsdf) - c * (c + 2 * before);
+      before += c;
+      before_by_bsdf += by_bsdf;
+    }
+    return excess;
   }
   /// Luminance of all that path `i` gathered.
   float gathered(std::size_t i) const {
@@ -150,6 +171,8 @@ class GatheredLight {
   std::vector<Rgb> light_;
   std::vector<float> split_;    // PathState::split at each vertex
   std::vector<float> carried_;  // and PathState::carried
+  /// Density of the path up to each vertex over that by the BSDF.
+  std::vector<float> ratio_;
   std::vector<std::uint8_t> shadow_rays_;
   std::array<int, EyeBatch::size> first_{}, last_{};  // depths of the vertices recorded
 };

@@ -64,8 +64,9 @@ class GuidingDistribution {
   virtual bool learns() const { return false; }
   virtual std::unique_ptr<Accumulator> accumulator() const { return nullptr; }
   virtual void accumulate(const GuidingSample&, Accumulator&) const {}
-  /// An estimate of the variance of one sample of a pixel, of squared luminance.
-  virtual void record_noise(double, Accumulator&) const {}
+  /// An estimate of the variance of one sample of a pixel, of squared luminance, and of what it
+  /// would be if paths followed the BSDF.
+  virtual void record_noise(double /*variance*/, double /*by_bsdf*/, Accumulator&) const {}
   /// `iterations`: as many as the accumulators hold, below 1 of a pilot.
   virtual void update(std::span<const std::unique_ptr<Accumulator>>, const ThreadPool&,
                       double /*iterations*/) {}

@@ -117,8 +117,10 @@ void LearnedSkeleton::accumulate(const GuidingSample& sample, Accumulator& accum
   tuning_.accumulate(sample, cell, densities, own.tuning);
 }
 
-void LearnedSkeleton::record_noise(double variance, Accumulator& accumulator) const {
-  static_cast<SampleAccumulator&>(accumulator).tuning.noise.add(variance / double{learned_share});
+void LearnedSkeleton::record_noise(double variance, double by_bsdf,
+                                   Accumulator& accumulator) const {
+  static_cast<SampleAccumulator&>(accumulator)
+      .tuning.noise.add(variance / double{learned_share}, by_bsdf / double{learned_share});
 }
 
 void LearnedSkeleton::update(std::span<const std::unique_ptr<Accumulator>> accumulators,

@@ -40,7 +40,7 @@ class LearnedSkeleton final : public GuidingDistribution {
   bool learns() const override { return true; }
   std::unique_ptr<Accumulator> accumulator() const override;
   void accumulate(const GuidingSample& sample, Accumulator& accumulator) const override;
-  void record_noise(double variance, Accumulator& accumulator) const override;
+  void record_noise(double variance, double by_bsdf, Accumulator& accumulator) const override;
   void update(std::span<const std::unique_ptr<Accumulator>> accumulators, const ThreadPool& pool,
               double iterations) override;
 

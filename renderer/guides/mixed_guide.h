@@ -75,9 +75,10 @@ class MixedGuide {
   void record(const Vertex& v, double value, Accumulator& accumulator) const {
     if (reflected_.learns()) reflected_.record(v, value, accumulator.reflected);
   }
-  /// The variance of one sample of a pixel, estimated from one pair of pixels.
-  void record_noise(double variance, Accumulator& accumulator) const {
-    if (accumulator.directions) eye_->record_noise(variance, *accumulator.directions);
+  /// The variance of one sample of a pixel, estimated from one pair of pixels, and what it would be
+  /// if paths followed the BSDF.
+  void record_noise(double variance, double by_bsdf, Accumulator& accumulator) const {
+    if (accumulator.directions) eye_->record_noise(variance, by_bsdf, *accumulator.directions);
   }
   void update(std::span<Accumulator> accumulators, const ThreadPool& pool, double iterations) {
     if (eye_ && eye_->learns()) {

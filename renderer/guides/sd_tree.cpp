@@ -53,8 +53,8 @@ void SdTree::accumulate(const GuidingSample& sample, Accumulator& accumulator) c
   tuning_.accumulate(sample, leaf, std::span(&density, 1), own.tuning);
 }
 
-void SdTree::record_noise(double variance, Accumulator& accumulator) const {
-  static_cast<SampleAccumulator&>(accumulator).tuning.noise.add(variance);
+void SdTree::record_noise(double variance, double by_bsdf, Accumulator& accumulator) const {
+  static_cast<SampleAccumulator&>(accumulator).tuning.noise.add(variance, by_bsdf);
 }
 
 void SdTree::update(std::span<const std::unique_ptr<Accumulator>> accumulators,

@@ -43,8 +43,8 @@ class SkeletonDirections final : public GuidingDistribution {
     return std::make_unique<TuningAccumulator>();
   }
   void accumulate(const GuidingSample& sample, Accumulator& accumulator) const override;
-  void record_noise(double variance, Accumulator& accumulator) const override {
-    static_cast<TuningAccumulator&>(accumulator).tuning.noise.add(variance);
+  void record_noise(double variance, double by_bsdf, Accumulator& accumulator) const override {
+    static_cast<TuningAccumulator&>(accumulator).tuning.noise.add(variance, by_bsdf);
   }
   void update(std::span<const std::unique_ptr<Accumulator>> accumulators, const ThreadPool&,
               double iterations) override {

@@ -30,8 +30,8 @@ constexpr double promises_nothing = 0.1;
 constexpr std::uint64_t first_pilots = 16, most_first_pilots = 32, plain_pilots = 3;
 /// And so many of all: a scene of which they say nothing keeps its guide.
 constexpr std::uint64_t most_pilots = 96;
-/// Deviations that the ratio of two noises must differ from 1 by; and where the BSDF or the guide
-/// has found so few bright paths that it has more noise than is known.
+/// Deviations that the ratio of two noises must differ from 1 by; and where so few bright paths
+/// make it that its deviation is large.
 constexpr double decisive = 2, decisive_of_unknown = 3;
 /// What the logarithm of the gain of directions that are learned is expected to grow by with each
 /// doubling of the iterations, and until when: on door and bends by .6 from the first to the 128th.
@@ -84,6 +84,35 @@ std::uint32_t nearest(const std::vector<float>& values, float wanted) {
 }
 
 }  // namespace
+
+void Tuning::Noise::add(const Noise& other) {
+  sum += other.sum;
+  squares += other.squares;
+  pairs += other.pairs;
+  lit += other.lit;
+  by_bsdf += other.by_bsdf;
+  by_bsdf_squares += other.by_bsdf_squares;
+  products += other.products;
+  if (other.largest + other.largest_by_bsdf > largest + largest_by_bsdf) {
+    largest = other.largest;
+    largest_by_bsdf = other.largest_by_bsdf;
+  }
+}
+
+void Tuning::Noise::fade(double share) {
+  for (double* v : {&sum, &squares, &pairs, &lit, &by_bsdf, &by_bsdf_squares, &products, &largest,
+                    &largest_by_bsdf}) {
+    *v *= share;
+  }
+}
+
+double Tuning::Noise::log_gain_deviation() const {
+  const double linear = by_bsdf_squares / (by_bsdf * by_bsdf) + squares / (sum * sum) -
+                        2 * products / (by_bsdf * sum);
+  const double rest = (by_bsdf - largest_by_bsdf) / (sum - largest);
+  const double change = rest > 0 ? std::abs(std::log(rest) - log_gain()) : HUGE_VAL;
+  return std::max(std::sqrt(std::max(linear, 0.0)), change);
+}
 
 Tuning::Tuning(std::vector<float> strengths, const AutoNumber& probability, std::size_t cells,
                Directions directions)
@@ -155,8 +184,7 @@ void Tuning::update(std::span<const Accumulator* const> accumulators, double ite
   with_.add(noise);
   if (!std::has_single_bit(iterations_)) return;
   if (pilots_ > 0) judge_pilots();
-  // What the guide did long ago counts little.
-  for (double* v : {&with_.sum, &with_.squares, &with_.pairs, &with_.lit}) *v /= 4;
+  with_.fade(0.25);  // what the guide did long ago counts little
 }
 
 std::optional<std::uint64_t> Tuning::due_pilot() const {
@@ -182,26 +210,24 @@ double Tuning::hoped() const {
 
 void Tuning::judge_pilots() {
   if (pilots_ < first_pilots || pairs_ < least_pairs_of_one) return;
-  if (!(with_.sum > 0) || !(without_.sum > 0)) return;
-  const double gain = std::log(without_.mean() / (with_.mean() * guided_iteration_cost)) + hoped();
-  const double deviation = std::sqrt(with_.doubt() + without_.doubt());
-  const bool last = iterations_ == 0 && pilots_ == most_first_pilots;
-  const bool known = without_.doubt() < comparable * comparable;
-  // One bright path may make the noise of either, and tells nothing. How often light is found does.
-  if (!known && finds_less_light(with_, without_)) {
+  // Where the BSDF finds few bright paths, how often light is found tells more than its noise.
+  const bool unknown = without_.doubt() >= comparable * comparable;
+  if (unknown && finds_less_light(with_, without_)) {
     idle_ = true;
     return;
   }
-  // Nor does one bright path of the guide tell against it; its iterations are judged later.
   if (iterations_ == 0 && finds_far_more_light(with_, without_)) {
     pays_ = true;
     return;
   }
-  // What the guide has put into the picture is an error of it, known or not.
-  const bool sure = known && (iterations_ > 0 || with_.doubt() < comparable * comparable);
-  const double wanted = (sure ? decisive : decisive_of_unknown) * deviation;
+  if (!(with_.sum > 0) || !(with_.by_bsdf > 0)) return;
+  const double gain = with_.log_gain() - std::log(guided_iteration_cost) + hoped();
+  const double deviation = with_.log_gain_deviation();
+  const bool known = deviation < comparable;
+  const double wanted = (known ? decisive : decisive_of_unknown) * deviation;
+  const bool last = iterations_ == 0 && pilots_ == most_first_pilots;
   const bool shown = std::abs(gain) > wanted, sees = 2 * without_.lit > without_.pairs;
-  if (!shown && !(last && (sees || sure))) return;
+  if (!shown && !(last && (sees || known))) return;
   idle_ = gain < 0 || !(shown || known);
   pays_ = !idle_;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <optional>
 #include <unordered_map>
 
@@ -19,14 +20,16 @@ namespace lacuna {
 /// is that of a vertex over one that follows the BSDF, a constant: clocks would change the bits.
 ///
 /// Moments tell what a vertex gains if all others stay as they are, and along a path gains
-/// multiply. So the noise of pixels is measured with and without the guide, and where the guide
-/// does not pay for its time it is left alone from then on: idle().
+/// multiply. So the noise of pixels is measured, and where the guide does not pay for its time it
+/// is left alone from then on: idle(). Guided paths tell both their own noise and what it would be
+/// if they followed the BSDF: such a ratio is known far better than that of two measured apart.
 ///
-/// Pilots (GuidingDistribution::due_pilot()) compare before the first iteration, whose paths count
-/// in the picture: the first follow the BSDF, the others by turns the guide and the BSDF. A guide
-/// that has not shown a gain by their end is idle, unless the BSDF finds no light in most pixels
-/// and its noise is not known: then the guide begins, and later pilots follow the BSDF until more
-/// is known, but for one that finds light in fewer pixels. One that finds it in far more begins. An
+/// Pilots (GuidingDistribution::due_pilot()) tell that before the first iteration, whose paths
+/// count in the picture: the first follow the BSDF, the others by turns the guide and the BSDF. A
+/// guide that has not shown a gain by their end is idle, unless few paths make that ratio and the
+/// BSDF finds no light in most pixels: then the guide begins, and later pilots follow the BSDF
+/// until more is known, but for one that finds light in fewer pixels. One that finds it in far more
+/// begins. An
 /// integrator without pilots compares where the choices of all cells together seem to gain little:
 /// an iteration then follows the BSDF.
 class Tuning {
@@ -44,24 +47,28 @@ class Tuning {
     return idle_ || follows_bsdf() ? 0 : probabilities_[chosen_[cell] % count()];
   }
 
-  /// Variances of single samples of pixels, each estimated from one pair of them.
+  /// Variances of single samples of pixels, each estimated from one pair of them; and what the same
+  /// samples tell of the variance that following the BSDF would leave (GatheredLight).
   struct Noise {
     double sum = 0, squares = 0, pairs = 0, lit = 0;  // lit: pairs that differ
-    void add(double variance) {
-      sum += variance;
-      squares += variance * variance;
-      ++pairs;
-      if (variance > 0) ++lit;
+    double by_bsdf = 0, by_bsdf_squares = 0, products = 0;
+    double largest = 0, largest_by_bsdf = 0;  // of one pair
+    void add(double variance, double variance_by_bsdf) {
+      add({variance, variance * variance, 1, variance > 0 ? 1.0 : 0.0, variance_by_bsdf,
+           variance_by_bsdf * variance_by_bsdf, variance * variance_by_bsdf, variance,
+           variance_by_bsdf});
     }
-    void add(const Noise& other) {
-      sum += other.sum;
-      squares += other.squares;
-      pairs += other.pairs;
-      lit += other.lit;
-    }
+    void add(const Noise& other);
+    /// All that was added counts as `share` of it.
+    void fade(double share);
     double mean() const { return sum / pairs; }
     /// The squared deviation of mean() over its square.
     double doubt() const { return squares / (sum * sum); }
+    /// Logarithm of the ratio of the variance by the BSDF to that which was sampled.
+    double log_gain() const { return std::log(by_bsdf / sum); }
+    /// Its standard deviation; no less than what the largest pair changes, because of few bright
+    /// paths the linear estimate tells too little.
+    double log_gain_deviation() const;
   };
   struct Accumulator {
     std::unordered_map<std::uint32_t, std::vector<double>>

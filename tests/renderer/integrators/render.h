@@ -66,9 +66,12 @@ inline std::filesystem::path own_scene(const std::string& name) {
 class Session {
  public:
   Session(SceneData data, const RenderSettings& s)
+      : Session(std::move(data), s, make_integrator(s.integrator)) {}
+  /// With an integrator that no settings describe.
+  Session(SceneData data, const RenderSettings& s, std::unique_ptr<Integrator> integrator)
       : settings_(s),
         pool_(s.threads),
-        integrator_(make_integrator(s.integrator)),
+        integrator_(std::move(integrator)),
         eye_(choose_camera(data, s.camera, "test")),
         camera_(eye_, s.width, s.height, s.filter),
         seen_through_(camera_.reduced(s.reduction)),
