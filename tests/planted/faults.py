@@ -374,8 +374,6 @@ FAULTS = [
           "(known ? decisive : decisive_of_unknown) * deviation;", "0.05 * deviation;"),
     Fault("one bright path decides against a guide", "renderer/guides/tuning.cpp",
           "std::max(std::sqrt(std::max(linear, 0.0)), change);", "std::sqrt(std::max(linear, 0.0)) + 0 * change;"),
-    Fault("paths do not become rarer when they follow the BSDF", "renderer/guides/gathered_light.h",
-          "excess += c * (by_bsdf + 2 * before_by_bsdf)", "excess += by_bsdf * (by_bsdf + 2 * before_by_bsdf)"),
     Fault("a guide goes on that has shown no gain", "renderer/guides/tuning.cpp",
           "gain < 0 || !(shown || known);", "gain < 0;"),
     Fault("pilots cost no samples", "renderer/integrators/path_tracer.h",
