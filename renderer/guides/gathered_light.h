@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "renderer/guides/guiding_distribution.h"
 #include "renderer/path/eye_batch.h"
@@ -98,24 +99,31 @@ class GatheredLight {
   template <class Guide>
   void record_noise(const Guide& guide, typename Guide::Accumulator& accumulator) const {
     if constexpr (Guide::has_expected) {
+      PixelMoments before, own = pixel_moments(0);
       for (std::size_t i = 1; i < batch_.states.size(); ++i) {
+        before = std::exchange(own, pixel_moments(i));
         if (first_[i] > 0 || first_[i - 1] > 0) continue;
         const Vertex &a = batch_.vertex(i - 1, 1), &b = batch_.vertex(i, 1);
         const bool alike = a.kind == Vertex::Kind::surface && b.kind == Vertex::Kind::surface &&
                            a.surface.material == b.surface.material;
         if (!alike) continue;
-        const double difference = double(gathered(i)) - double(gathered(i - 1));
+        const double difference = own.gathered - before.gathered;
         const double noise = difference * difference / 2;
-        guide.record_noise(noise, noise + (excess_by_bsdf(i) + excess_by_bsdf(i - 1)) / 2,
+        guide.record_noise(noise, noise + (own.excess_by_bsdf + before.excess_by_bsdf) / 2,
                            accumulator);
       }
     }
   }
-  /// What the second moment of path `i` would have more if it followed the BSDF: the contributions
-  /// would be ratio_ times as large, and as many times rarer. Weights against next event estimation
-  /// are taken as they are.
-  double excess_by_bsdf(std::size_t i) const {
-    double excess = 0, before = 0, before_by_bsdf = 0;
+  /// Of one sample of a pixel, in luminance.
+  struct PixelMoments {
+    double gathered = 0;
+    /// By how much the second moment would grow if the path followed the BSDF.
+    double excess_by_bsdf = 0;
+  };
+  /// Of path `i`. If it followed the BSDF, its contributions would be ratio_ times as large, and as
+  /// many times rarer. Weights against next event estimation are taken as they are.
+  PixelMoments pixel_moments(std::size_t i) const {
+    double before = 0, before_by_bsdf = 0, excess = 0;
     for (int depth = 1; depth <= last_[i]; ++depth) {
       const std::size_t k = index(i, depth);
       const double c = double(luminance(light_[k] * split_[k])), by_bsdf = c * double(ratio_[k]);
@@ -123,15 +131,7 @@ class GatheredLight {
       before += c;
       before_by_bsdf += by_bsdf;
     }
-    return excess;
-  }
-  /// Luminance of all that path `i` gathered.
-  float gathered(std::size_t i) const {
-    Rgb sum(0, 0, 0);
-    for (int depth = 1; depth <= last_[i]; ++depth) {
-      sum += light_[index(i, depth)] * split_[index(i, depth)];
-    }
-    return luminance(sum);
+    return {before, excess};
   }
 
   template <class Guide>

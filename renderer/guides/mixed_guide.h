@@ -109,11 +109,11 @@ class MixedGuide {
   }
 
   std::optional<BsdfSample> sample(const Vertex& v, Rng& rng, Transport transport) const {
-    if (of(transport) == nullptr) return bsdf_.sample(v, rng, transport);
-    const GuidingDistribution& directions = *of(transport);
-    const GuidingCell cell = cell_of(v, v.wp, transport);
+    const GuidingDistribution* const guiding = of(transport);
+    const GuidingCell cell = guiding == nullptr ? GuidingCell{} : cell_of(v, v.wp, transport);
     const float c = cell.probability;
     if (c == 0) return bsdf_.sample(v, rng, transport);
+    const GuidingDistribution& directions = *guiding;
     // One point chooses and places, so that the points of both stay evenly spread.
     Rng::FinePoint u = fine_point(rng);
     if (choose(u.x, double(c))) {

@@ -370,6 +370,8 @@ FAULTS = [
           "state_.stage = e.expense() < state_.plain.expense() ?", "state_.stage = e.expense() > 0 ?"),
     Fault("pilots are taken for each other", "renderer/guides/tuning.cpp",
           "(plain ? without_ : with_).add(noise);", "(plain ? with_ : without_).add(noise);"),
+    Fault("paths do not become rarer when they follow the BSDF", "renderer/guides/gathered_light.h",
+          "excess += c * (by_bsdf + 2 * before_by_bsdf)", "excess += by_bsdf * (by_bsdf + 2 * before_by_bsdf)"),
     Fault("a guide ends where few paths tell", "renderer/guides/tuning.cpp",
           "(known ? decisive : decisive_of_unknown) * deviation;", "0.05 * deviation;"),
     Fault("one bright path decides against a guide", "renderer/guides/tuning.cpp",

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/guides/lobe_set.h"
+#include "renderer/guides/mixed_guide.h"
+#include "renderer/guides/tuning.h"
 #include "renderer/integrators/path_tracer.h"
 #include "tests/renderer/integrators/render.h"
 #include "tests/renderer/path/scenes.h"
-#include "tests/renderer/path/sided_directions.h"
 #include "tests/statistics.h"
 
 namespace lacuna {
@@ -13,53 +15,40 @@ namespace {
 
 using statistics::Moments;
 
-/// Means over an iteration's pairs of pixels.
-struct PairNoise {
-  double variance = 0, by_bsdf = 0, pairs = 0;
-};
-
-/// Sided directions, or the BSDF alone, whose pixels' noise is kept.
+/// Lobes aimed at the lamp of cornell.glb, so that a guided path is up to 4 times as likely as it
+/// would be by the BSDF, or half as likely; or the BSDF alone. Keeps the noise of each iteration.
 class NoiseKeeper final : public GuidingDistribution {
  public:
-  NoiseKeeper(bool guided, PairNoise& kept) : guided_(guided), kept_(kept) {}
+  NoiseKeeper(bool guided, Tuning::Noise& kept) : guided_(guided), kept_(kept) {}
   bool needs_space() const override { return false; }
-  GuidingCell cell(const Surface& s, const V3f& w) const override {
-    return guided_ ? directions_.cell(s, w) : GuidingCell{};
+  GuidingCell cell(const Surface&, const V3f&) const override {
+    return guided_ ? GuidingCell{0.5F, 0} : GuidingCell{};
   }
-  std::optional<V3f> sample(const GuidedVertex& at, Rng::FinePoint u, Rng& rng) const override {
-    return directions_.sample(at, u, rng);
+  std::optional<V3f> sample(const GuidedVertex& at, Rng::FinePoint u, Rng&) const override {
+    return lobes_.sample(at.x(), strength, u);
   }
   Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const override {
-    return directions_.pdf(at, w);
+    return lobes_.pdf(at.x(), w, strength);
   }
   bool learns() const override { return true; }
   struct Kept : Accumulator {
-    PairNoise noise;
+    Tuning::Noise noise;
   };
   std::unique_ptr<Accumulator> accumulator() const override { return std::make_unique<Kept>(); }
   void record_noise(double variance, double by_bsdf, Accumulator& accumulator) const override {
-    PairNoise& n = static_cast<Kept&>(accumulator).noise;
-    n.variance += variance;
-    n.by_bsdf += by_bsdf;
-    ++n.pairs;
+    static_cast<Kept&>(accumulator).noise.add(variance, by_bsdf);
   }
   void update(std::span<const std::unique_ptr<Accumulator>> accumulators, const ThreadPool&,
               double) override {
     kept_ = {};
-    for (const auto& a : accumulators) {
-      const PairNoise& n = static_cast<const Kept&>(*a).noise;
-      kept_.variance += n.variance;
-      kept_.by_bsdf += n.by_bsdf;
-      kept_.pairs += n.pairs;
-    }
-    kept_.variance /= kept_.pairs;
-    kept_.by_bsdf /= kept_.pairs;
+    for (const auto& a : accumulators) kept_.add(static_cast<const Kept&>(*a).noise);
   }
 
  private:
-  test::SidedDirections directions_;
+  static constexpr float strength = 8;
+  LobeSet lobes_{std::array{Target{{0, 1.98F, 0}, 1}}};
   bool guided_;
-  PairNoise& kept_;
+  Tuning::Noise& kept_;
 };
 
 struct MeasuredNoise {
@@ -72,15 +61,15 @@ MeasuredNoise measure(bool guided, int iterations) {
   PathSettings settings;
   settings.max_depth = 4;
   settings.next_event_estimation = false;
-  PairNoise kept;
+  Tuning::Noise kept;
   test::Session session(test::load({"cornell"}), {.width = 32, .height = 24},
                         std::make_unique<PathTracer<MixedGuide>>(
                             settings, MixedGuide(std::make_unique<NoiseKeeper>(guided, kept))));
   MeasuredNoise measured;
   for (int i = 0; i < iterations; ++i) {
     session.iterate(static_cast<std::uint64_t>(i));
-    measured.variance.add(kept.variance);
-    measured.by_bsdf.add(kept.by_bsdf);
+    measured.variance.add(kept.mean());
+    measured.by_bsdf.add(kept.by_bsdf / kept.pairs);
   }
   return measured;
 }

@@ -206,8 +206,7 @@ TEST(Tuning, GoesOnWhereFewPathsTell) {
   EXPECT_EQ(pilots, 96) << "not for ever";
 }
 
-// One path of the guide tells little, whatever its noise is: it changes the ratio as much as that
-// differs from 1. As many as that path weighs tell it.
+// One bright path of the guide changes the ratio of the noises by a half: the ratio is not known.
 TEST(Tuning, DoesNotDecideByOnePathOfTheGuide) {
   for (const double bright : {0.0, 5000.0}) {
     TunedGuide guide(Tuning::Directions::learned);
