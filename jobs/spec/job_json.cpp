@@ -46,6 +46,15 @@ void check_layers_of_integrator(const JobSpec& spec, std::vector<Problem>& probl
   }
 }
 
+template <class Settings>
+void check_conflict(const std::string& at, const Settings& settings,
+                    std::vector<Problem>& problems) {
+  const std::string_view found = conflict(settings);
+  if (!found.empty() && is_good(problems, at)) {
+    problems.push_back({at, fmt::format("found {}", found)});
+  }
+}
+
 /// Candidates take the lengths of paths from the integrator that lets them race, and must be right
 /// on average.
 void check_candidates(const JobSpec& spec, std::vector<Problem>& problems) {
@@ -68,6 +77,9 @@ void check_candidates(const JobSpec& spec, std::vector<Problem>& problems) {
                            "\"{}\" are those without more",
                            enum_name(settings->allow))});
     }
+    CandidateSettings racing = settings->candidates[i];
+    std::visit([&](PathLengths& lengths_there) { lengths_there = *settings; }, racing);
+    check_conflict(at, racing, problems);
     const auto* path = std::get_if<PathSettings>(&settings->candidates[i]);
     if (path != nullptr && path->sampling != Sampling::uniform) {
       problems.push_back({at + "/sampling",
@@ -146,6 +158,7 @@ JobSpec parse_job(std::string_view json) {
   read_settings(document, problems, spec);
   check_error_target(spec, problems);
   check_layers_of_integrator(spec, problems);
+  check_conflict("/integrator", spec.integrator, problems);
   check_candidates(spec, problems);
   check_layers_once(spec, problems);
   check_crop(spec, problems);

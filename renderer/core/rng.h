@@ -41,7 +41,8 @@ class Rng {
     particles = 6,
     branch = 7,
     bootstrap = 8,
-    chain = 9
+    chain = 9,
+    groups = 10
   };
 
   /// `path` < 2^56; `iteration` < 2^32.

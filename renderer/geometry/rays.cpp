@@ -240,6 +240,36 @@ void RayCaster::occluded(std::span<const Ray> rays, std::span<std::uint8_t> resu
   }
 }
 
+void RayCaster::occluded_together(std::span<const Ray> rays, std::span<std::uint8_t> result) const {
+  if (impl_->recorded != nullptr) [[unlikely]] {
+    for (const Ray& ray : rays) impl_->recorded->push_back({ray, true});
+  }
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  for (std::size_t first = 0; first < rays.size(); first += 8) {
+    RTCRay8 q{};
+    alignas(32) std::array<int, 8> valid{};
+    for (std::size_t i = 0; i < std::min<std::size_t>(8, rays.size() - first); ++i) {
+      const Ray& ray = rays[first + i];
+      q.tfar[i] = -1;
+      if (!acceptable(ray)) {
+        ++impl_->refused;
+        continue;
+      }
+      valid[i] = -1;
+      q.org_x[i] = ray.o.x, q.org_y[i] = ray.o.y, q.org_z[i] = ray.o.z;
+      q.dir_x[i] = ray.d.x, q.dir_y[i] = ray.d.y, q.dir_z[i] = ray.d.z;
+      q.tfar[i] = ray.tmax;
+      q.mask[i] = ~0U;
+    }
+    rtcOccluded8(valid.data(), impl_->scene, &context, &q);
+    for (std::size_t i = 0; i < std::min<std::size_t>(8, rays.size() - first); ++i) {
+      result[first + i] = q.tfar[i] < 0.0F ? 1 : 0;
+    }
+  }
+}
+
 void RayCaster::record(std::vector<RecordedRay>* rays) const { impl_->recorded = rays; }
 std::uint64_t RayCaster::refused_rays() const { return impl_->refused; }
 int RayCaster::filters() const { return static_cast<int>(impl_->masks.size()); }

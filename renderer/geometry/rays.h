@@ -60,6 +60,9 @@ class RayCaster {
   /// occluded() for many rays; `result` has one element for each, 1: occluded.
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> result) const;
 
+  /// occluded() for rays of one origin to neighbouring points, in packets of eight.
+  void occluded_together(std::span<const Ray> rays, std::span<std::uint8_t> result) const;
+
   /// Starts recording every traced ray to `rays`, in their order; null: stops. Requires that one
   /// thread traces the rays.
   void record(std::vector<RecordedRay>* rays) const;

@@ -238,7 +238,7 @@ class ManyLights final : public Integrator {
     }
     if (v.bsdf->connectible() && direct.draws() && !(first && lit_by_lights && by_lights())) {
       direct.draw(v, depth, part.ahead[i], part.batch.states[i].rng,
-                  [&](const Ray& ray, const Rgb& value) {
+                  [&](const Ray& ray, const Rgb& value, const V3f&) {
                     part.shadows.add(ray, {value, i});
                   });
     }

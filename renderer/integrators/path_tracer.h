@@ -7,9 +7,11 @@
 #include "renderer/guides/gathered_light.h"
 #include "renderer/guides/path_trees.h"
 #include "renderer/integrators/guided_integrator.h"
+#include "renderer/integrators/seen_emission.h"
 #include "renderer/path/direct_light.h"
 #include "renderer/path/eye_batch.h"
 #include "renderer/path/next_event_batch.h"
+#include "renderer/path/path_reuse.h"
 #include "renderer/path/shadow_queue.h"
 #include "renderer/path/tiles.h"
 #include "renderer/path/walk.h"
@@ -38,6 +40,7 @@ class PathTracer final : public GuidedIntegrator<Guide> {
 
   void prepare(const PrepareContext& context) override {
     GuidedIntegrator<Guide>::prepare(context);
+    seen_.prepare(context);
     if (settings_.roulette == RouletteChoice::efficiency) {
       roulette_.emplace(context.scene,
                         std::size_t(context.camera.width()) * std::size_t(context.camera.height()));
@@ -152,6 +155,7 @@ class PathTracer final : public GuidedIntegrator<Guide> {
     const bool decides = advised && roulette_->active();
     const bool early = advised && roulette_->ends_early();
     Batch batch(settings_.max_depth);
+    PathReuse<Guide> reuse(batch, guide_, settings_.max_depth > 2 ? settings_.reuse : 1);
     Walk walk(context.scene, guide_,
               {.max_depth = settings_.max_depth,
                .roulette_depth = early ? std::min(settings_.roulette_depth, early_roulette_depth)
@@ -161,12 +165,19 @@ class PathTracer final : public GuidedIntegrator<Guide> {
               counters);
     const auto flush = [&] {
       batch.shadows.flush(context.scene.rays(), counters, [&](const Direct& d) {
+        if (d.depth >= 2 && reuse.shares(d.path)) {
+          reuse.add(d.path, d.depth, d.value);
+          return;
+        }
         accumulate(image.pixels[d.pixel], d.value, counters);
         if (batch.gathers) batch.gathered.add(d.path, d.depth, d.value);
       });
     };
     for (int b = 0; b < tile.blocks(); ++b) {
       start_paths(context, image, tile.block(b), batch);
+      seen_.add(context, tile.block(b), counters, [&](std::size_t pixel, const Rgb& value) {
+        accumulate(image.pixels[pixel], value, counters);
+      });
       counters.samples += batch.states.size();
       const bool grows = learning.roulette != nullptr &&
                          roulette_->learns_from(batch.pixels[0], context.iteration);
@@ -177,7 +188,14 @@ class PathTracer final : public GuidedIntegrator<Guide> {
       do {
         if (batch.gathers) batch.gathered.clear();
         if (batch.grows) batch.trees.begin(batch.states);
-        estimate(context.scene, walk, batch);
+        reuse.begin(Rng(context.seed, 0, batch.pixels[0], Rng::Purpose::groups));
+        estimate(context, walk, batch, reuse);
+        if (reuse.active()) {
+          flush();
+          reuse.finish(context.scene.rays(), counters, [&](std::uint32_t pixel, const Rgb& value) {
+            accumulate(image.pixels[pixel], value, counters);
+          });
+        }
         for (std::size_t i = 0; i < batch.states.size(); ++i) {
           accumulate(image.pixels[batch.pixels[i]], batch.radiance[i], counters);
         }
@@ -204,8 +222,9 @@ class PathTracer final : public GuidedIntegrator<Guide> {
   }
 
   /// One sample of each pixel of `batch`, into its `radiance` and `shadows`.
-  void estimate(const Scene& scene, Walk<Guide>& walk, Batch& batch) const {
-    const DirectLight<Guide> direct(scene, guide_, settings_.next_event_estimation,
+  void estimate(const IterationContext& context, Walk<Guide>& walk, Batch& batch,
+                PathReuse<Guide>& reuse) const {
+    const DirectLight<Guide> direct(context.scene, guide_, settings_.next_event_estimation,
                                     settings_.emitters);
     const auto choose_emitter = [&](std::size_t i, int depth) {
       if (direct.draws() && depth < settings_.max_depth) {
@@ -214,16 +233,23 @@ class PathTracer final : public GuidedIntegrator<Guide> {
     };
     const auto gather = [&](std::size_t i, int depth) {
       const Vertex& v = batch.vertex(i, depth);
-      const Rgb met = direct.met(v, batch.vertex(i, depth - 1), depth);
-      batch.radiance[i] += met;
+      const bool apart = depth == 1 && seen_.rays(context.camera, batch.pixels[i]) > 0;
+      const Rgb met = apart ? Rgb(0, 0, 0) : direct.met(v, batch.vertex(i, depth - 1), depth);
+      const bool goes_on = v.kind == Vertex::Kind::surface && depth < settings_.max_depth;
+      if (depth > 2 && reuse.shares(i)) {
+        reuse.add(i, depth, met);
+      } else {
+        batch.radiance[i] += met;
+      }
+      if (depth == 2 && goes_on) reuse.reach(i);
       if (batch.gathers) {
         batch.gathered.reach(i, depth);
         batch.gathered.add(i, depth, met);
       }
-      const bool goes_on = v.kind == Vertex::Kind::surface && depth < settings_.max_depth;
       if (goes_on && direct.draws() && v.bsdf->connectible()) {
         direct.draw(v, depth, batch.ahead[i], batch.states[i].rng,
-                    [&](const Ray& ray, const Rgb& value) {
+                    [&](const Ray& ray, const Rgb& value, const V3f& w) {
+                      if (depth == 2) reuse.look(i, w);
                       if (batch.gathers) batch.gathered.cast(i, depth);
                       batch.shadows.add(ray, {value, batch.pixels[i], static_cast<std::uint16_t>(i),
                                               static_cast<std::uint16_t>(depth)});
@@ -236,6 +262,7 @@ class PathTracer final : public GuidedIntegrator<Guide> {
   }
 
   PathSettings settings_;
+  SeenEmission seen_;
   std::optional<EfficiencyRoulette> roulette_;
   Counters pilots_;  // of those since the last iteration that was finished
 };

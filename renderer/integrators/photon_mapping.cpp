@@ -214,7 +214,7 @@ class PhotonMapping final : public Integrator {
     }
     if (direct.draws() && v.bsdf->connectible() && (nee || !rough)) {
       direct.draw(v, depth, part.ahead[i], part.batch.states[i].rng,
-                  [&](const Ray& ray, const Rgb& value) {
+                  [&](const Ray& ray, const Rgb& value, const V3f&) {
                     part.shadows.add(ray, {value, i});
                   });
     }

@@ -1,6 +1,8 @@
 #include "renderer/integrators/seen_emission.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -10,12 +12,21 @@ namespace lacuna {
 namespace {
 
 /// Emission is one value where it differs by less than this part of the largest.
-constexpr float even = 0.01F;
+constexpr float alike = 0.01F;
+
+constexpr std::size_t most_rays = 16;  // of a pixel
+
+Rgb emission_at(const Scene& scene, const Ray& ray, bool met, const Hit& hit) {
+  if (!met) return scene.emitters().background(ray.d);
+  const SceneData& data = scene.data();
+  if (!data.materials[data.meshes[hit.mesh].material].emits()) return Rgb(0, 0, 0);
+  return scene.emitted(scene.surface(hit), -ray.d);
+}
 
 Rgb emission_along(const Scene& scene, const Ray& ray) {
   Hit hit;
-  return scene.rays().intersect(ray, hit) ? scene.emitted(scene.surface(hit), -ray.d)
-                                          : scene.emitters().background(ray.d);
+  const bool met = scene.rays().intersect(ray, hit);
+  return emission_at(scene, ray, met, hit);
 }
 
 /// Calls `at(u)` for a point in each cell of a grid of `side` x `side` over [0, 1)^2.
@@ -40,58 +51,182 @@ struct Range {
   }
 };
 
+/// The luminance that four rays through each pixel see.
+std::vector<Range> seen_ranges(const PrepareContext& context) {
+  const Camera& camera = context.camera;
+  const auto width = static_cast<std::size_t>(camera.width());
+  std::vector<Range> seen(width * static_cast<std::size_t>(camera.height()));
+  context.pool.for_each(camera.height(), [&](int y) {
+    context.pool.check_stop();
+    const std::size_t first = static_cast<std::size_t>(y) * width;
+    std::vector<Ray> rays;
+    for (int x = 0; x < camera.width(); ++x) {
+      Rng rng(0, 0, first + static_cast<std::size_t>(x), Rng::Purpose::integrator);
+      stratified(2, rng, [&](const V2f& u) { rays.push_back(camera.sample({x, y}, u)); });
+    }
+    std::vector<Hit> hits(rays.size());
+    std::vector<std::uint8_t> met(rays.size());
+    context.scene.rays().intersect(rays, hits, met);
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+      const float l = luminance(emission_at(context.scene, rays[k], met[k] != 0, hits[k]));
+      seen[first + k / 4].add({l, l});
+    }
+  });
+  return seen;
+}
+
+/// By how much the luminances around a pixel differ, of those in a film of `size`; 0: they do not.
+float difference_around(const std::vector<Range>& seen, const V2i& size, const V2i& pixel) {
+  Range around;
+  for (int y = std::max(pixel.y - 1, 0); y <= std::min(pixel.y + 1, size.y - 1); ++y) {
+    for (int x = std::max(pixel.x - 1, 0); x <= std::min(pixel.x + 1, size.x - 1); ++x) {
+      around.add(seen[std::size_t(y) * std::size_t(size.x) + std::size_t(x)]);
+    }
+  }
+  const float range = around.high - around.low;
+  return range > alike * around.high ? range : 0.0F;
+}
+
+/// A triangle as an eye sees it: what is needed to look for it in the film.
+struct SeenTriangle {
+  std::array<V3f, 4> points;             ///< the corners and the centre, from the eye
+  V2f low{HUGE_VALF}, high{-HUGE_VALF};  ///< the box around it in the film, pixels
+};
+/// None where a corner is not in the film.
+std::optional<SeenTriangle> seen_triangle(const Camera& camera, const Mesh& mesh,
+                                          const std::array<std::uint32_t, 3>& corners) {
+  SeenTriangle t;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const V3f edge = mesh.positions[corners[k]] - camera.position();
+    if (!(edge.length2() > 0)) return std::nullopt;
+    const std::optional<V2f> p = camera.project(edge.normalized());
+    if (!p) return std::nullopt;
+    t.points[k] = edge;
+    t.low = V2f(std::min(t.low.x, p->x), std::min(t.low.y, p->y));
+    t.high = V2f(std::max(t.high.x, p->x), std::max(t.high.y, p->y));
+  }
+  t.points[3] = (t.points[0] + t.points[1] + t.points[2]) / 3.0F;
+  return t;
+}
+
+/// Calls `at(pixel, luminance)` for the pixels around each emitting triangle that is smaller than
+/// two of them and not hidden: rays may miss it.
+template <class At>
+void for_each_small_emitter(const PrepareContext& context, At&& at) {
+  constexpr float small = 2;  // pixels
+  const Camera& camera = context.camera;
+  const SceneData& data = context.scene.data();
+  for (const Mesh& mesh : data.meshes) {
+    const Material& material = data.materials[mesh.material];
+    if (!material.emits()) continue;
+    context.pool.check_stop();
+    const float l = luminance(material.emission);
+    for (const auto& corners : mesh.triangles) {
+      const std::optional<SeenTriangle> t = seen_triangle(camera, mesh, corners);
+      if (!t || t->high.x - t->low.x > small || t->high.y - t->low.y > small) continue;
+      const bool hidden = std::ranges::all_of(t->points, [&](const V3f& p) {
+        return context.scene.rays().occluded({camera.position(), p * 0.999F, 1.0F});
+      });
+      if (hidden) continue;
+      const V2i last(std::min(camera.width() - 1, int(t->high.x)),
+                     std::min(camera.height() - 1, int(t->high.y)));
+      for (int y = std::max(0, int(t->low.y)); y <= last.y; ++y) {
+        for (int x = std::max(0, int(t->low.x)); x <= last.x; ++x) at(V2i(x, y), l);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void SeenEmission::prepare(const PrepareContext& context) {
-  uneven_.clear();
+  known_.clear();
+  worth_any_ = false;
   if (context.scene.emitters().empty()) return;
-  const Camera& camera = context.camera;
-  const int width = width_ = camera.width(), height = height_ = camera.height();
-  const auto index = [&](int x, int y) {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-           static_cast<std::size_t>(x);
+  width_ = context.camera.width(), height_ = context.camera.height();
+  const std::vector<Range> seen = seen_ranges(context);
+  std::vector<float> apart(seen.size());
+  const auto index = [&](const V2i& pixel) {
+    return std::size_t(pixel.y) * std::size_t(width_) + std::size_t(pixel.x);
   };
-  std::vector<Range> seen(index(0, height));
-  context.pool.for_each(height, [&](int y) {
-    context.pool.check_stop();
-    for (int x = 0; x < width; ++x) {
-      Rng rng(0, 0, index(x, y), Rng::Purpose::integrator);
-      stratified(2, rng, [&](const V2f& u) {
-        const float l = luminance(emission_along(context.scene, camera.sample({x, y}, u)));
-        seen[index(x, y)].add({l, l});
-      });
+  context.pool.for_each(height_, [&](int y) {
+    for (int x = 0; x < width_; ++x) {
+      apart[index({x, y})] = difference_around(seen, {width_, height_}, {x, y});
     }
   });
-  uneven_.resize(seen.size());
-  context.pool.for_each(height, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      Range around;
-      for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height - 1); ++v) {
-        for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); ++u) {
-          around.add(seen[index(u, v)]);
-        }
-      }
-      uneven_[index(x, y)] = around.high - around.low > even * around.high ? 1 : 0;
-    }
+  for_each_small_emitter(context, [&](const V2i& pixel, float l) {
+    float& range = apart[index(pixel)];
+    range = std::max(range, l);
   });
+  share_rays(apart);
 }
 
-bool SeenEmission::is_uneven(const Image& image, const V2i& pixel) const {
+void SeenEmission::share_rays(const std::vector<float>& apart) {
+  known_.assign(apart.size(), even);
+  double largest = 0;
+  for (const float a : apart) largest = std::max(largest, double(a));
+  if (!(largest > 0)) return;
+  const std::size_t budget = apart.size() / 2;
+  // All get most_rays, or as many as their share of the largest gives them.
+  for (double per_range = 0x1p20;; per_range /= 2) {
+    std::size_t sum = 0;
+    for (std::size_t i = 0; i < apart.size(); ++i) {
+      if (!(apart[i] > 0)) continue;
+      const double n = std::clamp(double(apart[i]) / largest * per_range, 1.0, double(most_rays));
+      known_[i] = static_cast<Known>(std::bit_floor(static_cast<std::size_t>(n)));
+      if (known_[i] > one) sum += known_[i];
+    }
+    worth_any_ = sum > 0;
+    if (sum <= budget) return;
+  }
+}
+
+SeenEmission::Known SeenEmission::known(const V2i& size, const V2i& pixel) const {
   const auto first = [](int at, int all, int of) { return int(std::int64_t(at) * all / of); };
   const auto end = [&](int at, int all, int of) {
     return std::max(first(at, all, of) + 1, first(at + 1, all, of));
   };
-  for (int y = first(pixel.y, height_, image.height); y < end(pixel.y, height_, image.height);
-       ++y) {
-    for (int x = first(pixel.x, width_, image.width); x < end(pixel.x, width_, image.width); ++x) {
-      if (uneven_[std::size_t(y) * std::size_t(width_) + std::size_t(x)] != 0) return true;
+  Known most = even;
+  for (int y = first(pixel.y, height_, size.y); y < end(pixel.y, height_, size.y); ++y) {
+    for (int x = first(pixel.x, width_, size.x); x < end(pixel.x, width_, size.x); ++x) {
+      most = std::max(most, known_[std::size_t(y) * std::size_t(width_) + std::size_t(x)]);
     }
   }
-  return false;
+  return most;
+}
+
+int SeenEmission::rays_of(const Camera& camera, std::size_t pixel) const {
+  const int width = camera.width();
+  const V2i at(static_cast<int>(pixel) % width, static_cast<int>(pixel) / width);
+  const Known k = width == width_ && camera.height() == height_
+                      ? known_[pixel]
+                      : known({width, camera.height()}, at);
+  return k > one ? k : 0;
+}
+
+Rgb SeenEmission::mean(const IterationContext& context, std::size_t pixel, int n,
+                       std::uint64_t before, Counters& counters) {
+  const int width = context.camera.width();
+  const V2i at(static_cast<int>(pixel) % width, static_cast<int>(pixel) / width);
+  std::array<Ray, most_rays> rays;
+  std::array<Hit, most_rays> hits;
+  std::array<std::uint8_t, most_rays> met{};
+  const auto count = static_cast<std::size_t>(n);
+  for (std::size_t k = 0; k < count; ++k) {
+    Rng rng = context.path_numbers(pixel, k, count, Rng::Purpose::integrator, before);
+    rays[k] = context.camera.sample(at, rng.next2());
+  }
+  context.scene.rays().intersect(std::span(rays).first(count), hits, met);
+  counters.rays += count;
+  Rgb sum(0, 0, 0);
+  for (std::size_t k = 0; k < count; ++k) {
+    sum += emission_at(context.scene, rays[k], met[k] != 0, hits[k]);
+  }
+  return sum / static_cast<float>(n);
 }
 
 Counters SeenEmission::add(const IterationContext& context, double samples, Image& image) const {
-  if (uneven_.empty()) return {};
+  if (known_.empty()) return {};
   const int side = static_cast<int>(std::ceil(std::sqrt(samples)));
   return for_each_tile(context, image, [&](const Tile& tile, Counters& counters) {
     for (int i = 0; i < tile.pixels(); ++i) {
@@ -100,7 +235,8 @@ Counters SeenEmission::add(const IterationContext& context, double samples, Imag
       Rng rng(context.seed, context.iteration, index);
       Rgb sum(0, 0, 0);
       float n = 0;
-      stratified(is_uneven(image, pixel) ? side : 1, rng, [&](const V2f& u) {
+      const bool uneven = known({image.width, image.height}, pixel) != even;
+      stratified(uneven ? side : 1, rng, [&](const V2f& u) {
         sum += emission_along(context.scene, context.camera.sample(pixel, u));
         ++n;
       });
@@ -112,7 +248,7 @@ Counters SeenEmission::add(const IterationContext& context, double samples, Imag
 }
 
 std::size_t SeenEmission::uneven_pixels() const {
-  return static_cast<std::size_t>(std::count(uneven_.begin(), uneven_.end(), 1));
+  return known_.size() - static_cast<std::size_t>(std::count(known_.begin(), known_.end(), even));
 }
 
 }  // namespace lacuna

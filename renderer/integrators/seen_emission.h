@@ -5,12 +5,13 @@
 #include "renderer/film/image.h"
 #include "renderer/path/contexts.h"
 #include "renderer/path/counters.h"
+#include "renderer/path/tile.h"
 
 namespace lacuna {
 
 /// The emission that a camera sees directly: paths of one edge. Most pixels see one value, and one
-/// sample is exact there; those on the border of an emitter, where most of the variance is, take
-/// many.
+/// sample is exact there; those on the border of an emitter, where most of the variance of a simple
+/// scene is, are worth many camera rays, which are the cheapest of all.
 class SeenEmission {
  public:
   /// Finds the pixels that see several values.
@@ -20,15 +21,46 @@ class SeenEmission {
   /// others.
   Counters add(const IterationContext& context, double samples, Image& image) const;
 
+  /// Camera rays that `pixel` of the film of `camera`, as in add(), is worth beside paths that are
+  /// traced from it: a power of two of at most 16, in proportion to how far the values lie apart,
+  /// and at most a quarter of the number of pixels for all of them. 0: the path's own is enough.
+  int rays(const Camera& camera, std::size_t pixel) const {
+    return worth_any_ ? rays_of(camera, pixel) : 0;
+  }
+  /// Traces rays() of each pixel of `block` and calls `add(pixel, value)` with an unbiased estimate
+  /// of the emission that it sees, if there are any. Then the paths leave it out.
+  template <class Add>
+  void add(const IterationContext& context, const Tile& block, Counters& counters,
+           Add&& add) const {
+    if (!worth_any_) return;
+    for (int i = 0; i < block.pixels(); ++i) {
+      const V2i at = block.pixel(i);
+      const std::size_t pixel =
+          std::size_t(at.y) * std::size_t(context.camera.width()) + static_cast<std::size_t>(at.x);
+      const int n = rays_of(context.camera, pixel);
+      if (n > 0) add(pixel, mean(context, pixel, n, block.samples_before, counters));
+    }
+  }
+
   /// Number of pixels that see several values.
   std::size_t uneven_pixels() const;
 
  private:
-  /// Whether a pixel of `image` covers one that sees several values.
-  bool is_uneven(const Image& image, const V2i& pixel) const;
+  /// What is known of a pixel. `even`: it sees one value; `one`: several, which are not worth rays
+  /// of their own; others are the number of rays.
+  using Known = std::uint8_t;
+  static constexpr Known even = 0, one = 1;
 
-  std::vector<char> uneven_;  // of each pixel; empty where nothing emits
+  void share_rays(const std::vector<float>& apart);
+  /// The largest Known of the pixels that `pixel` of a film of `size` covers.
+  Known known(const V2i& size, const V2i& pixel) const;
+  int rays_of(const Camera& camera, std::size_t pixel) const;
+  static Rgb mean(const IterationContext& context, std::size_t pixel, int n, std::uint64_t before,
+                  Counters& counters);
+
+  std::vector<Known> known_;  // of each pixel; empty where nothing emits
   int width_ = 0, height_ = 0;
+  bool worth_any_ = false;  // some pixel is worth rays of its own
 };
 
 }  // namespace lacuna

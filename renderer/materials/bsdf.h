@@ -80,6 +80,11 @@ class Bsdf {
     return eval_any(wo, wi, transport);
   }
 
+  /// Whether eval() is the same for radiance towards `a` and towards `b`, from wherever it comes.
+  bool same_for_all(const V3f& a, const V3f& b) const {
+    return lobes_.kind == Lobes::Kind::lambert && flat_ && dot(a, ng_) * dot(b, ng_) > 0;
+  }
+
   /// Density with which sample(wo) returns wi by a non-delta lobe. Its integral over the sphere is
   /// 1 minus the probability of the delta lobes and of failure. It depends on `transport` only
   /// where ns differs from ng: importance must also be scattered to eyes behind ns.

@@ -66,6 +66,14 @@ struct IterationContext {
     const SampleNumber n = number();
     return Rng::of_sequence(seed, path, n.randomisation, n.index + before, purpose);
   }
+  /// The same of path `k` of `n`, a power of two, that pixel `path` has in each iteration: with
+  /// `sobol` all of them are one sequence.
+  Rng path_numbers(std::uint64_t path, std::uint64_t k, std::uint64_t n, Rng::Purpose purpose,
+                   std::uint64_t before) const {
+    if (sampler == Sampler::independent) return Rng(seed, iteration, path * n + k, purpose);
+    const SampleNumber s = number();
+    return Rng::of_sequence(seed, path, s.randomisation, (s.index + before) * n + k, purpose);
+  }
   /// The same of one of `paths` whose contributions go to the whole picture. With `sobol` all of
   /// them are one sequence, over iterations.
   Rng shared_path_numbers(std::uint64_t path, std::uint64_t paths, Rng::Purpose purpose) const {

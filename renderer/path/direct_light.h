@@ -47,7 +47,7 @@ class DirectLight {
     const EmitterEndpoint<Guide> light{e, guide_};
     if (const Connection c = connect(eye, light)) {
       const double w = power_of_two(weight(eye, light, c, counts_));
-      add(shadow_ray(eye, light, c), c.contribution * static_cast<float>(w));
+      add(shadow_ray(eye, light, c), c.contribution * static_cast<float>(w), c.w);
     }
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -50,6 +51,18 @@ bool spreads_samples(const std::variant<Ts...>& settings) {
       []<class S>(const S&) {
         if constexpr (requires { S::spreads_samples; }) return S::spreads_samples;
         return true;
+      },
+      settings);
+}
+
+/// Why the integrator's settings do not go together, as "found ..." goes on; empty: they do. Each
+/// alternative may have such a function.
+template <class... Ts>
+std::string_view conflict(const std::variant<Ts...>& settings) {
+  return std::visit(
+      [](const auto& s) -> std::string_view {
+        if constexpr (requires { s.conflict(); }) return s.conflict();
+        return {};
       },
       settings);
 }

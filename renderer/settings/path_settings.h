@@ -21,6 +21,24 @@ struct PathSettings : PathLengths {
   Sampling sampling = Sampling::uniform;
   EmitterChoice emitters = EmitterChoice::automatic;
   RouletteChoice roulette = RouletteChoice::throughput;
+  int reuse = 1;
+
+  /// Why these settings do not go together; empty: they do.
+  std::string_view conflict() const {
+    if (reuse == 1) return {};
+    if (!std::holds_alternative<BsdfGuideSettings>(guide)) {
+      return "pixels that share light, with a guide; allowed: the guide \"bsdf\", or reuse 1";
+    }
+    if (roulette != RouletteChoice::throughput) {
+      return "pixels that share light, with roulette by efficiency; allowed: the roulette "
+             "\"throughput\", or reuse 1";
+    }
+    if (roulette_depth < 2) {
+      return "pixels that share light, with roulette at their first vertex; allowed: "
+             "roulette_depth 2 or more, or reuse 1";
+    }
+    return {};
+  }
 
   bool biased() const { return lacuna::biased(guide); }
   bool operator==(const PathSettings&) const = default;
@@ -35,6 +53,13 @@ void describe(V& v, PathSettings& s) {
   v("sampling", s.sampling, {.doc = "how many samples the pixels get"});
   describe_emitters(v, s.emitters);
   v("roulette", s.roulette, {.doc = "what decides how often a path goes on"});
+  v("reuse", s.reuse,
+    {.doc = "pixels of a block of 8 x 8 that share the light that their paths gather behind the "
+            "second surface, by shadow rays to it (Bekaert et al. 2002); 1: none. With the guide "
+            "bsdf, roulette by throughput and a roulette_depth of at least 2",
+     .min = 1,
+     .max = 64,
+     .unit = "pixels"});
 }
 
 }  // namespace lacuna

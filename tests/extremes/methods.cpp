@@ -14,6 +14,7 @@ std::vector<Method> changed(const Method& method, Args... args) {
     Visitor visitor(i, args...);
     std::visit([&](auto& settings) { describe(visitor, settings); }, next.settings);
     if (visitor.made().empty()) return all;
+    if (!conflict(next.settings).empty()) continue;
     next.name += visitor.made();
     all.push_back(std::move(next));
   }
@@ -41,6 +42,16 @@ std::vector<Method> registered(const std::variant<Ts...>&) {
   return {Method{std::string(Ts::name), for_small_pictures(Ts{})}...};
 }
 
+/// The integrators of the registry, and path tracing in a way that neither a choice nor a flag
+/// makes.
+std::vector<Method> integrators() {
+  std::vector<Method> all = registered(IntegratorSettings{});
+  PathSettings sharing = for_small_pictures(PathSettings{});
+  sharing.reuse = 16;
+  all.push_back({"path reuse=16", sharing});
+  return all;
+}
+
 /// A visitor that finds the longest path, and changes it where `wanted` has a value.
 struct Depth {
   std::optional<int> wanted = {}, found = {};
@@ -58,7 +69,7 @@ struct Depth {
 
 std::vector<Method> methods(bool flags) {
   std::vector<Method> all;
-  for (const Method& integrator : registered(IntegratorSettings{})) {
+  for (const Method& integrator : integrators()) {
     std::vector<Method> choices = changed<OtherChoice>(integrator);
     choices.insert(choices.begin(), integrator);
     for (const Method& choice : choices) {

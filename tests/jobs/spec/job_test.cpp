@@ -100,6 +100,24 @@ TEST(Job, CandidatesHaveTheLengthsOfTheirRaceAndNoBias) {
   expect_one(job_problems(with(R"("inspect")")), "/integrator/candidates/0", {"\"path\""});
 }
 
+TEST(Job, SettingsThatDoNotGoTogetherAreNamed) {
+  const auto path = [](const std::string& more) {
+    return R"({"scene": "a", "integrator": {"type": "path", "reuse": 16)" + more + "}}";
+  };
+  EXPECT_NO_THROW(parse_job(path("")));
+  EXPECT_NO_THROW(parse_job(path(R"(, "roulette_depth": 2)")));
+  expect_one(job_problems(path(R"(, "guide": "skeleton")")), "/integrator",
+             {"with a guide", "\"bsdf\""});
+  expect_one(job_problems(path(R"(, "roulette": "efficiency")")), "/integrator",
+             {"by efficiency", "\"throughput\""});
+  expect_one(job_problems(path(R"(, "roulette_depth": 1)")), "/integrator",
+             {"roulette_depth 2 or more"});
+  const std::string race =
+      R"({"scene": "a", "integrator": {"type": "auto", "roulette_depth": 1, "candidates": [)";
+  expect_one(job_problems(race + R"({"type": "path", "reuse": 2}]}})"), "/integrator/candidates/0",
+             {"roulette_depth 2 or more", "reuse 1"});
+}
+
 TEST(Job, LayersComeOnce) {
   expect_one(job_problems(R"({"scene": "a", "layers": ["albedo", "depth", "albedo"]})"),
              "/layers/2", {"\"albedo\" again", "each layer once"});

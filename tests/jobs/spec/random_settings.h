@@ -101,6 +101,14 @@ class RandomSettings {
 };
 
 /// A job that parse_job accepts: the rules beyond single fields hold too.
+/// Settings that go together.
+template <class Settings>
+void reconcile(Settings& settings) {
+  if (auto* path = std::get_if<PathSettings>(&settings); path && !path->conflict().empty()) {
+    path->reuse = 1;
+  }
+}
+
 inline JobSpec random_job(std::uint64_t seed) {
   RandomSettings random(seed);
   JobSpec spec;
@@ -122,8 +130,10 @@ inline JobSpec random_job(std::uint64_t seed) {
     if (choosing->allow != Allow::unbiased) choosing->candidates.emplace_back(BdptSettings{});
     for (CandidateSettings& c : choosing->candidates) {
       std::visit([&](auto& s) { static_cast<PathLengths&>(s) = *choosing; }, c);
+      reconcile(c);
     }
   }
+  reconcile(spec.integrator);
   auto& layers = spec.layers;
   std::sort(layers.begin(), layers.end());
   layers.erase(std::unique(layers.begin(), layers.end()), layers.end());

@@ -31,7 +31,7 @@ const std::vector<Agreement> agreements{
     {{"cornell"}, 5, 200, true, 0.015},
     {{"glass"}, 5, 120, false, 0.015},
     {{"mirror"}, 4, 400, false, 0.025},
-    {{"many_lights"}, 4, 100, true, 0.07},
+    {{"many_lights"}, 4, 400, true, 0.07},
     {{"point"}, 3, 150, true, 0.015},
     {{"spot"}, 3, 150},
     {{"sides"}, 4, 200},

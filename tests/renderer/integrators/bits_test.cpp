@@ -34,6 +34,9 @@ std::vector<test::Method> bidirectional(int max_depth) {
   PathSettings efficient = test::path_tracing(max_depth);
   efficient.roulette = RouletteChoice::efficiency;
   all.push_back({"path_efficiency", efficient});
+  PathSettings sharing = test::path_tracing(max_depth);
+  sharing.reuse = 16;
+  all.push_back({"path_reuse", sharing});
   for (test::Method& m : test::many_lights(max_depth)) all.push_back(std::move(m));
   for (test::Method& m : test::approximate_lights(max_depth)) all.push_back(std::move(m));
   for (test::Method& m : test::merging(max_depth)) all.push_back(std::move(m));

@@ -35,7 +35,7 @@ struct GuidedAgreement {
 };
 
 const std::vector<GuidedAgreement> guided_agreements{
-    {{"cornell"}, 5, 200, 0.03},    {{"many_lights"}, 4, 100, 0.2}, {{"spot"}, 3, 150, 0.02},
+    {{"cornell"}, 5, 200, 0.03},    {{"many_lights"}, 4, 300, 0.2}, {{"spot"}, 3, 150, 0.02},
     {{"open", true}, 4, 250, 0.05}, {{"ajar"}, 5, 200, 0.09},
 };
 const std::vector<GuidedAgreement> more_guided_agreements{

@@ -1,0 +1,207 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "renderer/path/connect.h"
+#include "renderer/path/eye_batch.h"
+
+namespace lacuna {
+
+/// Path reuse (Bekaert, Sbert and Halton 2002): pixels of a group share the light that their paths
+/// gather behind vertex 2. Vertex 2 of each is joined to vertex 1 of every other by a shadow ray. A
+/// path from vertex 1 of pixel i over vertex 2 of pixel j could have been sampled by each pixel k
+/// whose vertex 1 sees that vertex 2, so the balance heuristic weighs it by
+///
+///     P_jj F_jj / sum_k V_kj P_kj F_kj.
+///
+/// P_kj is the density per area of vertex 2 of j on the walk of k, V_kj the visibility, and F_kj
+/// the luminance of what vertex 2 scatters from the light to vertex 1 of k: where vertex 2 is not
+/// Lambertian, a pixel takes little from those that saw another part of its lobes. The estimate is
+/// unbiased. Emission at vertex 2 and next event estimation at vertex 1 stay the pixel's own.
+///
+/// Requires paths that are neither split nor ended before vertex 2 is scattered from.
+template <class Guide>
+class PathReuse {
+ public:
+  /// Groups of `pixels` of a block, at most EyeBatch::size; 1: no reuse. What `batch` and `guide`
+  /// refer to outlives this.
+  PathReuse(EyeBatch& batch, const Guide& guide, int pixels)
+      : batch_(batch), guide_(guide), pixels_(static_cast<std::size_t>(pixels)) {}
+
+  /// Without it the other functions do nothing.
+  bool active() const { return pixels_ > 1; }
+
+  /// Call when the batch's paths have started. `rng` chooses the groups: at random, so that
+  /// neighbouring pixels seldom share their noise, and the same in all iterations, so that a
+  /// pixel's low-discrepancy sequence sees one integrand.
+  void begin(Rng rng) {
+    if (!active()) return;
+    shares_.fill(false);
+    std::iota(order_.begin(), order_.end(), std::uint8_t{0});
+    const std::size_t n = batch_.states.size();
+    for (std::size_t i = n; i > 1 && pixels_ < n; --i) {
+      std::swap(order_[i - 1], order_[rng.below(i)]);
+    }
+  }
+
+  /// Call when path `i` has reached vertex 2, before next event estimation there. If the path
+  /// shares what it gathers from here on, its throughput begins at 1.
+  void reach(std::size_t i) {
+    if (!active()) return;
+    const Vertex& first = batch_.vertex(i, 1);
+    Vertex& v = batch_.vertex(i, 2);
+    if (!joinable(first) || first.delta || !joinable(v)) return;
+    PathState& state = batch_.states[i];
+    // Roulette goes on by the throughput of the whole path.
+    state.roulette_scale *= max_component(v.throughput);
+    carried_[i] = v.throughput;
+    state.throughput = v.throughput = Rgb(1, 1, 1);
+    shares_[i] = true;
+    near_[i] = far_[i] = Rgb(0, 0, 0);
+  }
+  /// Whether what path `i` gathers behind vertex 2, and by next event estimation there, goes to
+  /// add() instead of its pixel.
+  bool shares(std::size_t i) const { return shares_[i]; }
+  /// Next event estimation at vertex 2 of path `i` looks in unit direction `w`.
+  void look(std::size_t i, const V3f& w) { to_emitter_[i] = w; }
+  /// What path `i` gathers: by next event estimation at vertex 2, or at vertices behind it.
+  void add(std::size_t i, int depth, const Rgb& value) {
+    if (is_finite(value)) (depth == 2 ? near_[i] : far_[i]) += value;
+  }
+
+  /// Calls `add(pixel, value)` with what is shared. Requires that the paths have ended and all
+  /// their shadow rays are traced.
+  template <class Add>
+  void finish(const RayCaster& caster, Counters& counters, Add&& add) {
+    const std::size_t n = batch_.states.size();
+    for (std::size_t first = 0; first < n; first += pixels_) {
+      const auto group = std::span(order_).subspan(first, std::min(pixels_, n - first));
+      for (const std::size_t j : group) {
+        if (!shares_[j]) continue;
+        const Vertex& v = batch_.vertex(j, 2);
+        // A delta lobe of vertex 2 scatters to no other pixel.
+        if (v.delta) add(batch_.pixels[j], carried_[j] * std::exchange(far_[j], Rgb(0, 0, 0)));
+        if (is_black(near_[j]) && is_black(far_[j])) continue;
+        join(j, group);
+        trace(caster, counters);
+        distribute(j, add);
+      }
+    }
+  }
+
+ private:
+  /// What vertex 2 scatters to a vertex 1 of light from the emitter and of light from vertex 3.
+  struct Scattered {
+    Rgb near{0, 0, 0}, far{0, 0, 0};
+  };
+  /// The edge between vertex 1 of a path and vertex 2 of the source.
+  struct Edge {
+    std::uint32_t pixel = 0;
+    bool visible = true;
+    double density = 0;    ///< P_kj
+    Rgb carried{0, 0, 0};  ///< what radiance 1 of vertex 2 gives to the pixel: f |cos| |cos| / d^2
+    Scattered scattered = {};
+  };
+
+  static bool joinable(const Vertex& v) {
+    return v.kind == Vertex::Kind::surface && v.bsdf && v.bsdf->connectible();
+  }
+
+  /// The edges from vertex 2 of path `j` to vertex 1 of all paths of its group, first its own.
+  void join(std::size_t j, std::span<const std::uint8_t> group) {
+    const Vertex& v = batch_.vertex(j, 2);
+    // The walk's throughput is f |cos| / p.
+    const double p = double(v.p_fwd.value);
+    const Scattered own = scattered(j, v.wp);
+    edges_.assign(1, {batch_.pixels[j], true, p, carried_[j] * static_cast<float>(p), own});
+    rays_.clear();
+    const VertexPlace to{v};
+    for (const std::size_t k : group) {
+      const Vertex& first = batch_.vertex(k, 1);
+      if (k == j || !joinable(first)) continue;
+      const SurfaceEndpoint<Guide> from{first, 1, Transport::radiance, guide_};
+      const Connection c = edge_between(from, to);
+      if (!(c.distance2 > 0)) continue;
+      Pdf<SolidAngle> bsdf;
+      const Rgb value = from.scatter(c.w, bsdf);
+      // Where nothing is scattered, the density may be left out of `bsdf`.
+      const double density = is_black(value) ? from.pdf(c.w) : from.pdf(c.w, bsdf);
+      if (!(density > 0)) continue;
+      Edge e{.pixel = batch_.pixels[k]};
+      if (!v.bsdf->same_for_all(v.wp, -c.w)) {
+        e.scattered = scattered(j, -c.w);
+        if (is_black(e.scattered.near) && is_black(e.scattered.far)) continue;
+      } else {
+        e.scattered = own;
+      }
+      const double area = double(abs_dot(v.surface.ng, c.w)) / double(c.distance2);
+      e.density = density * area;
+      e.carried = value * static_cast<float>(area);
+      edges_.push_back(e);
+      // From vertex 2: rays of one origin to neighbouring points.
+      const V3f origin = to.origin(-c.w);
+      rays_.push_back({origin, from.origin(c.w) - origin, 1.0F});
+    }
+  }
+
+  Scattered scattered(std::size_t j, const V3f& wo) const {
+    const Vertex& v = batch_.vertex(j, 2);
+    Scattered s;
+    if (!is_black(near_[j])) s.near = v.bsdf->eval(wo, to_emitter_[j], Transport::radiance);
+    if (!is_black(far_[j])) {
+      s.far = v.bsdf->eval(wo, -batch_.vertex(j, 3).wp, Transport::radiance);
+    }
+    return s;
+  }
+
+  void trace(const RayCaster& caster, Counters& counters) {
+    counters.shadow_rays += rays_.size();
+    occluded_.resize(rays_.size());
+    caster.occluded_together(rays_, occluded_);
+    for (std::size_t k = 0; k < rays_.size(); ++k) edges_[k + 1].visible = occluded_[k] == 0;
+  }
+
+  template <class Add>
+  void distribute(std::size_t j, Add&& add) const {
+    double sum_near = 0, sum_far = 0;
+    for (const Edge& e : edges_) {
+      if (!e.visible) continue;
+      sum_near += e.density * double(luminance(e.scattered.near));
+      sum_far += e.density * double(luminance(e.scattered.far));
+    }
+    // What the path gathered, without what vertex 2 scattered to its own pixel.
+    const Scattered& own = edges_[0].scattered;
+    const Rgb near = over(near_[j], own.near, sum_near), far = over(far_[j], own.far, sum_far);
+    for (const Edge& e : edges_) {
+      if (e.visible) add(e.pixel, e.carried * (e.scattered.near * near + e.scattered.far * far));
+    }
+  }
+  /// gathered luminance(scattered) / (scattered sum)
+  static Rgb over(const Rgb& gathered, const Rgb& scattered, double sum) {
+    if (!(sum > 0)) return Rgb(0, 0, 0);
+    const double share = double(luminance(scattered)) / sum;
+    const auto channel = [&](float g, float s) {
+      return s > 0 ? static_cast<float>(double(g) / double(s) * share) : 0.0F;
+    };
+    return {channel(gathered.x, scattered.x), channel(gathered.y, scattered.y),
+            channel(gathered.z, scattered.z)};
+  }
+
+  EyeBatch& batch_;
+  const Guide& guide_;
+  std::size_t pixels_;
+  std::array<std::uint8_t, EyeBatch::size> order_{};  // paths: each `pixels_` are a group
+  std::array<bool, EyeBatch::size> shares_{};
+  std::array<Rgb, EyeBatch::size> carried_{};  // throughput up to vertex 2
+  std::array<Rgb, EyeBatch::size> near_{}, far_{};
+  std::array<V3f, EyeBatch::size> to_emitter_{};
+  std::vector<Edge> edges_;  // of the source
+  std::vector<Ray> rays_;    // of edges_ but the first
+  std::vector<std::uint8_t> occluded_;
+};
+
+}  // namespace lacuna
