@@ -4,14 +4,23 @@ namespace lacuna {
 
 namespace {
 
-std::vector<CandidateSettings> by_default(Allow allow) {
+/// Path tracing that shares light, where paths of these lengths may.
+PathSettings path_tracing(const PathLengths& lengths) {
+  PathSettings path{lengths};
+  path.reuse = 16;
+  if (!path.conflict().empty()) path.reuse = 1;
+  return path;
+}
+
+std::vector<CandidateSettings> by_default(const AutoSettings& settings) {
   BdptSettings skeleton;
   skeleton.connections = SkeletonConnectionsSettings{};
   ManyLightsSettings lights;
   lights.visibility = ProbabilisticVisibilitySettings{};
   // In this order they begin: what is quick and wins most often comes first.
-  std::vector<CandidateSettings> all{PathSettings{}, MetropolisSettings{}, BdptSettings{}, skeleton,
-                                     lights};
+  std::vector<CandidateSettings> all{path_tracing(settings), MetropolisSettings{}, BdptSettings{},
+                                     skeleton, lights};
+  const Allow allow = settings.allow;
   if (allow == Allow::unbiased) return all;
   all.insert(all.end(), {VcmSettings{}, SppmSettings{}});
   if (allow == Allow::consistent) return all;
@@ -21,9 +30,13 @@ std::vector<CandidateSettings> by_default(Allow allow) {
   return all;
 }
 
-/// Collects the names of strategies that are not the first of their kind.
+/// Collects the names of strategies that are not the first of their kind, and how many pixels share
+/// light.
 struct StrategyNames {
   std::string text;
+  void operator()(std::string_view name, int& value, const Field&) {
+    if (name == "reuse" && value > 1) text += ", reuse " + std::to_string(value);
+  }
   template <class T>
   void operator()(std::string_view, T&, const Field&) {}
   template <class... Ts>
@@ -38,7 +51,7 @@ struct StrategyNames {
 std::vector<IntegratorSettings> candidates(const AutoSettings& settings) {
   std::vector<IntegratorSettings> all;
   for (CandidateSettings c :
-       settings.candidates.empty() ? by_default(settings.allow) : settings.candidates) {
+       settings.candidates.empty() ? by_default(settings) : settings.candidates) {
     std::visit(
         [&](auto& s) {
           static_cast<PathLengths&>(s) = settings;

@@ -11,7 +11,7 @@ test("a scene: every candidate with its fate, and the advice", async (t) => {
   const folder = temporaryFolder(t);
   const told = await run(folder, "advise", "cornell.glb", ...small);
   assert.equal(told.code, 0, told.err);
-  for (const name of ["path", "metropolis, path_space", "bdpt", "bdpt, skeleton", "many_lights, probabilistic"]) {
+  for (const name of ["path, reuse 16", "metropolis, path_space", "bdpt", "bdpt, skeleton", "many_lights, probabilistic"]) {
     assert.match(told.out, new RegExp(`^${name} {2,}`, "m"));
   }
   assert.match(told.out, /bdpt, skeleton .*a budget below 10 s is not worth an analysis of the space/);
