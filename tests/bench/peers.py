@@ -28,7 +28,7 @@ import shapes  # noqa: E402
 THREADS, BLOCK, DEPTH = 2, 16, 6
 SEEDS = (1, 2)
 LONGER = 6  # a reference takes so many times the time of a picture
-PLAIN = {"path": {"type": "path"}, "path, efficiency": {"type": "path", "roulette": "efficiency"}}
+PLAIN = {"path": {"type": "path"}, "path, reuse": {"type": "path", "reuse": 16}}
 OURS = {**PLAIN, "bdpt": {"type": "bdpt"}, "auto": {"type": "auto"}}
 CYCLES = {"Cycles": False, "Cycles, roulette": True}
 SCENES = {

@@ -14,13 +14,14 @@ import subprocess
 LENGTHS = {"max_depth": 6}
 METHODS = {
     "path": {"type": "path"},
+    "path, reuse 16": {"type": "path", "reuse": 16},
     "metropolis": {"type": "metropolis"},
     "bdpt": {"type": "bdpt"},
     "bdpt, skeleton": {"type": "bdpt", "connections": {"type": "skeleton"}},
     "many_lights": {"type": "many_lights", "visibility": {"type": "probabilistic"}},
     "auto": {"type": "auto"},
 }
-SINGLES = ("path", "bdpt, skeleton", "metropolis")  # what one would always use
+SINGLES = ("path", "path, reuse 16", "bdpt, skeleton", "metropolis")  # what one would always use
 SCENES = {
     "ajar": {"scene": "ajar.glb", "camera": "room"},
     "bends": {"scene": "bends.glb", "camera": "entrance"},
