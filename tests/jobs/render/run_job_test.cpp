@@ -37,6 +37,19 @@ class RunJob : public testing::Test {
     return JobFolder::create(temp.path() / name, spec);
   }
   Outcome run(const JobFolder& folder) { return run_job(folder, context(never)); }
+  Outcome run_until_asked(const JobFolder& folder, int patience) {
+    std::atomic<int> asked{0};
+    return run_job(folder, context([&] { return ++asked > patience; }));
+  }
+  /// Runs it, again and with more patience each time, until an iteration is in its checkpoint.
+  /// Returns the patience that this took.
+  int interrupt_with_checkpoint(const JobFolder& folder) {
+    int patience = 0;
+    while (folder.read_progress().value_or(Progress{}).iteration == 0) {
+      EXPECT_EQ(run_until_asked(folder, ++patience), Outcome::interrupted);
+    }
+    return patience;
+  }
   static JobSpec spec(const std::string& scene = "cornell.glb", int iterations = 4) {
     JobSpec s;
     s.scene = scene;
@@ -114,9 +127,7 @@ TEST_F(RunJob, InterruptedAnywhereItGoesOnToTheSameBits) {
   const JobFolder parts = create(spec("ajar.glb", 12), "parts");
   int stops = 0;
   for (int patience = 0; parts.read_state().state != State::done; patience += 2) {
-    std::atomic<int> asked{0};
-    const std::function<bool()> impatient = [&] { return ++asked > patience; };
-    const Outcome outcome = run_job(parts, context(impatient));
+    const Outcome outcome = run_until_asked(parts, patience);
     if (outcome == Outcome::interrupted) {
       ++stops;
       EXPECT_EQ(parts.read_state().state, State::interrupted);
@@ -208,15 +219,12 @@ TEST_F(RunJob, KilledWhileItsResultsAreWrittenItRendersNothingAnew) {
 
 TEST_F(RunJob, InterruptedItsProgressIsThatOfItsCheckpoint) {
   const JobFolder folder = create(spec("cornell.glb", 1000000));
-  std::atomic<int> asked{0};
-  const std::function<bool()> soon = [&] { return ++asked > 50; };
-  ASSERT_EQ(run_job(folder, context(soon)), Outcome::interrupted);
+  const int patience = interrupt_with_checkpoint(folder);
   const auto progress = folder.read_progress();
   ASSERT_TRUE(progress);
   EXPECT_GT(progress->iteration, 0);
   observer.milestones.clear();
-  asked = 0;
-  ASSERT_EQ(run_job(folder, context(soon)), Outcome::interrupted);
+  ASSERT_EQ(run_until_asked(folder, patience), Outcome::interrupted);
   ASSERT_FALSE(observer.milestones.empty());
   const std::string said = observer.milestones.front();
   EXPECT_EQ(said.rfind("continuing from iteration " + std::to_string(progress->iteration) + " ", 0),
@@ -227,9 +235,7 @@ TEST_F(RunJob, InterruptedItsProgressIsThatOfItsCheckpoint) {
 
 TEST_F(RunJob, AFolderThatCannotBeWrittenLeavesTheJobAsItIs) {
   const JobFolder folder = create(spec("cornell.glb", 1000000));
-  std::atomic<int> asked{0};
-  const std::function<bool()> soon = [&] { return ++asked > 50; };
-  ASSERT_EQ(run_job(folder, context(soon)), Outcome::interrupted);
+  interrupt_with_checkpoint(folder);
   const std::string checkpoint = content_of(folder.file("checkpoint.bin"));
   // A limit on the size of files stands for a full disk.
   JobSpec s = folder.read_job();
@@ -256,9 +262,7 @@ TEST_F(RunJob, DamagedCheckpointIsReportedKeptAndDoneWithout) {
   const JobFolder whole = create(spec("cornell.glb", 6), "whole");
   run(whole);
   const JobFolder folder = create(spec("cornell.glb", 6));
-  std::atomic<int> asked{0};
-  const std::function<bool()> soon = [&] { return ++asked > 6; };
-  ASSERT_EQ(run_job(folder, context(soon)), Outcome::interrupted);
+  interrupt_with_checkpoint(folder);
   std::string bytes = read_file(folder.file("checkpoint.bin"), 1 << 24);
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
   write_file_atomically(folder.file("checkpoint.bin"), bytes);
@@ -275,11 +279,7 @@ TEST_F(RunJob, CheckpointOfAnotherSceneIsNotGoneOnFrom) {
   run(whole);
   std::filesystem::copy_file(scenes / "ajar.glb", temp.path() / "own.glb");
   const JobFolder folder = create(spec("own.glb", 6));
-  for (int patience = 6; !std::filesystem::exists(folder.file("checkpoint.bin")); ++patience) {
-    std::atomic<int> asked{0};
-    const std::function<bool()> soon = [&] { return ++asked > patience; };
-    ASSERT_EQ(run_job(folder, context(soon)), Outcome::interrupted);
-  }
+  interrupt_with_checkpoint(folder);
   std::filesystem::copy_file(scenes / "cornell.glb", temp.path() / "own.glb",
                              std::filesystem::copy_options::overwrite_existing);
   EXPECT_EQ(run(folder), Outcome::done);
