@@ -77,7 +77,8 @@ class PathTracer final : public GuidedIntegrator<Guide> {
     Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
       const auto k = static_cast<std::size_t>(i);
       render(context, image, tiling.tile(i), counters,
-             {accumulators[k], continuations.empty() ? nullptr : &continuations[k]});
+             {accumulators[k], continuations.empty() ? nullptr : &continuations[k]},
+             settings_.max_depth > 2 ? settings_.reuse : 1);
     });
     if (guide_.learns()) guide_.update(accumulators, context.pool, 1);
     if (observes) roulette_->update(continuations, context, image, sum);
@@ -119,7 +120,7 @@ class PathTracer final : public GuidedIntegrator<Guide> {
     const Counters sum = for_each_part(context, tiles, [&](int i, Counters& counters) {
       const Tile tile = tiling.tile(first + i * apart);
       render(context, scratch, tile.block(7 * turn % tile.blocks()), counters,
-             {accumulators[static_cast<std::size_t>(i)], nullptr});
+             {accumulators[static_cast<std::size_t>(i)], nullptr}, 1);
     });
     guide_.update(accumulators, context.pool, double(sum.samples) / double(scratch.pixels.size()));
     return sum;
@@ -148,29 +149,34 @@ class PathTracer final : public GuidedIntegrator<Guide> {
     EfficiencyRoulette::Accumulator* roulette;  // null: it does not learn
   };
 
+  /// `sharing`: PathSettings::reuse.
   void render(const IterationContext& context, Image& image, const Tile& tile, Counters& counters,
-              Learning learning) const {
+              Learning learning, int sharing) const {
     if (guide_.learns()) learning.guide = guide_.accumulator();
     const bool advised = roulette_ && roulette_->fits(image);
     const bool decides = advised && roulette_->active();
     const bool early = advised && roulette_->ends_early();
     Batch batch(settings_.max_depth);
-    PathReuse<Guide> reuse(batch, guide_, settings_.max_depth > 2 ? settings_.reuse : 1);
+    PathReuse<Guide> reuse(batch, guide_, sharing);
     Walk walk(context.scene, guide_,
               {.max_depth = settings_.max_depth,
                .roulette_depth = early ? std::min(settings_.roulette_depth, early_roulette_depth)
                                        : settings_.roulette_depth,
+               .split_depth = reuse.active() ? 3 : 1,
                .packets = true,
                .roulette = decides ? &*roulette_ : nullptr},
               counters);
     const auto flush = [&] {
       batch.shadows.flush(context.scene.rays(), counters, [&](const Direct& d) {
-        if (d.depth >= 2 && reuse.shares(d.path)) {
+        const bool shared = d.depth >= 2 && reuse.shares(d.path);
+        if (shared) {
           reuse.add(d.path, d.depth, d.value);
-          return;
+        } else {
+          accumulate(image.pixels[d.pixel], d.value, counters);
         }
-        accumulate(image.pixels[d.pixel], d.value, counters);
-        if (batch.gathers) batch.gathered.add(d.path, d.depth, d.value);
+        if (batch.gathers) {
+          batch.gathered.add(d.path, d.depth, shared ? d.value * reuse.own(d.path) : d.value);
+        }
       });
     };
     for (int b = 0; b < tile.blocks(); ++b) {
@@ -185,27 +191,25 @@ class PathTracer final : public GuidedIntegrator<Guide> {
       if (grows && !batch.gathers) flush();
       batch.grows = grows;
       batch.gathers = grows || guide_.learns();
+      reuse.begin(Rng(context.seed, 0, batch.pixels[0], Rng::Purpose::groups));
       do {
         if (batch.gathers) batch.gathered.clear();
         if (batch.grows) batch.trees.begin(batch.states);
-        reuse.begin(Rng(context.seed, 0, batch.pixels[0], Rng::Purpose::groups));
         estimate(context, walk, batch, reuse);
-        if (reuse.active()) {
-          flush();
-          reuse.finish(context.scene.rays(), counters, [&](std::uint32_t pixel, const Rgb& value) {
-            accumulate(image.pixels[pixel], value, counters);
-          });
-        }
         for (std::size_t i = 0; i < batch.states.size(); ++i) {
           accumulate(image.pixels[batch.pixels[i]], batch.radiance[i], counters);
         }
+        if (batch.gathers || reuse.active()) flush();
         if (batch.gathers) {
-          flush();
+          reuse.restore_throughput();
           if (guide_.learns()) batch.gathered.record(guide_, learning.guide);
           if (batch.grows) collect(batch);
         }
         batch.store(walk.branches());
       } while (batch.resume());
+      reuse.finish(context.scene.rays(), counters, [&](std::uint32_t pixel, const Rgb& value) {
+        accumulate(image.pixels[pixel], value, counters);
+      });
       if (batch.grows) {
         batch.trees.record([&](std::uint32_t key, double value, double rays) {
           learning.roulette->push_back({key, static_cast<float>(rays), value});
@@ -236,15 +240,16 @@ class PathTracer final : public GuidedIntegrator<Guide> {
       const bool apart = depth == 1 && seen_.rays(context.camera, batch.pixels[i]) > 0;
       const Rgb met = apart ? Rgb(0, 0, 0) : direct.met(v, batch.vertex(i, depth - 1), depth);
       const bool goes_on = v.kind == Vertex::Kind::surface && depth < settings_.max_depth;
-      if (depth > 2 && reuse.shares(i)) {
+      const bool shared = depth > 2 && reuse.shares(i);
+      if (shared) {
         reuse.add(i, depth, met);
       } else {
         batch.radiance[i] += met;
       }
-      if (depth == 2 && goes_on) reuse.reach(i);
+      reuse.reach(i, depth);
       if (batch.gathers) {
-        batch.gathered.reach(i, depth);
-        batch.gathered.add(i, depth, met);
+        batch.gathered.reach(i, depth, reuse.scale(i));
+        batch.gathered.add(i, depth, shared ? met * reuse.own(i) : met);
       }
       if (goes_on && direct.draws() && v.bsdf->connectible()) {
         direct.draw(v, depth, batch.ahead[i], batch.states[i].rng,

@@ -38,8 +38,9 @@ struct EyeBatch {
     branches.clear();
   }
 
-  /// Replaces the paths by stored branches, as many as fit. False if there are none. Requires that
-  /// all contributions of the paths are gathered.
+  /// Replaces the paths by stored branches, as many as fit; vertices before those where they
+  /// branched off stay. False if there are none. Requires that all contributions of the paths are
+  /// gathered.
   bool resume() {
     states.clear();
     while (!pending_.empty() && states.size() < size) {

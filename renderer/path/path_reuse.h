@@ -23,7 +23,7 @@ namespace lacuna {
 /// Lambertian, a pixel takes little from those that saw another part of its lobes. The estimate is
 /// unbiased. Emission at vertex 2 and next event estimation at vertex 1 stay the pixel's own.
 ///
-/// Requires paths that are neither split nor ended before vertex 2 is scattered from.
+/// Requires paths that are not split before vertex 3, nor ended before vertex 2.
 template <class Guide>
 class PathReuse {
  public:
@@ -35,56 +35,63 @@ class PathReuse {
   /// Without it the other functions do nothing.
   bool active() const { return pixels_ > 1; }
 
-  /// Call when the batch's paths have started. `rng` chooses the groups: at random, so that
-  /// neighbouring pixels seldom share their noise, and the same in all iterations, so that a
-  /// pixel's low-discrepancy sequence sees one integrand.
+  /// Call when the batch's paths have started, not when branches resume. `rng` chooses the groups:
+  /// at random, so that neighbouring pixels seldom share their noise, and the same in all
+  /// iterations, so that a pixel's low-discrepancy sequence sees one integrand.
   void begin(Rng rng) {
     if (!active()) return;
     shares_.fill(false);
+    paths_ = batch_.states.size();
+    pixel_of_ = batch_.pixels;
     std::iota(order_.begin(), order_.end(), std::uint8_t{0});
-    const std::size_t n = batch_.states.size();
-    for (std::size_t i = n; i > 1 && pixels_ < n; --i) {
+    for (std::size_t i = paths_; i > 1 && pixels_ < paths_; --i) {
       std::swap(order_[i - 1], order_[rng.below(i)]);
     }
   }
 
-  /// Call when path `i` has reached vertex 2, before next event estimation there. If the path
-  /// shares what it gathers from here on, its throughput begins at 1.
-  void reach(std::size_t i) {
+  /// Call when path `i` has reached vertex `depth`, before next event estimation there. At vertex
+  /// 2, if the path shares what it gathers from there on, it begins anew: throughput, roulette and
+  /// the window of guided paths know nothing of its own pixel.
+  void reach(std::size_t i, int depth) {
     if (!active()) return;
-    const Vertex& first = batch_.vertex(i, 1);
-    Vertex& v = batch_.vertex(i, 2);
-    if (!joinable(first) || first.delta || !joinable(v)) return;
-    PathState& state = batch_.states[i];
-    // Roulette goes on by the throughput of the whole path.
-    state.roulette_scale *= max_component(v.throughput);
-    carried_[i] = v.throughput;
-    state.throughput = v.throughput = Rgb(1, 1, 1);
-    shares_[i] = true;
-    near_[i] = far_[i] = Rgb(0, 0, 0);
+    if (depth == 2) begin_anew(i);
+    if (depth == 3) to_next_[i] = -batch_.vertex(i, 3).wp;
   }
   /// Whether what path `i` gathers behind vertex 2, and by next event estimation there, goes to
   /// add() instead of its pixel.
-  bool shares(std::size_t i) const { return shares_[i]; }
+  bool shares(std::size_t i) const { return shares_[batch_.origin[i]]; }
+  /// What path `i` would give its pixel of a unit that goes to add(), if it did not share.
+  Rgb own(std::size_t i) const { return shares(i) ? carried_[batch_.origin[i]] : Rgb(1, 1, 1); }
+  /// PathState::roulette_scale that path `i` had when it began anew; 1: it did not.
+  float scale(std::size_t i) const { return shares(i) ? scale_[batch_.origin[i]] : 1.0F; }
   /// Next event estimation at vertex 2 of path `i` looks in unit direction `w`.
   void look(std::size_t i, const V3f& w) { to_emitter_[i] = w; }
   /// What path `i` gathers: by next event estimation at vertex 2, or at vertices behind it.
   void add(std::size_t i, int depth, const Rgb& value) {
-    if (is_finite(value)) (depth == 2 ? near_[i] : far_[i]) += value;
+    if (is_finite(value)) (depth == 2 ? near_ : far_)[batch_.origin[i]] += value;
   }
 
-  /// Calls `add(pixel, value)` with what is shared. Requires that the paths have ended and all
-  /// their shadow rays are traced.
+  /// Gives the vertices of paths that have ended the throughput that they would have if nothing
+  /// were shared, for what learns from them.
+  void restore_throughput() {
+    for (std::size_t i = 0; i < batch_.states.size(); ++i) {
+      if (!shares(i)) continue;
+      for (int d = 2; d <= batch_.states[i].depth; ++d) batch_.vertex(i, d).throughput *= own(i);
+    }
+  }
+
+  /// Calls `add(pixel, value)` with what is shared. Requires that the paths and their branches have
+  /// ended and all their shadow rays are traced.
   template <class Add>
   void finish(const RayCaster& caster, Counters& counters, Add&& add) {
-    const std::size_t n = batch_.states.size();
-    for (std::size_t first = 0; first < n; first += pixels_) {
-      const auto group = std::span(order_).subspan(first, std::min(pixels_, n - first));
+    if (!active()) return;
+    for (std::size_t first = 0; first < paths_; first += pixels_) {
+      const auto group = std::span(order_).subspan(first, std::min(pixels_, paths_ - first));
       for (const std::size_t j : group) {
         if (!shares_[j]) continue;
         const Vertex& v = batch_.vertex(j, 2);
         // A delta lobe of vertex 2 scatters to no other pixel.
-        if (v.delta) add(batch_.pixels[j], carried_[j] * std::exchange(far_[j], Rgb(0, 0, 0)));
+        if (v.delta) add(pixel_of_[j], carried_[j] * std::exchange(far_[j], Rgb(0, 0, 0)));
         if (is_black(near_[j]) && is_black(far_[j])) continue;
         join(j, group);
         trace(caster, counters);
@@ -107,6 +114,19 @@ class PathReuse {
     Scattered scattered = {};
   };
 
+  void begin_anew(std::size_t i) {
+    const Vertex& first = batch_.vertex(i, 1);
+    Vertex& v = batch_.vertex(i, 2);
+    if (!joinable(first) || first.delta || !joinable(v)) return;
+    PathState& state = batch_.states[i];
+    carried_[i] = v.throughput;
+    state.throughput = v.throughput = Rgb(1, 1, 1);
+    scale_[i] = std::exchange(state.roulette_scale, 1.0F);
+    state.reference = 0;
+    state.expected = -1;
+    shares_[i] = true;
+    near_[i] = far_[i] = Rgb(0, 0, 0);
+  }
   static bool joinable(const Vertex& v) {
     return v.kind == Vertex::Kind::surface && v.bsdf && v.bsdf->connectible();
   }
@@ -117,7 +137,7 @@ class PathReuse {
     // The walk's throughput is f |cos| / p.
     const double p = double(v.p_fwd.value);
     const Scattered own = scattered(j, v.wp);
-    edges_.assign(1, {batch_.pixels[j], true, p, carried_[j] * static_cast<float>(p), own});
+    edges_.assign(1, {pixel_of_[j], true, p, carried_[j] * static_cast<float>(p), own});
     rays_.clear();
     const VertexPlace to{v};
     for (const std::size_t k : group) {
@@ -131,7 +151,7 @@ class PathReuse {
       // Where nothing is scattered, the density may be left out of `bsdf`.
       const double density = is_black(value) ? from.pdf(c.w) : from.pdf(c.w, bsdf);
       if (!(density > 0)) continue;
-      Edge e{.pixel = batch_.pixels[k]};
+      Edge e{.pixel = pixel_of_[k]};
       if (!v.bsdf->same_for_all(v.wp, -c.w)) {
         e.scattered = scattered(j, -c.w);
         if (is_black(e.scattered.near) && is_black(e.scattered.far)) continue;
@@ -153,7 +173,7 @@ class PathReuse {
     Scattered s;
     if (!is_black(near_[j])) s.near = v.bsdf->eval(wo, to_emitter_[j], Transport::radiance);
     if (!is_black(far_[j])) {
-      s.far = v.bsdf->eval(wo, -batch_.vertex(j, 3).wp, Transport::radiance);
+      s.far = v.bsdf->eval(wo, to_next_[j], Transport::radiance);
     }
     return s;
   }
@@ -194,13 +214,16 @@ class PathReuse {
   EyeBatch& batch_;
   const Guide& guide_;
   std::size_t pixels_;
+  std::size_t paths_ = 0;
+  std::array<std::uint32_t, EyeBatch::size> pixel_of_{};
   std::array<std::uint8_t, EyeBatch::size> order_{};  // paths: each `pixels_` are a group
   std::array<bool, EyeBatch::size> shares_{};
   std::array<Rgb, EyeBatch::size> carried_{};  // throughput up to vertex 2
+  std::array<float, EyeBatch::size> scale_{};
   std::array<Rgb, EyeBatch::size> near_{}, far_{};
-  std::array<V3f, EyeBatch::size> to_emitter_{};
-  std::vector<Edge> edges_;  // of the source
-  std::vector<Ray> rays_;    // of edges_ but the first
+  std::array<V3f, EyeBatch::size> to_emitter_{}, to_next_{};  // unit, from vertex 2
+  std::vector<Edge> edges_;                                   // of the source
+  std::vector<Ray> rays_;                                     // of edges_ but the first
   std::vector<std::uint8_t> occluded_;
 };
 

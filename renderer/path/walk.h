@@ -20,6 +20,7 @@ struct WalkLimits {
   int max_depth = 1;           ///< edges
   bool last_scatters = false;  ///< make a Bsdf at the last vertex too, because it will be connected
   int roulette_depth = 1;      ///< edges before Russian roulette may end the path
+  int split_depth = 1;         ///< edges before the path may be split
   Transport transport = Transport::radiance;
   /// The walks begin with the coherent rays of start_paths(), which are traced in packets.
   bool packets = false;
@@ -285,6 +286,7 @@ class Walk {
 
   /// The path itself keeps one of the parts.
   void split(PathState& w, const Vertex& v, int parts, std::size_t walk) {
+    if (w.depth < limits_.split_depth) return;
     const float share = 1.0F / static_cast<float>(parts);
     w.throughput *= share;
     w.roulette_scale *= static_cast<float>(parts);

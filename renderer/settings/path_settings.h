@@ -26,9 +26,6 @@ struct PathSettings : PathLengths {
   /// Why these settings do not go together; empty: they do.
   std::string_view conflict() const {
     if (reuse == 1) return {};
-    if (!std::holds_alternative<BsdfGuideSettings>(guide)) {
-      return "pixels that share light, with a guide; allowed: the guide \"bsdf\", or reuse 1";
-    }
     if (roulette != RouletteChoice::throughput) {
       return "pixels that share light, with roulette by efficiency; allowed: the roulette "
              "\"throughput\", or reuse 1";
@@ -55,8 +52,8 @@ void describe(V& v, PathSettings& s) {
   v("roulette", s.roulette, {.doc = "what decides how often a path goes on"});
   v("reuse", s.reuse,
     {.doc = "pixels of a block of 8 x 8 that share the light that their paths gather behind the "
-            "second surface, by shadow rays to it (Bekaert et al. 2002); 1: none. With the guide "
-            "bsdf, roulette by throughput and a roulette_depth of at least 2",
+            "second surface, by shadow rays to it (Bekaert et al. 2002); 1: none. With "
+            "roulette by throughput and a roulette_depth of at least 2",
      .min = 1,
      .max = 64,
      .unit = "pixels"});

@@ -49,6 +49,8 @@ std::vector<Method> integrators() {
   PathSettings sharing = for_small_pictures(PathSettings{});
   sharing.reuse = 16;
   all.push_back({"path reuse=16", sharing});
+  sharing.guide = SkeletonGuideSettings{};
+  all.push_back({"path reuse=16 guide=skeleton", sharing});
   return all;
 }
 

@@ -85,19 +85,50 @@ TEST(PathReuse, HasThePictureOfOthersWithGloss) {
   }
 }
 
-// Roulette goes by the throughput of the whole path.
 TEST(PathReuse, AndRouletteHaveThePictureOfOthers) {
   RenderSettings s{.integrator = test::path_tracing(12), .iterations = 800};
   const Rendering expected = test::render("cornell.glb", s);
   s.seed = 2;
   s.integrator = sharing(16, {.max_depth = 12, .roulette_depth = 2});
   s.iterations = 400;
-  const Rendering found = test::render("cornell.glb", s);
-  test::expect_same_picture(found, expected, 0.02);
-  PathSettings plain{PathLengths{.max_depth = 12, .roulette_depth = 2}};
-  s.integrator = plain;
-  const double rays = double(test::render("cornell.glb", s).counters.rays);
-  EXPECT_NEAR(double(found.counters.rays) / rays, 1.0, 0.02) << "paths end elsewhere";
+  test::expect_same_picture(test::render("cornell.glb", s), expected, 0.02);
+}
+
+// Guided paths share what they gather, with the densities of their guide.
+TEST(PathReuse, AndGuidesHaveThePictureOfOthers) {
+  RenderSettings s{
+      .integrator = test::path_tracing(5), .width = 20, .height = 12, .iterations = 2000};
+  const Rendering expected = test::render("ajar.glb", s);
+  s.seed = 2;
+  s.iterations = 400;
+  for (const auto& [name, guide] : test::guides()) {
+    SCOPED_TRACE(name);
+    PathSettings path = sharing(16, test::whole_paths(5));
+    path.guide = guide;
+    s.integrator = path;
+    test::expect_same_picture(test::render("ajar.glb", s), expected, 0.07);
+  }
+}
+
+// Where a guide adds much to the weight of paths they are split, behind the vertex that pixels
+// share. In a closed room all other paths are equally long.
+TEST(PathReuse, AndSplitPathsHaveThePictureOfOthers) {
+  const Material wall = test::diffuse(Rgb(0.8F, 0.7F, 0.6F));
+  RenderSettings s{.integrator = test::path_tracing(8), .iterations = 12000};
+  s.width = s.height = 8;
+  const Rendering expected = test::render(lit_from_walls(wall), s);
+  s.seed = 2;
+  s.iterations = 4000;
+  PathSettings path = sharing(16, test::whole_paths(8));
+  SkeletonGuideSettings skeleton;
+  skeleton.probability = AutoNumber{0.8};
+  skeleton.strength = AutoNumber{20};
+  path.guide = skeleton;
+  s.integrator = path;
+  const Rendering found = test::render(lit_from_walls(wall), s);
+  test::expect_same_picture(found, expected, 0.03);
+  EXPECT_GT(double(found.counters.rays) / 4000, 1.2 * double(expected.counters.rays) / 12000)
+      << "paths are hardly split";
 }
 
 /// Sums of the squared differences between two pictures of so many iterations, of `seeds` pairs.
