@@ -23,7 +23,8 @@ namespace lacuna {
 /// Lambertian, a pixel takes little from those that saw another part of its lobes. The estimate is
 /// unbiased. Emission at vertex 2 and next event estimation at vertex 1 stay the pixel's own.
 ///
-/// Requires paths that are not split before vertex 3, nor ended before vertex 2.
+/// Requires paths that are not ended before vertex 2. None of a batch is split before vertex 3:
+/// vertices 1 and 2 of those that share must stay until their branches have ended.
 template <class Guide>
 class PathReuse {
  public:
