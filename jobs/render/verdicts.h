@@ -7,8 +7,8 @@
 namespace lacuna {
 
 /// Verdicts of races in the cache of artefacts: one for each picture (scene, camera, integrator and
-/// whatever else changes it, but for the seed) and power of four of the budget. `content`: hashes
-/// of the files the picture depends on. `store` must outlive the result.
+/// whatever else changes it, but for the seed), candidates of the race and power of four of the
+/// budget. `content`: hashes of the files the picture depends on. `store` must outlive the result.
 VerdictMemory cached_verdicts(ArtefactStore& store, const JobSpec& spec, const std::string& content,
                               double budget_seconds);
 

@@ -432,6 +432,7 @@ void Auto::record_blocks() const {
 void Auto::save(ByteWriter& out) const {
   race_.save(out);
   for (const Candidate& c : candidates_) {
+    out.put(std::string_view(c.name));
     out.put(c.prepared);
     if (c.prepared) c.integrator->save(out);
   }
@@ -482,6 +483,10 @@ void Auto::load(ByteReader& in) {
   race_.load(in);
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     Candidate& c = candidates_[k];
+    if (const std::string name = in.get_string(); name != c.name) {
+      throw std::runtime_error("saved race has the candidate \"" + name + "\" in place of \"" +
+                               c.name + "\"");
+    }
     const bool saved = in.get<std::uint8_t>() != 0;
     if (saved != c.prepared && race_.entrants()[k].racing) {
       throw std::runtime_error("saved race has a candidate that takes no part now");

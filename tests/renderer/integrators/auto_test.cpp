@@ -211,6 +211,26 @@ TEST(Auto, ShardsDoNotShareNumbers) {
   EXPECT_LT(same, a.pixels.size() / 2) << "nearly half show the panel or nothing";
 }
 
+// What was saved by others is refused, whoever races by default in this version.
+TEST(Auto, GoesOnWithNoOtherCandidates) {
+  const auto session = [](std::vector<CandidateSettings> who) {
+    return Session(test::load({"cornell"}), picture(choosing_among(4, std::move(who)), 2));
+  };
+  Session first = session({PathSettings{}, BdptSettings{}});
+  first.iterate(0);
+  ByteWriter saved;
+  first.integrator().save(saved);
+  Session other = session({PathSettings{}, MetropolisSettings{}});
+  ByteReader in(saved.bytes());
+  try {
+    other.integrator().load(in);
+    FAIL() << "loaded";
+  } catch (const std::runtime_error& e) {
+    EXPECT_NE(std::string(e.what()).find("\"bdpt\" in place of \"metropolis"), std::string::npos)
+        << e.what();
+  }
+}
+
 // The race goes on where it was stopped, in another process, too.
 TEST(Auto, GoesOnInTheMiddleOfTheRace) {
   const RenderSettings s = picture(test::choosing(4), 3);
