@@ -26,16 +26,14 @@ class GatheredLight {
       first_[i] = last_[i] = batch_.states[i].depth;
     }
   }
-  /// Path `i` has reached its vertex `depth`. `scale`: by what its roulette_scale has to be
-  /// multiplied to be that of the whole path.
-  void reach(std::size_t i, int depth, float scale = 1) {
+  /// Path `i` has reached its vertex `depth`.
+  void reach(std::size_t i, int depth) {
     last_[i] = depth;
     carried_[index(i, depth - 1)] = batch_.states[i].carried;
     split_[index(i, depth)] = batch_.states[i].split;
     // A product over very long paths may leave the range.
-    ratio_[index(i, depth)] =
-        std::min(scale * batch_.states[i].roulette_scale / batch_.states[i].split,
-                 std::numeric_limits<float>::max());
+    ratio_[index(i, depth)] = std::min(batch_.states[i].roulette_scale / batch_.states[i].split,
+                                       std::numeric_limits<float>::max());
   }
   /// Adds the contribution `value` to the pixel, by emission or a connection at vertex `depth`.
   void add(std::size_t i, int depth, const Rgb& value) {

@@ -248,7 +248,7 @@ class PathTracer final : public GuidedIntegrator<Guide> {
       }
       reuse.reach(i, depth);
       if (batch.gathers) {
-        batch.gathered.reach(i, depth, reuse.scale(i));
+        batch.gathered.reach(i, depth);
         batch.gathered.add(i, depth, shared ? met * reuse.own(i) : met);
       }
       if (goes_on && direct.draws() && v.bsdf->connectible()) {

@@ -51,11 +51,10 @@ class PathReuse {
   }
 
   /// Call when path `i` has reached vertex `depth`, before next event estimation there. At vertex
-  /// 2, if the path shares what it gathers from there on, it begins anew: throughput, roulette and
-  /// the window of guided paths know nothing of its own pixel.
+  /// 2, if the path shares what it gathers from there on, its throughput begins anew at 1.
   void reach(std::size_t i, int depth) {
     if (!active()) return;
-    if (depth == 2) begin_anew(i);
+    if (depth == 2) begin_sharing(i);
     if (depth == 3) to_next_[i] = -batch_.vertex(i, 3).wp;
   }
   /// Whether what path `i` gathers behind vertex 2, and by next event estimation there, goes to
@@ -63,8 +62,6 @@ class PathReuse {
   bool shares(std::size_t i) const { return shares_[batch_.origin[i]]; }
   /// What path `i` would give its pixel of a unit that goes to add(), if it did not share.
   Rgb own(std::size_t i) const { return shares(i) ? carried_[batch_.origin[i]] : Rgb(1, 1, 1); }
-  /// PathState::roulette_scale that path `i` had when it began anew; 1: it did not.
-  float scale(std::size_t i) const { return shares(i) ? scale_[batch_.origin[i]] : 1.0F; }
   /// Next event estimation at vertex 2 of path `i` looks in unit direction `w`.
   void look(std::size_t i, const V3f& w) { to_emitter_[i] = w; }
   /// What path `i` gathers: by next event estimation at vertex 2, or at vertices behind it.
@@ -115,16 +112,15 @@ class PathReuse {
     Scattered scattered = {};
   };
 
-  void begin_anew(std::size_t i) {
+  void begin_sharing(std::size_t i) {
     const Vertex& first = batch_.vertex(i, 1);
     Vertex& v = batch_.vertex(i, 2);
     if (!joinable(first) || first.delta || !joinable(v)) return;
     PathState& state = batch_.states[i];
     carried_[i] = v.throughput;
     state.throughput = v.throughput = Rgb(1, 1, 1);
-    scale_[i] = std::exchange(state.roulette_scale, 1.0F);
-    state.reference = 0;
-    state.expected = -1;
+    // Roulette and splitting go on by the whole path.
+    state.carried_before = max_component(carried_[i]);
     shares_[i] = true;
     near_[i] = far_[i] = Rgb(0, 0, 0);
   }
@@ -220,7 +216,6 @@ class PathReuse {
   std::array<std::uint8_t, EyeBatch::size> order_{};  // paths: each `pixels_` are a group
   std::array<bool, EyeBatch::size> shares_{};
   std::array<Rgb, EyeBatch::size> carried_{};  // throughput up to vertex 2
-  std::array<float, EyeBatch::size> scale_{};
   std::array<Rgb, EyeBatch::size> near_{}, far_{};
   std::array<V3f, EyeBatch::size> to_emitter_{}, to_next_{};  // unit, from vertex 2
   std::vector<Edge> edges_;                                   // of the source

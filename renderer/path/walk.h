@@ -55,6 +55,8 @@ struct PathState {
   /// Roulette by what is known of the light has replaced that by throughput at the last vertex.
   bool windowed = false;
   float carried = 0;  ///< luminance of throughput when it left the last vertex; 0: it did not
+  /// Largest component of the throughput that PathReuse keeps apart from `throughput`; else 1.
+  float carried_before = 1;
   std::uint32_t segment = 0;  ///< of PathTrees; a branch has that of the path that was split
 };
 
@@ -261,7 +263,7 @@ class Walk {
       w.least = luminance(first.throughput) * least_part;
     }
     if (!(w.expected > 0)) return true;
-    const float carried = luminance(w.throughput);
+    const float carried = w.carried_before * luminance(w.throughput);
     const float ratio = carried * expected_behind(v) / w.expected;
     w.windowed = true;
     if (ratio < low && w.depth >= limits_.roulette_depth) {
@@ -313,7 +315,8 @@ class Walk {
     w.throughput *= next->weight;
     w.roulette_scale *= next->pdf_ratio;
     if (depth >= limits_.roulette_depth && !w.windowed) {
-      const float survival = std::min(1.0F, max_component(w.throughput) * w.roulette_scale);
+      const float survival =
+          std::min(1.0F, w.carried_before * max_component(w.throughput) * w.roulette_scale);
       if (!w.rng.decide(survival)) return false;
       w.throughput /= survival;
     }

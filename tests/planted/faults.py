@@ -99,8 +99,8 @@ FAULTS = [
           ".split_depth = reuse.active() ? 3 : 1", ".split_depth = reuse.active() ? 2 : 1"),
     Fault("shared light is learned without what carries it", "renderer/path/path_reuse.h",
           "batch_.vertex(i, d).throughput *= own(i);", "batch_.vertex(i, d).throughput *= 1;"),
-    Fault("a path that shares forgets its guide", "renderer/path/path_reuse.h",
-          "return shares(i) ? scale_[batch_.origin[i]] : 1.0F;", "return shares(i) ? 1.0F : 1.0F;"),
+    Fault("roulette forgets how light came to the second surface", "renderer/path/path_reuse.h",
+          "state.carried_before = max_component(carried_[i]);", "state.carried_before = 1;"),
     Fault("branches share where they are", "renderer/path/path_reuse.h",
           "far_)[batch_.origin[i]] += value;", "far_)[i] += value;"),
     # Metropolis.

@@ -85,13 +85,19 @@ TEST(PathReuse, HasThePictureOfOthersWithGloss) {
   }
 }
 
+// Roulette goes by the throughput of the whole path.
 TEST(PathReuse, AndRouletteHaveThePictureOfOthers) {
   RenderSettings s{.integrator = test::path_tracing(12), .iterations = 800};
   const Rendering expected = test::render("cornell.glb", s);
   s.seed = 2;
   s.integrator = sharing(16, {.max_depth = 12, .roulette_depth = 2});
   s.iterations = 400;
-  test::expect_same_picture(test::render("cornell.glb", s), expected, 0.02);
+  const Rendering found = test::render("cornell.glb", s);
+  test::expect_same_picture(found, expected, 0.02);
+  PathSettings plain{PathLengths{.max_depth = 12, .roulette_depth = 2}};
+  s.integrator = plain;
+  const double rays = double(test::render("cornell.glb", s).counters.rays);
+  EXPECT_NEAR(double(found.counters.rays) / rays, 1.0, 0.02) << "paths end elsewhere";
 }
 
 // Guided paths share what they gather, with the densities of their guide.
