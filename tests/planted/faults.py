@@ -94,7 +94,7 @@ FAULTS = [
     Fault("shared light leaves the second surface alike", "renderer/path/path_reuse.h",
           "e.scattered = scattered(j, -c.w);", "e.scattered = own;"),
     Fault("mirrors behind the first surface are black", "renderer/path/path_reuse.h",
-          "add(batch_.pixels[j], carried_[j] *", "add(batch_.pixels[j], 0.0F * carried_[j] *"),
+          "add(pixel_of_[j], carried_[j] *", "add(pixel_of_[j], 0.0F * carried_[j] *"),
     Fault("paths that share are split before they do", "renderer/integrators/path_tracer.h",
           ".split_depth = reuse.active() ? 3 : 1", ".split_depth = reuse.active() ? 2 : 1"),
     Fault("shared light is learned without what carries it", "renderer/path/path_reuse.h",
