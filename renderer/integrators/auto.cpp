@@ -179,6 +179,7 @@ void Auto::prepare(const PrepareContext& context) {
   }
   const std::vector<IntegratorSettings> all = candidates(settings_);
   std::vector<std::uint8_t> with_bias;
+  with_bias.reserve(all.size());
   for (const IntegratorSettings& c : all) with_bias.push_back(biased(c) ? 1 : 0);
   race_ =
       Race(candidates_.size(), context.camera.width(), context.camera.height(), limits, with_bias);
