@@ -42,6 +42,13 @@ RTCRay to_embree(const Ray& ray) {
   r.flags = 0;
   return r;
 }
+/// The same as ray `i` of a packet that is zero.
+void put(const Ray& ray, RTCRay8& packet, std::size_t i) {
+  packet.org_x[i] = ray.o.x, packet.org_y[i] = ray.o.y, packet.org_z[i] = ray.o.z;
+  packet.dir_x[i] = ray.d.x, packet.dir_y[i] = ray.d.y, packet.dir_z[i] = ray.d.z;
+  packet.tfar[i] = ray.tmax;
+  packet.mask[i] = ~0U;
+}
 
 // Called by Embree for every candidate hit on a geometry with a mask.
 void mask_filter(const RTCFilterFunctionNArguments* args) {
@@ -186,10 +193,7 @@ void RayCaster::intersect(std::span<const Ray> rays, std::span<Hit> hits,
         continue;
       }
       valid[i] = -1;
-      q.ray.org_x[i] = ray.o.x, q.ray.org_y[i] = ray.o.y, q.ray.org_z[i] = ray.o.z;
-      q.ray.dir_x[i] = ray.d.x, q.ray.dir_y[i] = ray.d.y, q.ray.dir_z[i] = ray.d.z;
-      q.ray.tfar[i] = ray.tmax;
-      q.ray.mask[i] = ~0U;
+      put(ray, q.ray, i);
     }
     rtcIntersect8(valid.data(), impl_->scene, &context, &q);
     for (std::size_t i = 0; i < std::min<std::size_t>(8, rays.size() - first); ++i) {
@@ -258,10 +262,7 @@ void RayCaster::occluded_together(std::span<const Ray> rays, std::span<std::uint
         continue;
       }
       valid[i] = -1;
-      q.org_x[i] = ray.o.x, q.org_y[i] = ray.o.y, q.org_z[i] = ray.o.z;
-      q.dir_x[i] = ray.d.x, q.dir_y[i] = ray.d.y, q.dir_z[i] = ray.d.z;
-      q.tfar[i] = ray.tmax;
-      q.mask[i] = ~0U;
+      put(ray, q, i);
     }
     rtcOccluded8(valid.data(), impl_->scene, &context, &q);
     for (std::size_t i = 0; i < std::min<std::size_t>(8, rays.size() - first); ++i) {

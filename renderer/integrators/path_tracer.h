@@ -149,7 +149,7 @@ class PathTracer final : public GuidedIntegrator<Guide> {
     EfficiencyRoulette::Accumulator* roulette;  // null: it does not learn
   };
 
-  /// `sharing`: PathSettings::reuse.
+  /// `sharing`: pixels that share light (PathSettings::reuse); 1 for pilots, which only teach.
   void render(const IterationContext& context, Image& image, const Tile& tile, Counters& counters,
               Learning learning, int sharing) const {
     if (guide_.learns()) learning.guide = guide_.accumulator();

@@ -23,7 +23,7 @@ class SeenEmission {
 
   /// Camera rays that `pixel` of the film of `camera`, as in add(), is worth beside paths that are
   /// traced from it: a power of two of at most 16, in proportion to how far the values lie apart,
-  /// and at most a quarter of the number of pixels for all of them. 0: the path's own is enough.
+  /// and at most half of the number of pixels for all of them. 0: the path's own is enough.
   int rays(const Camera& camera, std::size_t pixel) const {
     return worth_any_ ? rays_of(camera, pixel) : 0;
   }

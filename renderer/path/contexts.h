@@ -62,9 +62,7 @@ struct IterationContext {
   /// The random numbers of path `path` < 2^56 of this iteration. With `sobol` the paths of this
   /// number share a sequence over iterations; `before` is added to the number in it.
   Rng path_numbers(std::uint64_t path, Rng::Purpose purpose, std::uint64_t before = 0) const {
-    if (sampler == Sampler::independent) return Rng(seed, iteration, path, purpose);
-    const SampleNumber n = number();
-    return Rng::of_sequence(seed, path, n.randomisation, n.index + before, purpose);
+    return path_numbers(path, 0, 1, purpose, before);
   }
   /// The same of path `k` of `n`, a power of two, that pixel `path` has in each iteration: with
   /// `sobol` all of them are one sequence.

@@ -70,7 +70,8 @@ class PathReuse {
   }
 
   /// Gives the vertices of paths that have ended the throughput that they would have if nothing
-  /// were shared, for what learns from them.
+  /// were shared, for what learns from them. Nothing reads it before the vertex where a branch
+  /// began.
   void restore_throughput() {
     for (std::size_t i = 0; i < batch_.states.size(); ++i) {
       if (!shares(i)) continue;

@@ -100,8 +100,7 @@ class RandomSettings {
   std::mt19937_64 random_;
 };
 
-/// A job that parse_job accepts: the rules beyond single fields hold too.
-/// Settings that go together.
+/// Makes settings go together.
 template <class Settings>
 void reconcile(Settings& settings) {
   if (auto* path = std::get_if<PathSettings>(&settings); path && !path->conflict().empty()) {
@@ -109,6 +108,7 @@ void reconcile(Settings& settings) {
   }
 }
 
+/// A job that parse_job accepts: the rules beyond single fields hold too.
 inline JobSpec random_job(std::uint64_t seed) {
   RandomSettings random(seed);
   JobSpec spec;
