@@ -140,6 +140,7 @@ struct Float8x3 {
   Float8 x, y, z;
 
   Float8x3 operator+(const Float8x3& o) const { return {x + o.x, y + o.y, z + o.z}; }
+  Float8x3 operator-(const Float8x3& o) const { return {x - o.x, y - o.y, z - o.z}; }
   Float8x3 operator*(Float8 s) const { return {x * s, y * s, z * s}; }
 };
 inline Float8 dot(const Float8x3& a, const Float8x3& b) {
@@ -151,6 +152,9 @@ inline Float8x3 cross(const Float8x3& a, const Float8x3& b) {
 }
 inline Float8x3 keep_where(Mask8 m, const Float8x3& a) {
   return {keep_where(m, a.x), keep_where(m, a.y), keep_where(m, a.z)};
+}
+inline Float8x3 select(Mask8 m, const Float8x3& a, const Float8x3& b) {
+  return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
 }
 
 }  // namespace lacuna

@@ -18,10 +18,9 @@ constexpr double first_concentration = 8;
 constexpr double given_directions = 0.5, given_share = 0.05;
 /// The widest and the narrowest lobe: of a degree.
 constexpr double least_concentrated = 1e-2, most_concentrated = 5000;
-/// The largest share of one sample in all: one rare path must not carry all lobes away. MSE without
-/// it over that with it: 1.3 on corridor, 1.0 elsewhere. It is found by repeated reduction, until
-/// that changes it by less than a tenth.
-constexpr double most_of_all = 0.01, near_enough = 0.9;
+/// The largest share of one sample in all: one rare path must not carry all lobes away. It is found
+/// by repeated reduction, until that changes it by less than a tenth.
+constexpr double most_of_all = 0.1, near_enough = 0.9;
 /// Of expectation and maximisation, of the first batch and of later ones.
 constexpr int first_fits = 8, later_fits = 2;
 /// Samples of a lobe below which it stays as it is.
@@ -37,7 +36,7 @@ std::optional<V3f> AimedLobes::sample(const V3f& x, Rng::FinePoint u) const {
   while (i + 1 < count && left >= lobes_[i].share) left -= lobes_[i++].share;
   const Lobe& lobe = lobes_[i];
   left = std::min(left / lobe.share, 1 - 0x1p-53);
-  const V3f d = V3f(lobe.axis) - (x - pivot_) * static_cast<float>(lobe.inverse_distance);
+  const V3f d = V3f(lobe.aim.axis) - (x - pivot_) * static_cast<float>(lobe.aim.inverse_distance);
   const float length = std::sqrt(dot(d, d));
   if (!(length > 0)) return std::nullopt;
   // exp(kappa (cos - 1)) is uniform between its ends. Near the axis 1 - cos is more precise than
@@ -97,18 +96,20 @@ void AimedLobes::begin(const V3f& pivot) {
   for (std::size_t i = 0; i < count; ++i) {
     const double z = 1 - (2 * double(i) + 1) / double(count), r = std::sqrt(1 - z * z);
     const double phi = golden_angle * double(i);
-    lobes_[i] = {
-        {r * std::cos(phi), r * std::sin(phi), z}, first_concentration, 0, 1.0 / double(count)};
+    lobes_[i] = {.aim = {{r * std::cos(phi), r * std::sin(phi), z}, 0},
+                 .concentration = first_concentration,
+                 .share = 1.0 / double(count)};
   }
   pack();
 }
 
 AimedLobes::Seen AimedLobes::seen(const FoundLight& light) const {
-  if (!std::isfinite(light.distance)) return {light.w, 0, 0};
+  const Seen distant{light.w, light.w, 0, 0};
+  if (!std::isfinite(light.distance)) return distant;
   const V3d to = V3d(light.x) - V3d(pivot_) + V3d(light.w) * double(light.distance);
   const double length = length_of(to), inverse = 1 / length;
-  if (!(length > 0) || !std::isfinite(inverse)) return {light.w, 0, 0};
-  return {V3f(to * inverse), static_cast<float>(inverse), 0};
+  if (!(length > 0) || !std::isfinite(inverse)) return distant;
+  return {V3f(to * inverse), light.w, static_cast<float>(inverse), 0};
 }
 
 void AimedLobes::Evidence::add(const Evidence& other, double scale) {
@@ -117,34 +118,39 @@ void AimedLobes::Evidence::add(const Evidence& other, double scale) {
   for (std::size_t i = 0; i < count; ++i) {
     lobes[i].weight += other.lobes[i].weight * scale;
     lobes[i].inverse_distance += other.lobes[i].inverse_distance * scale;
-    lobes[i].direction += other.lobes[i].direction * scale;
+    lobes[i].from_pivot += other.lobes[i].from_pivot * scale;
+    lobes[i].from_place += other.lobes[i].from_place * scale;
   }
 }
 
 AimedLobes::Evidence AimedLobes::expect(std::span<const Seen> batch) const {
   Evidence evidence;
   Float8 weight, inverse;
-  Float8x3 direction;
-  const V3f from(0, 0, 0);
+  Float8x3 from_pivot, from_place;
+  const Mask8 aimed = mask_from_bits(packed_.aimed);
+  const V3f pivot(0, 0, 0);
   const Float8 least = 0x1p-126F;
   for (const Seen& s : batch) {
-    const Float8 part = max(packed_.densities(from, s.w), least);
+    const Float8x3 there{s.from_pivot.x, s.from_pivot.y, s.from_pivot.z};
+    const Float8x3 here{s.from_place.x, s.from_place.y, s.from_place.z};
+    // Lobes that are not aimed look the same from everywhere.
+    const Float8 part = max(packed_.densities(pivot, select(aimed, there, here)), least);
     const Float8 own = part * (s.weight / reduce_add(part));
     weight = weight + own;
     inverse = inverse + own * s.inverse_distance;
-    direction = direction + Float8x3{s.w.x, s.w.y, s.w.z} * own;
+    from_pivot = from_pivot + there * own;
+    from_place = from_place + here * own;
     evidence.weight += double(s.weight);
     evidence.squares += double(s.weight) * double(s.weight);
   }
-  alignas(32) std::array<std::array<float, count>, 5> sums;
-  weight.store(sums[0].data());
-  inverse.store(sums[1].data());
-  direction.x.store(sums[2].data());
-  direction.y.store(sums[3].data());
-  direction.z.store(sums[4].data());
+  alignas(32) std::array<std::array<float, count>, 8> sums;
+  const std::array<Float8, 8> all{weight,       inverse,      from_pivot.x, from_pivot.y,
+                                  from_pivot.z, from_place.x, from_place.y, from_place.z};
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].store(sums[k].data());
   for (std::size_t i = 0; i < count; ++i) {
     evidence.lobes[i] = {double(sums[0][i]), double(sums[1][i]),
-                         V3d(sums[2][i], sums[3][i], sums[4][i])};
+                         V3d(sums[2][i], sums[3][i], sums[4][i]),
+                         V3d(sums[5][i], sums[6][i], sums[7][i])};
   }
   return evidence;
 }
@@ -157,10 +163,16 @@ void AimedLobes::maximise(const Evidence& evidence) {
     Lobe& lobe = lobes_[i];
     const double own = samples * (of.weight / evidence.weight);
     lobe.share = (own + given_share) / (samples + double(count) * given_share);
-    const double length = length_of(of.direction);
+    const double there = length_of(of.from_pivot), here = length_of(of.from_place);
+    const double length = std::max(there, here);
     if (!(own > least_samples) || !(length > 0)) continue;
-    lobe.axis = of.direction / length;
-    lobe.inverse_distance = of.inverse_distance / of.weight;
+    // The longer mean vector is that of the narrower lobe.
+    lobe.aimed = there >= here;
+    if (lobe.aimed) {
+      lobe.aim = {of.from_pivot / length, of.inverse_distance / of.weight};
+    } else {
+      lobe.aim = {of.from_place / length, 0};
+    }
     // Of the mean vector's length (Banerjee et al. 2005, 4.4).
     const double r = std::min(length / of.weight, 1.0) * own / (own + given_directions);
     lobe.concentration =
@@ -171,13 +183,15 @@ void AimedLobes::maximise(const Evidence& evidence) {
 
 void AimedLobes::pack() {
   constexpr double ln2 = 0.693147180559945309;
+  packed_.aimed = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const Lobe& lobe = lobes_[i];
     const double k = lobe.concentration;
-    packed_.x[i] = static_cast<float>(lobe.axis.x);
-    packed_.y[i] = static_cast<float>(lobe.axis.y);
-    packed_.z[i] = static_cast<float>(lobe.axis.z);
-    packed_.inverse_distance[i] = static_cast<float>(lobe.inverse_distance);
+    packed_.x[i] = static_cast<float>(lobe.aim.axis.x);
+    packed_.y[i] = static_cast<float>(lobe.aim.axis.y);
+    packed_.z[i] = static_cast<float>(lobe.aim.axis.z);
+    packed_.inverse_distance[i] = static_cast<float>(lobe.aim.inverse_distance);
+    packed_.aimed |= lobe.aimed ? 1U << i : 0U;
     packed_.fall[i] = static_cast<float>(-k / (2 * ln2));
     packed_.peak[i] = static_cast<float>(lobe.share * k / (2 * double(pi) * -std::expm1(-2 * k)));
   }
@@ -193,19 +207,26 @@ void AimedLobes::next_round() {
   evidence_ = half;
 }
 
+void AimedLobes::Aim::move(const V3d& d) {
+  const V3d to = axis - d * inverse_distance;
+  const double length = length_of(to);
+  if (!(length > 0)) return;
+  axis = to / length;
+  inverse_distance /= length;
+}
+
 void AimedLobes::move_pivot(const V3f& to) {
   const V3d by = V3d(to) - V3d(pivot_);
   pivot_ = to;
   for (std::size_t i = 0; i < count; ++i) {
-    Lobe& lobe = lobes_[i];
-    const V3d d = lobe.axis - by * lobe.inverse_distance;
-    const double length = length_of(d);
-    if (!(length > 0)) continue;
-    lobe.axis = d / length;
-    lobe.inverse_distance /= length;
+    lobes_[i].aim.move(by);
     Evidence::OfLobe& of = evidence_.lobes[i];
-    of.direction = lobe.axis * length_of(of.direction);
-    of.inverse_distance /= length;
+    const double length = length_of(of.from_pivot);
+    if (!(length > 0) || !(of.weight > 0)) continue;
+    Aim mean{of.from_pivot / length, of.inverse_distance / of.weight};
+    mean.move(by);
+    of.from_pivot = mean.axis * length;
+    of.inverse_distance = mean.inverse_distance * of.weight;
   }
   pack();
 }
@@ -217,11 +238,13 @@ void AimedLobes::for_each_number(Self& self, const Use& use) {
   each(self.pivot_.x, self.pivot_.y, self.pivot_.z);
   each(self.places_.x, self.places_.y, self.places_.z, self.placed_);
   for (auto& l : self.lobes_) {
-    each(l.axis.x, l.axis.y, l.axis.z, l.concentration, l.inverse_distance, l.share);
+    each(l.aim.axis.x, l.aim.axis.y, l.aim.axis.z, l.aim.inverse_distance);
+    each(l.concentration, l.share, l.aimed);
   }
   each(self.evidence_.weight, self.evidence_.squares);
   for (auto& l : self.evidence_.lobes) {
-    each(l.weight, l.inverse_distance, l.direction.x, l.direction.y, l.direction.z);
+    each(l.weight, l.inverse_distance, l.from_pivot.x, l.from_pivot.y, l.from_pivot.z);
+    each(l.from_place.x, l.from_place.y, l.from_place.z);
   }
 }
 
@@ -233,10 +256,11 @@ void AimedLobes::load(ByteReader& in) {
   bool valid = true;
   for_each_number(*this, [&](auto& v) {
     v = static_cast<std::remove_reference_t<decltype(v)>>(in.get<double>());
-    valid = valid && std::isfinite(v);
+    valid = valid && std::isfinite(double(v));
   });
   for (const Lobe& l : lobes_) {
-    valid = valid && l.concentration > 0 && l.share >= 0 && l.share <= 1 && l.inverse_distance >= 0;
+    valid =
+        valid && l.concentration > 0 && l.share >= 0 && l.share <= 1 && l.aim.inverse_distance >= 0;
   }
   if (!valid || !(evidence_.weight >= 0)) throw std::runtime_error("saved lobes are not valid");
   pack();

@@ -12,9 +12,12 @@
 
 namespace lacuna {
 
-/// A mixture of von Mises-Fisher lobes, each aimed at a point, so that its direction depends on
-/// where it is sampled: parallax (Ruppert, Herholz and Lensch 2020, 5). It is fitted to light that
-/// was found, by expectation maximisation batch by batch: of earlier batches only sums are kept.
+/// A mixture of von Mises-Fisher lobes. Most are aimed at a point, so that their direction depends
+/// on where they are sampled: parallax (Ruppert, Herholz and Lensch 2020, 5). Light that comes from
+/// one direction wherever it is found, from far or from near surfaces side by side, would blur such
+/// a lobe; its own has the same direction everywhere. Each lobe is the one that is narrower. They
+/// are fitted to light that was found, by expectation maximisation batch by batch: of earlier
+/// batches only sums are kept.
 class AimedLobes {
  public:
   static constexpr std::size_t count = 8;
@@ -27,7 +30,7 @@ class AimedLobes {
   std::optional<V3f> sample(const V3f& x, Rng::FinePoint u) const;
   /// Density with which sample() returns unit `w`.
   Pdf<SolidAngle> pdf(const V3f& x, const V3f& w) const {
-    return Pdf<SolidAngle>(reduce_add(packed_.densities(x - pivot_, w)));
+    return Pdf<SolidAngle>(reduce_add(packed_.densities(x - pivot_, {w.x, w.y, w.z})));
   }
 
   /// Fits to the light of `batch`, all at places near each other, and to what was learned before.
@@ -41,27 +44,36 @@ class AimedLobes {
   void load(ByteReader& in);
 
  private:
-  /// Seen from pivot_ + d, the lobe's direction is that of axis - inverse_distance d.
+  /// A direction that depends on the place: that of axis - inverse_distance d at pivot_ + d.
+  struct Aim {
+    V3d axis{0, 0, 1};            ///< unit
+    double inverse_distance = 0;  ///< of the point; 0: everywhere the same
+
+    /// Of the same point, where pivot_ moves by `d`. Unchanged where that is the point itself.
+    void move(const V3d& d);
+  };
   struct Lobe {
-    V3d axis{0, 0, 1};                       ///< unit
-    double concentration = 1;                ///< kappa
-    double inverse_distance = 0, share = 0;  ///< of the point; of all samples
+    Aim aim;
+    double concentration = 1;  ///< kappa
+    double share = 0;          ///< of all samples
+    bool aimed = true;         ///< at a point
   };
   /// All lobes side by side.
   struct alignas(32) Packed {
     std::array<float, count> x{}, y{}, z{}, inverse_distance{};
     std::array<float, count> fall{};  ///< minus kappa / (2 ln 2)
     std::array<float, count> peak{};  ///< share times the density on the axis
+    unsigned aimed = 0;               ///< a bit for each lobe
 
     /// exp(kappa (cos - 1)), where 2 (1 - cos) is the squared distance of the unit vectors: near
     /// the axis that is more precise than the cosine.
-    Float8 densities(const V3f& from, const V3f& w) const {
+    Float8 densities(const V3f& from, const Float8x3& w) const {
       const Float8 i = Float8::load(inverse_distance.data());
       const Float8x3 to{Float8::load(x.data()) - i * from.x, Float8::load(y.data()) - i * from.y,
                         Float8::load(z.data()) - i * from.z};
       const Float8 square = length2(to);
       const Float8 scale = 1.0F / sqrt(square);
-      const Float8x3 apart = to * scale + Float8x3{-w.x, -w.y, -w.z};
+      const Float8x3 apart = to * scale - w;
       const Float8 bits = Float8::load(fall.data()) * length2(apart);
       return keep_where(square > 0.0F, Float8::load(peak.data()) * exp2(bits));
     }
@@ -72,15 +84,14 @@ class AimedLobes {
     double weight = 0, squares = 0;  // of all samples
     struct OfLobe {
       double weight = 0, inverse_distance = 0;
-      V3d direction{0, 0, 0};
+      V3d from_pivot{0, 0, 0}, from_place{0, 0, 0};  ///< directions
     };
     std::array<OfLobe, count> lobes{};
 
     void add(const Evidence& other, double scale);
   };
-  /// A sample as seen from the pivot.
   struct Seen {
-    V3f w;
+    V3f from_pivot, from_place;  ///< unit directions to where the light came from
     float inverse_distance, weight;
   };
 

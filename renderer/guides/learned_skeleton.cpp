@@ -12,8 +12,8 @@ namespace lacuna {
 namespace {
 
 constexpr std::array<std::size_t, 4> doublings{1, 3, 5, 7};  // of the lobes' strength
-/// One of so many vertices is learned from: learning from all takes longer than it gains.
-constexpr std::uint32_t learned_share = 4;
+/// One of so many vertices tells where they lie, and how well each choice of a cell would do.
+constexpr std::uint32_t counted_share = 4;
 
 }  // namespace
 
@@ -102,10 +102,12 @@ void LearnedSkeleton::accumulate(const GuidingSample& sample, Accumulator& accum
   const Vertex& v = sample.v;
   const auto [probability, cell, node] = v.guiding_cell;
   if (cell >= cells_.size()) return;
-  if (own.met++ % learned_share != 0) return;
+  if (sample.radiance > 0) {
+    const float arriving = sample.radiance * abs_dot(v.surface.ns, sample.wi);
+    Cells::accumulate(cell, sample, arriving, own.cells);
+  }
+  if (own.met++ % counted_share != 0) return;
   own.spreads[cell].add(key(region_[cell], v.surface.x, v.side()));
-  const float arriving = sample.radiance * abs_dot(v.surface.ns, sample.wi);
-  Cells::accumulate(cell, sample, arriving, own.cells);
   if (!tuning_.wants(cell)) return;
   std::array<float, doublings.size() + 1> densities{};
   if (node != no_node && !lobes_[node].empty()) {
@@ -120,7 +122,7 @@ void LearnedSkeleton::accumulate(const GuidingSample& sample, Accumulator& accum
 void LearnedSkeleton::record_noise(double variance, double by_bsdf,
                                    Accumulator& accumulator) const {
   static_cast<SampleAccumulator&>(accumulator)
-      .tuning.noise.add(variance / double{learned_share}, by_bsdf / double{learned_share});
+      .tuning.noise.add(variance / double{counted_share}, by_bsdf / double{counted_share});
 }
 
 void LearnedSkeleton::update(std::span<const std::unique_ptr<Accumulator>> accumulators,
@@ -136,7 +138,7 @@ void LearnedSkeleton::update(std::span<const std::unique_ptr<Accumulator>> accum
   tuning_.update(tuning, iterations);
   if (!cells_.update(cells, pool, iterations)) return;
   if (cells_.rounds() > 0) tuning_.stop_if_useless();
-  const double most = cells_.most_vertices(settings_.leaf_vertices);
+  const double most = cells_.most_vertices(settings_.leaf_vertices) / double{counted_share};
   forest_.divide(spreads_, most, most_learned_cells, [this](std::uint32_t cell) {
     cells_.divide(cell);
     tuning_.divide(cell);

@@ -286,6 +286,22 @@ TEST(Tuning, HasNoPilotsWhereItsProbabilityIsGiven) {
   EXPECT_FALSE(tuning.due_pilot());
 }
 
+/// After an iteration in which ten paths gave this largest square, of a moment of 1000 by the BSDF
+/// and more with the guide.
+double probability_after(double largest) {
+  Tuning tuning({8}, AutoNumber{}, 1);
+  Tuning::Accumulator one;
+  one.moments[0] = {1000, 1100, 1200, 1300, 1400, 1500, 1600, 1700, largest, 10};
+  const Tuning::Accumulator* const all[] = {&one};
+  tuning.update(all, 1);
+  return double(tuning.probability(0));
+}
+
+TEST(Tuning, DoesNotDropTheGuideByFewPaths) {
+  EXPECT_EQ(probability_after(1), 0);
+  EXPECT_EQ(probability_after(900), 0.5);
+}
+
 TEST(Tuning, IsSavedBetweenPilots) {
   TunedGuide guide, loaded;
   guide.fly(0.1, 0);
