@@ -47,9 +47,11 @@ constexpr double comparable = 0.25;
 constexpr double least_pairs = 16384, least_pairs_of_one = 1024;
 /// Iterations before the first that follows the BSDF: the guide begins to learn.
 constexpr std::uint64_t before_rests = 3;
-/// A sum of squares is known if its largest term has at most this share. With .05 bends has 1.2
-/// times the MSE.
-constexpr double known_share = 0.01;
+/// A sum of squares is known if its largest term has at most this share.
+constexpr double known_share = 0.05;
+/// Pairs of pixels in which the BSDF finds light where cells wait for bright paths: .07 on bends,
+/// one in 10,000 on corridor.
+constexpr double dark_share = 0.25;
 /// The probability of a cell whose moments are not known.
 constexpr float careful_probability = 0.5F;
 /// Paths of all cells from which a guide may be left alone, and where moments alone decide: an end
@@ -227,8 +229,8 @@ void Tuning::judge_pilots() {
   const bool known = deviation < comparable;
   const double wanted = (known ? decisive : decisive_of_unknown) * deviation;
   const bool last = iterations_ == 0 && pilots_ == most_first_pilots;
-  const bool shown = std::abs(gain) > wanted, sees = 2 * without_.lit > without_.pairs;
-  if (!shown && !(last && (sees || known))) return;
+  const bool shown = std::abs(gain) > wanted;
+  if (!shown && !(last && (!finds_light_in_at_most(0.5) || known))) return;
   idle_ = gain < 0 || !(shown || known);
   pays_ = !idle_;
 }
@@ -266,8 +268,9 @@ std::uint32_t Tuning::cheapest(std::size_t cell) const {
   return best;
 }
 
-/// Where the moment is not known: the guide with a middling probability. Rare bright paths may not
-/// have come yet, and would count in full where the BSDF alone was chosen.
+/// Where one path makes most of the moment: the guide with a middling probability, if it would have
+/// been better than the BSDF so far, or the BSDF hardly finds light. There rare bright paths may
+/// not have come yet, and would count in full where it was chosen.
 std::uint32_t Tuning::carefully(std::size_t cell) const {
   const double* const moments = moments_.data() + cell * stride();
   const std::uint32_t middling = nearest(probabilities_, careful_probability);
@@ -275,7 +278,7 @@ std::uint32_t Tuning::carefully(std::size_t cell) const {
   for (std::uint32_t i = middling; i < candidates(); i += static_cast<std::uint32_t>(count())) {
     if (moments[i] <= moments[best]) best = i;
   }
-  return best;
+  return finds_light_in_at_most(dark_share) || moments[best] < moments[0] ? best : 0;
 }
 
 void Tuning::choose(std::size_t cell) {

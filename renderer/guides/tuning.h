@@ -137,6 +137,10 @@ class Tuning {
   /// The cell's moment of a candidate, with the path that was not sampled; and times its cost.
   double moment(std::size_t cell, std::size_t candidate) const;
   double expense(std::size_t cell, std::size_t candidate) const;
+  /// Pilots that follow the BSDF find light in at most this share of the pairs of pixels.
+  bool finds_light_in_at_most(double share) const {
+    return without_.pairs > 0 && without_.lit <= share * without_.pairs;
+  }
   std::uint32_t cheapest(std::size_t cell) const;
   std::uint32_t carefully(std::size_t cell) const;
   void choose(std::size_t cell);

@@ -286,20 +286,25 @@ TEST(Tuning, HasNoPilotsWhereItsProbabilityIsGiven) {
   EXPECT_FALSE(tuning.due_pilot());
 }
 
-/// After an iteration in which ten paths gave this largest square, of a moment of 1000 by the BSDF
-/// and more with the guide.
-double probability_after(double largest) {
+/// Where the BSDF finds light in this share of the pairs of pixels, after ten paths of which the
+/// largest square was `largest`, of a moment of 1000 by the BSDF and more with the guide.
+double probability_after(double largest, double lit) {
   Tuning tuning({8}, AutoNumber{}, 1);
   Tuning::Accumulator one;
   one.moments[0] = {1000, 1100, 1200, 1300, 1400, 1500, 1600, 1700, largest, 10};
+  for (int i = 0; i < 1000; ++i) one.noise.add(i < 1000 * lit ? 1 : 0, 0);
   const Tuning::Accumulator* const all[] = {&one};
-  tuning.update(all, 1);
+  for (int i = 0; i < 2; ++i) {
+    tuning.begin_pilot();
+    tuning.update(all, 1.0 / 16);
+  }
   return double(tuning.probability(0));
 }
 
-TEST(Tuning, DoesNotDropTheGuideByFewPaths) {
-  EXPECT_EQ(probability_after(1), 0);
-  EXPECT_EQ(probability_after(900), 0.5);
+TEST(Tuning, DoesNotDropTheGuideInTheDark) {
+  EXPECT_EQ(probability_after(1, 0.1), 0);
+  EXPECT_EQ(probability_after(900, 0.9), 0);
+  EXPECT_EQ(probability_after(900, 0.1), 0.5);
 }
 
 TEST(Tuning, IsSavedBetweenPilots) {
