@@ -104,7 +104,7 @@ void AimedLobes::begin(const V3f& pivot) {
 }
 
 AimedLobes::Seen AimedLobes::seen(const FoundLight& light) const {
-  const Seen distant{light.w, light.w, 0, 0};
+  Seen distant{light.w, light.w, 0, 0};
   if (!std::isfinite(light.distance)) return distant;
   const V3d to = V3d(light.x) - V3d(pivot_) + V3d(light.w) * double(light.distance);
   const double length = length_of(to), inverse = 1 / length;

@@ -28,6 +28,7 @@ struct LearnedSkeleton::SampleAccumulator final : Accumulator {
 
 std::vector<float> LearnedSkeleton::distributions() {
   std::vector<float> all;
+  all.reserve(doublings.size() + 1);
   for (const std::size_t k : doublings) all.push_back(LobeSet::powers()[k]);
   all.push_back(-1);
   return all;

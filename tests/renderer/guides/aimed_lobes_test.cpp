@@ -138,6 +138,7 @@ TEST(AimedLobes, AreTheSameSeenFromElsewhere) {
 std::vector<FoundLight> from_everywhere(const V3f& w, float nearest, float farthest, int n) {
   Rng rng(49, 0, 0, Rng::Purpose::test);
   std::vector<FoundLight> batch;
+  batch.reserve(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) {
     const V3f x = place(rng, 0.5F);
     batch.push_back({x, w, nearest + (farthest - nearest) * rng.next(), 1});
