@@ -12,12 +12,11 @@
 
 namespace lacuna {
 
-/// A mixture of von Mises-Fisher lobes. Most are aimed at a point, so that their direction depends
-/// on where they are sampled: parallax (Ruppert, Herholz and Lensch 2020, 5). Light that comes from
-/// one direction wherever it is found, from far or from near surfaces side by side, would blur such
-/// a lobe; its own has the same direction everywhere. Each lobe is the one that is narrower. They
-/// are fitted to light that was found, by expectation maximisation batch by batch: of earlier
-/// batches only sums are kept.
+/// A mixture of von Mises-Fisher lobes. A lobe is aimed at a point, so that its direction depends
+/// on where it is sampled: parallax (Ruppert, Herholz and Lensch 2020, 5). Or its direction is the
+/// same everywhere, if that makes it narrower: light from surfaces beside each place comes from all
+/// sides when it is seen from one pivot. The mixture is fitted to light that was found, by
+/// expectation maximisation batch by batch: of earlier batches only sums are kept.
 class AimedLobes {
  public:
   static constexpr std::size_t count = 8;
@@ -84,12 +83,13 @@ class AimedLobes {
     double weight = 0, squares = 0;  // of all samples
     struct OfLobe {
       double weight = 0, inverse_distance = 0;
-      V3d from_pivot{0, 0, 0}, from_place{0, 0, 0};  ///< directions
+      V3d from_pivot{0, 0, 0}, from_place{0, 0, 0};  ///< sums of directions
     };
     std::array<OfLobe, count> lobes{};
 
     void add(const Evidence& other, double scale);
   };
+  /// A sample of light.
   struct Seen {
     V3f from_pivot, from_place;  ///< unit directions to where the light came from
     float inverse_distance, weight;

@@ -49,8 +49,8 @@ constexpr double least_pairs = 16384, least_pairs_of_one = 1024;
 constexpr std::uint64_t before_rests = 3;
 /// A sum of squares is known if its largest term has at most this share.
 constexpr double known_share = 0.05;
-/// Pairs of pixels in which the BSDF finds light where cells wait for bright paths: .07 on bends,
-/// one in 10,000 on corridor.
+/// Cells wait for bright paths where the BSDF finds light in at most this share of the pairs of
+/// pixels: .07 on bends, one in 10,000 on corridor.
 constexpr double dark_share = 0.25;
 /// The probability of a cell whose moments are not known.
 constexpr float careful_probability = 0.5F;
@@ -273,7 +273,7 @@ std::uint32_t Tuning::cheapest(std::size_t cell) const {
 /// not have come yet, and would count in full where it was chosen.
 std::uint32_t Tuning::carefully(std::size_t cell) const {
   const double* const moments = moments_.data() + cell * stride();
-  const std::uint32_t middling = nearest(probabilities_, careful_probability);
+  const auto middling = nearest(probabilities_, careful_probability);
   std::uint32_t best = middling;
   for (std::uint32_t i = middling; i < candidates(); i += static_cast<std::uint32_t>(count())) {
     if (moments[i] <= moments[best]) best = i;
