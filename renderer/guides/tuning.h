@@ -28,8 +28,8 @@ namespace lacuna {
 /// count in the picture: the first follow the BSDF, the others by turns the guide and the BSDF. A
 /// guide that has not shown a gain by their end is idle, unless few paths make that ratio and the
 /// BSDF finds no light in most pixels: then the guide begins, and later pilots follow the BSDF
-/// until more is known, but for one that finds light in fewer pixels. One that finds it in far more
-/// begins. An
+/// until more is known, but for one that finds light in fewer pixels. In dark pictures one that
+/// finds it in enough more pixels to pay begins, and its noise counts after 16 iterations. An
 /// integrator without pilots compares where the choices of all cells together seem to gain little:
 /// an iteration then follows the BSDF.
 class Tuning {

@@ -237,19 +237,32 @@ TEST(Tuning, EndsWherePilotsFindLessLight) {
   }
 }
 
-// One path of the guide would make the gain small, but with it light is found far more often. What
-// iterations show later counts all the same.
-TEST(Tuning, GoesOnWherePilotsFindFarMoreLight) {
-  for (const double guided_lit : {0.2, 0.3}) {
-    TunedGuide guide;
-    guide.bright = guide.bright_by_bsdf = 3000;
-    guide.plain_lit = 0.07;
-    guide.guided_lit = guided_lit;
-    EXPECT_EQ(guide.fly(0.1, 0.1), 16);
-    EXPECT_EQ(guide.tuning.idle(), guided_lit < 3.5 * 0.07) << guided_lit;
-    for (int i = 0; i < 8 && !guide.tuning.idle(); ++i) guide.iterate(0.1);
-    EXPECT_TRUE(guide.tuning.idle());
-  }
+/// Pilots by which few bright paths make both noises, which are the same.
+TunedGuide flown(Tuning::Directions directions, double plain_lit, double guided_lit) {
+  TunedGuide guide(directions);
+  guide.bright = guide.bright_by_bsdf = 3000;
+  guide.plain_lit = plain_lit;
+  guide.guided_lit = guided_lit;
+  EXPECT_EQ(guide.fly(0.1, 0.1), 16);
+  return guide;
+}
+
+// What is not known of the noise of dark pictures is known of how often light is found.
+TEST(Tuning, GoesOnInTheDarkWherePilotsFindMoreLight) {
+  using enum Tuning::Directions;
+  EXPECT_TRUE(flown(fixed, 0.07, 2.2 * 0.07).tuning.idle()) << "may miss bright paths";
+  EXPECT_FALSE(flown(fixed, 0.07, 4.2 * 0.07).tuning.idle());
+  EXPECT_TRUE(flown(learned, 0.07, 0.07).tuning.idle());
+  EXPECT_FALSE(flown(learned, 0.07, 1.5 * 0.07).tuning.idle()) << "it becomes better";
+  EXPECT_TRUE(flown(learned, 0.3, 0.66).tuning.idle()) << "there the noise is known";
+}
+
+TEST(Tuning, IsJudgedByTheNoiseOfDarkPicturesLater) {
+  TunedGuide guide = flown(Tuning::Directions::learned, 0.07, 0.3);
+  for (int i = 0; i < 15; ++i) guide.iterate(0.1);
+  EXPECT_FALSE(guide.tuning.idle());
+  guide.iterate(0.1);
+  EXPECT_TRUE(guide.tuning.idle());
 }
 
 // Few pixels are lit, and nearly in the ratio that guiding costs.

@@ -1,0 +1,47 @@
+// What the cells of learned_skeleton learn from which vertices.
+
+#include "renderer/guides/learned_skeleton.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/renderer/guides/guided_scene.h"
+#include "tests/renderer/path/scenes.h"
+
+namespace lacuna {
+namespace {
+
+using test::GuidedScene;
+
+// Light comes from one side at every fourth vertex, from the other at the three between.
+TEST(LearnedSkeleton, LobesLearnFromAllLitVertices) {
+  LearnedSkeletonGuideSettings settings;
+  settings.probability = {0.5};
+  GuidedScene scene([] { return load_gltf(test::own_scene("ajar.glb")); }, settings, 0, {}, 48);
+  const std::vector<Vertex> found = scene.guided_vertices(1);
+  ASSERT_EQ(found.size(), 1);
+  Vertex v = found.front();
+  const V3f n = v.side();
+  const V3f along = std::abs(n.x) < 0.5F ? V3f(1, 0, 0) : V3f(0, 1, 0);
+  const V3f across = (along - n * dot(along, n)).normalized();
+  const V3f seldom = (n + across).normalized(), often = (n - across).normalized();
+
+  const auto guide = make_guiding_distribution(settings);
+  guide->prepare(scene.context());
+  const ThreadPool pool(1);
+  for (int round = 0; round < 6; ++round) {
+    v.guiding_cell = guide->cell(v.surface, v.wp);
+    std::vector<std::unique_ptr<GuidingDistribution::Accumulator>> one;
+    one.push_back(guide->accumulator());
+    for (int i = 0; i < 400; ++i) {
+      const V3f& w = i % 4 == 0 ? seldom : often;
+      guide->accumulate({v, w, Pdf<SolidAngle>(0.1F), 1, 1, 1}, *one.front());
+    }
+    guide->update(one, pool, 1 << round);
+  }
+  v.guiding_cell = guide->cell(v.surface, v.wp);
+  const GuidedVertex at{v.surface, *v.bsdf, v.wp, v.guiding_cell};
+  EXPECT_GT(guide->pdf(at, often).value, guide->pdf(at, seldom).value);
+}
+
+}  // namespace
+}  // namespace lacuna
