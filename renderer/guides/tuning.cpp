@@ -53,7 +53,7 @@ constexpr double known_share = 0.05;
 /// in two views of sponza, .14 on door, .07 on bends, one in 10,000 on corridor. Their cells wait
 /// for bright paths.
 constexpr double dark_share = 0.25;
-/// Iterations before the noise of a dark picture is known: on sponza 96 pilots told that the guide
+/// Iterations before the noise of a dark picture is known: on sponza 32 pilots told that the guide
 /// doubles it, 16 iterations that it takes three quarters of it away.
 constexpr std::uint64_t patient_until = 16;
 /// The probability of a cell whose moments are not known.
@@ -74,9 +74,9 @@ bool finds_less_light(const Tuning::Noise& with, const Tuning::Noise& without) {
   return share - with.lit / with.pairs > decisive * std::sqrt(variance);
 }
 
-/// Logarithm of how many times as many pairs are lit with the guide as without, less what that
-/// surely lies within. Requires lit pairs without it.
-double surely_lit(const Tuning::Noise& with, const Tuning::Noise& without) {
+/// Logarithm of how many times as many pairs are lit with the guide as without: the smallest that
+/// is likely. Requires lit pairs without it.
+double least_log_lit_ratio(const Tuning::Noise& with, const Tuning::Noise& without) {
   const double ratio = std::log(with.lit / with.pairs / (without.lit / without.pairs));
   return ratio - decisive * std::sqrt(1 / with.lit + 1 / without.lit);
 }
@@ -214,6 +214,17 @@ double Tuning::hoped() const {
   return grows_by * std::max(doublings, 0.0);
 }
 
+double Tuning::log_gain_that_pays() const { return std::log(guided_iteration_cost) - hoped(); }
+
+/// Bright paths that have not come yet make most of the noise of a dark picture, but how often
+/// light is found is known. Lobes that are not learned must find far more of it: with twice as much
+/// the skeleton's lost to the BSDF on ajar and door.
+bool Tuning::begins_in_the_dark() const {
+  const double margin = directions_ == Directions::fixed ? std::log(surely_pays) : 0;
+  return iterations_ < patient_until && finds_light_in_at_most(dark_share) && without_.lit > 0 &&
+         least_log_lit_ratio(with_, without_) > log_gain_that_pays() + margin;
+}
+
 void Tuning::judge_pilots() {
   if (pilots_ < first_pilots || pairs_ < least_pairs_of_one) return;
   // Where the BSDF finds few bright paths, how often light is found tells more than its noise.
@@ -222,18 +233,12 @@ void Tuning::judge_pilots() {
     idle_ = true;
     return;
   }
-  const double pays_from = std::log(guided_iteration_cost) - hoped();
-  // Bright paths that have not come yet make most of the noise of dark pictures. Lobes that find
-  // light twice as often may miss those: on ajar and door the skeleton's did.
-  const double lit_from =
-      pays_from + (directions_ == Directions::fixed ? std::log(surely_pays) : 0.0);
-  if (iterations_ < patient_until && finds_light_in_at_most(dark_share) && without_.lit > 0 &&
-      surely_lit(with_, without_) > lit_from) {
+  if (begins_in_the_dark()) {
     pays_ = true;
     return;
   }
   if (!(with_.sum > 0) || !(with_.by_bsdf > 0)) return;
-  const double gain = with_.log_gain() - pays_from;
+  const double gain = with_.log_gain() - log_gain_that_pays();
   const double deviation = with_.log_gain_deviation();
   const bool known = deviation < comparable;
   const double wanted = (known ? decisive : decisive_of_unknown) * deviation;

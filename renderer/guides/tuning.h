@@ -28,10 +28,10 @@ namespace lacuna {
 /// count in the picture: the first follow the BSDF, the others by turns the guide and the BSDF. A
 /// guide that has not shown a gain by their end is idle, unless few paths make that ratio and the
 /// BSDF finds no light in most pixels: then the guide begins, and later pilots follow the BSDF
-/// until more is known, but for one that finds light in fewer pixels. In dark pictures one that
-/// finds it in enough more pixels to pay begins, and its noise counts after 16 iterations. An
-/// integrator without pilots compares where the choices of all cells together seem to gain little:
-/// an iteration then follows the BSDF.
+/// until more is known, but for one that finds light in fewer pixels. Where the BSDF seldom finds
+/// light, a guide begins that finds it in enough more pixels to pay, and is judged by the noise
+/// after 16 iterations. An integrator without pilots compares where the choices of all cells
+/// together seem to gain little: an iteration then follows the BSDF.
 class Tuning {
  public:
   Tuning() = default;
@@ -150,6 +150,11 @@ class Tuning {
   void judge_pilots();
   /// What the logarithm of the gain may be expected to grow by.
   double hoped() const;
+  /// Below it a guide does not pay for its time, now or with what it may be expected to gain.
+  double log_gain_that_pays() const;
+  /// The guide surely finds light in enough more pairs of pixels to pay, in a picture whose noise
+  /// is not known yet.
+  bool begins_in_the_dark() const;
   void compare();
 
   std::vector<float> strengths_, probabilities_;
