@@ -52,11 +52,9 @@ class Tuning {
   struct Noise {
     double sum = 0, squares = 0, pairs = 0, lit = 0;  // lit: pairs that differ
     double by_bsdf = 0, by_bsdf_squares = 0, products = 0;
-    double largest = 0, largest_by_bsdf = 0;  // of one pair
     void add(double variance, double variance_by_bsdf) {
       add({variance, variance * variance, 1, variance > 0 ? 1.0 : 0.0, variance_by_bsdf,
-           variance_by_bsdf * variance_by_bsdf, variance * variance_by_bsdf, variance,
-           variance_by_bsdf});
+           variance_by_bsdf * variance_by_bsdf, variance * variance_by_bsdf});
     }
     void add(const Noise& other);
     /// All that was added counts as `share` of it.
@@ -66,8 +64,8 @@ class Tuning {
     double doubt() const { return squares / (sum * sum); }
     /// Logarithm of the ratio of the variance by the BSDF to that which was sampled.
     double log_gain() const { return std::log(by_bsdf / sum); }
-    /// Its standard deviation; no less than what the largest pair changes, because of few bright
-    /// paths the linear estimate tells too little.
+    /// Its standard deviation: no less than 1 / sqrt(n) where n pairs of equal noise would tell as
+    /// much. Few bright paths agree by chance, and make the linear estimate too small.
     double log_gain_deviation() const;
   };
   struct Accumulator {
