@@ -50,7 +50,7 @@ void LearnedSkeleton::prepare(const PrepareContext& context) {
   label_ = &regions.label;
   lookup_.emplace(transform_, *label_);
   for (const Region& r : regions.regions)
-    scale_.push_back(1 / static_cast<float>(std::max<int>(r.opening, 1)));
+    scale_.push_back(1 / (std::max<int>(r.opening, 1) * transform_.voxel_size));
   const SurfaceLookup nodes(transform_, *node_map_);
   lobes_ = skeleton_lobes(
       context,
@@ -65,7 +65,7 @@ void LearnedSkeleton::prepare(const PrepareContext& context) {
 }
 
 CellForest::Key LearnedSkeleton::key(std::uint32_t region, const V3f& x, const V3f& n) const {
-  const V3f p = V3f(transform_.to_grid(V3d(x))) * scale_[region];
+  const V3f p((V3d(x) - transform_.origin) * scale_[region]);
   return {p.x, p.y, p.z, n.x, n.y, n.z};
 }
 

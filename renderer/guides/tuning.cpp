@@ -124,6 +124,9 @@ Tuning::Tuning(std::vector<float> strengths, const AutoNumber& probability, std:
   } else {
     probabilities_ = {static_cast<float>(*probability.value)};
   }
+  for (const float s : strengths_) {
+    for (const float c : probabilities_) choices_.push_back({s, c});
+  }
   const std::uint32_t first =
       nearest(strengths_, first_strength) * static_cast<std::uint32_t>(count()) +
       nearest(probabilities_, first_probability);
@@ -257,12 +260,12 @@ void Tuning::compare() {
 
 double Tuning::moment(std::size_t cell, std::size_t candidate) const {
   const double* const moments = moments_.data() + cell * stride();
-  const double unseen = moments[candidates()] / (1 - double(probabilities_[candidate % count()]));
+  const double unseen = moments[candidates()] / (1 - double(choices_[candidate].probability));
   return moments[candidate] + unseen;
 }
 
 double Tuning::expense(std::size_t cell, std::size_t candidate) const {
-  const bool guided = probabilities_[candidate % count()] > 0;
+  const bool guided = choices_[candidate].probability > 0;
   return moment(cell, candidate) * (guided ? guided_cost : 1.0);
 }
 
@@ -272,7 +275,7 @@ std::uint32_t Tuning::cheapest(std::size_t cell) const {
   std::uint32_t best = 0;
   for (std::uint32_t i = 0; i < candidates(); ++i) {
     const double value = expense(cell, i);
-    if (value >= least || probabilities_[i % count()] < least_probability) continue;
+    if (value >= least || choices_[i].probability < least_probability) continue;
     least = value;
     best = i;
   }

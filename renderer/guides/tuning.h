@@ -42,9 +42,9 @@ class Tuning {
          Directions directions = Directions::fixed);
 
   bool learns() const { return strengths_.size() * probabilities_.size() > 1; }
-  float strength(std::size_t cell) const { return strengths_[chosen_[cell] / count()]; }
+  float strength(std::size_t cell) const { return choices_[chosen_[cell]].strength; }
   float probability(std::size_t cell) const {
-    return idle_ || follows_bsdf() ? 0 : probabilities_[chosen_[cell] % count()];
+    return idle_ || follows_bsdf() ? 0 : choices_[chosen_[cell]].probability;
   }
 
   /// Variances of single samples of pixels, each estimated from one pair of them; and what the same
@@ -155,7 +155,12 @@ class Tuning {
   bool begins_in_the_dark() const;
   void compare();
 
+  struct Choice {
+    float strength, probability;
+  };
+
   std::vector<float> strengths_, probabilities_;
+  std::vector<Choice> choices_;        // all candidates
   std::vector<std::uint32_t> chosen_;  // of each cell
   /// For each cell: the second moment of each strength and probability; the largest g^2 of a path;
   /// the number of paths.
