@@ -226,6 +226,11 @@ bool Tuning::begins_in_the_dark() const {
 
 void Tuning::judge_pilots() {
   if (pilots_ < first_pilots || pairs_ < least_pairs_of_one) return;
+  // One iteration with the guide would keep the error of spread samples up for long.
+  if (sums().smooth()) {
+    idle_ = true;
+    return;
+  }
   // Where the BSDF finds few bright paths, how often light is found tells more than its noise.
   const bool unknown = without_.doubt() >= comparable * comparable;
   if (unknown && finds_less_light(with_, without_)) {
@@ -303,35 +308,44 @@ void Tuning::choose(std::size_t cell) {
   chosen_[cell] = known || !can_be_zero ? cheapest(cell) : carefully(cell);
 }
 
+Tuning::Sums Tuning::sums() const {
+  Sums of;
+  for (std::size_t cell = 0; cell < chosen_.size(); ++cell) {
+    of.plain += moment(cell, 0);
+    of.chosen += moment(cell, chosen_[cell]);
+    of.largest = std::max(of.largest, moments_[cell * stride() + candidates()]);
+    of.paths += paths(cell);
+  }
+  return of;
+}
+
+bool Tuning::Sums::smooth() const {
+  return paths >= least_smooth_paths && largest * paths < smooth_peak * plain;
+}
+
 void Tuning::stop_if_useless() {
   if (idle_ || !learns() || probabilities_.front() > 0) return;
-  double plain = 0, chosen = 0, largest = 0, all = 0;
-  for (std::size_t cell = 0; cell < chosen_.size(); ++cell) {
-    plain += moment(cell, 0);
-    chosen += moment(cell, chosen_[cell]);
-    largest = std::max(largest, moments_[cell * stride() + candidates()]);
-    all += paths(cell);
-  }
-  if (all >= least_smooth_paths && largest * all < smooth_peak * plain) {
+  const Sums of = sums();
+  if (of.smooth()) {
     idle_ = true;
     return;
   }
   if (pilots_ > 0 && pairs_ >= least_pairs_of_one) return;  // they decide
   // Decided at each doubling only: of many decisions by chance one would be wrong.
   const bool small = pairs_ < least_pairs_of_one;
-  if (all < std::max(small ? least_paths_of_small : least_paths, 2 * decided_)) return;
+  if (of.paths < std::max(small ? least_paths_of_small : least_paths, 2 * decided_)) return;
   // The noise was measured with the guide: without it, it would be that and the gain.
-  const double noise = noise_ > 0 ? noise_ : chosen, gain = plain - chosen;
-  const bool known = largest < known_share_of_all * plain;
+  const double noise = noise_ > 0 ? noise_ : of.chosen, gain = of.plain - of.chosen;
+  const bool known = of.largest < known_share_of_all * of.plain;
   if (small) {
     if (!known) return;
     // Gains multiply along a path: what is measured (bends: 2.2 to 3) is at least the square of
     // what moments promise (1.35).
     const double promised = 1 + gain / noise;
     idle_ = guided_cost > promised * promised;
-    decided_ = all;
+    decided_ = of.paths;
   } else if (noise + gain > noise * guided_iteration_cost * (known ? 1 : 2) * surely_pays) {
-    decided_ = all;
+    decided_ = of.paths;
   } else if (known && gain < promises_nothing * noise) {
     idle_ = true;
   } else {

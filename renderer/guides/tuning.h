@@ -139,6 +139,13 @@ class Tuning {
   bool finds_light_in_at_most(double share) const {
     return without_.pairs > 0 && without_.lit <= share * without_.pairs;
   }
+  /// Of all cells: the moment by the BSDF and that of the choices, the largest square, the paths.
+  struct Sums {
+    double plain = 0, chosen = 0, largest = 0, paths = 0;
+    /// The light is so smooth that spread samples of the BSDF do better than any guide.
+    bool smooth() const;
+  };
+  Sums sums() const;
   std::uint32_t cheapest(std::size_t cell) const;
   std::uint32_t carefully(std::size_t cell) const;
   void choose(std::size_t cell);

@@ -208,7 +208,7 @@ def selection(bench, options):
 
 def gains(bench, options):
     """Guides against BSDF sampling and each other at equal CPU time."""
-    guide_gains.run(bench, options.guide_seconds, options.guide_seeds)
+    guide_gains.run(bench, options.guide_seconds, options.guide_seeds, options.guide_scenes)
 
 
 def spreading(bench, _):
@@ -245,7 +245,9 @@ def main():
     parser.add_argument("--peers-scenes", nargs="+", choices=peers.SCENES, metavar="SCENE",
                         help=f"of {', '.join(peers.SCENES)} (default: all)")
     parser.add_argument("--guide-seconds", type=float, default=6, help="CPU seconds for each picture of guide_gains")
-    parser.add_argument("--guide-seeds", type=int, default=3)
+    parser.add_argument("--guide-seeds", type=int, default=3, help="at least 2")
+    parser.add_argument("--guide-scenes", nargs="+", choices=guide_gains.SCENES, metavar="SCENE",
+                        help=f"of {', '.join(guide_gains.SCENES)} (default: all)")
     options = parser.parse_args()
     known = {**CHECKS, **LONG}
     if unknown := [c for c in options.checks if c not in known]:

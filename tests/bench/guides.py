@@ -1,6 +1,7 @@
-"""Guides at equal CPU time, over the configurations of Fig. 77 of the thesis and ordinary scenes: the squared error of BSDF
-sampling over that of each guide, by the errors that pictures estimate of themselves (est_rmse), geometric means over seeds."""
+"""Guides at equal CPU time, over the configurations of Fig. 77 of the thesis and ordinary scenes: errors of BSDF sampling over
+those of each guide. The error of a picture is told by pairs of them, of different seeds: they have no error in common."""
 
+import itertools
 import math
 import pathlib
 import sys
@@ -18,6 +19,8 @@ GUIDES = {
 }
 OWN = "learned_skeleton"
 WIDTH, HEIGHT = 192, 108
+METRICS = ("mse", "relmse", "mae")
+LEAST, LEAST_OVER_BEST = 0.95, 1.3
 ORDINARY = {
     "door": {"scene": "door/scene.glb", "camera": "corner"},
     "cornell-box": {"scene": "cornell-box/scene.glb"},
@@ -27,45 +30,59 @@ ORDINARY = {
     "ajar": {"scene": "ajar.glb"},
     "nave": {"scene": "nave.glb"},
 }
+# Jobs without integrator and budget.
+SCENES = {name: {p.lstrip("/"): v for p, v in given.items() if p not in ("/reference", "/resolution")}
+          for name, given in noel_guides.SCENES.items()} | ORDINARY
 
 
-def scenes():
-    """Jobs without integrator and budget, by name."""
-    for name, given in noel_guides.SCENES.items():
-        yield name, {p.lstrip("/"): v for p, v in given.items() if p not in ("/reference", "/resolution")}
-    yield from ORDINARY.items()
-
-
-def squared_error(bench, scene, guide, seconds, seeds):
-    """Geometric mean over seeds, and the iterations of the first."""
-    logs, iterations = [], 0
+def pairs(bench, scene, guide, seconds, seeds):
+    """Errors of each pair of pictures, by their seeds; and the iterations of the first."""
+    pictures, iterations = {}, 0
     for seed in range(1, seeds + 1):
         job = {**scene, "resolution": [WIDTH, HEIGHT], "analysis": {"resolution": 128}, "seed": seed, "threads": 1,
                "integrator": {"type": "path", "max_depth": 6, "guide": guide}, "budget": {"cpu_seconds": seconds}}
-        report = bench.render("guide", job)[1]
-        logs.append(2 * math.log(report["errors"]["est_rmse"]))
+        pictures[seed], report = bench.render(f"guide-{seed}", job)
         iterations = iterations or report["counts"]["iterations"]
-    return math.exp(sum(logs) / seeds), iterations
+    errors = {(a, b): bench.compare(pictures[a] / "image.exr", pictures[b] / "image.exr", HEIGHT)
+              for a, b in itertools.combinations(pictures, 2)}
+    return errors, iterations
+
+
+def mean(errors, metric, without=None):
+    """Over all pairs that do not have the seed `without`."""
+    values = [e[metric] for pair, e in errors.items() if without not in pair]
+    return sum(values) / len(values)
+
+
+def gain(plain, guided, metric, seeds):
+    """Error of `plain` over that of `guided`, and the standard error of its logarithm (jackknife over seeds)."""
+    ratio = mean(plain, metric) / mean(guided, metric)
+    if seeds < 3:
+        return ratio, math.nan
+    logs = [math.log(mean(plain, metric, k) / mean(guided, metric, k)) for k in range(1, seeds + 1)]
+    middle = sum(logs) / seeds
+    return ratio, math.sqrt((seeds - 1) / seeds * sum((v - middle) ** 2 for v in logs))
 
 
 def geometric_mean(values):
     return math.exp(sum(math.log(v) for v in values) / len(values))
 
 
-def run(bench, seconds, seeds):
-    over_bsdf, over_best = [], []
-    for name, scene in scenes():
-        errors, iterations = {}, {}
-        for guide, settings in GUIDES.items():
-            errors[guide], iterations[guide] = squared_error(bench, scene, settings, seconds, seeds)
-        gains = {guide: errors["bsdf"] / error for guide, error in errors.items()}
-        print("  " + name + ": MSE of bsdf / of the guide (iterations): "
-              + ", ".join(f"{guide} {gain:.2f} ({iterations[guide]})" for guide, gain in gains.items()), flush=True)
-        over_bsdf.append(gains[OWN])
-        over_best.append(gains[OWN] / max(gains["skeleton"], gains["sd_tree"]))
-        bench.figure(f"{name}: MSE of bsdf / of {OWN}", f"{over_bsdf[-1]:.2f}", "at least 0.95", over_bsdf[-1] >= 0.95)
-        bench.figure(f"{name}: MSE of the better of skeleton and sd_tree / of {OWN}", f"{over_best[-1]:.2f}",
-                     "at least 0.95", over_best[-1] >= 0.95)
-    mean = geometric_mean(over_best)
-    bench.figure(f"all: MSE of the better of skeleton and sd_tree / of {OWN}", f"{mean:.2f}", "at least 1.3", mean >= 1.3)
-    print(f"  all: MSE of bsdf / of {OWN}: {geometric_mean(over_bsdf):.2f}")
+def run(bench, seconds, seeds, names):
+    over_bsdf, over_best = {m: [] for m in METRICS}, {m: [] for m in METRICS}
+    for name in names or SCENES:
+        told = {guide: pairs(bench, SCENES[name], settings, seconds, seeds) for guide, settings in GUIDES.items()}
+        gains = {guide: {m: gain(told["bsdf"][0], errors, m, seeds) for m in METRICS} for guide, (errors, _) in told.items()}
+        for guide, (_, iterations) in told.items():
+            print(f"  {name}: {guide}, {iterations} iterations: MSE, relMSE, MAE of bsdf / of the guide: "
+                  + ", ".join(f"{value:.2f} ({deviation:.2f})" for value, deviation in gains[guide].values()), flush=True)
+        for m in METRICS:
+            over_bsdf[m].append(gains[OWN][m][0])
+            over_best[m].append(gains[OWN][m][0] / max(gains["skeleton"][m][0], gains["sd_tree"][m][0]))
+            for what, value in (("bsdf", over_bsdf[m][-1]), ("the better of skeleton and sd_tree", over_best[m][-1])):
+                bench.figure(f"{name}: {m} of {what} / of {OWN}", f"{value:.2f}", f"at least {LEAST}", value >= LEAST)
+    for m in METRICS:
+        value = geometric_mean(over_best[m])
+        bench.figure(f"all: {m} of the better of skeleton and sd_tree / of {OWN}", f"{value:.2f}",
+                     f"at least {LEAST_OVER_BEST}", value >= LEAST_OVER_BEST)
+        print(f"  all: {m} of bsdf / of {OWN}: {geometric_mean(over_bsdf[m]):.2f}")

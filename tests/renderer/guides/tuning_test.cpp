@@ -171,6 +171,22 @@ TEST(Tuning, EndsWhereIterationsHaveMoreNoiseThanPilotsHad) {
   EXPECT_TRUE(guide.tuning.idle());
 }
 
+// One iteration with the guide would spoil what spread samples gain, however little noise it has.
+TEST(Tuning, PilotsTellWhereLightIsSmooth) {
+  for (const double largest_square : {0.5, 10.0}) {
+    Tuning tuning({8}, AutoNumber{}, 1);
+    while (tuning.due_pilot()) {
+      tuning.begin_pilot();
+      Tuning::Accumulator one;
+      one.moments[0] = {125, 75, 75, 75, 75, 75, 75, 75, largest_square, 1250};
+      for (int i = 0; i < 1250; ++i) one.noise.add(0.1, 0.4);
+      const Tuning::Accumulator* const all[] = {&one};
+      tuning.update(all, 1.0 / 16);
+    }
+    EXPECT_EQ(tuning.idle(), largest_square < 1);
+  }
+}
+
 // Pilots that follow the BSDF meet few bright paths there, or none: guided paths tell of them.
 TEST(Tuning, GoesOnWhereTheBsdfFindsNoLight) {
   for (const double one_path : {0.0, 2000.0}) {
