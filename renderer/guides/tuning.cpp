@@ -231,9 +231,12 @@ void Tuning::judge_pilots() {
     idle_ = true;
     return;
   }
-  // Where the BSDF finds few bright paths, how often light is found tells more than its noise.
+  // Where the BSDF finds few bright paths, how often light is found tells more than its noise. In
+  // the dark, directions that are learned come to find it more often.
   const bool unknown = without_.doubt() >= comparable * comparable;
-  if (unknown && finds_less_light(with_, without_)) {
+  const bool early = directions_ == Directions::learned && iterations_ < patient_until &&
+                     finds_light_in_at_most(dark_share);
+  if (unknown && !early && finds_less_light(with_, without_)) {
     idle_ = true;
     return;
   }

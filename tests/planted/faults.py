@@ -406,6 +406,8 @@ FAULTS = [
           "(plain ? without_ : with_).add(noise);", "(plain ? with_ : without_).add(noise);"),
     Fault("paths do not become rarer when they follow the BSDF", "renderer/guides/gathered_light.h",
           "excess += c * (by_bsdf + 2 * before_by_bsdf)", "excess += by_bsdf * (by_bsdf + 2 * before_by_bsdf)"),
+    Fault("in the dark pilots end directions that have hardly been learned", "renderer/guides/tuning.cpp",
+          "if (unknown && !early && ", "if (unknown && (!early || early) && "),
     Fault("a guide begins where light is smooth", "renderer/guides/tuning.cpp",
           "  if (sums().smooth()) {", "  if (sums().smooth() && pilots_ > 1000) {"),
     Fault("a guide ends where few paths tell", "renderer/guides/tuning.cpp",

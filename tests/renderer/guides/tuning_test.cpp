@@ -257,6 +257,20 @@ TEST(Tuning, EndsWherePilotsFindLessLight) {
   }
 }
 
+TEST(Tuning, WaitsInTheDarkForDirectionsThatAreLearned) {
+  using enum Tuning::Directions;
+  for (const Tuning::Directions directions : {fixed, learned}) {
+    for (const double plain_lit : {0.1, 0.4}) {
+      TunedGuide guide(directions);
+      guide.plain_bright = 1e4;
+      guide.plain_lit = plain_lit;
+      guide.guided_lit = plain_lit * 0.7;
+      guide.fly(0.1, 0.2);
+      EXPECT_EQ(guide.tuning.idle(), directions == fixed || plain_lit > 0.25);
+    }
+  }
+}
+
 /// Pilots by which both noises are the same.
 TunedGuide flown(Tuning::Directions directions, double plain_lit, double guided_lit) {
   TunedGuide guide(directions);
