@@ -399,7 +399,7 @@ FAULTS = [
     Fault("lobes that are not learned begin where they find twice as much light", "renderer/guides/tuning.cpp",
           "directions_ == Directions::fixed ? std::log(surely_pays) : 0;", "directions_ == Directions::fixed ? 0.0 : 0;"),
     Fault("the noise of dark pictures never counts", "renderer/guides/tuning.cpp",
-          "iterations_ < patient_until", "true"),
+          "return iterations_ < patient_until", "return true"),
     Fault("roulette ends paths early whether that pays or not", "renderer/guides/efficiency_roulette.cpp",
           "state_.stage = e.expense() < state_.plain.expense() ?", "state_.stage = e.expense() > 0 ?"),
     Fault("pilots are taken for each other", "renderer/guides/tuning.cpp",
