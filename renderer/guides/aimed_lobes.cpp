@@ -41,7 +41,8 @@ std::optional<V3f> AimedLobes::sample(const V3f& x, Rng::FinePoint u) const {
   if (!(length > 0)) return std::nullopt;
   // exp(kappa (cos - 1)) is uniform between its ends. Near the axis 1 - cos is more precise than
   // the cosine.
-  const double versine = std::min(-std::log1p(left * lobe.fall) / lobe.concentration, 2.0);
+  const double k = lobe.concentration;
+  const double versine = std::min(-std::log1p(left * std::expm1(-2 * k)) / k, 2.0);
   return direction_around(d / length, versine, u.point().y);
 }
 
@@ -184,16 +185,15 @@ void AimedLobes::pack() {
   constexpr double ln2 = 0.693147180559945309;
   packed_.aimed = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    Lobe& lobe = lobes_[i];
+    const Lobe& lobe = lobes_[i];
     const double k = lobe.concentration;
-    lobe.fall = std::expm1(-2 * k);
     packed_.x[i] = static_cast<float>(lobe.aim.axis.x);
     packed_.y[i] = static_cast<float>(lobe.aim.axis.y);
     packed_.z[i] = static_cast<float>(lobe.aim.axis.z);
     packed_.inverse_distance[i] = static_cast<float>(lobe.aim.inverse_distance);
     packed_.aimed |= lobe.aimed ? 1U << i : 0U;
     packed_.fall[i] = static_cast<float>(-k / (2 * ln2));
-    packed_.peak[i] = static_cast<float>(lobe.share * k / (-2 * double(pi) * lobe.fall));
+    packed_.peak[i] = static_cast<float>(lobe.share * k / (2 * double(pi) * -std::expm1(-2 * k)));
   }
 }
 

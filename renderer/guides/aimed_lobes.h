@@ -56,7 +56,6 @@ class AimedLobes {
     double concentration = 1;  ///< kappa
     double share = 0;          ///< of all samples
     bool aimed = true;         ///< at a point
-    double fall = 0;           ///< exp(-2 kappa) - 1, once packed
   };
   /// All lobes side by side.
   struct alignas(32) Packed {

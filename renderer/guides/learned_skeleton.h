@@ -59,7 +59,7 @@ class LearnedSkeleton final : public GuidingDistribution {
   GridTransform transform_;
   const Grid3<std::uint32_t>*label_ = nullptr, *node_map_ = nullptr;
   std::optional<SurfaceLookup> lookup_;  // of label_
-  std::vector<double> scale_;  // of each region: 1 / the radius of its largest ball, per scene unit
+  std::vector<double> scale_;   // of each region: 1 / the radius of its largest ball in scene units
   std::vector<LobeSet> lobes_;  // of each node
   CellForest forest_;
   std::vector<std::uint32_t> region_;        // of each cell

@@ -183,7 +183,7 @@ class MixedGuide {
   /// bits of `x` beyond the first 32 are those of `besides`, scrambled.
   static Rng::FinePoint fine_point(Rng& rng) {
     const auto [choice, point] = rng.next_choice_and_point();
-    const auto bits = static_cast<std::uint64_t>(static_cast<std::int64_t>(choice * 0x1p48));
+    const auto bits = static_cast<std::uint64_t>(choice * 0x1p48);
     const auto whole = [](float unit, std::uint64_t rest) {
       return static_cast<std::uint32_t>(unit * 0x1p24F) << 8 |
              static_cast<std::uint32_t>(rest & 0xff);
@@ -194,12 +194,10 @@ class MixedGuide {
   }
   /// True with probability `c`, by uniform `u` of 2^64, which gets what is left.
   static bool choose(std::uint64_t& u, double c) {
-    // A double holds 53 bits, and signed numbers are converted faster.
-    const double at = static_cast<double>(static_cast<std::int64_t>(u >> 11)) * 0x1p-53;
+    const double at = static_cast<double>(u) * 0x1p-64;
     const bool chosen = at < c || c >= 1;
     const double left = chosen ? at / c : (at - c) / (1 - c);
-    const double inside = std::min(left, 1 - 0x1p-53);
-    u = static_cast<std::uint64_t>(static_cast<std::int64_t>(inside * 0x1p63)) << 1;
+    u = static_cast<std::uint64_t>(std::min(left, 1 - 0x1p-53) * 0x1p64);
     return chosen;
   }
   /// The distribution of paths of this transport; null: they follow the BSDF.

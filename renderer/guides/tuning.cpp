@@ -29,7 +29,7 @@ constexpr double promises_nothing = 0.1;
 /// them is known after one, and directions that were learned from it are judged by the next two.
 constexpr std::uint64_t first_pilots = 16, most_first_pilots = 32, plain_pilots = 3;
 /// And so many of all: a scene of which they say nothing keeps its guide. Pilots take time from
-/// dark pictures: with 96, two to three iterations of 30 in 8 seconds, and 1.1 times the error.
+/// dark pictures: with 96, one to five iterations of 30 in 8 seconds.
 constexpr std::uint64_t most_pilots = 40;
 /// Deviations that the ratio of two noises must differ from 1 by; and where so few bright paths
 /// make it that its deviation is large.
@@ -110,10 +110,9 @@ void Tuning::Noise::fade(double share) {
 }
 
 double Tuning::Noise::log_gain_deviation() const {
-  const double linear = by_bsdf_squares / (by_bsdf * by_bsdf) + squares / (sum * sum) -
-                        2 * products / (by_bsdf * sum);
-  const double of_few = std::max(doubt(), by_bsdf_squares / (by_bsdf * by_bsdf));
-  return std::sqrt(std::max(linear, of_few));
+  const double own = doubt(), other = by_bsdf_squares / (by_bsdf * by_bsdf);
+  const double linear = other + own - 2 * products / (by_bsdf * sum);
+  return std::sqrt(std::max({linear, own, other}));
 }
 
 Tuning::Tuning(std::vector<float> strengths, const AutoNumber& probability, std::size_t cells,
@@ -215,28 +214,32 @@ double Tuning::hoped() const {
 
 double Tuning::log_gain_that_pays() const { return std::log(guided_iteration_cost) - hoped(); }
 
+bool Tuning::is_dark() const { return finds_light_in_at_most(dark_share); }
+
 /// Bright paths that have not come yet make most of the noise of a dark picture, but how often
-/// light is found is known. Lobes that are not learned must find far more of it: with twice as much
+/// light is found is known.
+bool Tuning::noise_comes_later() const { return iterations_ < patient_until && is_dark(); }
+
+/// Lobes that are not learned must find far more of it: with twice as much
 /// the skeleton's lost to the BSDF on ajar and door.
 bool Tuning::begins_in_the_dark() const {
   const double margin = directions_ == Directions::fixed ? std::log(surely_pays) : 0;
-  return iterations_ < patient_until && finds_light_in_at_most(dark_share) && without_.lit > 0 &&
+  return noise_comes_later() && without_.lit > 0 &&
          least_log_lit_ratio(with_, without_) > log_gain_that_pays() + margin;
+}
+
+/// Where the BSDF finds few bright paths, how often light is found tells more than its noise. In
+/// the dark, directions that are learned come to find it more often.
+bool Tuning::finds_too_little_light() const {
+  const bool unknown = without_.doubt() >= comparable * comparable;
+  const bool may_find_more = directions_ == Directions::learned && noise_comes_later();
+  return unknown && !may_find_more && finds_less_light(with_, without_);
 }
 
 void Tuning::judge_pilots() {
   if (pilots_ < first_pilots || pairs_ < least_pairs_of_one) return;
   // One iteration with the guide would keep the error of spread samples up for long.
-  if (sums().smooth()) {
-    idle_ = true;
-    return;
-  }
-  // Where the BSDF finds few bright paths, how often light is found tells more than its noise. In
-  // the dark, directions that are learned come to find it more often.
-  const bool unknown = without_.doubt() >= comparable * comparable;
-  const bool early = directions_ == Directions::learned && iterations_ < patient_until &&
-                     finds_light_in_at_most(dark_share);
-  if (unknown && !early && finds_less_light(with_, without_)) {
+  if (sums().smooth() || finds_too_little_light()) {
     idle_ = true;
     return;
   }
@@ -278,7 +281,7 @@ double Tuning::expense(std::size_t cell, std::size_t candidate) const {
 }
 
 std::uint32_t Tuning::cheapest(std::size_t cell) const {
-  const float least_probability = finds_light_in_at_most(dark_share) ? least_in_the_dark : 0;
+  const float least_probability = is_dark() ? least_in_the_dark : 0;
   double least = HUGE_VAL;
   std::uint32_t best = 0;
   for (std::uint32_t i = 0; i < candidates(); ++i) {
@@ -300,7 +303,7 @@ std::uint32_t Tuning::carefully(std::size_t cell) const {
   for (std::uint32_t i = middling; i < candidates(); i += static_cast<std::uint32_t>(count())) {
     if (moments[i] <= moments[best]) best = i;
   }
-  return finds_light_in_at_most(dark_share) || moments[best] < moments[0] ? best : 0;
+  return is_dark() || moments[best] < moments[0] ? best : 0;
 }
 
 void Tuning::choose(std::size_t cell) {

@@ -28,7 +28,9 @@ namespace lacuna {
 /// count in the picture: the first follow the BSDF, the others by turns the guide and the BSDF. A
 /// guide that has not shown a gain by their end is idle, unless few paths make that ratio and the
 /// BSDF finds no light in most pixels: then the guide begins, and later pilots follow the BSDF
-/// until more is known, but for one that finds light in fewer pixels. Where the BSDF seldom finds
+/// until more is known, but for one that finds light in fewer pixels (directions that are learned
+/// have 16 iterations in the dark to find more). A guide also ends where light is smooth: spread
+/// samples of the BSDF do better there than any. Where the BSDF seldom finds
 /// light, a guide begins that finds it in enough more pixels to pay, and is judged by the noise
 /// after 16 iterations. An integrator without pilots compares where the choices of all cells
 /// together seem to gain little: an iteration then follows the BSDF.
@@ -89,9 +91,8 @@ class Tuning {
   /// All cells follow the BSDF, and nothing is learned any more.
   bool idle() const { return idle_; }
   /// Lets the coming iteration follow the BSDF where the moments of all cells do not tell that the
-  /// choices surely pay for the time of guiding;
-  /// update() then decides whether it is idle(). Only a probability that is learned can be 0. Call
-  /// when the guide has had densities to judge by.
+  /// choices surely pay for the time of guiding; update() then decides whether it is idle(). Only a
+  /// probability that is learned can be 0. Call when the guide has had densities to judge by.
   void stop_if_useless();
 
   /// Adds a cell that starts as a copy of `cell`.
@@ -139,6 +140,9 @@ class Tuning {
   bool finds_light_in_at_most(double share) const {
     return without_.pairs > 0 && without_.lit <= share * without_.pairs;
   }
+  bool is_dark() const;
+  /// The noise of a dark picture tells nothing before some iterations.
+  bool noise_comes_later() const;
   /// Of all cells: the moment by the BSDF and that of the choices, the largest square, the paths.
   struct Sums {
     double plain = 0, chosen = 0, largest = 0, paths = 0;
@@ -160,6 +164,8 @@ class Tuning {
   /// The guide surely finds light in enough more pairs of pixels to pay, in a picture whose noise
   /// is not known yet.
   bool begins_in_the_dark() const;
+  /// Surely fewer pairs of pixels are lit with the guide, and that tells more than the noise.
+  bool finds_too_little_light() const;
   void compare();
 
   struct Choice {

@@ -249,6 +249,8 @@ def main():
     parser.add_argument("--guide-scenes", nargs="+", choices=guide_gains.SCENES, metavar="SCENE",
                         help=f"of {', '.join(guide_gains.SCENES)} (default: all)")
     options = parser.parse_args()
+    if options.guide_seeds < 2:
+        parser.error(f"--guide-seeds {options.guide_seeds}: at least 2, because errors are told by pairs of pictures")
     known = {**CHECKS, **LONG}
     if unknown := [c for c in options.checks if c not in known]:
         parser.error(f"no check {unknown[0]}; there are {', '.join(known)}")

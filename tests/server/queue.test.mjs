@@ -175,7 +175,8 @@ function memoryGroup(t, bytes) {
 
 test("short of memory, the kernel takes the renderer, and the service names it", async (t) => {
   const places = folders(t);
-  // The kernel passes over what it has just killed, and takes another if that is not free in time: not the service.
+  // The kernel may need a second process before the memory of the one that it has killed is free. It shall have
+  // these, not the service.
   const others = [1, 2, 3].map(() => spawn("sleep", ["600"]));
   t.after(() => others.forEach((other) => other.kill()));
   const group = memoryGroup(t, 256 << 20);

@@ -16,7 +16,10 @@ class TunedGuide {
   /// An iteration in which each pixel has this variance.
   void iterate(double variance) {
     Tuning::Accumulator one = moments(1);
-    for (int i = 0; i < pairs_; ++i) one.noise.add(variance, by_bsdf);
+    for (int i = 0; i < pairs_; ++i) {
+      const bool is_lit = i < iterations_lit * pairs_;
+      one.noise.add(is_lit ? variance : 0, is_lit ? by_bsdf : 0);
+    }
     if (bright > 0) one.noise.add(bright, bright_by_bsdf);
     update(one, 1);
   }
@@ -54,6 +57,7 @@ class TunedGuide {
   double plain_bright = 0;                // variance of one pair more, of the first of the pilots
   double bright = 0, bright_by_bsdf = 0;  // the same, of the first with the guide and of iterations
   double guided_lit = 1, plain_lit = 1;   // shares of the pairs that differ in pilots
+  double iterations_lit = 1;              // and in iterations with the guide
 
  private:
   static Tuning::Accumulator moments(double iterations) {
@@ -266,7 +270,14 @@ TEST(Tuning, WaitsInTheDarkForDirectionsThatAreLearned) {
       guide.plain_lit = plain_lit;
       guide.guided_lit = plain_lit * 0.7;
       guide.fly(0.1, 0.2);
-      EXPECT_EQ(guide.tuning.idle(), directions == fixed || plain_lit > 0.25);
+      const bool waits = directions == learned && plain_lit < 0.25;
+      EXPECT_EQ(guide.tuning.idle(), !waits);
+      if (!waits) continue;
+      guide.iterations_lit = guide.guided_lit;
+      for (int i = 0; i < 15; ++i) guide.iterate(0.1);
+      EXPECT_FALSE(guide.tuning.idle());
+      guide.iterate(0.1);
+      EXPECT_TRUE(guide.tuning.idle()) << "they have not come to find more";
     }
   }
 }
