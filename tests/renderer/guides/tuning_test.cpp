@@ -365,6 +365,19 @@ TEST(Tuning, DoesNotDropTheGuideInTheDark) {
   EXPECT_EQ(probability_after(900, 0.1), 0.5);
 }
 
+// One more path like the largest, from a direction that the guide does not sample, has a square
+// 1 / (1 - probability) times as large.
+TEST(Tuning, ReckonsWithAPathThatTheGuideDoesNotSample) {
+  for (const double largest : {0.01, 45.0}) {
+    Tuning tuning({8}, AutoNumber{}, 1);
+    Tuning::Accumulator one;
+    one.moments[0] = {1000, 500, 400, 350, 330, 320, 310, 300, largest, 100};
+    const Tuning::Accumulator* const all[] = {&one};
+    tuning.update(all, 1);
+    EXPECT_EQ(tuning.probability(0), largest < 1 ? 0.875F : 0.5F);
+  }
+}
+
 TEST(Tuning, IsSavedBetweenPilots) {
   TunedGuide guide, loaded;
   guide.fly(0.1, 0);
