@@ -57,9 +57,9 @@ constexpr double dark_share = 0.25;
 /// Iterations before the noise of a dark picture is known: on sponza 32 pilots told that the guide
 /// doubles it, 16 iterations that it takes three quarters of it away.
 constexpr std::uint64_t patient_until = 16;
-/// The probability of a cell whose moments are not known, and the least of those in the dark that
-/// are: of light that has not been found yet they know nothing.
-constexpr float careful_probability = 0.5F, least_in_the_dark = 0.25F;
+/// The probability of a cell whose moments are not known, and the least in the dark: moments know
+/// nothing of light that has not been found yet.
+constexpr float careful_probability = 0.5F;
 /// Paths of all cells from which a guide may be left alone, and where moments alone decide: an end
 /// is final, and at 16384 one of 12 pictures of bends ended a guide that pays, at 32768 none of
 /// 144. And the largest share of one path.
@@ -281,7 +281,7 @@ double Tuning::expense(std::size_t cell, std::size_t candidate) const {
 }
 
 std::uint32_t Tuning::cheapest(std::size_t cell) const {
-  const float least_probability = is_dark() ? least_in_the_dark : 0;
+  const float least_probability = is_dark() ? careful_probability : 0;
   double least = HUGE_VAL;
   std::uint32_t best = 0;
   for (std::uint32_t i = 0; i < candidates(); ++i) {

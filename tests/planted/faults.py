@@ -415,7 +415,7 @@ FAULTS = [
     Fault("one bright path decides against a guide", "renderer/guides/tuning.cpp",
           "std::sqrt(std::max({linear, own, other}));", "std::sqrt(std::max(linear, 0.0));"),
     Fault("cells in the dark follow the BSDF where they know of no other light", "renderer/guides/tuning.cpp",
-          "is_dark() ? least_in_the_dark : 0;", "is_dark() ? 0 * least_in_the_dark : 0;"),
+          "is_dark() ? careful_probability : 0;", "is_dark() ? 0 * careful_probability : 0;"),
     Fault("a guide goes on that has shown no gain", "renderer/guides/tuning.cpp",
           "gain < 0 || !(shown || known);", "gain < 0;"),
     Fault("pilots cost no samples", "renderer/integrators/path_tracer.h",

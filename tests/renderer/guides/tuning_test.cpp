@@ -360,7 +360,7 @@ double probability_after(double largest, double lit) {
 
 TEST(Tuning, DoesNotDropTheGuideInTheDark) {
   EXPECT_EQ(probability_after(1, 0.9), 0);
-  EXPECT_EQ(probability_after(1, 0.1), 0.25) << "of light not found yet nothing is known";
+  EXPECT_EQ(probability_after(1, 0.1), 0.5) << "of light not found yet nothing is known";
   EXPECT_EQ(probability_after(900, 0.9), 0);
   EXPECT_EQ(probability_after(900, 0.1), 0.5);
 }
