@@ -344,11 +344,14 @@ TEST(Tuning, HasNoPilotsWhereItsProbabilityIsGiven) {
 }
 
 /// Where the BSDF finds light in this share of the pairs of pixels, after ten paths of which the
-/// largest square was `largest`, of a moment of 1000 by the BSDF and more with the guide.
-double probability_after(double largest, double lit) {
+/// largest square was `largest`, of a moment of 1000 by the BSDF and of `step` more for each higher
+/// probability of the guide.
+double probability_after(double largest, double lit, double step = 100) {
   Tuning tuning({8}, AutoNumber{}, 1);
   Tuning::Accumulator one;
-  one.moments[0] = {1000, 1100, 1200, 1300, 1400, 1500, 1600, 1700, largest, 10};
+  std::vector<double>& moments = one.moments[0];
+  for (int i = 0; i < 8; ++i) moments.push_back(1000 + step * i);
+  moments.insert(moments.end(), {largest, 10});
   for (int i = 0; i < 1000; ++i) one.noise.add(i < 1000 * lit ? 1 : 0, 0);
   const Tuning::Accumulator* const all[] = {&one};
   for (int i = 0; i < 2; ++i) {
@@ -363,6 +366,7 @@ TEST(Tuning, DoesNotDropTheGuideInTheDark) {
   EXPECT_EQ(probability_after(1, 0.1), 0.5) << "of light not found yet nothing is known";
   EXPECT_EQ(probability_after(900, 0.9), 0);
   EXPECT_EQ(probability_after(900, 0.1), 0.5);
+  EXPECT_EQ(probability_after(1, 0.1, -100), 0.875) << "at least half: more, where that is better";
 }
 
 // One more path like the largest, from a direction that the guide does not sample, has a square
