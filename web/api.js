@@ -13,6 +13,7 @@ export class ApiError extends Error {
 }
 
 const noAnswer = "The server does not answer; trying again.";
+const retryMs = 2000;
 
 async function request(path, options = {}) {
   let response;
@@ -94,52 +95,67 @@ export async function postJob(text) {
 
 const sayLink = (text) => setText(document.getElementById("link-state"), text);
 
-/// Calls `step` now and `ms` (a number, or a function that gives one) after its end, while the page can be
-/// seen, until `signal` is aborted or `step` gives false. An unanswered request is said in the head of the
-/// page and tried again. The first call's errors are thrown to the caller.
+/// Calls `step` now, and then goes on as pollOn() does unless it gives false. The first call's errors are
+/// thrown to the caller.
 export async function poll(step, ms, signal) {
+  if (await step() !== false) pollOn(step, ms, signal);
+}
+
+/// Calls `step` `ms` (a number, or a function that gives one) from now and after each of its ends, while the
+/// page can be seen, until `signal` is aborted, `step` gives false or the reader does not show the token. An
+/// unanswered request is said in the head of the page and tried again.
+export async function pollOn(step, ms, signal) {
   signal.addEventListener("abort", () => sayLink(""));
-  let more = await step();
-  (async () => {
-    while (more !== false) {
-      await new Promise((resolve) => { setTimeout(resolve, typeof ms === "function" ? ms() : ms); });
+  for (let more = true; more !== false;) {
+    await new Promise((resolve) => { setTimeout(resolve, typeof ms === "function" ? ms() : ms); });
+    if (signal.aborted) return;
+    if (document.hidden) continue;
+    try {
+      more = await step();
+      sayLink("");
+    } catch (error) {
       if (signal.aborted) return;
-      if (document.hidden) continue;
-      try {
-        more = await step();
-        sayLink("");
-      } catch (error) {
-        if (signal.aborted) return;
-        sayLink(error.status === 0 ? noAnswer : error.message);
-        if (!(error instanceof ApiError)) throw error;
-        if (error.status === 401) return;
-      }
+      sayLink(error.status === 0 ? noAnswer : error.message);
+      if (!(error instanceof ApiError)) throw error;
+      if (error.status === 401) return;
     }
-  })();
+  }
 }
 
 /// `soon(ms)` calls `step` after that time, however often it is asked until then; who is in a greater
-/// hurry goes first. One call ends before the next begins. What `step` throws is `failed(error)`'s.
+/// hurry goes first. One call ends before the next begins. An unanswered request is said in the head of the
+/// page and tried again; what else `step` throws is `failed(error)`'s.
 export function soon(step, failed, signal) {
   let due = Infinity;
   let timer;
   let running = Promise.resolve();
   signal.addEventListener("abort", () => clearTimeout(timer));
-  return (ms) => {
+  const again = (error) => {
+    if (signal.aborted) return;
+    if (error.status !== 0) {
+      failed(error);
+      return;
+    }
+    sayLink(noAnswer);
+    ask(retryMs);
+  };
+  function ask(ms) {
     const at = performance.now() + ms;
     if (at >= due || signal.aborted) return;
     clearTimeout(timer);
     due = at;
     timer = setTimeout(() => {
       due = Infinity;
-      running = running.then(step).catch((error) => { if (!signal.aborted) failed(error); });
+      running = running.then(step).then(() => sayLink("")).catch(again);
     }, ms);
-  };
+  }
+  return ask;
 }
 
 /// Listens to events while the page can be seen: `on[name]` gets the data of the events called so,
 /// and their id. `path()` is asked anew whenever the stream is opened. `lost` is called once where
-/// events cannot be had (too many listeners): poll instead. Gives a function that ends it.
+/// events cannot be had (too many listeners, a service that shuts down or asks for the token): pollOn()
+/// instead. Gives a function that ends it.
 export function listen(path, on, lost, signal) {
   let source = null;
   const close = () => {

@@ -179,7 +179,7 @@ export async function show(main, { params, query, signal }) {
         drawStatus();
         refreshSoon(refreshMs);
       },
-    }, () => poll(refresh, refreshMs, signal), signal);
+    }, () => pollOn(refresh, refreshMs, signal), signal);
   }
 
   await refresh();

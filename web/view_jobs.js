@@ -1,5 +1,5 @@
 // The list of jobs, live, a page at a time, with a filter and a choice of jobs to compare.
-import { getHealth, getJobs, getScenes, listen, poll, queryOf, soon } from "./api.js";
+import { getHealth, getJobs, getScenes, listen, pollOn, queryOf, soon } from "./api.js";
 import { button, copyButton, h, note, problem, remember, replace, setText, warning } from "./dom.js";
 import { curlLine, firstJob } from "./format.js";
 import { jobFilter } from "./job_filter.js";
@@ -128,5 +128,5 @@ export async function show(main, { query, signal }) {
       listSoon(soonMs);
     },
     reset: () => listSoon(soonMs),
-  }, () => poll(list, pollMs, signal), signal);
+  }, () => pollOn(list, pollMs, signal), signal);
 }

@@ -82,6 +82,38 @@ test("where no events can be had, the list asks", async () => {
   await page.waitForFunction((id) => document.querySelector(`tr[data-job="${id}"] progress`).value === 0.5, running);
 });
 
+/// The page's second question for the list gets no answer.
+async function loseSecondList(t) {
+  await open("/#/new");
+  let asked = 0;
+  const list = (url) => url.pathname === "/api/jobs";
+  await page.route(list, (route) => {
+    asked += 1;
+    return asked === 2 ? route.abort() : route.continue();
+  });
+  t.after(() => page.unroute(list));
+}
+
+test("a service that refuses its events and then does not answer is asked again", async (t) => {
+  mock.events = false;
+  await loseSecondList(t);
+  await open("/");
+  await page.getByText("The server does not answer; trying again.").waitFor();
+  mock.drop(waiting);
+  await rowCount(5);
+  await page.getByText("The server does not answer; trying again.").waitFor({ state: "detached" });
+});
+
+test("a list that is not answered after an event is asked for again", async (t) => {
+  await loseSecondList(t);
+  await open("/");
+  while (mock.listeners.size === 0) await page.waitForTimeout(20);
+  mock.drop(waiting);
+  await page.getByText("The server does not answer; trying again.").waitFor();
+  await rowCount(5);
+  await page.getByText("The server does not answer; trying again.").waitFor({ state: "detached" });
+});
+
 test("a job that waits for a fault to pass says so, in the list, above it and on its own page", async () => {
   const full = "renderer could not write its files: No space left on device";
   const reason = page.locator(`tr[data-job="${waiting}"] .reason`);
