@@ -15,7 +15,7 @@ namespace {
 constexpr double first_concentration = 8;
 /// Samples that each lobe is given in advance: without a direction, which keeps lobes of few
 /// samples wide, and of its share, so that none is lost.
-constexpr double given_directions = 0.5, given_share = 0.05;
+constexpr double given_directions = 0.02, given_share = 0.05;
 /// The widest and the narrowest lobe: of a degree.
 constexpr double least_concentrated = 1e-2, most_concentrated = 5000;
 /// The largest share of one sample in all: one rare path must not carry all lobes away. It is found
