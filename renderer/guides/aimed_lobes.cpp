@@ -16,6 +16,9 @@ constexpr double first_concentration = 8;
 /// Samples that each lobe is given in advance: without a direction, which keeps lobes of few
 /// samples wide, and of its share, so that none is lost.
 constexpr double given_directions = 0.02, given_share = 0.05;
+/// The least density per steradian of each lobe where light is shared out: what none of them has a
+/// density for, all of them turn to. Much less, and it is learned slowly.
+constexpr float stray_density = 1e-6F;
 /// The widest and the narrowest lobe: of a degree.
 constexpr double least_concentrated = 1e-2, most_concentrated = 5000;
 /// The largest share of one sample in all: one rare path must not carry all lobes away. It is found
@@ -129,7 +132,7 @@ AimedLobes::Evidence AimedLobes::expect(std::span<const Seen> batch) const {
   Float8x3 from_pivot, from_place;
   const Mask8 aimed = mask_from_bits(packed_.aimed);
   const V3f pivot(0, 0, 0);
-  const Float8 least = 0x1p-126F;
+  const Float8 least = stray_density;
   for (const Seen& s : batch) {
     const Float8x3 there{s.from_pivot.x, s.from_pivot.y, s.from_pivot.z};
     const Float8x3 here{s.from_place.x, s.from_place.y, s.from_place.z};

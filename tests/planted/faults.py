@@ -380,6 +380,8 @@ FAULTS = [
           "return is_dark() || moments", "return moments"),
     Fault("a lobe that few samples tell of is narrow", "renderer/guides/aimed_lobes.cpp",
           "own / (own + given_directions);", "1.0;"),
+    Fault("light that no lobe expects is learned slowly", "renderer/guides/aimed_lobes.cpp",
+          "stray_density = 1e-6F", "stray_density = 0x1p-126F"),
     Fault("the first lobe is never sampled", "renderer/guides/aimed_lobes.cpp",
           "  std::size_t i = 0;\n  while", "  std::size_t i = 1;\n  while"),
     Fault("cells are divided where vertices are alike", "renderer/guides/cell_forest.cpp",

@@ -193,6 +193,13 @@ TEST(AimedLobes, AreNotCarriedAwayByOneSample) {
   EXPECT_GT(lobes.pdf({0, 0, 0}, {-1, 0, 0}).value, 0);
 }
 
+TEST(AimedLobes, AreWideWhereOneSampleTells) {
+  AimedLobes lobes;
+  lobes.learn(std::vector<FoundLight>{{{0, 0, 0}, {0, 0, 1}, HUGE_VALF, 1}});
+  const float angle = pi / 9;
+  EXPECT_GT(lobes.pdf({0, 0, 0}, {std::sin(angle), 0, std::cos(angle)}).value, uniform_density);
+}
+
 // All lobes are narrow and far from it: none has a density there that a float can tell.
 TEST(AimedLobes, FindNewLight) {
   AimedLobes lobes;
