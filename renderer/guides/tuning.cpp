@@ -69,11 +69,12 @@ constexpr double least_paths = 16384, least_paths_of_small = 32768, known_share_
 /// error (area), 200 to 5000 on others.
 constexpr double smooth_peak = 16, least_smooth_paths = 1024;
 
-/// Whether surely fewer pairs of pixels are lit with the guide than without.
-bool finds_less_light(const Tuning::Noise& with, const Tuning::Noise& without) {
+/// Whether surely fewer pairs of pixels are lit with the guide than without, by more than `growth`
+/// of the logarithm.
+bool finds_less_light(const Tuning::Noise& with, const Tuning::Noise& without, double growth) {
   const double share = without.lit / without.pairs;
   const double variance = share * (1 - share) * (1 / with.pairs + 1 / without.pairs);
-  return share - with.lit / with.pairs > decisive * std::sqrt(variance);
+  return share * std::exp(-growth) - with.lit / with.pairs > decisive * std::sqrt(variance);
 }
 
 /// Logarithm of how many times as many pairs are lit with the guide as without: the smallest that
@@ -228,12 +229,14 @@ bool Tuning::begins_in_the_dark() const {
          least_log_lit_ratio(with_, without_) > log_gain_that_pays() + margin;
 }
 
-/// Where the BSDF finds few bright paths, how often light is found tells more than its noise. In
-/// the dark, directions that are learned come to find it more often.
+/// Where the BSDF finds few bright paths, how often light is found tells more than its noise.
+/// Directions that are learned come to find it more often: all pilots tell, or in the dark later
+/// iterations.
 bool Tuning::finds_too_little_light() const {
   const bool unknown = without_.doubt() >= comparable * comparable;
-  const bool may_find_more = directions_ == Directions::learned && noise_comes_later();
-  return unknown && !may_find_more && finds_less_light(with_, without_);
+  if (directions_ == Directions::fixed) return unknown && finds_less_light(with_, without_, 0);
+  const bool early = iterations_ == 0 && pilots_ < most_first_pilots;
+  return unknown && !early && !noise_comes_later() && finds_less_light(with_, without_, grows_by);
 }
 
 void Tuning::judge_pilots() {
