@@ -411,7 +411,7 @@ FAULTS = [
     Fault("in the dark pilots end directions that have hardly been learned", "renderer/guides/tuning.cpp",
           "!early && !noise_comes_later() &&", "!early &&"),
     Fault("the first pilots end directions that have hardly been learned", "renderer/guides/tuning.cpp",
-          "return unknown && !early &&", "return unknown &&"),
+          "const bool early = iterations_ == 0 &&", "const bool early = iterations_ > 512 &&"),
     Fault("learned directions end where they find hardly less light", "renderer/guides/tuning.cpp",
           "finds_less_light(with_, without_, grows_by)", "finds_less_light(with_, without_, 0)"),
     Fault("a guide begins where light is smooth", "renderer/guides/tuning.cpp",
