@@ -118,6 +118,7 @@ export async function show(main, { params, query, signal }) {
   });
   view.title.append(actions.element);
   let shown = null;
+  let told = 0;  // events
   const drawFiles = fileReader(id, view, signal);
   let stop = null;  // ends the listening, while there is any
 
@@ -141,7 +142,10 @@ export async function show(main, { params, query, signal }) {
 
   async function refresh() {
     const before = shown;
+    const asked = told;
     shown = await getJob(id, signal);
+    // An event that came meanwhile may be newer, and has asked for the job again.
+    if (told !== asked) shown = { ...shown, state: before.state, progress: before.progress };
     if (!shown.job) {  // its folder is damaged
       document.title = `${id} · Lacuna`;
       main.replaceChildren(h("article", h("h1", id), problem(shown.state.error)));
@@ -169,12 +173,14 @@ export async function show(main, { params, query, signal }) {
   function follow() {
     stop ??= listen(() => `${jobPath(id)}/events`, {
       state(state) {
+        told += 1;
         shown.state = state;
         drawStatus();
         if (isTerminal(state.state)) rest();  // the server ends the stream: do not ask for it again
         refreshSoon(0);
       },
       progress(progress) {
+        told += 1;
         shown.progress = progress;
         drawStatus();
         refreshSoon(refreshMs);

@@ -137,6 +137,32 @@ test("a job says which machine it runs in, and follows when it moves", async () 
   }
 });
 
+test("an answer that was asked for before an event takes nothing of it back", async (t) => {
+  const held = [];  // answers, as the service gave them
+  const heldAnswer = async (n) => {
+    while (held.length <= n) await page.waitForTimeout(10);
+    return held[n];
+  };
+  const asked = `**/api/jobs/${running}`;
+  await open(views.running);
+  await page.route(asked, async (route) => {
+    const response = await route.fetch();
+    held.push(() => route.fulfill({ response }));
+  });
+  t.after(() => page.unroute(asked));
+  mock.update(running, { state: { phase: "loading" } });
+  const old = await heldAnswer(0);
+  mock.update(running, { state: { place: "node1" }, progress: progress(8, 0.2) });
+  await page.getByText("node1").waitFor();
+  const facts = () => page.locator("article").innerText();
+  assert.match(await facts(), /Iterations\s+8/);
+  await old();
+  const next = await heldAnswer(1);  // the page has shown the first one
+  assert.match(await facts(), /Runs in\s+node1/);
+  assert.match(await facts(), /Iterations\s+8/);
+  await next();
+});
+
 test("a job shows where its time and rays went, and what was built, loaded and left out", async () => {
   await open(views.job);
   const effort = await page.locator(".effort").innerText();
