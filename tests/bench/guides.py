@@ -19,6 +19,7 @@ GUIDES = {
 }
 OWN = "learned_skeleton"
 WIDTH, HEIGHT = 192, 108
+THREADS = 2  # each has half of the CPU seconds
 METRICS = ("mse", "relmse", "mae")
 LEAST, LEAST_OVER_BEST = 0.95, 1.3
 ORDINARY = {
@@ -39,8 +40,8 @@ def pairs(bench, scene, guide, seconds, seeds):
     """Errors of each pair of pictures, by their seeds; and the iterations of the first."""
     pictures, iterations = {}, 0
     for seed in range(1, seeds + 1):
-        job = {**scene, "resolution": [WIDTH, HEIGHT], "analysis": {"resolution": 128}, "seed": seed, "threads": 1,
-               "integrator": {"type": "path", "max_depth": 6, "guide": guide}, "budget": {"cpu_seconds": seconds}}
+        job = {**scene, "resolution": [WIDTH, HEIGHT], "analysis": {"resolution": 128}, "seed": seed, "threads": THREADS,
+               "integrator": {"type": "path", "max_depth": 6, "guide": guide}, "budget": {"cpu_seconds": seconds / THREADS}}
         pictures[seed], report = bench.render(f"guide-{seed}", job)
         iterations = iterations or report["counts"]["iterations"]
     errors = {(a, b): bench.compare(pictures[a] / "image.exr", pictures[b] / "image.exr", HEIGHT)
