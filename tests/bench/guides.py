@@ -36,17 +36,17 @@ SCENES = {name: {p.lstrip("/"): v for p, v in given.items() if p not in ("/refer
           for name, given in noel_guides.SCENES.items()} | ORDINARY
 
 
-def pairs(bench, scene, guide, seconds, seeds):
-    """Errors of each pair of pictures, by their seeds; and the iterations of the first."""
-    pictures, iterations = {}, 0
-    for seed in range(1, seeds + 1):
+def pairs(bench, scene, seconds, seeds):
+    """Of each guide the errors of each pair of pictures, by their seeds; and the iterations of the first. The guides take turns:
+    the speed of a machine drifts."""
+    pictures, iterations = {guide: {} for guide in GUIDES}, {}
+    for seed, (name, guide) in itertools.product(range(1, seeds + 1), GUIDES.items()):
         job = {**scene, "resolution": [WIDTH, HEIGHT], "analysis": {"resolution": 128}, "seed": seed, "threads": THREADS,
                "integrator": {"type": "path", "max_depth": 6, "guide": guide}, "budget": {"cpu_seconds": seconds / THREADS}}
-        pictures[seed], report = bench.render(f"guide-{seed}", job)
-        iterations = iterations or report["counts"]["iterations"]
-    errors = {(a, b): bench.compare(pictures[a] / "image.exr", pictures[b] / "image.exr", HEIGHT)
-              for a, b in itertools.combinations(pictures, 2)}
-    return errors, iterations
+        pictures[name][seed], report = bench.render(f"guide-{name}-{seed}", job)
+        iterations.setdefault(name, report["counts"]["iterations"])
+    return {name: ({(a, b): bench.compare(own[a] / "image.exr", own[b] / "image.exr", HEIGHT)
+                    for a, b in itertools.combinations(own, 2)}, iterations[name]) for name, own in pictures.items()}
 
 
 def mean(errors, metric, without=None):
@@ -72,7 +72,7 @@ def geometric_mean(values):
 def run(bench, seconds, seeds, names):
     over_bsdf, over_best = {m: [] for m in METRICS}, {m: [] for m in METRICS}
     for name in names or SCENES:
-        told = {guide: pairs(bench, SCENES[name], settings, seconds, seeds) for guide, settings in GUIDES.items()}
+        told = pairs(bench, SCENES[name], seconds, seeds)
         gains = {guide: {m: gain(told["bsdf"][0], errors, m, seeds) for m in METRICS} for guide, (errors, _) in told.items()}
         for guide, (_, iterations) in told.items():
             print(f"  {name}: {guide}, {iterations} iterations: MSE, relMSE, MAE of bsdf / of the guide: "
