@@ -144,13 +144,13 @@ export async function show(main, { params, query, signal }) {
     const before = shown;
     const asked = told;
     shown = await getJob(id, signal);
-    // An event that came meanwhile may be newer, and has asked for the job again.
-    if (told !== asked) shown = { ...shown, state: before.state, progress: before.progress };
     if (!shown.job) {  // its folder is damaged
       document.title = `${id} · Lacuna`;
       main.replaceChildren(h("article", h("h1", id), problem(shown.state.error)));
       return false;
     }
+    // An event that came meanwhile may be newer, and has asked for the job again.
+    if (told !== asked) shown = { ...shown, state: before.state, progress: before.progress };
     if (before === null) {
       view.log.element.open = shown.state.state === "failed";
       main.replaceChildren(view.element);
