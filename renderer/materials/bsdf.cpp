@@ -157,14 +157,14 @@ Rgb Bsdf::eval_any(const V3f& wo, const V3f& wi, Transport transport) const {
   const float side_i = dot(wi, ng_);
   if (lobes_.kind == Lobes::Kind::black || side == 0 || side_i == 0) return Rgb(0, 0, 0);
   if (transport == Transport::radiance || flat_) {
-    const Seen from = seen(facing_normal(wo, side), wo);
+    const Seen from = seen(eye_normal(wo, side), wo);
     const Rgb f = scatter<true, false>(from, nullptr, wo, wi).f;
     // Reciprocity where ns = ng: importance is not scaled by 1 / eta^2.
     const bool unscale = transport == Transport::importance && (side > 0) != (side_i > 0);
     return unscale ? f * (from.eta * from.eta) : f;
   }
   if (std::abs(side) < cos_rounding) return Rgb(0, 0, 0);
-  const Seen from = seen(facing_normal(wi, side_i), wi);
+  const Seen from = seen(eye_normal(wi, side_i), wi);
   return scatter<true, false>(from, nullptr, wi, wo).f * std::abs(side_i / side);
 }
 
@@ -174,7 +174,7 @@ Bsdf::Evaluated Bsdf::evaluate_any(const V3f& wo, const V3f& wi, Transport trans
   }
   const float side = dot(wo, ng_);
   if (lobes_.kind == Lobes::Kind::black || side == 0) return {};
-  const V3f n = facing_normal(wo, side);
+  const V3f n = eye_normal(wo, side);
   const bool front = side > 0;
   // Before what the lobes need is computed: half of all directions lie behind an opaque surface.
   if (!transmits() && passage({n, front, 0, 1}, wi) <= 0) return {};
@@ -205,9 +205,12 @@ Pdf<SolidAngle> Bsdf::pdf_any(const V3f& wo, const V3f& wi, Transport transport)
     const Choice c = choice(from);
     return scatter<false, true>(from, &c, wo, wi).pdf;
   };
-  const float p = density(facing_normal(wo, side));
-  if (transport == Transport::radiance || flat_ || !in_front_of_ns(wo)) return Pdf<SolidAngle>(p);
-  return Pdf<SolidAngle>(0.5F * (p + density(side < 0 ? -ng_ : ng_)));
+  if (transport == Transport::radiance || flat_) {
+    return Pdf<SolidAngle>(density(eye_normal(wo, side)));
+  }
+  const float by_ng = density(normal(false, side));
+  if (!in_front_of_ns(wo, side)) return Pdf<SolidAngle>(by_ng);
+  return Pdf<SolidAngle>(0.5F * (density(normal(true, side)) + by_ng));
 }
 
 double Bsdf::delta_probability(const Choice& c, const Interface::Split& split,
@@ -259,14 +262,14 @@ std::optional<Bsdf::Draw> Bsdf::draw(const Seen& from, const Choice& c, const V3
 
 float Bsdf::frame_probability(const V3f& w, const V3f& n) const {
   if (flat_) return 1;
-  if (in_front_of_ns(w)) return 0.5F;
+  if (in_front_of_ns(w, dot(w, ng_))) return 0.5F;
   return n == ng_ || n == -ng_ ? 1 : 0;
 }
 
 std::optional<DeltaLobe> Bsdf::delta(const V3f& wo, bool transmitted) const {
   const float side = dot(wo, ng_);
   if (lobes_.kind != Lobes::Kind::layered || side == 0) return std::nullopt;
-  const V3f n = facing_normal(wo, side);
+  const V3f n = eye_normal(wo, side);
   const Seen from = seen(n, wo);
   if (!(from.cos_o > 0)) return std::nullopt;
   const Interface::Split split = lobes_.interface.split(from.cos_o, from.eta);
@@ -305,7 +308,8 @@ std::optional<BsdfSample> Bsdf::finish_delta(const Draw& drawn, const Seen& from
     // 1 / eta^2.
     const bool with_ns = from.n == ns_ || from.n == -ns_;
     const float divisor = abs_dot(drawn.wi, from.n) * abs_dot(wo, ng_);
-    if (in_front_of_ns(drawn.wi) != with_ns || divisor < cos_rounding * cos_rounding)
+    if (seen_with_ns(drawn.wi, dot(drawn.wi, ng_)) != with_ns ||
+        divisor < cos_rounding * cos_rounding)
       return std::nullopt;
     weight *= from.cos_o * abs_dot(drawn.wi, ng_) / divisor;
   }
@@ -316,13 +320,16 @@ std::optional<BsdfSample> Bsdf::sample_any(const V3f& wo, double u_lobe, const V
                                            Transport transport) const {
   const float side = dot(wo, ng_);
   if (lobes_.kind == Lobes::Kind::black || side == 0) return std::nullopt;
-  V3f n = facing_normal(wo, side);
+  V3f n = eye_normal(wo, side);
   float frame_probability = 1;
-  if (transport == Transport::importance && !flat_ && in_front_of_ns(wo)) {
-    // Eyes in front of ns use the frame of ns, those behind it the frame of ng: sample either.
-    frame_probability = 0.5F;
-    if (u_lobe >= 0.5F) n = side < 0 ? -ng_ : ng_;
-    u_lobe = 2 * u_lobe - (u_lobe >= 0.5F ? 1.0F : 0.0F);
+  if (transport == Transport::importance && !flat_) {
+    n = normal(false, side);
+    if (in_front_of_ns(wo, side)) {
+      // Some eyes see the surface with ns, the others with ng: sample either.
+      frame_probability = 0.5F;
+      if (u_lobe < 0.5F) n = normal(true, side);
+      u_lobe = 2 * u_lobe - (u_lobe >= 0.5F ? 1.0F : 0.0F);
+    }
   }
   const Seen from = seen(n, wo);
   const Choice c = choice(from);

@@ -61,8 +61,10 @@ struct LambertLit {
 /// `wo` and `wi` are unit, in world space, and leave the surface; `wi` is sampled. The geometric
 /// normal `ng` decides on which side a direction lies, so light never leaks through a surface.
 /// Cosines use the shading normal `ns`, replaced by `ng` where the direction towards the eye lies
-/// behind `ns`, so that no black fringe appears. The direction towards the eye is `wo` for radiance
-/// and `wi` for importance, so that both transports measure the same light:
+/// behind `ns`, or, if the surface is opaque and specular, where its mirror image about `ns` lies
+/// behind the surface: there it could scatter little or nothing, and a black fringe would appear.
+/// The direction towards the eye is `wo` for radiance and `wi` for importance, so that both
+/// transports measure the same light:
 ///   eval(a, b, importance) = eval(b, a, radiance) |b.ng| / |a.ng|   (Veach 1997, sec. 5.3.2).
 /// All surfaces scatter on both sides; the two sides of an opaque surface are equal.
 class Bsdf {
@@ -181,26 +183,36 @@ class Bsdf {
     const float side = dot(wo, ng_);
     const float side_i = dot(wi, ng_);
     if (!(side > 0 ? side_i > 0 : side < 0 && side_i < 0)) return 0;
-    return std::max(0.0F, dot(wi, facing_normal(wo, side)) * inv_pi);
+    return std::max(0.0F, dot(wi, front_normal(wo, side)) * inv_pi);
   }
   std::optional<BsdfSample> sample_lambert(const V3f& wo, const V2f& u) const {
     const float side = dot(wo, ng_);
-    const V3f n = facing_normal(wo, side);
+    const V3f n = front_normal(wo, side);
     const V3f wi = sample_cosine(n, u);
     const float side_i = dot(wi, ng_);
     if (!(side > 0 ? side_i > 0 : side < 0 && side_i < 0)) return std::nullopt;
     return BsdfSample{wi, lobes_.diffuse, Pdf<SolidAngle>(dot(wi, n) * inv_pi), false, false};
   }
 
-  /// The normal for cosines if the eye is in direction `w`; side = dot(w, ng).
-  V3f facing_normal(const V3f& w, float side) const {
-    const V3f n = side < 0 ? -ns_ : ns_;
-    if (dot(w, n) > 0) return n;
-    return side < 0 ? -ng_ : ng_;
+  // Below, side = dot(w, ng).
+
+  bool in_front_of_ns(const V3f& w, float side) const { return dot(w, side < 0 ? -ns_ : ns_) > 0; }
+  /// ng or ns, on the side of `w`.
+  V3f normal(bool with_ns, float side) const {
+    const V3f& n = with_ns ? ns_ : ng_;
+    return side < 0 ? -n : n;
   }
-  bool in_front_of_ns(const V3f& w) const {
-    return dot(w, ng_) < 0 ? dot(w, ns_) < 0 : dot(w, ns_) > 0;
+  /// A normal with a positive cosine to `w`: ns if possible.
+  V3f front_normal(const V3f& w, float side) const { return normal(in_front_of_ns(w, side), side); }
+  /// Whether an eye in direction `w` sees the surface with the normal ns, else with ng.
+  bool seen_with_ns(const V3f& w, float side) const {
+    if (!in_front_of_ns(w, side)) return false;
+    // Glass is left out: light that enters it by ng may be reflected inside by ns for ever.
+    if (flat_ || lobes_.kind != Lobes::Kind::layered || transmits()) return true;
+    return dot(reflect(w, normal(true, side)), ng_) * side > 0;
   }
+  /// The normal for cosines if the eye is in direction `w`.
+  V3f eye_normal(const V3f& w, float side) const { return normal(seen_with_ns(w, side), side); }
 
   Evaluated evaluate_any(const V3f& wo, const V3f& wi, Transport transport) const;
   Rgb eval_any(const V3f& wo, const V3f& wi, Transport transport) const;

@@ -5,7 +5,7 @@ namespace lacuna {
 BsdfSeen::BsdfSeen(const Bsdf& bsdf, const V3f& wo)
     : wo_(wo),
       side_(dot(wo, bsdf.ng_) < 0 ? -bsdf.ng_ : bsdf.ng_),
-      n_(bsdf.facing_normal(wo, dot(wo, bsdf.ng_))),
+      n_(bsdf.eye_normal(wo, dot(wo, bsdf.ng_))),
       cos_o_(dot(wo, n_)),
       diffuse_(bsdf.lobes_.diffuse * inv_pi),
       layered_(bsdf.lobes_.kind == Lobes::Kind::layered),

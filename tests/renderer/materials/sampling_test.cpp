@@ -20,8 +20,12 @@ class Regions {
     const bool front = dot(v.wo, v.ng) > 0;
     const V3f ns = front ? v.ns : -v.ns;
     const bool behind = dot(v.wo, ns) <= 0;
+    if (transport == Transport::radiance) {
+      add(p, v.wo, behind || !mirror_stays(p, v.wo, ns) ? up_ : ns, front);
+      return;
+    }
     add(p, v.wo, behind ? up_ : ns, front);
-    if (transport == Transport::importance && !behind && !v.flat()) add(p, v.wo, up_, front);
+    if (!behind && !v.flat()) add(p, v.wo, up_, front);
   }
   std::size_t operator()(const V3f& w) const {
     const std::size_t side = dot(w, up_) > 0 ? 0 : 1;
@@ -34,6 +38,11 @@ class Regions {
   std::span<const statistics::SphereGrid> grids() const { return grids_; }
 
  private:
+  /// By `n`, an eye in direction `wo` sees a mirror image in front of the surface.
+  bool mirror_stays(const SurfaceParams& p, const V3f& wo, const V3f& n) const {
+    const bool opaque = p.transmission * (1 - p.metallic) == 0;
+    return !opaque || p.f90 + p.metallic == 0 || dot(reflect(wo, n), up_) > 0;
+  }
   void add(const SurfaceParams& p, const V3f& wo, const V3f& n, bool front) {
     const double width = p.f90 + p.metallic > 0 && p.alpha >= ggx_min_alpha ? p.alpha : 1.0F;
     const float eta = front ? p.ior : 1 / p.ior;

@@ -54,13 +54,39 @@ TEST(Specular, MirrorOfATiltedNormal) {
   EXPECT_LT((s->wi - reflect(wo, ns)).length(), 1e-6);
 }
 
-TEST(Specular, MirrorIntoTheSurfaceFails) {
+/// Where the mirror image by ns is behind the surface, light and eye meet in that by ng.
+TEST(Specular, MirrorIntoTheSurfaceIsFlat) {
   const V3f leaning = cases::direction(slanted, 0.766F, 1 + pi);
   const V3f eye = cases::direction(slanted, 0.766F, 1);
   ASSERT_GT(dot(eye, leaning), 0);
   ASSERT_LT(dot(reflect(eye, leaning), slanted), 0);
   const Bsdf bsdf(cases::metal({1, 1, 1}, 0), slanted, leaning);
-  EXPECT_FALSE(bsdf.sample(eye, 0.5F, {0.1F, 0.9F}, Transport::radiance));
+  const auto s = bsdf.sample(eye, 0.5F, {0.1F, 0.9F}, Transport::radiance);
+  ASSERT_TRUE(s);
+  EXPECT_LT((s->wi - reflect(eye, slanted)).length(), 1e-6);
+  EXPECT_NEAR(s->weight.x, 1, 1e-6);
+  Rng random = cases::rng(6);
+  double back = 0;
+  constexpr int n = 1000;
+  for (int i = 0; i < n; ++i) {
+    const auto light = cases::sample(bsdf, s->wi, random, Transport::importance);
+    if (light && dot(light->wi, eye) > 0.999F) back += double(light->weight.x) / n;
+  }
+  EXPECT_NEAR(back, 1, 0.15);
+}
+
+/// The furnace of a smooth mirror of few facets: no fringe, and no light from nowhere.
+TEST(Specular, MirrorsOfAnyShadingNormalReflectAllLight) {
+  Rng random = cases::rng(7);
+  for (int i = 0; i < 1000; ++i) {
+    const V3f ns = cases::uniform_direction(random);
+    const V3f eye = cases::uniform_direction(random);
+    const Bsdf bsdf(cases::metal({1, 1, 1}, 0), slanted, ns);
+    const auto s = cases::sample(bsdf, eye, random, Transport::radiance);
+    ASSERT_TRUE(s) << "ns " << ns << ", eye " << eye;
+    EXPECT_NEAR(s->weight.x, 1, 1e-6);
+    EXPECT_GT(dot(s->wi, slanted) * dot(eye, slanted), 0);
+  }
 }
 
 /// A flat triangle whose normals were interpolated, or point inwards, is still flat.
