@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "renderer/scene/close_surfaces.h"
 #include "renderer/scene/hidden_emitters.h"
 
 namespace lacuna {
@@ -32,6 +33,7 @@ SceneCounts check_scene(const std::filesystem::path& file, const ThreadPool& poo
                      data.textures.size(),  data.cameras.size(),
                      data.lights.size(),    data.warnings};
   const Scene scene(std::move(data), {.materials = true, .emission = true}, std::nullopt, pool);
+  for (std::string& w : close_surfaces(scene)) counts.warnings.push_back(std::move(w));
   for (std::string& w : hidden_emitters(scene)) counts.warnings.push_back(std::move(w));
   return counts;
 }

@@ -1,5 +1,6 @@
 #include "jobs/render/prepare.h"
 #include "renderer/gltf/gltf_load.h"
+#include "renderer/scene/close_surfaces.h"
 #include "renderer/scene/hidden_emitters.h"
 #include "renderer/scene/material_change.h"
 #include "renderer/scene/particles.h"
@@ -116,6 +117,7 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   if (needs.emission && p.scene->emitters().empty()) {
     p.warnings.emplace_back("the scene has no light: the picture is black");
   }
+  for (std::string& w : close_surfaces(*p.scene)) p.warnings.push_back(std::move(w));
   if (needs.emission) {
     for (std::string& w : hidden_emitters(*p.scene)) p.warnings.push_back(std::move(w));
   }

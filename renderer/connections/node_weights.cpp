@@ -40,17 +40,20 @@ std::vector<double> node_weights(const LightVertices& lights, int s, const V3f& 
 }
 
 Ray ray_to(const LightVertices& lights, int s, std::size_t i, const V3f& x) {
-  const auto to = [&](const V3f& y, const auto& origin) {
-    const V3f end = origin((x - y).normalized());
-    return Ray{x, end - x, 1.0F};
+  const auto to = [&](const V3f& y, const auto& end_along) {
+    const V3f edge = x - y;
+    const float distance = edge.length();
+    return Ray{x, end_along(edge / distance, distance) - x, 1.0F};
   };
   if (s > 1) {
     const Surface& y = lights.at(s, i).surface;
-    return to(y.x, [&](const V3f& w) { return offset_origin(y.x, y.ng, y.extent, w); });
+    return to(y.x, [&](const V3f& w, float distance) {
+      return offset_end(y.x, y.ng, y.offset, w, distance);
+    });
   }
   const EmitterPoint& e = lights.emitter(i);
   if (e.infinite()) return {x, e.x};
-  return to(e.x, [&](const V3f& w) { return origin_on(e, w); });
+  return to(e.x, [&](const V3f& w, float distance) { return end_on(e, w, distance); });
 }
 
 std::vector<Ray> rays_to(const LightVertices& lights, int s, const V3f& x) {

@@ -15,7 +15,7 @@ struct EmitterPoint {
   enum class Kind : std::uint8_t { area, point, spot, directional, environment };
   Kind kind = Kind::area;
   bool both_sides = false;  ///< area: emits from its back side too
-  float extent = 0;         ///< of the triangle x lies on, see TriangleShape
+  float offset = 0;         ///< area: ray_offset() at x
   V3f x{0, 0, 0};           ///< position; of an infinite emitter: unit direction towards it
   V3f ng{0, 0, 0};          ///< area: unit normal of the front; spot: unit axis
   Rgb emission{0, 0, 0};    ///< radiance; W/sr (spot: on its axis); W/m^2 of a directional light

@@ -80,7 +80,7 @@ TreeEmitter EmitterSet::tree_emitter(std::uint32_t entry) const {
   TreeEmitter t;
   t.entry = entry;
   if (source.kind == Source::Kind::mesh) {
-    for (const V3f& corner : {e.p, e.p + e.e1, e.p + e.e2}) t.bounds.box.add(corner);
+    for (const V3f& corner : e.corners) t.bounds.box.add(corner);
     t.bounds.axes = {V3d(e.ng).normalized(), 0};
     t.bounds.reach = std::numbers::pi / 2;
     t.bounds.both_sides = source.both_sides;
@@ -197,7 +197,7 @@ EmitterPoint EmitterSet::sample_punctual(const PunctualLight& light) const {
 EmitterPoint EmitterSet::hit(const Surface& s, const Rgb& radiance) const {
   EmitterPoint p;
   p.both_sides = s.emits_behind;
-  p.extent = s.extent;
+  p.offset = s.offset;
   p.x = s.x;
   p.ng = s.ng;
   p.emission = radiance;

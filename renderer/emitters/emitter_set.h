@@ -60,9 +60,9 @@ class EmitterSet {
     EmitterPoint p;
     p.entry = selected.entry;
     p.both_sides = source.both_sides;
-    p.extent = e.extent;
     p.x = e.at(b.x, b.y);
     p.ng = e.ng;
+    p.offset = ray_offset(p.x, p.ng, e.plane_error);
     p.pdf = e.pdf;
     p.emission = source.emission;
     if (source.textured || source.mask != none) [[unlikely]]

@@ -46,7 +46,7 @@ std::optional<Leaving> sample_leaving(const EmitterPoint& e, const Bounds& scene
     case EmitterPoint::Kind::area: {
       const bool back = e.both_sides && rng.next() < 0.5F;
       const V3f w = sample_cosine(back ? -e.ng : e.ng, rng.next2());
-      l.ray = {offset_origin(e.x, e.ng, e.extent, w), w};
+      l.ray = {offset_origin(e.x, e.ng, e.offset, w), w};
       cosine = abs_dot(w, e.ng);
       break;
     }

@@ -18,6 +18,8 @@ namespace {
 
 // Embree's own bound on coordinates (rtcore_ray checks) is 1.8e18.
 constexpr float largest_coordinate = 1e18F;
+// Embree's own bounds are inclusive: the least float leaves out hits at 0.
+constexpr float least_distance = std::numeric_limits<float>::min();
 
 bool acceptable(const Ray& ray) {
   // The ray's o and d at once; an ordered comparison is false for NaN as well.
@@ -31,7 +33,7 @@ RTCRay to_embree(const Ray& ray) {
   r.org_x = ray.o.x;
   r.org_y = ray.o.y;
   r.org_z = ray.o.z;
-  r.tnear = 0.0F;
+  r.tnear = least_distance;
   r.dir_x = ray.d.x;
   r.dir_y = ray.d.y;
   r.dir_z = ray.d.z;
@@ -46,7 +48,7 @@ RTCRay to_embree(const Ray& ray) {
 void put(const Ray& ray, RTCRay8& packet, std::size_t i) {
   packet.org_x[i] = ray.o.x, packet.org_y[i] = ray.o.y, packet.org_z[i] = ray.o.z;
   packet.dir_x[i] = ray.d.x, packet.dir_y[i] = ray.d.y, packet.dir_z[i] = ray.d.z;
-  packet.tfar[i] = ray.tmax;
+  packet.tnear[i] = least_distance, packet.tfar[i] = ray.tmax;
   packet.mask[i] = ~0U;
 }
 

@@ -12,19 +12,6 @@ bool uses_textures(const Material& m) {
 
 }  // namespace
 
-TriangleShape::TriangleShape(const Mesh& mesh, std::uint32_t triangle) {
-  const auto& t = mesh.triangles[triangle];
-  const V3f& a = mesh.positions[t[0]];
-  const V3f& b = mesh.positions[t[1]];
-  const V3f& c = mesh.positions[t[2]];
-  p = a;
-  e1 = b - a;
-  e2 = c - a;
-  ng = V3f((V3d(b) - V3d(a)).cross(V3d(c) - V3d(a)).normalized());
-  extent = std::max({max_abs_component(a), max_abs_component(b), max_abs_component(c),
-                     max_abs_component(e1), max_abs_component(e2), max_abs_component(c - b)});
-}
-
 TriangleRecord::TriangleRecord(const SceneData& scene, std::uint32_t mesh_index,
                                std::uint32_t triangle)
     : TriangleShape(scene.meshes[mesh_index], triangle) {

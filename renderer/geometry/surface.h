@@ -5,40 +5,10 @@
 #include <vector>
 
 #include "renderer/core/huge_pages.h"
-#include "renderer/geometry/rays.h"
-#include "renderer/geometry/scene_data.h"
+#include "renderer/geometry/ray_offset.h"
+#include "renderer/geometry/triangle_shape.h"
 
 namespace lacuna {
-
-/// The geometry of a triangle.
-struct TriangleShape {
-  V3f p{0, 0, 0};                ///< first corner
-  V3f e1{0, 0, 0}, e2{0, 0, 0};  ///< edges to the second and the third
-  V3f ng{0, 0, 0};               ///< unit, towards the front (counter-clockwise)
-  float extent =
-      0;  ///< the size that rounding errors on it are relative to: largest coordinate or edge
-
-  TriangleShape() = default;
-  TriangleShape(const Mesh& mesh, std::uint32_t triangle);
-  double area() const { return V3d(e1).cross(V3d(e2)).length() / 2; }
-  /// The point at barycentric (u, v); in double, so that the error across the plane is the last
-  /// rounding.
-  V3f at(float u, float v) const {
-    // p, e1, e2 and ng lie side by side: the fourth lane of each load is a neighbour's and is left
-    // out.
-    const __m256d base = _mm256_cvtps_pd(_mm_loadu_ps(&p.x));
-    const __m256d along_1 = _mm256_cvtps_pd(_mm_loadu_ps(&e1.x));
-    const __m256d along_2 = _mm256_cvtps_pd(_mm_loadu_ps(&e2.x));
-    const __m256d x =
-        _mm256_add_pd(_mm256_add_pd(base, _mm256_mul_pd(_mm256_set1_pd(double(u)), along_1)),
-                      _mm256_mul_pd(_mm256_set1_pd(double(v)), along_2));
-    const __m128 rounded = _mm256_cvtpd_ps(x);
-    V3f result;
-    _mm_storel_pi(reinterpret_cast<__m64*>(&result.x), rounded);
-    _mm_store_ss(&result.z, _mm_movehl_ps(rounded, rounded));
-    return result;
-  }
-};
 
 /// The data of a triangle that every hit reads, in one cache line.
 struct alignas(64) TriangleRecord : TriangleShape {
@@ -94,19 +64,12 @@ class TriangleTable {
   HugeVector<TriangleAttributes> attributes_;
 };
 
-/// The origin of a ray along `w` that does not hit its own surface: `x` offset along `ng` to the
-/// side of `w` by a few rounding errors of numbers of size `extent`, so it scales with the scene.
-inline V3f offset_origin(const V3f& x, const V3f& ng, float extent, const V3f& w) {
-  constexpr float few_roundings = 0x1p-19F;
-  return x + ng * std::copysign(extent * few_roundings, dot(w, ng));
-}
-
 /// Geometry of a hit. `ng` is unit and points to the front of the triangle.
 struct Surface {
   V3f x{0, 0, 0};
   V3f ng{0, 0, 0};
   V3f ns{0, 0, 0};   ///< unit; interpolated normals, or ng
-  float extent = 0;  ///< see TriangleShape
+  float offset = 0;  ///< ray_offset() at x
   std::array<V2f, 2> uv{V2f(0, 0), V2f(0, 0)};
   std::uint32_t mesh = 0;
   std::uint32_t triangle = 0;
@@ -115,13 +78,16 @@ struct Surface {
 
   Surface() = default;
   // Inline, because every hit constructs one in place.
-  Surface(const SceneData& scene, const TriangleTable& table, const Hit& hit)
-      : mesh(hit.mesh), triangle(hit.triangle) {
+  /// The hit of `ray`.
+  Surface(const SceneData& scene, const TriangleTable& table, const Ray& ray, const Hit& hit)
+      : Surface(scene, table, hit, table.at(hit.mesh, hit.triangle).at(ray, hit.u, hit.v)) {}
+  /// The hit at the point `at`, which was computed before.
+  Surface(const SceneData& scene, const TriangleTable& table, const Hit& hit, const V3f& at)
+      : x(at), mesh(hit.mesh), triangle(hit.triangle) {
     const TriangleRecord& r = table.at(hit.mesh, hit.triangle);
-    x = r.at(hit.u, hit.v);
     ng = r.ng;
     ns = r.ng;
-    extent = r.extent;
+    offset = ray_offset(x, ng, r.plane_error);
     material = r.material;
     emits = r.emits;
     emits_behind = r.emits_behind;

@@ -106,7 +106,7 @@ void warn_of_places(const SceneData& scene, std::uint64_t coarse, Warnings& warn
   if (count > 0) {
     warnings.once(fmt::format(
         "{} of {} meshes are too small for their distance from the middle of the scene, of which "
-        "rays start 2^-19 beside surfaces: light in and around them may be wrong ({})",
+        "floats resolve 2^-24: light in and around them may be wrong ({})",
         count, scene.meshes.size(), which));
   }
   if (coarse > 0) {

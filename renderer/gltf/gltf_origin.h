@@ -26,7 +26,7 @@ void warn_of_places(const SceneData& scene, std::uint64_t coarse, Warnings& warn
 void warn_of_far_cameras(const SceneData& scene, Warnings& warnings);
 
 /// Whether the largest coordinate of a box is more than 2^14 times its longest side. Then a float
-/// resolves positions only to 2^-10 of that side, and ray origins are offset by 1/32 of it.
+/// resolves positions only to 2^-10 of that side, and rays start up to 2^-8 of it off surfaces.
 bool is_far_for_its_size(const Bounds& box);
 
 }  // namespace lacuna::gltf

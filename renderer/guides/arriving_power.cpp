@@ -30,7 +30,7 @@ std::vector<double> arriving(const Scene& scene, const SurfaceLookup& lookup, st
       const std::optional<Sent> sent = send(rng);
       Hit hit;
       if (!sent || !scene.rays().intersect(sent->ray, hit)) continue;
-      const Surface s = scene.surface(hit);
+      const Surface s = scene.surface(sent->ray, hit);
       const std::uint32_t node = lookup.node(V3d(s.x), V3d(s.ng), -V3d(sent->ray.d));
       if (node != no_node && std::isfinite(sent->power)) {
         found[static_cast<std::size_t>(part)].push_back({node, sent->power});

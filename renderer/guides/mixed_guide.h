@@ -166,7 +166,7 @@ class MixedGuide {
     if (!s || !e.pdf.positive()) return std::nullopt;
     const Rgb emitted = e.towards(s->wi);
     if (is_black(emitted)) return std::nullopt;
-    return Leaving{{offset_origin(e.x, e.ng, e.extent, s->wi), s->wi},
+    return Leaving{{offset_origin(e.x, e.ng, e.offset, s->wi), s->wi},
                    s->pdf,
                    emitted * s->weight * (pi / e.pdf.value)};
   }
@@ -227,7 +227,7 @@ class MixedGuide {
     v.kind = Vertex::Kind::surface;
     v.surface.x = e.x;
     v.surface.ng = v.surface.ns = v.wp = e.ng;
-    v.surface.extent = e.extent;
+    v.surface.offset = e.offset;
     v.bsdf.emplace(white_, e.ng, e.ng);
   }
 

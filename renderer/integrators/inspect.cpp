@@ -50,7 +50,7 @@ class Inspect final : public Integrator {
   Rgb quantity(const IterationContext& context, const Ray& ray, const Hit& hit,
                Counters& counters) const {
     const Scene& scene = context.scene;
-    const Surface s = scene.surface(hit);
+    const Surface s = scene.surface(ray, hit);
     if (guide_) return guide_->colour(scene, s, ray.d, context.seed, counters);
     if (space_) return space_->colour(scene, s, ray.d, context.seed, counters);
     switch (show_) {

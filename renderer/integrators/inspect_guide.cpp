@@ -52,7 +52,7 @@ void GuideView::start(const IterationContext& context, const Image& image) {
   Hit hit;
   point_.bsdf.reset();
   if (!context.scene.rays().intersect(ray, hit)) return;
-  point_ = vertex(context.scene, context.scene.surface(hit), ray.d);
+  point_ = vertex(context.scene, context.scene.surface(ray, hit), ray.d);
 }
 
 Rgb GuideView::density(const Scene& scene, const Surface& s, const V3f& d,
@@ -62,8 +62,8 @@ Rgb GuideView::density(const Scene& scene, const Surface& s, const V3f& d,
   const float length = towards.length();
   if (!(length > 0)) return {0, 0, 0};
   const V3f w = towards / length;
-  const V3f from = offset_origin(point_.surface.x, point_.surface.ng, point_.surface.extent, w);
-  const V3f to = offset_origin(s.x, s.ng, s.extent, -d);
+  const V3f from = offset_origin(point_.surface.x, point_.surface.ng, point_.surface.offset, w);
+  const V3f to = offset_end(s.x, s.ng, s.offset, -d, length);
   ++counters.shadow_rays;
   if (scene.rays().occluded({from, to - from, 1.0F})) return {0, 0, 0};
   return Rgb(density_(point_, w));

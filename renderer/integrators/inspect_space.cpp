@@ -51,7 +51,7 @@ std::uint32_t SpaceView::label_of_node(std::uint32_t node) const {
 Rgb SpaceView::sight(const Scene& scene, const Surface& s, std::uint32_t node,
                      Counters& counters) const {
   const V3f to(transform_.to_world(V3d(graph_->corners[node])));
-  const V3f from = offset_origin(s.x, s.ng, s.extent, to - s.x);
+  const V3f from = offset_origin(s.x, s.ng, s.offset, to - s.x);
   ++counters.shadow_rays;
   return scene.rays().occluded({from, to - from, 1.0F}) ? Rgb(1, 0, 0) : Rgb(0, 1, 0);
 }

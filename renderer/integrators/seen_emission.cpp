@@ -20,7 +20,7 @@ Rgb emission_at(const Scene& scene, const Ray& ray, bool met, const Hit& hit) {
   if (!met) return scene.emitters().background(ray.d);
   const SceneData& data = scene.data();
   if (!data.materials[data.meshes[hit.mesh].material].emits()) return Rgb(0, 0, 0);
-  return scene.emitted(scene.surface(hit), -ray.d);
+  return scene.emitted(scene.surface(ray, hit), -ray.d);
 }
 
 Rgb emission_along(const Scene& scene, const Ray& ray) {

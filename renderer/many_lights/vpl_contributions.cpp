@@ -126,20 +126,29 @@ void VplContributions::finish(Terms& out) {
   out.lit &= ~out.rejected;
 }
 
+namespace {
+
+/// The end of a segment from `start` to light `i` of a block, which is at `x` with the normal `g`.
+V3f end_on(const DiffuseBlock& block, int i, const V3f& x, const V3f& g, const V3f& start) {
+  if (block.points) return x;
+  return offset_end(x, g, block.offset[i], g, (x - start).length());
+}
+
+}  // namespace
+
 Ray VplContributions::ray_from_side(const ShadingPoint& at, std::size_t block, int i) const {
   const Surface& surface = at.vertex->surface;
   const V3f n = at.vertex->side();
-  const V3f start = offset_origin(surface.x, surface.ng, surface.extent, n);
+  const V3f start = offset_origin(surface.x, surface.ng, surface.offset, n);
   const VplGeometry light = lights_.geometry(block, i);
   if (light.infinite) return {start, light.x};
   if (const DiffuseBlock* from = lights_.diffuse(block)) {
-    const V3f end =
-        from->points ? light.x : offset_origin(light.x, light.n, from->extent[i], light.n);
+    const V3f end = end_on(*from, i, light.x, light.n, start);
     return {start, end - start, 1.0F};
   }
   return lights_.general(block, i).with_end(guide_, [&](const auto& end) -> Ray {
     const V3f side = light.n == V3f(0, 0, 0) ? start - light.x : light.n;
-    return {start, end.origin(side) - start, 1.0F};
+    return {start, end.end(side, (light.x - start).length()) - start, 1.0F};
   });
 }
 
@@ -149,7 +158,7 @@ Ray VplContributions::ray(const ShadingPoint& at, std::size_t block, int i) cons
     const V3f x(from->x[i], from->y[i], from->z[i]);
     const V3f g(from->gx[i], from->gy[i], from->gz[i]);
     const V3f start = eye.origin(x - eye.x());
-    const V3f end = from->points ? x : offset_origin(x, g, from->extent[i], g);
+    const V3f end = end_on(*from, i, x, g, start);
     return {start, end - start, 1.0F};
   }
   return lights_.general(block, i).with_end(

@@ -63,7 +63,7 @@ std::vector<Run> near_one_another(const std::vector<Light>& lights, const LightG
 void VplSet::add(Kept& path, const EmitterPoint& e) const {
   if (!e.pdf.positive()) return;
   if (e.kind == EmitterPoint::Kind::area && !e.both_sides) {
-    path.diffuse.push_back({e.x, e.ng, e.ng, 1, e.emission * (share_ / e.pdf.value), e.extent, 0});
+    path.diffuse.push_back({e.x, e.ng, e.ng, 1, e.emission * (share_ / e.pdf.value), e.offset, 0});
   } else if (e.kind == EmitterPoint::Kind::point) {
     const V3f everywhere(0.0F);
     path.points.push_back(
@@ -78,7 +78,7 @@ void VplSet::add(Kept& path, const Vertex& v, int index) const {
     const Rgb rgb = v.throughput * lit->f * share_;
     if (is_black(rgb)) return;
     path.diffuse.push_back(
-        {v.surface.x, lit->side, lit->ns, lit->shading_cosine_ratio, rgb, v.surface.extent, index});
+        {v.surface.x, lit->side, lit->ns, lit->shading_cosine_ratio, rgb, v.surface.offset, index});
   } else {
     path.general.push_back({v, index});
   }
@@ -138,7 +138,7 @@ void VplSet::arrange_diffuse(const std::vector<Diffuse>& lights, bool points,
       put(l.ns, block.sx, block.sy, block.sz);
       put(i < count ? l.rgb : Rgb(0, 0, 0), block.r, block.g, block.b);
       block.shading_cosine_ratio[i] = l.shading_cosine_ratio;
-      block.extent[i] = l.extent;
+      block.offset[i] = l.offset;
     }
   }
 }

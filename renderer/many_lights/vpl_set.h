@@ -22,7 +22,7 @@ struct DiffuseBlock {
   Lanes sx, sy, sz;            ///< unit shading normal on that side
   Lanes shading_cosine_ratio;  ///< LambertLit::shading_cosine_ratio
   Lanes r, g, b;
-  Lanes extent;  ///< of the triangle, see TriangleShape
+  Lanes offset;  ///< ray_offset()
 };
 
 /// Position and normal of a virtual light.
@@ -131,7 +131,7 @@ class VplSet {
     V3f x, ng, ns;
     float shading_cosine_ratio;
     Rgb rgb;
-    float extent;
+    float offset;
     int index;
   };
   struct Kept {

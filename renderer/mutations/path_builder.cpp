@@ -61,7 +61,7 @@ bool PathBuilder::arrive(const Ray& ray, std::vector<PathNode>& end) {
   v.wp = -ray.d;
   if (met) {
     v.kind = Vertex::Kind::surface;
-    v.surface = scene.surface(hit);
+    v.surface = scene.surface(ray, hit);
     scene.make_bsdf(v.surface, v.bsdf);
   } else {
     v.kind = Vertex::Kind::background;

@@ -12,6 +12,7 @@ namespace lacuna {
 struct Connection {
   V3f w{0, 0, 0};         ///< unit, from the eye's endpoint to the light's
   float distance2 = 1;    ///< squared length; 1 if the light's endpoint is at infinity
+  float distance = 1;     ///< its root
   bool infinite = false;  ///< the light's endpoint is at infinity
   /// scatter() of both endpoints over distance2: without MIS weight and visibility.
   Rgb contribution{0, 0, 0};
@@ -38,7 +39,8 @@ Connection edge_between(const Eye& eye, const Light& light) {
   } else {
     const V3f edge = light.x() - eye.x();
     c.distance2 = edge.length2();
-    if (c.distance2 > 0) c.w = edge / std::sqrt(c.distance2);
+    c.distance = std::sqrt(c.distance2);
+    if (c.distance2 > 0) c.w = edge / c.distance;
   }
   return c;
 }
@@ -66,7 +68,7 @@ template <class Eye, class Light>
 Ray shadow_ray(const Eye& eye, const Light& light, const Connection& c) {
   const V3f from = eye.origin(c.w);
   if (c.infinite) return {from, c.w};
-  return {from, light.origin(-c.w) - from, 1.0F};
+  return {from, light.end(-c.w, c.distance) - from, 1.0F};
 }
 
 /// Density with which the eye's walk would continue along the connection.

@@ -16,9 +16,13 @@ struct VertexPlace {
 
   bool infinite() const { return v.kind == Vertex::Kind::background; }
   const V3f& x() const { return v.surface.x; }
-  /// The origin of a ray along `w`. The eye and points in space have no extent: it is not moved.
+  /// The origin of a ray along `w`. The eye and points in space have no surface: it is not moved.
   V3f origin(const V3f& w) const {
-    return offset_origin(v.surface.x, v.surface.ng, v.surface.extent, w);
+    return offset_origin(v.surface.x, v.surface.ng, v.surface.offset, w);
+  }
+  /// The end of a segment of that length that arrives along -`w`.
+  V3f end(const V3f& w, float distance) const {
+    return offset_end(v.surface.x, v.surface.ng, v.surface.offset, w, distance);
   }
 };
 
@@ -62,6 +66,8 @@ struct SurfaceEndpoint {
   bool prev_connectible() const { return v.prev_connectible; }
   /// The origin of a ray along `w`, offset from the surface.
   V3f origin(const V3f& w) const { return VertexPlace{v}.origin(w); }
+  /// The end of a segment of that length that arrives along -`w`, offset from the surface.
+  V3f end(const V3f& w, float distance) const { return VertexPlace{v}.end(w, distance); }
 };
 
 /// Density of unit `w` with which light paths leave the point `e`.
@@ -74,9 +80,10 @@ Pdf<SolidAngle> leaving_pdf(const Guide& guide, const EmitterPoint& e, const V3f
   }
 }
 
-/// The origin of a ray along `w` from the finite point `e` on an emitter.
-inline V3f origin_on(const EmitterPoint& e, const V3f& w) {
-  return e.kind == EmitterPoint::Kind::area ? offset_origin(e.x, e.ng, e.extent, w) : e.x;
+/// The end of a segment of length `distance` that arrives along -`w` at the finite point `e` on an
+/// emitter.
+inline V3f end_on(const EmitterPoint& e, const V3f& w, float distance) {
+  return e.kind == EmitterPoint::Kind::area ? offset_end(e.x, e.ng, e.offset, w, distance) : e.x;
 }
 
 /// A point on an emitter: vertex 0 of a light path.
@@ -107,7 +114,7 @@ struct EmitterEndpoint {
   static double mis_partial() { return 0; }
   /// An eye path can hit the emitter: c_0 of mis.h.
   bool prev_connectible() const { return !e.delta(); }
-  V3f origin(const V3f& w) const { return origin_on(e, w); }
+  V3f end(const V3f& w, float distance) const { return end_on(e, w, distance); }
 };
 
 /// Makes `v` the vertex 0 of a light path that starts at `e`.
@@ -115,7 +122,7 @@ inline void place_on(const EmitterPoint& e, Vertex& v) {
   v.kind = e.infinite() ? Vertex::Kind::background : Vertex::Kind::emitter;
   v.surface.x = e.x;
   v.surface.ng = e.ng;
-  v.surface.extent = e.kind == EmitterPoint::Kind::area ? e.extent : 0.0F;
+  v.surface.offset = e.kind == EmitterPoint::Kind::area ? e.offset : 0.0F;
 }
 
 /// The eye, a point.

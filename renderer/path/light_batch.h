@@ -84,7 +84,7 @@ class LightBatch {
       Vertex& v = vertex_to_set(i, p.index);
       v.kind = Vertex::Kind::surface;
       v.delta = false;
-      v.surface = setting_.scene.surface(hits[k]);
+      v.surface = setting_.scene.surface(hits[k], p.x);
       v.wp = p.wp;
       v.throughput = p.throughput;
       v.p_fwd = Pdf<Area>(p.p_fwd);

@@ -162,7 +162,7 @@ class PathReuse {
       edges_.push_back(e);
       // From vertex 2: rays of one origin to neighbouring points.
       const V3f origin = to.origin(-c.w);
-      rays_.push_back({origin, from.origin(c.w) - origin, 1.0F});
+      rays_.push_back({origin, from.end(c.w, c.distance) - origin, 1.0F});
     }
   }
 

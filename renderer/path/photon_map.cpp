@@ -35,7 +35,7 @@ double footprint(const Scene& scene, const Camera& camera) {
     const Ray ray = camera.ray(at(i % steps, camera.width()), at(i / steps, camera.height()));
     Hit hit{};
     if (!scene.rays().intersect(ray, hit)) continue;
-    sides.push_back((V3d(scene.surface(hit).x) - V3d(ray.o)).length() * angle(ray.d));
+    sides.push_back((V3d(scene.surface(ray, hit).x) - V3d(ray.o)).length() * angle(ray.d));
   }
   if (sides.empty()) return scene.bounds().radius() * angle(camera.forward());
   const auto middle = sides.begin() + static_cast<std::ptrdiff_t>(sides.size() / 2);

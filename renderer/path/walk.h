@@ -171,7 +171,7 @@ class Walk {
     if (v.kind == Vertex::Kind::background) {
       v.surface.x = w.ray.d;
     } else {
-      v.surface = scene_.surface(w.hit);
+      v.surface = scene_.surface(w.ray, w.hit);
       if (scatters(depth)) {
         scene_.prefetch_bsdf(v.surface);
         if constexpr (requires { guide_.prefetch(v); }) guide_.prefetch(v);
@@ -324,7 +324,7 @@ class Walk {
     // Deltas cancel in all ratios of densities, if both walks leave them out.
     w.p = next->delta ? Pdf<SolidAngle>(1.0F) : next->pdf;
     if (tracked_) w.mis_partial = mis_partial(v, depth, next->wi);
-    w.ray = {offset_origin(v.surface.x, v.surface.ng, v.surface.extent, next->wi), next->wi};
+    w.ray = {offset_origin(v.surface.x, v.surface.ng, v.surface.offset, next->wi), next->wi};
     return true;
   }
 

@@ -5,8 +5,9 @@
 namespace lacuna {
 namespace {
 
-/// Of a triangle's extent, twice what offset_origin() moves by.
-constexpr float beside = 0x1p-18F;
+/// Of the longest edge of a triangle: a surface that is no further away is meant to be in its
+/// plane.
+constexpr float in_its_plane = 0x1p-18F;
 
 struct Place {
   std::uint32_t mesh, triangle;
@@ -32,13 +33,13 @@ std::vector<Place> some_emitters(const SceneData& data, std::size_t most) {
 
 /// The mesh that a ray meets in the place of a point of the emitter, on the side of `n`.
 std::optional<std::uint32_t> hider(const Scene& scene, const Place& place, const V3f& x,
-                                   const V3f& n, float extent) {
-  constexpr float away = 0x1p-10F;  // of the extent: nothing else is likely to be in between
-  const float distance = away * extent;
+                                   const V3f& n, float side, float beside) {
+  constexpr float away = 0x1p-10F;  // of the side: nothing else is likely to be in between
+  const float distance = std::max(away * side, 2 * beside);
   Hit hit;
   if (!scene.rays().intersect({x + n * distance, -n, distance * 2}, hit)) return std::nullopt;
   const bool own = hit.mesh == place.mesh && hit.triangle == place.triangle;
-  if (own || std::abs(hit.t - distance) > beside * extent) return std::nullopt;
+  if (own || std::abs(hit.t - distance) > beside) return std::nullopt;
   return hit.mesh;
 }
 
@@ -55,15 +56,19 @@ std::vector<std::string> hidden_emitters(const Scene& scene) {
   for (const Place& place : places) {
     const Mesh& mesh = data.meshes[place.mesh];
     const TriangleShape shape(mesh, place.triangle);
-    // Of a triangle that small the neighbours lie as close.
-    const float side = std::sqrt(std::max(shape.e1.length2(), shape.e2.length2()));
-    if (side < 16 * beside * shape.extent) continue;
+    // Of a triangle that is so small for its coordinates the neighbours lie as close.
+    const float coordinate =
+        std::max({max_abs_component(shape.corners[0]), max_abs_component(shape.corners[1]),
+                  max_abs_component(shape.corners[2])});
+    const auto side = static_cast<float>(std::max(shape.edge(1).length(), shape.edge(2).length()));
+    if (side < 0x1p-14F * coordinate) continue;
     std::optional<std::uint32_t> by;
     for (const auto& [u, v] : points) {
       const V3f x = shape.at(u, v);
-      if (!by) by = hider(scene, place, x, shape.ng, shape.extent);
+      const float beside = side * in_its_plane + 2 * ray_offset(x, shape.ng, shape.plane_error);
+      if (!by) by = hider(scene, place, x, shape.ng, side, beside);
       if (!by && data.materials[mesh.material].double_sided) {
-        by = hider(scene, place, x, -shape.ng, shape.extent);
+        by = hider(scene, place, x, -shape.ng, side, beside);
       }
     }
     if (!by) continue;
@@ -72,7 +77,8 @@ std::vector<std::string> hidden_emitters(const Scene& scene) {
   if (hidden == 0) return {};
   return {fmt::format(
       "{} of {} emitting triangles that were looked at are hidden by another surface in their "
-      "plane, the first of mesh {}: methods disagree on their light; move one of them",
+      "plane, the first of mesh {}: their light is lost, or methods disagree on it; move one of "
+      "them",
       hidden, places.size(), which)};
 }
 

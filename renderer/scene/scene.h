@@ -38,7 +38,13 @@ class Scene {
 
   const SceneData& data() const { return *data_; }
   /// The surface at a hit of rays().
-  Surface surface(const Hit& hit) const { return {*data_, triangles_, hit}; }
+  Surface surface(const Ray& ray, const Hit& hit) const { return {*data_, triangles_, ray, hit}; }
+  /// The same where its point `x` is known already.
+  Surface surface(const Hit& hit, const V3f& x) const { return {*data_, triangles_, hit, x}; }
+  /// The geometry of a triangle.
+  const TriangleShape& triangle(std::uint32_t mesh, std::uint32_t triangle) const {
+    return triangles_.at(mesh, triangle);
+  }
   /// Prefetches what surface() reads.
   void prefetch(const Hit& hit) const { triangles_.prefetch(hit.mesh, hit.triangle); }
   const RayCaster& rays() const { return rays_; }

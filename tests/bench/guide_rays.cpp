@@ -60,7 +60,7 @@ class GuidedPoint {
     Hit hit;
     if (!p.scene->rays().intersect(ray, hit)) throw std::runtime_error("the point is not there");
     vertex_.kind = Vertex::Kind::surface;
-    vertex_.surface = p.scene->surface(hit);
+    vertex_.surface = p.scene->surface(ray, hit);
     vertex_.wp = -ray.d;
     p.scene->make_bsdf(vertex_.surface, vertex_.bsdf);
     if (directions_) vertex_.guiding_cell = directions_->cell(vertex_.surface, vertex_.wp);
@@ -86,12 +86,13 @@ class GuidedPoint {
   OrderedJson ray(const V3f& w) const {
     const Surface& s = vertex_.surface;
     Hit hit;
-    const bool hits = p_.scene->rays().intersect({offset_origin(s.x, s.ng, s.extent, w), w}, hit);
+    const Ray ray{offset_origin(s.x, s.ng, s.offset, w), w};
+    const bool hits = p_.scene->rays().intersect(ray, hit);
     const double length = hits ? double(hit.t) / transform_.voxel_size : HUGE_VAL;  // voxels
     OrderedJson told{
         {"entered", region_json(first_entered(w, length))}, {"hit", nullptr}, {"at", nullptr}};
     if (!hits) return told;
-    const Surface there = p_.scene->surface(hit);
+    const Surface there = p_.scene->surface(ray, hit);
     const V3d at = V3d(there.x) + p_.scene->data().origin;
     told["hit"] = region_json(lookup_->node(V3d(there.x), V3d(there.ng), -V3d(w)));
     told["at"] = {at.x, at.y, at.z};

@@ -138,6 +138,18 @@ Bytes room(const Room& r) {
   return b.glb();
 }
 
+Bytes block_on_floor(double half_side) {
+  Builder b(1, 0);
+  const std::size_t white = b.add_material(diffuse({0.7, 0.7, 0.7}));
+  const std::size_t lamp = b.add_material(shining(diffuse({0, 0, 0}), {1, 1, 1}, 4));
+  const auto side = static_cast<float>(2 * half_side);
+  b.place(b.add_quad({-side / 2, 0, side / 2}, {side, 0, 0}, {0, 0, -side}, int(white)));
+  b.add_box({-0.05F, 0, -0.05F}, {0.05F, 0.1F, 0.05F}, true, white);
+  b.place(b.add_quad({0.25F, 0.5F, -0.1F}, {0.2F, 0, 0}, {0, 0, 0.2F}, int(lamp)));
+  b.add_eye({0, 0.125F, 0.4375F}, 0.75);
+  return b.glb();
+}
+
 Bytes furnace(const Furnace& f) {
   Builder b(1, f.offset);
   const std::array<double, 3> albedo{f.albedo, f.albedo, f.albedo};

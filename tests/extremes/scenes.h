@@ -34,6 +34,10 @@ struct Furnace {
 };
 Bytes furnace(const Furnace& furnace);
 
+/// A block of a tenth of a unit on a floor of side 2 `half_side`, under a panel of light; the eye
+/// sees the block's shadow.
+Bytes block_on_floor(double half_side);
+
 /// A diffuse material that reflects no light in any other way.
 Json diffuse(const std::array<double, 3>& albedo);
 /// A metal of albedo 1, or clear glass. Roughness is glTF's: the square root of GGX's alpha.

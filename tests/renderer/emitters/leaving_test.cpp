@@ -25,7 +25,7 @@ EmitterPoint emitter(Kind kind, const V3f& ng = V3f(1, -2, 0.5F).normalized()) {
   EmitterPoint e;
   e.kind = kind;
   e.x = V3f(0.25F, 0.5F, 0.75F);
-  e.extent = 1;
+  e.offset = 0x1p-19F;
   e.ng = ng;
   e.emission = Rgb(1, 2, 3);
   e.pdf = Pdf<Area>(0.25F);

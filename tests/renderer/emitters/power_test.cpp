@@ -179,18 +179,20 @@ TEST(Hit, FindsThePointThatIsDrawn) {
       const EmitterPoint e = scene.emitters().sample(scene.emitters().choose(rng));
       if (e.delta()) continue;
       // From a little way in front of it, straight back.
-      const float away = 1e-3F * e.extent;
+      const float size = static_cast<float>(scene.bounds().radius());
+      const float away = 1e-3F * size;
       Hit hit;
-      if (!scene.rays().intersect({e.x + e.ng * away, -e.ng, 2 * away}, hit)) continue;
-      const Surface s = scene.surface(hit);
-      if ((s.x - e.x).length() > 1e-5F * e.extent || dot(s.ng, e.ng) < 0.9999F) continue;
+      const Ray ray{e.x + e.ng * away, -e.ng, 2 * away};
+      if (!scene.rays().intersect(ray, hit)) continue;
+      const Surface s = scene.surface(ray, hit);
+      if ((s.x - e.x).length() > 1e-5F * size || dot(s.ng, e.ng) < 0.9999F) continue;
       const EmitterPoint h = scene.emitters().hit(s, scene.emitted(s, e.ng));
       ++found;
       EXPECT_EQ(h.kind, e.kind);
       EXPECT_EQ(h.pdf.value, e.pdf.value);
       EXPECT_EQ(h.pdf.value, scene.emitters().pdf(s.mesh, s.triangle).value);
       EXPECT_EQ(h.both_sides, e.both_sides);
-      EXPECT_EQ(h.extent, e.extent);
+      EXPECT_NEAR(h.offset, e.offset, 1e-6F * size);
       EXPECT_EQ(h.ng, e.ng);
       // The place differs by rounding, and so does a texture's value.
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(h.emission[c], e.emission[c], 0.01);

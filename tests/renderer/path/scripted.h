@@ -141,7 +141,7 @@ class Remake {
       light_guide_.steps.push_back({step(j, 1), path_.node(j).delta});
     }
     const V3f w = step(0, 1);
-    V3f from = e.kind == EmitterPoint::Kind::area ? offset_origin(e.x, e.ng, e.extent, w) : e.x;
+    V3f from = e.kind == EmitterPoint::Kind::area ? offset_origin(e.x, e.ng, e.offset, w) : e.x;
     if (e.infinite()) from = path_.x(1) - w * static_cast<float>(scene_.bounds().radius() * 2);
     light_[0].kind = e.infinite() ? Vertex::Kind::background : Vertex::Kind::emitter;
     light_[0].surface.x = e.x;
@@ -177,7 +177,8 @@ class Remake {
   static bool same(const Vertex& v, const WholePath::Node& node) {
     return v.kind == Vertex::Kind::surface && v.surface.mesh == node.surface.mesh &&
            v.surface.triangle == node.surface.triangle &&
-           (v.surface.x - node.surface.x).length() < 1e-4F * node.surface.extent;
+           (v.surface.x - node.surface.x).length() <
+               1e-4F * static_cast<float>(scene_.bounds().radius());
   }
 
   const Scene& scene_;

@@ -29,15 +29,16 @@ std::vector<HitPoint> points_around(const Scene& scene, const V3f& from, int ray
   for (int i = 0; i < rays; ++i) {
     const V3f d = V3f(rng.next() - 0.5F, rng.next() - 0.5F, rng.next() - 0.5F).normalized();
     Hit hit;
-    if (!scene.rays().intersect({from, d}, hit)) continue;
-    const Surface s = scene.surface(hit);
+    const Ray ray{from, d};
+    if (!scene.rays().intersect(ray, hit)) continue;
+    const Surface s = scene.surface(ray, hit);
     points.push_back({s.x, dot(s.ng, d) > 0 ? -s.ng : s.ng});
   }
   return points;
 }
 
 bool sees(const Scene& scene, const V3f& place, const HitPoint& p) {
-  const V3f start = offset_origin(p.x, p.n, p.x.length(), p.n);
+  const V3f start = offset_origin(p.x, p.n, 0x1p-19F * p.x.length(), p.n);
   return dot(place - p.x, p.n) > 0 && !scene.rays().occluded({start, place - start, 1.0F});
 }
 
