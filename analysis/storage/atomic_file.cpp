@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <stdexcept>
+#include <system_error>
 
 #include "analysis/storage/file_handle.h"
 
@@ -32,6 +33,32 @@ class Temporary {
  private:
   std::filesystem::path file_;
   bool renamed_ = false;
+};
+
+/// The old content of a file that is about to be replaced, under a second name.
+class OldContent {
+ public:
+  explicit OldContent(const std::filesystem::path& file)
+      : file_(file),
+        kept_(temporary_name(file)),
+        error_(::link(file.c_str(), kept_.file().c_str()) == 0 ? 0 : errno) {}
+
+  /// Puts it back in its place, or removes the file that was not there before. False: it cannot.
+  bool restore() {
+    if (error_ == ENOENT) return ::unlink(file_.c_str()) == 0;
+    if (error_ != 0) return false;  // a file system without links
+    try {
+      kept_.rename_to(file_);
+      return true;
+    } catch (const std::system_error&) {
+      return false;
+    }
+  }
+
+ private:
+  const std::filesystem::path file_;
+  Temporary kept_;
+  int error_;
 };
 
 /// False, with errno, if not all of it could be written.
@@ -64,8 +91,14 @@ void write_file_atomically(const std::filesystem::path& file, std::string_view c
   if (!write_all(handle.get(), content)) throw_file_error(errno, "write", file);
   if (sync && ::fsync(handle.get()) != 0) throw_file_error(errno, "sync", file);
   if (!handle.close()) throw_file_error(errno, "write", file);
+  if (!sync) return temporary.rename_to(file);
+  OldContent old(file);
   temporary.rename_to(file);
-  if (sync) sync_folder(folder_of(file));
+  try {
+    sync_folder(folder_of(file));
+  } catch (const std::system_error&) {
+    if (old.restore()) throw;
+  }
 }
 
 std::string read_file(const std::filesystem::path& file, std::size_t max_bytes) {

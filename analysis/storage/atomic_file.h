@@ -8,8 +8,10 @@ namespace lacuna {
 
 /// Replaces `file` as a whole: a temporary beside it, write, fsync, rename, fsync of the folder. A
 /// reader sees the old content or the new, also after a power cut. Throws std::system_error that
-/// names the file (disk full, no permission); the old content is then still there and no temporary
-/// is left. `sync = false` leaves out both fsyncs, for what may be lost (progress).
+/// names the file (disk full, no permission); the old content is then there again, even if only the
+/// last step failed, and no temporary is left. Where it cannot be put back, the new content stands
+/// and nothing is thrown: what is told and what is seen agree. `sync = false` leaves out both
+/// fsyncs, for what may be lost (progress).
 void write_file_atomically(const std::filesystem::path& file, std::string_view content,
                            bool sync = true);
 

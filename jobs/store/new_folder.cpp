@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <stdexcept>
+#include <system_error>
 
 #include "analysis/storage/file_handle.h"
 
@@ -47,24 +48,45 @@ void create_folder_whole(const std::filesystem::path& target,
     std::filesystem::remove_all(draft, ignored);
     throw;
   }
-  sync_folder(target.parent_path());
+  try {
+    sync_folder(target.parent_path());
+  } catch (const std::system_error&) {
+    if (take_folder_back(target)) throw;
+  }
+}
+
+bool take_folder_back(const std::filesystem::path& folder) {
+  const std::filesystem::path hidden = temporary_name(folder);
+  if (::rename(folder.c_str(), hidden.c_str()) != 0) return false;
+  std::error_code ignored;  // it only takes space
+  std::filesystem::remove_all(hidden, ignored);
+  return true;
 }
 
 std::vector<std::filesystem::path> take_folders_away(
     const std::vector<std::filesystem::path>& folders) {
   std::vector<std::filesystem::path> hidden;
+  const auto put_back = [&] {
+    bool all = true;
+    for (std::size_t i = 0; i < hidden.size(); ++i) {
+      all = ::rename(hidden[i].c_str(), folders[i].c_str()) == 0 && all;
+    }
+    return all;
+  };
   for (const auto& folder : folders) {
     const std::filesystem::path name = temporary_name(folder);
     if (::rename(folder.c_str(), name.c_str()) != 0) {
       const int error = errno;
-      for (std::size_t i = 0; i < hidden.size(); ++i) {
-        ::rename(hidden[i].c_str(), folders[i].c_str());
-      }
+      put_back();
       throw_file_error(error, "remove", folder);
     }
     hidden.push_back(name);
   }
-  if (!folders.empty()) sync_folder(folders.front().parent_path());
+  try {
+    if (!folders.empty()) sync_folder(folders.front().parent_path());
+  } catch (const std::system_error&) {
+    if (put_back()) throw;
+  }
   return hidden;
 }
 

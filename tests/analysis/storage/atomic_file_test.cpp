@@ -10,6 +10,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/file_handle.h"
 #include "tests/child_process.h"
+#include "tests/failing_files.h"
 #include "tests/temporary_folder.h"
 
 namespace lacuna {
@@ -36,6 +37,19 @@ TEST(AtomicFile, ReplacesALinkNotWhatItPointsTo) {
   write_file_atomically(tmp / "f", "new");
   EXPECT_EQ(content_of(tmp / "target"), "old");
   EXPECT_FALSE(std::filesystem::is_symlink(tmp / "f"));
+}
+
+TEST(AtomicFile, WhatCannotBeSyncedAtTheLastHasNotHappened) {
+  const TemporaryFolder tmp;
+  put_file(tmp / "old", "before");
+  const FailingFiles failing(FileCall::fsync, tmp.path().filename().string());
+  for (const char* name : {"old", "new"}) {
+    EXPECT_THROW(write_file_atomically(tmp / name, "after"), std::system_error) << name;
+  }
+  EXPECT_EQ(content_of(tmp / "old"), "before");
+  EXPECT_EQ(names_in(tmp.path()), Names{"old"});
+  write_file_atomically(tmp / "old", "after", false);
+  EXPECT_EQ(content_of(tmp / "old"), "after");
 }
 
 TEST(AtomicFile, NamesTheFileThatCannotBeWritten) {

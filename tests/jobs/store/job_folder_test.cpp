@@ -11,6 +11,7 @@
 #include "jobs/store/job_folder.h"
 #include "jobs/store/new_folder.h"
 #include "tests/child_process.h"
+#include "tests/failing_files.h"
 #include "tests/temporary_folder.h"
 
 namespace lacuna {
@@ -43,6 +44,18 @@ TEST(JobFolder, IsCreatedWithItsJobAndState) {
 TEST(JobFolder, ASlashAtTheEndChangesNothing) {
   const TemporaryFolder tmp;
   EXPECT_EQ(JobFolder::create(tmp / "one/", some_job()).id(), "one");
+}
+
+TEST(JobFolder, WhatCannotBeSyncedAtTheLastHasNotHappened) {
+  const TemporaryFolder tmp;
+  const std::filesystem::path one = JobFolder::create(tmp / "one", some_job()).dir();
+  {
+    const FailingFiles failing(FileCall::fsync, tmp.path().filename().string());
+    EXPECT_THROW(JobFolder::create(tmp / "two", some_job()), std::system_error);
+    EXPECT_THROW(take_folders_away({one}), std::system_error);
+  }
+  EXPECT_EQ(names_in(tmp.path()), Names{"one"});
+  EXPECT_EQ(JobFolder(one).read_job(), some_job());
 }
 
 TEST(JobFolder, NeverReplacesWhatIsThere) {
