@@ -143,7 +143,7 @@ void add_render(CLI::App& app, int& code) {
   CLI::App* command = app.add_subcommand("render", "Render a job file, or continue a job's folder");
   command->add_option("JOB", o->job, "a job file (JSON), or a job's folder")
       ->required()
-      ->check(CLI::ExistingPath);
+      ->check(existing_path);
   command->add_option("-o,--out", o->out, "folder for the results (default: NAME.job)");
   command->add_option(
       "--shard", o->shard,

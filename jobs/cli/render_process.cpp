@@ -33,9 +33,10 @@ RenderProcess::RenderProcess(const JobFolder& folder, int threads) {
 
 void RenderProcess::terminate() const { ::kill(pid_, SIGTERM); }
 
-bool RenderProcess::ended() const {
+std::optional<int> RenderProcess::ended() const {
   int status = 0;
-  return ::waitpid(pid_, &status, WNOHANG) == pid_;
+  if (::waitpid(pid_, &status, WNOHANG) != pid_) return std::nullopt;
+  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
 }  // namespace lacuna

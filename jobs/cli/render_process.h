@@ -2,6 +2,8 @@
 
 #include <sys/types.h>
 
+#include <optional>
+
 #include "jobs/store/job_folder.h"
 
 namespace lacuna {
@@ -14,8 +16,9 @@ class RenderProcess {
 
   /// Sends SIGTERM.
   void terminate() const;
-  /// Whether it has ended; the job's state says how. Must not be called again once true.
-  bool ended() const;
+  /// Its exit code, 128 and more for a signal, once it has ended; the job's state says more. Must
+  /// not be called again after that.
+  std::optional<int> ended() const;
 
  private:
   pid_t pid_ = -1;

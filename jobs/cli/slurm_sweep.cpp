@@ -224,7 +224,7 @@ bool SlurmSweep::list(Seen& seen) {
   try {
     jobs = programs_.list();
     trouble_.clear();
-  } catch (const SlurmError& error) {
+  } catch (const std::exception& error) {  // squeue says no, or could not be called
     if (std::exchange(trouble_, error.what()) != trouble_) terminal_.warning(trouble_);
     return false;
   }

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <chrono>
+#include <csignal>
 #include <deque>
 #include <map>
 #include <set>
@@ -12,6 +13,7 @@
 #include <utility>
 
 #include "analysis/storage/atomic_file.h"
+#include "analysis/storage/passing_error.h"
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/render_process.h"
@@ -29,6 +31,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::seconds longest_pause{30};
 
 struct SweepOptions {
   fs::path what, out;
@@ -79,7 +83,14 @@ void print_runs(const SweepFolder& sweep) {
   }
 }
 
-/// Does the runs that are left, so many at a time.
+/// A renderer with this exit code met what may pass: it was interrupted by nobody, never began (as
+/// shells and the dynamic loader say it), or a file in its memory is cut off.
+bool met_passing_fault(int code) {
+  return code == exit_interrupted || code == 126 || code == 127 || code == 128 + SIGBUS;
+}
+
+/// Does the runs that are left, so many at a time. After a fault that may pass the run waits and
+/// with it the others: pauses that double, and no longer than until one would be the longest.
 class Runner {
  public:
   Runner(const SweepFolder& sweep, const SweepOptions& o)
@@ -88,25 +99,20 @@ class Runner {
   int run(const std::vector<std::size_t>& indices) {
     left_.assign(indices.begin(), indices.end());
     all_ = left_.size();
-    const auto& interrupted = interrupt_requested();
     bool stopping = false;
-    while (!running_.empty() || (!left_.empty() && !interrupted())) {
-      while (!interrupted() && !left_.empty() &&
-             running_.size() < static_cast<std::size_t>(options_.jobs)) {
-        start();
-      }
-      if (interrupted() && !std::exchange(stopping, true)) {
+    while (!running_.empty() || (!left_.empty() && !ends())) {
+      while (may_start()) start();
+      if (interrupted_() && !std::exchange(stopping, true)) {
         for (const Running& r : running_) r.process.terminate();
       }
       collect();
       show();
     }
     terminal_.status({});
-    if (interrupted()) {
-      terminal_.milestone("interrupted; the same command continues from here");
-      return exit_interrupted;
-    }
-    return failed_ == 0 ? exit_done : exit_error;
+    if (!ends()) return failed_ == 0 ? exit_done : exit_error;
+    const std::string why = interrupted_() ? "interrupted" : "given up: " + fault_;
+    terminal_.milestone(why + "; the same command continues from here");
+    return exit_interrupted;
   }
 
  private:
@@ -117,35 +123,74 @@ class Runner {
 
   const SweepRun& run_at(std::size_t index) const { return sweep_.plan().runs[index - 1]; }
 
+  bool ends() const { return interrupted_() || pause() == longest_pause; }
+
+  std::chrono::milliseconds pause() const { return pause_after_fault(faults_, longest_pause); }
+
+  bool may_start() const {
+    return !ends() && !left_.empty() && running_.size() < static_cast<std::size_t>(options_.jobs) &&
+           (faults_ == 0 || Clock::now() >= fault_time_ + pause());
+  }
+
   void start() {
     const std::size_t index = left_.front();
     left_.pop_front();
-    running_.push_back({index, RenderProcess(sweep_.make_folder(run_at(index)), options_.threads)});
-    // The next one's folder while this one loads: nobody has to wait for the disk then.
-    if (!left_.empty()) sweep_.make_folder(run_at(left_.front()));
+    try {
+      running_.push_back(
+          {index, RenderProcess(sweep_.make_folder(run_at(index)), options_.threads)});
+      // The next one's folder while this one loads: nobody has to wait for the disk then.
+      if (!left_.empty()) sweep_.make_folder(run_at(left_.front()));
+    } catch (const std::exception& error) {
+      if (!may_pass(error)) throw;
+      const bool started = !running_.empty() && running_.back().index == index;
+      if (!started) postpone(index, error.what());
+    }
+  }
+
+  void postpone(std::size_t index, const std::string& fault) {
+    left_.push_front(index);
+    if (faults_ == 0 || Clock::now() >= fault_time_ + pause()) {  // else one with those before
+      ++faults_;
+      fault_time_ = Clock::now();
+    }
+    if (std::exchange(fault_, fault) != fault) terminal_.warning("runs wait: " + fault);
   }
 
   /// Waits a little for one that ends.
   void collect() {
     for (auto it = running_.begin(); it != running_.end(); ++it) {
-      if (!it->process.ended()) continue;
-      finish(it->index);
+      const auto code = it->process.ended();
+      if (!code) continue;
+      const std::size_t index = it->index;
       running_.erase(it);
-      return;
+      return finish(index, *code);
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 
-  void finish(std::size_t index) {
+  void finish(std::size_t index, int code) {
     const SweepRun& run = run_at(index);
-    const JobState state = sweep_.state(run);
+    JobState state;
+    try {
+      state = sweep_.state(run);
+    } catch (const std::exception& error) {
+      if (!may_pass(error)) throw;
+      return postpone(index, error.what());
+    }
+    const bool over = state.state == State::done || state.state == State::failed;
+    if (!over && met_passing_fault(code) && !interrupted_()) {
+      const std::string fault =
+          fmt::format("{}: its renderer ended with exit code {}", run.name, code);
+      return postpone(index, state.error.empty() ? fault : state.error);
+    }
     ++finished_;
     const std::string text =
         fmt::format("[{}/{}] {} {}: {}", finished_, all_, run.name,
                     cell_text(sweep_.plan().cells[run.cell].settings), enum_name(state.state));
     if (state.state == State::done) {
+      faults_ = 0;
       terminal_.milestone(text);
-    } else if (!interrupt_requested()()) {
+    } else if (!interrupted_()) {
       ++failed_;
       terminal_.error(text + (state.error.empty() ? "" : ": " + state.error));
     }
@@ -168,10 +213,14 @@ class Runner {
 
   const SweepFolder& sweep_;
   const SweepOptions& options_;
+  const std::function<bool()>& interrupted_ = interrupt_requested();
   Terminal terminal_;
   std::deque<std::size_t> left_;
   std::vector<Running> running_;
   std::size_t all_ = 0, finished_ = 0, failed_ = 0;
+  int faults_ = 0;  // in a row
+  std::string fault_;
+  Clock::time_point fault_time_;
   const Clock::time_point began_ = Clock::now();
   Clock::time_point next_show_;
 };
@@ -301,7 +350,7 @@ void add_sweep(CLI::App& app, int& code) {
       "sweep", "Render all runs of a sweep file that are not done; results: runs/, table.csv");
   command->add_option("SWEEP", o->what, "a sweep file (JSON), or a sweep's folder")
       ->required()
-      ->check(CLI::ExistingPath);
+      ->check(existing_path);
   command->add_option("-o,--out", o->out, "folder for the results (default: NAME.sweep)");
   command
       ->add_option("-j,--jobs", o->jobs,

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/storage/atomic_file.h"
+#include "analysis/storage/passing_error.h"
 #include "jobs/run/checkpoint.h"
 #include "jobs/spec/described_json.h"
 #include "jobs/spec/problems.h"
@@ -34,6 +35,7 @@ class Reader {
     try {
       read(folder);
     } catch (const std::exception& e) {
+      if (may_pass(e)) throw;  // what it says is not known
       refuse(folder, e.what());
     }
   }

@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <sys/mman.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <future>
 #include <memory>
@@ -10,6 +11,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "renderer/core/clock_seconds.h"
@@ -134,7 +136,8 @@ TheLoad& the_load() {
 const ImageCodec& codec_of(const Loaded& loaded) {
   if (loaded.codec != nullptr) return *loaded.codec;
   if (loaded.lacks_memory) throw std::bad_alloc();
-  throw std::runtime_error(loaded.error);
+  // No fault of the job: once the module is there, the same job goes on.
+  throw std::system_error(ELIBACC, std::generic_category(), loaded.error);
 }
 
 }  // namespace

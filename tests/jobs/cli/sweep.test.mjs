@@ -1,11 +1,11 @@
 // `lacuna sweep`: many jobs that differ in some settings, resumed, listed, and as array tasks.
 
 import assert from "node:assert/strict";
-import { existsSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { copyFileSync, existsSync, mkdirSync, readFileSync, readdirSync, renameSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 
-import { run, start, temporaryFolder } from "./command.mjs";
+import { program, run, start, startWith, temporaryFolder } from "./command.mjs";
 
 const small = {
   label: "small", seeds: 2, baseline: { "/integrator/max_depth": 2 },
@@ -94,6 +94,24 @@ test("sweep: stopped, it goes on to the same table", async (t) => {
   assert.notEqual((await run(folder, "sweep", "a.json", "--missing")).out, "\n");
   assert.equal((await run(folder, "sweep", "a.json")).code, 0);
   assert.deepEqual(last(), undisturbed);
+});
+
+test("sweep: while a part of the program is away, the runs wait", async (t) => {
+  const folder = sweepFile(t, { ...small, axes: {}, baseline: null });
+  const copy = join(folder, "bin/lacuna");
+  mkdirSync(join(folder, "bin"));
+  copyFileSync(program, copy);
+  const { child, ended } = startWith(["sh", "-c", 'shift; exec "$0" "$@"', copy], folder, "sweep", "a.json");
+  await new Promise((seen) => {
+    child.stderr.on("data", (bytes) => /runs wait: .*lacuna-images\.so/.test(bytes) && seen());
+    ended.then(seen);
+  });
+  const part = join(folder, "bin/lacuna-images.so");
+  copyFileSync(`${program}-images.so`, `${part}.new`);
+  renameSync(`${part}.new`, part);
+  const { code, err } = await ended;
+  assert.equal(code, 0, err);
+  assert.match(err, /runs wait: .*lacuna-images\.so[^]*\[2\/2\] 0001-2 .*done/);
 });
 
 test("sweep: a run that fails does not stop the others", async (t) => {
