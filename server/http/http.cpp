@@ -115,6 +115,8 @@ bool is_plain_path(std::string_view path) {
   });
 }
 
+[[noreturn]] void refuse_address() { throw HttpError(404, "There is no such address."); }
+
 std::string path_as_sent(const httplib::Request& sent) {
   return sent.target.substr(0, sent.target.find('?'));
 }
@@ -169,7 +171,6 @@ Request request_of(const httplib::Request& sent, const httplib::ContentReader* r
   Request request;
   request.method = sent.method;
   request.path = path_as_sent(sent);
-  if (!is_plain_path(request.path)) throw HttpError(404, "There is no such address.");
   if (request.path.size() < sent.target.size()) {
     request.query =
         Query(std::string_view(sent.target).substr(request.path.size() + 1), sent.params);
@@ -305,6 +306,7 @@ Library::Library(const Router& routes, HttpServer::Admit admit) : admit_(std::mo
   for (const Router::Route& route : routes.routes()) {
     add(route.method, expression(route),
         [route](const Request& request, const Router::Parts& parts) {
+          if (!route.doc.any_characters && !is_plain_path(request.path)) refuse_address();
           if (route.doc.for_programs) check_query(request.query, route.doc);
           return route.handler(request, parts);
         });
@@ -328,14 +330,13 @@ void Library::add_refusals(const Router& routes) {
         allowed += (allowed.empty() ? "" : ", ") + (name == "GET" ? "GET, HEAD" : name);
       }
       add(method, pattern, [allowed](const Request& request, const Router::Parts&) -> Response {
+        if (!is_plain_path(request.path)) refuse_address();
         throw HttpError(405,
                         fmt::format("{} is not possible here, only {}.", request.method, allowed))
             .with("Allow", allowed);
       });
     }
-    add(method, ".*", [](const Request&, const Router::Parts&) -> Response {
-      throw HttpError(404, "There is no such address.");
-    });
+    add(method, ".*", [](const Request&, const Router::Parts&) -> Response { refuse_address(); });
   }
 }
 

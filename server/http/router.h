@@ -30,6 +30,9 @@ struct RouteDoc {
   std::vector<std::pair<int, std::string>> answers = {};  ///< status, and what it means
   bool needs_token = true;                                ///< where the service has one
   bool for_programs = true;  ///< false: a file of the page, which takes any query
+  /// The parts in braces may hold escapes (%20): the handler says what is allowed. Elsewhere an
+  /// address with one is none.
+  bool any_characters = false;
 };
 
 /// A table of methods and path patterns such as "/api/jobs/{id}/files/{name}"; each part in braces

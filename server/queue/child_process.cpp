@@ -106,13 +106,10 @@ std::mutex& fork_mutex() {
 }
 
 ChildProcess::ChildProcess(const Command& command) {
-  const FileHandle input(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+  const FileHandle nothing(::open("/dev/null", O_RDWR | O_CLOEXEC));
   const FileHandle output(
-      command.output_fd >= 0
-          ? ::fcntl(command.output_fd, F_DUPFD_CLOEXEC, 3)
-          : ::open(command.output.c_str(),
-                   O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0644));
-  if (!output) fail(errno, command.output.string());
+      ::fcntl(command.output_fd >= 0 ? command.output_fd : nothing.get(), F_DUPFD_CLOEXEC, 3));
+  if (!nothing || !output) fail(errno, "a child's output");
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail(errno, "pipe");
   const FileHandle report(ends[0]);
@@ -124,7 +121,7 @@ ChildProcess::ChildProcess(const Command& command) {
   const Prepared prepared{arguments.data(),
                           environment.data(),
                           command.directory.c_str(),
-                          input.get(),
+                          nothing.get(),
                           output.get(),
                           child_report.get(),
                           ::getpid(),
@@ -178,6 +175,18 @@ Ending ChildProcess::reap() {
   }
   const int code = WEXITSTATUS(status);
   return {Ending::Kind::exited, code, fmt::format("renderer ended with exit code {}", code)};
+}
+
+std::string why_it_cannot_begin(Command command, const Ending& end, const StopSignal& stop) {
+  constexpr std::chrono::seconds longest{10};  // to say a version
+  if (end.kind != Ending::Kind::killed || end.code == SIGXFSZ || stop.is_requested()) return {};
+  command.arguments = {command.arguments.front(), "--version"};
+  command.output_fd = -1;
+  ChildProcess child(command);
+  if (!child.wait(stop.fd(), longest)) return {};
+  const Ending trial = child.reap();
+  if (trial.kind != Ending::Kind::killed && !never_began(trial)) return {};
+  return fmt::format("{} --version: {}", command.arguments.front(), trial.reason);
 }
 
 }  // namespace lacuna

@@ -21,8 +21,7 @@ struct Command {
   std::vector<std::string> arguments;    ///< the first is the program's path
   std::vector<std::string> environment;  ///< "NAME=value"
   std::filesystem::path directory;       ///< working directory
-  std::filesystem::path output;          ///< where its output is appended
-  int output_fd = -1;                    ///< >= 0: its output goes there instead
+  int output_fd = -1;                    ///< where its output goes; -1: nowhere
   ChildLimits limits;
 };
 
@@ -49,5 +48,10 @@ class ChildProcess {
   pid_t pid_ = -1;
   FileHandle process_;
 };
+
+/// After `command` ended so: why its program does not even say its version, as one that is cut off,
+/// or a library of it; empty: it does, or it was no signal that ended it. Throws std::system_error
+/// if it cannot be started.
+std::string why_it_cannot_begin(Command command, const Ending& end, const StopSignal& stop);
 
 }  // namespace lacuna

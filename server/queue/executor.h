@@ -5,6 +5,7 @@
 #include <atomic>
 #include <functional>
 #include <string>
+#include <system_error>
 
 #include "analysis/storage/file_handle.h"
 #include "jobs/store/job_folder.h"
@@ -13,9 +14,11 @@ namespace lacuna {
 
 /// How a renderer ended.
 struct Ending {
-  /// out_of_memory: it reported exit_memory, or the kernel killed it for lack of memory.
+  /// not_started: there is no program that starts, or the machine cannot start one; no fault of the
+  /// job. out_of_memory: it reported exit_memory, or the kernel killed it for lack of memory.
   /// lost: its machine or its time was taken from it, or nobody knows. refused: who runs renderers
-  /// will not run this one. left: it goes on, and whoever runs the job next finds it.
+  /// will not run this one, or its folder is damaged. left: it goes on, and whoever runs the job
+  /// next finds it.
   enum class Kind { exited, killed, not_started, out_of_memory, lost, refused, left };
   Kind kind = Kind::exited;
   /// exit code, out_of_memory too (128 + SIGKILL if killed); signal; errno; lost and refused: the
@@ -23,6 +26,17 @@ struct Ending {
   int code = 0;
   std::string reason;  ///< "renderer ended by signal 9 (Killed)"
 };
+
+/// A program that ended so never began: it is not there, cannot be executed, or lacks a library
+/// (what shells and the dynamic loader exit with).
+inline bool never_began(const Ending& end) {
+  return end.kind == Ending::Kind::not_started ||
+         (end.kind == Ending::Kind::exited && (end.code == 126 || end.code == 127));
+}
+
+/// No renderer is started because a file of the job's folder could not be opened or written. One
+/// that is gone as a whole is no fault of the job: whoever looks for it next finds that out.
+Ending folder_unusable(const JobFolder& folder, const std::system_error& error);
 
 /// A request to stop, sent by any thread and awaited by one.
 class StopSignal {

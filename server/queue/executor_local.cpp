@@ -1,14 +1,18 @@
 #include "server/queue/executor_local.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/eventfd.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
 
+#include "analysis/storage/passing_error.h"
 #include "jobs/slurm/submission.h"
 #include "jobs/spec/byte_size.h"
 #include "jobs/store/exit_code.h"
@@ -32,6 +36,14 @@ Ending name_memory(Ending end, std::uint64_t limit, bool kernel_killed) {
             "renderer ran out of memory: killed by the kernel"};
   }
   return end;
+}
+
+/// A job's log, to append to.
+FileHandle open_log(const fs::path& file) {
+  FileHandle log(::open(file.c_str(),
+                        O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0644));
+  if (!log) throw_file_error(errno, "write", file);
+  return log;
 }
 
 /// The service's own environment, with the folders of its command line.
@@ -93,15 +105,29 @@ LocalExecutor::LocalExecutor(ExecutorSettings settings) : settings_(std::move(se
   environment_ = child_environment(settings_);
 }
 
+Ending folder_unusable(const JobFolder& folder, const std::system_error& error) {
+  const std::string reason = fmt::format("renderer could not be started: {}", error.what());
+  if (!may_pass(error) && !is_gone(folder.dir())) return {Ending::Kind::refused, 0, reason};
+  return {Ending::Kind::not_started, error.code().value(), reason};
+}
+
 Ending LocalExecutor::run(const JobFolder& folder, const StopSignal& stop, const Notices& notices) {
+  FileHandle output;
   try {
     forget_submission(folder);  // of a service that ran its jobs on a cluster
+    output = open_log(folder.file("log.txt"));
+  } catch (const std::system_error& error) {
+    return folder_unusable(folder, error);
+  }
+  try {
+    const Command command{
+        .arguments = {settings_.renderer.string(), "render", folder.dir().string()},
+        .environment = environment_,
+        .directory = settings_.data,
+        .output_fd = output.get(),
+        .limits = settings_.limits};
     const std::uint64_t kills_before = oom_kills();
-    ChildProcess child({.arguments = {settings_.renderer.string(), "render", folder.dir().string()},
-                        .environment = environment_,
-                        .directory = settings_.data,
-                        .output = folder.file("log.txt"),
-                        .limits = settings_.limits});
+    ChildProcess child(command);
     if (notices.started) notices.started(child.pid());
     bool killed = false;
     if (!child.wait(stop.fd(), std::chrono::milliseconds(-1))) {
@@ -114,8 +140,10 @@ Ending LocalExecutor::run(const JobFolder& folder, const StopSignal& stop, const
         child.wait(-1, std::chrono::milliseconds(-1));
       }
     }
-    return name_memory(child.reap(), settings_.limits.memory_bytes,
-                       !killed && oom_kills() > kills_before);
+    Ending end = name_memory(child.reap(), settings_.limits.memory_bytes,
+                             !killed && oom_kills() > kills_before);
+    const std::string why = killed ? "" : why_it_cannot_begin(command, end, stop);
+    return why.empty() ? end : Ending{Ending::Kind::not_started, ENOEXEC, why};
   } catch (const std::system_error& error) {
     return {Ending::Kind::not_started, error.code().value(),
             fmt::format("renderer could not be started: {}", error.what())};

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <csignal>
 
-#include "analysis/storage/passing_error.h"
 #include "jobs/store/exit_code.h"
 
 namespace lacuna {
@@ -26,7 +25,6 @@ bool exited(const Ending& end) {
 /// Another renderer would end likewise.
 bool is_final(const Ending& end) {
   if (end.kind == Ending::Kind::refused) return true;
-  if (end.kind == Ending::Kind::not_started) return !may_pass(end.code);
   return end.kind == Ending::Kind::exited && (end.code == exit_bad_job || end.code == exit_asset);
 }
 
@@ -39,8 +37,10 @@ bool interrupted(const Ending& end) {
 /// that; one that somebody else has stopped leaves no error there.
 std::string obstacle_of(const Attempt& attempt) {
   const Ending& end = attempt.ending;
-  if (end.kind == Ending::Kind::not_started) return may_pass(end.code) ? end.reason : "";
-  if (end.kind == Ending::Kind::killed && end.code == SIGXFSZ) return end.reason;
+  if (never_began(end)) return end.reason;
+  // SIGBUS: a page of a file in memory, as of a program or a library, is cut off or unreadable.
+  const bool by_file = end.code == SIGXFSZ || end.code == SIGBUS;
+  if (end.kind == Ending::Kind::killed && by_file) return end.reason;
   if (!interrupted(end)) return "";
   if (attempt.after.state != State::interrupted) return "the renderer could not write its files";
   return attempt.after.error;
@@ -89,7 +89,7 @@ ExitClassification classify_exit(const Attempt& attempt, int max_attempts, const
   if (exited(end)) state.exit_code = end.code;
   if (end.kind == Ending::Kind::killed) state.exit_code = 128 + end.code;  // as shells have it
   if (is_terminal(state.state)) return {state};
-  const bool started = end.kind != Ending::Kind::not_started && end.kind != Ending::Kind::refused;
+  const bool started = !never_began(end) && end.kind != Ending::Kind::refused;
   // A renderer that died early did not count itself.
   state.attempts =
       std::max(state.attempts, attempt.before.attempts + (started && !attempt.found ? 1 : 0));

@@ -40,9 +40,9 @@ struct ExitClassification {
 /// terminal state that the renderer wrote stands. Crashes, lack of memory, and interruptions that
 /// nobody requested and that completed no iteration are retried from the checkpoint, up to
 /// `max_attempts` times; while the disk is low they are retried without being counted. A renderer
-/// that could not be started, or could not write its files, for a cause that may pass (may_pass())
-/// is retried without being counted; otherwise the job fails, as one that was refused does. One
-/// that was lost is as one that nobody has asked to end.
+/// that could not be started, never began (never_began()), or could not read or write its files for
+/// a cause that may pass (may_pass()) is retried without being counted; a job that was refused
+/// fails. One that was lost is as one that nobody has asked to end.
 ExitClassification classify_exit(const Attempt& attempt, int max_attempts, const std::string& now);
 
 }  // namespace lacuna

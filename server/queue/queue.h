@@ -126,6 +126,7 @@ class Queue {
     JobControl control;
     Clock::time_point not_before{};
     int faults = 0;                     // that may pass, since its last progress
+    int faults_of_all = 0;              // of the queue in a row, when its renderer started
     std::optional<QueueKey> queue_key;  // in the line
     std::shared_ptr<StopSignal> stop;   // a runner has it
     bool stopped_for_disk = false;

@@ -19,13 +19,8 @@ constexpr std::chrono::milliseconds look_again_at_lock{200};
 // How often it is looked whether the shards of a job are over.
 constexpr std::chrono::seconds look_again_at_shards{1};
 
-/// The wait after the n-th crash or fault of a job: what brought it down may pass.
-std::chrono::milliseconds back_off(int n, std::chrono::milliseconds longest) {
-  constexpr std::chrono::milliseconds first{250};
-  return std::min(longest, first * (1 << std::clamp(n - 1, 0, 10)));
-}
-// A crash may be the job's own doing; a fault that passes shall not be waited for much longer than
-// it lasts, least of all by the whole queue.
+// What brought a job down may pass. A crash may be the job's own doing; a fault that passes shall
+// not be waited for much longer than it lasts, least of all by the whole queue.
 constexpr std::chrono::minutes longest_after_crash{1};
 constexpr std::chrono::seconds longest_after_fault{30}, longest_pause{5};
 
@@ -98,8 +93,8 @@ void Queue::postpone(Work& work, const std::exception& error) {
 /// The next job is tried after a pause, and this one later still: what keeps one folder from being
 /// used may leave the others alone. `for_all`: `what` without the names of files.
 void Queue::note_obstacle(Work& work, const std::string& what, const std::string& for_all) {
-  paused_until_ = Clock::now() + back_off(++faults_, longest_pause);
-  work.not_before = paused_until_ + back_off(++work.faults, longest_after_fault);
+  paused_until_ = Clock::now() + pause_after_fault(++faults_, longest_pause);
+  work.not_before = paused_until_ + pause_after_fault(++work.faults, longest_after_fault);
   if (obstacle_ != for_all) log::warn("jobs wait: {}", what);
   obstacle_ = for_all;
   table_.set_obstacle(work.id, what);
@@ -109,10 +104,7 @@ void Queue::note_obstacle(Work& work, const std::string& what, const std::string
 void Queue::give_up(const std::string& id, const std::string& reason) {
   log::error("{} is given up: {}", id, reason);
   forget(id);
-  std::error_code ignored;
-  if (!std::filesystem::exists(table_.folder(id).dir(), ignored) && !ignored) {
-    return table_.remove(id);
-  }
+  if (is_gone(table_.folder(id).dir())) return table_.remove(id);
   if (const EntryPtr entry = table_.find(id)) {
     JobState state = ended(entry->state, State::failed, utc_now());
     state.error = reason;
@@ -154,7 +146,8 @@ bool Queue::waits_for_shards(const Work& work) const {
   if (work.control.shards.empty()) return false;
   const EntryPtr entry = table_.find(work.id);
   if (!entry || !table_.waits_for_shards(*entry)) return false;
-  return !std::filesystem::exists(table_.folder(work.id).file("checkpoint.bin"));
+  std::error_code unknown;  // it waits until that can be told
+  return !std::filesystem::exists(table_.folder(work.id).file("checkpoint.bin"), unknown);
 }
 
 Queue::WorkPtr Queue::take(const std::stop_token& ends) {
@@ -275,7 +268,8 @@ void Queue::note_start(Work& work, pid_t pid) {
   const auto identity = identity_of(pid);
   const std::lock_guard lock(mutex_);
   table_.set_obstacle(work.id, "");
-  if (std::exchange(faults_, 0) > 1) {  // which not one folder alone had
+  work.faults_of_all = std::exchange(faults_, 0);
+  if (work.faults_of_all > 1) {  // which not one folder alone had
     for (const auto& [id, other] : work_) {
       if (other->faults > 0) other->not_before = {};
     }
@@ -311,12 +305,12 @@ void Queue::settle(Work& work, Attempt attempt, const std::stop_token& ends) {
       log::warn("{}: {}", work.id, error.what());
       work.control = control;
     }
-    work.not_before = Clock::now() + back_off(control.crashes, longest_after_crash);
+    work.not_before = Clock::now() + pause_after_fault(control.crashes, longest_after_crash);
   }
-  if (exit.obstacle.empty() || attempt.iteration_after > attempt.iteration_before) {
-    work.faults = 0;
-  }
+  const bool came_on = attempt.iteration_after > attempt.iteration_before;
+  if (exit.obstacle.empty() || came_on) work.faults = 0;
   if (!exit.obstacle.empty()) {  // before the state: who sees that the job waits also sees why
+    if (!came_on) faults_ = std::max(faults_, work.faults_of_all);  // it began in vain
     note_obstacle(work, exit.obstacle, "renderers cannot be started or cannot write their files");
   }
   const bool over = is_terminal(exit.state.state);

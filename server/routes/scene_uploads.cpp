@@ -148,10 +148,7 @@ SceneUploads::SceneUploads(SceneUploadSettings settings) : settings_(std::move(s
 
 SceneUploads::Result SceneUploads::publish(Draft draft, const std::string& name) {
   if (!is_upload_name(name)) {
-    throw std::invalid_argument(fmt::format(
-        "found \"{}\"; allowed: a letter or digit, then up to 79 letters, digits, '.', '_' or '-' "
-        "without \"..\", and \".glb\"",
-        name));
+    throw std::invalid_argument(fmt::format("found \"{}\"; {}", name, upload_name_rule));
   }
   draft.finish();
   const std::uint64_t bytes = fs::file_size(draft.file());
@@ -164,53 +161,68 @@ SceneUploads::Result SceneUploads::publish(Draft draft, const std::string& name)
     if (fs::is_regular_file(fs::symlink_status(root / name))) return known(root / name);
   }
   const std::unique_lock lock(checking_, std::try_to_lock);
-  if (!lock || is_requested(stop_)) return {Outcome::busy, bytes};
+  if (!lock) return {Outcome::busy, bytes, "Another scene is being checked."};
+  if (is_requested(stop_)) return {Outcome::busy, bytes, "The service ends."};
   if (fs::exists(fs::symlink_status(target))) return known(target);
   if (!is_glb(draft.file())) {
     return {Outcome::refused, bytes, "it is not a GLB: it does not begin with \"glTF\""};
   }
-  bool stopped = false;
-  std::string reason = check(draft.file(), stopped);
-  if (stopped) return {Outcome::busy, bytes};
-  if (!reason.empty()) return {Outcome::refused, bytes, std::move(reason)};
+  const Result result = [&] {
+    try {
+      return check(draft.file(), bytes);
+    } catch (const std::system_error& error) {
+      return Result{Outcome::busy, bytes, error.code().message()};
+    }
+  }();
+  if (result.outcome != Outcome::created) return result;
   // Unlike a rename, a link never replaces what is there.
   if (::link(draft.file().c_str(), target.c_str()) != 0) {
     if (errno == EEXIST) return known(target);
     throw_file_error(errno, "create", target);
   }
-  sync_folder(settings_.folder);
-  return {Outcome::created, bytes};
+  try {
+    sync_folder(settings_.folder);
+  } catch (const std::system_error&) {  // what is refused is not there later
+    if (::unlink(target.c_str()) == 0) throw;
+  }
+  return result;
 }
 
-/// Why the scene is refused; empty: it is good.
-std::string SceneUploads::check(const fs::path& file, bool& stopped) const {
+/// `created` if it may be.
+SceneUploads::Result SceneUploads::check(const fs::path& file, std::uint64_t bytes) const {
   const FileHandle output = output_file();
   ChildLimits limits = settings_.limits;
   limits.file_bytes = longest_output;
-  ChildProcess child({.arguments = {settings_.renderer.string(), "check", "--scene", file.string()},
-                      .environment = own_environment(),
-                      .directory = settings_.folder,
-                      .output = {},
-                      .output_fd = output.get(),
-                      .limits = limits});
+  const Command command{
+      .arguments = {settings_.renderer.string(), "check", "--scene", file.string()},
+      .environment = own_environment(),
+      .directory = settings_.folder,
+      .output_fd = output.get(),
+      .limits = limits};
+  ChildProcess child(command);
   if (!child.wait(stop_.fd(), settings_.time)) {
     child.signal(SIGKILL);
     child.wait(-1, std::chrono::milliseconds(-1));
     child.reap();
-    stopped = is_requested(stop_);
-    return fmt::format("it could not be checked within {} s",
-                       static_cast<double>(settings_.time.count()) / 1000);
+    if (is_requested(stop_)) return {Outcome::busy, bytes, "The service ends."};
+    return {Outcome::refused, bytes,
+            fmt::format("it could not be checked within {} s",
+                        static_cast<double>(settings_.time.count()) / 1000)};
   }
   const Ending end = child.reap();
   const bool exited = end.kind == Ending::Kind::exited;
-  if (exited && end.code == exit_done) return {};
+  if (exited && end.code == exit_done) return {Outcome::created, bytes};
   if (exited && end.code == exit_memory) {
-    return fmt::format("loading it takes more memory than is allowed{}",
-                       limits.memory_bytes > 0 ? ", " + byte_size_text(limits.memory_bytes) : "");
+    return {Outcome::refused, bytes,
+            fmt::format("loading it takes more memory than is allowed{}",
+                        limits.memory_bytes > 0 ? ", " + byte_size_text(limits.memory_bytes) : "")};
   }
-  std::string said = tidy(last_line(output.get()), file);
-  if (exited && end.code == exit_asset && !said.empty()) return said;
-  return "its check failed: " + end.reason;
+  const std::string said = tidy(last_line(output.get()), file);
+  const bool for_now = never_began(end) || (exited && end.code == exit_interrupted) ||
+                       !why_it_cannot_begin(command, end, stop_).empty();
+  if (for_now) return {Outcome::busy, bytes, said.empty() ? end.reason : said};
+  const bool told = exited && end.code == exit_asset && !said.empty();
+  return {Outcome::refused, bytes, told ? said : "its check failed: " + end.reason};
 }
 
 }  // namespace lacuna

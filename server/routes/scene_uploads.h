@@ -25,6 +25,10 @@ struct SceneUploadSettings {
 
 /// "NAME.glb": a letter or digit, then at most 79 letters, digits, '.', '_' or '-', never "..".
 bool is_upload_name(std::string_view name);
+inline constexpr const char* upload_name_rule =
+    "allowed: a letter or digit, then up to 79 letters, digits, '.', '_' or '-' without \"..\", "
+    "and "
+    "\".glb\" (letters are a to z and A to Z)";
 
 /// Scenes that come over the network: each is checked by a child process before it gets its name,
 /// and never replaces another. A scene may name no other file: while it is checked it lies alone in
@@ -57,7 +61,8 @@ class SceneUploads {
     same,      ///< the very same bytes were there already
     conflict,  ///< another scene of that name is there, or in an older root, which would hide it
     refused,   ///< it is not a scene that can be rendered; `reason` says why
-    busy,      ///< another scene is being checked, or the service ends
+    busy,      ///< it cannot be checked now, as another one is, or the service ends, or its files
+               ///< cannot be used; `reason` says why
   };
   struct Result {
     Outcome outcome;
@@ -73,7 +78,7 @@ class SceneUploads {
   void stop() const { stop_.request(); }
 
  private:
-  std::string check(const std::filesystem::path& file, bool& stopped) const;
+  Result check(const std::filesystem::path& file, std::uint64_t bytes) const;
 
   const SceneUploadSettings settings_;
   StopSignal stop_;

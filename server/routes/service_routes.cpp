@@ -116,9 +116,9 @@ Response ServiceRoutes::put_scene(const Request& request, const std::string& nam
     throw HttpError(404, "This service accepts no scenes: it runs without --uploads.");
   }
   if (!is_upload_name(name)) {
+    const std::string sent = request.path.substr(request.path.rfind('/') + 1);
     throw HttpError(400,
-                    "A scene's name is a letter or digit and at most 79 letters, digits, '.', "
-                    "'_' or '-', and ends in .glb.");
+                    fmt::format("A scene cannot be named \"{}\"; {}.", sent, upload_name_rule));
   }
   if (media_type(request) != "model/gltf-binary") {
     throw HttpError(415, "A scene is sent with Content-Type: model/gltf-binary.");
@@ -138,7 +138,7 @@ Response ServiceRoutes::put_scene(const Request& request, const std::string& nam
           fmt::format("Another scene has the name \"{}\", here or in a folder that comes before.",
                       name));
     case Outcome::busy:
-      throw HttpError(503, "Another scene is being checked.").with("Retry-After", "2");
+      throw HttpError(503, result.reason).with("Retry-After", "2");
     case Outcome::refused:
       break;
   }
@@ -181,11 +181,14 @@ void ServiceRoutes::add_to(Router& router) {
        .body_type = "model/gltf-binary",
        .answers = {{201, "it is there now"},
                    {200, "the very same bytes were there"},
+                   {400, upload_name_rule},
                    {404, "the service runs without --uploads"},
                    {409,
                     "another scene has that name, here or in a scenes folder that comes before"},
                    {413, "it is larger than 256 MiB"},
-                   {422, "it is not a scene that can be rendered"}}},
+                   {422, "it is not a scene that can be rendered"},
+                   {503, "it cannot be checked now"}},
+       .any_characters = true},
       [this](const Request& request, const Parts& parts) { return put_scene(request, parts[0]); });
   router.add("GET", "/api/cache", {.summary = "The cached references and artefacts"},
              [this](const Request&, const Parts&) {

@@ -113,14 +113,14 @@ Ending SlurmExecutor::run(const JobFolder& folder, const StopSignal& stop, const
       attempted = submit(folder);
     }
   } catch (const std::system_error& error) {
-    return {Ending::Kind::not_started, error.code().value(),
-            fmt::format("renderer could not be submitted: {}", error.what())};
+    return folder_unusable(folder, error);
   }
+  if (!attempted.called) return not_submitted(attempted.said);
   return follow(folder, std::move(attempted), stop, notices);
 }
 
-/// Writes down what is about to be submitted, and submits it. Throws std::system_error: nothing was
-/// submitted.
+/// Writes down what is about to be submitted, and submits it. Throws std::system_error: the job's
+/// folder cannot be written.
 SlurmExecutor::Attempted SlurmExecutor::submit(const JobFolder& folder) {
   Attempted attempted{{new_submission_name(folder), 0, utc_now()}, {}};
   const auto words = words_for(folder, attempted.submission);
@@ -129,9 +129,10 @@ SlurmExecutor::Attempted SlurmExecutor::submit(const JobFolder& folder) {
     attempted.submission.job = programs_.submit(words);
     log::info("{}: submitted as Slurm job {}", folder.id(), attempted.submission.job);
     write_submission(folder, attempted.submission);
-  } catch (const std::system_error&) {
-    if (attempted.submission.job == 0) forget_submission(folder);
-    throw;
+  } catch (const std::system_error& error) {
+    if (attempted.submission.job != 0) throw;
+    forget_submission(folder);
+    return {{}, fmt::format("renderer could not be submitted: {}", error.what()), false};
   } catch (const SlurmError& error) {
     attempted.said = error.what();
     log::warn("{}: {}", folder.id(), attempted.said);

@@ -29,10 +29,11 @@ class SlurmExecutor : public Executor {
 
  private:
   class Stopping;
-  /// A submission, and what sbatch said where it gave no number.
+  /// A submission, and what sbatch said where it gave no number, or why it could not be called.
   struct Attempted {
     Submission submission;
     std::string said;
+    bool called = true;
   };
   Attempted submit(const JobFolder& folder);
   Ending follow(const JobFolder& folder, Attempted attempted, const StopSignal& stop,

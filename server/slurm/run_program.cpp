@@ -23,7 +23,6 @@ ProgramAnswer run(const std::vector<std::string>& words, const std::filesystem::
   Command command{.arguments = words,
                   .environment = slurm_environment(),
                   .directory = directory,
-                  .output = {},
                   .output_fd = output.get(),
                   .limits = {}};
   command.arguments[0] = find_program(words[0]).string();

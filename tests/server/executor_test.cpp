@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <cerrno>
 #include <csignal>
+#include <fstream>
 #include <sstream>
 
 #include "server/queue/executor_local.h"
@@ -16,19 +18,26 @@ class LocalExecutorTest : public testing::Test {
  protected:
   Ending run(const std::string& script, const ChildLimits& limits = {},
              const std::function<void(pid_t)>& started = {}) {
-    const auto program = temp.write("renderer", "#!/bin/sh\n" + script);
-    std::filesystem::permissions(program, std::filesystem::perms::owner_all);
-    std::filesystem::create_directories(folder.dir());
-    LocalExecutor executor({.renderer = program,
-                            .data = temp.path(),
-                            .scenes = {},
-                            .grace = std::chrono::milliseconds(200),
-                            .limits = limits});
-    return executor.run(folder, stop, {.started = started, .place = {}});
+    write_program("#!/bin/sh\n" + script);
+    return make(limits).run(folder, stop, {.started = started, .place = {}});
   }
+  void write_program(const std::string& content) const {
+    temp.write("renderer", content);
+    std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  }
+  LocalExecutor make(const ChildLimits& limits = {}) const {
+    std::filesystem::create_directories(folder.dir());
+    return LocalExecutor({.renderer = program,
+                          .data = temp.path(),
+                          .scenes = {},
+                          .grace = std::chrono::milliseconds(200),
+                          .limits = limits});
+  }
+  Ending run(LocalExecutor& executor) { return executor.run(folder, stop, {}); }
   std::string log() const { return content_of(folder.file("log.txt")); }
 
   TemporaryFolder temp;
+  std::filesystem::path program = temp / "renderer";
   JobFolder folder{temp / "job"};
   StopSignal stop;
 };
@@ -70,9 +79,38 @@ TEST_F(LocalExecutorTest, NamesTheLimitThatARendererRanInto) {
 }
 
 TEST_F(LocalExecutorTest, AKillIsNoWantOfMemoryUnlessTheKernelCountsOne) {
-  const Ending end = run("kill -9 $$");
+  const Ending end = run("[ $1 = --version ] || kill -9 $$");
   EXPECT_EQ(end.kind, Ending::Kind::killed);
   EXPECT_EQ(end.code, SIGKILL);
+}
+
+TEST_F(LocalExecutorTest, AProgramThatDoesNotBeginIsToldFromAJobThatCrashes) {
+  const auto is_away = [&](const std::function<void()>& take_away) {
+    write_program("#!/bin/sh\n");
+    LocalExecutor executor = make();
+    take_away();
+    const Ending end = run(executor);
+    EXPECT_TRUE(never_began(end)) << end.reason;
+    return end;
+  };
+  EXPECT_EQ(is_away([&] { std::filesystem::remove(program); }).code, ENOENT);
+  EXPECT_EQ(is_away([&] { write_program("half a line"); }).code, ENOEXEC);
+  EXPECT_EQ(is_away([&] { write_program("#!/bin/sh\nkill -11 $$"); }).code, ENOEXEC);
+  EXPECT_EQ(is_away([&] { write_program("#!/bin/sh\nexec /nowhere"); }).code, 127);
+  const std::string whole = content_of("/bin/true");
+  is_away([&] { write_program(whole.substr(0, whole.size() / 2)); });
+  {
+    write_program(whole);
+    LocalExecutor executor = make();
+    const std::ofstream writer(program, std::ios::app);
+    EXPECT_EQ(run(executor).code, ETXTBSY);
+  }
+  EXPECT_EQ(run("[ $1 = --version ] || kill -11 $$").kind, Ending::Kind::killed);
+}
+
+TEST_F(LocalExecutorTest, AJobWhoseLogCannotBeOneIsRefused) {
+  std::filesystem::create_directories(folder.file("log.txt"));
+  EXPECT_EQ(run("exit 0").kind, Ending::Kind::refused);
 }
 
 TEST_F(LocalExecutorTest, TellsWhoRendersWhileItRuns) {

@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <vector>
 
 namespace lacuna {
 namespace {
@@ -116,19 +117,25 @@ TEST(ExitClassification, WhatTheRendererFinishedStands) {
   EXPECT_EQ(classified(a).state.state, State::done);
 }
 
-TEST(ExitClassification, ARendererThatCannotBeStartedFailsItsJobUnlessThatMayPass) {
-  Attempt a = attempt({Kind::not_started, ENOENT, "renderer could not be started"}, State::queued);
-  a.after.attempts = 0;
-  EXPECT_EQ(classified(a).state.state, State::failed);
-  for (const int error : {ENOSPC, EDQUOT, EROFS, EMFILE, ENFILE, EIO, EACCES, ESTALE}) {
-    a.ending.code = error;
+TEST(ExitClassification, ARendererThatNeverBeganIsNoFaultOfItsJob) {
+  std::vector<Ending> endings;
+  for (const int error :
+       {ENOSPC, EMFILE, EIO, EACCES, ENOENT, ETXTBSY, ENOEXEC, ELIBACC, ENOTDIR}) {
+    endings.push_back({Kind::not_started, error, "renderer could not be started"});
+  }
+  for (const int code : {126, 127}) endings.push_back({Kind::exited, code, "no such library"});
+  for (const Ending& ending : endings) {
+    Attempt a = attempt(ending, State::queued);
+    a.after.attempts = 0;
     a.crashes = 100;
     const ExitClassification v = classified(a);
-    EXPECT_EQ(v.state.state, State::queued) << error;
-    EXPECT_FALSE(v.crashed) << error;
-    EXPECT_EQ(v.obstacle, a.ending.reason) << error;
-    EXPECT_EQ(v.state.attempts, 0) << error;
+    EXPECT_EQ(v.state.state, State::queued) << ending.code;
+    EXPECT_FALSE(v.crashed) << ending.code;
+    EXPECT_EQ(v.obstacle, ending.reason) << ending.code;
+    EXPECT_EQ(v.state.attempts, 0) << ending.code;
   }
+  EXPECT_EQ(classified(attempt({Kind::refused, 0, "its log is a link"})).state.state,
+            State::failed);
 }
 
 TEST(ExitClassification, WantOfRoomIsNoCrash) {
@@ -136,7 +143,8 @@ TEST(ExitClassification, WantOfRoomIsNoCrash) {
   said.after.error = "cannot write x: No space left on device";
   const Attempt silent = attempt(interruption);  // not even its state could be written
   const Attempt too_large = attempt({Kind::killed, SIGXFSZ, "File size limit exceeded"});
-  for (Attempt a : {said, silent, too_large}) {
+  const Attempt cut_off = attempt({Kind::killed, SIGBUS, "Bus error"});  // a file in memory
+  for (Attempt a : {said, silent, too_large, cut_off}) {
     a.crashes = 100;
     const ExitClassification v = classified(a);
     EXPECT_EQ(v.state.state, State::queued);

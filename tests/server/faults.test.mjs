@@ -6,7 +6,7 @@ import net from "node:net";
 import path from "node:path";
 import { test } from "node:test";
 import { setTimeout as pause } from "node:timers/promises";
-import { folders, Service, until } from "./service.mjs";
+import { fakeRenderer, folders, Service, until } from "./service.mjs";
 
 /// From now on the service may have so many descriptors: below what it has, each open fails.
 function limitDescriptors(service, n) {
@@ -213,4 +213,38 @@ test("temporary files of killed writes are swept at the start", async (t) => {
   }
   await Service.start(places);
   await until(() => left.every((file) => !fs.existsSync(file)), "they are gone", 60000);
+});
+
+test("a renderer that is away, being written or cut off is one obstacle of all jobs, and ends none", async (t) => {
+  const places = folders(t);
+  const renderer = path.join(places.root, "renderer");
+  const program = fs.readFileSync(fakeRenderer);
+  const put = (content) => {
+    fs.writeFileSync(`${renderer}.new`, content, { mode: 0o755 });
+    fs.renameSync(`${renderer}.new`, renderer);
+  };
+  put(program);
+  const service = await Service.start(places, ["--max-attempts", "1", "--renderer", renderer]);
+  const faults = [
+    () => fs.rmSync(renderer),
+    () => put("#!/nowhere/node\n"),
+    () => put("#!/bin/sh\nexec /nowhere/lacuna\n"),  // 127, as of a library that is missing
+    () => put(fs.readFileSync(process.execPath).subarray(0, 1 << 20)),
+  ];
+  for (const fault of faults) {
+    fault();
+    const ids = [];
+    for (let i = 0; i < 3; i += 1) ids.push(await service.post("finish"));
+    const health = await until(async () => {
+      const seen = await service.json("/health");
+      return seen.status === "waiting" && seen;
+    }, "the queue waits");
+    assert.match(health.obstacle, /renderers cannot be started/);
+    await until(async () => (await service.json("/api/jobs")).jobs.some((job) => job.obstacle !== ""), "a job says why");
+    put(program);
+    for (const id of ids) {
+      const { state } = await service.reaches(id, "done", 60000);
+      assert.deepEqual([state.attempts, state.error, state.obstacle], [1, "", ""]);
+    }
+  }
 });

@@ -355,17 +355,6 @@ test("a folder that another renderer still holds is waited for", async (t) => {
   assert.equal((await second.reaches(id, "done")).state.attempts, 2);
 });
 
-test("a renderer that vanished fails the job, not the service", async (t) => {
-  const places = folders(t);
-  const renderer = path.join(places.root, "renderer");
-  fs.writeFileSync(renderer, "#!/bin/sh\nexit 0\n", { mode: 0o755 });
-  const service = await Service.start(places, ["--renderer", renderer]);
-  fs.rmSync(renderer);
-  const job = await service.reaches(await service.post("finish"), "failed");
-  assert.match(job.state.error, /could not be started.*No such file/);
-  assert.equal(job.state.attempts, 0);
-});
-
 test("a job that is removed by hand is gone", async (t) => {
   const service = await Service.start(folders(t));
   const first = await service.post("gate x");

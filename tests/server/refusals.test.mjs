@@ -251,6 +251,18 @@ test("what the HTTP library would decode, pack or take apart reaches nobody", as
   assert.equal((await service.raw(`${head("PUT /api/scenes/a.glb", parts)}0123456789`)).status, 415);
 });
 
+test("an upload under a name that is not allowed is told what is", async (t) => {
+  const service = await Service.start(folders(t), ["--uploads"]);
+  const put = (name) => service.fetch(`/api/scenes/${name}`, { method: "PUT", body: "glTF",
+    headers: { "Content-Type": "model/gltf-binary" } });
+  for (const name of ["my room.glb", "k\u00fcche.glb", "\u5bb6.glb", "a+b.glb", "%FF.glb", "%00.glb", "%zz.glb", "a.GLB", "a.gltf"]) {
+    const { detail } = await problem(await put(name), 400);
+    assert.match(detail, /letter or digit.*"\.glb"/, name);
+    assert.ok(detail.includes(new URL(name, "http://a/").pathname.slice(1)), detail);
+  }
+  await problem(await put("a%2Fb.glb"), 404);
+});
+
 test("other sites can neither read nor write", async (t) => {
   const service = await Service.start(folders(t));
   const status = async (line, headers) => (await service.raw(head(line, headers))).status;
