@@ -141,7 +141,7 @@ std::optional<std::size_t> run_index(std::string_view sweep_id, std::string_view
 /// Names of all folders below `jobs` that have the form of an id, sorted: oldest first. Looks into
 /// none of them.
 std::vector<std::string> list_job_names(const std::filesystem::path& jobs);
-/// Whether the folder holds a job.
+/// Whether the folder holds a job; true, too, where that cannot be told now.
 bool is_job(const JobFolder& folder);
 /// All jobs below `jobs`, oldest first; folders that are no jobs are left out.
 std::vector<JobFolder> list_jobs(const std::filesystem::path& jobs);

@@ -34,6 +34,13 @@ std::uint64_t letters_values() {
   return values;
 }
 
+/// It is of this type, or that cannot be told now.
+bool may_be(const std::filesystem::path& file, std::filesystem::file_type type) {
+  std::error_code error;
+  const auto found = std::filesystem::symlink_status(file, error).type();
+  return found == type || found == std::filesystem::file_type::none;
+}
+
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 std::tm utc(std::chrono::system_clock::time_point t) {
@@ -95,9 +102,7 @@ std::vector<std::string> list_job_names(const std::filesystem::path& jobs) {
     // What kind of file it is mostly stands in the folder itself, and costs no look at the file.
     bool is_folder = entry->d_type == DT_DIR;
     if (entry->d_type == DT_UNKNOWN) {
-      std::error_code vanished;
-      is_folder = std::filesystem::is_directory(
-          std::filesystem::symlink_status(jobs / entry->d_name, vanished));
+      is_folder = may_be(jobs / entry->d_name, std::filesystem::file_type::directory);
     }
     if (is_folder) names.emplace_back(entry->d_name);
   }
@@ -106,9 +111,7 @@ std::vector<std::string> list_job_names(const std::filesystem::path& jobs) {
 }
 
 bool is_job(const JobFolder& folder) {
-  namespace fs = std::filesystem;
-  std::error_code vanished;
-  return fs::is_regular_file(fs::symlink_status(folder.file("job.json"), vanished));
+  return may_be(folder.file("job.json"), std::filesystem::file_type::regular);
 }
 
 std::vector<JobFolder> list_jobs(const std::filesystem::path& jobs) {

@@ -299,43 +299,28 @@ Queue::Work& Queue::reopen(const EntryPtr& entry) {
   return *open(*entry, control);
 }
 
-/// What unfinished jobs measure their error against, and one of those jobs. Only under the lock.
-std::map<std::string, std::string> Queue::references() const {
-  std::map<std::string, std::string> users;
-  for (const auto& [id, work] : work_) {
-    const EntryPtr user = table_.find(id);
-    if (user && !user->reference.empty()) users.emplace(user->reference, id);
-  }
-  return users;
-}
-
-/// Sweeps whose runs are shards of unfinished jobs, and those jobs. Only under the lock.
-std::map<std::string, std::string> Queue::unmerged() const {
-  std::map<std::string, std::string> users;
-  for (const auto& [id, work] : work_) {
-    if (!work->control.shards.empty()) users.emplace(work->control.shards, id);
-  }
-  return users;
-}
-
 /// Only under the lock.
 void Queue::check_all_removable(const std::vector<std::string>& ids) const {
-  const auto in_use = references();
-  const auto merged = unmerged();
+  // What cannot be read now may need any of them.
+  if (const EntryPtr unread = table_.unread()) {
+    throw Unavailable(fmt::format("Job {} may need it: {}", unread->id, unread->obstacle));
+  }
   for (const std::string& id : ids) {
     const EntryPtr entry = checked(id, {});
     if (!entry->over) {
       throw Conflict(fmt::format("Job {} is {}: only a job that is over can be removed.", id,
                                  enum_name(entry->state.state)));
     }
-    if (table_.sweeps().is_unfinished(entry->sweep)) {
+    const SweepEntryPtr sweep = table_.sweeps().find(entry->sweep);
+    if (sweep && sweep->unread) throw Unavailable(sweep->error);
+    if (sweep && !is_over(sweep->state.state)) {
       throw Conflict(fmt::format("Sweep {}, which it is a run of, is not over.", entry->sweep));
     }
-    if (const auto user = merged.find(entry->sweep); user != merged.end()) {
-      throw Conflict(fmt::format("Job {} is to be merged from {}.", user->second, id));
+    if (const EntryPtr user = table_.merged_from(entry->sweep); user && !user->over) {
+      throw Conflict(fmt::format("Job {} is to be merged from {}.", user->id, id));
     }
-    if (const auto user = in_use.find(id); user != in_use.end()) {
-      throw Conflict(fmt::format("Job {} measures its error against {}.", user->second, id));
+    if (const auto user = table_.measured_against(id)) {
+      throw Conflict(fmt::format("Job {} measures its error against {}.", *user, id));
     }
   }
 }
@@ -442,8 +427,7 @@ void Queue::save_pending() {
       table_.folder(id).write_state(state);
       return true;
     } catch (const std::exception&) {
-      std::error_code ignored;
-      return !std::filesystem::exists(table_.folder(id).dir(), ignored);
+      return is_gone(table_.folder(id).dir());
     }
   });
 }

@@ -171,8 +171,6 @@ class Queue {
   JobState stored_state(const std::string& id) const;
   Work& reopen(const EntryPtr& entry);
   EntryPtr checked(const std::string& id, const std::string& revision) const;
-  std::map<std::string, std::string> references() const;
-  std::map<std::string, std::string> unmerged() const;
   void check_all_removable(const std::vector<std::string>& ids) const;
   void take_away(const std::vector<std::string>& ids);
   bool is_over_on_disk(const std::string& id) const;

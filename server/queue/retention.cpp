@@ -14,6 +14,7 @@ std::vector<std::string> outdated(const std::vector<EntryPtr>& jobs,
   for (const EntryPtr& job : jobs) referenced.insert(job->reference);
   std::vector<EntryPtr> over;
   for (const EntryPtr& job : jobs) {
+    if (job->unread) return {};  // nobody knows which others it needs
     const bool wanted = referenced.contains(job->id) || unfinished_sweeps.contains(job->sweep);
     if (job->over && !job->damaged && !wanted) over.push_back(job);
   }

@@ -37,7 +37,7 @@ OrderedJson or_null(const std::string& text) {
 
 EntryPtr find_job(JobTable& table, const std::string& id) {
   EntryPtr entry = is_job_id(id) ? table.find(id) : nullptr;
-  if (!entry || !size_of(table.folder(id).file("job.json"))) {
+  if (!entry || !is_job(table.folder(id))) {
     throw HttpError(404, fmt::format("There is no job \"{}\".", id));
   }
   return entry;

@@ -10,6 +10,7 @@
 #include "jobs/plan/expand.h"
 #include "jobs/plan/shard_sweep.h"
 #include "jobs/spec/job_json.h"
+#include "jobs/store/new_folder.h"
 #include "server/http/conditional.h"
 #include "server/routes/catalogue.h"
 #include "server/routes/named_files.h"
@@ -51,10 +52,11 @@ Response JobPosting::dry_run(const Request& request) const {
                        {{"job", parse_own(write_job(spec))}, {"warnings", OrderedJson::array()}});
 }
 
-std::map<std::string, std::string> JobPosting::stored_keys() const {
-  std::map<std::string, std::string> keys;
+Posting::StoredKeys JobPosting::stored_keys() const {
+  StoredKeys keys;
   for (const EntryPtr& job : table_.all()) {
-    if (!job->control.idempotency_key.empty()) keys[job->control.idempotency_key] = job->id;
+    if (job->unread) keys.unread = fmt::format("{}: {}", job->id, job->obstacle);
+    if (!job->control.idempotency_key.empty()) keys.ids[job->control.idempotency_key] = job->id;
   }
   return keys;
 }
@@ -92,9 +94,7 @@ JobFolder JobPosting::create(const JobSpec& spec, JobControl control) {
       folder = JobFolder::create(dir, spec, control);
     });
   } catch (...) {
-    std::error_code ignored;  // the first error is the one to tell
-    if (folder) std::filesystem::remove_all(folder->dir(), ignored);
-    throw;
+    if (!folder || take_folder_back(folder->dir())) throw;
   }
   return *folder;
 }

@@ -25,7 +25,7 @@ class JobPosting final : public Posting {
   JobFolder create(const JobSpec& spec, JobControl control);
   /// Throws HttpError 400, 429 (too many wait), 507.
   std::string make(const std::string& body, const Key& key) override;
-  std::map<std::string, std::string> stored_keys() const override;
+  StoredKeys stored_keys() const override;
   std::optional<std::string> body_hash(const std::string& id) const override;
   OrderedJson describe_made(const std::string& id) const override;
 

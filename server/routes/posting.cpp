@@ -42,8 +42,8 @@ Response Posting::post(const Request& request) {
 
   const std::string hash = hash128(body);
   const std::lock_guard lock(mutex_);
-  if (!keys_) keys_ = stored_keys();
-  if (const auto known = keys_->find(*key); known != keys_->end()) {
+  if (!keys_ || !keys_->unread.empty()) keys_ = stored_keys();
+  if (const auto known = keys_->ids.find(*key); known != keys_->ids.end()) {
     const std::string& id = known->second;
     if (const auto made_of = body_hash(id)) {
       if (*made_of == hash) {
@@ -56,8 +56,13 @@ Response Posting::post(const Request& request) {
                                        noun_, id));
     }
   }
+  if (!keys_->unread.empty()) {
+    throw HttpError(503,
+                    fmt::format("This Idempotency-Key may be known already: {}.", keys_->unread))
+        .with("Retry-After", "1");
+  }
   const std::string id = make(body, {*key, hash});
-  (*keys_)[*key] = id;
+  keys_->ids[*key] = id;
   return answer(201, id);
 }
 

@@ -20,8 +20,8 @@ class Posting {
   Posting& operator=(const Posting&) = delete;
 
   /// 201 with the thing, once it is on disk; 200 with the one that the same Idempotency-Key and
-  /// body have made before. Throws HttpError: 400, 415, 422 (the key stands for another body), and
-  /// what make() throws.
+  /// body have made before. Throws HttpError: 400, 415, 422 (the key stands for another body), 503
+  /// (the key may be that of a thing that cannot be read now), and what make() throws.
   Response post(const Request& request);
 
  protected:
@@ -36,8 +36,12 @@ class Posting {
   std::string read_body(const Request& request) const;
   /// Stores the thing with its key, synced; gives its id.
   virtual std::string make(const std::string& body, const Key& key) = 0;
-  /// The keys of all things that are stored, and their ids.
-  virtual std::map<std::string, std::string> stored_keys() const = 0;
+  struct StoredKeys {
+    std::map<std::string, std::string> ids;  ///< by their keys
+    std::string unread;  ///< why the key of some thing is not known now; empty: all are
+  };
+  /// The keys of all things that are stored.
+  virtual StoredKeys stored_keys() const = 0;
   /// Of the key of a stored thing; nothing: it is not there any more.
   virtual std::optional<std::string> body_hash(const std::string& id) const = 0;
   virtual OrderedJson describe_made(const std::string& id) const = 0;
@@ -48,7 +52,7 @@ class Posting {
   const std::string noun_, place_;
   const std::size_t max_bytes_;
   std::mutex mutex_;  // held while a thing with a key is made: the same key twice at once is one
-  std::optional<std::map<std::string, std::string>> keys_;  // Idempotency-Key -> id; once read
+  std::optional<StoredKeys> keys_;  // once read
 };
 
 }  // namespace lacuna

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "jobs/spec/described_json.h"
@@ -61,7 +62,8 @@ OrderedJson to_json(const SweepEntry& sweep, const JobTable& jobs) {
   JobTable::RunCounts run_counts = jobs.run_counts(sweep.id);
   const double share = share_done(sweep.state.runs, run_counts, jobs);
   if (!is_over(sweep.state.state)) {  // what is no job yet
-    run_counts.counts[State::queued] += sweep.state.runs - run_counts.jobs();
+    run_counts.counts[State::queued] +=
+        sweep.state.runs - std::min(sweep.state.runs, run_counts.jobs());
   }
   return {{"id", sweep.id},
           {"label", sweep.label},

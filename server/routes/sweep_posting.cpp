@@ -53,10 +53,11 @@ std::string SweepPosting::make(const std::string& body, const Key& key) {
   }
 }
 
-std::map<std::string, std::string> SweepPosting::stored_keys() const {
-  std::map<std::string, std::string> keys;
+Posting::StoredKeys SweepPosting::stored_keys() const {
+  StoredKeys keys;
   for (const SweepEntryPtr& sweep : sweeps_.all()) {
-    if (!sweep->state.idempotency_key.empty()) keys[sweep->state.idempotency_key] = sweep->id;
+    if (sweep->unread) keys.unread = fmt::format("{}: {}", sweep->id, sweep->error);
+    if (!sweep->state.idempotency_key.empty()) keys.ids[sweep->state.idempotency_key] = sweep->id;
   }
   return keys;
 }

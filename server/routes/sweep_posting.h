@@ -21,7 +21,7 @@ class SweepPosting final : public Posting {
   SweepPlan checked_plan(const std::string& body, SweepSpec& spec) const;
   /// Throws HttpError 400, with pointers into the sweep file, and 507.
   std::string make(const std::string& body, const Key& key) override;
-  std::map<std::string, std::string> stored_keys() const override;
+  StoredKeys stored_keys() const override;
   std::optional<std::string> body_hash(const std::string& id) const override;
   OrderedJson describe_made(const std::string& id) const override;
 

@@ -17,9 +17,10 @@ SweepRoutes::SweepRoutes(const ScenesRoots& scenes, SweepTable& sweeps, const Jo
                          SweepKeeper& keeper)
     : sweeps_(sweeps), jobs_(jobs), keeper_(keeper), posting_(scenes, sweeps, jobs, keeper) {}
 
-/// Throws HttpError 409 for one whose folder cannot be read.
+/// Throws HttpError for one whose folder cannot be read: 503 for now, 409.
 std::shared_ptr<const SweepFolder> SweepRoutes::open(const SweepEntry& sweep) {
   if (sweep.error.empty()) return sweeps_.open(sweep.id);
+  if (sweep.unread) throw HttpError(503, sweep.error).with("Retry-After", "1");
   throw HttpError(409, fmt::format("Sweep {}: {}.", sweep.id, sweep.error));
 }
 

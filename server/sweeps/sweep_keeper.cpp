@@ -65,15 +65,19 @@ void SweepKeeper::look_after_all(const std::stop_token& ends) {
     busy = false;
     for (const std::string& id : unfinished) {
       if (ends.stop_requested()) return;
-      busy = look_after(id) || busy;
+      try {
+        busy = look_after(id) || busy;
+      } catch (const std::exception& error) {  // the others go on
+        log::error("{}: {}", id, error.what());
+      }
     }
   }
 }
 
 void SweepKeeper::make_missing() {
   for (const EntryPtr& job : jobs_.without_shards()) {
-    if (std::filesystem::exists(jobs_.folder(job->id).file("checkpoint.bin"))) continue;
     try {
+      if (std::filesystem::exists(jobs_.folder(job->id).file("checkpoint.bin"))) continue;
       const std::string& id = job->control.shards;
       const SweepSpec shards = shard_sweep(jobs_.folder(job->id).read_job());
       const SweepEntryPtr sweep = sweeps_.create_again(id, shards, expand(shards));
@@ -87,6 +91,16 @@ void SweepKeeper::make_missing() {
   }
 }
 
+/// A sweep that could not be read, with what is known by then of its jobs. True: it can be now.
+bool SweepKeeper::read_again(const std::string& id) {
+  if (!sweeps_.reread(id)) return false;
+  JobTable::Query runs;
+  runs.sweep = id;
+  runs.limit = std::numeric_limits<std::size_t>::max();
+  for (const EntryPtr& job : jobs_.list(runs).jobs) jobs_.find_sweep(job->id);
+  return true;
+}
+
 /// The job that is to be merged from its runs has come to another end.
 bool SweepKeeper::is_in_vain(const std::string& id) const {
   const EntryPtr job = jobs_.merged_from(id);
@@ -97,6 +111,7 @@ bool SweepKeeper::is_in_vain(const std::string& id) const {
 bool SweepKeeper::look_after(const std::string& id) {
   const SweepEntryPtr sweep = sweeps_.find(id);
   if (!sweep || is_over(sweep->state.state)) return false;
+  if (sweep->unread) return read_again(id);
   if (sweep->state.state == SweepStage::running && is_in_vain(id)) cancel(id);
   if (sweep->state.state == SweepStage::cancelling) {
     cancel_runs(id);
@@ -151,6 +166,7 @@ void SweepKeeper::make(const Feed& feed, const SweepRun& run) {
 SweepEntryPtr SweepKeeper::checked(const std::string& id) const {
   SweepEntryPtr sweep = sweeps_.find(id);
   if (!sweep) throw Conflict("The sweep no longer exists.");
+  if (sweep->unread) throw Unavailable(sweep->error);
   return sweep;
 }
 
@@ -184,16 +200,17 @@ void SweepKeeper::cancel_runs(const std::string& id) {
 }
 
 void SweepKeeper::remove(const std::string& id) {
-  const SweepStage stage = checked(id)->state.state;
+  const SweepEntryPtr sweep = checked(id);
+  const SweepStage stage = sweep->state.state;
   if (!is_over(stage)) {
     throw Conflict(fmt::format("The sweep is {}: only a sweep that is over can be removed.",
                                enum_name(stage)));
   }
-  JobTable::Query runs;
-  runs.sweep = id;
-  runs.limit = std::numeric_limits<std::size_t>::max();
   std::vector<std::string> jobs;
-  for (const EntryPtr& entry : jobs_.list(runs).jobs) jobs.push_back(entry->id);
+  for (std::size_t i = sweep->state.runs; i-- > 0;) {
+    const EntryPtr run = jobs_.find(run_job_id(id, i));
+    if (run && run->sweep == id) jobs.push_back(run->id);
+  }
   queue_.check_removable(jobs);
   // The sweep last: a crash before leaves one that can be removed once more.
   constexpr std::size_t at_once = 100;  // the queue stands still meanwhile

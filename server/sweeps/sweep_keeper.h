@@ -17,9 +17,10 @@
 namespace lacuna {
 
 /// Feeds the runs of sweeps into the queue as jobs, a few at a time and in the plan's order, and
-/// detects when a sweep is over. Makes the sweep of a job's shards if a crash, or somebody, has
-/// left the job without, and stops it with its job. Its state is in the folders: a run that exists
-/// as a job is not created again, even after a restart.
+/// detects when a sweep is over. A sweep that cannot be read now is looked at again. Makes the
+/// sweep of a job's shards if a crash, or somebody, has left the job without, and stops it with its
+/// job. Its state is in the folders: a run that exists as a job is not created again, even after a
+/// restart.
 class SweepKeeper {
  public:
   /// Runs of one sweep that are jobs and not over: the queue never has to wait for the next, and
@@ -39,11 +40,11 @@ class SweepKeeper {
   void notice();
 
   /// Stops a sweep for good: what is not over is cancelled, and no run is made any more. On disk
-  /// before it returns; nothing happens if it is cancelled already. Throws Conflict and
-  /// std::system_error.
+  /// before it returns; nothing happens if it is cancelled already. Throws Conflict, Unavailable
+  /// and std::system_error.
   void cancel(const std::string& id);
-  /// Removes a sweep that is over, and its jobs. Throws Conflict, with nothing removed yet, and
-  /// std::system_error.
+  /// Removes a sweep that is over, and its jobs. Throws Conflict and Unavailable, with nothing
+  /// removed yet, and std::system_error.
   void remove(const std::string& id);
 
  private:
@@ -56,6 +57,7 @@ class SweepKeeper {
   void run(const std::stop_token& ends);
   void look_after_all(const std::stop_token& ends);
   void make_missing();
+  bool read_again(const std::string& id);
   bool is_in_vain(const std::string& id) const;
   bool look_after(const std::string& id);
   bool make_next(const std::string& id, Feed& feed);

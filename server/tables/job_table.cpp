@@ -76,6 +76,8 @@ void JobTable::put_in(EntryPtr entry) {
     merged_[entry->control.shards] = entry->id;
     if (!entry->over) unmerged_.insert(entry->id);
   }
+  if (!entry->over && !entry->reference.empty()) measured_.emplace(entry->reference, entry->id);
+  if (entry->unread) unread_.insert(entry->id);
   by_id_[entry->id] = entry;
   jobs_.insert(std::move(entry));
 }
@@ -91,6 +93,8 @@ EntryPtr JobTable::take_out(const std::string& id) {
   if (run_counts.jobs() == 0) run_counts_.erase(entry->sweep);
   if (!entry->control.shards.empty()) merged_.erase(entry->control.shards);
   unmerged_.erase(id);
+  measured_.erase({entry->reference, id});
+  unread_.erase(id);
   jobs_.erase(entry);
   by_id_.erase(found);
   return entry;
@@ -122,6 +126,18 @@ std::vector<EntryPtr> JobTable::without_shards() const {
     if (!sweeps_.find(entry->control.shards)) jobs.push_back(entry);
   }
   return jobs;
+}
+
+std::optional<std::string> JobTable::measured_against(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto first = measured_.lower_bound({id, ""});
+  if (first == measured_.end() || first->first != id) return std::nullopt;
+  return first->second;
+}
+
+EntryPtr JobTable::unread() const {
+  const std::lock_guard lock(mutex_);
+  return unread_.empty() ? nullptr : by_id_.at(*unread_.begin());
 }
 
 bool JobTable::waits_for_shards(const JobEntry& entry) const {

@@ -110,6 +110,11 @@ class JobTable {
   EntryPtr merged_from(const std::string& sweep) const;
   /// Jobs that are not over and whose sweep of shards is not there.
   std::vector<EntryPtr> without_shards() const;
+  /// An unfinished job whose reference is this one; nothing: there is none.
+  std::optional<std::string> measured_against(const std::string& id) const;
+  /// A job whose folder cannot be read now, so that nobody knows which others it needs; nothing:
+  /// there is none.
+  EntryPtr unread() const;
   /// Whether its shards are still to be rendered: their sweep, or a run of it, is not over, or is
   /// not made yet.
   bool waits_for_shards(const JobEntry& entry) const;
@@ -156,6 +161,9 @@ class JobTable {
   std::map<std::string, RunCounts> run_counts_;  // of sweeps; "": of jobs of none
   std::map<std::string, std::string> merged_;    // sweeps of shards, and the job of each
   std::set<std::string> unmerged_;               // those jobs that are not over
+  // References of jobs that are not over, and these jobs.
+  std::set<std::pair<std::string, std::string>> measured_;
+  std::set<std::string> unread_;
   std::int64_t scanned_ = -1;    // the folder's time of change when it was last read
   std::size_t not_indexed_ = 0;  // jobs that have come to an end, or are gone, since the index
 };

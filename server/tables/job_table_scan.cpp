@@ -7,6 +7,7 @@
 #include <functional>
 #include <future>
 
+#include "analysis/storage/passing_error.h"
 #include "server/tables/job_index.h"
 #include "server/tables/job_table.h"
 #include "server/telemetry/log.h"
@@ -59,8 +60,8 @@ void JobTable::rescan() {
   const auto [fresh, gone] = compare(there);
   add_all(fresh, settled);
   for (const std::string& id : gone) {
-    std::error_code ignored;  // it may have been added while the folder was read
-    if (!std::filesystem::exists(folder(id).dir(), ignored)) remove(id);
+    // It may have been added while the folder was read.
+    if (is_gone(folder(id).dir())) remove(id);
   }
 }
 

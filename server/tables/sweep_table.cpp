@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "analysis/storage/file_handle.h"
+#include "analysis/storage/passing_error.h"
 #include "jobs/store/new_folder.h"
 #include "server/telemetry/log.h"
 
@@ -18,9 +19,11 @@ SweepEntryPtr read_sweep(const std::filesystem::path& dir) {
     entry->state = read_sweep_state(dir);
     entry->label = read_sweep_spec(dir).label;
   } catch (const std::exception& error) {  // a damaged folder hides no other sweep
-    entry->state.state = SweepStage::failed;
-    entry->error = fmt::format("the sweep's folder cannot be read: {}", error.what());
-    log::error("{} is left alone: {}", entry->id, error.what());
+    entry->unread = may_pass(error);
+    if (entry->unread) entry->state = {};
+    if (!entry->unread) entry->state.state = SweepStage::failed;
+    entry->error = fmt::format("the sweep's folder cannot be read{}: {}",
+                               entry->unread ? " for now" : "", error.what());
   }
   return entry;
 }
@@ -28,14 +31,12 @@ SweepEntryPtr read_sweep(const std::filesystem::path& dir) {
 }  // namespace
 
 void SweepTable::read() {
-  namespace fs = std::filesystem;
-  fs::create_directories(data_.sweeps());
+  std::filesystem::create_directories(data_.sweeps());
   remove_stale_folders(data_.sweeps());
   const std::lock_guard lock(mutex_);
-  for (const auto& entry : fs::directory_iterator(data_.sweeps())) {
-    const std::string id = entry.path().filename().string();
-    if (!is_job_id(id) || !fs::is_directory(entry.symlink_status())) continue;
-    sweeps_[id] = read_sweep(entry.path());
+  for (const std::string& id : list_job_names(data_.sweeps())) {
+    const SweepEntryPtr entry = sweeps_[id] = read_sweep(dir(id));
+    if (!entry->error.empty()) log::error("{} is left alone: {}", id, entry->error);
   }
 }
 
@@ -43,6 +44,15 @@ SweepEntryPtr SweepTable::find(const std::string& id) const {
   const std::lock_guard lock(mutex_);
   const auto found = sweeps_.find(id);
   return found == sweeps_.end() ? nullptr : found->second;
+}
+
+bool SweepTable::reread(const std::string& id) {
+  SweepEntryPtr entry = read_sweep(dir(id));
+  if (entry->unread) return false;
+  log::info("{}: its folder can be read again", id);
+  const std::lock_guard lock(mutex_);
+  sweeps_[id] = std::move(entry);
+  return true;
 }
 
 std::vector<SweepEntryPtr> SweepTable::all() const {
@@ -60,7 +70,8 @@ std::string SweepTable::sweep_of(const std::string& job_id) const {
   for (auto it = sweeps_.lower_bound(job_id.substr(0, to_the_second)); it != sweeps_.end(); ++it) {
     const auto index = run_index(it->first, job_id);
     if (!index) break;
-    if (*index < it->second->state.runs) return it->first;
+    const std::size_t runs = it->second->unread ? max_sweep_runs : it->second->state.runs;
+    if (*index < runs) return it->first;
   }
   return {};
 }

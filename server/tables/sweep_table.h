@@ -17,7 +17,8 @@ namespace lacuna {
 struct SweepEntry {
   std::string id, label;
   SweepState state;
-  std::string error;  ///< of `failed`: what is wrong with its folder
+  bool unread = false;  ///< its folder cannot be read for now: of `state` nothing is known
+  std::string error;    ///< of `failed`: what is wrong with its folder; of `unread`: why
 };
 using SweepEntryPtr = std::shared_ptr<const SweepEntry>;
 
@@ -35,9 +36,12 @@ class SweepTable {
   SweepEntryPtr find(const std::string& id) const;
   /// All of them, oldest first.
   std::vector<SweepEntryPtr> all() const;
-  /// The sweep that a job is a run of; empty: none.
+  /// Reads an `unread` sweep again. True: it can be read now, or is damaged.
+  bool reread(const std::string& id);
+  /// The sweep that a job is a run of; empty: none. One that is `unread` may have any number of
+  /// runs.
   std::string sweep_of(const std::string& job_id) const;
-  /// Those that are not over: their jobs are not to be removed.
+  /// Those that are not over, and `unread` ones: their jobs are not to be removed.
   std::set<std::string> unfinished() const;
   bool is_unfinished(const std::string& id) const;
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "server/queue/queue.h"
+#include "tests/server/no_executor.h"
 #include "tests/temporary_folder.h"
 
 namespace lacuna {
@@ -62,6 +63,11 @@ TEST(Retention, NeverAReferenceNorADamagedOne) {
   EXPECT_EQ(outdated({jobs[0]}, {}, keep(0, 1), now), Ids{"a"}) << "once nothing names it";
 }
 
+TEST(Retention, NothingAsLongAsAJobCannotBeRead) {
+  const auto unread = unread_entry("u", std::runtime_error("not now"));
+  EXPECT_EQ(outdated({job("a", 100), unread}, {}, keep(0, 1), now), Ids{}) << "it may need a";
+}
+
 TEST(Retention, NoRunOfASweepThatIsNotOver) {
   auto run = std::make_shared<JobEntry>(*job("a", 100));
   run->sweep = "s";
@@ -70,12 +76,6 @@ TEST(Retention, NoRunOfASweepThatIsNotOver) {
   EXPECT_EQ(outdated(jobs, {"s"}, keep(1, 0), now), Ids{"b"}) << "it does not count";
   EXPECT_EQ(outdated(jobs, {"t"}, keep(1, 0), now), (Ids{"a", "b"}));
 }
-
-/// Never asked: the queue of these tests does not begin.
-class NoExecutor final : public Executor {
- public:
-  Ending run(const JobFolder&, const StopSignal&, const Notices&) override { return {}; }
-};
 
 /// A queue over the folders of a data root.
 class RetentionOnDisk : public testing::Test {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "server/routes/named_files.h"
+#include "tests/failing_files.h"
 #include "tests/temporary_folder.h"
 
 namespace lacuna {
@@ -63,6 +64,33 @@ TEST(SweepTable, IsTheSameAfterARestart) {
   EXPECT_EQ(sweeps.find(damaged)->state.state, SweepStage::failed);
   EXPECT_EQ(sweeps.sweep_of(run_job_id(damaged, 1)), damaged);
   EXPECT_EQ(sweeps.open(running), sweeps.open(running)) << "its plan is made once";
+}
+
+TEST(SweepTable, OneThatCannotBeReadNowIsNotOver) {
+  const TemporaryFolder tmp;
+  const DataRoot data{tmp.path()};
+  std::string id;
+  {
+    SweepTable sweeps(data);
+    sweeps.read();
+    id = make(sweeps)->id;
+    sweeps.set_stage(id, SweepStage::done);
+  }
+  for (const char* name : {"state.json", "sweep.json"}) {
+    SweepTable sweeps(data);
+    {
+      const FailingFiles failing(FileCall::open, name);
+      sweeps.read();
+      EXPECT_FALSE(sweeps.reread(id));
+    }
+    EXPECT_TRUE(sweeps.find(id)->unread);
+    EXPECT_FALSE(sweeps.find(id)->error.empty());
+    EXPECT_EQ(sweeps.unfinished(), std::set<std::string>{id}) << "its jobs are not to be removed";
+    EXPECT_EQ(sweeps.sweep_of(run_job_id(id, 2)), id) << "and all that may be its jobs are";
+    EXPECT_TRUE(sweeps.reread(id));
+    EXPECT_EQ(sweeps.find(id)->state.state, SweepStage::done);
+    EXPECT_EQ(sweeps.sweep_of(run_job_id(id, 3)), "");
+  }
 }
 
 TEST(NamedFiles, EachNameIsLookedUpOnce) {

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "server/queue/executor.h"
+
+namespace lacuna {
+
+/// Never asked: the queue of such tests has no runners.
+class NoExecutor final : public Executor {
+ public:
+  Ending run(const JobFolder&, const StopSignal&, const Notices&) override { return {}; }
+};
+
+}  // namespace lacuna
