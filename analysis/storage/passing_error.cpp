@@ -4,20 +4,22 @@
 #include <array>
 #include <cerrno>
 #include <new>
-#include <system_error>
 
 namespace lacuna {
 
 bool may_pass(int error) {
-  // EPERM: a file that was made immutable; EFBIG: beyond RLIMIT_FSIZE; ENOLCK, ESTALE and
-  // ETIMEDOUT: file systems of other machines.
-  constexpr std::array passing{ENOSPC, EDQUOT, EROFS,  EFBIG,  EIO,    EACCES,    EPERM,  EMFILE,
-                               ENFILE, EAGAIN, ENOMEM, ENOLCK, ESTALE, ETIMEDOUT, ELIBACC};
+  // EPERM: a file that was made immutable; EFBIG: beyond RLIMIT_FSIZE; from ENOLCK to EREMOTEIO:
+  // file systems of other machines.
+  constexpr std::array passing{ENOSPC,    EDQUOT,       EROFS,     EFBIG,     EIO,
+                               EACCES,    EPERM,        EMFILE,    ENFILE,    EAGAIN,
+                               ENOMEM,    ENOLCK,       ESTALE,    ETIMEDOUT, ENOTCONN,
+                               EHOSTDOWN, EHOSTUNREACH, EREMOTEIO, ELIBACC};
   return std::find(passing.begin(), passing.end(), error) != passing.end();
 }
 
 bool may_pass(const std::exception& error) {
   if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return true;
+  if (dynamic_cast<const InputUnreadable*>(&error) != nullptr) return true;
   const auto* system = dynamic_cast<const std::system_error*>(&error);
   return system != nullptr && may_pass(system->code().value());
 }

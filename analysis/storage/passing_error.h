@@ -1,8 +1,9 @@
 #pragma once
 
 #include <chrono>
-#include <exception>
 #include <filesystem>
+#include <string>
+#include <system_error>
 
 namespace lacuna {
 
@@ -11,7 +12,17 @@ namespace lacuna {
 /// is read-only, fails or is away; a missing permission; a file beyond the size limit; a shared
 /// library that is missing or being written (ELIBACC).
 bool may_pass(int error);
-/// The same of an exception: std::bad_alloc, or a std::system_error with such an errno.
+
+/// A file that a picture is made from cannot be opened or read now, for a reason that may pass
+/// (input_file.h). The errno may be ENOENT: the folder is away.
+class InputUnreadable : public std::system_error {
+ public:
+  InputUnreadable(int error, const std::string& what)
+      : std::system_error(error, std::generic_category(), what) {}
+};
+
+/// The same of an exception: std::bad_alloc, InputUnreadable, or a std::system_error with such an
+/// errno.
 bool may_pass(const std::exception& error);
 
 /// The wait after the n-th fault in a row: 0.25 s that double with each, up to `longest`.

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 
 #include "jobs/cli/commands.h"
 #include "jobs/results/results.h"
+#include "jobs/store/inputs.h"
 #include "renderer/film/block_statistics.h"
 #include "renderer/film/display_errors.h"
 #include "renderer/film/metrics.h"
@@ -90,13 +92,50 @@ void print_blocks(const CompareOptions& o, const Crop& crop, const std::vector<d
              s.z_beyond);
 }
 
-void compare(const CompareOptions& o) {
+/// The picture that a path names: of a job's folder its own.
+std::filesystem::path picture_of(const std::filesystem::path& named) {
+  return std::filesystem::is_directory(named) ? named / "image.exr" : named;
+}
+
+/// What a picture in a job's folder was made from, but the reference; empty: not known.
+InputList inputs_of(const std::filesystem::path& picture) {
+  InputList inputs = read_inputs(JobFolder(picture.parent_path())).value_or(InputList{});
+  std::erase_if(inputs, [](const InputFile& file) { return file.role == InputRole::reference; });
+  return inputs;
+}
+
+/// Pictures of different scenes may be compared on purpose.
+void warn_of_other_scenes(const CompareOptions& o, const FloatImage& a, const FloatImage& b) {
+  const InputList of_a = inputs_of(o.a), of_b = inputs_of(o.b);
+  std::vector<std::string> differences = changed_inputs(of_b, of_a);
+  if (!of_a.empty() && !of_b.empty()) {
+    const std::string scene_a = input_text(of_a.front()), scene_b = input_text(of_b.front());
+    if (scene_a != scene_b) differences.push_back(scene_a + " in place of " + scene_b);
+  } else {
+    const auto hash = [](const FloatImage& image) {
+      const auto found = image.attributes.find("lacuna:scene_hash");
+      return found == image.attributes.end() ? "" : found->second;
+    };
+    const std::string hash_a = hash(a), hash_b = hash(b);
+    if (!hash_a.empty() && !hash_b.empty() && hash_a != hash_b) {
+      differences.push_back(fmt::format("a scene of hash {} in place of {}", hash_a, hash_b));
+    }
+  }
+  if (differences.empty()) return;
+  fmt::print(stderr, "warning: {} was made from other files than {}: {}\n", o.a.string(),
+             o.b.string(), fmt::join(differences, "; "));
+}
+
+void compare(CompareOptions o) {
+  o.a = picture_of(o.a);
+  o.b = picture_of(o.b);
   const FloatImage image_a = read_reference_image(o.a);
   const FloatImage image_b = read_reference_image(o.b);
   if (image_a.width != image_b.width || image_a.height != image_b.height) {
     throw SceneError(fmt::format("{} has {} x {} pixels, {} {} x {}", o.a.string(), image_a.width,
                                  image_a.height, o.b.string(), image_b.width, image_b.height));
   }
+  warn_of_other_scenes(o, image_a, image_b);
   const Crop crop = crop_of(o, image_a);
   const std::vector<double> a = in_double(image_a, crop);
   const std::vector<double> b = in_double(image_b, crop);
@@ -123,8 +162,10 @@ void add_compare(CLI::App& app, int& code) {
       "Print all errors of one EXR against another, and their means; display_mse, "
       "psnr and ssim compare sRGB values of 0 to 255, at the exposure of B's "
       "preview");
-  command->add_option("A", o->a, "the estimate")->required()->check(CLI::ExistingFile);
-  command->add_option("B", o->b, "the reference")->required()->check(CLI::ExistingFile);
+  command->add_option("A", o->a, "the estimate: an EXR, or a job's folder")
+      ->required()
+      ->check(CLI::ExistingPath);
+  command->add_option("B", o->b, "the reference, likewise")->required()->check(CLI::ExistingPath);
   command
       ->add_option("--block", o->block,
                    "also compare the means of square blocks with sides of this many pixels; with a "

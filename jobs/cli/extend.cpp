@@ -5,6 +5,7 @@
 #include "jobs/cli/commands.h"
 #include "jobs/cli/render_job.h"
 #include "jobs/render/run_job.h"
+#include "jobs/run/input_check.h"
 #include "jobs/spec/budget_extension.h"
 #include "jobs/spec/described_json.h"
 #include "jobs/spec/job_json.h"
@@ -45,15 +46,12 @@ void extend(const JobFolder& folder, const ExtendOptions& o) {
   throw_if_any(extension_problems(spec.budget, larger));
   spec.budget = larger;
   parse_job(write_job(spec));  // the ranges
-  JobState state = folder.read_state();
-  if (is_terminal(state.state)) {
-    // First the state: a crash in between leaves a job that ends at once with its old budget, and
-    // not one that says it is done and is not.
-    state.state = State::queued;
-    state.error.clear();
-    state.finished.clear();
-    folder.write_state(state);
-  }
+  // Before anything is written: what is refused stays as it is.
+  InputCheck check(DataRoot::from_environment(), ScenesRoots::from_environment());
+  refuse_changed_inputs(folder, check.changes(folder).value_or(std::vector<std::string>{}));
+  // First the state: a crash in between leaves a job that ends at once with its old budget, and not
+  // one that says it is done and is not.
+  if (is_terminal(folder.read_state().state)) reopen(folder);
   folder.write_job(spec);
 }
 

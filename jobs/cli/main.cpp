@@ -15,8 +15,8 @@ constexpr const char* about =
     "Lacuna renders light transport in occluded scenes and measures error against time.";
 constexpr const char* footer =
     "Exit codes: 0 done, 1 other error, 2 bad job or command line, 3 scene or other asset,\n"
-    "71 out of memory, 75 interrupted or disk full (the same command continues from the "
-    "checkpoint).\n"
+    "71 out of memory, 75 interrupted, disk full, or a file that cannot be read now (the same "
+    "command\ncontinues from the checkpoint).\n"
     "Environment: LACUNA_SCENES, folders of scenes (separated by ':');\n"
     "LACUNA_DATA, folder of jobs, references and cache (default: lacuna-data);\n"
     "LACUNA_CACHE, another folder for the cache of artefacts; LACUNA_CACHE_LIMIT, its size limit,\n"
@@ -55,6 +55,7 @@ lacuna::ExitCode lacuna::exit_code_of(const std::exception& e) {
     case Obstacle::memory:
       return exit_memory;
     case Obstacle::storage:
+    case Obstacle::input:
       return exit_interrupted;
     case Obstacle::none:
       break;

@@ -100,11 +100,32 @@ std::string advice_for(Obstacle obstacle) {
     case Obstacle::storage:
       return "nothing stored is lost: with room to write the same command goes on from the last "
              "checkpoint";
+    case Obstacle::input:
+      return "this may pass: once the file can be read the same command goes on";
   }
   return "";
 }
 
 }  // namespace
+
+void reopen(const JobFolder& folder) {
+  JobState state = folder.read_state();
+  state.state = State::queued;
+  state.error.clear();
+  state.finished.clear();
+  folder.write_state(state);
+}
+
+void start_again(const JobFolder& folder) {
+  const auto lock = folder.try_lock();
+  if (!lock) {
+    throw FolderBusy(fmt::format("{}: another process works on this job", folder.dir().string()));
+  }
+  reopen(folder);  // first: a job that is done has a checkpoint
+  for (const char* name : {"checkpoint.bin", "inputs.json", "progress.json"}) {
+    fs::remove(folder.file(name));
+  }
+}
 
 int render_folder(const JobFolder& folder, const RenderOptions& options) {
   // A full disk or a size limit must become an error, not the end of the process.
@@ -117,11 +138,13 @@ int render_folder(const JobFolder& folder, const RenderOptions& options) {
                            terminal,
                            options.shards};
   try {
-    if (folder.read_state().state == State::done) {
+    const bool was_done = folder.read_state().state == State::done;
+    const Outcome outcome = run_job(folder, context);
+    if (was_done) {
       terminal.milestone(fmt::format("{}: done already", folder.dir().string()));
       return exit_done;
     }
-    if (run_job(folder, context) == Outcome::interrupted) {
+    if (outcome == Outcome::interrupted) {
       terminal.milestone("interrupted; the same command continues from here");
       return exit_interrupted;
     }
@@ -138,6 +161,7 @@ void add_render(CLI::App& app, int& code) {
   struct Options : RenderOptions {
     fs::path job, out;
     std::string shard;
+    bool again = false;
   };
   const auto o = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("render", "Render a job file, or continue a job's folder");
@@ -153,6 +177,8 @@ void add_render(CLI::App& app, int& code) {
       ->add_option("-t,--threads", o->threads,
                    "number of threads instead of the job's; 0: one per core")
       ->check(CLI::Range(0, 1024));
+  command->add_flag("--again", o->again,
+                    "render anew what is rendered already, from the files as they are now");
   command->add_flag("-q,--quiet", o->quiet, "show warnings and errors only");
   command->callback([o, &code] {
     const bool is_folder = fs::is_directory(o->job);
@@ -163,6 +189,7 @@ void add_render(CLI::App& app, int& code) {
     }
     const JobFolder folder =
         is_folder ? JobFolder(folder_path(o->job)) : folder_for(o->job, o->out, o->shard);
+    if (o->again) start_again(folder);
     code = render_folder(folder, *o);
   });
 }

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <charconv>
@@ -16,10 +17,13 @@
 #include "analysis/storage/passing_error.h"
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
+#include "jobs/cli/render_job.h"
 #include "jobs/cli/render_process.h"
 #include "jobs/cli/results_folder.h"
 #include "jobs/cli/slurm_sweep.h"
 #include "jobs/cli/terminal.h"
+#include "jobs/render/run_job.h"
+#include "jobs/run/input_check.h"
 #include "jobs/slurm/request.h"
 #include "jobs/slurm/run_program.h"
 #include "jobs/slurm/submission.h"
@@ -231,6 +235,65 @@ std::vector<std::size_t> indices_of(const std::map<std::size_t, JobState>& runs)
   return indices;
 }
 
+/// The runs that are left to do: what is not done, and what was made from other files than there
+/// are now.
+class LeftRuns {
+ public:
+  LeftRuns(const SweepFolder& folder, std::set<std::size_t> wanted, Terminal& terminal)
+      : folder_(folder), wanted_(std::move(wanted)), terminal_(terminal) {}
+
+  /// By their indices. Runs of changed inputs are told, and, unless only `looking`, begin anew.
+  std::map<std::size_t, JobState> find(bool looking) {
+    std::map<std::size_t, JobState> left;
+    std::size_t unrecorded = 0;
+    InputCheck check(DataRoot::from_environment(), ScenesRoots::from_environment());
+    for (std::size_t i = 1; i <= folder_.plan().runs.size(); ++i) {
+      if (!wanted_.empty() && !wanted_.contains(i)) continue;
+      const SweepRun& run = folder_.plan().runs[i - 1];
+      JobState state = folder_.state(run);
+      if (is_stale(run, state, check, unrecorded) && (looking || start_anew(run))) {
+        state.state = State::queued;
+      }
+      if (state.state != State::done) left.emplace(i, std::move(state));
+    }
+    if (unrecorded > 0 && !std::exchange(told_, true)) {
+      terminal_.warning(fmt::format("{} runs: {}", unrecorded, inputs_not_recorded));
+    }
+    return left;
+  }
+
+ private:
+  bool is_stale(const SweepRun& run, const JobState& state, InputCheck& check,
+                std::size_t& unrecorded) {
+    if (state.created.empty()) return false;  // not made yet
+    const auto changes = check.changes(folder_.folder(run));
+    if (!changes) {
+      ++unrecorded;
+      return false;
+    }
+    if (changes->empty()) return false;
+    terminal_.warning(fmt::format("{} was rendered from other files ({}): it is rendered anew",
+                                  run.name, fmt::join(*changes, "; ")));
+    return true;
+  }
+
+  /// False: another process has it.
+  bool start_anew(const SweepRun& run) {
+    try {
+      start_again(folder_.folder(run));
+      return true;
+    } catch (const FolderBusy& e) {
+      terminal_.warning(e.what());
+      return false;
+    }
+  }
+
+  const SweepFolder& folder_;
+  const std::set<std::size_t> wanted_;
+  Terminal& terminal_;
+  bool told_ = false;  // that some runs did not record their inputs
+};
+
 int run_on_slurm(const SweepFolder& folder, const SweepOptions& o,
                  const std::map<std::size_t, JobState>& left) {
   check_slurm_programs("--executor slurm");
@@ -258,18 +321,23 @@ int sweep(const SweepOptions& o) {
                                    folder.dir().string())}});
   }
   if (o.list) return print_runs(folder), exit_done;
-  std::set<std::size_t> wanted = parse_indices(o.index, runs.size());
-  std::map<std::size_t, JobState> left;
-  for (std::size_t i = 1; i <= runs.size(); ++i) {
-    if (!wanted.empty() && !wanted.contains(i)) continue;
-    JobState state = folder.state(runs[i - 1]);
-    if (state.state != State::done) left.emplace(i, std::move(state));
+  Terminal terminal({}, o.quiet);
+  LeftRuns left_runs(folder, parse_indices(o.index, runs.size()), terminal);
+  if (o.missing) {
+    return fmt::print("{}\n", index_ranges(indices_of(left_runs.find(true)))), exit_done;
   }
-  if (o.missing) return fmt::print("{}\n", index_ranges(indices_of(left))), exit_done;
   // Tasks of an array do parts of it.
   if (!o.on_slurm && o.index.empty()) check_not_submitted(folder);
-  const int code =
-      o.on_slurm ? run_on_slurm(folder, o, left) : Runner(folder, o).run(indices_of(left));
+  const auto run = [&](const std::map<std::size_t, JobState>& left) {
+    return o.on_slurm ? run_on_slurm(folder, o, left) : Runner(folder, o).run(indices_of(left));
+  };
+  int code = run(left_runs.find(false));
+  // What changed meanwhile would mix two contents in one report.
+  while (code == exit_done) {
+    const auto left = left_runs.find(false);
+    if (left.empty()) break;
+    code = run(left);
+  }
   if (o.index.empty()) {
     write_file_atomically(folder.dir() / "table.csv", sweep_table(folder));
     if (!o.quiet) {

@@ -6,13 +6,13 @@
 #include "renderer/scene/particles.h"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <numbers>
 
-#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/available_memory.h"
+#include "analysis/storage/passing_error.h"
 #include "jobs/render/verdicts.h"
 #include "renderer/scene/scene_shape.h"
 
@@ -38,9 +38,16 @@ SceneNeeds needs_of(const JobSpec& spec, const Integrator& integrator) {
   return needs;
 }
 
-std::uint64_t file_hash(const std::filesystem::path& file) {
-  const std::string bytes = read_file(file, std::size_t{1} << 32);
-  return XXH3_64bits(bytes.data(), bytes.size());
+/// The environment of the job, as it is now.
+InputFile measure_environment(const std::string& name, const std::filesystem::path& file) {
+  try {
+    InputFile measured = measure_input(file);
+    measured.role = InputRole::environment;
+    measured.name = name;
+    return measured;
+  } catch (const std::invalid_argument& e) {
+    throw SceneError(fmt::format("{} {}", file.string(), e.what()));
+  }
 }
 
 /// The analysis of the scene's empty space as seen by the job's camera, of which nothing is built.
@@ -83,7 +90,8 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   p.pool = std::make_unique<ThreadPool>(context.threads >= 0 ? context.threads : spec.threads,
                                         context.interrupted);
   p.integrator = make_integrator(spec.integrator);
-  SceneData data = load_gltf(resolve(context, "scene", spec.scene, {".glb", ".gltf"}));
+  SceneData data = load_gltf(resolve(context, "scene", spec.scene, scene_extensions), &p.inputs);
+  p.inputs.front().name = spec.scene;
   if (spec.material) change_material(data, *spec.material, spec.scene);
   if (spec.particles) add_particles(data, *spec.particles);
   const CameraData camera = spec.camera.object ? look_at(*spec.camera.object, data.origin)
@@ -108,12 +116,18 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   std::optional<EnvironmentImage> environment;
   if (spec.environment && needs.emission) {
     const auto& e = *spec.environment;
-    environment = {resolve(context, "environment", e.file, {".exr", ".hdr"}),
+    environment = {resolve(context, "environment", e.file, environment_extensions),
                    static_cast<float>(e.scale),
                    static_cast<float>(e.rotation * std::numbers::pi / 180)};
-    p.content += fmt::format("-{:016x}", file_hash(environment->file));
+    p.inputs.push_back(measure_environment(e.file, environment->file));
+    p.content += fmt::format("-{}", p.inputs.back().hash);
   }
   p.scene = std::make_unique<Scene>(std::move(data), needs, environment, *p.pool);
+  if (environment &&
+      measure_environment(spec.environment->file, environment->file) != p.inputs.back()) {
+    throw InputUnreadable(EAGAIN,
+                          fmt::format("{} changed while it was read", environment->file.string()));
+  }
   if (needs.emission && p.scene->emitters().empty()) {
     p.warnings.emplace_back("the scene has no light: the picture is black");
   }

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "jobs/render/run_job.h"
+#include "jobs/store/inputs.h"
 #include "renderer/integrators/integrator.h"
 #include "renderer/race/verdict.h"
 
@@ -20,11 +21,12 @@ struct Prepared {
   std::unique_ptr<SpaceAnalysis> space;     ///< nothing of it is built yet
   std::unique_ptr<VerdictMemory> verdicts;  ///< null: the budget is not limited by time
   std::string content;                      ///< hashes of the files the picture depends on
+  InputList inputs;                         ///< these files; the reference is not among them
   std::vector<std::string> warnings;
 };
 
 /// Loads and builds what `spec` needs, and only that. Throws SceneError: no such scene or camera,
-/// an asset that cannot be used; and Stopped.
+/// an asset that cannot be used; InputUnreadable; and Stopped.
 Prepared prepare(const JobSpec& spec, const RunContext& context);
 
 /// Lets the integrator look at the scene and at its empty space; only what it asks for is built, or

@@ -15,6 +15,7 @@
 #include "jobs/render/prepare.h"
 #include "jobs/results/report.h"
 #include "jobs/results/results.h"
+#include "jobs/run/input_check.h"
 #include "jobs/run/machine_watch.h"
 #include "jobs/run/obstacle.h"
 #include "jobs/run/reference.h"
@@ -114,6 +115,9 @@ std::optional<Reference> make_auto_reference(const JobFolder& folder, const JobS
   if (!named.camera.object) named.camera.name = prepared.camera_name;
   const ReferenceJob job = auto_reference(named, context.data, prepared.content);
   const auto& dir = job.folder.dir();
+  const auto read = [&] {
+    return read_reference("auto", job.folder.file("image.exr"), spec.resolution);
+  };
   if (!std::filesystem::exists(dir)) {
     std::filesystem::create_directories(dir.parent_path());
     try {
@@ -122,11 +126,13 @@ std::optional<Reference> make_auto_reference(const JobFolder& folder, const JobS
       // Somebody else was quicker: the lock decides who renders.
     }
   }
+  // Its inputs are unchanged: their hashes are in its name.
+  if (job.folder.read_state().state == State::done) return read();
   ReferenceObserver observer(folder, context.observer);
   const RunContext own{context.data, context.scenes, context.threads, context.interrupted,
                        observer};
   if (run_or_wait(job.folder, own) == Outcome::interrupted) return std::nullopt;
-  return read_reference("auto", job.folder.file("image.exr"), spec.resolution);
+  return read();
 }
 
 /// Bits are a contract on one machine, and its libraries may choose by the processor.
@@ -138,6 +144,17 @@ void warn_of_processors(const std::vector<Shard>& shards, Running& running) {
       "the shards were rendered on {} kinds of processors ({}): their last bits may differ from "
       "those of one machine",
       names.size(), fmt::join(names, "; ")));
+}
+
+/// The inputs of what this run goes on from, its own checkpoint or shards; nothing if it begins
+/// anew, or they are not recorded.
+std::optional<InputList> earlier_inputs(const JobFolder& folder, const std::vector<Shard>* shards,
+                                        Running& running) {
+  const bool resumes = std::filesystem::exists(folder.file("checkpoint.bin"));
+  if (shards == nullptr && !resumes) return std::nullopt;
+  auto inputs = read_inputs(shards != nullptr ? shards->front().folder : folder);
+  if (!inputs) running.warn(inputs_not_recorded);
+  return inputs;
 }
 
 Outcome render(const JobFolder& folder, const RunContext& context, Running& running) {
@@ -160,6 +177,9 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
     prepared = prepare(spec, context);
   }
   for (const std::string& w : prepared.warnings) running.warn(w);
+  const auto earlier = earlier_inputs(folder, shards ? &*shards : nullptr, running);
+  InputList& inputs = prepared.inputs;
+  if (earlier) refuse_changed_inputs(folder, changed_inputs(*earlier, inputs));
 
   if (prepared.integrator->needs().space) running.phase("analysing");
   try {
@@ -179,8 +199,11 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
       if (!reference) return Outcome::interrupted;
     } else {
       reference = find_reference(spec, context.data, context.scenes);
+      inputs.push_back(reference->input);
+      if (earlier) refuse_changed_inputs(folder, changed_inputs(*earlier, inputs));
     }
   }
+  write_inputs(folder, inputs);
 
   {
     // What loads must not compete with what is timed.
@@ -240,14 +263,27 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
   return Outcome::done;
 }
 
+/// Whether the job is done with the inputs that there are now. Throws BadJob if these are others.
+bool is_done(const JobFolder& folder, const RunContext& context) {
+  if (folder.read_state().state != State::done) return false;
+  const auto changes = InputCheck(context.data, context.scenes).changes(folder);
+  if (changes) {
+    refuse_changed_inputs(folder, *changes);
+  } else {
+    context.observer.warning(inputs_not_recorded);
+  }
+  return true;
+}
+
 }  // namespace
 
 Outcome run_job(const JobFolder& folder, const RunContext& context) {
+  if (is_done(folder, context)) return Outcome::done;
   const auto lock = folder.try_lock();
   if (!lock) {
     throw FolderBusy(fmt::format("{}: another process works on this job", folder.dir().string()));
   }
-  if (folder.read_state().state == State::done) return Outcome::done;
+  if (is_done(folder, context)) return Outcome::done;
   Running running(folder, context.observer);
   try {
     const Outcome outcome = render(folder, context, running);

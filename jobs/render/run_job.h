@@ -33,6 +33,9 @@ class FolderBusy : public std::runtime_error {
 /// SceneError and others. What another time may bring (see Obstacle) leaves the job `interrupted`
 /// with the reason, if the state can be written at all, and the exception goes on, too. A job that
 /// is done is left as it is. Throws FolderBusy.
+///
+/// What a job reads is recorded in inputs.json. A job that has a checkpoint, or is done, throws
+/// BadJob if its inputs have changed since (InputCheck); then a result that is there stays.
 Outcome run_job(const JobFolder& folder, const RunContext& context);
 
 }  // namespace lacuna

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <stdexcept>
 
 #include "jobs/report/replicate_bias.h"
 #include "jobs/run/reference.h"
@@ -72,7 +73,7 @@ class PictureReader {
     const auto file = sweep_.folder(sweep_.plan().runs[run]).file("image.exr");
     try {
       return read_float_image(file);
-    } catch (const SceneError& e) {
+    } catch (const std::runtime_error& e) {
       out_.warnings.emplace_back(e.what());
       return {};
     }
@@ -86,7 +87,7 @@ class PictureReader {
     const auto& job = sweep_.plan().cells[sweep_.plan().runs[run].cell].job;
     try {
       reference_ = read_reference(job.reference, *file, job.resolution);
-    } catch (const SceneError& e) {
+    } catch (const std::runtime_error& e) {
       out_.warnings.push_back(fmt::format("no reference: {}", e.what()));
     }
   }

@@ -33,6 +33,7 @@ Obstacle obstacle_of(const std::exception& e) {
   if (const auto* error = dynamic_cast<const std::system_error*>(&e)) {
     const int number = error->code().value();
     if (number == ENOMEM) return Obstacle::memory;
+    if (dynamic_cast<const InputUnreadable*>(&e) != nullptr) return Obstacle::input;
     if (may_pass(number)) return Obstacle::storage;
   }
   return ran_out ? Obstacle::memory : Obstacle::none;

@@ -11,6 +11,7 @@ enum class Obstacle {
   none,     ///< no such fault: the job would fail again
   memory,   ///< memory ran out
   storage,  ///< a file could not be read or written, and may_pass() holds for the reason
+  input,    ///< InputUnreadable: what the job is made from cannot be read now
 };
 
 /// From this call on the process records failed allocations. Libraries that catch std::bad_alloc

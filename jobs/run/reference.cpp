@@ -35,7 +35,9 @@ Reference read_reference(const std::string& name, const std::filesystem::path& i
     throw SceneError(fmt::format("reference \"{}\" has {} x {} pixels, the job {} x {}", name,
                                  file.width, file.height, resolution[0], resolution[1]));
   }
-  Reference r{name, {file.rgb.begin(), file.rgb.end()}, std::nullopt, image};
+  Reference r{name, {file.rgb.begin(), file.rgb.end()}, std::nullopt, image, file.file};
+  r.input.role = InputRole::reference;
+  r.input.name = name;
   for (std::size_t i = 0; i < r.rgb.size(); ++i) {
     if (std::isfinite(r.rgb[i])) continue;
     const auto pixel = i / 3;
@@ -53,33 +55,43 @@ Reference read_reference(const std::string& name, const std::filesystem::path& i
   return r;
 }
 
-Reference find_reference(const JobSpec& spec, const DataRoot& data, const ScenesRoots& scenes) {
-  const std::string& name = spec.reference;
+std::filesystem::path reference_file(const std::string& name, const DataRoot& data,
+                                     const ScenesRoots& scenes) {
   if (is_image_file(name)) {
     try {
-      return read_reference(name, scenes.resolve(name, reference_extensions), spec.resolution);
+      return scenes.resolve(name, reference_extensions);
     } catch (const std::invalid_argument& e) {
       throw SceneError(fmt::format("reference \"{}\": {}", name, e.what()));
     }
   }
+  std::error_code error;
+  const auto is_there = [&](const std::filesystem::path& path) {
+    const bool there = std::filesystem::exists(path, error);
+    throw_if_it_may_pass(error.value(), path);
+    return there;
+  };
   if (is_job_id(name)) {
     const JobFolder folder(data.jobs() / name);
-    if (!std::filesystem::exists(folder.dir())) {
-      throw SceneError(fmt::format("reference \"{}\": there is no such job", name));
-    }
-    const State state = folder.read_state().state;
+    if (is_there(folder.dir())) return folder.file("image.exr");
+    throw SceneError(fmt::format("reference \"{}\": there is no such job", name));
+  }
+  const auto file = data.references() / name / "image.exr";
+  if (is_plain_name(name) && is_there(file)) return file;
+  throw SceneError(fmt::format(
+      "reference \"{}\": neither \"auto\", nor an .exr or .tif below a scenes root, nor a job's "
+      "id, nor a folder of {}",
+      name, data.references().string()));
+}
+
+Reference find_reference(const JobSpec& spec, const DataRoot& data, const ScenesRoots& scenes) {
+  const std::string& name = spec.reference;
+  const std::filesystem::path file = reference_file(name, data, scenes);
+  if (is_job_id(name)) {
+    const State state = JobFolder(file.parent_path()).read_state().state;
     if (state != State::done) {
       throw SceneError(
           fmt::format("reference \"{}\": that job is {}, not done", name, enum_name(state)));
     }
-    return read_reference(name, folder.file("image.exr"), spec.resolution);
-  }
-  const auto file = data.references() / name / "image.exr";
-  if (!is_plain_name(name) || !std::filesystem::is_regular_file(file)) {
-    throw SceneError(fmt::format(
-        "reference \"{}\": neither \"auto\", nor an .exr or .tif below a scenes root, nor a job's "
-        "id, nor a folder of {}",
-        name, data.references().string()));
   }
   return read_reference(name, file, spec.resolution);
 }

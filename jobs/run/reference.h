@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/storage/input_file.h"
 #include "jobs/spec/job_spec.h"
 #include "jobs/store/job_folder.h"
 
@@ -15,15 +16,21 @@ struct Reference {
   std::vector<double> rgb;          ///< interleaved, top row first, of the job's resolution
   std::optional<double> mse;        ///< of its own noise, estimated, if it is known
   std::filesystem::path file = {};  ///< where it was read from
+  InputFile input = {};             ///< that file as it was read
 };
 
-/// Reads the picture that `spec.reference` names (not "auto" or empty): an EXR or a TIFF of floats
+/// The picture that a job names as its reference (not "auto" or empty): an EXR or a TIFF of floats
 /// below a scenes root, a job's id, or the name of a folder below the references. Throws
-/// SceneError: not there, unfinished, or of another size.
+/// SceneError: not there; InputUnreadable.
+std::filesystem::path reference_file(const std::string& name, const DataRoot& data,
+                                     const ScenesRoots& scenes);
+
+/// Reads reference_file() of `spec.reference`. Throws SceneError: not there, unfinished, or of
+/// another size; InputUnreadable.
 Reference find_reference(const JobSpec& spec, const DataRoot& data, const ScenesRoots& scenes);
 
 /// Reads the file `image`, the image.exr of a job or another EXR. Throws SceneError, also if its
-/// size is not `resolution` or a value is not finite.
+/// size is not `resolution` or a value is not finite; InputUnreadable.
 Reference read_reference(const std::string& name, const std::filesystem::path& image,
                          const std::array<int, 2>& resolution);
 

@@ -13,6 +13,7 @@
 #include "jobs/run/checkpoint.h"
 #include "jobs/spec/described_json.h"
 #include "jobs/spec/problems.h"
+#include "jobs/store/inputs.h"
 #include "jobs/store/new_folder.h"
 
 namespace lacuna {
@@ -64,11 +65,13 @@ class Reader {
     shard.iterations = report.at("counts").at("iterations").get<std::uint64_t>();
     shard.processor = report.at("machine").at("processor").get<std::string>();
     const CheckpointKey key = read_checkpoint_key(folder.file("checkpoint.bin"));
+    const InputList inputs = read_inputs(folder).value_or(InputList{});
     if (shards_.empty()) {
       first_ = folder.dir();
       job_ = ObjectWriter::value_of(shard.spec);
       key_ = key;
-    } else if (!is_same(folder, ObjectWriter::value_of(shard.spec), key)) {
+      inputs_ = inputs;
+    } else if (!is_same(folder, ObjectWriter::value_of(shard.spec), key, inputs)) {
       return;
     }
     const auto [there, is_new] = shards_.emplace(number, std::move(shard));
@@ -77,14 +80,20 @@ class Reader {
                                there->second.spec.shards, there->second.folder.dir().string()));
   }
 
-  bool is_same(const JobFolder& folder, const OrderedJson& job, const CheckpointKey& key) {
+  bool is_same(const JobFolder& folder, const OrderedJson& job, const CheckpointKey& key,
+               const InputList& inputs) {
     const std::size_t before = problems_.size();
     for (const auto& [name, value] : job.items()) {
       const bool counts =
           std::find(not_in_a_merge.begin(), not_in_a_merge.end(), name) == not_in_a_merge.end();
       if (counts) compare(folder, name, json_text(value), json_text(job_.at(name)));
     }
-    compare(folder, "the hash of the scene", key.scene, key_.scene);
+    const auto changes = changed_inputs(inputs_, inputs);
+    for (const std::string& change : changes) {
+      refuse(folder, fmt::format("{} in {}; allowed: shards made from the same files", change,
+                                 first_.string()));
+    }
+    if (changes.empty()) compare(folder, "the hash of the scene", key.scene, key_.scene);
     compare(folder, "the version", key.version, key_.version);
     compare(folder, "the integrator's layers", key.layers, key_.layers);
     return problems_.size() == before;
@@ -121,6 +130,7 @@ class Reader {
   std::filesystem::path first_;  // the folder that the others are compared with
   OrderedJson job_;
   CheckpointKey key_;
+  InputList inputs_;  // of the first; empty: not recorded
   std::vector<Problem> problems_;
 };
 

@@ -9,7 +9,8 @@ enum ExitCode : int {
   exit_bad_job = 2,  ///< invalid job file or command line
   exit_asset = 3,    ///< a scene, texture, reference or environment cannot be used
   exit_memory = 71,  ///< out of memory; with more memory, the same command continues
-  /// Stopped with a checkpoint, or the disk is full; the same command continues.
+  /// Stopped with a checkpoint, or the disk is full, or an input cannot be read now; the same
+  /// command continues.
   exit_interrupted = 75
 };
 

@@ -48,6 +48,7 @@ const std::vector<FileInfo>& job_files() {
       {"curve.csv", "text/csv", "error and counts against time", true},
       {"report.json", "application/json", "where time and rays went", true},
       {"checkpoint.bin", "application/octet-stream", "what it takes to go on", false},
+      {"inputs.json", "application/json", "the files it was made from, with their hashes", true},
       {"log.txt", "text/plain; charset=utf-8", "what a person would want to read", true},
   };
   return files;

@@ -115,7 +115,8 @@ class ScenesRoots {
   /// The regular file named `name`: a relative path with '/' between parts that does not leave its
   /// root in any spelling, nor through a symbolic link. `extensions` include the dot (".glb"); case
   /// does not matter. Throws std::invalid_argument with the reason and the available names, and
-  /// std::system_error if the file cannot be examined now (no descriptor left, a failing disk).
+  /// InputUnreadable if it is not known now whether there is such a file: it cannot be examined (no
+  /// permission or descriptor, a failing disk), or no root has it and one is missing or empty.
   std::filesystem::path resolve(std::string_view name,
                                 const std::vector<std::string_view>& extensions) const;
 
@@ -126,6 +127,10 @@ class ScenesRoots {
  private:
   std::vector<std::filesystem::path> roots_;
 };
+
+/// How the files end that a job can name.
+inline const std::vector<std::string_view> scene_extensions{".glb", ".gltf"};
+inline const std::vector<std::string_view> environment_extensions{".exr", ".hdr"};
 
 /// A new job id: UTC time and random letters ("20260131-235959-k3x9qa"): sorts by time, safe as a
 /// file name.

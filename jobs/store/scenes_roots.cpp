@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
+#include <exception>
 #include <set>
 #include <stdexcept>
 
 #include "analysis/storage/file_handle.h"
+#include "analysis/storage/input_file.h"
 #include "analysis/storage/passing_error.h"
 #include "jobs/spec/nearest.h"
 #include "jobs/store/job_folder.h"
@@ -23,7 +25,6 @@ using Extensions = std::vector<std::string_view>;
 
 constexpr int max_list_depth = 4;
 constexpr int max_list_entries = 10000;
-const Extensions scene_extensions{".glb", ".gltf"};
 
 /// The folder of the scenes that come with the source tree this was built from.
 fs::path source_scenes() { return fs::path(__FILE__).parent_path().parent_path() / "scenes"; }
@@ -153,15 +154,11 @@ ScenesRoots ScenesRoots::from_environment() {
   }
   roots.push_back(fs::absolute("jobs/scenes"));
   std::error_code ignored;  // false where either is missing
-  const fs::path installed = installed_scenes();
-  if (fs::is_directory(installed, ignored)) {
+  for (const fs::path& own : {installed_scenes(), source_scenes()}) {
+    if (!fs::is_directory(own, ignored) || fs::equivalent(roots.front(), own, ignored)) continue;
     if (!fs::is_directory(roots.front(), ignored)) roots.clear();
-    roots.push_back(installed);
-    return ScenesRoots(std::move(roots));
-  }
-  const fs::path source = source_scenes();
-  if (fs::is_directory(source) && !fs::equivalent(roots.front(), source, ignored)) {
-    roots.push_back(source);
+    roots.push_back(own);
+    break;
   }
   return ScenesRoots(std::move(roots));
 }
@@ -170,13 +167,25 @@ fs::path ScenesRoots::resolve(std::string_view name, const Extensions& extension
   std::string fault = fault_of(name, extensions);
   if (fault.empty()) {
     int worst = ENOENT;
+    std::exception_ptr away;  // a root that is missing or empty, as one that is not mounted
     for (const fs::path& root : roots_) {
       const int error = walk(root, name);
       if (error == 0) return root / name;
-      // What cannot be looked at now is not missing: a later root's file is another one.
-      if (error != EACCES && may_pass(error)) throw_file_error(error, "look for", root / name);
+      try {
+        throw_if_it_may_pass(error, root / name);
+        std::error_code unknown;
+        if (error == ENOENT && !fs::exists(root, unknown)) {
+          throw InputUnreadable(
+              error, fmt::format("{}: the scenes root {} is missing", shown(name), root.string()));
+        }
+      } catch (const InputUnreadable& e) {
+        // What cannot be looked at now is not missing: a later root's file is another one.
+        if (error != ENOENT) throw;
+        if (!away) away = std::current_exception();
+      }
       if (error != ENOENT && error != ENOTDIR) worst = error;
     }
+    if (away && worst == ENOENT) std::rethrow_exception(away);
     fault = worst == ENOENT  ? "it is not there"
             : worst == ELOOP ? "a part of it is a symbolic link; links are not followed"
                              : "it is not a regular file that can be read";

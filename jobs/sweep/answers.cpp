@@ -8,6 +8,7 @@
 #include "jobs/spec/reference_spec.h"
 #include "jobs/sweep/compare_points.h"
 #include "jobs/sweep/preparation.h"
+#include "jobs/sweep/stale_runs.h"
 #include "jobs/sweep/taint.h"
 
 namespace lacuna {
@@ -29,6 +30,7 @@ class Comparison {
   Answers run() {
     answers_.axes = {chosen_metric(sweep_), std::string(enum_name(sweep_.spec().compare_at.clock))};
     read();
+    answers_.stale = stale_runs(answers_.results);
     gather_cells();
     gather_pictures();
     for (PictureAnswer& p : answers_.pictures) choose_points(p);
@@ -51,7 +53,8 @@ class Comparison {
   }
 
   bool counts(std::size_t run) const {
-    return answers_.results[run].state.state == State::done && !answers_.results[run].curve.empty();
+    const RunResult& r = answers_.results[run];
+    return r.state.state == State::done && !r.curve.empty() && !answers_.stale.contains(run);
   }
 
   void gather_cells() {
@@ -214,6 +217,13 @@ class Comparison {
     if (unfinished > 0) {
       w.push_back(fmt::format("{} of {} runs are not done: what follows is provisional", unfinished,
                               plan_.runs.size()));
+    }
+    if (!answers_.stale.empty()) {
+      const auto& [run, change] = *answers_.stale.begin();
+      w.push_back(fmt::format(
+          "{} of {} runs were made from other files than the latest run and are left out (as {}: "
+          "{}): `lacuna sweep` renders those anew whose files have changed",
+          answers_.stale.size(), plan_.runs.size(), plan_.runs[run].name, change));
     }
     if (sweep_.spec().seeds == 1) {
       w.emplace_back(

@@ -65,6 +65,7 @@ struct Answers {
   std::vector<PictureAnswer> pictures;
   std::map<State, std::size_t> states;  ///< runs in each state
   std::vector<Tainted> tainted;
+  std::map<std::size_t, std::string> stale;  ///< runs that are left out (stale_runs())
   std::vector<std::string> warnings;
 };
 

@@ -170,6 +170,7 @@ RunResult read_result(const JobFolder& folder, const CurveAxes& axes, const Budg
   RunResult result;
   if (!fs::exists(folder.file("state.json"))) return result;
   result.state = folder.read_state();
+  if (auto inputs = read_inputs(folder)) result.inputs = std::move(*inputs);
   Json report = Json::object();
   if (fs::exists(folder.file("report.json"))) {
     read_report(folder.file("report.json"), report);

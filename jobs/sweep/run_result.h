@@ -7,6 +7,7 @@
 
 #include "jobs/spec/job_spec.h"
 #include "jobs/statistics/error_curve.h"
+#include "jobs/store/inputs.h"
 #include "jobs/store/job_folder.h"
 #include "renderer/settings/error_metrics.h"
 
@@ -38,6 +39,7 @@ struct RunResult {
   std::optional<double> others,
       stolen;  ///< shares of the processors' time (jobs/run/machine_watch.h)
   std::optional<double> mhz;
+  InputList inputs;  ///< that it was made from; empty: not recorded
 };
 
 /// Reads curve.csv and report.json of a folder, if they exist. `budget`: of its job. Squared errors

@@ -21,7 +21,7 @@ void warn_of_unread_parts(const GltfObject& root, Warnings& warnings) {
   }
 }
 
-SceneData load(const std::filesystem::path& file) {
+SceneData load(const std::filesystem::path& file, std::vector<InputFile>* inputs) {
   SceneFolder folder(file);
   const Bytes bytes = folder.read_main();
   const Framing framing = check_framing(bytes);
@@ -49,6 +49,7 @@ SceneData load(const std::filesystem::path& file) {
   warn_of_far_cameras(scene, warnings);
   scene.textures = textures.build(model, folder, content);
   scene.content_hash = content.digest();
+  if (inputs != nullptr) *inputs = folder.inputs();
   warn_of_unread_parts(root, warnings);
   scene.warnings = warnings.take();
   return scene;
@@ -57,9 +58,9 @@ SceneData load(const std::filesystem::path& file) {
 }  // namespace
 }  // namespace gltf
 
-SceneData load_gltf(const std::filesystem::path& file) {
+SceneData load_gltf(const std::filesystem::path& file, std::vector<InputFile>* inputs) {
   try {
-    return gltf::load(file);
+    return gltf::load(file, inputs);
   } catch (const SceneError& e) {
     throw SceneError(file.string() + ": " + e.what());
   }

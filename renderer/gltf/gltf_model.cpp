@@ -26,7 +26,7 @@ BufferQueue read_external_buffers(const GltfObject& root, SceneFolder& folder, H
     const std::string uri = buffer.string("uri");
     refuse_data_uri(buffer, uri);
     if (tinygltf::IsDataURI(uri)) continue;
-    Bytes bytes = folder.read(uri, buffer.label());
+    Bytes bytes = folder.read(uri, buffer.label(), InputRole::buffer);
     const std::uint64_t needed = buffer.integer("byteLength", 1, bytes.max_size());
     if (bytes.size() < needed) {
       buffer.fail("\"" + uri + "\" has " + std::to_string(bytes.size()) + " bytes; byteLength is " +

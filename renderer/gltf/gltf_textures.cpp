@@ -33,7 +33,7 @@ Bytes encoded_bytes(const GltfObject& image, const tinygltf::Image& parsed,
     return {first, first + view.byteLength};
   }
   if (!parsed.image.empty()) return parsed.image;
-  return folder.read(image.string("uri"), image.label());
+  return folder.read(image.string("uri"), image.label(), InputRole::texture);
 }
 
 }  // namespace

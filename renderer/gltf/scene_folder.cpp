@@ -1,13 +1,8 @@
 #include "renderer/gltf/scene_folder.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
+#include <stdexcept>
 
 #include "renderer/geometry/scene_data.h"
 
@@ -17,20 +12,6 @@ namespace {
 constexpr std::uintmax_t byte_limit = (std::uintmax_t{1} << 31) - 1;  // tinygltf counts in int
 
 constexpr std::size_t max_uri = 4096;  // PATH_MAX of Linux
-
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 [[noreturn]] void refuse_escape(const std::string& uri, const std::string& place) {
   throw SceneError(place + " has a broken escape in \"" + uri +
@@ -64,12 +45,20 @@ SceneFolder::SceneFolder(const std::filesystem::path& main_file)
   std::error_code error;
   const auto parent = main_file.has_parent_path() ? main_file.parent_path() : ".";
   root_ = std::filesystem::canonical(parent, error);
-  if (error) throw SceneError("its folder cannot be opened: " + error.message());
+  if (!error) return;
+  throw_if_it_may_pass(error.value(), main_file);
+  throw SceneError("its folder cannot be opened: " + error.message());
 }
 
-Bytes SceneFolder::read_main() { return read_regular(main_file_, "the scene file"); }
+Bytes SceneFolder::read_main() {
+  return read_regular(main_file_, "the scene file", {.role = InputRole::scene});
+}
 
-Bytes SceneFolder::read(const std::string& uri, const std::string& place) {
+Bytes SceneFolder::read(const std::string& uri, const std::string& place, InputRole role) {
+  return read_regular(find(uri, place), place + ": \"" + uri + "\"", {.role = role, .name = uri});
+}
+
+std::filesystem::path SceneFolder::find(const std::string& uri, const std::string& place) const {
   if (uri.size() > max_uri) {
     throw SceneError(place + " is a path of " + std::to_string(uri.size()) +
                      " bytes; allowed: " + std::to_string(max_uri));
@@ -84,39 +73,33 @@ Bytes SceneFolder::read(const std::string& uri, const std::string& place) {
   }
   std::error_code error;
   const auto file = std::filesystem::canonical(root_ / relative, error);
-  if (error) throw SceneError(place + ": \"" + uri + "\" cannot be opened: " + error.message());
+  if (error) {
+    throw_if_it_may_pass(error.value(), root_ / relative);
+    throw SceneError(place + ": \"" + uri + "\" cannot be opened: " + error.message());
+  }
   const auto [root_end, rest] = std::mismatch(root_.begin(), root_.end(), file.begin(), file.end());
   if (root_end != root_.end()) {
     throw SceneError(place + ": \"" + uri + "\" leaves the scene's folder by a symbolic link");
   }
-  return read_regular(file, place + ": \"" + uri + "\"");
+  return file;
 }
 
-Bytes SceneFolder::read_regular(const std::filesystem::path& file, const std::string& place) {
-  const auto fail = [&place](const std::string& what) { throw SceneError(place + " " + what); };
-  // O_NONBLOCK: opening a FIFO must not wait for its writer.
-  const Descriptor fd(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
-  struct stat status {};
-  if (fd.get() < 0 || ::fstat(fd.get(), &status) != 0) {
-    fail(std::string("cannot be opened: ") + std::strerror(errno));
+Bytes SceneFolder::read_regular(const std::filesystem::path& file, const std::string& place,
+                                InputFile about) {
+  try {
+    Bytes bytes = read_input(file, bytes_left_, about);
+    bytes_left_ -= bytes.size();
+    const auto same = [&](const InputFile& i) {
+      return i.role == about.role && i.name == about.name;
+    };
+    if (std::none_of(inputs_.begin(), inputs_.end(), same)) inputs_.push_back(std::move(about));
+    return bytes;
+  } catch (const std::length_error& e) {
+    throw SceneError(place + " " + e.what() + "; allowed: " + std::to_string(byte_limit) +
+                     " for all files of a scene");
+  } catch (const std::invalid_argument& e) {
+    throw SceneError(place + " " + e.what());
   }
-  if (!S_ISREG(status.st_mode)) fail("is not a regular file");
-  const auto size = static_cast<std::uintmax_t>(status.st_size);
-  if (size > bytes_left_) {
-    fail("has " + std::to_string(size) + " bytes; allowed: " + std::to_string(byte_limit) +
-         " for all files of a scene");
-  }
-  Bytes bytes(size);
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t got = ::read(fd.get(), bytes.data() + done, bytes.size() - done);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) fail(std::string("cannot be read: ") + std::strerror(errno));
-    if (got == 0) fail("was truncated while it was read");
-    done += static_cast<std::size_t>(got);
-  }
-  bytes_left_ -= size;
-  return bytes;
 }
 
 }  // namespace lacuna

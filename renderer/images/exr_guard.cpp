@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <fstream>
+#include <istream>
+#include <span>
+#include <streambuf>
 #include <string>
 #include <string_view>
 
@@ -36,10 +38,33 @@ constexpr std::array<FixedSize, 23> fixed_sizes{{
     {"v3f", 12},        {"v3d", 24},
 }};
 
+/// Bytes as a stream, without a copy.
+class MemoryBuffer : public std::streambuf {
+ public:
+  explicit MemoryBuffer(std::span<const std::uint8_t> bytes) {
+    char* const begin = reinterpret_cast<char*>(const_cast<std::uint8_t*>(bytes.data()));
+    setg(begin, begin, begin + bytes.size());  // it is only read
+  }
+
+ private:
+  pos_type seekoff(off_type offset, std::ios::seekdir from, std::ios::openmode) override {
+    const off_type base = from == std::ios::beg   ? 0
+                          : from == std::ios::cur ? gptr() - eback()
+                                                  : egptr() - eback();
+    return seekpos(base + offset, std::ios::in);
+  }
+  pos_type seekpos(pos_type position, std::ios::openmode) override {
+    const off_type at = position;
+    if (at < 0 || at > egptr() - eback()) return off_type{-1};
+    setg(eback(), eback() + at, egptr());
+    return position;
+  }
+};
+
 class ExrHeader {
  public:
-  explicit ExrHeader(const std::filesystem::path& file)
-      : file_(file), size_(std::filesystem::file_size(file)), stream_(file, std::ios::binary) {}
+  ExrHeader(std::span<const std::uint8_t> bytes, const std::string& label)
+      : label_(label), size_(bytes.size()), buffer_(bytes), stream_(&buffer_) {}
 
   void check() {
     integer();  // the magic
@@ -180,17 +205,20 @@ class ExrHeader {
   [[noreturn]] void fail(const std::string& what) const { refuse("OpenEXR header: " + what); }
   [[noreturn]] void refuse_deep() const { refuse("is a deep image; allowed: flat ones"); }
   [[noreturn]] void refuse(const std::string& what) const {
-    throw SceneError(file_.string() + ": " + what);
+    throw SceneError(label_ + ": " + what);
   }
 
-  const std::filesystem::path& file_;
+  const std::string& label_;
   std::uintmax_t size_;
   Size picture_, tile_;  // of the part that is read
-  std::ifstream stream_;
+  MemoryBuffer buffer_;
+  std::istream stream_;
 };
 
 }  // namespace
 
-void check_exr_header(const std::filesystem::path& file) { ExrHeader(file).check(); }
+void check_exr_header(std::span<const std::uint8_t> exr, const std::string& label) {
+  ExrHeader(exr, label).check();
+}
 
 }  // namespace lacuna

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,7 +25,7 @@ constexpr std::uint64_t max_encoded_bytes = std::uint64_t{2} << 30;
 /// attributes, rows and tiles of any stated number before they read them, and an unknown channel
 /// type ends the process. Allowed are flat parts of up to max_picture_side with all channels at
 /// full resolution.
-void check_exr_header(const std::filesystem::path& file);
+void check_exr_header(std::span<const std::uint8_t> exr, const std::string& label);
 
 /// A PNG of 8 or 16 bits or less, of any colour type, up to max_texture_side.
 std::vector<std::uint8_t> plain_png(std::span<const std::uint8_t> png, const std::string& label);

@@ -58,9 +58,7 @@ using EncodedImage = std::vector<std::uint8_t>;
 class ImageCodec {
  public:
   virtual ~ImageCodec() = default;
-  /// Opens a file with the reader of `format`.
-  virtual std::unique_ptr<PictureFile> open(ImageFormat format, const std::string& file) const = 0;
-  /// Opens a file in memory; `bytes` must outlive the result.
+  /// Opens a file in memory with the reader of `format`; `bytes` must outlive the result.
   virtual std::unique_ptr<PictureFile> open(ImageFormat format,
                                             std::span<const std::uint8_t> bytes) const = 0;
   /// Decodes a PNG or JPEG. Thread-safe.

@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
+#include <new>
 #include <optional>
+#include <stdexcept>
 
-#include "analysis/storage/atomic_file.h"
+#include "analysis/storage/available_memory.h"
 #include "renderer/core/scene_error.h"
 #include "renderer/images/guards.h"
 #include "renderer/images/image_module.h"
@@ -17,27 +18,36 @@
 namespace lacuna {
 namespace {
 
-constexpr std::size_t most_file_bytes = std::size_t{1} << 32;  // of formats read through memory
-
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
   throw SceneError(file.string() + ": " + what);
 }
 
-/// The format by the magic bytes, whatever the file's name; none for an unsupported format.
-std::optional<ImageFormat> format_of(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) {
-    fail(file, error ? error.message() : "is not a regular file");
+/// A file that was read as a whole.
+struct ReadFile {
+  std::filesystem::path path;
+  InputBytes bytes;
+  InputFile about;
+};
+
+ReadFile read_all(const std::filesystem::path& path) {
+  ReadFile file{path, {}, {}};
+  try {
+    file.bytes = read_input(path, memory_to_take(), file.about);
+  } catch (const std::length_error&) {
+    throw std::bad_alloc();
+  } catch (const std::invalid_argument& e) {
+    fail(path, e.what());
   }
-  std::array<char, 4> magic{};
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail(file, "cannot be opened");
-  stream.read(magic.data(), magic.size());
-  const std::string_view text(magic.data(), magic.size());
+  return file;
+}
+
+/// The format by the magic bytes, whatever the file's name; none for an unsupported format.
+std::optional<ImageFormat> format_of(const ReadFile& file) {
+  const std::string_view text(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
   using namespace std::string_view_literals;
-  if (text == "\x76\x2f\x31\x01"sv) return ImageFormat::openexr;
+  if (text.starts_with("\x76\x2f\x31\x01"sv)) return ImageFormat::openexr;
   if (text.starts_with("#?")) return ImageFormat::radiance_hdr;
-  if (text == "II*\0"sv || text == "MM\0*"sv) return ImageFormat::tiff;
+  if (text.starts_with("II*\0"sv) || text.starts_with("MM\0*"sv)) return ImageFormat::tiff;
   return std::nullopt;
 }
 
@@ -94,7 +104,7 @@ FloatImage read_part(PictureFile& in, std::size_t part, const std::vector<int>& 
   // Not set to zero: memory is used up only as pixels come, however large the header says they are.
   const auto stored = std::make_unique_for_overwrite<float[]>(pixels * read);
   in.read(part, channels, stored.get());
-  FloatImage result{header.width, header.height, std::vector<float>(pixels * 3), {}};
+  FloatImage result{header.width, header.height, std::vector<float>(pixels * 3), {}, {}};
   for (const auto& [name, text] : header.texts) {
     if (name.starts_with("lacuna:")) result.attributes[name] = text;
   }
@@ -118,40 +128,41 @@ FloatImage read_layer(const std::filesystem::path& file, PictureFile& in,
 }
 
 /// The guards come first; without a picture in the file the module is not even loaded.
-FloatImage read_as(ImageFormat format, const std::filesystem::path& file,
-                   const std::string& layer) {
-  std::vector<std::uint8_t> plain;
+FloatImage read_as(ImageFormat format, ReadFile file, const std::string& layer) {
+  const std::string label = file.path.string();
   if (format == ImageFormat::openexr) {
-    check_exr_header(file);
+    check_exr_header(file.bytes, label);
+  } else if (format == ImageFormat::tiff) {
+    file.bytes = plain_tiff(file.bytes, label);
   } else {
-    const std::string bytes = read_file(file, most_file_bytes);
-    const std::span all(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-    plain = format == ImageFormat::tiff ? plain_tiff(all, file.string())
-                                        : plain_hdr(all, file.string());
+    file.bytes = plain_hdr(file.bytes, label);
   }
   const ImageCodec& codec = image_codec();
   try {
-    const auto in = plain.empty() ? codec.open(format, file.string()) : codec.open(format, plain);
-    return read_layer(file, *in, layer);
+    FloatImage image = read_layer(file.path, *codec.open(format, file.bytes), layer);
+    image.file = std::move(file.about);
+    return image;
   } catch (const SceneError&) {
     throw;
   } catch (const std::runtime_error& e) {
-    fail(file, std::string("is corrupt: ") + e.what());
+    fail(file.path, std::string("is corrupt: ") + e.what());
   }
 }
 
 }  // namespace
 
-FloatImage read_float_image(const std::filesystem::path& file, const std::string& layer) {
+FloatImage read_float_image(const std::filesystem::path& path, const std::string& layer) {
+  ReadFile file = read_all(path);
   const auto format = format_of(file);
-  if (!format || *format == ImageFormat::tiff) fail(file, "is neither OpenEXR nor Radiance HDR");
-  return read_as(*format, file, layer);
+  if (!format || *format == ImageFormat::tiff) fail(path, "is neither OpenEXR nor Radiance HDR");
+  return read_as(*format, std::move(file), layer);
 }
 
-FloatImage read_reference_image(const std::filesystem::path& file) {
+FloatImage read_reference_image(const std::filesystem::path& path) {
+  ReadFile file = read_all(path);
   const auto format = format_of(file);
-  if (!format) fail(file, "is neither OpenEXR nor Radiance HDR nor TIFF");
-  return read_as(*format, file, "");
+  if (!format) fail(path, "is neither OpenEXR nor Radiance HDR nor TIFF");
+  return read_as(*format, std::move(file), "");
 }
 
 void require_radiance(const FloatImage& image, const std::string& label) {

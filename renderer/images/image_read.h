@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/storage/input_file.h"
 #include "renderer/core/vec.h"
 
 namespace lacuna {
@@ -15,6 +16,7 @@ struct FloatImage {
   std::vector<float> rgb;  ///< 3 x width x height
   /// String attributes of its header whose names begin with "lacuna:".
   std::map<std::string, std::string> attributes;
+  InputFile file = {};  ///< size and hash of what it was read from
 
   /// Pixel (x, y), 0 <= x < width, 0 <= y < height.
   Rgb at(int x, int y) const {
@@ -28,7 +30,7 @@ struct FloatImage {
 /// `layer` chooses the channels of an EXR: empty means R, G, B, or Y alone as grey; "half_a" means
 /// half_a.R, half_a.G, half_a.B. Values are kept as they are, non-finite ones too. Throws
 /// SceneError: no such file or layer, another format, corrupt, deep, or a crop of a larger image;
-/// std::runtime_error if the module of images is missing.
+/// InputUnreadable if it cannot be read now; std::runtime_error if the module of images is missing.
 FloatImage read_float_image(const std::filesystem::path& file, const std::string& layer = "");
 
 /// Reads a reference image, which may also be a TIFF of floats.

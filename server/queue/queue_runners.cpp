@@ -311,7 +311,7 @@ void Queue::settle(Work& work, Attempt attempt, const std::stop_token& ends) {
   if (exit.obstacle.empty() || came_on) work.faults = 0;
   if (!exit.obstacle.empty()) {  // before the state: who sees that the job waits also sees why
     if (!came_on) faults_ = std::max(faults_, work.faults_of_all);  // it began in vain
-    note_obstacle(work, exit.obstacle, "renderers cannot be started or cannot write their files");
+    note_obstacle(work, exit.obstacle, "renderers cannot be started or cannot use their files");
   }
   const bool over = is_terminal(exit.state.state);
   write_state(work.id, exit.state, over);

@@ -1,6 +1,11 @@
 #include "server/routes/named_files.h"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
+
+#include "analysis/storage/passing_error.h"
+#include "server/http/message.h"
 
 namespace lacuna {
 
@@ -11,8 +16,8 @@ std::vector<Problem> NamedFiles::missing(const JobSpec& spec) {
     const std::string& why = look_up(name, extensions);
     if (!why.empty()) problems.push_back({pointer, why});
   };
-  check(spec.scene, {".glb", ".gltf"}, "/scene");
-  if (spec.environment) check(spec.environment->file, {".exr", ".hdr"}, "/environment/file");
+  check(spec.scene, scene_extensions, "/scene");
+  if (spec.environment) check(spec.environment->file, environment_extensions, "/environment/file");
   return problems;
 }
 
@@ -26,6 +31,13 @@ const std::string& NamedFiles::look_up(const std::string& name,
     scenes_.resolve(name, extensions);
   } catch (const std::invalid_argument& error) {
     found->second = error.what();
+  } catch (const InputUnreadable& error) {
+    seen_.erase(found);
+    throw HttpError(503, fmt::format("Whether there is a file \"{}\" is not known now: {}.", name,
+                                     error.code() == std::errc::no_such_file_or_directory
+                                         ? "a folder of scenes is missing or empty"
+                                         : error.code().message()))
+        .with("Retry-After", "1");
   }
   return found->second;
 }

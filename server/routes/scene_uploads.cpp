@@ -135,6 +135,8 @@ void SceneUploads::Draft::finish() {
 
 SceneUploads::SceneUploads(SceneUploadSettings settings) : settings_(std::move(settings)) {
   fs::create_directories(settings_.folder);
+  // A root with nothing in it would be taken for one that is away (ScenesRoots::resolve).
+  std::ofstream(settings_.folder / ".uploads");
   std::vector<fs::path> left;
   for (const auto& entry : fs::directory_iterator(settings_.folder)) {
     const bool folder = fs::is_directory(entry.symlink_status());

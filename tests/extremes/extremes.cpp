@@ -17,7 +17,7 @@ constexpr double false_alarm = 1e-4;
 std::vector<Row> all_rows(const Effort& effort) {
   std::vector<Row> all;
   for (const auto& group : {scale_rows, light_rows, surface_rows, geometry_rows, accumulation_rows,
-                            space_rows, settings_rows, output_rows, budget_rows}) {
+                            space_rows, settings_rows, output_rows, budget_rows, input_rows}) {
     std::vector<Row> rows = group(effort);
     std::move(rows.begin(), rows.end(), std::back_inserter(all));
   }

@@ -71,4 +71,8 @@ JobFolder Stage::run(const JobSpec& job, const std::function<bool()>& interrupte
   return folder;
 }
 
+Outcome Stage::go_on(const JobFolder& folder) {
+  return run_job(folder, context(never_interrupted));
+}
+
 }  // namespace lacuna::extremes

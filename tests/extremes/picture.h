@@ -52,6 +52,10 @@ class Stage {
 
   /// Does the whole job; `interrupted` is asked as by run_job. The folder stays until the next.
   JobFolder run(const JobSpec& job, const std::function<bool()>& interrupted);
+  /// Runs the same folder once more.
+  Outcome go_on(const JobFolder& folder);
+  /// Where jobs find a file of this name.
+  std::filesystem::path file(const std::string& name) const { return folder_ / name; }
 
  private:
   RunContext context(const std::function<bool()>& interrupted);

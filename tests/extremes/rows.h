@@ -22,6 +22,7 @@ std::vector<Row> space_rows(const Effort& effort);
 std::vector<Row> settings_rows(const Effort& effort);
 std::vector<Row> output_rows(const Effort& effort);
 std::vector<Row> budget_rows(const Effort& effort);
+std::vector<Row> input_rows(const Effort& effort);
 
 /// For Row::left_out: methods that do not estimate light along paths.
 inline std::string needs_paths(const Method& method) {

@@ -6,6 +6,7 @@ import net from "node:net";
 import path from "node:path";
 import { test } from "node:test";
 import { setTimeout as pause } from "node:timers/promises";
+import { ownScenes, startReal } from "./real_service.mjs";
 import { fakeRenderer, folders, Service, until } from "./service.mjs";
 
 /// From now on the service may have so many descriptors: below what it has, each open fails.
@@ -58,10 +59,43 @@ test("health says that jobs wait, and why, without the name of a file", async (t
     const seen = await service.json("/health");
     return seen.status === "waiting" && seen;
   }, "it waits");
-  assert.match(health.obstacle, /cannot write their files/);
+  assert.match(health.obstacle, /cannot use their files/);
   service.open("later");
   await service.reaches(id, "done", 60000);
   assert.deepEqual(await service.json("/health"), { status: "ok" });
+});
+
+test("scenes that are away for a moment are waited for; scenes that have changed are not mixed", async (t) => {
+  const places = folders(t);
+  const own = path.join(places.scenes, "own.glb");
+  fs.copyFileSync(path.join(ownScenes, "furnace.glb"), own);
+  const service = await startReal(places, ["--max-attempts", "1"]);
+  const spec = { scene: "own.glb", resolution: [8, 8], threads: 1, budget: { iterations: 2 } };
+  const post = (target, body) => service.fetch(target, { method: "POST",
+    headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
+  const first = await service.post("long", { ...spec, budget: { seconds: 600 } });
+  await until(async () => (await service.json(`/api/jobs/${first}`)).progress?.iteration > 0, "it renders");
+  const id = await service.post("next", spec);
+  const away = `${places.scenes}.away`;
+  fs.renameSync(places.scenes, away);
+  fs.mkdirSync(places.scenes);
+  assert.equal((await post("/api/jobs", spec)).status, 503);
+  await post(`/api/jobs/${first}/cancel`, {});
+  const waits = await until(async () => {
+    const { state } = await service.json(`/api/jobs/${id}`);
+    return state.state === "queued" && state.attempts > 1 && state;
+  }, "it waits");
+  assert.match(waits.obstacle, /cannot read .*own\.glb: its folder is empty/);
+  fs.rmdirSync(places.scenes);
+  fs.renameSync(away, places.scenes);
+  await service.reaches(id, "done", 60000);
+
+  const scene = fs.readFileSync(own);
+  fs.writeFileSync(own, String(scene.toString("latin1")).replace("0.5", "0.4"), "latin1");
+  assert.equal((await post(`/api/jobs/${id}/extend`, { budget: { iterations: 4 } })).status, 200);
+  const { state } = await service.reaches(id, "failed", 60000);
+  assert.match(state.error, /scene "own\.glb" has another content of the same size/);
+  assert.ok(fs.existsSync(path.join(service.folder(id), "image.exr")));
 });
 
 test("a change that cannot be made leaves the job where it was", async (t) => {

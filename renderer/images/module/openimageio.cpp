@@ -71,14 +71,16 @@ PictureHeader header_of(const OIIO::ImageSpec& spec) {
 
 class OpenPicture final : public PictureFile {
  public:
-  OpenPicture(ImageFormat format, const std::string& file) : reader_(reader_of(format)) {
-    open(file);
-  }
   OpenPicture(ImageFormat format, std::span<const std::uint8_t> bytes)
       : memory_(std::make_unique<Io::IOMemReader>(bytes.data(), bytes.size())),
         reader_(reader_of(format)) {
     reader_->set_ioproxy(memory_.get());
-    open("memory");
+    OIIO::ImageSpec spec;
+    if (!reader_->open("memory", spec, reading_hints())) fail(reader_->geterror());
+    do {
+      parts_.push_back(header_of(reader_->spec()));
+    } while (reader_->seek_subimage(static_cast<int>(parts_.size()), 0));
+    reader_->geterror();  // that there are no more is no error
   }
 
   const std::vector<PictureHeader>& parts() const override { return parts_; }
@@ -105,15 +107,6 @@ class OpenPicture final : public PictureFile {
   }
 
  private:
-  void open(const std::string& name) {
-    OIIO::ImageSpec spec;
-    if (!reader_->open(name, spec, reading_hints())) fail(reader_->geterror());
-    do {
-      parts_.push_back(header_of(reader_->spec()));
-    } while (reader_->seek_subimage(static_cast<int>(parts_.size()), 0));
-    reader_->geterror();  // that there are no more is no error
-  }
-
   struct ChannelRange {
     std::size_t part;
     int first, end;
@@ -166,9 +159,6 @@ class OpenImageIoCodec final : public ImageCodec {
     OIIO::attribute("limits:channels", most_channels);
   }
 
-  std::unique_ptr<PictureFile> open(ImageFormat format, const std::string& file) const override {
-    return std::make_unique<OpenPicture>(format, file);
-  }
   std::unique_ptr<PictureFile> open(ImageFormat format,
                                     std::span<const std::uint8_t> bytes) const override {
     return std::make_unique<OpenPicture>(format, bytes);

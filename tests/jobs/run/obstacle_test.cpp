@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "analysis/storage/passing_error.h"
+
 namespace lacuna {
 namespace {
 
@@ -19,6 +21,14 @@ TEST(Obstacle, AWriteThatAnotherTimeMayBring) {
   for (const int number : {ENOENT, EISDIR, EINVAL, ELOOP}) {
     EXPECT_EQ(obstacle_of(error(number)), Obstacle::none) << number;
   }
+}
+
+TEST(Obstacle, AnInputThatAnotherTimeMayBring) {
+  for (const int number : {EIO, ENOENT, ESTALE}) {
+    EXPECT_EQ(obstacle_of(InputUnreadable(number, "a.glb")), Obstacle::input) << number;
+    EXPECT_TRUE(may_pass(InputUnreadable(number, "a.glb"))) << number;
+  }
+  EXPECT_EQ(obstacle_of(InputUnreadable(ENOMEM, "a.glb")), Obstacle::memory);
 }
 
 TEST(Obstacle, WantOfMemoryHoweverItIsTold) {

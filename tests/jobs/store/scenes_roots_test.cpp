@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "analysis/storage/passing_error.h"
 #include "jobs/store/job_folder.h"
 #include "tests/temporary_folder.h"
 
@@ -101,6 +102,24 @@ TEST_F(ScenesRootsTest, TheFirstRootThatHasTheFileWins) {
   EXPECT_EQ(both.resolve("box.glb", scenes), root_ / "box.glb");
   EXPECT_EQ(both.resolve("more.glb", scenes), tmp_ / "second" / "more.glb");
   EXPECT_EQ(both.list(), (std::vector<std::string>{"box.glb", "door/scene.glb", "more.glb"}));
+}
+
+TEST_F(ScenesRootsTest, WhereARootIsMissingOrEmptyNothingIsKnownToBeMissing) {
+  const fs::path empty = tmp_ / "empty", missing = tmp_ / "missing";
+  fs::create_directory(empty);
+  for (const std::vector<fs::path>& away :
+       {std::vector{empty}, std::vector{missing}, {root_, empty}, {missing, root_}}) {
+    const ScenesRoots roots(away);
+    EXPECT_THROW(roots.resolve("away.glb", scenes), InputUnreadable);
+    EXPECT_THROW(roots.resolve("door/away.glb", scenes), InputUnreadable);
+    EXPECT_THROW(roots.resolve("../away.glb", scenes), std::invalid_argument);
+    if (away.size() > 1) {
+      EXPECT_EQ(roots.resolve("box.glb", scenes), root_ / "box.glb");
+    }
+  }
+  EXPECT_TRUE(contains(refusal("away.glb"), "it is not there"));
+  fs::create_directory(root_ / "mount");
+  EXPECT_THROW(roots_.resolve("mount/away.glb", scenes), InputUnreadable);
 }
 
 TEST_F(ScenesRootsTest, TheRootItselfMayBeALink) {

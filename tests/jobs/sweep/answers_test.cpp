@@ -103,6 +103,29 @@ TEST_F(SweepAnswers, CompareWithTheBaseline) {
   EXPECT_EQ(a.pictures[0].render[0].best, 1u);
 }
 
+TEST_F(SweepAnswers, RunsOfOtherInputsThanTheLatestAreLeftOut) {
+  const SweepFolder sweep = finish_all(make(two_depths), {{16}, {4}, {16}, {1}});
+  const auto record = [&](std::size_t run, const char* finished, const char* hash) {
+    const JobFolder folder = sweep.folder(sweep.plan().runs[run]);
+    write_inputs(folder, {{InputRole::scene, "a.glb", 5, hash}});
+    JobState state = folder.read_state();
+    state.finished = finished;
+    folder.write_state(state);
+  };
+  record(0, "2026-01-01T00:00:03.000Z", "1");
+  record(1, "2026-01-01T00:00:02.000Z", "0");
+  record(2, "2026-01-01T00:00:01.000Z", "1");  // the file was there again
+  Answers a = answer(sweep);
+  EXPECT_EQ(a.cells[0].done, (std::vector<std::size_t>{0, 2}));
+  EXPECT_EQ(a.cells[1].done, (std::vector<std::size_t>{3})) << "of run 3 nothing is known";
+  EXPECT_EQ(a.states[State::done], 4U);
+  EXPECT_TRUE(a.warnings[0].starts_with("1 of 4 runs were made from other files")) << a.warnings[0];
+  EXPECT_NE(a.warnings[0].find("scene \"a.glb\" has another content"), std::string::npos);
+  record(1, "2026-01-01T00:00:02.000Z", "1");
+  a = answer(sweep);
+  EXPECT_EQ(a.cells[1].done.size(), 2U);
+}
+
 TEST_F(SweepAnswers, NaturalPointsArePlainNumbers) {
   const SweepFolder sweep = finish_all(
       make(R"({"job": {"scene": "a.glb", "reference": "r.exr", "budget": {"iterations": 80}},

@@ -1,0 +1,87 @@
+#include "jobs/run/input_check.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "jobs/run/reference.h"
+#include "jobs/spec/problems.h"
+#include "renderer/core/scene_error.h"
+#include "renderer/gltf/scene_folder.h"
+
+namespace lacuna {
+
+const char* const inputs_not_recorded =
+    "an older build rendered this and did not record its inputs: whether its scene, textures, "
+    "environment or reference have changed since is not known";
+
+std::optional<std::vector<std::string>> InputCheck::changes(const JobFolder& folder) {
+  const bool begun = std::filesystem::exists(folder.file("checkpoint.bin")) ||
+                     folder.read_state().state == State::done;
+  if (!begun) return std::vector<std::string>{};
+  const auto recorded = read_inputs(folder);
+  if (!recorded) return std::nullopt;
+  std::string scene;
+  for (const InputFile& file : *recorded) {
+    if (file.role == InputRole::scene) scene = file.name;
+  }
+  InputList files;
+  for (const InputFile& file : *recorded) files.push_back(now(file, scene));
+  return changed_inputs(*recorded, files);
+}
+
+/// The file as it is now; without a size and a hash if it is not there, or is none of its kind.
+InputFile InputCheck::now(const InputFile& recorded, const std::string& scene) {
+  InputFile file;
+  try {
+    const std::filesystem::path path = find(recorded, scene);
+    const auto known = measured_.find(path);
+    // A hash is known only of the size that was looked for.
+    if (known != measured_.end() &&
+        (!known->second.hash.empty() || known->second.bytes != recorded.bytes)) {
+      file = known->second;
+    } else {
+      file = measured_[path] = measure_input(path, recorded.bytes);
+    }
+  } catch (const std::invalid_argument&) {
+  } catch (const SceneError&) {
+  }
+  file.role = recorded.role;
+  file.name = recorded.name;
+  return file;
+}
+
+/// Where the job, or its scene, would read it from.
+std::filesystem::path InputCheck::find(const InputFile& recorded, const std::string& scene) const {
+  const auto scene_file = [&] { return scenes_.resolve(scene, scene_extensions); };
+  switch (recorded.role) {
+    case InputRole::scene:
+      return scene_file();
+    case InputRole::buffer:
+    case InputRole::texture:
+      return SceneFolder(scene_file()).find(recorded.name, input_text(recorded));
+    case InputRole::environment:
+      return scenes_.resolve(recorded.name, environment_extensions);
+    case InputRole::reference:
+      break;
+  }
+  return reference_file(recorded.name, data_, scenes_);
+}
+
+void refuse_changed_inputs(const JobFolder& folder, const std::vector<std::string>& changes) {
+  if (changes.empty()) return;
+  constexpr std::size_t most = 5;  // named
+  const std::size_t named = std::min(most, changes.size());
+  throw BadJob(
+      {{"",
+        fmt::format(
+            "{} was rendered from other files than there are now: {}{}; allowed: the "
+            "same files, or to render it anew (`lacuna render --again`)",
+            folder.dir().string(),
+            fmt::join(changes.begin(), changes.begin() + std::ptrdiff_t(named), "; "),
+            changes.size() > named ? fmt::format("; and {} more", changes.size() - named) : "")}});
+}
+
+}  // namespace lacuna
