@@ -1,9 +1,18 @@
 #include "renderer/images/image_module.h"
 
 #include <dlfcn.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <pthread.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <csignal>
 #include <filesystem>
 #include <future>
 #include <memory>
@@ -14,6 +23,7 @@
 #include <system_error>
 #include <vector>
 
+#include "analysis/space/memory_limit.h"
 #include "renderer/core/clock_seconds.h"
 
 namespace lacuna {
@@ -29,11 +39,15 @@ constexpr const char* loaded_first[] = {"libgdcmMSFF.so.3.0", "libproj.so.25", "
                                         "libspatialite.so.7", "libgdal.so.32", "libavformat.so.59",
                                         "libopenvdb.so.10.0"};
 
-/// What the libraries take of the limit of memory, `ulimit -d` (measured: 101 MiB, with the stacks
-/// of threads that some of them start). Without it they do not fail but end the process.
-constexpr std::size_t needed_room = std::size_t{128} << 20;
-/// With less than this the job might take that memory while the module is being loaded.
-constexpr std::size_t plenty_of_room = std::size_t{1} << 30;
+/// More than the libraries take of a limit of memory: measured are 400 MiB of address space, and a
+/// stack for each of five threads.
+constexpr std::size_t room_without_stacks = std::size_t{1} << 30;
+constexpr std::size_t threads_of_libraries = 8;
+
+/// A child that loads the module is given up after so long, where the least was measured to be .2
+/// s: what hangs waits for ever. The second time is what is left to it after a signal, such as
+/// SIGTERM.
+constexpr int patience_ms = 20000, patience_after_signal_ms = 1000;
 
 struct Loaded {
   const ImageCodec* codec = nullptr;  ///< null: `error`
@@ -68,7 +82,22 @@ void make_room_for_small_pieces() {
   }
 }
 
-bool has_room(std::size_t bytes) {
+bool is_limited(decltype(RLIMIT_AS) resource) {
+  rlimit limit{};
+  return ::getrlimit(resource, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+}
+
+/// Whether memory of this process has a limit (`ulimit -v` or `-d`).
+bool memory_is_limited() { return is_limited(RLIMIT_AS) || is_limited(RLIMIT_DATA); }
+
+bool has_plenty_of_room() {
+  pthread_attr_t defaults;
+  std::size_t stack = 0;
+  if (::pthread_getattr_default_np(&defaults) == 0) {
+    ::pthread_attr_getstacksize(&defaults, &stack);
+    ::pthread_attr_destroy(&defaults);
+  }
+  const std::size_t bytes = room_without_stacks + threads_of_libraries * stack;
   void* const room = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
                             MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (room == MAP_FAILED) return false;
@@ -94,12 +123,49 @@ void load_codec(Loaded& loaded) {
   loaded.codec = reinterpret_cast<ImageCodecFunction>(function)();
 }
 
+/// Ends a child of loads_in_a_child(): 0 if the module can be loaded, 1 if that lacks memory.
+[[noreturn]] void try_to_load() {
+  ::prctl(PR_SET_DUMPABLE, 0);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  ::dup2(nowhere, STDOUT_FILENO);
+  ::dup2(nowhere, STDERR_FILENO);
+  try {
+    Loaded loaded;
+    load_codec(loaded);
+    ::_exit(loaded.lacks_memory ? 1 : 0);  // what else is wrong, the parent finds as well
+  } catch (...) {
+    ::_exit(1);
+  }
+}
+
+/// Loads the module in a copy of this process. Where memory is short, constructors of the libraries
+/// throw what nobody catches, or wait for threads that could not start: the process ends with
+/// SIGABRT, or never.
+bool loads_in_a_child() {
+  std::array<int, 2> alive{};  // a pipe whose other end closes when the child ends
+  if (::pipe2(alive.data(), O_CLOEXEC) != 0) return false;
+  const pid_t child = ::fork();
+  if (child == 0) try_to_load();
+  ::close(alive[1]);
+  pollfd end{alive[0], POLLIN, 0};
+  int ended = child < 0 ? 0 : ::poll(&end, 1, patience_ms);
+  if (ended < 0 && errno == EINTR) ended = ::poll(&end, 1, patience_after_signal_ms);
+  ::close(alive[0]);
+  if (child < 0) return false;
+  if (ended != 1) ::kill(child, SIGKILL);
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return ended == 1 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
 Loaded load() {
   Loaded loaded;
   loaded.times.begun = clock_seconds(CLOCK_MONOTONIC);
   const double cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
   try {
-    loaded.lacks_memory = !has_room(needed_room);
+    loaded.lacks_memory = memory_is_limited() && !has_plenty_of_room() && !loads_in_a_child();
     if (!loaded.lacks_memory) load_codec(loaded);
   } catch (const std::bad_alloc&) {
     loaded.lacks_memory = true;
@@ -135,7 +201,11 @@ TheLoad& the_load() {
 
 const ImageCodec& codec_of(const Loaded& loaded) {
   if (loaded.codec != nullptr) return *loaded.codec;
-  if (loaded.lacks_memory) throw std::bad_alloc();
+  if (loaded.lacks_memory) {
+    throw MemoryLimitError(std::string(module_name) +
+                           ": the libraries that read and write images do not fit the limit of "
+                           "memory (ulimit -v or -d); they take some 450 MiB of address space");
+  }
   // No fault of the job: once the module is there, the same job goes on.
   throw std::system_error(ELIBACC, std::generic_category(), loaded.error);
 }
@@ -143,11 +213,10 @@ const ImageCodec& codec_of(const Loaded& loaded) {
 }  // namespace
 
 ImageModuleLoading::ImageModuleLoading() {
-  if (has_room(plenty_of_room)) {
-    the_load().begin(std::launch::async);
-  } else {
-    the_load().begin(std::launch::deferred).wait();
-  }
+  // The job might take memory that is limited while the module is being loaded.
+  const bool at_once = memory_is_limited();
+  const auto loading = the_load().begin(at_once ? std::launch::deferred : std::launch::async);
+  if (at_once) loading.wait();
 }
 ImageModuleLoading::~ImageModuleLoading() { the_load().begin(std::launch::deferred).wait(); }
 void ImageModuleLoading::wait() const { image_codec(); }

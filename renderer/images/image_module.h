@@ -11,8 +11,8 @@ namespace lacuna {
 // program or in `../bin`, does, and a process loads it when it needs the first image.
 
 /// Starts loading the module on a thread of its own, unless it is loaded already, and returns at
-/// once; near a memory limit it loads the module before it returns. The destructor waits until the
-/// module is loaded: a program that exits during the loading of libraries may crash.
+/// once; where memory is limited it loads the module before it returns. The destructor waits until
+/// the module is loaded: a program that exits during the loading of libraries may crash.
 class ImageModuleLoading {
  public:
   ImageModuleLoading();
@@ -23,8 +23,9 @@ class ImageModuleLoading {
   void wait() const;
 };
 
-/// Loads the module, or waits until another thread has loaded it. Thread-safe. Throws
-/// std::runtime_error with the file's name if it is missing or cannot be loaded, std::bad_alloc.
+/// Loads the module, or waits until another thread has loaded it; near a limit of memory a child
+/// process tries it first. Thread-safe. Throws std::runtime_error with the file's name if it is
+/// missing or cannot be loaded, MemoryLimitError if the limit is too low.
 const ImageCodec& image_codec();
 
 /// When the module was loaded and what that took.

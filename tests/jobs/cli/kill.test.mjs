@@ -8,7 +8,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { setTimeout as pause } from "node:timers/promises";
 
-import { job, run, start, startWith, temporaryFolder } from "./command.mjs";
+import { job, root, run, start, startWith, temporaryFolder } from "./command.mjs";
 
 const kills = Number(process.env.LACUNA_KILLS ?? 3);
 const spec = {
@@ -182,6 +182,18 @@ for (const [part, content] of Object.entries(hungry)) {
     });
   }
 }
+
+// Some libraries of the image module end or hang their process where address space is short; the
+// limits are those where they did, and one that is enough.
+test("the image module does not fit the limit of address space: exit 71, and it says so", async (t) => {
+  const folder = temporaryFolder(t);
+  const picture = join(root, "tests/fuzz/corpus/float_image/none.exr");
+  await Promise.all([220, 280, 290, 300, 390, 400, 410, 2000].map(async (mebibytes) => {
+    const { code, signal, err } = await runAfter(`ulimit -v ${mebibytes * 1024}`, folder, "compare", picture, picture);
+    assert.equal(code, mebibytes < 2000 ? 71 : 0, `${mebibytes} MiB: ${signal} ${err}`);
+    if (code === 71) assert.match(err, /^lacuna: out of memory: .*images.so: .* do not fit the limit of memory \(ulimit -v/);
+  }));
+});
 
 test("wherever memory runs out, it ends as itself and goes on with more", async (t) => {
   const folder = temporaryFolder(t);
