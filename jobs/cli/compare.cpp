@@ -40,15 +40,15 @@ Crop crop_of(const CompareOptions& o, const FloatImage& image) {
   return c;
 }
 
-/// The rectangle's values, three a pixel.
-std::vector<double> in_double(const FloatImage& image, const Crop& crop) {
-  std::vector<double> values;
-  values.reserve(3 * static_cast<std::size_t>(crop.width) * static_cast<std::size_t>(crop.height));
+/// The rectangle's values, three a pixel. Throws SceneError, with `label`, if one is not finite.
+std::vector<double> in_double(const FloatImage& image, const Crop& crop, const std::string& label) {
+  FloatImage part{crop.width, crop.height, {}, {}};
   for (int y = crop.y; y < crop.y + crop.height; ++y) {
     const auto row = image.rgb.begin() + 3 * (std::ptrdiff_t{y} * image.width + crop.x);
-    values.insert(values.end(), row, row + 3 * std::ptrdiff_t{crop.width});
+    part.rgb.insert(part.rgb.end(), row, row + 3 * std::ptrdiff_t{crop.width});
   }
-  return values;
+  require_finite(part, label);
+  return {part.rgb.begin(), part.rgb.end()};
 }
 
 double mean(const std::vector<double>& values) {
@@ -61,16 +61,18 @@ double mean(const std::vector<double>& values) {
 std::vector<double> variance_of_difference(const CompareOptions& o, const Crop& crop) {
   std::vector<double> sum;
   for (const auto& file : {o.a, o.b}) {
+    FloatImage layer;
     try {
-      const FloatImage layer = read_float_image(file, "variance");
-      const auto found = layer.attributes.find(fmt::format("lacuna:{}", variance_scale_attribute));
-      const double scale = found == layer.attributes.end() ? 1 : std::stod(found->second);
-      const std::vector<double> v = in_double(layer, crop);
-      if (sum.empty()) sum.resize(v.size());
-      for (std::size_t i = 0; i < v.size(); ++i) sum[i] += v[i] / scale;
+      layer = read_float_image(file, "variance");
     } catch (const SceneError&) {
       if (file == o.a) return {};
+      continue;
     }
+    const auto found = layer.attributes.find(fmt::format("lacuna:{}", variance_scale_attribute));
+    const double scale = found == layer.attributes.end() ? 1 : std::stod(found->second);
+    const std::vector<double> v = in_double(layer, crop, file.string() + ": layer variance");
+    if (sum.empty()) sum.resize(v.size());
+    for (std::size_t i = 0; i < v.size(); ++i) sum[i] += v[i] / scale;
   }
   return sum;
 }
@@ -137,8 +139,9 @@ void compare(CompareOptions o) {
   }
   warn_of_other_scenes(o, image_a, image_b);
   const Crop crop = crop_of(o, image_a);
-  const std::vector<double> a = in_double(image_a, crop);
-  const std::vector<double> b = in_double(image_b, crop);
+  const std::string where = o.crop.empty() ? "" : ", in the crop";
+  const std::vector<double> a = in_double(image_a, crop, o.a.string() + where);
+  const std::vector<double> b = in_double(image_b, crop, o.b.string() + where);
   const Errors e = errors(a, b);
   for (const ErrorMetricRow& metric : error_metrics) {
     if (!needs_reference(metric.value)) continue;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 
 #include "jobs/spec/reference_spec.h"
 #include "renderer/geometry/scene_data.h"
@@ -35,16 +34,10 @@ Reference read_reference(const std::string& name, const std::filesystem::path& i
     throw SceneError(fmt::format("reference \"{}\" has {} x {} pixels, the job {} x {}", name,
                                  file.width, file.height, resolution[0], resolution[1]));
   }
+  require_finite(file, fmt::format("reference \"{}\"", name));
   Reference r{name, {file.rgb.begin(), file.rgb.end()}, std::nullopt, image, file.file};
   r.input.role = InputRole::reference;
   r.input.name = name;
-  for (std::size_t i = 0; i < r.rgb.size(); ++i) {
-    if (std::isfinite(r.rgb[i])) continue;
-    const auto pixel = i / 3;
-    const auto width = static_cast<std::size_t>(file.width);
-    throw SceneError(fmt::format("reference \"{}\": pixel ({}, {}) is {}", name, pixel % width,
-                                 pixel / width, r.rgb[i]));
-  }
   if (const auto rmse = file.attributes.find("lacuna:est_rmse"); rmse != file.attributes.end()) {
     double value = 0;
     const std::string& text = rmse->second;

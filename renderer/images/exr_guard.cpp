@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <istream>
+#include <optional>
 #include <span>
 #include <streambuf>
 #include <string>
@@ -80,6 +82,8 @@ class ExrHeader {
   bool check_attributes(bool first) {
     bool any = false;
     picture_ = tile_ = {};
+    chromaticities_.reset();
+    first_colour_.clear();
     for (std::string name = text(); !name.empty(); name = text()) {
       any = true;
       const std::string type = text();
@@ -100,6 +104,7 @@ class ExrHeader {
     }
     if (first && !any) fail("there are no attributes");
     check_tiles();
+    check_primaries();
     return any;
   }
 
@@ -107,6 +112,9 @@ class ExrHeader {
   void note(const std::string& name, std::uint32_t bytes) {
     if (name == "dataWindow" && bytes == 16) picture_ = read_window();
     if (name == "tiles" && bytes == 9) tile_ = {integer(), integer()};
+    if (name == "chromaticities" && bytes == 32) {
+      for (double& v : chromaticities_.emplace()) v = double{std::bit_cast<float>(integer())};
+    }
     if (name == "type" && bytes >= sizeof deep && integer() == deep) refuse_deep();
   }
 
@@ -137,6 +145,15 @@ class ExrHeader {
       refuse("is corrupt: it says that it has " + std::to_string(tiles) + " tiles, in " +
              std::to_string(size_) + " bytes");
     }
+  }
+
+  void check_primaries() const {
+    if (first_colour_.empty() || !chromaticities_ || are_close(*chromaticities_, rec709)) {
+      return;
+    }
+    refuse("has channel \"" + first_colour_ + "\" of the primaries and white " +
+           chromaticities_text(*chromaticities_) + "; allowed: those of Rec. 709, " +
+           chromaticities_text(rec709));
   }
 
   /// Whether a value from here to `end` can be of `type`.
@@ -173,8 +190,11 @@ class ExrHeader {
              "; allowed: 0 to " + std::to_string(pixel_types - 1));
       }
       integer();  // whether it is linear
+      if (name == "R" || name.ends_with(".R")) first_colour_ = printable(name);
       if (integer() != 1 || integer() != 1) {
-        refuse("has channel \"" + printable(name) + "\" at less than full resolution");
+        refuse("has channel \"" + printable(name) +
+               "\" at less than full resolution, as luminance and chroma have; allowed: RGB, XYZ "
+               "or grey at full resolution");
       }
     }
   }
@@ -210,7 +230,10 @@ class ExrHeader {
 
   const std::string& label_;
   std::uintmax_t size_;
-  Size picture_, tile_;  // of the part that is read
+  // Of the part that is read.
+  Size picture_, tile_;
+  std::optional<Chromaticities> chromaticities_;
+  std::string first_colour_;  ///< the name of a red channel
   MemoryBuffer buffer_;
   std::istream stream_;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -24,7 +25,7 @@ constexpr std::uint64_t max_encoded_bytes = std::uint64_t{2} << 30;
 /// Validates the headers of an OpenEXR file, which the libraries trust: they allocate memory for
 /// attributes, rows and tiles of any stated number before they read them, and an unknown channel
 /// type ends the process. Allowed are flat parts of up to max_picture_side with all channels at
-/// full resolution.
+/// full resolution, and RGB of the primaries of Rec. 709.
 void check_exr_header(std::span<const std::uint8_t> exr, const std::string& label);
 
 /// A PNG of 8 or 16 bits or less, of any colour type, up to max_texture_side.
@@ -38,10 +39,26 @@ std::vector<std::uint8_t> plain_jpeg(std::span<const std::uint8_t> jpeg, const s
 std::uint64_t png_texels(std::span<const std::uint8_t> png, const std::string& label);
 std::uint64_t jpeg_texels(std::span<const std::uint8_t> jpeg, const std::string& label);
 
-/// A Radiance picture (`32-bit_rle_rgbe`, top row first) up to max_picture_side: rows flat or
-/// channel by channel. Rows in the old run-length encoding, which the library does not support, are
-/// expanded. EXPOSURE is ignored.
-std::vector<std::uint8_t> plain_hdr(std::span<const std::uint8_t> hdr, const std::string& label);
+/// A Radiance picture to decode, and what its header multiplied each channel of light with.
+struct PlainHdr {
+  std::vector<std::uint8_t> bytes;
+  std::array<double, 3> multiplied{1, 1, 1};  ///< product of all EXPOSURE and COLORCORR lines
+};
+
+/// A Radiance picture (`32-bit_rle_rgbe`, which a header without FORMAT means too; top row first)
+/// up to max_picture_side: rows flat or channel by channel. Rows in the old run-length encoding,
+/// which the library does not support, are expanded. PRIMARIES may be Radiance's or those of Rec.
+/// 709.
+PlainHdr plain_hdr(std::span<const std::uint8_t> hdr, const std::string& label);
+
+/// CIE xy of red, green, blue and white.
+using Chromaticities = std::array<double, 8>;
+/// ITU-R BT.709-6, items 1.3 and 1.4: the RGB of Lacuna and of glTF.
+inline constexpr Chromaticities rec709{.64, .33, .30, .60, .15, .06, .3127, .3290};
+/// Within .002 a coordinate, what three written digits leave open.
+bool are_close(const Chromaticities& a, const Chromaticities& b);
+/// "0.64 0.33 0.3 ...", as errors show them.
+std::string chromaticities_text(const Chromaticities& xy);
 
 /// The first picture of a TIFF of up to 4 GiB and max_picture_side: 1, 3 or 4 channels of 16- or
 /// 32-bit floats, stored plainly or by LZW, Deflate or PackBits.

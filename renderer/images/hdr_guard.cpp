@@ -1,4 +1,10 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <sstream>
 
 #include "renderer/images/checked_bytes.h"
 #include "renderer/images/guards.h"
@@ -9,17 +15,20 @@ namespace {
 constexpr std::size_t pixel_bytes = 4;  // three mantissas and their exponent
 constexpr std::size_t shortest_by_channel = 8, longest_by_channel = 0x7fff;
 
+/// Of Radiance (`src/common/color.h`), which everyone reads as Rec. 709.
+constexpr Chromaticities radiance_primaries{.640, .330, .290, .600, .150, .060, 1. / 3, 1. / 3};
+
 class HdrGuard {
  public:
   HdrGuard(std::span<const std::uint8_t> hdr, const std::string& label) : in_(hdr, label) {}
 
-  std::vector<std::uint8_t> run() {
+  PlainHdr run() {
     read_header();
     const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " +
                                std::to_string(height_) + " +X " + std::to_string(width_) + "\n";
     plain_.assign(header.begin(), header.end());
     for (int y = 0; y < height_; ++y) read_row(static_cast<std::size_t>(width_));
-    return std::move(plain_);
+    return {std::move(plain_), multiplied_};
   }
 
  private:
@@ -29,16 +38,63 @@ class HdrGuard {
     for (char c; (c = static_cast<char>(in_.byte())) != '\n'; text += c) {
       if (text.size() == longest) in_.fail("is corrupt: its header has a line without end");
     }
+    if (text.ends_with('\r')) text.pop_back();
     return text;
+  }
+
+  /// The numbers behind NAME=, if the line begins so.
+  template <std::size_t N>
+  std::optional<std::array<double, N>> numbers(const std::string& text, const std::string& name,
+                                               const std::string& allowed) const {
+    if (!text.starts_with(name + "=")) return std::nullopt;
+    std::array<double, N> values{};
+    std::istringstream in(text.substr(name.size() + 1));
+    for (double& v : values) {
+      if (!(in >> v)) refuse(text, allowed);
+    }
+    std::string rest;
+    if (in >> rest) refuse(text, allowed);
+    return values;
+  }
+
+  [[noreturn]] void refuse(const std::string& text, const std::string& allowed) const {
+    in_.fail("has \"" + text.substr(0, 80) + "\" in its header; allowed: " + allowed);
+  }
+
+  /// "EXPOSURE, COLORCORR: multipliers that have been applied to all pixels", cumulative; a pixel's
+  /// radiance is its value over their product (Radiance file formats, "Picture files").
+  void read_line(const std::string& text) {
+    if (text.starts_with("FORMAT=")) {
+      std::string format;
+      std::istringstream(text.substr(7)) >> format;
+      if (format != "32-bit_rle_rgbe") refuse(text, "FORMAT=32-bit_rle_rgbe");
+    } else if (const auto exposure = numbers<1>(text, "EXPOSURE", "a number above 0")) {
+      multiply(text, {exposure->front(), exposure->front(), exposure->front()});
+    } else if (const auto colour = numbers<3>(text, "COLORCORR", "three numbers above 0")) {
+      multiply(text, *colour);
+    } else if (const auto gamma = numbers<1>(text, "GAMMA", "1: linear values")) {
+      if (gamma->front() != 1) refuse(text, "1: linear values");
+    } else if (const auto xy = numbers<8>(text, "PRIMARIES", "eight coordinates")) {
+      const bool unset = *xy == Chromaticities{};
+      if (!unset && !are_close(*xy, rec709) && !are_close(*xy, radiance_primaries)) {
+        refuse(text,
+               chromaticities_text(radiance_primaries) + ", or " + chromaticities_text(rec709));
+      }
+    }
+  }
+
+  void multiply(const std::string& text, const std::array<double, 3>& factors) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      multiplied_[k] *= factors[k];
+      if (!(factors[k] > 0) || !std::isnormal(multiplied_[k])) {
+        refuse(text, "numbers above 0, with a product that a double can hold");
+      }
+    }
   }
 
   void read_header() {
     line();  // #?RADIANCE or another name
-    bool known = false;
-    for (std::string text = line(); !text.empty(); text = line()) {
-      if (text.starts_with("FORMAT=")) known = text == "FORMAT=32-bit_rle_rgbe";
-    }
-    if (!known) in_.fail("has another FORMAT than 32-bit_rle_rgbe");
+    for (std::string text = line(); !text.empty(); text = line()) read_line(text);
     const std::string size = line();
     int end = 0;
     if (std::sscanf(size.c_str(), "-Y %7d +X %7d%n", &height_, &width_, &end) != 2 ||
@@ -104,11 +160,22 @@ class HdrGuard {
   CheckedBytes in_;
   std::vector<std::uint8_t> plain_;
   int width_ = 0, height_ = 0;
+  std::array<double, 3> multiplied_{1, 1, 1};
 };
 
 }  // namespace
 
-std::vector<std::uint8_t> plain_hdr(std::span<const std::uint8_t> hdr, const std::string& label) {
+bool are_close(const Chromaticities& a, const Chromaticities& b) {
+  constexpr double written = .002;
+  return std::equal(a.begin(), a.end(), b.begin(),
+                    [](double x, double y) { return std::abs(x - y) <= written; });
+}
+
+std::string chromaticities_text(const Chromaticities& xy) {
+  return fmt::format("{:.4g}", fmt::join(xy, " "));
+}
+
+PlainHdr plain_hdr(std::span<const std::uint8_t> hdr, const std::string& label) {
   return HdrGuard(hdr, label).run();
 }
 

@@ -51,32 +51,38 @@ std::optional<ImageFormat> format_of(const ReadFile& file) {
   return std::nullopt;
 }
 
-std::array<std::string, 3> channel_names(const std::string& layer) {
-  const std::string prefix = layer.empty() ? "" : layer + ".";
-  return {prefix + "R", prefix + "G", prefix + "B"};
+/// The channels of a layer that hold its colours.
+struct ColourChannels {
+  std::vector<int> places;  ///< three, or one that is grey; none if the layer is missing
+  bool xyz = false;
+};
+
+/// The place of a layer's channel; -1 if it lacks.
+int channel_place(const PictureHeader& header, const std::string& layer, const std::string& name) {
+  const auto it = std::find(header.channels.begin(), header.channels.end(),
+                            layer.empty() ? name : layer + "." + name);
+  return it == header.channels.end() ? -1 : static_cast<int>(it - header.channels.begin());
 }
 
-/// The channels of a layer: three, or one that is grey; none if the layer is missing.
-std::vector<int> find_channels(const PictureHeader& header, const std::string& layer) {
-  const auto place = [&](const std::string& name) {
-    const auto it = std::find(header.channels.begin(), header.channels.end(), name);
-    return it == header.channels.end() ? -1 : static_cast<int>(it - header.channels.begin());
-  };
-  std::vector<int> places;
-  for (const std::string& name : channel_names(layer)) places.push_back(place(name));
-  if (std::find(places.begin(), places.end(), -1) == places.end()) return places;
-  const int grey = place(layer.empty() ? "Y" : layer + ".Y");
-  if (grey >= 0) return {grey};
+ColourChannels find_channels(const PictureHeader& header, const std::string& layer) {
+  const auto place = [&](const char* name) { return channel_place(header, layer, name); };
+  for (const auto& names : {std::array{"R", "G", "B"}, std::array{"X", "Y", "Z"}}) {
+    const std::vector<int> places{place(names[0]), place(names[1]), place(names[2])};
+    if (*std::min_element(places.begin(), places.end()) >= 0) return {places, *names[0] == 'X'};
+  }
+  // Y is grey by itself; beside these it is one of several channels of a colour. Z alone is depth.
+  const auto parts = {"R", "G", "B", "X", "RY", "BY"};
+  const bool alone = std::all_of(parts.begin(), parts.end(), [&](auto* p) { return place(p) < 0; });
+  if (alone && place("Y") >= 0) return {{place("Y")}};
   return {};
 }
 
 [[noreturn]] void fail_for_channels(const std::filesystem::path& file, const PictureHeader& header,
                                     const std::string& layer) {
   std::vector<std::string> missing;
-  for (const std::string& name : channel_names(layer)) {
-    if (std::find(header.channels.begin(), header.channels.end(), name) == header.channels.end()) {
-      missing.push_back(name);
-    }
+  for (const std::string name : {"R", "G", "B"}) {
+    if (channel_place(header, layer, name) >= 0) continue;
+    missing.push_back(layer.empty() ? name : layer + "." + name);
   }
   fail(file, fmt::format("lacks channel {}; it has {}", fmt::join(missing, ", "),
                          fmt::join(header.channels, ", ")));
@@ -96,14 +102,32 @@ void check_header(const std::filesystem::path& file, const PictureHeader& header
   }
 }
 
-FloatImage read_part(PictureFile& in, std::size_t part, const std::vector<int>& channels) {
+/// Linear RGB of Rec. 709 from CIE XYZ: the inverse of the matrix whose columns are the primaries,
+/// scaled to add up to the white (ITU-R BT.709-6; SMPTE RP 177). What rounding to half precision
+/// leaves below 0 of a colour that the primaries can mix is 0: it is at most 2^-11 of the largest
+/// of X, Y, Z times the sum of a row's magnitudes, 5.28.
+Rgb rgb_of_xyz(const Rgb& xyz) {
+  constexpr std::array<std::array<float, 3>, 3> matrix{{{3.2409699F, -1.5373832F, -0.4986108F},
+                                                        {-0.9692436F, 1.8759675F, 0.0415551F},
+                                                        {0.0556301F, -0.2039770F, 1.0569715F}}};
+  const float rounding = 5.28F * 0x1p-11F * std::max({xyz.x, xyz.y, xyz.z});
+  Rgb rgb;
+  for (int k = 0; k < 3; ++k) {
+    const auto& row = matrix[static_cast<std::size_t>(k)];
+    rgb[k] = row[0] * xyz.x + row[1] * xyz.y + row[2] * xyz.z;
+    if (rgb[k] < 0 && rgb[k] >= -rounding) rgb[k] = 0;
+  }
+  return rgb;
+}
+
+FloatImage read_part(PictureFile& in, std::size_t part, const ColourChannels& colours) {
   const PictureHeader& header = in.parts()[part];
   const std::size_t pixels =
       static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height);
-  const std::size_t read = channels.size();
+  const std::size_t read = colours.places.size();
   // Not set to zero: memory is used up only as pixels come, however large the header says they are.
   const auto stored = std::make_unique_for_overwrite<float[]>(pixels * read);
-  in.read(part, channels, stored.get());
+  in.read(part, colours.places, stored.get());
   FloatImage result{header.width, header.height, std::vector<float>(pixels * 3), {}, {}};
   for (const auto& [name, text] : header.texts) {
     if (name.starts_with("lacuna:")) result.attributes[name] = text;
@@ -112,6 +136,10 @@ FloatImage read_part(PictureFile& in, std::size_t part, const std::vector<int>& 
     for (std::size_t k = 0; k < 3; ++k) {
       result.rgb[3 * i + k] = stored[i * read + (read == 3 ? k : 0)];
     }
+    if (!colours.xyz) continue;
+    float* const pixel = &result.rgb[3 * i];
+    const Rgb rgb = rgb_of_xyz({pixel[0], pixel[1], pixel[2]});
+    std::copy_n(&rgb.x, 3, pixel);
   }
   return result;
 }
@@ -119,8 +147,8 @@ FloatImage read_part(PictureFile& in, std::size_t part, const std::vector<int>& 
 FloatImage read_layer(const std::filesystem::path& file, PictureFile& in,
                       const std::string& layer) {
   for (std::size_t part = 0; part < in.parts().size(); ++part) {
-    const std::vector<int> channels = find_channels(in.parts()[part], layer);
-    if (channels.empty()) continue;
+    const ColourChannels channels = find_channels(in.parts()[part], layer);
+    if (channels.places.empty()) continue;
     check_header(file, in.parts()[part]);
     return read_part(in, part, channels);
   }
@@ -130,23 +158,43 @@ FloatImage read_layer(const std::filesystem::path& file, PictureFile& in,
 /// The guards come first; without a picture in the file the module is not even loaded.
 FloatImage read_as(ImageFormat format, ReadFile file, const std::string& layer) {
   const std::string label = file.path.string();
+  std::array<double, 3> multiplied{1, 1, 1};
   if (format == ImageFormat::openexr) {
     check_exr_header(file.bytes, label);
   } else if (format == ImageFormat::tiff) {
     file.bytes = plain_tiff(file.bytes, label);
   } else {
-    file.bytes = plain_hdr(file.bytes, label);
+    PlainHdr plain = plain_hdr(file.bytes, label);
+    file.bytes = std::move(plain.bytes);
+    multiplied = plain.multiplied;
   }
   const ImageCodec& codec = image_codec();
   try {
     FloatImage image = read_layer(file.path, *codec.open(format, file.bytes), layer);
     image.file = std::move(file.about);
+    if (multiplied == std::array<double, 3>{1, 1, 1}) return image;
+    for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+      image.rgb[i] = static_cast<float>(double{image.rgb[i]} / multiplied[i % 3]);
+    }
     return image;
   } catch (const SceneError&) {
     throw;
   } catch (const std::runtime_error& e) {
     fail(file.path, std::string("is corrupt: ") + e.what());
   }
+}
+
+/// Throws SceneError where a value is not `good`.
+template <class Good>
+void require(const FloatImage& image, const std::string& label, const char* allowed, Good good) {
+  const auto it = std::find_if_not(image.rgb.begin(), image.rgb.end(), good);
+  if (it == image.rgb.end()) return;
+  const auto i = static_cast<std::size_t>(it - image.rgb.begin());
+  const auto bad = image.rgb.end() - it - std::count_if(it, image.rgb.end(), good);
+  const auto width = static_cast<std::size_t>(image.width);
+  throw SceneError(fmt::format(
+      "{}: pixel ({}, {}) channel {} is {}, the first of {} such values of {}; allowed: {}", label,
+      i / 3 % width, i / 3 / width, "RGB"[i % 3], *it, bad, image.rgb.size(), allowed));
 }
 
 }  // namespace
@@ -166,15 +214,11 @@ FloatImage read_reference_image(const std::filesystem::path& path) {
 }
 
 void require_radiance(const FloatImage& image, const std::string& label) {
-  const auto bad = [](float v) { return !(v >= 0) || !std::isfinite(v); };
-  const auto it = std::find_if(image.rgb.begin(), image.rgb.end(), bad);
-  if (it == image.rgb.end()) return;
-  const auto i = static_cast<std::size_t>(it - image.rgb.begin());
-  const auto pixel = i / 3;
-  const auto width = static_cast<std::size_t>(image.width);
-  throw SceneError(label + ": pixel (" + std::to_string(pixel % width) + ", " +
-                   std::to_string(pixel / width) + ") channel " + "RGB"[i % 3] + " is " +
-                   std::to_string(*it) + "; allowed: finite, at least 0");
+  require(image, label, "finite, at least 0", [](float v) { return v >= 0 && std::isfinite(v); });
+}
+
+void require_finite(const FloatImage& image, const std::string& label) {
+  require(image, label, "finite", [](float v) { return std::isfinite(v); });
 }
 
 }  // namespace lacuna

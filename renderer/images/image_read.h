@@ -27,17 +27,21 @@ struct FloatImage {
 };
 
 /// Reads an OpenEXR or Radiance HDR file, by its magic bytes, of up to 32768 pixels a side.
-/// `layer` chooses the channels of an EXR: empty means R, G, B, or Y alone as grey; "half_a" means
-/// half_a.R, half_a.G, half_a.B. Values are kept as they are, non-finite ones too. Throws
-/// SceneError: no such file or layer, another format, corrupt, deep, or a crop of a larger image;
-/// InputUnreadable if it cannot be read now; std::runtime_error if the module of images is missing.
+/// `layer` chooses the channels of an EXR: empty means R, G, B, or X, Y, Z (CIE 1931), which become
+/// linear RGB of Rec. 709, or Y as grey; "half_a" means half_a.R, half_a.G, half_a.B and so on.
+/// Values of Radiance HDR are divided by the EXPOSURE and COLORCORR of its header. Otherwise values
+/// are kept as they are, non-finite ones too. Throws SceneError: no such file or layer, another
+/// format or other primaries, corrupt, deep, or a crop of a larger image; InputUnreadable if it
+/// cannot be read now; std::system_error (ELIBACC) if the module of images is missing.
 FloatImage read_float_image(const std::filesystem::path& file, const std::string& layer = "");
 
 /// Reads a reference image, which may also be a TIFF of floats.
 FloatImage read_reference_image(const std::filesystem::path& file);
 
 /// Throws SceneError with `label`, the position and the value of the first pixel that is negative
-/// or not finite, which radiance cannot be.
+/// or not finite, which radiance cannot be, and the number of such values.
 void require_radiance(const FloatImage& image, const std::string& label);
+/// The same for values that are not finite.
+void require_finite(const FloatImage& image, const std::string& label);
 
 }  // namespace lacuna

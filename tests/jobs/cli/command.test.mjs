@@ -162,6 +162,26 @@ test("compare: equal pictures, different ones, other sizes", async (t) => {
   assert.match(sizes.err, /24 x 16.*8 x 8/);
 });
 
+test("compare and a reference: a value that is not finite is named, not averaged", async (t) => {
+  const folder = temporaryFolder(t);
+  const good = join(root, "tests/fuzz/corpus/float_image/none.exr"); // 7 x 5, half floats, not compressed
+  const bytes = readFileSync(good);
+  bytes.writeUInt16LE(0x7e00, bytes.length - 2); // of the last pixel R: NaN
+  writeFileSync(join(folder, "nan.exr"), bytes);
+  const place = /nan\.exr.*: pixel \(6, 4\) channel R is nan, the first of 1 such values of 105; allowed: finite/;
+  for (const pair of [["nan.exr", good], [good, "nan.exr"], ["nan.exr", "nan.exr"]]) {
+    const { code, out, err } = await run(folder, "compare", ...pair);
+    assert.equal(code, 3, out);
+    assert.match(err, place);
+    assert.equal(out, "");
+  }
+  assert.equal((await run(folder, "compare", "nan.exr", good, "--crop", "0", "0", "7", "4")).code, 0);
+  job(folder, "r.json", { resolution: [7, 5], reference: "nan.exr" });
+  const refused = await run(folder, "render", "r.json", "-q");
+  assert.equal(refused.code, 3);
+  assert.match(refused.err, place);
+});
+
 // What is wrong with it, the job file, what the message must name.
 const badJobs = [
   ["malformed JSON", '{"scene": "cornell.glb",', /line 1/],

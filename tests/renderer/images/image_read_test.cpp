@@ -41,6 +41,57 @@ TEST(ImageRead, ExrWithLayersInAnyOrder) {
                   "lacks channel half_b.R, half_b.G, half_b.B; it has");
 }
 
+// White of luminance 2, and red: of CIE XYZ the rows of the matrix of ITU-R BT.709-6.
+TEST(ImageRead, XyzBecomesRgb) {
+  const TemporaryFolder folder;
+  const auto file = write_channels(
+      folder, {"Z", "A", "X", "Y", "s.Z", "s.X", "s.Y"},
+      {2 * 1.0890578F, 9, 2 * 0.9504559F, 2, 0.0193308F, 0.4123908F, 0.2126390F}, 1, 1);
+  const Rgb white = read_float_image(file).at(0, 0), red = read_float_image(file, "s").at(0, 0);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(white[k], 2, 1e-5);
+    EXPECT_NEAR(red[k], k == 0 ? 1 : 0, 1e-6);
+    EXPECT_GE(red[k], 0) << "rounding is no negative light";
+  }
+  EXPECT_NO_THROW(require_radiance(read_float_image(file, "s"), "sky"));
+  const auto green = write_channels(folder, {"X", "Y", "Z"}, {0.1F, 0.8F, 0.1F}, 1, 1);
+  EXPECT_LT(read_float_image(green).at(0, 0).x, -0.1F) << "more green than the primaries hold";
+}
+
+TEST(ImageRead, OneOfSeveralChannelsIsNoGrey) {
+  const TemporaryFolder folder;
+  for (const std::vector<std::string>& channels : {std::vector<std::string>{"Y", "RY", "BY"},
+                                                   {"X", "Y", "A"},
+                                                   {"R", "Y", "A"},
+                                                   {"diffuse.R", "diffuse.G", "diffuse.B"},
+                                                   {"Z", "A", "r"}}) {
+    const std::string message = image_refusal(write_channels(folder, channels, {1, 2, 3}, 1, 1));
+    expect_contains(message, "image.exr: lacks channel ");
+    for (const std::string& name : channels) expect_contains(message, name);
+  }
+  EXPECT_EQ(read_float_image(write_channels(folder, {"A", "Y", "Z"}, {1, 2, 3}, 1, 1)).at(0, 0),
+            Rgb(2))
+      << "grey with its depth";
+}
+
+TEST(ImageRead, RgbOfOtherPrimariesIsRefused) {
+  const TemporaryFolder folder;
+  const auto write = [&](const std::vector<float>& xy, const std::string& channel) {
+    std::string value(32, '\0');
+    std::memcpy(value.data(), xy.data(), 32);
+    return test::write_exr_file(folder, "a.exr", {channel + "R", channel + "G", channel + "B"},
+                                {1, 2, 3}, 1, 1,
+                                {.attributes = {{{"chromaticities", "chromaticities", value}}}});
+  };
+  const std::vector<float> aces{.7347F, .2653F, 0, 1, .0001F, -.077F, .32168F, .33767F};
+  expect_contains(image_refusal(write(aces, "")),
+                  "a.exr: has channel \"R\" of the primaries and white 0.7347 0.2653 0 1 0.0001 "
+                  "-0.077 0.3217 0.3377; allowed: those of Rec. 709, 0.64 0.33 0.3");
+  expect_contains(image_refusal(write(aces, "half_a."), "half_a"), "has channel \"half_a.R\"");
+  const std::vector<float> rec709{.64F, .33F, .3F, .6F, .15F, .06F, .3127F, .329F};
+  EXPECT_EQ(read_float_image(write(rec709, "")).at(0, 0), Rgb(1, 2, 3));
+}
+
 TEST(ImageRead, GreyAndMissingChannels) {
   const TemporaryFolder folder;
   EXPECT_EQ(read_float_image(write_channels(folder, {"Y"}, {0.5F, 7}, 1, 2)).at(0, 1), Rgb(7));
@@ -48,12 +99,19 @@ TEST(ImageRead, GreyAndMissingChannels) {
                   "lacks channel G; it has");
 }
 
-constexpr const char* hdr_header = "#?RADIANCE\nEXPOSURE=2\nFORMAT=32-bit_rle_rgbe\n\n";
+constexpr const char* hdr_header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
 
 std::filesystem::path write_hdr(const TemporaryFolder& folder, const std::string& size,
                                 const test::Bytes& pixels) {
   return folder.write("image.hdr",
                       hdr_header + size + "\n" + std::string(pixels.begin(), pixels.end()));
+}
+
+/// One pixel (1, 1, 1) under these lines. Where the last is "\\r" all line ends are CRLF.
+std::filesystem::path write_white(const TemporaryFolder& folder, const std::string& lines) {
+  const std::string end = lines.ends_with('\r') ? "\r\n" : "\n";
+  return folder.write("white.hdr",
+                      "#?RADIANCE" + end + lines + "\n-Y 1 +X 1" + end + "\x80\x80\x80\x81");
 }
 
 TEST(ImageRead, RadianceHdr) {
@@ -98,10 +156,43 @@ TEST(ImageRead, RadianceHdrOfOtherKindsIsRefused) {
   for (const char* size : {"-Y 0 +X 2", "-Y 2 +X 40000", "-Y 2 +X -3"}) {
     expect_contains(image_refusal(write_hdr(folder, size, {})), "up to 32768 a side");
   }
-  expect_contains(
-      image_refusal(folder.write("xyz.hdr", std::string("#?RGBE\nFORMAT=32-bit_rle_xyze\n"
-                                                        "\n-Y 1 +X 1\n1234"))),
-      "another FORMAT");
+  for (const auto& [line, allowed] :
+       {std::pair("FORMAT=32-bit_rle_xyze", "FORMAT=32-bit_rle_rgbe"),
+        {"EXPOSURE=0", "above 0"},
+        {"EXPOSURE=-1", "above 0"},
+        {"EXPOSURE=abc", "a number above 0"},
+        {"EXPOSURE=1 2", "a number above 0"},
+        {"EXPOSURE=1e999", "a number above 0"},
+        {"COLORCORR=1 2", "three numbers above 0"},
+        {"COLORCORR=1 0 1", "above 0"},
+        {"GAMMA=2.2", "1: linear values"},
+        {"PRIMARIES=.64 .33", "eight coordinates"},
+        {"PRIMARIES=.7347 .2653 0 1 .0001 -.077 .32168 .33767",
+         "0.64 0.33 0.29 0.6 0.15 0.06 0.3333 0.3333, or 0.64 0.33 0.3 0.6 0.15 0.06 0.3127"}}) {
+    const std::string message = image_refusal(write_white(folder, std::string(line) + "\n"));
+    expect_contains(message,
+                    "white.hdr: has \"" + std::string(line) + "\" in its header; allowed: ");
+    expect_contains(message, allowed);
+  }
+  expect_contains(image_refusal(write_white(folder, "EXPOSURE=1e-300\nEXPOSURE=1e-300\n")),
+                  "a product that a double can hold");
+}
+
+// Stored values are the light times all EXPOSURE and COLORCORR lines (Radiance file formats).
+TEST(ImageRead, RadianceHdrIsDividedByWhatItsHeaderMultiplied) {
+  const TemporaryFolder folder;
+  const auto white = [&](const std::string& lines) {
+    return read_float_image(write_white(folder, lines)).at(0, 0);
+  };
+  EXPECT_EQ(white(""), Rgb(1)) << "no FORMAT is the usual one";
+  EXPECT_EQ(white("EXPOSURE=0.5\nFORMAT=32-bit_rle_rgbe\nEXPOSURE= 8\n"), Rgb(0.25F));
+  EXPECT_EQ(white("COLORCORR=0.5 2 4\nCOLORCORR= 1 1 2\nEXPOSURE=1e1\n"),
+            Rgb(0.2F, 0.05F, 0.0125F));
+  EXPECT_EQ(white("\tEXPOSURE=2\n# EXPOSURE=2\nVIEW= -vtv\n"), Rgb(1)) << "of other pictures";
+  EXPECT_EQ(white("GAMMA=1\nPRIMARIES=0 0 0 0 0 0 0 0\n"), Rgb(1)) << "as Photoshop writes it";
+  EXPECT_EQ(white("PRIMARIES=.640 .330 .290 .600 .150 .060 .333 .333\n"), Rgb(1));
+  EXPECT_EQ(white("PRIMARIES=.64 .33 .3 .6 .15 .06 .3127 .329\n"), Rgb(1));
+  EXPECT_EQ(white("EXPOSURE=2\r\nFORMAT=32-bit_rle_rgbe\r\n\r"), Rgb(0.5F)) << "CRLF";
 }
 
 TEST(ImageRead, OtherFilesAreRefused) {
@@ -145,8 +236,19 @@ TEST(ImageRead, RadianceMustBeFiniteAndNotNegative) {
       FAIL() << bad;
     } catch (const SceneError& e) {
       expect_contains(e.what(), "sky: pixel (2, 1) channel G is ");
+      expect_contains(e.what(), ", the first of 1 such values of 18; allowed: finite, at least 0");
     }
   }
+}
+
+TEST(ImageRead, WhatIsNotFiniteIsCounted) {
+  FloatImage image{2, 2, std::vector<float>(12, -1.0F), {}};
+  EXPECT_NO_THROW(require_finite(image, "a"));
+  image.rgb[4] = std::numeric_limits<float>::quiet_NaN();
+  image.rgb[6] = -std::numeric_limits<float>::infinity();
+  expect_contains(
+      test::refusal_of([&] { require_finite(image, "a"); }),
+      "a: pixel (1, 0) channel G is nan, the first of 2 such values of 12; allowed: finite");
 }
 
 /// The first attribute of an EXR with another size, and what reading it says.
@@ -210,7 +312,8 @@ TEST(ImageRead, AnExrThatSaysTooMuchIsRefused) {
   expect_contains(refusal(1, 1, {.flags = 0x800}), "a.exr: is a deep image; allowed: flat ones");
   expect_contains(refusal(1, 1, {.attributes = {{{"type", "string", "deepscanline"}}}}),
                   "a deep image");
-  expect_contains(refusal(2, 2, {.sampling = 2}), "has channel \"B\" at less than full resolution");
+  expect_contains(refusal(2, 2, {.sampling = 2}),
+                  "has channel \"B\" at less than full resolution, as luminance and chroma have");
   expect_contains(
       refusal(1, 1, {.attributes = {{{"Orientation", "int", std::string("\3\0\0\0", 4)}}}}),
       "is stored turned or mirrored");
