@@ -88,7 +88,8 @@ struct Material {
 struct CameraData {
   std::string name;
   M44d to_world;  ///< Imath convention: row vectors, p_world = p * to_world; orthonormal 3x3 part
-  double yfov = 0.8;  ///< vertical field of view, radians, in (0, pi)
+  double yfov = 0.8;      ///< vertical field of view, radians, in (0, pi)
+  std::string node = {};  ///< name of the node that it stands at
 };
 
 /// A light of KHR_lights_punctual. `intensity` is read 1:1 as W/sr (point, spot) or W/m^2

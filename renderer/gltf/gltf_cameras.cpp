@@ -1,5 +1,6 @@
 #include "renderer/gltf/gltf_cameras.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include "renderer/gltf/gltf_limits.h"
@@ -11,10 +12,10 @@ V3d axis(const M44d& m, int i) { return {m[i][0], m[i][1], m[i][2]}; }
 
 /// The same view without scale or shear; a mirrored one stays mirrored.
 M44d orthonormal(const PlacedNode& node, const V3d& origin) {
-  const M44d& m = node.to_world;
+  const M44d& m = node.turn;
   const V3d z = axis(m, 2).normalized();
   const V3d x = (axis(m, 0) - z * z.dot(axis(m, 0))).normalized();
-  const V3d y = z.cross(x) * (node.determinant < 0 ? -1.0 : 1.0);
+  const V3d y = z.cross(x) * (node.mirrored ? -1.0 : 1.0);
   return {x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, origin.x, origin.y, origin.z, 1};
 }
 
@@ -33,7 +34,8 @@ CameraData read_camera(const GltfObject& camera, const PlacedNode& node, const V
   const auto lens = camera.object("perspective");
   if (!lens) camera.fail("perspective is missing");
   CameraData out;
-  out.name = camera.string("name", node.place.string("name", ""));
+  out.node = node.place.string("name", "");
+  out.name = camera.string("name", out.node);
   out.yfov = lens->number("yfov", Limits{0, std::numbers::pi});
   if (out.yfov == 0 || out.yfov == std::numbers::pi) {
     lens->refuse("yfov", "radians above 0 and below pi");
@@ -58,11 +60,14 @@ PunctualLight read_light(const GltfObject& light, const PlacedNode& node, const 
                          Warnings& warnings) {
   PunctualLight out;
   out.name = light.string("name", node.place.string("name", ""));
-  const auto color = light.numbers<3>("color", unit_interval).value_or(std::array{1.0, 1.0, 1.0});
+  const auto color = light.light_colour("color").value_or(std::array{1.0, 1.0, 1.0});
   const double intensity = light.number("intensity", 1, non_negative);
   out.intensity =
       Rgb(static_cast<float>(color[0] * intensity), static_cast<float>(color[1] * intensity),
           static_cast<float>(color[2] * intensity));
+  if (!is_finite(out.intensity)) {
+    light.fail("color times intensity is more than a float can hold");
+  }
   const std::string type = light.string("type");
   if (type == "point") {
     out.kind = PunctualLight::Kind::point;
@@ -78,8 +83,30 @@ PunctualLight read_light(const GltfObject& light, const PlacedNode& node, const 
     warnings.once(
         "the range of punctual lights is left out: light falls off with the square of distance");
   out.position = V3f(position_of(node, origin));
-  out.direction = V3f(-axis(node.to_world, 2).normalized());
+  out.direction = V3f(-axis(node.turn, 2).normalized());
   return out;
+}
+
+void warn_of_no_direction(const PlacedNode& node, const std::string& thing) {
+  node.place.warn("direction", "its matrix is singular and gives its " + thing +
+                                   " no direction; the " + thing + " is left out");
+}
+
+/// Where the last camera has the name of another, as cameras that several nodes share, it is called
+/// like its node.
+void name_apart(std::vector<CameraData>& cameras, const GltfObject& node) {
+  CameraData& last = cameras.back();
+  const auto taken = [&] {
+    return std::any_of(cameras.begin(), cameras.end() - 1,
+                       [&](const CameraData& other) { return other.name == last.name; });
+  };
+  if (!taken()) return;
+  const std::string shared = last.name;
+  last.name = last.node;
+  if (taken() || last.name.empty()) last.name = node.label().substr(0, node.label().find(' '));
+  if (shared.empty()) return;
+  node.warn("shared camera", "another camera is called " + in_quotes(shared) +
+                                 ", too; this one is called " + in_quotes(last.name));
 }
 
 }  // namespace
@@ -96,10 +123,13 @@ std::vector<CameraData> read_cameras(const GltfObject& root, const std::vector<P
     if (type != "perspective" && type != "orthographic") {
       camera.refuse("type", "\"perspective\" or \"orthographic\"");
     }
-    if (type == "perspective") {
-      out.push_back(read_camera(camera, node, origin));
-    } else {
+    if (type != "perspective") {
       warnings.once(camera.label() + " is orthographic, which is not supported; it is left out");
+    } else if (!node.can_turn) {
+      warn_of_no_direction(node, "camera");
+    } else {
+      out.push_back(read_camera(camera, node, origin));
+      name_apart(out, node.place);
     }
   }
   return out;
@@ -115,7 +145,13 @@ std::vector<PunctualLight> read_lights(const GltfObject& root, const std::vector
     if (!reference) continue;
     const auto index =
         reference->index("light", lights.size(), "extensions.KHR_lights_punctual.lights");
-    if (index) out.push_back(read_light(lights[*index], node, origin, warnings));
+    if (!index) continue;
+    const PunctualLight light = read_light(lights[*index], node, origin, warnings);
+    if (light.kind != PunctualLight::Kind::point && !node.can_turn) {
+      warn_of_no_direction(node, "light");
+    } else {
+      out.push_back(light);
+    }
   }
   return out;
 }

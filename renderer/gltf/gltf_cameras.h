@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "renderer/geometry/scene_data.h"
 #include "renderer/gltf/gltf_nodes.h"
 #include "renderer/gltf/gltf_warnings.h"
 

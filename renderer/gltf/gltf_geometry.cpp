@@ -17,7 +17,9 @@ constexpr std::size_t max_triangles = std::size_t{1} << 27;
 struct Counts {
   Dropped dropped;
   std::uint64_t normals = 0;
-  std::uint64_t coarse = 0;  ///< meshes; see warn_of_places()
+  std::uint64_t coarse = 0;                                  ///< meshes; see warn_of_places()
+  std::uint64_t points_and_lines = 0, without_position = 0;  ///< primitives
+  std::uint64_t hidden = 0;  ///< nodes with a mesh and a scale that leaves nothing of it
 };
 
 /// Relative to `origin`.
@@ -58,7 +60,7 @@ std::vector<V3f> world_normals(const Source& source, const std::vector<std::uint
   const AccessorView local =
       source.view("NORMAL", TINYGLTF_TYPE_VEC3, {TINYGLTF_COMPONENT_TYPE_FLOAT});
   const M44d& m = source.node.to_world;
-  const double sign = source.node.determinant < 0 ? -1 : 1;
+  const double sign = source.node.mirrored ? -1 : 1;
   const V3d cofactors[3] = {row(m, 1).cross(row(m, 2)) * sign, row(m, 2).cross(row(m, 0)) * sign,
                             row(m, 0).cross(row(m, 1)) * sign};
   for (std::size_t i = 0; i < kept.size(); ++i) {
@@ -139,7 +141,11 @@ Mesh build_mesh(const Source& source, const SceneData& scene, Counts& counts, Wa
   const AccessorView local =
       source.view("POSITION", TINYGLTF_TYPE_VEC3, {TINYGLTF_COMPONENT_TYPE_FLOAT});
   mesh.triangles = assemble_triangles(source.model, source.primitive(), local.size(),
-                                      source.node.determinant < 0, source.place());
+                                      source.node.mirrored, source.place());
+  if (const auto spare = spare_corners(source.model, source.primitive()); spare > 0) {
+    warnings.first_of("corners", source.place() + ": the last " + std::to_string(spare) +
+                                     " corners make no whole triangle and are left out");
+  }
   auto kept = compact(mesh.triangles, local.size());
   mesh.positions = world_positions(source, local, kept, scene.origin);
   counts.coarse += is_far_for_its_size(bounds_of(local, kept)) ? 1 : 0;
@@ -155,7 +161,7 @@ Mesh build_mesh(const Source& source, const SceneData& scene, Counts& counts, Wa
     mesh.positions.resize(remaining.size());
     kept = std::move(remaining);
   }
-  if (source.attribute("NORMAL") >= 0) {
+  if (source.attribute("NORMAL") >= 0 && source.node.rank == 3) {
     mesh.normals = world_normals(source, kept);
     counts.normals += mend_normals(mesh);
   }
@@ -188,13 +194,25 @@ void add_node(const tinygltf::Model& model, const PlacedNode& node, SceneData& s
   for (std::size_t k = 0; k < mesh.primitives.size(); ++k) {
     const tinygltf::Primitive& primitive = mesh.primitives[k];
     if (!is_drawn(primitive)) {
-      warnings.once("primitives of points or lines, or without POSITION, are left out");
+      ++(is_triangle_mode(primitive.mode) ? counts.without_position : counts.points_and_lines);
       continue;
     }
     Mesh built = build_mesh({model, *mesh_index, k, node}, scene, counts, warnings);
     built.name = mesh.name.empty() ? node.place.string("name", node.place.label()) : mesh.name;
     if (!built.triangles.empty()) scene.meshes.push_back(std::move(built));
   }
+}
+
+/// "3 primitives of points or lines, 2 meshes under a scale of 0"; empty: nothing was left out.
+std::string left_out(const Counts& counts) {
+  std::string text;
+  for (const auto& [count, what] :
+       {std::pair(counts.points_and_lines, " primitives of points or lines"),
+        {counts.without_position, " primitives without POSITION"},
+        {counts.hidden, " meshes under a scale of 0"}}) {
+    if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + what;
+  }
+  return text;
 }
 
 }  // namespace
@@ -206,14 +224,19 @@ void build_meshes(const tinygltf::Model& model, const std::vector<PlacedNode>& n
   Counts counts;
   for (const PlacedNode& node : nodes) {
     if (node.place.has("skin")) warnings.once("skins are left out: meshes keep their bind pose");
+    if (node.place.has("mesh") && node.rank < 2) ++counts.hidden;
     add_node(model, node, scene, counts, warnings);
   }
   scene.dropped_triangles = counts.dropped.total();
   const std::string dropped = std::to_string(counts.dropped.degenerate) + " of zero area, " +
                               std::to_string(counts.dropped.non_finite) +
                               " with a vertex that is not finite";
-  if (scene.meshes.empty())
-    throw SceneError("the scene has no triangles (dropped: " + dropped + ")");
+  const std::string others = left_out(counts);
+  if (scene.meshes.empty()) {
+    throw SceneError("the scene has no triangles (dropped: " + dropped +
+                     (others.empty() ? "" : "; left out: " + others) + ")");
+  }
+  if (!others.empty()) warnings.once("left out: " + others);
   if (scene.dropped_triangles > 0) warnings.once("triangles dropped: " + dropped);
   if (counts.normals > 0) {
     warnings.once(std::to_string(counts.normals) +

@@ -26,15 +26,15 @@ SceneData load(const std::filesystem::path& file, std::vector<InputFile>* inputs
   const Bytes bytes = folder.read_main();
   const Framing framing = check_framing(bytes);
   const Json json = parse_json(framing.json);
-  GltfProblems problems(json);
+  Warnings warnings;
+  GltfProblems problems(json, warnings);
   const GltfObject root(json, problems);
   check_structure(root, framing);
 
   SceneData scene;
-  Warnings warnings;
   TextureTable textures(root, warnings);
   scene.materials = read_materials(root, textures, warnings);
-  const auto nodes = place_nodes(root);
+  const auto nodes = place_nodes(root, warnings);
   const auto place_cameras_and_lights = [&] {
     scene.cameras = read_cameras(root, nodes, scene.origin, warnings);
     scene.lights = read_lights(root, nodes, scene.origin, warnings);

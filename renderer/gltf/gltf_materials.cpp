@@ -28,11 +28,12 @@ void read_metallic_roughness(const GltfObject& material, TextureTable& textures,
 }
 
 void read_emission(const GltfObject& material, TextureTable& textures, Material& out) {
-  if (const auto factor = material.numbers<3>("emissiveFactor", unit_interval)) {
-    out.emission = to_rgb(*factor);
-  }
+  if (const auto factor = material.light_colour("emissiveFactor")) out.emission = to_rgb(*factor);
   if (const auto strength = material.extension("KHR_materials_emissive_strength")) {
     out.emission *= read(*strength, "emissiveStrength", 1, non_negative);
+    if (!is_finite(out.emission)) {
+      strength->fail("emissiveFactor times emissiveStrength is more than a float can hold");
+    }
   }
   out.emission_texture =
       textures.reference(material, "emissiveTexture", Encoding::srgb, out.emits());
@@ -41,7 +42,8 @@ void read_emission(const GltfObject& material, TextureTable& textures, Material&
 void read_specular(const GltfObject& material, TextureTable& textures, Material& out) {
   if (const auto ior = material.extension("KHR_materials_ior")) {
     out.ior = read(*ior, "ior", out.ior, non_negative);
-    if (out.ior != 0 && out.ior < 1) ior->refuse("ior", "0, or a number, at least 1");
+    if (out.ior != 0 && out.ior < 1 - hair) ior->refuse("ior", "0, or a number, at least 1");
+    if (out.ior != 0) out.ior = read(*ior, "ior", out.ior, {1, non_negative.max});
   }
   if (const auto specular = material.extension("KHR_materials_specular")) {
     out.specular = read(*specular, "specularFactor", out.specular, unit_interval);

@@ -11,14 +11,6 @@ namespace {
 /// The external buffers in the order of the file, which is the order in which tinygltf asks.
 using BufferQueue = std::deque<Bytes>;
 
-void refuse_data_uri(const GltfObject& place, const std::string& uri) {
-  if (uri.starts_with("data:") && !tinygltf::IsDataURI(uri)) {
-    place.fail("uri is a data: URI of an unknown kind (\"" + uri.substr(0, 40) +
-               "...\"); allowed: base64 of application/octet-stream, application/gltf-buffer, "
-               "image/png or image/jpeg");
-  }
-}
-
 BufferQueue read_external_buffers(const GltfObject& root, SceneFolder& folder, Hasher& content) {
   BufferQueue queue;
   for (const GltfObject& buffer : root.objects("buffers")) {
@@ -39,7 +31,8 @@ BufferQueue read_external_buffers(const GltfObject& root, SceneFolder& folder, H
   return queue;
 }
 
-/// tinygltf never touches the file system: buffers come from the queue, images are left alone.
+/// tinygltf never touches the file system: buffers come from the queue, images are left alone. A
+/// data: URI that it does not know it takes for the name of a file.
 tinygltf::FsCallbacks callbacks(BufferQueue& queue) {
   tinygltf::FsCallbacks fs{};
   fs.user_data = &queue;
@@ -72,11 +65,16 @@ std::string first_line(const std::string& text) {
 
 }  // namespace
 
+void refuse_data_uri(const GltfObject& place, const std::string& uri) {
+  if (uri.starts_with("data:") && !tinygltf::IsDataURI(uri)) {
+    place.fail("uri is a data: URI of an unknown kind (\"" + uri.substr(0, 40) +
+               "...\"); allowed: base64 of application/octet-stream, application/gltf-buffer, "
+               "image/png or image/jpeg");
+  }
+}
+
 tinygltf::Model parse_model(std::span<const std::uint8_t> file, const Framing& framing,
                             const GltfObject& root, SceneFolder& folder, Hasher& content) {
-  for (const GltfObject& image : root.objects("images")) {
-    if (image.has("uri")) refuse_data_uri(image, image.string("uri"));
-  }
   BufferQueue queue = read_external_buffers(root, folder, content);
   tinygltf::TinyGLTF parser;
   parser.SetFsCallbacks(callbacks(queue));

@@ -20,4 +20,7 @@ namespace lacuna::gltf {
 tinygltf::Model parse_model(std::span<const std::uint8_t> file, const Framing& framing,
                             const GltfObject& root, SceneFolder& folder, Hasher& content);
 
+/// Throws SceneError for a data: URI of another kind than tinygltf decodes.
+void refuse_data_uri(const GltfObject& place, const std::string& uri);
+
 }  // namespace lacuna::gltf

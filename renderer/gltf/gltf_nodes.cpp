@@ -14,12 +14,19 @@ constexpr std::size_t none = static_cast<std::size_t>(-1);
 
 double determinant3(const M44d& m) { return row(m, 0).dot(row(m, 1).cross(row(m, 2))); }
 
+/// The transform of a node, and the same with scales of 0 taken as 1.
+struct LocalTransform {
+  M44d exact, turn;
+};
+
 /// glTF stores columns for column vectors, which is what Imath stores as rows for row vectors.
-M44d local_transform(const GltfObject& node) {
+LocalTransform local_transform(const GltfObject& node) {
   M44d m;
   if (const auto a = node.numbers<16>("matrix", Limits{})) {
-    for (std::size_t i = 0; i < 16; ++i) m[static_cast<int>(i / 4)][i % 4] = (*a)[i];
-    return m;
+    for (std::size_t i = 0; i < 16; ++i) {
+      if (i % 4 < 3) m[static_cast<int>(i / 4)][i % 4] = (*a)[i];  // check_fourth_row()
+    }
+    return {m, m};
   }
   const auto scale = node.numbers<3>("scale", Limits{}).value_or(std::array{1.0, 1.0, 1.0});
   const auto shift = node.numbers<3>("translation", Limits{}).value_or(std::array{0.0, 0.0, 0.0});
@@ -32,24 +39,45 @@ M44d local_transform(const GltfObject& node) {
       {2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)},
       {2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)},
   };
+  M44d turn;
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) m[i][j] = scale[static_cast<std::size_t>(i)] * axes[i][j];
-    m[3][i] = shift[static_cast<std::size_t>(i)];
+    const double s = scale[static_cast<std::size_t>(i)];
+    for (int j = 0; j < 3; ++j) {
+      m[i][j] = s * axes[i][j];
+      turn[i][j] = s == 0 ? axes[i][j] : m[i][j];
+    }
+    turn[3][i] = m[3][i] = shift[static_cast<std::size_t>(i)];
   }
-  return m;
+  return {m, turn};
 }
 
-bool usable(const M44d& m) {
+bool all_finite(const M44d& m) {
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j < 4; ++j) {
       if (!std::isfinite(m[i][j])) return false;
     }
   }
-  // Relative to the lengths of the axes, so that a scale of 1e-8 along one of them is fine; what is
-  // left below 1e-12 is cancellation in the products of matrices.
-  const double lengths = row(m, 0).length() * row(m, 1).length() * row(m, 2).length();
-  const double det = std::abs(determinant3(m));
-  return std::isnormal(lengths) && std::isnormal(det) && det > 1e-12 * lengths;
+  return true;
+}
+
+/// Whether axes span a volume, or two of them an area. Relative to their lengths, so that a scale
+/// of 1e-8 along one of them is fine; what is left below 1e-12 is cancellation in products of
+/// matrices.
+bool spans(double extent, double lengths) {
+  return std::isnormal(lengths) && std::isnormal(extent) && extent > 1e-12 * lengths;
+}
+
+/// See PlacedNode::rank.
+int rank(const M44d& m) {
+  const V3d axes[3] = {row(m, 0), row(m, 1), row(m, 2)};
+  if (spans(std::abs(determinant3(m)), axes[0].length() * axes[1].length() * axes[2].length())) {
+    return 3;
+  }
+  for (int i = 0; i < 3; ++i) {
+    const V3d &a = axes[i], &b = axes[(i + 1) % 3];
+    if (spans(a.cross(b).length(), a.length() * b.length())) return 2;
+  }
+  return 0;
 }
 
 bool carries_something(const GltfObject& node) {
@@ -116,20 +144,41 @@ std::vector<std::size_t> scene_roots(const GltfObject& root, const std::vector<G
 struct Visit {
   std::size_t node;
   int level;
-  M44d to_world;
-  std::size_t singular_at;  ///< the first ancestor where the transform became unusable
+  M44d to_world, turn;
+  int rank = 3;
+  std::size_t flat_at = none;  ///< the last ancestor that lowered the rank
 };
+
+/// What a node of a lower rank does to what it carries.
+void warn_of_rank(const GltfObject& node, int rank, const GltfObject& flattening,
+                  Warnings& warnings) {
+  const std::string place = flattening.label();
+  if (node.has("mesh") && rank == 2) {
+    warnings.first_of("flattened", place +
+                                       ": its scale is 0 along one axis; the meshes at and below "
+                                       "it are flattened into a plane and get its normal");
+  } else if (node.has("mesh")) {
+    warnings.first_of("hidden",
+                      place + ": its scale is 0; the meshes at and below it are left out");
+  }
+  if (node.has("camera") || node.extension("KHR_lights_punctual")) {
+    warnings.first_of("unscaled", place +
+                                      ": its scale is 0, which does not hide the cameras and "
+                                      "lights at and below it: they have no size");
+  }
+}
 
 }  // namespace
 
-std::vector<PlacedNode> place_nodes(const GltfObject& root) {
+std::vector<PlacedNode> place_nodes(const GltfObject& root, Warnings& warnings) {
   const auto nodes = root.objects("nodes");
   const auto parents = check_forest(nodes);
   const auto roots = scene_roots(root, nodes, parents);
 
   std::vector<PlacedNode> placed;
   std::vector<Visit> stack;
-  for (auto it = roots.rbegin(); it != roots.rend(); ++it) stack.push_back({*it, 1, M44d(), none});
+  for (auto it = roots.rbegin(); it != roots.rend(); ++it)
+    stack.push_back({*it, 1, M44d(), M44d()});
   while (!stack.empty()) {
     Visit visit = stack.back();
     stack.pop_back();
@@ -137,18 +186,28 @@ std::vector<PlacedNode> place_nodes(const GltfObject& root) {
     if (visit.level > max_levels) {
       node.fail("lies more than " + std::to_string(max_levels) + " levels deep");
     }
-    visit.to_world = local_transform(node) * visit.to_world;
-    if (visit.singular_at == none && !usable(visit.to_world)) visit.singular_at = visit.node;
+    const LocalTransform local = local_transform(node);
+    visit.to_world = local.exact * visit.to_world;
+    visit.turn = local.turn * visit.turn;
+    if (const int own = rank(visit.to_world); own < visit.rank) {
+      visit.rank = own;
+      visit.flat_at = visit.node;
+    }
     if (carries_something(node)) {
-      if (visit.singular_at != none) {
-        nodes[visit.singular_at].fail("its transform is singular or not finite; " + node.label() +
-                                      " needs one that can be inverted");
+      if (!all_finite(visit.to_world) || !all_finite(visit.turn)) {
+        node.fail("its transform, with those of its parents, is not finite");
       }
-      placed.push_back({node, visit.to_world, determinant3(visit.to_world)});
+      if (visit.rank < 3) warn_of_rank(node, visit.rank, nodes[visit.flat_at], warnings);
+      const bool can_turn = rank(visit.turn) == 3;
+      placed.push_back({node, visit.to_world, visit.rank, visit.turn, can_turn,
+                        can_turn && determinant3(visit.turn) < 0});
     }
     const auto children = node.indices("children", nodes.size(), "nodes");
     for (auto it = children.rbegin(); it != children.rend(); ++it) {
-      stack.push_back({*it, visit.level + 1, visit.to_world, visit.singular_at});
+      Visit below = visit;
+      below.node = *it;
+      ++below.level;
+      stack.push_back(below);
     }
   }
   return placed;

@@ -1,5 +1,7 @@
 #include "renderer/gltf/gltf_object.h"
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -23,6 +25,14 @@ std::vector<std::string> tokens(std::string_view pointer) {
   return out;
 }
 
+/// `x`, or the end of the range that it is a hair beyond.
+double without_hair(double x, const Limits& allowed) {
+  const bool open = allowed.max >= std::numeric_limits<float>::max();
+  const double larger_end = std::max(std::abs(allowed.min), open ? 1 : std::abs(allowed.max));
+  const double end = std::clamp(x, allowed.min, allowed.max);
+  return std::abs(x - end) <= hair * larger_end ? end : x;
+}
+
 std::size_t checked_index(const JsonCursor& found, std::size_t size, std::string_view target) {
   const Json& value = found.value();
   if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= size) {
@@ -36,6 +46,11 @@ std::size_t checked_index(const JsonCursor& found, std::size_t size, std::string
 void GltfProblems::add(const std::string& pointer, const std::string& message) {
   const std::string where = place(pointer);
   throw SceneError(where.empty() ? message : where + ": " + message);
+}
+
+void GltfProblems::warn(const std::string& kind, const std::string& pointer,
+                        const std::string& message) {
+  warnings_.first_of(kind, place(pointer) + ": " + message);
 }
 
 std::string GltfProblems::place(const std::string& pointer) const {
@@ -88,11 +103,36 @@ bool GltfObject::has(std::string_view key) const { return cursor_.value().contai
 
 double GltfObject::number(std::string_view key, double fallback, const Limits& allowed) const {
   const auto found = cursor_.find(key);
-  return found ? found->number(allowed).value() : fallback;
+  return found ? read(*found, key, allowed) : fallback;
 }
 
 double GltfObject::number(std::string_view key, const Limits& allowed) const {
-  return require(key, "a number").number(allowed).value();
+  return read(require(key, "a number"), key, allowed);
+}
+
+double GltfObject::read(const JsonCursor& found, std::string_view key,
+                        const Limits& allowed) const {
+  if (!found.value().is_number()) return found.number(allowed).value();  // refuses it
+  const double x = found.value().get<double>();
+  const double nearest = without_hair(x, allowed);
+  if (!allowed.allow(nearest)) return found.number(allowed).value();
+  if (nearest != x) {
+    problems_->warn(std::string(key), found.pointer(),
+                    "found number " + number_text(x) + "; allowed: a number " +
+                        range_text(allowed) + "; it is read as " + number_text(nearest));
+  }
+  return nearest;
+}
+
+std::optional<std::array<double, 3>> GltfObject::light_colour(std::string_view key) const {
+  const auto colour = numbers<3>(key, non_negative);
+  if (colour && *std::max_element(colour->begin(), colour->end()) > 1) {
+    problems_->warn(std::string(key), child_pointer(cursor_.pointer(), key),
+                    "found components up to " +
+                        number_text(*std::max_element(colour->begin(), colour->end())) +
+                        "; glTF allows up to 1; they are read as more light");
+  }
+  return colour;
 }
 
 std::uint64_t GltfObject::integer(std::string_view key, std::uint64_t low,
@@ -177,6 +217,10 @@ void GltfObject::refuse(std::string_view key, const std::string& allowed) const 
 
 void GltfObject::fail(const std::string& message) const {
   problems_->add(cursor_.pointer(), message);
+}
+
+void GltfObject::warn(const std::string& kind, const std::string& message) const {
+  problems_->warn(kind, cursor_.pointer(), message);
 }
 
 }  // namespace lacuna::gltf

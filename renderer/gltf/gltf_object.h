@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/json/json_cursor.h"
+#include "renderer/gltf/gltf_warnings.h"
 
 namespace lacuna::gltf {
 
@@ -17,22 +18,30 @@ inline constexpr Limits unit_interval{0, 1};
 inline constexpr Limits any_float{std::numeric_limits<float>::lowest(),
                                   std::numeric_limits<float>::max()};
 
+/// How far beyond the end of a range a value is taken for that end, relative to the larger end (to
+/// 1 where there is none): numbers are written with few digits, and tools add up their rounding.
+inline constexpr double hair = 0.01;
+
 /// Refuses a file for the first problem: throws a SceneError that names the place as
 /// "nodes[3] "door": rotation[2]", with the name of the innermost object.
 class GltfProblems final : public JsonProblems {
  public:
-  /// `root` outlives it.
-  explicit GltfProblems(const Json& root) : root_(root) {}
+  /// `root` and `warnings` outlive it.
+  GltfProblems(const Json& root, Warnings& warnings) : root_(root), warnings_(warnings) {}
   [[noreturn]] void add(const std::string& pointer, const std::string& message) override;
+  /// Warns of the first problem of a `kind` that refuses nothing, and counts the others.
+  void warn(const std::string& kind, const std::string& pointer, const std::string& message);
   std::string place(const std::string& pointer) const;
 
  private:
   const Json& root_;
+  Warnings& warnings_;
 };
 
 /// An object of the JSON, read by its keys. Every read throws a SceneError where the value is not
 /// what is allowed. tinygltf reads wrong types as defaults and truncates integers, so nothing it
-/// parsed leniently is trusted before it was read through here.
+/// parsed leniently is trusted before it was read through here. Numbers a hair outside of their
+/// range are clamped to it with a warning.
 class GltfObject {
  public:
   /// The whole of the file. `problems` is about it, and outlives all its objects.
@@ -61,6 +70,9 @@ class GltfObject {
   /// An array of exactly N numbers; none if the key is absent.
   template <std::size_t N>
   std::optional<std::array<double, N>> numbers(std::string_view key, const Limits& allowed) const;
+  /// A colour of light. glTF allows components up to 1; larger ones are more light, and are warned
+  /// of.
+  std::optional<std::array<double, 3>> light_colour(std::string_view key) const;
 
   /// The object under `key`; none if the key is absent.
   std::optional<GltfObject> object(std::string_view key) const;
@@ -78,11 +90,15 @@ class GltfObject {
   [[noreturn]] void refuse(std::string_view key, const std::string& allowed) const;
   /// Throws with the place in front of `message`.
   [[noreturn]] void fail(const std::string& message) const;
+  /// Warns of the first problem of a kind, with its place.
+  void warn(const std::string& kind, const std::string& message) const;
 
  private:
   GltfObject(JsonCursor cursor, GltfProblems& problems);
 
   JsonCursor require(std::string_view key, std::string_view required) const;
+  /// A number, clamped where it is a hair outside of what is allowed.
+  double read(const JsonCursor& found, std::string_view key, const Limits& allowed) const;
   /// The elements of an array; none if the key is absent.
   std::vector<JsonCursor> elements(std::string_view key) const;
 
@@ -97,7 +113,7 @@ std::optional<std::array<double, N>> GltfObject::numbers(std::string_view key,
   if (!list) return std::nullopt;
   list->check_list_of(N);
   std::array<double, N> out;
-  for (std::size_t i = 0; i < N; ++i) out[i] = list->at(i).number(allowed).value();
+  for (std::size_t i = 0; i < N; ++i) out[i] = read(list->at(i), key, allowed);
   return out;
 }
 

@@ -14,8 +14,9 @@ inline bool is_drawn(const tinygltf::Primitive& primitive) {
   return is_triangle_mode(primitive.mode) && primitive.attributes.contains("POSITION");
 }
 
-/// The index of a node's mesh; none if it has no mesh.
+/// The index of a node's mesh; none if it has no mesh, or its scale leaves nothing of it.
 inline std::optional<std::size_t> mesh_of(const tinygltf::Model& model, const PlacedNode& node) {
+  if (node.rank < 2) return std::nullopt;
   return node.place.index("mesh", model.meshes.size(), "meshes");
 }
 

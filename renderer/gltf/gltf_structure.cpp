@@ -49,6 +49,18 @@ void check_asset(const GltfObject& root) {
   }
 }
 
+/// Refuses what is only there in the form of an extension, without the fallback that glTF itself
+/// reads.
+void refuse_compressed(const GltfObject& place) {
+  const auto extensions = place.object("extensions");
+  if (!extensions) return;
+  for (const std::string& name : extensions->keys()) {
+    if (name.find("compression") == std::string::npos) continue;
+    place.fail("its data come by extension " + name +
+               ", which is not supported, and there is no fallback without it");
+  }
+}
+
 void check_buffers(const GltfObject& root, const Framing& framing) {
   std::size_t i = 0;
   for (const GltfObject& buffer : root.objects("buffers")) {
@@ -56,6 +68,7 @@ void check_buffers(const GltfObject& root, const Framing& framing) {
     if (buffer.has("uri")) {
       buffer.string("uri");
     } else if (!framing.binary || i != 0) {
+      refuse_compressed(buffer);
       buffer.fail("uri is missing; only the first buffer of a GLB has none");
     } else if (bytes > framing.bin_bytes) {
       buffer.fail("byteLength is " + std::to_string(bytes) + "; the BIN chunk has " +
@@ -166,7 +179,24 @@ void check_attributes(const GltfObject& attributes, const Sizes& sizes) {
   }
 }
 
+/// An accessor without a bufferView means zeros; of indices the library takes none.
+void check_data(const GltfObject& primitive, const std::vector<GltfObject>& accessors) {
+  const auto lacks_data = [&](const std::optional<std::size_t>& accessor) {
+    return accessor && !accessors[*accessor].has("bufferView");
+  };
+  const GltfObject attributes = *primitive.object("attributes");
+  const auto indices = primitive.index("indices", accessors.size(), "accessors");
+  for (const std::string& name : attributes.keys()) {
+    const auto accessor = attributes.index(name, accessors.size(), "accessors");
+    if (lacks_data(accessor) && !accessors[*accessor].has("sparse")) refuse_compressed(primitive);
+  }
+  if (!lacks_data(indices)) return;
+  refuse_compressed(primitive);
+  accessors[*indices].fail("used as indices of triangles: it has no bufferView");
+}
+
 void check_meshes(const GltfObject& root, const Sizes& sizes) {
+  const auto accessors = root.objects("accessors");
   for (const GltfObject& mesh : root.objects("meshes")) {
     const auto primitives = mesh.objects("primitives");
     if (primitives.empty()) mesh.fail("primitives is missing or empty");
@@ -177,11 +207,29 @@ void check_meshes(const GltfObject& root, const Sizes& sizes) {
       for (const GltfObject& target : primitive.objects("targets")) {
         check_attributes(target, sizes);
       }
-      primitive.index("indices", sizes.accessors, "accessors");
+      check_data(primitive, accessors);
       primitive.index("material", sizes.materials, "materials");
       primitive.integer("mode", 4, 0, 6);
     }
   }
+}
+
+/// The fourth row of a product of inverses is 0 0 0 1 but for rounding. What it does to a point is
+/// to divide by 1 + w, where w is the row times the point: it is compared with the lengths of the
+/// axes.
+void check_fourth_row(const GltfObject& node, const std::array<double, 16>& m) {
+  constexpr double rounding = 1e-5;  // of floats, in a product of some
+  if (m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] == 1) return;
+  bool close = std::abs(m[15] - 1) <= rounding;
+  for (std::size_t axis = 0; axis < 12; axis += 4) {
+    const double length = std::hypot(m[axis], m[axis + 1], m[axis + 2]);
+    close = close && std::abs(m[axis + 3]) <= rounding * length;
+  }
+  const std::string found = "the fourth row of matrix is " + number_text(m[3]) + " " +
+                            number_text(m[7]) + " " + number_text(m[11]) + " " +
+                            number_text(m[15]) + "; allowed: 0 0 0 1";
+  if (!close) node.fail(found);
+  node.warn("matrix", found + ", as which it is read");
 }
 
 void check_nodes(const GltfObject& root, const Sizes& sizes) {
@@ -191,21 +239,17 @@ void check_nodes(const GltfObject& root, const Sizes& sizes) {
     node.indices("children", sizes.nodes, "nodes");
     const Limits any{};
     const auto matrix = node.numbers<16>("matrix", any);
-    const auto rotation = node.numbers<4>("rotation", {-1.001, 1.001});
+    const auto rotation = node.numbers<4>("rotation", any);
     const auto scale = node.numbers<3>("scale", any);
     const auto translation = node.numbers<3>("translation", any);
     if (matrix && (rotation || scale || translation)) {
       node.fail("matrix stands beside translation, rotation or scale; allowed: one or the other");
     }
-    if (matrix &&
-        ((*matrix)[3] != 0 || (*matrix)[7] != 0 || (*matrix)[11] != 0 || (*matrix)[15] != 1)) {
-      node.fail("the fourth row of matrix is not 0 0 0 1");
-    }
+    if (matrix) check_fourth_row(node, *matrix);
     if (rotation) {
       const double norm = std::hypot(std::hypot((*rotation)[0], (*rotation)[1]),
                                      std::hypot((*rotation)[2], (*rotation)[3]));
-      // Written with few digits, a unit quaternion is off by some thousandths.
-      if (!(std::abs(norm - 1) < 0.01))
+      if (!(std::abs(norm - 1) <= hair))
         node.fail("rotation has length " + std::to_string(norm) + "; allowed: 1");
     }
   }

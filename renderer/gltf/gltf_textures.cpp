@@ -33,6 +33,7 @@ Bytes encoded_bytes(const GltfObject& image, const tinygltf::Image& parsed,
     return {first, first + view.byteLength};
   }
   if (!parsed.image.empty()) return parsed.image;
+  refuse_data_uri(image, image.string("uri"));
   return folder.read(image.string("uri"), image.label(), InputRole::texture);
 }
 
@@ -66,7 +67,12 @@ TextureRef TextureTable::reference(const GltfObject& owner, std::string_view key
 
 int TextureTable::enter(const GltfObject& texture, Texture::Encoding encoding) {
   const auto source = texture.index("source", images_.size(), "images");
-  if (!source) texture.fail("source is missing: it has no PNG or JPEG image");
+  if (!source) {
+    const auto extensions = texture.object("extensions");
+    const auto names = extensions ? extensions->keys() : std::vector<std::string>{};
+    texture.fail("source is missing: it has no PNG or JPEG image" +
+                 (names.empty() ? "" : ", only what extension " + names.front() + " gives"));
+  }
   const auto sampler = texture.index("sampler", samplers_.size(), "samplers");
   const GltfObject* used = sampler ? &samplers_[*sampler] : nullptr;
   constexpr std::uint64_t nearest = TINYGLTF_TEXTURE_FILTER_NEAREST;

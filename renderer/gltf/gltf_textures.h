@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "renderer/geometry/scene_data.h"
 #include "renderer/gltf/gltf_model.h"
 #include "renderer/gltf/gltf_warnings.h"
 #include "renderer/images/guards.h"

@@ -36,14 +36,14 @@ std::size_t count_triangles(const tinygltf::Model& model, const tinygltf::Primit
   return n < 3 ? 0 : n - 2;
 }
 
+std::size_t spare_corners(const tinygltf::Model& model, const tinygltf::Primitive& primitive) {
+  const std::size_t n = corner_count(model, primitive);
+  return primitive.mode == TINYGLTF_MODE_TRIANGLES || n < 3 ? n % 3 : 0;
+}
+
 std::vector<Triangle> assemble_triangles(const tinygltf::Model& model,
                                          const tinygltf::Primitive& primitive, std::size_t vertices,
                                          bool mirrored, const std::string& place) {
-  const std::size_t n = corner_count(model, primitive);
-  if (primitive.mode == TINYGLTF_MODE_TRIANGLES && n % 3 != 0) {
-    throw SceneError(place + ": " + std::to_string(n) +
-                     " corners are no whole number of triangles");
-  }
   std::optional<AccessorView> indices;
   if (primitive.indices >= 0) {
     indices.emplace(model, primitive.indices, TINYGLTF_TYPE_SCALAR,

@@ -23,6 +23,9 @@ std::vector<Triangle> assemble_triangles(const tinygltf::Model& model,
 /// Number of triangles of the primitive, without reading them.
 std::size_t count_triangles(const tinygltf::Model& model, const tinygltf::Primitive& primitive);
 
+/// Corners at the end of the primitive that make no whole triangle.
+std::size_t spare_corners(const tinygltf::Model& model, const tinygltf::Primitive& primitive);
+
 /// Renumbers `triangles` to the vertices they use, in the old order; returns the old numbers.
 std::vector<std::uint32_t> compact(std::vector<Triangle>& triangles, std::size_t vertices);
 

@@ -63,7 +63,8 @@ std::filesystem::path SceneFolder::find(const std::string& uri, const std::strin
     throw SceneError(place + " is a path of " + std::to_string(uri.size()) +
                      " bytes; allowed: " + std::to_string(max_uri));
   }
-  const std::string name = percent_decode(uri, place);
+  std::string name = percent_decode(uri, place);
+  std::replace(name.begin(), name.end(), '\\', '/');  // as exporters on Windows write paths
   const std::filesystem::path relative(name);
   const bool climbs = std::find(relative.begin(), relative.end(), "..") != relative.end();
   if (name.empty() || name.find('\0') != std::string::npos || relative.is_absolute() || climbs ||

@@ -21,9 +21,9 @@ class SceneFolder {
   /// The bytes of the scene's main file.
   Bytes read_main();
 
-  /// The bytes of the file that a glTF `uri` names, percent-decoded. `place` names the reference in
-  /// errors. Refuses whatever is absolute, has a scheme, climbs with `..`, leaves the folder by a
-  /// symbolic link, or is not a regular file.
+  /// The bytes of the file that a glTF `uri` names, percent-decoded, with `\` read as `/`. `place`
+  /// names the reference in errors. Refuses whatever is absolute, has a scheme, climbs with `..`,
+  /// leaves the folder by a symbolic link, or is not a regular file.
   Bytes read(const std::string& uri, const std::string& place, InputRole role);
 
   /// The file that read() would open. Throws as read().

@@ -16,9 +16,11 @@ const CameraData& choose_camera(const SceneData& scene, const std::string& name,
     throw SceneError(fmt::format("scene \"{}\" has no perspective camera; it needs one", file));
   }
   if (name.empty()) return scene.cameras.front();
-  const auto found = std::find_if(scene.cameras.begin(), scene.cameras.end(),
-                                  [&](const CameraData& c) { return c.name == name; });
-  if (found != scene.cameras.end()) return *found;
+  for (const auto called : {&CameraData::name, &CameraData::node}) {
+    const auto found = std::find_if(scene.cameras.begin(), scene.cameras.end(),
+                                    [&](const CameraData& c) { return c.*called == name; });
+    if (found != scene.cameras.end()) return *found;
+  }
   std::vector<std::string> names;
   for (const CameraData& c : scene.cameras) names.push_back(fmt::format("\"{}\"", c.name));
   throw SceneError(fmt::format("scene \"{}\" has no camera \"{}\"; it has {}", file, name,

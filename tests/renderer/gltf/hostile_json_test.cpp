@@ -39,6 +39,17 @@ HostileCase set(std::string name, const std::string& pointer, const Json& value,
           std::move(message)};
 }
 
+/// A case where an accessor has no data but those of an extension of the primitive.
+HostileCase compressed(std::string name, std::size_t accessor, const std::string& extension) {
+  return {std::move(name),
+          [=](GlbBuilder& b) {
+            b.json["accessors"][accessor].erase("bufferView");
+            b.json["meshes"][0]["primitives"][0]["extensions"][extension] = {{"bufferView", 0}};
+          },
+          {"meshes[0].primitives[0]: its data come by extension " + extension +
+           ", which is not supported, and there is no fallback"}};
+}
+
 const char* const light = "/extensions/KHR_lights_punctual/lights/0";
 const char* const primitive = "/meshes/0/primitives/0";
 
@@ -116,14 +127,33 @@ std::vector<HostileCase> structure_cases() {
           {"nodes[0] \"thing\": matrix", "a list of exactly 16"}),
       set("ProjectiveMatrix", "/nodes/0/matrix", {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
           {"nodes[0] \"thing\"", "fourth row"}),
-      set("SingularScale", "/nodes/0/scale", {1, 0, 1}, {"nodes[0] \"thing\"", "singular"}),
-      set("SingularMatrix", "/nodes/0/matrix", {1, 2, 3, 0, 2, 4, 6, 0, 0, 0, 1, 0, 0, 0, 0, 1},
-          {"nodes[0] \"thing\"", "singular"}),
+      set("MatrixWTooFarOff", "/nodes/0/matrix",
+          {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1.01},
+          {"nodes[0] \"thing\"", "fourth row of matrix is 0 0 0 1.01; allowed: 0 0 0 1"}),
+      set("RotationTooFarOff", "/nodes/0/rotation", {0, 0, 0, 1.02},
+          {"nodes[0] \"thing\": rotation has length 1.02"}),
       set("OverflowingScale", "/nodes/0/scale", {1e300, 1e300, 1e300},
-          {"nodes[0] \"thing\"", "singular or not finite"}),
+          {"nodes[0] \"thing\"", "vertex 1", "1e15"}),
       set("FarAway", "/nodes/0/translation", {0, 1e16, 0},
           {"nodes[0] \"thing\"", "vertex 0", "1e15"}),
-      set("PointsOnly", p + "/mode", 0, {"the scene has no triangles"}),
+      set("PointsOnly", p + "/mode", 0,
+          {"the scene has no triangles", "left out: 1 primitives of points or lines)"}),
+      set("NothingButHidden", "/nodes/0/scale", {0, 0, 0},
+          {"the scene has no triangles", "left out: 1 meshes under a scale of 0)"}),
+      compressed("DracoIndices", 1, "KHR_draco_mesh_compression"),
+      compressed("DracoPositions", 0, "KHR_draco_mesh_compression"),
+      set("IndicesWithoutData", "/accessors/1",
+          {{"componentType", 5125}, {"count", 3}, {"type", "SCALAR"}},
+          {"accessors[1]: used as indices of triangles: it has no bufferView"}),
+      {"MeshoptWithoutFallback",
+       [](GlbBuilder& b) {
+         b.json["buffers"] = {
+             {{"byteLength", b.bin.size()}},
+             {{"byteLength", 48},
+              {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
+         b.json["bufferViews"][0]["buffer"] = 1;
+       },
+       {"buffers[1]: its data come by extension EXT_meshopt_compression, which is not supported"}},
       set("NoNodes", "/scenes/0/nodes", Json::array(), {"the scene has no triangles"}),
   };
 }
@@ -143,6 +173,11 @@ std::vector<HostileCase> value_cases() {
       set("LightIntensityHuge", l + "/intensity", 1e39,
           {"lights[0] \"lamp\": intensity: found number 1e+39"}),
       set("LightColor", l + "/color", {1, 1}, {"lights[0] \"lamp\": color", "a list of exactly 3"}),
+      set("LightColorFarBelow", l + "/color", {1, -0.1, 1},
+          {"lights[0] \"lamp\": color[1]: found number -0.1; allowed: a number from 0"}),
+      set("LightColorTimesIntensity", l,
+          {{"type", "point"}, {"name", "lamp"}, {"color", {2, 2, 2}}, {"intensity", 3e38}},
+          {"lights[0] \"lamp\": color times intensity is more"}),
       set("ConesReversed", l + "/spot/innerConeAngle", 1, {"lights[0].spot", "innerConeAngle"}),
       set("ConeTooWide", l + "/spot/outerConeAngle", 1.6,
           {"lights[0].spot: outerConeAngle: found number 1.6"}),
@@ -199,6 +234,13 @@ std::vector<HostileCase> graph_cases() {
          b.json["nodes"][1]["children"] = {3};
        },
        {"nodes[3] \"child\": has two parents", "nodes[0] \"thing\"", "nodes[1]"}},
+      {"InfiniteTransform",
+       [](GlbBuilder& b) {
+         b.json["nodes"].push_back({{"scale", {1e200, 1, 1}}, {"children", {4}}});
+         b.json["nodes"].push_back({{"scale", {1e200, 1, 1}}, {"children", {0}}});
+         b.json["scenes"][0]["nodes"] = {3};
+       },
+       {"nodes[0] \"thing\": its transform, with those of its parents, is not finite"}},
       {"SceneListsAChild",
        [](GlbBuilder& b) { b.json["nodes"][0]["children"] = {1}; },
        {"scenes[0]: lists nodes[1], which is a child of nodes[0] \"thing\""}},
@@ -211,12 +253,6 @@ std::vector<HostileCase> graph_cases() {
          b.json["scenes"][0]["nodes"].push_back(3);
        },
        {"more than 256 levels deep"}},
-      {"SingularAncestor",
-       [](GlbBuilder& b) {
-         b.json["nodes"].push_back({{"name", "flat"}, {"scale", {0, 0, 0}}, {"children", {0}}});
-         b.json["scenes"][0]["nodes"] = {3};
-       },
-       {"nodes[3] \"flat\"", "singular", "nodes[0] \"thing\""}},
       {"TooManyTriangles",
        [](GlbBuilder& b) {
          // 4,000 nodes share one fan of 40,000 triangles: small on disk, 160 million in memory.

@@ -31,9 +31,9 @@ std::string texture_refusal(const test::GlbBuilder& builder, std::uint64_t most_
   const Bytes bytes = folder.read_main();
   const gltf::Framing framing = gltf::check_framing(bytes);
   const Json json = gltf::parse_json(framing.json);
-  gltf::GltfProblems problems(json);
-  const gltf::GltfObject root(json, problems);
   gltf::Warnings warnings;
+  gltf::GltfProblems problems(json, warnings);
+  const gltf::GltfObject root(json, problems);
   gltf::TextureTable textures(root, warnings);
   gltf::read_materials(root, textures, warnings);
   Hasher content;
