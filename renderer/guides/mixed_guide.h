@@ -63,8 +63,8 @@ class MixedGuide {
     std::unique_ptr<GuidingDistribution::Accumulator> directions;  // null: they do not learn
     ReflectedRadiance::Accumulator reflected;
   };
-  /// Eye paths follow the BSDF alone, and nothing is learned.
-  bool idle() const { return idle_; }
+  /// Whether paths of this transport do not follow the BSDF alone.
+  bool guides(Transport transport) const { return of(transport) != nullptr; }
   bool learns() const { return !idle_ && (eye_->learns() || reflected_.learns()); }
   Accumulator accumulator() const {
     return {eye_ && eye_->learns() ? eye_->accumulator() : nullptr, {}};

@@ -155,6 +155,7 @@ class PairedBdpt final : public Bdpt<Guide> {
     pairs.rngs.clear();
     if (pairs.eye.counts.merge > 0) {  // photon_pass() has walked, counted and splatted them
       const auto& pixels = pairs.eye.pixels;
+      pairs.light.clear();
       for (std::size_t k = 0; k < paths; ++k) photons_.restore_path(pixels[k], pairs.light, k);
       return;
     }
@@ -189,10 +190,10 @@ class PairedBdpt final : public Bdpt<Guide> {
       const BdptContribution known = Base::contribution(pairs.eye, i);
       Base::join(eye, EmitterEndpoint<Guide>{e, guide_}, 1, known, pairs.eye);
       const std::size_t path = pairs.eye.origin[i];
-      for (int s = 2; s <= std::min(longest, pairs.light.length(path)); ++s) {
-        if (!pairs.light.connectible(path, s - 1)) continue;
-        Base::join(eye, pairs.light.end(path, s - 1), 1, known, pairs.eye);
-      }
+      pairs.light.for_each_vertex(path, [&](std::size_t j, int index) {
+        if (index >= longest || !pairs.light.connectible(j, index)) return;
+        Base::join(eye, pairs.light.end(j, index), 1, known, pairs.eye);
+      });
       Base::flush_if_long(pass, pairs.eye, [](const BdptContribution&) {});
     };
     walk.trace_paths(

@@ -127,15 +127,18 @@ class PhotonMapping final : public Integrator {
         {context, setting, all, image}, light_guide_,
         [&](std::size_t path, const LightBatch<GuideOfLight>& batch, std::size_t i) {
           const auto number = static_cast<std::int64_t>(path);
-          bool caustic = true;  // so far
-          for (int s = 1; s < batch.length(i); ++s) {
-            const Vertex& v = batch.vertex(i, s);
-            if (!is_rough(v)) continue;
-            const bool focused = caustic && s > 1;
-            if (number < paths && kept.of(s, focused)) photons_.keep(path, v, s, focused);
-            if (focused && number < density_.caustic_paths) caustics_.keep(path, v, s, true);
-            caustic = caustic && v.delta;
-          }
+          batch.for_each_branch(i, [&](std::size_t j) {
+            bool caustic = true;  // so far
+            for (int s = 1; s < batch.length(j); ++s) {
+              const Vertex& v = batch.vertex(j, s);
+              if (!is_rough(v)) continue;
+              const bool focused = caustic && s > 1;
+              caustic = caustic && v.delta;
+              if (s < batch.first(j)) continue;
+              if (number < paths && kept.of(s, focused)) photons_.keep(path, v, s, focused);
+              if (focused && number < density_.caustic_paths) caustics_.keep(path, v, s, true);
+            }
+          });
         },
         [](const Splat&) {});
   }

@@ -84,12 +84,13 @@ class VplSet {
   /// different paths at once.
   template <class Guide>
   void keep(std::size_t path, const LightBatch<Guide>& batch, std::size_t i) {
-    const int length = std::min(batch.length(i), choice_.longest);
-    if (length > 0 && choice_.emitters) add(kept_[path], batch.emitter(i));
-    for (int index = 1; index < length; ++index) {
-      const Vertex& v = batch.vertex(i, index);
+    const bool started = std::min(batch.length(i), choice_.longest) > 0;
+    if (started && choice_.emitters) add(kept_[path], batch.emitter(i));
+    batch.for_each_vertex(i, [&](std::size_t j, int index) {
+      if (index >= choice_.longest) return;
+      const Vertex& v = batch.vertex(j, index);
       if (v.bsdf->is_vpl_receiver(choice_.least_alpha)) add(kept_[path], v, index);
-    }
+    });
   }
   /// Sorts the lights into blocks; call once all paths are stored. The order of the lights depends
   /// on the paths and on `groups` only.

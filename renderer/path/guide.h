@@ -25,11 +25,10 @@ namespace lacuna {
 ///   samples separately. update() adds the accumulators in the order of the parts, so the state has
 ///   the same bits for any number of threads.
 ///
-/// - has_expected: whether expected(v) exists: the luminance that a path of throughput 1 is
-/// expected
-///   to gather behind the connectible vertex `v`; below 0 while that is unknown. Walks use it for
-///   roulette and splitting, unless the guide is idle(). record(v, value, accumulator) adds the
-///   value of one path.
+/// - has_expected: whether expected(v) and guides(transport) exist. The first is the luminance that
+///   an eye path of throughput 1 is expected to gather behind the connectible vertex `v`; below 0
+///   while that is unknown. Walks use it for roulette and splitting of paths whose transport the
+///   guide guides(). record(v, value, accumulator) adds the value of one path.
 ///
 /// - sample_first_edge(lights, e, rng) and leaving_pdf(e, w), both or neither: the first edge of a
 ///   light path from the point `e` on an emitter, and its density per steradian. Without them light

@@ -26,6 +26,8 @@ struct LightPathSetting {
 };
 
 /// At most `size` light paths that are traced together. Path i of the batch has index i throughout.
+/// Guided paths are split where their weight has grown (Walk). A branch has an index of its own,
+/// >= `size`, and the first vertices of the path that was split.
 template <class Guide>
 class LightBatch {
  public:
@@ -46,6 +48,7 @@ class LightBatch {
   /// `wanted`: the most vertices of each path, >= 1; empty: as many as max_depth allows.
   void walk(std::span<const Rng> rngs, Counters& counters,
             std::span<const std::uint32_t> choices = {}, std::span<const int> wanted = {}) {
+    clear();
     const auto goes_on = [&](std::size_t i, int vertices) {
       return vertices < (wanted.empty() ? setting_.max_depth : wanted[i]);
     };
@@ -72,16 +75,23 @@ class LightBatch {
           hits_[path * places_ + static_cast<std::size_t>(depth)] = states_[i].hit;
           return goes_on(path, depth + 1);
         });
+    trace_branches(walk);
+  }
+  /// Forgets all branches: call before restore() of all paths.
+  void clear() {
+    branches_.clear();
+    for (auto& of_path : branches_of_) of_path.clear();
   }
 
-  /// Makes path `i` the one that had these vertices, ascending, each with its hit() beside it. The
-  /// others are not connectible; vertex 0 is left as it is.
+  /// Makes path `i` the one that had these vertices, in the order of for_each_vertex(), each with
+  /// its hit() beside it. The others are not connectible; vertex 0 is left as it is.
   void restore(std::size_t i, std::span<const Photon> photons, std::span<const Hit> hits) {
-    length_[i] = photons.empty() ? 1 : photons.back().index + 1;
-    for (int index = 1; index < length_[i]; ++index) vertex_to_set(i, index).bsdf.reset();
+    length_[i] = 1;
+    std::size_t path = i;
     for (std::size_t k = 0; k < photons.size(); ++k) {
       const Photon& p = photons[k];
-      Vertex& v = vertex_to_set(i, p.index);
+      if (k > 0 && p.index <= photons[k - 1].index) path = add_branch(i, p.index);
+      Vertex& v = append(path, p.index);
       v.kind = Vertex::Kind::surface;
       v.delta = false;
       v.surface = setting_.scene.surface(hits[k], p.x);
@@ -96,20 +106,41 @@ class LightBatch {
   }
 
   /// Number of vertices of path `i`, including the one on the emitter.
-  int length(std::size_t i) const { return length_[i]; }
+  int length(std::size_t i) const { return i < size ? length_[i] : branch(i).length; }
+  /// The first vertex that a branch does not share with the path that was split; of others 1.
+  int first(std::size_t i) const { return i < size ? 1 : branch(i).first; }
+  /// Calls `use(j)` for path `i` < size and all its branches, of which each comes after the path
+  /// that was split.
+  template <class Use>
+  void for_each_branch(std::size_t i, Use&& use) const {
+    use(i);
+    for (const std::size_t j : branches_of_[i]) use(j);
+  }
+  /// Calls `use(j, index)` for all vertices but vertex 0 of path `i` < size and its branches.
+  template <class Use>
+  void for_each_vertex(std::size_t i, Use&& use) const {
+    for_each_branch(i, [&](std::size_t j) {
+      for (int index = first(j); index < length(j); ++index) use(j, index);
+    });
+  }
   /// Vertex 0, on an emitter.
   const EmitterPoint& emitter(std::size_t i) const { return emitters_[i]; }
   /// Vertex `index` in [1, length(i)).
   const Vertex& vertex(std::size_t i, int index) const {
-    return vertices_[i * places_ + static_cast<std::size_t>(index)];
+    if (i < size) return vertices_[i * places_ + static_cast<std::size_t>(index)];
+    const Branch& b = branch(i);
+    // The last vertex that is shared is stored twice: `delta` differs.
+    if (index + 1 < b.first) return vertex(b.parent, index);
+    return b.vertices[static_cast<std::size_t>(index + 1 - b.first)];
   }
   bool connectible(std::size_t i, int index) const {
     const std::optional<Bsdf>& bsdf = vertex(i, index).bsdf;
     return bsdf && bsdf->connectible();
   }
-  /// Of the ray to a vertex.
+  /// Of the ray to a vertex, index >= first(i).
   const Hit& hit(std::size_t i, int index) const {
-    return hits_[i * places_ + static_cast<std::size_t>(index)];
+    if (i < size) return hits_[i * places_ + static_cast<std::size_t>(index)];
+    return branch(i).hits[static_cast<std::size_t>(index + 1 - branch(i).first)];
   }
   SurfaceEndpoint<Guide> end(std::size_t i, int index) const {
     return {vertex(i, index), index, Transport::importance, guide_};
@@ -118,11 +149,10 @@ class LightBatch {
   /// Joins all vertices of the first `paths` paths to the eye (t = 1) and appends the unoccluded
   /// contributions to `splats`.
   void splat(std::size_t paths, Counters& counters, Splats& splats) {
+    const auto add = [&](const Ray& ray, const UnshadowedSplat& splat) { queue_.add(ray, splat); };
     for (std::size_t i = 0; i < paths; ++i) {
-      for (int index = 0; index < length_[i]; ++index) {
-        join_eye(i, index,
-                 [&](const Ray& ray, const UnshadowedSplat& splat) { queue_.add(ray, splat); });
-      }
+      if (length_[i] > 0) join_eye(i, 0, add);
+      for_each_vertex(i, [&](std::size_t j, int index) { join_eye(j, index, add); });
     }
     queue_.flush(setting_.scene.rays(), counters, [&](const UnshadowedSplat& p) {
       setting_.camera.splat(p.at, [&](std::uint32_t pixel, float share) {
@@ -150,8 +180,70 @@ class LightBatch {
   }
 
  private:
+  struct Branch {
+    std::size_t parent, origin;    ///< the path that was split, and that which walk() started
+    int first, length;             ///< as first() and length()
+    std::vector<Vertex> vertices;  ///< from first - 1 on
+    std::vector<Hit> hits;         ///< of each
+  };
+  const Branch& branch(std::size_t i) const { return branches_[i - size]; }
+  std::size_t add_branch(std::size_t parent, int first) {
+    const std::size_t i = size + branches_.size();
+    const std::size_t origin = parent < size ? parent : branch(parent).origin;
+    branches_of_[origin].push_back(i);
+    branches_.push_back({parent, origin, first, first, {}, {}});
+    return i;
+  }
+
   Vertex& vertex_to_set(std::size_t i, int index) {
     return vertices_[i * places_ + static_cast<std::size_t>(index)];
+  }
+  /// Appends vertex `index` to path `i`, with others before it that are not connectible.
+  Vertex& append(std::size_t i, int index) {
+    if (i < size) {
+      while (length_[i] <= index) vertex_to_set(i, length_[i]++).bsdf.reset();
+      return vertex_to_set(i, index);
+    }
+    Branch& b = branches_[i - size];
+    b.length = index + 1;
+    b.vertices.resize(static_cast<std::size_t>(b.length + 1 - b.first));
+    return b.vertices.back();
+  }
+
+  /// Traces what paths were split into, at most `size` branches at a time, and their branches.
+  void trace_branches(Walk<Guide>& walk) {
+    std::vector<std::pair<std::size_t, PathBranch>> pending;  // with the path that was split
+    for (;;) {
+      for (PathBranch& b : walk.branches()) pending.emplace_back(path_of_[b.walk], std::move(b));
+      walk.branches().clear();
+      if (pending.empty()) return;
+      traced_.resize(places_ * size);
+      traced_hits_.resize(places_ * size);
+      states_.clear();
+      for (; !pending.empty() && states_.size() < size; pending.pop_back()) {
+        auto& [parent, b] = pending.back();
+        b.state.path = std::span(traced_).subspan(states_.size() * places_, places_);
+        b.state.path[static_cast<std::size_t>(b.state.depth)] = std::move(b.vertex);
+        path_of_[states_.size()] = add_branch(parent, b.state.depth + 1);
+        states_.push_back(b.state);
+      }
+      walk.trace_paths(
+          states_, [](std::size_t, int) {},
+          [&](std::size_t k, int depth) {
+            const auto at = static_cast<std::size_t>(depth);
+            if (states_[k].path[at].kind == Vertex::Kind::surface) {
+              branches_[path_of_[k] - size].length = depth + 1;
+            }
+            traced_hits_[k * places_ + at] = states_[k].hit;
+          });
+      for (std::size_t k = 0; k < states_.size(); ++k) {
+        Branch& b = branches_[path_of_[k] - size];
+        const auto begin = static_cast<std::ptrdiff_t>(k * places_) + b.first - 1;
+        const auto end = static_cast<std::ptrdiff_t>(k * places_) + b.length;
+        b.vertices.assign(traced_.begin() + begin, traced_.begin() + end);
+        b.hits.assign(traced_hits_.begin() + begin, traced_hits_.begin() + end);
+      }
+    }
   }
 
   /// What vertex 1 of path `i` stores of next event estimation.
@@ -189,7 +281,7 @@ class LightBatch {
     place_on(e, path[0]);
     PathState w{.rng = rng, .ray = leaving->ray, .p = leaving->pdf, .path = path};
     w.throughput = leaving->throughput;
-    w.roulette_scale = 1 / max_component(leaving->throughput);
+    w.carried_before = 1 / max_component(leaving->throughput);
     if (!e.delta()) w.mis_partial = light_side(setting_.counts).none / double(e.pdf.value);
     path_of_[states_.size()] = i;
     states_.push_back(w);
@@ -215,6 +307,10 @@ class LightBatch {
   NextEvent next_event_;
   std::vector<Vertex> vertices_;
   std::vector<Hit> hits_;  // of each vertex
+  std::vector<Branch> branches_;
+  std::array<std::vector<std::size_t>, size> branches_of_;  // of each path, their indices
+  std::vector<Vertex> traced_;                              // room for branches
+  std::vector<Hit> traced_hits_;                            // of each vertex
   std::vector<PathState> states_;
   std::array<std::size_t, size> path_of_{};  // of each state in states_, its path's index
   std::array<int, size> length_{};

@@ -24,25 +24,27 @@ class LightVertices {
   int longest() const { return longest_; }
   const SampleCounts& counts() const { return counts_; }
 
-  /// Stores path `i` of `batch` as path number `path`. Several threads may store different paths at
-  /// once.
+  /// Stores the connectible vertices of path `i` of `batch` as path number `path`. Several threads
+  /// may store different paths at once.
   template <class Guide>
   void keep(std::size_t path, const LightBatch<Guide>& batch, std::size_t i) {
     Path& p = kept_[path];
-    const int length = std::min(batch.length(i), longest_);
-    if (length > 0) p.emitter = batch.emitter(i);
-    for (int s = 2; s <= length; ++s) p.vertices.push_back(batch.vertex(i, s - 1));
+    if (std::min(batch.length(i), longest_) > 0) p.emitter = batch.emitter(i);
+    batch.for_each_vertex(i, [&](std::size_t j, int index) {
+      if (index >= longest_ || !batch.connectible(j, index)) return;
+      p.vertices.push_back(batch.vertex(j, index));
+      p.s.push_back(index + 1);
+    });
   }
 
-  /// Call once all paths are stored: gathers the connectible vertices of each s, in the order of
-  /// the paths.
+  /// Call once all paths are stored: gathers the vertices of each s, in the order of the paths.
   void arrange() {
     for (Path& p : kept_) {
       if (p.emitter) emitters_.push_back(*p.emitter);
       for (std::size_t k = 0; k < p.vertices.size(); ++k) {
-        if (p.vertices[k].bsdf->connectible()) vertices_[k].push_back(p.vertices[k]);
+        vertices_[static_cast<std::size_t>(p.s[k]) - 2].push_back(p.vertices[k]);
       }
-      p.vertices = {};
+      p = {};
     }
   }
 
@@ -74,7 +76,8 @@ class LightVertices {
  private:
   struct Path {
     std::optional<EmitterPoint> emitter;
-    std::vector<Vertex> vertices;  // from s = 2 on
+    std::vector<Vertex> vertices;
+    std::vector<int> s;  // of each, >= 2
   };
 
   std::size_t paths_;

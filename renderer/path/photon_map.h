@@ -40,11 +40,11 @@ class PhotonMap {
   template <class Guide>
   void keep_path(std::size_t path, const LightBatch<Guide>& batch, std::size_t i) {
     Part& part = parts_[path / std::size_t{paths_of_part}];
-    for (int s = 1; s < batch.length(i); ++s) {
+    batch.for_each_vertex(i, [&](std::size_t j, int s) {
       const std::size_t before = part.photons.size();
-      keep(path, batch.vertex(i, s), s);
-      if (part.photons.size() > before) part.hits.push_back(batch.hit(i, s));
-    }
+      keep(path, batch.vertex(j, s), s);
+      if (part.photons.size() > before) part.hits.push_back(batch.hit(j, s));
+    });
     part.ends.push_back(static_cast<std::uint32_t>(part.photons.size()));
   }
   /// Makes path `i` of `batch` the path that keep_path() stored, without vertex 0.

@@ -37,10 +37,9 @@ struct PathState {
   Hit hit{};                ///< of `ray`
   Rgb throughput{1, 1, 1};  ///< along `ray`
   Pdf<SolidAngle> p;        ///< density with which the direction of `ray` was sampled
-  /// 1 / the largest component of the first edge's throughput, times BsdfSample::pdf_ratio of all
-  /// vertices. throughput times this scale is the throughput that sampling the BSDF would have
-  /// left. A guide lowers throughput where it sends many paths, so roulette by throughput alone
-  /// would end just those.
+  /// BsdfSample::pdf_ratio of all vertices: throughput times this scale is the throughput that
+  /// sampling the BSDF would have left. A guide lowers throughput where it sends many paths, so
+  /// roulette by throughput alone would end just those.
   float roulette_scale = 1;
   std::span<Vertex> path;  ///< room for max_depth + 1 vertices; path[0] is set
   /// mis_partial_sum() of the last vertex over its density. At vertex 0 of a light path whose
@@ -48,14 +47,15 @@ struct PathState {
   double mis_partial = 0;
   int depth = 0;      ///< edges traced: path[depth] is the last vertex
   int reference = 0;  ///< depth of the first vertex whose BSDF has a density; 0: none yet
-  /// Luminance that the path was expected to gather behind that vertex; below 0 until it is needed.
+  /// Luminance that the path was expected to add behind that vertex; below 0 until it is needed.
   float expected = -1;
   float least = 0;  ///< luminance of throughput below which the path is not split
   float split = 1;  ///< number of equal parts it was split into since it started or branched off
   /// Roulette by what is known of the light has replaced that by throughput at the last vertex.
   bool windowed = false;
   float carried = 0;  ///< luminance of throughput when it left the last vertex; 0: it did not
-  /// Largest component of the throughput that PathReuse keeps apart from `throughput`; else 1.
+  /// `throughput` times this is what roulette goes by. Of an eye path: the largest component of
+  /// what PathReuse keeps apart from `throughput`; of a light path: 1 / that of the first edge.
   float carried_before = 1;
   std::uint32_t segment = 0;  ///< of PathTrees; a branch has that of the path that was split
 };
@@ -209,8 +209,7 @@ class Walk {
   bool keep(PathState& w, const Vertex& v, std::size_t walk) {
     if (limits_.roulette != nullptr) return keep_efficient(w, v, walk);
     if constexpr (Guide::has_expected) {
-      return limits_.transport == Transport::importance || guide_.idle() ||
-             keep_expected(w, v, walk);
+      return !guide_.guides(limits_.transport) || keep_expected(w, v, walk);
     }
     return true;
   }
@@ -220,16 +219,18 @@ class Walk {
     w.windowed = false;
     if (!v.bsdf->connectible()) return true;
     const float carried = luminance(w.throughput);
-    if (w.reference == 0) {
-      w.reference = w.depth;
-      w.least = carried * least_part;
-    }
+    if (w.reference == 0) begin_window(w, carried);
     const float parts = limits_.roulette->continuations(v, limits_.max_depth - w.depth, carried);
     if (parts < 0) return true;
     w.windowed = true;
     if (parts < 1) return survive(w, parts);
     if (carried > w.least && parts > 1) split(w, v, static_cast<int>(std::lround(parts)), walk);
     return true;
+  }
+
+  static void begin_window(PathState& w, float carried) {
+    w.reference = w.depth;
+    w.least = carried * least_part;
   }
 
   /// Russian roulette.
@@ -241,29 +242,27 @@ class Walk {
   }
 
   /// Adjoint-driven Russian roulette and splitting (Vorba and Krivanek 2016): keeps the luminance
-  /// that a guided path is expected to gather within a window around what it was at the first
-  /// vertex. Guiding weights multiply by a factor at each vertex; without a window their variance
-  /// grows exponentially with the depth. False where roulette ends the path.
+  /// that a guided path is expected to add to the picture within a window around what it was at the
+  /// first vertex. Guiding weights multiply by a factor at each vertex; without a window their
+  /// variance grows exponentially with the depth. False where roulette ends the path.
   bool keep_expected(PathState& w, const Vertex& v, std::size_t walk) {
     constexpr float low = 1.0F / 3, high = 5.0F / 3;  // 2 / (1 + s) and 2 s / (1 + s), s = 5
     constexpr float min_survival = 0.1F;
     constexpr int max_parts = 16;
     w.windowed = false;
     if (!v.bsdf->connectible()) return true;
+    const float carried = w.carried_before * luminance(w.throughput);
     if (w.reference == 0) {
-      w.reference = w.depth;
+      begin_window(w, carried);
       return true;
     }
     // What the guide has added to the weight.
     const float guiding_weight = 1 / w.roulette_scale;
     if (guiding_weight <= high && w.depth < limits_.roulette_depth) return true;
     if (w.expected < 0) {
-      const Vertex& first = vertex(w, w.reference);
-      w.expected = luminance(first.throughput) * expected_behind(first);
-      w.least = luminance(first.throughput) * least_part;
+      w.expected = w.least / least_part * expected_behind(vertex(w, w.reference));
     }
     if (!(w.expected > 0)) return true;
-    const float carried = w.carried_before * luminance(w.throughput);
     const float ratio = carried * expected_behind(v) / w.expected;
     w.windowed = true;
     if (ratio < low && w.depth >= limits_.roulette_depth) {
@@ -279,10 +278,10 @@ class Walk {
     return true;
   }
 
-  /// The luminance that a path of throughput 1 gathers behind `v`; while that is unknown, as if it
-  /// were equal everywhere.
+  /// The luminance that a path of throughput 1 adds behind `v`; where that is unknown, as it is of
+  /// all light paths, as if it were equal everywhere.
   float expected_behind(const Vertex& v) const {
-    const float known = guide_.expected(v);
+    const float known = limits_.transport == Transport::radiance ? guide_.expected(v) : -1;
     return known < 0 ? 1 : known;
   }
 

@@ -1,6 +1,6 @@
-// Guided paths of many edges. Their weights are products of a factor per vertex. Without the window
-// of roulette and splitting (path/walk.h) nearly all pictures are far too dark, and a rare one far
-// too bright.
+// Guided paths of many edges, from the eye and from the lights. Their weights are products of a
+// factor per vertex. Without the window of roulette and splitting (path/walk.h) nearly all pictures
+// are far too dark, and a rare one far too bright.
 
 #include <gtest/gtest.h>
 
@@ -163,17 +163,19 @@ TEST(GuidedDepth, PathTracingOfManyEdgesIsNotDark) {
   }
 }
 
-/// The light of the strategies s = 0 of a picture, unweighted, over what it should be: connections
-/// outweigh long eye paths, and so hide what is wrong with them.
-double brightness_of_hits(const GuideSettings& guide, int depth, int seed) {
-  test::RenderSettings settings = tiny_picture(guided_bdpt(guide, depth), seed, 6);
+/// The light of some strategies of a picture by bdpt, unweighted, over what it should be:
+/// connections outweigh long paths, and so hide what is wrong with them. `counts`: of the name of a
+/// layer.
+template <class Counts>
+double brightness_of(const Counts& counts, const IntegratorSettings& method, int seed) {
+  test::RenderSettings settings = tiny_picture(method, seed, 6);
   settings.layers = {ImageLayer::strategies_unweighted};
   test::Session session(white_furnace(), settings);
   statistics::Moments pixels;
   for (int i = 0; i < settings.iterations; ++i) {
     session.iterate(static_cast<std::uint64_t>(i));
     for (std::size_t k = 0; k < session.layers().size(); ++k) {
-      if (session.layer_names()[k].find(".s0t") == std::string::npos) continue;
+      if (!counts(session.layer_names()[k])) continue;
       for (const Rgb& p : session.layers()[k].pixels) pixels.add(double(p.y));
     }
   }
@@ -187,8 +189,55 @@ TEST(LongGuidedDepth, BidirectionalPathTracingOfManyEdgesIsNotDark) {
         GuideSettings(test::in_small_pictures(FaceIrradianceGuideSettings{})),
         GuideSettings(test::in_small_pictures(SdTreeGuideSettings{}))}) {
     SCOPED_TRACE(std::visit([](const auto& g) { return std::string(g.name); }, guide));
-    expect_few_dark([&](int seed) { return brightness_of_hits(guide, depth, seed); });
+    const auto hits = [](const std::string& name) {
+      return name.find(".s0t") != std::string::npos;
+    };
+    expect_few_dark([&](int seed) { return brightness_of(hits, guided_bdpt(guide, depth), seed); });
   }
+}
+
+/// `settings` with light paths that are guided.
+template <class S>
+IntegratorSettings with_guided_light(S settings) {
+  settings.light_guide = SkeletonLightGuideSettings{.probability = 0.5};
+  return settings;
+}
+
+/// The difference that guided light paths make to the brightness of a picture.
+template <class S>
+void expect_same_with_guided_light(S settings) {
+  SCOPED_TRACE(S::name);
+  static_cast<PathLengths&>(settings) = {.max_depth = 12};
+  if constexpr (requires { settings.light_paths; }) settings.light_paths = 64;
+  constexpr int depth = 12, iterations = 20;
+  statistics::Moments all;
+  for (const double d : of_seeds(10, [&](int seed) {
+         return brightness(with_guided_light(settings), depth, seed, iterations) -
+                brightness(settings, depth, seed + 1000, iterations);
+       })) {
+    all.add(d);
+  }
+  EXPECT_GT(statistics::t_test(all, 0), 1e-5) << all.mean() << " +- " << all.standard_error();
+  EXPECT_LT(all.standard_error(), 0.04) << "the test has no power";
+}
+
+TEST(GuidedDepth, LightPathsMakeThePictureThatUnguidedOnesMake) {
+  expect_same_with_guided_light(LightSettings{});
+  expect_same_with_guided_light(BdptSettings{});
+  BdptSettings uniform;
+  uniform.connections = UniformSettings{};
+  expect_same_with_guided_light(uniform);
+  expect_same_with_guided_light(VcmSettings{});
+  expect_same_with_guided_light(PhotonMapSettings{});
+}
+
+TEST(GuidedDepth, LightPathsOfManyEdgesAreNotDark) {
+  LightSettings light{PathLengths{.max_depth = 100}};
+  light.light_paths = 64;
+  expect_few_dark([&](int seed) { return brightness(with_guided_light(light), 100, seed, 6); });
+  const BdptSettings bdpt{PathLengths{.max_depth = 60}};
+  const auto splats = [](const std::string& name) { return name.ends_with("t1"); };
+  expect_few_dark([&](int seed) { return brightness_of(splats, with_guided_light(bdpt), seed); });
 }
 
 }  // namespace
