@@ -54,6 +54,7 @@ class BorderFaceLight {
 
   struct Accumulator {
     std::unordered_map<std::uint64_t, double> light;  // by face, over all regions
+    double bytes() const { return map_bytes(light); }
   };
   void accumulate(std::uint32_t region, const VoxelFace& face, const GuidingSample& sample,
                   Accumulator& accumulator) const;

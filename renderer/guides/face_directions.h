@@ -146,6 +146,7 @@ class FaceDirections final : public GuidingDistribution {
   struct FaceAccumulator final : Accumulator {
     typename Faces::Accumulator faces;
     Tuning::Accumulator tuning;
+    double bytes() const override { return faces.bytes() + tuning.bytes(); }
   };
 
   /// The probability of sampling from a region's distribution.

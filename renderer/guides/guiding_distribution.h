@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/storage/bytes.h"
+#include "renderer/guides/learning_memory.h"
 #include "renderer/path/contexts.h"
 #include "renderer/path/guiding_sample.h"
 #include "renderer/path/vertex.h"
@@ -32,6 +33,8 @@ class GuidingDistribution {
   /// parts, so that the state is the same for any number of threads.
   struct Accumulator {
     virtual ~Accumulator() = default;
+    /// The memory that its samples take, those of update() included.
+    virtual double bytes() const = 0;
   };
 
   virtual ~GuidingDistribution() = default;

@@ -30,7 +30,7 @@ void next_round(AimedLobes& sampling, AimedLobes& building) {
 template <class Directions>
 void LearnedCells<Directions>::accumulate(std::uint32_t cell, const GuidingSample& sample,
                                           float light, Accumulator& accumulator) {
-  ++accumulator.vertices[cell];
+  accumulator.vertices.push_back(cell);
   const float weight = light / sample.pdf.value;
   if (weight > 0 && std::isfinite(weight)) {
     accumulator.samples.push_back({cell, {sample.v.surface.x, sample.wi, sample.distance, weight}});
@@ -43,7 +43,7 @@ bool LearnedCells<Directions>::update(std::span<const Accumulator* const> accumu
   // By cell, each in the order of the accumulators: cells can then be filled in parallel.
   std::vector<std::size_t> first(cells_.size() + 1, 0);
   for (const Accumulator* a : accumulators) {
-    for (std::size_t c = 0; c < cells_.size(); ++c) cells_[c].vertices += a->vertices[c];
+    for (const std::uint32_t c : a->vertices) ++cells_[c].vertices;
     for (const Found& s : a->samples) ++first[s.cell + 1];
   }
   for (std::size_t c = 0; c < cells_.size(); ++c) first[c + 1] += first[c];

@@ -38,11 +38,15 @@ class LearnedCells {
   };
   /// The samples of one part of an iteration.
   struct Accumulator {
-    explicit Accumulator(std::size_t cells) : vertices(cells, 0) {}
-    std::vector<std::uint32_t> vertices;  // of each cell
+    std::vector<std::uint32_t> vertices;  // the cell of each
     std::vector<Found> samples;
+
+    /// What it takes until update() and in it, bytes.
+    double bytes() const {
+      return double(vertices.capacity() * sizeof(vertices[0]) +
+                    samples.capacity() * sizeof(samples[0]) + samples.size() * sizeof(FoundLight));
+    }
   };
-  Accumulator accumulator() const { return Accumulator(cells_.size()); }
   /// A vertex of `cell` < size() from which `light` was found in the direction of `sample`.
   static void accumulate(std::uint32_t cell, const GuidingSample& sample, float light,
                          Accumulator& accumulator);

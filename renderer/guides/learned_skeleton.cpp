@@ -19,11 +19,10 @@ constexpr std::uint32_t counted_share = 4;
 
 struct LearnedSkeleton::SampleAccumulator final : Accumulator {
   Cells::Accumulator cells;
-  std::vector<CellForest::Spread> spreads;
+  std::unordered_map<std::uint32_t, CellForest::Spread> spreads;  // by cell
   Tuning::Accumulator tuning;
   std::uint64_t met = 0;  // samples
-  explicit SampleAccumulator(Cells::Accumulator empty)
-      : cells(std::move(empty)), spreads(cells.vertices.size()) {}
+  double bytes() const override { return cells.bytes() + map_bytes(spreads) + tuning.bytes(); }
 };
 
 std::vector<float> LearnedSkeleton::distributions() {
@@ -95,7 +94,7 @@ Pdf<SolidAngle> LearnedSkeleton::pdf(const GuidedVertex& at, const V3f& w) const
 }
 
 std::unique_ptr<GuidingDistribution::Accumulator> LearnedSkeleton::accumulator() const {
-  return std::make_unique<SampleAccumulator>(cells_.accumulator());
+  return std::make_unique<SampleAccumulator>();
 }
 
 void LearnedSkeleton::accumulate(const GuidingSample& sample, Accumulator& accumulator) const {
@@ -134,7 +133,7 @@ void LearnedSkeleton::update(std::span<const std::unique_ptr<Accumulator>> accum
     const auto& own = static_cast<const SampleAccumulator&>(*a);
     cells.push_back(&own.cells);
     tuning.push_back(&own.tuning);
-    for (std::size_t c = 0; c < spreads_.size(); ++c) spreads_[c].add(own.spreads[c]);
+    for (const auto& [cell, spread] : own.spreads) spreads_[cell].add(spread);
   }
   tuning_.update(tuning, iterations);
   if (!cells_.update(cells, pool, iterations)) return;

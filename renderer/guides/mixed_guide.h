@@ -62,6 +62,7 @@ class MixedGuide {
   struct Accumulator {
     std::unique_ptr<GuidingDistribution::Accumulator> directions;  // null: they do not learn
     ReflectedRadiance::Accumulator reflected;
+    double bytes() const { return reflected.bytes() + (directions ? directions->bytes() : 0); }
   };
   /// Whether paths of this transport do not follow the BSDF alone.
   bool guides(Transport transport) const { return of(transport) != nullptr; }

@@ -40,7 +40,9 @@ class PortalFaces {
     return (p.a == near && p.b == far) || (p.a == far && p.b == near) ? 1 : 0;
   }
 
-  struct Accumulator {};
+  struct Accumulator {
+    static constexpr double bytes() { return 0; }
+  };
   static void update(std::span<const Accumulator* const>, const ThreadPool&) {}
 
  private:

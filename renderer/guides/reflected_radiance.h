@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analysis/storage/bytes.h"
+#include "renderer/guides/learning_memory.h"
 #include "renderer/guides/learning_rounds.h"
 #include "renderer/path/vertex.h"
 
@@ -49,6 +50,7 @@ class ReflectedRadiance {
   class Accumulator {
    public:
     void add(std::uint32_t cell, const Sample& s) { cells_[cell] += Samples::of(s); }
+    double bytes() const { return map_bytes(cells_); }
 
    private:
     friend class ReflectedRadiance;

@@ -14,7 +14,7 @@ constexpr int deepest_places = 40;
 struct SdTree::SampleAccumulator final : Accumulator {
   Leaves::Accumulator cells;
   Tuning::Accumulator tuning;
-  explicit SampleAccumulator(Leaves::Accumulator empty) : cells(std::move(empty)) {}
+  double bytes() const override { return cells.bytes() + tuning.bytes(); }
 };
 
 void SdTree::prepare(const PrepareContext& context) {
@@ -39,7 +39,7 @@ std::uint32_t SdTree::leaf_at(const V3f& x) const {
 }
 
 std::unique_ptr<GuidingDistribution::Accumulator> SdTree::accumulator() const {
-  return std::make_unique<SampleAccumulator>(leaves_.accumulator());
+  return std::make_unique<SampleAccumulator>();
 }
 
 void SdTree::accumulate(const GuidingSample& sample, Accumulator& accumulator) const {

@@ -58,6 +58,7 @@ class SkeletonDirections final : public GuidingDistribution {
  private:
   struct TuningAccumulator final : Accumulator {
     Tuning::Accumulator tuning;
+    double bytes() const override { return tuning.bytes(); }
   };
 
   SkeletonGuideSettings settings_;

@@ -74,6 +74,11 @@ class Tuning {
     std::unordered_map<std::uint32_t, std::vector<double>>
         moments;  // by cell, laid out as moments_
     Noise noise;
+    double bytes() const {
+      double sum = map_bytes(moments);
+      for (const auto& [cell, m] : moments) sum += double(m.capacity() * sizeof(m[0]));
+      return sum;
+    }
   };
   /// Whether the cell still learns. Each sample costs a density, so learning ends with enough
   /// paths.

@@ -2,6 +2,7 @@
 
 #include "renderer/connections/registry.h"
 #include "renderer/core/pass_seconds.h"
+#include "renderer/guides/learning_memory.h"
 #include "renderer/guides/make_guide.h"
 #include "renderer/integrators/integrators.h"
 #include "renderer/path/light_pass.h"
@@ -123,6 +124,7 @@ class PairedBdpt final : public Bdpt<Guide> {
     const LightPathSetting setting = light_setting(context, counts);
     const Tiling tiling(image);
     typename Base::Accumulators accumulators = Base::start_accumulators(tiling);
+    LearningMemory memory(accumulators.size());
     std::vector<double> seconds(static_cast<std::size_t>(tiling.tiles()), 0.0);
     const auto work = [&](int i, Counters& counters, Splats& splats) {
       Pairs pairs{EyePaths(settings_.max_depth, counts), LightBatch<Guide>(setting, guide_)};
@@ -140,6 +142,7 @@ class PairedBdpt final : public Bdpt<Guide> {
         } while (Base::resume(walk, pairs.eye));
       }
       seconds[static_cast<std::size_t>(i)] = pairs.look_up_seconds;
+      memory.add(accumulators[static_cast<std::size_t>(i)].bytes());
     };
     const Counters sum =
         for_each_splatting_part(context, tiling.tiles(), image, work, Base::splat_layers(context));
@@ -316,6 +319,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
     const Tiling tiling(image);
     std::vector<CellStatistics::Accumulator> accumulators(static_cast<std::size_t>(tiling.tiles()));
     typename Base::Accumulators guide_accumulators = Base::start_accumulators(tiling);
+    LearningMemory memory(guide_accumulators.size());
     const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
       const auto index = static_cast<std::size_t>(i);
       EyePart part{lights, connections_.resampling().roulette * cell_statistics_.mean(index),
@@ -343,6 +347,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
       part.accumulator.add_paths(static_cast<std::uint64_t>(tile.pixels()));
       part.accumulator.close();
       accumulators[index] = std::move(part.accumulator);
+      memory.add(guide_accumulators[index].bytes());
     });
     cell_statistics_.add(accumulators);
     Base::update_guide(context, guide_accumulators);

@@ -5,6 +5,7 @@
 
 #include "renderer/guides/efficiency_roulette.h"
 #include "renderer/guides/gathered_light.h"
+#include "renderer/guides/learning_memory.h"
 #include "renderer/guides/path_trees.h"
 #include "renderer/integrators/guided_integrator.h"
 #include "renderer/integrators/seen_emission.h"
@@ -74,11 +75,13 @@ class PathTracer final : public GuidedIntegrator<Guide> {
         roulette_ && roulette_->observes() && context.parts.empty() && roulette_->fits(image);
     std::vector<EfficiencyRoulette::Accumulator> continuations(
         observes && roulette_->learns() ? tiles : 0);
+    LearningMemory memory(tiles);
     Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
       const auto k = static_cast<std::size_t>(i);
       render(context, image, tiling.tile(i), counters,
              {accumulators[k], continuations.empty() ? nullptr : &continuations[k]},
              settings_.max_depth > 2 ? settings_.reuse : 1);
+      memory.add(accumulators[k].bytes());
     });
     if (guide_.learns()) guide_.update(accumulators, context.pool, 1);
     if (observes) roulette_->update(continuations, context, image, sum);

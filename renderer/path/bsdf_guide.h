@@ -7,7 +7,9 @@ namespace lacuna {
 /// guide: bsdf. Samples the BSDF alone.
 struct BsdfGuide : StrategyBase {
   /// It learns nothing.
-  struct Accumulator {};
+  struct Accumulator {
+    static constexpr double bytes() { return 0; }
+  };
   static constexpr bool has_expected = false;
   static constexpr bool learns() { return false; }
   static Accumulator accumulator() { return {}; }

@@ -38,6 +38,7 @@ class NoiseKeeper final : public GuidingDistribution {
   bool learns() const override { return true; }
   struct Kept : Accumulator {
     Learned learned;
+    double bytes() const override { return 0; }
   };
   std::unique_ptr<Accumulator> accumulator() const override { return std::make_unique<Kept>(); }
   void record_noise(double variance, double by_bsdf, Accumulator& accumulator) const override {

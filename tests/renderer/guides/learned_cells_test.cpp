@@ -46,7 +46,7 @@ LearnedCells<Directions> learned(int rounds, int samples, std::uint64_t seed,
   Cells cells(2);
   for (std::uint64_t i = 0; cells.rounds() < static_cast<std::uint64_t>(rounds); ++i) {
     Rng rng(seed, i, 0, Rng::Purpose::test);
-    typename Cells::Accumulator part = cells.accumulator();
+    typename Cells::Accumulator part;
     for (int k = 0; k < samples; ++k) {
       const auto [w, p] = from_above(rng);
       Cells::accumulate(1, found(v, w, p), static_cast<float>(radiance(w)), part);
@@ -97,7 +97,7 @@ TYPED_TEST(LearnedCellsOf, CountAndDivideVertices) {
   const GuidingSample up = found(v, {0, 0, 1}, Pdf<SolidAngle>(1.0F));
   const ThreadPool pool(1);
   Cells cells(1);
-  typename Cells::Accumulator a = cells.accumulator(), b = cells.accumulator();
+  typename Cells::Accumulator a, b;
   Cells::accumulate(0, up, 1, a);
   Cells::accumulate(0, up, 0, b);
   Cells::accumulate(0, up, INFINITY, b);
@@ -111,7 +111,7 @@ TYPED_TEST(LearnedCellsOf, CountAndDivideVertices) {
   EXPECT_FALSE(cells.directions(0).empty());
   EXPECT_FALSE(cells.directions(1).empty());
   // The second round has two iterations.
-  const typename Cells::Accumulator empty = cells.accumulator();
+  const typename Cells::Accumulator empty;
   const typename Cells::Accumulator* none[] = {&empty};
   EXPECT_FALSE(cells.update(none, pool, 1));
   EXPECT_TRUE(cells.update(none, pool, 1));
