@@ -1,9 +1,11 @@
 #include "jobs/render/prepare.h"
 #include "renderer/gltf/gltf_load.h"
 #include "renderer/scene/close_surfaces.h"
+#include "renderer/scene/delta_surfaces.h"
 #include "renderer/scene/hidden_emitters.h"
 #include "renderer/scene/material_change.h"
 #include "renderer/scene/particles.h"
+#include "renderer/scene/points_in_surfaces.h"
 
 #include <fmt/format.h>
 
@@ -35,6 +37,7 @@ SceneNeeds needs_of(const JobSpec& spec, const Integrator& integrator) {
   if (std::find(spec.layers.begin(), spec.layers.end(), ImageLayer::albedo) != spec.layers.end()) {
     needs.materials = true;
   }
+  if (light_paths_of_iteration(spec)) needs.light_tree = true;  // for unreached_emitters()
   return needs;
 }
 
@@ -83,7 +86,27 @@ std::optional<double> seconds_of(const Budget& budget) {
   return std::min(*budget.seconds, *budget.cpu_seconds);
 }
 
+/// What a person should know before the scene is rendered.
+std::vector<std::string> warnings_of(const Scene& scene, const Camera& camera,
+                                     const IntegratorSettings& integrator) {
+  std::vector<std::string> all = close_surfaces(scene);
+  if (!scene.has_emitters()) return all;
+  const auto add = [&all](std::vector<std::string> warnings) {
+    for (std::string& w : warnings) all.push_back(std::move(w));
+  };
+  if (scene.emitters().empty()) all.emplace_back("the scene has no light: the picture is black");
+  add(hidden_emitters(scene));
+  add(lights_in_surfaces(scene));
+  if (from_lights_only(integrator)) add(missing_reflections(scene, camera));
+  return all;
+}
+
 }  // namespace
+
+std::optional<double> light_paths_of_iteration(const JobSpec& spec) {
+  return shared_light_paths(spec.integrator,
+                            double(spec.resolution[0]) * double(spec.resolution[1]));
+}
 
 Prepared prepare(const JobSpec& spec, const RunContext& context) {
   Prepared p;
@@ -94,13 +117,9 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   p.inputs.front().name = spec.scene;
   if (spec.material) change_material(data, *spec.material, spec.scene);
   if (spec.particles) add_particles(data, *spec.particles);
-  const CameraData camera = spec.camera.object ? look_at(*spec.camera.object, data.origin)
-                                               : choose_camera(data, spec.camera.name, spec.scene);
+  CameraData camera = spec.camera.object ? look_at(*spec.camera.object, data.origin)
+                                         : choose_camera(data, spec.camera.name, spec.scene);
   p.camera_name = camera.name;
-  std::optional<Crop> crop;
-  if (const auto& c = spec.crop) crop = Crop{{c->from[0], c->from[1]}, {c->of[0], c->of[1]}};
-  p.camera = std::make_unique<Camera>(camera, spec.resolution[0], spec.resolution[1],
-                                      spec.pixel_filter, crop);
   p.warnings = data.warnings;
   if (biased(spec.integrator)) {
     p.warnings.emplace_back(
@@ -128,12 +147,18 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
     throw InputUnreadable(EAGAIN,
                           fmt::format("{} changed while it was read", environment->file.string()));
   }
-  if (needs.emission && p.scene->emitters().empty()) {
-    p.warnings.emplace_back("the scene has no light: the picture is black");
+  const auto contact = leave_surfaces(camera, *p.scene);
+  std::optional<Crop> crop;
+  if (const auto& c = spec.crop) crop = Crop{{c->from[0], c->from[1]}, {c->of[0], c->of[1]}};
+  p.camera = std::make_unique<Camera>(camera, spec.resolution[0], spec.resolution[1],
+                                      spec.pixel_filter, crop);
+  for (std::string& w : warnings_of(*p.scene, *p.camera, spec.integrator)) {
+    p.warnings.push_back(std::move(w));
   }
-  for (std::string& w : close_surfaces(*p.scene)) p.warnings.push_back(std::move(w));
-  if (needs.emission) {
-    for (std::string& w : hidden_emitters(*p.scene)) p.warnings.push_back(std::move(w));
+  if (contact) {
+    for (std::string& w : look_back(*p.camera, *contact, *p.scene)) {
+      p.warnings.push_back(std::move(w));
+    }
   }
   set_up_analysis(p, spec, context, camera);
   if (const auto seconds = seconds_of(spec.budget)) {

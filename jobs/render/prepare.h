@@ -29,6 +29,9 @@ struct Prepared {
 /// an asset that cannot be used; InputUnreadable; and Stopped.
 Prepared prepare(const JobSpec& spec, const RunContext& context);
 
+/// IntegratorSettings' shared_light_paths() for a job's picture.
+std::optional<double> light_paths_of_iteration(const JobSpec& spec);
+
 /// Lets the integrator look at the scene and at its empty space; only what it asks for is built, or
 /// loaded from the cache. Throws MemoryLimitError, GeometryError, WaitInterrupted,
 /// Stopped. `resumes`: a checkpoint will be loaded.

@@ -24,6 +24,7 @@
 #include "jobs/spec/byte_size.h"
 #include "renderer/images/image_module.h"
 #include "renderer/integrators/integrator.h"
+#include "renderer/path/unreached_emitters.h"
 
 namespace lacuna {
 
@@ -250,6 +251,12 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
   if (loop.counters().rejected > 0) {
     running.warn(fmt::format("{} contributions were not finite and were left out",
                              loop.counters().rejected));
+  }
+  if (const auto paths = light_paths_of_iteration(spec)) {
+    const double all = *paths * static_cast<double>(loop.film().iterations());
+    for (const std::string& w : unreached_emitters(*prepared.scene, *prepared.camera, all)) {
+      running.warn(w);
+    }
   }
   if (const auto tail = error_tail(loop.film()); tail && !tail->mean_is_known()) {
     running.warn(fmt::format(

@@ -53,7 +53,7 @@ Ray ray_to(const LightVertices& lights, int s, std::size_t i, const V3f& x) {
   }
   const EmitterPoint& e = lights.emitter(i);
   if (e.infinite()) return {x, e.x};
-  return to(e.x, [&](const V3f& w, float distance) { return end_on(e, w, distance); });
+  return to(e.x, [&](const V3f& w, float distance) { return e.end(w, distance); });
 }
 
 std::vector<Ray> rays_to(const LightVertices& lights, int s, const V3f& x) {

@@ -7,6 +7,9 @@
 #include "renderer/core/density.h"
 #include "renderer/core/sampling.h"
 #include "renderer/core/vec.h"
+#include "renderer/emitters/spot_cones.h"
+#include "renderer/geometry/surface.h"
+#include "renderer/geometry/surface_contact.h"
 
 namespace lacuna {
 
@@ -22,12 +25,14 @@ struct EmitterPoint {
   /// Density with which EmitterSet::sample() returns the point, including the selection of the
   /// emitter. Environment: per steradian. Delta: the selection probability.
   Pdf<Area> pdf{};
-  float cos_inner = 1, cos_outer = 0;  ///< of a spot's cones
-  std::uint32_t entry = ~0U;           ///< the emitter's number in its EmitterSet
+  SpotCones cones;            ///< of a spot
+  std::uint32_t entry = ~0U;  ///< the emitter's number in its EmitterSet
   /// The density of the point in next event estimation at one receiver, over `pdf`; 1 where both
   /// select by power.
   float next_event_ratio = 1;
   float across = 0;  ///< infinite: projected area of the scene's bounding box from that direction
+  /// Point and spot: the surfaces that it lies in; null: none.
+  const SurfaceContact* contact = nullptr;
 
   /// Density of the point in next event estimation.
   Pdf<Area> next_event_pdf() const { return next_event_ratio * pdf; }
@@ -40,8 +45,17 @@ struct EmitterPoint {
   /// The emission towards unit `w`.
   Rgb towards(const V3f& w) const {
     if (kind == Kind::area && !both_sides && dot(w, ng) <= 0) return Rgb(0, 0, 0);
-    if (kind == Kind::spot) return emission * spot_falloff(dot(w, ng));
+    if (kind == Kind::spot) return emission * cones.falloff(one_minus_cos(w, ng));
     return emission;
+  }
+
+  /// The origin of a ray along unit `w` from a finite point, beside the surfaces that it lies in.
+  V3f origin(const V3f& w) const {
+    return kind == Kind::area ? offset_origin(x, ng, offset, w) : origin_in_space(w);
+  }
+  /// The end of a segment of length `distance` that arrives along -`w` at a finite point.
+  V3f end(const V3f& w, float distance) const {
+    return kind == Kind::area ? offset_end(x, ng, offset, w, distance) : origin_in_space(w);
   }
 
   /// Density with which sample_leaving() continues a light path along unit `w`. Infinite emitters:
@@ -55,22 +69,16 @@ struct EmitterPoint {
       }
       case Kind::point:
         return Pdf<SolidAngle>(0.25F * inv_pi);
-      case Kind::spot:  // the cone may be empty in floats
-        return Pdf<SolidAngle>(dot(w, ng) > cos_outer && cos_outer < 1 ? 1 / cone() : 0);
+      case Kind::spot:
+        return cones.contains(one_minus_cos(w, ng)) ? cones.pdf() : Pdf<SolidAngle>(0);
       default:
         return Pdf<SolidAngle>(across > 0 ? 1 / across : 0);
     }
   }
 
-  /// Solid angle of a spot's outer cone.
-  float cone() const { return 2 * pi * (1 - cos_outer); }
-
  private:
-  /// KHR_lights_punctual: squared ramp between the cones.
-  float spot_falloff(float cos_angle) const {
-    const float ramp =
-        std::clamp((cos_angle - cos_outer) / std::max(cos_inner - cos_outer, 1e-4F), 0.0F, 1.0F);
-    return ramp * ramp;
+  V3f origin_in_space(const V3f& w) const {
+    return contact == nullptr ? x : contact->origin(x, w);
   }
 };
 

@@ -10,15 +10,15 @@ namespace lacuna {
 
 namespace {
 
-/// Luminous power; an estimate where the light's profile is not constant. It determines the
-/// emitter's selection probability, not its contribution.
+/// Luminous power; of a directional light an estimate. It determines the emitter's selection
+/// probability, not its contribution.
 double power(const PunctualLight& light, double scene_radius) {
   const double i = luminance(light.intensity);
   switch (light.kind) {
     case PunctualLight::Kind::point:
       return i * 4 * std::numbers::pi;
     case PunctualLight::Kind::spot:
-      return i * 2 * std::numbers::pi * (1 - std::cos(double(light.outer_cone)));
+      return i * SpotCones::power(light.inner_cone, light.outer_cone);
     case PunctualLight::Kind::directional:
       return i * std::numbers::pi * scene_radius * scene_radius;
   }
@@ -35,7 +35,8 @@ EmitterSet::EmitterSet(const SceneData& scene, std::unique_ptr<Environment> envi
       first_entry_(scene.meshes.size(), none) {
   const double radius = bounds.radius();
   std::vector<double> powers;
-  for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) add_mesh(m, powers);
+  MeansOfTextures means;
+  for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) add_mesh(m, means, powers);
   for (std::uint32_t l = 0; l < scene.lights.size(); ++l) {
     Source source{Source::Kind::punctual};
     source.index = l;
@@ -46,12 +47,37 @@ EmitterSet::EmitterSet(const SceneData& scene, std::unique_ptr<Environment> envi
     const double disk = std::numbers::pi * radius * radius;
     add_light({Source::Kind::environment}, environment_->integral() * disk, powers);
   }
-  selection_ = AliasTable(powers);
+  selection_ = AliasTable(selection_weights(powers));
   if (selection_.empty()) return;
   for (std::uint32_t i = 0; i < entries_.size(); ++i) {
     entries_[i].pdf = selection_.pmf(i) * entries_[i].pdf;
   }
   if (pointwise) select_pointwise(powers);
+}
+
+/// Selection by power alone would hardly ever send a light path into a room whose lamps are dimmer
+/// by decades than those of another. A share of all selections is therefore uniform over sources,
+/// meshes and lights, and by power within each: a defensive mixture (Hesterberg 1995, "Weighted
+/// Average Importance Sampling and Defensive Mixture Distributions"). Every probability is at least
+/// 1 - `share` times that by power, so no variance grows by more than 1 / (1 - share) = 8 / 7.
+std::vector<double> EmitterSet::selection_weights(std::span<const double> powers) const {
+  constexpr double share = 0.125;
+  std::vector<double> of_sources(sources_.size());
+  double all = 0;
+  for (std::size_t i = 0; i < powers.size(); ++i) {
+    of_sources[entries_[i].source] += powers[i];
+    all += powers[i];
+  }
+  const auto shining =
+      std::count_if(of_sources.begin(), of_sources.end(), [](double power) { return power > 0; });
+  std::vector<double> weights(powers.begin(), powers.end());
+  if (shining < 2) return weights;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (!(powers[i] > 0)) continue;
+    const double of_source = powers[i] / of_sources[entries_[i].source];
+    weights[i] = (1 - share) * (powers[i] / all) + share * of_source / static_cast<double>(shining);
+  }
+  return weights;
 }
 
 void EmitterSet::select_pointwise(std::span<const double> powers) {
@@ -66,7 +92,7 @@ void EmitterSet::select_pointwise(std::span<const double> powers) {
     if (everywhere) {
       infinite.push_back({i, powers[i]});
     } else {
-      finite.push_back(tree_emitter(i));
+      finite.push_back(tree_emitter(i, powers[i]));
     }
   }
   double all = 0;
@@ -74,7 +100,7 @@ void EmitterSet::select_pointwise(std::span<const double> powers) {
   pointwise_.emplace(finite, infinite, all, bounds_.radius(), selection_);
 }
 
-TreeEmitter EmitterSet::tree_emitter(std::uint32_t entry) const {
+TreeEmitter EmitterSet::tree_emitter(std::uint32_t entry, double power) const {
   const Entry& e = entries_[entry];
   const Source& source = sources_[e.source];
   TreeEmitter t;
@@ -84,7 +110,7 @@ TreeEmitter EmitterSet::tree_emitter(std::uint32_t entry) const {
     t.bounds.axes = {V3d(e.ng).normalized(), 0};
     t.bounds.reach = std::numbers::pi / 2;
     t.bounds.both_sides = source.both_sides;
-    t.bounds.intensity = mean_luminance(source) * e.area();
+    t.bounds.intensity = power / (std::numbers::pi * source.sides());
     return t;
   }
   const PunctualLight& light = scene_->lights[source.index];
@@ -96,14 +122,27 @@ TreeEmitter EmitterSet::tree_emitter(std::uint32_t entry) const {
   return t;
 }
 
-double EmitterSet::mean_luminance(const Source& source) const {
-  Rgb radiance = source.emission;
-  if (source.textured) {
-    const Material& material = scene_->materials[scene_->meshes[source.index].material];
-    const auto texture = static_cast<std::size_t>(material.emission_texture.texture);
-    radiance *= scene_->textures[texture]->mean().rgb;
+/// Of the emission of a triangle. 0 only where it is black everywhere: what it emits is never
+/// missed.
+double EmitterSet::mean_luminance(const Mesh& mesh, std::uint32_t triangle,
+                                  const TextureMeans& means) {
+  const Material& material = scene_->materials[mesh.material];
+  const TextureRef& texture = material.emission_texture;
+  const std::vector<V2f>& uvs = mesh.uvs[static_cast<std::size_t>(texture.uv_set)];
+  std::array<V2f, 3> corners;
+  float largest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const V2f uv = uvs.empty() ? V2f(0, 0) : uvs[mesh.triangles[triangle][k]];
+    corners[k] = texture.transform(uv);
+    for (unsigned i = 0; i < 2; ++i) {
+      largest = std::max({largest, std::abs(uv[i]), std::abs(uv[i] * texture.scale[i]),
+                          std::abs(texture.offset[i])});
+    }
   }
-  return double(luminance(radiance));
+  const TextureMeans::Mean mean = means.over(corners, largest);
+  texels_read_ += static_cast<std::uint64_t>(mean.cells);
+  const V3d radiance = mean.rgb * V3d(material.emission);
+  return luminance(radiance.x, radiance.y, radiance.z);
 }
 
 void EmitterSet::add_light(const Source& source, double power, std::vector<double>& powers) {
@@ -115,7 +154,7 @@ void EmitterSet::add_light(const Source& source, double power, std::vector<doubl
   powers.push_back(power);
 }
 
-void EmitterSet::add_mesh(std::uint32_t m, std::vector<double>& powers) {
+void EmitterSet::add_mesh(std::uint32_t m, MeansOfTextures& means, std::vector<double>& powers) {
   const Mesh& mesh = scene_->meshes[m];
   const Material& material = scene_->materials[mesh.material];
   if (!material.emits()) return;
@@ -129,14 +168,23 @@ void EmitterSet::add_mesh(std::uint32_t m, std::vector<double>& powers) {
     source.mask = static_cast<std::uint32_t>(masks_.size());
     masks_.emplace_back(*scene_, mesh);
   }
-  const double exitance = std::numbers::pi * mean_luminance(source) * (source.both_sides ? 2 : 1);
+  const TextureMeans* mean = nullptr;
+  if (source.textured) {
+    const int index = material.emission_texture.texture;
+    const Texture& texture = *scene_->textures[static_cast<std::size_t>(index)];
+    const auto [at, is_new] = means.try_emplace(index, texture);
+    if (is_new) texels_read_ += texture.texels();
+    mean = &at->second;
+  }
+  const auto uniform = double(luminance(material.emission));
   first_entry_[m] = source.first_entry;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     Entry e{TriangleShape(mesh, t), {}, static_cast<std::uint32_t>(sources_.size())};
     const double area = e.area();
     e.pdf = Pdf<Area>(static_cast<float>(1 / area));
     entries_.push_back(e);
-    powers.push_back(exitance * area);
+    const double radiance = mean == nullptr ? uniform : mean_luminance(mesh, t, *mean);
+    powers.push_back(std::numbers::pi * source.sides() * radiance * area);
   }
   sources_.push_back(source);
 }
@@ -185,13 +233,26 @@ EmitterPoint EmitterSet::sample_punctual(const PunctualLight& light) const {
   }
   p.kind = EmitterPoint::Kind::point;
   p.x = light.position;
+  p.contact = light.contact.get();
   if (light.kind == PunctualLight::Kind::spot) {
     p.kind = EmitterPoint::Kind::spot;
     p.ng = light.direction;
-    p.cos_inner = std::cos(light.inner_cone);
-    p.cos_outer = std::cos(light.outer_cone);
+    p.cones = SpotCones(light.inner_cone, light.outer_cone);
   }
   return p;
+}
+
+std::string EmitterSet::name(std::uint32_t entry) const {
+  const Source& source = sources_[entries_[entry].source];
+  switch (source.kind) {
+    case Source::Kind::mesh:
+      return scene_->meshes[source.index].name;
+    case Source::Kind::punctual:
+      return scene_->lights[source.index].name;
+    case Source::Kind::environment:
+      return "environment";
+  }
+  return {};
 }
 
 EmitterPoint EmitterSet::hit(const Surface& s, const Rgb& radiance) const {

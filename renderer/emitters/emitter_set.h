@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -13,12 +14,13 @@
 #include "renderer/geometry/alpha_mask.h"
 #include "renderer/geometry/scene_data.h"
 #include "renderer/geometry/surface.h"
+#include "renderer/images/texture_means.h"
 
 namespace lacuna {
 
-/// All emitters of a scene. An emitter is selected with probability proportional to its power, so
-/// the density of a point on an emitter does not depend on the receiver; or, with a light tree, for
-/// a given receiver.
+/// All emitters of a scene. An emitter is selected by its power, an eighth of the time by source
+/// first, so the density of a point on an emitter does not depend on the receiver; or, with a light
+/// tree, for a given receiver.
 class EmitterSet {
  public:
   /// `bounds` is the bounding box of all triangles. The power of an infinite emitter is the power
@@ -85,6 +87,10 @@ class EmitterSet {
   /// Radiance that arrives from direction `w` at infinity.
   Rgb background(const V3f& w) const;
   const Environment* environment() const { return environment_.get(); }
+  /// The name of the mesh or light of an emitter (EmitterPoint::entry).
+  std::string name(std::uint32_t entry) const;
+  /// How many texels, and sums of texels, were read to estimate the power of textured triangles.
+  std::uint64_t texels_read() const { return texels_read_; }
 
  private:
   static constexpr std::uint32_t none = ~0U;
@@ -97,6 +103,7 @@ class EmitterSet {
     std::uint32_t index = 0;  // of the mesh or of the light
     std::uint32_t first_entry = 0;
     std::uint32_t mask = none;  // in masks_
+    double sides() const { return both_sides ? 2 : 1; }
   };
   /// A triangle or a light; sampling reads one cache line.
   struct alignas(64) Entry : TriangleShape {
@@ -104,9 +111,12 @@ class EmitterSet {
     std::uint32_t source = 0;
   };
 
-  void add_mesh(std::uint32_t mesh, std::vector<double>& powers);
-  double mean_luminance(const Source& source) const;
-  TreeEmitter tree_emitter(std::uint32_t entry) const;
+  /// Of the textures of emission, by their number; each is built when it is first needed.
+  using MeansOfTextures = std::map<int, TextureMeans>;
+  void add_mesh(std::uint32_t mesh, MeansOfTextures& means, std::vector<double>& powers);
+  double mean_luminance(const Mesh& mesh, std::uint32_t triangle, const TextureMeans& means);
+  TreeEmitter tree_emitter(std::uint32_t entry, double power) const;
+  std::vector<double> selection_weights(std::span<const double> powers) const;
   void select_pointwise(std::span<const double> powers);
   void add_light(const Source& source, double power, std::vector<double>& powers);
   /// sample() of an emitter that is no triangle.
@@ -127,6 +137,7 @@ class EmitterSet {
   std::optional<PointwiseSelection> pointwise_;
   std::vector<std::uint32_t> first_entry_;  // of each mesh; none: it does not emit
   std::uint32_t environment_entry_ = none;
+  std::uint64_t texels_read_ = 0;
 };
 
 }  // namespace lacuna

@@ -1,18 +1,37 @@
 #include "renderer/emitters/leaving.h"
 
 #include "renderer/core/frame.h"
-#include "renderer/geometry/surface.h"
 #include "renderer/materials/lambert.h"
 
 namespace lacuna {
 
 namespace {
 
-V3f sample_around(const V3f& axis, float cos_least, const V2f& u) {
-  const float x = u.x * (1 - cos_least);  // 1 - cos: near the axis the cosine itself is too coarse
+/// The unit direction at 1 - cos `x` of the angle to `axis`, and at the angle 2 pi `u` around it.
+V3f around(const V3f& axis, float x, float u) {
   const float s = std::sqrt(x * (2 - x));
-  const float phi = 2 * pi * u.y;
+  const float phi = 2 * pi * u;
   return Frame(axis).to_world({s * std::cos(phi), s * std::sin(phi), 1 - x});
+}
+
+/// A unit direction, uniform.
+V3f everywhere(const V2f& u) { return around(V3f(0, 0, 1), 2 * u.x, u.y); }
+
+/// `l` with its throughput, for a point that emits `emitted`, cosine included; none where that is
+/// black.
+std::optional<Leaving> carrying(const Rgb& emitted, Leaving l, const EmitterPoint& e) {
+  if (is_black(emitted) || !l.pdf.positive() || !e.pdf.positive()) return std::nullopt;
+  l.throughput = emitted / l.pdf.value / e.pdf.value;
+  return l;
+}
+
+std::optional<Leaving> leaving_spot(const EmitterPoint& e, Rng& rng) {
+  const V2f u = rng.next2();
+  const float x = e.cones.sample(u.x);
+  // By the angle itself: at the edge of a narrow cone, the rounded direction may lie outside.
+  const V3f w = around(e.ng, x, u.y);
+  return carrying(e.emission * e.cones.falloff(x), {.ray = {e.origin(w), w}, .pdf = e.cones.pdf()},
+                  e);
 }
 
 /// A point on the sides of `box` that face unit direction `w`, uniform in projected area.
@@ -46,25 +65,23 @@ std::optional<Leaving> sample_leaving(const EmitterPoint& e, const Bounds& scene
     case EmitterPoint::Kind::area: {
       const bool back = e.both_sides && rng.next() < 0.5F;
       const V3f w = sample_cosine(back ? -e.ng : e.ng, rng.next2());
-      l.ray = {offset_origin(e.x, e.ng, e.offset, w), w};
+      l.ray = {e.origin(w), w};
       cosine = abs_dot(w, e.ng);
       break;
     }
-    case EmitterPoint::Kind::point:
-      l.ray = {e.x, sample_around(V3f(0, 0, 1), -1, rng.next2())};
+    case EmitterPoint::Kind::point: {
+      const V3f w = everywhere(rng.next2());
+      l.ray = {e.origin(w), w};
       break;
+    }
     case EmitterPoint::Kind::spot:
-      l.ray = {e.x, sample_around(e.ng, e.cos_outer, rng.next2())};
-      break;
+      return leaving_spot(e, rng);
     default:
       if (!(e.across > 0)) return std::nullopt;
       l.ray = leaving_infinity(e.x, scene, rng);
   }
   l.pdf = e.leaving_pdf(l.ray.d);
-  const Rgb emitted = e.towards(l.ray.d);
-  if (is_black(emitted) || !l.pdf.positive() || !e.pdf.positive()) return std::nullopt;
-  l.throughput = emitted * (cosine / l.pdf.value) / e.pdf.value;
-  return l;
+  return carrying(e.towards(l.ray.d) * cosine, l, e);
 }
 
 }  // namespace lacuna

@@ -92,6 +92,8 @@ struct CameraData {
   std::string node = {};  ///< name of the node that it stands at
 };
 
+struct SurfaceContact;
+
 /// A light of KHR_lights_punctual. `intensity` is read 1:1 as W/sr (point, spot) or W/m^2
 /// (directional).
 struct PunctualLight {
@@ -101,8 +103,10 @@ struct PunctualLight {
   Rgb intensity{1, 1, 1};  ///< colour x intensity
   V3f position{0, 0, 0};
   V3f direction{0, 0, -1};  ///< unit, in which the light travels
-  float inner_cone = 0;     ///< radians, half angle; 0 <= inner < outer <= pi/2
+  float inner_cone = 0;     ///< radians, half angle; 0 <= inner <= outer, 0 < outer <= pi/2
   float outer_cone = 0.785398F;
+  /// Point and spot, in a Scene: the surfaces that it lies in; null: none.
+  std::shared_ptr<const SurfaceContact> contact;
 };
 
 /// The contents of a glTF file that Lacuna uses, validated: indices in range, coordinates and

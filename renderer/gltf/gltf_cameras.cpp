@@ -44,16 +44,33 @@ CameraData read_camera(const GltfObject& camera, const PlacedNode& node, const V
   return out;
 }
 
-void read_cone(const GltfObject& light, PunctualLight& out) {
+/// Reads the cones of a spot. KHR_lights_punctual wants the inner one within the outer one; where
+/// both are one, as Blender writes a spot without blend, the edge is hard.
+void read_cones(const GltfObject& light, PunctualLight& out, Warnings& warnings) {
   const auto spot = light.object("spot");
   if (!spot) light.fail("spot is missing");
   const Limits angle{0, std::numbers::pi_v<float> / 2};  // what pi/2 is when written as a float
-  out.inner_cone = static_cast<float>(spot->number("innerConeAngle", 0, angle));
-  out.outer_cone = static_cast<float>(spot->number("outerConeAngle", std::numbers::pi / 4, angle));
-  if (!(out.inner_cone < out.outer_cone)) {
-    spot->fail("innerConeAngle " + std::to_string(out.inner_cone) +
-               " is not below outerConeAngle " + std::to_string(out.outer_cone));
+  double inner = spot->number("innerConeAngle", 0, angle);
+  const double outer = spot->number("outerConeAngle", std::numbers::pi / 4, angle);
+  if (outer == 0) spot->refuse("outerConeAngle", "radians above 0 and up to pi / 2");
+  if (inner > outer) {
+    const std::string both =
+        "innerConeAngle " + number_text(inner) + " is above outerConeAngle " + number_text(outer);
+    constexpr double few_digits = 1e-4;  // angles that were written with few digits
+    if (inner > outer * (1 + few_digits)) spot->fail(both);
+    warnings.once(spot->label() + ": " + both + "; it is read as the same: a hard edge");
+    inner = outer;
   }
+  // The directions that reach a point from a light are rounded to floats: by 2^-24 in each axis.
+  constexpr double narrowest = 0x1p-20;
+  if (outer < narrowest) {
+    warnings.once(spot->label() + ": outerConeAngle " + number_text(outer) + " is below " +
+                  number_text(narrowest) +
+                  " rad, which directions in single precision do not resolve: the edge of its "
+                  "light is uncertain");
+  }
+  out.inner_cone = static_cast<float>(inner);
+  out.outer_cone = static_cast<float>(outer);
 }
 
 PunctualLight read_light(const GltfObject& light, const PlacedNode& node, const V3d& origin,
@@ -75,7 +92,7 @@ PunctualLight read_light(const GltfObject& light, const PlacedNode& node, const 
     out.kind = PunctualLight::Kind::directional;
   } else if (type == "spot") {
     out.kind = PunctualLight::Kind::spot;
-    read_cone(light, out);
+    read_cones(light, out, warnings);
   } else {
     light.refuse("type", "\"point\", \"spot\" or \"directional\"");
   }

@@ -138,25 +138,4 @@ Rgba Texture::lookup(const V2f& uv) const {
   return {Rgb(out[0], out[1], out[2]), out[3]};
 }
 
-Rgba Texture::mean() const {
-  // Counting bytes first makes the sum exact and cheap: 1024 products whatever the size.
-  std::array<std::array<std::uint64_t, 256>, 4> counts{};
-  for (std::size_t i = 0; i < texels_.size(); i += 4) {
-    for (std::size_t k = 0; k < 4; ++k) ++counts[k][texels_[i + k]];
-  }
-  const std::size_t texels = texels_.size() / 4;
-  const auto texel_count = static_cast<double>(texels);
-  std::array<double, 4> sums{};
-  for (std::size_t k = 0; k < 4; ++k) {
-    const float* table = to_linear_ + (k < 3 ? 0 : 256);
-    for (std::size_t v = 0; v < 256; ++v) {
-      sums[k] += static_cast<double>(counts[k][v]) * static_cast<double>(table[v]);
-    }
-    sums[k] /= texel_count;
-  }
-  return {
-      Rgb(static_cast<float>(sums[0]), static_cast<float>(sums[1]), static_cast<float>(sums[2])),
-      static_cast<float>(sums[3])};
-}
-
 }  // namespace lacuna

@@ -44,8 +44,17 @@ class Texture {
   /// Prefetches the texels that lookup(uv) reads.
   void prefetch(const V2f& uv) const;
 
-  /// Linear mean over all texels, for estimates of emitter power. Must be decoded.
-  Rgba mean() const;
+  V2i size() const { return {width_, height_}; }  ///< texels; (0, 0) before decode()
+  Wrap wrap_s() const { return wrap_s_; }
+  Wrap wrap_t() const { return wrap_t_; }
+  /// The linear colour of a texel. Must be decoded.
+  Rgb texel(const V2i& at) const {
+    const std::uint8_t* p =
+        &texels_[(static_cast<std::size_t>(at.y) * static_cast<std::size_t>(width_) +
+                  static_cast<std::size_t>(at.x)) *
+                 4];
+    return {to_linear_[p[0]], to_linear_[p[1]], to_linear_[p[2]]};
+  }
 
  private:
   struct Footprint;

@@ -64,7 +64,7 @@ void VplSet::add(Kept& path, const EmitterPoint& e) const {
   if (!e.pdf.positive()) return;
   if (e.kind == EmitterPoint::Kind::area && !e.both_sides) {
     path.diffuse.push_back({e.x, e.ng, e.ng, 1, e.emission * (share_ / e.pdf.value), e.offset, 0});
-  } else if (e.kind == EmitterPoint::Kind::point) {
+  } else if (e.kind == EmitterPoint::Kind::point && e.contact == nullptr) {
     const V3f everywhere(0.0F);
     path.points.push_back(
         {e.x, everywhere, everywhere, 1, e.emission * (share_ / e.pdf.value), 0, 0});

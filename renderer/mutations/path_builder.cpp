@@ -6,6 +6,25 @@
 
 namespace lacuna {
 
+namespace {
+
+/// Where a vertex of a path is, or the point on an emitter that it starts at.
+struct NodePlace {
+  const PathVertex& p;
+
+  bool infinite() const { return VertexPlace{p.v}.infinite(); }
+  const V3f& x() const { return p.v.surface.x; }
+  V3f origin(const V3f& w) const {
+    return p.v.kind == Vertex::Kind::emitter ? p.emitter.origin(w) : VertexPlace{p.v}.origin(w);
+  }
+  V3f end(const V3f& w, float distance) const {
+    if (p.v.kind == Vertex::Kind::emitter) return p.emitter.end(w, distance);
+    return VertexPlace{p.v}.end(w, distance);
+  }
+};
+
+}  // namespace
+
 void PathBuilder::keep(const WholePath& path, int first, int last) {
   keep_eye(path, first);
   keep_light(path, last);
@@ -109,7 +128,7 @@ bool PathBuilder::go_from_eye(const V3f& w) {
 
 bool PathBuilder::go_from_light(const V3f& w) {
   light_.back().delta = false;
-  return arrive({VertexPlace{vertex(light_.back())}.origin(w), w}, light_);
+  return arrive({NodePlace{pool_[light_.back().vertex]}.origin(w), w}, light_);
 }
 
 bool PathBuilder::enter_scene(const V3f& at, const V3f& w) {
@@ -162,7 +181,7 @@ bool PathBuilder::join(WholePath& path) {
 
 bool PathBuilder::visible() const {
   if (light_.empty()) return true;
-  const VertexPlace a{vertex(eye_.back())}, b{vertex(light_.back())};
+  const NodePlace a{pool_[eye_.back().vertex]}, b{pool_[light_.back().vertex]};
   ++counters_.shadow_rays;
   return !measure_.scene().rays().occluded(shadow_ray(a, b, edge_between(a, b)));
 }

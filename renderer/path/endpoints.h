@@ -17,6 +17,7 @@ struct VertexPlace {
   bool infinite() const { return v.kind == Vertex::Kind::background; }
   const V3f& x() const { return v.surface.x; }
   /// The origin of a ray along `w`. The eye and points in space have no surface: it is not moved.
+  /// (Those that lie in a surface: EmitterPoint::origin().)
   V3f origin(const V3f& w) const {
     return offset_origin(v.surface.x, v.surface.ng, v.surface.offset, w);
   }
@@ -80,12 +81,6 @@ Pdf<SolidAngle> leaving_pdf(const Guide& guide, const EmitterPoint& e, const V3f
   }
 }
 
-/// The end of a segment of length `distance` that arrives along -`w` at the finite point `e` on an
-/// emitter.
-inline V3f end_on(const EmitterPoint& e, const V3f& w, float distance) {
-  return e.kind == EmitterPoint::Kind::area ? offset_end(e.x, e.ng, e.offset, w, distance) : e.x;
-}
-
 /// A point on an emitter: vertex 0 of a light path.
 template <class Guide>
 struct EmitterEndpoint {
@@ -114,7 +109,8 @@ struct EmitterEndpoint {
   static double mis_partial() { return 0; }
   /// An eye path can hit the emitter: c_0 of mis.h.
   bool prev_connectible() const { return !e.delta(); }
-  V3f end(const V3f& w, float distance) const { return end_on(e, w, distance); }
+  V3f origin(const V3f& w) const { return e.origin(w); }
+  V3f end(const V3f& w, float distance) const { return e.end(w, distance); }
 };
 
 /// Makes `v` the vertex 0 of a light path that starts at `e`.

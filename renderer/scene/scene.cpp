@@ -6,6 +6,7 @@
 
 #include "renderer/core/scene_error.h"
 #include "renderer/geometry/alpha_mask.h"
+#include "renderer/geometry/surface_contact.h"
 #include "renderer/images/guards.h"
 #include "renderer/images/image_read.h"
 #include "renderer/materials/gltf_material.h"
@@ -35,9 +36,29 @@ Scene::Scene(SceneData data, const SceneNeeds& needs,
       rays_((decode_textures(needs, pool), RayCaster(*data_, pool))) {
   if (needs.materials) make_uniform_lobes();
   if (needs.emission) {
+    find_contacts(pool);
     emitters_ = std::make_unique<EmitterSet>(
         *data_, environment ? load_environment(*environment) : nullptr, bounds_, needs.light_tree);
   }
+}
+
+void Scene::find_contacts(const ThreadPool& pool) {
+  std::vector<PunctualLight>& lights = data_->lights;
+  constexpr std::size_t part = 1024;
+  pool.for_each(static_cast<int>((lights.size() + part - 1) / part), [&](int i) {
+    const std::size_t first = static_cast<std::size_t>(i) * part;
+    for (std::size_t k = first; k < std::min(first + part, lights.size()); ++k) {
+      PunctualLight& light = lights[k];
+      if (light.kind == PunctualLight::Kind::directional) continue;
+      if (const auto contact = find_contact(light.position)) {
+        light.contact = std::make_shared<SurfaceContact>(*contact);
+      }
+    }
+  });
+}
+
+std::optional<SurfaceContact> Scene::find_contact(const V3f& x) const {
+  return lacuna::find_contact({*data_, rays_, bounds_}, x);
 }
 
 void Scene::make_uniform_lobes() {

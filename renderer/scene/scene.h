@@ -8,6 +8,7 @@
 #include "renderer/geometry/rays.h"
 #include "renderer/geometry/scene_data.h"
 #include "renderer/geometry/surface.h"
+#include "renderer/geometry/surface_contact.h"
 #include "renderer/materials/gltf_material.h"
 
 namespace lacuna {
@@ -75,8 +76,11 @@ class Scene {
     if (!uniform_lobes_[s.material]) prefetch_textures(material(s), data_->textures, s.uv);
   }
   const Material& material(const Surface& s) const { return data_->materials[s.material]; }
+  /// The surfaces that the point `x` lies in; none: it is free.
+  std::optional<SurfaceContact> find_contact(const V3f& x) const;
 
  private:
+  void find_contacts(const ThreadPool& pool);
   void make_uniform_lobes();
   void decode_textures(const SceneNeeds& needs, const ThreadPool& pool);
 

@@ -18,7 +18,8 @@ struct EnumTable<EmitterChoice> {
       {EmitterChoice::tree, "tree",
        "by a light tree, for each vertex anew: by power, distance, and the directions of emission "
        "and of the surface (Conty Estevez and Kulla 2018)"},
-      {EmitterChoice::power, "power", "by power, the same everywhere"},
+      {EmitterChoice::power, "power",
+       "by power, the same everywhere; one time in eight by mesh or light first"},
   }};
 };
 

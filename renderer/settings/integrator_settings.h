@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
 #include <variant>
@@ -51,6 +52,34 @@ bool spreads_samples(const std::variant<Ts...>& settings) {
       []<class S>(const S&) {
         if constexpr (requires { S::spreads_samples; }) return S::spreads_samples;
         return true;
+      },
+      settings);
+}
+
+/// Whether paths start at lights only and are connected to the eye: where the settings have a
+/// `static constexpr bool from_lights_only = true`.
+template <class... Ts>
+bool from_lights_only(const std::variant<Ts...>& settings) {
+  return std::visit(
+      []<class S>(const S&) {
+        if constexpr (requires { S::from_lights_only; }) return S::from_lights_only;
+        return false;
+      },
+      settings);
+}
+
+/// The light paths of an iteration where all pixels share them, and the light that they do not
+/// bring is missing: settings with a `static constexpr bool shares_light_paths = true`. None: the
+/// method is no such one. `pixels`: of the picture, the number where `light_paths` is 0.
+template <class... Ts>
+std::optional<double> shared_light_paths(const std::variant<Ts...>& settings, double pixels) {
+  return std::visit(
+      [&]<class S>(const S& s) -> std::optional<double> {
+        if constexpr (requires { S::shares_light_paths; }) {
+          return s.light_paths > 0 ? double(s.light_paths) : pixels;
+        } else {
+          return std::nullopt;
+        }
       },
       settings);
 }

@@ -16,6 +16,7 @@ struct LightSettings : PathLengths {
 
   /// No paths start at the eye, so surfaces that few light paths reach are noisy.
   static constexpr bool from_lights_only = true;
+  static constexpr bool shares_light_paths = true;
 
   int light_paths = 0;
   LightGuideSettings light_guide = BsdfGuideSettings{};

@@ -45,6 +45,8 @@ struct ManyLightsSettings : PathLengths {
 
   static constexpr std::array layers{ImageLayer::visibility_tests, ImageLayer::negative};
 
+  static constexpr bool shares_light_paths = true;
+
   int light_paths = 1000;
   DirectLighting direct = DirectLighting::next_event;
   Clamp clamp = Clamp::relative;

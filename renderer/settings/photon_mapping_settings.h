@@ -10,6 +10,8 @@ namespace lacuna {
 
 /// What photon mapping and its progressive form have in common.
 struct PhotonTracing : PathLengths, RadiusSettings {
+  static constexpr bool shares_light_paths = true;
+
   int light_paths = 0;
   bool next_event_estimation = true;
   PhotonKernel kernel = PhotonKernel::constant;

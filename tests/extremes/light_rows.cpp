@@ -1,6 +1,7 @@
 // Brightness, and how many lights it comes from.
 #include <fmt/format.h>
 
+#include "renderer/images/texture_means.h"
 #include "tests/extremes/rows.h"
 
 namespace lacuna::extremes {
@@ -61,6 +62,42 @@ Row the_same(const std::string& name, const Room& one, const Room& other) {
           }};
 }
 
+/// Half of a panel is dark by its texture, or has no emission; the eye sees the same. What is read
+/// of the texture is all of it once, and a few hundred texels for each triangle at most.
+Row textures_that_emit(int cells, int texels) {
+  const std::string name = fmt::format("textures that emit: {} triangles", 2 * cells * cells);
+  return {name, [=](Stage& stage, const Method& method, Check& check) {
+            const std::string& plain = stage.scene(
+                "half a panel", [&] { return room({.panel_cells = cells, .glow = Glow::half}); });
+            const std::string& textured = stage.scene(name, [&] {
+              return room({.panel_cells = cells, .glow = Glow::half_by_texture, .texels = texels});
+            });
+            const JobSpec job = stage.job(method, textured);
+            check.agree(stage.render(job), stage.render(stage.job(method, plain)));
+            const double most =
+                double(texels) * texels + 2.0 * cells * cells * TextureMeans::most_cells;
+            const auto read = static_cast<double>(stage.texels_read(job));
+            check.require(read <= most, fmt::format("{:g} texels were read for the power of the "
+                                                    "emitters; at most {:g} are needed",
+                                                    read, most));
+          }};
+}
+
+/// What is lit by all of a spot's intensity is as bright as the inverse square of the distance
+/// says, however narrow its cones.
+Row narrow_spot(double outer, double inner) {
+  return {fmt::format("narrow spots: {:g} rad{}", outer, inner < outer ? "" : ", hard edge"),
+          [=](Stage& stage, const Method& method, Check& check) {
+            const Beam spot{.outer = outer, .inner = inner};
+            const JobSpec job = stage.job(
+                method,
+                stage.scene(fmt::format("beam-{}-{}", outer, inner), [&] { return beam(spot); }));
+            const Picture picture = stage.render(job);
+            check.sound(picture);
+            if (max_depth(method)) check.mean_is(picture, spot.radiance());
+          }};
+}
+
 }  // namespace
 
 std::vector<Row> light_rows(const Effort& effort) {
@@ -75,6 +112,9 @@ std::vector<Row> light_rows(const Effort& effort) {
       glowing(1000, 1e12),
       the_same(fmt::format("{} points of light", points), {.points = 1}, {.points = points}),
       the_same("a panel thrice in one place", {}, {.panels = 3}),
+      textures_that_emit(effort.quick ? 20 : 224, effort.quick ? 64 : 4096),
+      narrow_spot(1e-2, 0.9e-2),
+      narrow_spot(1e-4, 1e-4),
       the_same(fmt::format("{} shining triangles", 2 * cells * cells), {}, {.panel_cells = cells})};
 }
 

@@ -107,15 +107,6 @@ Method reference_for(const Method& method) {
   return reference;
 }
 
-bool from_lights_only(const Method& method) {
-  return std::visit(
-      []<class S>(const S&) {
-        if constexpr (requires { S::from_lights_only; }) return S::from_lights_only;
-        return false;
-      },
-      method.settings);
-}
-
 std::vector<Method> with_numbers_at(const Method& method, End end) {
   return changed<NumberAt>(method, end);
 }

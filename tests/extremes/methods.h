@@ -32,7 +32,9 @@ std::optional<int> max_depth(const Method& method);
 Method reference_for(const Method& method);
 
 /// Whether the method's settings say that it samples nothing from the eye.
-bool from_lights_only(const Method& method);
+inline bool from_lights_only(const Method& method) {
+  return lacuna::from_lights_only(method.settings);
+}
 
 /// Which end of a number's range.
 enum class End { below, lowest, highest, above };

@@ -32,6 +32,11 @@ JobSpec Stage::job(const Method& method, const std::string& scene) const {
   return job;
 }
 
+std::uint64_t Stage::texels_read(const JobSpec& job) {
+  const Prepared p = prepare(job, context(never_interrupted));
+  return p.scene->has_emitters() ? p.scene->emitters().texels_read() : 0;
+}
+
 Counters Stage::iterate(const JobSpec& job, const std::function<void(const Image&)>& see) {
   const RunContext surroundings = context(never_interrupted);
   const Prepared p = prepare(job, surroundings);

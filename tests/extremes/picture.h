@@ -45,6 +45,8 @@ class Stage {
   /// The picture after the job's iterations, in this process, without any file. Throws what a job
   /// would.
   Picture render(const JobSpec& job);
+  /// EmitterSet::texels_read() of the job's scene; 0: the job needs no emitters.
+  std::uint64_t texels_read(const JobSpec& job);
   /// Calls `see` with each iteration's estimate of the whole picture.
   Counters iterate(const JobSpec& job, const std::function<void(const Image&)>& see);
   /// The picture of room({}) by a method of this name, made once.

@@ -1,5 +1,9 @@
 #include "tests/extremes/scenes.h"
 
+#include <algorithm>
+
+#include "tests/renderer/images/test_images.h"
+
 namespace lacuna::extremes {
 namespace {
 
@@ -58,23 +62,45 @@ class Builder : public GlbBuilder {
 // Sixty-fourths: exact however a power of two scales them.
 const V3f corner(4.171875F, 2.90625F, 5.359375F);
 
-/// A square of cells facing down.
-void add_panel(Builder& b, int cells, std::size_t material) {
+/// A square of cells facing down. Those of its first half have texture coordinates in the lower
+/// half of a texture, the others in the upper one, and the material `other`.
+void add_panel(Builder& b, int cells, std::size_t material, std::size_t other) {
   const V3f o(1.265625F, 2.859375F, 2.953125F), x(1.5F, 0, 0), z(0, 0, 1.25F);
-  std::vector<V3f> positions;
-  Triangles triangles;
   const auto along = [&](int i) { return static_cast<float>(i) / static_cast<float>(cells); };
   const auto at = [&](int i, int k) { return static_cast<std::uint32_t>(i * (cells + 1) + k); };
+  std::vector<V3f> positions;
   for (int i = 0; i <= cells; ++i) {
     for (int k = 0; k <= cells; ++k) positions.push_back(o + x * along(i) + z * along(k));
   }
-  for (int i = 0; i < cells; ++i) {
-    for (int k = 0; k < cells; ++k) {
-      triangles.push_back({at(i, k), at(i + 1, k), at(i + 1, k + 1)});
-      triangles.push_back({at(i, k), at(i + 1, k + 1), at(i, k + 1)});
+  const int half = (cells + 1) / 2;
+  for (const auto& [first, end] : {std::pair(0, half), std::pair(half, cells)}) {
+    if (first == end) continue;
+    std::vector<V2f> uvs;
+    for (int i = 0; i <= cells; ++i) {
+      for (int k = 0; k <= cells; ++k) {
+        const float u =
+            std::clamp((along(i) - along(first)) / (along(end) - along(first)), 0.F, 1.F);
+        uvs.emplace_back(along(k), (first == 0 ? 0.625F : 0.125F) + 0.25F * u);
+      }
     }
+    Triangles triangles;
+    for (int i = first; i < end; ++i) {
+      for (int k = 0; k < cells; ++k) {
+        triangles.push_back({at(i, k), at(i + 1, k), at(i + 1, k + 1)});
+        triangles.push_back({at(i, k), at(i + 1, k + 1), at(i, k + 1)});
+      }
+    }
+    const std::size_t own = first == 0 ? material : other;
+    b.place(b.add_mesh(positions, triangles, static_cast<int>(own), {}, uvs));
   }
-  b.place(b.add_mesh(positions, triangles, static_cast<int>(material)));
+}
+
+/// A texture whose lower half is white, the upper one black.
+std::size_t add_texture(Builder& b, int side) {
+  const auto half = static_cast<std::size_t>(side) * static_cast<std::size_t>(side) / 2;
+  std::vector<std::uint8_t> texels(half, 0);
+  texels.resize(2 * half, 255);
+  return b.add_texture(test::encode8(side, side, 1, texels));
 }
 
 /// All of it lies in the floor, so that neither the picture nor a voxel changes.
@@ -126,12 +152,14 @@ Bytes room(const Room& r) {
   const std::size_t white = b.add_material(diffuse({0.72, 0.7, 0.66}));
   const std::size_t red = b.add_material(diffuse({0.6, 0.2, 0.15}));
   const std::size_t shiny = b.add_material(metal(0.5));
-  const std::size_t lamp =
-      b.add_material(shining(diffuse({0, 0, 0}), {1, 0.9, 0.7}, 3 * r.radiance));
+  Json glow = shining(diffuse({0, 0, 0}), {1, 0.9, 0.7}, 3 * r.radiance);
+  if (r.texels > 0) glow["emissiveTexture"] = {{"index", add_texture(b, r.texels)}};
+  const std::size_t lamp = b.add_material(glow);
+  const std::size_t other = r.glow == Glow::half ? b.add_material(diffuse({0, 0, 0})) : lamp;
   b.add_box(V3f(0), corner, false, white);
   b.add_box({0, 0, 2.390625F}, {2.265625F, corner.y, 2.609375F}, true, red);
   b.add_box({0.515625F, 0.015625F, 3.140625F}, {1.390625F, 0.984375F, 3.890625F}, true, shiny);
-  for (int i = 0; i < r.panels; ++i) add_panel(b, r.panel_cells, lamp);
+  for (int i = 0; i < r.panels; ++i) add_panel(b, r.panel_cells, lamp, other);
   add_clutter(b, r.clutter, white);
   b.add_points(r.points, {2.890625F, 1.640625F, 3.484375F}, 2 * r.radiance);
   b.add_eye({2.796875F, 1.359375F, 5.140625F}, 1.375);  // the panel is seen
@@ -147,6 +175,23 @@ Bytes block_on_floor(double half_side) {
   b.add_box({-0.05F, 0, -0.05F}, {0.05F, 0.1F, 0.05F}, true, white);
   b.place(b.add_quad({0.25F, 0.5F, -0.1F}, {0.2F, 0, 0}, {0, 0, 0.2F}, int(lamp)));
   b.add_eye({0, 0.125F, 0.4375F}, 0.75);
+  return b.glb();
+}
+
+Bytes beam(const Beam& beam) {
+  Builder b(1, 0);
+  const std::size_t dark = b.add_material(diffuse({0, 0, 0}));
+  const std::size_t wall = b.add_material(diffuse({beam.albedo, beam.albedo, beam.albedo}));
+  // Its middle is the origin, where floats are finest.
+  b.add_box({-1, -1, -0.015625F}, {1, 1, 2}, false, dark);
+  b.place(
+      b.add_quad({-0.9375F, -0.9375F, 0}, {1.875F, 0, 0}, {0, 1.875F, 0}, static_cast<int>(wall)));
+  b.add_light({{"type", "spot"},
+               {"intensity", beam.intensity},
+               {"spot", {{"innerConeAngle", beam.inner}, {"outerConeAngle", beam.outer}}}},
+              {{"translation", {0, 0, beam.distance}}});
+  // Of the cone's width, the film's diagonal takes half.
+  b.add_eye({0, 0, static_cast<float>(beam.distance) - 0.125F}, 0.7 * beam.outer);
   return b.glb();
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <numbers>
+
 #include "tests/renderer/gltf/glb_builder.h"
 
 namespace lacuna::extremes {
@@ -10,6 +12,9 @@ using test::Json;
 /// What is added to a room without changing its picture.
 enum class Clutter { none, zero_area, duplicated_vertices, coincident, needles };
 
+/// Which cells of a panel shine, and what makes the others dark.
+enum class Glow { all, half, half_by_texture };
+
 /// A closed room under a panel of light, with a wall that has a doorway, and a shiny block: light,
 /// shadow, reflection, and an empty space whose skeleton leads through the door. No face lies on
 /// the border of two voxels, so that rounding moves no voxel.
@@ -19,6 +24,8 @@ struct Room {
   int points = 0;                ///< point lights in one place; together they have one power
   int panel_cells = 1;           ///< the panel is so many times so many squares
   int panels = 1;                ///< so many of them in one place
+  Glow glow = Glow::all;         ///< of the panels' cells
+  int texels = 0;                ///< along a side of the texture of half_by_texture
   Clutter clutter = Clutter::none;
 };
 Bytes room(const Room& room);
@@ -37,6 +44,17 @@ Bytes furnace(const Furnace& furnace);
 /// A block of a tenth of a unit on a floor of side 2 `half_side`, under a panel of light; the eye
 /// sees the block's shadow.
 Bytes block_on_floor(double half_side);
+
+/// A dark room under a spot of `intensity` (W/sr) whose light falls on its back wall, of albedo
+/// `albedo`, at a distance of `distance`; the camera sees what is lit fully, head-on.
+struct Beam {
+  double outer = 0.1, inner = 0.09;  ///< half angles, radians
+  double intensity = 10, albedo = 0.5, distance = 1.875;
+
+  /// What every pixel of a narrow beam shows.
+  double radiance() const { return albedo / std::numbers::pi * intensity / (distance * distance); }
+};
+Bytes beam(const Beam& beam);
 
 /// A diffuse material that reflects no light in any other way.
 Json diffuse(const std::array<double, 3>& albedo);

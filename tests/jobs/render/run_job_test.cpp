@@ -85,6 +85,63 @@ TEST_F(RunJob, SaysWhenPreparationExceedsTheBudget) {
   EXPECT_EQ(observer.warnings.back().rfind("preparation took", 0), 0u) << observer.warnings.back();
 }
 
+/// A wall, half of it a mirror, between a dim lamp in front and a bright one behind. The camera
+/// lies exactly in another wall, at `z` = 2, or off it.
+test::Bytes wall_between(float z) {
+  test::GlbBuilder b;
+  const auto paint = b.add_material({{"name", "paint"}});
+  const auto mirror =
+      b.add_material({{"name", "mirror"}, {"pbrMetallicRoughness", {{"roughnessFactor", 0}}}});
+  b.add_node({{"mesh", b.add_quad({-4, -4, 0}, {4, 0, 0}, {0, 8, 0}, int(paint))}});
+  b.add_node({{"mesh", b.add_quad({0, -4, 0}, {4, 0, 0}, {0, 8, 0}, int(mirror))}});
+  b.add_node({{"mesh", b.add_quad({-4, -4, 2}, {0, 8, 0}, {8, 0, 0}, int(paint))}});
+  b.add_light({{"type", "point"}, {"name", "dim"}, {"intensity", 1}},
+              {{"translation", {-0.5, 0, 1}}});
+  b.add_light({{"type", "point"}, {"intensity", 1000}}, {{"translation", {0, 0, -1}}});
+  b.add_camera("eye", {0, 0, z}, 0.8);
+  return b.glb();
+}
+
+TEST_F(RunJob, WarnsOfWhatLightPathsDoNotShow) {
+  LightSettings few;
+  few.light_paths = 1;
+  JobSpec s = spec("wall.glb", 1);
+  s.integrator = few;
+  temp.write("wall.glb", wall_between(2));
+  ASSERT_EQ(run(create(s)), Outcome::done);
+  const auto says = [&](const std::string& a, const std::string& b) {
+    return std::any_of(observer.warnings.begin(), observer.warnings.end(), [&](const auto& w) {
+      return w.find(a) != std::string::npos && w.find(b) != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(says("mirrors and clear glass are black", "\"mirror\""));
+  EXPECT_TRUE(says("1 light paths in all", "\"dim\""));
+  observer.warnings.clear();
+  s.integrator = PathSettings{};
+  ASSERT_EQ(run(create(s, "by path")), Outcome::done);
+  EXPECT_FALSE(says("black", "") || says("light paths", ""));
+}
+
+// Light paths end at the eye, and the wall that it lies in does not hide it.
+TEST_F(RunJob, ACameraInAWallSeesTheRoom) {
+  const auto mean = [&](float z, const IntegratorSettings& integrator, const std::string& name) {
+    JobSpec s = spec("wall.glb", 32);
+    s.integrator = integrator;
+    temp.write("wall.glb", wall_between(z));
+    const JobFolder folder = create(s, name);
+    EXPECT_EQ(run(folder), Outcome::done);
+    double sum = 0;
+    const std::vector<float> all = pixels(folder);
+    for (const float v : all) sum += double(v) / double(all.size());
+    return sum;
+  };
+  LightSettings light;
+  light.max_depth = 2;
+  const double off = mean(1.999F, light, "off"), on = mean(2, light, "on");
+  EXPECT_GT(on, 0);
+  EXPECT_NEAR(on, off, 0.05 * off);
+}
+
 TEST_F(RunJob, LeavesItsFolderComplete) {
   JobSpec s = spec();
   s.layers = {ImageLayer::variance, ImageLayer::halves, ImageLayer::albedo, ImageLayer::normal,

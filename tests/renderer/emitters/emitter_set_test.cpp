@@ -3,13 +3,17 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
+#include <numbers>
 
 #include "renderer/scene/scene.h"
+#include "tests/renderer/images/test_images.h"
+#include "tests/renderer/scene/scene_parts.h"
 #include "tests/statistics.h"
 
 namespace lacuna {
 namespace {
+
+using test::SceneParts;
 
 Scene load(const char* name) {
   const ThreadPool pool(1);
@@ -43,35 +47,86 @@ TEST(EmitterSet, DensityBelongsToItsDraws) {
   EXPECT_GT(statistics::z_test(inverse, area), 1e-5);
 }
 
+// Within a mesh by power; an eighth of all selections is uniform over meshes and lights.
 TEST(EmitterSet, ChoosesByPower) {
   const Scene scene = load("many_lights.glb");
   const SceneData& data = scene.data();
-  // Triangles are told by their corner; only emitters of one colour-independent measure are
-  // compared.
-  std::map<std::pair<std::uint32_t, std::uint32_t>, double> expected;
+  struct Sum {
+    double power = 0, probability = 0;
+  };
+  std::vector<Sum> meshes;
+  double all = 0;
   for (std::uint32_t m = 0; m < data.meshes.size(); ++m) {
     const Material& material = data.materials[data.meshes[m].material];
     if (!material.emits()) continue;
+    Sum& sum = meshes.emplace_back();
+    double lowest = std::numeric_limits<double>::infinity(), highest = 0;
     for (std::uint32_t t = 0; t < data.meshes[m].triangles.size(); ++t) {
-      const double power = double(luminance(material.emission)) *
-                           double(TriangleShape(data.meshes[m], t).area()) *
+      const double area = TriangleShape(data.meshes[m], t).area();
+      const double power = std::numbers::pi * double(luminance(material.emission)) * area *
                            (material.double_sided ? 2 : 1);
-      expected[{m, t}] = power;
+      const double p = double(scene.emitters().pdf(m, t).value) * area;
+      lowest = std::min(lowest, p / power);
+      highest = std::max(highest, p / power);
+      sum.power += power;
+      sum.probability += p;
+    }
+    EXPECT_NEAR(highest / lowest, 1, 1e-4);
+    all += sum.power;
+  }
+  for (const PunctualLight& l : data.lights) {
+    all += double(luminance(l.intensity)) * (l.kind == PunctualLight::Kind::spot
+                                                 ? SpotCones::power(l.inner_cone, l.outer_cone)
+                                                 : 4 * std::numbers::pi);
+  }
+  const auto sources = static_cast<double>(meshes.size() + data.lights.size());
+  ASSERT_GT(sources, 20);
+  for (const Sum& sum : meshes) {
+    EXPECT_NEAR(sum.probability / (0.875 * sum.power / all + 0.125 / sources), 1, 1e-4);
+  }
+}
+
+/// Meshes of `triangles` each that share one texture of emission, of which one texel is lit. The
+/// texture coordinates of the first mesh's first triangle lie on it, those of all others far away.
+SceneData with_texture(std::size_t meshes, std::size_t triangles) {
+  SceneParts p;
+  constexpr int side = 128;
+  std::vector<std::uint8_t> texels(side * side, 0);
+  texels[side * 40 + 30] = 255;
+  p.data.textures.push_back(std::make_unique<Texture>(
+      "glow", test::encode8(side, side, 1, texels), Texture::Encoding::srgb, Texture::Wrap::repeat,
+      Texture::Wrap::repeat));
+  Material glow = test::lamp(Rgb(1, 2, 3));
+  glow.emission_texture.texture = 0;
+  const auto material = p.material(glow);
+  for (std::size_t m = 0; m < meshes; ++m) {
+    Mesh mesh;
+    mesh.material = material;
+    for (std::uint32_t t = 0; t < triangles; ++t) {
+      const V3f o(static_cast<float>(t), static_cast<float>(m), 0);
+      const V2f uv = (m + t == 0 ? V2f(29.9F, 39.9F) : V2f(90, 80)) / side;
+      for (const V2f& corner : {V2f(0, 0), V2f(1, 0), V2f(0, 1)}) {
+        mesh.positions.push_back(o + V3f(corner.x, corner.y, 0));
+        mesh.uvs[0].push_back(uv + corner / side);
+      }
+      mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+    }
+    p.data.meshes.push_back(std::move(mesh));
+  }
+  return std::move(p.data);
+}
+
+TEST(EmitterSet, TexturesThatEmitAreReadOnce) {
+  const Scene scene = test::lit_scene(with_texture(20, 100));
+  const EmitterSet& emitters = scene.emitters();
+  // The whole texture once, and a few texels for each triangle.
+  EXPECT_LE(emitters.texels_read(), 128U * 128 + 2000 * 64);
+  for (std::uint32_t m = 0; m < 20; ++m) {
+    for (std::uint32_t t = 0; t < 100; ++t) {
+      EXPECT_EQ(emitters.pdf(m, t).positive(), m + t == 0) << m << ", " << t;
     }
   }
-  ASSERT_GT(expected.size(), 400U);
-  // pdf = P(triangle) / area, and P is in proportion to power: the ratio of pdf x area to power is
-  // constant.
-  double lowest = std::numeric_limits<double>::infinity();
-  double highest = 0;
-  for (const auto& [key, power] : expected) {
-    const double p = double(scene.emitters().pdf(key.first, key.second).value) *
-                     double(TriangleShape(data.meshes[key.first], key.second).area());
-    lowest = std::min(lowest, p / power);
-    highest = std::max(highest, p / power);
-  }
-  EXPECT_NEAR(highest / lowest, 1, 1e-4);
-  EXPECT_GT(lowest, 0);
+  EXPECT_NEAR(emitters.pdf(0, 0).value, 2, 1e-5F);  // always the one of area 1/2
 }
 
 TEST(EmitterSet, BackOfASingleSidedEmitterIsDark) {

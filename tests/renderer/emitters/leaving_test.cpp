@@ -34,8 +34,7 @@ EmitterPoint emitter(Kind kind, const V3f& ng = V3f(1, -2, 0.5F).normalized()) {
 
 EmitterPoint spot(float inner, float outer) {
   EmitterPoint e = emitter(Kind::spot);
-  e.cos_inner = std::cos(inner);
-  e.cos_outer = std::cos(outer);
+  e.cones = SpotCones(inner, outer);
   return e;
 }
 
@@ -74,7 +73,8 @@ TEST(Leaving, DirectionsFollowTheirDensity) {
       {"spot", spot(0.3F, 0.7F), 0.7},
       {"narrow spot", spot(0.05F, 0.2F), 0.2},
       {"spot of a half space", spot(0, half_pi), half_pi},
-      {"spot without a ramp", spot(0.4999F, 0.5F), 0.5}};
+      {"spot with a short ramp", spot(0.4999F, 0.5F), 0.5},
+      {"spot with a hard edge", spot(0.5F, 0.5F), 0.5}};
   const double level = statistics::sidak(1e-6, cases.size());
   for (const auto& [name, e, angle] : cases) {
     const statistics::ChiSquare result = directions(e, angle, e);
@@ -84,20 +84,60 @@ TEST(Leaving, DirectionsFollowTheirDensity) {
 }
 
 // Near the axis a cosine has few values in float: squared sines must have more.
-TEST(Leaving, ABeamOfHalfADegreeHasNoRings) {
-  const EmitterPoint e = spot(0, 0.01F);
-  constexpr int cells = 200, draws = 200000;
-  std::vector<double> observed(cells), expected(cells, double(draws) / cells);
+TEST(Leaving, ANarrowBeamHasNoRings) {
   Rng rng(35, 0, 0, Rng::Purpose::test);
-  const double widest = 1 - double(e.cos_outer) * double(e.cos_outer);
-  for (int i = 0; i < draws; ++i) {
-    const auto l = sample_leaving(e, unit_box, rng);
-    // At the edge, where nothing shines, the cosine may round to the cone's.
-    const double share = l ? V3d(l->ray.d).cross(V3d(e.ng)).length2() / widest : 0.9999;
-    ++observed[static_cast<std::size_t>(std::min(share, 0.9999) * cells)];
+  for (const float outer : {1e-2F, 1e-3F, 1e-4F}) {
+    const EmitterPoint e = spot(0, outer);
+    constexpr int cells = 200, draws = 200000;
+    std::vector<double> observed(cells), expected(cells, double(draws) / cells);
+    const double widest = std::sin(double(outer)) * std::sin(double(outer));
+    for (int i = 0; i < draws; ++i) {
+      const auto l = sample_leaving(e, unit_box, rng);
+      // Where the ramp ends, nothing shines.
+      const double share = l ? V3d(l->ray.d).cross(V3d(e.ng)).length2() / widest : 0.9999;
+      ++observed[static_cast<std::size_t>(std::min(share, 0.9999) * cells)];
+    }
+    const auto result = statistics::chi_square_test(observed, expected);
+    EXPECT_GT(result.p, 1e-6) << outer << ": " << result.message;
   }
-  const auto result = statistics::chi_square_test(observed, expected);
-  EXPECT_GT(result.p, 1e-6) << result.message;
+}
+
+// The intensity at an angle to the axis, against the extension's formula in long double.
+TEST(Spot, FollowsTheFormulaOfAnyCones) {
+  for (double outer = 1.5; outer > 1e-5; outer /= 3) {
+    for (const double share : {0.0, 0.5, 0.9, 0.99}) {
+      const double inner = share * outer;
+      const EmitterPoint e = spot(static_cast<float>(inner), static_cast<float>(outer));
+      const V3d axis = V3d(e.ng).normalized();
+      const V3d across = axis.cross(V3d(0, 0, 1)).normalized();
+      for (double a = 0; a < 1.2 * outer; a += outer / 64) {
+        const V3f w((axis * std::cos(a) + across * std::sin(a)).normalized());
+        // The angle of the rounded direction to the rounded axis.
+        const auto angle = static_cast<long double>(
+            std::atan2(V3d(w).cross(V3d(e.ng)).length(), V3d(w).dot(V3d(e.ng))));
+        const auto vers = [](long double x) { return 2 * std::sin(x / 2) * std::sin(x / 2); };
+        const long double ramp = (vers(outer) - vers(angle)) / (vers(outer) - vers(inner));
+        const auto bounded = static_cast<double>(std::clamp(ramp, 0.0L, 1.0L));
+        // Roundings of the direction, as a share of the ramp.
+        const double slack = 1e-6 + 4e-7 / (outer - inner);
+        EXPECT_NEAR(double(e.towards(w).x), bounded * bounded, 2 * slack)
+            << "cones " << inner << ", " << outer << "; angle " << a;
+      }
+    }
+  }
+}
+
+TEST(Spot, HasAHardEdgeWhereBothConesAreOne) {
+  for (const float outer : {1.5F, 0.5F, 1e-2F, 1e-4F}) {
+    const EmitterPoint e = spot(outer, outer);
+    const V3d axis = V3d(e.ng).normalized(), across = axis.cross(V3d(0, 0, 1)).normalized();
+    for (const double share : {0.0, 0.5, 0.99, 1.01, 1.5}) {
+      const double a = share * double(outer);
+      const V3f w((axis * std::cos(a) + across * std::sin(a)).normalized());
+      EXPECT_EQ(e.towards(w).x, share < 1 ? 1 : 0) << outer << ", " << share;
+      EXPECT_EQ(e.leaving_pdf(w).positive(), share < 1) << outer << ", " << share;
+    }
+  }
 }
 
 TEST(Leaving, CarriesTheEmissionOverBothDensities) {
@@ -122,7 +162,7 @@ TEST(Leaving, CarriesTheEmissionOverBothDensities) {
   }
 }
 
-// A spot's cone can be empty in floats: glTF allows angles whose cosine is 1.
+// A spot's cone can be empty in floats: glTF allows any angle above 0.
 TEST(Leaving, NothingLeavesAnEmptyCone) {
   Rng rng(33, 0, 0, Rng::Purpose::test);
   for (int i = 0; i < 20000; ++i) {
@@ -130,9 +170,7 @@ TEST(Leaving, NothingLeavesAnEmptyCone) {
     const float z = 2 * u.x - 1, r = std::sqrt(1 - z * z);
     EmitterPoint e = emitter(Kind::spot, {r * std::cos(6.28F * u.y), r * std::sin(6.28F * u.y), z});
     e.ng = e.ng.normalized();  // its square may round to more than 1
-    e.cos_inner = 1;
-    e.cos_outer = std::cos(1e-5F);
-    ASSERT_EQ(e.cos_outer, 1);
+    e.cones = SpotCones(0, 1e-30);
     EXPECT_FALSE(sample_leaving(e, unit_box, rng));
     EXPECT_FALSE(e.leaving_pdf(e.ng).positive());
   }

@@ -116,16 +116,16 @@ TEST(Power, OfPoints) {
 
 TEST(Power, OfSpots) {
   for (const auto& [inner, outer] :
-       {std::pair(0.2F, 0.6F), std::pair(0.0F, 1.5F), std::pair(0.005F, 0.02F)}) {
+       {std::pair(0.2F, 0.6F), std::pair(0.0F, 1.5F), std::pair(0.005F, 0.02F),
+        std::pair(0.5F, 0.5F), std::pair(0.0F, 1e-3F), std::pair(9e-6F, 1e-5F)}) {
     PunctualLight l = punctual(PunctualLight::Kind::spot);
     l.inner_cone = inner;
     l.outer_cone = outer;
-    // The integral of ((c - c1) / (c0 - c1))^2 over the ramp is a third of it. A ramp is not
-    // shorter than 1e-4.
-    const double c0 = std::cos(double(inner)), c1 = std::cos(double(outer));
-    const double ramp = std::max(c0 - c1, 1e-4);
-    const double bright = 1 - std::min(1.0, c1 + ramp);
-    const double solid_angle = 2 * std::numbers::pi * (bright + ramp / 3);
+    // In long double, which keeps 1 - cos of the narrowest to nine digits. The integral of
+    // ((c - c1) / (c0 - c1))^2 over the ramp is a third of it.
+    const long double c0 = std::cos(static_cast<long double>(inner));
+    const long double c1 = std::cos(static_cast<long double>(outer));
+    const double solid_angle = 2 * std::numbers::pi * static_cast<double>((1 - c0) + (c0 - c1) / 3);
     expect_power(with_light(l), Power(l.intensity) * solid_angle, enough, 0.01);
   }
 }

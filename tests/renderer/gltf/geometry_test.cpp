@@ -180,6 +180,29 @@ TEST(Transforms, CamerasAndLightsLoseScaleButNotDirection) {
   EXPECT_NEAR(light.outer_cone, std::numbers::pi / 4, 1e-6);
 }
 
+TEST(Lights, SpotsMayHaveAHardEdge) {
+  const auto cones = [](double inner, double outer) {
+    GlbBuilder b = test::triangle_scene();
+    b.add_light({{"type", "spot"},
+                 {"name", "beam"},
+                 {"spot", {{"innerConeAngle", inner}, {"outerConeAngle", outer}}}});
+    return load(b);
+  };
+  const SceneData equal = cones(0.5, 0.5);
+  EXPECT_EQ(equal.lights.at(0).inner_cone, equal.lights.at(0).outer_cone);
+  EXPECT_TRUE(equal.warnings.empty());
+  const SceneData by_a_hair = cones(0.50001, 0.5);
+  EXPECT_EQ(by_a_hair.lights.at(0).inner_cone, 0.5F);
+  ASSERT_EQ(by_a_hair.warnings.size(), 1U);
+  for (const char* word :
+       {"\"beam\"", "innerConeAngle 0.50001", "outerConeAngle 0.5", "hard edge"}) {
+    EXPECT_NE(by_a_hair.warnings[0].find(word), std::string::npos) << by_a_hair.warnings[0];
+  }
+  const SceneData narrow = cones(0, 1e-7);
+  ASSERT_EQ(narrow.warnings.size(), 1U);
+  EXPECT_NE(narrow.warnings[0].find("outerConeAngle 1e-07"), std::string::npos);
+}
+
 /// Five points of a zigzag; the strip's triangles all face +z.
 const std::vector<V3f> zigzag{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 2, 0}};
 

