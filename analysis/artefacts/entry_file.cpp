@@ -2,16 +2,14 @@
 
 #include <fmt/format.h>
 #include <unistd.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstddef>
-#include <memory>
-#include <new>
 #include <system_error>
 
+#include "analysis/storage/checksum.h"
 #include "analysis/storage/file_handle.h"
 
 namespace lacuna {
@@ -45,19 +43,6 @@ struct Refused {
 [[noreturn]] void refuse(EntryFault fault, std::string text) {
   throw Refused{{fault, std::move(text)}};
 }
-
-class Checksum {
- public:
-  Checksum() : state_(XXH3_createState(), XXH3_freeState) {
-    if (!state_) throw std::bad_alloc();
-    XXH3_64bits_reset(state_.get());
-  }
-  void add(const void* from, std::size_t n) { XXH3_64bits_update(state_.get(), from, n); }
-  std::uint64_t value() const { return XXH3_64bits_digest(state_.get()); }
-
- private:
-  std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_;
-};
 
 /// All `n` bytes at `offset`.
 void read_at(int fd, std::uint64_t offset, void* to, std::size_t n) {

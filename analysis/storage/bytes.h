@@ -3,10 +3,12 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace lacuna {
@@ -71,39 +73,71 @@ class GetsValues {
   Reader& reader() { return static_cast<Reader&>(*this); }
 };
 
-/// Appends plain values to a byte string.
+/// The most bytes that ByteWriter hands on, and ByteReader asks for, at a time.
+inline constexpr std::size_t piece_bytes = std::size_t{1} << 20;
+
+/// Appends plain values to a byte string, or hands them on in pieces, so that what is written needs
+/// the memory of one of them.
 class ByteWriter : public PutsValues<ByteWriter> {
  public:
-  void append(const void* from, std::size_t n) { bytes_.append(static_cast<const char*>(from), n); }
+  using Sink = std::function<void(std::string_view)>;
+
+  /// Collects in bytes().
+  ByteWriter() = default;
+  /// Hands on to `sink`, in order, pieces of 1 to piece_bytes bytes; the last of them in flush().
+  explicit ByteWriter(Sink sink) : sink_(std::move(sink)) {}
+
+  void append(const void* from, std::size_t n) {
+    if (sink_ && n > piece_bytes - bytes_.size())
+      return hand_on({static_cast<const char*>(from), n});
+    bytes_.append(static_cast<const char*>(from), n);
+  }
+  /// Hands on what is left. Of a writer that collects: does nothing.
+  void flush();
+
   const std::string& bytes() const { return bytes_; }
   std::string take() { return std::move(bytes_); }
 
  private:
+  void hand_on(std::string_view more);
+
   std::string bytes_;
+  Sink sink_;
 };
 
 /// Reads what ByteWriter wrote, in the same order. Throws std::runtime_error where the bytes end
 /// early.
 class ByteReader : public GetsValues<ByteReader> {
  public:
-  explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
+  /// Fills n bytes, those that follow the ones before.
+  using Source = std::function<void(char* to, std::size_t n)>;
 
-  std::string_view get_text() { return take(get<std::uint64_t>()); }
+  explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
+  /// Of `size` bytes that `source` gives, in pieces of 1 to piece_bytes bytes.
+  ByteReader(std::uint64_t size, Source source) : ahead_(size), source_(std::move(source)) {}
+  ByteReader(const ByteReader&) = delete;  // it points into itself
+  ByteReader& operator=(const ByteReader&) = delete;
+
   void read(void* to, std::size_t n) {
-    const std::string_view from = take(n);
-    if (n > 0) std::memcpy(to, from.data(), n);  // an empty vector has no data
+    if (n > bytes_.size()) return read_on(static_cast<char*>(to), n);
+    if (n > 0) std::memcpy(to, bytes_.data(), n);  // an empty vector has no data
+    bytes_.remove_prefix(n);
   }
-  std::uint64_t remaining() const { return bytes_.size(); }
-  bool at_end() const { return bytes_.empty(); }
+  std::uint64_t remaining() const { return bytes_.size() + ahead_; }
+  bool at_end() const { return remaining() == 0; }
+  /// Leaves out all that remains.
+  void skip() {
+    bytes_ = {};
+    ahead_ = 0;
+  }
 
  private:
-  std::string_view take(std::uint64_t n) {
-    if (n > bytes_.size()) throw std::runtime_error("saved state ends early");
-    const std::string_view head = bytes_.substr(0, n);
-    bytes_.remove_prefix(n);
-    return head;
-  }
-  std::string_view bytes_;
+  void read_on(char* to, std::size_t n);
+
+  std::string_view bytes_;   // that are in memory
+  std::uint64_t ahead_ = 0;  // that the source has beside them
+  Source source_;
+  std::string buffer_;
 };
 
 }  // namespace lacuna

@@ -131,12 +131,14 @@ int render_folder(const JobFolder& folder, const RenderOptions& options) {
   // A full disk or a size limit must become an error, not the end of the process.
   signal(SIGXFSZ, SIG_IGN);
   Terminal terminal(folder.file("log.txt"), options.quiet);
+  const double grace = stop_grace();
   const RunContext context{DataRoot::from_environment(),
                            ScenesRoots::from_environment(),
                            options.threads,
                            interrupt_requested(),
                            terminal,
-                           options.shards};
+                           options.shards,
+                           [grace] { return seconds_to_write(grace); }};
   try {
     const bool was_done = folder.read_state().state == State::done;
     const Outcome outcome = run_job(folder, context);

@@ -42,7 +42,8 @@ std::vector<std::string> environment(const ScenesRoots& scenes) {
   std::vector<std::string> roots;
   for (const fs::path& root : scenes.roots()) roots.push_back(fs::absolute(root).string());
   return {"LACUNA_DATA=" + data.dir.string(), "LACUNA_CACHE=" + data.cache().string(),
-          fmt::format("LACUNA_SCENES={}", fmt::join(roots, ":"))};
+          fmt::format("LACUNA_SCENES={}", fmt::join(roots, ":")),
+          fmt::format("LACUNA_GRACE={}", grace_seconds)};
 }
 
 /// "2 TIMEOUT, 1 NODE_FAIL": how tasks ended.

@@ -130,8 +130,8 @@ std::optional<Reference> make_auto_reference(const JobFolder& folder, const JobS
   // Its inputs are unchanged: their hashes are in its name.
   if (job.folder.read_state().state == State::done) return read();
   ReferenceObserver observer(folder, context.observer);
-  const RunContext own{context.data, context.scenes, context.threads, context.interrupted,
-                       observer};
+  const RunContext own{context.data, context.scenes, context.threads,     context.interrupted,
+                       observer,     nullptr,        context.seconds_left};
   if (run_or_wait(job.folder, own) == Outcome::interrupted) return std::nullopt;
   return read();
 }
@@ -231,7 +231,8 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
                         context.interrupted,
                         context.observer,
                         phases,
-                        prepared.content};
+                        prepared.content,
+                        context.seconds_left};
   RenderLoop loop(task);
   if (shards) {
     loop.merge(*shards);
@@ -240,7 +241,15 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
     loop.resume();
   }
   const MachineWatch watch;
-  if (!loop.run()) return Outcome::interrupted;
+  if (!loop.run()) {
+    if (const std::uint64_t unsaved = loop.unsaved_iterations(); unsaved > 0) {
+      running.warn(fmt::format(
+          "stopped before a checkpoint could be written; {} of {} iterations are rendered again "
+          "(LACUNA_GRACE=SECONDS, or --grace of the service, gives a stop more time)",
+          unsaved, loop.spent().iterations));
+    }
+    return Outcome::interrupted;
+  }
   const auto disturbance = watch.disturbance();
 
   running.phase("writing");

@@ -17,6 +17,7 @@ struct RunContext {
   const std::function<bool()>& interrupted;  ///< true asks to stop soon, from any thread
   Observer& observer;
   const std::vector<Shard>* shards = nullptr;  ///< the job is merged from these, not rendered
+  std::function<double()> seconds_left = {};   ///< see RenderTask
 };
 
 enum class Outcome { done, interrupted };

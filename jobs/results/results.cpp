@@ -107,20 +107,25 @@ std::map<std::string, std::string> attributes(const RenderTask& task, const Rend
 }
 
 /// layers.half, then layers.json, which says what lies where in it.
-void write_half_layers(const RenderTask& task, std::vector<ExrLayer> layers) {
-  if (task.reference != nullptr) layers.push_back({"reference", rgb, task.reference->rgb});
-  const HalfLayers packed = pack_half(layers);
+void write_half_layers(const RenderTask& task, const std::vector<ExrLayer>& layers) {
+  AtomicFile file(task.folder.file("layers.half"));
+  ByteWriter out([&](std::string_view piece) {
+    file.write(piece);
+    task.stop_if_late();
+  });
+  const std::vector<HalfLayer> entries = pack_half(layers, out);
+  out.flush();
+  file.commit();
   OrderedJson index;
   index["width"] = task.spec.resolution[0];
   index["height"] = task.spec.resolution[1];
-  for (const HalfLayer& l : packed.index) {
+  for (const HalfLayer& l : entries) {
     index["layers"].push_back({{"name", l.name},
                                {"channels", l.channels},
                                {"offset", l.offset},
                                {"bytes", l.bytes},
                                {"scale", l.scale}});
   }
-  write_file_atomically(task.folder.file("layers.half"), packed.bytes);
   write_file_atomically(task.folder.file("layers.json"), document_text(index));
 }
 
@@ -129,17 +134,24 @@ void write_half_layers(const RenderTask& task, std::vector<ExrLayer> layers) {
 void write_results(const RenderTask& task, const RenderLoop& loop) {
   const Film& film = loop.film();
   const std::vector<double> mean = film.mean();
-  std::vector<ExrLayer> layers{{"", rgb, mean}};
-  for (const ImageLayer layer : task.spec.layers) add_layer(task, film, layer, layers);
-  const std::vector<std::string>& own = loop.layers().names();
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    layers.push_back({own[i], rgb, loop.layers().mean(i)});
+  std::vector<ExrLayer> layers{{"", rgb, {}, mean}};
+  for (const ImageLayer layer : task.spec.layers) {
+    add_layer(task, film, layer, layers);
+    task.stop_if_late();
   }
+  const LayerMeans& own = loop.layers();
+  for (std::size_t i = 0; i < own.names().size(); ++i) {
+    layers.push_back({own.names()[i], rgb, {}, own.sum(i), own.divisor()});
+  }
+  if (task.reference != nullptr) layers.push_back({"reference", rgb, {}, task.reference->rgb});
   write_half_layers(task, layers);
+  if (task.reference != nullptr) layers.pop_back();
   std::map<std::string, std::string> header = attributes(task, loop);
   scale_variance(layers, task.spec.pixel_type, header);
-  write_exr(task.folder.file("image.exr"), {film.width(), film.height(), std::move(layers),
-                                            task.spec.pixel_type, std::move(header)});
+  write_exr(
+      task.folder.file("image.exr"),
+      {film.width(), film.height(), std::move(layers), task.spec.pixel_type, std::move(header)},
+      [&] { task.stop_if_late(); });
   write_preview(task.folder.file("image.png"), film.width(), film.height(), mean);
   write_file_atomically(task.folder.file("curve.csv"), loop.curve().csv());
 }

@@ -1,17 +1,15 @@
 #include "jobs/run/checkpoint.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <limits>
 #include <stdexcept>
+#include <system_error>
 
 #include "analysis/storage/atomic_file.h"
-#include "analysis/storage/bytes.h"
+#include "analysis/storage/checksum.h"
 #include "analysis/storage/file_handle.h"
 
 namespace lacuna {
@@ -20,12 +18,100 @@ namespace {
 
 // Changes with the layout of anything that is saved.
 constexpr std::string_view format_name = "lacuna-checkpoint-4";
+constexpr std::size_t most_text_bytes = std::size_t{1} << 24;  // far more than a key takes
+
+/// What stands between the key and the content.
+struct Frame {
+  std::uint64_t checksum = 0, content_bytes = 0;
+};
 
 std::string_view take_line(std::string_view& text) {
   const std::size_t end = std::min(text.find('\n'), text.size());
   const std::string_view line = text.substr(0, end);
   text.remove_prefix(std::min(end + 1, text.size()));
   return line;
+}
+
+/// A checkpoint whose header was read.
+class OpenCheckpoint {
+ public:
+  explicit OpenCheckpoint(const std::filesystem::path& file)
+      : file_(file), handle_(open_regular_file(file, bytes_)) {
+    if (take_text() != format_name) throw std::runtime_error("not a checkpoint of this version");
+    key_ = take_text();
+    take(&frame_, sizeof frame_);
+  }
+
+  const std::string& key() const { return key_; }
+
+  /// Throws std::runtime_error unless the content is as it was written, to the last byte.
+  void verify(const BetweenPieces& between) const {
+    if (bytes_ - start_ < frame_.content_bytes) throw std::runtime_error("cut short");
+    Checksum checksum;
+    std::string piece(piece_bytes, '\0');
+    ByteReader in = content(between);
+    while (!in.at_end()) {
+      const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(piece_bytes, in.remaining()));
+      in.read(piece.data(), n);
+      checksum.add(piece.data(), n);
+    }
+    if (checksum.value() != frame_.checksum || bytes_ - start_ > frame_.content_bytes) {
+      throw std::runtime_error("damaged (its checksum differs)");
+    }
+  }
+
+  ByteReader content(const BetweenPieces& between) const {
+    return {frame_.content_bytes, [this, &between, at = start_](char* to, std::size_t n) mutable {
+              read_at(at, to, n);
+              at += n;
+              if (between && at < start_ + frame_.content_bytes) between();
+            }};
+  }
+
+ private:
+  void take(void* to, std::size_t n) {
+    if (n > bytes_ - start_) throw std::runtime_error("cut short");
+    read_at(start_, static_cast<char*>(to), n);
+    start_ += n;
+  }
+  /// As ByteWriter puts it.
+  std::string take_text() {
+    std::uint64_t size = 0;
+    take(&size, sizeof size);
+    if (size > most_text_bytes) throw std::runtime_error("damaged (its header is too long)");
+    std::string text(static_cast<std::size_t>(size), '\0');
+    take(text.data(), text.size());
+    return text;
+  }
+  void read_at(std::uint64_t at, char* to, std::size_t n) const {
+    while (n > 0) {
+      const ssize_t got = ::pread(handle_.get(), to, n, static_cast<off_t>(at));
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0) throw_file_error(errno, "read", file_);
+      if (got == 0) throw std::runtime_error("cut short");
+      to += got;
+      at += static_cast<std::uint64_t>(got);
+      n -= static_cast<std::size_t>(got);
+    }
+  }
+
+  std::filesystem::path file_;
+  std::uint64_t bytes_ = 0;
+  FileHandle handle_;
+  std::string key_;
+  Frame frame_;
+  std::uint64_t start_ = 0;  // of the content: where the header ends
+};
+
+/// Runs `read`; what it says of the checkpoint then names the file.
+void naming(const std::filesystem::path& file, const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const std::system_error&) {
+    throw;  // names it already
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error(fmt::format("{}: {}", file.string(), e.what()));
+  }
 }
 
 }  // namespace
@@ -35,58 +121,57 @@ std::string checkpoint_key(const CheckpointKey& key) {
 }
 
 CheckpointKey read_checkpoint_key(const std::filesystem::path& file) {
-  std::string head(std::size_t{1} << 16, '\0');  // far more than a key takes
-  FileHandle handle(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
-  const ssize_t size = handle ? ::read(handle.get(), head.data(), head.size()) : -1;
-  if (size < 0) throw_file_error(errno, "read", file);
-  ByteReader in(std::string_view(head).substr(0, static_cast<std::size_t>(size)));
-  try {
-    if (in.get_text() != format_name) {
-      throw std::runtime_error("not a checkpoint of this version");
-    }
-    std::string_view text = in.get_text();
-    CheckpointKey key;
+  CheckpointKey key;
+  naming(file, [&] {
+    const OpenCheckpoint checkpoint(file);
+    std::string_view text = checkpoint.key();
     for (std::string* part : {&key.picture, &key.scene, &key.version, &key.layers}) {
       *part = take_line(text);
     }
-    return key;
-  } catch (const std::runtime_error& e) {
-    throw std::runtime_error(fmt::format("{}: {}", file.string(), e.what()));
-  }
+  });
+  return key;
 }
 
 void write_checkpoint(const std::filesystem::path& file, const std::string& key,
-                      const std::string& content) {
-  ByteWriter out;
-  out.put(format_name);
-  out.put(std::string_view(key));
-  out.put(static_cast<std::uint64_t>(XXH3_64bits(content.data(), content.size())));
-  out.put(std::string_view(content));
-  write_file_atomically(file, out.bytes());
+                      const std::function<void(ByteWriter&)>& save, const BetweenPieces& between) {
+  ByteWriter header;
+  header.put(format_name);
+  header.put(std::string_view(key));
+  Frame frame;
+  AtomicFile out(file);
+  out.write(header.bytes());
+  const auto bytes_of_frame = [&] {
+    return std::string_view(reinterpret_cast<const char*>(&frame), sizeof frame);
+  };
+  out.write(bytes_of_frame());  // known at the end
+  Checksum checksum;
+  ByteWriter content([&](std::string_view piece) {
+    checksum.add(piece.data(), piece.size());
+    frame.content_bytes += piece.size();
+    out.write(piece);
+    if (between) between();
+  });
+  save(content);
+  content.flush();
+  frame.checksum = checksum.value();
+  out.write_at(header.bytes().size(), bytes_of_frame());
+  out.commit();
 }
 
-std::optional<std::string> read_checkpoint(const std::filesystem::path& file,
-                                           const std::string& key) {
-  if (!std::filesystem::exists(file)) return std::nullopt;
-  const auto refuse = [&](const std::string& why) {
-    throw std::runtime_error(fmt::format("{}: {}", file.string(), why));
-  };
-  const std::string bytes = read_file(file, std::numeric_limits<std::size_t>::max());
-  ByteReader in(bytes);
-  try {
-    if (in.get_text() != format_name) refuse("not a checkpoint of this version");
-    if (in.get_text() != key) refuse("a checkpoint of another picture, or of other layers");
-    const auto checksum = in.get<std::uint64_t>();
-    const std::string_view content = in.get_text();
-    if (XXH3_64bits(content.data(), content.size()) != checksum || !in.at_end()) {
-      refuse("damaged (its checksum differs)");
+bool read_checkpoint(const std::filesystem::path& file, const std::string& key,
+                     const std::function<void(ByteReader&)>& load, const BetweenPieces& between) {
+  if (!std::filesystem::exists(file)) return false;
+  naming(file, [&] {
+    const OpenCheckpoint checkpoint(file);
+    if (checkpoint.key() != key) {
+      throw std::runtime_error("a checkpoint of another picture, or of other layers");
     }
-    return std::string(content);
-  } catch (const std::runtime_error& e) {
-    if (std::string_view(e.what()).starts_with(file.string())) throw;
-    refuse("cut short");
-  }
-  return std::nullopt;
+    checkpoint.verify(between);
+    ByteReader in = checkpoint.content(between);
+    load(in);
+    if (!in.at_end()) throw std::runtime_error("saved state has extra bytes at its end");
+  });
+  return true;
 }
 
 }  // namespace lacuna

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
+#include <functional>
 #include <string>
+
+#include "analysis/storage/bytes.h"
 
 namespace lacuna {
 
@@ -22,15 +24,23 @@ std::string checkpoint_key(const CheckpointKey& key);
 /// the format; std::system_error.
 CheckpointKey read_checkpoint_key(const std::filesystem::path& file);
 
-/// Writes a checkpoint as a whole or not at all: a header with `key` (what picture it belongs to)
-/// and a checksum, then `content`. Throws std::system_error.
-void write_checkpoint(const std::filesystem::path& file, const std::string& key,
-                      const std::string& content);
+/// Called after each piece (piece_bytes) that is written, and between those that are read: what it
+/// throws ends that.
+using BetweenPieces = std::function<void()>;
 
-/// The content of a checkpoint of the picture `key`; nothing if there is no file. Throws
-/// std::runtime_error that says why it cannot be used: cut short, damaged, of another picture or
-/// version.
-std::optional<std::string> read_checkpoint(const std::filesystem::path& file,
-                                           const std::string& key);
+/// Writes a checkpoint as a whole or not at all: a header with `key` (what picture it belongs to)
+/// and a checksum, then the content that `save` puts, with the memory of one piece. Throws
+/// std::system_error; then, and if `between` throws, the older checkpoint is still there.
+void write_checkpoint(const std::filesystem::path& file, const std::string& key,
+                      const std::function<void(ByteWriter&)>& save,
+                      const BetweenPieces& between = {});
+
+/// Gives the content of a checkpoint of the picture `key` to `load`, once it has the right
+/// checksum; false if there is no file. Throws std::runtime_error that says why it cannot be used:
+/// cut short, damaged, of another picture or version, or what `load` throws or leaves;
+/// std::system_error.
+bool read_checkpoint(const std::filesystem::path& file, const std::string& key,
+                     const std::function<void(ByteReader&)>& load,
+                     const BetweenPieces& between = {});
 
 }  // namespace lacuna

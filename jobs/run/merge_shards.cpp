@@ -7,33 +7,27 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "jobs/run/checkpoint.h"
-
 namespace lacuna {
 
 namespace {
 
-struct Loaded {
-  RunState state;
-  std::string learned;
-};
-
-Loaded load(const Shard& shard, const std::string& key, const std::vector<std::string>& layers) {
+/// The state of `shard`; what its integrator has learned goes to `learned`.
+RunState load(const Shard& shard, const std::string& key, const std::vector<std::string>& layers,
+              const std::function<void(ByteReader&)>& learned, const BetweenPieces& between) {
   const auto file = shard.folder.file("checkpoint.bin");
   try {
-    const auto content = read_checkpoint(file, key);
-    if (!content) throw std::runtime_error(fmt::format("{} is missing", file.string()));
-    ByteReader in(*content);
-    Loaded loaded{{shard.spec, layers, std::numeric_limits<std::uint64_t>::max()}, {}};
-    loaded.state.load(in);
-    loaded.learned = in.get_text();
-    if (!in.at_end()) throw std::runtime_error("saved state has extra bytes at its end");
-    if (loaded.state.film.iterations() != shard.iterations) {
-      throw std::runtime_error(
-          fmt::format("{} has {} iterations, its report {}: it could not be written at the end",
-                      file.string(), loaded.state.film.iterations(), shard.iterations));
-    }
-    return loaded;
+    RunState state{shard.spec, layers, std::numeric_limits<std::uint64_t>::max()};
+    const auto read = [&](ByteReader& in) {
+      state.load(in);
+      if (state.film.iterations() != shard.iterations) {
+        throw std::runtime_error(
+            fmt::format("it has {} iterations, its report {}: it could not be written at the end",
+                        state.film.iterations(), shard.iterations));
+      }
+      learned(in);
+    };
+    if (read_checkpoint(file, key, read, between)) return state;
+    throw std::runtime_error(fmt::format("{} is missing", file.string()));
   } catch (const std::system_error&) {
     throw;  // another time it may be read
   } catch (const std::runtime_error& e) {
@@ -69,27 +63,30 @@ void add(RunState& state, const RunState& shard) {
 
 }  // namespace
 
-std::string merge_shards(const std::vector<Shard>& shards, const std::string& key, RunState& state,
-                         const std::function<void()>& after_each) {
-  std::string learned;
-  std::uint64_t most = 0;
-  for (const Shard& shard : shards) {
-    Loaded loaded = load(shard, key, state.layers.names());
-    const std::uint64_t iterations = loaded.state.film.iterations();
-    if (!loaded.learned.empty()) state.merged.learned = 1;
-    if (iterations > most) {
-      most = iterations;
-      learned = std::move(loaded.learned);
-    }
+void merge_shards(const std::vector<Shard>& shards, const std::string& key, RunState& state,
+                  const MergeCallbacks& callbacks) {
+  const auto most =
+      std::max_element(shards.begin(), shards.end(),
+                       [](const Shard& a, const Shard& b) { return a.iterations < b.iterations; });
+  for (auto shard = shards.begin(); shard != shards.end(); ++shard) {
+    const auto learned = [&](ByteReader& in) {
+      if (!in.at_end()) state.merged.learned = 1;
+      if (shard == most) {
+        callbacks.load_learned(in);
+      } else {
+        in.skip();
+      }
+    };
+    const RunState loaded =
+        load(*shard, key, state.layers.names(), learned, callbacks.between_pieces);
     if (state.merged.shards == 0) {
-      state.done = IterationSet(static_cast<std::uint32_t>(shard.spec.shards), 0);
-      state.curve = loaded.state.curve;
+      state.done = IterationSet(static_cast<std::uint32_t>(shard->spec.shards), 0);
+      state.curve = loaded.curve;
     }
-    add(state, loaded.state);
-    after_each();
+    add(state, loaded);
+    callbacks.after_each();
   }
   state.done.simplify();
-  return learned;
 }
 
 }  // namespace lacuna

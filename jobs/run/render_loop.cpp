@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <system_error>
 #include <utility>
@@ -42,43 +43,46 @@ std::string RenderLoop::identity() const {
                          fmt::format("{}", fmt::join(state_.layers.names(), " "))});
 }
 
+void RenderLoop::stop_if_interrupted() const {
+  if (task_.interrupted()) throw Stopped{};
+}
+
 void RenderLoop::resume() {
   const auto file = task_.folder.file("checkpoint.bin");
-  try {
-    const auto content = read_checkpoint(file, identity());
-    if (!content) return;
-    ByteReader in(*content);
+  const auto load = [&](ByteReader& in) {
     state_.load(in);
-    ByteReader learned(in.get_text());
-    task_.integrator.load(learned);
-    if (!in.at_end() || !learned.at_end()) {
-      throw std::runtime_error("saved state has extra bytes at its end");
-    }
+    task_.integrator.load(in);
+  };
+  try {
+    if (!read_checkpoint(file, identity(), load, [&] { stop_if_interrupted(); })) return;
     for (const auto& [name, seconds] : state_.phases) task_.phases[name] += seconds;
     clock_.set(state_.spent.seconds, state_.spent.cpu_seconds);
-    saved_ = state_.spent.iterations;
-    report_progress();
-    task_.observer.milestone(fmt::format("continuing from iteration {} ({:.1f} s)",
-                                         state_.spent.iterations, state_.spent.seconds));
+    saved_ = state_.spent;
+    report_progress(saved_);
+    task_.observer.milestone(
+        fmt::format("continuing from iteration {} ({:.1f} s)", saved_.iterations, saved_.seconds));
   } catch (const std::system_error&) {
     throw;  // the checkpoint may be good
   } catch (const std::runtime_error& e) {
     std::filesystem::rename(file, task_.folder.file("checkpoint.unusable"));
     task_.observer.warning(
         fmt::format("{}; kept as checkpoint.unusable, beginning anew", e.what()));
-    state_ = RunState(task_.spec, state_.layers.names(), memory_to_take());
+    const std::vector<std::string> layers = state_.layers.names();
+    state_.layers = {};  // their memory is taken again
+    state_ = RunState(task_.spec, layers, memory_to_take());
   }
 }
 
 void RenderLoop::merge(const std::vector<Shard>& shards) {
   merging_ = true;
-  const std::string learned = merge_shards(shards, identity(), state_, [&] {
+  const auto add_shard = [&] {
     if (state_.curve.due(state_.spent.seconds)) add_row();
-    report_progress();
-    if (task_.interrupted()) throw Stopped();
-  });
-  ByteReader in(learned);
-  task_.integrator.load(in);
+    report_progress(state_.spent);
+    stop_if_interrupted();
+  };
+  merge_shards(shards, identity(), state_,
+               {[&](ByteReader& in) { task_.integrator.load(in); }, add_shard,
+                [&] { stop_if_interrupted(); }});
   for (const auto& [name, seconds] : state_.phases) task_.phases[name] += seconds;
   clock_.set(state_.spent.seconds, state_.spent.cpu_seconds);
 }
@@ -93,33 +97,38 @@ std::uint64_t RenderLoop::refused_rays() const {
 }
 
 bool RenderLoop::run() {
+  const auto stopped = [&] {
+    report_progress(saved_);
+    return false;
+  };
+  bool kept = false;  // the checkpoint holds this very state
   while (!merging_ && !exhausted(budget_, state_.spent) && !would_overrun(budget_, state_.spent) &&
          !target_met(budget_, state_.curve)) {
     if (task_.interrupted() || !iterate()) {
       if (!task_.interrupted()) break;  // out of time
-      write_checkpoint_now();
-      report_progress();  // of what the checkpoint holds
-      return false;
+      if (!kept) write_checkpoint_now();
+      return stopped();
     }
     // An error target is looked at after each of the instants, like any other use of the error.
     if (state_.curve.due(state_.spent.seconds)) add_row();
-    if (checkpoints_.due()) write_checkpoint_now();
-    if (progress_.due()) report_progress();
+    kept = checkpoints_.due() && write_checkpoint_now();
+    if (progress_.due()) report_progress(state_.spent);
   }
   add_row();
-  write_last_checkpoint();
-  report_progress();
+  if (!write_last_checkpoint()) return stopped();
+  report_progress(state_.spent);
   return true;
 }
 
-void RenderLoop::write_last_checkpoint() {
-  if (saved_ == state_.spent.iterations) return;
+bool RenderLoop::write_last_checkpoint() {
+  if (saved_.iterations == state_.spent.iterations) return true;
   try {
-    write_checkpoint_now();
+    return write_checkpoint_now();
   } catch (const std::system_error& e) {
     if (obstacle_of(e) != Obstacle::storage) throw;
     // The results need less room. A larger budget would go on from the checkpoint before.
     task_.observer.warning(e.what());
+    return true;
   }
 }
 
@@ -199,20 +208,27 @@ void RenderLoop::add_row() {
   }
 }
 
-void RenderLoop::write_checkpoint_now() {
+bool RenderLoop::write_checkpoint_now() {
+  const auto save = [&](ByteWriter& out) {
+    std::uint64_t learned = 0;
+    ByteWriter count([&](std::string_view piece) { learned += piece.size(); });
+    task_.integrator.save(count);
+    count.flush();
+    state_.save(out, refused_rays(), task_.phases, learned);
+    task_.integrator.save(out);
+  };
   double cost = 0;
-  {
+  try {
     const ScopedSeconds timed(cost);
-    ByteWriter out;
-    state_.save(out, refused_rays(), task_.phases);
-    ByteWriter learned;
-    task_.integrator.save(learned);
-    out.put(std::string_view(learned.bytes()));
-    write_checkpoint(task_.folder.file("checkpoint.bin"), identity(), out.bytes());
+    write_checkpoint(task_.folder.file("checkpoint.bin"), identity(), save,
+                     [&] { task_.stop_if_late(); });
+  } catch (const Stopped&) {
+    return false;
   }
   task_.phases["checkpoint"] += cost;
   checkpoints_.done(cost);
-  saved_ = state_.spent.iterations;
+  saved_ = state_.spent;
+  return true;
 }
 
 void RenderLoop::write_preview_now() {
@@ -226,20 +242,23 @@ void RenderLoop::write_preview_now() {
   previews_.done(cost);
 }
 
-void RenderLoop::report_progress() {
+void RenderLoop::report_progress(const Spent& spent) {
   double cost = 0;
   {
     const ScopedSeconds timed(cost);
     Progress p;
-    p.iteration = static_cast<std::int64_t>(state_.spent.iterations);
-    p.seconds = state_.spent.seconds;
-    p.cpu_seconds = state_.spent.cpu_seconds;
-    p.share = share(budget_, state_.spent);
-    if (p.share > 0) p.remaining_seconds = state_.spent.seconds * (1 - p.share) / p.share;
-    if (!state_.curve.rows().empty()) {
-      const CurveRow& row = state_.curve.rows().back();
-      const ErrorMetric metric = usual_metric(row.errors.has_value());
-      p.error = row.value(metric);
+    p.iteration = static_cast<std::int64_t>(spent.iterations);
+    p.seconds = spent.seconds;
+    p.cpu_seconds = spent.cpu_seconds;
+    p.share = share(budget_, spent);
+    if (p.share > 0) p.remaining_seconds = spent.seconds * (1 - p.share) / p.share;
+    const std::vector<CurveRow>& rows = state_.curve.rows();
+    const auto row = std::find_if(rows.rbegin(), rows.rend(), [&](const CurveRow& r) {
+      return r.iteration <= spent.iterations;
+    });
+    if (row != rows.rend()) {
+      const ErrorMetric metric = usual_metric(row->errors.has_value());
+      p.error = row->value(metric);
       p.error_metric = enum_name(metric);
     }
     task_.folder.write_progress(p);

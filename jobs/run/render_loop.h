@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/parallel/stop.h"
 #include "jobs/run/clock.h"
 #include "jobs/run/merge_shards.h"
 #include "jobs/run/observer.h"
@@ -26,6 +27,15 @@ struct RenderTask {
   Observer& observer;
   PhaseSeconds& phases;
   std::string content;  ///< hashes of the files the picture depends on
+  /// Once interrupted() is true: the seconds that are left to write what is to be kept. Empty: as
+  /// many as it takes.
+  std::function<double()> seconds_left = {};
+
+  /// Throws Stopped if the task was interrupted and has no seconds left. Whoever writes for long
+  /// calls it in between.
+  void stop_if_late() const {
+    if (seconds_left && interrupted() && seconds_left() <= 0) throw Stopped{};
+  }
 };
 
 /// Renders iterations until the budget is spent, and writes rows of the curve at log-spaced
@@ -37,7 +47,8 @@ class RenderLoop {
   explicit RenderLoop(const RenderTask& task);
 
   /// Continues from the folder's checkpoint, if there is one of this picture. A damaged checkpoint
-  /// is reported to the observer and renamed, and rendering starts from the first iteration.
+  /// is reported to the observer and renamed, and rendering starts from the first iteration. Throws
+  /// Stopped if it is interrupted while it reads a large one.
   void resume();
 
   /// Instead of resume(): begins with what the shards of the job have rendered, all of them in
@@ -46,8 +57,11 @@ class RenderLoop {
   void merge(const std::vector<Shard>& shards);
 
   /// True: the budget is spent, and the checkpoint holds the final state, so that the job can
-  /// continue with a larger budget. False: interrupted; a checkpoint was written.
+  /// continue with a larger budget. False: interrupted; a checkpoint was written, if there were
+  /// seconds left to.
   bool run();
+  /// How many of the iterations are in no checkpoint.
+  std::uint64_t unsaved_iterations() const { return state_.spent.iterations - saved_.iterations; }
 
   const Film& film() const { return state_.film; }
   /// The means of the integrator's own layers.
@@ -65,17 +79,19 @@ class RenderLoop {
   std::string identity() const;
   bool iterate();
   void add_row();
-  void write_checkpoint_now();
-  void write_last_checkpoint();
+  /// False: interrupted, without seconds left. The checkpoint before stays.
+  bool write_checkpoint_now();
+  bool write_last_checkpoint();
   void write_preview_now();
-  void report_progress();
+  void report_progress(const Spent& spent);
+  void stop_if_interrupted() const;
 
   RenderTask task_;
   Budget budget_;
   RunState state_;
   Image frame_;
   bool merging_ = false;     // run() renders nothing
-  std::uint64_t saved_ = 0;  // iterations in the checkpoint
+  Spent saved_;              // of what the checkpoint holds
   bool floor_told_ = false;  // that the reference bounds the errors
   RenderClock clock_;
   Pace checkpoints_, previews_, progress_;

@@ -30,7 +30,7 @@ void save_phases(ByteWriter& out, const PhaseSeconds& phases) {
 PhaseSeconds load_phases(ByteReader& in) {
   PhaseSeconds phases;
   for (auto n = in.get<std::uint64_t>(); n > 0; --n) {
-    const std::string name(in.get_text());
+    const std::string name = in.get_string();
     const auto seconds = in.get<double>();
     const bool follows = phases.empty() || phases.rbegin()->first < name;
     if (!follows || !is_time(seconds)) throw std::runtime_error("saved phases are not phases");
@@ -64,7 +64,8 @@ RunState::RunState(const JobSpec& spec, const std::vector<std::string>& layer_na
       done(iterations_of(spec)),
       layers(layer_names, spec.resolution[0], spec.resolution[1], byte_limit) {}
 
-void RunState::save(ByteWriter& out, std::uint64_t refused, const PhaseSeconds& seconds) const {
+void RunState::save(ByteWriter& out, std::uint64_t refused, const PhaseSeconds& seconds,
+                    std::uint64_t learned_bytes) const {
   film.save(out);
   done.save(out);
   out.put(spent);
@@ -77,6 +78,7 @@ void RunState::save(ByteWriter& out, std::uint64_t refused, const PhaseSeconds& 
   out.put(merged.between);
   out.put(merged.learned);
   save_phases(out, seconds);
+  out.put(learned_bytes);
 }
 
 void RunState::load(ByteReader& in) {
@@ -93,6 +95,9 @@ void RunState::load(ByteReader& in) {
   merged.between = in.get<double>();
   merged.learned = in.get<std::uint8_t>();
   phases = load_phases(in);
+  if (in.get<std::uint64_t>() != in.remaining()) {
+    throw std::runtime_error("saved state of the integrator has another size");
+  }
   if (!done.serves(own)) throw std::runtime_error("saved iterations are those of another shard");
   if (film.iterations() != spent.iterations || film.iterations() != done.count() ||
       film.half_iterations(0) != done.count_even()) {

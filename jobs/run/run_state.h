@@ -53,10 +53,11 @@ struct RunState {
   PhaseSeconds phases;             ///< likewise
   MergedShards merged;
 
-  /// `refused`, `seconds`: with those of this process. load() throws std::runtime_error on what
-  /// save() never writes, also where parts contradict each other: a checksum knows damage, not what
-  /// another program wrote.
-  void save(ByteWriter& out, std::uint64_t refused, const PhaseSeconds& seconds) const;
+  /// `refused`, `seconds`: with those of this process. `learned_bytes`: what the integrator has
+  /// learned, which follows. load() throws std::runtime_error on what save() never writes, also
+  /// where parts contradict each other: a checksum knows damage, not what another program wrote.
+  void save(ByteWriter& out, std::uint64_t refused, const PhaseSeconds& seconds,
+            std::uint64_t learned_bytes) const;
   void load(ByteReader& in);
 };
 

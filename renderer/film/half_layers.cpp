@@ -3,35 +3,39 @@
 #include <Imath/half.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace lacuna {
 
 namespace {
 
-double scale_of(const std::vector<double>& values) {
+double scale_of(const ExrLayer& layer) {
   double largest = 0;
-  for (const double v : values) largest = std::max(largest, std::abs(v));
+  for (std::size_t i = 0; i < layer.size(); ++i)
+    largest = std::max(largest, std::abs(layer.value(i)));
   return largest > 0 ? std::ldexp(1.0, std::ilogb(largest) - 14) : 1.0;
 }
 
 }  // namespace
 
-HalfLayers pack_half(const std::vector<ExrLayer>& layers) {
-  HalfLayers packed;
+std::vector<HalfLayer> pack_half(const std::vector<ExrLayer>& layers, ByteWriter& out) {
+  std::vector<HalfLayer> index;
+  std::size_t offset = 0;
+  std::array<std::uint16_t, 4096> block{};
   for (const ExrLayer& layer : layers) {
-    HalfLayer entry{layer.name, layer.channels, packed.bytes.size(), 2 * layer.values.size(),
-                    scale_of(layer.values)};
-    packed.bytes.resize(entry.offset + entry.bytes);
-    char* out = packed.bytes.data() + entry.offset;
-    for (const double v : layer.values) {
-      const std::uint16_t bits = half(static_cast<float>(v / entry.scale)).bits();
-      *out++ = static_cast<char>(bits & 0xff);
-      *out++ = static_cast<char>(bits >> 8);
+    index.push_back({layer.name, layer.channels, offset, sizeof(std::uint16_t) * layer.size(),
+                     scale_of(layer)});
+    for (std::size_t i = 0; i < layer.size(); i += block.size()) {
+      const std::size_t n = std::min(block.size(), layer.size() - i);
+      for (std::size_t k = 0; k < n; ++k) {
+        block[k] = half(static_cast<float>(layer.value(i + k) / index.back().scale)).bits();
+      }
+      out.append(block.data(), sizeof(std::uint16_t) * n);
     }
-    packed.index.push_back(std::move(entry));
+    offset += index.back().bytes;
   }
-  return packed;
+  return index;
 }
 
 }  // namespace lacuna

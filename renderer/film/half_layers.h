@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/storage/bytes.h"
 #include "renderer/images/exr_write.h"
 
 namespace lacuna {
@@ -15,15 +16,10 @@ struct HalfLayer {
   double scale = 1;  ///< a power of two; value = half float * scale
 };
 
-/// Layers for a viewer that reads no EXR: little-endian IEEE halves, interleaved, top row first,
-/// one layer after the other. Each layer is scaled so that its largest magnitude lies in [2^14,
-/// 2^15): nothing overflows, and values up to 2^28 times smaller keep all 11 bits.
-struct HalfLayers {
-  std::vector<HalfLayer> index;
-  std::string bytes;
-};
-
-/// Packs `layers`, whose values are finite.
-HalfLayers pack_half(const std::vector<ExrLayer>& layers);
+/// Packs `layers`, whose values are finite, for a viewer that reads no EXR: little-endian IEEE
+/// halves, interleaved, top row first, one layer after the other. Each layer is scaled so that its
+/// largest magnitude lies in [2^14, 2^15): nothing overflows, and values up to 2^28 times smaller
+/// keep all 11 bits. `out` gets the bytes; the result says what lies where in them.
+std::vector<HalfLayer> pack_half(const std::vector<ExrLayer>& layers, ByteWriter& out);
 
 }  // namespace lacuna

@@ -11,15 +11,15 @@ namespace lacuna {
 
 namespace {
 
-/// Of a pixel: its colour in the iteration, its sum, and that twice more, as a checkpoint is put
-/// together and then framed.
-constexpr std::uint64_t pixel_bytes = sizeof(Rgb) + 3 * 3 * sizeof(double);
+/// Of a pixel: its colour in the iteration, its sum, and its floats in image.exr, which is put
+/// together in memory.
+constexpr std::uint64_t pixel_bytes = sizeof(Rgb) + 3 * sizeof(double) + 3 * sizeof(float);
 
 }  // namespace
 
 LayerMeans::LayerMeans(std::vector<std::string> names, int width, int height,
                        std::uint64_t byte_limit)
-    : names_(std::move(names)) {
+    : names_(std::move(names)), width_(width), height_(height) {
   if (names_.empty()) return;
   const auto pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   const std::uint64_t bytes = names_.size() * pixels * pixel_bytes;
@@ -28,11 +28,11 @@ LayerMeans::LayerMeans(std::vector<std::string> names, int width, int height,
         "layers: {} images of {} x {} pixels, \"{}\" the first, would take {} bytes; allowed: {}",
         names_.size(), width, height, names_.front(), bytes, byte_limit));
   }
-  images_.assign(names_.size(), Image(width, height));
   sums_.assign(names_.size(), std::vector<double>(3 * pixels, 0.0));
 }
 
 std::span<Image> LayerMeans::begin(const ThreadPool& pool) {
+  if (images_.empty()) images_.assign(names_.size(), Image(width_, height_));
   pool.for_each(static_cast<int>(images_.size()), [&](int i) {
     std::vector<Rgb>& pixels = images_[static_cast<std::size_t>(i)].pixels;
     std::fill(pixels.begin(), pixels.end(), Rgb(0, 0, 0));
@@ -58,9 +58,8 @@ void LayerMeans::merge(const LayerMeans& other) {
 }
 
 std::vector<double> LayerMeans::mean(std::size_t layer) const {
-  const auto n = static_cast<double>(std::max<std::uint64_t>(1, iterations_));
   std::vector<double> mean = sums_[layer];
-  for (double& v : mean) v /= n;
+  for (double& v : mean) v /= divisor();
   return mean;
 }
 

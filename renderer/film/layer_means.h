@@ -17,8 +17,7 @@ class LayerMeans {
  public:
   LayerMeans() = default;
   /// One image of `width` x `height` pixels for each name. Throws MemoryLimitError, before it
-  /// allocates, if the images, their means and their checkpoint would take more than `byte_limit`
-  /// bytes.
+  /// allocates, if the images, their means and image.exr would take more than `byte_limit` bytes.
   LayerMeans(std::vector<std::string> names, int width, int height, std::uint64_t byte_limit);
 
   const std::vector<std::string>& names() const { return names_; }
@@ -33,6 +32,9 @@ class LayerMeans {
   /// place depends on the order.
   void merge(const LayerMeans& other);
 
+  /// The sum over all iterations, RGB interleaved, and what makes it their mean.
+  std::span<const double> sum(std::size_t layer) const { return sums_[layer]; }
+  double divisor() const { return iterations_ > 0 ? static_cast<double>(iterations_) : 1.0; }
   /// Mean over all iterations, RGB interleaved. All zero before the first.
   std::vector<double> mean(std::size_t layer) const;
 
@@ -46,7 +48,8 @@ class LayerMeans {
 
  private:
   std::vector<std::string> names_;
-  std::vector<Image> images_;
+  int width_ = 0, height_ = 0;
+  std::vector<Image> images_;  // from the first begin(): what is only merged needs none
   std::vector<std::vector<double>> sums_;
   std::uint64_t iterations_ = 0;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -22,25 +23,23 @@ inline std::vector<double> get_finite(ByteReader& in, std::size_t size, const st
   return values;
 }
 
+static_assert(sizeof(Rgb) == 3 * sizeof(float));
+
 inline void put_image(ByteWriter& out, const Image& image) {
-  std::vector<float> values;
-  values.reserve(3 * image.pixels.size());
-  for (const Rgb& c : image.pixels) values.insert(values.end(), {c.x, c.y, c.z});
-  out.put(values);
+  out.put(static_cast<std::uint64_t>(3 * image.pixels.size()));
+  out.append(image.pixels.data(), sizeof(Rgb) * image.pixels.size());
 }
 
 /// Reads an image of the same size; `what` names it in errors. Throws std::runtime_error on another
 /// size, and on values that are not finite.
 inline void get_image(ByteReader& in, Image& image, const std::string& what) {
-  const std::vector<float> values = in.get_vector<float>();
-  if (values.size() != 3 * image.pixels.size()) {
+  if (in.get_length(sizeof(float)) != 3 * image.pixels.size()) {
     throw std::runtime_error("saved " + what + " has another size");
   }
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    image.pixels[i] = Rgb(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
-    if (!is_finite(image.pixels[i])) {
-      throw std::runtime_error("saved " + what + " has values that are not finite");
-    }
+  in.read(image.pixels.data(), sizeof(Rgb) * image.pixels.size());
+  if (!std::all_of(image.pixels.begin(), image.pixels.end(),
+                   [](const Rgb& c) { return is_finite(c); })) {
+    throw std::runtime_error("saved " + what + " has values that are not finite");
   }
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,12 @@ struct ExrLayer {
   std::string name;                   ///< "" for the picture itself, whose channels are R, G, B
   std::vector<std::string> channels;  ///< e.g. {"R", "G", "B"}, {"Z"}
   std::vector<double> values;
+  /// In place of `values`, without a copy: these, which outlive the layer, over `divisor`.
+  std::span<const double> sums = {};
+  double divisor = 1;
+
+  std::size_t size() const { return sums.empty() ? values.size() : sums.size(); }
+  double value(std::size_t i) const { return sums.empty() ? values[i] : sums[i] / divisor; }
 };
 
 /// The content of an EXR file.
@@ -26,7 +34,9 @@ struct ExrPicture {
 
 /// Writes a scan-line EXR (ZIP) atomically (temporary file, fsync, rename).
 /// The file holds no date. Throws std::system_error or std::runtime_error that names the file; also
-/// if the type is half and a value would overflow.
-void write_exr(const std::filesystem::path& file, const ExrPicture& picture);
+/// if the type is half and a value would overflow. `between` is called between blocks of rows, of
+/// 16 MiB at most if they have more than 16: what it throws ends the writing.
+void write_exr(const std::filesystem::path& file, const ExrPicture& picture,
+               const std::function<void()>& between = {});
 
 }  // namespace lacuna

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -44,12 +45,19 @@ struct StoredTexels {
   std::unique_ptr<std::uint8_t[]> values;  ///< interleaved, top row first
 };
 
+/// Neighbouring rows of an image.
+struct RowBlock {
+  int first = 0, count = 0;
+};
+
 /// The content of an EXR file to write.
 struct ExrContent {
   int width = 0, height = 0;
   std::vector<std::string> channels;
-  bool half = false;             ///< the type of all values: half, or float
-  const void* values = nullptr;  ///< interleaved in the order of `channels`, top row first
+  bool half = false;  ///< the type of all values: half, or float
+  /// The values of some rows, interleaved in the order of `channels`; they last until the next
+  /// call. Blocks are asked for from the top. What it throws comes out of encode_exr().
+  std::function<const void*(const RowBlock&)> rows;
   std::map<std::string, std::string> texts;  ///< attributes
 };
 

@@ -90,7 +90,8 @@ std::vector<std::string> renderer_environment(const ExecutorSettings& settings) 
   }
   const fs::path cache = settings.cache.empty() ? settings.data / "cache" : settings.cache;
   return {"LACUNA_DATA=" + settings.data.string(), "LACUNA_CACHE=" + cache.string(),
-          "LACUNA_SCENES=" + roots};
+          "LACUNA_SCENES=" + roots,
+          fmt::format("LACUNA_GRACE={}", static_cast<double>(settings.grace.count()) / 1000)};
 }
 
 void check_renderer(const ExecutorSettings& settings) {

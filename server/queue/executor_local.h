@@ -8,8 +8,8 @@
 
 namespace lacuna {
 
-/// The folders of the service's command line as a renderer takes them: "LACUNA_DATA=...". Throws
-/// std::invalid_argument for a folder that cannot be said so.
+/// The folders and the grace of the service's command line as a renderer takes them:
+/// "LACUNA_DATA=...". Throws std::invalid_argument for a folder that cannot be said so.
 std::vector<std::string> renderer_environment(const ExecutorSettings& settings);
 /// Throws std::invalid_argument if there is no such renderer.
 void check_renderer(const ExecutorSettings& settings);

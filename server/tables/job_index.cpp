@@ -100,15 +100,15 @@ std::shared_ptr<JobEntry> entry_of(std::string_view bytes) {
     if (has) value = number;
   };
   visit_values(*entry, get);
-  visit_texts(*entry, [&](std::string& text) { text = in.get_text(); });
+  visit_texts(*entry, [&](std::string& text) { text = in.get_string(); });
   for (auto n = in.get<std::uint64_t>(); n > 0; --n)
-    entry->state.warnings.emplace_back(in.get_text());
+    entry->state.warnings.push_back(in.get_string());
   if (in.get<std::uint8_t>() != 0) {
     Progress& progress = entry->progress.emplace();
     visit_progress(progress, get);
     get_optional(progress.remaining_seconds);
     get_optional(progress.error);
-    progress.error_metric = in.get_text();
+    progress.error_metric = in.get_string();
   }
   return entry;
 }

@@ -55,6 +55,16 @@ SceneData one_triangle() {
   return data;
 }
 
+/// The content of a checkpoint of `key`. Throws std::runtime_error.
+std::string content_of(const std::filesystem::path& file, const std::string& key) {
+  std::string content;
+  read_checkpoint(file, key, [&](ByteReader& in) {
+    content.resize(in.remaining());
+    in.read(content.data(), content.size());
+  });
+  return content;
+}
+
 /// A job that renders two by two pixels.
 class Job {
  public:
@@ -77,15 +87,15 @@ class Job {
     loop.resume();
     if (quiet.warnings > 0) return std::nullopt;
     loop.run();
-    return read_checkpoint(checkpoint(), key_of(read_file(checkpoint(), 1 << 20)));
+    return content_of(checkpoint(), key_of(read_file(checkpoint(), 1 << 20)));
   }
 
   std::filesystem::path checkpoint() const { return folder.file("checkpoint.bin"); }
   /// The key in the header of a checkpoint.
   static std::string key_of(const std::string& bytes) {
     ByteReader in(bytes);
-    in.get_text();
-    return std::string(in.get_text());
+    in.get_string();
+    return in.get_string();
   }
 
   Folder temporary;
@@ -113,14 +123,15 @@ void read_as_file(std::string_view bytes) {
   Job& job = ready().job;
   write_file_atomically(job.checkpoint(), bytes, false);
   try {
-    read_checkpoint(job.checkpoint(), ready().key);
+    content_of(job.checkpoint(), ready().key);
   } catch (const std::runtime_error&) {
   }
 }
 
 void read_as_content(const std::string& content) {
   Job& job = ready().job;
-  write_checkpoint(job.checkpoint(), ready().key, content);
+  write_checkpoint(job.checkpoint(), ready().key,
+                   [&](ByteWriter& out) { out.append(content.data(), content.size()); });
   job.phases.clear();
   if (const auto saved = job.go_on(0)) {
     // At its end stand the seconds of the phases, which go on, and what was learned.

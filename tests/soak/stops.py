@@ -29,6 +29,8 @@ JOBS = {
     "bdpt, 1000 edges, paired": deep(type="paired"),
     "bdpt, 1000 edges, importance_cache": deep(type="importance_cache", light_paths=100),
     "bdpt, 1000 edges, skeleton": deep(type="skeleton"),
+    "the layers of 560 strategies": {"scene": "ajar.glb", "camera": "room", "resolution": [256, 256],
+                                     "integrator": {"type": "bdpt", "max_depth": 32}, "layers": ["strategies"]},
     "portals at 256": guided("portals", 256),
     "skeleton at 512": guided("skeleton", 512),
 }

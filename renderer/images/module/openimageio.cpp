@@ -134,17 +134,23 @@ class OpenPicture final : public PictureFile {
   std::vector<PictureHeader> parts_;
 };
 
-/// The bytes of what `spec` and `values` say, by the writer of that name.
-EncodedImage encode(const char* writer, const OIIO::ImageSpec& spec, const void* values) {
+/// The bytes of what `spec` says and `rows` gives, in blocks of `count` rows, by the writer of that
+/// name.
+EncodedImage encode(const char* writer, const OIIO::ImageSpec& spec, int count,
+                    const std::function<const void*(const RowBlock&)>& rows) {
   EncodedImage bytes;
   Io::IOVecOutput memory(bytes);
   const auto output = OIIO::ImageOutput::create(writer);
   if (!output) fail(OIIO::geterror());
   output->set_ioproxy(&memory);
-  if (!output->open("memory", spec) || !output->write_image(spec.format, values) ||
-      !output->close()) {
-    fail(output->geterror());
+  if (!output->open("memory", spec)) fail(output->geterror());
+  for (int first = 0; first < spec.height; first += count) {
+    const RowBlock block{first, std::min(count, spec.height - first)};
+    if (!output->write_scanlines(first, first + block.count, 0, spec.format, rows(block))) {
+      fail(output->geterror());
+    }
   }
+  if (!output->close()) fail(output->geterror());
   return bytes;
 }
 
@@ -195,13 +201,19 @@ class OpenImageIoCodec final : public ImageCodec {
     if (content.channels.size() * spec.image_pixels() > worth_threads) {
       OIIO::attribute("exr_threads", static_cast<int>(std::thread::hardware_concurrency()));
     }
-    return encode("openexr", spec, content.values);
+    // Each 16 rows are compressed together, by a thread of their own.
+    constexpr std::uint64_t unit = 16;
+    const std::uint64_t units = most_block_bytes / (unit * spec.scanline_bytes(true));
+    const std::uint64_t rows = unit * std::max<std::uint64_t>(1, units);
+    return encode("openexr", spec,
+                  static_cast<int>(std::min<std::uint64_t>(rows, std::max(1, content.height))),
+                  content.rows);
   }
 
   EncodedImage encode_png(int width, int height, std::span<const std::uint8_t> rgb) const override {
     OIIO::ImageSpec spec(width, height, 3, OIIO::TypeUInt8);
     spec.attribute("oiio:ColorSpace", "sRGB");
-    return encode("png", spec, rgb.data());
+    return encode("png", spec, height, [&](const RowBlock&) { return rgb.data(); });
   }
 
  private:
@@ -210,6 +222,8 @@ class OpenImageIoCodec final : public ImageCodec {
   static constexpr int most_channels = 1 << 16;
   /// Values from which compressing takes longer than to start threads.
   static constexpr std::size_t worth_threads = std::size_t{1} << 20;
+  /// Of the rows that are given at a time: the library hands no more to its threads, either.
+  static constexpr std::uint64_t most_block_bytes = std::uint64_t{16} << 20;
 };
 
 }  // namespace

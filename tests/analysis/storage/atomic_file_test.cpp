@@ -30,6 +30,42 @@ TEST(AtomicFile, ReplacesTheWholeContent) {
   }
 }
 
+TEST(AtomicFile, ThatIsNotCommittedLeavesTheOldContent) {
+  const TemporaryFolder tmp;
+  put_file(tmp / "f", "old");
+  {
+    AtomicFile out(tmp / "f");
+    out.write("new");
+    EXPECT_EQ(names_in(tmp.path()).size(), 2U);
+  }
+  EXPECT_EQ(content_of(tmp / "f"), "old");
+  EXPECT_EQ(names_in(tmp.path()), Names{"f"});
+}
+
+TEST(AtomicFile, IsTheSameInAnyPiecesAndZerosAreHoles) {
+  const TemporaryFolder tmp;
+  // Zeros at the begin, the end and in between; of less than a block, of one, and of more than what
+  // is synced at a time.
+  std::string content(9000, '\0');
+  for (const std::size_t zeros : {1UL, 4095UL, 4096UL, 100000UL, 9UL << 20, 8192UL}) {
+    content += std::string(5000, 'x') + std::string(zeros, '\0');
+  }
+  for (const std::size_t piece : {997UL, 4096UL, 1UL << 20, content.size()}) {
+    AtomicFile out(tmp / "f");
+    out.write("head");
+    for (std::size_t i = 0; i < content.size(); i += piece) {
+      out.write(std::string_view(content).substr(i, piece));
+    }
+    out.write_at(1, "EA");
+    out.commit();
+    EXPECT_TRUE(content_of(tmp / "f") == "hEAd" + content) << piece;
+    struct stat info {};
+    ASSERT_EQ(::stat((tmp / "f").c_str(), &info), 0);
+    if (piece < 2 * 4096) continue;
+    EXPECT_LT(512 * std::uint64_t(info.st_blocks), content.size() / 10);
+  }
+}
+
 TEST(AtomicFile, ReplacesALinkNotWhatItPointsTo) {
   const TemporaryFolder tmp;
   put_file(tmp / "target", "old");

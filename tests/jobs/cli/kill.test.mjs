@@ -69,6 +69,14 @@ function runAfter(setting, folder, ...args) {
   return startWith(["bash", "-c", `${setting}; exec "$0" "$@"`], folder, ...args).ended;
 }
 
+test("a grace that is no number of seconds is refused before anything is rendered", async (t) => {
+  const folder = temporaryFolder(t);
+  job(folder, "a.json", spec);
+  const refused = await runAfter("export LACUNA_GRACE=soon", folder, "render", "a.json");
+  assert.equal(refused.code, 2);
+  assert.match(refused.err, /LACUNA_GRACE: soon; allowed: seconds, at least 0/);
+});
+
 const stateOf = (folder) => JSON.parse(readFileSync(join(folder, "a.job/state.json"), "utf8"));
 const temporaries = (folder) => readdirSync(join(folder, "a.job")).filter((name) => name.endsWith(".tmp"));
 

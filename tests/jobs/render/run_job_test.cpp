@@ -318,6 +318,48 @@ TEST_F(RunJob, AFolderThatCannotBeWrittenLeavesTheJobAsItIs) {
   EXPECT_EQ(folder.read_state().error, "");
 }
 
+TEST_F(RunJob, StoppedWithoutTimeToWriteItSaysSoAndGoesOn) {
+  const JobFolder whole = create(spec("ajar.glb", 12), "whole");
+  run(whole);
+  const JobFolder folder = create(spec("ajar.glb", 12));
+  const int patience = interrupt_with_checkpoint(folder);
+  const std::string checkpoint = content_of(folder.file("checkpoint.bin"));
+  JobState state;
+  for (int more = patience; state.warnings.empty(); ++more) {
+    std::atomic<int> asked{0};
+    const std::function<bool()> interrupted = [&] { return ++asked > more; };
+    RunContext late = context(interrupted);
+    late.seconds_left = [] { return 0.0; };
+    ASSERT_EQ(run_job(folder, late), Outcome::interrupted);
+    state = folder.read_state();
+    EXPECT_EQ(state.state, State::interrupted);
+    EXPECT_EQ(state.error, "");
+  }
+  EXPECT_NE(state.warnings[0].find("before a checkpoint could be written"), std::string::npos);
+  EXPECT_EQ(content_of(folder.file("checkpoint.bin")), checkpoint);
+  EXPECT_EQ(run(folder), Outcome::done);
+  EXPECT_EQ(pixels(folder), pixels(whole));
+  EXPECT_TRUE(folder.read_state().warnings.empty());
+}
+
+TEST_F(RunJob, StoppedWhileItWritesItsResultsItWritesThemAnotherTime) {
+  JobSpec s = spec();
+  s.layers = {ImageLayer::variance, ImageLayer::halves};
+  const JobFolder whole = create(s, "whole"), folder = create(s);
+  run(whole);
+  const std::function<bool()> writing = [&] {
+    return !observer.phases.empty() && observer.phases.back() == "writing";
+  };
+  observer.phases.clear();
+  RunContext late = context(writing);
+  late.seconds_left = [] { return 0.0; };
+  EXPECT_EQ(run_job(folder, late), Outcome::interrupted);
+  EXPECT_EQ(folder.read_state().state, State::interrupted);
+  EXPECT_FALSE(std::filesystem::exists(folder.file("image.exr")));
+  EXPECT_EQ(run(folder), Outcome::done);
+  EXPECT_EQ(pixels(folder), pixels(whole));
+}
+
 TEST_F(RunJob, DamagedCheckpointIsReportedKeptAndDoneWithout) {
   const JobFolder whole = create(spec("cornell.glb", 6), "whole");
   run(whole);

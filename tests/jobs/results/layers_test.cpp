@@ -90,11 +90,13 @@ class Layers : public testing::Test {
   bool run(const JobFolder& folder, Noise& noise, int patience = 1 << 30) {
     int left = patience;
     const std::function<bool()> interrupted = [&] { return left-- <= 0; };
-    const RenderTask task{folder,  spec,        scene,    camera, pool,     noise,
-                          nullptr, interrupted, observer, phases, "content"};
+    const RenderTask task{folder,  spec,        scene,    camera, pool,      noise,
+                          nullptr, interrupted, observer, phases, "content", seconds_left};
     RenderLoop loop(task);
     loop.resume();
-    if (!loop.run()) return false;
+    const bool done = loop.run();
+    unsaved = loop.unsaved_iterations();
+    if (!done) return false;
     write_results(task, loop);
     return true;
   }
@@ -109,6 +111,8 @@ class Layers : public testing::Test {
   Camera camera{CameraData{}, 4, 2};
   SilentObserver observer;
   PhaseSeconds phases;
+  std::function<double()> seconds_left;  ///< of each stop
+  std::uint64_t unsaved = 0;             ///< iterations that the last run has left in no checkpoint
 };
 
 TEST_F(Layers, AreMeansInImageExrAndForThePageByTheirNames) {
@@ -186,6 +190,34 @@ TEST_F(Layers, InterruptedAnywhereTheyGoOnToTheSameBits) {
   EXPECT_TRUE(observer.warnings.empty());
   for (const std::string& name : all_names) EXPECT_EQ(layer(parts, name), layer(whole, name));
   EXPECT_EQ(layer(parts, ""), layer(whole, ""));
+}
+
+TEST_F(Layers, StoppedWithoutTimeToWriteTheyGoOnFromTheCheckpointBefore) {
+  const JobFolder whole = create("whole"), parts = create("parts");
+  Noise noise;
+  run(whole, noise);
+  ASSERT_FALSE(run(parts, noise, 9));
+  EXPECT_EQ(unsaved, 0U);
+  const auto file = parts.file("checkpoint.bin");
+  const std::string before = read_file(file, 1 << 20);
+  const std::int64_t iteration = parts.read_progress()->iteration;
+  EXPECT_GT(iteration, 0);
+  for (const double seconds : {0.0, -1.0}) {
+    seconds_left = [seconds] { return seconds; };
+    ASSERT_FALSE(run(parts, noise, 12));
+    EXPECT_GT(unsaved, 0U);
+    EXPECT_EQ(read_file(file, 1 << 20), before);
+    EXPECT_EQ(parts.read_progress()->iteration, iteration) << "what the checkpoint holds";
+  }
+  seconds_left = [] { return 100.0; };
+  ASSERT_FALSE(run(parts, noise, 12));
+  EXPECT_EQ(unsaved, 0U);
+  EXPECT_GT(parts.read_progress()->iteration, iteration);
+  ASSERT_TRUE(run(parts, noise));
+  EXPECT_TRUE(observer.warnings.empty());
+  for (const std::string& name : all_names) EXPECT_EQ(layer(parts, name), layer(whole, name));
+  EXPECT_EQ(layer(parts, ""), layer(whole, ""));
+  EXPECT_TRUE(names_in(parts.dir()).contains("checkpoint.bin"));
 }
 
 TEST_F(Layers, OfACheckpointThatAreNotThoseOfTheJobBeginAnew) {

@@ -230,11 +230,12 @@ TEST(HalfLayers, KeepElevenBitsOfEveryLayer) {
       {"", {"R", "G", "B"}, {0, 1e30, 3.14159e25, -7e29, 5e29, 1e22}},
       {"depth", {"Z"}, {1e-20, 3e-21}},
       {"black", {"Z"}, {0, 0}}};
-  const HalfLayers packed = pack_half(layers);
-  ASSERT_EQ(packed.index.size(), layers.size());
+  ByteWriter packed;
+  const std::vector<HalfLayer> index = pack_half(layers, packed);
+  ASSERT_EQ(index.size(), layers.size());
   std::size_t offset = 0;
   for (std::size_t i = 0; i < layers.size(); ++i) {
-    const HalfLayer& l = packed.index[i];
+    const HalfLayer& l = index[i];
     EXPECT_EQ(l.name, layers[i].name);
     EXPECT_EQ(l.channels, layers[i].channels);
     EXPECT_EQ(l.offset, offset);
@@ -243,7 +244,7 @@ TEST(HalfLayers, KeepElevenBitsOfEveryLayer) {
     for (std::size_t k = 0; k < layers[i].values.size(); ++k) {
       const auto byte = [&](std::size_t b) {
         return static_cast<unsigned>(
-            static_cast<unsigned char>(packed.bytes[l.offset + 2 * k + b]));
+            static_cast<unsigned char>(packed.bytes()[l.offset + 2 * k + b]));
       };
       half h;
       h.setBits(static_cast<std::uint16_t>(byte(0) | byte(1) << 8));
@@ -251,7 +252,7 @@ TEST(HalfLayers, KeepElevenBitsOfEveryLayer) {
       EXPECT_NEAR(static_cast<float>(h) * l.scale, v, 0x1p-11 * std::abs(v)) << l.name << " " << k;
     }
   }
-  EXPECT_EQ(packed.bytes.size(), offset);
+  EXPECT_EQ(packed.bytes().size(), offset);
 }
 
 TEST(Exr, HalfRefusesWhatOverflowsAndLeavesTheOldFile) {
