@@ -60,7 +60,7 @@ std::vector<std::string> unreached_emitters(const Scene& scene, const Camera& ca
     if (!scene.rays().intersect(ray, hit)) continue;
     Vertex v;
     v.kind = Vertex::Kind::surface;
-    v.surface = scene.surface(hit);
+    v.surface = scene.surface(ray, hit);
     v.wp = -ray.d;
     scene.make_bsdf(v.surface, v.bsdf);
     if (!v.bsdf->connectible()) continue;

@@ -32,7 +32,7 @@ std::vector<std::string> missing_reflections(const Scene& scene, const Camera& c
     const Ray ray = camera.ray(at(i % across, camera.width()), at(i / across, camera.height()));
     Hit hit;
     if (!scene.rays().intersect(ray, hit)) continue;
-    const Surface s = scene.surface(hit);
+    const Surface s = scene.surface(ray, hit);
     std::optional<Bsdf> bsdf;
     scene.make_bsdf(s, bsdf);
     if (!bsdf->delta(-ray.d, false) && !bsdf->delta(-ray.d, true)) continue;
