@@ -22,8 +22,23 @@ namespace {
 
 constexpr float nothing = std::numeric_limits<float>::infinity();
 
-/// Four bits of each shape, see SceneNodes::Node.
-Float8 sixteenth(Int8 shape, int bit) { return to_float((shape >> bit) & Int8(15)); }
+/// The boxes of the leaves below eight nodes (SceneNodes::Node::shape), in the grid.
+struct Boxes8 {
+  Float8x3 centre;  ///< from the centres of the nodes' cubes
+  Float8x3 half;    ///< half the sizes
+
+  Boxes8(Int8 shape, float half_side) {
+    const auto axis = [&](int bit, Float8& middle, Float8& size) {
+      const Float8 from = to_float((shape >> bit) & Int8(15));
+      const Float8 to = to_float((shape >> (bit + 4)) & Int8(15));
+      middle = (from + to - Float8(15.0F)) * Float8(half_side / 16);
+      size = (to - from + Float8(1.0F)) * Float8(half_side / 16);
+    };
+    axis(8, centre.x, half.x);
+    axis(16, centre.y, half.y);
+    axis(24, centre.z, half.z);
+  }
+};
 
 }  // namespace
 
@@ -101,18 +116,10 @@ inline unsigned ViewRendering::culled(const Visit& v, int level, const NodeList:
   Float8x3 centre = d;
   Float8 off(v.width + scene_.radius(level));
   if (settings_.boxes) {
-    const float size = scene_.half_side(level) / 16;
-    const Float8x3 from{sixteenth(e.shape, 8), sixteenth(e.shape, 16), sixteenth(e.shape, 24)};
-    const Float8x3 to{sixteenth(e.shape, 12), sixteenth(e.shape, 20), sixteenth(e.shape, 28)};
-    const Float8 middle(15.0F), one(1.0F), scale(size);
-    centre.x = d.x + (from.x + to.x - middle) * scale;
-    centre.y = d.y + (from.y + to.y - middle) * scale;
-    centre.z = d.z + (from.z + to.z - middle) * scale;
+    const Boxes8 box(e.shape, scene_.half_side(level));
+    centre = d + box.centre;
     length2 = lacuna::length2(centre);
-    off = ((to.x - from.x + one) * Float8(v.widest.x) + (to.y - from.y + one) * Float8(v.widest.y) +
-           (to.z - from.z + one) * Float8(v.widest.z)) *
-              scale +
-          Float8(v.width);
+    off = dot(box.half, Float8x3{v.widest.x, v.widest.y, v.widest.z}) + Float8(v.width);
   }
   constexpr float rounding = 1 + 1e-5F, margin = 1.0F / 256;  // of half a leaf's side
   const Float8 along = dot(centre, Float8x3{v.n.x, v.n.y, v.n.z});
@@ -161,14 +168,18 @@ inline void ViewRendering::look(const Visit& v, int level, const NodeList& nodes
           lanes & movemask(nearest > Float8(radius) && bound > Float8(radius * size) * distance);
       lanes &= ~same;
       same_texel += static_cast<std::size_t>(std::popcount(same));
-      const Paraboloid::TexelCoord8 coords = map_.coords(d, distance);
+      // A node stands for the middle of its leaves: that of a cube which a wall cuts at one side
+      // is up to the cube's radius before the wall.
+      const Float8x3 middle = d + Boxes8(e.shape, scene_.half_side(level)).centre;
+      const Float8 depth = sqrt(length2(middle));
+      const Paraboloid::TexelCoord8 coords = map_.coords(middle, depth);
       const unsigned shown =
           settings_.cover > 0
               ? same & movemask(map_.covers_middle(coords, radius * settings_.cover))
               : same;
       const Int8 order = to_front(shown);
       permute(map_.texel(coords), order).store_unaligned(&scratch.texels[splats]);
-      permute(distance, order).store_unaligned(&scratch.distances[splats]);
+      permute(depth, order).store_unaligned(&scratch.distances[splats]);
       splats += static_cast<std::size_t>(std::popcount(shown));
     }
     rest.append(e, lanes);

@@ -107,13 +107,12 @@ bool ViewMapVisibility::sees(std::uint32_t leaf, const At& at) const {
   if (!(h > 0)) return true;
   const int texel = maps_->map().texel(d);
   const MapTexel& t = texels_[static_cast<std::size_t>(texel)];
-  const float along = -t.direction.dot(at.n);
-  // 1 / distance of the surface's plane. A ray saw it in the middle of the texel; of leaves the
-  // nearest in the whole texel counts, so that of the plane is what it is to be compared with.
-  const float nearest =
-      rays ? along * (1 + 1 / static_cast<float>(settings_.map_size))
-           : along * t.cosine + std::sqrt(std::max(0.0F, 1 - along * along)) * t.sine;
-  return maps_->scale() * nearest >= maps_->nearness(leaf, texel) * h;
+  // 1 / distance of the surface's plane in the middle of the texel, where a ray saw it, or a node
+  // that covers the middle. What is nearer by less than half the texel's width, or half the width
+  // of the largest node that is one splat, counts as on the plane.
+  const double width = rays ? 1 : std::max(1.0, settings_.node_texels);
+  const float inverse = -t.direction.dot(at.n) * static_cast<float>(1 + width / settings_.map_size);
+  return maps_->scale() * inverse >= maps_->nearness(leaf, texel) * h;
 }
 
 void ViewMapVisibility::decide(const At& at, std::size_t block, const Terms& terms,
