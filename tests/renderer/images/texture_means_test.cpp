@@ -11,14 +11,12 @@
 namespace lacuna {
 namespace {
 
-using Encoding = Texture::Encoding;
-using Wrap = Texture::Wrap;
 using test::encode8;
 
 using Corners = std::array<V2f, 3>;
 
-Texture decoded(const test::Bytes& image, Wrap wrap = Wrap::repeat,
-                Encoding encoding = Encoding::linear) {
+Texture decoded_texture(const test::Bytes& image, Texture::Wrap wrap = Texture::Wrap::repeat,
+                        Texture::Encoding encoding = Texture::Encoding::linear) {
   Texture texture("test", image, encoding, wrap, wrap);
   texture.decode();
   return texture;
@@ -26,12 +24,12 @@ Texture decoded(const test::Bytes& image, Wrap wrap = Wrap::repeat,
 
 /// A grey texture of `width` x `height` texels, `value(x, y)` each.
 template <class Value>
-Texture grey(int width, int height, Wrap wrap, Value&& value) {
+Texture grey(int width, int height, Texture::Wrap wrap, Value&& value) {
   std::vector<std::uint8_t> texels;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) texels.push_back(static_cast<std::uint8_t>(value(x, y)));
   }
-  return decoded(encode8(width, height, 1, texels), wrap);
+  return decoded_texture(encode8(width, height, 1, texels), wrap);
 }
 
 float largest(const Corners& uv) {
@@ -84,13 +82,13 @@ Corners some_triangle(Rng& rng) {
   return uv;
 }
 
-constexpr std::array wraps{Wrap::repeat, Wrap::mirrored, Wrap::clamp};
+constexpr std::array wraps{Texture::Wrap::repeat, Texture::Wrap::mirrored, Texture::Wrap::clamp};
 constexpr std::array<std::array<int, 2>, 6> sizes{
     {{1, 1}, {3, 5}, {64, 64}, {37, 21}, {256, 1}, {190, 130}}};
 
 TEST(TextureMeans, WholeIsLinear) {
-  const Texture t =
-      decoded(encode8(2, 1, 4, {255, 0, 188, 255, 0, 0, 188, 51}), Wrap::repeat, Encoding::srgb);
+  const Texture t = decoded_texture(encode8(2, 1, 4, {255, 0, 188, 255, 0, 0, 188, 51}),
+                                    Texture::Wrap::repeat, Texture::Encoding::srgb);
   const V3d mean = TextureMeans(t).whole();
   EXPECT_NEAR(mean.x, 0.5, 1e-6);
   EXPECT_NEAR(mean.y, 0, 1e-6);
@@ -102,7 +100,7 @@ TEST(TextureMeans, WholeIsLinear) {
 TEST(TextureMeans, MissNothingThatIsLit) {
   int lit = 0, black = 0;
   Rng rng(1, 0, 0, Rng::Purpose::test);
-  for (const Wrap wrap : wraps) {
+  for (const Texture::Wrap wrap : wraps) {
     for (const auto& [width, height] : sizes) {
       const int period = width * height > 1000 ? 97 : 7;
       const Texture t = grey(width, height, wrap,
@@ -126,7 +124,8 @@ TEST(TextureMeans, MissNothingThatIsLit) {
 
 // Triangles on the dark half of a texture have no power.
 TEST(TextureMeans, AreBlackWhereAllIs) {
-  const Texture t = grey(64, 64, Wrap::repeat, [](int x, int) { return x < 32 ? 0 : 255; });
+  const Texture t =
+      grey(64, 64, Texture::Wrap::repeat, [](int x, int) { return x < 32 ? 0 : 255; });
   const TextureMeans means(t);
   const auto over = [&](const Corners& uv) { return means.over(uv, largest(uv)).rgb.x; };
   EXPECT_EQ(over({V2f(0.02F, 0), V2f(0.48F, 0), V2f(0.3F, 7)}), 0);
@@ -140,7 +139,7 @@ TEST(TextureMeans, AreBlackWhereAllIs) {
 
 TEST(TextureMeans, AreNearThoseOfLookups) {
   Rng rng(2, 0, 0, Rng::Purpose::test);
-  for (const Wrap wrap : wraps) {
+  for (const Texture::Wrap wrap : wraps) {
     for (const auto& [width, height] : sizes) {
       // Bright in the middle, without a jump at the border.
       const Texture t = grey(width, height, wrap, [&, w = width, h = height](int x, int y) {
@@ -161,7 +160,7 @@ TEST(TextureMeans, AreNearThoseOfLookups) {
 TEST(TextureMeans, AnyCoordinateIsSafe) {
   constexpr float inf = std::numeric_limits<float>::infinity();
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-  for (const Wrap wrap : wraps) {
+  for (const Texture::Wrap wrap : wraps) {
     const Texture t = grey(8, 8, wrap, [](int x, int y) { return x + y == 0 ? 255 : 0; });
     const TextureMeans means(t);
     for (const float bad : {inf, -inf, nan, 3e38F, -1e20F, 1e9F}) {

@@ -18,7 +18,7 @@ using test::SceneParts;
 using Kind = PunctualLight::Kind;
 
 /// Each kind of method once; at depth 2 all light is direct.
-std::vector<Method> methods(int depth) {
+std::vector<Method> light_methods(int depth) {
   PhotonMapSettings photons = test::of_length(PhotonMapSettings{}, depth);
   photons.next_event_estimation = false;
   ManyLightsSettings lights = test::lit_by(depth, 200, ExactVisibilitySettings{});
@@ -47,7 +47,7 @@ void look_down(SceneParts& p, const V3d& from, double yfov) {
 TEST(NarrowSpots, LightTheFloorBelowThem) {
   constexpr double expected = 0.5 / std::numbers::pi * 10 / 4;
   for (const float outer : {0.1F, 1e-2F, 1e-3F, 1e-4F, 1e-5F}) {
-    for (const Method& m : methods(2)) {
+    for (const Method& m : light_methods(2)) {
       // Photons resolve no less than 2^-18 of the scene.
       if (outer < 1e-4F && (m.name == "vcm" || m.name == "photon_map")) continue;
       SCOPED_TRACE(testing::Message() << m << ", " << outer << " rad");
@@ -93,8 +93,9 @@ TEST(LampsInSurfaces, LightWhatIsBelowThem) {
         settings.integrator = m.settings;
         return settings;
       };
-      const auto below = render(lamp_in_ceiling(kind, 1e-4F, corner), with(methods(2).front()));
-      for (const Method& m : methods(2)) {
+      const auto below =
+          render(lamp_in_ceiling(kind, 1e-4F, corner), with(light_methods(2).front()));
+      for (const Method& m : light_methods(2)) {
         SCOPED_TRACE(testing::Message() << m << ", kind " << int(kind) << ", corner " << corner);
         const auto in = render(lamp_in_ceiling(kind, 0, corner), with(m));
         const auto a = test::mean_over_iterations(in), b = test::mean_over_iterations(below);
@@ -109,7 +110,7 @@ TEST(LampsInSurfaces, LightWhatIsBelowThem) {
 TEST(LampsInSurfaces, AreTheSameToAllMethods) {
   const auto reference = render(lamp_in_ceiling(Kind::point, 0),
                                 {.integrator = test::path_tracing(4), .iterations = 64});
-  for (const Method& m : methods(4)) {
+  for (const Method& m : light_methods(4)) {
     if (m.name == "path" || m.name == "photon_map") continue;
     SCOPED_TRACE(testing::Message() << m);
     test::expect_same_picture(render(lamp_in_ceiling(Kind::point, 0),
@@ -159,7 +160,7 @@ std::array<statistics::Moments, boxes> means_of_boxes(double ratio,
 }
 
 TEST(PowersOverDecades, LoseNoLightInDimBoxes) {
-  for (const Method& m : methods(3)) {
+  for (const Method& m : light_methods(3)) {
     if (m.name.find("direct") != std::string::npos) continue;
     // One chain for all of the picture goes where the light is.
     if (std::holds_alternative<MetropolisSettings>(m.settings)) continue;

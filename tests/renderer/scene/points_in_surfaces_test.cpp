@@ -11,7 +11,7 @@ namespace {
 using test::SceneParts;
 
 /// A closed box around `o`, of side `size`.
-SceneParts room(const V3f& o, float size) {
+SceneParts closed_box(const V3f& o, float size) {
   SceneParts p;
   const auto white = p.material(test::diffuse(Rgb(0.5F)));
   const V3f half(size / 2);
@@ -38,7 +38,7 @@ TEST(LightsInSurfaces, AreFound) {
     for (const float away : {0.0F, 1.0F, 100.0F}) {
       const V3f o(away * size);
       for (const bool in : {false, true}) {
-        SceneParts p = room(o, size);
+        SceneParts p = closed_box(o, size);
         add_lamp(p, o + V3f(0.1F, in ? 0.5F : 0.49F, 0.2F) * size);
         add_lamp(p, o);
         const Scene scene = test::lit_scene(std::move(p.data));
@@ -59,7 +59,7 @@ TEST(LightsInSurfaces, SendRaysToBothSides) {
   Rng rng(1, 0, 0, Rng::Purpose::test);
   for (const float away : {0.0F, 10.0F}) {
     for (int i = 0; i < 200; ++i) {
-      SceneParts p = room(V3f(away), 1);
+      SceneParts p = closed_box(V3f(away), 1);
       tilt(p.data);
       const auto at = rng.next2();
       const Mesh& mesh = p.data.meshes[static_cast<std::size_t>(i) % 6];
@@ -84,7 +84,7 @@ TEST(LightsInSurfaces, SendRaysToBothSides) {
 }
 
 TEST(LightsInSurfaces, CornersHaveThreePlanes) {
-  SceneParts p = room(V3f(0), 2);
+  SceneParts p = closed_box(V3f(0), 2);
   add_lamp(p, {1, 1, 0.3F});
   add_lamp(p, {1, 1, 1});
   const Scene scene = test::lit_scene(std::move(p.data));
@@ -101,7 +101,7 @@ struct Left {
   std::vector<std::string> said = {};
 };
 Left leave(const V3d& from, const V3d& to, double yfov) {
-  SceneParts p = room(V3f(0), 2);
+  SceneParts p = closed_box(V3f(0), 2);
   p.eye(from, to, yfov);
   CameraData camera = p.data.cameras[0];
   const Scene scene = test::lit_scene(std::move(p.data));
