@@ -174,7 +174,7 @@ class Remake {
   }
 
   /// The same triangle, and nearly the same place on it.
-  static bool same(const Vertex& v, const WholePath::Node& node) {
+  bool same(const Vertex& v, const WholePath::Node& node) const {
     return v.kind == Vertex::Kind::surface && v.surface.mesh == node.surface.mesh &&
            v.surface.triangle == node.surface.triangle &&
            (v.surface.x - node.surface.x).length() <
