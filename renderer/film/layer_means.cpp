@@ -32,7 +32,7 @@ LayerMeans::LayerMeans(std::vector<std::string> names, int width, int height,
 }
 
 std::span<Image> LayerMeans::begin(const ThreadPool& pool) {
-  if (images_.empty()) images_.assign(names_.size(), Image(width_, height_));
+  while (images_.size() < names_.size()) images_.emplace_back(width_, height_);
   pool.for_each(static_cast<int>(images_.size()), [&](int i) {
     std::vector<Rgb>& pixels = images_[static_cast<std::size_t>(i)].pixels;
     std::fill(pixels.begin(), pixels.end(), Rgb(0, 0, 0));

@@ -60,22 +60,20 @@ bool all_finite(const M44d& m) {
   return true;
 }
 
-/// Whether axes span a volume, or two of them an area. Relative to their lengths, so that a scale
-/// of 1e-8 along one of them is fine; what is left below 1e-12 is cancellation in products of
-/// matrices.
-bool spans(double extent, double lengths) {
-  return std::isnormal(lengths) && std::isnormal(extent) && extent > 1e-12 * lengths;
+/// The direction of `a`, whatever its length; 0 if it has none.
+V3d direction(const V3d& a) {
+  const double largest = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
+  return largest > 0 ? (a / largest).normalized() : V3d(0.0);
 }
 
-/// See PlacedNode::rank.
+/// See PlacedNode::rank. By the directions of the axes, so that a scale of 1e-8 along one of them
+/// is fine.
 int rank(const M44d& m) {
-  const V3d axes[3] = {row(m, 0), row(m, 1), row(m, 2)};
-  if (spans(std::abs(determinant3(m)), axes[0].length() * axes[1].length() * axes[2].length())) {
-    return 3;
-  }
+  constexpr double cancelled = 1e-12;  // what products of matrices leave of 0
+  const V3d axes[3] = {direction(row(m, 0)), direction(row(m, 1)), direction(row(m, 2))};
+  if (std::abs(axes[0].cross(axes[1]).dot(axes[2])) > cancelled) return 3;
   for (int i = 0; i < 3; ++i) {
-    const V3d &a = axes[i], &b = axes[(i + 1) % 3];
-    if (spans(a.cross(b).length(), a.length() * b.length())) return 2;
+    if (axes[i].cross(axes[(i + 1) % 3]).length() > cancelled) return 2;
   }
   return 0;
 }

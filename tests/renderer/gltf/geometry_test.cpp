@@ -195,7 +195,7 @@ TEST(Lights, SpotsMayHaveAHardEdge) {
   EXPECT_EQ(by_a_hair.lights.at(0).inner_cone, 0.5F);
   ASSERT_EQ(by_a_hair.warnings.size(), 1U);
   for (const char* word :
-       {"\"beam\"", "innerConeAngle 0.50001", "outerConeAngle 0.5", "hard edge"}) {
+       {"lights[0].spot", "innerConeAngle 0.50001", "outerConeAngle 0.5", "hard edge"}) {
     EXPECT_NE(by_a_hair.warnings[0].find(word), std::string::npos) << by_a_hair.warnings[0];
   }
   const SceneData narrow = cones(0, 1e-7);

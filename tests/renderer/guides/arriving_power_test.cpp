@@ -132,7 +132,7 @@ TEST(ArrivingPower, OfAPointIsItsIntensityTimesTheSolidAngle) {
 
   const ThreadPool pool(2);
   const std::array<std::pair<V3f, Rgb>, 2> lights{
-      {{{0.3F, -0.2F, 0.4F}, {2, 1, 4}}, {{-0.6F, 0.5F, -0.1F}, {0.1F, 0.7F, 0.2F}}}};
+      {{{0.3F, -0.2F, 0.4F}, {2, 1, 4}}, {{-0.6F, 0.5F, -0.1F}, {2, 1, 4}}}};
   for (const bool open : {false, true}) {
     SceneParts p;
     add_walls(p, open, test::diffuse(Rgb(0.5F)));

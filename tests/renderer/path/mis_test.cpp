@@ -274,7 +274,7 @@ TEST_P(Weights, ByATreeAreTheirDefinition) {
   std::set<double> ratios;
   for (const Counts& counts : tree_counts) {
     SCOPED_TRACE(counts.name);
-    Comparison c{.tolerance = 1e-5, .smallest = 1e-9};
+    Comparison c{.tolerance = 2e-5, .smallest = 1e-9};
     const auto compare = [&](const WholePath& path, int s, double weight) {
       const double ratio = next_event_ratio(scene_, path);
       ratios.insert(ratio);
