@@ -51,11 +51,10 @@ LocalTransform local_transform(const GltfObject& node) {
   return {m, turn};
 }
 
+/// Finite, with axes whose lengths are, too.
 bool all_finite(const M44d& m) {
   for (int i = 0; i < 4; ++i) {
-    for (int j = 0; j < 4; ++j) {
-      if (!std::isfinite(m[i][j])) return false;
-    }
+    if (!std::isfinite(row(m, i).length())) return false;
   }
   return true;
 }
@@ -193,7 +192,7 @@ std::vector<PlacedNode> place_nodes(const GltfObject& root, Warnings& warnings) 
     }
     if (carries_something(node)) {
       if (!all_finite(visit.to_world) || !all_finite(visit.turn)) {
-        node.fail("its transform, with those of its parents, is not finite");
+        node.fail("its transform, with those of its parents, is too large or not finite");
       }
       if (visit.rank < 3) warn_of_rank(node, visit.rank, nodes[visit.flat_at], warnings);
       const bool can_turn = rank(visit.turn) == 3;

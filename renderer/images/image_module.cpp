@@ -44,10 +44,11 @@ constexpr const char* loaded_first[] = {"libgdcmMSFF.so.3.0", "libproj.so.25", "
 constexpr std::size_t room_without_stacks = std::size_t{1} << 30;
 constexpr std::size_t threads_of_libraries = 8;
 
-/// A child that loads the module is given up after so long, where the least was measured to be .2
-/// s: what hangs waits for ever. The second time is what is left to it after a signal, such as
-/// SIGTERM.
-constexpr int patience_ms = 20000, patience_after_signal_ms = 1000;
+/// A child that loads the module (.2 s of CPU) and waits for what never comes uses no more CPU:
+/// after so long without any it is given up. What were to use it without end, its limit of CPU
+/// ends.
+constexpr double longest_idle_seconds = 2;
+constexpr rlim_t most_cpu_seconds = 20;
 
 struct Loaded {
   const ImageCodec* codec = nullptr;  ///< null: `error`
@@ -90,6 +91,14 @@ bool is_limited(decltype(RLIMIT_AS) resource) {
 /// Whether memory of this process has a limit (`ulimit -v` or `-d`).
 bool memory_is_limited() { return is_limited(RLIMIT_AS) || is_limited(RLIMIT_DATA); }
 
+bool has_room(std::size_t bytes, bool keep) {
+  void* const room = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
+                            MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (room == MAP_FAILED) return false;
+  if (!keep) ::munmap(room, bytes);
+  return true;
+}
+
 bool has_plenty_of_room() {
   pthread_attr_t defaults;
   std::size_t stack = 0;
@@ -97,12 +106,7 @@ bool has_plenty_of_room() {
     ::pthread_attr_getstacksize(&defaults, &stack);
     ::pthread_attr_destroy(&defaults);
   }
-  const std::size_t bytes = room_without_stacks + threads_of_libraries * stack;
-  void* const room = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
-                            MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (room == MAP_FAILED) return false;
-  ::munmap(room, bytes);
-  return true;
+  return has_room(room_without_stacks + threads_of_libraries * stack, false);
 }
 
 void* open_library(const char* file) { return ::dlopen(file, RTLD_LAZY | RTLD_LOCAL); }
@@ -127,9 +131,14 @@ void load_codec(Loaded& loaded) {
 [[noreturn]] void try_to_load() {
   ::prctl(PR_SET_DUMPABLE, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const rlimit cpu{most_cpu_seconds, most_cpu_seconds};
+  ::setrlimit(RLIMIT_CPU, &cpu);
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   ::dup2(nowhere, STDOUT_FILENO);
   ::dup2(nowhere, STDERR_FILENO);
+  // What one loading takes and another does not, by the order of its threads.
+  constexpr std::size_t margin = std::size_t{16} << 20;
+  if (!has_room(margin, true)) ::_exit(1);
   try {
     Loaded loaded;
     load_codec(loaded);
@@ -137,6 +146,23 @@ void load_codec(Loaded& loaded) {
   } catch (...) {
     ::_exit(1);
   }
+}
+
+/// Waits until `pipe` is closed at the other end, by the end of `child`. False: it hangs.
+bool ends(pid_t child, int pipe) {
+  clockid_t clock{};
+  if (::clock_getcpuclockid(child, &clock) != 0) return false;
+  constexpr int step_ms = 100;
+  double used = 0, idle_since = clock_seconds(CLOCK_MONOTONIC);
+  for (pollfd end{pipe, POLLIN, 0}; ::poll(&end, 1, step_ms) != 1;) {
+    const double now = clock_seconds(CLOCK_MONOTONIC);
+    if (const double cpu = clock_seconds(clock); cpu != used) {
+      used = cpu;
+      idle_since = now;
+    }
+    if (now - idle_since > longest_idle_seconds) return false;
+  }
+  return true;
 }
 
 /// Loads the module in a copy of this process. Where memory is short, constructors of the libraries
@@ -148,16 +174,14 @@ bool loads_in_a_child() {
   const pid_t child = ::fork();
   if (child == 0) try_to_load();
   ::close(alive[1]);
-  pollfd end{alive[0], POLLIN, 0};
-  int ended = child < 0 ? 0 : ::poll(&end, 1, patience_ms);
-  if (ended < 0 && errno == EINTR) ended = ::poll(&end, 1, patience_after_signal_ms);
+  const bool ended = child > 0 && ends(child, alive[0]);
   ::close(alive[0]);
   if (child < 0) return false;
-  if (ended != 1) ::kill(child, SIGKILL);
+  if (!ended) ::kill(child, SIGKILL);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  return ended == 1 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  return ended && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 Loaded load() {

@@ -133,7 +133,7 @@ std::vector<HostileCase> structure_cases() {
       set("RotationTooFarOff", "/nodes/0/rotation", {0, 0, 0, 1.02},
           {"nodes[0] \"thing\": rotation has length 1.02"}),
       set("OverflowingScale", "/nodes/0/scale", {1e300, 1e300, 1e300},
-          {"nodes[0] \"thing\"", "vertex 1", "1e15"}),
+          {"nodes[0] \"thing\": its transform, with those of its parents, is too large"}),
       set("FarAway", "/nodes/0/translation", {0, 1e16, 0},
           {"nodes[0] \"thing\"", "vertex 0", "1e15"}),
       set("PointsOnly", p + "/mode", 0,
@@ -243,7 +243,8 @@ std::vector<HostileCase> graph_cases() {
          b.json["nodes"].push_back({{"scale", {1e200, 1, 1}}, {"children", {0}}});
          b.json["scenes"][0]["nodes"] = {3};
        },
-       {"nodes[0] \"thing\": its transform, with those of its parents, is not finite"}},
+       {"nodes[0] \"thing\": its transform, with those of its parents, is too large or not "
+        "finite"}},
       {"SceneListsAChild",
        [](GlbBuilder& b) { b.json["nodes"][0]["children"] = {1}; },
        {"scenes[0]: lists nodes[1], which is a child of nodes[0] \"thing\""}},
