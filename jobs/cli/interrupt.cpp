@@ -54,7 +54,7 @@ double stop_grace() {
 
 double seconds_to_write(double grace) {
   const double since = clock_seconds(CLOCK_MONOTONIC) - requested.load(std::memory_order_relaxed);
-  return 0.75 * grace - since;
+  return 0.5 * grace - since;
 }
 
 }  // namespace lacuna
