@@ -52,8 +52,12 @@ class Uploads : public testing::Test {
     EXPECT_EQ(::write(draft.fd(), body.data(), body.size()), static_cast<ssize_t>(body.size()));
     return uploads.publish(std::move(draft), name);
   }
-  /// Published scenes; and nothing of drafts is left.
-  std::set<std::string> scenes() const { return names_in(folder); }
+  /// Published scenes; and nothing of drafts is left. The root itself is marked by a file.
+  std::set<std::string> scenes() const {
+    std::set<std::string> names = names_in(folder);
+    EXPECT_EQ(names.erase(".uploads"), 1U);
+    return names;
+  }
 
   TemporaryFolder temp;
   const fs::path folder = temp / "scenes";

@@ -96,6 +96,7 @@ TEST(SweepTable, OneThatCannotBeReadNowIsNotOver) {
 TEST(NamedFiles, EachNameIsLookedUpOnce) {
   const TemporaryFolder tmp;
   put_file(tmp / "a.glb", "");
+  put_file(tmp / "b.glb", "");  // an empty root would be one that is away
   const ScenesRoots scenes({tmp.path()});
   NamedFiles files(scenes);
   JobSpec job;
