@@ -48,8 +48,9 @@ std::string input_text(const InputFile& file) {
 }
 
 std::vector<std::string> changed_inputs(const InputList& before, const InputList& now) {
-  std::map<std::pair<InputRole, std::string_view>, const InputFile*> found;
-  for (const InputFile& file : now) found.emplace(std::pair(file.role, file.name), &file);
+  using Key = std::pair<InputRole, std::string_view>;
+  std::map<Key, const InputFile*> found;
+  for (const InputFile& file : now) found.emplace(Key(file.role, file.name), &file);
   std::vector<std::string> changes;
   for (const InputFile& file : before) {
     const auto same = found.find({file.role, file.name});
