@@ -54,7 +54,7 @@ SceneData box_under(const std::vector<Json>& chain) {
 TEST(ScaleZero, HidesTheMeshesBelowIt) {
   const Json turned{{"rotation", {0.6, 0, 0, 0.8}}, {"scale", {2, 3, 4}}};
   const Json line{{"matrix", {1, 2, 3, 0, 2, 4, 6, 0, -1, -2, -3, 0, 7, 8, 9, 1}}};
-  for (const Json& scale : {Json{0, 0, 0}, Json{0, 0, 1}, Json{0, -1, 0}, Json{1e-320, 0, 1}}) {
+  for (const Json& scale : {Json{0, 0, 0}, Json{0, 0, 1}, Json{0, -1, 0}}) {
     for (const std::vector<Json>& chain :
          {std::vector<Json>{{{"scale", scale}}}, {turned, {{"scale", scale}}, turned}}) {
       const SceneData scene = box_under(chain);
