@@ -113,7 +113,8 @@ void define_options(CLI::App& app, ServiceSettings& s) {
                  "how often the renderer of a job is started if it crashes")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_option("--grace", s.grace_seconds, "seconds between SIGTERM and SIGKILL, in which renderers write a checkpoint")
+  app.add_option("--grace", s.grace_seconds,
+                 "seconds between SIGTERM and SIGKILL, in which renderers write a checkpoint")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
   app.add_option_function<std::string>(

@@ -12,8 +12,8 @@ namespace lacuna {
 /// Replaces a file as a whole: a temporary beside it, write, fsync, rename, fsync of the folder. A
 /// reader sees the old content or the new, also after a power cut. What throws std::system_error
 /// names the file (disk full, no permission); the old content is then there again, even if only the
-/// last step failed. Where it cannot be put back, the new content stands and nothing is thrown: what
-/// is told and what is seen agree.
+/// last step failed. Where it cannot be put back, the new content stands and nothing is thrown:
+/// what is told and what is seen agree.
 class AtomicFile {
  public:
   /// `sync = false` leaves out both fsyncs, for what may be lost (progress).

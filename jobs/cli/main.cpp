@@ -20,7 +20,8 @@ constexpr const char* footer =
     "Environment: LACUNA_SCENES, folders of scenes (separated by ':');\n"
     "LACUNA_DATA, folder of jobs, references and cache (default: lacuna-data);\n"
     "LACUNA_CACHE, another folder for the cache of artefacts; LACUNA_CACHE_LIMIT, its size limit,\n"
-    "for example 4G (default: 10G); LACUNA_GRACE, seconds that a stop may take to write a checkpoint\n"
+    "for example 4G (default: 10G); LACUNA_GRACE, seconds that a stop may take to write a "
+    "checkpoint\n"
     "(default and at least: 2).";
 
 int run(int argc, char** argv) {

@@ -77,9 +77,7 @@ struct EmitterPoint {
   }
 
  private:
-  V3f origin_in_space(const V3f& w) const {
-    return contact == nullptr ? x : contact->origin(x, w);
-  }
+  V3f origin_in_space(const V3f& w) const { return contact == nullptr ? x : contact->origin(x, w); }
 };
 
 }  // namespace lacuna
