@@ -72,13 +72,13 @@ Row textures_that_emit(int cells, int texels) {
             const std::string& textured = stage.scene(name, [&] {
               return room({.panel_cells = cells, .glow = Glow::half_by_texture, .texels = texels});
             });
-            const auto twice = [&](const std::string& scene) {  // half of the light, more noise
+            const auto longer = [&](const std::string& scene) {  // half of the light, more noise
               JobSpec job = stage.job(method, scene);
-              *job.budget.iterations *= 2;
+              *job.budget.iterations *= 4;
               return job;
             };
-            const JobSpec job = twice(textured);
-            check.agree(stage.render(job), stage.render(twice(plain)));
+            const JobSpec job = longer(textured);
+            check.agree(stage.render(job), stage.render(longer(plain)));
             const double most =
                 double(texels) * texels + 2.0 * cells * cells * TextureMeans::most_cells;
             const auto read = static_cast<double>(stage.texels_read(job));
