@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void fail(int error, const char* what, const fs::path& file) {
-  throw_if_it_may_pass(error, file);
+  throw_if_it_may_pass(error, file, fs::absolute(file).parent_path());
   throw std::invalid_argument(fmt::format("cannot be {}: {}", what, std::strerror(error)));
 }
 
@@ -64,17 +64,13 @@ class OpenInput {
 
 }  // namespace
 
-void throw_if_it_may_pass(int error, const fs::path& file) {
+void throw_if_it_may_pass(int error, const fs::path& file, const fs::path& folder) {
   if (may_pass(error)) throw InputUnreadable(error, fmt::format("cannot read {}", file.string()));
   if (error != ENOENT) return;
-  std::error_code unknown;
-  fs::path folder = fs::absolute(file).parent_path();
-  while (!fs::exists(folder, unknown) && !unknown && folder.has_relative_path()) {
-    folder = folder.parent_path();
-  }
-  if (!unknown && !fs::is_empty(folder, unknown)) return;
-  if (unknown && !may_pass(unknown.value())) return;
-  throw InputUnreadable(error, fmt::format("cannot read {}: its folder is empty", file.string()));
+  std::error_code unknown;  // what cannot be looked into is not known to have something in it
+  if (fs::exists(folder, unknown) && !fs::is_empty(folder, unknown) && !unknown) return;
+  throw InputUnreadable(
+      error, fmt::format("cannot read {}: {} is missing or empty", file.string(), folder.string()));
 }
 
 InputBytes read_input(const fs::path& file, std::uint64_t max_bytes, InputFile& about) {

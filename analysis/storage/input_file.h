@@ -40,9 +40,10 @@ using InputBytes = std::vector<std::uint8_t>;
 // place where a fault that may pass is told from a file that is wrong.
 
 /// Throws InputUnreadable if what was met (`error`, an errno) with `file` may pass: may_pass(); or
-/// the file is missing, and so is all else in the nearest folder above it that is there, as where a
-/// share is not mounted.
-void throw_if_it_may_pass(int error, const std::filesystem::path& file);
+/// the file is missing, and `folder`, where it is looked for, is missing or empty, as a share that
+/// is not mounted.
+void throw_if_it_may_pass(int error, const std::filesystem::path& file,
+                          const std::filesystem::path& folder);
 
 /// The whole of a regular file of at most `max_bytes`; links are followed. Sets size and hash in
 /// `about`. Throws InputUnreadable; if the file itself is wrong std::invalid_argument, and

@@ -60,7 +60,7 @@ std::filesystem::path reference_file(const std::string& name, const DataRoot& da
   std::error_code error;
   const auto is_there = [&](const std::filesystem::path& path) {
     const bool there = std::filesystem::exists(path, error);
-    throw_if_it_may_pass(error.value(), path);
+    throw_if_it_may_pass(error.value(), path, path.parent_path());
     return there;
   };
   if (is_job_id(name)) {

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <string_view>
+#include <utility>
 
 #include "jobs/spec/described_json.h"
 #include "jobs/store/own_document.h"
@@ -50,10 +52,10 @@ std::string input_text(const InputFile& file) {
 std::vector<std::string> changed_inputs(const InputList& before, const InputList& now) {
   using Key = std::pair<InputRole, std::string_view>;
   std::map<Key, const InputFile*> found;
-  for (const InputFile& file : now) found.emplace(Key(file.role, file.name), &file);
+  for (const InputFile& file : now) found.emplace(Key{file.role, file.name}, &file);
   std::vector<std::string> changes;
   for (const InputFile& file : before) {
-    const auto same = found.find({file.role, file.name});
+    const auto same = found.find(Key{file.role, file.name});
     if (same == found.end()) continue;
     const std::string change = change_of(file, *same->second);
     if (!change.empty()) changes.push_back(fmt::format("{} {}", input_text(file), change));

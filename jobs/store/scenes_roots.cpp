@@ -172,13 +172,8 @@ fs::path ScenesRoots::resolve(std::string_view name, const Extensions& extension
       const int error = walk(root, name);
       if (error == 0) return root / name;
       try {
-        throw_if_it_may_pass(error, root / name);
-        std::error_code unknown;
-        if (error == ENOENT && !fs::exists(root, unknown)) {
-          throw InputUnreadable(
-              error, fmt::format("{}: the scenes root {} is missing", shown(name), root.string()));
-        }
-      } catch (const InputUnreadable& e) {
+        throw_if_it_may_pass(error, root / name, root);
+      } catch (const InputUnreadable&) {
         // What cannot be looked at now is not missing: a later root's file is another one.
         if (error != ENOENT) throw;
         if (!away) away = std::current_exception();

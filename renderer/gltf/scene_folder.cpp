@@ -4,6 +4,7 @@
 #include <charconv>
 #include <stdexcept>
 
+#include "analysis/storage/passing_error.h"
 #include "renderer/geometry/scene_data.h"
 
 namespace lacuna {
@@ -46,7 +47,7 @@ SceneFolder::SceneFolder(const std::filesystem::path& main_file)
   const auto parent = main_file.has_parent_path() ? main_file.parent_path() : ".";
   root_ = std::filesystem::canonical(parent, error);
   if (!error) return;
-  throw_if_it_may_pass(error.value(), main_file);
+  if (may_pass(error.value())) throw_if_it_may_pass(error.value(), main_file, parent);
   throw SceneError("its folder cannot be opened: " + error.message());
 }
 
@@ -75,7 +76,7 @@ std::filesystem::path SceneFolder::find(const std::string& uri, const std::strin
   std::error_code error;
   const auto file = std::filesystem::canonical(root_ / relative, error);
   if (error) {
-    throw_if_it_may_pass(error.value(), root_ / relative);
+    throw_if_it_may_pass(error.value(), root_ / relative, root_);
     throw SceneError(place + ": \"" + uri + "\" cannot be opened: " + error.message());
   }
   const auto [root_end, rest] = std::mismatch(root_.begin(), root_.end(), file.begin(), file.end());

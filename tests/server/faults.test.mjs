@@ -85,7 +85,7 @@ test("scenes that are away for a moment are waited for; scenes that have changed
     const { state } = await service.json(`/api/jobs/${id}`);
     return state.state === "queued" && state.attempts > 1 && state;
   }, "it waits");
-  assert.match(waits.obstacle, /cannot read .*own\.glb: its folder is empty/);
+  assert.match(waits.obstacle, /cannot read .*own\.glb: .*scenes is missing or empty/);
   fs.rmdirSync(places.scenes);
   fs.renameSync(away, places.scenes);
   await service.reaches(id, "done", 60000);

@@ -53,10 +53,10 @@ TEST(InputFile, AFaultThatMayPassIsTold) {
   const TemporaryFolder folder;
   const auto file = folder.write("a", "content");
   for (const int error : {EIO, EMFILE, ENFILE, ESTALE, EACCES, ETIMEDOUT, ENOTCONN, ENOMEM}) {
-    EXPECT_THROW(throw_if_it_may_pass(error, file), InputUnreadable) << error;
+    EXPECT_THROW(throw_if_it_may_pass(error, file, folder.path()), InputUnreadable) << error;
   }
   for (const int error : {0, ENOENT, ENOTDIR, EISDIR, ELOOP, ENAMETOOLONG, EINVAL}) {
-    EXPECT_NO_THROW(throw_if_it_may_pass(error, file)) << error;
+    EXPECT_NO_THROW(throw_if_it_may_pass(error, file, folder.path())) << error;
   }
   InputFile about;
   const NoDescriptors none;
@@ -79,16 +79,17 @@ TEST(InputFile, WithoutPermissionItMayBeReadAnotherTime) {
 TEST(InputFile, WhatIsMissingBesideOthersIsWrongAndWhereNothingIsAway) {
   const TemporaryFolder folder;
   const auto share = folder / "share";
-  fs::create_directory(share);
-  for (const char* name : {"a", "sub/a"}) {
-    EXPECT_THROW(measure_input(share / name), InputUnreadable) << name;
-  }
-  put_file(share / "b", "other");
-  for (const char* name : {"a", "sub/a"}) {
-    EXPECT_TRUE(contains(message_of<std::invalid_argument>([&] { measure_input(share / name); }),
-                         "cannot be opened: No such file"))
-        << name;
-  }
+  const auto look = [&](const char* name) { throw_if_it_may_pass(ENOENT, share / name, share); };
+  EXPECT_THROW(look("a"), InputUnreadable);
+  fs::create_directories(share);
+  EXPECT_THROW(look("a"), InputUnreadable);
+  EXPECT_THROW(look("sub/a"), InputUnreadable);
+  EXPECT_THROW(measure_input(share / "a"), InputUnreadable);
+  fs::create_directories(share / "sub");
+  EXPECT_NO_THROW(look("a"));
+  EXPECT_NO_THROW(look("sub/a")) << "the share is there";
+  EXPECT_TRUE(contains(message_of<std::invalid_argument>([&] { measure_input(share / "a"); }),
+                       "cannot be opened: No such file"));
 }
 
 TEST(InputFile, WhatIsNoFileOrTooLargeIsWrong) {

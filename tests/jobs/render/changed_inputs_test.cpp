@@ -117,7 +117,7 @@ TEST_F(ChangedInputs, WhatCannotBeReadNowIsNoFaultOfTheJob) {
   fs::create_directory(temp / "share");
   EXPECT_THROW(run_job(folder, away), InputUnreadable);
   EXPECT_EQ(folder.read_state().state, State::interrupted);
-  EXPECT_TRUE(contains(folder.read_state().error, "its folder is empty"));
+  EXPECT_TRUE(contains(folder.read_state().error, "is missing or empty"));
   put_file(temp / "share/other", "");
   EXPECT_THROW(run_job(folder, away), SceneError);
   EXPECT_EQ(folder.read_state().state, State::failed);

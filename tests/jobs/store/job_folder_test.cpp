@@ -224,10 +224,10 @@ TEST(JobFolder, TheManifestServesResultsAndNothingOfTheWorks) {
     EXPECT_NE(f.media_type.find('/'), std::string_view::npos);
     EXPECT_EQ(f.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz."), std::string_view::npos);
   }
-  EXPECT_EQ(names,
-            (Names{"job.json", "state.json", "progress.json", "image.exr", "image.png",
-                   "layers.half", "layers.json", "curve.csv", "report.json", "checkpoint.bin",
-                   "queue.json", "slurm.json", "slurm.sh", "slurm.exit", "log.txt"}));
+  EXPECT_EQ(names, (Names{"job.json", "state.json", "progress.json", "image.exr", "image.png",
+                          "layers.half", "layers.json", "curve.csv", "report.json",
+                          "checkpoint.bin", "queue.json", "slurm.json", "slurm.sh", "slurm.exit",
+                          "inputs.json", "log.txt"}));
 }
 
 TEST(JobFolder, WhatTheServiceWasAskedForIsKept) {
