@@ -7,7 +7,7 @@ namespace lacuna {
 namespace {
 
 /// The points of the film that camera rays go through, and how many there are.
-constexpr int across = 64, points = across * across;
+constexpr int across = 64, ray_count = across * across;
 
 /// How often a kind of surface is seen, and an example.
 struct Seen {
@@ -25,7 +25,7 @@ struct Seen {
 
 std::vector<std::string> missing_reflections(const Scene& scene, const Camera& camera) {
   Seen black, coated;
-  for (int i = 0; i < points; ++i) {
+  for (int i = 0; i < ray_count; ++i) {
     const auto at = [](int k, int size) {
       return (static_cast<float>(k) + 0.5F) / across * static_cast<float>(size);
     };
@@ -43,13 +43,13 @@ std::vector<std::string> missing_reflections(const Scene& scene, const Camera& c
     warnings.push_back(fmt::format(
         "mirrors and clear glass are black: paths from the lights cannot be connected to the eye "
         "there; {:.2g} % of the picture, first {}; another integrator shows them",
-        100.0 * black.count / points, black.example));
+        100.0 * black.count / ray_count, black.example));
   }
   if (coated.count > 0) {
     warnings.push_back(fmt::format(
         "smooth coats lack their reflections: paths from the lights cannot be connected to the eye "
         "there; {:.2g} % of the picture, first {}; another integrator shows them",
-        100.0 * coated.count / points, coated.example));
+        100.0 * coated.count / ray_count, coated.example));
   }
   return warnings;
 }
