@@ -56,7 +56,9 @@ Shares against_rays(LitScene& lit, const ViewMapsVisibilitySettings& settings) {
 
 /// Level of each test. Each compares shares of the same lights and points, over seeds: pairs of one
 /// seed have lights and points in common. The measured means are five standard errors or more
-/// within their bounds; the largest are those of the atrium, 0.067 with rays and 0.20 with views.
+/// within their bounds; the largest are those of the atrium, 0.067 with rays and 0.29 with views
+/// (0.20 where a receiver's plane was compared at its nearest point in the texel: nodes that need
+/// not cover the middle of a texel, `cover` 0, lost by that; docs/notebook/view-maps.md).
 constexpr double level = 0.01;
 constexpr std::uint64_t seeds = 6;
 
@@ -100,7 +102,7 @@ TEST_P(ViewMapShadows, AreNearlyThoseOfRays) {
   }
   expect_below(fine, 0.1, "rays of 128 texels");
   expect_below(coarser, 0, "rays of 128 texels beside those of 16");
-  expect_below(views, 0.27, "views");
+  expect_below(views, 0.33, "views");
   expect_below(gain, 0.7, "views beside what calls everything seen");
   expect_below(lods, 0.02, "the two orders of traversal");
   EXPECT_GT(statistics::t_test_at_least(lods, -0.02), 1 - level);
