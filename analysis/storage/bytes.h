@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -26,10 +27,12 @@ class PutsValues {
   void put(const T& value) { writer().append(&value, sizeof(T)); }
   template <class T>
   requires std::is_trivially_copyable_v<T>
-  void put(const std::vector<T>& values) {
+  void put(std::span<T> values) {
     put(static_cast<std::uint64_t>(values.size()));
     writer().append(values.data(), sizeof(T) * values.size());
   }
+  template <class T>
+  void put(const std::vector<T>& values) { put(std::span(values)); }
   void put(std::string_view text) {
     put(static_cast<std::uint64_t>(text.size()));
     writer().append(text.data(), text.size());

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <new>
 
 #include "analysis/space/memory_limit.h"
 #include "renderer/film/saved_values.h"
@@ -28,14 +29,24 @@ LayerMeans::LayerMeans(std::vector<std::string> names, int width, int height,
         "layers: {} images of {} x {} pixels, \"{}\" the first, would take {} bytes; allowed: {}",
         names_.size(), width, height, names_.front(), bytes, byte_limit));
   }
-  sums_.assign(names_.size(), std::vector<double>(3 * pixels, 0.0));
+  values_ = 3 * pixels;
+  sums_.reserve(names_.size());
+  while (sums_.size() < names_.size()) {
+    auto* const zeros = static_cast<double*>(std::calloc(values_, sizeof(double)));
+    if (zeros == nullptr) throw std::bad_alloc();
+    sums_.emplace_back(zeros, &std::free);
+  }
 }
 
 std::span<Image> LayerMeans::begin(const ThreadPool& pool) {
-  while (images_.size() < names_.size()) images_.emplace_back(width_, height_);
+  images_.resize(names_.size());
   pool.for_each(static_cast<int>(images_.size()), [&](int i) {
-    std::vector<Rgb>& pixels = images_[static_cast<std::size_t>(i)].pixels;
-    std::fill(pixels.begin(), pixels.end(), Rgb(0, 0, 0));
+    Image& image = images_[static_cast<std::size_t>(i)];
+    if (image.pixels.empty()) {
+      image = Image(width_, height_);
+    } else {
+      std::fill(image.pixels.begin(), image.pixels.end(), Rgb(0, 0, 0));
+    }
   });
   return images_;
 }
@@ -43,7 +54,7 @@ std::span<Image> LayerMeans::begin(const ThreadPool& pool) {
 void LayerMeans::add(const ThreadPool& pool) {
   ++iterations_;
   pool.for_each(static_cast<int>(images_.size()), [&](int i) {
-    double* sum = sums_[static_cast<std::size_t>(i)].data();
+    double* sum = sums_[static_cast<std::size_t>(i)].get();
     for (const Rgb& pixel : images_[static_cast<std::size_t>(i)].pixels) {
       for (const float v : {pixel.x, pixel.y, pixel.z}) *sum++ += double(v);
     }
@@ -53,27 +64,27 @@ void LayerMeans::add(const ThreadPool& pool) {
 void LayerMeans::merge(const LayerMeans& other) {
   iterations_ += other.iterations_;
   for (std::size_t layer = 0; layer < sums_.size(); ++layer) {
-    for (std::size_t i = 0; i < sums_[layer].size(); ++i) sums_[layer][i] += other.sums_[layer][i];
+    for (std::size_t i = 0; i < values_; ++i) sums_[layer][i] += other.sums_[layer][i];
   }
 }
 
 std::vector<double> LayerMeans::mean(std::size_t layer) const {
-  std::vector<double> mean = sums_[layer];
+  std::vector<double> mean(sum(layer).begin(), sum(layer).end());
   for (double& v : mean) v /= divisor();
   return mean;
 }
 
 void LayerMeans::save(ByteWriter& out) const {
-  for (const auto& sum : sums_) out.put(sum);
+  for (std::size_t layer = 0; layer < sums_.size(); ++layer) out.put(sum(layer));
 }
 
 void LayerMeans::load(ByteReader& in, std::uint64_t iterations) {
-  for (auto& sum : sums_) sum = get_finite(in, sum.size(), "layer");
+  for (const Sum& sum : sums_) std::ranges::copy(get_finite(in, values_, "layer"), sum.get());
   iterations_ = iterations;
 }
 
 void LayerMeans::clear() {
-  for (auto& sum : sums_) std::fill(sum.begin(), sum.end(), 0.0);
+  for (const Sum& sum : sums_) std::fill_n(sum.get(), values_, 0.0);
   iterations_ = 0;
 }
 

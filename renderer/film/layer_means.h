@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,7 +35,7 @@ class LayerMeans {
   void merge(const LayerMeans& other);
 
   /// The sum over all iterations, RGB interleaved, and what makes it their mean.
-  std::span<const double> sum(std::size_t layer) const { return sums_[layer]; }
+  std::span<const double> sum(std::size_t layer) const { return {sums_[layer].get(), values_}; }
   double divisor() const { return iterations_ > 0 ? static_cast<double>(iterations_) : 1.0; }
   /// Mean over all iterations, RGB interleaved. All zero before the first.
   std::vector<double> mean(std::size_t layer) const;
@@ -47,10 +49,16 @@ class LayerMeans {
   void clear();
 
  private:
+  /// From calloc: the system clears each page when it is first used, by the workers in add(), so
+  /// that hundreds of layers do not hold up the start or a stop.
+  using Sum = std::unique_ptr<double[], decltype(&std::free)>;
+  std::span<double> sum(std::size_t layer) { return {sums_[layer].get(), values_}; }
+
   std::vector<std::string> names_;
   int width_ = 0, height_ = 0;
+  std::size_t values_ = 0;     // of each sum
   std::vector<Image> images_;  // from the first begin(): what is only merged needs none
-  std::vector<std::vector<double>> sums_;
+  std::vector<Sum> sums_;
   std::uint64_t iterations_ = 0;
 };
 
