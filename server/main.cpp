@@ -75,6 +75,10 @@ void define_options(CLI::App& app, ServiceSettings& s) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_flag("--verbose", s.verbose, "log every request");
   app.add_option("--data", s.data, "folder of the jobs; default: $LACUNA_DATA or lacuna-data");
+  app.add_flag(
+      "--import", s.import,
+      "puts DATA/lacuna.db aside, if it is damaged, and takes over the jobs and sweeps from "
+      "their folders");
   app.add_option("--scenes", s.scenes,
                  "folder of scenes, may be repeated; default: $LACUNA_SCENES or jobs/scenes")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -183,9 +187,7 @@ int main(int argc, char** argv) {
     sigwait(&ends, &signal);
     log::info("ending (signal {})", signal);
     service.stop();
-    const std::string lost = service.lost();
-    if (!lost.empty()) fmt::print(stderr, "lacuna-server: {}\n", lost);
-    return lost.empty() ? 0 : 1;
+    return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "lacuna-server: {}\n", error.what());
     return 1;

@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <stdexcept>
 
+#include "jobs/queue/import_folders.h"
 #include "jobs/spec/page_tables.h"
 #include "jobs/spec/version.h"
 #include "server/http/access.h"
@@ -19,10 +19,9 @@
 #include "server/queue/queue.h"
 #include "server/routes/routes.h"
 #include "server/routes/scene_uploads.h"
-#include "server/service_lock.h"
 #include "server/slurm/executor_slurm.h"
+#include "server/sweeps/sweep_folders.h"
 #include "server/sweeps/sweep_keeper.h"
-#include "server/tables/sweep_table.h"
 #include "server/telemetry/log.h"
 
 namespace lacuna {
@@ -101,6 +100,7 @@ DataRoot data_root(const ServiceSettings& settings) {
   DataRoot data =
       settings.data.empty() ? DataRoot::from_environment() : DataRoot::at(settings.data);
   fs::create_directories(data.jobs());
+  fs::create_directories(data.sweeps());
   return data;
 }
 
@@ -144,6 +144,44 @@ QueueSettings queue_settings(const ServiceSettings& settings) {
   return queue;
 }
 
+/// Gives a database another name: what it says is kept, should somebody want to look. Throws
+/// DatabaseInUse, std::system_error.
+void put_aside(const fs::path& file) {
+  try {
+    const Database not_in_use(file);
+  } catch (const DatabaseDamaged&) {
+    // That is why it is put aside.
+  }
+  const std::string aside = file.string() + ".replaced-" + new_job_id();
+  for (const char* part : {"", "-wal"}) {
+    if (fs::exists(file.string() + part)) fs::rename(file.string() + part, aside + part);
+  }
+}
+
+/// The database of the jobs, with what lay in folders before there was one. Throws
+/// std::invalid_argument with advice if it cannot be used.
+std::unique_ptr<Store> open_store(const ServiceSettings& settings, const DataRoot& data) {
+  const fs::path file = data.dir / "lacuna.db";
+  try {
+    if (settings.import) put_aside(file);
+    auto store = std::make_unique<Store>(file);
+    const Imported taken = import_folders(*store, data);
+    if (taken.jobs + taken.sweeps > 0) {
+      log::info("{} jobs and {} sweeps were taken over from their folders", taken.jobs,
+                taken.sweeps);
+    }
+    return store;
+  } catch (const DatabaseDamaged& error) {
+    throw std::invalid_argument(
+        fmt::format("{}; `lacuna-server --import --data {}` puts it aside and takes over the jobs "
+                    "from their folders",
+                    error.what(), data.dir.string()));
+  } catch (const DatabaseInUse&) {
+    throw std::invalid_argument(
+        fmt::format("another lacuna-server works in {}", data.dir.string()));
+  }
+}
+
 StaticFiles page(const ServiceSettings& settings) {
   StaticFiles files(settings.web.empty() ? find_web() : fs::canonical(settings.web));
   files.add_made("/job_tables.js", page_tables_module());
@@ -158,47 +196,37 @@ struct Service::Parts {
   explicit Parts(const ServiceSettings& given)
       : settings(given),
         data(data_root(settings)),
-        lock(data.dir),
+        store(open_store(settings, data)),
         uploads(make_uploads(settings, data)),
         scenes(scenes_roots(settings, data)),
         executor(make_executor(settings, data, scenes)),
-        sweeps(data),
-        table(data, sweeps),
+        folders(data),
         disk(data.jobs(), settings.care.disk_floor),
-        queue(*executor, table, disk, queue_settings(settings)),
-        keeper(sweeps, table, queue, disk, settings.queue.max_waiting / 2),
-        maintenance(table, queue, settings.care, [this] { look_at_lock(); }),
+        queue(*executor, *store, data, disk, queue_settings(settings)),
+        keeper(*store, folders, queue, disk, settings.queue.max_waiting / 2),
+        maintenance(*store, queue, data, settings.care),
         files(page(settings)),
         access(settings.http.bind, settings.access,
                [this](const std::string& path) { return files.has(path); }),
-        routes({settings, data, scenes, table, disk, queue, http_metrics, uploads.get()},
-               {table, queue, sweeps, keeper}, files),
+        routes({settings, data, scenes, *store, disk, queue, http_metrics, uploads.get()},
+               {*store, queue, folders, keeper}, files),
         http(http_settings(settings), routes.router(), http_metrics,
              [this](const Request& request) { return access.admit(request); }) {
     http.bind();
   }
 
-  /// Ends the service, as a signal from outside does, if the folder is another's.
-  void look_at_lock() {
-    if (!lost.empty()) return;
-    lost = lock.look();
-    if (!lost.empty()) ::kill(::getpid(), SIGTERM);
-  }
-
   const ServiceSettings settings;
   const DataRoot data;
-  ServiceLock lock;
+  const std::unique_ptr<Store> store;
   const std::unique_ptr<SceneUploads> uploads;
   const ScenesRoots scenes;
   const std::unique_ptr<Executor> executor;
-  SweepTable sweeps;
-  JobTable table;
+  SweepFolders folders;
   DiskWatch disk;
   Queue queue;
   SweepKeeper keeper;
   MaintenanceThread maintenance;
   const StaticFiles files;
-  std::string lost;  ///< why it has to end; the maintenance thread's, until that has ended
   Access access;
   HttpMetrics http_metrics;
   Routes routes;
@@ -213,8 +241,7 @@ Service::~Service() { stop(); }
 
 void Service::start() {
   remove_stale_folders(parts_->data.jobs());
-  parts_->sweeps.read();
-  parts_->table.rescan();
+  remove_stale_folders(parts_->data.sweeps());
   parts_->maintenance.start();
   parts_->queue.start();
   parts_->keeper.start();
@@ -227,14 +254,7 @@ void Service::stop() {
   parts_->keeper.stop();
   parts_->queue.stop();
   parts_->maintenance.stop();
-  try {
-    parts_->table.save_index();
-  } catch (const std::exception& error) {
-    log::warn("the next start reads every folder: {}", error.what());
-  }
 }
-
-std::string Service::lost() const { return parts_->lost; }
 
 std::string Service::url() const { return parts_->http.url(); }
 

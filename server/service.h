@@ -22,9 +22,6 @@ class Service {
   void start();
   /// Refuses new requests and lets every renderer write its checkpoint.
   void stop();
-  /// Why it has ended itself, by SIGTERM: another service works in its data folder. Empty: it has
-  /// not. Only after stop().
-  std::string lost() const;
   std::string url() const;
 
  private:

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <climits>
 #include <filesystem>
 #include <mutex>
 #include <string>
@@ -19,12 +20,13 @@ enum class FileCall { open, fsync };
 /// fail with EIO: faults that no file system shows on demand. One object at a time.
 class FailingFiles {
  public:
-  /// `spared`: so many calls before go well.
-  FailingFiles(FileCall call, std::string ending, int spared = 0) {
+  /// `spared`: so many calls before go well; then so many fail.
+  FailingFiles(FileCall call, std::string ending, int spared = 0, int failing = INT_MAX) {
     const std::lock_guard lock(mutex_);
     call_ = call;
     ending_ = std::move(ending);
     spared_ = spared;
+    failing_ = failing;
   }
   ~FailingFiles() {
     const std::lock_guard lock(mutex_);
@@ -35,14 +37,15 @@ class FailingFiles {
 
   static bool hits(FileCall call, const std::string& path) {
     const std::lock_guard lock(mutex_);
-    return !ending_.empty() && call == call_ && path.ends_with(ending_) && spared_-- <= 0;
+    if (ending_.empty() || call != call_ || !path.ends_with(ending_)) return false;
+    return spared_-- <= 0 && failing_-- > 0;
   }
 
  private:
   inline static std::mutex mutex_;
   inline static FileCall call_{};
   inline static std::string ending_;
-  inline static int spared_ = 0;
+  inline static int spared_ = 0, failing_ = 0;
 };
 
 }  // namespace lacuna
@@ -67,4 +70,7 @@ __attribute__((used)) inline int fsync(int fd) {
   if (lacuna::FailingFiles::hits(lacuna::FileCall::fsync, path.string())) return errno = EIO, -1;
   return static_cast<int>(::syscall(SYS_fsync, fd));
 }
+
+// The database syncs its log so.
+__attribute__((used)) inline int fdatasync(int fd) { return fsync(fd); }
 }

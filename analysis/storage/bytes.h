@@ -32,7 +32,9 @@ class PutsValues {
     writer().append(values.data(), sizeof(T) * values.size());
   }
   template <class T>
-  void put(const std::vector<T>& values) { put(std::span(values)); }
+  void put(const std::vector<T>& values) {
+    put(std::span(values));
+  }
   void put(std::string_view text) {
     put(static_cast<std::uint64_t>(text.size()));
     writer().append(text.data(), text.size());

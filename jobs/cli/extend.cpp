@@ -51,7 +51,7 @@ void extend(const JobFolder& folder, const ExtendOptions& o) {
   refuse_changed_inputs(folder, check.changes(folder).value_or(std::vector<std::string>{}));
   // First the state: a crash in between leaves a job that ends at once with its old budget, and not
   // one that says it is done and is not.
-  if (is_terminal(folder.read_state().state)) reopen(folder);
+  if (is_terminal(folder.read_state().state)) folder.reopen();
   folder.write_job(spec);
 }
 

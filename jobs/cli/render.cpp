@@ -108,20 +108,12 @@ std::string advice_for(Obstacle obstacle) {
 
 }  // namespace
 
-void reopen(const JobFolder& folder) {
-  JobState state = folder.read_state();
-  state.state = State::queued;
-  state.error.clear();
-  state.finished.clear();
-  folder.write_state(state);
-}
-
 void start_again(const JobFolder& folder) {
   const auto lock = folder.try_lock();
   if (!lock) {
     throw FolderBusy(fmt::format("{}: another process works on this job", folder.dir().string()));
   }
-  reopen(folder);  // first: a job that is done has a checkpoint
+  folder.reopen();  // first: a job that is done has a checkpoint
   for (const char* name : {"checkpoint.bin", "inputs.json", "progress.json"}) {
     fs::remove(folder.file(name));
   }

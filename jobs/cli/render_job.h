@@ -12,9 +12,6 @@ struct RenderOptions {
   const std::vector<Shard>* shards = nullptr;  ///< the job is merged from these, not rendered
 };
 
-/// Opens a job again that has ended: its state becomes `queued`. The caller holds the lock.
-void reopen(const JobFolder& folder);
-
 /// Makes the job begin anew the next time it is rendered; its pictures stay until then. Throws
 /// FolderBusy.
 void start_again(const JobFolder& folder);

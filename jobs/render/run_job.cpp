@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <thread>
+#include <utility>
 
 #include "analysis/space/memory_limit.h"
 #include "analysis/storage/atomic_file.h"
@@ -38,14 +39,17 @@ class Running {
     state_.state = State::running;
     state_.attempts += 1;
     state_.started = utc_now();
+    if (state_.created.empty()) state_.created = state_.started;
     state_.finished.clear();
+    state_.phase.clear();
     state_.error.clear();
     state_.warnings.clear();
   }
 
   void phase(const std::string& name) {
-    state_.phase = name;
-    folder_.write_state(state_);
+    // Synced once, so that no earlier end is found after a power cut.
+    const bool begins = std::exchange(state_.phase, name).empty();
+    folder_.write_state(state_, begins);
     observer_.phase(name);
   }
   const std::string& phase_name() const { return state_.phase; }

@@ -29,7 +29,7 @@ class FolderBusy : public std::runtime_error {
 };
 
 /// Does the job of `folder`, from its checkpoint if there is one, or from the shards that a service
-/// has had rendered for it: state.json becomes `running`,
+/// has had rendered for it: outcome.json becomes `running`,
 /// then `done`, `interrupted`, or `failed` with the reason (and the exception goes on): BadJob,
 /// SceneError and others. What another time may bring (see Obstacle) leaves the job `interrupted`
 /// with the reason, if the state can be written at all, and the exception goes on, too. A job that

@@ -143,7 +143,7 @@ std::vector<Shard> read_shards(const std::vector<std::filesystem::path>& folders
 }
 
 std::optional<std::vector<Shard>> shards_to_merge(const JobFolder& folder) {
-  const std::string sweep = folder.read_control().shards;
+  const std::string sweep = folder.read_acceptance().shards;
   if (sweep.empty() || std::filesystem::exists(folder.file("checkpoint.bin"))) return std::nullopt;
   const auto count = static_cast<std::size_t>(folder.read_job().shards);
   std::vector<std::filesystem::path> folders;

@@ -16,7 +16,7 @@ namespace lacuna {
 std::vector<Shard> read_shards(const std::vector<std::filesystem::path>& folders);
 
 /// The shards that a service has had rendered for the job of `folder`, as read_shards(): runs of
-/// the sweep that queue.json names, beside `folder`. Nothing if it names none, or the job has a
+/// the sweep that accepted.json names, beside `folder`. Nothing if it names none, or the job has a
 /// checkpoint of its own, from which it goes on.
 std::optional<std::vector<Shard>> shards_to_merge(const JobFolder& folder);
 

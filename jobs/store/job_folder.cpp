@@ -17,7 +17,7 @@
 namespace lacuna {
 namespace {
 
-/// What goes into a one-line field of state.json: no control characters, of bounded length.
+/// What goes into a one-line field of outcome.json: no control characters, of bounded length.
 std::string one_line(std::string text) {
   constexpr std::size_t longest = 4000;
   if (text.size() > longest) {
@@ -30,14 +30,19 @@ std::string one_line(std::string text) {
   return text;
 }
 
+/// There is no such file. What cannot be looked at is there: reading it says why it cannot be read.
+bool is_missing(const std::filesystem::path& path) {
+  return ::access(path.c_str(), F_OK) != 0 && errno == ENOENT;
+}
+
 }  // namespace
 
 const std::vector<FileInfo>& job_files() {
   static const std::vector<FileInfo> files{
       {"job.json", "application/json", "the job with every default filled in", true},
-      {"state.json", "application/json", "where the job stands", true},
+      {"outcome.json", "application/json", "how far its renderer came, and how it ended", true},
       {"progress.json", "application/json", "how far it has come", true},
-      {"queue.json", "application/json", "what the service was asked for", false},
+      {"accepted.json", "application/json", "what the service took it for", false},
       {"slurm.json", "application/json", "its submission to Slurm", false},
       {"slurm.sh", "text/x-shellscript", "the batch script of its last submission", false},
       {"slurm.exit", "text/plain", "how the renderer of that submission ended", false},
@@ -54,18 +59,10 @@ const std::vector<FileInfo>& job_files() {
   return files;
 }
 
-JobFolder JobFolder::create(const std::filesystem::path& dir, const JobSpec& spec,
-                            const JobControl& control) {
+JobFolder JobFolder::create(const std::filesystem::path& dir, const JobSpec& spec) {
   const std::filesystem::path target = folder_path(dir);
-  create_folder_whole(target, [&](const std::filesystem::path& made) {
-    const JobFolder draft(made);
-    draft.write_job(spec);
-    JobState state;
-    state.state = control.held ? State::held : State::queued;
-    state.created = utc_now();
-    draft.write_state(state);
-    if (control != JobControl{}) draft.write_control(control);
-  });
+  create_folder_whole(
+      target, [&](const std::filesystem::path& draft) { JobFolder(draft).write_job(spec); });
   return JobFolder(target);
 }
 
@@ -83,23 +80,35 @@ void JobFolder::write_job(const JobSpec& spec) const {
   write_file_atomically(file("job.json"), lacuna::write_job(spec));
 }
 
-JobState JobFolder::read_state() const { return read_own<JobState>(file("state.json")); }
-
-JobControl JobFolder::read_control() const {
-  const auto path = file("queue.json");
-  if (::access(path.c_str(), F_OK) != 0 && errno == ENOENT) return {};
-  return read_own<JobControl>(path);
+JobState JobFolder::read_state() const {
+  const auto path = file("outcome.json");
+  if (!is_missing(path)) return read_own<JobState>(path);
+  const auto older = file("state.json");  // its name until version 0.1
+  return is_missing(older) ? JobState{} : read_own<JobState>(older);
 }
 
-void JobFolder::write_control(const JobControl& c) const {
-  write_file_atomically(file("queue.json"), write_document(c));
+void JobFolder::reopen() const {
+  JobState state = read_state();
+  state.state = State::queued;
+  state.error.clear();
+  state.finished.clear();
+  write_state(state);
 }
 
-void JobFolder::write_state(const JobState& s) const {
+Acceptance JobFolder::read_acceptance() const {
+  const auto path = file("accepted.json");
+  return is_missing(path) ? Acceptance{} : read_own<Acceptance>(path);
+}
+
+void JobFolder::write_acceptance(const Acceptance& a) const {
+  write_file_atomically(file("accepted.json"), write_document(a), false);
+}
+
+void JobFolder::write_state(const JobState& s, bool synced) const {
   JobState state = s;
   state.error = one_line(std::move(state.error));
   for (std::string& warning : state.warnings) warning = one_line(std::move(warning));
-  write_file_atomically(file("state.json"), write_document(state));
+  write_file_atomically(file("outcome.json"), write_document(state), synced);
 }
 
 std::optional<Progress> JobFolder::read_progress() const {

@@ -9,7 +9,7 @@
 
 #include "analysis/storage/file_lock.h"
 #include "jobs/spec/job_spec.h"
-#include "jobs/store/control.h"
+#include "jobs/store/acceptance.h"
 #include "jobs/store/state.h"
 
 namespace lacuna {
@@ -53,21 +53,23 @@ class JobFolder {
   std::string id() const { return dir_.filename().string(); }
   std::filesystem::path file(std::string_view name) const { return dir_ / name; }
 
-  /// Creates the folder with job.json, state.json (`queued`, or `held` if `control` says so) and,
-  /// where `control` says anything, queue.json, all synced, or nothing: it is made under a
-  /// temporary name and renamed. Throws std::system_error; std::invalid_argument if `dir` is there
-  /// already.
-  static JobFolder create(const std::filesystem::path& dir, const JobSpec& spec,
-                          const JobControl& control = {});
+  /// Creates the folder with job.json, synced, or nothing: it is made under a temporary name and
+  /// renamed. Throws std::system_error; std::invalid_argument if `dir` is there already.
+  static JobFolder create(const std::filesystem::path& dir, const JobSpec& spec);
 
-  JobSpec read_job() const;                   ///< throws BadJob, std::system_error
-  std::string read_job_text() const;          ///< what read_job() parses; throws the same
-  JobState read_state() const;                ///< throws std::runtime_error if missing or corrupt
+  JobSpec read_job() const;           ///< throws BadJob, std::system_error
+  std::string read_job_text() const;  ///< what read_job() parses; throws the same
+  /// outcome.json, which renderers write; `queued` where none has begun. Throws std::system_error,
+  /// and std::runtime_error if it is corrupt.
+  JobState read_state() const;
   void write_job(const JobSpec& spec) const;  ///< synced
-  void write_state(const JobState& s) const;  ///< synced
-  JobControl read_control()
+  void write_state(const JobState& s, bool synced = true) const;
+  /// Makes a job that has ended one that waits; only with its lock. Throws what read_state() and
+  /// write_state() throw.
+  void reopen() const;
+  Acceptance read_acceptance()
       const;  ///< all defaults if missing; throws std::runtime_error if corrupt
-  void write_control(const JobControl& c) const;  ///< synced
+  void write_acceptance(const Acceptance& a) const;  ///< not synced: the database has it too
   std::optional<Progress> read_progress() const;
   void write_progress(const Progress& p) const;
 

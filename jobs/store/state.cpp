@@ -1,45 +1,34 @@
 #include "jobs/store/state.h"
 
 #include <fmt/format.h>
-
-#include <algorithm>
+#include <fmt/ranges.h>
 
 namespace lacuna {
 namespace {
 
-constexpr std::string_view service = "service", renderer = "renderer", person = "person";
+constexpr std::string_view service = "service", person = "person";
 
+// `interrupted` is what the folder of a job says that a renderer has left before its end.
 constexpr Transition transitions[] = {
-    {State::queued, State::running, renderer, "it starts"},
+    {State::queued, State::running, service, "its renderer starts"},
     {State::queued, State::held, person, "holds it"},
     {State::queued, State::cancelled, person, "cancels it; nothing had started"},
-    {State::queued, State::cancelling, person, "cancels it while an earlier renderer still ends"},
-    {State::queued, State::done, renderer, "an earlier one ends after a restart of the service"},
+    {State::queued, State::cancelling, person, "cancels it as a renderer starts or still ends"},
+    {State::queued, State::done, service, "an earlier renderer had come to the end"},
     {State::queued, State::failed, service,
      "its folder is damaged, or Slurm refuses what it asks for"},
-    {State::running, State::running, renderer, "a new phase, or a new attempt after a crash"},
     {State::running, State::cancelling, person, "cancels it; its renderer is asked to stop"},
-    {State::running, State::interrupted, renderer, "it stops before the end, with a checkpoint"},
     {State::running, State::queued, service,
-     "its renderer crashed, or there is no room on the disk"},
+     "its renderer stopped before the end or crashed: it goes on from its checkpoint"},
     {State::running, State::held, service, "its renderer has stopped because the job is held"},
-    {State::running, State::done, renderer, "the budget is spent, the results are written"},
-    {State::running, State::failed, renderer,
-     "the job or an asset is bad; the service: it crashed too often"},
-    {State::running, State::cancelled, service, "its renderer has ended after it was cancelled"},
+    {State::running, State::done, service, "the budget is spent, the results are written"},
+    {State::running, State::failed, service,
+     "the job or an asset is bad, or renderers crashed too often"},
     {State::held, State::queued, person, "releases it"},
     {State::held, State::cancelled, person, "cancels it"},
     {State::cancelling, State::cancelled, service, "its renderer has ended"},
-    {State::cancelling, State::interrupted, renderer, "it knows that it was stopped, not why"},
-    {State::cancelling, State::done, renderer, "the request came too late"},
-    {State::cancelling, State::failed, renderer, "the request came too late"},
-    {State::interrupted, State::queued, service, "it waits for its turn again"},
-    {State::interrupted, State::running, renderer, "it goes on"},
-    {State::interrupted, State::held, service, "its renderer has stopped because the job is held"},
-    {State::interrupted, State::cancelling, person, "cancels it just then"},
-    {State::interrupted, State::cancelled, service,
-     "its renderer has ended after it was cancelled"},
-    {State::interrupted, State::failed, service, "it was interrupted too often without progress"},
+    {State::cancelling, State::done, service, "the request came too late"},
+    {State::cancelling, State::failed, service, "the request came too late"},
     {State::failed, State::queued, person, "retries or extends it"},
     {State::cancelled, State::queued, person, "retries or extends it"},
     {State::done, State::queued, person, "extends its budget"},
@@ -51,17 +40,40 @@ bool is_terminal(State s) {
   return s == State::done || s == State::failed || s == State::cancelled;
 }
 
-std::span<const Transition> state_transitions() { return transitions; }
-
-bool may_follow(State from, State to) {
-  return std::any_of(std::begin(transitions), std::end(transitions),
-                     [&](const Transition& t) { return t.from == from && t.to == to; });
+bool allows(State s, JobAction action) {
+  const bool waits = s == State::queued || s == State::running;
+  switch (action) {
+    case JobAction::hold:
+      return waits;
+    case JobAction::release:
+      return s == State::held;
+    case JobAction::cancel:
+    case JobAction::priority:
+      return waits || s == State::held;
+    case JobAction::retry:
+      return s == State::failed || s == State::cancelled;
+    case JobAction::extend:
+    case JobAction::remove:
+      break;
+  }
+  return is_terminal(s);
 }
 
+std::vector<std::string> allowed_actions(State s) {
+  std::vector<std::string> names;
+  for (const auto& [action, name, doc] : EnumTable<JobAction>::values) {
+    if (allows(s, action)) names.emplace_back(name);
+  }
+  return names;
+}
+
+std::span<const Transition> state_transitions() { return transitions; }
+
 std::string state_documentation() {
-  std::string page = "| state | meaning |\n| --- | --- |\n";
+  std::string page = "| state | meaning | a person may |\n| --- | --- | --- |\n";
   for (const auto& [state, name, doc] : EnumTable<State>::values) {
-    page += fmt::format("| `{}` | {}{} |\n", name, doc, is_terminal(state) ? " (an end)" : "");
+    page += fmt::format("| `{}` | {}{} | {} |\n", name, doc, is_terminal(state) ? " (an end)" : "",
+                        fmt::join(allowed_actions(state), ", "));
   }
   page += "\n| from | to | by | when |\n| --- | --- | --- | --- |\n";
   for (const Transition& t : transitions) {

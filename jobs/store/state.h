@@ -22,30 +22,54 @@ struct EnumTable<State> {
       {State::held, "held", "does not start, or go on, until it is released"},
       {State::cancelling, "cancelling", "its renderer was asked to stop"},
       {State::interrupted, "interrupted",
-       "its renderer stopped before the end; it goes on from its checkpoint"},
+       "of a folder: its renderer stopped before the end; it goes on from its checkpoint"},
       {State::done, "done", "its budget is spent and its results are complete"},
       {State::failed, "failed", "it cannot be done; `error` says why"},
       {State::cancelled, "cancelled", "it was stopped on request"},
   }};
 };
 
+/// A job's priority is at most this, and at least its negative.
+inline constexpr int max_priority = 100;
+
 /// done, failed, cancelled: the state changes only at a user's request.
 bool is_terminal(State s);
+
+/// What a person may ask of a job.
+enum class JobAction { cancel, hold, release, priority, retry, extend, remove };
+
+template <>
+struct EnumTable<JobAction> {
+  static constexpr std::array<EnumValue<JobAction>, 7> values{{
+      {JobAction::cancel, "cancel", "ends it; what it has rendered is kept"},
+      {JobAction::hold, "hold", "stops it until it is released"},
+      {JobAction::release, "release", "lets it start, or go on"},
+      {JobAction::priority, "priority", "changes its place in the line"},
+      {JobAction::retry, "retry", "lets it go on after it failed or was cancelled"},
+      {JobAction::extend, "extend", "gives it a larger budget"},
+      {JobAction::remove, "delete", "deletes it with all its files"},
+  }};
+};
+
+/// Whether `action` does anything to a job in state `s`. The service may still refuse it, for
+/// example to delete a job that another one needs.
+bool allows(State s, JobAction action);
+/// The names of all actions that `s` allows.
+std::vector<std::string> allowed_actions(State s);
 
 /// An allowed change of state.
 struct Transition {
   State from, to;
-  std::string_view by;   ///< who makes it: "service", "renderer", "person"
+  std::string_view by;   ///< who makes it: "service", "person"
   std::string_view why;  ///< when
 };
 /// The state machine: all allowed changes of state.
 std::span<const Transition> state_transitions();
-/// Whether a job may change from `from` to `to`; staying is always allowed.
-bool may_follow(State from, State to);
 /// The state machine as a page of Markdown.
 std::string state_documentation();
 
-/// state.json. Times are UTC, ISO 8601 with milliseconds; empty: not yet.
+/// outcome.json, and what a queue knows of it. Times are UTC, ISO 8601 with milliseconds; empty:
+/// not yet.
 struct JobState {
   State state = State::queued;
   int attempts = 0;    ///< renderers started so far
@@ -61,7 +85,7 @@ void describe(V& v, JobState& s) {
   v("state", s.state, {.doc = "where the job stands", .required = true});
   v("attempts", s.attempts, {.doc = "renderers started so far", .min = 0, .required = true});
   v("exit_code", s.exit_code, {.doc = "of the last renderer; -1: none ended"});
-  v("created", s.created, {.doc = "UTC, ISO 8601", .required = true});
+  v("created", s.created, {.doc = "UTC, ISO 8601"});
   v("started", s.started, {.doc = "UTC, ISO 8601; empty: not yet"});
   v("finished", s.finished, {.doc = "UTC, ISO 8601; empty: not yet"});
   v("phase", s.phase, {.doc = "of a running job"});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "analysis/storage/passing_error.h"
 #include "jobs/spec/identity.h"
 #include "jobs/spec/reference_spec.h"
 #include "jobs/sweep/compare_points.h"
@@ -46,9 +47,22 @@ class Comparison {
  private:
   void read() {
     for (const SweepRun& run : plan_.runs) {
-      answers_.results.emplace_back(
-          read_result(sweep_.folder(run), answers_.axes, plan_.cells[run.cell].job.budget));
+      answers_.results.push_back(read(run));
       ++answers_.states[answers_.results.back().state.state];
+    }
+  }
+
+  /// A run whose folder is damaged is named, and hides no other.
+  RunResult read(const SweepRun& run) {
+    try {
+      return read_result(sweep_.folder(run), answers_.axes, plan_.cells[run.cell].job.budget);
+    } catch (const std::runtime_error& error) {
+      if (may_pass(error)) throw;
+      answers_.warnings.push_back(
+          fmt::format("run {} is left out, its folder is damaged: {}", run.name, error.what()));
+      RunResult damaged;
+      damaged.state.state = State::failed;
+      return damaged;
     }
   }
 

@@ -168,7 +168,6 @@ void read_report(const fs::path& file, Json& report) {
 
 RunResult read_result(const JobFolder& folder, const CurveAxes& axes, const Budget& budget) {
   RunResult result;
-  if (!fs::exists(folder.file("state.json"))) return result;
   result.state = folder.read_state();
   if (auto inputs = read_inputs(folder)) result.inputs = std::move(*inputs);
   Json report = Json::object();

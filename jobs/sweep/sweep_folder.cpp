@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "analysis/storage/atomic_file.h"
+#include "analysis/storage/passing_error.h"
 #include "jobs/spec/described_json.h"
 #include "jobs/store/new_folder.h"
 #include "jobs/store/own_document.h"
@@ -37,45 +38,32 @@ SweepSpec read_sweep_spec(const fs::path& dir) {
   return parse_sweep(read_file(dir / spec_file, max_sweep_bytes));
 }
 
-SweepState read_sweep_state(const fs::path& dir) { return read_own<SweepState>(dir / state_file); }
+SweepState read_sweep_state(const fs::path& dir) {
+  if (is_gone(dir / state_file)) return {};
+  return read_own<SweepState>(dir / state_file);
+}
 
 void write_sweep_state(const fs::path& dir, const SweepState& state) {
-  write_file_atomically(dir / state_file, write_document(state));
+  write_file_atomically(dir / state_file, write_document(state), false);
 }
 
-std::string new_sweep_id(const DataRoot& data, std::size_t runs,
-                         const std::function<bool(const std::string& id)>& is_taken) {
-  for (;;) {
-    std::string id = new_job_id();
-    bool taken = is_taken(id) || fs::exists(data.sweeps() / id);
-    for (std::size_t i = 0; i < runs && !taken; ++i) {
-      taken = fs::exists(data.jobs() / run_job_id(id, i));
-    }
-    if (!taken) return id;
-  }
-}
-
-SweepFolder::SweepFolder(fs::path dir, SweepSpec spec, SweepPlan plan)
-    : dir_(std::move(dir)),
-      spec_(std::move(spec)),
-      plan_(std::move(plan)),
-      served_(lacuna::is_served(dir_)) {}
+SweepFolder::SweepFolder(fs::path dir, SweepSpec spec, SweepPlan plan, bool served)
+    : dir_(std::move(dir)), spec_(std::move(spec)), plan_(std::move(plan)), served_(served) {}
 
 SweepFolder::SweepFolder(fs::path dir, const SweepSpec& spec)
-    : SweepFolder(std::move(dir), spec, expand(spec)) {}
+    : SweepFolder(dir, spec, expand(spec), lacuna::is_served(dir)) {}
 
 SweepFolder::SweepFolder(const fs::path& dir)
     : SweepFolder(folder_path(dir), read_sweep_spec(dir)) {}
 
-SweepFolder SweepFolder::create_served(const DataRoot& data, const std::string& id,
-                                       const SweepSpec& spec, SweepPlan plan,
-                                       const SweepState& state) {
+SweepFolder SweepFolder::of_service(const DataRoot& data, const std::string& id, SweepSpec spec,
+                                    SweepPlan plan) {
   const fs::path dir = data.sweeps() / id;
-  create_folder_whole(dir, [&](const fs::path& draft) {
-    write_file_atomically(draft / spec_file, write_document(spec));
-    write_sweep_state(draft, state);
-  });
-  return {dir, spec, std::move(plan)};
+  if (!fs::exists(dir / spec_file)) {
+    fs::create_directories(dir);
+    write_file_atomically(dir / spec_file, write_document(spec), false);
+  }
+  return {dir, std::move(spec), std::move(plan), true};
 }
 
 SweepFolder SweepFolder::preview(const fs::path& dir, const SweepSpec& spec) {
@@ -133,9 +121,6 @@ JobFolder SweepFolder::make_folder(const SweepRun& run) const {
   }
 }
 
-JobState SweepFolder::state(const SweepRun& run) const {
-  const JobFolder job = folder(run);
-  return fs::exists(job.file("state.json")) ? job.read_state() : JobState{};
-}
+JobState SweepFolder::state(const SweepRun& run) const { return folder(run).read_state(); }
 
 }  // namespace lacuna

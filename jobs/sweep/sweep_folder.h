@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 
 #include "jobs/plan/expand.h"
@@ -21,10 +20,10 @@ class SweepFolder {
   static SweepFolder create(const std::filesystem::path& dir, const SweepSpec& spec);
   /// The same without touching the disk: what would be in the folder, if it is not there.
   static SweepFolder preview(const std::filesystem::path& dir, const SweepSpec& spec);
-  /// A new sweep of a service, complete on disk and synced. `id` is of new_sweep_id(), `plan` what
-  /// expand() makes of `spec`. Throws std::system_error; std::invalid_argument if it is there.
-  static SweepFolder create_served(const DataRoot& data, const std::string& id,
-                                   const SweepSpec& spec, SweepPlan plan, const SweepState& state);
+  /// A sweep of a service; its sweep.json is written where it is missing. `plan` is what expand()
+  /// makes of `spec`. Throws std::system_error.
+  static SweepFolder of_service(const DataRoot& data, const std::string& id, SweepSpec spec,
+                                SweepPlan plan);
   /// Opens the folder of a sweep. Throws BadJob, std::system_error.
   explicit SweepFolder(const std::filesystem::path& dir);
 
@@ -47,7 +46,7 @@ class SweepFolder {
 
  private:
   SweepFolder(std::filesystem::path dir, const SweepSpec& spec);
-  SweepFolder(std::filesystem::path dir, SweepSpec spec, SweepPlan plan);
+  SweepFolder(std::filesystem::path dir, SweepSpec spec, SweepPlan plan, bool served);
 
   std::filesystem::path dir_;
   SweepSpec spec_;
@@ -55,16 +54,11 @@ class SweepFolder {
   bool served_;
 };
 
-/// An id for a sweep of a service with so many runs: neither the sweep nor any of its runs is there
-/// yet, and `is_taken` does not object.
-std::string new_sweep_id(const DataRoot& data, std::size_t runs,
-                         const std::function<bool(const std::string& id)>& is_taken);
-
-/// What a sweep's folder says without its plan being made. Throws BadJob, std::system_error;
-/// std::runtime_error if state.json is missing or corrupt.
+/// What a sweep's folder says without its plan being made. Throws BadJob, std::system_error.
 SweepSpec read_sweep_spec(const std::filesystem::path& dir);
+/// state.json of a service's sweep; a running one where there is none. Throws std::system_error;
+/// std::runtime_error if it is corrupt. Not synced when written: the database has it too.
 SweepState read_sweep_state(const std::filesystem::path& dir);
-/// Synced.
 void write_sweep_state(const std::filesystem::path& dir, const SweepState& state);
 
 /// All curves of a sweep as one tidy table (CSV, RFC 4180): a row for each run and instant, with

@@ -27,12 +27,13 @@ inline bool is_over(SweepStage s) {
   return s != SweepStage::running && s != SweepStage::cancelling;
 }
 
-/// state.json of a sweep of a service. Times are as in JobState.
+/// state.json of a sweep of a service, for people and should its database be lost. Times are as in
+/// JobState.
 struct SweepState {
   SweepStage state = SweepStage::running;
-  std::string created, finished;
+  std::string created = {}, finished = {};
   std::size_t runs = 0;  ///< of the whole sweep: their jobs' ids are known without expanding it
-  std::string idempotency_key, body_hash;
+  std::string idempotency_key = {}, body_hash = {};
   bool operator==(const SweepState&) const = default;
 };
 template <class V>

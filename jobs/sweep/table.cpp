@@ -6,6 +6,7 @@
 
 #include "analysis/json/json_text.h"
 #include "analysis/storage/atomic_file.h"
+#include "analysis/storage/passing_error.h"
 #include "jobs/sweep/limits.h"
 #include "jobs/sweep/sweep_folder.h"
 
@@ -57,6 +58,16 @@ std::vector<std::string> flat_columns(const SweepPlan& plan) {
   return {names.begin(), names.end()};
 }
 
+/// Where a run stands; "damaged": its folder does not say.
+std::string state_name(const SweepFolder& sweep, const SweepRun& run) {
+  try {
+    return std::string(enum_name(sweep.state(run).state));
+  } catch (const std::runtime_error& error) {
+    if (may_pass(error)) throw;
+    return "damaged";
+  }
+}
+
 }  // namespace
 
 std::string sweep_table(const SweepFolder& sweep) {
@@ -69,7 +80,7 @@ std::string sweep_table(const SweepFolder& sweep) {
     std::string start =
         fmt::format("{},{},{},{},{},{}", run.name, run.cell + 1,
                     cell.baseline ? std::to_string(*cell.baseline + 1) : "", run.replicate + 1,
-                    sweep.plan().job_of(run).seed, enum_name(sweep.state(run).state));
+                    sweep.plan().job_of(run).seed, state_name(sweep, run));
     for (const auto& [pointer, value] : cell.settings) start += ',' + field(value);
     const JsonTable<std::string> own = flat_settings(cell);
     for (const std::string& name : flat) {

@@ -13,7 +13,7 @@ namespace lacuna {
 
 const char* status_title(int status) {
   using Pair = std::pair<int, const char*>;
-  constexpr std::array<Pair, 28> titles{{
+  constexpr std::array<Pair, 29> titles{{
       {200, "OK"},
       {201, "Created"},
       {202, "Accepted"},
@@ -27,6 +27,7 @@ const char* status_title(int status) {
       {405, "Method not allowed"},
       {408, "Too slow"},
       {409, "Conflict"},
+      {410, "Gone"},
       {411, "Length needed"},
       {412, "Changed meanwhile"},
       {413, "Too large"},

@@ -66,9 +66,15 @@ class Executor {
     /// Where it runs or waits, for a person.
     std::function<void(const std::string&)> place;
   };
+  /// A job that is to be rendered.
+  struct Task {
+    JobFolder folder;
+    int priority = 0;
+    int crashes = 0;  ///< renderers of it that crashed
+  };
   /// Renders one job; returns when its renderer has ended. `stop` asks that renderer to write a
   /// checkpoint and end. Called from several threads.
-  virtual Ending run(const JobFolder& folder, const StopSignal& stop, const Notices& notices) = 0;
+  virtual Ending run(const Task& task, const StopSignal& stop, const Notices& notices) = 0;
 
   /// Its renderers are run by somebody else, on machines of theirs: they outlive the service, and
   /// each job that wants a machine for itself gets one.

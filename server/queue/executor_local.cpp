@@ -112,7 +112,8 @@ Ending folder_unusable(const JobFolder& folder, const std::system_error& error) 
   return {Ending::Kind::not_started, error.code().value(), reason};
 }
 
-Ending LocalExecutor::run(const JobFolder& folder, const StopSignal& stop, const Notices& notices) {
+Ending LocalExecutor::run(const Task& task, const StopSignal& stop, const Notices& notices) {
+  const JobFolder& folder = task.folder;
   FileHandle output;
   try {
     forget_submission(folder);  // of a service that ran its jobs on a cluster

@@ -22,7 +22,7 @@ class LocalExecutor : public Executor {
  public:
   /// Throws std::invalid_argument if there is no such renderer.
   explicit LocalExecutor(ExecutorSettings settings);
-  Ending run(const JobFolder& folder, const StopSignal& stop, const Notices& notices) override;
+  Ending run(const Task& task, const StopSignal& stop, const Notices& notices) override;
 
  private:
   ExecutorSettings settings_;

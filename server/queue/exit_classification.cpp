@@ -33,7 +33,7 @@ bool interrupted(const Ending& end) {
 }
 
 /// What kept it from being started, or from writing its files, and may pass; empty: nothing did.
-/// Interrupted without being asked, a renderer says why in state.json, or could not write even
+/// Interrupted without being asked, a renderer says why in outcome.json, or could not write even
 /// that; one that somebody else has stopped leaves no error there.
 std::string obstacle_of(const Attempt& attempt) {
   const Ending& end = attempt.ending;
@@ -88,11 +88,11 @@ ExitClassification classify_exit(const Attempt& attempt, int max_attempts, const
   const Ending& end = attempt.ending;
   if (exited(end)) state.exit_code = end.code;
   if (end.kind == Ending::Kind::killed) state.exit_code = 128 + end.code;  // as shells have it
-  if (is_terminal(state.state)) return {state};
   const bool started = !never_began(end) && end.kind != Ending::Kind::refused;
   // A renderer that died early did not count itself.
   state.attempts =
       std::max(state.attempts, attempt.before.attempts + (started && !attempt.found ? 1 : 0));
+  if (is_terminal(state.state)) return {state};
 
   if (attempt.cancel) return {ended(std::move(state), State::cancelled, now)};
   if (attempt.hold) return {held(std::move(state))};

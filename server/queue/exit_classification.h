@@ -15,12 +15,12 @@ JobState held(JobState state);
 
 /// The circumstances in which a renderer ended.
 struct Attempt {
-  JobState before;  ///< state.json before the renderer started
-  JobState after;   ///< state.json after it ended
+  JobState before;  ///< what the folder said before the renderer started
+  JobState after;   ///< and after it ended
   Ending ending;
   bool cancel = false;    ///< a client cancelled the job
   bool hold = false;      ///< a client put the job on hold
-  bool stopped = false;   ///< the service is shutting down and stopped the renderer
+  bool stopped = false;   ///< the service has asked the renderer to stop
   bool disk_low = false;  ///< free space is below the floor, so failures do not count as crashes
   bool found = false;     ///< `before` was read after the renderer had started
   int crashes = 0;        ///< crashes of this job's earlier renderers

@@ -1,6 +1,7 @@
 #include "server/queue/maintenance_thread.h"
 
 #include <chrono>
+#include <utility>
 
 #include "analysis/storage/file_handle.h"
 #include "server/queue/retention.h"
@@ -13,18 +14,16 @@ namespace {
 // simpler than a notice from the kernel, and costs next to nothing.
 constexpr std::chrono::milliseconds tick{250};
 constexpr int ticks_to_remote = 8;  // two files of each job, over the network
-constexpr int ticks_to_folders = 4, ticks_to_disk = 4, ticks_to_lock = 4, ticks_to_retention = 240;
+constexpr int ticks_to_disk = 4, ticks_to_retention = 240;
 // Temporary files are looked for at the start, and once more when all that were left then are old
 // enough to be taken away.
 constexpr int ticks_to_tidy = 480;
-// The index of jobs that are over, for the next start: soon after a start that had to read folders.
-constexpr int first_index = 8, ticks_to_index = 1200;
 
 }  // namespace
 
-MaintenanceThread::MaintenanceThread(JobTable& table, Queue& queue, CareSettings settings,
-                                     std::function<void()> look)
-    : table_(table), queue_(queue), settings_(settings), look_(std::move(look)) {}
+MaintenanceThread::MaintenanceThread(const Store& store, Queue& queue, DataRoot data,
+                                     CareSettings settings)
+    : store_(store), queue_(queue), data_(std::move(data)), settings_(settings) {}
 
 void MaintenanceThread::start() {
   thread_ = std::jthread([this](const std::stop_token& ends) { run(ends); });
@@ -54,32 +53,25 @@ void MaintenanceThread::do_round(int number) {
     }
   };
   each(queue_.is_remote() ? ticks_to_remote : 1, [&] { queue_.look_at_running(); });
-  each(ticks_to_folders, [&] {
-    if (table_.rescan_if_changed()) queue_.adopt();
-  });
-  each(ticks_to_disk, [&] { queue_.save_pending(); });
   each(ticks_to_disk, [&] { queue_.look_at_disk(); });
-  each(ticks_to_lock, [&] { look_(); });
   each(ticks_to_retention, [&] { remove_old(); });
   if (number == 1 || number == ticks_to_tidy) list_folders();
   each(1, [&] { tidy_some(); });
-  if (number == first_index) each(1, [&] { table_.save_index(); });
-  each(ticks_to_index, [&] { table_.save_index(); });
 }
 
 /// Those in which a killed write may have left its temporary file.
 void MaintenanceThread::list_folders() {
-  jobs_to_tidy_ = table_.all();
-  for (const SweepEntryPtr& sweep : table_.sweeps().all()) {
-    remove_stale_temporaries(table_.sweeps().dir(sweep->id));
+  jobs_to_tidy_ = list_job_names(data_.jobs());
+  for (const std::string& id : list_job_names(data_.sweeps())) {
+    remove_stale_temporaries(data_.sweeps() / id);
   }
-  remove_stale_temporaries(table_.data().dir);
+  remove_stale_temporaries(data_.dir);
 }
 
 void MaintenanceThread::tidy_some() {
   constexpr int at_once = 200;  // a round stays short
   for (int i = 0; i < at_once && !jobs_to_tidy_.empty(); ++i) {
-    const std::filesystem::path folder = table_.folder(jobs_to_tidy_.back()->id).dir();
+    const std::filesystem::path folder = data_.jobs() / jobs_to_tidy_.back();
     jobs_to_tidy_.pop_back();
     if (std::filesystem::exists(folder)) remove_stale_temporaries(folder);
   }
@@ -87,10 +79,11 @@ void MaintenanceThread::tidy_some() {
 }
 
 void MaintenanceThread::remove_old() {
-  for (const std::string& id : outdated(table_.all(), table_.sweeps().unfinished(), settings_,
-                                        std::chrono::system_clock::now())) {
+  if (settings_.keep_jobs == 0 && settings_.keep_days == 0) return;
+  for (const std::string& id :
+       outdated(store_.removable(), settings_, std::chrono::system_clock::now())) {
     try {
-      queue_.remove_outdated(id);
+      queue_.remove(id);
       log::info("{}: removed, as the settings of what is kept say", id);
     } catch (const std::exception& error) {  // it was asked to go on, or its folder resists
       log::warn("{} is kept: {}", id, error.what());

@@ -1,26 +1,22 @@
 #pragma once
 
 #include <condition_variable>
-#include <functional>
 #include <mutex>
 #include <stop_token>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "server/queue/queue.h"
 #include "server/settings/queue_settings.h"
-#include "server/tables/job_table.h"
 
 namespace lacuna {
 
-/// Periodic maintenance: reads the progress of renderers, finds folders added or removed by others,
-/// checks the disk space, removes outdated jobs, and saves the
-/// index of jobs.
+/// Periodic maintenance: reads the progress of renderers, checks the disk space, removes outdated
+/// jobs and what killed writes have left.
 class MaintenanceThread {
  public:
-  /// `look`: called about once a second, too.
-  MaintenanceThread(JobTable& table, Queue& queue, CareSettings settings,
-                    std::function<void()> look);
+  MaintenanceThread(const Store& store, Queue& queue, DataRoot data, CareSettings settings);
   ~MaintenanceThread() { stop(); }
   MaintenanceThread(const MaintenanceThread&) = delete;
   MaintenanceThread& operator=(const MaintenanceThread&) = delete;
@@ -35,11 +31,11 @@ class MaintenanceThread {
   void list_folders();
   void tidy_some();
 
-  JobTable& table_;
+  const Store& store_;
   Queue& queue_;
+  const DataRoot data_;
   const CareSettings settings_;
-  const std::function<void()> look_;
-  std::vector<EntryPtr> jobs_to_tidy_;  // the last first
+  std::vector<std::string> jobs_to_tidy_;
 
   std::mutex mutex_;
   std::condition_variable_any ended_;

@@ -5,48 +5,36 @@
 #include <algorithm>
 #include <utility>
 
+#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/passing_error.h"
 #include "jobs/spec/budget_extension.h"
 #include "jobs/spec/described_json.h"
+#include "jobs/spec/job_json.h"
 #include "jobs/store/new_folder.h"
 #include "server/queue/child_process.h"
 #include "server/telemetry/log.h"
 
 namespace lacuna {
+namespace {
 
-Queue::Queue(Executor& executor, JobTable& table, DiskWatch& disk, QueueSettings settings)
-    : executor_(executor), table_(table), disk_(disk), settings_(settings) {}
-
-void Queue::start() {
-  for (const EntryPtr& entry : table_.all()) {
-    if (entry->damaged) log::error("{} is left alone: {}", entry->id, entry->state.error);
-    enter(entry->id);
+/// The job, as the client knows it.
+JobEntry checked(std::optional<JobEntry> entry, const std::string& revision) {
+  if (!entry) throw Conflict("The job no longer exists.");
+  const std::string now = std::to_string(entry->revision);
+  if (!revision.empty() && revision != "*" && revision != now) {
+    throw Changed(fmt::format("The job has changed: its revision is now {}.", now));
   }
-  for (int i = 0; i < settings_.children; ++i) {
-    runners_.emplace_back([this](const std::stop_token& ends) { run(ends); });
-  }
+  return std::move(*entry);
 }
 
-void Queue::stop() {
-  {
-    const std::lock_guard lock(mutex_);
-    for (std::jthread& runner : runners_) runner.request_stop();
-    for (const auto& [id, work] : work_) {
-      if (!work->stop) continue;
-      if (executor_.is_remote()) {
-        work->stop->leave();
-      } else {
-        work->stop->request();
-      }
-    }
-  }
-  changed_.notify_all();
-  runners_.clear();
-}
+}  // namespace
+
+Queue::Queue(Executor& executor, Store& store, const DataRoot& data, DiskWatch& disk,
+             QueueSettings settings)
+    : executor_(executor), store_(store), data_(data), disk_(disk), settings_(settings) {}
 
 std::size_t Queue::room() const {
-  const std::lock_guard lock(mutex_);
-  return settings_.max_waiting - std::min(settings_.max_waiting, work_.size());
+  return settings_.max_waiting - std::min(settings_.max_waiting, unfinished_of(store_.counts()));
 }
 
 void Queue::check_room() const {
@@ -56,270 +44,165 @@ void Queue::check_room() const {
   }
 }
 
-EntryPtr Queue::add(const std::string& id) {
-  EntryPtr entry = table_.add(id);
-  enter(id);
-  return entry;
-}
-
-void Queue::adopt() {
-  for (const EntryPtr& entry : table_.all()) {
-    if (!entry->over) enter(entry->id);
+void Queue::take_up(const std::vector<JobEntry>& added) {
+  for (const JobEntry& entry : added) {
+    try {
+      make_folder(entry);
+    } catch (const std::exception& error) {  // its runner tries again
+      log::warn("{}: {}", entry.id, error.what());
+    }
   }
-}
-
-/// A job that is not over comes in: new, or left by an earlier run of the service.
-void Queue::enter(const std::string& id) {
   const std::lock_guard lock(mutex_);
-  const EntryPtr entry = table_.find(id);
-  if (!entry || entry->over || work_.contains(id)) return;
-  const WorkPtr work = open(*entry, entry->control);
-  try {
-    place(*entry, *work);
-  } catch (const std::exception& error) {
-    if (!may_pass(error)) return give_up(id, error.what());
-    postpone(*work, error);
-    line_up(*work);
-  }
-}
-
-/// Where it belongs by its state. Throws before anything has changed.
-void Queue::place(const JobEntry& entry, Work& work) {
-  if (entry.unread) return line_up(work);
-  const State state = entry.state.state;
-  if (state == State::cancelling) work.control.cancel = true;
-  if (work.control.cancel && withdraw(work, State::cancelled)) return;
-  if (work.control.held && withdraw(work, State::held)) return;
-  // Where a renderer of an earlier service still ends, its state.json is not ours yet.
-  if (state != State::queued) withdraw(work, State::queued);
-  // Unless that renderer has come to the end just now, and the job is over.
-  if (work_.contains(entry.id)) line_up(work);
-}
-
-Queue::WorkPtr Queue::open(const JobEntry& entry, const JobControl& control) {
-  auto work = std::make_shared<Work>();
-  work->id = entry.id;
-  work->created = entry.state.created;
-  work->exclusive = entry.exclusive && !executor_.is_remote();
-  work->control = control;
-  work_[work->id] = work;
-  return work;
-}
-
-void Queue::line_up(Work& work) {
-  const bool to_submit = !executor_.holds(table_.folder(work.id));
-  work.queue_key = QueueKey{to_submit, -work.control.priority, work.created, work.id};
-  line_.insert(*work.queue_key);
-  if (waits_for_shards(work)) {
-    table_.set_place(work.id, fmt::format("nowhere yet: it waits for its shards, the runs of {}",
-                                          work.control.shards));
-  }
   changed_.notify_all();
 }
 
-void Queue::leave_line(Work& work) {
-  if (work.queue_key) line_.erase(*work.queue_key);
-  work.queue_key.reset();
-}
-
-/// Takes a job that no runner has, so that its state can be written. Nothing: a renderer of
-/// somebody else still holds its folder, and a runner has to wait for that. Throws Conflict if the
-/// folder is damaged, and std::system_error. Only under the fork mutex, which has to be held as
-/// long as the claim.
-std::optional<Queue::Claim> Queue::claim(const Work& work) const {
-  auto lock = try_folder(work);
-  if (!lock) return std::nullopt;
+/// The folder of a job that has ended says so, also where no renderer came to say it.
+void Queue::note_end(const JobEntry& entry) const {
+  const JobFolder job = folder(entry.id);
   try {
-    return Claim{std::move(*lock), stored_state(work.id)};
-  } catch (const std::exception& error) {
-    if (may_pass(error)) throw;
-    throw Conflict(error.what());
+    if (job.read_state().state != entry.state.state) job.write_state(entry.state, false);
+  } catch (const std::exception& error) {  // the store knows
+    log::warn("{}: {}", entry.id, error.what());
   }
-}
-
-/// Writes the new state of a job that is claimed.
-void Queue::commit(Work& work, const JobState& before, State how) {
-  if (is_terminal(before.state)) {
-    table_.set_state(work.id, before, true);
-    forget(work.id);
-  } else if (how == State::queued) {
-    write_state(work.id, queued(before), false);
-  } else if (how == State::held) {
-    write_state(work.id, held(before), false);
-  } else {
-    write_state(work.id, ended(before, how, utc_now()), true);
-    forget(work.id);
-  }
-}
-
-/// Both in one. False: there is no claim to be had, and nothing has changed.
-bool Queue::withdraw(Work& work, State how) {
-  const std::lock_guard no_forks(fork_mutex());
-  const auto claimed = claim(work);
-  if (claimed) commit(work, claimed->state, how);
-  return claimed.has_value();
-}
-
-void Queue::forget(const std::string& id) {
-  const auto found = work_.find(id);
-  if (found == work_.end()) return;
-  leave_line(*found->second);
-  work_.erase(found);
   on_over_();
 }
 
-EntryPtr Queue::checked(const std::string& id, const std::string& revision) const {
-  EntryPtr entry = table_.find(id);
-  if (!entry) throw Conflict("The job no longer exists.");
-  if (!revision.empty() && revision != "*" && revision != entry->revision()) {
-    throw Changed(fmt::format("The job has changed: its revision is now {}.", entry->revision()));
+/// The folder with what the store says. Not synced: it is made again where it is missing.
+void Queue::make_folder(const JobEntry& entry) const {
+  const JobFolder job = folder(entry.id);
+  std::filesystem::create_directories(job.dir());
+  const auto said = [&] {
+    try {
+      return job.read_job_text();
+    } catch (const std::exception& error) {
+      if (may_pass(error)) throw;
+      return std::string();
+    }
+  };
+  if (!is_job(job) || said() != entry.spec) {
+    write_file_atomically(job.file("job.json"), entry.spec, false);
   }
-  if (entry->unread) throw Unavailable(entry->obstacle);
-  return entry;
-}
-
-void Queue::write_control(Work& work, const JobControl& control) {
-  table_.folder(work.id).write_control(control);
-  work.control = control;
-  table_.set_control(work.id, control);
+  if (!std::filesystem::exists(job.file("accepted.json"))) {
+    job.write_acceptance({entry.number, entry.state.created, entry.sweep, entry.shards,
+                          entry.key.value_or(""), entry.body_hash});
+  }
 }
 
 void Queue::change(const std::string& id, std::optional<int> priority, std::optional<bool> held,
                    const std::string& revision) {
   const std::lock_guard lock(mutex_);
-  const EntryPtr entry = checked(id, revision);
-  const auto found = work_.find(id);
-  if (found == work_.end()) {
-    throw Conflict(fmt::format("The job is {}: it is not waiting.", enum_name(entry->state.state)));
-  }
-  Work& work = *found->second;
-  JobControl control = work.control;
-  control.priority = priority.value_or(control.priority);
-  control.held = held.value_or(control.held);
-  if (control == work.control) return;
-  if (work.control.cancel) throw Conflict("The job is being cancelled.");
-  if (work.stop) {  // a runner has it and looks at what was asked when its renderer has ended
-    write_control(work, control);
-    executor_.set_priority(table_.folder(id), control.priority);
-    if (control.held) work.stop->request();
-    return;
-  }
-  // What may fail comes first: the change is made as a whole or not at all.
-  const std::lock_guard no_forks(fork_mutex());
-  const bool moves = control.held || entry->state.state == State::held;
-  const auto claimed = moves ? claim(work) : std::nullopt;
-  write_control(work, control);
-  leave_line(work);
-  if (claimed) {
-    const bool waits = !control.held && !is_terminal(claimed->state.state);
-    commit(work, claimed->state, control.held ? State::held : State::queued);
-    if (!waits) return;
-  }
-  line_up(work);
+  const auto taken = work_.find(id);
+  store_.change([&](StoreChange& c) {
+    JobEntry entry = checked(c.find_job(id), revision);
+    if (entry.over()) {
+      throw Conflict(
+          fmt::format("The job is {}: it is not waiting.", enum_name(entry.state.state)));
+    }
+    const bool same = priority.value_or(entry.priority) == entry.priority &&
+                      held.value_or(entry.held) == entry.held;
+    if (same) return;
+    if (entry.cancel) throw Conflict("The job is being cancelled.");
+    entry.priority = priority.value_or(entry.priority);
+    entry.held = held.value_or(entry.held);
+    // One that a runner has is held when its renderer has ended.
+    if (taken == work_.end() && !entry.begun) {
+      entry.state.state = entry.held ? State::held : State::queued;
+    }
+    c.put(std::move(entry));
+  });
+  changed_.notify_all();
+  if (taken == work_.end()) return;
+  if (priority) executor_.set_priority(folder(id), *priority);
+  if (held.value_or(false)) taken->second->stop.request();
 }
 
 void Queue::cancel(const std::string& id, const std::string& revision) {
   const std::lock_guard lock(mutex_);
-  const EntryPtr entry = checked(id, revision);
-  const auto found = work_.find(id);
-  if (found == work_.end()) {
-    if (entry->state.state == State::cancelled) return;
-    throw Conflict(fmt::format("The job is {}.", enum_name(entry->state.state)));
+  const auto taken = work_.find(id);
+  std::optional<JobEntry> over;
+  store_.change([&](StoreChange& c) {
+    JobEntry entry = checked(c.find_job(id), revision);
+    if (entry.state.state == State::cancelled) return;
+    if (entry.over()) throw Conflict(fmt::format("The job is {}.", enum_name(entry.state.state)));
+    entry.cancel = true;
+    if (taken == work_.end() && !entry.begun) {
+      entry.state = ended(entry.state, State::cancelled, utc_now());
+      entry.obstacle.clear();
+      over = entry;
+    } else {
+      entry.state.state = State::cancelling;
+    }
+    c.put(std::move(entry));
+  });
+  changed_.notify_all();
+  if (over) note_end(*over);
+  if (taken != work_.end()) taken->second->stop.request();
+}
+
+/// A job that was over, open again. Throws Conflict, std::system_error.
+JobEntry Queue::reopened(JobEntry entry) const {
+  const JobFolder job = folder(entry.id);
+  if (std::filesystem::exists(job.dir())) {
+    const std::lock_guard no_forks(fork_mutex());
+    const auto free = job.try_lock();
+    if (!free) throw Conflict("A renderer is still running in the job's folder.");
+    executor_.forget(job);
   }
-  Work& work = *found->second;
-  JobControl control = work.control;
-  control.cancel = true;
-  const std::lock_guard no_forks(fork_mutex());
-  // What may fail comes first, as in change().
-  const auto claimed = work.stop ? std::nullopt : claim(work);
-  if (control != work.control) write_control(work, control);
-  if (claimed) return commit(work, claimed->state, State::cancelled);
-  if (work.stop) {
-    work.stop->request();
-  } else if (!work.queue_key) {
-    line_up(work);
-  }
-  JobState state = entry->state;
-  if (is_terminal(state.state)) return;
-  state.state = State::cancelling;
-  table_.set_state(id, state, false);
+  entry.cancel = entry.held = false;
+  entry.reopened = true;
+  entry.crashes = 0;
+  entry.state = queued(entry.state);
+  return entry;
 }
 
 void Queue::retry(const std::string& id, const std::string& revision) {
   const std::lock_guard lock(mutex_);
-  const EntryPtr entry = checked(id, revision);
-  const State state = entry->state.state;
-  if (!entry->over || entry->damaged || state == State::done) {
-    throw Conflict(fmt::format("The job is {}: only failed and cancelled jobs can be retried.",
-                               entry->damaged ? "damaged" : enum_name(state)));
-  }
-  line_up(reopen(entry));
+  store_.change([&](StoreChange& c) {
+    JobEntry entry = checked(c.find_job(id), revision);
+    if (!allows(entry.state.state, JobAction::retry)) {
+      throw Conflict(fmt::format("The job is {}: only failed and cancelled jobs can be retried.",
+                                 enum_name(entry.state.state)));
+    }
+    c.put(reopened(std::move(entry)));
+  });
+  pauses_.erase(id);
+  changed_.notify_all();
 }
 
 void Queue::extend(const std::string& id, const Budget& budget, const std::string& revision) {
   const std::lock_guard lock(mutex_);
-  const EntryPtr entry = checked(id, revision);
-  if (!entry->over || entry->damaged) {
-    throw Conflict(fmt::format("The job is {}: only a job that is over can be extended.",
-                               entry->damaged ? "damaged" : enum_name(entry->state.state)));
-  }
-  JobSpec spec = table_.folder(id).read_job();
-  throw_if_any(extension_problems(spec.budget, budget));
-  spec.budget = budget;
-  // First the state: a crash in between leaves a job that ends at once with its old budget, and not
-  // one that says it is done and is not.
-  Work& work = reopen(entry);
-  try {
-    table_.folder(id).write_job(spec);
-  } catch (...) {
-    write_state(id, entry->state, true);
-    forget(id);
-    throw;
-  }
-  table_.set_job(id, spec);
-  line_up(work);
-}
-
-/// A job that was over is open again, but not in the line yet.
-Queue::Work& Queue::reopen(const EntryPtr& entry) {
-  const JobFolder folder = table_.folder(entry->id);
-  const std::lock_guard no_forks(fork_mutex());
-  const auto free = folder.try_lock();
-  if (!free) throw Conflict("A renderer is still running in the job's folder.");
-  executor_.forget(folder);
-  JobControl control = entry->control;
-  control.cancel = control.held = false;
-  control.crashes = 0;
-  const JobState state = queued(folder.read_state());
-  folder.write_control(control);  // which changes nothing while the state says that it is over
-  folder.write_state(state);
-  unsaved_.erase(entry->id);
-  table_.set_control(entry->id, control);
-  table_.set_state(entry->id, state, false);
-  return *open(*entry, control);
+  store_.change([&](StoreChange& c) {
+    JobEntry entry = checked(c.find_job(id), revision);
+    if (!allows(entry.state.state, JobAction::extend)) {
+      throw Conflict(fmt::format("The job is {}: only a job that is over can be extended.",
+                                 enum_name(entry.state.state)));
+    }
+    JobSpec spec = parse_job(entry.spec);
+    throw_if_any(extension_problems(spec.budget, budget));
+    spec.budget = budget;
+    take_spec(entry, spec);
+    c.put(reopened(std::move(entry)));
+  });
+  pauses_.erase(id);
+  changed_.notify_all();
 }
 
 /// Only under the lock.
 void Queue::check_all_removable(const std::vector<std::string>& ids) const {
-  // What cannot be read now may need any of them.
-  if (const EntryPtr unread = table_.unread()) {
-    throw Unavailable(fmt::format("Job {} may need it: {}", unread->id, unread->obstacle));
-  }
   for (const std::string& id : ids) {
-    const EntryPtr entry = checked(id, {});
-    if (!entry->over) {
+    const JobEntry entry = checked(store_.find(id), {});
+    if (!allows(entry.state.state, JobAction::remove)) {
       throw Conflict(fmt::format("Job {} is {}: only a job that is over can be removed.", id,
-                                 enum_name(entry->state.state)));
+                                 enum_name(entry.state.state)));
     }
-    const SweepEntryPtr sweep = table_.sweeps().find(entry->sweep);
-    if (sweep && sweep->unread) throw Unavailable(sweep->error);
-    if (sweep && !is_over(sweep->state.state)) {
-      throw Conflict(fmt::format("Sweep {}, which it is a run of, is not over.", entry->sweep));
+    const auto sweep = store_.find_sweep(entry.sweep);
+    if (sweep && !is_over(sweep->state)) {
+      throw Conflict(fmt::format("Sweep {}, which it is a run of, is not over.", entry.sweep));
     }
-    if (const EntryPtr user = table_.merged_from(entry->sweep); user && !user->over) {
+    if (const auto user = store_.merged_from(entry.sweep); user && !user->over()) {
       throw Conflict(fmt::format("Job {} is to be merged from {}.", user->id, id));
     }
-    if (const auto user = table_.measured_against(id)) {
+    if (const auto user = store_.measured_against(id)) {
       throw Conflict(fmt::format("Job {} measures its error against {}.", *user, id));
     }
   }
@@ -332,18 +215,7 @@ void Queue::check_removable(const std::vector<std::string>& ids) const {
 
 void Queue::remove(const std::string& id, const std::string& revision) {
   const std::lock_guard lock(mutex_);
-  checked(id, revision);
-  take_away({id});
-}
-
-/// Its folder says so itself: what is known here only is not what a restart would find.
-bool Queue::is_over_on_disk(const std::string& id) const {
-  return !unsaved_.contains(id) && is_terminal(table_.folder(id).read_state().state);
-}
-
-void Queue::remove_outdated(const std::string& id) {
-  const std::lock_guard lock(mutex_);
-  if (!is_over_on_disk(id)) throw Conflict("Its folder does not say that it is over.");
+  checked(store_.find(id), revision);
   take_away({id});
 }
 
@@ -352,84 +224,34 @@ void Queue::remove_all(const std::vector<std::string>& ids) {
   take_away(ids);
 }
 
-/// Only under the lock.
+/// Only under the lock. The folders get hidden names first: a crash in between leaves jobs without
+/// results, which can be removed once more.
 void Queue::take_away(const std::vector<std::string>& ids) {
   check_all_removable(ids);
   const std::lock_guard no_forks(fork_mutex());
   std::vector<JobFolder::Lock> taken;
   std::vector<std::filesystem::path> folders;
   for (const std::string& id : ids) {
-    const JobFolder folder = table_.folder(id);
-    auto lock = folder.try_lock();
+    const JobFolder job = folder(id);
+    if (is_gone(job.dir())) continue;
+    auto lock = job.try_lock();
     if (!lock) throw Conflict(fmt::format("A renderer is still running in the folder of {}.", id));
     taken.push_back(std::move(*lock));
-    folders.push_back(folder.dir());
+    folders.push_back(job.dir());
   }
-  trash_.take(take_folders_away(folders));
-  for (const std::string& id : ids) table_.remove(id);
-}
-
-void Queue::look_at_disk() {
-  const bool low = disk_.is_low();
-  const std::lock_guard lock(mutex_);
-  for (const auto& [id, work] : work_) {
-    if (!low || !work->stop) continue;
-    work->stopped_for_disk = true;
-    work->stop->request();
-  }
-  changed_.notify_all();
-}
-
-void Queue::look_at_running() {
-  const std::lock_guard lock(mutex_);  // or an old state could be told after a new one
-  for (const auto& [id, work] : work_) {
-    if (!work->stop) continue;
-    const JobFolder folder = table_.folder(id);
-    try {
-      if (const auto progress = folder.read_progress()) table_.set_progress(id, *progress);
-      JobState state = stored_state(id);
-      // An end counts once its runner has seen it: only then can the job be removed or extended.
-      if (is_terminal(state.state)) continue;
-      if (work->control.cancel) state.state = State::cancelling;
-      table_.set_state(id, state, false);
-    } catch (const std::exception& error) {  // its runner will find out, too
-      log::debug("{}: {}", id, error.what());
-    }
-  }
-}
-
-/// Throws std::runtime_error if the job's folder does not say.
-JobState Queue::stored_state(const std::string& id) const {
-  const auto unsaved = unsaved_.find(id);
-  return unsaved != unsaved_.end() ? unsaved->second : table_.folder(id).read_state();
-}
-
-void Queue::write_state(const std::string& id, const JobState& state, bool over) {
+  std::vector<std::filesystem::path> hidden = take_folders_away(folders);
   try {
-    const State before = stored_state(id).state;
-    if (before != state.state && !may_follow(before, state.state)) {
-      log::error("{}: {} may not follow {}", id, enum_name(state.state), enum_name(before));
+    store_.change([&](StoreChange& c) {
+      for (const std::string& id : ids) c.remove_job(id);
+    });
+  } catch (...) {
+    for (std::size_t i = 0; i < hidden.size(); ++i) {
+      std::error_code lost;  // then its results are: the job stays
+      std::filesystem::rename(hidden[i], folders[i], lost);
     }
-    table_.folder(id).write_state(state);
-    unsaved_.erase(id);
-  } catch (const std::exception& error) {
-    log::error("{}: its state could not be saved: {}", id, error.what());
-    unsaved_[id] = state;
+    throw;
   }
-  table_.set_state(id, state, over);
-}
-
-void Queue::save_pending() {
-  const std::lock_guard lock(mutex_);
-  std::erase_if(unsaved_, [&](const auto& pending) {
-    const auto& [id, state] = pending;
-    try {
-      table_.folder(id).write_state(state);
-      return true;
-    } catch (const std::exception&) {
-      return is_gone(table_.folder(id).dir());
-    }
-  });
+  trash_.take(std::move(hidden));
 }
 
 }  // namespace lacuna

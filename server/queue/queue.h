@@ -12,16 +12,14 @@
 #include <stop_token>
 #include <string>
 #include <thread>
-#include <tuple>
 #include <vector>
 
-#include "jobs/store/job_folder.h"
+#include "jobs/queue/store.h"
 #include "server/queue/disk_watch.h"
 #include "server/queue/executor.h"
 #include "server/queue/exit_classification.h"
 #include "server/queue/trash.h"
 #include "server/settings/queue_settings.h"
-#include "server/tables/job_table.h"
 
 namespace lacuna {
 
@@ -35,37 +33,33 @@ class Changed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
-/// It is not possible now, and may be soon.
-class Unavailable : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 /// No more jobs may wait.
 class Full : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The waiting and the running jobs: by priority, then first come, first served; an exclusive job
-/// runs alone, and no job overtakes it. The folders are the source of truth, from which the queue
-/// can be rebuilt. While a renderer runs, it owns its job's state.json; before and after, the queue
-/// does. Requests are on disk before the call returns.
+/// Renders the jobs of a store: by priority, then first come, first served; an exclusive job runs
+/// alone, and no job overtakes it. The store is the source of truth and this its only writer but
+/// for what is added; renderers write into their folders, and what they say of their end is taken
+/// over. Requests are on disk before the call returns.
 ///
 /// A fault that may pass (may_pass()) costs no job. A job whose folder cannot be locked, read or
-/// written stays in the line, with the obstacle in the table, and the queue pauses before it
-/// continues with the next one; the pauses grow with each fault, of a job and of all.
+/// written stays in the line, with its obstacle, and the queue pauses before it continues with the
+/// next one; the pauses grow with each fault, of a job and of all.
 ///
 /// The calls that change a job take the `revision` that the client has read; empty: any. All throw
-/// Changed, Conflict, Unavailable, and std::system_error if the request could not be stored: then
-/// nothing has changed.
+/// Changed, Conflict, and std::system_error if the request could not be stored: then nothing has
+/// changed.
 class Queue {
  public:
-  Queue(Executor& executor, JobTable& table, DiskWatch& disk, QueueSettings settings);
+  Queue(Executor& executor, Store& store, const DataRoot& data, DiskWatch& disk,
+        QueueSettings settings);
   ~Queue() { stop(); }
   Queue(const Queue&) = delete;
   Queue& operator=(const Queue&) = delete;
 
-  /// Puts every unfinished job of the table in the line again, and begins.
+  /// Begins with the unfinished jobs of the store.
   void start();
   /// Asks all renderers to stop and waits for them; their jobs go on after the next start().
   /// Renderers that are not of this service's machine run on, and that start() finds them.
@@ -75,14 +69,10 @@ class Queue {
   std::size_t room() const;
   /// Throws Full if there is no room.
   void check_room() const;
-  /// Calls `notice` whenever a job is over: under the queue's lock, so that it may only take note.
-  /// Before start().
+  /// Calls `notice` whenever a job is over: it may only take note. Before start().
   void on_over(std::function<void()> notice) { on_over_ = std::move(notice); }
-  /// A new job, whose folder is complete on disk.
-  EntryPtr add(const std::string& id);
-  /// Puts the unfinished jobs of the table that it has not seen yet in the line: folders that
-  /// somebody else has made.
-  void adopt();
+  /// Jobs were added to the store: makes their folders, as far as that can be done now.
+  void take_up(const std::vector<JobEntry>& added);
 
   /// A running job that is held is stopped, with its checkpoint.
   void change(const std::string& id, std::optional<int> priority, std::optional<bool> held,
@@ -95,8 +85,6 @@ class Queue {
   void extend(const std::string& id, const Budget& budget, const std::string& revision = {});
   /// Removes a job that is over, and its folder: none of a sweep that is not over.
   void remove(const std::string& id, const std::string& revision = {});
-  /// The same of one that need not be kept: throws Conflict unless its folder says that it is over.
-  void remove_outdated(const std::string& id);
   /// The same of many at once: all of them or, if one cannot be, none.
   void remove_all(const std::vector<std::string>& ids);
   /// Throws Conflict if one of them cannot be removed.
@@ -108,93 +96,74 @@ class Queue {
   void look_at_running();
   /// Its renderers write through a file system of many machines, where looking costs more.
   bool is_remote() const { return executor_.is_remote(); }
-  /// Tries once more to write the states that could not be written.
-  void save_pending();
   /// Why the jobs that wait do not go on, for everybody: names no file. Empty: nothing keeps them.
+  /// Never waits for the disk.
   std::string obstacle() const;
+
+  JobFolder folder(const std::string& id) const { return JobFolder(data_.jobs() / id); }
 
  private:
   using Clock = std::chrono::steady_clock;
-  // Whether it has to be submitted first, -priority, creation, id.
-  using QueueKey = std::tuple<bool, int, std::string, std::string>;
 
-  /// A job that is not over.
+  /// A job that a runner has.
   struct Work {
     std::string id;
-    std::string created;
     bool exclusive = false;
-    JobControl control;
-    Clock::time_point not_before{};
-    int faults = 0;                     // that may pass, since its last progress
-    int faults_of_all = 0;              // of the queue in a row, when its renderer started
-    std::optional<QueueKey> queue_key;  // in the line
-    std::shared_ptr<StopSignal> stop;   // a runner has it
-    bool stopped_for_disk = false;
-    std::optional<Attempt> ended;  // a renderer that is not judged yet
+    StopSignal stop;
+    int faults_of_all = 0;  // of the queue in a row, when its renderer started
+    LiveState live;
   };
   using WorkPtr = std::shared_ptr<Work>;
 
-  /// The folder of a job that no runner has, for ourselves, and what its state.json says.
-  struct Claim {
-    JobFolder::Lock lock;
-    JobState state;
+  /// What keeps a job waiting that is unfinished.
+  struct Pause {
+    Clock::time_point until{};
+    int faults = 0;                // that may pass, since its last progress
+    std::optional<Attempt> ended;  // a renderer that is not judged yet
   };
 
   void run(const std::stop_token& ends);
   WorkPtr take(const std::stop_token& ends);
-  WorkPtr first_ready(Clock::time_point& look_again) const;
+  std::optional<JobEntry> first_ready(Clock::time_point& look_again) const;
+  bool waits_for_shards(const JobEntry& entry) const;
   void attend(Work& work, const std::stop_token& ends);
-  bool render(Work& work);
+  std::optional<Attempt> render(Work& work, const JobEntry& entry);
   bool may_render(Work& work, Attempt& attempt);
-  void read_at_last(const std::string& id);
-  void hand_back(const WorkPtr& work);
-  void postpone(Work& work, const std::exception& error);
-  void note_obstacle(Work& work, const std::string& what, const std::string& for_all);
-  bool waits_for_shards(const Work& work) const;
-  bool wait_until_free(const Work& work, const std::stop_token& ends);
+  void judge(Work& work, Attempt attempt, const std::stop_token& ends);
+  void settle(Work& work, Attempt& attempt);
   void note_start(Work& work, pid_t pid);
-  void settle(Work& work, Attempt attempt, const std::stop_token& ends);
-  void resume(Work& work);
+  void tell(Work& work, const std::function<void(LiveState&)>& change);
+  void look_at(Work& work);
+  void postpone(const std::string& id, const std::exception& error);
+  void note_obstacle(const std::string& id, const std::string& what, const std::string& for_all);
+  void note_end(const JobEntry& entry) const;
   void give_up(const std::string& id, const std::string& reason);
-  void enter(const std::string& id);
-  void place(const JobEntry& entry, Work& work);
-  WorkPtr open(const JobEntry& entry, const JobControl& control);
-  void line_up(Work& work);
-  void leave_line(Work& work);
-  std::optional<JobFolder::Lock> try_folder(const Work& work) const;
-  std::optional<Claim> claim(const Work& work) const;
-  void commit(Work& work, const JobState& before, State how);
-  bool withdraw(Work& work, State how);
-  void write_control(Work& work, const JobControl& control);
-  void write_state(const std::string& id, const JobState& state, bool over);
-  void forget(const std::string& id);
-  JobState stored_state(const std::string& id) const;
-  Work& reopen(const EntryPtr& entry);
-  EntryPtr checked(const std::string& id, const std::string& revision) const;
+  bool wait_until_free(const JobEntry& entry, const std::stop_token& ends);
+  std::optional<JobFolder::Lock> try_folder(const JobEntry& entry) const;
+  void make_folder(const JobEntry& entry) const;
+  JobEntry reopened(JobEntry entry) const;
   void check_all_removable(const std::vector<std::string>& ids) const;
   void take_away(const std::vector<std::string>& ids);
-  bool is_over_on_disk(const std::string& id) const;
 
   Executor& executor_;
-  JobTable& table_;
+  Store& store_;
+  const DataRoot data_;
   DiskWatch& disk_;
   const QueueSettings settings_;
   std::function<void()> on_over_ = [] {};
   Trash trash_;
 
-  // Guards all below, and is held while a decision is written to disk, so that decisions and what
-  // is stored of them have one order. Nothing else is waited for under it.
+  // Guards the next four, and is held while a request is stored, so that a request and the start of
+  // a renderer have one order.
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::map<std::string, WorkPtr> work_;
-  std::set<QueueKey> line_;
-  std::map<std::string, JobState> unsaved_;  // states that could not be written (disk full)
-  int running_ = 0;
+  std::map<std::string, Pause> pauses_;
   bool exclusive_runs_ = false;
-  // After a fault that may pass nothing starts until then.
-  Clock::time_point paused_until_{};
-  int faults_ = 0;        // in a row
-  std::string obstacle_;  // the last of them
+  mutable std::mutex faults_mutex_;   // guards the next three; nothing is waited for under it
+  Clock::time_point paused_until_{};  // after a fault that may pass nothing starts until then
+  int faults_ = 0;                    // in a row
+  std::string obstacle_;              // the last of them
   std::vector<std::jthread> runners_;
 };
 

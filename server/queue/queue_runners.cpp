@@ -1,8 +1,9 @@
-// The threads that have jobs rendered.
+// What the runners of a queue do: each takes the first job that may start, has it rendered, and
+// judges how that ended.
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <csignal>
-#include <system_error>
 #include <utility>
 
 #include "analysis/storage/passing_error.h"
@@ -14,12 +15,10 @@
 namespace lacuna {
 namespace {
 
-// How often a folder that another renderer holds is looked at again.
-constexpr std::chrono::milliseconds look_again_at_lock{200};
-// How often it is looked whether the shards of a job are over.
+// Between two looks at a lock that a renderer of somebody else holds, and at a job's shards.
+constexpr std::chrono::milliseconds look_again_at_lock{100};
 constexpr std::chrono::seconds look_again_at_shards{1};
-
-// What brought a job down may pass. A crash may be the job's own doing; a fault that passes shall
+// What brings a job down may pass. A crash may be the job's own doing; a fault that passes shall
 // not be waited for much longer than it lasts, least of all by the whole queue.
 constexpr std::chrono::minutes longest_after_crash{1};
 constexpr std::chrono::seconds longest_after_fault{30}, longest_pause{5};
@@ -30,20 +29,43 @@ std::string general_reason(const std::exception& error) {
   return system != nullptr ? system->code().message() : error.what();
 }
 
-ProcessIdentity renderer_of(const JobControl& control) {
-  return {static_cast<pid_t>(control.renderer_pid),
-          static_cast<std::uint64_t>(control.renderer_start), control.renderer_boot};
+ProcessIdentity renderer_of(const JobEntry& entry) {
+  return {static_cast<pid_t>(entry.renderer_pid), static_cast<std::uint64_t>(entry.renderer_start),
+          entry.renderer_boot};
 }
 
 }  // namespace
 
-/// The job's folder for ourselves; nothing while a renderer has it, or may be about to take it.
-/// Only under the fork mutex.
-std::optional<JobFolder::Lock> Queue::try_folder(const Work& work) const {
-  const ProcessIdentity renderer = renderer_of(work.control);
-  if (renderer.pid > 0 && is_alive(renderer)) return std::nullopt;
-  if (executor_.holds(table_.folder(work.id))) return std::nullopt;
-  return table_.folder(work.id).try_lock();
+void Queue::start() {
+  // Renderers of this machine have ended with the service before, or are about to.
+  if (!executor_.is_remote()) {
+    store_.change([&](StoreChange& c) {
+      for (const JobEntry& known : c.begun_jobs()) {
+        JobEntry entry = known;
+        if (!entry.cancel) entry.state = queued(entry.state);
+        c.put(std::move(entry));
+      }
+    });
+  }
+  for (int i = 0; i < settings_.children; ++i) {
+    runners_.emplace_back([this](const std::stop_token& ends) { run(ends); });
+  }
+}
+
+void Queue::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    for (std::jthread& runner : runners_) runner.request_stop();
+    for (const auto& [id, work] : work_) {
+      if (executor_.is_remote()) {
+        work->stop.leave();
+      } else {
+        work->stop.request();
+      }
+    }
+  }
+  changed_.notify_all();
+  runners_.clear();
 }
 
 void Queue::run(const std::stop_token& ends) {
@@ -51,103 +73,17 @@ void Queue::run(const std::stop_token& ends) {
     try {
       attend(*work, ends);
     } catch (const std::exception& error) {
-      const std::lock_guard lock(mutex_);
       if (may_pass(error)) {
-        postpone(*work, error);
+        postpone(work->id, error);
       } else {
         give_up(work->id, error.what());
       }
     }
     const std::lock_guard lock(mutex_);
-    hand_back(work);
+    work_.erase(work->id);
+    exclusive_runs_ = false;
+    changed_.notify_all();
   }
-}
-
-/// Only under the lock, as all that follows to first_ready().
-void Queue::hand_back(const WorkPtr& work) {
-  work->stop.reset();
-  --running_;
-  exclusive_runs_ = false;
-  changed_.notify_all();
-  // Not one that was retried meanwhile: that is another work.
-  const auto left = work_.find(work->id);
-  if (left == work_.end() || left->second != work) return;
-  try {
-    resume(*work);
-  } catch (const std::exception& error) {
-    if (!may_pass(error)) return give_up(work->id, error.what());
-    postpone(*work, error);
-    line_up(*work);
-  }
-}
-
-/// A fault that may pass keeps the job from going on.
-void Queue::postpone(Work& work, const std::exception& error) {
-  note_obstacle(work, error.what(), general_reason(error));
-  const EntryPtr entry = table_.find(work.id);
-  const bool ran =
-      entry && (entry->state.state == State::running || entry->state.state == State::interrupted);
-  if (ran) table_.set_state(work.id, queued(entry->state), false);
-}
-
-/// The next job is tried after a pause, and this one later still: what keeps one folder from being
-/// used may leave the others alone. `for_all`: `what` without the names of files.
-void Queue::note_obstacle(Work& work, const std::string& what, const std::string& for_all) {
-  paused_until_ = Clock::now() + pause_after_fault(++faults_, longest_pause);
-  work.not_before = paused_until_ + pause_after_fault(++work.faults, longest_after_fault);
-  if (obstacle_ != for_all) log::warn("jobs wait: {}", what);
-  obstacle_ = for_all;
-  table_.set_obstacle(work.id, what);
-}
-
-/// The job's folder is damaged, or is not there any more.
-void Queue::give_up(const std::string& id, const std::string& reason) {
-  log::error("{} is given up: {}", id, reason);
-  forget(id);
-  if (is_gone(table_.folder(id).dir())) return table_.remove(id);
-  if (const EntryPtr entry = table_.find(id)) {
-    JobState state = ended(entry->state, State::failed, utc_now());
-    state.error = reason;
-    table_.set_state(id, state, true);
-  }
-}
-
-std::string Queue::obstacle() const {
-  if (std::string shortage = disk_.shortage(); !shortage.empty()) return shortage;
-  const std::lock_guard lock(mutex_);
-  if (std::string why = executor_.obstacle(); !why.empty() && !work_.empty()) return why;
-  if (faults_ > 0 && !line_.empty()) return obstacle_;
-  return unsaved_.empty() ? "" : "states of jobs that have ended cannot be saved";
-}
-
-/// The first in the line that may start now; `look_again` is when time alone may change that.
-Queue::WorkPtr Queue::first_ready(Clock::time_point& look_again) const {
-  if (line_.empty() || exclusive_runs_ || disk_.is_low()) return nullptr;
-  const auto now = Clock::now();
-  if (paused_until_ > now) {
-    look_again = paused_until_;
-    return nullptr;
-  }
-  for (const QueueKey& key : line_) {
-    const WorkPtr& work = work_.at(std::get<3>(key));
-    if (work->not_before > now) {
-      look_again = std::min(look_again, work->not_before);
-    } else if (waits_for_shards(*work)) {
-      look_again = std::min(look_again, now + look_again_at_shards);
-    } else {
-      return work->exclusive && running_ > 0 ? nullptr : work;
-    }
-  }
-  return nullptr;
-}
-
-/// A job is merged once its shards are rendered; one with a checkpoint was merged before.
-bool Queue::waits_for_shards(const Work& work) const {
-  if (work.control.shards.empty()) return false;
-  const EntryPtr entry = table_.find(work.id);
-  if (!entry || !table_.waits_for_shards(*entry)) return false;
-  std::error_code unknown;  // it waits until that can be told
-  return !std::filesystem::exists(table_.folder(work.id).file("checkpoint.bin"), unknown);
 }
 
 Queue::WorkPtr Queue::take(const std::stop_token& ends) {
@@ -155,35 +91,88 @@ Queue::WorkPtr Queue::take(const std::stop_token& ends) {
   for (;;) {
     if (ends.stop_requested()) return nullptr;
     auto look_again = Clock::now() + std::chrono::hours(1);
-    if (WorkPtr work = first_ready(look_again)) {
-      try {
-        work->stop = std::make_shared<StopSignal>();
-      } catch (const std::exception& error) {  // no descriptor is left for it
-        postpone(*work, error);
-        continue;
+    std::string id;
+    try {
+      if (const auto entry = first_ready(look_again)) {
+        id = entry->id;
+        auto work = std::make_shared<Work>();
+        work->id = id;
+        work->exclusive = entry->exclusive && !executor_.is_remote();
+        exclusive_runs_ = work->exclusive;
+        work_[id] = work;
+        return work;
       }
-      leave_line(*work);
-      ++running_;
-      exclusive_runs_ = work->exclusive;
-      return work;
+    } catch (const std::exception& error) {  // the database, or no descriptor is left
+      log::warn("no job is taken: {}", error.what());
+      look_again = Clock::now() + longest_pause;
     }
     changed_.wait_until(lock, look_again);
   }
 }
 
+/// The first in the line that may start now; `look_again` is when time alone may change that. Only
+/// under the lock.
+std::optional<JobEntry> Queue::first_ready(Clock::time_point& look_again) const {
+  if (exclusive_runs_ || disk_.is_low()) return std::nullopt;
+  const auto now = Clock::now();
+  {
+    const std::lock_guard lock(faults_mutex_);
+    if (paused_until_ > now) {
+      look_again = paused_until_;
+      return std::nullopt;
+    }
+  }
+  constexpr std::size_t at_once = 64;
+  for (std::size_t begin = 0;; begin += at_once) {
+    const std::vector<JobEntry> line = store_.unfinished(begin, at_once);
+    for (const JobEntry& entry : line) {
+      if (work_.contains(entry.id)) continue;
+      const auto pause = pauses_.find(entry.id);
+      if (pause != pauses_.end() && pause->second.until > now) {
+        look_again = std::min(look_again, pause->second.until);
+      } else if (waits_for_shards(entry)) {
+        look_again = std::min(look_again, now + look_again_at_shards);
+      } else {
+        const bool alone = entry.exclusive && !executor_.is_remote();
+        if (alone && !work_.empty()) return std::nullopt;
+        return entry;
+      }
+    }
+    if (line.size() < at_once) return std::nullopt;
+  }
+}
+
+/// A job is merged once its shards are rendered; one with a checkpoint was merged before.
+bool Queue::waits_for_shards(const JobEntry& entry) const {
+  if (entry.shards.empty() || entry.cancel) return false;
+  const auto sweep = store_.find_sweep(entry.shards);
+  if (!sweep) return false;
+  if (is_over(sweep->state) && unfinished_of(store_.run_counts(entry.shards)) == 0) return false;
+  std::error_code unknown;  // it waits until that can be told
+  return !std::filesystem::exists(folder(entry.id).file("checkpoint.bin"), unknown);
+}
+
+/// The job's folder for ourselves; nothing while a renderer has it, or may be about to take it.
+/// Only under the fork mutex.
+std::optional<JobFolder::Lock> Queue::try_folder(const JobEntry& entry) const {
+  const ProcessIdentity renderer = renderer_of(entry);
+  if (renderer.pid > 0 && is_alive(renderer)) return std::nullopt;
+  return folder(entry.id).try_lock();
+}
+
 /// Waits while somebody else's renderer has the folder; one that an earlier run of this service
 /// started has had its notice to stop and is killed after the grace. False: stop was asked for.
-bool Queue::wait_until_free(const Work& work, const std::stop_token& ends) {
+bool Queue::wait_until_free(const JobEntry& entry, const std::stop_token& ends) {
   const auto is_free = [&] {
     const std::lock_guard no_forks(fork_mutex());
-    return try_folder(work).has_value();
+    return try_folder(entry).has_value();
   };
   const auto patience = Clock::now() + settings_.grace;
   bool killed = false;
   while (!is_free()) {
     if (!killed && Clock::now() >= patience) {
-      killed = kill_group(renderer_of(work.control), SIGKILL);
-      if (killed) log::warn("{}: an earlier renderer did not end and is killed", work.id);
+      killed = kill_group(renderer_of(entry), SIGKILL);
+      if (killed) log::warn("{}: an earlier renderer did not end and is killed", entry.id);
     }
     std::unique_lock lock(mutex_);
     if (changed_.wait_for(lock, look_again_at_lock, [&] { return ends.stop_requested(); })) {
@@ -193,144 +182,307 @@ bool Queue::wait_until_free(const Work& work, const std::stop_token& ends) {
   return true;
 }
 
-/// A job whose folder could not be read when it came in.
-void Queue::read_at_last(const std::string& id) {
-  const EntryPtr entry = table_.reread(id);
+void Queue::attend(Work& work, const std::stop_token& ends) {
+  const auto entry = store_.find(work.id);
+  if (!entry || entry->over()) return;
+  std::optional<Attempt> attempt;
   {
     const std::lock_guard lock(mutex_);
-    work_.erase(id);
+    if (const auto pause = pauses_.find(work.id); pause != pauses_.end()) {
+      attempt = std::exchange(pause->second.ended, std::nullopt);
+    }
   }
-  if (entry) enter(id);
+  if (!attempt) {
+    make_folder(*entry);
+    if (!executor_.holds(folder(work.id)) && !wait_until_free(*entry, ends)) return;
+    attempt = render(work, *entry);
+  }
+  if (attempt) judge(work, std::move(*attempt), ends);
 }
 
-void Queue::attend(Work& work, const std::stop_token& ends) {
-  if (const EntryPtr entry = table_.find(work.id); entry && entry->unread) {
-    return read_at_last(work.id);
-  }
-  const JobFolder folder = table_.folder(work.id);
-  if (!executor_.holds(folder) && !wait_until_free(work, ends)) return;
-  if (!work.ended && !render(work)) return;
-  try {
-    work.ended->after = folder.read_state();
-  } catch (const std::runtime_error& error) {
-    if (may_pass(error)) throw;  // the renderer is judged when that can be read
-    log::error("{}: {}", work.id, error.what());
-    work.ended->after = work.ended->before;
-  }
-  Attempt attempt = *std::exchange(work.ended, std::nullopt);
-  settle(work, std::move(attempt), ends);
-}
-
-/// Notes what is known before the renderer starts. False: somebody has asked for something else, or
-/// the job is over.
-bool Queue::may_render(Work& work, Attempt& attempt) {
-  const JobFolder folder = table_.folder(work.id);
-  const std::lock_guard lock(mutex_);
-  attempt.found = executor_.holds(folder);
-  if (attempt.found) {
-    if (work.control.cancel || work.control.held) work.stop->request();
-  } else {
-    if (work.control.cancel) return withdraw(work, State::cancelled), false;
-    if (work.control.held) return withdraw(work, State::held), false;
-  }
-  attempt.before = stored_state(work.id);
-  attempt.crashes = work.control.crashes;
-  if (const auto progress = folder.read_progress()) attempt.iteration_before = progress->iteration;
+/// Has the job rendered. Nothing: it is not to be, or its renderer goes on without this service.
+std::optional<Attempt> Queue::render(Work& work, const JobEntry& entry) {
+  const JobFolder job = folder(work.id);
+  Attempt attempt;
+  attempt.found = executor_.holds(job);
+  if (entry.reopened && !attempt.found) job.reopen();
+  attempt.before = job.read_state();
+  if (const auto progress = job.read_progress()) attempt.iteration_before = progress->iteration;
   // A renderer of an earlier service came to the end.
   if (!attempt.found && is_terminal(attempt.before.state)) {
-    table_.set_state(work.id, attempt.before, true);
-    return forget(work.id), false;
+    attempt.found = true;
+    attempt.ending.reason = "an earlier renderer had ended";
+    return attempt;
   }
-  return true;
-}
-
-/// Has the job rendered. False: it is not to be, or its renderer goes on without this service.
-bool Queue::render(Work& work) {
-  Attempt attempt;
-  if (!may_render(work, attempt)) return false;
-  table_.set_place(work.id, "");
+  if (!may_render(work, attempt)) return std::nullopt;
   log::info("{}: {}", work.id,
             attempt.found ? "its renderer is found again" : "a renderer is started");
-  attempt.ending =
-      executor_.run(table_.folder(work.id), *work.stop,
-                    {.started = [&](pid_t pid) { note_start(work, pid); },
-                     .place = [&](const std::string& place) { table_.set_place(work.id, place); }});
+  attempt.ending = executor_.run({job, entry.priority, entry.crashes}, work.stop,
+                                 {.started = [&](pid_t pid) { note_start(work, pid); },
+                                  .place =
+                                      [&](const std::string& place) {
+                                        tell(work, [&](LiveState& live) { live.place = place; });
+                                      }});
   log::info("{}: {}", work.id, attempt.ending.reason);
-  if (attempt.ending.kind == Ending::Kind::left) return false;
-  table_.set_place(work.id, "");
-  work.ended = std::move(attempt);
-  return true;
+  if (attempt.ending.kind == Ending::Kind::left) return std::nullopt;
+  return attempt;
+}
+
+/// Notes what is known before the renderer starts. False: somebody has asked for something else.
+bool Queue::may_render(Work& work, Attempt& attempt) {
+  bool may = false;
+  std::optional<JobEntry> over;
+  store_.change([&](StoreChange& c) {
+    auto entry = c.find_job(work.id);
+    if (!entry) return;
+    attempt.before.attempts = std::max(attempt.before.attempts, entry->state.attempts);
+    attempt.crashes = entry->crashes;
+    entry->reopened = false;
+    if (attempt.found) {
+      if (entry->cancel || entry->held) work.stop.request();
+      may = true;
+    } else if (entry->cancel || entry->held) {
+      entry->begun = false;
+      entry->state =
+          entry->cancel ? ended(entry->state, State::cancelled, utc_now()) : held(entry->state);
+      if (entry->cancel) over = entry;
+    } else {
+      may = true;
+    }
+    c.put(std::move(*entry));
+  });
+  if (over) note_end(*over);
+  return may;
 }
 
 /// A renderer has begun: no fault keeps the queue from going on any more. It is noted so that it is
 /// known again after a restart, should it outlive the service.
 void Queue::note_start(Work& work, pid_t pid) {
-  const auto identity = identity_of(pid);
-  const std::lock_guard lock(mutex_);
-  table_.set_obstacle(work.id, "");
-  work.faults_of_all = std::exchange(faults_, 0);
-  if (work.faults_of_all > 1) {  // which not one folder alone had
-    for (const auto& [id, other] : work_) {
-      if (other->faults > 0) other->not_before = {};
+  {
+    const std::lock_guard lock(mutex_);
+    const std::lock_guard faults(faults_mutex_);
+    work.faults_of_all = std::exchange(faults_, 0);
+    if (work.faults_of_all > 1) {  // which not one folder alone had
+      for (auto& [id, pause] : pauses_) {
+        if (pause.faults > 0) pause.until = {};
+      }
     }
   }
-  if (!identity) return;
-  JobControl control = work.control;
-  control.renderer_pid = identity->pid;
-  control.renderer_start = static_cast<std::int64_t>(identity->start_ticks);
-  control.renderer_boot = identity->boot;
+  const auto identity = identity_of(pid);
   try {
-    write_control(work, control);
+    store_.change([&](StoreChange& c) {
+      auto entry = c.find_job(work.id);
+      if (!entry) return;
+      entry->begun = true;
+      entry->obstacle.clear();
+      if (identity) {
+        entry->renderer_pid = identity->pid;
+        entry->renderer_start = static_cast<std::int64_t>(identity->start_ticks);
+        entry->renderer_boot = identity->boot;
+        if (entry->state.state == State::queued) entry->state.state = State::running;
+        entry->state.attempts += 1;
+        entry->state.started = utc_now();
+      }
+      c.put(std::move(*entry));
+    });
   } catch (const std::exception& error) {
     log::warn("{}: {}", work.id, error.what());
   }
 }
 
-void Queue::settle(Work& work, Attempt attempt, const std::stop_token& ends) {
-  const auto progress = table_.folder(work.id).read_progress();
-  if (progress) attempt.iteration_after = progress->iteration;
-  const std::lock_guard lock(mutex_);
-  attempt.cancel = work.control.cancel;
-  attempt.hold = work.control.held;
-  attempt.stopped = ends.stop_requested() || work.stopped_for_disk;
-  attempt.disk_low = disk_.is_low();
-  const ExitClassification exit = classify_exit(attempt, settings_.max_attempts, utc_now());
-  if (progress) table_.set_progress(work.id, *progress);
-  if (exit.crashed) {
-    JobControl control = work.control;
-    ++control.crashes;
-    try {
-      write_control(work, control);
-    } catch (const std::exception& error) {
-      log::warn("{}: {}", work.id, error.what());
-      work.control = control;
+/// Judges how a renderer ended, however long it takes until that can be read and stored: as long
+/// as it is not, nothing else can be begun either.
+void Queue::judge(Work& work, Attempt attempt, const std::stop_token& ends) {
+  try {
+    attempt.after = folder(work.id).read_state();
+  } catch (const std::exception& error) {
+    if (may_pass(error)) {  // the renderer is judged when that can be read
+      const std::lock_guard lock(mutex_);
+      pauses_[work.id].ended = std::move(attempt);
+      throw;
     }
-    work.not_before = Clock::now() + pause_after_fault(control.crashes, longest_after_crash);
+    log::error("{}: {}", work.id, error.what());
+    attempt.after = attempt.before;
   }
-  const bool came_on = attempt.iteration_after > attempt.iteration_before;
-  if (exit.obstacle.empty() || came_on) work.faults = 0;
-  if (!exit.obstacle.empty()) {  // before the state: who sees that the job waits also sees why
-    if (!came_on) faults_ = std::max(faults_, work.faults_of_all);  // it began in vain
-    note_obstacle(work, exit.obstacle, "renderers cannot be started or cannot use their files");
+  attempt.stopped = ends.stop_requested() || work.stop.is_requested();
+  attempt.disk_low = disk_.is_low();
+  for (int faults = 1;; ++faults) {
+    try {
+      return settle(work, attempt);
+    } catch (const std::exception& error) {
+      if (!may_pass(error)) throw;
+      log::warn("{}: its state cannot be stored: {}", work.id, error.what());
+      {
+        const std::lock_guard lock(faults_mutex_);
+        faults_ = std::max(faults_, faults);
+        obstacle_ = "states of jobs that have ended cannot be saved";
+      }
+      std::unique_lock lock(mutex_);
+      const auto pause = pause_after_fault(faults, longest_pause);
+      // Its folder tells the next service.
+      if (changed_.wait_for(lock, pause, [&] { return ends.stop_requested(); })) return;
+    }
   }
-  const bool over = is_terminal(exit.state.state);
-  write_state(work.id, exit.state, over);
-  if (over) forget(work.id);
 }
 
-/// A job that a runner gives back and that is not over: waits again, unless it is held.
-void Queue::resume(Work& work) {
-  work.stopped_for_disk = false;
-  const EntryPtr entry = table_.find(work.id);
-  if (!entry) return forget(work.id);
-  if (work.control.cancel) {  // asked for after its renderer had been classified
-    if (withdraw(work, State::cancelled)) return;
-  } else if (work.control.held) {
-    if (entry->state.state == State::held || withdraw(work, State::held)) return;
-  } else if (entry->state.state == State::held) {  // released after that
-    withdraw(work, State::queued);
+void Queue::settle(Work& work, Attempt& attempt) {
+  const JobFolder job = folder(work.id);
+  const auto progress = job.read_progress();
+  if (progress) attempt.iteration_after = progress->iteration;
+  const bool pictured = has_picture(job);
+  ExitClassification exit;
+  std::optional<JobEntry> settled;
+  store_.change([&](StoreChange& c) {
+    settled = c.find_job(work.id);
+    if (!settled) return;
+    attempt.cancel = settled->cancel;
+    attempt.hold = settled->held;
+    exit = classify_exit(attempt, settings_.max_attempts, utc_now());
+    const std::string created = settled->state.created;
+    settled->state = exit.state;
+    settled->state.created = created;
+    settled->begun = false;
+    settled->crashes += exit.crashed ? 1 : 0;
+    settled->obstacle = exit.obstacle;
+    if (progress) settled->progress = progress;
+    settled->pictured = pictured;
+    c.put(*settled);
+  });
+  if (!settled) return;
+  {
+    const std::lock_guard lock(mutex_);
+    const bool came_on = attempt.iteration_after > attempt.iteration_before;
+    Pause& pause = pauses_[work.id];
+    if (exit.obstacle.empty() || came_on) pause.faults = 0;
+    pause.until = exit.crashed
+                      ? Clock::now() + pause_after_fault(settled->crashes, longest_after_crash)
+                      : Clock::time_point{};
+    if (exit.obstacle.empty() && !exit.crashed) pauses_.erase(work.id);
+    if (!exit.obstacle.empty() && !came_on) {
+      const std::lock_guard faults(faults_mutex_);
+      faults_ = std::max(faults_, work.faults_of_all);  // it began in vain
+    }
   }
-  line_up(work);
+  if (!exit.obstacle.empty()) {
+    note_obstacle(work.id, exit.obstacle, "renderers cannot be started or cannot use their files");
+  }
+  if (settled->over()) note_end(*settled);
+}
+
+/// A fault that may pass keeps the job from going on.
+void Queue::postpone(const std::string& id, const std::exception& error) {
+  note_obstacle(id, error.what(), general_reason(error));
+}
+
+/// The next job is tried after a pause, and this one later still: what keeps one folder from being
+/// used may leave the others alone. `for_all`: `what` without the names of files.
+void Queue::note_obstacle(const std::string& id, const std::string& what,
+                          const std::string& for_all) {
+  {
+    const std::lock_guard lock(mutex_);
+    const std::lock_guard faults(faults_mutex_);
+    paused_until_ = Clock::now() + pause_after_fault(++faults_, longest_pause);
+    Pause& pause = pauses_[id];
+    pause.until = paused_until_ + pause_after_fault(++pause.faults, longest_after_fault);
+    if (obstacle_ != for_all) log::warn("jobs wait: {}", what);
+    obstacle_ = for_all;
+  }
+  try {
+    store_.change([&](StoreChange& c) {
+      auto entry = c.find_job(id);
+      if (!entry || entry->over()) return;
+      entry->obstacle = what;
+      c.put(std::move(*entry));
+    });
+  } catch (const std::exception& error) {
+    log::warn("{}: {}", id, error.what());
+  }
+}
+
+/// The job cannot be done: its folder is damaged.
+void Queue::give_up(const std::string& id, const std::string& reason) {
+  log::error("{} is given up: {}", id, reason);
+  try {
+    store_.change([&](StoreChange& c) {
+      auto entry = c.find_job(id);
+      if (!entry) return;
+      entry->state = ended(entry->state, State::failed, utc_now());
+      entry->state.error = reason;
+      entry->begun = false;
+      c.put(std::move(*entry));
+    });
+    on_over_();
+  } catch (const std::exception& error) {
+    postpone(id, error);
+  }
+}
+
+std::string Queue::obstacle() const {
+  if (std::string shortage = disk_.shortage(); !shortage.empty()) return shortage;
+  const Counts counts = store_.counts();
+  if (unfinished_of(counts) == 0) return {};
+  if (std::string why = executor_.obstacle(); !why.empty()) return why;
+  const std::lock_guard lock(faults_mutex_);
+  return faults_ > 0 ? obstacle_ : "";
+}
+
+void Queue::look_at_disk() {
+  const bool low = disk_.is_low();
+  const std::lock_guard lock(mutex_);
+  for (const auto& [id, work] : work_) {
+    if (low) work->stop.request();
+  }
+  changed_.notify_all();
+}
+
+void Queue::tell(Work& work, const std::function<void(LiveState&)>& change) {
+  LiveState live;
+  {
+    const std::lock_guard lock(mutex_);
+    change(work.live);
+    live = work.live;
+  }
+  store_.set_live(work.id, live);
+}
+
+void Queue::look_at_running() {
+  std::vector<WorkPtr> running;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, work] : work_) running.push_back(work);
+  }
+  for (const WorkPtr& work : running) {
+    try {
+      look_at(*work);
+    } catch (const std::exception& error) {  // its runner will find out, too
+      log::debug("{}: {}", work->id, error.what());
+    }
+  }
+}
+
+/// What a renderer has written since.
+void Queue::look_at(Work& work) {
+  const JobFolder job = folder(work.id);
+  const auto progress = job.read_progress();
+  const JobState said = job.read_state();
+  if (said.state != State::running) return;
+  const bool pictured = has_picture(job);
+  tell(work, [&](LiveState& live) {
+    live.phase = said.phase;
+    live.warnings = said.warnings;
+    live.progress = progress;
+    live.pictured = pictured;
+  });
+  // A renderer of another machine is not seen to start.
+  if (!executor_.is_remote()) return;
+  store_.change([&](StoreChange& c) {
+    auto entry = c.find_job(work.id);
+    if (!entry || !entry->begun || entry->over()) return;
+    entry->state.attempts = said.attempts;
+    entry->state.started = said.started;
+    if (entry->state.state == State::queued) entry->state.state = State::running;
+    c.put(std::move(*entry));
+  });
 }
 
 }  // namespace lacuna

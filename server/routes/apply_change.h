@@ -19,8 +19,6 @@ void apply(Change&& change) {
     throw HttpError(412, error.what());
   } catch (const Conflict& error) {
     throw HttpError(409, error.what());
-  } catch (const Unavailable& error) {
-    throw HttpError(503, error.what()).with("Retry-After", "1");
   } catch (const BadJob& bad) {
     throw HttpError(400, "The new budget is not valid.", bad.problems());
   } catch (const std::system_error& error) {

@@ -5,7 +5,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "jobs/spec/job_json.h"
 #include "server/http/message.h"
 
 namespace lacuna {
@@ -29,21 +28,15 @@ OrderedJson files_of(const JobFolder& folder) {
   return files;
 }
 
-OrderedJson or_null(const std::string& text) {
-  return text.empty() ? OrderedJson(nullptr) : OrderedJson(text);
-}
-
 }  // namespace
 
-EntryPtr find_job(JobTable& table, const std::string& id) {
-  EntryPtr entry = is_job_id(id) ? table.find(id) : nullptr;
-  if (!entry || !is_job(table.folder(id))) {
-    throw HttpError(404, fmt::format("There is no job \"{}\".", id));
-  }
-  return entry;
+JobEntry find_job(const Store& store, const std::string& id) {
+  auto entry = is_job_id(id) ? store.find(id) : std::nullopt;
+  if (!entry) throw HttpError(404, fmt::format("There is no job \"{}\".", id));
+  return std::move(*entry);
 }
 
-OrderedJson counts_json(const JobTable::Counts& counts) {
+OrderedJson counts_json(const Counts& counts) {
   OrderedJson json = OrderedJson::object();
   for (const auto& [state, name, doc] : EnumTable<State>::values) {
     const auto found = counts.find(state);
@@ -52,36 +45,25 @@ OrderedJson counts_json(const JobTable::Counts& counts) {
   return json;
 }
 
-std::string list_text(const JobTable::Page& page) {
-  std::string text = "{\"jobs\":[";
-  for (const EntryPtr& entry : page.jobs) {
-    if (text.back() != '[') text += ',';
-    text += '\n';
-    text += entry->text;
-  }
-  const OrderedJson counts = counts_json(page.counts);
-  const OrderedJson next = page.next.empty() ? OrderedJson(nullptr) : OrderedJson(page.next);
-  return text + fmt::format("],\n\"total\":{},\"counts\":{},\"next\":{},\"last_event\":{}}}\n",
-                            page.total, json_text(counts), json_text(next),
-                            json_text(OrderedJson(page.last_event)));
+OrderedJson list_json(const JobPage& page) {
+  OrderedJson jobs = OrderedJson::array();
+  for (const JobEntry& entry : page.jobs) jobs.push_back(to_json(entry));
+  return {{"jobs", std::move(jobs)},
+          {"total", page.total},
+          {"counts", counts_json(page.counts)},
+          {"next", or_null(page.next)},
+          {"last_event", page.last_event}};
 }
 
-OrderedJson job_detail(const JobTable& table, const JobEntry& entry) {
-  const JobFolder folder = table.folder(entry.id);
-  OrderedJson job = nullptr, state = state_json(entry);
-  try {
-    job = parse_own(write_job(folder.read_job()));
-  } catch (const BadJob& bad) {  // it was damaged after it had been read, unless the state says so
-    if (!entry.damaged) state["error"] = fmt::format("job.json cannot be read: {}", bad.what());
-  }
+OrderedJson job_detail(const JobFolder& folder, const JobEntry& entry) {
   return {{"id", entry.id},
-          {"sweep", sweep_json(entry)},
-          {"shards", or_null(entry.control.shards)},
-          {"job", std::move(job)},
-          {"state", std::move(state)},
+          {"sweep", or_null(entry.sweep)},
+          {"shards", or_null(entry.shards)},
+          {"job", entry.spec.empty() ? OrderedJson(nullptr) : parse_own(entry.spec)},
+          {"state", state_json(entry)},
           {"progress", entry.progress ? to_json(*entry.progress) : OrderedJson(nullptr)},
-          {"priority", entry.control.priority},
-          {"held", entry.control.held},
+          {"priority", entry.priority},
+          {"held", entry.held},
           {"files", files_of(folder)}};
 }
 

@@ -1,23 +1,20 @@
 #pragma once
 
-#include <string>
-
-#include "server/tables/entry_json.h"
-#include "server/tables/job_table.h"
+#include "jobs/queue/store.h"
+#include "server/routes/entry_json.h"
 
 namespace lacuna {
 
-/// The entry of a job that is there, on disk too; throws HttpError 404.
-EntryPtr find_job(JobTable& table, const std::string& id);
+/// A job that is there; throws HttpError 404.
+JobEntry find_job(const Store& store, const std::string& id);
 
 /// How many jobs there are in each state: {"queued": 2, ...}.
-OrderedJson counts_json(const JobTable::Counts& counts);
+OrderedJson counts_json(const Counts& counts);
 
-/// A page of the list as JSON text: {"jobs", "total", "counts", "next", "last_event"}. Made from
-/// the entries' texts: a list of a thousand jobs costs little more than copying them.
-std::string list_text(const JobTable::Page& page);
+/// A page of the list: {"jobs", "total", "counts", "next", "last_event"}.
+OrderedJson list_json(const JobPage& page);
 
 /// One job: {id, sweep, job, state, progress, priority, held, files}.
-OrderedJson job_detail(const JobTable& table, const JobEntry& entry);
+OrderedJson job_detail(const JobFolder& folder, const JobEntry& entry);
 
 }  // namespace lacuna

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "server/http/message.h"
+#include "server/routes/entry_json.h"
 #include "server/settings/http_settings.h"
-#include "server/tables/entry_json.h"
 
 namespace lacuna {
 namespace {
@@ -65,7 +65,7 @@ class Stream {
   }
 
   Journal& journal_;
-  std::uint64_t seen_ = 0;
+  std::int64_t seen_ = 0;
   bool over_ = false;
 
  private:
@@ -88,9 +88,9 @@ class Stream {
 
 class JobStream final : public Stream {
  public:
-  JobStream(JobTable& table, std::shared_ptr<std::atomic<int>> seats, std::string id,
-            std::optional<std::uint64_t> last)
-      : Stream(table.journal(), std::move(seats)), table_(table), id_(std::move(id)), last_(last) {}
+  JobStream(Store& store, std::shared_ptr<std::atomic<int>> seats, std::string id,
+            std::optional<std::int64_t> last)
+      : Stream(store.journal(), std::move(seats)), store_(store), id_(std::move(id)), last_(last) {}
 
  private:
   std::string begin() override {
@@ -101,14 +101,14 @@ class JobStream final : public Stream {
     const bool news = std::any_of(missed->begin(), missed->end(),
                                   [&](const JobEvent& event) { return event.id == id_; });
     // Browsers come back to a stream that has ended: they have seen all.
-    const EntryPtr entry = table_.find(id_);
-    over_ = !news && (!entry || entry->over);
+    const auto entry = store_.find(id_);
+    over_ = !news && (!entry || entry->over());
     return {};
   }
 
   std::string forgotten() override {
     seen_ = journal_.last();  // before the entry: what happens in between is sent twice, not never
-    const EntryPtr entry = table_.find(id_);
+    const auto entry = store_.find(id_);
     return entry ? tell(*entry) : end();
   }
 
@@ -121,7 +121,7 @@ class JobStream final : public Stream {
     std::string text;
     if (entry.progress) append(text, "progress", json_text(to_json(*entry.progress)), progress_);
     append(text, "state", json_text(state_json(entry)), state_);
-    over_ = entry.over;
+    over_ = entry.over();
     return text;
   }
 
@@ -136,16 +136,16 @@ class JobStream final : public Stream {
     sent = std::move(data);
   }
 
-  JobTable& table_;
+  Store& store_;
   const std::string id_;
-  const std::optional<std::uint64_t> last_;
+  const std::optional<std::int64_t> last_;
   std::string state_, progress_;
 };
 
 class AllStream final : public Stream {
  public:
   AllStream(Journal& journal, std::shared_ptr<std::atomic<int>> seats,
-            std::optional<std::uint64_t> last, bool reset)
+            std::optional<std::int64_t> last, bool reset)
       : Stream(journal, std::move(seats)), last_(last), reset_(reset) {}
 
  private:
@@ -158,24 +158,24 @@ class AllStream final : public Stream {
     return format("reset", "{}");
   }
   std::string text_of(const JobEvent& event) override {
-    if (event.entry) return format("job", event.entry->text);
+    if (event.entry) return format("job", json_text(to_json(*event.entry)));
     return format("removed", json_text(OrderedJson{{"id", event.id}}));
   }
 
-  const std::optional<std::uint64_t> last_;
+  const std::optional<std::int64_t> last_;
   const bool reset_;
 };
 
 }  // namespace
 
 Events::Stream Events::job(const std::string& id, const std::optional<std::string>& last) {
-  const auto seen = last ? table_.journal().number(*last) : std::nullopt;
-  return [stream = std::make_shared<JobStream>(table_, open_, id, seen)] { return stream->next(); };
+  const auto seen = last ? store_.journal().number(*last) : std::nullopt;
+  return [stream = std::make_shared<JobStream>(store_, open_, id, seen)] { return stream->next(); };
 }
 
 Events::Stream Events::all(const std::optional<std::string>& last) {
-  const auto seen = last ? table_.journal().number(*last) : std::nullopt;
-  return [stream = std::make_shared<AllStream>(table_.journal(), open_, seen, last && !seen)] {
+  const auto seen = last ? store_.journal().number(*last) : std::nullopt;
+  return [stream = std::make_shared<AllStream>(store_.journal(), open_, seen, last && !seen)] {
     return stream->next();
   };
 }

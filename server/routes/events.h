@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 
-#include "server/tables/job_table.h"
+#include "jobs/queue/store.h"
 
 namespace lacuna {
 
-/// Streams of server-sent events, made from the table's journal. Every event has the journal's
+/// Streams of server-sent events, made from the store's journal. Every event has the journal's
 /// number as its id; a client that comes back with the last one it saw (Last-Event-ID) misses
 /// nothing, or is told so. All throw HttpError 503 if too many streams are open.
 class Events {
@@ -18,7 +18,7 @@ class Events {
   /// For Response::stream.
   using Stream = std::function<std::optional<std::string>()>;
 
-  explicit Events(JobTable& table) : table_(table) {}
+  explicit Events(Store& store) : store_(store) {}
 
   /// One job: begins with what is now (`progress`, if there is any, and `state`), follows every
   /// change, and ends once it is over. `last`: the client's Last-Event-ID.
@@ -28,7 +28,7 @@ class Events {
   Stream all(const std::optional<std::string>& last);
 
  private:
-  JobTable& table_;
+  Store& store_;
   std::shared_ptr<std::atomic<int>> open_ = std::make_shared<std::atomic<int>>(0);
 };
 

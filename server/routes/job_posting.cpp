@@ -9,10 +9,11 @@
 
 #include "jobs/plan/expand.h"
 #include "jobs/plan/shard_sweep.h"
+#include "jobs/spec/described_json.h"
 #include "jobs/spec/job_json.h"
-#include "jobs/store/new_folder.h"
 #include "server/http/conditional.h"
 #include "server/routes/catalogue.h"
+#include "server/routes/json_body.h"
 #include "server/routes/named_files.h"
 #include "server/telemetry/log.h"
 
@@ -36,91 +37,63 @@ void check_shards(const JobSpec& spec) {
 
 }  // namespace
 
-JobPosting::JobPosting(DataRoot data, const ScenesRoots& scenes, JobTable& table, Queue& queue,
-                       SweepTable& sweeps, SweepKeeper& keeper)
-    : Posting("job", "/api/jobs/", max_job_bytes),
-      data_(std::move(data)),
-      scenes_(scenes),
-      table_(table),
-      queue_(queue),
-      sweeps_(sweeps),
-      keeper_(keeper) {}
-
 Response JobPosting::dry_run(const Request& request) const {
-  const JobSpec spec = checked_spec(read_body(request));
+  const JobSpec spec = checked_spec(read_json_body(request, max_job_bytes));
   return json_response(200,
                        {{"job", parse_own(write_job(spec))}, {"warnings", OrderedJson::array()}});
 }
 
-Posting::StoredKeys JobPosting::stored_keys() const {
-  StoredKeys keys;
-  for (const EntryPtr& job : table_.all()) {
-    if (job->unread) keys.unread = fmt::format("{}: {}", job->id, job->obstacle);
-    if (!job->control.idempotency_key.empty()) keys.ids[job->control.idempotency_key] = job->id;
-  }
-  return keys;
-}
-
-std::optional<std::string> JobPosting::body_hash(const std::string& id) const {
-  const EntryPtr entry = table_.find(id);
-  if (!entry) return std::nullopt;
-  return entry->control.body_hash;
-}
-
-OrderedJson JobPosting::describe_made(const std::string& id) const {
-  return job_detail(table_, *find_job(table_, id));
-}
-
-/// One that will not be that of a run of some sweep.
-std::string JobPosting::new_id() const {
-  for (;;) {
-    std::string id = new_job_id();
-    if (table_.sweeps().sweep_of(id).empty()) return id;
-  }
-}
-
-/// The job's folder and, if it has shards, their sweep. In this order: a crash in between leaves a
-/// job whose sweep the keeper makes. Throws std::system_error.
-JobFolder JobPosting::create(const JobSpec& spec, JobControl control) {
-  const auto place = [&] { return data_.jobs() / new_id(); };
-  if (!has_shards(spec)) return JobFolder::create(place(), spec, control);
+/// The sweep whose runs are the job's shards; nothing: it has none.
+std::optional<SweepEntry> JobPosting::sweep_of_shards(const JobSpec& spec) const {
+  if (!has_shards(spec)) return std::nullopt;
   const SweepSpec shards = shard_sweep(spec);
-  std::optional<JobFolder> folder;
-  try {
-    sweeps_.create(shards, expand(shards), {}, [&](const std::string& sweep) {
-      control.shards = sweep;
-      auto dir = place();
-      while (run_index(sweep, dir.filename().string())) dir = place();
-      folder = JobFolder::create(dir, spec, control);
-    });
-  } catch (...) {
-    if (!folder || take_folder_back(folder->dir())) throw;
-  }
-  return *folder;
+  SweepEntry sweep;
+  sweep.runs = expand(shards).runs.size();
+  sweep.id = store_.free_sweep_id(sweep.runs);
+  sweep.label = shards.label;
+  sweep.created = utc_now();
+  sweep.spec = write_document(shards);
+  return sweep;
 }
 
-std::string JobPosting::make(const std::string& body, const Key& key) {
-  const JobSpec spec = checked_spec(body);
-  JobControl control;
-  control.idempotency_key = key.name;
-  control.body_hash = key.body_hash;
+Response JobPosting::post(const Request& request) {
+  const std::string body = read_json_body(request, max_job_bytes);
+  const PostKey key = key_of(request, body);
+  JobEntry job;
+  take_spec(job, checked_spec(body));
+  auto sweep = sweep_of_shards(parse_job(job.spec));
+  job.key = key.name;
+  job.body_hash = key.body_hash;
+  job.state.created = utc_now();
+  if (sweep) job.shards = sweep->id;
+  do {
+    job.id = store_.free_job_id();
+  } while (sweep && run_index(sweep->id, job.id).value_or(sweep->runs) < sweep->runs);
+  bool replayed = false;
   try {
-    queue_.check_room();
+    store_.change([&](StoreChange& c) {
+      const auto known = key.name ? c.job_of_key(*key.name) : std::nullopt;
+      replayed = is_replay(known, key, "job");
+      if (replayed) {
+        job = *known;
+        return;
+      }
+      queue_.check_room();
+      if (sweep) c.add(*sweep);
+      c.add(job);
+    });
   } catch (const Full& full) {
     throw HttpError(429, full.what()).with("Retry-After", "10");
+  } catch (const std::system_error& error) {
+    log::error("a job could not be stored: {}", error.what());
+    throw storage_error(error, "The job could not be stored");
   }
-  const JobFolder folder = [&] {
-    try {
-      return create(spec, control);
-    } catch (const std::system_error& error) {
-      log::error("a job could not be stored: {}", error.what());
-      throw storage_error(error, "The job could not be stored");
-    }
-  }();
-  queue_.add(folder.id());
-  keeper_.notice();
-  log::info("{}: queued ({})", folder.id(), spec.scene);
-  return folder.id();
+  if (!replayed) {
+    queue_.take_up({job});
+    keeper_.notice();
+    log::info("{}: queued ({})", job.id, job.scene);
+  }
+  return created(replayed, "/api/jobs/" + job.id, job_detail(queue_.folder(job.id), job));
 }
 
 /// What the job names must be there, too, before it is taken.

@@ -1,39 +1,33 @@
 #pragma once
 
-#include "jobs/store/job_folder.h"
+#include "jobs/queue/store.h"
 #include "server/queue/queue.h"
 #include "server/routes/posting.h"
 #include "server/sweeps/sweep_keeper.h"
-#include "server/tables/job_table.h"
-#include "server/tables/sweep_table.h"
 
 namespace lacuna {
 
 /// Takes new jobs. A job with shards becomes a job that waits, and a sweep whose runs are these; it
 /// is merged when they are rendered. All references outlive it.
-class JobPosting final : public Posting {
+class JobPosting {
  public:
-  JobPosting(DataRoot data, const ScenesRoots& scenes, JobTable& table, Queue& queue,
-             SweepTable& sweeps, SweepKeeper& keeper);
+  JobPosting(const ScenesRoots& scenes, Store& store, Queue& queue, SweepKeeper& keeper)
+      : scenes_(scenes), store_(store), queue_(queue), keeper_(keeper) {}
 
-  /// The same checks as of post(), but nothing is stored: 200 with the job and its defaults.
+  /// 201 with the job, once it is stored; 200 with the one that the same Idempotency-Key and body
+  /// have made before. Throws HttpError 400, 415, 422 (the key stands for another body), 429 (too
+  /// many wait), 507.
+  Response post(const Request& request);
+  /// The same checks, but nothing is stored: 200 with the job and its defaults.
   Response dry_run(const Request& request) const;
 
  private:
   JobSpec checked_spec(const std::string& body) const;
-  std::string new_id() const;
-  JobFolder create(const JobSpec& spec, JobControl control);
-  /// Throws HttpError 400, 429 (too many wait), 507.
-  std::string make(const std::string& body, const Key& key) override;
-  StoredKeys stored_keys() const override;
-  std::optional<std::string> body_hash(const std::string& id) const override;
-  OrderedJson describe_made(const std::string& id) const override;
+  std::optional<SweepEntry> sweep_of_shards(const JobSpec& spec) const;
 
-  const DataRoot data_;
   const ScenesRoots& scenes_;
-  JobTable& table_;
+  Store& store_;
   Queue& queue_;
-  SweepTable& sweeps_;
   SweepKeeper& keeper_;
 };
 

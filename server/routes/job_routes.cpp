@@ -42,15 +42,11 @@ constexpr std::int64_t max_page = 1000;
 
 }  // namespace
 
-JobRoutes::JobRoutes(DataRoot data, const ScenesRoots& scenes, JobTable& table, Queue& queue,
-                     SweepTable& sweeps, SweepKeeper& keeper)
-    : table_(table),
-      queue_(queue),
-      posting_(std::move(data), scenes, table, queue, sweeps, keeper),
-      events_(table) {}
+JobRoutes::JobRoutes(const ScenesRoots& scenes, Store& store, Queue& queue, SweepKeeper& keeper)
+    : store_(store), queue_(queue), posting_(scenes, store, queue, keeper), events_(store) {}
 
 Response JobRoutes::list(const Request& request) {
-  JobTable::Query query;
+  JobQuery query;
   if (const auto states = request.query.text("state")) query.states = states_of(*states);
   query.words = request.query.text("label").value_or("");
   if (const auto limit = request.query.integer("limit", 1, max_page)) {
@@ -62,15 +58,16 @@ Response JobRoutes::list(const Request& request) {
   }
   query.after = request.query.text("cursor").value_or("");
   try {
-    return with_tag(request, json_response(200, list_text(table_.list(query))));
+    return with_tag(request, json_response(200, list_json(store_.list(query))));
   } catch (const std::invalid_argument& error) {
     throw HttpError(400, fmt::format("Query parameter cursor: {}.", error.what()));
   }
 }
 
 Response JobRoutes::answer(const Request& request, int status, const std::string& id) {
-  const EntryPtr entry = find_job(table_, id);
-  return with_tag(request, json_response(status, job_detail(table_, *entry)), entry->revision());
+  const JobEntry entry = find_job(store_, id);
+  return with_tag(request, json_response(status, job_detail(queue_.folder(id), entry)),
+                  std::to_string(entry.revision));
 }
 
 Response JobRoutes::detail(const Request& request, const std::string& id) {
@@ -78,33 +75,33 @@ Response JobRoutes::detail(const Request& request, const std::string& id) {
 }
 
 Response JobRoutes::change(const Request& request, const std::string& id) {
-  find_job(table_, id);
+  find_job(store_, id);
   const auto asked = read_job_change(request);
   apply([&] { queue_.change(id, asked.priority, asked.held, wanted_revision(request)); });
   return answer(request, 200, id);
 }
 
 Response JobRoutes::cancel(const Request& request, const std::string& id) {
-  find_job(table_, id);
+  find_job(store_, id);
   apply([&] { queue_.cancel(id, wanted_revision(request)); });
-  return answer(request, is_terminal(find_job(table_, id)->state.state) ? 200 : 202, id);
+  return answer(request, is_terminal(find_job(store_, id).state.state) ? 200 : 202, id);
 }
 
 Response JobRoutes::retry(const Request& request, const std::string& id) {
-  find_job(table_, id);
+  find_job(store_, id);
   apply([&] { queue_.retry(id, wanted_revision(request)); });
   return answer(request, 200, id);
 }
 
 Response JobRoutes::extend(const Request& request, const std::string& id) {
-  find_job(table_, id);
+  find_job(store_, id);
   const Budget budget = read_extension(request);
   apply([&] { queue_.extend(id, budget, wanted_revision(request)); });
   return answer(request, 200, id);
 }
 
 Response JobRoutes::remove(const Request& request, const std::string& id) {
-  find_job(table_, id);
+  find_job(store_, id);
   apply([&] { queue_.remove(id, wanted_revision(request)); });
   Response response;
   response.status = 204;
@@ -112,18 +109,21 @@ Response JobRoutes::remove(const Request& request, const std::string& id) {
 }
 
 Response JobRoutes::file(const Request& request, const std::string& id, const std::string& name) {
-  find_job(table_, id);
+  find_job(store_, id);
   for (const FileInfo& info : job_files()) {
     if (info.served && info.name == name) {
-      return file_response(request, table_.folder(id).dir(), name, info.media_type);
+      return file_response(request, queue_.folder(id).dir(), name, info.media_type);
     }
+  }
+  if (name == "state.json") {  // of version 0.1
+    throw HttpError(410, "The state is a part of /api/jobs/ID; outcome.json says how it ended.");
   }
   throw HttpError(404, fmt::format("Jobs have no file \"{}\".", name));
 }
 
 Response JobRoutes::log(const Request& request, const std::string& id) {
-  find_job(table_, id);
-  return log_response(table_.folder(id).dir(), "log.txt",
+  find_job(store_, id);
+  return log_response(queue_.folder(id).dir(), "log.txt",
                       request.query.integer("offset", 0).value_or(0));
 }
 
@@ -132,15 +132,14 @@ namespace {
 using QueryType = QueryParameter::Type;
 
 RouteDoc list_doc() {
-  return {
-      .summary = "Jobs, newest first, by pages",
-      .query = {{"state", QueryType::text, "any of these states, separated by commas"},
-                {"label", QueryType::text, "words in label, scene, integrator or id"},
-                {"sweep", QueryType::text, "the runs of this sweep; empty: jobs of no sweep"},
-                {"limit", QueryType::integer,
-                 fmt::format("jobs on a page; default {}", JobTable::Query{}.limit), 1, max_page},
-                {"cursor", QueryType::text, "`next` of the page before"}},
-      .answers = {{200, "{jobs, total, counts, next, last_event}"}, {304, "as you have it"}}};
+  return {.summary = "Jobs, newest first, by pages",
+          .query = {{"state", QueryType::text, "any of these states, separated by commas"},
+                    {"label", QueryType::text, "words in label, scene, integrator or id"},
+                    {"sweep", QueryType::text, "the runs of this sweep; empty: jobs of no sweep"},
+                    {"limit", QueryType::integer,
+                     fmt::format("jobs on a page; default {}", JobQuery{}.limit), 1, max_page},
+                    {"cursor", QueryType::text, "`next` of the page before"}},
+          .answers = {{200, "{jobs, total, counts, next, last_event}"}, {304, "as you have it"}}};
 }
 
 RouteDoc post_doc() {
@@ -236,8 +235,8 @@ void JobRoutes::add_results(Router& router) {
   router.add("GET", "/api/jobs/{id}/events",
              {.summary = "Its state and progress as server-sent events, until it is over"},
              [this](const Request& request, const Parts& parts) {
-               const EntryPtr entry = find_job(table_, parts[0]);
-               return event_stream(events_.job(entry->id, request.header("last-event-id")));
+               const JobEntry entry = find_job(store_, parts[0]);
+               return event_stream(events_.job(entry.id, request.header("last-event-id")));
              });
   router.add(
       "GET", "/api/jobs/{id}/files/{name}",

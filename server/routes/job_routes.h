@@ -5,15 +5,13 @@
 #include "server/queue/queue.h"
 #include "server/routes/events.h"
 #include "server/routes/job_posting.h"
-#include "server/tables/job_table.h"
 
 namespace lacuna {
 
 /// The addresses below /api/jobs, and /api/events. All references outlive it.
 class JobRoutes {
  public:
-  JobRoutes(DataRoot data, const ScenesRoots& scenes, JobTable& table, Queue& queue,
-            SweepTable& sweeps, SweepKeeper& keeper);
+  JobRoutes(const ScenesRoots& scenes, Store& store, Queue& queue, SweepKeeper& keeper);
   void add_to(Router& router);
 
  private:
@@ -32,7 +30,7 @@ class JobRoutes {
   Response file(const Request& request, const std::string& id, const std::string& name);
   Response answer(const Request& request, int status, const std::string& id);
 
-  JobTable& table_;
+  Store& store_;
   Queue& queue_;
   JobPosting posting_;
   Events events_;

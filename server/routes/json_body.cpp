@@ -2,7 +2,7 @@
 
 #include "jobs/spec/described_json.h"
 #include "jobs/spec/type_tree.h"
-#include "jobs/store/control.h"
+#include "jobs/store/state.h"
 
 namespace lacuna {
 

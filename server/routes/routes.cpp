@@ -3,8 +3,8 @@
 namespace lacuna {
 
 Routes::Routes(const ServiceFacts& facts, const ServiceWork& work, const StaticFiles& page)
-    : jobs_(facts.data, facts.scenes, work.jobs, work.queue, work.sweeps, work.keeper),
-      sweeps_(facts.scenes, work.sweeps, work.jobs, work.keeper),
+    : jobs_(facts.scenes, work.store, work.queue, work.keeper),
+      sweeps_(facts.scenes, work.store, work.folders, work.keeper),
       service_(facts) {
   jobs_.add_to(router_);
   sweeps_.add_to(router_);

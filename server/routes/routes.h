@@ -10,9 +10,9 @@ namespace lacuna {
 
 /// The jobs and sweeps that requests read and change.
 struct ServiceWork {
-  JobTable& jobs;
+  Store& store;
   Queue& queue;
-  SweepTable& sweeps;
+  SweepFolders& folders;
   SweepKeeper& keeper;
 };
 

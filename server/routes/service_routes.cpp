@@ -12,7 +12,6 @@
 #include "jobs/store/machine.h"
 #include "server/http/conditional.h"
 #include "server/routes/cache_listing.h"
-#include "server/tables/entry_json.h"
 #include "server/telemetry/prometheus.h"
 
 namespace lacuna {
@@ -24,7 +23,10 @@ constexpr std::uint64_t max_scene_bytes = std::uint64_t{256} << 20;
 OrderedJson states() {
   OrderedJson states = OrderedJson::array(), transitions = OrderedJson::array();
   for (const auto& [state, name, doc] : EnumTable<State>::values) {
-    states.push_back({{"name", name}, {"doc", doc}, {"terminal", is_terminal(state)}});
+    states.push_back({{"name", name},
+                      {"doc", doc},
+                      {"terminal", is_terminal(state)},
+                      {"actions", allowed_actions(state)}});
   }
   for (const Transition& t : state_transitions()) {
     transitions.push_back(
@@ -53,7 +55,7 @@ Response ServiceRoutes::health() const {
 Response ServiceRoutes::info() const {
   const DiskRoom room = facts_.disk.room();
   const ServiceSettings& s = facts_.settings;
-  const auto counts = facts_.table.counts();
+  const auto counts = facts_.store.counts();
   const std::chrono::duration<double> up = std::chrono::steady_clock::now() - start_;
   return json_response(200, {{"version", version()},
                              {"started", started_},
@@ -86,7 +88,7 @@ Response ServiceRoutes::info() const {
 Response ServiceRoutes::metrics() const {
   PrometheusText text;
   auto& jobs = text.gauge("lacuna_jobs", "Jobs, by state.");
-  for (const auto& [state, n] : facts_.table.counts()) {
+  for (const auto& [state, n] : facts_.store.counts()) {
     jobs.value(static_cast<double>(n), {{"state", std::string(enum_name(state))}});
   }
   const DiskRoom room = facts_.disk.room();
@@ -98,8 +100,8 @@ Response ServiceRoutes::metrics() const {
       .value(facts_.queue.obstacle().empty() ? 0 : 1);
   text.gauge("lacuna_disk_floor_bytes", "With less room than this, jobs wait.")
       .value(static_cast<double>(facts_.disk.floor()));
-  text.counter("lacuna_events_total", "Events of jobs since the service started.")
-      .value(static_cast<double>(facts_.table.journal().last()));
+  text.counter("lacuna_events_total", "Number of the latest event of jobs.")
+      .value(static_cast<double>(facts_.store.journal().last()));
   text.counter("lacuna_cpu_seconds_total", "CPU time, of the service and of renderers that ended.")
       .value(cpu_seconds(RUSAGE_SELF), {{"of", "service"}})
       .value(cpu_seconds(RUSAGE_CHILDREN), {{"of", "renderers"}});
@@ -163,7 +165,8 @@ void ServiceRoutes::add_to(Router& router) {
                const OrderedJson info = {{"title", "Lacuna"}, {"version", version()}};
                return with_tag(request, json_response(200, router.openapi(info)));
              });
-  router.add("GET", "/api/states", {.summary = "The states of a job and the allowed changes"},
+  router.add("GET", "/api/states",
+             {.summary = "The states of a job, what may be done in each, and the allowed changes"},
              [](const Request& request, const Parts&) {
                return with_tag(request, json_response(200, states()));
              });

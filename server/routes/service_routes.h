@@ -11,7 +11,6 @@
 #include "server/queue/queue.h"
 #include "server/routes/scene_uploads.h"
 #include "server/settings/service_settings.h"
-#include "server/tables/job_table.h"
 
 namespace lacuna {
 
@@ -20,7 +19,7 @@ struct ServiceFacts {
   const ServiceSettings& settings;
   const DataRoot& data;
   const ScenesRoots& scenes;
-  const JobTable& table;
+  const Store& store;
   const DiskWatch& disk;
   const Queue& queue;
   const HttpMetrics& http;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "jobs/spec/described_json.h"
@@ -12,12 +13,11 @@
 namespace lacuna {
 namespace {
 
-double share_done(std::size_t runs, const JobTable::RunCounts& run_counts, const JobTable& jobs) {
+double share_done(std::size_t runs, const Counts& counts, const std::vector<JobEntry>& begun) {
   if (runs == 0) return 0;
-  auto done = static_cast<double>(run_counts.jobs() - run_counts.unfinished.size());
-  for (const std::string& id : run_counts.unfinished) {
-    const EntryPtr entry = jobs.find(id);
-    if (entry && entry->progress) done += entry->progress->share;
+  auto done = static_cast<double>(all_of(counts) - unfinished_of(counts));
+  for (const JobEntry& run : begun) {
+    if (run.progress) done += run.progress->share;
   }
   return done / static_cast<double>(runs);
 }
@@ -35,14 +35,18 @@ OrderedJson cells_json(const SweepPlan& plan) {
   return cells;
 }
 
-OrderedJson runs_json(const SweepFolder& folder, const JobTable& jobs, bool over) {
+OrderedJson runs_json(const SweepFolder& folder, const Store& store, bool over) {
+  std::map<std::string, State> states;
+  for (const JobEntry& job : store.runs(folder.id())) states[job.id] = job.state.state;
   OrderedJson runs = OrderedJson::array();
   for (const SweepRun& run : folder.plan().runs) {
-    const EntryPtr entry = jobs.find(folder.job_id(run));
+    const std::string id = folder.job_id(run);
+    const auto job = states.find(id);
+    const bool made = job != states.end();
     OrderedJson state = nullptr;
-    if (entry || !over) state = enum_name(entry ? entry->state.state : State::queued);
+    if (made || !over) state = enum_name(made ? job->second : State::queued);
     runs.push_back({{"run", run.name},
-                    {"job", entry ? OrderedJson(entry->id) : OrderedJson(nullptr)},
+                    {"job", made ? OrderedJson(id) : OrderedJson(nullptr)},
                     {"cell", run.cell + 1},
                     {"replicate", run.replicate + 1},
                     {"state", std::move(state)}});
@@ -52,27 +56,26 @@ OrderedJson runs_json(const SweepFolder& folder, const JobTable& jobs, bool over
 
 }  // namespace
 
-SweepEntryPtr find_sweep(const SweepTable& sweeps, const std::string& id) {
-  SweepEntryPtr sweep = sweeps.find(id);
+SweepEntry find_sweep(const Store& store, const std::string& id) {
+  auto sweep = store.find_sweep(id);
   if (!sweep) throw HttpError(404, fmt::format("There is no sweep \"{}\".", id));
-  return sweep;
+  return std::move(*sweep);
 }
 
-OrderedJson to_json(const SweepEntry& sweep, const JobTable& jobs) {
-  JobTable::RunCounts run_counts = jobs.run_counts(sweep.id);
-  const double share = share_done(sweep.state.runs, run_counts, jobs);
-  if (!is_over(sweep.state.state)) {  // what is no job yet
-    run_counts.counts[State::queued] +=
-        sweep.state.runs - std::min(sweep.state.runs, run_counts.jobs());
+OrderedJson to_json(const SweepEntry& sweep, const Store& store) {
+  Counts counts = store.run_counts(sweep.id);
+  const double share = share_done(sweep.runs, counts, store.unfinished_runs(sweep.id));
+  if (!is_over(sweep.state)) {  // what is no job yet
+    counts[State::queued] += sweep.runs - std::min(sweep.runs, all_of(counts));
   }
   return {{"id", sweep.id},
           {"label", sweep.label},
-          {"state", enum_name(sweep.state.state)},
-          {"created", sweep.state.created},
-          {"finished", sweep.state.finished},
+          {"state", enum_name(sweep.state)},
+          {"created", sweep.created},
+          {"finished", sweep.finished},
           {"error", sweep.error},
-          {"run_count", sweep.state.runs},
-          {"counts", counts_json(run_counts.counts)},
+          {"run_count", sweep.runs},
+          {"counts", counts_json(counts)},
           {"share", share}};
 }
 
@@ -83,10 +86,10 @@ OrderedJson plan_json(const SweepSpec& spec, const SweepPlan& plan) {
           {"cells", cells_json(plan)}};
 }
 
-OrderedJson sweep_detail(const SweepEntry& sweep, const SweepFolder& folder, const JobTable& jobs) {
-  OrderedJson json = to_json(sweep, jobs);
+OrderedJson sweep_detail(const SweepEntry& sweep, const SweepFolder& folder, const Store& store) {
+  OrderedJson json = to_json(sweep, store);
   json.update(plan_json(folder.spec(), folder.plan()));
-  json["runs"] = runs_json(folder, jobs, is_over(sweep.state.state));
+  json["runs"] = runs_json(folder, store, is_over(sweep.state));
   return json;
 }
 

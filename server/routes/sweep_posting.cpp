@@ -1,28 +1,20 @@
 #include "server/routes/sweep_posting.h"
 
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "jobs/spec/described_json.h"
 #include "server/http/conditional.h"
+#include "server/routes/json_body.h"
 #include "server/routes/named_files.h"
 #include "server/routes/sweep_catalogue.h"
 #include "server/telemetry/log.h"
 
 namespace lacuna {
 
-SweepPosting::SweepPosting(const ScenesRoots& scenes, SweepTable& sweeps, const JobTable& jobs,
-                           SweepKeeper& keeper)
-    : Posting("sweep", "/api/sweeps/", max_sweep_bytes),
-      scenes_(scenes),
-      sweeps_(sweeps),
-      jobs_(jobs),
-      keeper_(keeper) {}
-
 Response SweepPosting::dry_run(const Request& request) const {
   SweepSpec spec;
-  const SweepPlan plan = checked_plan(read_body(request), spec);
+  const SweepPlan plan = checked_plan(read_json_body(request, max_sweep_bytes), spec);
   return json_response(200, plan_json(spec, plan));
 }
 
@@ -36,41 +28,40 @@ SweepPlan SweepPosting::checked_plan(const std::string& body, SweepSpec& spec) c
   }
 }
 
-std::string SweepPosting::make(const std::string& body, const Key& key) {
+Response SweepPosting::post(const Request& request) {
+  const std::string body = read_json_body(request, max_sweep_bytes);
+  const PostKey key = key_of(request, body);
   SweepSpec spec;
   SweepPlan plan = checked_plan(body, spec);
-  SweepState state;
-  state.idempotency_key = key.name;
-  state.body_hash = key.body_hash;
+  SweepEntry sweep;
+  sweep.runs = plan.runs.size();
+  sweep.id = store_.free_sweep_id(sweep.runs);
+  sweep.label = spec.label;
+  sweep.created = utc_now();
+  sweep.key = key.name;
+  sweep.body_hash = key.body_hash;
+  sweep.spec = write_document(spec);
+  bool replayed = false;
   try {
-    const SweepEntryPtr sweep = sweeps_.create(spec, std::move(plan), std::move(state));
-    log::info("{}: a sweep of {} runs", sweep->id, sweep->state.runs);
-    keeper_.notice();
-    return sweep->id;
+    store_.change([&](StoreChange& c) {
+      const auto known = key.name ? c.sweep_of_key(*key.name) : std::nullopt;
+      replayed = is_replay(known, key, "sweep");
+      if (replayed) {
+        sweep = *known;
+      } else {
+        c.add(sweep);
+      }
+    });
   } catch (const std::system_error& error) {
     log::error("a sweep could not be stored: {}", error.what());
     throw storage_error(error, "The sweep could not be stored");
   }
-}
-
-Posting::StoredKeys SweepPosting::stored_keys() const {
-  StoredKeys keys;
-  for (const SweepEntryPtr& sweep : sweeps_.all()) {
-    if (sweep->unread) keys.unread = fmt::format("{}: {}", sweep->id, sweep->error);
-    if (!sweep->state.idempotency_key.empty()) keys.ids[sweep->state.idempotency_key] = sweep->id;
+  const auto folder = replayed ? folders_.open(sweep) : folders_.keep(sweep, spec, std::move(plan));
+  if (!replayed) {
+    log::info("{}: a sweep of {} runs", sweep.id, sweep.runs);
+    keeper_.notice();
   }
-  return keys;
-}
-
-std::optional<std::string> SweepPosting::body_hash(const std::string& id) const {
-  const SweepEntryPtr sweep = sweeps_.find(id);
-  if (!sweep) return std::nullopt;
-  return sweep->state.body_hash;
-}
-
-OrderedJson SweepPosting::describe_made(const std::string& id) const {
-  const SweepEntryPtr sweep = find_sweep(sweeps_, id);
-  return sweep_detail(*sweep, *sweeps_.open(id), jobs_);
+  return created(replayed, "/api/sweeps/" + sweep.id, sweep_detail(sweep, *folder, store_));
 }
 
 }  // namespace lacuna

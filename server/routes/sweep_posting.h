@@ -1,33 +1,30 @@
 #pragma once
 
-#include "jobs/store/job_folder.h"
+#include "jobs/queue/store.h"
 #include "server/routes/posting.h"
+#include "server/sweeps/sweep_folders.h"
 #include "server/sweeps/sweep_keeper.h"
-#include "server/tables/job_table.h"
-#include "server/tables/sweep_table.h"
 
 namespace lacuna {
 
 /// Takes new sweeps. All references outlive it.
-class SweepPosting final : public Posting {
+class SweepPosting {
  public:
-  SweepPosting(const ScenesRoots& scenes, SweepTable& sweeps, const JobTable& jobs,
-               SweepKeeper& keeper);
+  SweepPosting(const ScenesRoots& scenes, Store& store, SweepFolders& folders, SweepKeeper& keeper)
+      : scenes_(scenes), store_(store), folders_(folders), keeper_(keeper) {}
 
-  /// The same checks as of post(), but nothing is stored: 200 with what the sweep comes to.
+  /// 201 with the sweep, once it is stored; 200 with the one that the same Idempotency-Key and body
+  /// have made before. Throws HttpError 400, with pointers into the sweep file, 415, 422 and 507.
+  Response post(const Request& request);
+  /// The same checks, but nothing is stored: 200 with what the sweep comes to.
   Response dry_run(const Request& request) const;
 
  private:
   SweepPlan checked_plan(const std::string& body, SweepSpec& spec) const;
-  /// Throws HttpError 400, with pointers into the sweep file, and 507.
-  std::string make(const std::string& body, const Key& key) override;
-  StoredKeys stored_keys() const override;
-  std::optional<std::string> body_hash(const std::string& id) const override;
-  OrderedJson describe_made(const std::string& id) const override;
 
   const ScenesRoots& scenes_;
-  SweepTable& sweeps_;
-  const JobTable& jobs_;
+  Store& store_;
+  SweepFolders& folders_;
   SweepKeeper& keeper_;
 };
 

@@ -13,41 +13,41 @@
 
 namespace lacuna {
 
-SweepRoutes::SweepRoutes(const ScenesRoots& scenes, SweepTable& sweeps, const JobTable& jobs,
+SweepRoutes::SweepRoutes(const ScenesRoots& scenes, Store& store, SweepFolders& folders,
                          SweepKeeper& keeper)
-    : sweeps_(sweeps), jobs_(jobs), keeper_(keeper), posting_(scenes, sweeps, jobs, keeper) {}
+    : store_(store), folders_(folders), keeper_(keeper), posting_(scenes, store, folders, keeper) {}
 
-/// Throws HttpError for one whose folder cannot be read: 503 for now, 409.
-std::shared_ptr<const SweepFolder> SweepRoutes::open(const SweepEntry& sweep) {
-  if (sweep.error.empty()) return sweeps_.open(sweep.id);
-  if (sweep.unread) throw HttpError(503, sweep.error).with("Retry-After", "1");
-  throw HttpError(409, fmt::format("Sweep {}: {}.", sweep.id, sweep.error));
+/// Throws HttpError 409 for one whose file cannot be read.
+SweepFolders::FolderPtr SweepRoutes::open(const SweepEntry& sweep) {
+  try {
+    return folders_.open(sweep);
+  } catch (const BadJob& bad) {
+    throw HttpError(409, fmt::format("Sweep {}: {}.", sweep.id, bad.what()));
+  }
 }
 
 Response SweepRoutes::list(const Request& request) const {
   OrderedJson list = OrderedJson::array();
-  const auto sweeps = sweeps_.all();
-  std::for_each(sweeps.rbegin(), sweeps.rend(),
-                [&](const SweepEntryPtr& sweep) { list.push_back(to_json(*sweep, jobs_)); });
+  for (const SweepEntry& sweep : store_.sweeps()) list.push_back(to_json(sweep, store_));
   return with_tag(request, json_response(200, {{"sweeps", std::move(list)}}));
 }
 
 Response SweepRoutes::detail(const Request& request, const std::string& id) {
-  const SweepEntryPtr sweep = find_sweep(sweeps_, id);
+  const SweepEntry sweep = find_sweep(store_, id);
   const OrderedJson json =
-      sweep->error.empty() ? sweep_detail(*sweep, *open(*sweep), jobs_) : to_json(*sweep, jobs_);
+      sweep.error.empty() ? sweep_detail(sweep, *open(sweep), store_) : to_json(sweep, store_);
   return with_tag(request, json_response(200, json));
 }
 
 Response SweepRoutes::cancel(const Request&, const std::string& id) {
-  find_sweep(sweeps_, id);
+  find_sweep(store_, id);
   apply([&] { keeper_.cancel(id); });
-  const SweepEntryPtr sweep = find_sweep(sweeps_, id);
-  return json_response(is_over(sweep->state.state) ? 200 : 202, to_json(*sweep, jobs_));
+  const SweepEntry sweep = find_sweep(store_, id);
+  return json_response(is_over(sweep.state) ? 200 : 202, to_json(sweep, store_));
 }
 
 Response SweepRoutes::remove(const Request&, const std::string& id) {
-  find_sweep(sweeps_, id);
+  find_sweep(store_, id);
   apply([&] { keeper_.remove(id); });
   Response response;
   response.status = 204;
@@ -55,7 +55,7 @@ Response SweepRoutes::remove(const Request&, const std::string& id) {
 }
 
 Response SweepRoutes::answers(const Request& request, const std::string& id) {
-  const auto sweep = open(*find_sweep(sweeps_, id));
+  const auto sweep = open(find_sweep(store_, id));
   return with_tag(request, json_response(200, answers_text(*sweep, answer(*sweep))));
 }
 
@@ -63,7 +63,7 @@ Response SweepRoutes::table(const Request& request, const std::string& id) {
   Response response;
   response.content_type = "text/csv";
   response.headers = {{"Cache-Control", "no-cache"}};
-  response.body = sweep_table(*open(*find_sweep(sweeps_, id)));
+  response.body = sweep_table(*open(find_sweep(store_, id)));
   return with_tag(request, std::move(response));
 }
 

@@ -3,16 +3,13 @@
 #include "server/http/router.h"
 #include "server/routes/sweep_posting.h"
 #include "server/sweeps/sweep_keeper.h"
-#include "server/tables/job_table.h"
-#include "server/tables/sweep_table.h"
 
 namespace lacuna {
 
 /// The addresses below /api/sweeps, and /api/schema/sweep. All references outlive it.
 class SweepRoutes {
  public:
-  SweepRoutes(const ScenesRoots& scenes, SweepTable& sweeps, const JobTable& jobs,
-              SweepKeeper& keeper);
+  SweepRoutes(const ScenesRoots& scenes, Store& store, SweepFolders& folders, SweepKeeper& keeper);
   void add_to(Router& router);
 
  private:
@@ -27,10 +24,10 @@ class SweepRoutes {
   Response answers(const Request& request, const std::string& id);
   Response table(const Request& request, const std::string& id);
 
-  std::shared_ptr<const SweepFolder> open(const SweepEntry& sweep);
+  SweepFolders::FolderPtr open(const SweepEntry& sweep);
 
-  SweepTable& sweeps_;
-  const JobTable& jobs_;
+  Store& store_;
+  SweepFolders& folders_;
   SweepKeeper& keeper_;
   SweepPosting posting_;
 };

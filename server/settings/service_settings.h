@@ -18,6 +18,7 @@ struct ServiceSettings {
   QueueSettings queue;
   CareSettings care;
   bool uploads = false;  ///< scenes may be put
+  bool import = false;   ///< the database is made anew from the folders
   bool verbose = false;  ///< every request is logged
   double grace_seconds = 10;
   ExecutorKind executor = ExecutorKind::local;

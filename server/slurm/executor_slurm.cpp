@@ -102,7 +102,8 @@ SlurmExecutor::SlurmExecutor(ExecutorSettings settings, SlurmSettings slurm, Run
   slurm_path(settings_.data);
 }
 
-Ending SlurmExecutor::run(const JobFolder& folder, const StopSignal& stop, const Notices& notices) {
+Ending SlurmExecutor::run(const Task& task, const StopSignal& stop, const Notices& notices) {
+  const JobFolder& folder = task.folder;
   Attempted attempted;
   try {
     if (const auto earlier = read_submission(folder)) {
@@ -110,7 +111,7 @@ Ending SlurmExecutor::run(const JobFolder& folder, const StopSignal& stop, const
     } else {
       const std::lock_guard one_at_a_time(submitting_);
       if (stop.leaves()) return {Ending::Kind::left, 0, "the service ends"};
-      attempted = submit(folder);
+      attempted = submit(task);
     }
   } catch (const std::system_error& error) {
     return folder_unusable(folder, error);
@@ -121,9 +122,10 @@ Ending SlurmExecutor::run(const JobFolder& folder, const StopSignal& stop, const
 
 /// Writes down what is about to be submitted, and submits it. Throws std::system_error: the job's
 /// folder cannot be written.
-SlurmExecutor::Attempted SlurmExecutor::submit(const JobFolder& folder) {
+SlurmExecutor::Attempted SlurmExecutor::submit(const Task& task) {
+  const JobFolder& folder = task.folder;
   Attempted attempted{{new_submission_name(folder), 0, utc_now()}, {}};
-  const auto words = words_for(folder, attempted.submission);
+  const auto words = words_for(task, attempted.submission);
   write_submission(folder, attempted.submission);
   try {
     attempted.submission.job = programs_.submit(words);
@@ -142,16 +144,16 @@ SlurmExecutor::Attempted SlurmExecutor::submit(const JobFolder& folder) {
   return attempted;
 }
 
-std::vector<std::string> SlurmExecutor::words_for(const JobFolder& folder,
+std::vector<std::string> SlurmExecutor::words_for(const Task& task,
                                                   const Submission& submission) const {
+  const JobFolder& folder = task.folder;
   const JobSpec spec = folder.read_job();
-  const JobControl control = folder.read_control();
   const SlurmRequest request =
       slurm_request(spec, {.cores = slurm_.cores,
                            .memory_limit = settings_.limits.memory_bytes,
                            .scene_bytes = scene_bytes(settings_, spec.scene),
-                           .priority = control.priority,
-                           .shortages = control.crashes});
+                           .priority = task.priority,
+                           .shortages = task.crashes});
   const auto script = folder.file("slurm.sh");
   write_file_atomically(script, script_text({.name = submission.name,
                                              .folder = folder.dir(),

@@ -20,7 +20,7 @@ class SlurmExecutor : public Executor {
   /// `run`: for tests; empty: programs in PATH.
   SlurmExecutor(ExecutorSettings settings, SlurmSettings slurm, RunProgram run = {});
 
-  Ending run(const JobFolder& folder, const StopSignal& stop, const Notices& notices) override;
+  Ending run(const Task& task, const StopSignal& stop, const Notices& notices) override;
   bool is_remote() const override { return true; }
   bool holds(const JobFolder& folder) const override { return has_submission(folder); }
   void forget(const JobFolder& folder) override { forget_submission(folder); }
@@ -35,11 +35,11 @@ class SlurmExecutor : public Executor {
     std::string said;
     bool called = true;
   };
-  Attempted submit(const JobFolder& folder);
+  Attempted submit(const Task& task);
   Ending follow(const JobFolder& folder, Attempted attempted, const StopSignal& stop,
                 const Notices& notices);
   void show_priority(const SlurmWatch::View& view) const;
-  std::vector<std::string> words_for(const JobFolder& folder, const Submission& submission) const;
+  std::vector<std::string> words_for(const Task& task, const Submission& submission) const;
 
   const ExecutorSettings settings_;
   const SlurmSettings slurm_;

@@ -7,7 +7,7 @@ export const many = 10000;
 /// `count` copies of the finished job in the folder `template`, with `more` of its files, under other
 /// names and with times of their own. Every `every`-th of them waits (0: none).
 export function fill(data, template, { more = [], count = many, every = 0 } = {}) {
-  const state = JSON.parse(fs.readFileSync(path.join(template, "state.json")));
+  const state = JSON.parse(fs.readFileSync(path.join(template, "outcome.json")));
   const files = ["job.json", "progress.json", "report.json", "curve.csv", ...more]
     .map((name) => [name, fs.readFileSync(path.join(template, name))]);
   const letters = "abcdefghijklmnopqrstuvwxyz";
@@ -21,7 +21,7 @@ export function fill(data, template, { more = [], count = many, every = 0 } = {}
     for (const [file, content] of files) {
       if (!waits || file === "job.json") fs.writeFileSync(path.join(dir, file), content);
     }
-    fs.writeFileSync(path.join(dir, "state.json"), JSON.stringify(waits
+    fs.writeFileSync(path.join(dir, "outcome.json"), JSON.stringify(waits
       ? { state: "queued", attempts: 0, created } : { ...state, created, finished: created }));
   }
 }

@@ -2,7 +2,7 @@
 #include "jobs/store/job_folder.h"
 #include "tests/fuzz/expect.h"
 
-// state.json and progress.json: refused with their problems, or written and read back without a
+// outcome.json and progress.json: refused with their problems, or written and read back without a
 // change. The text is tried as both.
 
 namespace lacuna::fuzz {

@@ -19,7 +19,7 @@ class LocalExecutorTest : public testing::Test {
   Ending run(const std::string& script, const ChildLimits& limits = {},
              const std::function<void(pid_t)>& started = {}) {
     write_program("#!/bin/sh\n" + script);
-    return make(limits).run(folder, stop, {.started = started, .place = {}});
+    return make(limits).run({folder}, stop, {.started = started, .place = {}});
   }
   void write_program(const std::string& content) const {
     temp.write("renderer", content);
@@ -33,7 +33,7 @@ class LocalExecutorTest : public testing::Test {
                           .grace = std::chrono::milliseconds(200),
                           .limits = limits});
   }
-  Ending run(LocalExecutor& executor) { return executor.run(folder, stop, {}); }
+  Ending run(LocalExecutor& executor) { return executor.run({folder}, stop, {}); }
   std::string log() const { return content_of(folder.file("log.txt")); }
 
   TemporaryFolder temp;

@@ -37,7 +37,8 @@ function write(name, content) {
   fs.utimesSync(temporary, new Date(), new Date(Date.now() + ahead));
   fs.renameSync(temporary, file(name));
 }
-const state = (change) => write("state.json", { ...read("state.json"), ...change });
+const outcome = () => (fs.existsSync(file("outcome.json")) ? read("outcome.json") : { state: "queued", attempts: 0 });
+const state = (change) => write("outcome.json", { ...outcome(), ...change });
 const dieNow = () => process.kill(process.pid, "SIGKILL");
 
 const [word, argument] = read("job.json").label.split(":")[0].split(" ");
@@ -80,7 +81,7 @@ function finish() {
   process.exit(0);
 }
 
-const attempts = read("state.json").attempts + 1;
+const attempts = outcome().attempts + 1;
 state({ state: "running", phase: "rendering", started: now(), attempts });
 progress(0.25);
 console.error(`attempt ${attempts}${resumed ? ", resumed" : ""}`);
@@ -127,8 +128,8 @@ switch (word) {
     setTimeout(() => process.exit(0), 600);
     break;
   case "lag":
-    fs.writeFileSync(file(".late"), JSON.stringify({ ...read("state.json"), state: "done", phase: "", finished: now() }));
-    spawn("/bin/sh", ["-c", "sleep 0.5; mv .late state.json"], { cwd: folder, detached: true, stdio: "ignore" }).unref();
+    fs.writeFileSync(file(".late"), JSON.stringify({ ...outcome(), state: "done", phase: "", finished: now() }));
+    spawn("/bin/sh", ["-c", "sleep 0.5; mv .late outcome.json"], { cwd: folder, detached: true, stdio: "ignore" }).unref();
     process.exit(0);
     break;
   case "gate":

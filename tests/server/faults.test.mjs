@@ -98,52 +98,55 @@ test("scenes that are away for a moment are waited for; scenes that have changed
   assert.ok(fs.existsSync(path.join(service.folder(id), "image.exr")));
 });
 
-test("a change that cannot be made leaves the job where it was", async (t) => {
-  const service = await Service.start(folders(t));
+test("what cannot be stored is refused and leaves everything where it was", async (t) => {
+  const places = folders(t);
+  const service = await Service.start(places);
   const first = await service.post("gate go");
   await service.reaches(first, "running");
   const id = await service.post("finish");
-  const file = path.join(service.folder(id), "state.json");
-  const state = fs.readFileSync(file);
+  const before = await service.json(`/api/jobs/${id}`);
   const patch = (change) => service.fetch(`/api/jobs/${id}`, { method: "PATCH",
     headers: { "Content-Type": "application/json" }, body: JSON.stringify(change) });
-  fs.writeFileSync(file, "{");
-  const before = await service.json(`/api/jobs/${id}`);
-  const held = await patch({ held: true });
-  assert.deepEqual([held.status, (await service.cancel(id)).status], [409, 409]);
-  assert.match((await held.json()).detail, /state\.json is corrupt/);
-  assert.deepEqual(await service.json(`/api/jobs/${id}`), before);
-  // Where queue.json cannot be replaced.
-  fs.writeFileSync(file, state);
-  fs.mkdirSync(path.join(service.folder(id), "queue.json/in the way"), { recursive: true });
+  const limitFiles = (bytes) => assert.equal(
+    spawnSync("prlimit", ["--pid", service.child.pid, `--fsize=${bytes}:`]).status, 0);
+  limitFiles(1);  // no file may grow
   for (const change of [{ held: true }, { priority: 3 }]) assert.equal((await patch(change)).status, 507);
   assert.equal((await service.cancel(id)).status, 507);
-  assert.deepEqual((await service.json(`/api/jobs/${id}`)).state, before.state);
-  fs.rmSync(path.join(service.folder(id), "queue.json"), { recursive: true });
-  service.open("go");
-  await service.reaches(id, "done", 60000);
+  const keyed = () => service.postText(JSON.stringify({ scene: "room/scene.glb", label: "finish" }),
+    { "Content-Type": "application/json", "Idempotency-Key": "once" });
+  assert.equal((await keyed()).status, 507);
+  assert.deepEqual(await service.json(`/api/jobs/${id}`), before);
+  assert.equal((await service.json("/api/jobs")).total, 2);
+  limitFiles("unlimited");
+  await service.stop("SIGKILL");  // what was refused is not found either
+  const second = await Service.start(places);
+  assert.equal((await second.json("/api/jobs")).total, 2);
+  assert.deepEqual((await second.json(`/api/jobs/${id}`)).state.state, "queued");
+  second.open("go");
+  await second.reaches(id, "done", 60000);
 });
 
-test("a job whose job.json is damaged says so, and its key still counts", async (t) => {
+test("a job's file and folder are made again from what was accepted", async (t) => {
   const places = folders(t);
-  const post = (service) => service.postText(JSON.stringify({ scene: "room/scene.glb", label: "finish" }),
+  const post = (service) => service.postText(JSON.stringify({ scene: "room/scene.glb", label: "gate go" }),
     { "Content-Type": "application/json", "Idempotency-Key": "once" });
   const first = await Service.start(places);
-  const { id } = await (await post(first)).json();
-  const done = await first.reaches(id, "done", 60000);
+  const running = await first.post("gate go");
+  await first.reaches(running, "running");
+  const { id, job } = await (await post(first)).json();
+  const other = await first.post("finish");
+  await first.stop("SIGKILL");
+  fs.rmSync(first.folder(other), { recursive: true });
   fs.writeFileSync(path.join(first.folder(id), "job.json"), "{\"scene\":");
-  const seen = await first.json(`/api/jobs/${id}`);
-  assert.deepEqual([seen.job, seen.state.state], [null, "done"]);
-  assert.match(seen.state.error, /job\.json cannot be read/);
-  await first.stop();
 
   const second = await Service.start(places);
   const again = await post(second);
   assert.deepEqual([again.status, again.headers.get("idempotent-replayed")], [200, "true"]);
-  const { job, state } = await again.json();
-  assert.deepEqual([job, state.state, state.created], [null, "failed", done.state.created]);
-  assert.match(state.error, /folder cannot be read/);
-  assert.equal((await second.json("/api/jobs")).total, 1);
+  assert.deepEqual((await again.json()).job, job);
+  second.open("go");
+  await second.reaches(id, "done", 60000);
+  await second.reaches(other, "done", 60000);
+  assert.deepEqual(JSON.parse(fs.readFileSync(path.join(second.folder(id), "job.json"))), job);
 });
 
 test("a job that is done can be removed at once", async (t) => {
@@ -152,22 +155,6 @@ test("a job that is done can be removed at once", async (t) => {
   await until(async () => (await service.json(`/api/jobs/${id}`)).state.state === "done", "it is done");
   const gone = await service.fetch(`/api/jobs/${id}`, { method: "DELETE" });
   assert.equal(gone.status, 204, await gone.text());
-});
-
-test("a job's folder that somebody else has made is taken up", async (t) => {
-  const service = await Service.start(folders(t));
-  const id = await service.post("gate go");
-  await service.reaches(id, "running");
-  const other = `${id.slice(0, -6)}zzzzzz`;
-  const draft = path.join(service.places.data, "draft");
-  fs.mkdirSync(draft);
-  for (const name of ["job.json", "state.json"]) fs.copyFileSync(path.join(service.folder(id), name), path.join(draft, name));
-  fs.writeFileSync(path.join(draft, "state.json"), JSON.stringify({ state: "queued", attempts: 0, created: "2026-01-31T00:00:00.000Z" }));
-  fs.renameSync(draft, service.folder(other));
-  service.open("go");
-  await service.reaches(id, "done", 60000);
-  await until(async () => (await service.fetch(`/api/jobs/${other}`)).ok, "it is seen");
-  await service.reaches(other, "done");
 });
 
 test("without descriptors a scene is not called missing", async (t) => {
@@ -213,34 +200,13 @@ test("more half requests than descriptors take none from the jobs, nor from othe
   await service.reaches(await service.post("finish"), "done", 60000);
 });
 
-test("two services on one folder whose lock was removed: the younger ends, and its job is not lost", async (t) => {
-  const places = folders(t);
-  const older = await Service.start(places);
-  const own = await older.post("gate go");
-  await older.reaches(own, "running");
-  fs.rmSync(path.join(places.data, ".lacuna-server.lock"));
-  const younger = await Service.start(places).catch(() => null);
-  if (younger) {  // unless the older had seen it before
-    const id = await younger.post("finish");
-    assert.equal((await younger.ended).code, 1);
-    assert.match(younger.log, /an older lacuna-server \(process \d+\) works in/);
-    older.open("go");
-    await until(async () => (await older.fetch(`/api/jobs/${id}`)).ok, "it is seen", 60000);
-    await older.reaches(id, "done", 60000);
-  } else {
-    older.open("go");
-  }
-  await older.reaches(own, "done", 60000);
-  await until(() => fs.existsSync(path.join(places.data, ".lacuna-server.lock")), "the lock is there again", 60000);
-});
-
 test("temporary files of killed writes are swept at the start", async (t) => {
   const places = folders(t);
   const first = await Service.start(places);
   const id = await first.post("finish");
   await first.reaches(id, "done");
   await first.stop();
-  const left = [first.folder(id), places.data].map((dir) => path.join(dir, ".state.json.4194304-0123456789abcdef.tmp"));
+  const left = [first.folder(id), places.data].map((dir) => path.join(dir, ".outcome.json.4194304-0123456789abcdef.tmp"));
   for (const file of left) {
     fs.writeFileSync(file, "half");
     fs.utimesSync(file, new Date(0), new Date(0));

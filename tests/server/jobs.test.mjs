@@ -40,7 +40,7 @@ test("a job is posted, stored, rendered and listed", async (t) => {
   assert.equal(done.state.exit_code, 0);
   const names = done.files.map((f) => f.name).sort();
   assert.deepEqual(names, ["curve.csv", "image.exr", "image.png", "job.json", "log.txt",
-    "progress.json", "report.json", "state.json"]);
+    "outcome.json", "progress.json", "report.json"]);
   assert.equal(done.files.find((f) => f.name === "image.exr").bytes, 100000);
 
   const second = await service.post("finish");
@@ -142,7 +142,7 @@ test("no spelling of a path leaves a job's folder", async (t) => {
   const jobs = path.dirname(service.folder(id));
   fs.mkdirSync(path.join(jobs, "copy"));
   for (const folder of [path.join(jobs, "copy"), jobs, path.dirname(jobs)]) {
-    for (const name of ["job.json", "state.json"]) {
+    for (const name of ["job.json", "outcome.json"]) {
       fs.copyFileSync(path.join(service.folder(id), name), path.join(folder, name));
     }
   }
@@ -238,6 +238,7 @@ test("every address describes itself", async (t) => {
   assert.ok(paths["/api/jobs/{id}"].patch.requestBody);
   const { states, transitions } = await service.json("/api/states");
   assert.deepEqual(states.filter((s) => s.terminal).map((s) => s.name), ["done", "failed", "cancelled"]);
+  assert.deepEqual(states.find((s) => s.name === "held").actions, ["cancel", "release", "priority"]);
   assert.ok(transitions.some((x) => x.from === "held" && x.to === "queued" && x.by === "person"));
   const metrics = await (await service.fetch("/metrics")).text();
   assert.match(metrics, /^lacuna_jobs\{state="queued"\} 0$/m);

@@ -7,7 +7,7 @@ namespace lacuna {
 /// Never asked: the queue of such tests has no runners.
 class NoExecutor final : public Executor {
  public:
-  Ending run(const JobFolder&, const StopSignal&, const Notices&) override { return {}; }
+  Ending run(const Task&, const StopSignal&, const Notices&) override { return {}; }
 };
 
 }  // namespace lacuna

@@ -7,8 +7,8 @@ import path from "node:path";
 import { test } from "node:test";
 import { folders, runToEnd, Service, until } from "./service.mjs";
 
-const stateOnDisk = (service, id) =>
-  JSON.parse(fs.readFileSync(path.join(service.folder(id), "state.json")));
+const outcome = (service, id) =>
+  JSON.parse(fs.readFileSync(path.join(service.folder(id), "outcome.json")));
 
 /// The one child process of any thread of `pid`.
 function rendererOf(pid) {
@@ -261,9 +261,9 @@ test("ended gently, the service lets renderers save, and goes on after a restart
   const gone = await first.post("finish");
   await first.cancel(gone);
   assert.deepEqual(await first.stop(), { code: 0, signal: null });
-  assert.equal(stateOnDisk(first, running).state, "queued");
-  assert.equal(stateOnDisk(first, running).finished, "");
-  assert.equal(stateOnDisk(first, waiting).state, "queued");
+  assert.equal(first.stored(running).state, "queued");
+  assert.equal(first.stored(running).finished, "");
+  assert.equal(first.stored(waiting).state, "queued");
   assert.ok(fs.existsSync(path.join(first.folder(running), "checkpoint.bin")));
 
   const second = await Service.start(places);
@@ -282,7 +282,7 @@ test("a renderer that has to be killed at the end of the service costs no job", 
   const id = await service.post("stubborn");
   await service.reaches(id, "running");
   assert.deepEqual(await service.stop(), { code: 0, signal: null });
-  const state = stateOnDisk(service, id);
+  const state = service.stored(id);
   assert.deepEqual([state.state, state.exit_code, state.error], ["queued", 128 + 9, ""]);
 });
 
@@ -295,42 +295,12 @@ test("killed, the service takes its renderers along and loses no job", async (t)
   const renderer = rendererOf(first.child.pid);
   await first.stop("SIGKILL");
   await until(() => !runs(renderer), "its renderer ends too");
-  assert.equal(stateOnDisk(first, running).state, "interrupted");
+  assert.equal(outcome(first, running).state, "interrupted");
 
   const second = await Service.start(places);
   second.open("go");
   assert.equal((await second.reaches(running, "done")).state.attempts, 2);
   await second.reaches(waiting, "done");
-});
-
-test("states that a dead service left are put right", async (t) => {
-  const places = folders(t);
-  const first = await Service.start(places);
-  const ids = [];
-  for (const label of ["gate x", "finish", "finish", "finish"]) ids.push(await first.post(label));
-  await first.reaches(ids[0], "running");
-  await first.stop("SIGKILL");
-  await until(() => stateOnDisk(first, ids[0]).state === "interrupted", "its renderer has ended");
-  const [, running, cancelling, corrupt] = ids;
-  const put = (id, state) => fs.writeFileSync(path.join(first.folder(id), "state.json"),
-    JSON.stringify({ ...stateOnDisk(first, id), state }));
-  put(running, "running");
-  put(cancelling, "cancelling");
-  fs.writeFileSync(path.join(first.folder(corrupt), "state.json"), "{\"state\":");
-  fs.mkdirSync(path.join(places.data, "jobs", "no-job"));
-
-  const second = await Service.start(places);
-  await second.reaches(ids[0], "running");
-  await second.reaches(cancelling, "cancelled");
-  assert.equal((await second.json(`/api/jobs/${running}`)).state.state, "queued");
-  second.open("x");
-  await second.reaches(ids[0], "done");
-  await second.reaches(running, "done");
-  const { jobs } = await second.json("/api/jobs");
-  assert.equal(jobs.length, 4, "a damaged one is listed, and hides no other");
-  const damaged = jobs.find((j) => j.id === corrupt);
-  assert.equal(damaged.state, "failed");
-  assert.match(damaged.error, /state\.json/);
 });
 
 test("a folder that another renderer still holds is waited for", async (t) => {
@@ -353,32 +323,6 @@ test("a folder that another renderer still holds is waited for", async (t) => {
   assert.equal((await second.json(`/api/jobs/${id}`)).state.attempts, 1, "nothing is started yet");
   holder.stdin.end();
   assert.equal((await second.reaches(id, "done")).state.attempts, 2);
-});
-
-test("a job that is removed by hand is gone", async (t) => {
-  const service = await Service.start(folders(t));
-  const first = await service.post("gate x");
-  await service.reaches(first, "running");
-  const second = await service.post("finish");
-  fs.rmSync(service.folder(second), { recursive: true });
-  assert.equal((await service.fetch(`/api/jobs/${second}`)).status, 404);
-  const third = await service.post("finish");
-  service.open("x");
-  await service.reaches(third, "done");
-  await until(async () => (await service.json("/api/jobs")).jobs.every((j) => j.id !== second),
-    "the list knows, too");
-  assert.deepEqual((await service.json("/api/jobs")).jobs.map((j) => j.id).sort(), [first, third].sort());
-});
-
-test("what a killed service had just forked may have its data folder a moment longer", async (t) => {
-  const places = folders(t);
-  fs.mkdirSync(places.data);
-  const holder = spawn("flock", [path.join(places.data, ".lacuna-server.lock"), "sh", "-c", "echo held; read line"],
-    { stdio: ["pipe", "pipe", "inherit"] });
-  await new Promise((resolve) => { holder.stdout.once("data", resolve); });
-  setTimeout(() => holder.stdin.end(), 300);
-  const service = await Service.start(places);
-  assert.deepEqual(await service.json("/health"), { status: "ok" });
 });
 
 test("two services never share a data folder", async (t) => {

@@ -74,7 +74,7 @@ test("a held job can be cancelled", async (t) => {
   const id = await service.post("finish");
   await patch(service, id, { held: true });
   assert.equal((await service.cancel(id)).status, 200);
-  assert.equal(onDisk(service, id, "state.json").state, "cancelled");
+  assert.equal(onDisk(service, id, "outcome.json").state, "cancelled");
 });
 
 test("a cancel is kept when the service dies before the renderer has ended", async (t) => {

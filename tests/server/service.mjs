@@ -1,6 +1,6 @@
 // Starts the real lacuna-server for a test, on a free port and in folders of its own.
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
+import { execFileSync, spawn } from "node:child_process";
 import fs from "node:fs";
 import net from "node:net";
 import os from "node:os";
@@ -167,15 +167,22 @@ export class Service {
     return this.fetch(`/api/jobs/${id}/cancel`, { method: "POST" });
   }
 
-  /// Waits up to `ms` until a job is in a state; gives its JSON. A terminal state that a renderer wrote
-  /// is final once its exit code is noted, too.
+  /// Waits up to `ms` until a job is in a state; gives its JSON. `running`: until its renderer has
+  /// said so itself, and hears signals.
   reaches(id, state, ms) {
     return until(async () => {
       const job = await this.json(`/api/jobs/${id}`);
-      const ended = !["done", "failed"].includes(state) || job.state.exit_code >= 0
-        || job.state.attempts === 0;
-      return job.state.state === state && ended && job;
+      const heard = state !== "running" || job.state.phase !== "";
+      return job.state.state === state && heard && job;
     }, `job ${id} is ${state}`, ms);
+  }
+
+  /// The row of a job or sweep in the database of a service that has ended.
+  stored(id, table = "jobs") {
+    const script = "import sqlite3, sys, json\ndb = sqlite3.connect(sys.argv[1])\ndb.row_factory = sqlite3.Row\n"
+      + "print(json.dumps(dict(db.execute(f'SELECT * FROM {sys.argv[2]} WHERE id=?', (sys.argv[3],)).fetchone())))";
+    return JSON.parse(execFileSync("python3",
+      ["-c", script, path.join(this.places.data, "lacuna.db"), table, id], { encoding: "utf8" }));
   }
 
   folder(id) {

@@ -172,7 +172,7 @@ class Run:
 def _state(folder):
     """That of a job's folder, as "done"; None: there is none."""
     try:
-        return json.loads((folder / "state.json").read_text())["state"]
+        return json.loads((folder / "outcome.json").read_text())["state"]
     except (FileNotFoundError, KeyError, json.JSONDecodeError):
         return None
 

@@ -20,7 +20,7 @@ test("render: results, a line a milestone, done already, another job in the way"
   job(folder, "a.json", {});
   const first = await run(folder, "render", "a.json");
   assert.equal(first.code, 0, first.err);
-  for (const name of ["image.exr", "image.png", "layers.half", "layers.json", "curve.csv", "report.json", "job.json", "state.json", "log.txt"]) {
+  for (const name of ["image.exr", "image.png", "layers.half", "layers.json", "curve.csv", "report.json", "job.json", "outcome.json", "log.txt"]) {
     assert.ok(existsSync(join(folder, "a.job", name)), name);
   }
   assert.match(first.err, /iteration 2, /);
@@ -109,7 +109,7 @@ test("extend: a done job goes on from its checkpoint to the bits of one run", as
   assert.match((await run(folder, "extend", "a.job", "--error", "0.1")).err, /the job has no error target/);
   const same = JSON.parse(readFileSync(join(folder, "a.job/job.json"), "utf8"));
   assert.deepEqual(same.budget.iterations, 2, "what is refused changes nothing");
-  assert.equal(JSON.parse(readFileSync(join(folder, "a.job/state.json"), "utf8")).state, "done");
+  assert.equal(JSON.parse(readFileSync(join(folder, "a.job/outcome.json"), "utf8")).state, "done");
   const extended = await run(folder, "extend", "a.job", "--iterations", "5");
   assert.equal(extended.code, 0, extended.err);
   assert.match(extended.err, /continuing from iteration 2/);
@@ -233,7 +233,7 @@ for (const [what, content, message] of badAssets) {
     const result = await run(folder, "render", "a.json");
     assert.equal(result.code, 3, result.err);
     assert.match(result.err, message);
-    const state = JSON.parse(readFileSync(join(folder, "a.job/state.json"), "utf8"));
+    const state = JSON.parse(readFileSync(join(folder, "a.job/outcome.json"), "utf8"));
     assert.equal(state.state, "failed");
     assert.match(state.error, message);
   });

@@ -60,7 +60,7 @@ test("the module lies beside the program; without it a job waits before it is re
   const missing = moved("render", "a.json");
   assert.equal(missing.status, 75, missing.stderr);
   assert.match(missing.stderr, /elsewhere\/lacuna-images\.so: images can be neither read nor written: .*No such file/);
-  const state = JSON.parse(readFileSync(join(folder, "a.job/state.json"), "utf8"));
+  const state = JSON.parse(readFileSync(join(folder, "a.job/outcome.json"), "utf8"));
   assert.equal(state.state, "interrupted");
   assert.match(state.error, /lacuna-images\.so/);
   assert.equal(existsSync(join(folder, "a.job/checkpoint.bin")), false);

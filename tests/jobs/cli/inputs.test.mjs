@@ -48,7 +48,7 @@ test("render, extend, compare: changed inputs are refused by name, --again rende
   }
   assert.ok(bytes(folder, "a.job/image.exr").equals(picture));
   assert.deepEqual(read(folder, "a.job/job.json"), was);
-  assert.equal(read(folder, "a.job/state.json").state, "done");
+  assert.equal(read(folder, "a.job/outcome.json").state, "done");
 
   assert.equal((await run(folder, "render", "a.json", "--out", "b.job", "-q")).code, 0);
   const compared = await run(folder, "compare", "a.job", "b.job/image.exr");
@@ -91,7 +91,7 @@ test("a folder of scenes that is away for a moment: exit 75, and the same comman
     assert.equal(away.code, 75, away.err);
     assert.match(away.err, /cannot read .*furnace\.glb: .*scenes is missing or empty/);
   }
-  assert.equal(read(folder, "a.job/state.json").state, "interrupted");
+  assert.equal(read(folder, "a.job/outcome.json").state, "interrupted");
   renameSync(scenes, join(folder, "away"));
   assert.equal((await runThere("render", "a.json")).code, 75);
   renameSync(join(folder, "away"), scenes);

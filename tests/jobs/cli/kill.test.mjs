@@ -59,7 +59,7 @@ test("stopped by SIGTERM: exit 75, state interrupted, then the same bits", async
   child.kill("SIGTERM");
   const stopped = await ended;
   assert.equal(stopped.code, 75, stopped.err);
-  assert.equal(JSON.parse(readFileSync(join(folder, "stopped.job/state.json"), "utf8")).state, "interrupted");
+  assert.equal(JSON.parse(readFileSync(join(folder, "stopped.job/outcome.json"), "utf8")).state, "interrupted");
   assert.equal((await run(folder, "render", "stopped.json", "-q")).code, 0);
   await sameBits(folder, "whole.job", "stopped.job");
 });
@@ -77,7 +77,7 @@ test("a grace that is no number of seconds is refused before anything is rendere
   assert.match(refused.err, /LACUNA_GRACE: soon; allowed: seconds, at least 0/);
 });
 
-const stateOf = (folder) => JSON.parse(readFileSync(join(folder, "a.job/state.json"), "utf8"));
+const stateOf = (folder) => JSON.parse(readFileSync(join(folder, "a.job/outcome.json"), "utf8"));
 const temporaries = (folder) => readdirSync(join(folder, "a.job")).filter((name) => name.endsWith(".tmp"));
 
 /// Renders a job with checkpoints until it is stopped; gives the checkpoint's bytes.

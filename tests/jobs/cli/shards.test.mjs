@@ -198,7 +198,7 @@ test("a damaged shard, and one of another version, are named", async (t) => {
   const flipped = Buffer.from(whole);
   flipped[whole.length >> 1] ^= 1;
   await attempt(flipped, 1, /shard 2 of 2 \(.*a\.2-of-2\.job\): .*checkpoint\.bin: damaged/);
-  assert.equal(read(folder, "m.job/state.json").state, "failed");
+  assert.equal(read(folder, "m.job/outcome.json").state, "failed");
   await attempt(whole.subarray(0, whole.length - 100), 1, /shard 2 of 2 .*cut short/);
   await attempt(Buffer.alloc(3), 2, /a\.2-of-2\.job: .*checkpoint\.bin: /);
   const version = read(folder, "a.2-of-2.job/report.json").version;
@@ -225,7 +225,7 @@ test("shards of another kind of processor are merged with a warning", async (t) 
   const report = read(folder, `${made[1]}/report.json`);
   writeFileSync(file, JSON.stringify({ ...report, machine: { ...report.machine, processor: "Another 9000" } }));
   await done(folder, "merge", "m.job", ...made);
-  const [warning] = read(folder, "m.job/state.json").warnings.filter((w) => /processors/.test(w));
+  const [warning] = read(folder, "m.job/outcome.json").warnings.filter((w) => /processors/.test(w));
   assert.match(warning, /on 2 kinds of processors \(.*Another 9000.*\): their last bits may differ/);
 });
 

@@ -37,7 +37,7 @@ for (const [name, spec] of Object.entries(busy)) {
       late.abort();
       assert.ok(last, `no answer within ${allowed} s`);
       assert.equal(last.code, 75, last.err);
-      assert.equal(JSON.parse(readFileSync(join(folder, "a.job/state.json"), "utf8")).state, "interrupted");
+      assert.equal(JSON.parse(readFileSync(join(folder, "a.job/outcome.json"), "utf8")).state, "interrupted");
     });
   }
 }

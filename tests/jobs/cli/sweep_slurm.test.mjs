@@ -33,7 +33,7 @@ const begin = (cluster, folder, ...more) => startWith(["env", ...cluster.environ
 const sweep = (...all) => begin(...all).ended;
 const record = (folder) => join(folder, "a.sweep/slurm.json");
 const missing = async (folder) => (await run(folder, "sweep", "a.json", "--missing")).out;
-const attempts = (folder, name) => JSON.parse(readFileSync(join(folder, `a.sweep/runs/${name}/state.json`))).attempts;
+const attempts = (folder, name) => JSON.parse(readFileSync(join(folder, `a.sweep/runs/${name}/outcome.json`))).attempts;
 const names = ["0001-1", "0001-2", "0002-1", "0002-2", "0003-1", "0003-2"];
 
 onCluster("sweep on Slurm: an array of chunks does every run once", async (cluster, folder) => {

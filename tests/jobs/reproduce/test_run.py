@@ -67,7 +67,7 @@ class Runs(unittest.TestCase):
             self.run_.render("picture", job)
             places.add(self.run_.place("picture"))
         self.assertEqual(len(places), 4)
-        (first / "state.json").write_text('{"state": "running"}')  # one that was stopped is not a result
+        (first / "outcome.json").write_text('{"state": "running"}')  # one that was stopped is not a result
         with mock.patch.object(child, "lacuna") as rendering:
             self.run_.render("picture", job)
         rendering.assert_called_once()

@@ -18,7 +18,8 @@ TEST(ShardFolders, AShardThatCannotBeReadNowIsNotRefused) {
   spec.shards = 2;
   spec.shard = 1;
   const JobFolder folder = JobFolder::create(tmp / "shard", spec);
-  for (const char* name : {"job.json", "state.json"}) {
+  folder.write_state({});
+  for (const char* name : {"job.json", "outcome.json"}) {
     const FailingFiles failing(FileCall::open, name);
     EXPECT_THROW(read_shards({folder.dir()}), std::system_error) << name;
   }

@@ -26,19 +26,25 @@ JobSpec some_job() {
   return spec;
 }
 
-TEST(JobFolder, IsCreatedWithItsJobAndState) {
+TEST(JobFolder, IsCreatedWithItsJobAndWaits) {
   const TemporaryFolder tmp;
   const JobFolder folder = JobFolder::create(tmp.path() / "jobs" / "one", some_job());
   EXPECT_EQ(folder.id(), "one");
-  EXPECT_EQ(names_in(folder.dir()), (Names{"job.json", "state.json"}));
+  EXPECT_EQ(names_in(folder.dir()), Names{"job.json"});
   EXPECT_EQ(names_in(tmp / "jobs"), Names{"one"});
   EXPECT_EQ(folder.read_job(), some_job());
-  JobState expected;
-  expected.created = folder.read_state().created;
-  EXPECT_EQ(folder.read_state(), expected);
-  EXPECT_EQ(expected.state, State::queued);
-  EXPECT_EQ(expected.created.size(), utc_now().size());
+  EXPECT_EQ(folder.read_state(), JobState{});
   EXPECT_EQ(folder.read_progress(), std::nullopt);
+}
+
+TEST(JobFolder, OfVersion01TellsItsState) {
+  const TemporaryFolder tmp;
+  const JobFolder folder = JobFolder::create(tmp / "one", some_job());
+  put_file(folder.file("state.json"), R"({"state": "interrupted", "attempts": 2, "created": "c"})");
+  EXPECT_EQ(folder.read_state().state, State::interrupted);
+  folder.reopen();
+  EXPECT_EQ(folder.read_state().state, State::queued);
+  EXPECT_EQ(folder.read_state().attempts, 2);
 }
 
 TEST(JobFolder, ASlashAtTheEndChangesNothing) {
@@ -109,19 +115,18 @@ TEST(JobFolder, AnErrorOfAnyBytesStillMakesAReadableState) {
   EXPECT_EQ(back.warnings[1], " ");
 }
 
-TEST(JobFolder, AMissingOrCorruptStateIsToldWithItsFile) {
+TEST(JobFolder, ACorruptStateIsToldWithItsFile) {
   const TemporaryFolder tmp;
   const JobFolder folder(tmp.path());
   const auto read = [&] { folder.read_state(); };
-  EXPECT_TRUE(contains(message_of<std::runtime_error>(read), folder.file("state.json").string()));
   for (const std::string& content :
        {std::string(), std::string("{}"), std::string("{\"state\": \"running\""),
         std::string(R"({"state": "lost", "attempts": 0, "created": ""})"),
         std::string(R"({"state": "done", "attempts": 0, "created": "", "more": 1})"),
         std::string(2 << 20, ' ')}) {
-    put_file(folder.file("state.json"), content);
+    put_file(folder.file("outcome.json"), content);
     const std::string message = message_of<std::runtime_error>(read);
-    EXPECT_TRUE(contains(message, folder.file("state.json").string())) << content.substr(0, 100);
+    EXPECT_TRUE(contains(message, folder.file("outcome.json").string())) << content.substr(0, 100);
     EXPECT_TRUE(contains(message, "corrupt")) << message;
   }
 }
@@ -219,32 +224,26 @@ TEST(JobFolder, TheManifestServesResultsAndNothingOfTheWorks) {
   for (const FileInfo& f : job_files()) {
     EXPECT_TRUE(names.emplace(f.name).second) << f.name;
     const bool works =
-        f.name == "checkpoint.bin" || f.name == "queue.json" || f.name.starts_with("slurm.");
+        f.name == "checkpoint.bin" || f.name == "accepted.json" || f.name.starts_with("slurm.");
     EXPECT_EQ(f.served, !works) << f.name;
     EXPECT_NE(f.media_type.find('/'), std::string_view::npos);
     EXPECT_EQ(f.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz."), std::string_view::npos);
   }
-  EXPECT_EQ(names, (Names{"job.json", "state.json", "progress.json", "image.exr", "image.png",
+  EXPECT_EQ(names, (Names{"job.json", "outcome.json", "progress.json", "image.exr", "image.png",
                           "layers.half", "layers.json", "curve.csv", "report.json",
-                          "checkpoint.bin", "queue.json", "slurm.json", "slurm.sh", "slurm.exit",
+                          "checkpoint.bin", "accepted.json", "slurm.json", "slurm.sh", "slurm.exit",
                           "inputs.json", "log.txt"}));
 }
 
-TEST(JobFolder, WhatTheServiceWasAskedForIsKept) {
+TEST(JobFolder, WhatAServiceTookItForIsKept) {
   const TemporaryFolder temporary;
-  EXPECT_EQ(JobFolder::create(temporary.path() / "plain", some_job()).read_control(), JobControl{});
-  JobControl control;
-  control.priority = -3;
-  control.held = true;
-  control.idempotency_key = "k";
-  const JobFolder f = JobFolder::create(temporary.path() / "held", some_job(), control);
-  EXPECT_EQ(f.read_control(), control);
-  EXPECT_EQ(f.read_state().state, State::held);
-  control.cancel = true;
-  f.write_control(control);
-  EXPECT_EQ(f.read_control(), control);
-  write_file_atomically(f.file("queue.json"), R"({"priority": 101})");
-  EXPECT_THROW(f.read_control(), std::runtime_error);
+  const JobFolder f = JobFolder::create(temporary.path() / "one", some_job());
+  EXPECT_EQ(f.read_acceptance(), Acceptance{});
+  const Acceptance accepted{.number = 7, .created = "c", .sweep = "s", .idempotency_key = "k"};
+  f.write_acceptance(accepted);
+  EXPECT_EQ(f.read_acceptance(), accepted);
+  write_file_atomically(f.file("accepted.json"), R"({"number": "seven"})");
+  EXPECT_THROW(f.read_acceptance(), std::runtime_error);
 }
 
 TEST(JobFolder, RemovedAsAWholeAndWhatACrashLeftIsTidiedUp) {

@@ -14,13 +14,6 @@ SweepSpec spec() {
                          "axes": {"/integrator/max_depth": [4, 8]}})");
 }
 
-SweepState state() {
-  SweepState state;
-  state.created = utc_now();
-  state.runs = 6;
-  return state;
-}
-
 TEST(SweepFolder, FromTheCommandLineRunsLieInIt) {
   const TemporaryFolder tmp;
   // Even where its name looks like a service's.
@@ -38,10 +31,9 @@ TEST(SweepFolder, OfAServiceRunsAreItsJobs) {
   const TemporaryFolder tmp;
   const DataRoot data{tmp.path()};
   const std::string id = "20260131-235959-zzzzzy";
-  const SweepFolder made = SweepFolder::create_served(data, id, spec(), expand(spec()), state());
+  const SweepFolder made = SweepFolder::of_service(data, id, spec(), expand(spec()));
   EXPECT_TRUE(made.is_served());
-  EXPECT_EQ(names_in(data.sweeps() / id), (std::set<std::string>{"state.json", "sweep.json"}));
-  EXPECT_EQ(read_sweep_state(made.dir()).runs, 6u);
+  EXPECT_EQ(names_in(data.sweeps() / id), std::set<std::string>{"sweep.json"});
   const SweepFolder read((data.sweeps() / id / "").string());  // with a '/' at its end
   EXPECT_EQ(read.id(), id);
   EXPECT_EQ(read.spec(), spec());
@@ -56,27 +48,6 @@ TEST(SweepFolder, OfAServiceRunsAreItsJobs) {
   const JobFolder job = read.make_folder(read.plan().runs[1]);
   EXPECT_EQ(job.id(), read.job_id(read.plan().runs[1]));
   EXPECT_TRUE(job.read_job().exclusive) << "a sweep's runs are alone unless it says otherwise";
-  EXPECT_THROW(SweepFolder::create_served(data, id, spec(), expand(spec()), state()),
-               std::invalid_argument);
-}
-
-TEST(SweepFolder, ANewIdIsNoOtherSweepsAndNoJobs) {
-  const TemporaryFolder tmp;
-  const DataRoot data{tmp.path()};
-  // Each time something else is in the way, which is put there while the id is chosen.
-  int asked = 0;
-  std::vector<std::string> refused;
-  const std::string id = new_sweep_id(data, 5, [&](const std::string& candidate) {
-    if (++asked < 4) refused.push_back(candidate);
-    if (asked == 1) return true;
-    if (asked == 2) std::filesystem::create_directories(data.sweeps() / candidate);
-    if (asked == 3) std::filesystem::create_directories(data.jobs() / run_job_id(candidate, 4));
-    if (asked == 4) std::filesystem::create_directories(data.jobs() / run_job_id(candidate, 5));
-    return false;
-  });
-  EXPECT_EQ(asked, 4) << "the last was free: a sixth run is not its own";
-  EXPECT_TRUE(is_job_id(id));
-  for (const std::string& other : refused) EXPECT_NE(id, other);
 }
 
 TEST(SweepFolder, WhatIsNoSweepIsRefused) {

@@ -1,4 +1,6 @@
-#include "server/tables/entry_json.h"
+#include "server/routes/entry_json.h"
+
+#include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
@@ -10,19 +12,24 @@ OrderedJson or_null(const std::optional<T>& value) {
   return value ? OrderedJson(*value) : OrderedJson(nullptr);
 }
 
+std::string place_of(const JobEntry& e) {
+  const bool waits = e.state.state == State::queued && e.state.attempts == 0 && !e.shards.empty();
+  if (!e.place.empty() || !waits) return e.place;
+  return fmt::format("nowhere yet: it waits for its shards, the runs of {}", e.shards);
+}
+
 }  // namespace
 
-OrderedJson to_json(const JobState& s) {
-  return {{"state", enum_name(s.state)}, {"phase", s.phase},     {"attempts", s.attempts},
-          {"exit_code", s.exit_code},    {"created", s.created}, {"started", s.started},
-          {"finished", s.finished},      {"error", s.error},     {"warnings", s.warnings}};
+OrderedJson or_null(const std::string& text) {
+  return text.empty() ? OrderedJson(nullptr) : OrderedJson(text);
 }
 
 OrderedJson state_json(const JobEntry& e) {
-  OrderedJson json = to_json(e.state);
-  json["obstacle"] = e.obstacle;
-  json["place"] = e.place;
-  return json;
+  const JobState& s = e.state;
+  return {{"state", enum_name(s.state)}, {"phase", s.phase},     {"attempts", s.attempts},
+          {"exit_code", s.exit_code},    {"created", s.created}, {"started", s.started},
+          {"finished", s.finished},      {"error", s.error},     {"warnings", s.warnings},
+          {"obstacle", e.obstacle},      {"place", place_of(e)}};
 }
 
 OrderedJson to_json(const Progress& p) {
@@ -35,19 +42,15 @@ OrderedJson to_json(const Progress& p) {
           {"error_metric", p.error_metric}};
 }
 
-OrderedJson sweep_json(const JobEntry& e) {
-  return e.sweep.empty() ? OrderedJson(nullptr) : OrderedJson(e.sweep);
-}
-
 OrderedJson to_json(const JobEntry& e) {
   OrderedJson json = {{"id", e.id},
                       {"label", e.label},
                       {"scene", e.scene},
                       {"integrator", e.integrator},
-                      {"sweep", sweep_json(e)},
+                      {"sweep", or_null(e.sweep)},
                       {"picture", e.pictured},
-                      {"priority", e.control.priority},
-                      {"held", e.control.held}};
+                      {"priority", e.priority},
+                      {"held", e.held}};
   json.update(state_json(e));
   json["progress"] = e.progress ? to_json(*e.progress) : OrderedJson(nullptr);
   return json;
