@@ -68,8 +68,8 @@ void define_options(CLI::App& app, ServiceSettings& s) {
                  "address to listen on; beyond loopback only with --token-file")
       ->capture_default_str();
   app.add_option("--token-file", s.access.token_file,
-                 "file with the token that clients must send: one line of 16 to 256 characters, "
-                 "mode 0600");
+                 "file with the token that clients must send: one line of 16 to 256 characters "
+                 "without %, mode 0600");
   app.add_option("--host", s.access.hosts,
                  "further NAME or NAME:PORT of this service in the Host header; may be repeated")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

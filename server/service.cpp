@@ -113,28 +113,24 @@ void check(const ServiceSettings& settings) {
   }
 }
 
-/// Connections need descriptors: what was allowed at the start is often too little. Gives the
-/// highest that a connection may have: those above, at most half, are for the files of renderers,
-/// jobs and answers.
-int allow_descriptors(const ServiceSettings& settings) {
+/// Raises the number of files that may be open at a time: what was allowed at the start is often
+/// too little. A quarter of them is for connections, as many for the files that these answer with,
+/// and half for the service and its renderers.
+HttpSettings http_settings(const ServiceSettings& settings) {
   constexpr rlim_t wanted = 8192;
-  constexpr int for_answers = 512, for_a_renderer = 8;
+  HttpSettings http = settings.http;
   rlimit limit{};
-  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return HttpSettings{}.max_connection_fd;
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return http;
   if (limit.rlim_cur < wanted) {
     limit.rlim_cur = std::min(wanted, limit.rlim_max);
-    if (::setrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur < wanted) {
-      log::warn("only {} files may be open at a time: less than {} clients can be served at once",
-                limit.rlim_cur, wanted);
-    }
+    ::setrlimit(RLIMIT_NOFILE, &limit);
+    ::getrlimit(RLIMIT_NOFILE, &limit);
   }
-  const int all = static_cast<int>(std::min<rlim_t>(limit.rlim_cur, 1 << 20));
-  return all - std::min(all / 2, for_answers + for_a_renderer * settings.queue.children);
-}
-
-HttpSettings http_settings(const ServiceSettings& settings) {
-  HttpSettings http = settings.http;
-  http.max_connection_fd = allow_descriptors(settings);
+  if (limit.rlim_cur < 4 * http.threads) {
+    http.threads = std::max<std::size_t>(1, limit.rlim_cur / 4);
+    log::warn("only {} files may be open at a time: {} clients can be connected at once",
+              limit.rlim_cur, http.threads);
+  }
   return http;
 }
 
@@ -209,9 +205,9 @@ struct Service::Parts {
         access(settings.http.bind, settings.access,
                [this](const std::string& path) { return files.has(path); }),
         routes({settings, data, scenes, *store, disk, queue, http_metrics, uploads.get()},
-               {*store, queue, folders, keeper}, files),
+               {*store, queue, folders, keeper}, files, access),
         http(http_settings(settings), routes.router(), http_metrics,
-             [this](const Request& request) { return access.admit(request); }) {
+             [this](const Request& request) { access.admit(request); }) {
     http.bind();
   }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double failures_a_second = 10;
 constexpr std::size_t max_session_bytes = 1024;
-constexpr std::string_view session_path = "/api/session";
+constexpr const char* session_path = "/api/session";
 
 HttpError token_needed(const char* why) {
   return HttpError(401, why).with("WWW-Authenticate", "Bearer");
@@ -22,8 +22,7 @@ HttpError token_needed(const char* why) {
 std::optional<std::string> bearer(const Request& request) {
   const auto value = request.header("authorization");
   if (!value) return std::nullopt;
-  std::string scheme = value->substr(0, value->find(' '));
-  for (char& c : scheme) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string scheme = lower_case(value->substr(0, value->find(' ')));
   if (scheme != "bearer" || scheme.size() == value->size()) {
     throw token_needed("Authorization must be \"Bearer TOKEN\".");
   }
@@ -88,38 +87,37 @@ Access::Access(const std::string& bind, const AccessSettings& settings,
       is_public_(std::move(is_public)),
       tries_(failures_a_second) {}
 
-std::optional<Response> Access::admit(const Request& request) {
+void Access::admit(const Request& request) {
   guard_.check(request);
-  if (!token_) return std::nullopt;
-  if (request.path == session_path) return session(request);
-  if (is_safe(request) && (request.path == "/health" || is_public_(request.path))) {
-    return std::nullopt;
-  }
-  if (const auto shown = bearer(request)) {
-    check_token(*shown);
-    return std::nullopt;
-  }
+  if (!token_ || request.path == session_path) return;
+  if (is_safe(request) && (request.path == "/health" || is_public_(request.path))) return;
+  if (const auto shown = bearer(request)) return check_token(*shown);
   // An id has 256 random bits: trying some is hopeless, so these tries need not be counted.
   if (!sessions_.holds(session_id(request))) {
     throw token_needed("A token is needed: Authorization: Bearer TOKEN.");
   }
   guard_.check_own_page(request);
-  return std::nullopt;
 }
 
-Response Access::session(const Request& request) {
-  if (request.method == "POST") {
-    check_token(shown_token(request));
-    return cookie_answer(request, sessions_.open(), "");
-  }
-  if (request.method == "DELETE") {
-    const std::string id = session_id(request);
-    if (!id.empty()) guard_.check_own_page(request);
-    sessions_.close(id);
-    return cookie_answer(request, "", "; Max-Age=0");
-  }
-  throw HttpError(405, "A session is created by POST and ended by DELETE.")
-      .with("Allow", "POST, DELETE");
+void Access::add_to(Router& router) {
+  if (!token_) return;
+  const RouteDoc of_the_page{.for_programs = false};
+  router.add("POST", session_path, of_the_page,
+             [this](const Request& r, const Router::Parts&) { return begin_session(r); });
+  router.add("DELETE", session_path, of_the_page,
+             [this](const Request& r, const Router::Parts&) { return end_session(r); });
+}
+
+Response Access::begin_session(const Request& request) {
+  check_token(shown_token(request));
+  return cookie_answer(request, sessions_.open(), "");
+}
+
+Response Access::end_session(const Request& request) {
+  const std::string id = session_id(request);
+  if (!id.empty()) guard_.check_own_page(request);
+  sessions_.close(id);
+  return cookie_answer(request, "", "; Max-Age=0");
 }
 
 /// The right token always passes, whatever strangers show: it is too long to be guessed at any rate

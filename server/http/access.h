@@ -9,7 +9,7 @@
 
 #include "server/http/guard.h"
 #include "server/http/message.h"
-#include "server/http/sessions.h"
+#include "server/http/router.h"
 #include "server/http/token.h"
 #include "server/settings/http_settings.h"
 
@@ -25,12 +25,15 @@ class Access {
   Access(const std::string& bind, const AccessSettings& settings,
          std::function<bool(const std::string& path)> is_public);
 
-  /// Returns if the request is admitted; returns the response to requests for sessions. Throws
-  /// HttpError 400, 401, 403, and 429 after too many wrong tokens.
-  std::optional<Response> admit(const Request& request);
+  /// Returns if the request is admitted. Throws HttpError 400, 401, 403, and 429 after too many
+  /// wrong tokens.
+  void admit(const Request& request);
+  /// With a token file: adds the routes that begin and end a session. Outlives `router`.
+  void add_to(Router& router);
 
  private:
-  Response session(const Request& request);
+  Response begin_session(const Request& request);
+  Response end_session(const Request& request);
   void check_token(std::string_view shown);
 
   const Guard guard_;

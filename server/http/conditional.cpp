@@ -27,8 +27,7 @@ Response with_tag(const Request& request, Response response, std::string_view pr
   const std::string tag = fmt::format("\"{}{}{:016x}\"", prefix, prefix.empty() ? "" : ".",
                                       XXH3_64bits(response.body.data(), response.body.size()));
   response.headers = {{"Cache-Control", "no-cache"}, {"ETag", tag}};
-  const auto known = request.header("if-none-match");
-  if (known && holds_tag(*known, tag)) {
+  if (client_has(request, tag)) {
     response.status = 304;
     response.body.clear();
     response.content_type.clear();

@@ -6,32 +6,15 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <utility>
 
 #include "analysis/storage/passing_error.h"
 
 namespace lacuna {
 namespace {
 
-/// The range within a file of `size` bytes: the library takes any for one within the file.
-ByteRange within(const ByteRange& asked, std::int64_t size) {
-  const bool counts_back = asked.first < 0;
-  const std::int64_t first =
-      counts_back ? std::max<std::int64_t>(0, size - asked.last) : asked.first;
-  const bool to_end = counts_back || asked.last < 0;
-  const std::int64_t last = to_end ? size - 1 : std::min(asked.last, size - 1);
-  if (first > last) {
-    throw HttpError(416, fmt::format("The range is outside the file's {} bytes.", size))
-        .with("Content-Range", fmt::format("bytes */{}", size));
-  }
-  return {first, last};
-}
-
-}  // namespace
-
-bool holds_tag(std::string_view list, std::string_view tag) {
-  return list == "*" || list.find(tag) != std::string_view::npos;
-}
-
+/// The regular file `name` in `folder`, neither reached through a symbolic link, and its status; an
+/// empty handle if there is none.
 FileHandle open_regular(const std::filesystem::path& folder, std::string_view name,
                         struct stat& status) {
   const FileHandle dir(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
@@ -44,6 +27,31 @@ FileHandle open_regular(const std::filesystem::path& folder, std::string_view na
   return file;
 }
 
+/// Narrows the response, of a whole file, to a range.
+void narrow(Response& response, const ByteRange& range) {
+  const std::int64_t size = response.file->length;
+  const bool counts_back = range.first < 0;
+  const std::int64_t first =
+      counts_back ? std::max<std::int64_t>(0, size - range.last) : range.first;
+  const bool to_end = counts_back || range.last < 0;
+  const std::int64_t last = to_end ? size - 1 : std::min(range.last, size - 1);
+  if (first > last) {
+    throw HttpError(416, fmt::format("The range is outside the file's {} bytes.", size))
+        .with("Content-Range", fmt::format("bytes */{}", size));
+  }
+  response.status = 206;
+  response.headers.emplace_back("Content-Range", fmt::format("bytes {}-{}/{}", first, last, size));
+  response.file->offset = first;
+  response.file->length = last - first + 1;
+}
+
+}  // namespace
+
+bool client_has(const Request& request, std::string_view tag) {
+  const auto list = request.header("if-none-match");
+  return list && (*list == "*" || list->find(tag) != std::string::npos);
+}
+
 Response file_response(const Request& request, const std::filesystem::path& folder,
                        std::string_view name, std::string_view media_type) {
   struct stat status {};
@@ -53,17 +61,32 @@ Response file_response(const Request& request, const std::filesystem::path& fold
                                       status.st_mtim.tv_nsec, status.st_size, status.st_ino);
   Response response;
   response.headers = {{"ETag", tag}, {"Cache-Control", "no-cache"}, {"Accept-Ranges", "bytes"}};
-  const auto none_match = request.header("if-none-match");
-  if (none_match && holds_tag(*none_match, tag)) {
+  if (client_has(request, tag)) {
     response.status = 304;
     return response;
   }
   response.content_type = media_type;
-  const auto if_range = request.header("if-range");
-  if (request.range && (!if_range || *if_range == tag)) {
-    response.range = within(*request.range, status.st_size);
-  }
   response.file = FilePart{std::move(file), 0, status.st_size};
+  const auto if_range = request.header("if-range");
+  if (request.range && (!if_range || *if_range == tag)) narrow(response, *request.range);
+  return response;
+}
+
+Response log_response(const std::filesystem::path& folder, std::string_view name,
+                      std::int64_t offset) {
+  constexpr std::int64_t most = 1 << 20;
+  struct stat status {};
+  FileHandle file = open_regular(folder, name, status);
+  const std::int64_t size = file ? status.st_size : 0;
+  if (offset > size) {
+    throw HttpError(416, fmt::format("The log has {} bytes so far.", size));
+  }
+  Response response;
+  response.content_type = "text/plain; charset=utf-8";
+  const std::int64_t length = std::min(size - offset, most);
+  response.headers = {{"Cache-Control", "no-store"},
+                      {"Next-Offset", fmt::format("{}", offset + length)}};
+  if (length > 0) response.file = FilePart{std::move(file), offset, length};
   return response;
 }
 

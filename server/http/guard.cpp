@@ -21,8 +21,7 @@ struct HostPort {
 std::optional<HostPort> parse(std::string_view text) {
   const std::size_t bracket = text.find(']');
   const std::size_t colon = text.find(':', bracket == std::string_view::npos ? 0 : bracket);
-  HostPort result{std::string(text.substr(0, colon)), {}};
-  for (char& c : result.name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  HostPort result{lower_case(std::string(text.substr(0, colon))), {}};
   const bool in_brackets = result.name.starts_with('[') && result.name.ends_with(']');
   const bool fits = std::all_of(result.name.begin(), result.name.end(), [&](unsigned char c) {
     return c < 0x80 && (std::isalnum(c) != 0 || c == '.' || c == '-' ||
@@ -42,6 +41,26 @@ bool holds(const std::vector<std::string>& list, const std::string& name) {
 }
 
 }  // namespace
+
+void check_framing(const Request& request) {
+  constexpr std::size_t max_digits = 18;  // of 64 bits
+  const auto encoding = request.header("transfer-encoding");
+  const auto length = request.header("content-length");
+  if (encoding && length) throw HttpError(400, "Content-Length and Transfer-Encoding together.");
+  if (encoding && *encoding != "chunked") {
+    throw HttpError(400, "Transfer-Encoding may only be \"chunked\".");
+  }
+  if (length && (length->size() > max_digits ||
+                 length->find_first_not_of("0123456789") != std::string::npos)) {
+    throw HttpError(400, "Content-Length is not a number of bytes.");
+  }
+  if (request.headers.contains("content-encoding")) {
+    throw HttpError(415, "An encoded body (Content-Encoding) is not accepted.");
+  }
+  if (media_type(request).starts_with("multipart/")) {
+    throw HttpError(415, "A body of parts is not accepted.");
+  }
+}
 
 bool is_safe(const Request& request) { return request.method == "GET" || request.method == "HEAD"; }
 

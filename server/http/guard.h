@@ -31,4 +31,9 @@ class Guard {
 /// GET and HEAD change nothing.
 bool is_safe(const Request& request);
 
+/// Throws HttpError for what the HTTP library would let pass and then misread: 400 where the
+/// headers leave a doubt about where the body ends, 415 for a body that it would unpack or take
+/// apart.
+void check_framing(const Request& request);
+
 }  // namespace lacuna

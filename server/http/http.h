@@ -1,35 +1,37 @@
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
-#include <string_view>
+#include <thread>
 
+#include "server/http/answer_writer.h"
+#include "server/http/connection_threads.h"
 #include "server/http/http_metrics.h"
 #include "server/http/message.h"
 #include "server/http/router.h"
 #include "server/settings/http_settings.h"
 
+namespace httplib {
+class ContentReader;
+class Server;
+}  // namespace httplib
+
 namespace lacuna {
 
-/// An HTTP/1.1 server on cpp-httplib, which http.cpp alone includes: the library parses requests,
-/// decodes bodies and queries, matches routes, works out ranges, and writes answers, files and
-/// event streams. This class adds a waiting room, so that no client holds a thread before its
-/// request has arrived; strict heads and chunks; deadlines, and a limited number of seats for slow
-/// bodies and slow readers. One request per connection, so that a refused body can never be taken
-/// for the next request.
+/// An HTTP/1.1 server: that of cpp-httplib, which listens, parses requests, matches routes, keeps
+/// connections alive, reads bodies, bounds silences and writes answers. This class adds a thread
+/// for each connection, the refusal of what the library would misread, the limits of bodies, and
+/// errors as problem+json.
 class HttpServer {
  public:
-  /// Called before a route's handler: throws HttpError to refuse a request, or returns its
-  /// response.
-  using Admit = std::function<std::optional<Response>(const Request&)>;
+  /// Called when a request's head has come: throws HttpError to refuse it.
+  using Admit = std::function<void(const Request&)>;
 
-  /// Serves the routes on many threads. An HttpError of a handler becomes a problem+json response;
-  /// any other exception is logged and becomes a 500 without details. `routes` is copied; `metrics`
-  /// must outlive the server.
-  HttpServer(const HttpSettings& settings, const Router& routes, HttpMetrics& metrics,
-             Admit admit = {});
+  /// An HttpError of a handler becomes a problem+json response; any other exception is logged and
+  /// becomes a 500 without details. `routes` is copied; `metrics` must outlive the server.
+  HttpServer(HttpSettings settings, const Router& routes, HttpMetrics& metrics, Admit admit = {});
   ~HttpServer();
 
   /// Binds the address; throws std::system_error, or std::invalid_argument for an invalid address.
@@ -38,17 +40,32 @@ class HttpServer {
   std::string url() const;
   /// Starts serving, on its own threads.
   void start();
-  /// Refuses new requests, ends streams, and waits for responses in progress.
+  /// Refuses new requests, ends streams, waits a second for answers on their way, and closes every
+  /// connection.
   void stop();
 
-  /// The response to a connection that sends `received` and nothing more; empty if its head is
-  /// incomplete. Runs the same code as behind a socket, for tests; needs no bind(). Of a stream,
-  /// only the head; at most the size of a socket's buffer.
-  std::string answer(std::string_view received) const;
-
  private:
-  class Engine;
-  std::unique_ptr<Engine> engine_;
+  using Handle = std::function<void(const httplib::Request&, httplib::Response&,
+                                    const httplib::ContentReader&)>;
+  void configure();
+  void add(const std::string& method, const std::string& expression, const Handle& handle);
+  void refuse_rest(const Router& routes);
+  void listen();
+  void admit(const httplib::Request& sent);
+  void respond(const Router::Route& route, const httplib::Request& sent, httplib::Response& out,
+               const httplib::ContentReader& reader) const;
+  void complete(const httplib::Request& sent, httplib::Response& out);
+
+  const HttpSettings settings_;
+  HttpMetrics& metrics_;
+  const Admit admit_;
+  std::atomic<bool> stopping_{false}, listening_{false};
+  const AnswerWriter writer_;
+  ConnectionThreads threads_;
+  const std::unique_ptr<httplib::Server> server_;
+  int listener_ = -1;  ///< the library's
+  int port_ = 0;
+  std::thread listener_thread_;
 };
 
 }  // namespace lacuna

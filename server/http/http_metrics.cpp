@@ -21,26 +21,21 @@ void write_metrics(PrometheusText& text, const HttpMetrics& m) {
   const auto value = [](const HttpMetrics::Count& count) { return static_cast<double>(count); };
   text.counter("lacuna_http_connections_total", "Connections that were accepted.")
       .value(value(m.accepted));
-  text.counter("lacuna_http_refused_total",
-               "Connections that were refused before a handler: malformed, late or too many.")
-      .value(value(m.refused));
   auto& requests = text.counter("lacuna_http_requests_total", "Answers, by class of status.");
   for (std::size_t i = 0; i < m.requests.size(); ++i) {
     requests.value(value(m.requests[i]), {{"status", fmt::format("{}xx", i + 1)}});
   }
   text.histogram("lacuna_http_request_seconds",
-                 "Time from the arrival of a request to its response.",
+                 "Time from the arrival of a request's head to its response.",
                  {{m.bounds.begin(), m.bounds.end()},
                   {m.seconds.begin(), m.seconds.end()},
                   1e-6 * value(m.microseconds)});
-  text.counter("lacuna_http_sent_bytes_total", "Bytes sent to clients.").value(value(m.bytes_out));
-  text.counter("lacuna_http_given_up_total",
-               "Responses aborted because the client read too slowly.")
-      .value(value(m.given_up));
-  text.gauge("lacuna_http_parked", "Connections whose request has not arrived completely.")
-      .value(value(m.parked));
-  text.gauge("lacuna_http_slow_seats", "Threads that wait for a body or a reader.")
-      .value(value(m.slow_seats));
+  text.counter("lacuna_http_sent_bytes_total", "Bytes of answers, heads not counted.")
+      .value(value(m.bytes_out));
+  text.gauge("lacuna_http_connections", "Open connections, each with a thread.")
+      .value(value(m.connections));
+  text.gauge("lacuna_http_in_progress", "Requests that are being answered.")
+      .value(value(m.in_progress));
   text.gauge("lacuna_http_streams", "Open streams of events.").value(value(m.streams));
 }
 

@@ -18,15 +18,13 @@ struct HttpMetrics {
   static constexpr std::array<double, 13> bounds{0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1,
                                                  0.25,  0.5,    1,     2.5,  5,     10};
 
-  Count accepted{0};    ///< connections
-  Count refused{0};     ///< connections refused before a handler: malformed, late or too many
-  Count parked{0};      ///< gauge: connections whose request has not arrived completely
-  Count given_up{0};    ///< responses aborted because the client read too slowly
-  Count slow_seats{0};  ///< gauge: threads that wait for a body or for a reader
-  Count streams{0};     ///< gauge: open event streams
-  Count bytes_out{0};   ///< to clients, heads included
+  Count accepted{0};     ///< connections
+  Count connections{0};  ///< gauge: open ones, each with a thread
+  Count in_progress{0};  ///< gauge: requests whose head has come and whose answer has not gone out
+  Count streams{0};      ///< gauge: open event streams
+  Count bytes_out{0};    ///< of answers, heads not counted
   std::array<Count, 5> requests{};                 ///< answered, by the first digit of the status
-  std::array<Count, bounds.size() + 1> seconds{};  ///< from the whole request to its answer
+  std::array<Count, bounds.size() + 1> seconds{};  ///< from a request's head to its answer's
   Count microseconds{0};                           ///< their sum
 
   void answered(int status, std::chrono::nanoseconds time);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <nlohmann/json.hpp>
@@ -13,7 +14,7 @@ namespace lacuna {
 
 const char* status_title(int status) {
   using Pair = std::pair<int, const char*>;
-  constexpr std::array<Pair, 29> titles{{
+  constexpr std::array<Pair, 24> titles{{
       {200, "OK"},
       {201, "Created"},
       {202, "Accepted"},
@@ -25,23 +26,18 @@ const char* status_title(int status) {
       {403, "Forbidden"},
       {404, "Not found"},
       {405, "Method not allowed"},
-      {408, "Too slow"},
       {409, "Conflict"},
       {410, "Gone"},
-      {411, "Length needed"},
       {412, "Changed meanwhile"},
       {413, "Too large"},
       {414, "Address too long"},
       {415, "Unsupported media type"},
       {416, "Range not satisfiable"},
-      {417, "Expectation failed"},
       {422, "Not usable"},
       {429, "Too many"},
-      {431, "Head too large"},
       {500, "Internal error"},
       {501, "Unknown method"},
       {503, "Busy"},
-      {505, "HTTP version not supported"},
       {507, "Cannot store"},
   }};
   for (const auto& [number, text] : titles) {
@@ -50,7 +46,12 @@ const char* status_title(int status) {
   return "Error";
 }
 
-std::optional<std::string> single_header(const Headers& headers, const std::string& name) {
+std::string lower_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+std::optional<std::string> Request::header(const std::string& name) const {
   const auto [first, last] = headers.equal_range(name);
   if (first == last) return std::nullopt;
   if (std::next(first) != last) {
@@ -59,12 +60,17 @@ std::optional<std::string> single_header(const Headers& headers, const std::stri
   return first->second;
 }
 
+bool announces_body(const Request& request) {
+  const auto [first, last] = request.headers.equal_range("content-length");
+  return request.headers.contains("transfer-encoding") ||
+         std::any_of(first, last, [](const auto& header) { return header.second != "0"; });
+}
+
 std::string media_type(const Request& request) {
   std::string type = request.header("content-type").value_or("");
   type = type.substr(0, type.find(';'));
   type.erase(type.find_last_not_of(" \t") + 1);
-  for (char& c : type) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return type;
+  return lower_case(std::move(type));
 }
 
 HttpError storage_error(const std::system_error& error, const std::string& what) {

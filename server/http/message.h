@@ -16,19 +16,20 @@
 
 namespace lacuna {
 
-/// Names are in lower case; values have no blanks around them.
+/// Names are in lower case; values have no blanks around them, and the HTTP library has decoded
+/// each %XX in them.
 using Headers = std::multimap<std::string, std::string>;
 
-/// The value of a header that may stand only once; nothing if it is absent. Throws HttpError.
-std::optional<std::string> single_header(const Headers& headers, const std::string& name);
+/// The same text with the letters of ASCII in lower case.
+std::string lower_case(std::string text);
 
-/// First and last byte, as requested by a client: `last` -1 is the end; with `first` -1, `last` is
-/// the number of bytes before the end (RFC 9110, section 14.1.2).
+/// First and last byte of a range as a client sends it: `last` -1 is the end; with `first` -1,
+/// `last` is the number of bytes before the end (RFC 9110, section 14.1.2).
 struct ByteRange {
   std::int64_t first = -1, last = -1;
 };
 
-/// A request as handlers get it: bounded and well formed.
+/// A request as handlers get it.
 struct Request {
   std::string method;
   std::string path;  ///< as sent, without the query; nothing is decoded: no name here needs it
@@ -36,19 +37,20 @@ struct Request {
   Headers headers;
   std::optional<ByteRange> range;  ///< header Range, if it is one range
 
-  /// Reads the body, at most `max_bytes` of it; throws HttpError: 413 if it is larger, 415 if it is
-  /// encoded, 400 if its framing is wrong, 408 if it comes too slowly, 503 if too many clients are
-  /// slow. A body can be read once.
+  /// Reads the body, at most `max_bytes` of it; throws HttpError: 413 if it is larger, 400 if it
+  /// ends early, stops for too long, or is malformed. A body can be read once.
   std::function<std::string(std::size_t max_bytes)> read_body;
   /// The same for a large body, which goes to a file from where that stands; gives its number of
-  /// bytes. The sender has all the time it needs as long as it keeps to a least rate. Throws
-  /// std::system_error, too, when the file cannot take it.
+  /// bytes. Throws std::system_error, too, when the file cannot take it.
   std::function<std::uint64_t(int fd, std::uint64_t max_bytes)> read_body_to;
 
-  std::optional<std::string> header(const std::string& lower_case_name) const {
-    return single_header(headers, lower_case_name);
-  }
+  /// The value of a header, by its name in lower case; nothing if it is absent. Throws HttpError if
+  /// it stands twice.
+  std::optional<std::string> header(const std::string& name) const;
 };
+
+/// Whether bytes follow the request's head that are not a next request.
+bool announces_body(const Request& request);
 
 /// The media type of the body, in lower case and without parameters: "application/json"; empty if
 /// it has none.
@@ -68,7 +70,6 @@ struct Response {
   std::vector<std::pair<std::string, std::string>> headers;  ///< never anything a client sent
   std::string body;
   std::optional<FilePart> file;
-  std::optional<ByteRange> range;  ///< of `file`: only this goes out, and the status is 206
   /// Called again and again: gives the next text (empty: nothing new, after a short wait), or
   /// nothing at the end.
   std::function<std::optional<std::string>()> stream;

@@ -1,32 +1,22 @@
 // Router::openapi(): the table of routes as an OpenAPI 3.1 document.
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "server/http/router.h"
-#include "server/http/sessions.h"
+#include "server/http/token.h"
 
 namespace lacuna {
 namespace {
 
-/// The names of the parts in braces; "{}" is named after its place.
-Router::Parts named(Router::Parts pattern) {
-  for (std::size_t i = 0; i < pattern.size(); ++i) {
-    if (pattern[i] == "{}") pattern[i] = fmt::format("{{part{}}}", i);
-  }
-  return pattern;
-}
-
-OrderedJson path_parameters(const Router::Parts& pattern) {
+OrderedJson path_parameters(const std::string& pattern) {
   OrderedJson result = OrderedJson::array();
-  for (const std::string& part : pattern) {
-    if (!part.starts_with('{')) continue;
-    result.push_back({{"name", part.substr(1, part.size() - 2)},
+  for (std::size_t open = pattern.find('{'); open < pattern.size();) {
+    const std::size_t close = pattern.find('}', open);
+    result.push_back({{"name", pattern.substr(open + 1, close - open - 1)},
                       {"in", "path"},
                       {"required", true},
                       {"schema", {{"type", "string"}}}});
+    open = pattern.find('{', close);
   }
   return result;
 }
@@ -97,13 +87,8 @@ OrderedJson Router::openapi(const OrderedJson& info) const {
   OrderedJson paths = OrderedJson::object();
   for (const Route& route : routes_) {
     if (!route.doc.for_programs) continue;
-    const Parts pattern = named(route.pattern);
-    std::string path;
-    for (std::size_t i = 1; i < pattern.size(); ++i) path += "/" + pattern[i];
-    std::string method = route.method;
-    std::transform(method.begin(), method.end(), method.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    paths[path][method] = operation(route.doc, path_parameters(pattern));
+    paths[route.pattern][lower_case(route.method)] =
+        operation(route.doc, path_parameters(route.pattern));
   }
   return {{"openapi", "3.1.0"},
           {"info", info},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <nlohmann/json.hpp>
 
@@ -25,49 +26,44 @@ bool is_plain_text(const std::string& text) {
   }
 }
 
-void check_escapes(std::string_view sent) {
-  for (std::size_t i = sent.find('%'); i < sent.size(); i = sent.find('%', i + 1)) {
+std::string decoded(std::string_view sent) {
+  std::string text;
+  for (std::size_t i = 0; i < sent.size(); ++i) {
+    if (sent[i] != '%') {
+      text += sent[i] == '+' ? ' ' : sent[i];
+      continue;
+    }
+    unsigned char byte = 0;
     const std::string_view digits = sent.substr(i + 1, 2);
-    if (digits.size() < 2 ||
-        digits.find_first_not_of("0123456789abcdefABCDEF") != std::string_view::npos) {
+    const char* const end = digits.data() + digits.size();
+    if (digits.size() < 2 || std::from_chars(digits.data(), end, byte, 16).ptr != end) {
       throw HttpError(400, "The query contains a % without two hexadecimal digits.");
     }
+    text += static_cast<char>(byte);
+    i += digits.size();
   }
-}
-
-/// Gives the number of parameters.
-std::size_t check_parameters(std::string_view sent) {
-  std::size_t count = 0;
-  while (!sent.empty()) {
-    const std::string_view part = sent.substr(0, sent.find('&'));
-    if (part.empty() || part.front() == '=') {
-      throw HttpError(400, "The query contains a parameter without a name.");
-    }
-    if (part.find('=') != part.rfind('=')) {
-      throw HttpError(400, "The query holds a second \"=\" in a parameter: write it as %3D.");
-    }
-    sent.remove_prefix(std::min(sent.size(), part.size() + 1));
-    ++count;
+  if (!is_plain_text(text)) {
+    throw HttpError(400, "The query contains invalid UTF-8 or a control character.");
   }
-  return count;
+  return text;
 }
 
 }  // namespace
 
-Query::Query(std::string_view sent, const Parameters& decoded) {
-  check_escapes(sent);
-  const std::size_t count = check_parameters(sent);
-  for (const auto& [name, value] : decoded) {
-    if (!is_plain_text(name) || !is_plain_text(value)) {
-      throw HttpError(400, "The query contains invalid UTF-8 or a control character.");
+Query::Query(std::string_view sent) {
+  while (!sent.empty()) {
+    const std::string_view part = sent.substr(0, sent.find('&'));
+    const std::size_t equals = std::min(part.find('='), part.size());
+    if (equals == 0) throw HttpError(400, "The query contains a parameter without a name.");
+    if (part.find('=', equals + 1) != std::string_view::npos) {
+      throw HttpError(400, "The query holds a second \"=\" in a parameter: write it as %3D.");
     }
-    if (!values_.emplace(name, value).second) {
+    const std::string name = decoded(part.substr(0, equals));
+    const bool has_value = equals < part.size();
+    if (!values_.emplace(name, has_value ? decoded(part.substr(equals + 1)) : "").second) {
       throw HttpError(400, fmt::format("Query parameter \"{}\" is given more than once.", name));
     }
-  }
-  // Of parameters that are the same to the letter the library keeps one.
-  if (values_.size() < count) {
-    throw HttpError(400, "A query parameter is given more than once.");
+    sent.remove_prefix(std::min(sent.size(), part.size() + 1));
   }
 }
 

@@ -12,14 +12,11 @@ namespace lacuna {
 /// The parameters of an address, "state=done&limit=10", decoded: %XX is a byte and + a blank.
 class Query {
  public:
-  /// Names and values as the HTTP library decodes them.
-  using Parameters = std::multimap<std::string, std::string>;
-
   Query() = default;
-  /// `sent`: the text that `decoded` was made from, checked because the library passes over what it
-  /// does not understand. Throws HttpError 400 for a bad escape, a second "=" in a parameter, a
-  /// control character, text that is not UTF-8, an empty name and a name that stands twice.
-  Query(std::string_view sent, const Parameters& decoded);
+  /// `sent`: what stands behind the ?. Throws HttpError 400 for a bad escape, a second "=" in a
+  /// parameter, a control character, text that is not UTF-8, an empty name and a name that stands
+  /// twice. (The HTTP library passes over all of these.)
+  explicit Query(std::string_view sent);
 
   bool has(const std::string& name) const { return values_.contains(name); }
   std::optional<std::string> text(const std::string& name) const;

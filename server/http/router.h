@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <functional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -35,23 +34,27 @@ struct RouteDoc {
   bool any_characters = false;
 };
 
-/// A table of methods and path patterns such as "/api/jobs/{id}/files/{name}"; each part in braces
-/// is one part of the path, given to the handler in order. The HTTP library matches them, in the
-/// order in which they were added; HEAD is answered as GET.
+/// A table of methods and path patterns such as "/api/jobs/{id}/files/{name}"; each name in braces
+/// stands for one part of the path, given to the handler in order. The HTTP library matches them,
+/// in the order in which they were added; HEAD is answered as GET.
 class Router {
  public:
   using Parts = std::vector<std::string>;
   using Handler = std::function<Response(const Request&, const Parts&)>;
   struct Route {
     std::string method;
-    Parts pattern;  ///< the parts between the slashes
+    std::string pattern;
     RouteDoc doc;
     Handler handler;
   };
 
-  void add(std::string method, std::string_view pattern, RouteDoc doc, Handler handler);
+  void add(std::string method, std::string pattern, RouteDoc doc, Handler handler) {
+    routes_.push_back({std::move(method), std::move(pattern), std::move(doc), std::move(handler)});
+  }
   /// With no query parameters and no description.
-  void add(std::string method, std::string_view pattern, Handler handler);
+  void add(std::string method, std::string pattern, Handler handler) {
+    add(std::move(method), std::move(pattern), {}, std::move(handler));
+  }
   const std::vector<Route>& routes() const { return routes_; }
   /// The OpenAPI 3.1 document of all routes that are for programs. `info`: {"title", "version",
   /// ...}. Throws std::logic_error for a body_schema that is no JSON.

@@ -20,6 +20,17 @@ namespace {
 
 constexpr std::size_t min_characters = 16, max_characters = 256;
 
+/// 256 random bits. Throws std::system_error.
+std::string random_id() {
+  std::array<unsigned char, 32> bytes;
+  if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
+    throw std::system_error(errno, std::generic_category(), "no random numbers");
+  }
+  std::string text;
+  for (const unsigned char b : bytes) text += fmt::format("{:02x}", b);
+  return text;
+}
+
 }  // namespace
 
 Token Token::read(const std::filesystem::path& file) {
@@ -40,12 +51,12 @@ Token Token::read(const std::filesystem::path& file) {
   if (n < 0) refuse(std::strerror(errno));
   std::string secret(buffer.data(), static_cast<std::size_t>(n));
   if (secret.ends_with('\n')) secret.pop_back();
-  const bool printable =
-      std::all_of(secret.begin(), secret.end(), [](char c) { return c > ' ' && c < '\x7f'; });
+  const bool printable = std::all_of(secret.begin(), secret.end(),
+                                     [](char c) { return c > ' ' && c < '\x7f' && c != '%'; });
   if (!printable || secret.size() < min_characters || secret.size() > max_characters) {
-    refuse(
-        fmt::format("it must hold one line of {} to {} printable ASCII characters without blanks",
-                    min_characters, max_characters));
+    refuse(fmt::format(
+        "it must hold one line of {} to {} printable ASCII characters without blanks and %",
+        min_characters, max_characters));
   }
   return Token(std::move(secret));
 }
@@ -59,14 +70,24 @@ bool Token::is(std::string_view shown) const {
   return different == 0;
 }
 
-std::string random_secret() {
-  std::array<unsigned char, 32> bytes;
-  if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
-    throw std::system_error(errno, std::generic_category(), "no random numbers");
-  }
-  std::string text;
-  for (const unsigned char b : bytes) text += fmt::format("{:02x}", b);
-  return text;
+std::string Sessions::open() {
+  std::string id = random_id();
+  const std::lock_guard lock(mutex_);
+  if (ids_.size() == max_sessions) ids_.pop_front();
+  ids_.emplace_back(id);
+  return id;
+}
+
+bool Sessions::holds(std::string_view id) const {
+  const std::lock_guard lock(mutex_);
+  bool found = false;
+  for (const Token& t : ids_) found = t.is(id) || found;
+  return found;
+}
+
+void Sessions::close(std::string_view id) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(ids_, [&](const Token& t) { return t.is(id); });
 }
 
 }  // namespace lacuna

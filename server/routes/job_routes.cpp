@@ -9,7 +9,6 @@
 #include "jobs/spec/job_json.h"
 #include "server/http/conditional.h"
 #include "server/http/file_response.h"
-#include "server/http/log_response.h"
 #include "server/routes/apply_change.h"
 #include "server/routes/catalogue.h"
 #include "server/routes/json_body.h"

@@ -2,7 +2,8 @@
 
 namespace lacuna {
 
-Routes::Routes(const ServiceFacts& facts, const ServiceWork& work, const StaticFiles& page)
+Routes::Routes(const ServiceFacts& facts, const ServiceWork& work, const StaticFiles& page,
+               Access& access)
     : jobs_(facts.scenes, work.store, work.queue, work.keeper),
       sweeps_(facts.scenes, work.store, work.folders, work.keeper),
       service_(facts) {
@@ -10,6 +11,7 @@ Routes::Routes(const ServiceFacts& facts, const ServiceWork& work, const StaticF
   sweeps_.add_to(router_);
   service_.add_to(router_);
   page.add_to(router_);
+  access.add_to(router_);
 }
 
 }  // namespace lacuna

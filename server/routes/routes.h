@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/http/access.h"
 #include "server/http/router.h"
 #include "server/http/static_files.h"
 #include "server/routes/job_routes.h"
@@ -19,7 +20,8 @@ struct ServiceWork {
 /// The service's addresses and what each does. All references outlive it.
 class Routes {
  public:
-  Routes(const ServiceFacts& facts, const ServiceWork& work, const StaticFiles& page);
+  Routes(const ServiceFacts& facts, const ServiceWork& work, const StaticFiles& page,
+         Access& access);
 
   /// For HttpServer.
   const Router& router() const { return router_; }

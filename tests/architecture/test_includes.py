@@ -65,17 +65,18 @@ class Includes(unittest.TestCase):
 
 
 class Libraries(unittest.TestCase):
-    """Each of these is behind one door."""
+    """Each of these is behind one door, the HTTP library behind two."""
 
-    DOORS = {"httplib.h": "server/http/http.cpp", "OpenImageIO/": "renderer/images/module/openimageio.cpp",
-             "embree3/": "renderer/geometry/rays.cpp", "tiny_gltf.h": "renderer/gltf/gltf_model.h",
-             "boost/": "jobs/statistics/distributions.cpp"}
+    DOORS = {"httplib.h": {"server/http/http.cpp", "server/http/answer_writer.cpp"},
+             "OpenImageIO/": {"renderer/images/module/openimageio.cpp"},
+             "embree3/": {"renderer/geometry/rays.cpp"}, "tiny_gltf.h": {"renderer/gltf/gltf_model.h"},
+             "boost/": {"jobs/statistics/distributions.cpp"}}
 
-    def test_one_source_includes_each(self):
-        for header, door in self.DOORS.items():
+    def test_no_other_source_includes_them(self):
+        for header, doors in self.DOORS.items():
             found = {source.relative_to(ROOT).as_posix() for source in sources(ROOT)
                      if re.search(rf"^\s*#\s*include\s+<{header}", source.read_text(), re.MULTILINE)}
-            self.assertEqual(found, {door}, header)
+            self.assertEqual(found, doors, header)
 
 
 if __name__ == "__main__":

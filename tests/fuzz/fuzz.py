@@ -35,7 +35,7 @@ TARGETS = (
     # Thousands of small allocations an input: the sanitizer keeps 256 MB of what was freed, whatever its size.
     Target("sweep_json", 4096, 1024, ("jobs/examples/sweep.json",), schema_words=True),
     Target("documents", 2048, 512),
-    Target("http", 4096, 512),
+    Target("http", 4096, 1024),
     Target("glb", 16384, 1024, ("jobs/scenes/*.glb",)),
     Target("checkpoint", 2048, 512),
     Target("cache_entry", 2048, 512),

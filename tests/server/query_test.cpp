@@ -1,30 +1,15 @@
 #include <gtest/gtest.h>
 
-#include "server/http/http.h"
+#include "server/http/query.h"
+
+#include "server/http/message.h"
 
 namespace lacuna {
 namespace {
 
-/// The query of an address, as a handler gets it through the HTTP library; nothing if it is
-/// refused.
-std::optional<Query> through_library(const std::string& text) {
-  std::optional<Query> query;
-  Router router;
-  router.add("GET", "/", {.for_programs = false},
-             [&](const Request& request, const Router::Parts&) {
-               query = request.query;
-               return Response{};
-             });
-  HttpMetrics metrics;
-  const HttpServer server({}, router, metrics);
-  const std::string answer = server.answer("GET /?" + text + " HTTP/1.1\r\n\r\n");
-  EXPECT_EQ(answer.substr(9, 3), query ? "200" : "400") << text;
-  return query;
-}
+Query parsed(const std::string& text) { return Query(text); }
 
-Query parsed(const std::string& text) { return through_library(text).value(); }
-
-void expect_refused(const std::string& text) { EXPECT_FALSE(through_library(text)) << text; }
+void expect_refused(const std::string& text) { EXPECT_THROW(parsed(text), HttpError) << text; }
 
 TEST(Query, DecodesNamesAndValues) {
   const Query query = parsed("st%61te=a%2cb&label=two+words%2B&empty=&bare&sky=%F0%9F%98%80");

@@ -194,11 +194,18 @@ export class Service {
     fs.writeFileSync(path.join(this.places.data, name), "");
   }
 
-  /// Sends bytes as they are; gives {status, head, body} once the service has closed.
+  /// Sends bytes as they are; gives {status, head, body} of the answer, once it is whole (by its
+  /// Content-Length) or the service has closed.
   async raw(text) {
     const socket = net.connect(this.port, "127.0.0.1");
     const chunks = [];
-    socket.on("data", (d) => chunks.push(d));
+    socket.on("data", (d) => {
+      chunks.push(d);
+      const all = Buffer.concat(chunks).toString("latin1");
+      const end = all.indexOf("\r\n\r\n") + 4;
+      const length = /^Content-Length: (\d+)\r$/m.exec(all.slice(0, end - 2));
+      if (end >= 4 && length && all.length >= end + Number(length[1])) socket.destroy();
+    });
     socket.on("error", () => {});
     const closed = new Promise((resolve) => { socket.on("close", resolve); });
     socket.write(text);
@@ -208,8 +215,8 @@ export class Service {
   }
 }
 
-/// A request head for Service.raw.
+/// A request head for Service.raw, after whose answer the service closes.
 export const head = (line, headers = {}) => {
-  const all = { Host: "localhost", ...headers };
+  const all = { Host: "localhost", Connection: "close", ...headers };
   return `${line} HTTP/1.1\r\n${Object.entries(all).map(([k, v]) => `${k}: ${v}\r\n`).join("")}\r\n`;
 };

@@ -1,5 +1,5 @@
 // 500 slow clients of each kind: another client is answered all the same. The limit here only tells
-// "is served" from "waits for the slow ones", which have at least 5 s to send a head;
+// "is served" from "waits for the slow ones", which hold their threads for 5 s and more;
 // tests/bench/slow_clients.mjs measures.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
