@@ -1,22 +1,25 @@
-// What a sweep's answers (docs/sweeps-and-reports.md) say in words and columns: arithmetic and text only.
-import { number, significant } from "./format.js";
-
-const thin = "\u202f";
+// A sweep's answers (docs/sweeps-and-reports.md): which settings give which error in which time, and how sure that is,
+// in words, as a figure and as a table, on the page and in the report.
+import { axes, errorAt } from "./curve.js";
+import { choice, h, note, replace, scroll, update, warning } from "./dom.js";
+import { colours, figureBox } from "./figure.js";
+import { number, seconds, significant, thin } from "./format.js";
+import { metrics } from "./job_tables.js";
 
 /// "0.0123 (0.011–0.014)": an estimate with its interval, if it has one.
-export function estimateText(estimate, digits = 3) {
+function estimateText(estimate, digits = 3) {
   if (!estimate) return "—";
   const interval = estimate.low === undefined ? ""
     : ` (${significant(estimate.low, digits)}–${significant(estimate.high, digits)})`;
   return significant(estimate.value, digits) + interval;
 }
 
-export const gainText = (gain) => (gain
+const gainText = (gain) => (gain
   ? `${gain.at_least ? "> " : ""}${significant(gain.value, 3)}×${gain.low === undefined ? ""
     : ` (${significant(gain.low, 3)}–${significant(gain.high, 3)})`}` : "—");
 
 /// What an interval says of "no difference", 1: "better", "worse", or "" where it cannot tell.
-export function verdict(gain) {
+function verdict(gain) {
   if (!gain) return "";
   if (gain.at_least) return gain.value > 1 ? "better" : "";
   if (gain.low > 1) return "better";
@@ -24,7 +27,7 @@ export function verdict(gain) {
 }
 
 /// The last part of each pointer, longer where two end alike.
-export function settingNames(pointers) {
+function settingNames(pointers) {
   const ending = (pointer, parts) => pointer.split("/").slice(1).slice(-parts).join("/");
   return pointers.map((pointer) => {
     for (let parts = 1; ; parts += 1) {
@@ -35,14 +38,14 @@ export function settingNames(pointers) {
   });
 }
 
-export const settingText = (value) => (typeof value === "string" ? value : JSON.stringify(value));
+const settingText = (value) => (typeof value === "string" ? value : JSON.stringify(value));
 
 /// The pointers whose values differ among `cells`.
-export const varyingSettings = (pointers, cells) => pointers.filter((pointer) =>
+const varyingSettings = (pointers, cells) => pointers.filter((pointer) =>
   new Set(cells.map((cell) => JSON.stringify(cell.settings[pointer]))).size > 1);
 
 /// A cell among `cells`, by the settings in which they differ.
-export function cellNames(answers, cells) {
+function cellNames(answers, cells) {
   const pointers = varyingSettings(answers.settings, cells);
   const names = settingNames(pointers);
   return new Map(cells.map((cell) => [cell.cell,
@@ -50,24 +53,24 @@ export function cellNames(answers, cells) {
 }
 
 /// The time to an error in words: reached, or not, and by how many runs.
-export function timeText(to, runs) {
+function timeText(to, runs) {
   if (to.time) return `${to.at_most ? "≤ " : ""}${estimateText(to.time)}${thin}s`;
   if (to.reached > 0) return `reached by ${to.reached} of ${runs} runs`;
   return to.at_least ? `not reached in ${significant(to.at_least)}${thin}s` : "not reached";
 }
 
-export const errorText = (at, runs) => (at.error
+const errorText = (at, runs) => (at.error
   ? estimateText(at.error) : `measured in ${at.reached} of ${runs} runs`);
 
 /// When a preparation has paid, in words.
-export function paysText(pays, known) {
+function paysText(pays, known) {
   if (!known) return "not known";
   if (!pays) return "not within the measured time";
   return pays.from_the_start ? "at once" : `after ${significant(pays.seconds)}${thin}s`;
 }
 
 /// The bias that the runs show, as a share of the squared error: an interval above 0 is a bias.
-export function biasText(cell) {
+function biasText(cell) {
   const bias = cell.bias_between_runs ?? cell.bias_squared;
   if (!bias) return "—";
   if (bias.low === undefined) return "needs several runs";
@@ -81,7 +84,7 @@ function someOf(cells, names, most = 3) {
 }
 
 /// The front in sentences: who leads from when to when.
-export const frontParts = (front, names) => front.map((part) => ({
+const frontParts = (front, names) => front.map((part) => ({
   ...part,
   text: `${significant(part.from)} to ${significant(part.to)}${thin}s`,
   name: names.get(part.cell),
@@ -91,20 +94,214 @@ export const frontParts = (front, names) => front.map((part) => ({
   ].filter(Boolean).join("; "),
 }));
 
-export const charges = [
+const charges = [
   { key: "render", label: "rendering alone" },
   { key: "warm", label: "with preparation, cache warm" },
   { key: "cold", label: "with preparation, cache cold" },
 ];
 
-/// The seconds that a charge adds to a cell's times; null: not known.
-export const charged = (cell, charge) => (charge === "render" ? 0 : cell.preparation[charge]);
-
-/// A cell's mean curve: {x, y, low, high, floor}, on the time axis of `charge`; empty if unknown.
-export function bandPoints(cell, charge) {
-  const shift = charged(cell, charge);
+/// A cell's mean curve: {x, y, low, high, floor}, with the seconds that `charge` adds; empty if they are not known.
+function bandPoints(cell, charge) {
+  const shift = charge === "render" ? 0 : cell.preparation[charge];
   if (shift === null) return [];
   return cell.curve.map(([time, y, low, high, floor]) => ({ x: time + shift, y, low, high, floor: floor === 1 }));
 }
 
-export const count = (n, one, many = `${one}s`) => `${number(n)} ${n === 1 ? one : many}`;
+const count = (n, one, many = `${one}s`) => `${number(n)} ${n === 1 ? one : many}`;
+
+const tables = [
+  { key: "time", label: "error at equal time" },
+  { key: "error", label: "time to equal error" },
+  { key: "cost", label: "efficiency, preparation, bias" },
+];
+
+/// What the reference is too noisy to tell stands in parentheses.
+const told = (text, supported) => (supported ? text : h("span.muted",
+  { title: "At the reference's own noise: not supported" }, `(${text})`));
+
+const gainCell = (gain, supported = true) =>
+  h("span", { className: verdict(gain), title: verdict(gain) === "" && gain ? "Not significantly different from 1" : "" },
+    told(gainText(gain), supported));
+
+function timeColumns(picture) {
+  // The last first: that is where a reader looks.
+  return picture.seconds.map((t, i) => [t, i]).reverse().flatMap(([t, i]) => [
+    { key: `at${i}`, head: `at ${significant(t)} s`, value: (c) => c.at[i]?.error?.value,
+      show: (c) => (c.at[i] ? told(errorText(c.at[i], c.done), c.at[i].supported) : "—") },
+    { key: `gain${i}`, head: "× the baseline", value: (c) => -(c.at[i]?.gain?.value ?? 0),
+      show: (c) => gainCell(c.at[i]?.gain, c.at[i]?.supported) },
+  ]);
+}
+
+function errorColumns(picture) {
+  return picture.errors.map((e, i) => [e, i]).reverse().flatMap(([e, i]) => [
+    { key: `to${i}`, head: `to ${significant(e, 2)}`, value: (c) => c.to[i]?.time?.value,
+      show: (c) => (c.to[i] ? told(timeText(c.to[i], c.done), c.to[i].supported) : "—") },
+    { key: `speed${i}`, head: "speed-up", value: (c) => -(c.to[i]?.speed_up?.value ?? 0),
+      show: (c) => gainCell(c.to[i]?.speed_up, c.to[i]?.supported) },
+  ]);
+}
+
+const costColumns = [
+  { key: "efficiency", head: "efficiency 1/(MSE·s)", value: (c) => -(c.efficiency?.value ?? 0),
+    show: (c) => estimateText(c.efficiency) },
+  { key: "better", head: "× the baseline", value: (c) => -(c.efficiency_gain?.value ?? 0),
+    show: (c) => gainCell(c.efficiency_gain) },
+  { key: "cold", head: "preparation, cold", value: (c) => c.preparation.cold, show: (c) => seconds(c.preparation.cold) },
+  { key: "warm", head: "warm", value: (c) => c.preparation.warm, show: (c) => seconds(c.preparation.warm) },
+  { key: "pays", head: "pays (cold)", value: (c) => c.pays.cold?.seconds,
+    show: (c) => (c.baseline === null || c.baseline === c.cell ? "—" : paysText(c.pays.cold, c.preparation.cold !== null)) },
+  { key: "bias", head: "bias²", value: (c) => (c.bias_between_runs ?? c.bias_squared)?.value, show: biasText },
+  { key: "variance", head: "variance", value: (c) => c.variance?.value, show: (c) => estimateText(c.variance) },
+];
+
+function runsCell(cell) {
+  const tainted = cell.runs.filter((r) => r.tainted);
+  return h("span", { title: tainted.map((r) => `${r.name}: ${r.tainted}`).join("\n") },
+    `${cell.done} of ${cell.runs.length}`, tainted.length > 0 && h("span.worse", `, ${tainted.length} tainted`));
+}
+
+function columnsOf(answers, picture, cells, which) {
+  const pointers = varyingSettings(answers.settings, cells);
+  const names = settingNames(pointers);
+  const settings = pointers.map((p, i) => ({ key: p, head: names[i], title: p,
+    value: (c) => c.settings[p], show: (c) => settingText(c.settings[p]) }));
+  const runs = { key: "runs", head: "runs", value: (c) => c.done, show: runsCell };
+  const rest = { time: timeColumns(picture), error: errorColumns(picture), cost: costColumns }[which];
+  return [...settings, runs, ...rest];
+}
+
+/// Numbers before words, what is not there last.
+function order(a, b) {
+  if (a === undefined || a === null) return b === undefined || b === null ? 0 : 1;
+  if (b === undefined || b === null) return -1;
+  if (typeof a === "number" && typeof b === "number") return a - b;
+  return settingText(a).localeCompare(settingText(b), "en", { numeric: true });
+}
+
+/// The cells of one picture as a table that can be sorted. `which`: a key of `tables`; `query` has `sort` ("KEY", or
+/// "-KEY" for the other way round), the cells in `chosen` (a Set) are ticked; `choose(key)(value)` changes the query.
+function answersTable({ answers, picture, cells, which, query, chosen, choose }) {
+  const columns = columnsOf(answers, picture, cells, which);
+  const asked = query.get("sort") ?? "";
+  const by = columns.find((c) => c.key === asked.replace(/^-/, ""));
+  const turn = asked.startsWith("-") ? -1 : 1;
+  const sorted = by ? cells.toSorted((a, b) => turn * order(by.value(a), by.value(b)) || a.cell - b.cell) : cells;
+  const heads = columns.map((column) => h("th", { scope: "col", title: column.title ?? "",
+    "aria-sort": column === by ? (turn > 0 ? "ascending" : "descending") : null },
+  h("button.small", { type: "button", onclick: () => choose("sort")(asked === column.key ? `-${column.key}` : column.key) },
+    column.head, column === by && (turn > 0 ? " ▲" : " ▼"))));
+  const tick = (cell, on) => {
+    if (on) chosen.add(cell);
+    else chosen.delete(cell);
+    choose("cells")([...chosen].join(","));
+  };
+  const rows = sorted.map((cell) => h("tr", { id: `cell-${cell.cell}` },
+    h("td", h("input", { type: "checkbox", checked: chosen.has(cell.cell), "aria-label": `Show cell ${cell.cell}`,
+      onchange: (event) => tick(cell.cell, event.target.checked) })),
+    h("th", { scope: "row" }, cell.cell, cell.baseline === cell.cell && h("span.muted", " baseline")),
+    columns.map((column) => h("td.number", column.show(cell)))));
+  return scroll(`Table of ${count(cells.length, "cell")}`,
+    h("table.values.sortable", h("thead", h("tr", h("th", "shown"), h("th", { scope: "col" }, "cell"), heads)),
+      h("tbody", rows)));
+}
+
+/// The cells that are shown at first: those of the front and their baselines.
+function natural(picture, cells) {
+  const leading = [...picture.front.render, ...picture.front.cold].map((part) => part.cell);
+  const all = leading.flatMap((n) => [n, cells.find((c) => c.cell === n)?.baseline]);
+  return [...new Set(all.filter(Boolean))].slice(0, colours);
+}
+
+/// The part of a curve between two times, its ends interpolated in log-log.
+function clipped(curve, from, to) {
+  const at = (x) => ({ x, y: errorAt(curve, x) ?? (x < curve[0].x ? curve[0] : curve.at(-1)).y });
+  return [at(from), ...curve.filter((p) => p.x > from && p.x < to), at(to)];
+}
+
+/// The figure (see figureSvg) of `cells`, on the time axis of `charge`: the chosen ones with marks and bands, and what
+/// leads when.
+function figureOf(answers, picture, cells, names, charge, chosen) {
+  const points = new Map(cells.map((c) => [c.cell, bandPoints(c, charge.key)]).filter(([, of]) => of.length > 0));
+  const index = (cell) => (chosen.includes(cell) ? chosen.indexOf(cell) : undefined);
+  const curves = [...points].map(([cell, of]) => ({ name: names.get(cell), points: of, index: index(cell) }));
+  return {
+    curves: curves.toSorted((a, b) => a.index - b.index),
+    front: picture.front[charge.key].filter(({ cell }) => points.has(cell))
+      .map(({ cell, from, to }) => clipped(points.get(cell), from, to)),
+    axis: { label: `${axes.find((a) => a.key === answers.clock).label}, ${charge.label}`, unit: "s" },
+    metric: metrics.find((m) => m.key === answers.metric),
+  };
+}
+
+function frontList(front, names, charge) {
+  const parts = frontParts(front, names);
+  if (parts.length === 0) return note(charge.key === "render" ? "No run is done yet." : "No run measured its preparation.");
+  return h("ol.front", parts.map((part) => h("li", `${part.text}: `, h("strong", part.name),
+    part.doubts && h("span.muted", ` (${part.doubts})`))));
+}
+
+/// The answers with their switches. `query` (URLSearchParams) holds every choice; `remember()` is called
+/// after it changed. `pictures(picture, cells, names)` gives an element for the chosen cells' pictures, or
+/// null. `show(answers)` draws anew.
+export function answersView(query, remember, pictures) {
+  const [above, below, crops] = [h("div"), h("div"), h("section")];
+  const figure = figureBox("No run is done yet.");
+  let answers = null;
+
+  const choose = (key) => (value) => {
+    query.set(key, value);
+    remember();
+    draw();
+  };
+
+  /// One of `options` by its key in the query, else the first.
+  const picked = (options, key) => options.find((o) => o.key === query.get(key)) ?? options[0];
+
+  function chosenCells(picture, cells) {
+    if (!query.has("cells")) return natural(picture, cells);
+    return query.get("cells").split(",").map(Number).filter((n) => picture.cells.includes(n));
+  }
+
+  function draw() {
+    const options = answers.pictures.map((p, i) => ({ key: String(i + 1), label: p.text || "all cells" }));
+    const several = options.length > 1;
+    const number = Number(picked(options, "picture").key);
+    const picture = answers.pictures[number - 1];
+    const cells = picture.cells.map((n) => answers.cells[n - 1]);
+    const names = cellNames(answers, cells);
+    const charge = picked(charges, "charge");
+    const which = picked(tables, "table");
+    const chosen = chosenCells(picture, cells);
+    update(above, answers.warnings.map(warning),
+      h("div.switches", several && choice("Picture", options, String(number), (value) => {
+        query.delete("cells");
+        choose("picture")(value);
+      }), choice("Time", charges, charge.key, choose("charge"))),
+      several && note("Only cells that estimate the same picture are compared: of one scene, camera and resolution, "
+        + "against one reference."),
+      h("section", h("h2", "Lowest error"), frontList(picture.front[charge.key], names, charge)));
+    figure.draw(figureOf(answers, picture, cells, names, charge, chosen));
+    update(below, h("h2", "All cells"), h("div.switches", choice("Table", tables, which.key, choose("table"))),
+      answersTable({ answers, picture, cells, which: which.key, query, chosen: new Set(chosen), choose }),
+      note("Means are geometric, over the seeds; in parentheses 95 % intervals (Student's t of the logarithms, "
+        + "Welch's for ratios). A ratio whose interval contains 1 is not significant."));
+    replace(crops, pictures(number, chosen.map((n) => answers.cells[n - 1]), names));
+  }
+
+  return {
+    element: h("div.answers", above, figure.element, below, crops),
+    show(next) {
+      answers = next;
+      draw();
+    },
+  };
+}
+
+/// "9 cells of integrator/guide and resolution, 3 seeds: 27 of 27 runs done".
+export function summary(answers) {
+  const runs = Object.values(answers.states).reduce((sum, n) => sum + n, 0);
+  const names = settingNames(answers.settings).join(", ");
+  return `${count(answers.cells.length, "cell")}${names && ` of ${names}`}, ${count(answers.seeds, "seed")}: `
+    + `${answers.states.done ?? 0} of ${count(runs, "run")} done`;
+}

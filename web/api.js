@@ -1,6 +1,6 @@
 // Lacuna's HTTP API as the page uses it: requests, problems, polling and events.
-import { setText } from "./dom.js";
-import { signIn } from "./session.js";
+import { ask, h, update } from "./dom.js";
+import { shellQuote } from "./format.js";
 
 /// A request that did not succeed: problem+json, or `status` 0 where no answer came.
 export class ApiError extends Error {
@@ -14,6 +14,7 @@ export class ApiError extends Error {
 
 const noAnswer = "The server does not answer; trying again.";
 const retryMs = 2000;
+const session = "/api/session";
 
 async function request(path, options = {}) {
   let response;
@@ -27,18 +28,30 @@ async function request(path, options = {}) {
     });
   }
   if (response.ok) return response;
-  if (response.status === 401 && path !== "/api/session" && await signIn(postToken)) return request(path, options);
+  if (response.status === 401 && path !== session && await signIn()) return request(path, options);
   const fallback = { title: `Error ${response.status}`, detail: response.statusText };
   throw new ApiError(response.status, await response.json().catch(() => fallback));
 }
 
 /// A request that changes something; `body` is JSON, undefined: there is none.
-export const send = (method, path, body) => request(path, {
+const send = (method, path, body) => request(path, {
   method, body, headers: body === undefined ? {} : { "Content-Type": "application/json" },
 });
-const postToken = (token) => send("POST", "/api/session", JSON.stringify({ token }));
+
+let signingIn = null;
+
+/// Asks for the token of a service that wants one, once for all that wait for it, until it is right or the reader
+/// gives up; gives whether it was right. The service keeps it in a cookie.
+function signIn() {
+  const field = h("input", { type: "password", required: true, autocomplete: "off" });
+  signingIn ??= ask("This service requires a token", [
+    h("p", "The token is in the file passed to lacuna-server as --token-file."), h("label", "Token ", field)],
+  "Go on", () => send("POST", session, JSON.stringify({ token: field.value }))).finally(() => { signingIn = null; });
+  return signingIn;
+}
 
 export const jobPath = (id) => `/api/jobs/${encodeURIComponent(id)}`;
+const sweepPath = (id) => `/api/sweeps/${encodeURIComponent(id)}`;
 
 /// An address's query without what is empty or 0.
 export const queryOf = (values) =>
@@ -50,13 +63,22 @@ export function fileUrl(id, name, version) {
   return version === undefined ? path : `${path}?v=${encodeURIComponent(version)}`;
 }
 
-export const json = async (path, signal) => (await request(path, { signal })).json();
+const json = async (path, signal) => (await request(path, { signal })).json();
+/// [{name, doc, terminal, actions}]: what a job can be, and what may be asked of it then.
+export const getStates = async () => (await json("/api/states")).states;
 /// A part of the list: {jobs, total, counts, next, last_event}; `wanted`: {state, label, limit, cursor}.
 export const getJobs = (wanted, signal) => json(`/api/jobs?${queryOf(wanted)}`, signal);
 export const getJob = (id, signal) => json(jobPath(id), signal);
 /// {status}, and what keeps all jobs from going on: {obstacle}.
 export const getHealth = (signal) => json("/health", signal);
 export const getScenes = async (signal) => (await json("/api/scenes", signal)).scenes;
+/// All sweeps, newest first: [{id, label, state, created, run_count, counts, share}].
+export const getSweeps = async (signal) => (await json("/api/sweeps", signal)).sweeps;
+/// One with its file, cells and runs.
+export const getSweep = (id, signal) => json(sweepPath(id), signal);
+/// What its finished runs say (docs/sweeps-and-reports.md).
+export const getAnswers = (id, signal) => json(`${sweepPath(id)}/answers`, signal);
+export const tableUrl = (id) => `${sweepPath(id)}/table.csv`;
 /// A file as it is now: a Response.
 export const getFile = (id, name, signal) => request(fileUrl(id, name), { signal, cache: "no-cache" });
 export const getText = async (id, name, signal) => (await getFile(id, name, signal)).text();
@@ -86,6 +108,8 @@ export const tell = (id, verb, body) => send("POST", `${jobPath(id)}/${verb}`, b
 /// `values`: {priority, held}, either or both.
 export const change = (id, values) => send("PATCH", jobPath(id), JSON.stringify(values));
 export const remove = (id) => send("DELETE", jobPath(id));
+export const cancelSweep = (id) => send("POST", `${sweepPath(id)}/cancel`);
+export const removeSweep = (id) => send("DELETE", sweepPath(id));
 
 /// Posts a job file as it was typed; gives the new job's id.
 export async function postJob(text) {
@@ -93,34 +117,11 @@ export async function postJob(text) {
   return decodeURIComponent(response.headers.get("Location").split("/").pop());
 }
 
-const sayLink = (text) => setText(document.getElementById("link-state"), text);
+/// The command that posts `body` (an object) to "jobs" or "sweeps" of this server.
+export const curlLine = (kind, body) => `curl -sS -X POST ${location.origin}/api/${kind} `
+  + `-H 'Content-Type: application/json' \\\n  -d ${shellQuote(JSON.stringify(body))}`;
 
-/// Calls `step` now, and then goes on as pollOn() does unless it gives false. The first call's errors are
-/// thrown to the caller.
-export async function poll(step, ms, signal) {
-  if (await step() !== false) pollOn(step, ms, signal);
-}
-
-/// Calls `step` `ms` (a number, or a function that gives one) from now and after each of its ends, while the
-/// page can be seen, until `signal` is aborted, `step` gives false or the reader does not show the token. An
-/// unanswered request is said in the head of the page and tried again.
-export async function pollOn(step, ms, signal) {
-  signal.addEventListener("abort", () => sayLink(""));
-  for (let more = true; more !== false;) {
-    await new Promise((resolve) => { setTimeout(resolve, typeof ms === "function" ? ms() : ms); });
-    if (signal.aborted) return;
-    if (document.hidden) continue;
-    try {
-      more = await step();
-      sayLink("");
-    } catch (error) {
-      if (signal.aborted) return;
-      sayLink(error.status === 0 ? noAnswer : error.message);
-      if (!(error instanceof ApiError)) throw error;
-      if (error.status === 401) return;
-    }
-  }
-}
+const sayLink = (text) => update(document.getElementById("link-state"), text);
 
 /// `soon(ms)` calls `step` after that time, however often it is asked until then; who is in a greater
 /// hurry goes first. One call ends before the next begins. An unanswered request is said in the head of the
@@ -129,17 +130,17 @@ export function soon(step, failed, signal) {
   let due = Infinity;
   let timer;
   let running = Promise.resolve();
-  signal.addEventListener("abort", () => clearTimeout(timer));
+  signal.addEventListener("abort", () => {
+    clearTimeout(timer);
+    sayLink("");
+  });
   const again = (error) => {
     if (signal.aborted) return;
-    if (error.status !== 0) {
-      failed(error);
-      return;
-    }
-    sayLink(noAnswer);
-    ask(retryMs);
+    sayLink(error.status === 0 ? noAnswer : "");
+    if (error.status === 0) call(retryMs);
+    else failed(error);
   };
-  function ask(ms) {
+  function call(ms) {
     const at = performance.now() + ms;
     if (at >= due || signal.aborted) return;
     clearTimeout(timer);
@@ -149,7 +150,26 @@ export function soon(step, failed, signal) {
       running = running.then(step).then(() => sayLink("")).catch(again);
     }, ms);
   }
-  return ask;
+  return call;
+}
+
+/// Calls `step` `ms` (a number, or a function that gives one) from now and after each of its ends, while the
+/// page can be seen, until `signal` is aborted, `step` gives false or the reader does not show the token. What goes
+/// wrong is said in the head of the page.
+export function pollOn(step, ms, signal) {
+  const next = () => again(typeof ms === "function" ? ms() : ms);
+  const again = soon(async () => {
+    if (document.hidden || await step() !== false) next();
+  }, (error) => {
+    sayLink(error.message);
+    if (error.status !== 401) next();
+  }, signal);
+  next();
+}
+
+/// Calls `step` now, whose errors are thrown to the caller, and then goes on as pollOn() does unless it gives false.
+export async function poll(step, ms, signal) {
+  if (await step() !== false) pollOn(step, ms, signal);
 }
 
 /// Listens to events while the page can be seen: `on[name]` gets the data of the events called so,

@@ -1,22 +1,25 @@
-// The router: one view per hash route, and with `embed` in the query its curves alone; each is given
-// an AbortSignal that ends everything it started.
-import { ApiError } from "./api.js";
-import { button, h, problem } from "./dom.js";
-import "./keys.js";
-import * as figure from "./view_figure.js";
-import * as job from "./view_job.js";
-import * as jobs from "./view_jobs.js";
-
-/// A view that many never open is read when somebody does.
-const later = (file) => async (...given) => (await import(file)).show(...given);
+// The router: one view per hash route, read when somebody opens it, and with `embed` in the query its curves alone;
+// each is given an AbortSignal that ends everything it started. And the list of keys.
+import { ApiError, getStates } from "./api.js";
+import { ask, button, facts, h, problem, replace } from "./dom.js";
+import { states } from "./format.js";
 
 const routes = [
-  { pattern: /^\/$/, show: jobs.show },
-  { pattern: /^\/job\/(?<id>[^/]+)$/, show: job.show, alone: figure.show },
-  { pattern: /^\/compare$/, show: later("./view_compare.js"), alone: figure.show },
-  { pattern: /^\/new$/, show: later("./view_new.js") },
-  { pattern: /^\/sweeps$/, show: later("./view_sweeps.js") },
-  { pattern: /^\/sweep\/(?<id>[^/]+)$/, show: later("./view_sweep.js") },
+  { pattern: /^\/$/, view: "jobs" },
+  { pattern: /^\/job\/(?<id>[^/]+)$/, view: "job", alone: true },
+  { pattern: /^\/compare$/, view: "compare", alone: true },
+  { pattern: /^\/new$/, view: "new" },
+  { pattern: /^\/sweeps$/, view: "sweeps" },
+  { pattern: /^\/sweep\/(?<id>[^/]+)$/, view: "sweeps" },
+];
+
+const keys = [
+  ["?", "show this list"], ["Esc", "close a dialog"],
+  ["e, E", "exposure half a stop up, down"], ["[, ]", "previous, next layer"],
+  ["+, −, wheel", "zoom (wheel: once the picture has the focus)"], ["arrows, drag", "move the picture"],
+  ["0 or f, o", "fit to the window; one to one"], ["1 … 9", "show the picture with this number"],
+  [", .", "move the divider of two pictures; make the crop smaller, larger"],
+  ["arrows, drag", "crops: move the crop; choose another"],
 ];
 
 const main = document.getElementById("main");
@@ -27,6 +30,12 @@ let shown = false;
 function address() {
   const [path, query = ""] = location.hash.replace(/^#/, "").split("?", 2);
   return { path: path || "/", query: new URLSearchParams(query) };
+}
+
+/// What every view needs to know of the service, asked once.
+async function learn() {
+  if (Object.keys(states).length > 0) return;
+  for (const { name, ...state } of await getStates()) states[name] = state;
 }
 
 function explain(error) {
@@ -44,21 +53,23 @@ async function route() {
   const { signal } = leaving;
   const { path, query } = address();
   const match = routes.find(({ pattern }) => pattern.test(path));
-  const alone = query.has("embed") && match?.alone;
-  document.body.classList.toggle("embed", Boolean(alone));
+  const alone = Boolean(query.has("embed") && match?.alone);
+  document.body.classList.toggle("embed", alone);
   for (const link of document.querySelectorAll("nav a")) link.ariaCurrent = link.hash === `#${path}` ? "page" : null;
-  main.replaceChildren();
+  replace(main);
   delete main.dataset.ready;
   if (shown) main.focus({ preventScroll: true });
   shown = true;
   window.scrollTo(0, 0);
   try {
     if (!match) throw new ApiError(404, { title: "No such view", detail: `There is no view #${path}.` });
-    await (alone || match.show)(main, { params: match.pattern.exec(path).groups ?? {}, query, signal });
+    const [view] = await Promise.all([import(alone ? "./curve_panel.js" : `./view_${match.view}.js`), learn()]);
+    signal.throwIfAborted();
+    await view.show(main, { params: match.pattern.exec(path).groups ?? {}, query, signal });
   } catch (error) {
     if (signal.aborted) return;
     document.title = "Lacuna";
-    main.replaceChildren(explain(error));
+    replace(main, explain(error));
   }
   main.dataset.ready = "";
 }
@@ -68,4 +79,13 @@ window.addEventListener("hashchange", () => {
   if (location.hash === "#main") history.replaceState(null, "", "#/");
   else route();
 });
+
+/// Shows the keys, unless a question is open already.
+const showKeys = () => document.querySelector("dialog")
+  ?? ask("Keys", [facts(keys, "keys-help"), "The keys for pictures work while a picture has the focus."]);
+
+document.addEventListener("keydown", (event) => {
+  if (event.key === "?" && !event.target.matches("input, textarea, select")) showKeys();
+});
+document.getElementById("keys").onclick = showKeys;
 route();

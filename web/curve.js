@@ -1,5 +1,7 @@
 // Convergence curves: reading curve.csv, choosing axes, and comparing at equal time or equal error. What the y
 // axis can show, `metrics`, is the program's own table.
+import { note, table, warning } from "./dom.js";
+import { number, seconds, words } from "./format.js";
 import { metrics } from "./job_tables.js";
 
 /// What the x axis can show.
@@ -75,4 +77,19 @@ export function slopeLine(curves, slope) {
   const xs = curves.flat().map((p) => p.x);
   return [Math.min(...xs), Math.max(...xs)]
     .map((x) => ({ x, y: Math.exp(offset + slope * Math.log(x)) }));
+}
+
+/// A curve's rows as a table, for reading and for those who cannot see the plot: all columns that have a value.
+export function curveTable(rows) {
+  const keys = Object.keys(rows[0] ?? {}).filter((key) => rows.some((row) => row[key] !== null));
+  return table(keys.map(words), rows.map((row) => keys.map((key) => number(row[key], 4))), true);
+}
+
+const mostApart = 1.05;  // times that differ by no more count as equal
+
+/// What can be said of pictures side by side: only the last of each job is kept.
+export function aboutTimes(times) {
+  const [least, most] = [Math.min(...times), Math.max(...times)];
+  return most <= mostApart * least ? note("Of equal time: the jobs' last pictures, at most 5 % apart in render time.")
+    : warning(`Not of equal time: the jobs' last pictures, after ${seconds(least)} to ${seconds(most)} of rendering.`);
 }

@@ -1,60 +1,117 @@
-// The error plot with its switches, as the job view, the comparison and the figure alone show it.
-import { axes, presentMetrics } from "./curve.js";
-import { addressOf, h, labelledSelect, remember, small } from "./dom.js";
-import { saveFigure } from "./figure_file.js";
-import { figureSvg } from "./figure_svg.js";
+// Error curves of jobs: read and followed, named so that no two read the same, and plotted with switches, as the job
+// view and the comparison show them, or alone as a figure.
+import { getJob, getText, poll } from "./api.js";
+import { axes, parseCurve, points, presentMetrics } from "./curve.js";
+import { addressOf, choice, h, problem, remember, replace, small, update } from "./dom.js";
+import { figureBox } from "./figure.js";
+import { integratorName, isTerminal, jobTitle } from "./format.js";
 import { metrics } from "./job_tables.js";
-import { plot } from "./plot.js";
+
+const everyMs = 5000;
+
+/// A job with its curve and its report. One that has ended is read once.
+async function readJob(id, before, signal) {
+  if (before && isTerminal(before.state.state)) return before;
+  const job = await getJob(id, signal);
+  const has = (name) => job.files.find((f) => f.name === name);
+  const rows = has("curve.csv") ? parseCurve(await getText(id, "curve.csv", signal)) : [];
+  const report = has("report.json") ? JSON.parse(await getText(id, "report.json", signal)) : null;
+  return { ...job, rows, report };
+}
+
+/// "label, integrator"; where two would read the same, with the end of the id.
+function names(jobs) {
+  const plain = jobs.map(({ job }) => `${jobTitle(job)}, ${integratorName(job.integrator)}`);
+  return jobs.map(({ id }, i) => (plain.filter((n) => n === plain[i]).length > 1
+    ? `${plain[i]} (${id.split("-").pop()})` : plain[i]));
+}
+
+/// The error metric in which all jobs report their progress; null if they differ.
+function reportedMetric(jobs) {
+  const reported = new Set(jobs.map(({ progress }) => progress?.error_metric));
+  return reported.size === 1 ? [...reported][0] : null;
+}
+
+/// Reads the jobs, again while any of them goes on, and each time calls `draw` with {jobs, preferred,
+/// problems}: those that could be read, with a `name` and their curve in `rows`, the metric to show, and what is wrong
+/// with the others.
+export function followJobs(ids, draw, signal) {
+  const read = new Map();
+  return poll(async () => {
+    const results = await Promise.allSettled(ids.map((id) => readJob(id, read.get(id), signal)));
+    signal.throwIfAborted();
+    results.forEach(({ value }, i) => value && read.set(ids[i], value));
+    const jobs = ids.map((id) => read.get(id)).filter(Boolean);
+    const labels = names(jobs);
+    draw({
+      jobs: jobs.map((job, i) => ({ ...job, name: labels[i] })), preferred: reportedMetric(jobs),
+      problems: results.flatMap(({ reason }, i) => (reason ? [`${ids[i]}: ${reason.message}`] : [])),
+    });
+    return jobs.some((job) => !isTerminal(job.state.state));
+  }, everyMs, signal);
+}
+
+export const idsOf = (query) => [...new Set((query.get("jobs") ?? "").split(",").filter(Boolean))];
 
 /// A plot and its switches. `query` (URLSearchParams) holds the choice, `x` and `y`; the switches change
-/// it and the address, and then `changed()` is called. `show(series, preferred)` draws what `query` says:
-/// else the metric `preferred`, else the first that all of them have. After it, `x` and `y` say what is
-/// shown; `y` is null if there is nothing.
-export function curvePanel(query, signal, changed = () => {}) {
-  const figure = plot(signal);
-  const choose = (key) => (value) => {
-    query.set(key, value);
-    draw();
-    remember(query);
-    changed();
-  };
-  const x = labelledSelect("against", choose("x"));
-  const y = labelledSelect("Error", choose("y"));
-  const save = (kind) => small(`Save as ${kind}`, () => saveFigure(figureSvg(shown, panel.x, panel.y),
-    `lacuna-${panel.y}.${kind.toLowerCase()}`));
+/// it and the address, and then `changed()` is called. `show(series, preferred)` draws of [{name, rows}] what `query`
+/// says: else the metric `preferred`, else the first that all of them have. After it, `axis` and `metric` are what is
+/// shown; `metric` is undefined if there is nothing.
+export function curvePanel(query, changed = () => {}) {
+  const figure = figureBox("No errors have been measured.");
+  const switches = h("div.switches");
   const embedded = query.has("embed");
   const alone = small(embedded ? "Leave the figure" : "Figure alone", () => {
     if (embedded) query.delete("embed");
     else query.set("embed", "");
     location.hash = addressOf(query);
   });
-  const switches = h("div.switches", y.element, x.element,
-    h("span.tools", alone, save("SVG"), save("PNG")));
+  const tools = h("span.tools", alone, figure.saves("", () => `lacuna-${panel.metric.key}`));
+  const [what, over] = [h("span"), h("span")];
+  replace(switches, what, over, tools);
   let shown = [];
   let wanted = null;
+
+  const choose = (key) => (value) => {
+    query.set(key, value);
+    draw();
+    remember(query);
+    changed();
+  };
 
   function draw() {
     const has = shown.map(({ rows }) => presentMetrics(rows));
     const offered = metrics.filter((m) => has.some((present) => present.includes(m)));
     const pick = (key) => offered.find((m) => m.key === key);
+    const axis = axes.find((a) => a.key === query.get("x")) ?? axes[0];
     const metric = pick(query.get("y")) ?? pick(wanted)
       ?? offered.find((m) => has.every((present) => present.includes(m))) ?? offered[0];
-    panel.x = (axes.find((a) => a.key === query.get("x")) ?? axes[0]).key;
-    panel.y = metric?.key ?? null;
-    switches.hidden = panel.y === null;
-    x.fill(axes, panel.x);
-    y.fill(offered, panel.y);
-    figure.draw(shown, panel.x, panel.y);
+    Object.assign(panel, { axis, metric });
+    switches.hidden = metric === undefined;
+    update(what, choice("Error", offered, metric?.key, choose("y")));
+    update(over, choice("against", axes, axis.key, choose("x")));
+    const curves = shown.map(({ name, rows }, index) => ({ name, index, points: metric ? points(rows, axis.key, metric.key) : [] }));
+    figure.draw({ curves, axis, metric });
   }
 
   const panel = {
     element: h("div", switches, figure.element),
-    x: axes[0].key,
-    y: null,
     show(series, preferred = null) {
       [shown, wanted] = [series, preferred];
       draw();
     },
   };
   return panel;
+}
+
+/// The curves of one or more jobs as a single figure, to be saved or shown elsewhere.
+export async function show(main, { params, query, signal }) {
+  document.title = "Figure · Lacuna";
+  const panel = curvePanel(query);
+  const notes = h("div");
+  replace(main, notes, panel.element);
+  await followJobs(params.id ? [params.id] : idsOf(query), ({ jobs, preferred, problems }) => {
+    update(notes, problems.map(problem));
+    panel.show(jobs, preferred);
+  }, signal);
 }

@@ -1,4 +1,5 @@
-// Building elements. Text only ever becomes text nodes, so that no name can turn into markup.
+// Building and changing elements, and asking questions. Text only ever becomes text nodes, so that no name can turn
+// into markup.
 
 /// An element: "tag.class.class", its properties if there are any, and children. Properties whose name
 /// has a dash, and `role`, are set as attributes, the others as properties. Children are nodes, text or
@@ -7,14 +8,13 @@ export function h(tag, ...content) {
   const [name, ...classes] = tag.split(".");
   const element = document.createElement(name);
   if (classes.length > 0) element.className = classes.join(" ");
-  if (content[0]?.constructor === Object) {
-    for (const [key, value] of Object.entries(content.shift())) {
-      if (value === undefined || value === null) continue;
-      if (key === "role" || key.includes("-")) element.setAttribute(key, value);
-      else element[key] = value;
-    }
-  }
+  const properties = content[0]?.constructor === Object ? content.shift() : {};
   append(element, content);
+  for (const [key, value] of Object.entries(properties)) {
+    if (value === undefined || value === null) continue;
+    if (key === "role" || key.includes("-")) element.setAttribute(key, value);
+    else element[key] = value;
+  }
   return element;
 }
 
@@ -32,16 +32,54 @@ export function replace(element, ...children) {
   append(element, ...children);
 }
 
+/// As replace(), with children made for it alone: what is like what was there stays as it is, with the focus, a
+/// selection and loaded pictures. Children with an `id` are found again by it, others by their place.
+export function update(element, ...children) {
+  const next = document.createElement(element.nodeName);
+  append(next, ...children);
+  patchChildren(element, next);
+}
+
+function patchChildren(old, next) {
+  const wanted = [...next.childNodes];
+  const byId = new Map([...old.children].filter((child) => child.id).map((child) => [child.id, child]));
+  wanted.forEach((child, i) => {
+    const there = old.childNodes[i] ?? null;
+    const kept = child.id ? byId.get(child.id) : there;
+    if (kept?.nodeName !== child.nodeName || (kept.id ?? "") !== (child.id ?? "")) {
+      if (there && !there.id) there.replaceWith(child);
+      else old.insertBefore(child, there);
+    } else {
+      if (kept !== there) old.insertBefore(kept, there);
+      patch(kept, child);
+    }
+  });
+  while (old.childNodes.length > wanted.length) old.lastChild.remove();
+}
+
+// What elements have that is neither attribute nor child.
+const properties = ["onclick", "onchange", "oninput", "checked", "value"];
+
+/// Makes `old` like `next`, a node of the same name.
+export function patch(old, next) {
+  if (old instanceof Text) {
+    if (old.data !== next.data) old.data = next.data;
+    return;
+  }
+  for (const { name } of [...old.attributes]) if (!next.hasAttribute(name)) old.removeAttribute(name);
+  for (const { name, value } of next.attributes) {
+    if (old.getAttribute(name) !== value) old.setAttribute(name, value);
+  }
+  patchChildren(old, next);
+  // What is being typed is the reader's.
+  const typed = old === document.activeElement && old.matches("input:not([type=checkbox])");
+  for (const key of properties) if (next[key] !== old[key] && !(key === "value" && typed)) old[key] = next[key];
+}
+
 /// Names and values, side by side; values that are empty are left out.
 export const facts = (pairs, className = "facts") => h("dl", { className }, pairs
   .filter(([, value]) => value !== "" && value !== null && value !== undefined)
   .map(([name, value]) => h("div", h("dt", name), h("dd", value))));
-
-/// Writes text only where it changed: a live region then speaks, and a selection dies, only when
-/// it must.
-export function setText(element, text) {
-  if (element.textContent !== text) element.textContent = text;
-}
 
 /// The address of this view with `query` (URLSearchParams), and giving it that without a new step in the
 /// history.
@@ -57,11 +95,21 @@ export const small = (text, onclick) => button(text, onclick, { className: "smal
 export const sign = (text, label, onclick) =>
   button(text, onclick, { className: "small", title: label, "aria-label": label });
 
-/// A button that copies what `text()` gives and says so.
+/// What a button of change does: `call()`, and `then()` unless that gave false; an error is for `say(text)`.
+export const action = (call, then, say) => async () => {
+  say("");
+  try {
+    if (await call() !== false) await then();
+  } catch (error) {
+    say(error.message);
+  }
+};
+
+/// A button that copies `text` and says so.
 export function copyButton(text) {
   const element = small("Copy", async () => {
     try {
-      await navigator.clipboard.writeText(text());
+      await navigator.clipboard.writeText(text);
       element.textContent = "Copied";
     } catch {
       element.textContent = "Not allowed here: select and copy";
@@ -76,37 +124,53 @@ export const problem = (text) => h("p.problem", { role: "alert" }, text);
 export const warning = (text) => h("p.warning", text);
 export const note = (...content) => h("p.note", content);
 
-let made = 0;
-
-/// A select with its label; `fill(options, value)`: options are {key, label, group}.
-export function labelledSelect(label, onchange) {
-  made += 1;
-  const id = `select-${made}`;
-  const select = h("select", { id, onchange: () => onchange(select.value) });
-  let known = "";
-  return {
-    element: h("span.choice", h("label", { htmlFor: id }, label), " ", select),
-    fill(options, value) {
-      const next = JSON.stringify(options);
-      if (next !== known) {
-        known = next;
-        const groups = [...new Set(options.map((o) => o.group))];
-        const items = (group) => options.filter((o) => o.group === group)
-          .map((o) => h("option", { value: o.key }, o.label));
-        select.replaceChildren(...groups.flatMap((group) =>
-          (group ? h("optgroup", { label: group }, items(group)) : items(group))));
-      }
-      select.value = value;
-    },
-  };
+/// A select of `options` [{key, label, group}]; `onchange(key)`.
+export function select(options, value, onchange, props = {}) {
+  const items = (group) => options.filter((o) => o.group === group).map((o) => h("option", { value: o.key }, o.label));
+  const groups = [...new Set(options.map((o) => o.group))];
+  return h("select", { ...props, value, onchange: (event) => onchange(event.target.value) },
+    groups.map((group) => (group ? h("optgroup", { label: group }, items(group)) : items(group))));
 }
+
+/// The same behind its label, which no other on the page has.
+export const choice = (label, ...given) => h("span.choice", h("label", { htmlFor: `choose-${label}` }, label), " ",
+  select(...given, { id: `choose-${label}` }));
+
+/// A place for a table that may be wider than the page.
+export const scroll = (label, ...content) => h("div.scroll", { tabIndex: 0, role: "group", "aria-label": label }, content);
 
 /// A table: `columns` are headings, rows arrays of what h() takes as children; the first cell of a row
 /// heads it, and with `numbers` the others are numbers.
 export function table(columns, rows, numbers = false) {
   const cell = (tag, scope) => (content, i) => h(i === 0 && scope === "row" ? "th" : tag, {
     scope: i === 0 || tag === "th" ? scope : null, className: numbers && i > 0 ? "number" : "" }, content);
-  return h("div.scroll", { tabIndex: 0, role: "group", "aria-label": "Table" }, h("table.values",
+  return scroll("Table", h("table.values",
     h("thead", h("tr", columns.map(cell("th", "col")))),
     h("tbody", rows.map((row) => h("tr", row.map(cell("td", "row")))))));
+}
+
+/// Asks with `content` (what h() takes as children), in a window of its own: nothing else can be reached until it is
+/// answered. The answer `yes` does `act()`: what it throws is said, and the question stays. Without a `yes` there is
+/// only something to read. Gives whether the answer was yes.
+export function ask(title, content, yes = null, act = () => {}) {
+  return new Promise((resolve) => {
+    const trouble = h("div");
+    const agree = yes && h("button", { type: "submit" }, yes);
+    async function onsubmit(event) {
+      event.preventDefault();
+      agree.disabled = true;
+      await action(act, () => dialog.close("yes"), (text) => replace(trouble, text && problem(text)))();
+      agree.disabled = false;
+    }
+    const dialog = h("dialog", {
+      "aria-label": title,
+      onclose: () => {
+        dialog.remove();
+        resolve(dialog.returnValue === "yes");
+      },
+    }, h("form", { onsubmit }, h("h2", title), content, trouble,
+      h("div.tools", agree, button(yes ? "Back" : "Close", () => dialog.close()))));
+    document.body.append(dialog);
+    dialog.showModal();
+  });
 }

@@ -1,5 +1,5 @@
 // Computes pictures of errors beside the page, so that it stays quick.
-import { errorPicture } from "./error_picture.js";
+import { errorPicture } from "./errors.js";
 
 addEventListener("message", ({ data: { image, reference, kind, port } }) => {
   try {

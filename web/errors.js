@@ -1,4 +1,48 @@
-// Pictures of errors, computed once by a worker of the page's own.
+// Errors by pixel: what a job's errors are the means of. A pixel's error is the mean over its channels, so the mean
+// over the pixels is the error of the whole picture. A worker of the page's own computes them, so that it stays quick.
+import { extent } from "./pixels.js";
+
+/// x is the estimate, r the reference. `metric` is the key in curve.csv of the mean over the picture.
+export const errorKinds = [
+  { key: "signed", label: "signed error", formula: "x − r", of: (x, r) => x - r },
+  { key: "absolute", label: "absolute error", formula: "|x − r|", metric: "mae",
+    of: (x, r) => Math.abs(x - r) },
+  { key: "squared", label: "squared error", formula: "(x − r)²", metric: "mse",
+    of: (x, r) => (x - r) ** 2 },
+  { key: "relative", label: "relative squared error", formula: "(x − r)² / (r² + 0.01)",
+    metric: "relmse", of: (x, r) => (x - r) ** 2 / (r * r + 0.01) },
+];
+
+export const kindOf = (key) => errorKinds.find((kind) => kind.key === key);
+
+/// The power of two not above `largest`: it brings values into the range of a float.
+const powerScale = (largest) => (largest === 0 ? 1 : 2 ** Math.floor(Math.log2(largest)));
+
+/// A picture of one channel with the errors of `image` against `reference`, and their `mean`; `key` is
+/// a kind's. It takes its time, so pages leave it to error_worker.js.
+export function errorPicture(image, reference, key) {
+  if (image.data.length !== reference.data.length) throw new Error("These pictures differ in size.");
+  const [x, r] = [image.data, reference.data];
+  const { of, label } = kindOf(key);
+  const n = image.channels.length;
+  const values = new Float64Array(image.width * image.height);
+  let sum = 0;
+  let largest = 0;
+  for (let i = 0, k = 0; i < values.length; i += 1) {
+    let total = 0;
+    for (let c = 0; c < n; c += 1, k += 1) total += of(x[k] * image.scale, r[k] * reference.scale);
+    values[i] = total / n;
+    sum += values[i];
+    largest = Math.max(largest, Math.abs(values[i]) || 0);
+  }
+  const scale = powerScale(Number.isFinite(largest) ? largest : 1);
+  const data = Float32Array.from(values, (value) => value / scale);
+  const picture = {
+    width: image.width, height: image.height, channels: [label], scale, data,
+    mean: sum / values.length, kind: key,
+  };
+  return { ...picture, extent: extent(picture) };
+}
 
 let worker = null;
 

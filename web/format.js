@@ -1,6 +1,7 @@
-// Numbers, times and names as people read them.
+// Numbers, times, names and states as people read them.
+import { h } from "./dom.js";
 
-const thin = "\u202f";
+export const thin = "\u202f";
 
 /// `digits` significant digits, with an exponent where the number is very small or large.
 export function significant(value, digits = 3) {
@@ -96,7 +97,32 @@ export const shellQuote = (text) => `'${text.replaceAll("'", "'\\''")}'`;
 export const withoutNulls = (job) =>
   JSON.parse(JSON.stringify(job, (key, value) => (value === null ? undefined : value)));
 
-/// The command that posts a job (an object) to this server.
-export const curlLine = (job) =>
-  `curl -sS -X POST ${location.origin}/api/jobs -H 'Content-Type: application/json' \\\n  -d `
-  + shellQuote(JSON.stringify(withoutNulls(job)));
+/// {name: {terminal, actions}}: the states of a job and what may be asked of it in each, as the service says
+/// (see getStates); app.js fills it before any view is shown.
+export const states = {};
+
+/// done, failed, cancelled: nothing happens any more, unless it is asked for.
+export const isTerminal = (state) => states[state].terminal;
+
+/// A badge that says a state in words.
+export const badge = (state, phase) =>
+  h("span", { className: `badge ${state}` }, phase && state === "running" ? `${state} · ${phase}` : state);
+
+/// A bar with what remains beside it. There is none once nothing more happens.
+export function progressBar(label, state, progress) {
+  const bar = progress && !isTerminal(state);
+  return h("span", { className: progress ? "progress" : "progress empty" },
+    bar && h("progress", { max: 1, value: progress.share, "aria-label": label }),
+    h("span.remaining", progress && remaining(state, progress)));
+}
+
+function remaining(state, progress) {
+  if (isTerminal(state)) return `${seconds(progress.seconds)}, ${number(progress.iteration)} iterations`;
+  const left = progress.remaining_seconds ?? null;
+  return `${Math.floor(100 * progress.share)} %${left === null ? "" : `, ${duration(left)} left`}`;
+}
+
+/// "relmse 0.0123"; empty if there is none yet.
+export const currentError = (progress) =>
+  (progress && Number.isFinite(progress.error)
+    ? `${progress.error_metric} ${number(progress.error)}` : "");

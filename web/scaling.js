@@ -1,13 +1,35 @@
-// How a number of the jobs' reports grows with another, or with a setting that they do not share.
-import { words } from "./format.js";
+// What differs between jobs, and how a number of their reports grows with another, or with a setting that they do not
+// share.
+import { choice, h, note, remember, update } from "./dom.js";
+import { figureBox } from "./figure.js";
+import { significant, words } from "./format.js";
+import { inTheLight, notInAReference } from "./job_tables.js";
 import { leaves } from "./report.js";
-import { differences } from "./settings_diff.js";
+
+/// "/integrator/max_depth" -> 6, ... for every value of a job file.
+const settings = (job) => new Map(leaves(job).map(({ keys, value }) =>
+  [`/${keys.toReversed().join("/")}`, JSON.stringify(value)]));
+
+/// The pointers whose values are not the same in all jobs' files, each with a value per job ("" where a
+/// job has none).
+export function differences(files) {
+  const all = files.map(settings);
+  return [...new Set(all.flatMap((one) => [...one.keys()]))]
+    .map((pointer) => ({ pointer, values: all.map((one) => one.get(pointer) ?? "") }))
+    .filter(({ values }) => values.some((value) => value !== values[0]));
+}
+
+/// Whether jobs that differ there may estimate different pictures. A setting that this page has never heard of
+/// counts: left out is only what the program's table names.
+const isOfThePicture = (pointer) => inTheLight.includes(pointer) || !notInAReference.includes(pointer.split("/")[1]);
+
+/// Those of `differences` that make a comparison of errors doubtful.
+export const doubtful = (found) => found.map((d) => d.pointer).filter(isOfThePicture);
 
 /// What replicates differ in, and what has no part in what is measured.
 const beside = ["/seed", "/label", "/threads"];
 const parts = ["integrator", "seconds", "counts", "rates", "errors"];  // of a report
 
-const isPlace = (key) => key.startsWith("/");
 const parsed = (text) => (text === "" ? null : JSON.parse(text));
 
 /// "seconds render_cpu" -> 29.4, ... for the numbers of a report; none where there is no report.
@@ -18,19 +40,19 @@ const reported = (report) => new Map(parts.flatMap((part) => leaves(report?.[par
 /// What can be shown of jobs ([{job, report}]): {x, y}, each [{key, label, group, values}] with a value a
 /// job, null where one has none. x: settings, as pointers, and numbers of the reports, of which two jobs
 /// have different ones above 0; y: numbers of the reports.
-export function quantities(jobs) {
-  const settings = differences(jobs.map(({ job }) => job))
+function quantities(jobs) {
+  const set = differences(jobs.map(({ job }) => job))
     .map(({ pointer, values }) => ({ key: pointer, label: pointer, group: "settings", values: values.map(parsed) }))
     .filter(({ key, values }) => !beside.includes(key) && values.some((v) => typeof v === "number"));
   const reports = jobs.map(({ report }) => reported(report));
   const measured = [...new Set(reports.flatMap((r) => [...r.keys()]))]
     .map((key) => ({ key, label: words(key), group: "report", values: reports.map((r) => r.get(key) ?? null) }));
   const differs = ({ values }) => new Set(values.filter((v) => v > 0)).size > 1;
-  return { x: [...settings, ...measured].filter(differs), y: measured.filter(differs) };
+  return { x: [...set, ...measured].filter(differs), y: measured.filter(differs) };
 }
 
 /// The slope of a line through the logarithms of points, least squares; null if they have one x.
-export function exponent(points) {
+function exponent(points) {
   const places = points.map((p) => [Math.log(p.x), Math.log(p.y)]);
   const mean = (k) => places.reduce((sum, p) => sum + p[k], 0) / places.length;
   const [u, v] = [mean(0), mean(1)];
@@ -38,11 +60,11 @@ export function exponent(points) {
   return across > 0 ? places.reduce((sum, p) => sum + (p[0] - u) * (p[1] - v), 0) / across : null;
 }
 
-/// The points of `y` over `x`, which quantities() gave, as curves [{name, points: [{x, y}]}]: jobs are one
+/// The points of `y` over `x`, which quantities() gave, as curves of a figure: jobs are one
 /// curve if they share all settings but that of x, and, where x is of the reports, all but numbers.
-export function scalingCurves(jobs, x, y) {
+function scalingCurves(jobs, x, y) {
   const apart = differences(jobs.map(({ job }) => job)).filter(({ pointer, values }) => pointer !== x.key
-    && !beside.includes(pointer) && (isPlace(x.key) || values.some((v) => typeof parsed(v) !== "number")));
+    && !beside.includes(pointer) && (x.group === "settings" || values.some((v) => typeof parsed(v) !== "number")));
   const curves = new Map();
   jobs.forEach((_, i) => {
     if (!(x.values[i] > 0 && y.values[i] > 0)) return;
@@ -50,5 +72,45 @@ export function scalingCurves(jobs, x, y) {
     if (!curves.has(name)) curves.set(name, []);
     curves.get(name).push({ x: x.values[i], y: y.values[i] });
   });
-  return [...curves].map(([name, points]) => ({ name: name || "all", points: points.sort((a, b) => a.x - b.x) }));
+  return [...curves].map(([name, points], index) => {
+    const slope = exponent(points);
+    return { name: `${name || "all"}${slope === null ? "" : `: ∝ x^${significant(slope, 2)}`}`, index,
+      points: points.sort((a, b) => a.x - b.x) };
+  });
+}
+
+/// A figure and its switches; `query` holds the choice, `sx` and `sy`. `show(jobs)` draws jobs with their
+/// reports; the panel is hidden while there is nothing in which they differ.
+export function scalingPanel(query) {
+  const figure = figureBox("No report contains both quantities.");
+  const switches = h("span.switches");
+  const element = h("section", { hidden: true }, h("h2", "Scaling"),
+    h("div.switches", switches, h("span.tools", figure.saves("scaling ", () => "lacuna-scaling"))), figure.element,
+    note("The exponent of a power law of x, fitted to the logarithms of each curve."));
+  let jobs = [];
+
+  const choose = (key) => (value) => {
+    query.set(key, value);
+    draw();
+    remember(query);
+  };
+
+  function draw() {
+    const offered = quantities(jobs);
+    element.hidden = offered.x.length === 0 || offered.y.length === 0;
+    if (element.hidden) return;
+    const pick = (of, key, other) => of.find((q) => q.key === query.get(key)) ?? of.find((q) => q.key === other) ?? of[0];
+    const [x, y] = [pick(offered.x, "sx"), pick(offered.y, "sy", "seconds render_cpu")];
+    update(switches, choice("Number", offered.y.map(({ key, label }) => ({ key, label })), y.key, choose("sy")),
+      choice("over", offered.x, x.key, choose("sx")));
+    figure.draw({ curves: scalingCurves(jobs, x, y), axis: x, metric: y });
+  }
+
+  return {
+    element,
+    show(next) {
+      jobs = next;
+      draw();
+    },
+  };
 }

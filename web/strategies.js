@@ -1,16 +1,13 @@
 // What each strategy and each resampling distribution brought to a job's picture: the former as a pyramid, a row
 // a path length, the latter side by side, all at one exposure.
-import { h, labelledSelect, note, problem, remember, replace, setText } from "./dom.js";
-import { number, significant } from "./format.js";
-import { stripPainter } from "./gl_strip.js";
-import { exposed, lookOf } from "./look.js";
-import { reduced } from "./reduced.js";
-import { exposureTools } from "./viewer_tools.js";
+import { choice, h, note, problem, remember, replace, scroll, update } from "./dom.js";
+import { number, significant, thin } from "./format.js";
+import { exposed, lookOf, stripPainter } from "./paint.js";
+import { reduced } from "./pixels.js";
+import { exposureTools } from "./viewer_controls.js";
 
-const style = h("link", { rel: "stylesheet", href: "/strategies.css" });
 const sets = [{ key: "strategies", label: "weighted" }, { key: "strategies_unweighted", label: "before weighting" }];
 const unweighted = sets[1].key;
-const thin = "\u202f";
 
 /// The layers that are shown here: {name, set, text}, and of strategies {s, t, edges, merged}. Vertices that are merged
 /// are vertex s of one walk and t of the other.
@@ -36,12 +33,12 @@ function pyramid(cells) {
     Object.assign(element.style, { gridRow: row + 1, gridColumn: column + 1 });
     return element;
   };
-  return h("div.scroll", { tabIndex: 0, role: "group", "aria-label": "Pyramid" }, h("div.pyramid",
+  return scroll("Pyramid", h("div.pyramid",
     lengths.map((k, row) => place(h("span.muted", edgesText(k)), row, 0)),
     cells.map((c) => place(c.element, lengths.indexOf(c.edges), column(c)))));
 }
 
-/// `show(layers)` takes those of a job (see layers.js), which are read once this is in sight; `open(name)` is called
+/// `show(layers)` takes those of a job (see openLayers), which are read once this is in sight; `open(name)` is called
 /// with the one that the reader wants to look at. What is chosen is in `query`.
 export function strategies(query, signal, open) {
   const paint = stripPainter(signal);
@@ -49,6 +46,7 @@ export function strategies(query, signal, open) {
   let layers = null;
   let parts = [];
   let cells = [];
+  let offered = [];  // the sets there are, and the one that is shown
   let look = null;  // of the picture itself
   let turn = 0;
 
@@ -57,20 +55,25 @@ export function strategies(query, signal, open) {
     else query.delete(key);
     remember(query);
   }
-  const which = labelledSelect("Strategies", (set) => {
-    choose("strategies", set === unweighted && set);
-    build();
-  });
   const stops = () => (query.has("stops-each") ? Number(query.get("stops-each")) || 0 : null);
-  const exposure = exposureTools({ setExposure(value) {
-    choose("stops-each", value !== null && String(value));
-    draw();
-  } });
-  const element = h("section", title, h("div.tools", which.element, exposure.element), about, shares, say, body);
+  const tools = h("div.tools");
+  const element = h("section", title, tools, about, shares, say, body);
+
+  function drawTools(options, set) {
+    update(tools,
+      h("span", { hidden: options.length < 2 }, choice("Strategies", options, set, (key) => {
+        choose("strategies", key === unweighted && key);
+        build();
+      })),
+      look && exposureTools(stops() ?? look.ev, (value) => {
+        choose("stops-each", value !== null && String(value));
+        draw();
+      }));
+  }
 
   async function draw() {
     if (look === null) return;
-    exposure.show(stops() ?? look.ev);
+    drawTools(...offered);
     await paint(cells.filter((c) => c.image), exposed(look, { ev: stops() }), window.devicePixelRatio);
   }
 
@@ -100,10 +103,10 @@ export function strategies(query, signal, open) {
         if (turn !== mine || signal.aborted) return;
         cell.image = image;
         if (cell.edges) light[cell.merged ? "merged" : cell.s > 0 ? "connected" : "hit"] += mean;
-        setText(cell.light, cell.set === unweighted ? number(mean) : `${significant(100 * mean / whole)}${thin}%`);
+        update(cell.light, cell.set === unweighted ? number(mean) : `${significant(100 * mean / whole)}${thin}%`);
       }
       if (cells.some((c) => c.merged && c.set !== unweighted)) {
-        setText(shares, Object.entries(light).map(([name, mean]) => `${name} ${significant(100 * mean / whole)}${thin}%`)
+        update(shares, Object.entries(light).map(([name, mean]) => `${name} ${significant(100 * mean / whole)}${thin}%`)
           .join(", ") + ".");
       }
       await draw();
@@ -126,26 +129,25 @@ export function strategies(query, signal, open) {
     body.ariaBusy = "true";  // until its pictures are there, which may wait for the reader to come
     const options = sets.filter(({ key }) => parts.some((p) => p.set === key));
     const set = (options.find(({ key }) => key === query.get("strategies")) ?? options[0])?.key;
-    which.fill(options, set);
-    which.element.hidden = options.length < 2;
+    offered = [options, set];
+    drawTools(options, set);
     const [steps, others] = [set, "distributions"].map((of) => parts.filter((p) => p.set === of).map(cellOf));
     cells = [...steps, ...others];
-    setText(title, set ? "Strategies" : "Resampling distributions");
-    setText(about, [set && "s vertices are sampled from the light, t from the eye.",
+    update(title, set ? "Strategies" : "Resampling distributions");
+    update(about, [set && "s vertices are sampled from the light, t from the eye.",
       steps.some((c) => c.merged) && "Merged: the last vertices of both are taken for one.",
       set === unweighted && "Each image estimates all light of its path length, with its mean below. Images in a row agree, except for "
         + "noise and paths that a strategy cannot sample.",
       (set !== unweighted || others.length > 0) && "In %: its share of the picture's light.",
       "All at one exposure; a click shows one in the viewer."].filter(Boolean).join(" "));
     replace(say);
-    setText(shares, "");
+    update(shares, "");
     replace(body, set && pyramid(steps), others.length > 0 && [set && h("h3", "Resampling distributions"),
       h("div.distributions", others.map((c) => c.element))]);
     seen.disconnect();
     seen.observe(element);
   }
 
-  document.head.append(style);
   return {
     element,
     show(next) {

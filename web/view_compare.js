@@ -1,20 +1,18 @@
 // Several jobs over one another: curves, error at equal time, time to equal error, pictures.
-import { comparePictures } from "./compare_pictures.js";
-import { axes, commonError, commonInstants, errorAt, points, reaches } from "./curve.js";
-import { curvePanel } from "./curve_panel.js";
-import { append, h, note, problem, replace, table, warning } from "./dom.js";
+import { commonError, commonInstants, errorAt, points, reaches } from "./curve.js";
+import { curvePanel, followJobs, idsOf } from "./curve_panel.js";
+import { append, h, note, problem, replace, table, update, warning } from "./dom.js";
 import { number, significant } from "./format.js";
-import { metrics } from "./job_tables.js";
-import { scalingPanel } from "./scaling_panel.js";
-import { followJobs, idsOf } from "./series.js";
-import { differences, doubtful } from "./settings_diff.js";
+import { jobPictures } from "./job_pictures.js";
+import { differences, doubtful, scalingPanel } from "./scaling.js";
+import { noViewer } from "./viewer.js";
 
 function equalTimes(series, axis, metric) {
   const curves = metric ? series.map((s) => points(s.rows, axis.key, metric.key)) : [];
   const instants = commonInstants(curves);
   const target = commonError(curves);
   if (target === null) return note("No errors have been measured.");
-  const at = (x) => `${significant(x)} ${axis.unit}`;
+  const at = (x) => `${significant(x)} ${axis.unit}`;
   const times = curves.map((c) => reaches(c, target));
   const fastest = Math.min(...times.filter((t) => t !== null));
   const lowest = instants.map((x) => Math.min(...curves.map((c) => errorAt(c, x) ?? Infinity)));
@@ -34,10 +32,15 @@ function equalTimes(series, axis, metric) {
   ];
 }
 
+/// What is said of a picture that the viewer cannot show.
+export const describe = ({ id, name, layers, drawable }) => ({ alt: `Picture of ${name}`, caption: [
+  h("a", { href: `#/job/${id}` }, name), !drawable ? noViewer
+    : `${layers ? "Size differs from the first" : "No layers.json"}: image.png, each at its own exposure.`] });
+
 export async function show(main, { query, signal }) {
   document.title = "Compare · Lacuna";
   const ids = idsOf(query);
-  main.append(h("h1", "Compare"));
+  replace(main, h("h1", "Compare"));
   if (ids.length === 0) {
     append(main, h("p", "Choose two or more in the ", h("a", { href: "#/" }, "list of jobs"),
       ", or name them in the address: ", h("code", "#/compare?jobs=ID,ID"), "."));
@@ -46,32 +49,30 @@ export async function show(main, { query, signal }) {
   const notes = h("div.notes");
   const times = h("section");
   const settings = h("section");
-  let series = [];
-  const pictures = comparePictures(query, signal);
-  const panel = curvePanel(query, signal, drawTimes);
-  const scaling = scalingPanel(query, signal);
+  const pictures = jobPictures(query, signal, describe);
+  const panel = curvePanel(query, drawTimes);
+  const scaling = scalingPanel(query);
+  let compared = [];
 
   function drawTimes() {
-    replace(times, h("h2", "Error at equal time"),
-      equalTimes(series, axes.find((a) => a.key === panel.x), metrics.find((m) => m.key === panel.y)));
+    update(times, h("h2", "Error at equal time"), equalTimes(compared, panel.axis, panel.metric));
   }
 
-  function draw({ jobs, series: read, preferred, problems }) {
-    const labels = read.map(({ name }) => name);
-    series = read;
+  function draw({ jobs, preferred, problems }) {
+    compared = jobs;
     const found = differences(jobs.map(({ job }) => job));
     const doubts = doubtful(found);
-    replace(notes, problems.map(problem), doubts.length > 0 && warning(
+    update(notes, problems.map(problem), doubts.length > 0 && warning(
       `These jobs differ in ${doubts.join(", ")}: their errors may not be comparable.`));
-    panel.show(series, preferred);
+    panel.show(jobs, preferred);
     drawTimes();
     scaling.show(jobs);
-    replace(settings, h("h2", "Settings that differ"), found.length === 0 ? note("The job files are the same.")
-      : table(["", ...labels], found.map((d) => [d.pointer, ...d.values])));
-    pictures.show(jobs, labels).catch((error) => { if (!signal.aborted) append(notes, problem(error.message)); });
+    update(settings, h("h2", "Settings that differ"), found.length === 0 ? note("The job files are the same.")
+      : table(["", ...jobs.map(({ name }) => name)], found.map((d) => [d.pointer, ...d.values])));
+    pictures.show(jobs).catch((error) => { if (!signal.aborted) append(notes, problem(error.message)); });
   }
 
-  main.append(notes, panel.element, times,
+  append(main, notes, panel.element, times,
     h("section", h("h2", "Pictures"), pictures.element), scaling.element, settings);
   await followJobs(ids, draw, signal);
 }

@@ -1,25 +1,23 @@
 // The list of jobs, live, a page at a time, with a filter and a choice of jobs to compare.
-import { getHealth, getJobs, getScenes, listen, pollOn, queryOf, soon } from "./api.js";
-import { button, copyButton, h, note, problem, remember, replace, setText, warning } from "./dom.js";
-import { curlLine, firstJob } from "./format.js";
-import { jobFilter } from "./job_filter.js";
-import { jobRow, jobTable } from "./job_row.js";
-import { pager, pageSize } from "./pager.js";
+import { fileUrl, curlLine, getHealth, getJobs, getScenes, listen, pollOn, queryOf, soon } from "./api.js";
+import { button, copyButton, h, note, patch, problem, remember, select, small, update, warning } from "./dom.js";
+import { badge, currentError, firstJob, integratorName, isTerminal, jobTitle, progressBar, states, when } from "./format.js";
 
+const pageSize = 100;
 const pollMs = 2000;
 const soonMs = 500;
 const typingMs = 150;
+const thumbSeconds = 10;  // of rendering, after which a running job's small picture is read anew
 
 /// The jobs to compare: the choice survives turning pages and looking at jobs.
 export const chosen = new Set();
 
-async function noJobs(signal) {
-  const scenes = await getScenes(signal);
-  const command = curlLine(firstJob(scenes));
+function noJobs(scenes) {
+  const command = curlLine("jobs", firstJob(scenes));
   return h("section.empty",
     h("h2", "No jobs yet"),
     h("p", "Post the first from a shell, or from ", h("a", { href: "#/new" }, "New job"), ":"),
-    h("pre", { tabIndex: 0 }, command), copyButton(() => command),
+    h("pre", { tabIndex: 0 }, command), copyButton(command),
     scenes.length === 0 && problem(
       "The server has no scenes: start it with LACUNA_SCENES set to a folder of scenes."));
 }
@@ -27,96 +25,150 @@ async function noJobs(signal) {
 /// What the page, the counts and the service's health change with.
 const standing = (job) => `${job.state} ${job.obstacle ? "waits" : ""}`;
 
+// The narrow layout shows rows as grids, and browsers then forget that they are a table's.
+const cell = (className, ...children) => h("td", { role: "cell", className }, children);
+
+/// A small picture of a job, loaded when it comes into sight; it changes with the state, and while the job runs with
+/// time.
+function thumbnail({ id, state, picture, progress }) {
+  const age = isTerminal(state) ? "" : Math.floor((progress?.seconds ?? 0) / thumbSeconds);
+  return h("span.thumb", picture && h("img", { loading: "lazy", decoding: "async", alt: "",
+    src: fileUrl(id, "image.png", `${state} ${age}`) }));
+}
+
+function jobRow(job, onchoose) {
+  const { id, label, scene, state, progress } = job;
+  const name = jobTitle(job);
+  const href = `#/job/${id}`;
+  return h("tr", { id: `row-${id}`, role: "row", "data-job": id },
+    cell("choose", h("label", h("input", { type: "checkbox", ariaLabel: `Compare ${name}, ${id}`,
+      checked: chosen.has(id), onchange: (event) => onchoose(id, event.target.checked) }))),
+    cell("picture-cell", h("a", { href, tabIndex: -1, "aria-hidden": "true" }, thumbnail(job))),
+    h("th.name", { role: "rowheader", scope: "row" }, h("a", { href }, name),
+      h("span.detail", label ? `${scene} · ${id}` : id), h("span.reason", job.error || job.obstacle)),
+    cell("integrator", integratorName(job.integrator)),
+    cell("state", badge(state, job.phase)),
+    cell("progress-cell", progressBar("Share of the budget", state, progress)),
+    cell("error", currentError(progress)),
+    cell("created", h("time", { dateTime: job.created }, when(job.created))));
+}
+
+const heads = ["Job", "Integrator", "State", "Progress", "Error", "Created"];
+
+const jobTable = (jobs, onchoose) => h("table.jobs", { role: "table" },
+  h("thead", h("tr", h("td.choose"), h("td.picture-cell"), heads.map((text) => h("th", { scope: "col" }, text)))),
+  h("tbody", { role: "rowgroup" }, jobs.map((job) => jobRow(job, onchoose))));
+
 /// The buttons of the choice.
-function choice(redraw) {
-  const compare = button("Compare", () => { location.hash = `#/compare?jobs=${[...chosen].join(",")}`; });
-  const clear = button("Clear the selection", () => {
+const choiceTools = (redraw) => h("span.tools.choose-tools",
+  chosen.size > 0 && button("Clear the selection", () => {
     chosen.clear();
     redraw();
-    show();
-  });
-  function show() {
-    compare.disabled = chosen.size < 2;
-    clear.hidden = chosen.size === 0;
-    setText(compare, chosen.size > 0 ? `Compare (${chosen.size})` : "Compare");
-  }
-  show();
-  return { element: h("span.tools.choose-tools", clear, compare), show };
+  }),
+  button(chosen.size > 0 ? `Compare (${chosen.size})` : "Compare",
+    () => { location.hash = `#/compare?jobs=${[...chosen].join(",")}`; }, { disabled: chosen.size < 2 }));
+
+/// Which jobs are asked for: `wanted` is {label, state, sweep}, `changed(values)` changes it.
+function filterTools(wanted, counts, changed) {
+  const options = Object.keys(states).map((name) => ({ key: name, label: `${name} (${counts[name] ?? 0})` }));
+  return [
+    h("input", {
+      type: "search", value: wanted.label, placeholder: "Filter: label, scene, integrator or id",
+      "aria-label": "Filter the jobs", oninput: (event) => changed({ label: event.target.value }),
+    }),
+    select([{ key: "", label: "all states" }, ...options], wanted.state, (state) => changed({ state }),
+      { "aria-label": "State" }),
+    wanted.sweep && small("of one sweep ×", () => changed({ sweep: "" })),
+  ];
+}
+
+/// The way to the pages before and after this one.
+function pager({ from }, shown, total, before, after) {
+  const back = button("‹ Newer", before, { disabled: before === null });
+  const on = button("Older ›", after, { disabled: after === null });
+  return h("nav.tools.pager", { "aria-label": "Pages", hidden: back.disabled && on.disabled },
+    back, h("output.muted", `${shown && from + 1}–${from + shown} of ${total}`), on);
 }
 
 export async function show(main, { query, signal }) {
   document.title = "Jobs · Lacuna";
-  let rows = new Map();  // of the page that is shown, by id
+  update(main, h("h1", "Jobs"));
+  const first = { cursor: "", from: 0 };
+  const given = (key) => query.get(key) ?? "";
+  let wanted = { label: given("label"), state: given("state") in states ? given("state") : "", sweep: given("sweep") };
+  let place = { cursor: given("cursor"), from: Number(given("from")) || 0 };
+  let back = [];  // the places of the pages before
+  let found = null;  // the page that begins `here`, as the service gave it
+  let obstacle = "";  // what keeps all jobs from going on
+  let scenes = null;  // once there is no job
   const known = new Map();  // the standing of every job that was told of
-  let place = { cursor: query.get("cursor") ?? "", from: Number(query.get("from")) || 0 };
   let last = "";  // the last event that is known of
-  let empty = null;
   let asked = 0;
 
-  const filter = jobFilter(query, () => go({ cursor: "", from: 0 }, typingMs));
-  const pages = pager((next) => {
-    go(next, 0);
-    main.scrollIntoView();
-  });
-  const count = h("output.muted");
-  const choosing = choice(() => listSoon(0));
-  const { element, arrange } = jobTable();
-  const tools = h("div.tools", { role: "search" }, filter.elements, count, choosing.element);
-  const waits = h("div");  // what keeps all jobs from going on
-  const body = h("div");
-  main.append(h("h1", "Jobs"), waits, tools, body, pages.element);
-
-  function onchoose(id, on) {
-    if (on) chosen.add(id);
-    else chosen.delete(id);
-    choosing.show();
-  }
+  const filter = () => ({ ...wanted, label: wanted.label.trim() });
 
   /// The address holds what is not as at first.
   function go(next, ms) {
     place = next;
-    remember(queryOf({ ...filter.values(), ...place }));
+    remember(queryOf({ ...filter(), ...place }));
     listSoon(ms);
   }
+  function turn(next) {
+    go(next, 0);
+    main.scrollIntoView();
+  }
+  function changed(values) {
+    wanted = { ...wanted, ...values };
+    go(first, typingMs);
+  }
+  function onchoose(id, on) {
+    if (on) chosen.add(id);
+    else chosen.delete(id);
+    draw();
+  }
 
-  function draw({ jobs, total, counts, next }) {
+  function draw(trouble = "") {
+    const { here, jobs, total, counts, next } = found;
     const all = Object.values(counts).reduce((sum, n) => sum + n, 0);
-    const before = rows;
-    rows = new Map(jobs.map((job) => [job.id, before.get(job.id) ?? jobRow(job.id, onchoose)]));
-    for (const job of jobs) {
-      known.set(job.id, standing(job));
-      rows.get(job.id).set(job, chosen.has(job.id));
-    }
-    arrange([...rows.values()].map((row) => row.element));
-    filter.count(counts);
-    const none = all === 0 && !filter.active();
-    tools.hidden = none;
-    setText(count, filter.active() ? `${total} of ${all}` : `${all} jobs`);
-    pages.show(place, jobs.length, total, next);
-    const shown = none ? empty : total === 0 ? note("No job matches the filter.") : element;
-    if (body.firstChild !== shown) body.replaceChildren(shown);
+    const filtered = Object.values(filter()).some((value) => value !== "");
+    if (!here.cursor) back = [];
+    const before = here.cursor ? () => turn(back.pop() ?? first) : null;
+    const after = next === null ? null : () => {
+      back.push(here);
+      turn({ cursor: next, from: here.from + jobs.length });
+    };
+    update(main, h("h1", "Jobs"), h("div", obstacle && warning(`Jobs wait: ${obstacle}`)),
+      h("div.tools", { role: "search", hidden: all === 0 && !filtered }, filterTools(wanted, counts, changed),
+        h("output.muted", trouble || (filtered ? `${total} of ${all}` : `${all} jobs`)), choiceTools(draw)),
+      h("div", total > 0 ? jobTable(jobs, onchoose) : all > 0 || filtered ? note("No job matches the filter.") : noJobs(scenes)),
+      pager(here, jobs.length, total, before, after));
   }
 
   /// Asks for the page; an answer that a newer question has overtaken is dropped.
   async function list() {
     asked += 1;
     const mine = asked;
-    const [found, health] = await Promise.all([
-      getJobs({ ...filter.values(), cursor: place.cursor, limit: pageSize }, signal), getHealth(signal)]);
-    if (found.total === 0) empty ??= await noJobs(signal);
+    const here = place;
+    const [answer, health] = await Promise.all([
+      getJobs({ ...filter(), cursor: here.cursor, limit: pageSize }, signal), getHealth(signal)]);
+    if (answer.total === 0) scenes ??= await getScenes(signal);
     if (mine !== asked) return;
-    last = found.last_event;
-    replace(waits, health.obstacle && warning(`Jobs wait: ${health.obstacle}`));
-    draw(found);
+    [found, last, obstacle] = [{ ...answer, here }, answer.last_event, health.obstacle];
+    for (const job of found.jobs) known.set(job.id, standing(job));
+    draw();
   }
 
-  const listSoon = soon(list, (error) => setText(count, error.message), signal);
+  const listSoon = soon(list, (error) => draw(error.message), signal);
 
   await list();
   listen(() => `/api/events?after=${encodeURIComponent(last)}`, {
     job(entry, id) {
       last = id || last;
-      rows.get(entry.id)?.set(entry, chosen.has(entry.id));
+      const at = found.jobs.findIndex((job) => job.id === entry.id);
+      if (at >= 0) {
+        found.jobs[at] = entry;
+        patch(document.getElementById(`row-${entry.id}`), jobRow(entry, onchoose));
+      }
       // What is on the page, and the counts, change only with the jobs' states.
       if (known.get(entry.id) !== standing(entry)) listSoon(soonMs);
       known.set(entry.id, standing(entry));
@@ -124,7 +176,7 @@ export async function show(main, { query, signal }) {
     removed({ id }, event) {
       last = event || last;
       known.delete(id);
-      if (chosen.delete(id)) choosing.show();
+      if (chosen.delete(id)) draw();
       listSoon(soonMs);
     },
     reset: () => listSoon(soonMs),

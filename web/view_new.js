@@ -1,6 +1,6 @@
 // Posting a job: its file as text, the scenes there are, and every problem with its place.
 import { getJob, getScenes, postJob } from "./api.js";
-import { h, problem, replace } from "./dom.js";
+import { append, h, problem, replace, select } from "./dom.js";
 import { firstJob, prettyJob, withoutNulls } from "./format.js";
 
 function parsed(text) {
@@ -32,14 +32,10 @@ export async function show(main, { query, signal }) {
   });
   const errors = h("div", { id: "errors", role: "alert" });
   const submit = h("button", { type: "submit" }, "Post the job");
-  const scene = h("select", {
-    id: "scene",
-    onchange: () => {
-      const job = parsed(text.value);
-      if (job !== null && typeof job === "object") text.value = prettyJob({ ...job, scene: scene.value });
-    },
-  }, scenes.map((name) => h("option", { value: name }, name)));
-  scene.value = start.scene;
+  const scene = select(scenes.map((name) => ({ key: name, label: name })), start.scene, (name) => {
+    const job = parsed(text.value);
+    if (job !== null && typeof job === "object") text.value = prettyJob({ ...job, scene: name });
+  }, { id: "scene" });
 
   const form = h("form.new-job", {
     onsubmit: async (event) => {
@@ -60,5 +56,5 @@ export async function show(main, { query, signal }) {
     h("a", { href: "/api/schema/job" }, "All keys and their allowed values")),
   text, errors, submit);
 
-  main.append(h("h1", "New job"), form);
+  append(main, h("h1", "New job"), form);
 }

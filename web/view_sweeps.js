@@ -1,13 +1,16 @@
-// The sweeps, newest first.
-import { poll } from "./api.js";
-import { copyButton, h, replace, table } from "./dom.js";
-import { number, when } from "./format.js";
-import { badge, progressBar } from "./status.js";
-import { getSweeps, sweepCurl } from "./sweeps_api.js";
+// The sweeps, newest first, and one of them: what its runs say about its settings, live while they are done.
+import { cancelSweep, curlLine, getAnswers, getJob, getSweep, getSweeps, poll, removeSweep, tableUrl } from "./api.js";
+import { answersView, summary } from "./answers.js";
+import { action, append, ask, button, copyButton, h, note, problem, remember, replace, table, update } from "./dom.js";
+import { badge, isTerminal, number, prettyJob, progressBar, when, withoutNulls } from "./format.js";
+import { jobPictures } from "./job_pictures.js";
+import { describe } from "./view_compare.js";
 
-const everyMs = 2000;
+const listMs = 2000;
+const answersMs = 4000;
+const answersShare = 0.01;  // of all time: whoever looks at a large sweep must not disturb its times
 
-const first = {
+const example = {
   label: "next event estimation",
   job: { scene: "SCENE.glb", budget: { seconds: 10 }, reference: "auto" },
   axes: { "/integrator/next_event_estimation": [true, false], "/integrator/max_depth": [4, 8] },
@@ -15,32 +18,100 @@ const first = {
 };
 
 function none() {
-  const command = sweepCurl(first);
+  const command = curlLine("sweeps", example);
   return h("section.empty", h("h2", "No sweeps yet"),
     h("p", "A sweep is many jobs that differ in some settings. Post one from a shell:"),
-    h("pre", { tabIndex: 0 }, command), copyButton(() => command));
+    h("pre", { tabIndex: 0 }, command), copyButton(command));
 }
 
+const shareBar = ({ state, share }) => progressBar("Share of the runs", "running", state === "running" && { share });
+
 function row(sweep) {
-  const state = badge();
-  state.set(sweep.state);
-  const bar = progressBar("Share of the runs");
-  if (sweep.state === "running") bar.set("running", { share: sweep.share, remaining_seconds: null });
   const { failed = 0, done = 0 } = sweep.counts;
   return [
-    h("a", { href: `#/sweep/${sweep.id}` }, sweep.label || sweep.id), state.element, bar.element,
+    h("a", { href: `#/sweep/${sweep.id}` }, sweep.label || sweep.id), badge(sweep.state), shareBar(sweep),
     `${number(done)} of ${number(sweep.run_count)}`, failed > 0 ? h("span.failed", number(failed)) : "0",
     when(sweep.created),
   ];
 }
 
-export async function show(main, { signal }) {
+async function showAll(main, { signal }) {
   document.title = "Sweeps · Lacuna";
-  const body = h("div");
-  main.append(h("h1", "Sweeps"), body);
   await poll(async () => {
     const sweeps = await getSweeps(signal);
-    replace(body, sweeps.length === 0 ? none()
+    update(main, h("h1", "Sweeps"), sweeps.length === 0 ? none()
       : table(["Sweep", "State", "", "Runs done", "Failed", "Created"], sweeps.map(row)));
-  }, everyMs, signal);
+  }, listMs, signal);
 }
+
+/// The pictures of the first finished run of each chosen cell, in the viewer of jobs.
+function cellPictures(query, signal, failed) {
+  const pictures = jobPictures(query, signal, describe);
+  const read = new Map();
+  const empty = note("No run of these cells is done yet.");
+  let shown = "";
+  async function load(runs) {
+    for (const { id } of runs) {
+      if (!read.has(id)) read.set(id, await getJob(id, signal));
+    }
+    await pictures.show(runs.map(({ id, name }) => ({ ...read.get(id), name })));
+  }
+  return (number, cells, names) => {
+    const runs = cells.map((c) => ({ name: names.get(c.cell), id: c.runs.find((r) => r.state === "done")?.job }))
+      .filter(({ id }) => id);
+    const now = runs.map(({ id }) => id).join();
+    if (runs.length > 0 && now !== shown) load(runs).catch((error) => { if (!signal.aborted) failed(error.message); });
+    shown = now;
+    return [h("h2", "Pictures of the shown cells"), runs.length > 0 ? pictures.element : empty];
+  };
+}
+
+/// Runs that need a look: failed ones, and those whose times were disturbed.
+function doubtfulRuns(answers) {
+  const rows = answers.cells.flatMap((cell) => cell.runs
+    .filter((r) => r.tainted || r.state === "failed")
+    .map((r) => [h("a", { href: `#/job/${r.job}` }, r.name), cell.text, r.state, r.tainted ?? ""]));
+  return rows.length > 0 && h("details", h("summary", `${rows.length} runs to look at`),
+    table(["Run", "Settings", "State", "Disturbed by"], rows));
+}
+
+function sweepSource(spec) {
+  const command = curlLine("sweeps", withoutNulls(spec));
+  return h("details", h("summary", "Sweep file"), h("pre.tall", { tabIndex: 0 }, prettyJob(spec)),
+    h("pre.tall", { tabIndex: 0 }, command), copyButton(command));
+}
+
+async function showOne(main, { params: { id }, query, signal }) {
+  if (!query.has("mode")) query.set("mode", "crops");  // side by side, as cells are compared
+  const [title, refusal, about, runs, source] = [h("div.title"), h("div"), h("p"), h("div"), h("section")];
+  const say = (text) => replace(refusal, text && problem(text));
+  const danger = { className: "danger" };
+  const cancel = () => button("Cancel sweep", action(() => ask("Cancel this sweep?",
+    "What its runs have rendered so far is kept.", "Cancel sweep", () => cancelSweep(id)), step, say), danger);
+  const remove = () => button("Delete …", action(() => ask("Delete this sweep?",
+    "This also deletes all its jobs, with their pictures, curves and reports.", "Delete for good", () => removeSweep(id)),
+  () => { location.hash = "#/sweeps"; }, say), danger);
+  const view = answersView(query, () => remember(query), cellPictures(query, signal, say));
+  append(main, title, h("p.id", id), refusal, about, view.element, runs, source);
+
+  let took = 0;
+  async function step() {
+    const asked = performance.now();
+    const [sweep, answers] = await Promise.all([getSweep(id, signal), getAnswers(id, signal)]);
+    took = performance.now() - asked;
+    const over = isTerminal(sweep.state);
+    document.title = `${sweep.label || "Sweep"} · Lacuna`;
+    update(title, h("h1", sweep.label || "Sweep"), badge(sweep.state), shareBar(sweep), h("div.tools.actions",
+      // Above what is drawn late: a link that a picture moves is missed.
+      h("a", { href: `#/?sweep=${id}` }, "its runs"), h("a", { href: tableUrl(id), download: `${id}.csv` }, "table.csv"),
+      over ? remove() : cancel()));
+    update(about, `${summary(answers)}. Created ${when(sweep.created)}.`);
+    view.show(answers);
+    replace(runs, doubtfulRuns(answers));
+    if (!source.firstChild) append(source, sweepSource(sweep.spec));
+    return !over;
+  }
+  await poll(step, () => Math.max(answersMs, took / answersShare), signal);
+}
+
+export const show = (main, given) => (given.params.id ? showOne : showAll)(main, given);

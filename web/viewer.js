@@ -1,111 +1,236 @@
-// The viewer of pictures of numbers: it keeps the state, reads what the state asks for, and draws.
-import { colourBar } from "./colour_bar.js";
-import { cropStrip } from "./crop_strip.js";
-import { h, remember, setText } from "./dom.js";
-import { painter } from "./gl_draw.js";
-import { exposed } from "./look.js";
-import { printPixels } from "./pixel_text.js";
-import { viewerActions } from "./viewer_actions.js";
-import { barTitle, contentOf, partsOf, pixelText, settle } from "./viewer_content.js";
-import { handleKeys, handlePointer } from "./viewer_input.js";
-import { modeTools } from "./viewer_modes.js";
-import { stage } from "./viewer_stage.js";
-import { readState, writeState } from "./viewer_state.js";
-import { viewerTools } from "./viewer_tools.js";
-import { pointAt, zoomOf } from "./viewport.js";
+// The viewer of pictures of numbers: its state, as the address holds it, what the state asks for, and drawing that.
+import { h, remember, update } from "./dom.js";
+import { errorKinds, errorOf, kindOf } from "./errors.js";
+import { number, significant, words } from "./format.js";
+import { metrics } from "./job_tables.js";
+import { exposed, lookOf, painter } from "./paint.js";
+import { valuesAt } from "./pixels.js";
+import { listenTo, modeTools, viewerActions, viewerTools } from "./viewer_controls.js";
+import { colourBar, cropStrip, printPixels, stage } from "./viewer_parts.js";
+import { pointAt, settleCrop, zoomOf } from "./viewport.js";
 
 /// What is said where viewer() gives null.
 export const noViewer = "This browser offers no WebGL 2: image.png is shown, tone-mapped, instead of the values.";
 
-const contentKeys = ["show", "mode", "left", "right", "by"];
-const ratio = () => window.devicePixelRatio;
+const finite = (text) => (text?.trim() && Number.isFinite(Number(text)) ? Number(text) : null);
+const share = (text) => Math.min(1, Math.max(0, finite(text) ?? 0.5));
+const place = (text, otherwise = 0) => Math.max(0, Math.trunc(finite(text) ?? otherwise));
+const short = (value) => String(Number(value.toPrecision(5)));
+
+const modes = ["one", "split", "difference", "crops"];
+
+/// "x,y,w,h", in pixels; null where that is no rectangle.
+function rectangle(text) {
+  const [x, y, w, h] = (text ?? "").split(",").map((part) => place(part));
+  return w > 0 && h > 0 ? { x, y, w, h } : null;
+}
+
+/// `show`: a layer or an error (see choices()); `ev`: exposure of colours, in stops; `stops`: the same
+/// for false colours; `view`: see viewport.js; the rest is for several pictures: `mode`, the `left`
+/// and `right` one, where they are `split`, what the difference is measured `by`, and the `crop` (see
+/// viewport.js). Without a key in the address, the page chooses.
+function readState(query) {
+  const get = (key) => query.get(key);
+  const [x, y] = (get("at") ?? "").split(",");
+  const zoom = finite(get("zoom"));
+  return {
+    show: get("show") ?? "",
+    ev: finite(get("ev")),
+    stops: finite(get("stops")) ?? 0,
+    view: { zoom: zoom > 0 ? zoom : null, x: share(x), y: share(y) },
+    mode: modes.includes(get("mode")) ? get("mode") : "one",
+    left: place(get("left")),
+    right: place(get("right"), 1),
+    split: share(get("split")),
+    by: get("by") ?? "signed",
+    crop: rectangle(get("crop")),
+  };
+}
+
+/// Puts into `query` what differs from the page's own choice.
+function writeState({ show, ev, stops, view, mode, left, right, split, by, crop }, query) {
+  const values = {
+    show,
+    ev: ev !== null && short(ev),
+    stops: stops !== 0 && short(stops),
+    zoom: view.zoom !== null && short(view.zoom),
+    at: view.zoom !== null && `${short(view.x)},${short(view.y)}`,
+    mode: mode !== "one" && mode,
+    left: left !== 0 && String(left),
+    right: mode !== "one" && right !== 1 && String(right),
+    split: mode === "split" && split !== 0.5 && short(split),
+    by: mode === "difference" && by !== "signed" && by,
+    crop: mode === "crops" && crop && Object.values(crop).join(),
+  };
+  for (const [key, value] of Object.entries(values)) {
+    if (value) query.set(key, value);
+    else query.delete(key);
+  }
+}
+
+const reference = "reference";
+const errors = "error-";
+
+/// What all `sources` can show: {key, label, group}. The picture itself has the key "".
+function choices(sources) {
+  const shared = sources[0].layers.names.filter((name) => sources.every((s) => s.layers.names.includes(name)));
+  const layers = shared.map((key) => {
+    const [group, ...name] = key.split(".");  // "strategies.s2t3"
+    return { key, label: name.join(".") || key || "picture", group: name.length > 0 ? words(group) : "Layers" };
+  });
+  if (!shared.includes(reference)) return layers;
+  return [...layers, ...errorKinds.map(({ key, label }) => ({
+    key: errors + key, label, group: "Error against the reference",
+  }))];
+}
+
+/// The picture that a choice means for one source, and those that it was computed from, with names.
+async function pictureOf({ layers }, key) {
+  const kind = key.startsWith(errors) && kindOf(key.slice(errors.length))?.key;
+  if (!kind) return { picture: (await layers.read(key))[0], from: [] };
+  const [x, r] = await layers.read("", reference);
+  return { picture: await errorOf(x, r, kind), from: [["x", x], ["r", r]] };
+}
+
+/// Makes `state` one that `sources` can show; gives their choices.
+function settle(state, sources) {
+  const options = choices(sources);
+  if (!options.some((o) => o.key === state.show)) state.show = options[0].key;
+  state.left = Math.min(state.left, sources.length - 1);
+  state.right = Math.min(state.right, Math.max(1, sources.length - 1));
+  if (sources.length < 2) state.mode = "one";
+  if (state.mode === "crops") state.crop = settleCrop(state.crop, sources[0].layers);
+  return options;
+}
+
+/// {images, shown, look, details}: the pictures of the sources that are needed; the one shown where
+/// there is one; how they look; and further pictures, with names, whose values are read with those of
+/// the one shown. The first is always needed, because its exposure is that of all; all of them are
+/// where they share a range of values.
+async function contentOf(state, sources) {
+  const read = (i) => pictureOf(sources[i], state.show);
+  const first = await read(0);
+  const all = state.mode === "crops" || first.picture.channels.length === 1;
+  const found = await Promise.all(sources.map((_, i) =>
+    (i === 0 ? first : all || i === state.left || (i === state.right && state.mode !== "one") ? read(i) : null)));
+  const images = found.map((f) => f?.picture);
+  const [left, right] = [images[state.left], images[state.right]];
+  if (state.mode === "difference") {
+    const shown = await errorOf(right, left, (kindOf(state.by) ?? kindOf("signed")).key);
+    return { images, shown, look: lookOf([shown]), details: [["x", right], ["r", left]] };
+  }
+  return { images, shown: left, look: lookOf(images.filter(Boolean)),
+    details: state.mode === "split" ? [] : found[state.left].from };
+}
+
+/// The parts of the frame from left to right: one picture, or two beside the line.
+function partsOf(state, { images, shown }) {
+  if (state.mode !== "split") return [{ image: shown, from: 0, to: 1 }];
+  return [{ image: images[state.left], from: 0, to: state.split },
+    { image: images[state.right], from: state.split, to: 1 }];
+}
+
+/// "R 0.123  G 0.2  B 0.3"
+function valueText(image, x, y) {
+  const names = image.channels.length > 1 ? image.channels.map((name) => `${name} `) : [""];
+  return valuesAt(image, x, y)
+    .map((v, c) => names[c] + (Number.isFinite(v) ? significant(v, 4) : v)).join("  ");
+}
+
+/// A pixel's values, and a line for each of the details.
+function pixelText(image, details, x, y) {
+  if (valuesAt(image, x, y) === null) return "outside";
+  return [`(${x}, ${y})  ${valueText(image, x, y)}`,
+    ...details.map(([name, of]) => `${name}: ${valueText(of, x, y)}`)].join("\n");
+}
+
+/// What a colour bar measures, with the mean: it is the error that the curve shows.
+function barTitle({ kind: key, mean }, layer) {
+  if (!key) return layer;
+  const kind = kindOf(key);
+  const metric = metrics.find((m) => m.key === kind.metric);
+  return `${kind.label}, ${kind.formula}; mean ${number(mean)}${metric ? ` (${metric.label})` : ""}`;
+}
 
 /// Draws `own` (see viewer) into its elements.
 function drawAll(own) {
-  const { state, seen, content } = own;
+  const { state, seen, content, sources, actions } = own;
+  const ratio = window.devicePixelRatio;
   const box = seen.box();
   const size = own.size();
-  seen.fitCanvases(box, ratio());
+  seen.fitCanvases(box, ratio);
   const zoom = zoomOf(state.view, size, box);
   const corner = pointAt(state.view, size, box, 0, 0);
   const look = exposed(content.look, state);
   const parts = partsOf(state, content);
   const imageAt = (u) => (parts.find((p) => u < p.to * box.width) ?? parts.at(-1)).image;
-  own.paint.draw(parts.map((part) => ({ ...part, ...look })), { ...corner, pace: 1 / (zoom * ratio()) });
-  printPixels(seen.text, box, ratio(), { corner, zoom, size, imageAt });
+  own.paint.draw(parts.map((part) => ({ ...part, ...look })), { ...corner, pace: 1 / (zoom * ratio) });
+  printPixels(seen.text, box, ratio, { corner, zoom, size, imageAt });
   seen.mark(state, corner, zoom);
-  own.crops.show(state, own.sources, content.images, look, ratio());
+  own.crops.show(state, sources, content.images, look, ratio);
   own.bar.show(look, barTitle(content.shown, state.show));
 
   // Without a pointer, the pixel in the middle is read.
-  const [u, v] = own.pointer ? [own.pointer.u, own.pointer.v] : [box.width / 2, box.height / 2];
+  const [u, v] = own.pointer ?? [box.width / 2, box.height / 2];
   const at = pointAt(state.view, size, box, u, v);
-  setText(own.readout, (own.pointer ? "" : "middle ")
+  update(own.readout, (own.pointer ? "" : "middle ")
     + pixelText(imageAt(u), content.details, Math.floor(at.x), Math.floor(at.y)));
 
   const stops = { colour: state.ev ?? look.ev, direction: null, false: state.stops }[look.look];
-  own.tools.show({ options: own.options, chosen: state.show, zoom: zoom * ratio(), stops });
-  own.modes.show(state, own.sources.map((s) => s.name));
+  update(own.tools, viewerTools(actions, { options: own.options, chosen: state.show, zoom: zoom * ratio, stops }));
+  update(own.modes, sources.length > 1 && modeTools(actions.change, state, sources.map((s) => s.name)));
   seen.frame.classList.toggle("zoomed", state.view.zoom !== null || state.mode === "crops");
   seen.frame.dataset.shown = state.show || "picture";
   seen.frame.dataset.zoom = Number(zoom.toPrecision(4));
 }
 
-function listen(own, actions, signal) {
-  handleKeys(own.seen.frame, actions);
-  handlePointer(own.seen.frame, {
-    ...actions,
-    hover(point) {
-      own.pointer = point;
-      own.redraw();
-    },
-  });
-  const watch = new ResizeObserver(own.redraw);
-  watch.observe(own.seen.frame);
-  signal.addEventListener("abort", () => {
-    watch.disconnect();
-    own.paint.release();
-  });
-}
+const contentKeys = ["show", "mode", "left", "right", "by"];
 
 /// A viewer whose state is in `query` (URLSearchParams), and in the address with it.
-/// `show(sources)` takes [{name, layers, seconds, error}] (see layers.js; how long was rendered and what
-/// the error is, in words) of one size, all shown alike; `open(key)` chooses what of them (see shown.js), and
+/// `show(sources)` takes [{name, layers, seconds, error}] (see openLayers; how long was rendered and what
+/// the error is, in words) of one size, all shown alike; `open(key)` chooses what of them, and
 /// takes the reader there. null: there is no WebGL 2 here.
 export function viewer(query, signal) {
   const seen = stage();
   const state = readState(query);
-  const problem = h("p.problem", { role: "alert", hidden: true });
+  const trouble = h("p.problem", { role: "alert", hidden: true });
   let pending = false;
   let turn = 0;
 
   function say(text) {
-    problem.hidden = text === "";
-    setText(problem, text);
+    trouble.hidden = text === "";
+    update(trouble, text);
+  }
+
+  function redraw() {
+    if (pending) return;
+    pending = true;
+    requestAnimationFrame(() => {
+      pending = false;
+      if (!own.content || signal.aborted || !seen.frame.isConnected) return;
+      try {
+        drawAll(own);
+      } catch (error) {
+        say(error.message);
+      }
+    });
   }
 
   const own = {
-    state, seen, sources: [], options: [], content: null, pointer: null,
-    bar: colourBar(),
-    crops: cropStrip(signal),
-    readout: h("p.readout"),
+    state, seen, redraw, sources: [], options: [], content: null, pointer: null,
+    bar: colourBar(), crops: cropStrip(signal), readout: h("p.readout"), tools: h("div.tools"), modes: h("div.tools"),
     size: () => own.sources[0].layers,
-    redraw() {
-      if (pending) return;
-      pending = true;
-      requestAnimationFrame(() => {
-        pending = false;
-        if (!own.content || signal.aborted || !seen.frame.isConnected) return;
-        try {
-          drawAll(own);
-        } catch (error) {
-          say(error.message);
-        }
-      });
+    change(values) {
+      Object.assign(state, values);
+      writeState(state, query);
+      remember(query);
+      if (contentKeys.some((key) => key in values)) refresh();
+      else redraw();
     },
   };
-  own.paint = painter(seen.canvas, own.redraw);
+  own.paint = painter(seen.canvas, redraw);
   if (!own.paint) return null;
+  own.actions = viewerActions(own);
 
   /// What was drawn stays until what is asked for is there.
   async function refresh() {
@@ -118,27 +243,23 @@ export function viewer(query, signal) {
       if (mine !== turn || signal.aborted) return;
       own.content = content;
       say("");
-      own.redraw();
+      redraw();
     } catch (error) {
       if (mine === turn && !signal.aborted) say(error.message);
     }
     if (mine === turn) seen.frame.ariaBusy = "false";
   }
 
-  const actions = viewerActions(own, (values) => {
-    Object.assign(state, values);
-    writeState(state, query);
-    remember(query);
-    if (contentKeys.some((key) => key in values)) refresh();
-    else own.redraw();
+  listenTo(own);
+  const watch = new ResizeObserver(redraw);
+  watch.observe(seen.frame);
+  signal.addEventListener("abort", () => {
+    watch.disconnect();
+    own.paint.release();
   });
-  own.tools = viewerTools(actions);
-  own.modes = modeTools(actions.change);
-  listen(own, actions, signal);
 
   return {
-    element: h("figure.viewer", own.modes.element, seen.frame, own.bar.element,
-      own.readout, problem, own.tools.element, own.crops.element),
+    element: h("figure.viewer", own.modes, seen.frame, own.bar.element, own.readout, trouble, own.tools, own.crops.element),
     show(sources) {
       own.sources = sources;
       seen.setSize(own.size());
@@ -146,7 +267,7 @@ export function viewer(query, signal) {
       return refresh();
     },
     open(key) {
-      actions.choose(key);
+      own.change({ show: key });
       seen.frame.focus();
     },
   };

@@ -1,6 +1,6 @@
-// Which part of a picture is seen: arithmetic only. A view is {zoom, x, y}: `zoom` CSS pixels a pixel
-// of the picture, null: the whole picture; (x, y), in [0, 1] of the picture, lies in the middle.
-// `size` is the picture's and `box` the frame's {width, height}.
+// Which part of a picture is seen, and the crop of it that is looked at closely: arithmetic only. A view is {zoom, x,
+// y}: `zoom` CSS pixels a pixel of the picture, null: the whole picture; (x, y), in [0, 1] of the picture, lies in the
+// middle. A crop is {x, y, w, h}, in whole pixels. `size` is the picture's and `box` the frame's {width, height}.
 
 const largestZoom = 256;
 
@@ -53,3 +53,34 @@ export function moved(view, size, box, du, dv) {
   return held({ zoom: view.zoom, x: view.x + du / zoom / size.width, y: view.y + dv / zoom / size.height },
     size, box);
 }
+
+/// The longest side of a crop, in pixels.
+export const longest = 256;
+
+const within = (value, low, high) => Math.min(high, Math.max(low, Math.round(value)));
+
+/// A crop that lies within the picture.
+function cropIn({ x, y, w, h }, { width, height }) {
+  const [wide, high] = [within(w, 1, Math.min(longest, width)), within(h, 1, Math.min(longest, height))];
+  return { x: within(x, 0, width - wide), y: within(y, 0, height - high), w: wide, h: high };
+}
+
+/// `crop` as it can be shown; null: the middle of the picture.
+export function settleCrop(crop, size) {
+  const side = Math.min(64, Math.ceil(Math.min(size.width, size.height) / 4));
+  return cropIn(crop ?? { x: (size.width - side) / 2, y: (size.height - side) / 2, w: side, h: side }, size);
+}
+
+/// The pixels that a drag touches between two points of the picture.
+export function cropBetween(from, to, size) {
+  const [x, y] = [Math.floor(Math.min(from.x, to.x)), Math.floor(Math.min(from.y, to.y))];
+  return cropIn({ x, y, w: Math.ceil(Math.max(from.x, to.x)) - x, h: Math.ceil(Math.max(from.y, to.y)) - y }, size);
+}
+
+/// Moved by a tenth of itself to the `right` and `down`, each -1, 0 or 1.
+export const movedCrop = (crop, right, down, size) => cropIn({ ...crop,
+  x: crop.x + right * Math.ceil(crop.w / 10), y: crop.y + down * Math.ceil(crop.h / 10) }, size);
+
+/// A fifth larger (`step` 1) or smaller (-1).
+export const scaledCrop = (crop, step, size) => cropIn({ ...crop,
+  w: crop.w + step * Math.ceil(crop.w / 5), h: crop.h + step * Math.ceil(crop.h / 5) }, size);

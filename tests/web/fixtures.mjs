@@ -190,3 +190,19 @@ export const schema = {
         show: { enum: ["normal", "albedo"], default: "normal", description: "the quantity" } } }] },
   },
 };
+
+const waits = ["cancel", "hold", "priority"];
+
+/// What GET /api/states says of them.
+export const states = [
+  { name: "queued", doc: "waits for its turn", terminal: false, actions: waits },
+  { name: "running", doc: "a renderer works on it", terminal: false, actions: waits },
+  { name: "held", doc: "does not start, or go on, until it is released", terminal: false,
+    actions: ["cancel", "release", "priority"] },
+  { name: "cancelling", doc: "its renderer was asked to stop", terminal: false, actions: [] },
+  { name: "interrupted", doc: "its renderer stopped before the end; it goes on from its checkpoint", terminal: false,
+    actions: waits },
+  { name: "done", doc: "its budget is spent and its results are complete", terminal: true, actions: ["extend", "delete"] },
+  { name: "failed", doc: "it cannot be done; `error` says why", terminal: true, actions: ["retry", "extend", "delete"] },
+  { name: "cancelled", doc: "it was stopped on request", terminal: true, actions: ["retry", "extend", "delete"] },
+];

@@ -2,9 +2,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { longestTask, ready, screenshot } from "./browser.mjs";
+import { longestTask, newPage, ready, screenshot, visit } from "./browser.mjs";
 import { manyJobs, progress } from "./fixtures.mjs";
-import { mock, open, origin, page } from "./stage.mjs";
+import { browser, mock, open, origin, page } from "./stage.mjs";
 
 const running = "20260131-101900-running";
 const waiting = "20260131-101800-waiting";
@@ -171,22 +171,22 @@ test("ten thousand jobs: pages by cursor, a choice that survives them, and no pa
   const check = (n) => page.locator("tr[data-job] input").nth(n).check();
   await check(3);
   await button("Older ›").click();
-  await page.waitForFunction(() => document.querySelector(".pager output").textContent.startsWith("101–200"));
+  await page.waitForFunction(() => document.querySelector(".pager output")?.textContent.startsWith("101–200"));
   assert.equal(await text("tr[data-job] .name a"), "job 100");
   await check(4);
   assert.equal(await button("Compare (2)").isEnabled(), true);
   await button("Older ›").click();
-  await page.waitForFunction(() => document.querySelector(".pager output").textContent.startsWith("201–300"));
+  await page.waitForFunction(() => document.querySelector(".pager output")?.textContent.startsWith("201–300"));
   await page.reload();
   await ready(page);
   assert.equal(await text("tr[data-job] .name a"), "job 200", "the address holds the page");
   await page.goto(`${origin}/#/`);
-  await page.waitForFunction(() => document.querySelector(".pager output").textContent.startsWith("1–100"));
+  await page.waitForFunction(() => document.querySelector(".pager output")?.textContent.startsWith("1–100"));
   await check(3);
   await button("Older ›").click();
-  await page.waitForFunction(() => document.querySelector(".pager output").textContent.startsWith("101–200"));
+  await page.waitForFunction(() => document.querySelector(".pager output")?.textContent.startsWith("101–200"));
   await button("‹ Newer").click();
-  await page.waitForFunction(() => document.querySelector(".pager output").textContent.startsWith("1–100"));
+  await page.waitForFunction(() => document.querySelector(".pager output")?.textContent.startsWith("1–100"));
   assert.equal(await page.locator("tr[data-job] input:checked").count(), 1, "the choice is still seen");
   await longestTask(page, true);
   await page.computed();
@@ -251,6 +251,38 @@ test("a job's buttons are those that its state allows", async () => {
     assert.deepEqual(await shown(), names, id);
   }
   assert.deepEqual(page.troubles, []);
+});
+
+test("what may be done to a job is what the service says, and so are the states to choose from", async () => {
+  mock.states = [...mock.states, { name: "resting", terminal: false, actions: ["retry"] }]
+    .map((state) => (state.name === "done" ? { ...state, actions: ["cancel"] } : state));
+  mock.find(running).state.state = "resting";
+  await open("/");
+  assert.ok((await page.getByLabel("State", { exact: true }).innerText()).includes("resting (1)"));
+  for (const [id, name] of [[running, "Retry"], [cornell, "Cancel job"]]) {
+    await page.goto(`${origin}/#/job/${id}`);
+    await page.waitForFunction((i) => document.querySelector("p.id")?.textContent === i, id);
+    assert.deepEqual(await page.locator(".actions button:visible").allInnerTexts(), [name]);
+  }
+  assert.deepEqual(page.troubles, []);
+});
+
+test("the first view takes at most twelve requests, beside the jobs' pictures", async (t) => {
+  for (const jobs of [mock.jobs, []]) {
+    mock.jobs = jobs;
+    const fresh = await newPage(browser);
+    t.after(() => fresh.context().close());
+    const asked = [];
+    fresh.on("request", (request) => asked.push(new URL(request.url()).pathname));
+    await visit(fresh, `${origin}/#/`);
+    while (![...mock.listeners].some(({ id }) => id === null)) await fresh.waitForTimeout(20);
+    const own = asked.filter((path) => path.startsWith("/") && !path.endsWith("/image.png"));
+    assert.ok(own.length <= 12, own.join(" "));
+    assert.equal(new Set(own).size, own.length, "nothing is asked for twice");
+    assert.ok(own.includes("/api/states") && own.includes("/api/events"), own.join(" "));
+    assert.deepEqual(fresh.troubles, []);
+    mock.reset();
+  }
 });
 
 test("a job is held, released, put forward and cancelled", async () => {

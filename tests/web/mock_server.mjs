@@ -8,7 +8,7 @@ import { extname } from "node:path";
 import { fileURLToPath } from "node:url";
 
 import { lacuna } from "../server/real_service.mjs";
-import { curve, makeJobs, manyJobs, progress, scenes, schema } from "./fixtures.mjs";
+import { curve, makeJobs, manyJobs, progress, scenes, schema, states } from "./fixtures.mjs";
 
 const web = new URL("../../web/", import.meta.url);
 const types = {
@@ -64,8 +64,6 @@ const problem = (response, status, title, detail, errors = []) => send(response,
 
 const notFound = (response, what) => problem(response, 404, "Not found", `There is no ${what}.`);
 
-const terminal = ["done", "failed", "cancelled"];
-
 const row = ({ id, job, state, progress: p, files, priority = 0, held = false }) => ({
   id, label: job.label, scene: job.scene, integrator: job.integrator.type, picture: "image.png" in files,
   ...state, progress: p, priority, held,
@@ -102,6 +100,7 @@ export class Mock {
     this.token = null;
     this.events = true;
     this.obstacle = "";
+    this.states = states;
     this.told = 0;
   }
 
@@ -170,6 +169,7 @@ export class Mock {
   }
 
   async answerApi(request, response, url, path) {
+    if (path === "/api/states") return sendJson(response, { states: this.states });
     if (path === "/api/scenes") return sendJson(response, { scenes });
     if (path === "/api/schema/job") return sendJson(response, schema);
     if (path === "/api/jobs" && request.method === "POST") return this.post(request, response);
@@ -212,9 +212,9 @@ export class Mock {
   async change(request, response, job, what) {
     const given = await body(request);
     const { state } = job.state;
-    const over = terminal.includes(state);
-    const allowed = { cancel: !over, retry: ["failed", "cancelled"].includes(state), extend: over, PATCH: !over, DELETE: over };
-    if (!allowed[what]) return problem(response, 409, "Conflict", `The job is ${state}.`);
+    const { actions } = this.states.find(({ name }) => name === state);
+    const action = { PATCH: "priority", DELETE: "delete" }[what] ?? what;
+    if (!actions.includes(action)) return problem(response, 409, "Conflict", `The job is ${state}.`);
     if (what === "DELETE") {
       this.drop(job.id);
       return send(response, 204, "text/plain", "");

@@ -69,7 +69,7 @@ test("the slope line lies on a curve that has the slope, and points at the floor
 
 test("ticks of log axes lie within them, a few for any range", async () => {
   for (const [min, max] of [[0.02, 40], [1.1, 1.2], [1, 9], [1e-9, 1e9], [3e-5, 4e-5], [90, 1100]]) {
-    const ticks = await call("/log_axis.js", "logTicks", min, max);
+    const ticks = await call("/figure.js", "logTicks", min, max);
     assert.ok(ticks.length >= 2 && ticks.length <= 11, `${min} to ${max}: ${ticks}`);
     assert.ok(ticks.every((t, i) => t >= min && t <= max && (i === 0 || t > ticks[i - 1])), `${ticks}`);
   }
@@ -90,7 +90,7 @@ test("numbers are written with three digits, whole ones in full", async () => {
 });
 
 test("a job survives the shell: quotes in names are quoted", async () => {
-  const line = await call("/format.js", "curlLine", { scene: "it's \"here\"; $(rm)" });
+  const line = await call("/api.js", "curlLine", "jobs", { scene: "it's \"here\"; $(rm)" });
   assert.ok(line.endsWith(`-d '{"scene":"it'\\''s \\"here\\"; $(rm)"}'`), line);
 });
 
@@ -109,14 +109,14 @@ test("a job file is written with short lists on one line, and reads back the sam
 test("only settings that differ are listed, and those that change the picture are doubtful", async () => {
   const jobs = [{ scene: "a", seed: 1, budget: { seconds: 5 }, resolution: [2, 2] },
     { scene: "b", seed: 2, budget: { seconds: 5 }, resolution: [2, 2], extra: true }];
-  const found = await call("/settings_diff.js", "differences", jobs);
+  const found = await call("/scaling.js", "differences", jobs);
   assert.deepEqual(found.map((d) => d.pointer), ["/scene", "/seed", "/extra"]);
-  assert.deepEqual(await call("/settings_diff.js", "doubtful", found), ["/scene", "/extra"]);
+  assert.deepEqual(await call("/scaling.js", "doubtful", found), ["/scene", "/extra"]);
 });
 
 test("what the page does not know of a job counts; only how it is estimated, and for whom, does not", async () => {
   const doubts = (a, b) => page.evaluate(async (jobs) => {
-    const { differences, doubtful } = await import("/settings_diff.js");
+    const { differences, doubtful } = await import("/scaling.js");
     return doubtful(differences(jobs));
   }, [a, b]);
   const job = { scene: "a", label: "", integrator: { type: "path", max_depth: 6, roulette_depth: 6 },
@@ -133,19 +133,19 @@ test("what the page does not know of a job counts; only how it is estimated, and
 });
 
 test("the page's pictures of errors are those of metrics that there are", async () => {
-  const [kinds, metrics] = await page.evaluate(async () => [(await import("/error_picture.js")).errorKinds.map((k) => k.metric),
+  const [kinds, metrics] = await page.evaluate(async () => [(await import("/errors.js")).errorKinds.map((k) => k.metric),
     (await import("/job_tables.js")).metrics.map((m) => m.key)]);
   assert.deepEqual(kinds.filter((key) => key && !metrics.includes(key)), []);
 });
 
 test("crops lie within the picture, in whole pixels", async () => {
   const size = { width: 300, height: 20 };
-  assert.deepEqual(await call("/crop.js", "settleCrop", null, size), { x: 148, y: 8, w: 5, h: 5 });
-  assert.deepEqual(await call("/crop.js", "cropBetween", { x: 310, y: -3 }, { x: 9.5, y: 4.2 }, size), { x: 9, y: 0, w: 256, h: 8 });
-  assert.deepEqual(await call("/crop.js", "movedCrop", { x: 290, y: 0, w: 8, h: 8 }, 1, -1, size), { x: 291, y: 0, w: 8, h: 8 });
+  assert.deepEqual(await call("/viewport.js", "settleCrop", null, size), { x: 148, y: 8, w: 5, h: 5 });
+  assert.deepEqual(await call("/viewport.js", "cropBetween", { x: 310, y: -3 }, { x: 9.5, y: 4.2 }, size), { x: 9, y: 0, w: 256, h: 8 });
+  assert.deepEqual(await call("/viewport.js", "movedCrop", { x: 290, y: 0, w: 8, h: 8 }, 1, -1, size), { x: 291, y: 0, w: 8, h: 8 });
 });
 
 test("a budget is doubled in every limit it has", async () => {
   const budget = { seconds: 30, iterations: null, error: { metric: "rmse", target: 0.02 } };
-  assert.deepEqual(await call("/job_actions.js", "doubled", budget), { seconds: 60, error: { metric: "rmse", target: 0.01 } });
+  assert.deepEqual(await call("/view_job.js", "doubled", budget), { seconds: 60, error: { metric: "rmse", target: 0.01 } });
 });

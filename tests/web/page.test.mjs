@@ -50,20 +50,21 @@ for (const [name, path] of Object.entries(views)) {
   });
 }
 
-test("what a first visit reads is under 150 kB, and all of the page under 210", () => {
+test("what a first visit reads is under 60 kB, and all of the page under 200", async () => {
   const folder = new URL("../../web/", import.meta.url);
   const sizes = new Map([...readdirSync(folder), "job_tables.js"].map((name) => [name, pageFile(name).length]));
   const total = (names) => [...names].reduce((sum, name) => sum + sizes.get(name), 0);
-  const read = new Set(["index.html", "style.css", "error_worker.js"]);
+  const read = new Set(["index.html", "style.css", "view_jobs.js"]);
   const follow = (name) => {
-    if (read.has(name)) return;
-    read.add(name);
-    for (const [, next] of String(pageFile(name)).matchAll(/^import (?:.* from )?"\.\/(.*)";$/gm)) follow(next);
+    for (const [, next] of String(pageFile(name)).matchAll(/^import [^;]*?"\.\/(\w+\.js)";$/gm)) {
+      if (!read.has(next)) follow(next);
+      read.add(next);
+    }
   };
-  follow("app.js");
-  assert.ok(read.size > 40 && !read.has("view_sweep.js"), [...read].join());
-  assert.ok(total(read) < 150_000, `${total(read)} bytes are read at first`);
-  assert.ok(total(sizes.keys()) < 210_000, `${total(sizes.keys())} bytes in all`);
+  for (const name of ["app.js", "view_jobs.js"]) follow(name);
+  assert.ok(read.has("dom.js") && !read.has("viewer.js"), [...read].join());
+  assert.ok(total(read) < 60_000, `${total(read)} bytes are read at first`);
+  assert.ok(total(sizes.keys()) < 200_000, `${total(sizes.keys())} bytes in all`);
 });
 
 test("every view shows names as text", async () => {

@@ -4,6 +4,7 @@ import { after, before, test } from "node:test";
 
 import { realFolders, startReal } from "../server/real_service.mjs";
 import { launch, openPage, ready, screenshot } from "./browser.mjs";
+import { states } from "./fixtures.mjs";
 
 const small = { scene: "cornell.glb", resolution: [32, 32], threads: 1, budget: { iterations: 64 } };
 const pictured = ".stage[data-shown], .frame img";
@@ -71,6 +72,10 @@ test("the first job, from the empty list to its curve, picture and report; then 
   await page.waitForFunction(() => document.querySelectorAll(".thumb img").length === 2);
   await screenshot(page, "real-jobs");
   assert.deepEqual(page.troubles, []);
+});
+
+test("the states that the other tests tell the page are the service's", async () => {
+  assert.deepEqual((await (await fetch(`${address}/api/states`)).json()).states, states);
 });
 
 test("a running job is followed and cancelled", async () => {

@@ -6,10 +6,9 @@ import { launch, newPage, visit } from "./browser.mjs";
 import { Mock } from "./mock_server.mjs";
 
 export const mock = new Mock();
+export let browser;
 export let origin;
 export let page;
-
-let browser;
 
 before(async () => {
   origin = await mock.listen();

@@ -65,7 +65,7 @@ test("a sweep says who leads, how sure that is, and at which settings", async ()
   // The depths are measured against references of their own: two pictures.
   const picture = choice(page, "Picture");
   assert.deepEqual(await picture.locator("option").allInnerTexts(), ["max_depth 3", "max_depth 6"]);
-  assert.equal(await page.locator(".plot").getAttribute("data-cells"), "2");
+  assert.equal(await page.locator(".plot").getAttribute("data-curves"), "2");
   assert.match(await page.locator(".front li").last().innerText(), /to [\d.]+\ss: next_event_estimation true/);
   assert.deepEqual((await column(page, 2)).map((t) => t.split(" ")[0]), ["1", "2"]);
   const gain = await page.locator(".sortable tbody tr").first().locator("td.number .better").first().innerText();

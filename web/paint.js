@@ -1,6 +1,77 @@
-// Drawing pictures of numbers with WebGL 2: exposure, sRGB, false colour; nearest pixels when
-// magnified, means of pixels when made smaller (of values, before they become colours).
-import { colourMap, steps } from "./colour_maps.js";
+// How values become colours, and drawing pictures of numbers with WebGL 2: exposure, sRGB, false colour; nearest
+// pixels when magnified, means of pixels when made smaller (of values, before they become colours).
+
+/// As image.png is exposed: the 95th percentile of luminance becomes 0.8 of white. In stops, to a tenth.
+const automatic = ({ extent: [, bright] }) => (bright > 0 ? Math.round(10 * Math.log2(0.8 / bright)) / 10 : 0);
+
+/// The smallest of 1, 2 and 5 times a power of ten that is not below `value`.
+function rounded(value) {
+  const power = 10 ** Math.floor(Math.log10(value));
+  return [1, 2, 5, 10].find((n) => n * power >= value) * power;
+}
+
+/// The values at the ends of the colour map, before the stops.
+function range(images) {
+  const high = Math.max(...images.map((image) => image.extent[1] ?? -Infinity));
+  if (images[0].kind) {
+    const top = high > 0 ? rounded(high) : 1;
+    return images[0].kind === "signed" ? [-top, top] : [0, top];
+  }
+  const low = Math.min(...images.map((image) => image.extent[0] ?? Infinity));
+  return Number.isFinite(high) && high > low ? [low, high]
+    : [Math.min(0, Number.isFinite(low) ? low : 0), Math.max(1, high)];
+}
+
+/// What does not depend on the reader's choice: {look, ev} or {look, map, low, high}, for pictures
+/// that are to be shown alike.
+export function lookOf(images) {
+  const [{ channels, kind }] = images;
+  if (channels.length === 1) {
+    const [low, high] = range(images);
+    return { look: "false", map: kind === "signed" ? "diverging" : "sequential", low, high };
+  }
+  if (channels.join("") === "XYZ") return { look: "direction" };
+  return { look: "colour", ev: automatic(images[0]) };
+}
+
+/// A look with the reader's exposure: what the painter needs, and for a false colour its `low` and
+/// `high` end. `ev` null: the look's own. One stop up shows values half as large as brightly.
+export function exposed(look, { ev, stops }) {
+  if (look.look === "colour") return { ...look, gain: 2 ** (ev ?? look.ev), offset: 0 };
+  if (look.look === "direction") return { ...look, gain: 0.5, offset: 0.5 };
+  const span = (look.high - look.low) * 2 ** -stops;
+  const low = look.map === "diverging" ? -span / 2 : look.low;
+  return { ...look, low, high: low + span, gain: 1 / span, offset: -low / span };
+}
+
+export const steps = 256;  // of a colour map
+
+/// Colour maps for pictures of one channel, in OKLCH, where equal steps of the value look like equal steps
+/// of lightness. Each is a function from [0, 1] to lightness, chroma and hue.
+const colourMaps = {
+  /// Dark violet over red to pale yellow: for values from 0, or from a least one, up.
+  sequential: (t) => [0.14 + 0.82 * t, 0.04 + 0.13 * Math.sin(Math.PI * t), 285 + 175 * t],
+  /// Blue below, orange above, dark in the middle: for values of both signs.
+  diverging: (t) => {
+    const size = Math.abs(2 * t - 1);
+    return [0.16 + 0.74 * size, 0.15 * Math.sin(0.5 * Math.PI * Math.min(1, 1.6 * size))
+      * (1.15 - 0.45 * size), t < 0.5 ? 250 : 55];
+  },
+};
+
+const made = {};
+
+/// The map called `name`: `steps` colours, RGBA in bytes, sRGB.
+export function colourMap(name) {
+  if (made[name]) return made[name];
+  const context = new OffscreenCanvas(steps, 1).getContext("2d", { willReadFrequently: true });
+  for (let i = 0; i < steps; i += 1) {
+    context.fillStyle = `oklch(${colourMaps[name](i / (steps - 1)).join(" ")})`;
+    context.fillRect(i, 0, 1, 1);
+  }
+  made[name] = context.getImageData(0, 0, steps, 1).data;
+  return made[name];
+}
 
 const vertexSource = `#version 300 es
 void main() {  // one triangle over everything
@@ -111,7 +182,7 @@ function unlessLost(gl, make) {
 /// What one context holds; made anew when the context was lost.
 function resources(gl) {
   const program = link(gl);
-  const maps = Object.fromEntries(["sequential", "diverging"].map((name) => [name,
+  const maps = Object.fromEntries(Object.keys(colourMaps).map((name) => [name,
     upload(gl, steps, 1, [gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE], colourMap(name))]));
   const uniform = Object.fromEntries(["picture", "colours", "corner", "pace", "height", "look", "gain", "offset"]
     .map((name) => [name, gl.getUniformLocation(program, name)]));
@@ -180,4 +251,32 @@ export function painter(canvas, onrestored) {
       gl.getExtension("WEBGL_lose_context")?.loseContext();
     },
   };
+}
+
+/// A function that draws `pictures`, [{image, canvas, wide}], alike (see look.js): each `wide` CSS pixels wide,
+/// of which one has `ratio` of the screen's. One a frame, fetched in the next, because many at once, or
+/// waiting for one, would be a pause. The next call ends the one before; one that lost its context is made again
+/// with a new one.
+export function stripPainter(signal) {
+  const hidden = new OffscreenCanvas(1, 1);
+  let paint = null;
+  let last = [];
+  signal.addEventListener("abort", () => paint?.release());
+
+  async function draw(...given) {
+    last = given;
+    const [pictures, look, ratio] = given;
+    paint ??= painter(hidden, () => draw(...last));
+    for (const { image, canvas, wide } of pictures) {
+      const [width, height] = [wide, wide * image.height / image.width].map((n) => Math.round(n * ratio) || 1);
+      Object.assign(hidden, { width, height });
+      if (!paint.draw([{ ...look, image, from: 0, to: 1 }], { x: 0, y: 0, pace: image.width / width })) return;
+      await new Promise(requestAnimationFrame);
+      if (last !== given || signal.aborted) return;
+      Object.assign(canvas, { width, height });
+      canvas.style.width = `${wide}px`;
+      canvas.getContext("bitmaprenderer").transferFromImageBitmap(hidden.transferToImageBitmap());
+    }
+  }
+  return draw;
 }

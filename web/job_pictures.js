@@ -1,0 +1,118 @@
+// Jobs' pictures: their layers, where they are of one size, together in the viewer, else their image.png, and why.
+import { fileUrl, getFile, getPart } from "./api.js";
+import { h, update } from "./dom.js";
+import { currentError } from "./format.js";
+import { extent } from "./pixels.js";
+import { viewer } from "./viewer.js";
+
+const tries = 4;
+
+/// The layers of job `id` as they stand: {width, height, names, read(...names)}; `read` gives a picture
+/// (see pixels.js) for each name, all of one generation, and the same ones when asked again, unless `forget(name)`
+/// let one go.
+async function openLayers(id, signal) {
+  async function readIndex() {
+    const response = await getFile(id, "layers.json", signal);
+    return { tag: response.headers.get("ETag"), ...await response.json() };
+  }
+  let index = await readIndex();
+  const { width, height } = index;
+  const kept = new Map();
+
+  async function readLayer(name) {
+    const layer = index.layers.find((l) => l.name === name);
+    if (!layer) throw new Error(`This job has no layer "${name}" any more.`);
+    const length = Math.max(...index.layers.map((l) => l.offset + l.bytes));
+    const { data, total, tag } = await getPart(id, "layers.half", layer.offset, layer.bytes, signal);
+    if (total !== length || data.byteLength !== 2 * width * height * layer.channels.length) return { tag: null };
+    const picture = {
+      width, height, channels: layer.channels, scale: layer.scale,
+      data: new Float16Array(data),
+    };
+    return { tag, picture: { ...picture, extent: extent(picture) } };
+  }
+
+  function once(name) {
+    if (!kept.has(name)) kept.set(name, readLayer(name));
+    return kept.get(name);
+  }
+
+  /// A job that goes on replaces both files, one after the other. Parts belong together that come from
+  /// one layers.half, of the lengths that the index tells, while the index stayed the same.
+  async function read(...names) {
+    for (let i = 0; i < tries; i += 1) {
+      const anew = names.some((name) => !kept.has(name));
+      try {
+        const found = await Promise.all(names.map(once));
+        const before = index.tag;
+        if (anew) index = await readIndex();
+        const [{ tag }] = found;
+        const one = tag !== null && index.tag === before && found.every((f) => f.tag === tag);
+        if (one) return found.map((f) => f.picture);
+      } catch (error) {
+        kept.clear();
+        throw error;
+      }
+      kept.clear();
+    }
+    throw new Error("These layers changed while they were read.");
+  }
+
+  return { width, height, names: index.layers.map((l) => l.name), read, forget: (name) => kept.delete(name) };
+}
+
+/// `describe(entry)` gives {alt, caption} of an image.png: `entry` is a job with its `image`, its `layers` if it has
+/// any, and `drawable`: whether values can be shown here. `show(jobs)` takes those of GET /api/jobs/ID, each with a
+/// `name`; it gives the first one's layers where others are shown than before, else null. `open(key)` takes the reader
+/// to a layer. The viewer's state is in `query`.
+export function jobPictures(query, signal, describe) {
+  const place = h("div");
+  const apart = h("div.gallery");
+  const opened = new Map();  // by id: {version, layers}, a promise
+  let numbers;  // the viewer, once there are layers; null: it cannot be had
+  let shown = "";
+
+  async function entryOf(job) {
+    const { id, state, progress, files } = job;
+    const file = (wanted) => files.find((f) => f.name === wanted);
+    // image.png is written after the layers, and unlike theirs its size changes with its content.
+    const version = `${state.state} ${file("image.png")?.bytes}`;
+    const entry = { ...job, version, image: file("image.png") && fileUrl(id, "image.png", version),
+      seconds: progress?.seconds, error: currentError(progress), drawable: numbers !== null };
+    if (!numbers || !file("layers.json")) return entry;
+    if (opened.get(id)?.version !== version) opened.set(id, { version, layers: openLayers(id, signal) });
+    try {
+      return { ...entry, layers: await opened.get(id).layers };
+    } catch (error) {
+      opened.delete(id);
+      throw error;
+    }
+  }
+
+  function plain(entry) {
+    const { alt, caption } = describe(entry);
+    const { image } = entry;
+    return h("figure", h("a.frame", { href: image }, image ? h("img", { src: image, alt }) : h("span.note", "no picture")),
+      h("figcaption", caption));
+  }
+
+  return {
+    element: h("div", place, apart),
+    open: (key) => numbers.open(key),
+    async show(jobs) {
+      const drawable = jobs.some(({ files }) => files.some((f) => f.name === "layers.json"));
+      if (drawable && numbers === undefined) numbers = viewer(query, signal);
+      const entries = await Promise.all(jobs.map(entryOf));
+      const first = entries.find((e) => e.layers)?.layers;
+      const fits = ({ layers }) => layers && layers.width === first.width && layers.height === first.height;
+      const together = entries.filter(fits);
+      update(apart, entries.filter((e) => !fits(e)).map(plain));
+      const now = together.map((e) => `${e.id} ${e.version}`).join();
+      if (now === shown || together.length === 0) return null;
+      shown = now;
+      if (!place.firstChild) place.append(numbers.element);
+      await numbers.show(together);
+      return first;
+    },
+  };
+}

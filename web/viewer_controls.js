@@ -1,0 +1,157 @@
+// What a reader can do to a viewer, whether by key, pointer or button.
+import { choice, h, select, sign, small } from "./dom.js";
+import { errorKinds } from "./errors.js";
+import { cropBetween, fitZoom, moved, movedCrop, pointAt, scaledCrop, zoomOf, zoomTo } from "./viewport.js";
+
+const grip = 12;  // CSS pixels on each side of the split line that take hold of it
+
+/// Actions on a viewer that has content: {state, size(), seen, content, options, sources, change(values)}.
+export function viewerActions(own) {
+  const { state, change } = own;
+  const view = () => [state.view, own.size(), own.seen.box()];
+  const isColour = () => own.content.look.look === "colour";
+  const setExposure = (value) => change(isColour() ? { ev: value } : { stops: value ?? 0 });
+  const setSplit = (at) => change({ split: Math.min(1, Math.max(0, at)) });
+  const setCrop = (crop) => change({ crop });
+  return {
+    change,
+    setExposure,
+    expose: (by) => setExposure(by + (isColour() ? state.ev ?? own.content.look.ev : state.stops)),
+    zoomBy: (factor, u, v) => change({ view: zoomTo(...view(), zoomOf(...view()) * factor, u, v) }),
+    fit: () => change({ view: { zoom: null, x: 0.5, y: 0.5 } }),
+    oneToOne: () => change({ view: zoomTo(...view(), 1 / window.devicePixelRatio) }),
+    /// What a drag from (u, v) does, in CSS pixels: it moves the line, chooses a crop, or moves the picture.
+    begin(u, v) {
+      if (state.mode === "split" && Math.abs(u - state.split * own.seen.box().width) < grip) {
+        return (at) => setSplit(at / own.seen.box().width);
+      }
+      if (state.mode === "crops") {
+        const from = pointAt(...view(), u, v);
+        return (...at) => setCrop(cropBetween(from, pointAt(...view(), ...at), own.size()));
+      }
+      let last = [u, v];
+      return (...at) => {
+        change({ view: moved(...view(), last[0] - at[0], last[1] - at[1]) });
+        last = at;
+      };
+    },
+    /// By a tenth of the frame, or of the crop; false where everything is seen already.
+    move(right, down) {
+      const [, size, box] = view();
+      if (state.mode === "crops") setCrop(movedCrop(state.crop, right, down, size));
+      else if (zoomOf(...view()) <= fitZoom(size, box)) return false;
+      else change({ view: moved(...view(), 0.1 * right * box.width, 0.1 * down * box.height) });
+      return true;
+    },
+    /// The line between two pictures, or the size of the crop, by a step.
+    shift(step) {
+      if (state.mode === "split") setSplit(state.split + 0.05 * step);
+      if (state.mode === "crops") setCrop(scaledCrop(state.crop, step, own.size()));
+    },
+    cycle(by) {
+      const { options } = own;
+      const at = options.findIndex((o) => o.key === state.show);
+      change({ show: options[(at + by + options.length) % options.length].key });
+    },
+    /// False where there is no picture to choose.
+    pick(i) {
+      if (own.sources.length < 2 || i >= own.sources.length) return false;
+      change({ left: i });
+      return true;
+    },
+  };
+}
+
+const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+
+/// What a key does; false where it has no meaning.
+function press(key, actions) {
+  const plain = {
+    "+": () => actions.zoomBy(2),
+    "=": () => actions.zoomBy(2),
+    "-": () => actions.zoomBy(0.5),
+    0: actions.fit,
+    f: actions.fit,
+    o: actions.oneToOne,
+    e: () => actions.expose(0.5),
+    E: () => actions.expose(-0.5),
+    ",": () => actions.shift(-1),
+    ".": () => actions.shift(1),
+    "[": () => actions.cycle(-1),
+    "]": () => actions.cycle(1),
+  };
+  if (arrows[key]) return actions.move(...arrows[key]);
+  if (/^[1-9]$/.test(key)) return actions.pick(Number(key) - 1);
+  return key in plain && plain[key]();
+}
+
+/// Keys, wheel and pointer over a viewer's frame. The wheel zooms once the frame has the focus, so that the page
+/// scrolls past it. Until there is content nothing moves.
+export function listenTo(own) {
+  const { actions, seen: { frame } } = own;
+  let drag = null;
+  const at = (event) => {
+    const box = frame.getBoundingClientRect();
+    return [event.clientX - box.left, event.clientY - box.top];
+  };
+  const on = (name, act, options) =>
+    frame.addEventListener(name, (event) => own.content && act(event), options);
+  const hover = (point) => {
+    own.pointer = point;
+    own.redraw();
+  };
+  on("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (press(event.key, actions) !== false) event.preventDefault();
+  });
+  on("pointerdown", (event) => {
+    if (event.button !== 0) return;
+    drag = actions.begin(...at(event));
+    frame.setPointerCapture(event.pointerId);
+  });
+  on("pointermove", (event) => {
+    hover(at(event));
+    drag?.(...at(event));
+  });
+  for (const name of ["pointerup", "pointercancel"]) on(name, () => { drag = null; });
+  on("pointerleave", () => hover(null));
+  on("wheel", (event) => {
+    if (document.activeElement !== frame) return;
+    event.preventDefault();
+    actions.zoomBy(event.deltaY < 0 ? 1.25 : 0.8, ...at(event));
+  }, { passive: false });
+}
+
+/// Exposure in stops, and back to the page's own choice.
+export const exposureTools = (value, setExposure) => h("span.exposure.tools",
+  h("label", "EV ", h("input", { type: "number", step: "0.1", "aria-label": "Exposure in stops",
+    value: Number(value.toFixed(2)), oninput: ({ target }) => target.value !== "" && setExposure(Number(target.value)) })),
+  sign("Auto", "The page's own exposure", () => setExposure(null)));
+
+/// What is shown, how bright, and how large. `stops` null: what is shown has no exposure.
+export const viewerTools = (actions, { options, chosen, stops, zoom }) => [
+  choice("Show", options, chosen, (show) => actions.change({ show })),
+  h("span", { hidden: stops === null }, stops !== null && exposureTools(stops, actions.setExposure)),
+  h("span.tools",
+    sign("−", "Zoom out", () => actions.zoomBy(0.5)), sign("+", "Zoom in", () => actions.zoomBy(2)),
+    sign("Fit", "Show the whole picture", actions.fit),
+    sign("1:1", "One picture pixel per screen pixel", actions.oneToOne),
+    h("output.muted", `${Number((100 * zoom).toPrecision(3))} %`)),
+  small("Keys", () => document.getElementById("keys").click()),
+];
+
+const modes = { one: "one at a time", split: "split", difference: "difference",
+  crops: "crops side by side" };
+
+/// The controls for several pictures: one at a time, two split by a line, their difference, or crops.
+export function modeTools(change, { mode, left, right, by }, labels) {
+  const options = labels.map((label, i) => ({ key: String(i), label: `${i + 1} ${label}` }));
+  const second = { split: "left of", difference: "subtracted from" }[mode];
+  return [
+    choice("Pictures", Object.entries(modes).map(([key, label]) => ({ key, label })), mode, (value) => change({ mode: value })),
+    select(options, String(left), (value) => change({ left: Number(value) }), { "aria-label": "First picture" }),
+    second && [h("span.muted", second),
+      select(options, String(right), (value) => change({ right: Number(value) }), { "aria-label": "Second picture" })],
+    mode === "difference" && choice("by", errorKinds, by, (value) => change({ by: value })),
+  ];
+}
