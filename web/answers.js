@@ -1,7 +1,7 @@
 // A sweep's answers (docs/sweeps-and-reports.md): which settings give which error in which time, and how sure that is,
 // in words, as a figure and as a table, on the page and in the report.
 import { axes, errorAt } from "./curve.js";
-import { choice, h, note, replace, scroll, update, warning } from "./dom.js";
+import { choice, chooser, h, note, replace, scroll, update, warning } from "./dom.js";
 import { colours, figureBox } from "./figure.js";
 import { number, seconds, significant, thin } from "./format.js";
 import { metrics } from "./job_tables.js";
@@ -83,17 +83,6 @@ function someOf(cells, names, most = 3) {
   return cells.length > most ? `${text} and ${cells.length - most} more` : text;
 }
 
-/// The front in sentences: who leads from when to when.
-const frontParts = (front, names) => front.map((part) => ({
-  ...part,
-  text: `${significant(part.from)} to ${significant(part.to)}${thin}s`,
-  name: names.get(part.cell),
-  doubts: [
-    part.tied.length > 0 && `tied with ${someOf(part.tied, names)}`,
-    !part.supported && "at the reference's own noise: not supported",
-  ].filter(Boolean).join("; "),
-}));
-
 const charges = [
   { key: "render", label: "rendering alone" },
   { key: "warm", label: "with preparation, cache warm" },
@@ -123,24 +112,20 @@ const gainCell = (gain, supported = true) =>
   h("span", { className: verdict(gain), title: verdict(gain) === "" && gain ? "Not significantly different from 1" : "" },
     told(gainText(gain), supported));
 
-function timeColumns(picture) {
-  // The last first: that is where a reader looks.
-  return picture.seconds.map((t, i) => [t, i]).reverse().flatMap(([t, i]) => [
-    { key: `at${i}`, head: `at ${significant(t)} s`, value: (c) => c.at[i]?.error?.value,
-      show: (c) => (c.at[i] ? told(errorText(c.at[i], c.done), c.at[i].supported) : "—") },
-    { key: `gain${i}`, head: "× the baseline", value: (c) => -(c.at[i]?.gain?.value ?? 0),
-      show: (c) => gainCell(c.at[i]?.gain, c.at[i]?.supported) },
-  ]);
-}
+/// A pair of columns for each of `values`, the last first: that is where a reader looks. `list` of a cell has what was
+/// found there, by the names of `what`: {value, gain, head, show(found, runs), gainHead}.
+const pairColumns = (values, list, what) => values.map((value, i) => [
+  { key: list + i, head: what.head(value), value: (c) => c[list][i]?.[what.value]?.value,
+    show: (c) => (c[list][i] ? told(what.show(c[list][i], c.done), c[list][i].supported) : "—") },
+  { key: what.gain.split("_")[0] + i, head: what.gainHead, value: (c) => -(c[list][i]?.[what.gain]?.value ?? 0),
+    show: (c) => gainCell(c[list][i]?.[what.gain], c[list][i]?.supported) },
+]).reverse().flat();
 
-function errorColumns(picture) {
-  return picture.errors.map((e, i) => [e, i]).reverse().flatMap(([e, i]) => [
-    { key: `to${i}`, head: `to ${significant(e, 2)}`, value: (c) => c.to[i]?.time?.value,
-      show: (c) => (c.to[i] ? told(timeText(c.to[i], c.done), c.to[i].supported) : "—") },
-    { key: `speed${i}`, head: "speed-up", value: (c) => -(c.to[i]?.speed_up?.value ?? 0),
-      show: (c) => gainCell(c.to[i]?.speed_up, c.to[i]?.supported) },
-  ]);
-}
+const timeColumns = ({ seconds: all }) => pairColumns(all, "at", { value: "error", gain: "gain", show: errorText,
+  head: (t) => `at ${significant(t)} s`, gainHead: "× the baseline" });
+
+const errorColumns = ({ errors }) => pairColumns(errors, "to", { value: "time", gain: "speed_up", show: timeText,
+  head: (e) => `to ${significant(e, 2)}`, gainHead: "speed-up" });
 
 const costColumns = [
   { key: "efficiency", head: "efficiency 1/(MSE·s)", value: (c) => -(c.efficiency?.value ?? 0),
@@ -234,27 +219,27 @@ function figureOf(answers, picture, cells, names, charge, chosen) {
   };
 }
 
+/// The front in sentences: who leads from when to when.
 function frontList(front, names, charge) {
-  const parts = frontParts(front, names);
-  if (parts.length === 0) return note(charge.key === "render" ? "No run is done yet." : "No run measured its preparation.");
-  return h("ol.front", parts.map((part) => h("li", `${part.text}: `, h("strong", part.name),
-    part.doubts && h("span.muted", ` (${part.doubts})`))));
+  if (front.length === 0) return note(charge.key === "render" ? "No run is done yet." : "No run measured its preparation.");
+  return h("ol.front", front.map((part) => {
+    const doubts = [
+      part.tied.length > 0 && `tied with ${someOf(part.tied, names)}`,
+      !part.supported && "at the reference's own noise: not supported",
+    ].filter(Boolean).join("; ");
+    return h("li", `${significant(part.from)} to ${significant(part.to)}${thin}s: `, h("strong", names.get(part.cell)),
+      doubts && h("span.muted", ` (${doubts})`));
+  }));
 }
 
-/// The answers with their switches. `query` (URLSearchParams) holds every choice; `remember()` is called
-/// after it changed. `pictures(picture, cells, names)` gives an element for the chosen cells' pictures, or
+/// The answers with their switches. `query` (URLSearchParams) and the address hold every choice. `pictures(picture, cells, names)` gives an element for the chosen cells' pictures, or
 /// null. `show(answers)` draws anew.
-export function answersView(query, remember, pictures) {
+export function answersView(query, pictures) {
   const [above, below, crops] = [h("div"), h("div"), h("section")];
   const figure = figureBox("No run is done yet.");
   let answers = null;
 
-  const choose = (key) => (value) => {
-    query.set(key, value);
-    remember();
-    draw();
-  };
-
+  const choose = chooser(query, draw);
   /// One of `options` by its key in the query, else the first.
   const picked = (options, key) => options.find((o) => o.key === query.get(key)) ?? options[0];
 

@@ -96,13 +96,6 @@ export async function getPart(id, name, offset, bytes, signal) {
   return { data, total: Number(total ?? 0), tag: response.headers.get("ETag") };
 }
 
-/// The log from the byte `offset` on: {data, next}, where the rest of it begins; beyond the log's end
-/// there is an error 416.
-export async function getLog(id, offset, signal) {
-  const response = await request(`${jobPath(id)}/log?offset=${offset}`, { signal, cache: "no-store" });
-  return { data: await response.arrayBuffer(), next: Number(response.headers.get("Next-Offset")) };
-}
-
 /// `verb`: cancel, retry, or extend with the JSON of a body.
 export const tell = (id, verb, body) => send("POST", `${jobPath(id)}/${verb}`, body);
 /// `values`: {priority, held}, either or both.

@@ -2,7 +2,7 @@
 // view and the comparison show them, or alone as a figure.
 import { getJob, getText, poll } from "./api.js";
 import { axes, parseCurve, points, presentMetrics } from "./curve.js";
-import { addressOf, choice, h, problem, remember, replace, small, update } from "./dom.js";
+import { addressOf, choice, chooser, h, problem, replace, small, update } from "./dom.js";
 import { figureBox } from "./figure.js";
 import { integratorName, isTerminal, jobTitle } from "./format.js";
 import { metrics } from "./job_tables.js";
@@ -54,54 +54,45 @@ export function followJobs(ids, draw, signal) {
 export const idsOf = (query) => [...new Set((query.get("jobs") ?? "").split(",").filter(Boolean))];
 
 /// A plot and its switches. `query` (URLSearchParams) holds the choice, `x` and `y`; the switches change
-/// it and the address, and then `changed()` is called. `show(series, preferred)` draws of [{name, rows}] what `query`
-/// says: else the metric `preferred`, else the first that all of them have. After it, `axis` and `metric` are what is
-/// shown; `metric` is undefined if there is nothing.
-export function curvePanel(query, changed = () => {}) {
+/// it and the address. `show(series, preferred)` draws of [{name, rows}] what `query` says: else the metric `preferred`,
+/// else the first that all of them have. `drawn(axis, metric)` is told what is shown: no metric if there is nothing.
+export function curvePanel(query, drawn = () => {}) {
   const figure = figureBox("No errors have been measured.");
-  const switches = h("div.switches");
+  const [what, switches] = [h("span.switches"), h("div.switches")];
+  let series = [];
+  let preferred = null;
+  let metric;
+
   const embedded = query.has("embed");
   const alone = small(embedded ? "Leave the figure" : "Figure alone", () => {
     if (embedded) query.delete("embed");
     else query.set("embed", "");
     location.hash = addressOf(query);
   });
-  const tools = h("span.tools", alone, figure.saves("", () => `lacuna-${panel.metric.key}`));
-  const [what, over] = [h("span"), h("span")];
-  replace(switches, what, over, tools);
-  let shown = [];
-  let wanted = null;
+  replace(switches, what, h("span.tools", alone, figure.saves("", () => `lacuna-${metric.key}`)));
 
-  const choose = (key) => (value) => {
-    query.set(key, value);
-    draw();
-    remember(query);
-    changed();
-  };
-
+  const choose = chooser(query, draw);
   function draw() {
-    const has = shown.map(({ rows }) => presentMetrics(rows));
+    const has = series.map(({ rows }) => presentMetrics(rows));
     const offered = metrics.filter((m) => has.some((present) => present.includes(m)));
     const pick = (key) => offered.find((m) => m.key === key);
     const axis = axes.find((a) => a.key === query.get("x")) ?? axes[0];
-    const metric = pick(query.get("y")) ?? pick(wanted)
+    metric = pick(query.get("y")) ?? pick(preferred)
       ?? offered.find((m) => has.every((present) => present.includes(m))) ?? offered[0];
-    Object.assign(panel, { axis, metric });
     switches.hidden = metric === undefined;
-    update(what, choice("Error", offered, metric?.key, choose("y")));
-    update(over, choice("against", axes, axis.key, choose("x")));
-    const curves = shown.map(({ name, rows }, index) => ({ name, index, points: metric ? points(rows, axis.key, metric.key) : [] }));
-    figure.draw({ curves, axis, metric });
+    update(what, choice("Error", offered, metric?.key, choose("y")), choice("against", axes, axis.key, choose("x")));
+    figure.draw({ axis, metric, curves: series.map(({ name, rows }, index) => (
+      { name, index, points: metric ? points(rows, axis.key, metric.key) : [] })) });
+    drawn(axis, metric);
   }
 
-  const panel = {
+  return {
     element: h("div", switches, figure.element),
-    show(series, preferred = null) {
-      [shown, wanted] = [series, preferred];
+    show(...given) {
+      [series, preferred] = given;
       draw();
     },
   };
-  return panel;
 }
 
 /// The curves of one or more jobs as a single figure, to be saved or shown elsewhere.

@@ -87,12 +87,17 @@ export const addressOf = (query) =>
   `${(location.hash || "#/").split("?")[0]}?${query}`.replaceAll("%2C", ",").replace(/\?$/, "");
 export const remember = (query) => history.replaceState(null, "", addressOf(query));
 
+/// `chooser(query, draw)(key)` is what a choice does: it keeps the value in `query` and the address, and draws.
+export const chooser = (query, draw) => (key) => (value) => {
+  query.set(key, value);
+  remember(query);
+  draw();
+};
+
 /// A button; `props` as for h().
 export const button = (text, onclick, props = {}) => h("button", { type: "button", onclick, ...props }, text);
-export const small = (text, onclick) => button(text, onclick, { className: "small" });
-
-/// A small button, whose label says what its sign means.
-export const sign = (text, label, onclick) =>
+/// A small one; a label says what a sign means.
+export const small = (text, onclick, label = null) =>
   button(text, onclick, { className: "small", title: label, "aria-label": label });
 
 /// What a button of change does: `call()`, and `then()` unless that gave false; an error is for `say(text)`.

@@ -1,7 +1,7 @@
 // The report of a sweep: one file that needs no server (made by `lacuna report`).
 import { answersView, summary } from "./answers.js";
 import { aboutTimes } from "./curve.js";
-import { h, note, remember, replace } from "./dom.js";
+import { h, note, replace } from "./dom.js";
 import { seconds, when } from "./format.js";
 
 const main = document.getElementById("main");
@@ -29,7 +29,7 @@ const address = () => new URLSearchParams(location.hash.split("?")[1] ?? "");
 
 function show() {
   const query = address();
-  const view = answersView(query, () => remember(query), cropsOf);
+  const view = answersView(query, cropsOf);
   replace(main, h("h1", answers.label || "Sweep"), h("p", summary(answers)), view.element,
     note(`Made ${when(made)} by Lacuna ${version}.`));
   view.show(answers);

@@ -1,6 +1,6 @@
 // What differs between jobs, and how a number of their reports grows with another, or with a setting that they do not
 // share.
-import { choice, h, note, remember, update } from "./dom.js";
+import { choice, chooser, h, note, update } from "./dom.js";
 import { figureBox } from "./figure.js";
 import { significant, words } from "./format.js";
 import { inTheLight, notInAReference } from "./job_tables.js";
@@ -84,33 +84,20 @@ function scalingCurves(jobs, x, y) {
 export function scalingPanel(query) {
   const figure = figureBox("No report contains both quantities.");
   const switches = h("span.switches");
-  const element = h("section", { hidden: true }, h("h2", "Scaling"),
+  const element = h("section", h("h2", "Scaling"),
     h("div.switches", switches, h("span.tools", figure.saves("scaling ", () => "lacuna-scaling"))), figure.element,
     note("The exponent of a power law of x, fitted to the logarithms of each curve."));
-  let jobs = [];
 
-  const choose = (key) => (value) => {
-    query.set(key, value);
-    draw();
-    remember(query);
-  };
-
-  function draw() {
+  function show(jobs) {
     const offered = quantities(jobs);
     element.hidden = offered.x.length === 0 || offered.y.length === 0;
     if (element.hidden) return;
+    const choose = chooser(query, () => show(jobs));
     const pick = (of, key, other) => of.find((q) => q.key === query.get(key)) ?? of.find((q) => q.key === other) ?? of[0];
     const [x, y] = [pick(offered.x, "sx"), pick(offered.y, "sy", "seconds render_cpu")];
     update(switches, choice("Number", offered.y.map(({ key, label }) => ({ key, label })), y.key, choose("sy")),
       choice("over", offered.x, x.key, choose("sx")));
     figure.draw({ curves: scalingCurves(jobs, x, y), axis: x, metric: y });
   }
-
-  return {
-    element,
-    show(next) {
-      jobs = next;
-      draw();
-    },
-  };
+  return { element, show };
 }

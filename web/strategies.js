@@ -42,39 +42,36 @@ function pyramid(cells) {
 /// with the one that the reader wants to look at. What is chosen is in `query`.
 export function strategies(query, signal, open) {
   const paint = stripPainter(signal);
-  const [title, about, shares, say, body] = [h("h2"), note(), note(), h("div"), h("div")];
+  const [title, tools, about, shares, say, body] = [h("h2"), h("div.tools"), note(), note(), h("div"), h("div")];
+  const element = h("section", title, tools, about, shares, say, body);
   let layers = null;
   let parts = [];
   let cells = [];
-  let offered = [];  // the sets there are, and the one that is shown
   let look = null;  // of the picture itself
   let turn = 0;
 
-  function choose(key, value) {
+  const stops = () => (query.has("stops-each") ? Number(query.get("stops-each")) || 0 : null);
+
+  function choose(key, value, then) {
     if (value) query.set(key, value);
     else query.delete(key);
     remember(query);
+    then();
   }
-  const stops = () => (query.has("stops-each") ? Number(query.get("stops-each")) || 0 : null);
-  const tools = h("div.tools");
-  const element = h("section", title, tools, about, shares, say, body);
 
-  function drawTools(options, set) {
-    update(tools,
-      h("span", { hidden: options.length < 2 }, choice("Strategies", options, set, (key) => {
-        choose("strategies", key === unweighted && key);
-        build();
-      })),
-      look && exposureTools(stops() ?? look.ev, (value) => {
-        choose("stops-each", value !== null && String(value));
-        draw();
-      }));
+  /// The sets there are, and which of them is shown.
+  function offered() {
+    const options = sets.filter(({ key }) => parts.some((p) => p.set === key));
+    return { options, set: (options.find(({ key }) => key === query.get("strategies")) ?? options[0])?.key };
   }
 
   async function draw() {
-    if (look === null) return;
-    drawTools(...offered);
-    await paint(cells.filter((c) => c.image), exposed(look, { ev: stops() }), window.devicePixelRatio);
+    const { options, set } = offered();
+    update(tools,
+      h("span", { hidden: options.length < 2 },
+        choice("Strategies", options, set, (key) => choose("strategies", key === unweighted && key, build))),
+      look && exposureTools(stops() ?? look.ev, (value) => choose("stops-each", value !== null && String(value), draw)));
+    if (look) await paint(cells.filter((c) => c.image), exposed(look, { ev: stops() }), window.devicePixelRatio);
   }
 
   function cellOf(part) {
@@ -91,35 +88,32 @@ export function strategies(query, signal, open) {
   /// The pictures one by one, of which only what is drawn is kept.
   async function load(mine) {
     const small = (image) => reduced(image, Math.floor(image.width / cells[0].wide / window.devicePixelRatio) || 1);
-    try {
-      const [picture] = await layers.read("");
-      look = lookOf([picture]);
-      const whole = (await small(picture)).mean;
-      const light = { hit: 0, connected: 0, merged: 0 };
-      for (const cell of cells) {
-        const [picture] = await layers.read(cell.name);
-        layers.forget(cell.name);
-        const { image, mean } = await small(picture);
-        if (turn !== mine || signal.aborted) return;
-        cell.image = image;
-        if (cell.edges) light[cell.merged ? "merged" : cell.s > 0 ? "connected" : "hit"] += mean;
-        update(cell.light, cell.set === unweighted ? number(mean) : `${significant(100 * mean / whole)}${thin}%`);
-      }
-      if (cells.some((c) => c.merged && c.set !== unweighted)) {
-        update(shares, Object.entries(light).map(([name, mean]) => `${name} ${significant(100 * mean / whole)}${thin}%`)
-          .join(", ") + ".");
-      }
-      await draw();
-      if (turn === mine) body.ariaBusy = "false";
-    } catch (error) {
-      if (turn === mine && !signal.aborted) replace(say, problem(error.message));
+    const [picture] = await layers.read("");
+    look = lookOf([picture]);
+    const whole = (await small(picture)).mean;
+    const percent = (mean) => `${significant(100 * mean / whole)}${thin}%`;
+    const light = { hit: 0, connected: 0, merged: 0 };
+    for (const cell of cells) {
+      const [layer] = await layers.read(cell.name);
+      layers.forget(cell.name);
+      const { image, mean } = await small(layer);
+      if (turn !== mine || signal.aborted) return;
+      cell.image = image;
+      if (cell.edges) light[cell.merged ? "merged" : cell.s > 0 ? "connected" : "hit"] += mean;
+      update(cell.light, cell.set === unweighted ? number(mean) : percent(mean));
     }
+    if (cells.some((c) => c.merged && c.set !== unweighted)) {
+      update(shares, `${Object.entries(light).map(([name, mean]) => `${name} ${percent(mean)}`).join(", ")}.`);
+    }
+    await draw();
+    if (turn === mine) body.ariaBusy = "false";
   }
 
   const seen = new IntersectionObserver(([entry]) => {
     if (!entry.isIntersecting || signal.aborted) return;
     seen.disconnect();
-    load(turn);
+    const mine = turn;
+    load(mine).catch((error) => { if (turn === mine && !signal.aborted) replace(say, problem(error.message)); });
   });
   signal.addEventListener("abort", () => seen.disconnect());
 
@@ -127,21 +121,18 @@ export function strategies(query, signal, open) {
   function build() {
     turn += 1;
     body.ariaBusy = "true";  // until its pictures are there, which may wait for the reader to come
-    const options = sets.filter(({ key }) => parts.some((p) => p.set === key));
-    const set = (options.find(({ key }) => key === query.get("strategies")) ?? options[0])?.key;
-    offered = [options, set];
-    drawTools(options, set);
+    const { set } = offered();
     const [steps, others] = [set, "distributions"].map((of) => parts.filter((p) => p.set === of).map(cellOf));
     cells = [...steps, ...others];
+    draw();
     update(title, set ? "Strategies" : "Resampling distributions");
     update(about, [set && "s vertices are sampled from the light, t from the eye.",
       steps.some((c) => c.merged) && "Merged: the last vertices of both are taken for one.",
-      set === unweighted && "Each image estimates all light of its path length, with its mean below. Images in a row agree, except for "
-        + "noise and paths that a strategy cannot sample.",
+      set === unweighted && "Each image estimates all light of its path length, with its mean below. Images in a row "
+        + "agree, except for noise and paths that a strategy cannot sample.",
       (set !== unweighted || others.length > 0) && "In %: its share of the picture's light.",
       "All at one exposure; a click shows one in the viewer."].filter(Boolean).join(" "));
-    replace(say);
-    update(shares, "");
+    for (const part of [say, shares]) replace(part);
     replace(body, set && pyramid(steps), others.length > 0 && [set && h("h3", "Resampling distributions"),
       h("div.distributions", others.map((c) => c.element))]);
     seen.disconnect();

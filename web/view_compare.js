@@ -50,13 +50,10 @@ export async function show(main, { query, signal }) {
   const times = h("section");
   const settings = h("section");
   const pictures = jobPictures(query, signal, describe);
-  const panel = curvePanel(query, drawTimes);
+  const panel = curvePanel(query, (...shown) =>
+    update(times, h("h2", "Error at equal time"), equalTimes(compared, ...shown)));
   const scaling = scalingPanel(query);
   let compared = [];
-
-  function drawTimes() {
-    update(times, h("h2", "Error at equal time"), equalTimes(compared, panel.axis, panel.metric));
-  }
 
   function draw({ jobs, preferred, problems }) {
     compared = jobs;
@@ -65,7 +62,6 @@ export async function show(main, { query, signal }) {
     update(notes, problems.map(problem), doubts.length > 0 && warning(
       `These jobs differ in ${doubts.join(", ")}: their errors may not be comparable.`));
     panel.show(jobs, preferred);
-    drawTimes();
     scaling.show(jobs);
     update(settings, h("h2", "Settings that differ"), found.length === 0 ? note("The job files are the same.")
       : table(["", ...jobs.map(({ name }) => name)], found.map((d) => [d.pointer, ...d.values])));

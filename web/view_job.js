@@ -1,9 +1,9 @@
 // One job: its picture, its error against time, its report, and its files; live while it runs.
-import { change, curlLine, fileUrl, getJob, getLog, getText, jobPath, listen, pollOn, remove, soon, tell }
+import { change, curlLine, fileUrl, getJob, getPart, getText, jobPath, listen, pollOn, remove, soon, tell }
   from "./api.js";
 import { curveTable, parseCurve } from "./curve.js";
 import { curvePanel } from "./curve_panel.js";
-import { action, ask, button, copyButton, facts, h, problem, replace, sign, update, warning } from "./dom.js";
+import { action, ask, button, copyButton, facts, h, problem, replace, small, update, warning } from "./dom.js";
 import { badge, bytes, currentError, duration, integratorName, isTerminal, jobTitle, number, prettyJob, progressBar,
   seconds, states, when, withoutNulls } from "./format.js";
 import { jobPictures } from "./job_pictures.js";
@@ -77,7 +77,7 @@ function actionTools({ id, job, priority, state }, { changed, gone, say }) {
   const by = (step) => act(() => change(id, { priority: priority + step }));
   const tools = {
     priority: () => h("span.tools", h("output.muted", `priority ${priority}`),
-      sign("−", "Lower priority", by(-1)), sign("+", "Higher priority", by(1))),
+      small("−", by(-1), "Lower priority"), small("+", by(1), "Higher priority")),
     hold: () => button("Hold", act(() => change(id, { held: true }))),
     release: () => button("Release", act(() => change(id, { held: false }))),
     retry: () => button("Retry", act(() => tell(id, "retry"))),
@@ -92,53 +92,42 @@ function actionTools({ id, job, priority, state }, { changed, gone, say }) {
     Object.keys(tools).filter((name) => actions.includes(name)).map((name) => tools[name]()));
 }
 
-/// A job's log: its last part, followed while the job runs. `update(size)` says how large log.txt is; it is read only
-/// while the log is open. undefined: there is none.
+/// A job's log: its last part, followed while the job runs. `show(size)` says how large log.txt is, if there is one; it
+/// is read only while the log is open.
 function logView(id, signal) {
   const text = h("pre.tall", { tabIndex: 0, "aria-label": "Log" });
   const note = h("p.note");
-  const element = h("details", { hidden: true, ontoggle: follow }, h("summary", "Log"), text, note);
-  let decoder;
-  let begin = 0;
-  let end = null;
+  const element = h("details", { ontoggle: read }, h("summary", "Log"), text, note);
   let size = 0;
-  let reading = false;
+  let shown = 0;
 
-  /// What comes after what is there; from the tail on if there is nothing, or a new, shorter log.
-  async function readOn() {
-    const anew = end === null || size < end;
-    if (anew) [begin, end, decoder] = [Math.max(0, size - logTail), Math.max(0, size - logTail), new TextDecoder()];
-    const { data, next } = await getLog(id, end, signal);
-    end = next;
-    size = Math.max(size, next);  // it may have grown since its size was told
-    const more = decoder.decode(data, { stream: true });
-    const atEnd = anew || text.scrollTop + text.clientHeight >= text.scrollHeight - 4;
-    // A part that begins amid the file begins amid a line, perhaps amid a letter.
-    if (anew) text.textContent = begin > 0 ? more.slice(more.indexOf("\n") + 1) : more;
-    else text.append(more);
-    if (atEnd) text.scrollTop = text.scrollHeight;
-  }
-
-  async function follow() {
-    if (!element.open || reading) return;
-    reading = true;
+  async function read() {
+    if (!element.open || size === shown) return;
+    const end = size;
+    shown = end;
+    const begin = Math.max(0, end - logTail);
     try {
-      while (size !== end && !signal.aborted) await readOn();
+      const { data } = await getPart(id, "log.txt", begin, end - begin, signal);
+      if (end !== shown) return;
+      const lines = new TextDecoder().decode(data);
+      const atEnd = text.scrollTop + text.clientHeight >= text.scrollHeight - 4;
+      // A part that begins amid the file begins amid a line, perhaps amid a letter.
+      update(text, begin > 0 ? lines.slice(lines.indexOf("\n") + 1) : lines);
+      if (atEnd) text.scrollTop = text.scrollHeight;
       update(note, begin > 0 && `The last part of it, from ${bytes(begin)} on. `,
         h("a", { href: fileUrl(id, "log.txt") }, "The whole log"));
     } catch (error) {
-      end = null;
+      shown = 0;
       if (!signal.aborted) update(note, error.message);
     }
-    reading = false;
   }
 
   return {
     element,
-    update(next) {
+    show(next) {
       element.hidden = next === undefined;
       size = next ?? 0;
-      follow();
+      read();
     },
   };
 }
@@ -148,58 +137,57 @@ const describe = ({ image, drawable, state }) => ({ alt: "The picture", caption:
   : isTerminal(state.state) ? "This job has no layers.json (written by newer versions); its tone-mapped image.png is shown."
     : "Preview: the latest tone-mapped image.png. Pixel values are available when the job ends.") });
 
-/// The parts of the page that follow the job.
+/// The parts of the page that follow the job, and `read(job)`, which shows its files and reads again those whose size
+/// or state changed.
 function page(id, query, signal) {
-  const view = {
-    title: h("div.title"), notes: h("div.notes"), refusal: h("div"), facts: h("div"), files: h("section"),
-    strategies: h("div"), report: h("section"), source: h("div"), log: logView(id, signal),
-    pictures: jobPictures(query, signal, describe), panel: curvePanel(query), curve: h("div"),
-    say: (text) => replace(view.refusal, text && problem(text)),
-  };
-  view.rows = h("details", h("summary", "Curve as a table"), view.curve);
-  view.element = h("article", view.title, h("p.id", id), view.notes, view.refusal,
-    h("div.columns", h("div", view.pictures.element, view.facts),
-      h("div", h("h2", "Error"), view.panel.element, view.rows, view.files)),
-    view.strategies, view.report, view.source, view.log.element);
-  return view;
-}
-
-/// A function that shows a job's picture, and below all else what strategies brought to it: most jobs have none.
-function pictureReader(view, query, signal) {
+  const [title, notes] = [h("div.title"), h("div.notes")];
+  const [refusal, facts, files, report, source, curve, strategies] = Array.from({ length: 7 }, () => h("div"));
+  const log = logView(id, signal);
+  const pictures = jobPictures(query, signal, describe);
+  const panel = curvePanel(query);
+  const rows = h("details", h("summary", "Curve as a table"), curve);
+  const versions = {};
   let pyramid = null;
-  return async (shown) => {
-    const layers = await view.pictures.show([{ ...shown, name: jobTitle(shown.job) }]);
-    if (layers === null) return;
-    view.strategies.hidden = !layers.names.some((name) => name.includes("."));
-    if (view.strategies.hidden) return;
-    pyramid ??= (await import("./strategies.js")).strategies(query, signal, view.pictures.open);
-    view.strategies.replaceChildren(pyramid.element);
-    pyramid.show(layers);
-  };
-}
 
-/// A function that shows a job's files and reads again those whose size or state changed.
-function fileReader(id, view, query, signal) {
-  const showPicture = pictureReader(view, query, signal);
-  let versions = {};
-  return async (shown) => {
-    const files = Object.fromEntries(shown.files.map((f) => [f.name, f]));
-    const next = Object.fromEntries(shown.files.map((f) => [f.name, `${shown.state.state} ${f.bytes}`]));
-    const changed = (name) => files[name] && next[name] !== versions[name];
-    showPicture(shown).catch((error) => { if (!signal.aborted) view.say(error.message); });
-    view.log.update(files["log.txt"]?.bytes);
-    update(view.files, h("h2", "Files"), fileList(id, shown.files));
-    if (changed("curve.csv") || !files["curve.csv"]) {
-      const curve = files["curve.csv"] ? parseCurve(await getText(id, "curve.csv", signal)) : [];
-      view.panel.show([{ name: integratorName(shown.job.integrator), rows: curve }],
-        shown.progress?.error_metric);
-      view.rows.hidden = curve.length === 0;
-      update(view.curve, curveTable(curve));
-    }
-    if (changed("report.json")) {
-      replace(view.report, reportParts(JSON.parse(await getText(id, "report.json", signal))));
-    }
-    versions = next;
+  async function showPicture(job) {
+    const layers = await pictures.show([{ ...job, name: jobTitle(job.job) }]);
+    // Most jobs have no strategies.
+    if (layers === null || !(pyramid || layers.names.some((name) => name.includes(".")))) return;
+    pyramid ??= (await import("./strategies.js")).strategies(query, signal, pictures.open);
+    replace(strategies, pyramid.element);
+    pyramid.show(layers);
+  }
+
+  /// The text of a file, "" where there is none; null: it is as it was.
+  async function news(name, { state, files: all }) {
+    const file = all.find((f) => f.name === name);
+    const version = `${state.state} ${file?.bytes}`;
+    if (versions[name] === version) return null;
+    const text = file ? await getText(id, name, signal) : "";
+    versions[name] = version;
+    return text;
+  }
+
+  const say = (text) => replace(refusal, text && problem(text));
+  return {
+    title, notes, facts, source, log, say,
+    element: h("article", title, h("p.id", id), notes, refusal,
+      h("div.columns", h("div", pictures.element, facts), h("div", h("h2", "Error"), panel.element, rows, files)),
+      strategies, report, source, log.element),
+    async read(job) {
+      showPicture(job).catch((error) => { if (!signal.aborted) say(error.message); });
+      log.show(job.files.find((f) => f.name === "log.txt")?.bytes);
+      update(files, h("h2", "Files"), fileList(id, job.files));
+      const table = await news("curve.csv", job);
+      if (table !== null) {
+        const points = parseCurve(table);
+        panel.show([{ name: integratorName(job.job.integrator), rows: points }], job.progress?.error_metric);
+        rows.hidden = points.length === 0;
+        update(curve, curveTable(points));
+      }
+      const found = await news("report.json", job);
+      if (found) replace(report, reportParts(JSON.parse(found)));
+    },
   };
 }
 
@@ -216,7 +204,6 @@ export async function show(main, { params, query, signal }) {
   };
   let shown = null;
   let told = 0;  // events
-  const drawFiles = fileReader(id, view, query, signal);
   let stop = null;  // ends the listening, while there is any
 
   function drawStatus() {
@@ -227,12 +214,6 @@ export async function show(main, { params, query, signal }) {
       state.warnings?.map(warning));
     update(view.facts, jobFacts(shown));
     view.element.dataset.state = state.state;
-  }
-
-  /// The job file changes only when its budget does.
-  function drawJob({ job }) {
-    document.title = `${jobTitle(job)} · Lacuna`;
-    replace(view.source, jobSource(id, job));
   }
 
   async function refresh() {
@@ -250,9 +231,11 @@ export async function show(main, { params, query, signal }) {
       view.log.element.open = shown.state.state === "failed";
       replace(main, view.element);
     }
-    if (JSON.stringify(before?.job) !== JSON.stringify(shown.job)) drawJob(shown);
+    document.title = `${jobTitle(shown.job)} · Lacuna`;
+    // The job file changes only when its budget does.
+    if (JSON.stringify(before?.job) !== JSON.stringify(shown.job)) replace(view.source, jobSource(id, shown.job));
     drawStatus();
-    await drawFiles(shown);
+    await view.read(shown);
     const over = isTerminal(shown.state.state);
     if (over) rest();
     else follow();

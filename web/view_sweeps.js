@@ -1,7 +1,7 @@
 // The sweeps, newest first, and one of them: what its runs say about its settings, live while they are done.
 import { cancelSweep, curlLine, getAnswers, getJob, getSweep, getSweeps, poll, removeSweep, tableUrl } from "./api.js";
 import { answersView, summary } from "./answers.js";
-import { action, append, ask, button, copyButton, h, note, problem, remember, replace, table, update } from "./dom.js";
+import { action, append, ask, button, copyButton, h, note, problem, replace, table, update } from "./dom.js";
 import { badge, isTerminal, number, prettyJob, progressBar, when, withoutNulls } from "./format.js";
 import { jobPictures } from "./job_pictures.js";
 import { describe } from "./view_compare.js";
@@ -91,7 +91,7 @@ async function showOne(main, { params: { id }, query, signal }) {
   const remove = () => button("Delete …", action(() => ask("Delete this sweep?",
     "This also deletes all its jobs, with their pictures, curves and reports.", "Delete for good", () => removeSweep(id)),
   () => { location.hash = "#/sweeps"; }, say), danger);
-  const view = answersView(query, () => remember(query), cellPictures(query, signal, say));
+  const view = answersView(query, cellPictures(query, signal, say));
   append(main, title, h("p.id", id), refusal, about, view.element, runs, source);
 
   let took = 0;

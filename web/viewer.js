@@ -5,7 +5,7 @@ import { number, significant, words } from "./format.js";
 import { metrics } from "./job_tables.js";
 import { exposed, lookOf, painter } from "./paint.js";
 import { valuesAt } from "./pixels.js";
-import { listenTo, modeTools, viewerActions, viewerTools } from "./viewer_controls.js";
+import { listenTo, modeTools, viewerActions, viewerTools, viewOf } from "./viewer_controls.js";
 import { colourBar, cropStrip, printPixels, stage } from "./viewer_parts.js";
 import { pointAt, settleCrop, zoomOf } from "./viewport.js";
 
@@ -25,44 +25,31 @@ function rectangle(text) {
   return w > 0 && h > 0 ? { x, y, w, h } : null;
 }
 
-/// `show`: a layer or an error (see choices()); `ev`: exposure of colours, in stops; `stops`: the same
-/// for false colours; `view`: see viewport.js; the rest is for several pictures: `mode`, the `left`
-/// and `right` one, where they are `split`, what the difference is measured `by`, and the `crop` (see
-/// viewport.js). Without a key in the address, the page chooses.
-function readState(query) {
-  const get = (key) => query.get(key);
-  const [x, y] = (get("at") ?? "").split(",");
-  const zoom = finite(get("zoom"));
-  return {
-    show: get("show") ?? "",
-    ev: finite(get("ev")),
-    stops: finite(get("stops")) ?? 0,
-    view: { zoom: zoom > 0 ? zoom : null, x: share(x), y: share(y) },
-    mode: modes.includes(get("mode")) ? get("mode") : "one",
-    left: place(get("left")),
-    right: place(get("right"), 1),
-    split: share(get("split")),
-    by: get("by") ?? "signed",
-    crop: rectangle(get("crop")),
-  };
-}
+/// A viewer's state: how each part is read from the address, and what is written there: nothing (false, null, 0)
+/// where the page chooses so by itself.
+const fields = {
+  /// A layer or an error, see choices().
+  show: [(text) => text ?? "", ({ show }) => show],
+  /// Exposure in stops, of colours and of false colours.
+  ev: [finite, ({ ev }) => ev !== null && short(ev)],
+  stops: [(text) => finite(text) ?? 0, ({ stops }) => stops !== 0 && short(stops)],
+  /// The part that is seen, see viewport.js.
+  zoom: [(text) => (finite(text) > 0 ? finite(text) : null), ({ zoom }) => zoom !== null && short(zoom)],
+  at: [(text) => [0, 1].map((i) => share(text?.split(",")[i])), ({ zoom, at }) => zoom !== null && at.map(short).join()],
+  /// Of several pictures: which, where two are split, what the difference is measured by, and the crop.
+  mode: [(text) => (modes.includes(text) ? text : "one"), ({ mode }) => mode !== "one" && mode],
+  left: [place, ({ left }) => left],
+  right: [(text) => place(text, 1), ({ mode, right }) => mode !== "one" && right !== 1 && String(right)],
+  split: [share, ({ mode, split }) => mode === "split" && split !== 0.5 && short(split)],
+  by: [(text) => text ?? "signed", ({ mode, by }) => mode === "difference" && by !== "signed" && by],
+  crop: [rectangle, ({ mode, crop }) => mode === "crops" && crop && Object.values(crop).join()],
+};
 
-/// Puts into `query` what differs from the page's own choice.
-function writeState({ show, ev, stops, view, mode, left, right, split, by, crop }, query) {
-  const values = {
-    show,
-    ev: ev !== null && short(ev),
-    stops: stops !== 0 && short(stops),
-    zoom: view.zoom !== null && short(view.zoom),
-    at: view.zoom !== null && `${short(view.x)},${short(view.y)}`,
-    mode: mode !== "one" && mode,
-    left: left !== 0 && String(left),
-    right: mode !== "one" && right !== 1 && String(right),
-    split: mode === "split" && split !== 0.5 && short(split),
-    by: mode === "difference" && by !== "signed" && by,
-    crop: mode === "crops" && crop && Object.values(crop).join(),
-  };
-  for (const [key, value] of Object.entries(values)) {
+const readState = (query) => Object.fromEntries(Object.entries(fields).map(([key, [read]]) => [key, read(query.get(key))]));
+
+function writeState(state, query) {
+  for (const [key, [, write]] of Object.entries(fields)) {
+    const value = write(state);
     if (value) query.set(key, value);
     else query.delete(key);
   }
@@ -159,8 +146,9 @@ function drawAll(own) {
   const box = seen.box();
   const size = own.size();
   seen.fitCanvases(box, ratio);
-  const zoom = zoomOf(state.view, size, box);
-  const corner = pointAt(state.view, size, box, 0, 0);
+  const view = viewOf(state);
+  const zoom = zoomOf(view, size, box);
+  const corner = pointAt(view, size, box, 0, 0);
   const look = exposed(content.look, state);
   const parts = partsOf(state, content);
   const imageAt = (u) => (parts.find((p) => u < p.to * box.width) ?? parts.at(-1)).image;
@@ -172,14 +160,14 @@ function drawAll(own) {
 
   // Without a pointer, the pixel in the middle is read.
   const [u, v] = own.pointer ?? [box.width / 2, box.height / 2];
-  const at = pointAt(state.view, size, box, u, v);
+  const at = pointAt(view, size, box, u, v);
   update(own.readout, (own.pointer ? "" : "middle ")
     + pixelText(imageAt(u), content.details, Math.floor(at.x), Math.floor(at.y)));
 
   const stops = { colour: state.ev ?? look.ev, direction: null, false: state.stops }[look.look];
   update(own.tools, viewerTools(actions, { options: own.options, chosen: state.show, zoom: zoom * ratio, stops }));
   update(own.modes, sources.length > 1 && modeTools(actions.change, state, sources.map((s) => s.name)));
-  seen.frame.classList.toggle("zoomed", state.view.zoom !== null || state.mode === "crops");
+  seen.frame.classList.toggle("zoomed", state.zoom !== null || state.mode === "crops");
   seen.frame.dataset.shown = state.show || "picture";
   seen.frame.dataset.zoom = Number(zoom.toPrecision(4));
 }

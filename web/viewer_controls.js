@@ -1,14 +1,18 @@
 // What a reader can do to a viewer, whether by key, pointer or button.
-import { choice, h, select, sign, small } from "./dom.js";
+import { choice, h, select, small } from "./dom.js";
 import { errorKinds } from "./errors.js";
 import { cropBetween, fitZoom, moved, movedCrop, pointAt, scaledCrop, zoomOf, zoomTo } from "./viewport.js";
+
+/// The view (see viewport.js) of a viewer's state.
+export const viewOf = ({ zoom, at: [x, y] }) => ({ zoom, x, y });
 
 const grip = 12;  // CSS pixels on each side of the split line that take hold of it
 
 /// Actions on a viewer that has content: {state, size(), seen, content, options, sources, change(values)}.
 export function viewerActions(own) {
   const { state, change } = own;
-  const view = () => [state.view, own.size(), own.seen.box()];
+  const view = () => [viewOf(state), own.size(), own.seen.box()];
+  const setView = ({ zoom, x, y }) => change({ zoom, at: [x, y] });
   const isColour = () => own.content.look.look === "colour";
   const setExposure = (value) => change(isColour() ? { ev: value } : { stops: value ?? 0 });
   const setSplit = (at) => change({ split: Math.min(1, Math.max(0, at)) });
@@ -17,9 +21,9 @@ export function viewerActions(own) {
     change,
     setExposure,
     expose: (by) => setExposure(by + (isColour() ? state.ev ?? own.content.look.ev : state.stops)),
-    zoomBy: (factor, u, v) => change({ view: zoomTo(...view(), zoomOf(...view()) * factor, u, v) }),
-    fit: () => change({ view: { zoom: null, x: 0.5, y: 0.5 } }),
-    oneToOne: () => change({ view: zoomTo(...view(), 1 / window.devicePixelRatio) }),
+    zoomBy: (factor, u, v) => setView(zoomTo(...view(), zoomOf(...view()) * factor, u, v)),
+    fit: () => setView({ zoom: null, x: 0.5, y: 0.5 }),
+    oneToOne: () => setView(zoomTo(...view(), 1 / window.devicePixelRatio)),
     /// What a drag from (u, v) does, in CSS pixels: it moves the line, chooses a crop, or moves the picture.
     begin(u, v) {
       if (state.mode === "split" && Math.abs(u - state.split * own.seen.box().width) < grip) {
@@ -31,7 +35,7 @@ export function viewerActions(own) {
       }
       let last = [u, v];
       return (...at) => {
-        change({ view: moved(...view(), last[0] - at[0], last[1] - at[1]) });
+        setView(moved(...view(), last[0] - at[0], last[1] - at[1]));
         last = at;
       };
     },
@@ -40,7 +44,7 @@ export function viewerActions(own) {
       const [, size, box] = view();
       if (state.mode === "crops") setCrop(movedCrop(state.crop, right, down, size));
       else if (zoomOf(...view()) <= fitZoom(size, box)) return false;
-      else change({ view: moved(...view(), 0.1 * right * box.width, 0.1 * down * box.height) });
+      else setView(moved(...view(), 0.1 * right * box.width, 0.1 * down * box.height));
       return true;
     },
     /// The line between two pictures, or the size of the crop, by a step.
@@ -126,16 +130,16 @@ export function listenTo(own) {
 export const exposureTools = (value, setExposure) => h("span.exposure.tools",
   h("label", "EV ", h("input", { type: "number", step: "0.1", "aria-label": "Exposure in stops",
     value: Number(value.toFixed(2)), oninput: ({ target }) => target.value !== "" && setExposure(Number(target.value)) })),
-  sign("Auto", "The page's own exposure", () => setExposure(null)));
+  small("Auto", () => setExposure(null), "The page's own exposure"));
 
 /// What is shown, how bright, and how large. `stops` null: what is shown has no exposure.
 export const viewerTools = (actions, { options, chosen, stops, zoom }) => [
   choice("Show", options, chosen, (show) => actions.change({ show })),
   h("span", { hidden: stops === null }, stops !== null && exposureTools(stops, actions.setExposure)),
   h("span.tools",
-    sign("−", "Zoom out", () => actions.zoomBy(0.5)), sign("+", "Zoom in", () => actions.zoomBy(2)),
-    sign("Fit", "Show the whole picture", actions.fit),
-    sign("1:1", "One picture pixel per screen pixel", actions.oneToOne),
+    small("−", () => actions.zoomBy(0.5), "Zoom out"), small("+", () => actions.zoomBy(2), "Zoom in"),
+    small("Fit", actions.fit, "Show the whole picture"),
+    small("1:1", actions.oneToOne, "One picture pixel per screen pixel"),
     h("output.muted", `${Number((100 * zoom).toPrecision(3))} %`)),
   small("Keys", () => document.getElementById("keys").click()),
 ];
