@@ -1,5 +1,4 @@
-// A sweep's answers (docs/sweeps-and-reports.md): which settings give which error in which time, and how sure that is,
-// in words, as a figure and as a table, on the page and in the report.
+// A sweep's answers (docs/sweeps-and-reports.md) in words, as a figure and as a table, on the page and in the report.
 import { axes, errorAt } from "./curve.js";
 import { choice, chooser, h, note, replace, scroll, update, warning } from "./dom.js";
 import { colours, figureBox } from "./figure.js";
@@ -7,16 +6,12 @@ import { number, seconds, significant, thin } from "./format.js";
 import { metrics } from "./job_tables.js";
 
 /// "0.0123 (0.011–0.014)": an estimate with its interval, if it has one.
-function estimateText(estimate, digits = 3) {
+function estimateText(estimate, unit = "") {
   if (!estimate) return "—";
-  const interval = estimate.low === undefined ? ""
-    : ` (${significant(estimate.low, digits)}–${significant(estimate.high, digits)})`;
-  return significant(estimate.value, digits) + interval;
+  const { value, low, high, at_least: least } = estimate;
+  const interval = low === undefined ? "" : ` (${significant(low)}–${significant(high)})`;
+  return `${least ? "> " : ""}${significant(value)}${unit}${interval}`;
 }
-
-const gainText = (gain) => (gain
-  ? `${gain.at_least ? "> " : ""}${significant(gain.value, 3)}×${gain.low === undefined ? ""
-    : ` (${significant(gain.low, 3)}–${significant(gain.high, 3)})`}` : "—");
 
 /// What an interval says of "no difference", 1: "better", "worse", or "" where it cannot tell.
 function verdict(gain) {
@@ -40,16 +35,18 @@ function settingNames(pointers) {
 
 const settingText = (value) => (typeof value === "string" ? value : JSON.stringify(value));
 
-/// The pointers whose values differ among `cells`.
-const varyingSettings = (pointers, cells) => pointers.filter((pointer) =>
-  new Set(cells.map((cell) => JSON.stringify(cell.settings[pointer]))).size > 1);
+/// The settings whose values differ among `cells`: [{pointer, name}].
+function varyingSettings(pointers, cells) {
+  const varying = pointers.filter((pointer) =>
+    new Set(cells.map((cell) => JSON.stringify(cell.settings[pointer]))).size > 1);
+  return settingNames(varying).map((name, i) => ({ name, pointer: varying[i] }));
+}
 
 /// A cell among `cells`, by the settings in which they differ.
 function cellNames(answers, cells) {
-  const pointers = varyingSettings(answers.settings, cells);
-  const names = settingNames(pointers);
-  return new Map(cells.map((cell) => [cell.cell,
-    pointers.map((p, i) => `${names[i]} ${settingText(cell.settings[p])}`).join(", ") || "the job"]));
+  const settings = varyingSettings(answers.settings, cells);
+  return new Map(cells.map(({ cell, settings: values }) => [cell,
+    settings.map(({ pointer, name }) => `${name} ${settingText(values[pointer])}`).join(", ") || "the job"]));
 }
 
 /// The time to an error in words: reached, or not, and by how many runs.
@@ -77,11 +74,9 @@ function biasText(cell) {
   return bias.low > 0 ? `biased: ${estimateText(bias)}` : `none seen (below ${significant(Math.max(bias.high, 0))})`;
 }
 
-/// A few of the cells by name, and how many more.
-function someOf(cells, names, most = 3) {
-  const text = cells.slice(0, most).map((c) => names.get(c)).join("; ");
-  return cells.length > most ? `${text} and ${cells.length - most} more` : text;
-}
+/// Three of the cells by name, and how many more.
+const someOf = (cells, names) => cells.slice(0, 3).map((c) => names.get(c)).join("; ")
+  + (cells.length > 3 ? ` and ${cells.length - 3} more` : "");
 
 const charges = [
   { key: "render", label: "rendering alone" },
@@ -96,7 +91,7 @@ function bandPoints(cell, charge) {
   return cell.curve.map(([time, y, low, high, floor]) => ({ x: time + shift, y, low, high, floor: floor === 1 }));
 }
 
-const count = (n, one, many = `${one}s`) => `${number(n)} ${n === 1 ? one : many}`;
+const count = (n, one) => `${number(n)} ${n === 1 ? one : `${one}s`}`;
 
 const tables = [
   { key: "time", label: "error at equal time" },
@@ -110,7 +105,7 @@ const told = (text, supported) => (supported ? text : h("span.muted",
 
 const gainCell = (gain, supported = true) =>
   h("span", { className: verdict(gain), title: verdict(gain) === "" && gain ? "Not significantly different from 1" : "" },
-    told(gainText(gain), supported));
+    told(estimateText(gain, "×"), supported));
 
 /// A pair of columns for each of `values`, the last first: that is where a reader looks. `list` of a cell has what was
 /// found there, by the names of `what`: {value, gain, head, show(found, runs), gainHead}.
@@ -147,13 +142,10 @@ function runsCell(cell) {
 }
 
 function columnsOf(answers, picture, cells, which) {
-  const pointers = varyingSettings(answers.settings, cells);
-  const names = settingNames(pointers);
-  const settings = pointers.map((p, i) => ({ key: p, head: names[i], title: p,
-    value: (c) => c.settings[p], show: (c) => settingText(c.settings[p]) }));
+  const settings = varyingSettings(answers.settings, cells).map(({ pointer, name }) => ({ key: pointer, head: name,
+    title: pointer, value: (c) => c.settings[pointer], show: (c) => settingText(c.settings[pointer]) }));
   const runs = { key: "runs", head: "runs", value: (c) => c.done, show: runsCell };
-  const rest = { time: timeColumns(picture), error: errorColumns(picture), cost: costColumns }[which];
-  return [...settings, runs, ...rest];
+  return [...settings, runs, ...{ time: timeColumns, error: errorColumns, cost: () => costColumns }[which](picture)];
 }
 
 /// Numbers before words, what is not there last.
@@ -204,8 +196,7 @@ function clipped(curve, from, to) {
   return [at(from), ...curve.filter((p) => p.x > from && p.x < to), at(to)];
 }
 
-/// The figure (see figureSvg) of `cells`, on the time axis of `charge`: the chosen ones with marks and bands, and what
-/// leads when.
+/// A figure of `cells`, on the time axis of `charge`: the chosen ones with marks and bands, and what leads when.
 function figureOf(answers, picture, cells, names, charge, chosen) {
   const points = new Map(cells.map((c) => [c.cell, bandPoints(c, charge.key)]).filter(([, of]) => of.length > 0));
   const index = (cell) => (chosen.includes(cell) ? chosen.indexOf(cell) : undefined);
@@ -232,8 +223,8 @@ function frontList(front, names, charge) {
   }));
 }
 
-/// The answers with their switches. `query` (URLSearchParams) and the address hold every choice. `pictures(picture, cells, names)` gives an element for the chosen cells' pictures, or
-/// null. `show(answers)` draws anew.
+/// The answers with their switches. `query` (URLSearchParams) and the address hold every choice. `pictures(picture,
+/// cells, names)` gives an element for the chosen cells' pictures, or null. `show(answers)` draws anew.
 export function answersView(query, pictures) {
   const [above, below, crops] = [h("div"), h("div"), h("section")];
   const figure = figureBox("No run is done yet.");

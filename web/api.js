@@ -17,16 +17,10 @@ const retryMs = 2000;
 const session = "/api/session";
 
 async function request(path, options = {}) {
-  let response;
-  try {
-    response = await fetch(path, options);
-  } catch (error) {
-    if (options.signal?.aborted) throw error;
-    throw new ApiError(0, {
-      title: "The server does not answer",
-      detail: `No answer from ${location.origin}. Is lacuna-server running?`,
-    });
-  }
+  const response = await fetch(path, options).catch((error) => {
+    throw options.signal?.aborted ? error : new ApiError(0, { title: "The server does not answer",
+      detail: `No answer from ${location.origin}. Is lacuna-server running?` });
+  });
   if (response.ok) return response;
   if (response.status === 401 && path !== session && await signIn()) return request(path, options);
   const fallback = { title: `Error ${response.status}`, detail: response.statusText };
@@ -40,8 +34,7 @@ const send = (method, path, body) => request(path, {
 
 let signingIn = null;
 
-/// Asks for the token of a service that wants one, once for all that wait for it, until it is right or the reader
-/// gives up; gives whether it was right. The service keeps it in a cookie.
+/// Asks for the token, once for all that wait for it, until it is right (true) or the reader gives up.
 function signIn() {
   const field = h("input", { type: "password", required: true, autocomplete: "off" });
   signingIn ??= ask("This service requires a token", [
@@ -54,14 +47,11 @@ export const jobPath = (id) => `/api/jobs/${encodeURIComponent(id)}`;
 const sweepPath = (id) => `/api/sweeps/${encodeURIComponent(id)}`;
 
 /// An address's query without what is empty or 0.
-export const queryOf = (values) =>
-  new URLSearchParams(Object.entries(values).filter(([, value]) => value)).toString();
+export const queryOf = (values) => new URLSearchParams(Object.entries(values).filter(([, value]) => value)).toString();
 
 /// The address of one file of a job. `version` tells the browser that the content has changed.
-export function fileUrl(id, name, version) {
-  const path = `${jobPath(id)}/files/${encodeURIComponent(name)}`;
-  return version === undefined ? path : `${path}?v=${encodeURIComponent(version)}`;
-}
+export const fileUrl = (id, name, version) => `${jobPath(id)}/files/${encodeURIComponent(name)}`
+  + (version === undefined ? "" : `?v=${encodeURIComponent(version)}`);
 
 const json = async (path, signal) => (await request(path, { signal })).json();
 /// [{name, doc, terminal, actions}]: what a job can be, and what may be asked of it then.
@@ -83,8 +73,8 @@ export const tableUrl = (id) => `${sweepPath(id)}/table.csv`;
 export const getFile = (id, name, signal) => request(fileUrl(id, name), { signal, cache: "no-cache" });
 export const getText = async (id, name, signal) => (await getFile(id, name, signal)).text();
 
-/// Up to `bytes` bytes of a file from `offset` on: {data, total, tag}, with the whole file's length and
-/// its ETag, which two versions of it never share. What lies beyond the file's end is empty.
+/// Up to `bytes` bytes of a file from `offset` on, none beyond its end: {data, total, tag}, with its length and its
+/// ETag, which two versions of it never share.
 export async function getPart(id, name, offset, bytes, signal) {
   const headers = { Range: `bytes=${offset}-${offset + bytes - 1}` };
   const response = await request(fileUrl(id, name), { signal, headers, cache: "no-store" }).catch((error) => {
@@ -92,8 +82,8 @@ export async function getPart(id, name, offset, bytes, signal) {
     throw error;
   });
   const data = await response.arrayBuffer();
-  const total = /\d+$/.exec(response.headers.get("Content-Range"))?.[0];
-  return { data, total: Number(total ?? 0), tag: response.headers.get("ETag") };
+  const total = Number(response.headers.get("Content-Range")?.split("/")[1]);
+  return { data, total, tag: response.headers.get("ETag") };
 }
 
 /// `verb`: cancel, retry, or extend with the JSON of a body.
@@ -114,11 +104,11 @@ export async function postJob(text) {
 export const curlLine = (kind, body) => `curl -sS -X POST ${location.origin}/api/${kind} `
   + `-H 'Content-Type: application/json' \\\n  -d ${shellQuote(JSON.stringify(body))}`;
 
+/// Says in the head of the page how the service answers.
 const sayLink = (text) => update(document.getElementById("link-state"), text);
 
-/// `soon(ms)` calls `step` after that time, however often it is asked until then; who is in a greater
-/// hurry goes first. One call ends before the next begins. An unanswered request is said in the head of the
-/// page and tried again; what else `step` throws is `failed(error)`'s.
+/// `soon(ms)` calls `step` after that time, however often it is asked until then; who is in a greater hurry goes first,
+/// and one call ends before the next begins. An unanswered request is tried again; else `failed` gets what `step` throws.
 export function soon(step, failed, signal) {
   let due = Infinity;
   let timer;
@@ -146,9 +136,8 @@ export function soon(step, failed, signal) {
   return call;
 }
 
-/// Calls `step` `ms` (a number, or a function that gives one) from now and after each of its ends, while the
-/// page can be seen, until `signal` is aborted, `step` gives false or the reader does not show the token. What goes
-/// wrong is said in the head of the page.
+/// Calls `step` `ms` (a number, or a function that gives one) from now and after each of its ends, while the page can be
+/// seen, until `signal` is aborted, `step` gives false or the reader does not show the token.
 export function pollOn(step, ms, signal) {
   const next = () => again(typeof ms === "function" ? ms() : ms);
   const again = soon(async () => {
@@ -165,18 +154,14 @@ export async function poll(step, ms, signal) {
   if (await step() !== false) pollOn(step, ms, signal);
 }
 
-/// Listens to events while the page can be seen: `on[name]` gets the data of the events called so,
-/// and their id. `path()` is asked anew whenever the stream is opened. `lost` is called once where
-/// events cannot be had (too many listeners, a service that shuts down or asks for the token): pollOn()
-/// instead. Gives a function that ends it.
+/// Listens to events while the page can be seen: `on[name]` gets the data of the events called so, and their id.
+/// `path()` is asked anew whenever the stream is opened. `lost` is called once where events cannot be had (too many
+/// listeners, a service that shuts down or asks for the token). Gives a function that ends it.
 export function listen(path, on, lost, signal) {
   let source = null;
-  const close = () => {
-    source?.close();
-    source = null;
-  };
-  const open = () => {
-    if (source || document.hidden || signal.aborted) return;
+  function follow() {
+    if (document.hidden) close();
+    if (source || document.hidden) return;
     source = new EventSource(path());
     for (const [name, tellIt] of Object.entries(on)) {
       source.addEventListener(name, (event) => tellIt(event.data && JSON.parse(event.data), event.lastEventId));
@@ -190,15 +175,19 @@ export function listen(path, on, lost, signal) {
         sayLink(noAnswer);
       }
     });
-  };
-  const follow = () => (document.hidden ? close() : open());
-  document.addEventListener("visibilitychange", follow);
-  const stop = () => {
+  }
+  function close() {
+    source?.close();
+    source = null;
+  }
+  function stop() {
     document.removeEventListener("visibilitychange", follow);
     close();
     sayLink("");
-  };
+  }
+  if (signal.aborted) return stop;
+  document.addEventListener("visibilitychange", follow);
   signal.addEventListener("abort", stop);
-  open();
+  follow();
   return stop;
 }

@@ -1,5 +1,4 @@
-// The router: one view per hash route, read when somebody opens it, and with `embed` in the query its curves alone;
-// each is given an AbortSignal that ends everything it started. And the list of keys.
+// The router: a view per hash route, or its curves alone (`embed`), until its AbortSignal. And the list of keys.
 import { ApiError, getStates } from "./api.js";
 import { ask, button, facts, h, problem, replace } from "./dom.js";
 import { states } from "./format.js";

@@ -1,5 +1,4 @@
-// Convergence curves: reading curve.csv, choosing axes, and comparing at equal time or equal error. What the y
-// axis can show, `metrics`, is the program's own table.
+// Convergence curves: reading curve.csv, choosing axes, and comparing at equal time or equal error.
 import { note, table, warning } from "./dom.js";
 import { number, seconds, words } from "./format.js";
 import { metrics } from "./job_tables.js";
@@ -23,8 +22,7 @@ export function parseCurve(text) {
 export const presentMetrics = (rows) =>
   metrics.filter((m) => rows.some((row) => Number.isFinite(row[m.key])));
 
-/// The points of a curve that log axes can show, in order of x. `floor`: the reference's own noise
-/// is reached there (it says nothing about a metric that needs none).
+/// The points of a curve that log axes can show, in order of x. `floor`: the reference's own noise is reached there.
 export function points(rows, x, y) {
   const referenced = metrics.find((m) => m.key === y)?.reference;
   return rows
@@ -33,8 +31,7 @@ export function points(rows, x, y) {
     .sort((a, b) => a.x - b.x);
 }
 
-/// The value of `what` of a curve where the value of `where` is `at`, between the point `after` and the one
-/// before it, interpolated in log-log.
+/// The value of `what` of a curve where `where` is `at`, in log-log, between the point `after` and the one before it.
 function between(curve, after, where, what, at) {
   const [a, b] = [curve[after - 1], curve[after]].map((p) => ({ u: Math.log(p[where]), v: Math.log(p[what]) }));
   return a.u === b.u ? curve[after][what] : Math.exp(a.v + ((Math.log(at) - a.u) / (b.u - a.u)) * (b.v - a.v));
@@ -53,8 +50,7 @@ export function reaches(curve, y) {
   return after > 0 && after < curve.length ? between(curve, after, "y", "x", y) : curve[after]?.x ?? null;
 }
 
-/// The instants at which curves can be compared: the last one that all of them reach, and
-/// 1/2, 1/4, 1/10 and 1/100 of it where all of them have begun. Ascending; empty if they share none.
+/// The last instant that all curves reach, and 1/2, 1/4, 1/10 and 1/100 of it where all of them have begun. Ascending.
 export function commonInstants(curves) {
   const filled = curves.filter((c) => c.length > 0);
   const first = Math.max(...filled.map((c) => c[0].x));
@@ -68,8 +64,7 @@ export function commonError(curves) {
   return filled.length === 0 ? null : Math.max(...filled.map((c) => c.at(-1).y));
 }
 
-/// Two ends of the line of the given slope that lies amid the points (least squares in log-log),
-/// from the first x to the last. Points at the floor do not count. Empty below two points.
+/// Two ends of the line of the given slope that fits the points above the floor in log-log; empty below two points.
 export function slopeLine(curves, slope) {
   const all = curves.flat().filter((p) => !p.floor);
   if (all.length < 2) return [];

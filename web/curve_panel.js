@@ -1,5 +1,4 @@
-// Error curves of jobs: read and followed, named so that no two read the same, and plotted with switches, as the job
-// view and the comparison show them, or alone as a figure.
+// Error curves of jobs: read and followed, named so that no two read the same, and plotted with switches, or alone.
 import { getJob, getText, poll } from "./api.js";
 import { axes, parseCurve, points, presentMetrics } from "./curve.js";
 import { addressOf, choice, chooser, h, problem, replace, small, update } from "./dom.js";
@@ -32,9 +31,8 @@ function reportedMetric(jobs) {
   return reported.size === 1 ? [...reported][0] : null;
 }
 
-/// Reads the jobs, again while any of them goes on, and each time calls `draw` with {jobs, preferred,
-/// problems}: those that could be read, with a `name` and their curve in `rows`, the metric to show, and what is wrong
-/// with the others.
+/// Reads the jobs, again while any of them goes on, and each time calls `draw` with {jobs, preferred, problems}: with
+/// a `name` and their curve in `rows`, the metric to show, and what is wrong with those that could not be read.
 export function followJobs(ids, draw, signal) {
   const read = new Map();
   return poll(async () => {

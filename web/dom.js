@@ -1,9 +1,8 @@
-// Building and changing elements, and asking questions. Text only ever becomes text nodes, so that no name can turn
-// into markup.
+// Building and changing elements, and asking. Text only ever becomes text nodes, so that no name can turn into markup.
 
-/// An element: "tag.class.class", its properties if there are any, and children. Properties whose name
-/// has a dash, and `role`, are set as attributes, the others as properties. Children are nodes, text or
-/// numbers, also in arrays; null, undefined, false and "" are left out.
+/// An element: "tag.class.class", its properties if there are any, and children. Properties whose name has a dash, and
+/// `role`, are set as attributes. Children are nodes, text or numbers, also in arrays; null, undefined, false and "" are
+/// left out.
 export function h(tag, ...content) {
   const [name, ...classes] = tag.split(".");
   const element = document.createElement(name);
@@ -32,8 +31,8 @@ export function replace(element, ...children) {
   append(element, ...children);
 }
 
-/// As replace(), with children made for it alone: what is like what was there stays as it is, with the focus, a
-/// selection and loaded pictures. Children with an `id` are found again by it, others by their place.
+/// As replace(), with children made for it alone: what is like what was there stays, with the focus, a selection and
+/// loaded pictures. Children with an `id` are found again by it, others by their place.
 export function update(element, ...children) {
   const next = document.createElement(element.nodeName);
   append(next, ...children);
@@ -67,9 +66,7 @@ export function patch(old, next) {
     return;
   }
   for (const { name } of [...old.attributes]) if (!next.hasAttribute(name)) old.removeAttribute(name);
-  for (const { name, value } of next.attributes) {
-    if (old.getAttribute(name) !== value) old.setAttribute(name, value);
-  }
+  for (const { name, value } of next.attributes) if (old.getAttribute(name) !== value) old.setAttribute(name, value);
   patchChildren(old, next);
   // What is being typed is the reader's.
   const typed = old === document.activeElement && old.matches("input:not([type=checkbox])");
@@ -81,8 +78,7 @@ export const facts = (pairs, className = "facts") => h("dl", { className }, pair
   .filter(([, value]) => value !== "" && value !== null && value !== undefined)
   .map(([name, value]) => h("div", h("dt", name), h("dd", value))));
 
-/// The address of this view with `query` (URLSearchParams), and giving it that without a new step in the
-/// history.
+/// The address of this view with `query` (URLSearchParams), and giving it that without a new step in the history.
 export const addressOf = (query) =>
   `${(location.hash || "#/").split("?")[0]}?${query}`.replaceAll("%2C", ",").replace(/\?$/, "");
 export const remember = (query) => history.replaceState(null, "", addressOf(query));
@@ -111,18 +107,11 @@ export const action = (call, then, say) => async () => {
 };
 
 /// A button that copies `text` and says so.
-export function copyButton(text) {
-  const element = small("Copy", async () => {
-    try {
-      await navigator.clipboard.writeText(text);
-      element.textContent = "Copied";
-    } catch {
-      element.textContent = "Not allowed here: select and copy";
-    }
-    setTimeout(() => { element.textContent = "Copy"; }, 2000);
-  });
-  return element;
-}
+export const copyButton = (text) => small("Copy", async ({ target }) => {
+  const copied = await navigator.clipboard?.writeText(text).then(() => true, () => false);
+  target.textContent = copied ? "Copied" : "Not allowed here: select and copy";
+  setTimeout(() => { target.textContent = "Copy"; }, 2000);
+});
 
 /// What went wrong, or what is doubtful, in words.
 export const problem = (text) => h("p.problem", { role: "alert" }, text);
@@ -144,8 +133,7 @@ export const choice = (label, ...given) => h("span.choice", h("label", { htmlFor
 /// A place for a table that may be wider than the page.
 export const scroll = (label, ...content) => h("div.scroll", { tabIndex: 0, role: "group", "aria-label": label }, content);
 
-/// A table: `columns` are headings, rows arrays of what h() takes as children; the first cell of a row
-/// heads it, and with `numbers` the others are numbers.
+/// A table: rows of what h() takes as children; the first cell heads a row, and with `numbers` the others are numbers.
 export function table(columns, rows, numbers = false) {
   const cell = (tag, scope) => (content, i) => h(i === 0 && scope === "row" ? "th" : tag, {
     scope: i === 0 || tag === "th" ? scope : null, className: numbers && i > 0 ? "number" : "" }, content);
@@ -154,9 +142,9 @@ export function table(columns, rows, numbers = false) {
     h("tbody", rows.map((row) => h("tr", row.map(cell("td", "row")))))));
 }
 
-/// Asks with `content` (what h() takes as children), in a window of its own: nothing else can be reached until it is
-/// answered. The answer `yes` does `act()`: what it throws is said, and the question stays. Without a `yes` there is
-/// only something to read. Gives whether the answer was yes.
+/// Asks with `content` (what h() takes as children), in a window that must be answered first. The answer `yes` does
+/// `act()`: what it throws is said, and the question stays. Without a `yes` there is only something to read. Gives
+/// whether the answer was yes.
 export function ask(title, content, yes = null, act = () => {}) {
   return new Promise((resolve) => {
     const trouble = h("div");

@@ -1,5 +1,5 @@
-// Errors by pixel: what a job's errors are the means of. A pixel's error is the mean over its channels, so the mean
-// over the pixels is the error of the whole picture. A worker of the page's own computes them, so that it stays quick.
+// Errors by pixel, computed by a worker. A pixel's error is the mean over its channels, so the mean over the pixels is
+// the error of the whole picture.
 import { extent } from "./pixels.js";
 
 /// x is the estimate, r the reference. `metric` is the key in curve.csv of the mean over the picture.
@@ -18,8 +18,7 @@ export const kindOf = (key) => errorKinds.find((kind) => kind.key === key);
 /// The power of two not above `largest`: it brings values into the range of a float.
 const powerScale = (largest) => (largest === 0 ? 1 : 2 ** Math.floor(Math.log2(largest)));
 
-/// A picture of one channel with the errors of `image` against `reference`, and their `mean`; `key` is
-/// a kind's. It takes its time, so pages leave it to error_worker.js.
+/// A picture of one channel with the errors (`key` is a kind's) of `image` against `reference`, and their `mean`.
 export function errorPicture(image, reference, key) {
   if (image.data.length !== reference.data.length) throw new Error("These pictures differ in size.");
   const [x, r] = [image.data, reference.data];

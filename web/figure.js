@@ -38,8 +38,7 @@ function tickLabel(value) {
     : value.toExponential().replace("e+", "e");
 }
 
-/// An axis with room for `values`, from the place `from` to `to`: `at(value)` is a place, and of the
-/// `ticks` no two are nearer to one another than `apart`.
+/// An axis with room for `values`: `at(value)` is a place, and no two of the `ticks` are nearer than `apart`.
 function logAxis(values, from, to, apart) {
   const [min, max] = [Math.min(...values) / 1.15, Math.max(...values) * 1.15];
   const at = (v) => from + ((to - from) * Math.log(v / min)) / Math.log(max / min);
@@ -178,9 +177,8 @@ export function figureSvg({ curves, front = [], axis, metric }, width = 720) {
   ...names.parts);
 }
 
-/// A place for a figure, as wide as there is room. `draw(what)` shows what figureSvg() makes of it, or the words
-/// `empty`, and again when the width changes. `saves(what, name)` are buttons that save it: `what` is in their text,
-/// `name()` is the file's name without its ending.
+/// A place for a figure, as wide as there is room. `draw(what)` shows what figureSvg() makes of it, or the words `empty`.
+/// `saves(what, name)` are buttons that save it: `what` is in their text, `name()` is the file's name.
 export function figureBox(empty) {
   const box = h("div.plot");
   let shown = null;

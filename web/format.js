@@ -97,8 +97,7 @@ export const shellQuote = (text) => `'${text.replaceAll("'", "'\\''")}'`;
 export const withoutNulls = (job) =>
   JSON.parse(JSON.stringify(job, (key, value) => (value === null ? undefined : value)));
 
-/// {name: {terminal, actions}}: the states of a job and what may be asked of it in each, as the service says
-/// (see getStates); app.js fills it before any view is shown.
+/// The states of a job as the service tells (see getStates), by name; app.js fills it before any view is shown.
 export const states = {};
 
 /// done, failed, cancelled: nothing happens any more, unless it is asked for.
@@ -109,12 +108,9 @@ export const badge = (state, phase) =>
   h("span", { className: `badge ${state}` }, phase && state === "running" ? `${state} · ${phase}` : state);
 
 /// A bar with what remains beside it. There is none once nothing more happens.
-export function progressBar(label, state, progress) {
-  const bar = progress && !isTerminal(state);
-  return h("span", { className: progress ? "progress" : "progress empty" },
-    bar && h("progress", { max: 1, value: progress.share, "aria-label": label }),
-    h("span.remaining", progress && remaining(state, progress)));
-}
+export const progressBar = (label, state, progress) => (!progress ? h("span.progress.empty") : h("span.progress",
+  !isTerminal(state) && h("progress", { max: 1, value: progress.share, "aria-label": label }),
+  h("span.remaining", remaining(state, progress))));
 
 function remaining(state, progress) {
   if (isTerminal(state)) return `${seconds(progress.seconds)}, ${number(progress.iteration)} iterations`;
@@ -124,5 +120,4 @@ function remaining(state, progress) {
 
 /// "relmse 0.0123"; empty if there is none yet.
 export const currentError = (progress) =>
-  (progress && Number.isFinite(progress.error)
-    ? `${progress.error_metric} ${number(progress.error)}` : "");
+  (Number.isFinite(progress?.error) ? `${progress.error_metric} ${number(progress.error)}` : "");

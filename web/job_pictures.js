@@ -7,9 +7,8 @@ import { viewer } from "./viewer.js";
 
 const tries = 4;
 
-/// The layers of job `id` as they stand: {width, height, names, read(...names)}; `read` gives a picture
-/// (see pixels.js) for each name, all of one generation, and the same ones when asked again, unless `forget(name)`
-/// let one go.
+/// The layers of a job: {width, height, names, read(...names)}; `read` gives a picture (see pixels.js) for each name,
+/// all of one generation, and the same ones when asked again, unless `forget(name)` let one go.
 async function openLayers(id, signal) {
   async function readIndex() {
     const response = await getFile(id, "layers.json", signal);
@@ -61,10 +60,9 @@ async function openLayers(id, signal) {
   return { width, height, names: index.layers.map((l) => l.name), read, forget: (name) => kept.delete(name) };
 }
 
-/// `describe(entry)` gives {alt, caption} of an image.png: `entry` is a job with its `image`, its `layers` if it has
-/// any, and `drawable`: whether values can be shown here. `show(jobs)` takes those of GET /api/jobs/ID, each with a
-/// `name`; it gives the first one's layers where others are shown than before, else null. `open(key)` takes the reader
-/// to a layer. The viewer's state is in `query`.
+/// `show(jobs)` takes those of GET /api/jobs/ID, each with a `name`; it gives the first one's layers where others are
+/// shown than before, else null. `describe(job)` gives {alt, caption} of an image.png, from its `image`, its `layers` if
+/// it has any, and whether values are `drawable` here. `open(key)` leads to a layer. `query` has the viewer's state.
 export function jobPictures(query, signal, describe) {
   const place = h("div");
   const apart = h("div.gallery");

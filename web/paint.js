@@ -1,5 +1,5 @@
-// How values become colours, and drawing pictures of numbers with WebGL 2: exposure, sRGB, false colour; nearest
-// pixels when magnified, means of pixels when made smaller (of values, before they become colours).
+// How values become colours, and drawing pictures of numbers with WebGL 2: nearest pixels when magnified, means of
+// values when made smaller.
 
 /// As image.png is exposed: the 95th percentile of luminance becomes 0.8 of white. In stops, to a tenth.
 const automatic = ({ extent: [, bright] }) => (bright > 0 ? Math.round(10 * Math.log2(0.8 / bright)) / 10 : 0);
@@ -22,8 +22,7 @@ function range(images) {
     : [Math.min(0, Number.isFinite(low) ? low : 0), Math.max(1, high)];
 }
 
-/// What does not depend on the reader's choice: {look, ev} or {look, map, low, high}, for pictures
-/// that are to be shown alike.
+/// What does not depend on the reader's choice, for pictures to be shown alike: {look, ev} or {look, map, low, high}.
 export function lookOf(images) {
   const [{ channels, kind }] = images;
   if (channels.length === 1) {
@@ -46,8 +45,7 @@ export function exposed(look, { ev, stops }) {
 
 export const steps = 256;  // of a colour map
 
-/// Colour maps for pictures of one channel, in OKLCH, where equal steps of the value look like equal steps
-/// of lightness. Each is a function from [0, 1] to lightness, chroma and hue.
+/// Lightness, chroma and hue (OKLCH) for a value in [0, 1]: equal steps of it look like equal steps of lightness.
 const colourMaps = {
   /// Dark violet over red to pale yellow: for values from 0, or from a least one, up.
   sequential: (t) => [0.14 + 0.82 * t, 0.04 + 0.13 * Math.sin(Math.PI * t), 285 + 175 * t],
@@ -61,7 +59,7 @@ const colourMaps = {
 
 const made = {};
 
-/// The map called `name`: `steps` colours, RGBA in bytes, sRGB.
+/// The map called `name`: `bytes`, RGBA, sRGB, and the same as a `picture`, of `steps` colours.
 export function colourMap(name) {
   if (made[name]) return made[name];
   const context = new OffscreenCanvas(steps, 1).getContext("2d", { willReadFrequently: true });
@@ -69,7 +67,9 @@ export function colourMap(name) {
     context.fillStyle = `oklch(${colourMaps[name](i / (steps - 1)).join(" ")})`;
     context.fillRect(i, 0, 1, 1);
   }
-  made[name] = context.getImageData(0, 0, steps, 1).data;
+  const bytes = context.getImageData(0, 0, steps, 1).data;
+  const data = Float32Array.from(bytes, (value) => value / 255).filter((_, i) => i % 4 < 3);
+  made[name] = { bytes, picture: { width: steps, height: 1, channels: ["R", "G", "B"], data } };
   return made[name];
 }
 
@@ -143,31 +143,23 @@ function link(gl) {
 }
 
 /// A texture that is only ever fetched by pixel, which floats need no extension for.
-function upload(gl, width, height, [internal, format, type], data) {
+function upload(gl, { width, height, channels, data }) {
+  const largest = gl.getParameter(gl.MAX_TEXTURE_SIZE);
+  if (Math.max(width, height) > largest) throw new Error(`This browser draws at most ${largest} pixels a side.`);
+  const name = channels.length === 1 ? "R" : "RGB";
+  const [bits, type, values] = data instanceof Float32Array ? [32, gl.FLOAT, data]
+    : [16, gl.HALF_FLOAT, new Uint16Array(data.buffer)];
   const texture = gl.createTexture();
   gl.bindTexture(gl.TEXTURE_2D, texture);
   gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-  gl.texImage2D(gl.TEXTURE_2D, 0, internal, width, height, 0, format, type, data);
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl[`${name}${bits}F`], width, height, 0, name === "R" ? gl.RED : gl.RGB, type, values);
   for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
     gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
   }
   return texture;
 }
 
-function uploadPicture(gl, { width, height, channels, data }) {
-  const largest = gl.getParameter(gl.MAX_TEXTURE_SIZE);
-  if (Math.max(width, height) > largest) {
-    throw new Error(`This browser draws at most ${largest} pixels a side.`);
-  }
-  const one = channels.length === 1;
-  const format = one ? gl.RED : gl.RGB;
-  return data instanceof Float32Array
-    ? upload(gl, width, height, [one ? gl.R32F : gl.RGB32F, format, gl.FLOAT], data)
-    : upload(gl, width, height, [one ? gl.R16F : gl.RGB16F, format, gl.HALF_FLOAT], new Uint16Array(data.buffer));
-}
-
-/// What `make()` gives; null where the context is lost, before or meanwhile: all it says then is beside the
-/// point, be it an error.
+/// What `make()` gives; null where the context is lost, before or meanwhile: no error that it then throws counts.
 function unlessLost(gl, make) {
   if (gl.isContextLost()) return null;
   try {
@@ -182,14 +174,12 @@ function unlessLost(gl, make) {
 /// What one context holds; made anew when the context was lost.
 function resources(gl) {
   const program = link(gl);
-  const maps = Object.fromEntries(Object.keys(colourMaps).map((name) => [name,
-    upload(gl, steps, 1, [gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE], colourMap(name))]));
   const uniform = Object.fromEntries(["picture", "colours", "corner", "pace", "height", "look", "gain", "offset"]
     .map((name) => [name, gl.getUniformLocation(program, name)]));
   gl.useProgram(program);
   gl.uniform1i(uniform.picture, 0);
   gl.uniform1i(uniform.colours, 1);
-  return { maps, uniform, textures: new Map() };
+  return { uniform, textures: new Map() };
 }
 
 /// A painter on `canvas`; null where the browser has no WebGL 2. `draw(parts, place)` paints: a part
@@ -207,56 +197,54 @@ export function painter(canvas, onrestored) {
     if (held) onrestored();
   });
 
-  /// Those that are kept go together when they are too many.
+  /// The one that was not used for longest goes when they are too many.
   function texture(image) {
     const { textures } = held;
-    if (!textures.has(image) && textures.size >= keptTextures) {
-      textures.forEach((old) => gl.deleteTexture(old));
-      textures.clear();
+    const found = textures.get(image) ?? upload(gl, image);
+    textures.delete(image);
+    textures.set(image, found);
+    if (textures.size > keptTextures) {
+      const [[oldest, old]] = textures;
+      gl.deleteTexture(old);
+      textures.delete(oldest);
     }
-    if (!textures.has(image)) textures.set(image, uploadPicture(gl, image));
-    return textures.get(image);
-  }
-
-  function drawPart({ image, look, gain, offset, map, from, to }) {
-    const { uniform, maps } = held;
-    gl.activeTexture(gl.TEXTURE1);
-    gl.bindTexture(gl.TEXTURE_2D, maps[map ?? "sequential"]);
-    gl.activeTexture(gl.TEXTURE0);
-    gl.bindTexture(gl.TEXTURE_2D, texture(image));
-    gl.uniform1i(uniform.look, looks[look]);
-    gl.uniform1f(uniform.gain, gain * image.scale);
-    gl.uniform1f(uniform.offset, offset);
-    const left = Math.round(from * canvas.width);
-    gl.scissor(left, 0, Math.max(0, Math.round(to * canvas.width) - left), canvas.height);
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    return found;
   }
 
   function drawAll(parts, { x, y, pace }) {
+    const { uniform } = held;
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.disable(gl.SCISSOR_TEST);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT);
     gl.enable(gl.SCISSOR_TEST);
-    gl.uniform2f(held.uniform.corner, x, y);
-    gl.uniform1f(held.uniform.pace, pace);
-    gl.uniform1f(held.uniform.height, canvas.height);
-    parts.forEach(drawPart);
+    gl.uniform2f(uniform.corner, x, y);
+    gl.uniform1f(uniform.pace, pace);
+    gl.uniform1f(uniform.height, canvas.height);
+    for (const { image, look, gain, offset, map = "sequential", from, to } of parts) {
+      [image, colourMap(map).picture].map(texture).forEach((one, unit) => {
+        gl.activeTexture(gl.TEXTURE0 + unit);
+        gl.bindTexture(gl.TEXTURE_2D, one);
+      });
+      gl.uniform1i(uniform.look, looks[look]);
+      gl.uniform1f(uniform.gain, gain * image.scale);
+      gl.uniform1f(uniform.offset, offset);
+      const left = Math.round(from * canvas.width);
+      gl.scissor(left, 0, Math.max(0, Math.round(to * canvas.width) - left), canvas.height);
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+    }
     return true;
   }
 
   return {
     draw: (parts, place) => held !== null && unlessLost(gl, () => drawAll(parts, place)) !== null,
-    release() {
-      gl.getExtension("WEBGL_lose_context")?.loseContext();
-    },
+    release: () => gl.getExtension("WEBGL_lose_context")?.loseContext(),
   };
 }
 
-/// A function that draws `pictures`, [{image, canvas, wide}], alike (see look.js): each `wide` CSS pixels wide,
-/// of which one has `ratio` of the screen's. One a frame, fetched in the next, because many at once, or
-/// waiting for one, would be a pause. The next call ends the one before; one that lost its context is made again
-/// with a new one.
+/// A function that draws `pictures`, [{image, canvas, wide}], alike: each `wide` CSS pixels wide, of which one has
+/// `ratio` of the screen's. One a frame, fetched in the next, because many at once, or waiting for one, would be a pause.
+/// The next call ends the one before; one that lost its context is made again with a new one.
 export function stripPainter(signal) {
   const hidden = new OffscreenCanvas(1, 1);
   let paint = null;

@@ -1,7 +1,6 @@
-// What a picture of numbers is: {width, height, channels, data, scale}. `data` holds half floats or
-// floats, interleaved, the top row first; a value is its number times `scale`, in double, so that a scale
-// outside a float's range loses nothing. Pictures to be shown have their `extent`, too; those of errors,
-// the key of their `kind` and their `mean`.
+// A picture of numbers is {width, height, channels, data, scale}: `data` holds half floats or floats, interleaved, the
+// top row first; a value is its number times `scale`, in double, so that no scale loses anything. Pictures to be shown
+// have their `extent`, too; those of errors, the key of their `kind` and their `mean`.
 
 /// The values of the pixel (x, y), one a channel; null outside the picture.
 export function valuesAt({ width, height, channels, data, scale }, x, y) {
@@ -24,8 +23,7 @@ export function cut(image, { x, y, w, h }) {
 // Enough for a percentile, and few enough that a large picture is no pause.
 const most = 1 << 14;
 
-/// The values below which the `shares` of what `of(r, g, b)` gives lie, over the finite ones that are
-/// not 0; large pictures are asked at evenly spread pixels. null: there are none.
+/// The values below which `shares` of what `of(r, g, b)` gives lie, over finite ones but 0; null: there are none.
 function quantiles({ width, height, channels, data, scale }, shares, of) {
   const n = channels.length;
   const step = n * Math.max(1, Math.floor((width * height) / most));
@@ -38,9 +36,8 @@ function quantiles({ width, height, channels, data, scale }, shares, of) {
   return shares.map((q) => sorted[Math.floor((found.length - 1) * q)] ?? null);
 }
 
-/// What decides how bright a picture is shown, [low, high], null where there is nothing: of colours, no
-/// low and the 95th percentile of luminance; of errors, up to 99.5 % of all pixels; of other single
-/// channels, the least and the largest value.
+/// The values that decide how bright a picture is shown, [low, high], null where there is nothing: of colours, the 95th
+/// percentile of luminance; of errors, 99.5 % of all pixels; of other single channels, the least and the largest.
 export function extent(image) {
   if (image.channels.length > 1) {
     return [null, ...quantiles(image, [0.95], (r, g, b) => Math.max(0, 0.2126 * r + 0.7152 * g + 0.0722 * b))];
@@ -51,8 +48,8 @@ export function extent(image) {
 
 const budget = 8;  // ms of a frame
 
-/// `image` (see pixels.js) with blocks of `n` by `n` pixels averaged, those at its right and lower border over what
-/// there is; and the `mean` of all its values. A large one takes several frames, so that none is a pause.
+/// A picture with blocks of `n` by `n` pixels averaged, and the `mean` of all its values. A large one takes several
+/// frames, so that none is a pause.
 export async function reduced({ width, height, channels, data, scale }, n) {
   const c = channels.length;
   const [w, h] = [width, height].map((size) => Math.ceil(size / n));

@@ -1,5 +1,4 @@
-// report.json as readable tables, whatever keys it has (units come from the keys), as bars of time and rays, and the race
-// of a job that chose its method: who ran, how it stood, and which parts of the picture each won.
+// report.json as tables, whatever keys it has, as bars of time and rays, and the race of a job that chose its method.
 import { facts, h, note, table } from "./dom.js";
 import { colours, curveColour, figureSvg, svg } from "./figure.js";
 import { number, quantity, seconds, words } from "./format.js";
@@ -40,8 +39,7 @@ function painted(element, i) {
   return element;
 }
 
-/// The numbers in `object` whose name `belongs`, the largest first, as shares of a bar, with a legend that says the same
-/// in words.
+/// The numbers in `object` whose name `belongs`, the largest first, as shares of a bar with a legend.
 function stackedBar(title, object, show, belongs) {
   const parts = leaves(object ?? {}).map(({ keys, value }) => ({ name: leafName(keys), value }))
     .filter(({ name, value }) => typeof value === "number" && belongs(name)).sort((a, b) => b.value - a.value);

@@ -1,5 +1,4 @@
-// What differs between jobs, and how a number of their reports grows with another, or with a setting that they do not
-// share.
+// What differs between jobs, and how a number of their reports grows with a setting or another number.
 import { choice, chooser, h, note, update } from "./dom.js";
 import { figureBox } from "./figure.js";
 import { significant, words } from "./format.js";
@@ -10,8 +9,7 @@ import { leaves } from "./report.js";
 const settings = (job) => new Map(leaves(job).map(({ keys, value }) =>
   [`/${keys.toReversed().join("/")}`, JSON.stringify(value)]));
 
-/// The pointers whose values are not the same in all jobs' files, each with a value per job ("" where a
-/// job has none).
+/// The pointers whose values are not the same in all jobs' files, each with a value per job ("": there is none).
 export function differences(files) {
   const all = files.map(settings);
   return [...new Set(all.flatMap((one) => [...one.keys()]))]
@@ -19,8 +17,7 @@ export function differences(files) {
     .filter(({ values }) => values.some((value) => value !== values[0]));
 }
 
-/// Whether jobs that differ there may estimate different pictures. A setting that this page has never heard of
-/// counts: left out is only what the program's table names.
+/// Whether jobs that differ there may estimate different pictures; a setting that the page has never heard of counts.
 const isOfThePicture = (pointer) => inTheLight.includes(pointer) || !notInAReference.includes(pointer.split("/")[1]);
 
 /// Those of `differences` that make a comparison of errors doubtful.

@@ -1,5 +1,4 @@
-// What each strategy and each resampling distribution brought to a job's picture: the former as a pyramid, a row
-// a path length, the latter side by side, all at one exposure.
+// What each strategy brought to a job's picture, as a pyramid with a row a path length, and each distribution.
 import { choice, h, note, problem, remember, replace, scroll, update } from "./dom.js";
 import { number, significant, thin } from "./format.js";
 import { exposed, lookOf, stripPainter } from "./paint.js";
@@ -9,8 +8,7 @@ import { exposureTools } from "./viewer_controls.js";
 const sets = [{ key: "strategies", label: "weighted" }, { key: "strategies_unweighted", label: "before weighting" }];
 const unweighted = sets[1].key;
 
-/// The layers that are shown here: {name, set, text}, and of strategies {s, t, edges, merged}. Vertices that are merged
-/// are vertex s of one walk and t of the other.
+/// The layers that are shown here: {name, set, text}, and of strategies {s, t, edges, merged}: vertex s is vertex t.
 function partsOf(names) {
   return names.map((name) => {
     const [, set, of, s, t, merged] = /^(\w+)\.(s(\d+)t(\d+)(m?)$|.+)/.exec(name) ?? [];
@@ -38,8 +36,8 @@ function pyramid(cells) {
     cells.map((c) => place(c.element, lengths.indexOf(c.edges), column(c)))));
 }
 
-/// `show(layers)` takes those of a job (see openLayers), which are read once this is in sight; `open(name)` is called
-/// with the one that the reader wants to look at. What is chosen is in `query`.
+/// `show(layers)` takes those of a job, read once this is in sight; `open(name)` is called with the one that the reader
+/// wants to look at. What is chosen is in `query`.
 export function strategies(query, signal, open) {
   const paint = stripPainter(signal);
   const [title, tools, about, shares, say, body] = [h("h2"), h("div.tools"), note(), note(), h("div"), h("div")];

@@ -69,8 +69,7 @@ function askBudget(id, { budget }) {
   () => tell(id, "extend", JSON.stringify({ budget: JSON.parse(field.value) })));
 }
 
-/// What can be done to a job (GET /api/jobs/ID) as it stands: a button each. `changed()` is called after it was
-/// changed, `gone()` after it was deleted, and `say(text)` where the service refused.
+/// What can be done to a job: a button each. `changed()` and `gone()` are called after it, `say(text)` if refused.
 function actionTools({ id, job, priority, state }, { changed, gone, say }) {
   const act = (call, then = changed) => action(call, then, say);
   const danger = { className: "danger" };
@@ -92,8 +91,7 @@ function actionTools({ id, job, priority, state }, { changed, gone, say }) {
     Object.keys(tools).filter((name) => actions.includes(name)).map((name) => tools[name]()));
 }
 
-/// A job's log: its last part, followed while the job runs. `show(size)` says how large log.txt is, if there is one; it
-/// is read only while the log is open.
+/// A job's log: its last part, followed while it is open. `show(size)`: how large log.txt is, if there is one.
 function logView(id, signal) {
   const text = h("pre.tall", { tabIndex: 0, "aria-label": "Log" });
   const note = h("p.note");
@@ -137,8 +135,7 @@ const describe = ({ image, drawable, state }) => ({ alt: "The picture", caption:
   : isTerminal(state.state) ? "This job has no layers.json (written by newer versions); its tone-mapped image.png is shown."
     : "Preview: the latest tone-mapped image.png. Pixel values are available when the job ends.") });
 
-/// The parts of the page that follow the job, and `read(job)`, which shows its files and reads again those whose size
-/// or state changed.
+/// The parts of the page that follow the job; `read(job)` shows its files, and those anew whose size or state changed.
 function page(id, query, signal) {
   const [title, notes] = [h("div.title"), h("div.notes")];
   const [refusal, facts, files, report, source, curve, strategies] = Array.from({ length: 7 }, () => h("div"));

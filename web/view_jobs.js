@@ -28,8 +28,7 @@ const standing = (job) => `${job.state} ${job.obstacle ? "waits" : ""}`;
 // The narrow layout shows rows as grids, and browsers then forget that they are a table's.
 const cell = (className, ...children) => h("td", { role: "cell", className }, children);
 
-/// A small picture of a job, loaded when it comes into sight; it changes with the state, and while the job runs with
-/// time.
+/// A small picture of a job, loaded when it comes into sight; it changes with the state, and with time while it runs.
 function thumbnail({ id, state, picture, progress }) {
   const age = isTerminal(state) ? "" : Math.floor((progress?.seconds ?? 0) / thumbSeconds);
   return h("span.thumb", picture && h("img", { loading: "lazy", decoding: "async", alt: "",

@@ -25,8 +25,7 @@ function rectangle(text) {
   return w > 0 && h > 0 ? { x, y, w, h } : null;
 }
 
-/// A viewer's state: how each part is read from the address, and what is written there: nothing (false, null, 0)
-/// where the page chooses so by itself.
+/// A viewer's state: how each part is read from the address, and what is written there, if the page chose otherwise.
 const fields = {
   /// A layer or an error, see choices().
   show: [(text) => text ?? "", ({ show }) => show],
@@ -90,10 +89,9 @@ function settle(state, sources) {
   return options;
 }
 
-/// {images, shown, look, details}: the pictures of the sources that are needed; the one shown where
-/// there is one; how they look; and further pictures, with names, whose values are read with those of
-/// the one shown. The first is always needed, because its exposure is that of all; all of them are
-/// where they share a range of values.
+/// {images, shown, look, details}: the pictures that are needed; the one shown; how they look; and others, with names,
+/// whose values are read with it. The first is always needed, because its exposure is that of all; all of them are where
+/// they share a range of values.
 async function contentOf(state, sources) {
   const read = (i) => pictureOf(sources[i], state.show);
   const first = await read(0);
@@ -111,17 +109,14 @@ async function contentOf(state, sources) {
 }
 
 /// The parts of the frame from left to right: one picture, or two beside the line.
-function partsOf(state, { images, shown }) {
-  if (state.mode !== "split") return [{ image: shown, from: 0, to: 1 }];
-  return [{ image: images[state.left], from: 0, to: state.split },
-    { image: images[state.right], from: state.split, to: 1 }];
-}
+const partsOf = ({ mode, left, right, split }, { images, shown }) => (mode !== "split" ? [{ image: shown, from: 0, to: 1 }]
+  : [{ image: images[left], from: 0, to: split }, { image: images[right], from: split, to: 1 }]);
 
 /// "R 0.123  G 0.2  B 0.3"
 function valueText(image, x, y) {
-  const names = image.channels.length > 1 ? image.channels.map((name) => `${name} `) : [""];
-  return valuesAt(image, x, y)
-    .map((v, c) => names[c] + (Number.isFinite(v) ? significant(v, 4) : v)).join("  ");
+  const several = image.channels.length > 1;
+  return valuesAt(image, x, y).map((v, c) =>
+    (several ? `${image.channels[c]} ` : "") + (Number.isFinite(v) ? significant(v, 4) : v)).join("  ");
 }
 
 /// A pixel's values, and a line for each of the details.
@@ -174,10 +169,9 @@ function drawAll(own) {
 
 const contentKeys = ["show", "mode", "left", "right", "by"];
 
-/// A viewer whose state is in `query` (URLSearchParams), and in the address with it.
-/// `show(sources)` takes [{name, layers, seconds, error}] (see openLayers; how long was rendered and what
-/// the error is, in words) of one size, all shown alike; `open(key)` chooses what of them, and
-/// takes the reader there. null: there is no WebGL 2 here.
+/// A viewer whose state is in `query` (URLSearchParams) and the address; null: there is no WebGL 2 here. `show(sources)`
+/// takes [{name, layers, seconds, error}] (see openLayers; render time, the error in words) of one size, all shown alike;
+/// `open(key)` chooses what of them, and takes the reader there.
 export function viewer(query, signal) {
   const seen = stage();
   const state = readState(query);

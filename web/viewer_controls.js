@@ -89,8 +89,7 @@ function press(key, actions) {
   return key in plain && plain[key]();
 }
 
-/// Keys, wheel and pointer over a viewer's frame. The wheel zooms once the frame has the focus, so that the page
-/// scrolls past it. Until there is content nothing moves.
+/// Keys, wheel and pointer over a viewer's frame. The wheel zooms only with the focus, so that the page scrolls past it.
 export function listenTo(own) {
   const { actions, seen: { frame } } = own;
   let drag = null;

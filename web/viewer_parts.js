@@ -1,5 +1,4 @@
-// What of a viewer can be seen: the picture's canvases, the values printed in magnified pixels, the colour bar, and
-// the crops.
+// What of a viewer can be seen: canvases, values printed in magnified pixels, the colour bar, and the crops.
 import { aboutTimes } from "./curve.js";
 import { h, note, replace, update } from "./dom.js";
 import { seconds, significant } from "./format.js";
@@ -17,25 +16,21 @@ export function stage() {
   return {
     frame, canvas, text,
     /// The line of a state that splits, and the crop of one that has crops.
-    mark(state, corner, zoom) {
-      line.hidden = state.mode !== "split";
-      line.style.left = `${100 * state.split}%`;
-      crop.hidden = state.mode !== "crops";
+    mark({ mode, split, crop: chosen }, corner, zoom) {
+      line.hidden = mode !== "split";
+      line.style.left = `${100 * split}%`;
+      crop.hidden = mode !== "crops";
       if (crop.hidden) return;
-      const { x, y, w, h: high } = state.crop;
+      const { x, y, w, h: high } = chosen;
       const place = { left: (x - corner.x) * zoom, top: (y - corner.y) * zoom, width: w * zoom, height: high * zoom };
       for (const [name, value] of Object.entries(place)) crop.style[name] = `${value}px`;
     },
     box: () => ({ width: Math.max(1, frame.clientWidth), height: Math.max(1, frame.clientHeight) }),
-    setSize({ width, height }) {
-      frame.style.setProperty("--aspect", Math.min(4, Math.max(0.5, width / height)));
-    },
+    setSize: ({ width, height }) => frame.style.setProperty("--aspect", Math.min(4, Math.max(0.5, width / height))),
     /// The canvases' size follows the frame's, in the screen's own pixels.
-    fitCanvases({ width, height }, ratio) {
-      const size = [Math.round(width * ratio), Math.round(height * ratio)];
-      for (const one of [canvas, text]) {
-        if (one.width !== size[0] || one.height !== size[1]) [one.width, one.height] = size;
-      }
+    fitCanvases(box, ratio) {
+      const [width, height] = [box.width, box.height].map((n) => Math.round(n * ratio));
+      for (const one of [canvas, text]) if (one.width !== width || one.height !== height) Object.assign(one, { width, height });
     },
   };
 }
@@ -76,8 +71,7 @@ export function printPixels(canvas, box, ratio, { corner, zoom, size, imageAt })
   }
 }
 
-/// A colour map with the values it stands for. `show(look, title)`: a look of false colours (see paint.js); others
-/// hide it.
+/// A colour map with the values it stands for; `show(look, title)` hides it where colours are not false.
 export function colourBar() {
   const canvas = h("canvas", { width: steps, height: 1, role: "img" });
   const title = h("span.bar-title");
@@ -92,13 +86,12 @@ export function colourBar() {
       update(title, text);
       update(labels, values.map((value) => h("span", value)));
       canvas.ariaLabel = `Colours from ${values[0]} to ${values[4]}`;
-      canvas.getContext("2d").putImageData(new ImageData(colourMap(look.map), steps, 1), 0, 0);
+      canvas.getContext("2d").putImageData(new ImageData(colourMap(look.map).bytes, steps, 1), 0, 0);
     },
   };
 }
 
-/// One crop of several jobs side by side, at one exposure, with each job's time and error.
-/// `show(state, sources, images, look, ratio)`: the state's crop of all images, where it asks for crops;
+/// One crop of several jobs side by side, at one exposure, with each job's time and error, where the state asks for it;
 /// `ratio` is how many of the screen's pixels make a CSS pixel.
 export function cropStrip(signal) {
   const draw = stripPainter(signal);

@@ -33,8 +33,7 @@ function held(view, size, box) {
   };
 }
 
-/// The view after zooming to `zoom` with the point under (u, v) staying where it is. Zooming out ends
-/// with the whole picture.
+/// The view after zooming with the point under (u, v) staying where it is; zooming out ends with the whole picture.
 export function zoomTo(view, size, box, zoom, u = box.width / 2, v = box.height / 2) {
   const fit = fitZoom(size, box);
   if (zoom <= Math.min(1, fit)) return { zoom: fit <= 1 ? null : 1, x: 0.5, y: 0.5 };
