@@ -1,6 +1,6 @@
 // A sweep's answers (docs/sweeps-and-reports.md) in words, as a figure and as a table, on the page and in the report.
 import { axes, errorAt } from "./curve.js";
-import { choice, chooser, h, note, replace, scroll, update, warning } from "./dom.js";
+import { choice, chooser, h, note, replace, scroll, small, update, warning } from "./dom.js";
 import { colours, figureBox } from "./figure.js";
 import { number, seconds, significant, thin } from "./format.js";
 import { metrics } from "./job_tables.js";
@@ -14,22 +14,15 @@ function estimateText(estimate, unit = "") {
 }
 
 /// What an interval says of "no difference", 1: "better", "worse", or "" where it cannot tell.
-function verdict(gain) {
-  if (!gain) return "";
-  if (gain.at_least) return gain.value > 1 ? "better" : "";
-  if (gain.low > 1) return "better";
-  return gain.high < 1 ? "worse" : "";
-}
+const verdict = (gain) => ((gain?.at_least ? gain.value : gain?.low) > 1 ? "better"
+  : !gain?.at_least && gain?.high < 1 ? "worse" : "");
 
 /// The last part of each pointer, longer where two end alike.
 function settingNames(pointers) {
-  const ending = (pointer, parts) => pointer.split("/").slice(1).slice(-parts).join("/");
   return pointers.map((pointer) => {
-    for (let parts = 1; ; parts += 1) {
-      const name = ending(pointer, parts);
-      const alone = pointers.every((other) => other === pointer || ending(other, parts) !== name);
-      if (alone || `/${name}` === pointer) return name;
-    }
+    const parts = pointer.split("/").slice(1);
+    const endings = parts.map((_, i) => parts.slice(-1 - i).join("/"));
+    return endings.find((name) => pointers.filter((p) => p.endsWith(`/${name}`)).length === 1) ?? endings.at(-1);
   });
 }
 
@@ -49,19 +42,16 @@ function cellNames(answers, cells) {
     settings.map(({ pointer, name }) => `${name} ${settingText(values[pointer])}`).join(", ") || "the job"]));
 }
 
-/// The time to an error in words: reached, or not, and by how many runs.
 function timeText(to, runs) {
   if (to.time) return `${to.at_most ? "≤ " : ""}${estimateText(to.time)}${thin}s`;
   if (to.reached > 0) return `reached by ${to.reached} of ${runs} runs`;
   return to.at_least ? `not reached in ${significant(to.at_least)}${thin}s` : "not reached";
 }
 
-const errorText = (at, runs) => (at.error
-  ? estimateText(at.error) : `measured in ${at.reached} of ${runs} runs`);
+const errorText = (at, runs) => (at.error ? estimateText(at.error) : `measured in ${at.reached} of ${runs} runs`);
 
-/// When a preparation has paid, in words.
-function paysText(pays, known) {
-  if (!known) return "not known";
+function paysText({ pays: { cold: pays }, preparation }) {
+  if (preparation.cold === null) return "not known";
   if (!pays) return "not within the measured time";
   return pays.from_the_start ? "at once" : `after ${significant(pays.seconds)}${thin}s`;
 }
@@ -74,7 +64,6 @@ function biasText(cell) {
   return bias.low > 0 ? `biased: ${estimateText(bias)}` : `none seen (below ${significant(Math.max(bias.high, 0))})`;
 }
 
-/// Three of the cells by name, and how many more.
 const someOf = (cells, names) => cells.slice(0, 3).map((c) => names.get(c)).join("; ")
   + (cells.length > 3 ? ` and ${cells.length - 3} more` : "");
 
@@ -103,8 +92,8 @@ const tables = [
 const told = (text, supported) => (supported ? text : h("span.muted",
   { title: "At the reference's own noise: not supported" }, `(${text})`));
 
-const gainCell = (gain, supported = true) =>
-  h("span", { className: verdict(gain), title: verdict(gain) === "" && gain ? "Not significantly different from 1" : "" },
+const gainCell = (gain, supported = true) => h("span", { className: verdict(gain),
+  title: gain && verdict(gain) === "" ? "Not significantly different from 1" : "" },
     told(estimateText(gain, "×"), supported));
 
 /// A pair of columns for each of `values`, the last first: that is where a reader looks. `list` of a cell has what was
@@ -127,10 +116,11 @@ const costColumns = [
     show: (c) => estimateText(c.efficiency) },
   { key: "better", head: "× the baseline", value: (c) => -(c.efficiency_gain?.value ?? 0),
     show: (c) => gainCell(c.efficiency_gain) },
-  { key: "cold", head: "preparation, cold", value: (c) => c.preparation.cold, show: (c) => seconds(c.preparation.cold) },
+  { key: "cold", head: "preparation, cold", value: (c) => c.preparation.cold,
+    show: (c) => seconds(c.preparation.cold) },
   { key: "warm", head: "warm", value: (c) => c.preparation.warm, show: (c) => seconds(c.preparation.warm) },
   { key: "pays", head: "pays (cold)", value: (c) => c.pays.cold?.seconds,
-    show: (c) => (c.baseline === null || c.baseline === c.cell ? "—" : paysText(c.pays.cold, c.preparation.cold !== null)) },
+    show: (c) => (c.baseline === null || c.baseline === c.cell ? "—" : paysText(c)) },
   { key: "bias", head: "bias²", value: (c) => (c.bias_between_runs ?? c.bias_squared)?.value, show: biasText },
   { key: "variance", head: "variance", value: (c) => c.variance?.value, show: (c) => estimateText(c.variance) },
 ];
@@ -166,8 +156,8 @@ function answersTable({ answers, picture, cells, which, query, chosen, choose })
   const sorted = by ? cells.toSorted((a, b) => turn * order(by.value(a), by.value(b)) || a.cell - b.cell) : cells;
   const heads = columns.map((column) => h("th", { scope: "col", title: column.title ?? "",
     "aria-sort": column === by ? (turn > 0 ? "ascending" : "descending") : null },
-  h("button.small", { type: "button", onclick: () => choose("sort")(asked === column.key ? `-${column.key}` : column.key) },
-    column.head, column === by && (turn > 0 ? " ▲" : " ▼"))));
+  small([column.head, column === by && (turn > 0 ? " ▲" : " ▼")],
+    () => choose("sort")(asked === column.key ? `-${column.key}` : column.key))));
   const tick = (cell, on) => {
     if (on) chosen.add(cell);
     else chosen.delete(cell);
@@ -210,9 +200,8 @@ function figureOf(answers, picture, cells, names, charge, chosen) {
   };
 }
 
-/// The front in sentences: who leads from when to when.
 function frontList(front, names, charge) {
-  if (front.length === 0) return note(charge.key === "render" ? "No run is done yet." : "No run measured its preparation.");
+  if (front.length === 0) return note(charge === "render" ? "No run is done yet." : "No run measured its preparation.");
   return h("ol.front", front.map((part) => {
     const doubts = [
       part.tied.length > 0 && `tied with ${someOf(part.tied, names)}`,
@@ -256,7 +245,7 @@ export function answersView(query, pictures) {
       }), choice("Time", charges, charge.key, choose("charge"))),
       several && note("Only cells that estimate the same picture are compared: of one scene, camera and resolution, "
         + "against one reference."),
-      h("section", h("h2", "Lowest error"), frontList(picture.front[charge.key], names, charge)));
+      h("section", h("h2", "Lowest error"), frontList(picture.front[charge.key], names, charge.key)));
     figure.draw(figureOf(answers, picture, cells, names, charge, chosen));
     update(below, h("h2", "All cells"), h("div.switches", choice("Table", tables, which.key, choose("table"))),
       answersTable({ answers, picture, cells, which: which.key, query, chosen: new Set(chosen), choose }),

@@ -45,7 +45,6 @@ function signIn() {
 
 export const jobPath = (id) => `/api/jobs/${encodeURIComponent(id)}`;
 const sweepPath = (id) => `/api/sweeps/${encodeURIComponent(id)}`;
-
 /// An address's query without what is empty or 0.
 export const queryOf = (values) => new URLSearchParams(Object.entries(values).filter(([, value]) => value)).toString();
 
@@ -108,7 +107,7 @@ export const curlLine = (kind, body) => `curl -sS -X POST ${location.origin}/api
 const sayLink = (text) => update(document.getElementById("link-state"), text);
 
 /// `soon(ms)` calls `step` after that time, however often it is asked until then; who is in a greater hurry goes first,
-/// and one call ends before the next begins. An unanswered request is tried again; else `failed` gets what `step` throws.
+/// one call ends before the next begins. An unanswered request is tried again; `failed` gets what else `step` throws.
 export function soon(step, failed, signal) {
   let due = Infinity;
   let timer;
@@ -136,7 +135,7 @@ export function soon(step, failed, signal) {
   return call;
 }
 
-/// Calls `step` `ms` (a number, or a function that gives one) from now and after each of its ends, while the page can be
+/// Calls `step` `ms` (a number, or a function that gives one) from now and after each of its ends, while the page is
 /// seen, until `signal` is aborted, `step` gives false or the reader does not show the token.
 export function pollOn(step, ms, signal) {
   const next = () => again(typeof ms === "function" ? ms() : ms);
@@ -154,9 +153,8 @@ export async function poll(step, ms, signal) {
   if (await step() !== false) pollOn(step, ms, signal);
 }
 
-/// Listens to events while the page can be seen: `on[name]` gets the data of the events called so, and their id.
-/// `path()` is asked anew whenever the stream is opened. `lost` is called once where events cannot be had (too many
-/// listeners, a service that shuts down or asks for the token). Gives a function that ends it.
+/// Listens to events while the page can be seen: `on[name](data, id)`. `path()` is asked whenever the stream is opened,
+/// `lost` called where no events can be had (many listeners, shutdown, no token). Gives a function that ends it.
 export function listen(path, on, lost, signal) {
   let source = null;
   function follow() {
@@ -168,12 +166,9 @@ export function listen(path, on, lost, signal) {
     }
     source.addEventListener("open", () => sayLink(""));
     source.addEventListener("error", () => {
-      if (source?.readyState === EventSource.CLOSED) {
-        stop();
-        lost();
-      } else {
-        sayLink(noAnswer);
-      }
+      if (source?.readyState !== EventSource.CLOSED) return sayLink(noAnswer);
+      stop();
+      return lost();
     });
   }
   function close() {

@@ -25,32 +25,25 @@ const main = document.getElementById("main");
 let leaving = new AbortController();
 let shown = false;
 
-/// "#/compare?jobs=a,b" -> the path and its query.
-function address() {
-  const [path, query = ""] = location.hash.replace(/^#/, "").split("?", 2);
-  return { path: path || "/", query: new URLSearchParams(query) };
-}
-
 /// What every view needs to know of the service, asked once.
 async function learn() {
   if (Object.keys(states).length > 0) return;
   for (const { name, ...state } of await getStates()) states[name] = state;
 }
 
-function explain(error) {
-  const known = error instanceof ApiError;
-  return h("section", { role: "alert" },
-    h("h1", known ? error.title : "This view failed"),
-    problem(known ? error.message : String(error)),
-    h("p.tools", button("Try again", route), h("a", { href: "#/" }, "All jobs")));
-}
+const explain = (error) => h("section", { role: "alert" },
+  h("h1", error.title ?? "This view failed"),
+  problem(error instanceof ApiError ? error.message : String(error)),
+  h("p.tools", button("Try again", route), h("a", { href: "#/" }, "All jobs")));
 
 async function route() {
   leaving.abort();
   document.querySelector("dialog")?.close();
   leaving = new AbortController();
   const { signal } = leaving;
-  const { path, query } = address();
+  const [hash, search] = location.hash.slice(1).split("?", 2);  // "#/compare?jobs=a,b"
+  const path = hash || "/";
+  const query = new URLSearchParams(search);
   const match = routes.find(({ pattern }) => pattern.test(path));
   const alone = Boolean(query.has("embed") && match?.alone);
   document.body.classList.toggle("embed", alone);

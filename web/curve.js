@@ -3,7 +3,6 @@ import { note, table, warning } from "./dom.js";
 import { number, seconds, words } from "./format.js";
 import { metrics } from "./job_tables.js";
 
-/// What the x axis can show.
 export const axes = [
   { key: "seconds", label: "render time", unit: "s" },
   { key: "cpu_seconds", label: "CPU time / threads", unit: "s" },
@@ -19,8 +18,7 @@ export function parseCurve(text) {
 }
 
 /// The metrics with at least one value in a curve.
-export const presentMetrics = (rows) =>
-  metrics.filter((m) => rows.some((row) => Number.isFinite(row[m.key])));
+export const presentMetrics = (rows) => metrics.filter((m) => rows.some((row) => Number.isFinite(row[m.key])));
 
 /// The points of a curve that log axes can show, in order of x. `floor`: the reference's own noise is reached there.
 export function points(rows, x, y) {
@@ -53,15 +51,14 @@ export function reaches(curve, y) {
 /// The last instant that all curves reach, and 1/2, 1/4, 1/10 and 1/100 of it where all of them have begun. Ascending.
 export function commonInstants(curves) {
   const filled = curves.filter((c) => c.length > 0);
-  const first = Math.max(...filled.map((c) => c[0].x));
-  const last = Math.min(...filled.map((c) => c.at(-1).x));
+  const [first, last] = [Math.max(...filled.map((c) => c[0].x)), Math.min(...filled.map((c) => c.at(-1).x))];
   return [100, 10, 4, 2, 1].map((n) => last / n).filter((x) => x >= first);
 }
 
 /// The smallest error that all curves reach and keep; null if there are none.
 export function commonError(curves) {
-  const filled = curves.filter((c) => c.length > 0);
-  return filled.length === 0 ? null : Math.max(...filled.map((c) => c.at(-1).y));
+  const last = curves.filter((c) => c.length > 0).map((c) => c.at(-1).y);
+  return last.length === 0 ? null : Math.max(...last);
 }
 
 /// Two ends of the line of the given slope that fits the points above the floor in log-log; empty below two points.
@@ -70,8 +67,7 @@ export function slopeLine(curves, slope) {
   if (all.length < 2) return [];
   const offset = all.reduce((sum, p) => sum + Math.log(p.y) - slope * Math.log(p.x), 0) / all.length;
   const xs = curves.flat().map((p) => p.x);
-  return [Math.min(...xs), Math.max(...xs)]
-    .map((x) => ({ x, y: Math.exp(offset + slope * Math.log(x)) }));
+  return [Math.min(...xs), Math.max(...xs)].map((x) => ({ x, y: Math.exp(offset + slope * Math.log(x)) }));
 }
 
 /// A curve's rows as a table, for reading and for those who cannot see the plot: all columns that have a value.

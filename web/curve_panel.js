@@ -18,17 +18,12 @@ async function readJob(id, before, signal) {
   return { ...job, rows, report };
 }
 
-/// "label, integrator"; where two would read the same, with the end of the id.
-function names(jobs) {
+/// Jobs with a `name`, "label, integrator"; where two would read the same, with the end of the id.
+function named(jobs) {
   const plain = jobs.map(({ job }) => `${jobTitle(job)}, ${integratorName(job.integrator)}`);
-  return jobs.map(({ id }, i) => (plain.filter((n) => n === plain[i]).length > 1
-    ? `${plain[i]} (${id.split("-").pop()})` : plain[i]));
-}
-
-/// The error metric in which all jobs report their progress; null if they differ.
-function reportedMetric(jobs) {
-  const reported = new Set(jobs.map(({ progress }) => progress?.error_metric));
-  return reported.size === 1 ? [...reported][0] : null;
+  const alone = (name) => plain.indexOf(name) === plain.lastIndexOf(name);
+  return jobs.map((job, i) => (
+    { ...job, name: alone(plain[i]) ? plain[i] : `${plain[i]} (${job.id.split("-").pop()})` }));
 }
 
 /// Reads the jobs, again while any of them goes on, and each time calls `draw` with {jobs, preferred, problems}: with
@@ -40,9 +35,9 @@ export function followJobs(ids, draw, signal) {
     signal.throwIfAborted();
     results.forEach(({ value }, i) => value && read.set(ids[i], value));
     const jobs = ids.map((id) => read.get(id)).filter(Boolean);
-    const labels = names(jobs);
+    const reported = new Set(jobs.map(({ progress }) => progress?.error_metric));
     draw({
-      jobs: jobs.map((job, i) => ({ ...job, name: labels[i] })), preferred: reportedMetric(jobs),
+      jobs: named(jobs), preferred: reported.size === 1 ? [...reported][0] : null,
       problems: results.flatMap(({ reason }, i) => (reason ? [`${ids[i]}: ${reason.message}`] : [])),
     });
     return jobs.some((job) => !isTerminal(job.state.state));
@@ -51,9 +46,8 @@ export function followJobs(ids, draw, signal) {
 
 export const idsOf = (query) => [...new Set((query.get("jobs") ?? "").split(",").filter(Boolean))];
 
-/// A plot and its switches. `query` (URLSearchParams) holds the choice, `x` and `y`; the switches change
-/// it and the address. `show(series, preferred)` draws of [{name, rows}] what `query` says: else the metric `preferred`,
-/// else the first that all of them have. `drawn(axis, metric)` is told what is shown: no metric if there is nothing.
+/// A plot and its switches; the choice, `x` and `y`, is in `query` and the address. `show(series, preferred)` draws of
+/// [{name, rows}] that, else the metric `preferred`, else the first that all have; `drawn(axis, metric)` is told which.
 export function curvePanel(query, drawn = () => {}) {
   const figure = figureBox("No errors have been measured.");
   const [what, switches] = [h("span.switches"), h("div.switches")];

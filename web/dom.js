@@ -1,8 +1,8 @@
 // Building and changing elements, and asking. Text only ever becomes text nodes, so that no name can turn into markup.
 
 /// An element: "tag.class.class", its properties if there are any, and children. Properties whose name has a dash, and
-/// `role`, are set as attributes. Children are nodes, text or numbers, also in arrays; null, undefined, false and "" are
-/// left out.
+/// `role`, are set as attributes. Children are nodes, text or numbers, also in arrays; undefined, null, false and ""
+/// are left out.
 export function h(tag, ...content) {
   const [name, ...classes] = tag.split(".");
   const element = document.createElement(name);
@@ -17,7 +17,6 @@ export function h(tag, ...content) {
   return element;
 }
 
-/// Appends what h() takes as children.
 export function append(element, ...children) {
   for (const child of children.flat(Infinity)) {
     if (child === undefined || child === null || child === false || child === "") continue;
@@ -106,6 +105,10 @@ export const action = (call, then, say) => async () => {
   }
 };
 
+/// Where there is nothing yet: what it would be, and the command that makes the first.
+export const emptyPlace = (title, text, command) => h("section.empty", h("h2", title), h("p", text),
+  h("pre", { tabIndex: 0 }, command), copyButton(command));
+
 /// A button that copies `text` and says so.
 export const copyButton = (text) => small("Copy", async ({ target }) => {
   const copied = await navigator.clipboard?.writeText(text).then(() => true, () => false);
@@ -113,7 +116,6 @@ export const copyButton = (text) => small("Copy", async ({ target }) => {
   setTimeout(() => { target.textContent = "Copy"; }, 2000);
 });
 
-/// What went wrong, or what is doubtful, in words.
 export const problem = (text) => h("p.problem", { role: "alert" }, text);
 export const warning = (text) => h("p.warning", text);
 export const note = (...content) => h("p.note", content);
@@ -131,7 +133,7 @@ export const choice = (label, ...given) => h("span.choice", h("label", { htmlFor
   select(...given, { id: `choose-${label}` }));
 
 /// A place for a table that may be wider than the page.
-export const scroll = (label, ...content) => h("div.scroll", { tabIndex: 0, role: "group", "aria-label": label }, content);
+export const scroll = (label, content) => h("div.scroll", { tabIndex: 0, role: "group", "aria-label": label }, content);
 
 /// A table: rows of what h() takes as children; the first cell heads a row, and with `numbers` the others are numbers.
 export function table(columns, rows, numbers = false) {
@@ -142,9 +144,8 @@ export function table(columns, rows, numbers = false) {
     h("tbody", rows.map((row) => h("tr", row.map(cell("td", "row")))))));
 }
 
-/// Asks with `content` (what h() takes as children), in a window that must be answered first. The answer `yes` does
-/// `act()`: what it throws is said, and the question stays. Without a `yes` there is only something to read. Gives
-/// whether the answer was yes.
+/// Asks with `content` (as for h()), in a window that must be answered first; gives whether the answer was `yes`, for
+/// which `act()` is done: what it throws is said, and the question stays. Without a `yes` there is only a text to read.
 export function ask(title, content, yes = null, act = () => {}) {
   return new Promise((resolve) => {
     const trouble = h("div");

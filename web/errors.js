@@ -5,18 +5,13 @@ import { extent } from "./pixels.js";
 /// x is the estimate, r the reference. `metric` is the key in curve.csv of the mean over the picture.
 export const errorKinds = [
   { key: "signed", label: "signed error", formula: "x − r", of: (x, r) => x - r },
-  { key: "absolute", label: "absolute error", formula: "|x − r|", metric: "mae",
-    of: (x, r) => Math.abs(x - r) },
-  { key: "squared", label: "squared error", formula: "(x − r)²", metric: "mse",
-    of: (x, r) => (x - r) ** 2 },
+  { key: "absolute", label: "absolute error", formula: "|x − r|", metric: "mae", of: (x, r) => Math.abs(x - r) },
+  { key: "squared", label: "squared error", formula: "(x − r)²", metric: "mse", of: (x, r) => (x - r) ** 2 },
   { key: "relative", label: "relative squared error", formula: "(x − r)² / (r² + 0.01)",
     metric: "relmse", of: (x, r) => (x - r) ** 2 / (r * r + 0.01) },
 ];
 
 export const kindOf = (key) => errorKinds.find((kind) => kind.key === key);
-
-/// The power of two not above `largest`: it brings values into the range of a float.
-const powerScale = (largest) => (largest === 0 ? 1 : 2 ** Math.floor(Math.log2(largest)));
 
 /// A picture of one channel with the errors (`key` is a kind's) of `image` against `reference`, and their `mean`.
 export function errorPicture(image, reference, key) {
@@ -34,17 +29,15 @@ export function errorPicture(image, reference, key) {
     sum += values[i];
     largest = Math.max(largest, Math.abs(values[i]) || 0);
   }
-  const scale = powerScale(Number.isFinite(largest) ? largest : 1);
+  // A power of two brings values into the range of a float.
+  const scale = largest > 0 && Number.isFinite(largest) ? 2 ** Math.floor(Math.log2(largest)) : 1;
   const data = Float32Array.from(values, (value) => value / scale);
-  const picture = {
-    width: image.width, height: image.height, channels: [label], scale, data,
-    mean: sum / values.length, kind: key,
-  };
+  const picture = { width: image.width, height: image.height, channels: [label], scale, data, mean: sum / values.length,
+    kind: key };
   return { ...picture, extent: extent(picture) };
 }
 
 let worker = null;
-
 function compute(image, reference, kind) {
   worker ??= new Worker("/error_worker.js", { type: "module" });
   const { port1, port2 } = new MessageChannel();
@@ -62,12 +55,11 @@ const kept = new WeakMap();
 
 /// Errors of one picture against another: a promise of what errorPicture() gives for the key `kind`.
 export function errorOf(image, reference, kind) {
-  if (!kept.has(image)) kept.set(image, new Map());
+  if (kept.get(image)?.reference !== reference) kept.set(image, { reference });
   const known = kept.get(image);
-  const found = known.get(kind);
-  if (found?.reference === reference) return found.picture;
-  const picture = compute(image, reference, kind);
-  known.set(kind, { reference, picture });
-  picture.catch(() => known.delete(kind));
-  return picture;
+  known[kind] ??= compute(image, reference, kind).catch((error) => {
+    delete known[kind];
+    throw error;
+  });
+  return known[kind];
 }

@@ -6,7 +6,6 @@ import { number } from "./format.js";
 const size = { left: 68, right: 14, top: 14, plot: 360, below: 52, line: 18, column: 320, letter: 6.6 };
 const narrowest = 280;
 const enlarged = 3;  // pixels of a saved PNG for one of the SVG
-
 export const colours = 8;
 /// The i-th curve's colour, as style.css names it; after eight they come again.
 export const curveColour = (i) => `var(--curve-${i % colours})`;
@@ -57,12 +56,8 @@ export function svg(tag, attributes, ...children) {
   return element;
 }
 
-/// "render time (s)".
 const axisTitle = ({ label, unit }) => (unit ? `${label} (${unit})` : label);
-
-const text = (content, attributes) =>
-  svg("text", { fill: "var(--text)", "font-size": 12, ...attributes }, content);
-
+const text = (content, attributes) => svg("text", { fill: "var(--text)", "font-size": 12, ...attributes }, content);
 const joined = (places) => places.map(([x, y]) => `${x.toFixed(2)},${y.toFixed(2)}`).join(" ");
 const line = (places, stroke, more = {}) =>
   svg("polyline", { points: joined(places), fill: "none", stroke, "stroke-width": 1.5, ...more });
@@ -87,7 +82,6 @@ function mark(i, [x, y], hollow) {
   return shape;
 }
 
-/// Axes with their ticks, lines and titles.
 function frame(width, x, y, axis, metric) {
   const [right, bottom] = [width - size.right, size.top + size.plot];
   const middle = size.top + size.plot / 2;
@@ -99,8 +93,7 @@ function frame(width, x, y, axis, metric) {
       text(tickLabel(v), { x: size.left - 7, y: (y.at(v) + 4).toFixed(1), "text-anchor": "end" })]),
     line([[size.left, size.top], [size.left, bottom], [right, bottom]], muted),
     text(axisTitle(axis), { x: (size.left + right) / 2, y: bottom + 38, "text-anchor": "middle" }),
-    text(axisTitle(metric), { x: 14, y: middle, "text-anchor": "middle",
-      transform: `rotate(-90 14 ${middle})` })];
+    text(axisTitle(metric), { x: 14, y: middle, "text-anchor": "middle", transform: `rotate(-90 14 ${middle})` })];
 }
 
 /// The entries [label, symbol(place)] in columns below the plot, names that are too long cut short, and their height.
@@ -149,9 +142,8 @@ function entriesOf({ curves, front = [], metric }, slope) {
   ].filter(Boolean);
 }
 
-/// `curves` are [{name, points: [{x, y, low, high, floor}], index}]: one with an index has that colour, marks, and a
-/// band where its points have an interval; others are thin. `front` are curves [[{x, y}]] to be drawn thick. `axis`
-/// and `metric` are {label, unit}; a metric with a `slope` gets a line that has it. null if there is nothing to show.
+/// `curves` are [{name, points: [{x, y, low, high, floor}], index}]: thin, or with an index in its colour with marks
+/// and a band. `front` are lists of points, drawn thick; `axis` and `metric` are {label, unit, slope}. null: empty.
 export function figureSvg({ curves, front = [], axis, metric }, width = 720) {
   const all = curves.flatMap((c) => c.points);
   if (all.length === 0) return null;
@@ -177,7 +169,7 @@ export function figureSvg({ curves, front = [], axis, metric }, width = 720) {
   ...names.parts);
 }
 
-/// A place for a figure, as wide as there is room. `draw(what)` shows what figureSvg() makes of it, or the words `empty`.
+/// A place for a figure, as wide as there is room. `draw(what)` shows what figureSvg() makes of it, else `empty`.
 /// `saves(what, name)` are buttons that save it: `what` is in their text, `name()` is the file's name.
 export function figureBox(empty) {
   const box = h("div.plot");
@@ -215,22 +207,13 @@ async function pngOf(source, { width, height }) {
   return new Promise((resolve) => { canvas.toBlob(resolve, "image/png"); });
 }
 
-/// Gives every part of a figure the colours that the page's names stand for now.
-function resolveColours(figure) {
-  figure.setAttribute("hidden", "");
-  document.body.append(figure);
-  for (const part of figure.querySelectorAll("[fill], [stroke]")) {
-    const { fill, stroke } = getComputedStyle(part);
-    for (const [name, value] of Object.entries({ fill, stroke })) part.setAttribute(name, value);
-  }
-  figure.remove();
-  figure.removeAttribute("hidden");
-}
-
-/// Saves an SVG element as `name`, whose ending, svg or png, says how.
+/// Saves an SVG element, in the page's colours of now, as `name`, whose ending, svg or png, says how.
 async function saveFigure(figure, name) {
-  resolveColours(figure);
-  const source = new XMLSerializer().serializeToString(figure);
+  const page = getComputedStyle(document.documentElement);
+  const now = matchMedia("(prefers-color-scheme: dark)").matches ? 1 : 0;
+  // A name's value is light-dark(#..., #...).
+  const source = new XMLSerializer().serializeToString(figure)
+    .replace(/var\((--[\w-]+)\)/g, (_, colour) => page.getPropertyValue(colour).match(/#\w+/g)[now]);
   const sources = [URL.createObjectURL(new Blob([source], { type: "image/svg+xml" }))];
   if (name.endsWith("png")) sources.push(URL.createObjectURL(await pngOf(sources[0], figure.viewBox.baseVal)));
   h("a", { href: sources.at(-1), download: name }).click();

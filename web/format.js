@@ -27,8 +27,7 @@ function scaled(value, units) {
 const rate = (unit) => [[1e9, `G${unit}`], [1e6, `M${unit}`], [1e3, `k${unit}`], [1, unit]];
 
 /// Seconds with their unit, precise: "0.412 s", "35.2 s", "412 s".
-export const seconds = (value) => (value === null || value === undefined
-  ? "—" : `${significant(value)}${thin}s`);
+export const seconds = (value) => (value === null || value === undefined ? "—" : `${significant(value)}${thin}s`);
 
 /// A length of time to wait for, in two units at most: "8 s", "3 min 12 s", "2 h 5 min".
 export function duration(value) {
@@ -53,22 +52,17 @@ export function when(iso) {
 export const words = (key) => key.replaceAll("_", " ");
 
 const units = [
-  { ending: /(^|_)per_(cpu_)?second$/, show: (v, [, , cpu]) => scaled(v, rate(cpu ? "/CPU s" : "/s")) },
-  { ending: /(^|_)seconds$/, show: seconds },
-  { ending: /(^|_)bytes$/, show: bytes },
+  [/(^|_)per_cpu_second$/, (value) => scaled(value, rate("/CPU s"))],
+  [/(^|_)per_second$/, (value) => scaled(value, rate("/s"))],
+  [/(^|_)seconds$/, seconds], [/(^|_)bytes$/, bytes],
 ];
 
 /// A value of a report, with the unit that its keys (innermost first) name.
 export function quantity(value, keys) {
   if (typeof value === "boolean") return value ? "yes" : "no";
   if (typeof value !== "number") return value === null ? "—" : String(value);
-  for (const key of keys) {
-    for (const { ending, show } of units) {
-      const found = ending.exec(key);
-      if (found) return show(value, found);
-    }
-  }
-  return number(value);
+  const shows = keys.map((key) => units.find(([ending]) => ending.test(key))?.[1]);
+  return (shows.find(Boolean) ?? number)(value);
 }
 
 /// A job file as people write one: short lists on one line.
@@ -85,12 +79,10 @@ export function integratorName(integrator) {
 /// What a job is called: its own label, else its scene.
 export const jobTitle = (job) => job.label || job.scene;
 
-/// A job to start from.
 export const firstJob = (scenes) => ({
   scene: scenes[0] ?? "SCENE.glb", integrator: { type: "path" }, budget: { seconds: 30 }, reference: "auto",
 });
 
-/// A word for the shell, quoted.
 export const shellQuote = (text) => `'${text.replaceAll("'", "'\\''")}'`;
 
 /// A job without the keys that are null, which say nothing.
@@ -99,11 +91,9 @@ export const withoutNulls = (job) =>
 
 /// The states of a job as the service tells (see getStates), by name; app.js fills it before any view is shown.
 export const states = {};
-
 /// done, failed, cancelled: nothing happens any more, unless it is asked for.
 export const isTerminal = (state) => states[state].terminal;
 
-/// A badge that says a state in words.
 export const badge = (state, phase) =>
   h("span", { className: `badge ${state}` }, phase && state === "running" ? `${state} · ${phase}` : state);
 

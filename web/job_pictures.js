@@ -10,10 +10,8 @@ const tries = 4;
 /// The layers of a job: {width, height, names, read(...names)}; `read` gives a picture (see pixels.js) for each name,
 /// all of one generation, and the same ones when asked again, unless `forget(name)` let one go.
 async function openLayers(id, signal) {
-  async function readIndex() {
-    const response = await getFile(id, "layers.json", signal);
-    return { tag: response.headers.get("ETag"), ...await response.json() };
-  }
+  const readIndex = () => getFile(id, "layers.json", signal)
+    .then(async (response) => ({ tag: response.headers.get("ETag"), ...await response.json() }));
   let index = await readIndex();
   const { width, height } = index;
   const kept = new Map();
@@ -24,16 +22,14 @@ async function openLayers(id, signal) {
     const length = Math.max(...index.layers.map((l) => l.offset + l.bytes));
     const { data, total, tag } = await getPart(id, "layers.half", layer.offset, layer.bytes, signal);
     if (total !== length || data.byteLength !== 2 * width * height * layer.channels.length) return { tag: null };
-    const picture = {
-      width, height, channels: layer.channels, scale: layer.scale,
-      data: new Float16Array(data),
-    };
+    const picture = { width, height, channels: layer.channels, scale: layer.scale, data: new Float16Array(data) };
     return { tag, picture: { ...picture, extent: extent(picture) } };
   }
 
-  function once(name) {
-    if (!kept.has(name)) kept.set(name, readLayer(name));
-    return kept.get(name);
+  const once = (name) => kept.get(name) ?? kept.set(name, readLayer(name)).get(name);
+  function forget(error) {
+    kept.clear();
+    throw error;
   }
 
   /// A job that goes on replaces both files, one after the other. Parts belong together that come from
@@ -41,17 +37,11 @@ async function openLayers(id, signal) {
   async function read(...names) {
     for (let i = 0; i < tries; i += 1) {
       const anew = names.some((name) => !kept.has(name));
-      try {
-        const found = await Promise.all(names.map(once));
-        const before = index.tag;
-        if (anew) index = await readIndex();
-        const [{ tag }] = found;
-        const one = tag !== null && index.tag === before && found.every((f) => f.tag === tag);
-        if (one) return found.map((f) => f.picture);
-      } catch (error) {
-        kept.clear();
-        throw error;
-      }
+      const found = await Promise.all(names.map(once)).catch(forget);
+      const before = index.tag;
+      if (anew) index = await readIndex().catch(forget);
+      const [{ tag }] = found;
+      if (tag !== null && index.tag === before && found.every((f) => f.tag === tag)) return found.map((f) => f.picture);
       kept.clear();
     }
     throw new Error("These layers changed while they were read.");
@@ -60,9 +50,8 @@ async function openLayers(id, signal) {
   return { width, height, names: index.layers.map((l) => l.name), read, forget: (name) => kept.delete(name) };
 }
 
-/// `show(jobs)` takes those of GET /api/jobs/ID, each with a `name`; it gives the first one's layers where others are
-/// shown than before, else null. `describe(job)` gives {alt, caption} of an image.png, from its `image`, its `layers` if
-/// it has any, and whether values are `drawable` here. `open(key)` leads to a layer. `query` has the viewer's state.
+/// `show(jobs)` takes jobs with a `name`; it gives the first one's layers if others are shown than before, else null.
+/// `describe(job)` gives {alt, caption} of an image.png: of its `image`, its `layers`, and if they are `drawable` here.
 export function jobPictures(query, signal, describe) {
   const place = h("div");
   const apart = h("div.gallery");
@@ -87,12 +76,9 @@ export function jobPictures(query, signal, describe) {
     }
   }
 
-  function plain(entry) {
-    const { alt, caption } = describe(entry);
-    const { image } = entry;
-    return h("figure", h("a.frame", { href: image }, image ? h("img", { src: image, alt }) : h("span.note", "no picture")),
-      h("figcaption", caption));
-  }
+  const plain = ({ image }, { alt, caption }) => h("figure",
+    h("a.frame", { href: image }, image ? h("img", { src: image, alt }) : h("span.note", "no picture")),
+    h("figcaption", caption));
 
   return {
     element: h("div", place, apart),
@@ -104,7 +90,7 @@ export function jobPictures(query, signal, describe) {
       const first = entries.find((e) => e.layers)?.layers;
       const fits = ({ layers }) => layers && layers.width === first.width && layers.height === first.height;
       const together = entries.filter(fits);
-      update(apart, entries.filter((e) => !fits(e)).map(plain));
+      update(apart, entries.filter((e) => !fits(e)).map((e) => plain(e, describe(e))));
       const now = together.map((e) => `${e.id} ${e.version}`).join();
       if (now === shown || together.length === 0) return null;
       shown = now;

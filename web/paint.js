@@ -1,9 +1,6 @@
 // How values become colours, and drawing pictures of numbers with WebGL 2: nearest pixels when magnified, means of
 // values when made smaller.
 
-/// As image.png is exposed: the 95th percentile of luminance becomes 0.8 of white. In stops, to a tenth.
-const automatic = ({ extent: [, bright] }) => (bright > 0 ? Math.round(10 * Math.log2(0.8 / bright)) / 10 : 0);
-
 /// The smallest of 1, 2 and 5 times a power of ten that is not below `value`.
 function rounded(value) {
   const power = 10 ** Math.floor(Math.log10(value));
@@ -12,14 +9,14 @@ function rounded(value) {
 
 /// The values at the ends of the colour map, before the stops.
 function range(images) {
-  const high = Math.max(...images.map((image) => image.extent[1] ?? -Infinity));
+  const high = Math.max(...images.map(({ extent }) => extent[1] ?? -Infinity));
+  const low = Math.min(...images.map(({ extent }) => extent[0] ?? Infinity));
   if (images[0].kind) {
     const top = high > 0 ? rounded(high) : 1;
-    return images[0].kind === "signed" ? [-top, top] : [0, top];
+    return [images[0].kind === "signed" ? -top : 0, top];
   }
-  const low = Math.min(...images.map((image) => image.extent[0] ?? Infinity));
-  return Number.isFinite(high) && high > low ? [low, high]
-    : [Math.min(0, Number.isFinite(low) ? low : 0), Math.max(1, high)];
+  if (Number.isFinite(high) && high > low) return [low, high];
+  return [Number.isFinite(low) ? Math.min(0, low) : 0, Math.max(1, high)];
 }
 
 /// What does not depend on the reader's choice, for pictures to be shown alike: {look, ev} or {look, map, low, high}.
@@ -30,7 +27,9 @@ export function lookOf(images) {
     return { look: "false", map: kind === "signed" ? "diverging" : "sequential", low, high };
   }
   if (channels.join("") === "XYZ") return { look: "direction" };
-  return { look: "colour", ev: automatic(images[0]) };
+  // As image.png is exposed: the 95th percentile of luminance becomes 0.8 of white. In stops, to a tenth.
+  const [, bright] = images[0].extent;
+  return { look: "colour", ev: bright > 0 ? Math.round(10 * Math.log2(0.8 / bright)) / 10 : 0 };
 }
 
 /// A look with the reader's exposure: what the painter needs, and for a false colour its `low` and
@@ -90,10 +89,8 @@ uniform float height;    // of the canvas
 uniform int look;        // 0 colour, 1 direction, 2 false colour
 uniform float gain, offset;
 out vec4 colour;
-
 const vec3 invalid = vec3(1.0, 0.0, 1.0);
 const int most = 8;      // pixels averaged along a side
-
 vec3 srgb(vec3 v) {
   v = clamp(v, 0.0, 1.0);
   return mix(12.92 * v, 1.055 * pow(v, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, v));
@@ -129,41 +126,26 @@ void main() {
 const looks = { colour: 0, direction: 1, false: 2 };
 const keptTextures = 8;
 
-function link(gl) {
-  const program = gl.createProgram();
-  for (const [type, source] of [[gl.VERTEX_SHADER, vertexSource], [gl.FRAGMENT_SHADER, fragmentSource]]) {
-    const shader = gl.createShader(type);
-    gl.shaderSource(shader, source);
-    gl.compileShader(shader);
-    gl.attachShader(program, shader);
-  }
-  gl.linkProgram(program);
-  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
-  return program;
-}
-
 /// A texture that is only ever fetched by pixel, which floats need no extension for.
 function upload(gl, { width, height, channels, data }) {
   const largest = gl.getParameter(gl.MAX_TEXTURE_SIZE);
   if (Math.max(width, height) > largest) throw new Error(`This browser draws at most ${largest} pixels a side.`);
-  const name = channels.length === 1 ? "R" : "RGB";
+  const [name, format] = channels.length === 1 ? ["R", gl.RED] : ["RGB", gl.RGB];
   const [bits, type, values] = data instanceof Float32Array ? [32, gl.FLOAT, data]
     : [16, gl.HALF_FLOAT, new Uint16Array(data.buffer)];
   const texture = gl.createTexture();
   gl.bindTexture(gl.TEXTURE_2D, texture);
   gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-  gl.texImage2D(gl.TEXTURE_2D, 0, gl[`${name}${bits}F`], width, height, 0, name === "R" ? gl.RED : gl.RGB, type, values);
-  for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
-    gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
-  }
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl[`${name}${bits}F`], width, height, 0, format, type, values);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
   return texture;
 }
 
 /// What `make()` gives; null where the context is lost, before or meanwhile: no error that it then throws counts.
 function unlessLost(gl, make) {
-  if (gl.isContextLost()) return null;
   try {
-    const made = make();
+    const made = gl.isContextLost() ? null : make();
     return gl.isContextLost() ? null : made;
   } catch (error) {
     if (gl.isContextLost()) return null;
@@ -173,7 +155,15 @@ function unlessLost(gl, make) {
 
 /// What one context holds; made anew when the context was lost.
 function resources(gl) {
-  const program = link(gl);
+  const program = gl.createProgram();
+  for (const [type, source] of [[gl.VERTEX_SHADER, vertexSource], [gl.FRAGMENT_SHADER, fragmentSource]]) {
+    const shader = gl.createShader(type);
+    gl.shaderSource(shader, source);
+    gl.compileShader(shader);
+    gl.attachShader(program, shader);
+  }
+  gl.linkProgram(program);
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
   const uniform = Object.fromEntries(["picture", "colours", "corner", "pace", "height", "look", "gain", "offset"]
     .map((name) => [name, gl.getUniformLocation(program, name)]));
   gl.useProgram(program);
@@ -182,10 +172,9 @@ function resources(gl) {
   return { uniform, textures: new Map() };
 }
 
-/// A painter on `canvas`; null where the browser has no WebGL 2. `draw(parts, place)` paints: a part
-/// is {image, look, gain, offset, map, from, to}, with `from` and `to` in [0, 1] its share of the
-/// canvas's width; `place` is {x, y, pace}, see the shader's `corner` and `pace`. A machine may take the
-/// context away at any moment: `draw` then does nothing and gives false, and `onrestored` asks for it again.
+/// A painter on `canvas`; null: there is no WebGL 2. `draw(parts, {x, y, pace})` (see the shader) paints [{image, look,
+/// gain, offset, map, from, to}], `from` and `to` in [0, 1] of the width. A machine may take the context away at any
+/// moment: `draw` then does nothing and gives false, and `onrestored` asks for it again.
 export function painter(canvas, onrestored) {
   const gl = canvas.getContext("webgl2", { antialias: false, depth: false, premultipliedAlpha: true });
   if (!gl) return null;
@@ -243,7 +232,7 @@ export function painter(canvas, onrestored) {
 }
 
 /// A function that draws `pictures`, [{image, canvas, wide}], alike: each `wide` CSS pixels wide, of which one has
-/// `ratio` of the screen's. One a frame, fetched in the next, because many at once, or waiting for one, would be a pause.
+/// `ratio` of the screen's. One a frame, fetched in the next: many at once, or waiting for one, would be a pause.
 /// The next call ends the one before; one that lost its context is made again with a new one.
 export function stripPainter(signal) {
   const hidden = new OffscreenCanvas(1, 1);

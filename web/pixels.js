@@ -1,6 +1,5 @@
-// A picture of numbers is {width, height, channels, data, scale}: `data` holds half floats or floats, interleaved, the
-// top row first; a value is its number times `scale`, in double, so that no scale loses anything. Pictures to be shown
-// have their `extent`, too; those of errors, the key of their `kind` and their `mean`.
+// A picture of numbers is {width, height, channels, data, scale}: `data` are halves or floats, interleaved, the top row
+// first, to be multiplied by `scale` in double. Some have an `extent`; those of errors their `kind` and their `mean`.
 
 /// The values of the pixel (x, y), one a channel; null outside the picture.
 export function valuesAt({ width, height, channels, data, scale }, x, y) {

@@ -83,7 +83,6 @@ const effortView = (report) => h("div.effort",
   stackedBar("Rays", report.counts, number, (name) => ["rays", "shadow rays"].includes(name)),
   builtList(report));
 
-/// The standing of each candidate after each round.
 function raceFigure({ candidates, rounds, clock }) {
   const curves = candidates.map(({ name }) => ({ name, points: rounds
     .filter((row) => row.candidate === name && row.low > 0 && row.high > 0 && row.cost > 0)
@@ -94,7 +93,6 @@ function raceFigure({ candidates, rounds, clock }) {
     figureSvg({ curves, axis, metric: { label: "MSE over the best's at equal time" } }, 640) ?? "");
 }
 
-/// "1.4 (1.2 to 1.7)".
 const ratioText = (ratio) => (!ratio || ratio.ratio === null ? "unknown"
   : `${number(ratio.ratio)} (${number(ratio.low)} to ${number(ratio.high)})`);
 

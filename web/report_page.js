@@ -25,10 +25,8 @@ function cropsOf(picture, cells, names) {
   ];
 }
 
-const address = () => new URLSearchParams(location.hash.split("?")[1] ?? "");
-
 function show() {
-  const query = address();
+  const query = new URLSearchParams(location.hash.split("?")[1]);
   const view = answersView(query, cropsOf);
   replace(main, h("h1", answers.label || "Sweep"), h("p", summary(answers)), view.element,
     note(`Made ${when(made)} by Lacuna ${version}.`));

@@ -17,16 +17,12 @@ export function differences(files) {
     .filter(({ values }) => values.some((value) => value !== values[0]));
 }
 
-/// Whether jobs that differ there may estimate different pictures; a setting that the page has never heard of counts.
-const isOfThePicture = (pointer) => inTheLight.includes(pointer) || !notInAReference.includes(pointer.split("/")[1]);
-
-/// Those of `differences` that make a comparison of errors doubtful.
-export const doubtful = (found) => found.map((d) => d.pointer).filter(isOfThePicture);
-
+/// Those of `differences` with which jobs may estimate different pictures; one that the page does not know counts.
+export const doubtful = (found) => found.map((d) => d.pointer)
+  .filter((pointer) => inTheLight.includes(pointer) || !notInAReference.includes(pointer.split("/")[1]));
 /// What replicates differ in, and what has no part in what is measured.
 const beside = ["/seed", "/label", "/threads"];
 const parts = ["integrator", "seconds", "counts", "rates", "errors"];  // of a report
-
 const parsed = (text) => (text === "" ? null : JSON.parse(text));
 
 /// "seconds render_cpu" -> 29.4, ... for the numbers of a report; none where there is no report.
@@ -34,9 +30,8 @@ const reported = (report) => new Map(parts.flatMap((part) => leaves(report?.[par
   .filter(({ value }) => typeof value === "number")
   .map(({ keys, value }) => [[part, ...keys.toReversed()].join(" "), value])));
 
-/// What can be shown of jobs ([{job, report}]): {x, y}, each [{key, label, group, values}] with a value a
-/// job, null where one has none. x: settings, as pointers, and numbers of the reports, of which two jobs
-/// have different ones above 0; y: numbers of the reports.
+/// What can be shown of jobs: {x, y}, each [{key, label, group, values}] with a value a job or null, two apart above 0.
+/// x: settings, as pointers, and numbers of the reports; y: the latter.
 function quantities(jobs) {
   const set = differences(jobs.map(({ job }) => job))
     .map(({ pointer, values }) => ({ key: pointer, label: pointer, group: "settings", values: values.map(parsed) }))
@@ -65,7 +60,7 @@ function scalingCurves(jobs, x, y) {
   const curves = new Map();
   jobs.forEach((_, i) => {
     if (!(x.values[i] > 0 && y.values[i] > 0)) return;
-    const name = apart.map(({ pointer, values }) => `${pointer.split("/").pop()} ${parsed(values[i]) ?? "—"}`).join(", ");
+    const name = apart.map((d) => `${d.pointer.split("/").pop()} ${parsed(d.values[i]) ?? "—"}`).join(", ");
     if (!curves.has(name)) curves.set(name, []);
     curves.get(name).push({ x: x.values[i], y: y.values[i] });
   });
@@ -90,8 +85,9 @@ export function scalingPanel(query) {
     element.hidden = offered.x.length === 0 || offered.y.length === 0;
     if (element.hidden) return;
     const choose = chooser(query, () => show(jobs));
-    const pick = (of, key, other) => of.find((q) => q.key === query.get(key)) ?? of.find((q) => q.key === other) ?? of[0];
-    const [x, y] = [pick(offered.x, "sx"), pick(offered.y, "sy", "seconds render_cpu")];
+    const pick = (of, key) => of.find((q) => q.key === key);
+    const x = pick(offered.x, query.get("sx")) ?? offered.x[0];
+    const y = pick(offered.y, query.get("sy")) ?? pick(offered.y, "seconds render_cpu") ?? offered.y[0];
     update(switches, choice("Number", offered.y.map(({ key, label }) => ({ key, label })), y.key, choose("sy")),
       choice("over", offered.x, x.key, choose("sx")));
     figure.draw({ curves: scalingCurves(jobs, x, y), axis: x, metric: y });

@@ -8,14 +8,13 @@ import { exposureTools } from "./viewer_controls.js";
 const sets = [{ key: "strategies", label: "weighted" }, { key: "strategies_unweighted", label: "before weighting" }];
 const unweighted = sets[1].key;
 
-/// The layers that are shown here: {name, set, text}, and of strategies {s, t, edges, merged}: vertex s is vertex t.
+/// The layers that are shown here: {name, set, text}, and of strategies {s, t, edges, merged}.
 function partsOf(names) {
   return names.map((name) => {
     const [, set, of, s, t, merged] = /^(\w+)\.(s(\d+)t(\d+)(m?)$|.+)/.exec(name) ?? [];
     if (set === "distributions") return { name, set, text: of };
-    return s && sets.some(({ key }) => key === set)
-      && { name, set, s: Number(s), t: Number(t), edges: Number(s) + Number(t) - (merged ? 2 : 1), merged: Boolean(merged),
-        text: `s${thin}${s} t${thin}${t}${merged ? " merged" : ""}` };
+    return s && sets.some(({ key }) => key === set) && { name, set, s: Number(s), t: Number(t), merged: Boolean(merged),
+      edges: Number(s) + Number(t) - (merged ? 2 : 1), text: `s${thin}${s} t${thin}${t}${merged ? " merged" : ""}` };
   }).filter(Boolean);
 }
 
@@ -49,7 +48,6 @@ export function strategies(query, signal, open) {
   let turn = 0;
 
   const stops = () => (query.has("stops-each") ? Number(query.get("stops-each")) || 0 : null);
-
   function choose(key, value, then) {
     if (value) query.set(key, value);
     else query.delete(key);
@@ -68,7 +66,8 @@ export function strategies(query, signal, open) {
     update(tools,
       h("span", { hidden: options.length < 2 },
         choice("Strategies", options, set, (key) => choose("strategies", key === unweighted && key, build))),
-      look && exposureTools(stops() ?? look.ev, (value) => choose("stops-each", value !== null && String(value), draw)));
+      look && exposureTools(stops() ?? look.ev,
+        (value) => choose("stops-each", value !== null && String(value), draw)));
     if (look) await paint(cells.filter((c) => c.image), exposed(look, { ev: stops() }), window.devicePixelRatio);
   }
 

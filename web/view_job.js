@@ -33,26 +33,22 @@ const jobFacts = ({ job, state, progress, sweep }) => facts([
   ["Runs in", state.place],
   ["Attempts", state.attempts > 1 ? number(state.attempts) : ""],
   ["Exit code", state.exit_code > 0 ? state.exit_code : ""],
-  ...(progress ? [
-    ["Render time", seconds(progress.seconds)],
-    ["CPU time / threads", seconds(progress.cpu_seconds)],
-    ["Iterations", number(progress.iteration)],
-    ["Error", currentError(progress)],
-    ["Remaining", isTerminal(state.state) ? "" : duration(progress.remaining_seconds)],
-  ] : []),
+  ["Render time", progress && seconds(progress.seconds)],
+  ["CPU time / threads", progress && seconds(progress.cpu_seconds)],
+  ["Iterations", progress && number(progress.iteration)],
+  ["Error", currentError(progress)],
+  ["Remaining", progress && !isTerminal(state.state) ? duration(progress.remaining_seconds) : ""],
 ]);
 
-const fileList = (id, files) => h("ul.files", files.map((file) => h("li",
-  h("a", { href: fileUrl(id, file.name), download: `${id}-${file.name}` }, file.name),
-  " ", h("span.muted", bytes(file.bytes)))));
+const fileList = (id, files) => h("ul.files", files.map(({ name, bytes: size }) => h("li",
+  h("a", { href: fileUrl(id, name), download: `${id}-${name}` }, name), " ", h("span.muted", bytes(size)))));
 
 function jobSource(id, job) {
   const command = curlLine("jobs", withoutNulls(job));
   return h("div.columns",
     h("section", h("h2", "Job file"), h("pre.tall", { tabIndex: 0 }, prettyJob(job))),
     h("section", h("h2", "Repeat it"), h("pre.tall", { tabIndex: 0 }, command),
-      h("p", copyButton(command), " ",
-        h("a", { href: `#/new?from=${id}` }, "Change it and post it here"))));
+      h("p", copyButton(command), " ", h("a", { href: `#/new?from=${id}` }, "Change it and post it here"))));
 }
 
 /// A budget twice as large: every limit doubled, an error to reach halved.
@@ -60,7 +56,6 @@ export const doubled = (budget) => Object.fromEntries(Object.entries(budget)
   .filter(([, limit]) => limit !== null)
   .map(([key, limit]) => [key, typeof limit === "number" ? 2 * limit : { ...limit, target: limit.target / 2 }]));
 
-/// Asks for the whole new budget, as JSON.
 function askBudget(id, { budget }) {
   const field = h("input", { value: JSON.stringify(doubled(budget)), spellcheck: false, required: true });
   return ask("Extend this job", [
@@ -83,8 +78,8 @@ function actionTools({ id, job, priority, state }, { changed, gone, say }) {
     extend: () => button("Extend …", act(() => askBudget(id, job))),
     cancel: () => button("Cancel job", act(() => ask("Cancel this job?", "What it has rendered so far is kept.",
       "Cancel job", () => tell(id, "cancel"))), danger),
-    delete: () => button("Delete …", act(() => ask("Delete this job?", "This also deletes its pictures, curve and report.",
-      "Delete for good", () => remove(id)), gone), danger),
+    delete: () => button("Delete …", act(() => ask("Delete this job?",
+      "This also deletes its pictures, curve and report.", "Delete for good", () => remove(id)), gone), danger),
   };
   const { actions } = states[state.state];
   return h("div.tools.actions", { role: "group", "aria-label": "What can be done" },
@@ -131,9 +126,12 @@ function logView(id, signal) {
 }
 
 /// What is said of a picture that the viewer cannot show.
-const describe = ({ image, drawable, state }) => ({ alt: "The picture", caption: image && h("span.muted", !drawable ? noViewer
-  : isTerminal(state.state) ? "This job has no layers.json (written by newer versions); its tone-mapped image.png is shown."
-    : "Preview: the latest tone-mapped image.png. Pixel values are available when the job ends.") });
+function describe({ image, drawable, state }) {
+  const why = isTerminal(state.state)
+    ? "This job has no layers.json (written by newer versions); its tone-mapped image.png is shown."
+    : "Preview: the latest tone-mapped image.png. Pixel values are available when the job ends.";
+  return { alt: "The picture", caption: image && h("span.muted", drawable ? why : noViewer) };
+}
 
 /// The parts of the page that follow the job; `read(job)` shows its files, and those anew whose size or state changed.
 function page(id, query, signal) {
@@ -191,22 +189,19 @@ function page(id, query, signal) {
 export async function show(main, { params, query, signal }) {
   const { id } = params;
   const view = page(id, query, signal);
-  const handlers = {
-    changed: () => refreshSoon(0),
-    gone: () => {
-      chosen.delete(id);
-      location.hash = "#/";
-    },
-    say: view.say,
+  const changed = () => refreshSoon(0);
+  const gone = () => {
+    chosen.delete(id);
+    location.hash = "#/";
   };
   let shown = null;
   let told = 0;  // events
-  let stop = null;  // ends the listening, while there is any
+  let stop;  // ends the listening, while there is any
 
   function drawStatus() {
     const { job, state, progress } = shown;
     update(view.title, h("h1", jobTitle(job)), badge(state.state, state.phase),
-      progressBar("Share of the budget", state.state, progress), actionTools(shown, handlers));
+      progressBar("Share of the budget", state.state, progress), actionTools(shown, { changed, gone, say: view.say }));
     update(view.notes, state.error && problem(state.error), state.obstacle && warning(`It waits: ${state.obstacle}`),
       state.warnings?.map(warning));
     update(view.facts, jobFacts(shown));
@@ -240,10 +235,7 @@ export async function show(main, { params, query, signal }) {
   }
 
   const refreshSoon = soon(refresh, (error) => view.say(error.message), signal);
-  function rest() {
-    stop?.();
-    stop = null;
-  }
+  const rest = () => { stop = stop?.(); };
   /// From when the job waits or runs until it is over, also when it goes on after that.
   function follow() {
     const on = (key, ms) => (value) => {

@@ -1,26 +1,22 @@
 // The list of jobs, live, a page at a time, with a filter and a choice of jobs to compare.
 import { fileUrl, curlLine, getHealth, getJobs, getScenes, listen, pollOn, queryOf, soon } from "./api.js";
-import { button, copyButton, h, note, patch, problem, remember, select, small, update, warning } from "./dom.js";
-import { badge, currentError, firstJob, integratorName, isTerminal, jobTitle, progressBar, states, when } from "./format.js";
+import { button, emptyPlace, h, note, patch, problem, remember, select, small, update, warning } from "./dom.js";
+import { badge, currentError, firstJob, integratorName, isTerminal, jobTitle, progressBar, states, when }
+  from "./format.js";
 
 const pageSize = 100;
 const pollMs = 2000;
 const soonMs = 500;
 const typingMs = 150;
 const thumbSeconds = 10;  // of rendering, after which a running job's small picture is read anew
-
 /// The jobs to compare: the choice survives turning pages and looking at jobs.
 export const chosen = new Set();
 
-function noJobs(scenes) {
-  const command = curlLine("jobs", firstJob(scenes));
-  return h("section.empty",
-    h("h2", "No jobs yet"),
-    h("p", "Post the first from a shell, or from ", h("a", { href: "#/new" }, "New job"), ":"),
-    h("pre", { tabIndex: 0 }, command), copyButton(command),
-    scenes.length === 0 && problem(
-      "The server has no scenes: start it with LACUNA_SCENES set to a folder of scenes."));
-}
+const noJobs = (scenes) => [
+  emptyPlace("No jobs yet", ["Post the first from a shell, or from ", h("a", { href: "#/new" }, "New job"), ":"],
+    curlLine("jobs", firstJob(scenes))),
+  scenes.length === 0 && problem("The server has no scenes: start it with LACUNA_SCENES set to a folder of scenes."),
+];
 
 /// What the page, the counts and the service's health change with.
 const standing = (job) => `${job.state} ${job.obstacle ? "waits" : ""}`;
@@ -58,7 +54,6 @@ const jobTable = (jobs, onchoose) => h("table.jobs", { role: "table" },
   h("thead", h("tr", h("td.choose"), h("td.picture-cell"), heads.map((text) => h("th", { scope: "col" }, text)))),
   h("tbody", { role: "rowgroup" }, jobs.map((job) => jobRow(job, onchoose))));
 
-/// The buttons of the choice.
 const choiceTools = (redraw) => h("span.tools.choose-tools",
   chosen.size > 0 && button("Clear the selection", () => {
     chosen.clear();
@@ -71,10 +66,8 @@ const choiceTools = (redraw) => h("span.tools.choose-tools",
 function filterTools(wanted, counts, changed) {
   const options = Object.keys(states).map((name) => ({ key: name, label: `${name} (${counts[name] ?? 0})` }));
   return [
-    h("input", {
-      type: "search", value: wanted.label, placeholder: "Filter: label, scene, integrator or id",
-      "aria-label": "Filter the jobs", oninput: (event) => changed({ label: event.target.value }),
-    }),
+    h("input", { type: "search", value: wanted.label, placeholder: "Filter: label, scene, integrator or id",
+      "aria-label": "Filter the jobs", oninput: (event) => changed({ label: event.target.value }) }),
     select([{ key: "", label: "all states" }, ...options], wanted.state, (state) => changed({ state }),
       { "aria-label": "State" }),
     wanted.sweep && small("of one sweep ×", () => changed({ sweep: "" })),
@@ -82,12 +75,11 @@ function filterTools(wanted, counts, changed) {
 }
 
 /// The way to the pages before and after this one.
-function pager({ from }, shown, total, before, after) {
-  const back = button("‹ Newer", before, { disabled: before === null });
-  const on = button("Older ›", after, { disabled: after === null });
-  return h("nav.tools.pager", { "aria-label": "Pages", hidden: back.disabled && on.disabled },
-    back, h("output.muted", `${shown && from + 1}–${from + shown} of ${total}`), on);
-}
+const pager = ({ from }, shown, total, before, after) =>
+  h("nav.tools.pager", { "aria-label": "Pages", hidden: !before && !after },
+    button("‹ Newer", before, { disabled: !before }),
+    h("output.muted", `${shown && from + 1}–${from + shown} of ${total}`),
+    button("Older ›", after, { disabled: !after }));
 
 export async function show(main, { query, signal }) {
   document.title = "Jobs · Lacuna";
@@ -121,8 +113,7 @@ export async function show(main, { query, signal }) {
     go(first, typingMs);
   }
   function onchoose(id, on) {
-    if (on) chosen.add(id);
-    else chosen.delete(id);
+    chosen[on ? "add" : "delete"](id);
     draw();
   }
 
@@ -136,10 +127,11 @@ export async function show(main, { query, signal }) {
       back.push(here);
       turn({ cursor: next, from: here.from + jobs.length });
     };
+    const none = all > 0 || filtered ? note("No job matches the filter.") : noJobs(scenes);
     update(main, h("h1", "Jobs"), h("div", obstacle && warning(`Jobs wait: ${obstacle}`)),
       h("div.tools", { role: "search", hidden: all === 0 && !filtered }, filterTools(wanted, counts, changed),
         h("output.muted", trouble || (filtered ? `${total} of ${all}` : `${all} jobs`)), choiceTools(draw)),
-      h("div", total > 0 ? jobTable(jobs, onchoose) : all > 0 || filtered ? note("No job matches the filter.") : noJobs(scenes)),
+      h("div", total > 0 ? jobTable(jobs, onchoose) : none),
       pager(here, jobs.length, total, before, after));
   }
 

@@ -3,58 +3,41 @@ import { getJob, getScenes, postJob } from "./api.js";
 import { append, h, problem, replace, select } from "./dom.js";
 import { firstJob, prettyJob, withoutNulls } from "./format.js";
 
-function parsed(text) {
-  try {
-    return JSON.parse(text);
-  } catch {
-    return null;
-  }
-}
-
-/// The list of what is wrong, each with the JSON pointer to its place.
-function problems(error) {
-  return [
-    problem(`${error.title}. ${error.message}`),
-    error.errors?.length > 0 && h("ul.errors", error.errors.map((e) => h("li",
-      h("code", e.pointer === "" ? "(the whole)" : e.pointer), " ", e.message))),
-  ];
-}
-
 export async function show(main, { query, signal }) {
   document.title = "New job · Lacuna";
   const from = query.get("from");
   const [scenes, source] = await Promise.all([getScenes(signal), from ? getJob(from, signal) : null]);
   const start = source ? withoutNulls(source.job) : firstJob(scenes);
 
-  const text = h("textarea", {
-    id: "job", rows: 18, spellcheck: false, value: prettyJob(start),
-    "aria-describedby": "errors",
-  });
+  const text = h("textarea",
+    { id: "job", rows: 18, spellcheck: false, value: prettyJob(start), "aria-describedby": "errors" });
   const errors = h("div", { id: "errors", role: "alert" });
   const submit = h("button", { type: "submit" }, "Post the job");
   const scene = select(scenes.map((name) => ({ key: name, label: name })), start.scene, (name) => {
-    const job = parsed(text.value);
-    if (job !== null && typeof job === "object") text.value = prettyJob({ ...job, scene: name });
+    try {
+      text.value = prettyJob({ ...JSON.parse(text.value), scene: name });
+    } catch {
+      // What is no JSON yet is left alone.
+    }
   }, { id: "scene" });
 
-  const form = h("form.new-job", {
-    onsubmit: async (event) => {
-      event.preventDefault();
-      submit.disabled = true;
-      replace(errors);
-      try {
-        location.hash = `#/job/${await postJob(text.value)}`;
-      } catch (error) {
-        replace(errors, problems(error));
-      }
-      submit.disabled = false;
-    },
-  },
+  async function onsubmit(event) {
+    event.preventDefault();
+    submit.disabled = true;
+    replace(errors);
+    try {
+      location.hash = `#/job/${await postJob(text.value)}`;
+    } catch (error) {
+      replace(errors, problem(`${error.title}. ${error.message}`),
+        error.errors?.length > 0 && h("ul.errors", error.errors.map(({ pointer, message }) =>
+          h("li", h("code", pointer || "(the whole)"), " ", message))));
+    }
+    submit.disabled = false;
+  }
+
+  append(main, h("h1", "New job"), h("form.new-job", { onsubmit },
   h("p", h("label", { htmlFor: "scene" }, "Scene "), scene,
     scenes.length === 0 && h("span.problem", " the server has no scenes")),
   h("p", h("label", { htmlFor: "job" }, "Job file (JSON); missing keys have their defaults. "),
-    h("a", { href: "/api/schema/job" }, "All keys and their allowed values")),
-  text, errors, submit);
-
-  append(main, h("h1", "New job"), form);
+    h("a", { href: "/api/schema/job" }, "All keys and their allowed values")), text, errors, submit));
 }

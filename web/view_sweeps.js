@@ -1,7 +1,8 @@
 // The sweeps, newest first, and one of them: what its runs say about its settings, live while they are done.
 import { cancelSweep, curlLine, getAnswers, getJob, getSweep, getSweeps, poll, removeSweep, tableUrl } from "./api.js";
 import { answersView, summary } from "./answers.js";
-import { action, append, ask, button, copyButton, h, note, problem, replace, table, update } from "./dom.js";
+import { action, append, ask, button, copyButton, emptyPlace, h, note, problem, replace, table, update }
+  from "./dom.js";
 import { badge, isTerminal, number, prettyJob, progressBar, when, withoutNulls } from "./format.js";
 import { jobPictures } from "./job_pictures.js";
 import { describe } from "./view_compare.js";
@@ -16,13 +17,6 @@ const example = {
   axes: { "/integrator/next_event_estimation": [true, false], "/integrator/max_depth": [4, 8] },
   seeds: 3, baseline: { "/integrator/next_event_estimation": false },
 };
-
-function none() {
-  const command = curlLine("sweeps", example);
-  return h("section.empty", h("h2", "No sweeps yet"),
-    h("p", "A sweep is many jobs that differ in some settings. Post one from a shell:"),
-    h("pre", { tabIndex: 0 }, command), copyButton(command));
-}
 
 const shareBar = ({ state, share }) => progressBar("Share of the runs", "running", state === "running" && { share });
 
@@ -39,7 +33,8 @@ async function showAll(main, { signal }) {
   document.title = "Sweeps · Lacuna";
   await poll(async () => {
     const sweeps = await getSweeps(signal);
-    update(main, h("h1", "Sweeps"), sweeps.length === 0 ? none()
+    update(main, h("h1", "Sweeps"), sweeps.length === 0 ? emptyPlace("No sweeps yet",
+      "A sweep is many jobs that differ in some settings. Post one from a shell:", curlLine("sweeps", example))
       : table(["Sweep", "State", "", "Runs done", "Failed", "Created"], sweeps.map(row)));
   }, listMs, signal);
 }
@@ -49,7 +44,6 @@ function cellPictures(query, signal, failed) {
   const pictures = jobPictures(query, signal, describe);
   const read = new Map();
   const empty = note("No run of these cells is done yet.");
-  let shown = "";
   async function load(runs) {
     for (const { id } of runs) {
       if (!read.has(id)) read.set(id, await getJob(id, signal));
@@ -59,9 +53,7 @@ function cellPictures(query, signal, failed) {
   return (number, cells, names) => {
     const runs = cells.map((c) => ({ name: names.get(c.cell), id: c.runs.find((r) => r.state === "done")?.job }))
       .filter(({ id }) => id);
-    const now = runs.map(({ id }) => id).join();
-    if (runs.length > 0 && now !== shown) load(runs).catch((error) => { if (!signal.aborted) failed(error.message); });
-    shown = now;
+    load(runs).catch((error) => { if (!signal.aborted) failed(error.message); });
     return [h("h2", "Pictures of the shown cells"), runs.length > 0 ? pictures.element : empty];
   };
 }
@@ -89,8 +81,8 @@ async function showOne(main, { params: { id }, query, signal }) {
   const cancel = () => button("Cancel sweep", action(() => ask("Cancel this sweep?",
     "What its runs have rendered so far is kept.", "Cancel sweep", () => cancelSweep(id)), step, say), danger);
   const remove = () => button("Delete …", action(() => ask("Delete this sweep?",
-    "This also deletes all its jobs, with their pictures, curves and reports.", "Delete for good", () => removeSweep(id)),
-  () => { location.hash = "#/sweeps"; }, say), danger);
+    "This also deletes all its jobs, with their pictures, curves and reports.", "Delete for good",
+    () => removeSweep(id)), () => { location.hash = "#/sweeps"; }, say), danger);
   const view = answersView(query, cellPictures(query, signal, say));
   append(main, title, h("p.id", id), refusal, about, view.element, runs, source);
 
@@ -103,7 +95,8 @@ async function showOne(main, { params: { id }, query, signal }) {
     document.title = `${sweep.label || "Sweep"} · Lacuna`;
     update(title, h("h1", sweep.label || "Sweep"), badge(sweep.state), shareBar(sweep), h("div.tools.actions",
       // Above what is drawn late: a link that a picture moves is missed.
-      h("a", { href: `#/?sweep=${id}` }, "its runs"), h("a", { href: tableUrl(id), download: `${id}.csv` }, "table.csv"),
+      h("a", { href: `#/?sweep=${id}` }, "its runs"),
+      h("a", { href: tableUrl(id), download: `${id}.csv` }, "table.csv"),
       over ? remove() : cancel()));
     update(about, `${summary(answers)}. Created ${when(sweep.created)}.`);
     view.show(answers);

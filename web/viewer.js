@@ -1,23 +1,20 @@
 // The viewer of pictures of numbers: its state, as the address holds it, what the state asks for, and drawing that.
-import { h, remember, update } from "./dom.js";
+import { h, problem, remember, update } from "./dom.js";
 import { errorKinds, errorOf, kindOf } from "./errors.js";
 import { number, significant, words } from "./format.js";
 import { metrics } from "./job_tables.js";
 import { exposed, lookOf, painter } from "./paint.js";
 import { valuesAt } from "./pixels.js";
-import { listenTo, modeTools, viewerActions, viewerTools, viewOf } from "./viewer_controls.js";
+import { listenTo, modes, modeTools, viewerActions, viewerTools, viewOf } from "./viewer_controls.js";
 import { colourBar, cropStrip, printPixels, stage } from "./viewer_parts.js";
 import { pointAt, settleCrop, zoomOf } from "./viewport.js";
 
 /// What is said where viewer() gives null.
 export const noViewer = "This browser offers no WebGL 2: image.png is shown, tone-mapped, instead of the values.";
-
 const finite = (text) => (text?.trim() && Number.isFinite(Number(text)) ? Number(text) : null);
 const share = (text) => Math.min(1, Math.max(0, finite(text) ?? 0.5));
 const place = (text, otherwise = 0) => Math.max(0, Math.trunc(finite(text) ?? otherwise));
 const short = (value) => String(Number(value.toPrecision(5)));
-
-const modes = ["one", "split", "difference", "crops"];
 
 /// "x,y,w,h", in pixels; null where that is no rectangle.
 function rectangle(text) {
@@ -34,25 +31,16 @@ const fields = {
   stops: [(text) => finite(text) ?? 0, ({ stops }) => stops !== 0 && short(stops)],
   /// The part that is seen, see viewport.js.
   zoom: [(text) => (finite(text) > 0 ? finite(text) : null), ({ zoom }) => zoom !== null && short(zoom)],
-  at: [(text) => [0, 1].map((i) => share(text?.split(",")[i])), ({ zoom, at }) => zoom !== null && at.map(short).join()],
+  at: [(text) => [0, 1].map((i) => share(text?.split(",")[i])),
+    ({ zoom, at }) => zoom !== null && at.map(short).join()],
   /// Of several pictures: which, where two are split, what the difference is measured by, and the crop.
-  mode: [(text) => (modes.includes(text) ? text : "one"), ({ mode }) => mode !== "one" && mode],
+  mode: [(text) => (Object.hasOwn(modes, text) ? text : "one"), ({ mode }) => mode !== "one" && mode],
   left: [place, ({ left }) => left],
   right: [(text) => place(text, 1), ({ mode, right }) => mode !== "one" && right !== 1 && String(right)],
   split: [share, ({ mode, split }) => mode === "split" && split !== 0.5 && short(split)],
   by: [(text) => text ?? "signed", ({ mode, by }) => mode === "difference" && by !== "signed" && by],
   crop: [rectangle, ({ mode, crop }) => mode === "crops" && crop && Object.values(crop).join()],
 };
-
-const readState = (query) => Object.fromEntries(Object.entries(fields).map(([key, [read]]) => [key, read(query.get(key))]));
-
-function writeState(state, query) {
-  for (const [key, [, write]] of Object.entries(fields)) {
-    const value = write(state);
-    if (value) query.set(key, value);
-    else query.delete(key);
-  }
-}
 
 const reference = "reference";
 const errors = "error-";
@@ -64,10 +52,9 @@ function choices(sources) {
     const [group, ...name] = key.split(".");  // "strategies.s2t3"
     return { key, label: name.join(".") || key || "picture", group: name.length > 0 ? words(group) : "Layers" };
   });
-  if (!shared.includes(reference)) return layers;
-  return [...layers, ...errorKinds.map(({ key, label }) => ({
-    key: errors + key, label, group: "Error against the reference",
-  }))];
+  const kinds = shared.includes(reference) ? errorKinds : [];
+  return [...layers,
+    ...kinds.map(({ key, label }) => ({ key: errors + key, label, group: "Error against the reference" }))];
 }
 
 /// The picture that a choice means for one source, and those that it was computed from, with names.
@@ -89,9 +76,8 @@ function settle(state, sources) {
   return options;
 }
 
-/// {images, shown, look, details}: the pictures that are needed; the one shown; how they look; and others, with names,
-/// whose values are read with it. The first is always needed, because its exposure is that of all; all of them are where
-/// they share a range of values.
+/// {images, shown, look, details}: the pictures that are needed (the first, which sets the exposure, and all that share
+/// a range); the one shown; how they look; and others, with names, whose values are read with it.
 async function contentOf(state, sources) {
   const read = (i) => pictureOf(sources[i], state.show);
   const first = await read(0);
@@ -100,23 +86,23 @@ async function contentOf(state, sources) {
     (i === 0 ? first : all || i === state.left || (i === state.right && state.mode !== "one") ? read(i) : null)));
   const images = found.map((f) => f?.picture);
   const [left, right] = [images[state.left], images[state.right]];
-  if (state.mode === "difference") {
-    const shown = await errorOf(right, left, (kindOf(state.by) ?? kindOf("signed")).key);
-    return { images, shown, look: lookOf([shown]), details: [["x", right], ["r", left]] };
+  if (state.mode !== "difference") {
+    return { images, shown: left, look: lookOf(images.filter(Boolean)),
+      details: state.mode === "split" ? [] : found[state.left].from };
   }
-  return { images, shown: left, look: lookOf(images.filter(Boolean)),
-    details: state.mode === "split" ? [] : found[state.left].from };
+  const shown = await errorOf(right, left, (kindOf(state.by) ?? kindOf("signed")).key);
+  return { images, shown, look: lookOf([shown]), details: [["x", right], ["r", left]] };
 }
 
 /// The parts of the frame from left to right: one picture, or two beside the line.
-const partsOf = ({ mode, left, right, split }, { images, shown }) => (mode !== "split" ? [{ image: shown, from: 0, to: 1 }]
-  : [{ image: images[left], from: 0, to: split }, { image: images[right], from: split, to: 1 }]);
+const partsOf = ({ mode, left, right, split }, { images, shown }) => (mode === "split"
+  ? [{ image: images[left], from: 0, to: split }, { image: images[right], from: split, to: 1 }]
+  : [{ image: shown, from: 0, to: 1 }]);
 
 /// "R 0.123  G 0.2  B 0.3"
 function valueText(image, x, y) {
-  const several = image.channels.length > 1;
-  return valuesAt(image, x, y).map((v, c) =>
-    (several ? `${image.channels[c]} ` : "") + (Number.isFinite(v) ? significant(v, 4) : v)).join("  ");
+  const names = image.channels.length > 1 ? image.channels.map((name) => `${name} `) : [""];
+  return valuesAt(image, x, y).map((v, c) => names[c] + (Number.isFinite(v) ? significant(v, 4) : v)).join("  ");
 }
 
 /// A pixel's values, and a line for each of the details.
@@ -167,22 +153,16 @@ function drawAll(own) {
   seen.frame.dataset.zoom = Number(zoom.toPrecision(4));
 }
 
-const contentKeys = ["show", "mode", "left", "right", "by"];
-
-/// A viewer whose state is in `query` (URLSearchParams) and the address; null: there is no WebGL 2 here. `show(sources)`
-/// takes [{name, layers, seconds, error}] (see openLayers; render time, the error in words) of one size, all shown alike;
+/// A viewer whose state is in `query` (URLSearchParams) and the address; null: there is no WebGL 2. `show(sources)`
+/// takes [{name, layers, seconds, error}] (see openLayers; render time, the error in words) of one size, shown alike;
 /// `open(key)` chooses what of them, and takes the reader there.
 export function viewer(query, signal) {
   const seen = stage();
-  const state = readState(query);
-  const trouble = h("p.problem", { role: "alert", hidden: true });
+  const state = Object.fromEntries(Object.entries(fields).map(([key, [read]]) => [key, read(query.get(key))]));
+  const trouble = h("div");
+  const say = (text) => update(trouble, text && problem(text));
   let pending = false;
   let turn = 0;
-
-  function say(text) {
-    trouble.hidden = text === "";
-    update(trouble, text);
-  }
 
   function redraw() {
     if (pending) return;
@@ -204,9 +184,12 @@ export function viewer(query, signal) {
     size: () => own.sources[0].layers,
     change(values) {
       Object.assign(state, values);
-      writeState(state, query);
+      for (const [key, [, write]] of Object.entries(fields)) {
+        if (write(state)) query.set(key, write(state));
+        else query.delete(key);
+      }
       remember(query);
-      if (contentKeys.some((key) => key in values)) refresh();
+      if (["show", "mode", "left", "right", "by"].some((key) => key in values)) refresh();
       else redraw();
     },
   };
@@ -241,11 +224,13 @@ export function viewer(query, signal) {
   });
 
   return {
-    element: h("figure.viewer", own.modes, seen.frame, own.bar.element, own.readout, trouble, own.tools, own.crops.element),
+    element: h("figure.viewer",
+      own.modes, seen.frame, own.bar.element, own.readout, trouble, own.tools, own.crops.element),
     show(sources) {
       own.sources = sources;
       seen.setSize(own.size());
-      seen.frame.ariaLabel = `Picture of ${sources.map((s) => s.name).join(" and ")}. The question mark lists its keys.`;
+      const names = sources.map((s) => s.name).join(" and ");
+      seen.frame.ariaLabel = `Picture of ${names}. The question mark lists its keys.`;
       return refresh();
     },
     open(key) {

@@ -5,7 +5,6 @@ import { cropBetween, fitZoom, moved, movedCrop, pointAt, scaledCrop, zoomOf, zo
 
 /// The view (see viewport.js) of a viewer's state.
 export const viewOf = ({ zoom, at: [x, y] }) => ({ zoom, x, y });
-
 const grip = 12;  // CSS pixels on each side of the split line that take hold of it
 
 /// Actions on a viewer that has content: {state, size(), seen, content, options, sources, change(values)}.
@@ -16,7 +15,6 @@ export function viewerActions(own) {
   const isColour = () => own.content.look.look === "colour";
   const setExposure = (value) => change(isColour() ? { ev: value } : { stops: value ?? 0 });
   const setSplit = (at) => change({ split: Math.min(1, Math.max(0, at)) });
-  const setCrop = (crop) => change({ crop });
   return {
     change,
     setExposure,
@@ -31,7 +29,7 @@ export function viewerActions(own) {
       }
       if (state.mode === "crops") {
         const from = pointAt(...view(), u, v);
-        return (...at) => setCrop(cropBetween(from, pointAt(...view(), ...at), own.size()));
+        return (...at) => change({ crop: cropBetween(from, pointAt(...view(), ...at), own.size()) });
       }
       let last = [u, v];
       return (...at) => {
@@ -42,7 +40,7 @@ export function viewerActions(own) {
     /// By a tenth of the frame, or of the crop; false where everything is seen already.
     move(right, down) {
       const [, size, box] = view();
-      if (state.mode === "crops") setCrop(movedCrop(state.crop, right, down, size));
+      if (state.mode === "crops") change({ crop: movedCrop(state.crop, right, down, size) });
       else if (zoomOf(...view()) <= fitZoom(size, box)) return false;
       else setView(moved(...view(), 0.1 * right * box.width, 0.1 * down * box.height));
       return true;
@@ -50,7 +48,7 @@ export function viewerActions(own) {
     /// The line between two pictures, or the size of the crop, by a step.
     shift(step) {
       if (state.mode === "split") setSplit(state.split + 0.05 * step);
-      if (state.mode === "crops") setCrop(scaledCrop(state.crop, step, own.size()));
+      if (state.mode === "crops") change({ crop: scaledCrop(state.crop, step, own.size()) });
     },
     cycle(by) {
       const { options } = own;
@@ -89,7 +87,7 @@ function press(key, actions) {
   return key in plain && plain[key]();
 }
 
-/// Keys, wheel and pointer over a viewer's frame. The wheel zooms only with the focus, so that the page scrolls past it.
+/// Keys, wheel and pointer over a viewer's frame. The wheel zooms only with the focus: the page scrolls past it.
 export function listenTo(own) {
   const { actions, seen: { frame } } = own;
   let drag = null;
@@ -97,8 +95,7 @@ export function listenTo(own) {
     const box = frame.getBoundingClientRect();
     return [event.clientX - box.left, event.clientY - box.top];
   };
-  const on = (name, act, options) =>
-    frame.addEventListener(name, (event) => own.content && act(event), options);
+  const on = (name, act, options) => frame.addEventListener(name, (event) => own.content && act(event), options);
   const hover = (point) => {
     own.pointer = point;
     own.redraw();
@@ -128,7 +125,8 @@ export function listenTo(own) {
 /// Exposure in stops, and back to the page's own choice.
 export const exposureTools = (value, setExposure) => h("span.exposure.tools",
   h("label", "EV ", h("input", { type: "number", step: "0.1", "aria-label": "Exposure in stops",
-    value: Number(value.toFixed(2)), oninput: ({ target }) => target.value !== "" && setExposure(Number(target.value)) })),
+    value: Number(value.toFixed(2)),
+    oninput: ({ target }) => target.value !== "" && setExposure(Number(target.value)) })),
   small("Auto", () => setExposure(null), "The page's own exposure"));
 
 /// What is shown, how bright, and how large. `stops` null: what is shown has no exposure.
@@ -143,15 +141,15 @@ export const viewerTools = (actions, { options, chosen, stops, zoom }) => [
   small("Keys", () => document.getElementById("keys").click()),
 ];
 
-const modes = { one: "one at a time", split: "split", difference: "difference",
-  crops: "crops side by side" };
+export const modes = { one: "one at a time", split: "split", difference: "difference", crops: "crops side by side" };
 
 /// The controls for several pictures: one at a time, two split by a line, their difference, or crops.
 export function modeTools(change, { mode, left, right, by }, labels) {
   const options = labels.map((label, i) => ({ key: String(i), label: `${i + 1} ${label}` }));
+  const ways = Object.entries(modes).map(([key, label]) => ({ key, label }));
   const second = { split: "left of", difference: "subtracted from" }[mode];
   return [
-    choice("Pictures", Object.entries(modes).map(([key, label]) => ({ key, label })), mode, (value) => change({ mode: value })),
+    choice("Pictures", ways, mode, (value) => change({ mode: value })),
     select(options, String(left), (value) => change({ left: Number(value) }), { "aria-label": "First picture" }),
     second && [h("span.muted", second),
       select(options, String(right), (value) => change({ right: Number(value) }), { "aria-label": "Second picture" })],

@@ -30,13 +30,13 @@ export function stage() {
     /// The canvases' size follows the frame's, in the screen's own pixels.
     fitCanvases(box, ratio) {
       const [width, height] = [box.width, box.height].map((n) => Math.round(n * ratio));
-      for (const one of [canvas, text]) if (one.width !== width || one.height !== height) Object.assign(one, { width, height });
+      if (canvas.width === width && canvas.height === height) return;
+      for (const one of [canvas, text]) Object.assign(one, { width, height });
     },
   };
 }
 
 const least = 48;  // CSS pixels that a pixel needs
-
 const tints = { R: "#ff9a90", G: "#8fe29a", B: "#9cc4ff" };
 
 function print(context, image, x, y, left, top, zoom) {
@@ -60,8 +60,7 @@ export function printPixels(canvas, box, ratio, { corner, zoom, size, imageAt })
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, box.width, box.height);
   if (zoom < least) return;
-  Object.assign(context, { textAlign: "center", textBaseline: "middle", strokeStyle: "#000000",
-    lineJoin: "round" });
+  Object.assign(context, { textAlign: "center", textBaseline: "middle", strokeStyle: "#000000", lineJoin: "round" });
   const last = (from, room, length) => Math.min(length - 1, Math.floor(from + room / zoom));
   for (let y = Math.max(0, Math.floor(corner.y)); y <= last(corner.y, box.height, size.height); y += 1) {
     for (let x = Math.max(0, Math.floor(corner.x)); x <= last(corner.x, box.width, size.width); x += 1) {
@@ -102,13 +101,6 @@ export function cropStrip(signal) {
   let shown = {};
   let canvases = [];
 
-  function makeFrames(sources) {
-    canvases = sources.map(({ name }) => h("canvas", { role: "img", "aria-label": `Crop of ${name}` }));
-    replace(strip, sources.map((s, i) => h("figure", canvases[i],
-      h("figcaption", h("span", s.name), h("span", `${seconds(s.seconds)}, ${s.error || "no error measured"}`)))));
-    replace(times, aboutTimes(sources.map((s) => s.seconds ?? 0)));
-  }
-
   return {
     element,
     show({ mode, crop }, sources, images, look, ratio) {
@@ -116,12 +108,18 @@ export function cropStrip(signal) {
       if (element.hidden) return;
       const now = JSON.stringify([crop, look, ratio]);
       if (shown.images === images && shown.now === now) return;
-      if (shown.sources !== sources) makeFrames(sources);
+      if (shown.sources !== sources) {
+        canvases = sources.map(({ name }) => h("canvas", { role: "img", "aria-label": `Crop of ${name}` }));
+        replace(strip, sources.map((s, i) => h("figure", canvases[i],
+          h("figcaption", h("span", s.name), h("span", `${seconds(s.seconds)}, ${s.error || "no error measured"}`)))));
+        replace(times, aboutTimes(sources.map((s) => s.seconds ?? 0)));
+      }
       shown = { sources, images, now };
       const zoom = Math.max(1, Math.floor(longest / Math.max(crop.w, crop.h)));
       update(title, `${crop.w} × ${crop.h} pixels at (${crop.x}, ${crop.y}), ${zoom} times as large. `
         + `Drag over the picture to choose others, at most ${longest} a side.`);
-      draw(images.map((image, i) => ({ image: cut(image, crop), canvas: canvases[i], wide: crop.w * zoom })), look, ratio);
+      const wide = crop.w * zoom;
+      draw(images.map((image, i) => ({ image: cut(image, crop), canvas: canvases[i], wide })), look, ratio);
     },
   };
 }

@@ -1,36 +1,24 @@
-// Which part of a picture is seen, and the crop of it that is looked at closely: arithmetic only. A view is {zoom, x,
-// y}: `zoom` CSS pixels a pixel of the picture, null: the whole picture; (x, y), in [0, 1] of the picture, lies in the
-// middle. A crop is {x, y, w, h}, in whole pixels. `size` is the picture's and `box` the frame's {width, height}.
+// Which part of a picture is seen: arithmetic only. A view is {zoom, x, y}: CSS pixels a pixel (null: all of it), and
+// the middle, in [0, 1]. A crop is {x, y, w, h}, in whole pixels. `size` is the picture's and `box` the frame's.
 
 const largestZoom = 256;
-
 /// The zoom that shows the whole picture.
 export const fitZoom = (size, box) => Math.min(box.width / size.width, box.height / size.height);
-
-/// The zoom in use.
 export const zoomOf = (view, size, box) => view.zoom ?? fitZoom(size, box);
 
 /// The picture's point, in pixels, under the point (u, v), in CSS pixels, of the frame.
 export function pointAt(view, size, box, u, v) {
   const zoom = zoomOf(view, size, box);
-  return {
-    x: view.x * size.width + (u - box.width / 2) / zoom,
-    y: view.y * size.height + (v - box.height / 2) / zoom,
-  };
+  return { x: view.x * size.width + (u - box.width / 2) / zoom, y: view.y * size.height + (v - box.height / 2) / zoom };
 }
 
 /// A view that shows no more emptiness than it must.
-function held(view, size, box) {
-  const zoom = zoomOf(view, size, box);
-  const hold = (at, length, room) => {
-    const half = Math.min(0.5, room / 2 / zoom / length);
+function held({ zoom, x, y }, size, box) {
+  const hold = (at, side) => {
+    const half = Math.min(0.5, box[side] / 2 / zoomOf({ zoom }, size, box) / size[side]);
     return Math.min(1 - half, Math.max(half, at));
   };
-  return {
-    zoom: view.zoom,
-    x: hold(view.x, size.width, box.width),
-    y: hold(view.y, size.height, box.height),
-  };
+  return { zoom, x: hold(x, "width"), y: hold(y, "height") };
 }
 
 /// The view after zooming with the point under (u, v) staying where it is; zooming out ends with the whole picture.
@@ -38,24 +26,19 @@ export function zoomTo(view, size, box, zoom, u = box.width / 2, v = box.height 
   const fit = fitZoom(size, box);
   if (zoom <= Math.min(1, fit)) return { zoom: fit <= 1 ? null : 1, x: 0.5, y: 0.5 };
   const next = Math.min(largestZoom, zoom);
-  const kept = pointAt(view, size, box, u, v);
-  return held({
-    zoom: next,
-    x: (kept.x - (u - box.width / 2) / next) / size.width,
-    y: (kept.y - (v - box.height / 2) / next) / size.height,
-  }, size, box);
+  const { x, y } = pointAt(view, size, box, u, v);
+  return held({ zoom: next, x: (x - (u - box.width / 2) / next) / size.width,
+    y: (y - (v - box.height / 2) / next) / size.height }, size, box);
 }
 
 /// The view moved by (du, dv) CSS pixels.
 export function moved(view, size, box, du, dv) {
   const zoom = zoomOf(view, size, box);
-  return held({ zoom: view.zoom, x: view.x + du / zoom / size.width, y: view.y + dv / zoom / size.height },
-    size, box);
+  return held({ ...view, x: view.x + du / zoom / size.width, y: view.y + dv / zoom / size.height }, size, box);
 }
 
 /// The longest side of a crop, in pixels.
 export const longest = 256;
-
 const within = (value, low, high) => Math.min(high, Math.max(low, Math.round(value)));
 
 /// A crop that lies within the picture.
