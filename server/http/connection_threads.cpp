@@ -46,7 +46,7 @@ void ConnectionThreads::start(std::function<void()> serve) {
   ::pthread_attr_init(&attributes);
   ::pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
   ::pthread_attr_setstacksize(&attributes, stack_bytes);
-  auto task = std::make_unique<Task>(*this, std::move(serve));
+  auto task = std::unique_ptr<Task>(new Task{*this, std::move(serve)});
   pthread_t thread{};
   while (const int error = ::pthread_create(&thread, &attributes, run, task.get())) {
     log::warn("no thread for a connection: {}", std::strerror(error));
