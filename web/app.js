@@ -25,12 +25,6 @@ const main = document.getElementById("main");
 let leaving = new AbortController();
 let shown = false;
 
-/// What every view needs to know of the service, asked once.
-async function learn() {
-  if (Object.keys(states).length > 0) return;
-  for (const { name, ...state } of await getStates()) states[name] = state;
-}
-
 const explain = (error) => h("section", { role: "alert" },
   h("h1", error.title ?? "This view failed"),
   problem(error instanceof ApiError ? error.message : String(error)),
@@ -55,7 +49,9 @@ async function route() {
   window.scrollTo(0, 0);
   try {
     if (!match) throw new ApiError(404, { title: "No such view", detail: `There is no view #${path}.` });
-    const [view] = await Promise.all([import(alone ? "./curve_panel.js" : `./view_${match.view}.js`), learn()]);
+    const [view, all] = await Promise.all([import(alone ? "./curve_panel.js" : `./view_${match.view}.js`),
+      Object.keys(states).length > 0 ? [] : getStates()]);
+    for (const { name, ...state } of all) states[name] = state;
     signal.throwIfAborted();
     await view.show(main, { params: match.pattern.exec(path).groups ?? {}, query, signal });
   } catch (error) {

@@ -50,18 +50,17 @@ export const idsOf = (query) => [...new Set((query.get("jobs") ?? "").split(",")
 /// [{name, rows}] that, else the metric `preferred`, else the first that all have; `drawn(axis, metric)` is told which.
 export function curvePanel(query, drawn = () => {}) {
   const figure = figureBox("No errors have been measured.");
-  const [what, switches] = [h("span.switches"), h("div.switches")];
+  const switches = h("div.switches");
   let series = [];
   let preferred = null;
   let metric;
 
   const embedded = query.has("embed");
-  const alone = small(embedded ? "Leave the figure" : "Figure alone", () => {
+  const alone = () => small(embedded ? "Leave the figure" : "Figure alone", () => {
     if (embedded) query.delete("embed");
     else query.set("embed", "");
     location.hash = addressOf(query);
   });
-  replace(switches, what, h("span.tools", alone, figure.saves("", () => `lacuna-${metric.key}`)));
 
   const choose = chooser(query, draw);
   function draw() {
@@ -72,7 +71,9 @@ export function curvePanel(query, drawn = () => {}) {
     metric = pick(query.get("y")) ?? pick(preferred)
       ?? offered.find((m) => has.every((present) => present.includes(m))) ?? offered[0];
     switches.hidden = metric === undefined;
-    update(what, choice("Error", offered, metric?.key, choose("y")), choice("against", axes, axis.key, choose("x")));
+    update(switches,
+      choice("Error", offered, metric?.key, choose("y")), choice("against", axes, axis.key, choose("x")),
+      h("span.tools", alone(), figure.saves("", () => `lacuna-${metric.key}`)));
     figure.draw({ axis, metric, curves: series.map(({ name, rows }, index) => (
       { name, index, points: metric ? points(rows, axis.key, metric.key) : [] })) });
     drawn(axis, metric);

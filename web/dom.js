@@ -82,6 +82,15 @@ export const addressOf = (query) =>
   `${(location.hash || "#/").split("?")[0]}?${query}`.replaceAll("%2C", ",").replace(/\?$/, "");
 export const remember = (query) => history.replaceState(null, "", addressOf(query));
 
+/// Puts `values` into `query` and the address; what is empty is left out.
+export function keep(query, values) {
+  for (const [key, value] of Object.entries(values)) {
+    if (value) query.set(key, value);
+    else query.delete(key);
+  }
+  remember(query);
+}
+
 /// `chooser(query, draw)(key)` is what a choice does: it keeps the value in `query` and the address, and draws.
 export const chooser = (query, draw) => (key) => (value) => {
   query.set(key, value);

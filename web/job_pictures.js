@@ -53,8 +53,7 @@ async function openLayers(id, signal) {
 /// `show(jobs)` takes jobs with a `name`; it gives the first one's layers if others are shown than before, else null.
 /// `describe(job)` gives {alt, caption} of an image.png: of its `image`, its `layers`, and if they are `drawable` here.
 export function jobPictures(query, signal, describe) {
-  const place = h("div");
-  const apart = h("div.gallery");
+  const [place, apart] = [h("div"), h("div.gallery")];
   const opened = new Map();  // by id: {version, layers}, a promise
   let numbers;  // the viewer, once there are layers; null: it cannot be had
   let shown = "";
@@ -68,12 +67,10 @@ export function jobPictures(query, signal, describe) {
       seconds: progress?.seconds, error: currentError(progress), drawable: numbers !== null };
     if (!numbers || !file("layers.json")) return entry;
     if (opened.get(id)?.version !== version) opened.set(id, { version, layers: openLayers(id, signal) });
-    try {
-      return { ...entry, layers: await opened.get(id).layers };
-    } catch (error) {
+    return { ...entry, layers: await opened.get(id).layers.catch((error) => {
       opened.delete(id);
       throw error;
-    }
+    }) };
   }
 
   const plain = ({ image }, { alt, caption }) => h("figure",

@@ -75,9 +75,8 @@ function scalingCurves(jobs, x, y) {
 /// reports; the panel is hidden while there is nothing in which they differ.
 export function scalingPanel(query) {
   const figure = figureBox("No report contains both quantities.");
-  const switches = h("span.switches");
-  const element = h("section", h("h2", "Scaling"),
-    h("div.switches", switches, h("span.tools", figure.saves("scaling ", () => "lacuna-scaling"))), figure.element,
+  const switches = h("div.switches");
+  const element = h("section", h("h2", "Scaling"), switches, figure.element,
     note("The exponent of a power law of x, fitted to the logarithms of each curve."));
 
   function show(jobs) {
@@ -89,7 +88,7 @@ export function scalingPanel(query) {
     const x = pick(offered.x, query.get("sx")) ?? offered.x[0];
     const y = pick(offered.y, query.get("sy")) ?? pick(offered.y, "seconds render_cpu") ?? offered.y[0];
     update(switches, choice("Number", offered.y.map(({ key, label }) => ({ key, label })), y.key, choose("sy")),
-      choice("over", offered.x, x.key, choose("sx")));
+      choice("over", offered.x, x.key, choose("sx")), h("span.tools", figure.saves("scaling ", () => "lacuna-scaling")));
     figure.draw({ curves: scalingCurves(jobs, x, y), axis: x, metric: y });
   }
   return { element, show };

@@ -1,5 +1,5 @@
 // What each strategy brought to a job's picture, as a pyramid with a row a path length, and each distribution.
-import { choice, h, note, problem, remember, replace, scroll, update } from "./dom.js";
+import { choice, h, keep, note, problem, replace, scroll, update } from "./dom.js";
 import { number, significant, thin } from "./format.js";
 import { exposed, lookOf, stripPainter } from "./paint.js";
 import { reduced } from "./pixels.js";
@@ -35,6 +35,52 @@ function pyramid(cells) {
     cells.map((c) => place(c.element, lengths.indexOf(c.edges), column(c)))));
 }
 
+/// The sets there are, and which of them is shown.
+function offered(parts, query) {
+  const options = sets.filter(({ key }) => parts.some((p) => p.set === key));
+  return { options, set: (options.find(({ key }) => key === query.get("strategies")) ?? options[0])?.key };
+}
+
+function cellOf(part, { width, height }, open) {
+  const wide = window.innerWidth < 760 ? 92 : 132;
+  const canvas = h("canvas", { width: wide, height: Math.round(wide * height / width) || 1 });
+  const light = h("span");
+  const label = `${part.text}${part.edges ? `, ${edgesText(part.edges)}` : ""}: show it in the viewer`;
+  return { ...part, wide, canvas, light,
+    element: h("button.cell", { type: "button", "aria-label": label, onclick: () => open(part.name) },
+      canvas, h("span", part.text), light) };
+}
+
+const aboutText = (set, steps, others) => [
+  set && "s vertices are sampled from the light, t from the eye.",
+  steps.some((c) => c.merged) && "Merged: the last vertices of both are taken for one.",
+  set === unweighted && "Each image estimates all light of its path length, with its mean below. Images in a row "
+    + "agree, except for noise and paths that a strategy cannot sample.",
+  (set !== unweighted || others.length > 0) && "In %: its share of the picture's light.",
+  "All at one exposure; a click shows one in the viewer.",
+].filter(Boolean).join(" ");
+
+/// Reads the layers of cells one by one, keeps of each what is drawn, and writes its light beside it; gives the `look`
+/// of the picture itself and the `shares` of techniques in words, or null once it is `over()`.
+async function readCells(layers, cells, over) {
+  const small = (image) => reduced(image, Math.floor(image.width / cells[0].wide / window.devicePixelRatio) || 1);
+  const [picture] = await layers.read("");
+  const whole = (await small(picture)).mean;
+  const percent = (mean) => `${significant(100 * mean / whole)}${thin}%`;
+  const light = { hit: 0, connected: 0, merged: 0 };
+  for (const cell of cells) {
+    const [layer] = await layers.read(cell.name);
+    layers.forget(cell.name);
+    const { image, mean } = await small(layer);
+    if (over()) return null;
+    cell.image = image;
+    if (cell.edges) light[cell.merged ? "merged" : cell.s > 0 ? "connected" : "hit"] += mean;
+    update(cell.light, cell.set === unweighted ? number(mean) : percent(mean));
+  }
+  const told = Object.entries(light).map(([name, mean]) => `${name} ${percent(mean)}`).join(", ");
+  return { look: lookOf([picture]), shares: cells.some((c) => c.merged && c.set !== unweighted) && `${told}.` };
+}
+
 /// `show(layers)` takes those of a job, read once this is in sight; `open(name)` is called with the one that the reader
 /// wants to look at. What is chosen is in `query`.
 export function strategies(query, signal, open) {
@@ -48,60 +94,26 @@ export function strategies(query, signal, open) {
   let turn = 0;
 
   const stops = () => (query.has("stops-each") ? Number(query.get("stops-each")) || 0 : null);
-  function choose(key, value, then) {
-    if (value) query.set(key, value);
-    else query.delete(key);
-    remember(query);
-    then();
-  }
-
-  /// The sets there are, and which of them is shown.
-  function offered() {
-    const options = sets.filter(({ key }) => parts.some((p) => p.set === key));
-    return { options, set: (options.find(({ key }) => key === query.get("strategies")) ?? options[0])?.key };
-  }
 
   async function draw() {
-    const { options, set } = offered();
+    const { options, set } = offered(parts, query);
     update(tools,
-      h("span", { hidden: options.length < 2 },
-        choice("Strategies", options, set, (key) => choose("strategies", key === unweighted && key, build))),
-      look && exposureTools(stops() ?? look.ev,
-        (value) => choose("stops-each", value !== null && String(value), draw)));
+      h("span", { hidden: options.length < 2 }, choice("Strategies", options, set, (key) => {
+        keep(query, { strategies: key === unweighted && key });
+        build();
+      })),
+      look && exposureTools(stops() ?? look.ev, (value) => {
+        keep(query, { "stops-each": value !== null && String(value) });
+        draw();
+      }));
     if (look) await paint(cells.filter((c) => c.image), exposed(look, { ev: stops() }), window.devicePixelRatio);
   }
 
-  function cellOf(part) {
-    const { width, height } = layers;
-    const wide = window.innerWidth < 760 ? 92 : 132;
-    const canvas = h("canvas", { width: wide, height: Math.round(wide * height / width) || 1 });
-    const light = h("span");
-    const label = `${part.text}${part.edges ? `, ${edgesText(part.edges)}` : ""}: show it in the viewer`;
-    return { ...part, wide, canvas, light,
-      element: h("button.cell", { type: "button", "aria-label": label, onclick: () => open(part.name) },
-        canvas, h("span", part.text), light) };
-  }
-
-  /// The pictures one by one, of which only what is drawn is kept.
   async function load(mine) {
-    const small = (image) => reduced(image, Math.floor(image.width / cells[0].wide / window.devicePixelRatio) || 1);
-    const [picture] = await layers.read("");
-    look = lookOf([picture]);
-    const whole = (await small(picture)).mean;
-    const percent = (mean) => `${significant(100 * mean / whole)}${thin}%`;
-    const light = { hit: 0, connected: 0, merged: 0 };
-    for (const cell of cells) {
-      const [layer] = await layers.read(cell.name);
-      layers.forget(cell.name);
-      const { image, mean } = await small(layer);
-      if (turn !== mine || signal.aborted) return;
-      cell.image = image;
-      if (cell.edges) light[cell.merged ? "merged" : cell.s > 0 ? "connected" : "hit"] += mean;
-      update(cell.light, cell.set === unweighted ? number(mean) : percent(mean));
-    }
-    if (cells.some((c) => c.merged && c.set !== unweighted)) {
-      update(shares, `${Object.entries(light).map(([name, mean]) => `${name} ${percent(mean)}`).join(", ")}.`);
-    }
+    const read = await readCells(layers, cells, () => turn !== mine || signal.aborted);
+    if (read === null) return;
+    look = read.look;
+    update(shares, read.shares);
     await draw();
     if (turn === mine) body.ariaBusy = "false";
   }
@@ -118,17 +130,13 @@ export function strategies(query, signal, open) {
   function build() {
     turn += 1;
     body.ariaBusy = "true";  // until its pictures are there, which may wait for the reader to come
-    const { set } = offered();
-    const [steps, others] = [set, "distributions"].map((of) => parts.filter((p) => p.set === of).map(cellOf));
+    const { set } = offered(parts, query);
+    const [steps, others] = [set, "distributions"].map((of) =>
+      parts.filter((p) => p.set === of).map((part) => cellOf(part, layers, open)));
     cells = [...steps, ...others];
     draw();
     update(title, set ? "Strategies" : "Resampling distributions");
-    update(about, [set && "s vertices are sampled from the light, t from the eye.",
-      steps.some((c) => c.merged) && "Merged: the last vertices of both are taken for one.",
-      set === unweighted && "Each image estimates all light of its path length, with its mean below. Images in a row "
-        + "agree, except for noise and paths that a strategy cannot sample.",
-      (set !== unweighted || others.length > 0) && "In %: its share of the picture's light.",
-      "All at one exposure; a click shows one in the viewer."].filter(Boolean).join(" "));
+    update(about, aboutText(set, steps, others));
     for (const part of [say, shares]) replace(part);
     replace(body, set && pyramid(steps), others.length > 0 && [set && h("h3", "Resampling distributions"),
       h("div.distributions", others.map((c) => c.element))]);

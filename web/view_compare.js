@@ -2,7 +2,7 @@
 import { commonError, commonInstants, errorAt, points, reaches } from "./curve.js";
 import { curvePanel, followJobs, idsOf } from "./curve_panel.js";
 import { append, h, note, problem, replace, table, update, warning } from "./dom.js";
-import { number, significant } from "./format.js";
+import { number, significant, thin } from "./format.js";
 import { jobPictures } from "./job_pictures.js";
 import { differences, doubtful, scalingPanel } from "./scaling.js";
 import { noViewer } from "./viewer.js";
@@ -12,7 +12,7 @@ function equalTimes(series, axis, metric) {
   const instants = commonInstants(curves);
   const target = commonError(curves);
   if (target === null) return note("No errors have been measured.");
-  const at = (x) => `${significant(x)} ${axis.unit}`;
+  const at = (x) => `${significant(x)}${thin}${axis.unit}`;
   const times = curves.map((c) => reaches(c, target));
   const fastest = Math.min(...times.filter((t) => t !== null));
   const lowest = instants.map((x) => Math.min(...curves.map((c) => errorAt(c, x) ?? Infinity)));
@@ -46,9 +46,7 @@ export async function show(main, { query, signal }) {
       ", or name them in the address: ", h("code", "#/compare?jobs=ID,ID"), "."));
     return;
   }
-  const notes = h("div.notes");
-  const times = h("section");
-  const settings = h("section");
+  const [notes, times, settings] = [h("div.notes"), h("section"), h("section")];
   const pictures = jobPictures(query, signal, describe);
   const panel = curvePanel(query, (...shown) =>
     update(times, h("h2", "Error at equal time"), equalTimes(compared, ...shown)));

@@ -74,40 +74,52 @@ function filterTools(wanted, counts, changed) {
   ];
 }
 
-/// The way to the pages before and after this one.
-const pager = ({ from }, shown, total, before, after) =>
-  h("nav.tools.pager", { "aria-label": "Pages", hidden: !before && !after },
-    button("‹ Newer", before, { disabled: !before }),
-    h("output.muted", `${shown && from + 1}–${from + shown} of ${total}`),
-    button("Older ›", after, { disabled: !after }));
+const first = { cursor: "", from: 0 };
+
+/// A function that gives the way to the pages before and after one; `go(place)` is called to get there.
+function pager(go) {
+  let back = [];  // the places of the pages before
+  return ({ here, jobs, total, next }) => {
+    if (!here.cursor) back = [];
+    const on = () => {
+      back.push(here);
+      go({ cursor: next, from: here.from + jobs.length });
+    };
+    return h("nav.tools.pager", { "aria-label": "Pages", hidden: !here.cursor && next === null },
+      button("‹ Newer", () => go(back.pop() ?? first), { disabled: !here.cursor }),
+      h("output.muted", `${jobs.length && here.from + 1}–${here.from + jobs.length} of ${total}`),
+      button("Older ›", on, { disabled: next === null }));
+  };
+}
+
+/// What the address asks for.
+function addressed(query) {
+  const given = (key) => query.get(key) ?? "";
+  const state = given("state") in states ? given("state") : "";
+  return { wanted: { label: given("label"), state, sweep: given("sweep") },
+    place: { cursor: given("cursor"), from: Number(given("from")) || 0 } };
+}
 
 export async function show(main, { query, signal }) {
   document.title = "Jobs · Lacuna";
   update(main, h("h1", "Jobs"));
-  const first = { cursor: "", from: 0 };
-  const given = (key) => query.get(key) ?? "";
-  let wanted = { label: given("label"), state: given("state") in states ? given("state") : "", sweep: given("sweep") };
-  let place = { cursor: given("cursor"), from: Number(given("from")) || 0 };
-  let back = [];  // the places of the pages before
-  let found = null;  // the page that begins `here`, as the service gave it
-  let obstacle = "";  // what keeps all jobs from going on
+  let { wanted, place } = addressed(query);
+  let found = null;  // the page that begins `here`, as the service gave it, and the `obstacle` of all jobs
   let scenes = null;  // once there is no job
   const known = new Map();  // the standing of every job that was told of
-  let last = "";  // the last event that is known of
   let asked = 0;
 
   const filter = () => ({ ...wanted, label: wanted.label.trim() });
-
   /// The address holds what is not as at first.
   function go(next, ms) {
     place = next;
     remember(queryOf({ ...filter(), ...place }));
     listSoon(ms);
   }
-  function turn(next) {
+  const pages = pager((next) => {
     go(next, 0);
     main.scrollIntoView();
-  }
+  });
   function changed(values) {
     wanted = { ...wanted, ...values };
     go(first, typingMs);
@@ -118,21 +130,15 @@ export async function show(main, { query, signal }) {
   }
 
   function draw(trouble = "") {
-    const { here, jobs, total, counts, next } = found;
+    const { jobs, total, counts, obstacle } = found;
     const all = Object.values(counts).reduce((sum, n) => sum + n, 0);
     const filtered = Object.values(filter()).some((value) => value !== "");
-    if (!here.cursor) back = [];
-    const before = here.cursor ? () => turn(back.pop() ?? first) : null;
-    const after = next === null ? null : () => {
-      back.push(here);
-      turn({ cursor: next, from: here.from + jobs.length });
-    };
     const none = all > 0 || filtered ? note("No job matches the filter.") : noJobs(scenes);
     update(main, h("h1", "Jobs"), h("div", obstacle && warning(`Jobs wait: ${obstacle}`)),
       h("div.tools", { role: "search", hidden: all === 0 && !filtered }, filterTools(wanted, counts, changed),
         h("output.muted", trouble || (filtered ? `${total} of ${all}` : `${all} jobs`)), choiceTools(draw)),
       h("div", total > 0 ? jobTable(jobs, onchoose) : none),
-      pager(here, jobs.length, total, before, after));
+      pages(found));
   }
 
   /// Asks for the page; an answer that a newer question has overtaken is dropped.
@@ -144,7 +150,7 @@ export async function show(main, { query, signal }) {
       getJobs({ ...filter(), cursor: here.cursor, limit: pageSize }, signal), getHealth(signal)]);
     if (answer.total === 0) scenes ??= await getScenes(signal);
     if (mine !== asked) return;
-    [found, last, obstacle] = [{ ...answer, here }, answer.last_event, health.obstacle];
+    found = { ...answer, here, obstacle: health.obstacle };
     for (const job of found.jobs) known.set(job.id, standing(job));
     draw();
   }
@@ -152,9 +158,9 @@ export async function show(main, { query, signal }) {
   const listSoon = soon(list, (error) => draw(error.message), signal);
 
   await list();
-  listen(() => `/api/events?after=${encodeURIComponent(last)}`, {
+  listen(() => `/api/events?after=${encodeURIComponent(found.last_event)}`, {
     job(entry, id) {
-      last = id || last;
+      found.last_event = id || found.last_event;
       const at = found.jobs.findIndex((job) => job.id === entry.id);
       if (at >= 0) {
         found.jobs[at] = entry;
@@ -165,7 +171,7 @@ export async function show(main, { query, signal }) {
       known.set(entry.id, standing(entry));
     },
     removed({ id }, event) {
-      last = event || last;
+      found.last_event = event || found.last_event;
       known.delete(id);
       if (chosen.delete(id)) draw();
       listSoon(soonMs);

@@ -1,5 +1,5 @@
 // The viewer of pictures of numbers: its state, as the address holds it, what the state asks for, and drawing that.
-import { h, problem, remember, update } from "./dom.js";
+import { h, keep, problem, update } from "./dom.js";
 import { errorKinds, errorOf, kindOf } from "./errors.js";
 import { number, significant, words } from "./format.js";
 import { metrics } from "./job_tables.js";
@@ -184,11 +184,7 @@ export function viewer(query, signal) {
     size: () => own.sources[0].layers,
     change(values) {
       Object.assign(state, values);
-      for (const [key, [, write]] of Object.entries(fields)) {
-        if (write(state)) query.set(key, write(state));
-        else query.delete(key);
-      }
-      remember(query);
+      keep(query, Object.fromEntries(Object.entries(fields).map(([key, [, write]]) => [key, write(state)])));
       if (["show", "mode", "left", "right", "by"].some((key) => key in values)) refresh();
       else redraw();
     },
@@ -216,12 +212,7 @@ export function viewer(query, signal) {
   }
 
   listenTo(own);
-  const watch = new ResizeObserver(redraw);
-  watch.observe(seen.frame);
-  signal.addEventListener("abort", () => {
-    watch.disconnect();
-    own.paint.release();
-  });
+  signal.addEventListener("abort", () => own.paint.release());
 
   return {
     element: h("figure.viewer",

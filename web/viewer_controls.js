@@ -100,6 +100,7 @@ export function listenTo(own) {
     own.pointer = point;
     own.redraw();
   };
+  new ResizeObserver(own.redraw).observe(frame);
   on("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     if (press(event.key, actions) !== false) event.preventDefault();

@@ -73,8 +73,7 @@ export function printPixels(canvas, box, ratio, { corner, zoom, size, imageAt })
 /// A colour map with the values it stands for; `show(look, title)` hides it where colours are not false.
 export function colourBar() {
   const canvas = h("canvas", { width: steps, height: 1, role: "img" });
-  const title = h("span.bar-title");
-  const labels = h("div.bar-labels");
+  const [title, labels] = [h("span.bar-title"), h("div.bar-labels")];
   const element = h("div.colour-bar", title, canvas, labels);
   return {
     element,
@@ -94,9 +93,7 @@ export function colourBar() {
 /// `ratio` is how many of the screen's pixels make a CSS pixel.
 export function cropStrip(signal) {
   const draw = stripPainter(signal);
-  const title = note();
-  const times = h("div");
-  const strip = h("div.crops");
+  const [title, times, strip] = [note(), h("div"), h("div.crops")];
   const element = h("section", { hidden: true }, h("h3", "Crops"), title, times, strip);
   let shown = {};
   let canvases = [];

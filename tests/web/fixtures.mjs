@@ -192,17 +192,16 @@ export const schema = {
 };
 
 const waits = ["cancel", "hold", "priority"];
+const stopped = ["retry", "extend", "delete"];
 
-/// What GET /api/states says of them.
+/// What GET /api/states says of them, but for the words.
 export const states = [
-  { name: "queued", doc: "waits for its turn", terminal: false, actions: waits },
-  { name: "running", doc: "a renderer works on it", terminal: false, actions: waits },
-  { name: "held", doc: "does not start, or go on, until it is released", terminal: false,
-    actions: ["cancel", "release", "priority"] },
-  { name: "cancelling", doc: "its renderer was asked to stop", terminal: false, actions: [] },
-  { name: "interrupted", doc: "of a folder: its renderer stopped before the end; it goes on from its checkpoint", terminal: false,
-    actions: [] },
-  { name: "done", doc: "its budget is spent and its results are complete", terminal: true, actions: ["extend", "delete"] },
-  { name: "failed", doc: "it cannot be done; `error` says why", terminal: true, actions: ["retry", "extend", "delete"] },
-  { name: "cancelled", doc: "it was stopped on request", terminal: true, actions: ["retry", "extend", "delete"] },
+  { name: "queued", terminal: false, actions: waits },
+  { name: "running", terminal: false, actions: waits },
+  { name: "held", terminal: false, actions: ["cancel", "release", "priority"] },
+  { name: "cancelling", terminal: false, actions: [] },
+  { name: "interrupted", terminal: false, actions: [] },
+  { name: "done", terminal: true, actions: ["extend", "delete"] },
+  { name: "failed", terminal: true, actions: stopped },
+  { name: "cancelled", terminal: true, actions: stopped },
 ];

@@ -75,7 +75,8 @@ test("the first job, from the empty list to its curve, picture and report; then 
 });
 
 test("the states that the other tests tell the page are the service's", async () => {
-  assert.deepEqual((await (await fetch(`${address}/api/states`)).json()).states, states);
+  const told = (await (await fetch(`${address}/api/states`)).json()).states;
+  assert.deepEqual(told.map(({ name, terminal, actions }) => ({ name, terminal, actions })), states);
 });
 
 test("a running job is followed and cancelled", async () => {
