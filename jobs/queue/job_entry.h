@@ -9,8 +9,8 @@
 
 namespace lacuna {
 
-/// All that is known of one job of a queue: a row of the table of jobs and, of a job that a
-/// renderer has, what that tells meanwhile.
+/// One job of a queue: a row of the table of jobs and, while its renderer runs, the progress that
+/// it last wrote.
 struct JobEntry {
   std::int64_t number = 0;    ///< the order in which jobs were accepted; the store gives it
   std::int64_t revision = 0;  ///< number of the latest change; the store gives it

@@ -11,6 +11,10 @@
 
 namespace lacuna::rows {
 
+/// The condition of jobs that wait or run; held ones are not among them. The index of the line
+/// holds for queries with this very text.
+inline constexpr const char* in_line = "state IN ('queued', 'running', 'cancelling')";
+
 template <class Row>
 constexpr const char* table = "jobs";
 template <>

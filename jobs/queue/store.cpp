@@ -63,7 +63,9 @@ void Store::make_tables() {
                  "CREATE INDEX jobs_count ON jobs(sweep, state);"
                  "CREATE INDEX jobs_revision ON jobs(revision);"
                  "CREATE INDEX jobs_line ON jobs(begun DESC, priority DESC, number)"
-                 "  WHERE state IN ('queued', 'running', 'cancelling', 'interrupted');"
+                 "  WHERE " +
+                 rows::in_line +
+                 ";"
                  "CREATE INDEX jobs_shards ON jobs(shards) WHERE shards != '';"
                  "CREATE INDEX jobs_reference ON jobs(reference) WHERE reference != '';"
                  "CREATE UNIQUE INDEX sweeps_id ON sweeps(id);"
@@ -171,7 +173,7 @@ void Store::overwrite_failed_commit() {
     if (database_.in_transaction()) database_.run("ROLLBACK");
     database_.run("UPDATE facts SET value=value+1 WHERE name='numbers'");
   } catch (const std::exception&) {
-    // The error of the commit is the one to tell.
+    // The caller gets the error of the commit.
   }
 }
 

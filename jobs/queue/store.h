@@ -37,7 +37,7 @@ struct JobPage {
   std::string last_event;
 };
 
-/// What a renderer tells of its job while it runs.
+/// The progress of a running job, as its renderer last wrote it. In memory only.
 struct LiveState {
   std::string phase = {}, place = {};
   std::vector<std::string> warnings = {};

@@ -173,8 +173,8 @@ std::vector<SweepEntry> Store::unfinished_sweeps() const {
 std::vector<JobEntry> Store::unfinished(std::size_t begin, std::size_t n) const {
   const std::lock_guard lock(mutex_);
   return rows::select<JobEntry>(database_,
-                                "WHERE state IN ('queued', 'running', 'cancelling', 'interrupted')"
-                                " ORDER BY begun DESC, priority DESC, number LIMIT ? OFFSET ?",
+                                std::string("WHERE ") + rows::in_line +
+                                    " ORDER BY begun DESC, priority DESC, number LIMIT ? OFFSET ?",
                                 static_cast<std::int64_t>(n), static_cast<std::int64_t>(begin));
 }
 

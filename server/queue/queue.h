@@ -132,7 +132,7 @@ class Queue {
   void judge(Work& work, Attempt attempt, const std::stop_token& ends);
   void settle(Work& work, Attempt& attempt);
   void note_start(Work& work, pid_t pid);
-  void tell(Work& work, const std::function<void(LiveState&)>& change);
+  void update_live(Work& work, const std::function<void(LiveState&)>& change);
   void look_at(Work& work);
   void postpone(const std::string& id, const std::exception& error);
   void note_obstacle(const std::string& id, const std::string& what, const std::string& for_all);

@@ -217,12 +217,13 @@ std::optional<Attempt> Queue::render(Work& work, const JobEntry& entry) {
   if (!may_render(work, attempt)) return std::nullopt;
   log::info("{}: {}", work.id,
             attempt.found ? "its renderer is found again" : "a renderer is started");
-  attempt.ending = executor_.run({job, entry.priority, entry.crashes}, work.stop,
-                                 {.started = [&](pid_t pid) { note_start(work, pid); },
-                                  .place =
-                                      [&](const std::string& place) {
-                                        tell(work, [&](LiveState& live) { live.place = place; });
-                                      }});
+  attempt.ending =
+      executor_.run({job, entry.priority, entry.crashes}, work.stop,
+                    {.started = [&](pid_t pid) { note_start(work, pid); },
+                     .place =
+                         [&](const std::string& place) {
+                           update_live(work, [&](LiveState& live) { live.place = place; });
+                         }});
   log::info("{}: {}", work.id, attempt.ending.reason);
   if (attempt.ending.kind == Ending::Kind::left) return std::nullopt;
   return attempt;
@@ -319,7 +320,7 @@ void Queue::judge(Work& work, Attempt attempt, const std::stop_token& ends) {
       }
       std::unique_lock lock(mutex_);
       const auto pause = pause_after_fault(faults, longest_pause);
-      // Its folder tells the next service.
+      // The next service reads the end from outcome.json.
       if (changed_.wait_for(lock, pause, [&] { return ends.stop_requested(); })) return;
     }
   }
@@ -415,74 +416,6 @@ void Queue::give_up(const std::string& id, const std::string& reason) {
   } catch (const std::exception& error) {
     postpone(id, error);
   }
-}
-
-std::string Queue::obstacle() const {
-  if (std::string shortage = disk_.shortage(); !shortage.empty()) return shortage;
-  const Counts counts = store_.counts();
-  if (unfinished_of(counts) == 0) return {};
-  if (std::string why = executor_.obstacle(); !why.empty()) return why;
-  const std::lock_guard lock(faults_mutex_);
-  return faults_ > 0 ? obstacle_ : "";
-}
-
-void Queue::look_at_disk() {
-  const bool low = disk_.is_low();
-  const std::lock_guard lock(mutex_);
-  for (const auto& [id, work] : work_) {
-    if (low) work->stop.request();
-  }
-  changed_.notify_all();
-}
-
-void Queue::tell(Work& work, const std::function<void(LiveState&)>& change) {
-  LiveState live;
-  {
-    const std::lock_guard lock(mutex_);
-    change(work.live);
-    live = work.live;
-  }
-  store_.set_live(work.id, live);
-}
-
-void Queue::look_at_running() {
-  std::vector<WorkPtr> running;
-  {
-    const std::lock_guard lock(mutex_);
-    for (const auto& [id, work] : work_) running.push_back(work);
-  }
-  for (const WorkPtr& work : running) {
-    try {
-      look_at(*work);
-    } catch (const std::exception& error) {  // its runner will find out, too
-      log::debug("{}: {}", work->id, error.what());
-    }
-  }
-}
-
-/// What a renderer has written since.
-void Queue::look_at(Work& work) {
-  const JobFolder job = folder(work.id);
-  const auto progress = job.read_progress();
-  const JobState said = job.read_state();
-  if (said.state != State::running) return;
-  const bool pictured = has_picture(job);
-  tell(work, [&](LiveState& live) {
-    live.phase = said.phase;
-    live.warnings = said.warnings;
-    live.progress = progress;
-    live.pictured = pictured;
-  });
-  // A renderer of another machine is not seen to start.
-  if (!executor_.is_remote()) return;
-  store_.change([&](StoreChange& c) {
-    auto entry = c.find_job(work.id);
-    if (!entry || !entry->begun || entry->over()) return;
-    entry->state.attempts = said.attempts;
-    entry->state.started = said.started;
-    if (entry->state.state == State::queued) entry->state.state = State::running;
-    c.put(std::move(*entry));
-  });
 }
 
 }  // namespace lacuna

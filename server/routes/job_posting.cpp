@@ -59,9 +59,10 @@ std::optional<SweepEntry> JobPosting::sweep_of_shards(const JobSpec& spec) const
 Response JobPosting::post(const Request& request) {
   const std::string body = read_json_body(request, max_job_bytes);
   const PostKey key = key_of(request, body);
+  const JobSpec spec = checked_spec(body);
   JobEntry job;
-  take_spec(job, checked_spec(body));
-  auto sweep = sweep_of_shards(parse_job(job.spec));
+  take_spec(job, spec);
+  auto sweep = sweep_of_shards(spec);
   job.key = key.name;
   job.body_hash = key.body_hash;
   job.state.created = utc_now();

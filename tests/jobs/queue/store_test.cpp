@@ -235,14 +235,22 @@ TEST_F(StoreTest, WhatARendererTellsIsForgottenWithItsEnd) {
 }
 
 TEST_F(StoreTest, FreeIdsAreNoOtherJobsOrRuns) {
+  // A sweep that takes all ids of its second: the next free one is of another.
+  SweepEntry all;
+  all.id = new_job_id();
+  all.runs = 2176782336;  // 36^6
+  store->change([&](StoreChange& c) { c.add(all); });
+  const std::size_t second = std::string_view("20260131-235959").size();
+  EXPECT_NE(store->free_job_id().substr(0, second), all.id.substr(0, second));
   const std::string id = store->free_sweep_id(5);
   EXPECT_TRUE(is_job_id(id));
+  EXPECT_NE(id.substr(0, second), all.id.substr(0, second));
   SweepEntry sweep;
   sweep.id = "20260131-235959-000010";
   sweep.runs = 3;
   store->change([&](StoreChange& c) { c.add(sweep); });
   EXPECT_EQ(store->find_sweep(sweep.id)->runs, 3U);
-  EXPECT_EQ(store->unfinished_sweeps().size(), 1U);
+  EXPECT_EQ(store->unfinished_sweeps().size(), 2U);
 }
 
 TEST_F(StoreTest, WhatCannotBeStoredHasNotHappened) {
