@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "jobs/statistics/distributions.h"
+#include "jobs/sweep/distributions.h"
 
 namespace lacuna::statistics {
 

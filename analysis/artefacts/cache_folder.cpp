@@ -8,8 +8,8 @@
 #include <cerrno>
 #include <system_error>
 
-#include "analysis/storage/file_handle.h"
-#include "analysis/storage/file_lock.h"
+#include "base/storage/file_handle.h"
+#include "base/storage/file_lock.h"
 
 namespace lacuna {
 namespace {

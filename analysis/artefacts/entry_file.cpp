@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <system_error>
 
-#include "analysis/storage/checksum.h"
-#include "analysis/storage/file_handle.h"
+#include "base/storage/checksum.h"
+#include "base/storage/file_handle.h"
 
 namespace lacuna {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 
 struct ZSTD_CCtx_s;
 struct ZSTD_DCtx_s;

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "analysis/settings/field.h"
+#include "base/settings/field.h"
 
 namespace lacuna {
 

@@ -13,10 +13,10 @@
 
 #include "analysis/artefacts/cache_folder.h"
 #include "analysis/artefacts/entry_file.h"
-#include "analysis/parallel/stop.h"
-#include "analysis/storage/atomic_file.h"
-#include "analysis/storage/file_lock.h"
-#include "analysis/storage/peak_memory.h"
+#include "base/parallel/stop.h"
+#include "base/storage/atomic_file.h"
+#include "base/storage/file_lock.h"
+#include "base/storage/peak_memory.h"
 
 namespace lacuna {
 namespace {

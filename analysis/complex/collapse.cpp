@@ -7,7 +7,7 @@
 #include "analysis/complex/block_set.h"
 #include "analysis/complex/border.h"
 #include "analysis/complex/pass.h"
-#include "analysis/parallel/staggered_rows.h"
+#include "base/parallel/staggered_rows.h"
 
 namespace lacuna {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "analysis/complex/border.h"
 #include "analysis/complex/kept_edges.h"
-#include "analysis/parallel/thread_pool.h"
+#include "base/parallel/thread_pool.h"
 
 namespace lacuna {
 

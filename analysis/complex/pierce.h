@@ -4,7 +4,7 @@
 
 #include "analysis/complex/cubical_complex.h"
 #include "analysis/geometry/grid.h"
-#include "analysis/parallel/thread_pool.h"
+#include "base/parallel/thread_pool.h"
 
 namespace lacuna {
 

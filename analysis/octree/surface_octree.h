@@ -2,7 +2,7 @@
 
 #include "analysis/geometry/triangle_soup.h"
 #include "analysis/octree/octree.h"
-#include "analysis/parallel/thread_pool.h"
+#include "base/parallel/thread_pool.h"
 
 namespace lacuna {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "analysis/geometry/grid.h"
-#include "analysis/parallel/thread_pool.h"
 #include "analysis/space/opening.h"
+#include "base/parallel/thread_pool.h"
 
 namespace lacuna {
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "analysis/parallel/thread_pool.h"
 #include "analysis/regions/forest_labels.h"
 #include "analysis/regions/voxel_face.h"
+#include "base/parallel/thread_pool.h"
 
 namespace lacuna {
 

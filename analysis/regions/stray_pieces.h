@@ -1,7 +1,7 @@
 #pragma once
 
-#include "analysis/parallel/thread_pool.h"
 #include "analysis/regions/forest_labels.h"
+#include "base/parallel/thread_pool.h"
 
 namespace lacuna {
 

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "analysis/settings/field.h"
+#include "base/settings/field.h"
 
 namespace lacuna {
 

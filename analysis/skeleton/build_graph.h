@@ -4,8 +4,8 @@
 
 #include "analysis/complex/cubical_complex.h"
 #include "analysis/geometry/grid.h"
-#include "analysis/parallel/thread_pool.h"
 #include "analysis/skeleton/graph.h"
+#include "base/parallel/thread_pool.h"
 
 namespace lacuna {
 

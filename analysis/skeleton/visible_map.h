@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "analysis/geometry/grid.h"
-#include "analysis/parallel/thread_pool.h"
 #include "analysis/skeleton/graph.h"
+#include "base/parallel/thread_pool.h"
 
 namespace lacuna {
 

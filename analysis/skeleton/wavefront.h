@@ -8,7 +8,7 @@
 #include "analysis/complex/plane.h"
 #include "analysis/geometry/bit_grid.h"
 #include "analysis/geometry/grid.h"
-#include "analysis/parallel/thread_pool.h"
+#include "base/parallel/thread_pool.h"
 
 namespace lacuna {
 

@@ -4,7 +4,7 @@
 
 #include "analysis/geometry/bit_grid.h"
 #include "analysis/geometry/grid.h"
-#include "analysis/parallel/thread_pool.h"
+#include "base/parallel/thread_pool.h"
 
 namespace lacuna {
 

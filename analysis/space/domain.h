@@ -6,8 +6,8 @@
 
 #include "analysis/geometry/bit_grid.h"
 #include "analysis/geometry/grid.h"
-#include "analysis/parallel/thread_pool.h"
 #include "analysis/space/voxelize.h"
+#include "base/parallel/thread_pool.h"
 
 namespace lacuna {
 

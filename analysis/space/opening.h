@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "analysis/geometry/grid.h"
-#include "analysis/parallel/thread_pool.h"
+#include "base/parallel/thread_pool.h"
 
 namespace lacuna {
 

@@ -7,9 +7,9 @@
 
 #include "analysis/geometry/disjoint_sets.h"
 #include "analysis/geometry/grid.h"
-#include "analysis/parallel/thread_pool.h"
 #include "analysis/space/memory_limit.h"
 #include "analysis/space/sweep.h"
+#include "base/parallel/thread_pool.h"
 
 namespace lacuna {
 

@@ -6,7 +6,7 @@
 #include "analysis/geometry/bit_grid.h"
 #include "analysis/geometry/grid.h"
 #include "analysis/geometry/triangle_soup.h"
-#include "analysis/parallel/thread_pool.h"
+#include "base/parallel/thread_pool.h"
 
 namespace lacuna {
 

@@ -7,14 +7,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "analysis/json/json_text.h"
-#include "analysis/parallel/stop.h"
-#include "analysis/storage/atomic_file.h"
+#include "base/json/json_text.h"
+#include "base/parallel/stop.h"
+#include "base/storage/atomic_file.h"
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/terminal.h"
-#include "jobs/render/advise.h"
-#include "jobs/results/race_json.h"
+#include "jobs/run/advise.h"
+#include "jobs/run/race_json.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/limits.h"
 

@@ -5,12 +5,12 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/geometry/disjoint_sets.h"
-#include "analysis/json/json_text.h"
-#include "analysis/storage/available_memory.h"
-#include "analysis/storage/peak_memory.h"
-#include "jobs/analyze/overlay.h"
+#include "base/json/json_text.h"
+#include "base/storage/available_memory.h"
+#include "base/storage/peak_memory.h"
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
+#include "jobs/cli/overlay.h"
 #include "jobs/cli/settings_options.h"
 #include "jobs/cli/terminal.h"
 #include "jobs/run/clock.h"

@@ -2,11 +2,11 @@
 
 #include <CLI/CLI.hpp>
 
-#include "analysis/storage/atomic_file.h"
-#include "jobs/check/check.h"
+#include "base/storage/atomic_file.h"
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/terminal.h"
+#include "jobs/run/check.h"
 #include "jobs/spec/job_json.h"
 
 namespace lacuna {

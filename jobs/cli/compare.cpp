@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "jobs/cli/commands.h"
-#include "jobs/results/results.h"
+#include "jobs/run/results.h"
 #include "jobs/store/inputs.h"
 #include "renderer/film/block_statistics.h"
 #include "renderer/film/display_errors.h"

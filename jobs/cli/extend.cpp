@@ -4,8 +4,8 @@
 
 #include "jobs/cli/commands.h"
 #include "jobs/cli/render_job.h"
-#include "jobs/render/run_job.h"
 #include "jobs/run/input_check.h"
+#include "jobs/run/run_job.h"
 #include "jobs/spec/budget_extension.h"
 #include "jobs/spec/described_json.h"
 #include "jobs/spec/job_json.h"

@@ -5,14 +5,14 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "analysis/storage/atomic_file.h"
+#include "base/storage/atomic_file.h"
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/render_job.h"
 #include "jobs/cli/results_folder.h"
 #include "jobs/cli/terminal.h"
-#include "jobs/render/run_job.h"
 #include "jobs/run/obstacle.h"
+#include "jobs/run/run_job.h"
 #include "jobs/spec/byte_size.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/problems.h"

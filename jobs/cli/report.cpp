@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "analysis/storage/atomic_file.h"
+#include "base/storage/atomic_file.h"
 #include "jobs/cli/commands.h"
 #include "jobs/report/report_text.h"
 

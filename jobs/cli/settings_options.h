@@ -8,7 +8,7 @@
 #include <string>
 #include <type_traits>
 
-#include "analysis/settings/field.h"
+#include "base/settings/field.h"
 
 namespace lacuna {
 

@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-#include "analysis/storage/atomic_file.h"
+#include "base/storage/atomic_file.h"
 #include "jobs/cli/terminal.h"
 #include "jobs/slurm/submission.h"
 #include "jobs/spec/problems.h"

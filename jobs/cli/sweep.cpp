@@ -13,8 +13,8 @@
 #include <thread>
 #include <utility>
 
-#include "analysis/storage/atomic_file.h"
-#include "analysis/storage/passing_error.h"
+#include "base/storage/atomic_file.h"
+#include "base/storage/passing_error.h"
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/render_job.h"
@@ -22,8 +22,8 @@
 #include "jobs/cli/results_folder.h"
 #include "jobs/cli/slurm_sweep.h"
 #include "jobs/cli/terminal.h"
-#include "jobs/render/run_job.h"
 #include "jobs/run/input_check.h"
+#include "jobs/run/run_job.h"
 #include "jobs/slurm/request.h"
 #include "jobs/slurm/run_program.h"
 #include "jobs/slurm/submission.h"

@@ -5,7 +5,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "analysis/json/json_text.h"
+#include "base/json/json_text.h"
 #include "jobs/queue/database.h"
 #include "jobs/spec/described_json.h"
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <tuple>
 
-#include "analysis/storage/atomic_file.h"
-#include "analysis/storage/passing_error.h"
+#include "base/storage/atomic_file.h"
+#include "base/storage/passing_error.h"
 #include "jobs/spec/described_json.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/store/own_document.h"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "jobs/statistics/estimate.h"
+#include "jobs/sweep/estimate.h"
 
 namespace lacuna {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "analysis/json/json_text.h"
+#include "base/json/json_text.h"
 #include "jobs/report/page_files.h"
 #include "jobs/spec/page_tables.h"
 #include "jobs/spec/version.h"

@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "analysis/storage/atomic_file.h"
-#include "analysis/storage/checksum.h"
-#include "analysis/storage/file_handle.h"
+#include "base/storage/atomic_file.h"
+#include "base/storage/checksum.h"
+#include "base/storage/file_handle.h"
 
 namespace lacuna {
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 
 namespace lacuna {
 

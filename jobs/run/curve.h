@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 #include "renderer/film/metrics.h"
 #include "renderer/path/counters.h"
 

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 
 namespace lacuna {
 

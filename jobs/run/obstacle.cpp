@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "analysis/space/memory_limit.h"
-#include "analysis/storage/passing_error.h"
+#include "base/storage/passing_error.h"
 
 namespace lacuna {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/storage/input_file.h"
+#include "base/storage/input_file.h"
 #include "jobs/spec/job_spec.h"
 #include "jobs/store/job_folder.h"
 

@@ -8,8 +8,8 @@
 #include <system_error>
 #include <utility>
 
-#include "analysis/storage/atomic_file.h"
-#include "analysis/storage/available_memory.h"
+#include "base/storage/atomic_file.h"
+#include "base/storage/available_memory.h"
 #include "jobs/run/checkpoint.h"
 #include "jobs/run/obstacle.h"
 #include "jobs/spec/identity.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/parallel/stop.h"
+#include "base/parallel/stop.h"
 #include "jobs/run/clock.h"
 #include "jobs/run/merge_shards.h"
 #include "jobs/run/observer.h"

@@ -8,8 +8,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "analysis/storage/atomic_file.h"
-#include "analysis/storage/passing_error.h"
+#include "base/storage/atomic_file.h"
+#include "base/storage/passing_error.h"
 #include "jobs/run/checkpoint.h"
 #include "jobs/spec/described_json.h"
 #include "jobs/spec/problems.h"

@@ -18,7 +18,7 @@
 #include <system_error>
 #include <thread>
 
-#include "analysis/storage/file_handle.h"
+#include "base/storage/file_handle.h"
 
 namespace lacuna {
 namespace {

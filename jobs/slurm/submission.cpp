@@ -9,8 +9,8 @@
 #include <string_view>
 #include <system_error>
 
-#include "analysis/storage/atomic_file.h"
-#include "analysis/storage/file_handle.h"
+#include "base/storage/atomic_file.h"
+#include "base/storage/file_handle.h"
 #include "jobs/store/own_document.h"
 
 namespace lacuna {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "analysis/settings/field.h"
+#include "base/settings/field.h"
 #include "jobs/store/job_folder.h"
 
 namespace lacuna {

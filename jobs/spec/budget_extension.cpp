@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "analysis/json/limits.h"
+#include "base/json/limits.h"
 
 namespace lacuna {
 namespace {

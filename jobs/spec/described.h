@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "analysis/settings/field.h"
+#include "base/settings/field.h"
 #include "jobs/spec/json_value.h"
 #include "jobs/spec/name_or_object.h"
 
@@ -20,7 +20,7 @@ struct ProbeVisitor {
   void operator()(std::string_view, T&, const Field&) {}
 };
 
-/// A struct with a settings table (analysis/settings/field.h).
+/// A struct with a settings table (base/settings/field.h).
 template <class T>
 concept Described = requires(ProbeVisitor& v, T& settings) {
   describe(v, settings);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/settings/analysis_settings.h"
-#include "analysis/settings/field.h"
+#include "base/settings/field.h"
 #include "jobs/spec/name_or_object.h"
 #include "renderer/settings/camera_settings.h"
 #include "renderer/settings/error_metrics.h"

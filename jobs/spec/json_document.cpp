@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "analysis/json/json_cursor.h"
+#include "base/json/json_cursor.h"
 
 namespace lacuna {
 namespace {

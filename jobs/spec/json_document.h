@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/json/json_text.h"
+#include "base/json/json_text.h"
 #include "jobs/spec/problems.h"
 
 namespace lacuna {

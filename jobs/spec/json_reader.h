@@ -10,8 +10,8 @@
 #include <variant>
 #include <vector>
 
-#include "analysis/json/json_cursor.h"
-#include "analysis/settings/auto_number.h"
+#include "base/json/json_cursor.h"
+#include "base/settings/auto_number.h"
 #include "jobs/spec/described.h"
 #include "jobs/spec/json_document.h"
 #include "jobs/spec/limits.h"

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <variant>
 
-#include "analysis/json/json_text.h"
-#include "analysis/settings/auto_number.h"
+#include "base/json/json_text.h"
+#include "base/settings/auto_number.h"
 #include "jobs/spec/described.h"
 
 namespace lacuna {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "analysis/json/limits.h"
-#include "analysis/settings/field.h"
+#include "base/json/limits.h"
+#include "base/settings/field.h"
 #include "jobs/spec/described.h"
 
 namespace lacuna {

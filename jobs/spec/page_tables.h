@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "analysis/json/json_text.h"
+#include "base/json/json_text.h"
 
 namespace lacuna {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/settings/field.h"
+#include "base/settings/field.h"
 #include "jobs/spec/json_value.h"
 #include "renderer/settings/error_metrics.h"
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "analysis/settings/field.h"
+#include "base/settings/field.h"
 
 namespace lacuna {
 

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "analysis/storage/atomic_file.h"
-#include "analysis/storage/file_handle.h"
+#include "base/storage/atomic_file.h"
+#include "base/storage/file_handle.h"
 #include "jobs/spec/described_json.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/store/new_folder.h"

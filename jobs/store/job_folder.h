@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/storage/file_lock.h"
+#include "base/storage/file_lock.h"
 #include "jobs/spec/job_spec.h"
 #include "jobs/store/acceptance.h"
 #include "jobs/store/state.h"

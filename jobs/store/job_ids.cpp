@@ -9,7 +9,7 @@
 #include <memory>
 #include <random>
 
-#include "analysis/storage/file_handle.h"
+#include "base/storage/file_handle.h"
 #include "jobs/store/job_folder.h"
 
 namespace lacuna {

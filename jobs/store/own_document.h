@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "analysis/storage/atomic_file.h"
+#include "base/storage/atomic_file.h"
 #include "jobs/spec/described_json.h"
 
 namespace lacuna {

@@ -11,9 +11,9 @@
 #include <set>
 #include <stdexcept>
 
-#include "analysis/storage/file_handle.h"
-#include "analysis/storage/input_file.h"
-#include "analysis/storage/passing_error.h"
+#include "base/storage/file_handle.h"
+#include "base/storage/input_file.h"
+#include "base/storage/passing_error.h"
 #include "jobs/spec/nearest.h"
 #include "jobs/store/job_folder.h"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "analysis/storage/passing_error.h"
+#include "base/storage/passing_error.h"
 #include "jobs/spec/identity.h"
 #include "jobs/spec/reference_spec.h"
 #include "jobs/sweep/compare_points.h"

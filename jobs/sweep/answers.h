@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "jobs/statistics/front.h"
+#include "jobs/sweep/front.h"
 #include "jobs/sweep/run_result.h"
 #include "jobs/sweep/sweep_folder.h"
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "analysis/json/json_text.h"
+#include "base/json/json_text.h"
 #include "jobs/sweep/answers.h"
 
 namespace lacuna {

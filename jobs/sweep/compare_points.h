@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "jobs/statistics/compare.h"
+#include "jobs/sweep/compare.h"
 
 namespace lacuna {
 

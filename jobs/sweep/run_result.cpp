@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "analysis/storage/atomic_file.h"
+#include "base/storage/atomic_file.h"
 #include "jobs/spec/json_document.h"
 #include "jobs/sweep/limits.h"
 

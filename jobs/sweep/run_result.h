@@ -6,9 +6,9 @@
 #include <string>
 
 #include "jobs/spec/job_spec.h"
-#include "jobs/statistics/error_curve.h"
 #include "jobs/store/inputs.h"
 #include "jobs/store/job_folder.h"
+#include "jobs/sweep/error_curve.h"
 #include "renderer/settings/error_metrics.h"
 
 namespace lacuna {

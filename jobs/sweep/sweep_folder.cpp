@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "analysis/storage/atomic_file.h"
-#include "analysis/storage/passing_error.h"
+#include "base/storage/atomic_file.h"
+#include "base/storage/passing_error.h"
 #include "jobs/spec/described_json.h"
 #include "jobs/store/new_folder.h"
 #include "jobs/store/own_document.h"

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "jobs/plan/expand.h"
 #include "jobs/store/job_folder.h"
+#include "jobs/sweep/expand.h"
 #include "jobs/sweep/sweep_state.h"
 
 namespace lacuna {

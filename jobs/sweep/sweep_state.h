@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include "analysis/settings/field.h"
+#include "base/settings/field.h"
 
 namespace lacuna {
 

@@ -4,9 +4,9 @@
 #include <set>
 #include <sstream>
 
-#include "analysis/json/json_text.h"
-#include "analysis/storage/atomic_file.h"
-#include "analysis/storage/passing_error.h"
+#include "base/json/json_text.h"
+#include "base/storage/atomic_file.h"
+#include "base/storage/passing_error.h"
 #include "jobs/sweep/limits.h"
 #include "jobs/sweep/sweep_folder.h"
 

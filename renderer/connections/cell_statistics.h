@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 
 namespace lacuna {
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "analysis/space/memory_limit.h"
-#include "analysis/storage/available_memory.h"
+#include "base/storage/available_memory.h"
 
 namespace lacuna {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 #include "renderer/images/exr_write.h"
 
 namespace lacuna {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/parallel/thread_pool.h"
+#include "base/parallel/thread_pool.h"
 #include "renderer/film/image.h"
 
 namespace lacuna {

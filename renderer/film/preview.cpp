@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "analysis/storage/atomic_file.h"
+#include "base/storage/atomic_file.h"
 #include "renderer/images/png_write.h"
 
 namespace lacuna {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 #include "renderer/film/image.h"
 
 namespace lacuna {

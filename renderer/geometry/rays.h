@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/parallel/thread_pool.h"
+#include "base/parallel/thread_pool.h"
 #include "renderer/core/vec.h"
 #include "renderer/geometry/scene_data.h"
 

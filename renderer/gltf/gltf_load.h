@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "analysis/storage/input_file.h"
+#include "base/storage/input_file.h"
 #include "renderer/geometry/scene_data.h"
 
 namespace lacuna {

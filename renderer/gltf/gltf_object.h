@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/json/json_cursor.h"
+#include "base/json/json_cursor.h"
 #include "renderer/gltf/gltf_warnings.h"
 
 namespace lacuna::gltf {

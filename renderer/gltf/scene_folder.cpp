@@ -4,7 +4,7 @@
 #include <charconv>
 #include <stdexcept>
 
-#include "analysis/storage/passing_error.h"
+#include "base/storage/passing_error.h"
 #include "renderer/geometry/scene_data.h"
 
 namespace lacuna {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/storage/input_file.h"
+#include "base/storage/input_file.h"
 
 namespace lacuna {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 #include "renderer/core/density.h"
 #include "renderer/core/power8.h"
 #include "renderer/core/rng.h"

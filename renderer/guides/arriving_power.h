@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "analysis/parallel/thread_pool.h"
 #include "analysis/skeleton/surface_lookup.h"
+#include "base/parallel/thread_pool.h"
 #include "renderer/scene/camera.h"
 #include "renderer/scene/scene.h"
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 #include "renderer/core/density.h"
 #include "renderer/core/rng.h"
 #include "renderer/core/vec.h"

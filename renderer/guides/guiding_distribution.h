@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 #include "renderer/guides/learning_memory.h"
 #include "renderer/path/contexts.h"
 #include "renderer/path/guiding_sample.h"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 
 namespace lacuna {
 

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 #include "renderer/guides/learning_memory.h"
 #include "renderer/guides/learning_rounds.h"
 #include "renderer/path/vertex.h"

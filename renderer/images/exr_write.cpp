@@ -7,8 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "analysis/storage/atomic_file.h"
-#include "analysis/storage/bytes.h"
+#include "base/storage/atomic_file.h"
+#include "base/storage/bytes.h"
 #include "renderer/images/image_module.h"
 
 namespace lacuna {

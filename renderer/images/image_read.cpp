@@ -10,7 +10,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "analysis/storage/available_memory.h"
+#include "base/storage/available_memory.h"
 #include "renderer/core/scene_error.h"
 #include "renderer/images/guards.h"
 #include "renderer/images/image_module.h"

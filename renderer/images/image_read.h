@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/storage/input_file.h"
+#include "base/storage/input_file.h"
 #include "renderer/core/vec.h"
 
 namespace lacuna {

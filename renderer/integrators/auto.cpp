@@ -7,7 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "analysis/parallel/stop.h"
+#include "base/parallel/stop.h"
 #include "renderer/core/clock_seconds.h"
 #include "renderer/film/saved_values.h"
 #include "renderer/integrators/candidates.h"

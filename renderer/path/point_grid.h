@@ -7,7 +7,7 @@
 #include <span>
 
 #include "analysis/geometry/simd.h"
-#include "analysis/parallel/thread_pool.h"
+#include "base/parallel/thread_pool.h"
 #include "renderer/core/huge_pages.h"
 #include "renderer/core/rng.h"
 #include "renderer/core/vec.h"

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 #include "renderer/path/contexts.h"
 
 namespace lacuna {

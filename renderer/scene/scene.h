@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "analysis/parallel/thread_pool.h"
+#include "base/parallel/thread_pool.h"
 #include "renderer/emitters/emitter_set.h"
 #include "renderer/geometry/rays.h"
 #include "renderer/geometry/scene_data.h"

@@ -4,7 +4,7 @@
 #include <variant>
 #include <vector>
 
-#include "analysis/settings/field.h"
+#include "base/settings/field.h"
 #include "renderer/settings/bdpt_settings.h"
 #include "renderer/settings/many_lights_settings.h"
 #include "renderer/settings/metropolis_settings.h"

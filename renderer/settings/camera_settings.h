@@ -6,7 +6,7 @@
 #include <array>
 #include <optional>
 
-#include "analysis/settings/field.h"
+#include "base/settings/field.h"
 
 namespace lacuna {
 

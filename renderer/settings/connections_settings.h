@@ -4,7 +4,7 @@
 #include <string_view>
 #include <variant>
 
-#include "analysis/settings/field.h"
+#include "base/settings/field.h"
 #include "renderer/settings/emitter_settings.h"
 #include "renderer/settings/node_map_settings.h"
 

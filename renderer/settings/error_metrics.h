@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <string_view>
 
-#include "analysis/settings/field.h"
+#include "base/settings/field.h"
 
 namespace lacuna {
 

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <variant>
 
-#include "analysis/settings/auto_number.h"
-#include "analysis/settings/field.h"
+#include "base/settings/auto_number.h"
+#include "base/settings/field.h"
 #include "renderer/settings/bias.h"
 
 namespace lacuna {

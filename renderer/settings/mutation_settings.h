@@ -3,7 +3,7 @@
 #include <string_view>
 #include <variant>
 
-#include "analysis/settings/field.h"
+#include "base/settings/field.h"
 
 namespace lacuna {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "analysis/settings/field.h"
+#include "base/settings/field.h"
 
 namespace lacuna {
 

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "analysis/parallel/thread_pool.h"
+#include "base/parallel/thread_pool.h"
 #include "renderer/view_maps/view_rendering.h"
 
 namespace lacuna {

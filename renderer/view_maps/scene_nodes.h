@@ -1,7 +1,7 @@
 #pragma once
 
 #include "analysis/octree/octree.h"
-#include "analysis/parallel/thread_pool.h"
+#include "base/parallel/thread_pool.h"
 #include "renderer/core/huge_pages.h"
 #include "renderer/core/vec.h"
 #include "renderer/view_maps/node_list.h"

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "analysis/json/json_text.h"
+#include "base/json/json_text.h"
 #include "server/http/message.h"
 
 namespace lacuna {

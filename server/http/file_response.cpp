@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <utility>
 
-#include "analysis/storage/passing_error.h"
+#include "base/storage/passing_error.h"
 
 namespace lacuna {
 namespace {

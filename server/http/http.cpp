@@ -17,7 +17,7 @@
 #include <system_error>
 #include <utility>
 
-#include "analysis/storage/passing_error.h"
+#include "base/storage/passing_error.h"
 #include "server/http/address.h"
 #include "server/http/guard.h"
 #include "server/telemetry/log.h"

@@ -7,8 +7,8 @@
 #include <cctype>
 #include <nlohmann/json.hpp>
 
-#include "analysis/json/json_text.h"
-#include "analysis/storage/passing_error.h"
+#include "base/json/json_text.h"
+#include "base/storage/passing_error.h"
 
 namespace lacuna {
 

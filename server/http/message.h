@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/storage/file_handle.h"
+#include "base/storage/file_handle.h"
 #include "jobs/spec/problems.h"
 #include "server/http/query.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/json/json_text.h"
+#include "base/json/json_text.h"
 #include "server/http/message.h"
 
 namespace lacuna {

@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "analysis/storage/file_handle.h"
+#include "base/storage/file_handle.h"
 
 namespace lacuna {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <system_error>
 
-#include "analysis/storage/file_handle.h"
+#include "base/storage/file_handle.h"
 #include "jobs/store/job_folder.h"
 
 namespace lacuna {

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "analysis/storage/passing_error.h"
+#include "base/storage/passing_error.h"
 #include "jobs/slurm/submission.h"
 #include "jobs/spec/byte_size.h"
 #include "jobs/store/exit_code.h"

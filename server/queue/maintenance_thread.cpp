@@ -3,7 +3,7 @@
 #include <chrono>
 #include <utility>
 
-#include "analysis/storage/file_handle.h"
+#include "base/storage/file_handle.h"
 #include "server/queue/retention.h"
 #include "server/telemetry/log.h"
 

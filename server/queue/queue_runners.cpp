@@ -6,7 +6,7 @@
 #include <csignal>
 #include <utility>
 
-#include "analysis/storage/passing_error.h"
+#include "base/storage/passing_error.h"
 #include "server/queue/child_process.h"
 #include "server/queue/process_identity.h"
 #include "server/queue/queue.h"

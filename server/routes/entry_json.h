@@ -1,6 +1,6 @@
 #pragma once
 
-#include "analysis/json/json_text.h"
+#include "base/json/json_text.h"
 #include "jobs/queue/job_entry.h"
 
 namespace lacuna {

@@ -7,10 +7,10 @@
 #include <system_error>
 #include <vector>
 
-#include "jobs/plan/expand.h"
-#include "jobs/plan/shard_sweep.h"
 #include "jobs/spec/described_json.h"
 #include "jobs/spec/job_json.h"
+#include "jobs/sweep/expand.h"
+#include "jobs/sweep/shard_sweep.h"
 #include "server/http/conditional.h"
 #include "server/routes/catalogue.h"
 #include "server/routes/json_body.h"

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "analysis/storage/passing_error.h"
+#include "base/storage/passing_error.h"
 #include "server/http/message.h"
 
 namespace lacuna {

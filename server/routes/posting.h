@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "analysis/json/json_text.h"
+#include "base/json/json_text.h"
 #include "server/http/message.h"
 
 namespace lacuna {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/storage/file_handle.h"
+#include "base/storage/file_handle.h"
 #include "server/queue/executor.h"
 #include "server/settings/queue_settings.h"
 

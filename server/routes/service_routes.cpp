@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "analysis/storage/available_memory.h"
+#include "base/storage/available_memory.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/version.h"
 #include "jobs/store/machine.h"

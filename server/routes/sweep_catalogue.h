@@ -1,6 +1,6 @@
 #pragma once
 
-#include "analysis/json/json_text.h"
+#include "base/json/json_text.h"
 #include "jobs/queue/store.h"
 #include "jobs/sweep/sweep_folder.h"
 

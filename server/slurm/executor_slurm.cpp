@@ -11,7 +11,7 @@
 #include <system_error>
 #include <utility>
 
-#include "analysis/storage/atomic_file.h"
+#include "base/storage/atomic_file.h"
 #include "jobs/slurm/request.h"
 #include "jobs/slurm/run_program.h"
 #include "jobs/slurm/script.h"

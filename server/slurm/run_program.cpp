@@ -8,7 +8,7 @@
 #include <csignal>
 #include <system_error>
 
-#include "analysis/storage/file_handle.h"
+#include "base/storage/file_handle.h"
 #include "jobs/slurm/run_program.h"
 #include "server/queue/child_process.h"
 

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "analysis/storage/file_handle.h"
+#include "base/storage/file_handle.h"
 #include "jobs/slurm/slurm_programs.h"
 #include "jobs/slurm/submission.h"
 #include "server/queue/executor.h"

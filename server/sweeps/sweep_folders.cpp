@@ -1,6 +1,6 @@
 #include "server/sweeps/sweep_folders.h"
 
-#include "analysis/storage/passing_error.h"
+#include "base/storage/passing_error.h"
 #include "jobs/spec/described_json.h"
 #include "jobs/store/new_folder.h"
 #include "server/telemetry/log.h"

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <utility>
 
-#include "analysis/storage/passing_error.h"
+#include "base/storage/passing_error.h"
 #include "jobs/spec/problems.h"
 #include "server/telemetry/log.h"
 

@@ -7,7 +7,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-FLOORS = ("analysis", "renderer", "jobs", "server")
+FLOORS = ("base", "analysis", "renderer", "jobs", "server")
 
 
 def folders(page):
@@ -70,7 +70,7 @@ class Libraries(unittest.TestCase):
     DOORS = {"httplib.h": {"server/http/http.cpp", "server/http/answer_writer.cpp"},
              "OpenImageIO/": {"renderer/images/module/openimageio.cpp"},
              "embree3/": {"renderer/geometry/rays.cpp"}, "tiny_gltf.h": {"renderer/gltf/gltf_model.h"},
-             "boost/": {"jobs/statistics/distributions.cpp"}}
+             "boost/": {"jobs/sweep/distributions.cpp"}}
 
     def test_no_other_source_includes_them(self):
         for header, doors in self.DOORS.items():

@@ -21,7 +21,7 @@
 #include "analysis/space/distance.h"
 #include "analysis/space/memory_limit.h"
 #include "analysis/space/opening_query.h"
-#include "analysis/storage/peak_memory.h"
+#include "base/storage/peak_memory.h"
 #include "tests/bench/grids.h"
 #include "tests/bench/yardstick.h"
 

@@ -16,10 +16,10 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "analysis/json/json_text.h"
 #include "analysis/skeleton/surface_lookup.h"
-#include "analysis/storage/atomic_file.h"
-#include "jobs/render/prepare.h"
+#include "base/json/json_text.h"
+#include "base/storage/atomic_file.h"
+#include "jobs/run/prepare.h"
 #include "jobs/spec/job_json.h"
 #include "renderer/guides/crossed_faces.h"
 #include "renderer/guides/make_guide.h"

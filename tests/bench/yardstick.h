@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "analysis/parallel/thread_pool.h"
+#include "base/parallel/thread_pool.h"
 
 namespace lacuna::bench {
 

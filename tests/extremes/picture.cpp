@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "jobs/render/prepare.h"
+#include "jobs/run/prepare.h"
 
 namespace lacuna::extremes {
 namespace {

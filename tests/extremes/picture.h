@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "jobs/render/run_job.h"
+#include "jobs/run/run_job.h"
 #include "renderer/film/film.h"
 #include "renderer/path/counters.h"
 #include "tests/block_means.h"

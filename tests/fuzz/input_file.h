@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "analysis/storage/file_handle.h"
+#include "base/storage/file_handle.h"
 #include "tests/fuzz/expect.h"
 
 namespace lacuna::fuzz {

@@ -1,8 +1,8 @@
 #include <optional>
 
-#include "jobs/plan/expand.h"
 #include "jobs/spec/described_json.h"
 #include "jobs/spec/job_json.h"
+#include "jobs/sweep/expand.h"
 #include "tests/fuzz/expect.h"
 
 // A sweep file: refused with its problems, or one that is written and read back without a change

@@ -4,7 +4,7 @@ import dataclasses
 import math
 import statistics
 
-CONFIDENCE = 0.95  # that of jobs/statistics/estimate.h; Run.answers() compares them
+CONFIDENCE = 0.95  # that of jobs/sweep/estimate.h; Run.answers() compares them
 
 
 @dataclasses.dataclass(frozen=True)

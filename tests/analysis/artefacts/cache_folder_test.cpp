@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "analysis/storage/file_lock.h"
+#include "base/storage/file_lock.h"
 #include "tests/analysis/artefacts/store_fixture.h"
 
 namespace lacuna {

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "analysis/artefacts/codec.h"
-#include "analysis/storage/atomic_file.h"
+#include "base/storage/atomic_file.h"
 #include "tests/analysis/artefacts/entries.h"
 
 namespace lacuna {

@@ -8,8 +8,8 @@
 #include <chrono>
 #include <thread>
 
-#include "analysis/storage/atomic_file.h"
-#include "analysis/storage/file_lock.h"
+#include "base/storage/atomic_file.h"
+#include "base/storage/file_lock.h"
 #include "tests/analysis/artefacts/store_fixture.h"
 #include "tests/child_process.h"
 

@@ -1,4 +1,4 @@
-#include "analysis/parallel/staggered_rows.h"
+#include "base/parallel/staggered_rows.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 
 #include <optional>
 
-#include "analysis/parallel/stop.h"
-#include "analysis/storage/atomic_file.h"
+#include "base/parallel/stop.h"
+#include "base/storage/atomic_file.h"
 #include "renderer/film/layer_means.h"
 #include "tests/renderer/gltf/glb_builder.h"
 

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 
 namespace lacuna {
 namespace {

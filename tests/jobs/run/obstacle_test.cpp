@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "analysis/storage/passing_error.h"
+#include "base/storage/passing_error.h"
 
 namespace lacuna {
 namespace {

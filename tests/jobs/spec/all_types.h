@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "analysis/settings/auto_number.h"
-#include "analysis/settings/field.h"
+#include "base/settings/auto_number.h"
+#include "base/settings/field.h"
 #include "jobs/spec/json_value.h"
 #include "jobs/spec/name_or_object.h"
 

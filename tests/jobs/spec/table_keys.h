@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/settings/field.h"
+#include "base/settings/field.h"
 
 namespace lacuna {
 

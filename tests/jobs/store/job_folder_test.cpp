@@ -5,8 +5,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "analysis/storage/atomic_file.h"
-#include "analysis/storage/file_handle.h"
+#include "base/storage/atomic_file.h"
+#include "base/storage/file_handle.h"
 #include "jobs/spec/problems.h"
 #include "jobs/store/job_folder.h"
 #include "jobs/store/new_folder.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "analysis/storage/passing_error.h"
+#include "base/storage/passing_error.h"
 #include "jobs/store/job_folder.h"
 #include "tests/temporary_folder.h"
 

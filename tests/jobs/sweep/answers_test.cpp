@@ -6,7 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "analysis/storage/atomic_file.h"
+#include "base/storage/atomic_file.h"
 #include "tests/temporary_folder.h"
 
 namespace lacuna {

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 #include "renderer/core/rng.h"
 #include "renderer/film/block_statistics.h"
 #include "renderer/film/half_layers.h"

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "analysis/space/memory_limit.h"
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 #include "renderer/core/rng.h"
 #include "renderer/film/film.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 #include "renderer/core/rng.h"
 #include "renderer/film/film.h"
 #include "tests/double_double.h"

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "jobs/statistics/distributions.h"
+#include "jobs/sweep/distributions.h"
 #include "tests/statistics.h"
 
 namespace lacuna {

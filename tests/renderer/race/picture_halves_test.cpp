@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 #include "renderer/race/plan.h"
 #include "renderer/race/race.h"
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <random>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 #include "renderer/race/mixture.h"
 #include "renderer/race/plan.h"
 #include "tests/statistics.h"

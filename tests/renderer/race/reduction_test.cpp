@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 #include "renderer/race/race.h"
 #include "tests/statistics.h"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/storage/bytes.h"
+#include "base/storage/bytes.h"
 #include "renderer/core/rng.h"
 
 namespace lacuna {

@@ -1,0 +1,70 @@
+#include "base/parallel/thread_pool.h"
+
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+#include <pmmintrin.h>
+#include <xmmintrin.h>
+
+#include <atomic>
+#include <utility>
+
+namespace lacuna {
+namespace {
+
+/// Says to ThreadSanitizer what TBB, which is not instrumented, keeps to itself: all of a loop's
+/// calls come after what was before the loop, and before what follows it.
+class LoopOrder {
+#ifdef __SANITIZE_THREAD__
+ public:
+  void enter() { (void)calls_.load(std::memory_order_acquire); }
+  void leave() { calls_.fetch_add(1, std::memory_order_release); }
+
+ private:
+  std::atomic<int> calls_{0};
+#else
+ public:
+  void enter() {}
+  void leave() {}
+#endif
+};
+
+}  // namespace
+
+struct ThreadPool::Impl {
+  tbb::global_control limit;
+  tbb::task_arena arena;
+  explicit Impl(int threads)
+      : limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)),
+        arena(threads) {}
+};
+
+ThreadPool::ThreadPool(int threads, std::function<bool()> stop)
+    : threads_(threads > 0 ? threads : tbb::this_task_arena::max_concurrency()),
+      stop_(std::move(stop)) {
+  impl_ = std::make_unique<Impl>(threads_);
+}
+
+ThreadPool::~ThreadPool() = default;
+
+void ThreadPool::for_each(int n, const std::function<void(int)>& body) const {
+  LoopOrder order;
+  order.leave();
+  impl_->arena.execute([&] {
+    tbb::parallel_for(
+        0, n,
+        [&](int i) {
+          // Set where the work is done: pool threads may have served somebody else before.
+          _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+          _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+          order.enter();
+          check_stop();
+          body(i);
+          order.leave();
+        },
+        tbb::simple_partitioner());
+  });
+  order.enter();
+}
+
+}  // namespace lacuna

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "base/parallel/stop.h"
+
+namespace lacuna {
+
+/// A fixed number of threads that treat denormal numbers as zero (Embree needs it for its speed,
+/// and the same everywhere for the same bits).
+class ThreadPool {
+ public:
+  /// `threads` 0: one for each core. `stop`, called by several threads, says whether all work is to
+  /// be given up; empty: never.
+  explicit ThreadPool(int threads, std::function<bool()> stop = {});
+  ~ThreadPool();
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+
+  int threads() const { return threads_; }
+  /// Whether stop() returns true.
+  bool stopped() const { return stop_ && stop_(); }
+  /// Throws Stopped if stopped(). For serial loops of more than a second.
+  void check_stop() const {
+    if (stopped()) throw Stopped{};
+  }
+  /// Runs `body(i)` for i in [0, n) on the pool's threads, in any order, and waits. The first
+  /// exception is rethrown. check_stop() is called before each body.
+  void for_each(int n, const std::function<void(int)>& body) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+  int threads_;
+  std::function<bool()> stop_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,182 @@
+#include "jobs/run/prepare.h"
+#include "renderer/gltf/gltf_load.h"
+#include "renderer/scene/close_surfaces.h"
+#include "renderer/scene/delta_surfaces.h"
+#include "renderer/scene/hidden_emitters.h"
+#include "renderer/scene/material_change.h"
+#include "renderer/scene/particles.h"
+#include "renderer/scene/points_in_surfaces.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <numbers>
+
+#include "base/storage/available_memory.h"
+#include "base/storage/passing_error.h"
+#include "jobs/run/verdicts.h"
+#include "renderer/scene/scene_shape.h"
+
+namespace lacuna {
+
+namespace {
+
+std::filesystem::path resolve(const RunContext& context, const std::string& what,
+                              const std::string& name,
+                              const std::vector<std::string_view>& extensions) {
+  try {
+    return context.scenes.resolve(name, extensions);
+  } catch (const std::invalid_argument& e) {
+    throw SceneError(fmt::format("{} \"{}\": {}", what, name, e.what()));
+  }
+}
+
+SceneNeeds needs_of(const JobSpec& spec, const Integrator& integrator) {
+  SceneNeeds needs = integrator.needs();
+  if (std::find(spec.layers.begin(), spec.layers.end(), ImageLayer::albedo) != spec.layers.end()) {
+    needs.materials = true;
+  }
+  if (light_paths_of_iteration(spec)) needs.light_tree = true;  // for unreached_emitters()
+  return needs;
+}
+
+/// The environment of the job, as it is now.
+InputFile measure_environment(const std::string& name, const std::filesystem::path& file) {
+  try {
+    InputFile measured = measure_input(file);
+    measured.role = InputRole::environment;
+    measured.name = name;
+    return measured;
+  } catch (const std::invalid_argument& e) {
+    throw SceneError(fmt::format("{} {}", file.string(), e.what()));
+  }
+}
+
+/// The analysis of the scene's empty space as seen by the job's camera, of which nothing is built.
+void set_up_analysis(Prepared& p, const JobSpec& spec, const RunContext& context,
+                     const CameraData& camera) {
+  Observer& observer = context.observer;
+  p.artefacts = std::make_unique<ArtefactStore>(StoreSettings{
+      .folder = context.data.cache(),
+      .byte_limit = context.data.cache_limit,
+      .label = spec.scene,
+      .message = [&observer](const std::string& line) { observer.milestone(line); },
+      .warning = [&observer](const std::string& line) { observer.warning(line); },
+      .building = [&observer](const std::string& type) { observer.milestone("building " + type); },
+      .interrupted = context.interrupted});
+  const SceneData& data = p.scene->data();
+  p.space = std::make_unique<SpaceAnalysis>(
+      SpaceInput{.triangles = [&data] { return triangle_soup(data); },
+                 .geometry = geometry_key(data),
+                 .seeds =
+                     [&data, camera, everywhere = spec.environment.has_value()] {
+                       return domain_seeds(data, camera, everywhere);
+                     },
+                 .settings = spec.analysis,
+                 .byte_limit = memory_to_take},
+      *p.artefacts, *p.pool);
+}
+
+/// What a budget leaves each thread, if it is limited by time.
+std::optional<double> seconds_of(const Budget& budget) {
+  if (!budget.seconds || !budget.cpu_seconds) {
+    return budget.seconds ? budget.seconds : budget.cpu_seconds;
+  }
+  return std::min(*budget.seconds, *budget.cpu_seconds);
+}
+
+/// What a person should know before the scene is rendered.
+std::vector<std::string> warnings_of(const Scene& scene, const Camera& camera,
+                                     const IntegratorSettings& integrator) {
+  std::vector<std::string> all = close_surfaces(scene);
+  if (!scene.has_emitters()) return all;
+  const auto add = [&all](std::vector<std::string> warnings) {
+    for (std::string& w : warnings) all.push_back(std::move(w));
+  };
+  if (scene.emitters().empty()) all.emplace_back("the scene has no light: the picture is black");
+  add(hidden_emitters(scene));
+  add(lights_in_surfaces(scene));
+  if (from_lights_only(integrator)) add(missing_reflections(scene, camera));
+  return all;
+}
+
+}  // namespace
+
+std::optional<double> light_paths_of_iteration(const JobSpec& spec) {
+  return shared_light_paths(spec.integrator,
+                            double(spec.resolution[0]) * double(spec.resolution[1]));
+}
+
+Prepared prepare(const JobSpec& spec, const RunContext& context) {
+  Prepared p;
+  p.pool = std::make_unique<ThreadPool>(context.threads >= 0 ? context.threads : spec.threads,
+                                        context.interrupted);
+  p.integrator = make_integrator(spec.integrator);
+  SceneData data = load_gltf(resolve(context, "scene", spec.scene, scene_extensions), &p.inputs);
+  p.inputs.front().name = spec.scene;
+  if (spec.material) change_material(data, *spec.material, spec.scene);
+  if (spec.particles) add_particles(data, *spec.particles);
+  CameraData camera = spec.camera.object ? look_at(*spec.camera.object, data.origin)
+                                         : choose_camera(data, spec.camera.name, spec.scene);
+  p.camera_name = camera.name;
+  p.warnings = data.warnings;
+  if (biased(spec.integrator)) {
+    p.warnings.emplace_back(
+        consistent(spec.integrator)
+            ? "every iteration is biased by its radius: the error vanishes as that shrinks, but "
+              "noise "
+              "alone does not bound it"
+            : "the integrator's settings make it biased: however long it runs, an error remains");
+  }
+  p.content = fmt::format("{:016x}", data.content_hash);
+
+  const SceneNeeds needs = needs_of(spec, *p.integrator);
+  std::optional<EnvironmentImage> environment;
+  if (spec.environment && needs.emission) {
+    const auto& e = *spec.environment;
+    environment = {resolve(context, "environment", e.file, environment_extensions),
+                   static_cast<float>(e.scale),
+                   static_cast<float>(e.rotation * std::numbers::pi / 180)};
+    p.inputs.push_back(measure_environment(e.file, environment->file));
+    p.content += fmt::format("-{}", p.inputs.back().hash);
+  }
+  p.scene = std::make_unique<Scene>(std::move(data), needs, environment, *p.pool);
+  if (environment &&
+      measure_environment(spec.environment->file, environment->file) != p.inputs.back()) {
+    throw InputUnreadable(EAGAIN,
+                          fmt::format("{} changed while it was read", environment->file.string()));
+  }
+  const auto contact = leave_surfaces(camera, *p.scene);
+  std::optional<Crop> crop;
+  if (const auto& c = spec.crop) crop = Crop{{c->from[0], c->from[1]}, {c->of[0], c->of[1]}};
+  p.camera = std::make_unique<Camera>(camera, spec.resolution[0], spec.resolution[1],
+                                      spec.pixel_filter, crop);
+  for (std::string& w : warnings_of(*p.scene, *p.camera, spec.integrator)) {
+    p.warnings.push_back(std::move(w));
+  }
+  if (contact) {
+    for (std::string& w : look_back(*p.camera, *contact, *p.scene)) {
+      p.warnings.push_back(std::move(w));
+    }
+  }
+  set_up_analysis(p, spec, context, camera);
+  if (const auto seconds = seconds_of(spec.budget)) {
+    p.verdicts =
+        std::make_unique<VerdictMemory>(cached_verdicts(*p.artefacts, spec, p.content, *seconds));
+  }
+  return p;
+}
+
+void analyse(const Prepared& p, const Budget& budget, bool resumes) {
+  p.integrator->prepare({.scene = *p.scene,
+                         .pool = *p.pool,
+                         .space = *p.space,
+                         .camera = *p.camera,
+                         .budget_seconds = seconds_of(budget),
+                         .verdicts = p.verdicts.get(),
+                         .resumes = resumes});
+  p.space->close();
+}
+
+}  // namespace lacuna

@@ -1,0 +1,159 @@
+#include "jobs/run/results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/json/json_text.h"
+#include "base/storage/atomic_file.h"
+#include "jobs/spec/job_json.h"
+#include "jobs/spec/version.h"
+#include "renderer/film/half_layers.h"
+#include "renderer/film/preview.h"
+#include "renderer/images/exr_write.h"
+
+namespace lacuna {
+
+namespace {
+
+const std::vector<std::string> rgb{"R", "G", "B"};
+
+/// A layer that tells of the first hit: the mean over a few iterations of integrator `inspect`.
+std::vector<double> first_hit(const RenderTask& task, InspectQuantity quantity) {
+  constexpr std::uint64_t iterations = 16;
+  const auto inspect = make_integrator(InspectSettings{quantity});
+  Film film(task.spec.resolution[0], task.spec.resolution[1]);
+  const std::function<bool()> never = [] { return false; };
+  for (std::uint64_t i = 0; i < iterations; ++i) {
+    Image frame(film.width(), film.height());
+    inspect->iterate({task.scene, task.camera, task.pool, task.spec.seed, i, never}, frame);
+    film.add(i, frame);
+  }
+  return film.mean();
+}
+
+std::vector<double> every_third(const std::vector<double>& values) {
+  std::vector<double> result;
+  result.reserve(values.size() / 3);
+  for (std::size_t i = 0; i < values.size(); i += 3) result.push_back(values[i]);
+  return result;
+}
+
+/// The power of two by which variances are multiplied in a file of `type`. Squares of small or
+/// large radiances leave a float's range long before the radiances do; then, and always in halves,
+/// the largest is brought near 1.
+double variance_scale(const std::vector<double>& variance, PixelType type) {
+  const double largest = *std::max_element(variance.begin(), variance.end());
+  const bool fits = type == PixelType::single_float && largest > 0x1p-80 && largest < 0x1p100;
+  return largest == 0 || fits ? 1 : std::exp2(-std::ilogb(largest));
+}
+
+void add_layer(const RenderTask& task, const Film& film, ImageLayer layer,
+               std::vector<ExrLayer>& out) {
+  switch (layer) {
+    case ImageLayer::variance:
+      out.push_back({"variance", rgb,
+                     independent_iterations(task.spec) ? film.variance_of_mean()
+                                                       : film.variance_from_halves()});
+      return;
+    case ImageLayer::halves:
+      out.push_back({"even", rgb, film.half_mean(0)});
+      out.push_back({"odd", rgb, film.half_mean(1)});
+      return;
+    case ImageLayer::albedo:
+      out.push_back({"albedo", rgb, first_hit(task, InspectQuantity::albedo)});
+      return;
+    case ImageLayer::normal:
+      out.push_back({"normal", {"X", "Y", "Z"}, first_hit(task, InspectQuantity::normal)});
+      return;
+    case ImageLayer::depth:
+      out.push_back({"depth", {"Z"}, every_third(first_hit(task, InspectQuantity::depth))});
+      return;
+    case ImageLayer::strategies:
+    case ImageLayer::strategies_unweighted:
+    case ImageLayer::distributions:
+    case ImageLayer::visibility_tests:
+    case ImageLayer::negative:
+      return;  // the integrator's own (RenderLoop::layers())
+  }
+}
+
+/// Scales the variance among the layers, and says so among the file's attributes.
+void scale_variance(std::vector<ExrLayer>& layers, PixelType type,
+                    std::map<std::string, std::string>& attributes) {
+  for (ExrLayer& layer : layers) {
+    if (layer.name != "variance") continue;
+    const double scale = variance_scale(layer.values, type);
+    for (double& v : layer.values) v *= scale;
+    attributes[std::string(variance_scale_attribute)] = fmt::format("{:.17g}", scale);
+  }
+}
+
+std::map<std::string, std::string> attributes(const RenderTask& task, const RenderLoop& loop) {
+  std::map<std::string, std::string> a{
+      {"version", version()},
+      {"job", task.folder.id()},
+      {"spec", write_job(task.spec)},
+      {"seed", fmt::format("{}", task.spec.seed)},
+      {"iterations", fmt::format("{}", loop.spent().iterations)},
+      {"seconds", fmt::format("{:.3f}", loop.spent().seconds)},
+      {"cpu_seconds", fmt::format("{:.3f}", loop.spent().cpu_seconds)},
+      {"scene_hash", fmt::format("{:016x}", task.scene.data().content_hash)},
+  };
+  if (const auto rmse = estimated_rmse(loop.film())) a["est_rmse"] = fmt::format("{:.17g}", *rmse);
+  return a;
+}
+
+/// layers.half, then layers.json, which says what lies where in it.
+void write_half_layers(const RenderTask& task, const std::vector<ExrLayer>& layers) {
+  AtomicFile file(task.folder.file("layers.half"));
+  ByteWriter out([&](std::string_view piece) {
+    file.write(piece);
+    task.stop_if_late();
+  });
+  const std::vector<HalfLayer> entries = pack_half(layers, out);
+  out.flush();
+  file.commit();
+  OrderedJson index;
+  index["width"] = task.spec.resolution[0];
+  index["height"] = task.spec.resolution[1];
+  for (const HalfLayer& l : entries) {
+    index["layers"].push_back({{"name", l.name},
+                               {"channels", l.channels},
+                               {"offset", l.offset},
+                               {"bytes", l.bytes},
+                               {"scale", l.scale}});
+  }
+  write_file_atomically(task.folder.file("layers.json"), document_text(index));
+}
+
+}  // namespace
+
+void write_results(const RenderTask& task, const RenderLoop& loop) {
+  const Film& film = loop.film();
+  const std::vector<double> mean = film.mean();
+  std::vector<ExrLayer> layers{{"", rgb, {}, mean}};
+  for (const ImageLayer layer : task.spec.layers) {
+    add_layer(task, film, layer, layers);
+    task.stop_if_late();
+  }
+  const LayerMeans& own = loop.layers();
+  for (std::size_t i = 0; i < own.names().size(); ++i) {
+    layers.push_back({own.names()[i], rgb, {}, own.sum(i), own.divisor()});
+  }
+  if (task.reference != nullptr) layers.push_back({"reference", rgb, {}, task.reference->rgb});
+  write_half_layers(task, layers);
+  if (task.reference != nullptr) layers.pop_back();
+  std::map<std::string, std::string> header = attributes(task, loop);
+  scale_variance(layers, task.spec.pixel_type, header);
+  write_exr(
+      task.folder.file("image.exr"),
+      {film.width(), film.height(), std::move(layers), task.spec.pixel_type, std::move(header)},
+      [&] { task.stop_if_late(); });
+  write_preview(task.folder.file("image.png"), film.width(), film.height(), mean);
+  write_file_atomically(task.folder.file("curve.csv"), loop.curve().csv());
+}
+
+}  // namespace lacuna
