@@ -9,10 +9,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/log/log.h"
 #include "jobs/slurm/request.h"
 #include "jobs/spec/byte_size.h"
 #include "server/service.h"
-#include "server/telemetry/log.h"
 
 namespace {
 
@@ -49,8 +49,7 @@ void add_slurm_arguments(ServiceSettings& s, const std::string& text) {
 /// What only one of the executors knows.
 void check_executor(const CLI::App& app, ServiceSettings& s) {
   if (s.executor == ExecutorKind::slurm) {
-    constexpr int at_a_time = 64;
-    if (app.count("--jobs") == 0) s.queue.children = at_a_time;
+    if (app.count("--jobs") == 0) s.queue.children = slurm_jobs_at_a_time;
     return;
   }
   for (const char* option : {"--slurm-args", "--slurm-cores", "--slurm-poll"}) {

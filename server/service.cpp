@@ -8,21 +8,21 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "base/log/log.h"
+#include "jobs/queue/executor_local.h"
 #include "jobs/queue/import_folders.h"
+#include "jobs/queue/queue.h"
+#include "jobs/slurm/executor_slurm.h"
 #include "jobs/spec/page_tables.h"
 #include "jobs/spec/version.h"
 #include "server/http/access.h"
 #include "server/http/address.h"
 #include "server/http/http.h"
-#include "server/queue/executor_local.h"
-#include "server/queue/maintenance_thread.h"
-#include "server/queue/queue.h"
+#include "server/keeper/maintenance_thread.h"
+#include "server/keeper/sweep_folders.h"
+#include "server/keeper/sweep_keeper.h"
 #include "server/routes/routes.h"
 #include "server/routes/scene_uploads.h"
-#include "server/slurm/executor_slurm.h"
-#include "server/sweeps/sweep_folders.h"
-#include "server/sweeps/sweep_keeper.h"
-#include "server/telemetry/log.h"
 
 namespace lacuna {
 namespace {
@@ -85,6 +85,7 @@ std::chrono::milliseconds grace(const ServiceSettings& settings) {
 std::unique_ptr<Executor> make_executor(const ServiceSettings& settings, const DataRoot& data,
                                         const ScenesRoots& scenes) {
   ExecutorSettings common{.renderer = renderer(settings),
+                          .directory = data.dir,
                           .data = data.dir,
                           .cache = data.cache(),
                           .scenes = scenes.roots(),
@@ -198,7 +199,7 @@ struct Service::Parts {
         executor(make_executor(settings, data, scenes)),
         folders(data),
         disk(data.jobs(), settings.care.disk_floor),
-        queue(*executor, *store, data, disk, queue_settings(settings)),
+        queue(*executor, *store, data.jobs(), disk, queue_settings(settings)),
         keeper(*store, folders, queue, disk, settings.queue.max_waiting / 2),
         maintenance(*store, queue, data, settings.care),
         files(page(settings)),

@@ -21,7 +21,7 @@ constexpr std::string_view format_name = "lacuna-checkpoint-4";
 constexpr std::size_t most_text_bytes = std::size_t{1} << 24;  // far more than a key takes
 
 /// What stands between the key and the content.
-struct Frame {
+struct FileFrame {
   std::uint64_t checksum = 0, content_bytes = 0;
 };
 
@@ -99,7 +99,7 @@ class OpenCheckpoint {
   std::uint64_t bytes_ = 0;
   FileHandle handle_;
   std::string key_;
-  Frame frame_;
+  FileFrame frame_;
   std::uint64_t start_ = 0;  // of the content: where the header ends
 };
 
@@ -137,7 +137,7 @@ void write_checkpoint(const std::filesystem::path& file, const std::string& key,
   ByteWriter header;
   header.put(format_name);
   header.put(std::string_view(key));
-  Frame frame;
+  FileFrame frame;
   AtomicFile out(file);
   out.write(header.bytes());
   const auto bytes_of_frame = [&] {

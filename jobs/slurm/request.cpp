@@ -11,7 +11,7 @@
 namespace lacuna {
 namespace {
 
-constexpr int margin_minutes = 15, further_margin_minutes = 1;
+constexpr int margin_minutes = 15;
 
 /// Seconds that merging the job from its shards takes at most, several times of what
 /// docs/scaling.md has measured.
@@ -90,24 +90,6 @@ SlurmRequest slurm_request(const JobSpec& spec, const RequestBasis& basis) {
   request.own_node = spec.exclusive || request.cores == 0;
   request.nice = slurm_nice(basis.priority);
   return request;
-}
-
-SlurmRequest joint_request(const std::vector<SlurmRequest>& requests) {
-  if (requests.empty()) throw std::invalid_argument("a request of no jobs");
-  SlurmRequest joint = requests.front();
-  for (std::size_t i = 1; i < requests.size(); ++i) {
-    const SlurmRequest& next = requests[i];
-    if (joint.minutes && next.minutes) {
-      *joint.minutes += *next.minutes - margin_minutes + further_margin_minutes;
-    } else {
-      joint.minutes.reset();
-    }
-    joint.megabytes = std::max(joint.megabytes, next.megabytes);
-    joint.cores = std::max(joint.cores, next.cores);
-    joint.own_node = joint.own_node || next.own_node;
-    joint.nice = std::max(joint.nice, next.nice);
-  }
-  return joint;
 }
 
 std::vector<std::string> request_words(const SlurmRequest& request) {

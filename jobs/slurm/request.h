@@ -36,10 +36,6 @@ struct RequestBasis {
 SlurmRequest slurm_request(const JobSpec& spec, const RequestBasis& basis);
 int slurm_nice(int priority);
 
-/// What jobs ask for that are rendered one after another: the most of all, and the sum of their
-/// times, of which only the first has the whole margin. None: std::invalid_argument.
-SlurmRequest joint_request(const std::vector<SlurmRequest>& requests);
-
 /// As words for sbatch.
 std::vector<std::string> request_words(const SlurmRequest& request);
 

@@ -1,85 +1,28 @@
 #include "jobs/slurm/run_program.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
-#include <spawn.h>
 #include <sys/mman.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
-#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
-#include <thread>
+#include <vector>
 
 #include "base/storage/file_handle.h"
+#include "jobs/queue/child_process.h"
 
 namespace lacuna {
 namespace {
 
 constexpr std::chrono::seconds patience{60};
 
-/// Pointers to texts, and the null pointer that ends them.
-std::vector<char*> pointers(std::vector<std::string>& texts) {
-  std::vector<char*> result;
-  result.reserve(texts.size() + 1);
-  for (std::string& text : texts) result.push_back(text.data());
-  result.push_back(nullptr);
-  return result;
-}
-
-::pid_t spawn(std::vector<std::string> words, int output) {
-  const std::filesystem::path program = find_program(words[0]);
-  if (program.empty()) throw std::system_error(ENOENT, std::generic_category(), words[0]);
-  std::vector<std::string> environment = slurm_environment();
-  ::posix_spawn_file_actions_t actions;
-  ::posix_spawn_file_actions_init(&actions);
-  ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  for (const int fd : {STDOUT_FILENO, STDERR_FILENO}) {
-    ::posix_spawn_file_actions_adddup2(&actions, output, fd);
-  }
-  ::pid_t child = -1;
-  const int error = ::posix_spawn(&child, program.c_str(), &actions, nullptr,
-                                  pointers(words).data(), pointers(environment).data());
-  ::posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) throw std::system_error(error, std::generic_category(), program.string());
-  return child;
-}
-
-/// Its wait status; nothing: it has not ended in `time`.
-std::optional<int> wait_for(::pid_t child, std::chrono::milliseconds time) {
-  constexpr std::chrono::milliseconds look{5};
-  const auto end = std::chrono::steady_clock::now() + time;
-  do {
-    int status = 0;
-    if (::waitpid(child, &status, WNOHANG) == child) return status;
-    std::this_thread::sleep_for(look);
-  } while (std::chrono::steady_clock::now() < end);
-  return std::nullopt;
-}
-
-ProgramAnswer run(const std::vector<std::string>& words) {
-  const FileHandle output(::memfd_create("answer", MFD_CLOEXEC));
-  if (!output) throw std::system_error(errno, std::generic_category(), "memfd_create");
-  const ::pid_t child = spawn(words, output.get());
-  if (const auto status = wait_for(child, patience)) {
-    const int code = WIFEXITED(*status) ? WEXITSTATUS(*status) : 128 + WTERMSIG(*status);
-    return {code, program_output(output.get())};
-  }
-  ::kill(child, SIGKILL);
-  ::waitpid(child, nullptr, 0);
-  return {128 + SIGKILL,
-          fmt::format("no answer in {} s\n{}", patience.count(), program_output(output.get()))};
-}
-
-}  // namespace
-
+/// The program's file in PATH; empty: there is none.
 std::filesystem::path find_program(const std::string& name) {
   const char* set = std::getenv("PATH");
   std::string_view path = set == nullptr ? "" : set;
@@ -105,6 +48,7 @@ std::vector<std::string> slurm_environment() {
   return result;
 }
 
+/// What a program has written to a file; no more than 64 MiB.
 std::string program_output(int file) {
   constexpr std::size_t at_once = 1 << 16, longest = 64 << 20;
   std::string text;
@@ -117,6 +61,33 @@ std::string program_output(int file) {
   }
 }
 
+ProgramAnswer run(const std::vector<std::string>& words, const std::filesystem::path& directory) {
+  const FileHandle output(::memfd_create("answer", MFD_CLOEXEC));
+  if (!output) throw std::system_error(errno, std::generic_category(), "memfd_create");
+  Command command{.arguments = words,
+                  .environment = slurm_environment(),
+                  .directory = directory,
+                  .output_fd = output.get(),
+                  .limits = {}};
+  command.arguments[0] = find_program(words[0]).string();
+  if (command.arguments[0].empty()) {
+    throw std::system_error(ENOENT, std::generic_category(), words[0]);
+  }
+  ChildProcess child(command);
+  const bool ended = child.wait(-1, patience);
+  if (!ended) {
+    child.signal(SIGKILL);
+    child.wait(-1, std::chrono::milliseconds(-1));
+  }
+  const Ending end = child.reap();
+  const int code = end.kind == Ending::Kind::exited ? end.code : 128 + end.code;
+  if (ended) return {code, program_output(output.get())};
+  return {code,
+          fmt::format("no answer in {} s\n{}", patience.count(), program_output(output.get()))};
+}
+
+}  // namespace
+
 void check_slurm_programs(const std::string& option) {
   for (const char* program : {"sbatch", "squeue", "scancel", "scontrol"}) {
     if (find_program(program).empty()) {
@@ -126,6 +97,10 @@ void check_slurm_programs(const std::string& option) {
   }
 }
 
-RunProgram spawning_runner() { return run; }
+RunProgram slurm_runner(std::filesystem::path directory) {
+  return [directory = std::move(directory)](const std::vector<std::string>& words) {
+    return run(words, directory);
+  };
+}
 
 }  // namespace lacuna

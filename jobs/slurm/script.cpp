@@ -73,7 +73,7 @@ std::string shell_word(const std::string& text) {
 std::string script_text(const SlurmScript& script) {
   return fmt::format(
       R"(#!/bin/sh
-# The batch script of one submission to Slurm, which the service has written.
+# The batch script of one submission to Slurm, which a queue of Lacuna has written.
 name={name}
 folder={folder}
 {exports}{wait}# A renderer of a node that was given up may still be at work.
@@ -87,32 +87,9 @@ exit "$code"
 )",
       fmt::arg("name", shell_word(script.name)), fmt::arg("folder", shell_word(script.folder)),
       fmt::arg("exports", exports(script.environment)), fmt::arg("wait", wait_for_folder),
-      fmt::arg("render",
-               render_and_hand_on(script.data, shell_word(script.renderer) + " render \"$folder\"" +
-                                                   threads_word(script.all_cores))));
-}
-
-std::string array_script_text(const SlurmArrayScript& script) {
-  std::string tasks;
-  for (const std::string& task : script.tasks) tasks += task + "\n";
-  return fmt::format(
-      R"(#!/bin/sh
-# The batch script of an array of Slurm, which `lacuna sweep` has written: each line below is a task.
-name={name}
-folder={folder}
-runs=$(sed -n "${{SLURM_ARRAY_TASK_ID:?}}p" <<'END'
-{tasks}END
-)
-[ -n "$runs" ] || exit 2
-{exports}{wait}{render}exit "$code"
-)",
-      fmt::arg("name", shell_word(script.name)), fmt::arg("folder", shell_word(script.sweep)),
-      fmt::arg("tasks", tasks), fmt::arg("exports", exports(script.environment)),
-      fmt::arg("wait", wait_for_folder),
-      fmt::arg("render", render_and_hand_on(script.directory,
-                                            shell_word(script.renderer) +
-                                                R"( sweep "$folder" --index "$runs" --quiet)" +
-                                                threads_word(script.all_cores))));
+      fmt::arg("render", render_and_hand_on(script.directory, shell_word(script.renderer) +
+                                                                  " render \"$folder\"" +
+                                                                  threads_word(script.all_cores))));
 }
 
 }  // namespace lacuna

@@ -106,8 +106,10 @@ std::string SweepFolder::job_id(const SweepRun& run) const {
   return run_job_id(id(), run.cell * seeds + static_cast<std::size_t>(run.replicate));
 }
 
+fs::path SweepFolder::runs_dir() const { return dir_ / runs_folder; }
+
 JobFolder SweepFolder::folder(const SweepRun& run) const {
-  if (!served_) return JobFolder(dir_ / runs_folder / run.name);
+  if (!served_) return JobFolder(runs_dir() / run.name);
   return JobFolder(dir_.parent_path().parent_path() / "jobs" / job_id(run));
 }
 

@@ -34,6 +34,8 @@ class SweepFolder {
   bool is_served() const { return served_; }
   std::string id() const { return dir_.filename().string(); }
 
+  /// Where its runs lie, of a sweep from the command line.
+  std::filesystem::path runs_dir() const;
   /// The id of the job of a service that is this run.
   std::string job_id(const SweepRun& run) const;
   /// The folder of a run, which may not be there yet.

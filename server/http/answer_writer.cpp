@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/telemetry/log.h"
+#include "base/log/log.h"
 
 namespace lacuna {
 namespace {

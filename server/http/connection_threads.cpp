@@ -9,7 +9,7 @@
 #include <thread>
 #include <utility>
 
-#include "server/telemetry/log.h"
+#include "base/log/log.h"
 
 namespace lacuna {
 namespace {

@@ -17,10 +17,10 @@
 #include <system_error>
 #include <utility>
 
+#include "base/log/log.h"
 #include "base/storage/passing_error.h"
 #include "server/http/address.h"
 #include "server/http/guard.h"
-#include "server/telemetry/log.h"
 
 namespace lacuna {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "server/telemetry/prometheus.h"
+#include "server/http/prometheus.h"
 
 namespace lacuna {
 

@@ -4,9 +4,9 @@
 
 #include <system_error>
 
+#include "jobs/queue/queue.h"
 #include "jobs/spec/problems.h"
 #include "server/http/message.h"
-#include "server/queue/queue.h"
 
 namespace lacuna {
 

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <vector>
 
+#include "base/log/log.h"
 #include "jobs/spec/described_json.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/sweep/expand.h"
@@ -15,7 +16,6 @@
 #include "server/routes/catalogue.h"
 #include "server/routes/json_body.h"
 #include "server/routes/named_files.h"
-#include "server/telemetry/log.h"
 
 namespace lacuna {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "jobs/queue/queue.h"
 #include "jobs/queue/store.h"
-#include "server/queue/queue.h"
+#include "server/keeper/sweep_keeper.h"
 #include "server/routes/posting.h"
-#include "server/sweeps/sweep_keeper.h"
 
 namespace lacuna {
 

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "jobs/queue/queue.h"
 #include "jobs/store/job_folder.h"
 #include "server/http/router.h"
-#include "server/queue/queue.h"
 #include "server/routes/events.h"
 #include "server/routes/job_posting.h"
 

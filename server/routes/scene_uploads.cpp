@@ -18,9 +18,9 @@
 #include <system_error>
 #include <vector>
 
+#include "jobs/queue/child_process.h"
 #include "jobs/spec/byte_size.h"
 #include "jobs/store/exit_code.h"
-#include "server/queue/child_process.h"
 
 namespace lacuna {
 namespace {

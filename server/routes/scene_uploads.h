@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/storage/file_handle.h"
-#include "server/queue/executor.h"
-#include "server/settings/queue_settings.h"
+#include "jobs/queue/executor.h"
+#include "jobs/queue/queue_settings.h"
 
 namespace lacuna {
 

@@ -11,8 +11,8 @@
 #include "jobs/spec/version.h"
 #include "jobs/store/machine.h"
 #include "server/http/conditional.h"
+#include "server/http/prometheus.h"
 #include "server/routes/cache_listing.h"
-#include "server/telemetry/prometheus.h"
 
 namespace lacuna {
 namespace {

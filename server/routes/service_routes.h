@@ -4,11 +4,11 @@
 #include <functional>
 #include <string>
 
+#include "jobs/queue/disk_watch.h"
+#include "jobs/queue/queue.h"
 #include "jobs/store/job_folder.h"
 #include "server/http/http_metrics.h"
 #include "server/http/router.h"
-#include "server/queue/disk_watch.h"
-#include "server/queue/queue.h"
 #include "server/routes/scene_uploads.h"
 #include "server/settings/service_settings.h"
 

@@ -3,12 +3,12 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "base/log/log.h"
 #include "jobs/spec/described_json.h"
 #include "server/http/conditional.h"
 #include "server/routes/json_body.h"
 #include "server/routes/named_files.h"
 #include "server/routes/sweep_catalogue.h"
-#include "server/telemetry/log.h"
 
 namespace lacuna {
 

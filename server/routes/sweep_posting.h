@@ -1,9 +1,9 @@
 #pragma once
 
 #include "jobs/queue/store.h"
+#include "server/keeper/sweep_folders.h"
+#include "server/keeper/sweep_keeper.h"
 #include "server/routes/posting.h"
-#include "server/sweeps/sweep_folders.h"
-#include "server/sweeps/sweep_keeper.h"
 
 namespace lacuna {
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "server/http/router.h"
+#include "server/keeper/sweep_keeper.h"
 #include "server/routes/sweep_posting.h"
-#include "server/sweeps/sweep_keeper.h"
 
 namespace lacuna {
 

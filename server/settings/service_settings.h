@@ -3,9 +3,10 @@
 #include <filesystem>
 #include <vector>
 
+#include "jobs/queue/queue_settings.h"
+#include "jobs/slurm/slurm_settings.h"
+#include "server/settings/care_settings.h"
 #include "server/settings/http_settings.h"
-#include "server/settings/queue_settings.h"
-#include "server/settings/slurm_settings.h"
 
 namespace lacuna {
 

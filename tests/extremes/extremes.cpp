@@ -50,7 +50,7 @@ int run(bool quick, std::string_view wanted) {
   const std::vector<Method> columns = methods(!quick);
   Matrix matrix(columns);
   Stage stage(effort);
-  Watchdog watchdog(std::chrono::seconds(quick ? 120 : 900));
+  Watchdog watchdog(std::chrono::seconds(quick ? 600 : 900));
   const std::vector<Row> rows = all_rows(effort);
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const Row& row = rows[r];

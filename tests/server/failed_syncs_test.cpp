@@ -20,7 +20,7 @@ struct Parts {
   SweepFolders folders{data};
   NoExecutor executor;
   DiskWatch disk{data.dir, 0};
-  Queue queue{executor, store, data, disk, {.children = 0}};
+  Queue queue{executor, store, data.jobs(), disk, {.children = 0}};
   SweepKeeper keeper{store, folders, queue, disk, 0};
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/queue/executor.h"
+#include "jobs/queue/executor.h"
 
 namespace lacuna {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "server/http/http_metrics.h"
-#include "server/telemetry/prometheus.h"
+#include "server/http/prometheus.h"
 
 namespace lacuna {
 namespace {

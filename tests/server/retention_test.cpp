@@ -1,4 +1,4 @@
-#include "server/queue/retention.h"
+#include "server/keeper/retention.h"
 
 #include <gtest/gtest.h>
 

@@ -207,7 +207,7 @@ test("wherever memory runs out, it ends as itself and goes on with more", async 
   const folder = temporaryFolder(t);
   job(folder, "a.json", { scene: "ajar.glb", resolution: [192, 108], layers: ["albedo", "variance"] });
   let short = 0;
-  for (let mebibytes = 8; mebibytes <= 340; mebibytes += 12) {
+  for (let mebibytes = 8; mebibytes <= 340; mebibytes += 24) {
     const { code, signal, err } = await runAfter(`ulimit -d ${mebibytes * 1024}`, folder, "render", "a.json", "-t", "2");
     if (code === 0) break;
     assert.equal(code, 71, `${mebibytes} MiB: ${signal} ${err}`);

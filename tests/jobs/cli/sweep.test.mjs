@@ -5,6 +5,7 @@ import { copyFileSync, existsSync, mkdirSync, readFileSync, readdirSync, renameS
 import { join } from "node:path";
 import { test } from "node:test";
 
+import { until } from "../../server/service.mjs";
 import { program, run, start, startWith, temporaryFolder } from "./command.mjs";
 
 const small = {
@@ -65,7 +66,7 @@ test("sweep: what is listed is not begun, and array tasks do one run each", asyn
 });
 
 test("sweep: array tasks may all begin at once", async (t) => {
-  for (let round = 0; round < 6; ++round) {
+  for (let round = 0; round < 3; ++round) {
     const folder = sweepFile(t);
     const tasks = ["1", "2", "3", "8"].map((index) => run(folder, "sweep", "a.json", "--index", index));
     for (const { code, err } of await Promise.all(tasks)) assert.equal(code, 0, err);
@@ -74,7 +75,7 @@ test("sweep: array tasks may all begin at once", async (t) => {
 });
 
 test("sweep: stopped, it goes on to the same table", async (t) => {
-  const iterations = 600;  // so that much is left when it is stopped
+  const iterations = 300;  // so that much is left when it is stopped
   const folder = sweepFile(t, { ...small, job: { ...small.job, budget: { iterations } } });
   assert.equal((await run(folder, "sweep", "a.json")).code, 0);
   // Without times, which differ from run to run.
@@ -96,6 +97,26 @@ test("sweep: stopped, it goes on to the same table", async (t) => {
   assert.deepEqual(last(), undisturbed);
 });
 
+test("sweep: killed at once, it leaves no renderer, and goes on", async (t) => {
+  const folder = sweepFile(t, { ...small, job: { ...small.job, budget: { seconds: 1.5 } }, seeds: 1, axes: {} , baseline: {} });
+  const begun = start(folder, "sweep", "a.json");
+  const first = join(folder, "a.sweep/runs/0001-1");
+  while (!existsSync(join(first, "progress.json"))) await new Promise((wake) => setTimeout(wake, 2));
+  begun.child.kill("SIGKILL");
+  await begun.ended;
+  const renderers = () => readdirSync("/proc").filter((pid) => /^\d+$/.test(pid)).filter((pid) => {
+    try {
+      return readFileSync(`/proc/${pid}/cmdline`, "utf8").includes(`render\0${first}`);
+    } catch {
+      return false;  // it has ended meanwhile
+    }
+  });
+  await until(() => renderers().length === 0, "its renderer has ended");
+  const { code, err } = await run(folder, "sweep", "a.json");
+  assert.equal(code, 0, err);
+  assert.match(err, /^\[1\/1\] 0001-1 .*done$/m);
+});
+
 test("sweep: while a part of the program is away, the runs wait", async (t) => {
   const folder = sweepFile(t, { seeds: 2, job: small.job });
   const copy = join(folder, "bin/lacuna");
@@ -103,7 +124,7 @@ test("sweep: while a part of the program is away, the runs wait", async (t) => {
   copyFileSync(program, copy);
   const { child, ended } = startWith(["sh", "-c", 'shift; exec "$0" "$@"', copy], folder, "sweep", "a.json");
   await new Promise((seen) => {
-    child.stderr.on("data", (bytes) => /runs wait: .*lacuna-images\.so/.test(bytes) && seen());
+    child.stderr.on("data", (bytes) => /jobs wait: .*lacuna-images\.so/.test(bytes) && seen());
     ended.then(seen);
   });
   const part = join(folder, "bin/lacuna-images.so");
@@ -111,7 +132,7 @@ test("sweep: while a part of the program is away, the runs wait", async (t) => {
   renameSync(`${part}.new`, part);
   const { code, err } = await ended;
   assert.equal(code, 0, err);
-  assert.match(err, /runs wait: .*lacuna-images\.so[^]*\[2\/2\] 0001-2.*done/);
+  assert.match(err, /jobs wait: .*lacuna-images\.so[^]*\[2\/2\] 0001-\d.*done/);
 });
 
 test("sweep: a run that fails does not stop the others", async (t) => {
@@ -138,7 +159,7 @@ test("sweep: mistakes are told before anything is done", async (t) => {
 
 test("report: what the runs say of their settings, as text, as JSON, and as files", async (t) => {
   const folder = sweepFile(t, { ...small, job: { ...small.job, reference: "auto", reference_iterations: 8,
-    budget: { iterations: 2000 } } });
+    budget: { iterations: 1000 } } });
   assert.equal((await run(folder, "sweep", "a.json", "-q")).code, 0);
   const told = await run(folder, "report", "a.sweep");
   assert.equal(told.code, 0, told.err);

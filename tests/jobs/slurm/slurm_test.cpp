@@ -9,10 +9,10 @@
 #include <stdexcept>
 #include <thread>
 
+#include "jobs/queue/submission.h"
 #include "jobs/slurm/request.h"
 #include "jobs/slurm/script.h"
 #include "jobs/slurm/slurm_programs.h"
-#include "jobs/slurm/submission.h"
 #include "tests/temporary_folder.h"
 
 namespace lacuna {
@@ -76,20 +76,6 @@ TEST(SlurmRequest, AHigherPriorityIsLessNiceAndNeverNegative) {
   EXPECT_EQ(slurm_nice(max_priority), 0);
   EXPECT_EQ(slurm_nice(0), max_priority);
   EXPECT_EQ(slurm_nice(-max_priority), 2 * max_priority);
-}
-
-TEST(SlurmRequest, RunsInTurnAskForTheSumOfTheirTimesAndTheMostOfTheRest) {
-  const SlurmRequest small{
-      .minutes = 16, .megabytes = 900, .cores = 2, .own_node = false, .nice = 3};
-  const SlurmRequest large{
-      .minutes = 20, .megabytes = 700, .cores = 4, .own_node = true, .nice = 1};
-  const SlurmRequest joint = joint_request({small, large, small});
-  EXPECT_EQ(joint.minutes, 16 + 6 + 2);  // a margin of 15 minutes once, and of one for each further
-  EXPECT_EQ(joint.megabytes, 900);
-  EXPECT_EQ(joint.cores, 4);
-  EXPECT_TRUE(joint.own_node);
-  EXPECT_EQ(joint_request({small, {}}).minutes, std::nullopt);
-  EXPECT_THROW(joint_request({}), std::invalid_argument);
 }
 
 TEST(SlurmArguments, AreWordsAndNeverThoseThatLacunaNeeds) {
@@ -160,7 +146,7 @@ class SlurmScriptTest : public testing::Test {
     const auto script = temp.write("slurm.sh", script_text({.name = name,
                                                             .folder = folder.dir(),
                                                             .renderer = program,
-                                                            .data = temp.path(),
+                                                            .directory = temp.path(),
                                                             .environment = {"LACUNA_DATA=it's"},
                                                             .all_cores = true}));
     std::jthread beside;
@@ -235,29 +221,6 @@ TEST_F(SlurmScriptTest, WaitsForARendererThatIsStillAtWork) {
                 }),
             0);
   EXPECT_TRUE(released);
-}
-
-TEST_F(SlurmScriptTest, ATaskOfAnArrayRendersItsRunsAndHandsSigtermOn) {
-  record(name);
-  const auto program = temp.write("renderer", R"(#!/bin/sh
-trap 'exit 75' TERM
-echo "$* of $LACUNA_DATA" >"$2/seen"
-kill -TERM $PPID
-while :; do sleep 0.05; done
-)");
-  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
-  const auto script = temp.write("array.sh", array_script_text({.name = name,
-                                                                .sweep = folder.dir(),
-                                                                .renderer = program,
-                                                                .directory = temp.path(),
-                                                                .environment = {"LACUNA_DATA=x y"},
-                                                                .tasks = {"1-3", "4,6"},
-                                                                .all_cores = true}));
-  const std::string command =
-      "SLURM_ARRAY_TASK_ID=2 SLURM_CPUS_PER_TASK=3 sh '" + script.string() + "'";
-  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 75);  // NOLINT(cert-env33-c)
-  EXPECT_EQ(content_of(folder.file("seen")),
-            "sweep " + folder.dir().string() + " --index 4,6 --quiet --threads 3 of x y\n");
 }
 
 TEST_F(SlurmScriptTest, RecordsAreKeptAndForgotten) {

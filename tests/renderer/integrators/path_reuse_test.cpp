@@ -119,7 +119,7 @@ TEST(PathReuse, AndGuidesHaveThePictureOfOthers) {
 // Where a guide adds much to the weight of paths they are split, behind the vertex that pixels
 // share; those of a batch that come from a mirror and share nothing, too. In a closed room all
 // other paths are equally long.
-TEST(PathReuse, AndSplitPathsHaveThePictureOfOthers) {
+TEST(LongPathReuse, AndSplitPathsHaveThePictureOfOthers) {
   Material wall = test::diffuse(Rgb(0.8F, 0.7F, 0.6F)), floor = test::diffuse(Rgb(0.8F));
   wall.metallic = floor.metallic = 0.6F;
   wall.roughness = 0.5F;
