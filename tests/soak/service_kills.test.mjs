@@ -1,9 +1,9 @@
-// The service, its renderers, or both are killed at any moment, again and again: no job that was
-// accepted is lost or doubled, none that was cancelled is rendered, no file is half-written, and the
-// pictures have the bits of jobs that nobody disturbed. So with the runs of a sweep.
-// LACUNA_KILLS: rounds (10 in a quick run, 200 in a long one).
+// The service, its renderers, or both are killed at any moment, again and again, while jobs are posted, cancelled, held
+// and extended: no job that was accepted is lost or doubled, none that was cancelled is rendered, no file is half-written,
+// and the pictures have the bits of jobs that nobody disturbed. So with the runs of a sweep, of the service and of `lacuna
+// sweep`. LACUNA_KILLS: rounds (10 in a quick run, 300 in a long one).
 import assert from "node:assert/strict";
-import { spawnSync } from "node:child_process";
+import { spawn, spawnSync } from "node:child_process";
 import fs from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
@@ -30,17 +30,22 @@ const spec = (kind) => ({
   budget: { iterations: 30 + 10 * kind }, checkpoint_seconds: 0.05,
 });
 const kinds = 4;
+const larger = (kind) => ({ iterations: spec(kind).budget.iterations + 25 });
+const environment = (places) => ({ ...process.env, LACUNA_SCENES: scenes, LACUNA_DATA: places.root });
 
-/// The pictures as they are when nobody disturbs.
+/// The pictures as they are when nobody disturbs, by the iterations of each kind.
 function references(places) {
-  return Array.from({ length: kinds }, (_, kind) => {
-    const file = path.join(places.root, `whole${kind}.json`);
-    fs.writeFileSync(file, JSON.stringify(spec(kind)));
-    const env = { ...process.env, LACUNA_SCENES: scenes, LACUNA_DATA: places.root };
-    const done = spawnSync(lacuna, ["render", file, "-q"], { env, cwd: places.root });
+  const render = (name, job) => {
+    const file = path.join(places.root, `${name}.json`);
+    fs.writeFileSync(file, JSON.stringify(job));
+    const done = spawnSync(lacuna, ["render", file, "-q"], { env: environment(places), cwd: places.root });
     assert.equal(done.status, 0, String(done.stderr));
-    return path.join(places.root, `whole${kind}.job`);
-  });
+    return path.join(places.root, `${name}.job`);
+  };
+  return Array.from({ length: kinds }, (_, kind) => ({
+    [spec(kind).budget.iterations]: render(`whole${kind}`, spec(kind)),
+    [larger(kind).iterations]: render(`larger${kind}`, { ...spec(kind), budget: larger(kind) }),
+  }));
 }
 
 /// Whatever the service may do meanwhile: an answer, or nothing.
@@ -86,13 +91,31 @@ async function postSweep(service, sweep) {
   sweep.id = answer.body.id;
 }
 
-/// Cancels a job that is not over, if there is one.
-async function cancelOne(service, wishes) {
+/// Cancels, holds or releases, or extends a job, if there is one.
+async function disturbOne(service, wishes) {
   const known = wishes.filter((w) => w.id && !w.cancelled);
   if (known.length === 0) return;
   const wish = known[random(known.length)];
-  const answer = await ask(service, `/api/jobs/${wish.id}/cancel`, { method: "POST" });
-  if (answer && [200, 202].includes(answer.status)) wish.cancelled = true;
+  const request = (method, target, body) => ask(service, `/api/jobs/${wish.id}${target}`,
+    { method, body: JSON.stringify(body), headers: { "Content-Type": "application/json" } });
+  const done = (answer) => answer !== null && [200, 202].includes(answer.status);
+  switch (random(3)) {
+    case 0:
+      wish.cancelled = done(await ask(service, `/api/jobs/${wish.id}/cancel`, { method: "POST" }));
+      break;
+    case 1: await request("PATCH", "", { held: random(2) === 0 }); break;
+    default: wish.extended ||= done(await request("POST", "/extend", { budget: larger(wish.kind) }));
+  }
+}
+
+/// Nobody knows which of the requests came before a kill: all are released that are held.
+async function releaseAll(service, wishes) {
+  for (const { id } of wishes) {
+    if ((await service.json(`/api/jobs/${id}`)).state.state !== "held") continue;
+    const answer = await ask(service, `/api/jobs/${id}`,
+      { method: "PATCH", body: JSON.stringify({ held: false }), headers: { "Content-Type": "application/json" } });
+    assert.equal(answer.status, 200, JSON.stringify(answer));
+  }
 }
 
 function renderersOf(service) {
@@ -136,6 +159,7 @@ function sameBits(dir, reference) {
 test(`${rounds} rounds of kill -9`, async (t) => {
   const places = { ...folders(t), scenes };
   const wholes = references(places);
+  const wholeOf = (kind) => wholes[kind][spec(kind).budget.iterations];
   const wishes = [];
   const sweep = {};
   let service = await Service.start(places, options);
@@ -144,23 +168,24 @@ test(`${rounds} rounds of kill -9`, async (t) => {
     const more = random(3);
     for (let k = 0; k < more; k += 1) wishes.push({ key: `round-${i}-${k}`, kind: random(kinds) });
     const posting = Promise.all([postAll(service, wishes), postSweep(service, sweep)]);
-    const cancelling = random(6) === 0 ? cancelOne(service, wishes) : null;
+    const disturbing = random(3) === 0 ? disturbOne(service, wishes) : null;
     await pause(random(10) < 3 ? random(30) : random(900));
     if (kill(service)) {
       kills += 1;
       await service.ended;
-      await Promise.all([posting, cancelling]);
+      await Promise.all([posting, disturbing]);
       for (const id of fs.readdirSync(path.join(places.data, "jobs")).filter((n) => !n.startsWith("."))) {
         checkFolder(path.join(places.data, "jobs", id));
       }
       service = await Service.start(places, options);
     } else {
-      await Promise.all([posting, cancelling]);
+      await Promise.all([posting, disturbing]);
     }
   }
   await postAll(service, wishes);
   await postSweep(service, sweep);
   assert.ok(wishes.every((w) => w.id));
+  await releaseAll(service, wishes);
   const list = async () => {
     const jobs = [];
     for (let next = ""; next !== null;) {
@@ -178,7 +203,7 @@ test(`${rounds} rounds of kill -9`, async (t) => {
   assert.equal(jobs.length, wishes.length + 3 * kinds, "none is lost or doubled");
   assert.equal((await service.json("/api/sweeps")).sweeps.length, 1);
   assert.equal(swept.counts.done, 3 * kinds);
-  for (const run of swept.runs) sameBits(service.folder(run.job), wholes[(run.cell - 1) % kinds]);
+  for (const run of swept.runs) sameBits(service.folder(run.job), wholeOf((run.cell - 1) % kinds));
   let done = 0;
   for (const wish of wishes) {
     const job = jobs.find((j) => j.id === wish.id);
@@ -189,7 +214,9 @@ test(`${rounds} rounds of kill -9`, async (t) => {
     assert.equal(checkFolder(dir), job.state);
     if (job.state !== "done") continue;
     done += 1;
-    sameBits(dir, wholes[wish.kind]);
+    const { iterations } = JSON.parse(fs.readFileSync(path.join(dir, "job.json"))).budget;
+    if (wish.extended) assert.equal(iterations, larger(wish.kind).iterations, "it was extended");
+    sameBits(dir, wholes[wish.kind][iterations]);
     assert.deepEqual(fs.readdirSync(dir).filter((n) => n === "checkpoint.unusable"), []);
   }
   const hidden = fs.readdirSync(path.join(places.data, "jobs")).filter((n) => n.startsWith("."));
@@ -197,6 +224,40 @@ test(`${rounds} rounds of kill -9`, async (t) => {
   assert.ok(done > 0 && kills > 0);
   t.diagnostic(`${wishes.length} jobs, ${done} done, ${wishes.length - done} cancelled; `
     + `the service was killed ${kills} times`);
+});
+
+test(`\`lacuna sweep\` and its renderers killed ${rounds} times`, async (t) => {
+  const places = { ...folders(t), scenes };
+  const wholes = references(places);
+  const file = path.join(places.root, "a.json");
+  fs.writeFileSync(file, JSON.stringify(kindsSweep));
+  const runs = path.join(places.root, "a.sweep/runs");
+  let kills = 0, sweeps = 0;
+  while (kills < rounds) {
+    fs.rmSync(path.dirname(runs), { recursive: true, force: true });
+    for (let code = null; code !== 0;) {
+      const child = spawn(lacuna, ["sweep", file, "-j", "2", "-q"], { env: environment(places), cwd: places.root });
+      const ended = new Promise((resolve) => { child.on("close", resolve); });
+      if (kills < rounds) {
+        await pause(random(10) < 3 ? random(30) : random(900));
+        if (child.exitCode === null) {
+          kill({ child });
+          kills += 1;
+        }
+      }
+      code = await ended;
+      assert.ok(code === null || code === 0, `exit code ${code}`);
+    }
+    sweeps += 1;
+    assert.equal(fs.readdirSync(runs).length, 3 * kinds);
+    for (const name of fs.readdirSync(runs)) {
+      const folder = path.join(runs, name);
+      assert.equal(checkFolder(folder), "done");
+      const kind = (Number(name.slice(0, 4)) - 1) % kinds;
+      sameBits(folder, wholes[kind][spec(kind).budget.iterations]);
+    }
+  }
+  t.diagnostic(`${sweeps} sweeps of ${3 * kinds} runs, ${kills} kills`);
 });
 
 test("a disk that fills up, and one that turns read-only, cost no job", async (t) => {
@@ -212,9 +273,9 @@ test("a disk that fills up, and one that turns read-only, cost no job", async (t
   if (!mounted) return t.skip("a small disk can be mounted by root only");
   unmount = () => disks.reverse().forEach((disk) => spawnSync("umount", ["-l", disk]));
   const places = { ...base, scenes };
-  const [whole] = references(base);
+  const whole = references(base)[0][spec(0).budget.iterations];
   const service = await Service.start(places, [...options, "--disk-floor", "4M", "--jobs", "1"]);
-  const wishes = Array.from({ length: 40 }, (_, i) => ({ key: `disk-${i}`, kind: 0 }));
+  const wishes = Array.from({ length: 20 }, (_, i) => ({ key: `disk-${i}`, kind: 0 }));
   await postAll(service, wishes.slice(0, 3));
   const ballasts = disks.map((disk) => path.join(disk, "ballast"));
   for (const ballast of ballasts) {

@@ -60,7 +60,7 @@ def slurm(count):
 CHECKS = {
     "stops": lambda _: run("seconds from SIGTERM to the end of a busy job", [sys.executable, "tests/soak/stops.py"]),
     "kills": lambda _: kills(20),
-    "service": lambda _: service(200),
+    "service": lambda _: service(300),
     "faults": lambda _: run("faults of the machine, which cost no job", ["node", "tests/soak/faults.mjs"]),
     "long": lambda _: long_tests(),
     "asan": lambda _: sanitizers("asan", {
