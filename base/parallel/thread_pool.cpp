@@ -47,7 +47,21 @@ ThreadPool::ThreadPool(int threads, std::function<bool()> stop)
 
 ThreadPool::~ThreadPool() = default;
 
+namespace {
+
+/// The caller's own rounding and denormals, which its share of a loop changes.
+class KeptControl {
+ public:
+  ~KeptControl() { _mm_setcsr(control_); }
+
+ private:
+  const unsigned control_ = _mm_getcsr();
+};
+
+}  // namespace
+
 void ThreadPool::for_each(int n, const std::function<void(int)>& body) const {
+  const KeptControl kept;
   LoopOrder order;
   order.leave();
   impl_->arena.execute([&] {

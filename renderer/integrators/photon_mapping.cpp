@@ -256,16 +256,19 @@ class PhotonMapping final : public Integrator {
     const Vertex& v = part.batch.vertex(at.path, at.depth);
     const SurfaceEndpoint<BsdfGuide> eye{v, at.depth, Transport::radiance, guide_};
     part.found.clear();
+    float each = 1;  // so many photons are there for one that is looked at
     map.for_each_at(v, part.batch.states[at.path].rng,
                     [&](const Photon& p, float distance2, float count) {
+                      each = count;
                       if (p.index + at.depth > settings_.max_depth || !wanted.of(p)) return;
                       part.found.emplace_back(distance2, merged(eye, p) * count);
                     });
     double radius2 = map.radius() * map.radius();
-    if (density_.nearest > 0 && part.found.size() > density_.nearest) {
+    const std::size_t nearest = nearest_of(each);
+    if (nearest > 0 && part.found.size() > nearest) {
       // The k nearest lie in the disc up to the next one: k / (pi r_{k+1}^2) has the density's mean
       // where that is uniform.
-      const auto next = part.found.begin() + static_cast<std::ptrdiff_t>(density_.nearest);
+      const auto next = part.found.begin() + static_cast<std::ptrdiff_t>(nearest);
       std::nth_element(part.found.begin(), next, part.found.end(),
                        [](const auto& a, const auto& b) { return a.first < b.first; });
       radius2 = std::max(double(next->first), radius2 * 0x1p-20);  // photons may be at one point
@@ -276,6 +279,13 @@ class PhotonMapping final : public Integrator {
       sum += V3d(value) * kernel(double(distance2) / radius2);
     }
     return Rgb(sum / (std::numbers::pi * radius2));
+  }
+
+  /// How many of the photons that are looked at lie in the disc of the wanted number, where one is
+  /// looked at of `each` (PointGrid::most_candidates); 0: all count.
+  std::size_t nearest_of(float each) const {
+    if (density_.nearest == 0) return 0;
+    return std::max<std::size_t>(1, density_.nearest / static_cast<std::size_t>(each));
   }
 
   /// At squared distance `d2` in units of the radius; its mean over the disc is 1.

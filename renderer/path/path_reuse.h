@@ -66,7 +66,11 @@ class PathReuse {
   void look(std::size_t i, const V3f& w) { to_emitter_[i] = w; }
   /// What path `i` gathers: by next event estimation at vertex 2, or at vertices behind it.
   void add(std::size_t i, int depth, const Rgb& value) {
-    if (is_finite(value)) (depth == 2 ? near_ : far_)[batch_.origin[i]] += value;
+    if (is_finite(value)) {
+      (depth == 2 ? near_ : far_)[batch_.origin[i]] += value;
+    } else {
+      ++rejected_;
+    }
   }
 
   /// Gives the vertices of paths that have ended the throughput that they would have if nothing
@@ -84,6 +88,7 @@ class PathReuse {
   template <class Add>
   void finish(const RayCaster& caster, Counters& counters, Add&& add) {
     if (!active()) return;
+    counters.rejected += std::exchange(rejected_, 0);
     for (std::size_t first = 0; first < paths_; first += pixels_) {
       const auto group = std::span(order_).subspan(first, std::min(pixels_, paths_ - first));
       for (const std::size_t j : group) {
@@ -213,6 +218,7 @@ class PathReuse {
   const Guide& guide_;
   std::size_t pixels_;
   std::size_t paths_ = 0;
+  std::uint64_t rejected_ = 0;  // values that were not finite
   std::array<std::uint32_t, EyeBatch::size> pixel_of_{};
   std::array<std::uint8_t, EyeBatch::size> order_{};  // paths: each `pixels_` are a group
   std::array<bool, EyeBatch::size> shares_{};

@@ -152,6 +152,41 @@ TEST(Photons, TheNearestGiveTheDensityOfAll) {
   }
 }
 
+/// A spot from above, seen from above: the disc of radius 0.4 that it lights is two fifths of the
+/// picture's width.
+SceneData round_spot() {
+  test::SceneParts p;
+  p.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, p.material(test::diffuse(Rgb(0.8F))));
+  p.light(PunctualLight::Kind::spot, {0, 1, 0}, {0, -1, 0}, Rgb(1, 1, 1));
+  p.data.lights.back().outer_cone = p.data.lights.back().inner_cone = std::atan(0.4F);
+  p.eye({0, 2, 0.01}, {0, 0, 0}, 2 * std::atan(0.5));
+  return std::move(p.data);
+}
+
+// A look-up visits a part of the photons where there are many; the disc is no larger for it.
+TEST(Photons, TheNearestOfManyAreNear) {
+  PhotonMapSettings photons = test::of_length(PhotonMapSettings{}, 2);
+  photons.next_event_estimation = false;
+  photons.light_paths = 100'000;  // 25 times what a look-up visits
+  photons.nearest = 100;          // within 0.013 of a point
+  constexpr int width = 40;
+  const Rendering r = test::render(
+      round_spot(), {.integrator = test::fixed_radius(photons, 1, RadiusUnit::absolute),
+                     .width = width,
+                     .height = width,
+                     .iterations = 4});
+  const std::vector<double> values = r.film.mean();
+  double outside = 0, all = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const auto pixel = static_cast<int>(k / 3);
+    const double x = pixel % width + 0.5 - 0.5 * width, y = pixel / width + 0.5 - 0.5 * width;
+    all += values[k];
+    if (std::hypot(x, y) > 0.25 * width) outside += values[k];
+  }
+  EXPECT_GT(all, 0);
+  EXPECT_LT(outside, 0.01 * all);
+}
+
 /// The lamp shines upwards, away from all else.
 SceneData turned_away() {
   test::SceneParts p;
