@@ -108,6 +108,8 @@ class Store {
   /// The runs of a sweep that are there as jobs, in the order of their numbers.
   std::vector<JobEntry> runs(const std::string& sweep) const;
   std::vector<JobEntry> unfinished_runs(const std::string& sweep) const;
+  /// Number of the latest change of any of its runs; 0: there is none.
+  std::int64_t latest_change(const std::string& sweep) const;
   /// The job that is merged from the runs of this sweep; nothing: none is.
   std::optional<JobEntry> merged_from(const std::string& sweep) const;
   /// An unfinished job whose reference is this one; nothing: there is none.

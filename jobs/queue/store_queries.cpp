@@ -192,6 +192,13 @@ std::vector<JobEntry> Store::unfinished_runs(const std::string& sweep) const {
   return runs;
 }
 
+std::int64_t Store::latest_change(const std::string& sweep) const {
+  const std::lock_guard lock(mutex_);
+  Statement latest(database_, "SELECT max(revision) FROM jobs WHERE sweep=?");
+  latest.bind(sweep).step();
+  return latest.integer(0);
+}
+
 std::optional<JobEntry> Store::merged_from(const std::string& sweep) const {
   if (sweep.empty()) return std::nullopt;
   const std::lock_guard lock(mutex_);

@@ -55,8 +55,30 @@ Response SweepRoutes::remove(const Request&, const std::string& id) {
 }
 
 Response SweepRoutes::answers(const Request& request, const std::string& id) {
-  const auto sweep = open(find_sweep(store_, id));
-  return with_tag(request, json_response(200, answers_text(*sweep, answer(*sweep))));
+  return with_tag(request, json_response(200, answers_of(find_sweep(store_, id))));
+}
+
+std::string SweepRoutes::answers_of(const SweepEntry& sweep) {
+  const std::int64_t change = store_.latest_change(sweep.id);
+  const std::size_t runs = all_of(store_.run_counts(sweep.id));
+  {
+    const std::lock_guard lock(mutex_);
+    for (const KnownAnswers& known : known_) {
+      if (known.sweep == sweep.id && known.change == change && known.runs == runs)
+        return known.text;
+    }
+  }
+  const auto folder = open(sweep);
+  const Answers answers = answer(*folder);
+  std::string text = answers_text(*folder, answers);
+  // A warning may be of a file that a person mends.
+  if (!is_over(sweep.state) || !answers.warnings.empty()) return text;
+  constexpr std::size_t most = 4;
+  const std::lock_guard lock(mutex_);
+  known_.remove_if([&](const KnownAnswers& known) { return known.sweep == sweep.id; });
+  known_.push_front({sweep.id, change, runs, text});
+  if (known_.size() > most) known_.pop_back();
+  return text;
 }
 
 Response SweepRoutes::table(const Request& request, const std::string& id) {

@@ -1,5 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <list>
+#include <mutex>
+#include <string>
+
 #include "server/http/router.h"
 #include "server/keeper/sweep_keeper.h"
 #include "server/routes/sweep_posting.h"
@@ -25,11 +30,22 @@ class SweepRoutes {
   Response table(const Request& request, const std::string& id);
 
   SweepFolders::FolderPtr open(const SweepEntry& sweep);
+  std::string answers_of(const SweepEntry& sweep);
 
   Store& store_;
   SweepFolders& folders_;
   SweepKeeper& keeper_;
   SweepPosting posting_;
+
+  /// The answers of a sweep that is over, which are read from all its curves.
+  struct KnownAnswers {
+    std::string sweep;
+    std::int64_t change;  // the latest of its runs
+    std::size_t runs;     // that are there
+    std::string text;
+  };
+  std::mutex mutex_;  // guards the next
+  std::list<KnownAnswers> known_;
 };
 
 }  // namespace lacuna

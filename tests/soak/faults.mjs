@@ -1,5 +1,6 @@
 // Faults of the machine, one after another, while jobs and a sweep are rendered: descriptors, inodes, a full disk, a
-// disk that turns read-only, a file-size limit, idle half-requests, a clock that jumps, a second service, kills. No job
+// disk that turns read-only, a file-size limit, idle half-requests, a clock that jumps, a second service, each n-th call
+// of write, fsync, rename, open and mkdir (ENOSPC, EIO, EMFILE, EROFS), kills. No job
 // that was accepted is lost or fails, and every picture has the bits of one that nobody disturbed. Faults that this
 // machine does not allow to be made are left out, by name. Mounts need root; they are made in a mount namespace of this
 // script's own, which it enters by calling itself.
@@ -173,14 +174,34 @@ const faults = {
     return start();
   },
   async "second service"(service) {
-    fs.rmSync(path.join(data, ".lacuna-server.lock"));
-    const second = await start().catch(() => null);  // unless the first has seen it before
-    if (second) {
-      wishes.push({ key: `second-${wishes.length}`, kind: 0 });
-      await post(second);
-      assert.equal(await second.ended, 1, second.log());
-    }
+    await assert.rejects(start(), /another lacuna-server works in/);
     return service;
+  },
+  async "each n-th call"(service) {
+    service.child.kill("SIGTERM");
+    await service.ended;
+    const active = path.join(places, "failing");
+    const now = await start([], { LD_PRELOAD: path.join(bin, "../tests/failing_calls.so"), LACUNA_FAIL_UNDER: data,
+      LACUNA_FAIL_WHILE: active });
+    // What is refused is not done: the list has what was accepted, and runs of the sweep.
+    const unaccepted = async () => {
+      const { body } = await until(async () => {
+        const answer = await ask(now, "/api/jobs?limit=1000");
+        return answer.status === 200 && answer;
+      }, "the jobs are listed");
+      const known = new Set(wishes.map((w) => w.id));
+      return body.jobs.filter((job) => !job.sweep && !known.has(job.id)).map((job) => job.label);
+    };
+    for (const period of [50, 20, 10, 7, 5, 3, 2, 1]) {
+      for (let i = 0; i < 2; i += 1) wishes.push({ key: `call-${period}-${i}-${wishes.length}`, kind: i % kinds });
+      fs.writeFileSync(active, String(period));
+      for (const end = Date.now() + 3000; Date.now() < end; await pause(100)) await post(now);
+      fs.rmSync(active);
+      assert.deepEqual(await unaccepted(), [], `period ${period}`);
+    }
+    now.child.kill("SIGTERM");
+    await now.ended;
+    return start();
   },
   async kills(service) {
     let now = service;
