@@ -56,23 +56,6 @@ void each_line(std::string_view text, Take&& take) {
   }
 }
 
-/// Fields: number, state, reason, nodes, name.
-std::vector<SlurmJob> parse(std::string_view text) {
-  std::vector<SlurmJob> jobs;
-  each_line(text, [&](std::string_view line) {
-    std::array<std::string_view, 5> fields;
-    if (!split(line, fields)) return;
-    const auto bar = std::min(fields[0].find('_'), fields[0].size());
-    const auto id = number(fields[0].substr(0, bar));
-    if (!id) return;
-    const std::string_view task = fields[0].substr(std::min(bar + 1, fields[0].size()));
-    const std::string_view state = fields[1].substr(0, fields[1].find(' '));  // "CANCELLED by 0"
-    jobs.push_back({*id, std::string(fields[4]), std::string(state), std::string(fields[2]),
-                    std::string(fields[3]), slurm_phase(state), std::string(task)});
-  });
-  return jobs;
-}
-
 /// What it printed as one line.
 std::string words_of(std::string_view text) {
   std::string line;
@@ -93,8 +76,18 @@ SlurmJob::Phase slurm_phase(std::string_view state) {
   return holds(over, state) ? SlurmJob::Phase::over : SlurmJob::Phase::runs;
 }
 
-std::vector<SlurmJob> parse_squeue(std::string_view text) { return parse(text); }
-std::vector<SlurmJob> parse_sacct(std::string_view text) { return parse(text); }
+std::vector<SlurmJob> parse_slurm_jobs(std::string_view text) {
+  std::vector<SlurmJob> jobs;
+  each_line(text, [&](std::string_view line) {
+    std::array<std::string_view, 5> fields;  // number, state, reason, nodes, name
+    const auto id = split(line, fields) ? number(fields[0]) : std::nullopt;
+    if (!id) return;  // a warning, or a task of somebody's array
+    const std::string_view state = fields[1].substr(0, fields[1].find(' '));  // "CANCELLED by 0"
+    jobs.push_back({*id, std::string(fields[4]), std::string(state), std::string(fields[2]),
+                    std::string(fields[3]), slurm_phase(state)});
+  });
+  return jobs;
+}
 
 bool refuses_the_job(std::string_view words) {
   return std::any_of(std::begin(refusals), std::end(refusals), [&](std::string_view refusal) {
@@ -126,7 +119,7 @@ std::int64_t SlurmPrograms::submit(const std::vector<std::string>& words) const 
 }
 
 std::vector<SlurmJob> SlurmPrograms::list() const {
-  return parse_squeue(
+  return parse_slurm_jobs(
       call({"squeue", "--me", "--noheader", "--states=all", "--format=%i|%T|%r|%N|%j"}));
 }
 
@@ -134,7 +127,7 @@ std::vector<SlurmJob> SlurmPrograms::account(const std::vector<std::string>& nam
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ",") + name;
   try {
-    return parse_sacct(
+    return parse_slurm_jobs(
         call({"sacct", "--noheader", "--parsable2", "--allocations", "--starttime=now-30days",
               "--name=" + list, "--format=JobIDRaw,State,Reason,NodeList,JobName%128"}));
   } catch (const std::exception&) {

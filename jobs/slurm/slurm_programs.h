@@ -30,7 +30,7 @@ class SlurmError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What Slurm says of one job, or of one or more tasks of an array, whose number they all have.
+/// What Slurm says of one job.
 struct SlurmJob {
   enum class Phase {
     waits,  ///< not begun, or to begin once more
@@ -42,16 +42,13 @@ struct SlurmJob {
   std::string state;  ///< Slurm's word: "PENDING"
   std::string reason, nodes;
   Phase phase = Phase::runs;
-  std::string task =
-      {};  ///< of an array, as "3", or those that wait, as "[4-10%2]"; empty: no array
   bool operator==(const SlurmJob&) const = default;
 };
 /// Of a word that this version does not know: `runs`, so that nothing is taken for over that is
 /// not.
 SlurmJob::Phase slurm_phase(std::string_view state);
 /// Lines of squeue and sacct in the form that SlurmPrograms asks for; other lines are left out.
-std::vector<SlurmJob> parse_squeue(std::string_view text);
-std::vector<SlurmJob> parse_sacct(std::string_view text);
+std::vector<SlurmJob> parse_slurm_jobs(std::string_view text);
 
 /// sbatch, squeue, sacct, scancel and scontrol.
 class SlurmPrograms {

@@ -113,16 +113,6 @@ JobFolder SweepFolder::folder(const SweepRun& run) const {
   return JobFolder(dir_.parent_path().parent_path() / "jobs" / job_id(run));
 }
 
-JobFolder SweepFolder::make_folder(const SweepRun& run) const {
-  JobFolder job = folder(run);
-  if (fs::exists(job.file("job.json"))) return job;
-  try {
-    return JobFolder::create(job.dir(), plan_.job_of(run));
-  } catch (const std::invalid_argument&) {
-    return job;  // another process made it meanwhile
-  }
-}
-
 JobState SweepFolder::state(const SweepRun& run) const { return folder(run).read_state(); }
 
 }  // namespace lacuna

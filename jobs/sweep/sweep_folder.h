@@ -40,8 +40,6 @@ class SweepFolder {
   std::string job_id(const SweepRun& run) const;
   /// The folder of a run, which may not be there yet.
   JobFolder folder(const SweepRun& run) const;
-  /// The same, made if it is not there. Throws std::system_error.
-  JobFolder make_folder(const SweepRun& run) const;
   /// Where a run stands; `queued` if its folder is not there. Throws what JobFolder::read_state()
   /// throws.
   JobState state(const SweepRun& run) const;

@@ -3,7 +3,7 @@
 // folder $FAKE_SLURM, with a file for each job. Its answers have the form, and its refusals the words, of Slurm 22.05.
 // Files in the folder say what goes wrong:
 //   down          the controller is away
-//   full          what is submitted waits (Resources); so do all tasks of an array but the first N, with "N" in it
+//   full          what is submitted waits (Resources)
 //   lose          sbatch makes a job, and its answer is lost
 //   deaf          sbatch takes long before it makes a job; mute: after it has
 //   accounts      sacct has accounts
@@ -49,8 +49,7 @@ async function run(id) {
   const out = fs.openSync(job.options.output, "a");
   const script = spawn("/bin/sh", [job.copy], {
     stdio: ["ignore", out, out], detached: true, cwd: job.options.chdir,
-    env: { ...process.env, SLURM_JOB_ID: String(id), SLURM_JOB_NAME: job.name, SLURM_CPUS_ON_NODE: "2",
-      ...(job.task ? { SLURM_ARRAY_TASK_ID: String(job.task) } : {}) } });
+    env: { ...process.env, SLURM_JOB_ID: String(id), SLURM_JOB_NAME: job.name, SLURM_CPUS_ON_NODE: "2" } });
   change(id, { state: "RUNNING", reason: "None", nodes: "node1", group: script.pid });
   const [code, signal] = await new Promise((resolve) => { script.on("exit", (...how) => resolve(how)); });
   const { wanted } = read(id);
@@ -94,13 +93,8 @@ async function sbatch() {
   }
   job.copy = path.join(folder, `${id}.sh`);
   fs.copyFileSync(args.at(-1), job.copy);
-  // Each task of an array is a job with a number of its own, too.
-  const last = Number(/^1-(\d+)(%\d+)?$/.exec(options.array ?? "1-1")[1]);
-  for (let task = 1; task <= last; task += 1) {
-    write({ ...job, id: id + task - 1, ...(options.array ? { array: id, task } : {}) });
-  }
-  const starts = is("full") ? Number(fs.readFileSync(path.join(folder, "full"), "utf8")) : last;
-  for (let task = 1; task <= Math.min(starts, last); task += 1) start(id + task - 1);
+  write(job);
+  if (!is("full")) start(id);
   if (is("mute")) await pause(3000);
   if (is("lose")) {
     fail(1, "sbatch: error: Batch job submission failed: Socket timed out on send/recv operation");
@@ -112,8 +106,7 @@ function squeue() {
   if (args.join(" ") !== "--me --noheader --states=all --format=%i|%T|%r|%N|%j") fail(1, "squeue: not so");
   if (is("down")) fail(1, "slurm_load_jobs error: Unable to contact slurm controller (connect failure)");
   for (const job of ids().map(read).filter((j) => !j.forgotten)) {
-    const number = job.array ? `${job.array}_${job.task}` : job.id;
-    console.log([number, job.state, job.reason, job.nodes, job.name].join("|"));
+    console.log([job.id, job.state, job.reason, job.nodes, job.name].join("|"));
   }
 }
 

@@ -26,7 +26,8 @@ class SweepAnswers : public testing::Test {
     return SweepFolder::create(temp.path() / "sweep", parse_sweep(sweep));
   }
   static void finish(const SweepFolder& sweep, std::size_t run, const FakeRun& fake) {
-    const JobFolder folder = sweep.make_folder(sweep.plan().runs[run]);
+    const SweepRun& made = sweep.plan().runs[run];
+    const JobFolder folder = JobFolder::create(sweep.folder(made).dir(), sweep.plan().job_of(made));
     std::string curve =
         "iteration,seconds,cpu_seconds,samples,rays,shadow_rays,mae,rmse,mse,relmse,smape,est_rmse,"
         "negative,rejected,at_floor\n";

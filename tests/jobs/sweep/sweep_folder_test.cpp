@@ -45,7 +45,8 @@ TEST(SweepFolder, OfAServiceRunsAreItsJobs) {
     ids.insert(read.job_id(run));
   }
   EXPECT_EQ(ids.size(), 6u);
-  const JobFolder job = read.make_folder(read.plan().runs[1]);
+  const SweepRun& run = read.plan().runs[1];
+  const JobFolder job = JobFolder::create(read.folder(run).dir(), read.plan().job_of(run));
   EXPECT_EQ(job.id(), read.job_id(read.plan().runs[1]));
   EXPECT_TRUE(job.read_job().exclusive) << "a sweep's runs are alone unless it says otherwise";
 }
