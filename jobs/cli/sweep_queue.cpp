@@ -60,6 +60,7 @@ SweepQueue::SweepQueue(const SweepFolder& sweep, const SweepQueueSettings& setti
     : sweep_(sweep),
       terminal_(terminal),
       remote_(settings.slurm.has_value()),
+      at_a_time_(settings.at_a_time),
       log_(std::make_shared<LogLines>()),
       store_(":memory:"),
       executor_(make_executor(settings)),
@@ -75,6 +76,9 @@ SweepQueue::SweepQueue(const SweepFolder& sweep, const SweepQueueSettings& setti
 int SweepQueue::run(const std::map<std::size_t, JobState>& left,
                     const std::function<bool()>& interrupted) {
   add(left);
+  if (remote_) {
+    terminal_.milestone(fmt::format("{} runs go to Slurm, at most {} at a time", all_, at_a_time_));
+  }
   queue_.start();
   while (!open_.empty() && !interrupted() && !gives_up()) {
     take_events();

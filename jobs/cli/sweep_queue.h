@@ -53,6 +53,7 @@ class SweepQueue {
   const SweepFolder& sweep_;
   Terminal& terminal_;
   const bool remote_;
+  const int at_a_time_;
   const std::shared_ptr<LogLines> log_;
   Store store_;
   const std::unique_ptr<Executor> executor_;

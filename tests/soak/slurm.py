@@ -174,6 +174,28 @@ class Trial:
         check(over["counts"]["done"] == len(over["runs"]) == 40, over["counts"])
         return f"a sweep of {len(over['runs'])} runs is done"
 
+    def a_sweep_of_the_shell(self):
+        """`lacuna sweep --executor slurm`, which is killed and begun again until all runs are done."""
+        file = self.folder / "shell.json"
+        file.write_text(json.dumps({"job": spec(0), "alone": False, "zip": [{
+            "/seed": [spec(kind)["seed"] for kind in range(KINDS)],
+            "/budget": [spec(kind)["budget"] for kind in range(KINDS)]}], "axes": {"/threads": [1, 2]}}))
+        command = [BIN / "lacuna", "sweep", file, "--executor", "slurm", "--slurm-poll", "0.3", "--jobs", "4", "-q"]
+        environment = {**self.cluster.environment, "LACUNA_SCENES": str(ROOT / "jobs/scenes"),
+                       "LACUNA_DATA": str(self.folder / "shell-data")}
+        for times in range(6):
+            process = subprocess.Popen(command, cwd=self.folder, env=environment)
+            time.sleep(random.uniform(0, 4))
+            process.kill()
+            process.wait()
+        subprocess.run(command, cwd=self.folder, env=environment, check=True)
+        runs = sorted((self.folder / "shell.sweep/runs").iterdir())
+        check(len(runs) == 2 * KINDS, runs)
+        for run in runs:
+            check(json.loads((run / "outcome.json").read_text())["state"] == "done", run)
+            same_bits(run, self.wholes[(int(run.name[:4]) - 1) % KINDS])
+        return f"a sweep of {len(runs)} runs from the shell, whose command was killed {times + 1} times"
+
     def cancelling(self):
         running = self.service.post(spec(0, **ENDLESS))
         self.service.reaches(running, "running")
@@ -300,7 +322,7 @@ class Trial:
 
 def main():
     kills = int(os.environ.get("LACUNA_KILLS", "20"))
-    chosen = sys.argv[1:] or ["some_jobs", "a_sweep", "cancelling", "a_refusal", "a_time_limit", "a_requeue",
+    chosen = sys.argv[1:] or ["some_jobs", "a_sweep", "a_sweep_of_the_shell", "cancelling", "a_refusal", "a_time_limit", "a_requeue",
                               "kills_at_random"]
     seed = int(os.environ.get("LACUNA_SEED", "1"))
     random.seed(seed)

@@ -40,6 +40,7 @@ onCluster("sweep on Slurm: every run is a job of its own, done once", async (clu
   const done = await sweep(cluster, folder, "--chunk", "4", "--jobs", "3", "--slurm-args", "--partition=long");
   assert.equal(done.code, 0, done.err);
   assert.match(done.err, /^warning: --chunk has no effect any more/m);
+  assert.match(done.err, /^6 runs go to Slurm, at most 3 at a time$/m);
   const jobs = cluster.jobs();
   assert.equal(jobs.length, 6);
   for (const { name, options } of jobs) {
