@@ -32,7 +32,7 @@ RenderSettings picture(const IntegratorSettings& integrator, int iterations) {
   return {.integrator = integrator, .width = 20, .height = 12, .iterations = iterations};
 }
 
-TEST(Auto, AgreesWithBidirectionalPathTracing) {
+TEST(LongAuto, AgreesWithBidirectionalPathTracing) {
   struct Row {
     PathScene scene;
     int max_depth;
@@ -168,7 +168,7 @@ TEST(Auto, OneCandidateIsRenderedAsItIs) {
   EXPECT_EQ(race->candidates[0].iterations, 8U);
 }
 
-TEST(Auto, WhatFindsNoMemoryLeaves) {
+TEST(LongAuto, WhatFindsNoMemoryLeaves) {
   ImportanceCacheSettings records;
   records.light_paths = 1 << 20;
   records.record_density = 0.1;
