@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "jobs/cli/render_job.h"
 #include "jobs/run/run_job.h"
 #include "jobs/spec/problems.h"
 

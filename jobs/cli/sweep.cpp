@@ -53,6 +53,7 @@ void print_runs(const SweepFolder& sweep) {
 
 std::vector<std::size_t> indices_of(const std::map<std::size_t, JobState>& runs) {
   std::vector<std::size_t> indices;
+  indices.reserve(runs.size());
   for (const auto& [index, state] : runs) indices.push_back(index);
   return indices;
 }

@@ -28,7 +28,7 @@ std::filesystem::path find_program(const std::string& name) {
   std::string_view path = set == nullptr ? "" : set;
   while (!path.empty()) {
     const auto end = std::min(path.find(':'), path.size());
-    const std::filesystem::path file = std::filesystem::path(path.substr(0, end)) / name;
+    std::filesystem::path file = std::filesystem::path(path.substr(0, end)) / name;
     if (file.is_absolute() && ::access(file.c_str(), X_OK) == 0) return file;
     path.remove_prefix(std::min(end + 1, path.size()));
   }

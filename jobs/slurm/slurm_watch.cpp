@@ -196,6 +196,7 @@ void SlurmWatch::list() {
 /// Those that squeue does not know may be in the accounts.
 void SlurmWatch::account(const std::vector<WatchedPtr>& whom) {
   std::vector<std::string> names;
+  names.reserve(whom.size());
   for (const WatchedPtr& watched : whom) names.push_back(watched->submission.name);
   const std::vector<SlurmJob> jobs = programs_.account(names);
   const std::lock_guard lock(mutex_);

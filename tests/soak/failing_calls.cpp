@@ -1,5 +1,5 @@
-// A library to preload: each n-th call below a folder that opens, writes, syncs, renames or makes something fails, with
-// one error after another, as long as a file says so. Of the environment:
+// A library to preload: each n-th call below a folder that opens, writes, syncs, renames or makes
+// something fails, with one error after another, as long as a file says so. Of the environment:
 //   LACUNA_FAIL_UNDER: the folder; LACUNA_FAIL_WHILE: the file, whose text is n
 #include <dlfcn.h>
 #include <fcntl.h>
