@@ -119,7 +119,7 @@ PathSettings adaptive(int max_depth) {
 }
 
 // Where many samples are taken follows from samples that are not those.
-TEST(Auto, AdaptiveSamplingIsRight) {
+TEST(LongAuto, AdaptiveSamplingIsRight) {
   for (const char* scene : {"cornell", "ajar"}) {
     SCOPED_TRACE(scene);
     RenderSettings expected = picture(test::path_tracing(4), 1600);
