@@ -23,7 +23,8 @@ class LeftRuns {
   /// Only of those that are `wanted`, by their indices; empty: of all.
   LeftRuns(const SweepFolder& folder, std::set<std::size_t> wanted, Terminal& terminal);
 
-  /// By their indices. Runs of changed inputs are told, and, unless only `looking`, begin anew.
+  /// By their indices. Warns of each run whose inputs have changed and, unless only `looking`,
+  /// discards its results.
   std::map<std::size_t, JobState> find(bool looking);
 
  private:

@@ -88,7 +88,7 @@ int SweepQueue::run(const std::map<std::size_t, JobState>& left,
   const bool gave_up = !interrupted() && !open_.empty();
   queue_.stop();
   take_events();
-  tell_log();
+  print_log();
   terminal_.status({});
   if (open_.empty()) return failed_ == 0 ? exit_done : exit_error;
   terminal_.milestone(
@@ -104,11 +104,15 @@ void SweepQueue::add(const std::map<std::size_t, JobState>& left) {
     for (const auto& [index, state] : left) {
       const SweepRun& run = sweep_.plan().runs[index - 1];
       const JobFolder folder = sweep_.folder(run);
-      const bool made = fs::exists(folder.file("job.json"));
       JobEntry job;
       job.id = run.name;
-      take_spec(job, made ? folder.read_job() : sweep_.plan().job_of(run));
-      if (made) job.spec = folder.read_job_text();
+      if (fs::exists(folder.file("job.json"))) {  // which a person may have extended
+        const std::string text = folder.read_job_text();
+        take_spec(job, parse_job(text));
+        job.spec = text;
+      } else {
+        take_spec(job, sweep_.plan().job_of(run));
+      }
       job.state = state;
       job.state.state = State::queued;
       if (job.state.created.empty()) job.state.created = utc_now();
@@ -143,11 +147,10 @@ void SweepQueue::take(const JobEntry& entry) {
   } else if (entry.over() || entry.progress) {
     since_.reset();
   }
-  if (entry.over()) tell(entry);
+  if (entry.over()) report(entry);
 }
 
-/// One is over.
-void SweepQueue::tell(const JobEntry& entry) {
+void SweepQueue::report(const JobEntry& entry) {
   const SweepRun& run = *open_.at(entry.id);
   open_.erase(entry.id);
   const std::string text =
@@ -158,7 +161,7 @@ void SweepQueue::tell(const JobEntry& entry) {
   terminal_.error(text + (entry.state.error.empty() ? "" : ": " + entry.state.error));
 }
 
-void SweepQueue::tell_log() {
+void SweepQueue::print_log() {
   std::vector<std::string> lines;
   {
     const std::lock_guard lock(log_->mutex);
@@ -168,7 +171,7 @@ void SweepQueue::tell_log() {
 }
 
 void SweepQueue::look_after() {
-  tell_log();
+  print_log();
   const auto now = Clock::now();
   const bool shows = terminal_.shows_status() || remote_;
   if (!shows || now < next_look_) return;

@@ -44,8 +44,8 @@ class SweepQueue {
   void add(const std::map<std::size_t, JobState>& left);
   void take_events();
   void take(const JobEntry& entry);
-  void tell(const JobEntry& entry);
-  void tell_log();
+  void report(const JobEntry& entry);  // of a run that is over
+  void print_log();
   void look_after();
   void show();
   bool gives_up() const;

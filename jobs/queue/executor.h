@@ -43,7 +43,7 @@ class StopSignal {
  public:
   StopSignal();  ///< throws std::system_error
   void request() const;
-  /// Not the renderer, but this service ends.
+  /// The process of the queue ends; the renderer does not.
   void leave() const;
   bool is_requested() const { return requested_.load(); }
   bool leaves() const { return leaves_.load(); }
@@ -76,10 +76,10 @@ class Executor {
   /// checkpoint and end. Called from several threads.
   virtual Ending run(const Task& task, const StopSignal& stop, const Notices& notices) = 0;
 
-  /// Its renderers are run by somebody else, on machines of theirs: they outlive the service, and
+  /// Its renderers are run by somebody else, on machines of theirs: they outlive the queue, and
   /// each job that wants a machine for itself gets one.
   virtual bool is_remote() const { return false; }
-  /// A renderer of the job may run or wait, from an earlier service too: run() goes on with that
+  /// A renderer of the job may run or wait, from an earlier queue, too: run() goes on with that
   /// one, and until then the folder is not ours.
   virtual bool holds(const JobFolder&) const { return false; }
   /// Gives up what holds() says of a job whose renderer has ended. Throws std::system_error.

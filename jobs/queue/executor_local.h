@@ -8,14 +8,14 @@
 
 namespace lacuna {
 
-/// The folders and the grace of the service's command line as a renderer takes them:
+/// The folders and the grace of `settings` as variables of a renderer's environment:
 /// "LACUNA_DATA=...". Throws std::invalid_argument for a folder that cannot be said so.
 std::vector<std::string> renderer_environment(const ExecutorSettings& settings);
 /// Throws std::invalid_argument if there is no such renderer.
 void check_renderer(const ExecutorSettings& settings);
 
 /// Runs each renderer as a child process in its own process group, with only the environment of the
-/// service. Sends SIGTERM to stop it and when the service dies, SIGKILL after the grace period; its
+/// queue. Sends SIGTERM to stop it and when the queue dies, SIGKILL after the grace period; its
 /// output is appended to the job's log.txt. Applies the settings' limits. A renderer that is killed
 /// while the kernel counts an out-of-memory kill is assumed to be its victim.
 class LocalExecutor : public Executor {

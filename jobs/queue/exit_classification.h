@@ -20,7 +20,7 @@ struct Attempt {
   Ending ending;
   bool cancel = false;    ///< a client cancelled the job
   bool hold = false;      ///< a client put the job on hold
-  bool stopped = false;   ///< the service has asked the renderer to stop
+  bool stopped = false;   ///< the queue has asked the renderer to stop
   bool disk_low = false;  ///< free space is below the floor, so failures do not count as crashes
   bool found = false;     ///< `before` was read after the renderer had started
   int crashes = 0;        ///< crashes of this job's earlier renderers

@@ -63,7 +63,7 @@ class Queue {
   /// Begins with the unfinished jobs of the store.
   void start();
   /// Asks all renderers to stop and waits for them; their jobs go on after the next start().
-  /// Renderers that are not of this service's machine run on, and that start() finds them.
+  /// Renderers on other machines go on, and that start() finds them.
   void stop();
 
   /// How many more jobs may wait or run.

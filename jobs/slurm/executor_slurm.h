@@ -12,7 +12,7 @@
 namespace lacuna {
 
 /// Hands each job to Slurm, by a submission of its own that is written down before it is made, and
-/// waits until its folder, or Slurm, says that it is over. Renderers outlive the service; the next
+/// waits until its folder, or Slurm, says that it is over. Renderers outlive the queue; the next
 /// one finds them by what is written down.
 class SlurmExecutor : public Executor {
  public:

@@ -41,7 +41,7 @@ struct SlurmWatched {
   std::optional<int> nice = {};       ///< the runner shall set this one
 };
 
-/// Watches all submissions of this service at once: their folders once a second, and squeue at most
+/// Watches all submissions of this queue at once: their folders once a second, and squeue at most
 /// once in each interval, however many there are.
 class SlurmWatch {
  public:

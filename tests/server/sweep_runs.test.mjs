@@ -30,6 +30,20 @@ test("runs become jobs a few at a time, in their order, among other people's job
   assert.deepEqual(jobFolders(service), [...done.runs.map((r) => r.job), other].sort());
 });
 
+test("the answers of a sweep that is over follow its runs", async (t) => {
+  const service = await Service.start(folders(t));
+  const { id } = await service.postSweep("finish", { seeds: 2 });
+  const { runs } = await service.sweepReaches(id, "done");
+  const states = async () => (await service.json(`/api/sweeps/${id}/answers`)).states;
+  const done = await states();
+  assert.deepEqual(await states(), done);
+  for (const { job } of runs) {  // in turn, so that the latest change stays, and then goes
+    const before = await states();
+    assert.equal((await service.fetch(`/api/jobs/${job}`, { method: "DELETE" })).status, 204);
+    assert.notDeepEqual(await states(), before, "a run has gone");
+  }
+});
+
 test("half of the queue's room is left to other jobs", async (t) => {
   const service = await Service.start(folders(t), ["--max-jobs", "6"]);
   const first = await service.postSweep("gate one", { seeds: 5 });

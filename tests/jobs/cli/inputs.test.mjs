@@ -74,7 +74,7 @@ test("sweep: runs of changed inputs are rendered anew, and told", async (t) => {
   assert.equal((await run(folder, "sweep", "s.json", "--missing")).out, "1-2\n");
   const resumed = await run(folder, "sweep", "s.json");
   assert.equal(resumed.code, 0, resumed.err);
-  assert.match(resumed.err, /0001-1 was rendered from other files \(scene "own\.glb" has another content.*rendered anew/);
+  assert.match(resumed.err, /0001-1 was rendered from other files \(scene "own\.glb" has another content.*rendered again/);
   assert.notDeepEqual(read(folder, inputs), old);
   assert.deepEqual(read(folder, inputs), read(folder, "s.sweep/runs/0002-1/inputs.json"));
   assert.equal((await run(folder, "sweep", "s.json", "--missing")).out, "\n");
