@@ -1,6 +1,6 @@
 """Probabilistic connections of bidirectional path tracing, which Noel's thesis (11.6) planned to compare with and did not,
-beside importance caching and the skeleton. The paper's text was not at hand (docs/methods.md): what is judged is what its
-abstract and its first figure claim, on this project's scenes."""
+beside importance caching and the skeleton. The paper's text was not at hand (docs/methods/connections-records.md): what is
+judged is what its abstract and its first figure claim, on this project's scenes."""
 
 from harness.entry import Entries
 from harness.measured import error_at, gain_at
@@ -16,7 +16,8 @@ METHODS = {"published": {**THESIS, "PCBPT": PCBPT["published"]}, "ours": {**OURS
 COMPARED = ("door", "sponza")
 ONE_DRAW = ("an eye vertex makes one connection in all, that of the others one for each length, and yet an iteration takes longer: 22 "
             "in 3 CPU seconds on door as published, SkelBPT's 30; distributions take a third of it. On corridor it leads BPT with this "
-            "project's settings, on door at 512 x 256 pixels they are not told apart (docs/methods.md)")
+            "project's settings, on door at 512 x 256 pixels they are not told apart "
+            "(docs/methods/connections-records.md)")
 
 
 def popov_sweep(full, which="published"):

@@ -9,7 +9,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LACUNA = pathlib.Path(os.environ.get("LACUNA_BIN", ROOT / "build/release/bin")) / "lacuna"
-PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md"), *ROOT.glob("*/README.md"), *ROOT.glob("jobs/*/README.md")])
+PAGES = sorted({ROOT / "README.md", *(ROOT / "docs").glob("**/*.md"), *ROOT.glob("*/README.md"), *ROOT.glob("jobs/*/README.md")})
 CODE = re.compile(r"`[^`\n]*`|^    .*$", re.MULTILINE)
 
 
@@ -38,16 +38,18 @@ class Docs(unittest.TestCase):
     def test_every_page_and_picture_can_be_reached(self):
         linked = {(page.parent / target.partition("#")[0]).resolve() for page in PAGES
                   for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text())}
-        files = {*(ROOT / "docs").glob("*.md"), *(ROOT / "docs/pictures").glob("*.jpg"), *(ROOT / "docs/pictures").glob("*.png")}
-        self.assertEqual(sorted(file.name for file in files - linked), [])
+        files = {*(ROOT / "docs").glob("**/*.md"), *(ROOT / "docs/pictures").glob("*.jpg"), *(ROOT / "docs/pictures").glob("*.png")}
+        self.assertEqual(sorted(str(file.relative_to(ROOT)) for file in files - linked), [])
 
     def test_headings_are_unique(self):
         for page in PAGES:
             found = anchors(page)
             self.assertEqual(sorted(a for a in set(found) if found.count(a) > 1), [], page.name)
 
-    def test_the_first_page_is_short(self):
-        self.assertLessEqual(len((ROOT / "README.md").read_text().splitlines()), 150)
+    def test_the_first_page_and_the_pages_of_methods_are_short(self):
+        limits = {ROOT / "README.md": 150, **{page: 120 for page in (ROOT / "docs/methods").glob("*.md")}}
+        self.assertEqual([f"{page.relative_to(ROOT)}: more than {most} lines" for page, most in sorted(limits.items())
+                          if len(page.read_text().splitlines()) > most], [])
 
     def test_pictures_are_small(self):
         self.assertLess(sum(file.stat().st_size for file in (ROOT / "docs/pictures").iterdir()), 1_500_000)
