@@ -1,4 +1,4 @@
-// report.json as tables, whatever keys it has, as bars of time and rays, and the race of a job that chose its method.
+// report.json as tables, whatever keys it has, as bars of time and rays, and how a job of `auto` chose its method.
 import { facts, h, note, table } from "./dom.js";
 import { colours, curveColour, figureSvg, svg } from "./figure.js";
 import { number, quantity, seconds, words } from "./format.js";
@@ -23,7 +23,7 @@ function section(title, value) {
 }
 
 /// A section for each of a report's parts, what stands alone first.
-function reportTables({ artefacts, race, ...report }) {
+function reportTables({ artefacts, choice, ...report }) {
   const parts = Object.entries(report);
   const alone = parts.filter(([, v]) => v === null || typeof v !== "object");
   return h("div.report", section("job", Object.fromEntries(alone)),
@@ -83,79 +83,30 @@ const effortView = (report) => h("div.effort",
   stackedBar("Rays", report.counts, number, (name) => ["rays", "shadow rays"].includes(name)),
   builtList(report));
 
-function raceFigure({ candidates, rounds, clock }) {
-  const curves = candidates.map(({ name }) => ({ name, points: rounds
-    .filter((row) => row.candidate === name && row.low > 0 && row.high > 0 && row.cost > 0)
-    .map((row) => ({ x: row.cost, y: row.ratio, low: row.low, high: row.high })) }))
+/// The error of each candidate against its own time, after each of its turns.
+function turnsFigure({ candidates, metric }) {
+  const curves = candidates.map(({ name, turns }) => ({ name, points: turns
+    .filter(({ noise, cpu_seconds: x }) => noise > 0 && x > 0)
+    .map(({ noise, bias, cpu_seconds: x }) => ({ x, y: noise + bias })) }))
     .filter(({ points }) => points.length > 0).map((curve, i) => ({ ...curve, index: i < colours ? i : undefined }));
-  const axis = { label: "its own time", unit: clock === "rays" ? "rays" : "CPU s" };
-  return block("Standing after each round",
-    figureSvg({ curves, axis, metric: { label: "MSE over the best's at equal time" } }, 640) ?? "");
+  return block("After each turn", figureSvg({ curves, axis: { label: "its own time", unit: "CPU s" },
+    metric: { label: `${metric}, estimated from halves` } }, 640) ?? "");
 }
 
-const ratioText = (ratio) => (!ratio || ratio.ratio === null ? "unknown"
-  : `${number(ratio.ratio)} (${number(ratio.low)} to ${number(ratio.high)})`);
-
-function fateText({ in_use, left, tail_known, unexplained, bias_rmse, bias_known }) {
-  return [
-    in_use ? "in use" : left ? `left in round ${left.round}: ${left.reason}` : "no part of the picture",
-    tail_known === false && "rare bright paths: not sure",
-    unexplained && "differs from the others",
-    bias_rmse !== undefined && (bias_known ? `bias: RMSE ${number(bias_rmse)} stays` : "its bias is not seen"),
-  ].filter(Boolean).join("; ");
+function candidateTable({ candidates, chosen, metric }) {
+  const orNone = (value) => (value === undefined || value === null ? "" : number(value));
+  return table(["Method", "Iterations", "CPU time", `${metric} expected at the end`, ""],
+    candidates.map(({ name, turns, left }, k) => {
+      const last = turns.at(-1) ?? { iterations: 0, cpu_seconds: 0 };
+      return [name, number(last.iterations), seconds(last.cpu_seconds), orNone(last.expected), k === chosen ? "chosen" : left];
+    }), true);
 }
 
-function candidateTable({ clock, candidates }) {
-  const [costHead, cost] = clock === "rays" ? ["Rays", number] : ["CPU time", seconds];
-  return table(["Method", "MSE over the best's", "Iterations", costHead, "Prepared in", ""],
-    candidates.map((c) => [c.name, ratioText(c.over_best), number(c.iterations), cost(c.cost),
-      seconds(c.preparation_seconds), fateText(c)]), true);
-}
-
-/// One square for each block of pixels, filled by `fill(value)`.
-function mapOfBlocks(values, across, label, fill) {
-  const squares = values.map((value, i) => svg("rect", {
-    x: i % across, y: Math.floor(i / across), width: 1, height: 1, fill: fill(value) }));
-  return svg("svg", { viewBox: `0 0 ${across} ${Math.ceil(values.length / across)}`, width: 320, role: "img",
-    "shape-rendering": "crispEdges", "aria-label": label }, ...squares);
-}
-
-/// Each block of pixels in the colour of the candidate with the largest weight there.
-function blockMap({ pixels, across, candidate }, candidates) {
-  const used = [...new Set(candidate)].sort((a, b) => a - b);
-  return block(`Largest weight in each block of ${pixels} × ${pixels} pixels`,
-    mapOfBlocks(candidate, across, "Which candidate has the largest weight in each block of pixels", curveColour),
-    h("ul", used.map((k) => h("li", painted(h("span.swatch"), k), candidates[k].name))));
-}
-
-/// The more samples a block gets, the lighter it is.
-function sampleMap({ pixels, across, iterations }) {
-  const [least, most] = [Math.min(...iterations), Math.max(...iterations)];
-  const mean = sumOf(iterations) / iterations.length;
-  return block(`Samples in each block of ${pixels} × ${pixels} pixels`,
-    mapOfBlocks(iterations, across, "How many samples each block of pixels gets",
-      (n) => `hsl(0 0% ${Math.round(8 + 87 * n / most)}%)`),
-    note(`Over the mean: ${number(least / mean)} (dark) to ${number(most / mean)} (light).`));
-}
-
-function raceSummary({ clock, spent, reduction, plan, break_even }) {
-  const cost = clock === "rays" ? `${number(spent)} rays` : seconds(spent);
-  return [
-    `The race took ${cost}${reduction > 1 ? `, of pixels ${reduction} times as wide` : ""}.`,
-    plan.expected_rmse && `RMSE expected at the end of the budget: ${number(plan.expected_rmse)}.`,
-    plan.over_best_alone < 1
-      && `Several methods share the picture: ${number(plan.over_best_alone)} of the MSE of the best alone.`,
-    ...break_even.map((of) => `Below ${seconds(of.below_seconds)}, preparation included: ${of.better}.`),
-  ].filter(Boolean).join(" ");
-}
-
-const raceView = (race) => h("div.race", note(raceSummary(race)), candidateTable(race),
-  h("div.effort", raceFigure(race), race.blocks && blockMap(race.blocks, race.candidates),
-    race.samples && sampleMap(race.samples)));
+const choiceView = (choice) => h("div.choice", candidateTable(choice), h("div.effort", turnsFigure(choice)));
 
 /// All that a job's view shows of report.json.
 export const reportParts = (report) => [
-  report.race && [h("h2", "The race"), raceView(report.race)],
+  report.choice && [h("h2", "The choice of the method"), choiceView(report.choice)],
   h("h2", "Time and rays"), effortView(report),
   h("h2", "Report"), reportTables(report),
 ];

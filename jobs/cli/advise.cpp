@@ -2,19 +2,18 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <system_error>
 
-#include "base/json/json_text.h"
 #include "base/parallel/stop.h"
 #include "base/storage/atomic_file.h"
 #include "jobs/cli/commands.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/terminal.h"
 #include "jobs/run/advise.h"
-#include "jobs/run/race_json.h"
+#include "jobs/spec/described_json.h"
 #include "jobs/spec/job_json.h"
 #include "jobs/spec/limits.h"
 
@@ -24,6 +23,7 @@ namespace {
 
 struct AdviseOptions {
   std::string what, camera;
+  std::filesystem::path out;
   double seconds = Budget::default_seconds;
   std::vector<int> resolution;
   int max_depth = PathLengths{}.max_depth;
@@ -46,65 +46,52 @@ JobSpec job_of(const AdviseOptions& o) {
   if (o.resolution.size() == 2) spec.resolution = {o.resolution[0], o.resolution[1]};
   spec.budget = {};
   spec.budget.cpu_seconds = o.seconds;
-  return spec;
+  return with_auto_integrator(spec);
 }
 
-/// What remains of the budget for a candidate's iterations, were it alone.
-double rest(const RaceRecord& race, double preparation) {
-  return std::max(0.0, race.budget - preparation);
+/// Where a candidate stood when it left, or at the end.
+void print_table(const Choice& choice) {
+  const std::string error = fmt::format("{} then", enum_name(choice.metric));
+  fmt::print("{:<32} {:>10} {:>9} {:>12}  {}\n", "method", "iterations", "CPU s", error, "");
+  for (std::size_t k = 0; k < choice.candidates.size(); ++k) {
+    const Candidate& c = choice.candidates[k];
+    const Turn turn = c.turns.empty() ? Turn{} : c.turns.back();
+    const bool chosen = choice.chosen == int(k);
+    fmt::print("{:<32} {:>10} {:>9.3f} {:>12}  {}\n", c.name, turn.iterations, turn.cpu_seconds,
+               turn.expected ? fmt::format("{:.3g}", *turn.expected) : "-",
+               chosen ? "<- chosen" : c.left);
+  }
+  fmt::print("\n\"{} then\": expected at the end of the budget\n", enum_name(choice.metric));
 }
 
-void print_table(const RaceRecord& race) {
-  fmt::print("{:<28} {:>10} {:>9} {:>16} {:>8}  {}\n", "method", "rmse", "mse/best", "interval",
-             "prepare", "");
-  for (const RaceRecord::Candidate& c : race.candidates) {
-    const Standing& s = c.standing;
-    const double time = rest(race, c.preparation);
-    const bool known = s.error > 0 && time > 0;
-    const auto factor = [&](double z) {
-      return std::exp(s.over_best.value + z * s.over_best.deviation);
-    };
-    fmt::print("{:<28} {:>10} {:>9} {:>16} {:>7.1f}s  {}\n", c.name,
-               known ? fmt::format("{:.3g}", std::sqrt(s.error / time)) : "-",
-               known ? fmt::format("{:.2f}", factor(0)) : "-",
-               known ? fmt::format("{:.2f} - {:.2f}", factor(-2), factor(2)) : "-", c.preparation,
-               c.share > 0 ? "<- chosen" : c.reason);
-    if (!c.biased || !known) continue;
-    fmt::print("{:28} {}\n", "",
-               s.bias > 2 * s.bias_deviation
-                   ? fmt::format("bias: rmse {:.3g} stays", std::sqrt(s.bias))
-                   : fmt::format("bias: not seen, rmse below {:.3g}",
-                                 std::sqrt(s.bias + 2 * s.bias_deviation)));
+/// A folder for a job that nobody keeps.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "lacuna-advise-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+      throw std::system_error(errno, std::generic_category(), name);
+    }
+    dir_ = name;
   }
-}
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(dir_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& dir() const { return dir_; }
 
-void print_advice(const RaceRecord& race) {
-  std::string names;
-  bool known = true;
-  for (const RaceRecord::Candidate& c : race.candidates) {
-    if (c.share == 0) continue;
-    names += (names.empty() ? "" : " and ") + c.name;
-    known = known && c.standing.tail_known.value_or(true) && !c.standing.unexplained;
-  }
-  fmt::print("\n{:g} s: {}", race.budget, names);
-  const double left = race.budget - race.spent;
-  if (race.error > 0 && left > 0) {
-    fmt::print(", rmse {:.3g} expected", std::sqrt(race.error / left));
-  }
-  fmt::print(". The race took {:.2f} s", race.spent);
-  if (race.reduction > 1) fmt::print(", of pixels {} times as wide", race.reduction);
-  fmt::print(".\n");
-  if (!known) {
-    fmt::print("Not sure: rare bright paths carry much of the error, and more may be to come.\n");
-  }
-}
+ private:
+  std::filesystem::path dir_;
+};
 
 }  // namespace
 
 void add_advise(CLI::App& app, int& code) {
   const auto o = std::make_shared<AdviseOptions>();
   CLI::App* command = app.add_subcommand(
-      "advise", "Let methods race on a scene, and tell which is best for a budget");
+      "advise", "Choose the best method for a scene and a budget by rendering with each");
   command
       ->add_option("WHAT", o->what,
                    "a scene (.glb, .gltf) below a scenes root, or a job file (.json)")
@@ -123,18 +110,21 @@ void add_advise(CLI::App& app, int& code) {
       ->add_option("-t,--threads", o->threads,
                    "number of threads; 0: one per core (default: job's)")
       ->check(CLI::Range(0, 1024));
-  command->add_flag("--json", o->json, "print the race as in report.json");
+  command->add_option("-o,--out", o->out,
+                      "keep the job in this folder, for `lacuna render` to go on with");
+  command->add_flag("--json", o->json, "print choice.json instead of a table");
   command->callback([o, &code] {
     Terminal terminal({}, true);
     const RunContext context{DataRoot::from_environment(), ScenesRoots::from_environment(),
                              o->threads, interrupt_requested(), terminal};
     try {
-      const RaceRecord race = advise(job_of(*o), context);
+      const TemporaryFolder temporary;
+      const auto dir = o->out.empty() ? temporary.dir() / "job" : o->out;
+      const Choice choice = advise(JobFolder::create(dir, job_of(*o)), context);
       if (o->json) {
-        fmt::print("{}", document_text(race_json(race)));
+        fmt::print("{}", write_document(choice));
       } else {
-        print_table(race);
-        print_advice(race);
+        print_table(choice);
       }
       code = exit_done;
     } catch (const Stopped&) {

@@ -114,8 +114,9 @@ void start_again(const JobFolder& folder) {
     throw FolderBusy(fmt::format("{}: another process works on this job", folder.dir().string()));
   }
   folder.reopen();  // first: a job that is done has a checkpoint
-  for (const char* name : {"checkpoint.bin", "inputs.json", "progress.json"}) {
-    fs::remove(folder.file(name));
+  for (const char* name :
+       {"checkpoint.bin", "inputs.json", "progress.json", "choice.json", "candidates"}) {
+    fs::remove_all(folder.file(name));
   }
 }
 

@@ -1,14 +1,15 @@
 #pragma once
 
+#include "jobs/run/choice.h"
 #include "jobs/run/run_job.h"
-#include "jobs/spec/job_spec.h"
-#include "renderer/race/record.h"
 
 namespace lacuna {
 
-/// What the integrator `auto` finds out about a job's picture before it renders it: the race of its
-/// candidates. Another integrator of the job is not raced: `auto` takes its path lengths. Artefacts
-/// of the analysis go to the cache. Throws what prepare() and analyse() throw.
-RaceRecord advise(JobSpec spec, const RunContext& context);
+/// A job with the integrator `auto`, of the same path lengths where it has another.
+JobSpec with_auto_integrator(JobSpec spec);
+
+/// Chooses the method of the job of `folder`, whose integrator is `auto`, as run_job() does, and
+/// stops there: run_job() goes on from it. Throws what prepare() and Choosing throw, and Stopped.
+Choice advise(const JobFolder& folder, const RunContext& context);
 
 }  // namespace lacuna

@@ -15,7 +15,7 @@
 
 #include "base/storage/available_memory.h"
 #include "base/storage/passing_error.h"
-#include "jobs/run/verdicts.h"
+#include "jobs/run/choice.h"
 #include "renderer/scene/scene_shape.h"
 
 namespace lacuna {
@@ -32,6 +32,7 @@ std::filesystem::path resolve(const RunContext& context, const std::string& what
   }
 }
 
+/// What a job of this integrator needs.
 SceneNeeds needs_of(const JobSpec& spec, const Integrator& integrator) {
   SceneNeeds needs = integrator.needs();
   if (std::find(spec.layers.begin(), spec.layers.end(), ImageLayer::albedo) != spec.layers.end()) {
@@ -39,6 +40,20 @@ SceneNeeds needs_of(const JobSpec& spec, const Integrator& integrator) {
   }
   if (light_paths_of_iteration(spec)) needs.light_tree = true;  // for unreached_emitters()
   return needs;
+}
+
+/// What any of the candidates of a job of `auto` needs.
+SceneNeeds needs_of_candidates(const JobSpec& spec) {
+  SceneNeeds all;
+  for (const Candidate& c : new_choice(spec).candidates) {
+    const JobSpec job = candidate_job(spec, c);
+    const SceneNeeds one = needs_of(job, *make_integrator(method_of(job.integrator)));
+    all.materials |= one.materials;
+    all.emission |= one.emission;
+    all.space |= one.space;
+    all.light_tree |= one.light_tree;
+  }
+  return all;
 }
 
 /// The environment of the job, as it is now.
@@ -78,17 +93,9 @@ void set_up_analysis(Prepared& p, const JobSpec& spec, const RunContext& context
       *p.artefacts, *p.pool);
 }
 
-/// What a budget leaves each thread, if it is limited by time.
-std::optional<double> seconds_of(const Budget& budget) {
-  if (!budget.seconds || !budget.cpu_seconds) {
-    return budget.seconds ? budget.seconds : budget.cpu_seconds;
-  }
-  return std::min(*budget.seconds, *budget.cpu_seconds);
-}
-
 /// What a person should know before the scene is rendered.
 std::vector<std::string> warnings_of(const Scene& scene, const Camera& camera,
-                                     const IntegratorSettings& integrator) {
+                                     const JobIntegrator& integrator) {
   std::vector<std::string> all = close_surfaces(scene);
   if (!scene.has_emitters()) return all;
   const auto add = [&all](std::vector<std::string> warnings) {
@@ -112,7 +119,8 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   Prepared p;
   p.pool = std::make_unique<ThreadPool>(context.threads >= 0 ? context.threads : spec.threads,
                                         context.interrupted);
-  p.integrator = make_integrator(spec.integrator);
+  const bool chooses = std::holds_alternative<AutoSettings>(spec.integrator);
+  if (!chooses) p.integrator = make_integrator(method_of(spec.integrator));
   SceneData data = load_gltf(resolve(context, "scene", spec.scene, scene_extensions), &p.inputs);
   p.inputs.front().name = spec.scene;
   if (spec.material) change_material(data, *spec.material, spec.scene);
@@ -131,7 +139,7 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   }
   p.content = fmt::format("{:016x}", data.content_hash);
 
-  const SceneNeeds needs = needs_of(spec, *p.integrator);
+  const SceneNeeds needs = chooses ? needs_of_candidates(spec) : needs_of(spec, *p.integrator);
   std::optional<EnvironmentImage> environment;
   if (spec.environment && needs.emission) {
     const auto& e = *spec.environment;
@@ -161,22 +169,11 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
     }
   }
   set_up_analysis(p, spec, context, camera);
-  if (const auto seconds = seconds_of(spec.budget)) {
-    p.verdicts =
-        std::make_unique<VerdictMemory>(cached_verdicts(*p.artefacts, spec, p.content, *seconds));
-  }
   return p;
 }
 
-void analyse(const Prepared& p, const Budget& budget, bool resumes) {
-  p.integrator->prepare({.scene = *p.scene,
-                         .pool = *p.pool,
-                         .space = *p.space,
-                         .camera = *p.camera,
-                         .budget_seconds = seconds_of(budget),
-                         .verdicts = p.verdicts.get(),
-                         .resumes = resumes});
-  p.space->close();
+void analyse(const Prepared& p, Integrator& integrator) {
+  integrator.prepare({.scene = *p.scene, .pool = *p.pool, .space = *p.space, .camera = *p.camera});
 }
 
 }  // namespace lacuna

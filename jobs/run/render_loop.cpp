@@ -47,30 +47,52 @@ void RenderLoop::stop_if_interrupted() const {
   if (task_.interrupted()) throw Stopped{};
 }
 
-void RenderLoop::resume() {
-  const auto file = task_.folder.file("checkpoint.bin");
+bool RenderLoop::load(const JobFolder& folder) {
+  const auto file = folder.file("checkpoint.bin");
   const auto load = [&](ByteReader& in) {
     state_.load(in);
     task_.integrator.load(in);
   };
   try {
-    if (!read_checkpoint(file, identity(), load, [&] { stop_if_interrupted(); })) return;
-    for (const auto& [name, seconds] : state_.phases) task_.phases[name] += seconds;
-    clock_.set(state_.spent.seconds, state_.spent.cpu_seconds);
-    saved_ = state_.spent;
-    report_progress(saved_);
-    task_.observer.milestone(
-        fmt::format("continuing from iteration {} ({:.1f} s)", saved_.iterations, saved_.seconds));
+    return read_checkpoint(file, identity(), load, [&] { stop_if_interrupted(); });
   } catch (const std::system_error&) {
     throw;  // the checkpoint may be good
   } catch (const std::runtime_error& e) {
-    std::filesystem::rename(file, task_.folder.file("checkpoint.unusable"));
+    std::filesystem::rename(file, folder.file("checkpoint.unusable"));
     task_.observer.warning(
         fmt::format("{}; kept as checkpoint.unusable, beginning anew", e.what()));
     const std::vector<std::string> layers = state_.layers.names();
     state_.layers = {};  // their memory is taken again
     state_ = RunState(task_.spec, layers, memory_to_take());
+    return false;
   }
+}
+
+void RenderLoop::count_phases() {
+  for (const auto& [name, seconds] : state_.phases) task_.phases[name] += seconds;
+  clock_.set(state_.spent.seconds, state_.spent.cpu_seconds);
+}
+
+void RenderLoop::resume() {
+  if (!load(task_.folder)) return;
+  count_phases();
+  saved_ = state_.spent;
+  report_progress(saved_);
+  task_.observer.milestone(
+      fmt::format("continuing from iteration {} ({:.1f} s)", saved_.iterations, saved_.seconds));
+}
+
+void RenderLoop::begin_from(const JobFolder& other, const Spent& elsewhere) {
+  if (!load(other)) return;
+  Spent& spent = state_.spent;
+  spent.seconds += elsewhere.seconds;
+  spent.cpu_seconds += elsewhere.cpu_seconds;
+  spent.longest_seconds += elsewhere.seconds;
+  count_phases();
+  // Its rays were counted by the ray caster of this scene, perhaps in this process.
+  state_.refused_rays -= std::min(state_.refused_rays, task_.scene.rays().refused_rays());
+  state_.curve = {};  // its times are others
+  add_row();
 }
 
 void RenderLoop::merge(const std::vector<Shard>& shards) {
@@ -83,8 +105,14 @@ void RenderLoop::merge(const std::vector<Shard>& shards) {
   merge_shards(shards, identity(), state_,
                {[&](ByteReader& in) { task_.integrator.load(in); }, add_shard,
                 [&] { stop_if_interrupted(); }});
-  for (const auto& [name, seconds] : state_.phases) task_.phases[name] += seconds;
-  clock_.set(state_.spent.seconds, state_.spent.cpu_seconds);
+  count_phases();
+}
+
+Spent RenderLoop::elapsed() const {
+  Spent all = state_.spent;
+  all.seconds = clock_.seconds();
+  all.cpu_seconds = clock_.cpu_seconds();
+  return all;
 }
 
 bool RenderLoop::same_bits_as_one() const {
@@ -96,15 +124,26 @@ std::uint64_t RenderLoop::refused_rays() const {
   return state_.refused_rays + task_.scene.rays().refused_rays();
 }
 
-bool RenderLoop::run() {
+RenderLoop::End RenderLoop::run() {
+  return run_until(budget_,
+                   [&] { return state_.spent.iterations > 0 && out_of_time(budget_, elapsed()); });
+}
+
+RenderLoop::End RenderLoop::run_part(const Budget& part, const std::optional<Budget>& limit) {
+  return run_until(part, [&] {
+    return state_.spent.iterations == 0 && limit && out_of_time(*limit, elapsed());
+  });
+}
+
+RenderLoop::End RenderLoop::run_until(const Budget& budget, const std::function<bool()>& late) {
   const auto stopped = [&] {
     report_progress(saved_);
-    return false;
+    return End::interrupted;
   };
   bool kept = false;  // the checkpoint holds this very state
-  while (!merging_ && !exhausted(budget_, state_.spent) && !would_overrun(budget_, state_.spent) &&
-         !target_met(budget_, state_.curve)) {
-    if (task_.interrupted() || !iterate()) {
+  while (!merging_ && !exhausted(budget, state_.spent) && !would_overrun(budget, state_.spent) &&
+         !target_met(budget, state_.curve)) {
+    if (task_.interrupted() || !iterate(late)) {
       if (!task_.interrupted()) break;  // out of time
       if (!kept) write_checkpoint_now();
       return stopped();
@@ -114,10 +153,11 @@ bool RenderLoop::run() {
     kept = checkpoints_.due() && write_checkpoint_now();
     if (progress_.due()) report_progress(state_.spent);
   }
+  if (state_.spent.iterations == 0) return End::no_iteration;
   add_row();
   if (!write_last_checkpoint()) return stopped();
   report_progress(state_.spent);
-  return true;
+  return End::spent;
 }
 
 bool RenderLoop::write_last_checkpoint() {
@@ -132,12 +172,8 @@ bool RenderLoop::write_last_checkpoint() {
   }
 }
 
-bool RenderLoop::iterate() {
-  const std::function<bool()> stop = [&] {
-    return task_.interrupted() || (state_.spent.iterations > 0 &&
-                                   out_of_time(budget_, {state_.spent.iterations, clock_.seconds(),
-                                                         clock_.cpu_seconds(), 0}));
-  };
+bool RenderLoop::iterate(const std::function<bool()>& late) {
+  const std::function<bool()> stop = [&] { return task_.interrupted() || late(); };
   const std::uint64_t iteration = state_.done.next();
   std::fill(frame_.pixels.begin(), frame_.pixels.end(), Rgb(0, 0, 0));
   const std::span<Image> layers = state_.layers.begin(task_.pool);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,10 +57,19 @@ class RenderLoop {
   /// interrupted: then merging begins anew another time.
   void merge(const std::vector<Shard>& shards);
 
-  /// True: the budget is spent, and the checkpoint holds the final state, so that the job can
-  /// continue with a larger budget. False: interrupted; a checkpoint was written, if there were
-  /// seconds left to.
-  bool run();
+  /// Instead of resume(), where the folder has no checkpoint: begins with that of the job `other`
+  /// of the same picture, if it has one. `elsewhere`: what was spent on other pictures counts as
+  /// spent on this one.
+  void begin_from(const JobFolder& other, const Spent& elsewhere);
+
+  enum class End { spent, interrupted, no_iteration };
+  /// Renders until the budget is spent; then the checkpoint holds the final state, so that the job
+  /// can continue with a larger budget. Or until it is interrupted: a checkpoint was written, if
+  /// there were seconds left to.
+  End run();
+  /// The same until `part` of the budget is spent. No iteration is abandoned but the first, if
+  /// there is a `limit` that it does not keep: no_iteration.
+  End run_part(const Budget& part, const std::optional<Budget>& limit);
   /// How many of the iterations are in no checkpoint.
   std::uint64_t unsaved_iterations() const { return state_.spent.iterations - saved_.iterations; }
 
@@ -69,6 +79,8 @@ class RenderLoop {
   const Curve& curve() const { return state_.curve; }
   const Counters& counters() const { return state_.counters; }
   Spent spent() const { return state_.spent; }
+  /// The same with what went into iterations that were abandoned.
+  Spent elapsed() const;
   const MergedShards& merged() const { return state_.merged; }
   /// Whether this many iterations on one machine give the same bits: always, but where a merged
   /// picture learned in its shards, has a gap, or rounded a sum.
@@ -77,7 +89,12 @@ class RenderLoop {
 
  private:
   std::string identity() const;
-  bool iterate();
+  /// `late`: whether an iteration that is under way takes too long.
+  End run_until(const Budget& budget, const std::function<bool()>& late);
+  bool iterate(const std::function<bool()>& late);
+  /// The checkpoint of `folder`; false: there is none, or it cannot be used and is kept aside.
+  bool load(const JobFolder& folder);
+  void count_phases();
   void add_row();
   /// False: interrupted, without seconds left. The checkpoint before stays.
   bool write_checkpoint_now();

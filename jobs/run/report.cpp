@@ -10,7 +10,7 @@
 #include "base/json/json_text.h"
 #include "base/storage/peak_memory.h"
 #include "jobs/run/artefacts_json.h"
-#include "jobs/run/race_json.h"
+#include "jobs/spec/described_json.h"
 #include "jobs/spec/version.h"
 #include "jobs/store/machine.h"
 #include "renderer/images/image_module.h"
@@ -165,7 +165,7 @@ std::string write_report(const ReportInput& input) {
   if (const auto stats = task.integrator.statistics(); !stats.empty()) {
     for (const auto& [name, value] : stats) j["integrator"][name] = value;
   }
-  if (const RaceRecord* race = task.integrator.race()) j["race"] = race_json(*race);
+  if (input.choice) j["choice"] = ObjectWriter::value_of(*input.choice);
   j["errors"] = errors_json(task, loop);
   j["scene"] = scene(task.scene, input.camera);
   j["image_module"] = image_module(input.started);

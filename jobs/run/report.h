@@ -3,6 +3,7 @@
 #include <string>
 
 #include "analysis/artefacts/record.h"
+#include "jobs/run/choice.h"
 #include "jobs/run/machine_watch.h"
 #include "jobs/run/render_loop.h"
 #include "renderer/film/pareto_tail.h"
@@ -18,6 +19,7 @@ struct ReportInput {
   std::vector<ArtefactRecord> artefacts = {};   ///< ArtefactStore::records()
   std::optional<Disturbance> disturbance = {};  ///< while it was rendered
   double started = 0;                           ///< when the job began, on the monotonic clock
+  const std::optional<Choice>& choice;          ///< of a job of `auto`: how its method was chosen
 };
 
 /// The tail of the squared errors that est_rmse is a mean of; none where too few are known of it.

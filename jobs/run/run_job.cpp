@@ -13,6 +13,7 @@
 #include "base/storage/atomic_file.h"
 #include "base/storage/available_memory.h"
 #include "base/storage/peak_memory.h"
+#include "jobs/run/choosing.h"
 #include "jobs/run/input_check.h"
 #include "jobs/run/machine_watch.h"
 #include "jobs/run/obstacle.h"
@@ -155,11 +156,26 @@ void warn_of_processors(const std::vector<Shard>& shards, Running& running) {
 /// anew, or they are not recorded.
 std::optional<InputList> earlier_inputs(const JobFolder& folder, const std::vector<Shard>* shards,
                                         Running& running) {
-  const bool resumes = std::filesystem::exists(folder.file("checkpoint.bin"));
+  const bool resumes = std::filesystem::exists(folder.file("checkpoint.bin")) ||
+                       std::filesystem::exists(folder.file("choice.json"));
   if (shards == nullptr && !resumes) return std::nullopt;
   auto inputs = read_inputs(shards != nullptr ? shards->front().folder : folder);
   if (!inputs) running.warn(inputs_not_recorded);
   return inputs;
+}
+
+/// Of a job of `auto`: how its method was chosen so far. What cannot be read is kept aside.
+std::optional<Choice> choice_of(const JobSpec& spec, const JobFolder& folder, Running& running) {
+  if (!std::holds_alternative<AutoSettings>(spec.integrator)) return std::nullopt;
+  try {
+    if (auto choice = read_choice(folder)) return choice;
+  } catch (const std::system_error&) {
+    throw;
+  } catch (const std::runtime_error& e) {
+    std::filesystem::rename(folder.file("choice.json"), folder.file("choice.unusable"));
+    running.warn(fmt::format("{}; kept as choice.unusable, choosing again", e.what()));
+  }
+  return new_choice(spec);
 }
 
 Outcome render(const JobFolder& folder, const RunContext& context, Running& running) {
@@ -169,7 +185,9 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
   const ImageModuleLoading images;  // what every job writes needs it
   PhaseSeconds phases;
   running.phase("loading");
-  const JobSpec spec = folder.read_job();
+  JobSpec spec = folder.read_job();
+  std::optional<Choice> choice = choice_of(spec, folder, running);
+  if (const auto chosen = chosen_job(spec, choice)) spec = *chosen;
   std::optional<std::vector<Shard>> shards;
   if (context.shards != nullptr) {
     shards = *context.shards;
@@ -186,11 +204,17 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
   InputList& inputs = prepared.inputs;
   if (earlier) refuse_changed_inputs(folder, changed_inputs(*earlier, inputs));
 
-  if (prepared.integrator->needs().space) running.phase("analysing");
+  std::optional<Choosing> choosing;
   try {
     const ScopedSeconds timed(phases["analysis"]);
-    const bool resumes = std::filesystem::exists(folder.file("checkpoint.bin"));
-    analyse(prepared, spec.budget, resumes);
+    if (prepared.integrator == nullptr) {
+      running.phase("analysing");
+      choosing.emplace(folder, spec, prepared, context);
+    } else {
+      if (prepared.integrator->needs().space) running.phase("analysing");
+      analyse(prepared, *prepared.integrator);
+      prepared.space->close();
+    }
   } catch (const WaitInterrupted&) {
     return Outcome::interrupted;
   }
@@ -224,6 +248,16 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
         preparation, *limit));
   }
 
+  const MachineWatch watch;
+  if (choosing) {
+    running.phase("choosing");
+    if (!choosing->run()) return Outcome::interrupted;
+    prepared.integrator = choosing->take_integrator();
+    choice = choosing->choice();
+    spec = *chosen_job(spec, choice);
+    choosing.reset();
+  }
+
   running.phase("rendering");
   const RenderTask task{folder,
                         spec,
@@ -241,11 +275,12 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
   if (shards) {
     loop.merge(*shards);
     warn_of_processors(*shards, running);
+  } else if (choice && !std::filesystem::exists(folder.file("checkpoint.bin"))) {
+    loop.begin_from(chosen_folder(folder, *choice), spent_elsewhere(*choice));
   } else {
     loop.resume();
   }
-  const MachineWatch watch;
-  if (!loop.run()) {
+  if (loop.run() == RenderLoop::End::interrupted) {
     if (const std::uint64_t unsaved = loop.unsaved_iterations(); unsaved > 0) {
       running.warn(fmt::format(
           "stopped before a checkpoint could be written; {} of {} iterations are rendered again "
@@ -277,9 +312,11 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
         "have a tail of index {:.2f}, and can be trusted to {:.2f}; rare bright paths carry them",
         tail->index, tail->limit));
   }
-  write_file_atomically(folder.file("report.json"),
-                        write_report({task, loop, prepared.camera_name, running.warnings(),
-                                      prepared.artefacts->records(), disturbance, started}));
+  write_file_atomically(
+      folder.file("report.json"),
+      write_report({task, loop, prepared.camera_name, running.warnings(),
+                    prepared.artefacts->records(), disturbance, started, choice}));
+  if (choice) std::filesystem::remove(chosen_folder(folder, *choice).file("checkpoint.bin"));
   return Outcome::done;
 }
 

@@ -55,8 +55,7 @@ void check_conflict(const std::string& at, const Settings& settings,
   }
 }
 
-/// Candidates take the lengths of paths from the integrator that lets them race, and must be right
-/// on average.
+/// Candidates take the path lengths from `auto`, and have no more bias than it allows.
 void check_candidates(const JobSpec& spec, std::vector<Problem>& problems) {
   const auto* settings = std::get_if<AutoSettings>(&spec.integrator);
   if (settings == nullptr || !is_good(problems, "/integrator")) return;
@@ -77,15 +76,9 @@ void check_candidates(const JobSpec& spec, std::vector<Problem>& problems) {
                            "\"{}\" are those without more",
                            enum_name(settings->allow))});
     }
-    CandidateSettings racing = settings->candidates[i];
-    std::visit([&](PathLengths& lengths_there) { lengths_there = *settings; }, racing);
-    check_conflict(at, racing, problems);
-    const auto* path = std::get_if<PathSettings>(&settings->candidates[i]);
-    if (path != nullptr && path->sampling != Sampling::uniform) {
-      problems.push_back({at + "/sampling",
-                          "found \"adaptive\"; allowed: \"uniform\", and \"adaptive\" as the "
-                          "sampling of \"auto\""});
-    }
+    CandidateSettings complete = settings->candidates[i];
+    std::visit([&](PathLengths& lengths_there) { lengths_there = *settings; }, complete);
+    check_conflict(at, complete, problems);
   }
   const auto& all = settings->candidates;
   const bool one_is_right =
@@ -140,6 +133,12 @@ void check_camera(const JobSpec& spec, std::vector<Problem>& problems) {
 
 void check_shard(const JobSpec& spec, std::vector<Problem>& problems) {
   if (!is_good(problems, "/shards") || !is_good(problems, "/shard")) return;
+  if (spec.shards > 1 && std::holds_alternative<AutoSettings>(spec.integrator)) {
+    problems.push_back({"/shards", fmt::format("found {} in a job of integrator \"auto\", whose "
+                                               "shards might choose different methods; allowed: "
+                                               "1, or the method that `lacuna advise` names",
+                                               spec.shards)});
+  }
   if (spec.shard <= spec.shards) return;
   problems.push_back({"/shard", fmt::format("found {}; allowed: 0 to {}, the number of shards",
                                             spec.shard, spec.shards)});

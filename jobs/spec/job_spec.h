@@ -8,10 +8,10 @@
 
 #include "analysis/settings/analysis_settings.h"
 #include "base/settings/field.h"
+#include "jobs/spec/auto_settings.h"
 #include "jobs/spec/name_or_object.h"
 #include "renderer/settings/camera_settings.h"
 #include "renderer/settings/error_metrics.h"
-#include "renderer/settings/integrator_settings.h"
 #include "renderer/settings/output_settings.h"
 #include "renderer/settings/sampler.h"
 #include "renderer/settings/scene_settings.h"
@@ -112,7 +112,7 @@ struct JobSpec {
   std::string label;
   std::array<int, 2> resolution{512, 512};
   std::optional<CropSettings> crop;
-  IntegratorSettings integrator;
+  JobIntegrator integrator;
   Budget budget;
   std::string reference;
   int reference_iterations = 1024;

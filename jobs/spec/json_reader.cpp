@@ -79,6 +79,14 @@ std::string any_value(const JsonCursor& found) {
   return json_text(plain(plain, found.value()));
 }
 
+void check_retired(const JsonCursor& found, const RetiredKey& key) {
+  if (found.value() == Json::parse(key.only)) return;
+  found.add_problem(
+      fmt::format("found {}, a setting of an earlier version: {}; allowed: {}, or no "
+                  "such key",
+                  shown(found.value()), key.now, key.only));
+}
+
 void check_keys(const JsonCursor& found, const std::vector<std::string_view>& known) {
   for (const auto& [key, value] : found.value().items()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;

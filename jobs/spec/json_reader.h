@@ -12,6 +12,7 @@
 
 #include "base/json/json_cursor.h"
 #include "base/settings/auto_number.h"
+#include "base/settings/retired_key.h"
 #include "jobs/spec/described.h"
 #include "jobs/spec/json_document.h"
 #include "jobs/spec/limits.h"
@@ -40,6 +41,8 @@ std::optional<std::string> read_string(const JsonCursor& found, const Limits& le
 bool check_size(const JsonCursor& found, const Limits& size);
 /// Any value, as one line of text.
 std::string any_value(const JsonCursor& found);
+/// Refuses any other value than the one that a retired key may have.
+void check_retired(const JsonCursor& found, const RetiredKey& key);
 void check_keys(const JsonCursor& found, const std::vector<std::string_view>& known);
 /// The index of the value in `names`.
 std::optional<std::size_t> read_name(const JsonCursor& found,
@@ -66,6 +69,18 @@ class ObjectReader {
 
   /// Accepts a key that is not a member.
   void know(std::string_view key) { known_.push_back(key); }
+  /// Accepts the keys that `T` had in earlier versions, with the values they may have.
+  template <class T>
+  void know_retired_keys() {
+    if constexpr (requires { T::retired; }) {
+      for (const RetiredKey& r : T::retired) {
+        const auto found = object_.find(r.key);
+        if (!found) continue;
+        know(r.key);
+        check_retired(*found, r);
+      }
+    }
+  }
   void refuse_unknown_keys() const { check_keys(object_, known_); }
 
   template <class T>
@@ -95,6 +110,7 @@ void read_settings(const JsonCursor& found, T& out) {
   if (!found.check_object()) return;
   ObjectReader reader(found);
   describe(reader, out);
+  reader.know_retired_keys<T>();
   reader.refuse_unknown_keys();
 }
 
@@ -193,6 +209,7 @@ void ObjectReader::read_variant(const JsonCursor& found, std::variant<Ts...>& ou
     ObjectReader reader(object);
     reader.know(variant_key);
     describe(reader, settings);
+    reader.know_retired_keys<T>();
     reader.refuse_unknown_keys();
     out = std::move(settings);
   };

@@ -5,17 +5,17 @@ namespace {
 
 struct ReferenceIntegrator {
   template <class Settings>
-  IntegratorSettings operator()(const Settings& s) const {
+  JobIntegrator operator()(const Settings& s) const {
     BdptSettings plain;
     static_cast<PathLengths&>(plain) = without(LightLengths{s}, not_in_the_light);
     return plain;
   }
-  IntegratorSettings operator()(const InspectSettings& s) const { return s; }
+  JobIntegrator operator()(const InspectSettings& s) const { return s; }
 };
 
 }  // namespace
 
-IntegratorSettings reference_integrator(const IntegratorSettings& integrator) {
+JobIntegrator reference_integrator(const JobIntegrator& integrator) {
   return std::visit(ReferenceIntegrator{}, integrator);
 }
 

@@ -18,7 +18,7 @@ void describe(V& v, LightLengths& s) {
 /// The integrator for a reference, which converges to the same picture. It is the same for all
 /// integrators that estimate light, so that they can be compared: the most robust one. It has the
 /// path lengths of `integrator`, except those of `not_in_the_light`.
-IntegratorSettings reference_integrator(const IntegratorSettings& integrator);
+JobIntegrator reference_integrator(const JobIntegrator& integrator);
 
 /// The seed of references, so that a reference and a job share no random numbers.
 inline constexpr std::uint64_t reference_seed = 0x726566657265;  // below 2^53, the largest seed

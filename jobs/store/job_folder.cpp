@@ -53,6 +53,7 @@ const std::vector<FileInfo>& job_files() {
       {"curve.csv", "text/csv", "error and counts against time", true},
       {"report.json", "application/json", "where time and rays went", true},
       {"checkpoint.bin", "application/octet-stream", "what it takes to go on", false},
+      {"choice.json", "application/json", "how the method of `auto` was chosen", true},
       {"inputs.json", "application/json", "the files it was made from, with their hashes", true},
       {"log.txt", "text/plain; charset=utf-8", "what a person would want to read", true},
   };

@@ -47,8 +47,6 @@ class EfficiencyRoulette final : public Roulette {
   /// For pictures of so many pixels.
   EfficiencyRoulette(const Scene& scene, std::size_t pixels);
 
-  /// Whether it is made for this picture; it serves and learns from no other.
-  bool fits(const Image& image) const { return image.pixels.size() == pixels_; }
   /// Whether paths of the coming iteration end by their throughput from early_roulette_depth edges
   /// on.
   bool ends_early() const {

@@ -14,8 +14,6 @@
 
 namespace lacuna {
 
-struct RaceRecord;
-
 /// A rendering method. iterate() is a pure function of the scene, the settings, the seed, the
 /// iteration and the state that save() writes. A stopped iteration does not change that state.
 class Integrator {
@@ -34,13 +32,8 @@ class Integrator {
   /// Renders one more estimate of the whole picture into `image` (of the film's size, black):
   /// independent of the others, but for numbers that IterationContext::sampler spreads over them.
   virtual Counters iterate(const IterationContext& context, Image& image) = 0;
-  /// Whether iterate() can render IterationContext::parts alone, for their part of the time.
-  /// Methods whose light paths serve all pixels can not.
-  virtual bool renders_parts() const { return false; }
   /// Names and numbers for the report, of this process' iterations.
   virtual std::vector<std::pair<std::string, double>> statistics() const { return {}; }
-  /// The race of an integrator that chooses among others; null: it is no such one.
-  virtual const RaceRecord* race() const { return nullptr; }
   /// Learned state, for the checkpoint.
   virtual void save(ByteWriter&) const {}
   virtual void load(ByteReader&) {}

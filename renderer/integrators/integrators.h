@@ -14,7 +14,6 @@ std::unique_ptr<Integrator> make_sppm(const SppmSettings& settings);
 std::unique_ptr<Integrator> make_photon_map(const PhotonMapSettings& settings);
 std::unique_ptr<Integrator> make_many_lights(const ManyLightsSettings& settings);
 std::unique_ptr<Integrator> make_metropolis(const MetropolisSettings& settings);
-std::unique_ptr<Integrator> make_auto(const AutoSettings& settings);
 std::unique_ptr<Integrator> make_inspect(const InspectSettings& settings);
 
 }  // namespace lacuna

@@ -30,8 +30,6 @@ class PathTracer final : public GuidedIntegrator<Guide> {
   PathTracer(const PathSettings& settings, Guide guide)
       : GuidedIntegrator<Guide>(std::move(guide)), settings_(settings) {}
 
-  bool renders_parts() const override { return true; }
-
   SceneNeeds needs() const override {
     SceneNeeds needs = GuidedIntegrator<Guide>::needs();
     needs.light_tree =
@@ -67,12 +65,10 @@ class PathTracer final : public GuidedIntegrator<Guide> {
 
   Counters iterate(const IterationContext& context, Image& image) override {
     render_pilots(context, image);
-    const Tiling tiling(context, image);
+    const Tiling tiling(image);
     const auto tiles = static_cast<std::size_t>(tiling.tiles());
     std::vector<typename Guide::Accumulator> accumulators(tiles);
-    // Roulette learns from whole pictures.
-    const bool observes =
-        roulette_ && roulette_->observes() && context.parts.empty() && roulette_->fits(image);
+    const bool observes = roulette_ && roulette_->observes();
     std::vector<EfficiencyRoulette::Accumulator> continuations(
         observes && roulette_->learns() ? tiles : 0);
     LearningMemory memory(tiles);
@@ -108,7 +104,6 @@ class PathTracer final : public GuidedIntegrator<Guide> {
   Counters render_pilot(IterationContext context, Image& scratch, std::uint64_t number) {
     constexpr int enough_tiles = 24;
     context.layers = {};
-    context.parts = {};
     // Numbers of no iteration, whatever the sampler.
     context.sampler = Sampler::sobol;
     context.sample = SampleNumber{SampleNumber::of_pilots, number};
@@ -156,9 +151,8 @@ class PathTracer final : public GuidedIntegrator<Guide> {
   void render(const IterationContext& context, Image& image, const Tile& tile, Counters& counters,
               Learning learning, int sharing) const {
     if (guide_.learns()) learning.guide = guide_.accumulator();
-    const bool advised = roulette_ && roulette_->fits(image);
-    const bool decides = advised && roulette_->active();
-    const bool early = advised && roulette_->ends_early();
+    const bool decides = roulette_ && roulette_->active();
+    const bool early = roulette_ && roulette_->ends_early();
     Batch batch(settings_.max_depth);
     PathReuse<Guide> reuse(batch, guide_, sharing);
     Walk walk(context.scene, guide_,
@@ -240,7 +234,7 @@ class PathTracer final : public GuidedIntegrator<Guide> {
     };
     const auto gather = [&](std::size_t i, int depth) {
       const Vertex& v = batch.vertex(i, depth);
-      const bool apart = depth == 1 && seen_.rays(context.camera, batch.pixels[i]) > 0;
+      const bool apart = depth == 1 && seen_.rays(batch.pixels[i]) > 0;
       const Rgb met = apart ? Rgb(0, 0, 0) : direct.met(v, batch.vertex(i, depth - 1), depth);
       const bool goes_on = v.kind == Vertex::Kind::surface && depth < settings_.max_depth;
       const bool shared = depth > 2 && reuse.shares(i);

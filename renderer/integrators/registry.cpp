@@ -19,7 +19,6 @@ struct Make {
   std::unique_ptr<Integrator> operator()(const MetropolisSettings& s) const {
     return make_metropolis(s);
   }
-  std::unique_ptr<Integrator> operator()(const AutoSettings& s) const { return make_auto(s); }
   std::unique_ptr<Integrator> operator()(const InspectSettings& s) const { return make_inspect(s); }
 };
 

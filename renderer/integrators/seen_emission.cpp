@@ -143,15 +143,15 @@ void SeenEmission::prepare(const PrepareContext& context) {
   known_.clear();
   worth_any_ = false;
   if (context.scene.emitters().empty()) return;
-  width_ = context.camera.width(), height_ = context.camera.height();
+  const V2i size(context.camera.width(), context.camera.height());
   const std::vector<Range> seen = seen_ranges(context);
   std::vector<float> apart(seen.size());
   const auto index = [&](const V2i& pixel) {
-    return std::size_t(pixel.y) * std::size_t(width_) + std::size_t(pixel.x);
+    return std::size_t(pixel.y) * std::size_t(size.x) + std::size_t(pixel.x);
   };
-  context.pool.for_each(height_, [&](int y) {
-    for (int x = 0; x < width_; ++x) {
-      apart[index({x, y})] = difference_around(seen, {width_, height_}, {x, y});
+  context.pool.for_each(size.y, [&](int y) {
+    for (int x = 0; x < size.x; ++x) {
+      apart[index({x, y})] = difference_around(seen, size, {x, y});
     }
   });
   for_each_small_emitter(context, [&](const V2i& pixel, float l) {
@@ -181,31 +181,8 @@ void SeenEmission::share_rays(const std::vector<float>& apart) {
   }
 }
 
-SeenEmission::Known SeenEmission::known(const V2i& size, const V2i& pixel) const {
-  const auto first = [](int at, int all, int of) { return int(std::int64_t(at) * all / of); };
-  const auto end = [&](int at, int all, int of) {
-    return std::max(first(at, all, of) + 1, first(at + 1, all, of));
-  };
-  Known most = even;
-  for (int y = first(pixel.y, height_, size.y); y < end(pixel.y, height_, size.y); ++y) {
-    for (int x = first(pixel.x, width_, size.x); x < end(pixel.x, width_, size.x); ++x) {
-      most = std::max(most, known_[std::size_t(y) * std::size_t(width_) + std::size_t(x)]);
-    }
-  }
-  return most;
-}
-
-int SeenEmission::rays_of(const Camera& camera, std::size_t pixel) const {
-  const int width = camera.width();
-  const V2i at(static_cast<int>(pixel) % width, static_cast<int>(pixel) / width);
-  const Known k = width == width_ && camera.height() == height_
-                      ? known_[pixel]
-                      : known({width, camera.height()}, at);
-  return k > one ? k : 0;
-}
-
 Rgb SeenEmission::mean(const IterationContext& context, std::size_t pixel, int n,
-                       std::uint64_t before, Counters& counters) {
+                       Counters& counters) {
   const int width = context.camera.width();
   const V2i at(static_cast<int>(pixel) % width, static_cast<int>(pixel) / width);
   std::array<Ray, most_rays> rays;
@@ -213,7 +190,7 @@ Rgb SeenEmission::mean(const IterationContext& context, std::size_t pixel, int n
   std::array<std::uint8_t, most_rays> met{};
   const auto count = static_cast<std::size_t>(n);
   for (std::size_t k = 0; k < count; ++k) {
-    Rng rng = context.path_numbers(pixel, k, count, Rng::Purpose::integrator, before);
+    Rng rng = context.path_numbers(pixel, k, count, Rng::Purpose::integrator);
     rays[k] = context.camera.sample(at, rng.next2());
   }
   context.scene.rays().intersect(std::span(rays).first(count), hits, met);
@@ -235,7 +212,7 @@ Counters SeenEmission::add(const IterationContext& context, double samples, Imag
       Rng rng(context.seed, context.iteration, index);
       Rgb sum(0, 0, 0);
       float n = 0;
-      const bool uneven = known({image.width, image.height}, pixel) != even;
+      const bool uneven = known_[index] != even;
       stratified(uneven ? side : 1, rng, [&](const V2f& u) {
         sum += emission_along(context.scene, context.camera.sample(pixel, u));
         ++n;

@@ -21,12 +21,10 @@ class SeenEmission {
   /// others.
   Counters add(const IterationContext& context, double samples, Image& image) const;
 
-  /// Camera rays that `pixel` of the film of `camera`, as in add(), is worth beside paths that are
-  /// traced from it: a power of two of at most 16, in proportion to how far the values lie apart,
-  /// and at most half of the number of pixels for all of them. 0: the path's own is enough.
-  int rays(const Camera& camera, std::size_t pixel) const {
-    return worth_any_ ? rays_of(camera, pixel) : 0;
-  }
+  /// Camera rays that `pixel` is worth beside paths that are traced from it: a power of two of at
+  /// most 16, in proportion to how far the values lie apart, and at most half of the number of
+  /// pixels for all of them. 0: the path's own is enough.
+  int rays(std::size_t pixel) const { return worth_any_ ? rays_of(pixel) : 0; }
   /// Traces rays() of each pixel of `block` and calls `add(pixel, value)` with an unbiased estimate
   /// of the emission that it sees, if there are any. Then the paths leave it out.
   template <class Add>
@@ -37,8 +35,8 @@ class SeenEmission {
       const V2i at = block.pixel(i);
       const std::size_t pixel =
           std::size_t(at.y) * std::size_t(context.camera.width()) + static_cast<std::size_t>(at.x);
-      const int n = rays_of(context.camera, pixel);
-      if (n > 0) add(pixel, mean(context, pixel, n, block.samples_before, counters));
+      const int n = rays_of(pixel);
+      if (n > 0) add(pixel, mean(context, pixel, n, counters));
     }
   }
 
@@ -52,15 +50,11 @@ class SeenEmission {
   static constexpr Known even = 0, one = 1;
 
   void share_rays(const std::vector<float>& apart);
-  /// The largest Known of the pixels that `pixel` of a film of `size` covers.
-  Known known(const V2i& size, const V2i& pixel) const;
-  int rays_of(const Camera& camera, std::size_t pixel) const;
-  static Rgb mean(const IterationContext& context, std::size_t pixel, int n, std::uint64_t before,
-                  Counters& counters);
+  int rays_of(std::size_t pixel) const { return known_[pixel] > one ? known_[pixel] : 0; }
+  static Rgb mean(const IterationContext& context, std::size_t pixel, int n, Counters& counters);
 
   std::vector<Known> known_;  // of each pixel; empty where nothing emits
-  int width_ = 0, height_ = 0;
-  bool worth_any_ = false;  // some pixel is worth rays of its own
+  bool worth_any_ = false;    // some pixel is worth rays of its own
 };
 
 }  // namespace lacuna

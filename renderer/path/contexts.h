@@ -8,14 +8,11 @@
 #include "analysis/space_analysis/space_analysis.h"
 #include "renderer/core/rng.h"
 #include "renderer/film/image.h"
-#include "renderer/path/tile.h"
 #include "renderer/scene/camera.h"
 #include "renderer/scene/scene.h"
 #include "renderer/settings/sampler.h"
 
 namespace lacuna {
-
-struct VerdictMemory;
 
 /// Thrown from an iteration when IterationContext::stop returned true. Its partial image is
 /// discarded; running the iteration again gives the same result.
@@ -27,7 +24,7 @@ struct SampleNumber {
   std::uint64_t index;
 
   /// The randomisation of what a guide learns from before it guides. 0 and 1 are those of a film's
-  /// halves, 2 and 3 those of a race's pictures.
+  /// halves.
   static constexpr std::uint32_t of_pilots = 4;
 
   /// The two halves of a film are independent, and each has a sequence without gaps.
@@ -48,9 +45,6 @@ struct IterationContext {
   const std::function<bool()>& stop;
   /// One image for each layer that the integrator fills: black at first, of the picture's size.
   std::span<Image> layers = {};
-  /// Of an integrator that renders parts: the tiles to render, which do not overlap. Empty: the
-  /// whole picture.
-  std::span<const Tile> parts = {};
   Sampler sampler = Sampler::independent;
   /// With `sobol`; none: of_iteration().
   std::optional<SampleNumber> sample = std::nullopt;
@@ -60,17 +54,17 @@ struct IterationContext {
   }
 
   /// The random numbers of path `path` < 2^56 of this iteration. With `sobol` the paths of this
-  /// number share a sequence over iterations; `before` is added to the number in it.
-  Rng path_numbers(std::uint64_t path, Rng::Purpose purpose, std::uint64_t before = 0) const {
-    return path_numbers(path, 0, 1, purpose, before);
+  /// number share a sequence over iterations.
+  Rng path_numbers(std::uint64_t path, Rng::Purpose purpose) const {
+    return path_numbers(path, 0, 1, purpose);
   }
   /// The same of path `k` of `n`, a power of two, that pixel `path` has in each iteration: with
   /// `sobol` all of them are one sequence.
-  Rng path_numbers(std::uint64_t path, std::uint64_t k, std::uint64_t n, Rng::Purpose purpose,
-                   std::uint64_t before) const {
+  Rng path_numbers(std::uint64_t path, std::uint64_t k, std::uint64_t n,
+                   Rng::Purpose purpose) const {
     if (sampler == Sampler::independent) return Rng(seed, iteration, path * n + k, purpose);
     const SampleNumber s = number();
-    return Rng::of_sequence(seed, path, s.randomisation, (s.index + before) * n + k, purpose);
+    return Rng::of_sequence(seed, path, s.randomisation, s.index * n + k, purpose);
   }
   /// The same of one of `paths` whose contributions go to the whole picture. With `sobol` all of
   /// them are one sequence, over iterations.
@@ -103,12 +97,6 @@ struct PrepareContext {
   const ThreadPool& pool;
   SpaceAnalysis& space;
   const Camera& camera;
-  /// What the iterations may take: CPU seconds of each thread. None: not limited by time.
-  std::optional<double> budget_seconds = std::nullopt;
-  /// What is known of races on this picture; null: nothing, and nothing is to be kept.
-  const VerdictMemory* verdicts = nullptr;
-  /// A checkpoint will be loaded: what was prepared then is prepared again.
-  bool resumes = false;
 };
 
 }  // namespace lacuna

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdint>
 
 #include "renderer/core/vec.h"
 
@@ -11,8 +10,6 @@ namespace lacuna {
 struct Tile {
   V2i first{0, 0};
   V2i size{0, 0};
-  /// Added to the number of the samples of its pixels (SampleNumber::index).
-  std::uint64_t samples_before = 0;
 
   int pixels() const { return size.x * size.y; }
   V2i pixel(int i) const { return first + V2i(i % size.x, i / size.x); }
@@ -29,7 +26,7 @@ struct Tile {
     const V2i from(std::max(first.x, corner.x), std::max(first.y, corner.y));
     const V2i end(std::min(first.x + size.x, corner.x + block_side),
                   std::min(first.y + size.y, corner.y + block_side));
-    return {from, end - from, samples_before};
+    return {from, end - from};
   }
   /// Pixel number `i` of a block: in a whole one eight after each other are 4 x 2 pixels.
   V2i pixel_of_block(int i) const {

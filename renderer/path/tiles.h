@@ -5,6 +5,7 @@
 #include "renderer/path/contexts.h"
 #include "renderer/path/eye_batch.h"
 #include "renderer/path/splats.h"
+#include "renderer/path/tile.h"
 
 namespace lacuna {
 
@@ -35,7 +36,7 @@ Counters for_each_part(const IterationContext& context, int n, Work&& work) {
   return sum;
 }
 
-/// Divides an image into square tiles, or names the parts that an iteration is asked for.
+/// Divides an image into square tiles.
 class Tiling {
  public:
   /// `size`: pixels along a side; by default small enough to stop quickly and large enough to be
@@ -45,23 +46,15 @@ class Tiling {
         height_(image.height),
         size_(size),
         across_((image.width + size - 1) / size) {}
-  /// IterationContext::parts, if there are any.
-  Tiling(const IterationContext& context, const Image& image) : Tiling(image) {
-    parts_ = context.parts;
-  }
 
-  int tiles() const {
-    return parts_.empty() ? across_ * ((height_ + size_ - 1) / size_) : int(parts_.size());
-  }
+  int tiles() const { return across_ * ((height_ + size_ - 1) / size_); }
   Tile tile(int i) const {
-    if (!parts_.empty()) return parts_[static_cast<std::size_t>(i)];
     const V2i first = V2i(i % across_, i / across_) * size_;
     return {first, V2i(std::min(size_, width_ - first.x), std::min(size_, height_ - first.y))};
   }
 
  private:
   int width_, height_, size_, across_;
-  std::span<const Tile> parts_;
 };
 
 /// Calls `render(tile, counters)` for all tiles of `image` in parallel (for_each_part()).
@@ -77,8 +70,8 @@ struct CameraSample {
   Rng rng;
   Ray ray;
 
-  CameraSample(const IterationContext& context, std::size_t pixel, std::uint64_t before = 0)
-      : rng(context.path_numbers(pixel, Rng::Purpose::eye_path, before)),
+  CameraSample(const IterationContext& context, std::size_t pixel)
+      : rng(context.path_numbers(pixel, Rng::Purpose::eye_path)),
         ray(context.camera.sample(column_row(pixel, context.camera.width()), rng.next2())) {}
 
  private:
@@ -99,7 +92,7 @@ inline void start_paths(const IterationContext& context, const Image& image, con
   for (int i = 0; i < block.pixels(); ++i) {
     const V2i at = block.pixel_of_block(i);
     const std::size_t pixel = image.index(at.x, at.y);
-    const CameraSample sample(context, pixel, block.samples_before);
+    const CameraSample sample(context, pixel);
     batch.start(context.camera, sample.rng, sample.ray, pixel);
   }
 }

@@ -58,16 +58,6 @@ Camera::Camera(const CameraData& data, int width, int height, PixelFilter filter
             dx_ * double(film.first.x) + dy_ * double(film.first.y);
 }
 
-Camera Camera::reduced(int factor) const {
-  Camera c = *this;
-  c.width_ = (width_ + factor - 1) / factor;
-  c.height_ = (height_ + factor - 1) / factor;
-  c.pixel_ *= factor;
-  c.dx_ *= double(factor);
-  c.dy_ *= double(factor);
-  return c;
-}
-
 Ray Camera::sample(const V2i& pixel, const V2f& u) const {
   // From the pixel's upper left corner: the box ends at its edges, the tent one pixel from its
   // centre.

@@ -33,10 +33,6 @@ class Camera {
   Camera(const CameraData& data, int width, int height, PixelFilter filter = PixelFilter::box,
          const std::optional<Crop>& crop = {});
 
-  /// The same view with pixels `factor` times as wide. The last column and row may reach beyond the
-  /// film. Requires factor >= 1.
-  Camera reduced(int factor) const;
-
   /// The ray of a sample of `pixel`, for `u` uniform in [0, 1)^2. The point on the film is sampled
   /// from the pixel filter, so all samples have equal weight and pixels are independent (Ernst,
   /// Stamminger and Greiner 2006, "Filter Importance Sampling").

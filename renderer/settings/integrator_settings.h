@@ -6,7 +6,6 @@
 #include <variant>
 #include <vector>
 
-#include "renderer/settings/auto_settings.h"
 #include "renderer/settings/bdpt_settings.h"
 #include "renderer/settings/bias.h"
 #include "renderer/settings/inspect_settings.h"
@@ -22,9 +21,9 @@ namespace lacuna {
 
 /// The integrator and its settings. The order is the order in menus; the first is the default.
 /// renderer/integrators/registry.cpp makes the integrator of each alternative.
-using IntegratorSettings = std::variant<PathSettings, LightSettings, BdptSettings, VcmSettings,
-                                        SppmSettings, PhotonMapSettings, ManyLightsSettings,
-                                        MetropolisSettings, AutoSettings, InspectSettings>;
+using IntegratorSettings =
+    std::variant<PathSettings, LightSettings, BdptSettings, VcmSettings, SppmSettings,
+                 PhotonMapSettings, ManyLightsSettings, MetropolisSettings, InspectSettings>;
 
 /// The layers that the integrator of these settings fills itself. Its settings struct lists them as
 ///
@@ -94,24 +93,6 @@ std::string_view conflict(const std::variant<Ts...>& settings) {
         return {};
       },
       settings);
-}
-
-/// Whether the pixels of a picture share a noise that falls with their number: where the settings
-/// have a `static constexpr bool shares_starts = true`.
-template <class... Ts>
-bool shares_starts(const std::variant<Ts...>& settings) {
-  return std::visit(
-      []<class S>(const S&) {
-        if constexpr (requires { S::shares_starts; }) return S::shares_starts;
-        return false;
-      },
-      settings);
-}
-
-/// Whether a candidate's settings have no more bias than is allowed.
-inline bool is_allowed(const CandidateSettings& settings, Allow allow) {
-  return allow == Allow::biased || !biased(settings) ||
-         (allow == Allow::consistent && consistent(settings));
 }
 
 /// All layers that a job with this integrator can request.

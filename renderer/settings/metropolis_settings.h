@@ -11,7 +11,6 @@ namespace lacuna {
 struct MetropolisSettings : PathLengths {
   static constexpr std::string_view name = "metropolis";
   static constexpr bool spreads_samples = false;  // all numbers are independent
-  static constexpr bool shares_starts = true;     // of chains, which all pixels have in common
   static constexpr std::string_view doc =
       "Metropolis light transport: Markov chains of paths that follow the light (Noel 2015, 4.6)";
 

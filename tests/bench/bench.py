@@ -237,7 +237,8 @@ def main():
     parser.add_argument("checks", nargs="*", metavar="CHECK",
                         help=f"of {', '.join(CHECKS)} (default: all of these); {', '.join(LONG)}")
     parser.add_argument("--seconds", type=float, default=120, help="CPU seconds a thread for each picture")
-    parser.add_argument("--regret-seconds", type=float, default=10, help="CPU seconds a thread for each picture of regret")
+    parser.add_argument("--regret-seconds", type=float, nargs="+", default=[3, 10], metavar="SECONDS",
+                        help="budgets of the pictures of regret, CPU seconds a thread (default: 3 10)")
     parser.add_argument("--regret-seeds", type=int, default=3)
     parser.add_argument("--regret-scenes", nargs="+", choices=regret.SCENES, metavar="SCENE",
                         help=f"of {', '.join(regret.SCENES)} (default: all)")

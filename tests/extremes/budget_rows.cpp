@@ -33,8 +33,7 @@ Row refused(const std::string& name, const Budget& budget, const std::string& fi
 /// How often a job may ask after it was told to stop. Measured are at most 3 times, over all
 /// methods: the loops on two threads and those around them.
 constexpr int most_after_stop = 8;
-/// How often it may ask before its first iteration is done: the race of `auto`, which is part of
-/// its first, asks more than 50,000 times.
+/// How often it may ask before its first iteration is done.
 constexpr int most_patience = 1'000'000;
 
 /// The largest budget that is allowed: the job stops soon after it is told to, keeps what it has,

@@ -31,8 +31,6 @@ S for_small_pictures(S settings) {
     settings.chains = 64;
     settings.bootstrap = settings.mutations = 8;
   }
-  // Bits are compared, and a clock decides differently each time.
-  if constexpr (std::is_same_v<S, AutoSettings>) settings.clock = RaceClock::rays;
   if constexpr (requires { settings.roulette_depth; }) settings.roulette_depth = 8;
   return settings;
 }
@@ -81,12 +79,6 @@ std::vector<Method> methods(bool flags) {
     }
   }
   return all;
-}
-
-void let_few_race(IntegratorSettings& settings) {
-  auto* race = std::get_if<AutoSettings>(&settings);
-  if (race == nullptr) return;
-  race->candidates = {PathSettings{}, BdptSettings{}, for_small_pictures(MetropolisSettings{})};
 }
 
 std::optional<int> max_depth(const Method& method) {

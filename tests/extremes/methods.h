@@ -19,10 +19,6 @@ struct Method {
 /// tables alone: what is registered is here.
 std::vector<Method> methods(bool flags);
 
-/// Three candidates race in `auto`, as small as the columns that they have themselves: those of its
-/// own take as long as all other columns together.
-void let_few_race(IntegratorSettings& settings);
-
 /// The longest path in edges, where the method's table has `max_depth` and its settings are neither
 /// biased nor of unbounded variance: then it estimates the light that arrives along paths of at
 /// most so many edges (DESIGN, "Words").

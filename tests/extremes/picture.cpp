@@ -25,8 +25,7 @@ JobSpec Stage::job(const Method& method, const std::string& scene) const {
   JobSpec job;
   job.scene = scene;
   job.resolution = {effort_.side(), effort_.side()};
-  job.integrator = method.settings;
-  if (effort_.quick) let_few_race(job.integrator);
+  job.integrator = job_integrator(method.settings);
   job.budget.iterations = effort_.iterations();
   job.analysis.resolution = effort_.resolution();
   return job;
@@ -40,7 +39,7 @@ std::uint64_t Stage::texels_read(const JobSpec& job) {
 Counters Stage::iterate(const JobSpec& job, const std::function<void(const Image&)>& see) {
   const RunContext surroundings = context(never_interrupted);
   const Prepared p = prepare(job, surroundings);
-  analyse(p, job.budget);
+  analyse(p, *p.integrator);
   Counters counters;
   for (std::int64_t i = 0; i < *job.budget.iterations; ++i) {
     Image image(job.resolution[0], job.resolution[1]);

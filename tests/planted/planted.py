@@ -16,7 +16,7 @@ from faults import FAULTS
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Those that are quick to build and to run first: a fault that they notice needs no other.
 PROGRAMS = [["test_core", "test_materials", "test_scene", "test_emitters", "test_path", "test_guides",
-             "test_connections", "test_visibility", "test_film", "test_race"],
+             "test_connections", "test_visibility", "test_film"],
             ["test_renderer"]]
 PATIENCE = 900  # seconds of a program; a fault that makes it hang is noticed, too
 

@@ -44,24 +44,18 @@ export const report = {
   machine: { processor: "A processor, 2 GHz", cores: 2, threads: 2, peak_memory_bytes: 183500800 },
 };
 
-/// Of a job that chose between three methods, of which two share the picture.
-const race = {
-  clock: "cpu_seconds", spent: 1.8, reduction: 3, limit: 2.1,
+/// Of a job of `auto` with three candidates.
+const turn = (iterations, seconds, noise, expected) => ({ iterations, seconds, cpu_seconds: seconds, rays: 1e6 * seconds, noise, bias: 0, expected });
+const choice = {
+  metric: "relmse", chosen: 1,
   candidates: [
-    { name: "path", in_use: true, left: null, iterations: 40, cost: 1.9, preparation_seconds: 0, mse_times_cost: 0.02,
-      over_best: { ratio: 1, low: 1, high: 1 }, growth: 1, tail_known: true, unexplained: false },
-    { name: "metropolis, path_space", in_use: true, left: null, iterations: 30, cost: 2.1, preparation_seconds: 0.02,
-      mse_times_cost: 0.026, over_best: { ratio: 1.3, low: 1.1, high: 1.54 }, growth: 1.2, tail_known: false, unexplained: true },
-    { name: "bdpt, skeleton", in_use: false, left: { round: 1, reason: "worse than another" }, iterations: 2, cost: 0.2,
-      preparation_seconds: 1.5 },
+    { name: "path, reuse 16", integrator: { type: "path" }, left: "a larger error than that of others",
+      turns: [turn(4, 0.1, 0.2, 0.004), turn(8, 0.2, 0.1, 0.004)] },
+    { name: "metropolis, path_space", integrator: { type: "metropolis" }, left: "",
+      turns: [turn(3, 0.1, 0.1, 0.002), turn(6, 0.2, 0.04, 0.0016)] },
+    { name: "bdpt, skeleton", integrator: { type: "bdpt" }, left: "an iteration takes longer than its turn",
+      turns: [turn(0, 0.1, null, null)] },
   ],
-  rounds: [0, 1, 2].flatMap((round) => ["path", "metropolis, path_space"].map((candidate, i) => ({
-    round, candidate, iterations: 2 ** round, cost: 0.1 * 2 ** round, mse_times_cost: 0.02,
-    ratio: 1 + 0.3 * i, low: 1 + 0.1 * i, high: i === 1 && round === 0 ? null : 1 + 0.6 * i }))),
-  plan: { mse_times_cost: 0.018, over_best_alone: 0.9, expected_rmse: 0.03 },
-  break_even: [{ below_seconds: 4, better: "path" }],
-  blocks: { pixels: 16, across: 3, candidate: [0, 0, 1, 1, 0, 1] },
-  samples: { pixels: 16, across: 3, iterations: [8, 8, 4, 12, 8, 8] },
 };
 
 function jobFile(changes) {
@@ -154,7 +148,7 @@ export function makeJobs() {
       files: { "job.json": JSON.stringify(normals) } },
     { id: "20260131-101500-shallow", job: shallow, state: state("done"), progress: ended(1024, 0.0391),
       files: files(shallow, curve({ rows: 11, cost: 0.021, level: 1.25, floor: 0.004, seed: 5 }),
-        picture(128, 128, 0.4, 7), { "report.json": JSON.stringify({ ...report, race }), ...roomLayers(128, 1.2, 7) }) },
+        picture(128, 128, 0.4, 7), { "report.json": JSON.stringify({ ...report, choice }), ...roomLayers(128, 1.2, 7) }) },
     { id: "20260131-101400-cornell", job: plain, state: state("done"), progress: ended(1024, 0.0138),
       files: files(plain, curve({ rows: 11, cost: 0.029, level: 0.4, floor: 0.02, seed: 9 }),
         picture(128, 128, 0.1, 9), { ...withReport, ...roomLayers(128, 0.3, 9) }) },

@@ -17,7 +17,7 @@ const views = {
   jobs: "/#/",
   job: `/#/job/${cornell}`,
   running: `/#/job/${running}`,
-  race: `/#/job/${shallow}`,
+  choice: `/#/job/${shallow}`,
   failed: `/#/job/${evil}`,
   compare: `/#/compare?jobs=${cornell},${shallow},${running}`,
   new: "/#/new",
@@ -112,19 +112,15 @@ test("a job shows its report with units, its files and its settings", async () =
   assert.deepEqual(page.troubles, []);
 });
 
-test("a job that chose its method shows the race", async () => {
-  await open(views.race);
-  const race = await page.locator(".race").innerText();
-  assert.match(race, /The race took 1\.80\ss, of pixels 3 times as wide\. RMSE expected at the end of the budget: 0\.0300\./);
-  assert.match(race, /0\.900 of the MSE of the best alone\. Below 4\.00\ss, preparation included: path\./);
-  assert.match(race, /metropolis, path_space\s+1\.30 \(1\.10 to 1\.54\)\s+30\s+2\.10\ss\s+0\.0200\ss\s+in use; rare bright paths: not sure; differs from the others/);
-  assert.match(race, /bdpt, skeleton\s+unknown\s+2\s+0\.200\ss\s+1\.50\ss\s+left in round 1: worse than another/);
-  assert.equal(await count(".race g.curve"), 2);
-  assert.equal(await count(".race .scroll tbody tr"), 3);
-  assert.equal(await count(".race svg[shape-rendering] rect"), 2 * 6);
-  assert.match(race, /Samples in each block of 16 × 16 pixels\s+Over the mean: 0\.500 \(dark\) to 1\.50 \(light\)\./);
-  assert.doesNotMatch(await page.locator(".report").innerText(), /race/i);
-  await screenshot(page, "race");
+test("a job of auto shows how its method was chosen", async () => {
+  await open(views.choice);
+  const choice = await page.locator(".choice").innerText();
+  assert.match(choice, /path, reuse 16\s+8\s+0\.200\ss\s+0\.00400\s+a larger error than that of others/);
+  assert.match(choice, /metropolis, path_space\s+6\s+0\.200\ss\s+0\.00160\s+chosen/);
+  assert.match(choice, /bdpt, skeleton\s+0\s+0\.100\ss\s+an iteration takes longer than its turn/);
+  assert.equal(await count(".choice g.curve"), 2);
+  assert.doesNotMatch(await page.locator(".report").innerText(), /candidates/i);
+  await screenshot(page, "choice");
 });
 
 test("a job says which machine it runs in, and follows when it moves", async () => {

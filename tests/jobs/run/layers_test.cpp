@@ -94,7 +94,7 @@ class Layers : public testing::Test {
                           nullptr, interrupted, observer, phases, "content", seconds_left};
     RenderLoop loop(task);
     loop.resume();
-    const bool done = loop.run();
+    const bool done = loop.run() == RenderLoop::End::spent;
     unsaved = loop.unsaved_iterations();
     if (!done) return false;
     write_results(task, loop);

@@ -64,7 +64,7 @@ TEST_F(RunJob, WarnsOfWhatLightPathsDoNotShow) {
 
 // Light paths end at the eye, and the wall that it lies in does not hide it.
 TEST_F(RunJob, ACameraInAWallSeesTheRoom) {
-  const auto mean = [&](float z, const IntegratorSettings& integrator, const std::string& name) {
+  const auto mean = [&](float z, const JobIntegrator& integrator, const std::string& name) {
     JobSpec s = spec("wall.glb", 32);
     s.integrator = integrator;
     temp.write("wall.glb", wall_between(z));

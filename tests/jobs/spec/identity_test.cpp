@@ -144,7 +144,7 @@ TEST(Identity, every_path_length_is_part_of_the_reference_unless_it_is_listed) {
       static_cast<PathLengths&>(settings) = lengths;
       return reference_integrator(settings);
     };
-    const IntegratorSettings plain = reference(PathSettings{}, PathLengths{});
+    const JobIntegrator plain = reference(PathSettings{}, PathLengths{});
     EXPECT_EQ(reference(PathSettings{}, longer) == plain, listed) << key;
     EXPECT_EQ(reference(LightSettings{}, longer) == plain, listed) << key;
     EXPECT_EQ(reference(BdptSettings{}, longer) == plain, listed) << key;

@@ -75,7 +75,7 @@ TEST(Job, ACameraIsANameOrAPlaceOfItsOwn) {
                {"along the view"});
 }
 
-TEST(Job, CandidatesHaveTheLengthsOfTheirRaceAndNoBias) {
+TEST(Job, CandidatesHaveThePathLengthsOfAutoAndNoBias) {
   const auto with = [](const std::string& candidates) {
     return R"({"scene": "a", "integrator": {"type": "auto", "max_depth": 5, "candidates": [)" +
            candidates + "]}}";
@@ -85,8 +85,6 @@ TEST(Job, CandidatesHaveTheLengthsOfTheirRaceAndNoBias) {
              "/integrator/candidates/1", {"max_depth 7", "allowed: those"});
   expect_one(job_problems(with(R"({"type": "many_lights", "compensation": false})")),
              "/integrator/candidates/0", {"biased", "\"unbiased\""});
-  expect_one(job_problems(with(R"({"type": "path", "sampling": "adaptive"})")),
-             "/integrator/candidates/0/sampling", {"\"uniform\""});
   const auto allowing = [](const std::string& what, const std::string& candidates) {
     return R"({"scene": "a", "integrator": {"type": "auto", "allow": ")" + what +
            R"(", "candidates": [)" + candidates + "]}}";
@@ -98,6 +96,28 @@ TEST(Job, CandidatesHaveTheLengthsOfTheirRaceAndNoBias) {
   expect_one(job_problems(allowing("biased", R"("photon_map", "sppm")")), "/integrator/candidates",
              {"found none without bias"});
   expect_one(job_problems(with(R"("inspect")")), "/integrator/candidates/0", {"\"path\""});
+}
+
+// Stored jobs have every key of the version that wrote them.
+TEST(Job, KeysOfEarlierVersionsMeanNothing) {
+  const auto job = [](const std::string& integrator) {
+    return R"({"scene": "a", "integrator": )" + integrator + "}";
+  };
+  EXPECT_EQ(parse_job(job(R"({"type": "path", "sampling": "uniform"})")),
+            parse_job(job(R"("path")")));
+  EXPECT_EQ(parse_job(job(R"({"type": "auto", "regions": true, "sampling": "adaptive",
+                              "clock": "cpu_seconds", "remember": true})")),
+            parse_job(job(R"("auto")")));
+  expect_one(job_problems(job(R"({"type": "path", "sampling": "adaptive"})")),
+             "/integrator/sampling", {"earlier version", "allowed: \"uniform\""});
+  expect_one(job_problems(job(R"({"type": "auto", "clock": "rays"})")), "/integrator/clock",
+             {"earlier version", "allowed: \"cpu_seconds\""});
+}
+
+TEST(Job, ShardsHaveOneMethod) {
+  const std::string job = R"({"scene": "a", "shards": 2, "integrator": )";
+  EXPECT_NO_THROW(parse_job(job + R"("path"})"));
+  expect_one(job_problems(job + R"("auto"})"), "/shards", {"different methods", "lacuna advise"});
 }
 
 TEST(Job, SettingsThatDoNotGoTogetherAreNamed) {

@@ -123,10 +123,10 @@ inline JobSpec random_job(std::uint64_t seed) {
   spec.shard = std::min(spec.shard, spec.shards);
   if (auto& camera = spec.camera.object; camera && !frame_of(*camera)) camera = CameraSettings{};
   if (auto* choosing = std::get_if<AutoSettings>(&spec.integrator)) {
-    std::erase_if(choosing->candidates, [&](CandidateSettings& c) {
-      if (auto* path = std::get_if<PathSettings>(&c)) path->sampling = Sampling::uniform;
-      return !is_allowed(c, choosing->allow);
-    });
+    spec.shards = 1;
+    spec.shard = 0;
+    std::erase_if(choosing->candidates,
+                  [&](CandidateSettings& c) { return !is_allowed(c, choosing->allow); });
     if (choosing->allow != Allow::unbiased) choosing->candidates.emplace_back(BdptSettings{});
     for (CandidateSettings& c : choosing->candidates) {
       std::visit([&](auto& s) { static_cast<PathLengths&>(s) = *choosing; }, c);

@@ -158,18 +158,6 @@ inline std::vector<Method> metropolis(int max_depth) {
   return all;
 }
 
-/// What chooses among others, by decisions that are the same in every run and on every scale.
-inline AutoSettings choosing(int max_depth) {
-  MetropolisSettings few_chains;
-  few_chains.chains = 20;
-  few_chains.mutations = 4;
-  few_chains.bootstrap = 2;
-  AutoSettings s = of_length(AutoSettings{}, max_depth);
-  s.candidates = {PathSettings{}, few_chains, BdptSettings{}};
-  s.clock = RaceClock::rays;
-  return s;
-}
-
 /// Many-light rendering with `visibility`, in a small picture.
 inline ManyLightsSettings lit_by(int max_depth, int light_paths,
                                  const VisibilitySettings& visibility) {

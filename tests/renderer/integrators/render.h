@@ -46,7 +46,6 @@ struct Rendering {
 struct RenderSettings {
   IntegratorSettings integrator = PathSettings{};
   int width = 32, height = 32;
-  int reduction = 1;  ///< the pictures have pixels so many times as wide (Camera::reduced())
   int iterations = 16;
   std::string camera = {};
   std::uint64_t seed = 1;
@@ -74,7 +73,6 @@ class Session {
         integrator_(std::move(integrator)),
         eye_(choose_camera(data, s.camera, "test")),
         camera_(eye_, s.width, s.height, s.filter),
-        seen_through_(camera_.reduced(s.reduction)),
         scene_(std::move(data), integrator_->needs(), s.environment, pool_) {
     integrator_->prepare({scene_, pool_, space_, camera_});
     names_ = integrator_->layers(s.layers);
@@ -83,10 +81,10 @@ class Session {
   /// `stop`: as IterationContext's.
   Image iterate(
       std::uint64_t i, const std::function<bool()>& stop = [] { return false; }) {
-    Image image(seen_through_.width(), seen_through_.height());
+    Image image(camera_.width(), camera_.height());
     layers_.assign(names_.size(), image);
     counters_ += integrator_->iterate({.scene = scene_,
-                                       .camera = seen_through_,
+                                       .camera = camera_,
                                        .pool = pool_,
                                        .seed = settings_.seed,
                                        .iteration = i,
@@ -102,14 +100,14 @@ class Session {
   Integrator& integrator() { return *integrator_; }
   const Scene& scene() const { return scene_; }
   const Counters& counters() const { return counters_; }
-  const Camera& camera() const { return seen_through_; }
+  const Camera& camera() const { return camera_; }
 
  private:
   RenderSettings settings_;
   ThreadPool pool_;
   std::unique_ptr<Integrator> integrator_;
   CameraData eye_;
-  Camera camera_, seen_through_;
+  Camera camera_;
   Scene scene_;
   ArtefactStore store_{{}};
   SpaceAnalysis space_{

@@ -50,13 +50,10 @@ Seeds render_seeds(const PathScene& scene, const IntegratorSettings& integrator,
 
 /// Methods that draw their paths in different ways.
 std::vector<Method> methods(int edges, bool light) {
-  PathSettings adaptive = test::path_tracing(edges);
-  adaptive.sampling = Sampling::adaptive;
   PathSettings tree = test::path_tracing(edges);
   tree.emitters = EmitterChoice::tree;
   std::vector<Method> all{{"path", test::path_tracing(edges)},
                           {"tree", tree},
-                          {"adaptive", adaptive},
                           {"paired", test::joining(edges, PairedSettings{})},
                           {"skeleton", test::joining(edges, SkeletonConnectionsSettings{})}};
   if (light) all.push_back({"light", test::light_tracing(edges)});

@@ -87,18 +87,5 @@ TEST(SeenEmission, CostsAtMostHalfARayAPixel) {
   }
 }
 
-// Pictures of fewer pixels than the one that was prepared.
-TEST(SeenEmission, OfSmallerPictures) {
-  const PathScene scene{"cornell"};
-  RenderSettings s = seen_picture(scene, one_sample());
-  s.reduction = 3;
-  const Rendering simple = test::render(test::load(scene), s);
-  s.integrator = test::path_tracing(1);
-  s.seed = 2;
-  const Rendering seen = test::render(test::load(scene), s);
-  test::expect_same_picture(seen, simple, 0.04);
-  EXPECT_LT(variance(seen), variance(simple) / 8);
-}
-
 }  // namespace
 }  // namespace lacuna

@@ -20,11 +20,9 @@ std::map<Pixel, std::set<Pixel>> packets(const V2i& size, const V2i& of_tile) {
   std::map<Pixel, std::set<Pixel>> result;
   for (int y = 0; y < size.y; y += of_tile.y) {
     for (int x = 0; x < size.x; x += of_tile.x) {
-      const Tile tile{
-          {x, y}, {std::min(of_tile.x, size.x - x), std::min(of_tile.y, size.y - y)}, 3};
+      const Tile tile{{x, y}, {std::min(of_tile.x, size.x - x), std::min(of_tile.y, size.y - y)}};
       for (int b = 0; b < tile.blocks(); ++b) {
         const Tile block = tile.block(b);
-        EXPECT_EQ(block.samples_before, 3U);
         EXPECT_LE(block.pixels(), Tile::block_side * Tile::block_side);
         for (int first = 0; first < block.pixels(); first += packet) {
           std::set<Pixel> together;

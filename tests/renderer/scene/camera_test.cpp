@@ -84,23 +84,6 @@ TEST(Camera, CropIsAPartOfTheLargerPicture) {
   EXPECT_FALSE(part.project(whole.ray(3.5F, 1.5F).d).has_value());
 }
 
-TEST(Camera, ReducedIsTheSameViewThroughLargerPixels) {
-  for (const PixelFilter filter : {PixelFilter::box, PixelFilter::tent}) {
-    const Camera whole(straight_ahead(), columns, rows, filter);
-    const Camera reduced = whole.reduced(4);
-    EXPECT_EQ(reduced.width(), 2);
-    EXPECT_EQ(reduced.height(), 2) << "the last row reaches beyond the film";
-    const Ray a = reduced.ray(1.25F, 0.5F), b = whole.ray(5, 2);
-    EXPECT_LT((a.d - b.d).length(), 1e-6F);
-    EXPECT_NEAR(reduced.density(a.d).value * 16, whole.density(a.d).value,
-                1e-5 * double(whole.density(a.d).value));
-    const auto at = reduced.project(a.d);
-    ASSERT_TRUE(at.has_value());
-    EXPECT_NEAR(at->x, 1.25F, 1e-4F);
-    EXPECT_NEAR(at->y, 0.5F, 1e-4F);
-  }
-}
-
 TEST(Camera, UnknownNameIsRefusedWithThoseThereAre) {
   SceneData data;
   EXPECT_THROW(choose_camera(data, "", "a.glb"), SceneError);

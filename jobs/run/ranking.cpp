@@ -1,0 +1,147 @@
+#include "jobs/run/ranking.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "renderer/settings/error_metrics.h"
+
+namespace lacuna {
+
+namespace {
+
+using Values = std::vector<double>;
+
+/// Square blocks of pixels, over which noise is averaged out of a picture's brightness.
+struct Blocks {
+  static constexpr int side = 16;
+  int width, height;
+
+  explicit Blocks(const Film& film) : width(film.width()), height(film.height()) {}
+  int across() const { return (width + side - 1) / side; }
+  std::size_t count() const {
+    return std::size_t(across()) * std::size_t((height + side - 1) / side);
+  }
+  std::size_t of_pixel(std::size_t pixel) const {
+    const int x = int(pixel) % width, y = int(pixel) / width;
+    return std::size_t(y / side * across() + x / side);
+  }
+  /// The means over pixels and channels.
+  Values means(const Values& rgb) const {
+    Values sums(count()), numbers(count());
+    for (std::size_t i = 0; i < rgb.size(); ++i) {
+      sums[of_pixel(i / 3)] += rgb[i];
+      numbers[of_pixel(i / 3)] += 1;
+    }
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] /= numbers[k];
+    return sums;
+  }
+};
+
+/// What pictures are compared by: the mean brightness of each block over all pictures, and what
+/// squared errors there are divided by.
+struct Scale {
+  Blocks blocks;
+  Values brightness, divisor;
+
+  Scale(const Blocks& b, const std::vector<Values>& block_means, RankingMetric metric)
+      : blocks(b), brightness(b.count()), divisor(b.count(), 1) {
+    for (std::size_t k = 0; k < brightness.size(); ++k) {
+      for (const Values& m : block_means) brightness[k] += m[k] / double(block_means.size());
+      if (metric == RankingMetric::relmse) divisor[k] = brightness[k] * brightness[k] + 0.01;
+    }
+  }
+
+  double distance(const Values& a, const Values& b) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      sum += squared_error(a[i], b[i]) / divisor[blocks.of_pixel(i / 3)];
+    }
+    return sum / double(a.size());
+  }
+  double missing(const Values& block_means) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < divisor.size(); ++k) {
+      if (block_means[k] >= brightness[k] / 2) continue;
+      sum += squared_error(block_means[k], brightness[k]) / divisor[k];
+    }
+    return sum / double(divisor.size());
+  }
+};
+
+bool is_dark(const Values& values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return v == 0; });
+}
+
+/// The noise of a picture from its halves; none before each has an iteration.
+std::optional<double> noise_from_halves(const Film& film, const Scale& scale) {
+  const auto even = double(film.half_iterations(0)), odd = double(film.half_iterations(1));
+  if (even == 0 || odd == 0) return std::nullopt;
+  return scale.distance(film.half_mean(0), film.half_mean(1)) * scale_from_halves(even, odd);
+}
+
+/// And of picture `k` from the distances to the others.
+std::optional<double> noise_from_others(const std::vector<Values>& means, std::size_t k,
+                                        const Scale& scale) {
+  std::vector<std::pair<double, std::size_t>> others;
+  for (std::size_t j = 0; j < means.size(); ++j) {
+    if (j != k && !is_dark(means[j])) others.emplace_back(scale.distance(means[k], means[j]), j);
+  }
+  if (others.size() < 2) return std::nullopt;
+  std::partial_sort(others.begin(), others.begin() + 2, others.end());
+  const auto& [near, y] = others[0];
+  const auto& [far, z] = others[1];
+  return std::max((near + far - scale.distance(means[y], means[z])) / 2, near / 16);
+}
+
+}  // namespace
+
+std::vector<std::optional<PictureError>> picture_errors(std::span<const CandidatePicture> pictures,
+                                                        RankingMetric metric) {
+  const Blocks blocks(*pictures.front().film);
+  std::vector<Values> means, block_means;
+  for (const CandidatePicture& p : pictures) {
+    means.push_back(p.film->mean());
+    block_means.push_back(blocks.means(means.back()));
+  }
+  const Scale scale(blocks, block_means, metric);
+  const bool all_dark = std::all_of(means.begin(), means.end(), is_dark);
+
+  std::vector<std::optional<PictureError>> errors(pictures.size());
+  std::optional<std::size_t> best;  // unbiased
+  for (std::size_t k = 0; k < pictures.size(); ++k) {
+    if (!all_dark && is_dark(means[k])) continue;
+    auto noise = noise_from_halves(*pictures[k].film, scale);
+    if (!noise) noise = noise_from_others(means, k, scale);
+    if (!noise) continue;
+    errors[k] = {.noise = *noise, .missing = scale.missing(block_means[k])};
+    if (!pictures[k].biased && (!best || *noise < errors[*best]->noise)) best = k;
+  }
+  for (std::size_t k = 0; k < pictures.size() && best; ++k) {
+    if (!pictures[k].biased || !errors[k]) continue;
+    const double apart = scale.distance(means[k], means[*best]);
+    errors[k]->bias = std::max(0.0, apart - errors[k]->noise - errors[*best]->noise);
+  }
+  return errors;
+}
+
+std::vector<std::size_t> better_half(std::span<const std::optional<double>> errors,
+                                     const std::vector<bool>& biased) {
+  std::vector<std::size_t> order(errors.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    constexpr double unknown = std::numeric_limits<double>::infinity();
+    return errors[a].value_or(unknown) < errors[b].value_or(unknown);
+  });
+  const std::size_t kept = (errors.size() + 1) / 2;
+  const auto unbiased =
+      std::find_if(order.begin(), order.end(), [&](auto k) { return !biased[k]; });
+  if (kept > 1 && unbiased != order.end() && unbiased - order.begin() >= std::ptrdiff_t(kept)) {
+    std::swap(*unbiased, order[kept - 1]);
+  }
+  order.resize(kept);
+  std::sort(order.begin(), order.end());
+  return order;
+}
+
+}  // namespace lacuna
