@@ -21,7 +21,7 @@ std::vector<CandidateSettings> by_default(const AutoSettings& settings) {
   skeleton.connections = SkeletonConnectionsSettings{};
   ManyLightsSettings lights;
   lights.visibility = ProbabilisticVisibilitySettings{};
-  std::vector<CandidateSettings> all{sharing(settings, 16), guided, MetropolisSettings{}, skeleton,
+  std::vector<CandidateSettings> all{guided, sharing(settings, 16), MetropolisSettings{}, skeleton,
                                      lights};
   if (settings.allow == Allow::unbiased) return all;
   all.insert(all.end(), {VcmSettings{}, SppmSettings{}});

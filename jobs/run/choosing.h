@@ -18,7 +18,7 @@ namespace lacuna {
 inline constexpr double choosing_share = 0.1;
 /// The part of the budget in which a candidate has to finish its first iteration. The first one may
 /// take as long as it needs: a job has at least one iteration.
-inline constexpr double first_iteration_share = 1.0 / 12;
+inline constexpr double first_iteration_share = 1.0 / 24;
 double share_of_turns(std::size_t candidates, int round);
 
 /// Chooses the method of a job of `auto`: its candidates are jobs with folders, checkpoints and

@@ -126,18 +126,27 @@ std::vector<std::optional<PictureError>> picture_errors(std::span<const Candidat
 }
 
 std::vector<std::size_t> better_half(std::span<const std::optional<double>> errors,
-                                     const std::vector<bool>& biased) {
+                                     const std::vector<bool>& biased, bool has_default) {
+  std::vector<double> known;
+  for (const auto& e : errors) known.push_back(e.value_or(std::numeric_limits<double>::infinity()));
+  if (has_default) known.front() *= default_advantage;
   std::vector<std::size_t> order(errors.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    constexpr double unknown = std::numeric_limits<double>::infinity();
-    return errors[a].value_or(unknown) < errors[b].value_or(unknown);
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return known[a] < known[b]; });
   const std::size_t kept = (errors.size() + 1) / 2;
-  const auto unbiased =
-      std::find_if(order.begin(), order.end(), [&](auto k) { return !biased[k]; });
-  if (kept > 1 && unbiased != order.end() && unbiased - order.begin() >= std::ptrdiff_t(kept)) {
-    std::swap(*unbiased, order[kept - 1]);
+  // Brings the best of those that `belong` among the kept, in place of the worst but `spared`.
+  const auto keep = [&](const auto& belongs, std::size_t spared) {
+    const auto found = std::find_if(order.begin(), order.end(), belongs);
+    const auto end = order.begin() + std::ptrdiff_t(kept);
+    if (found < end || found == order.end()) return;
+    std::swap(*found, *(*(end - 1) == spared ? end - 2 : end - 1));
+  };
+  if (kept > 1) {
+    const auto best = std::find_if(order.begin(), order.end(), [&](auto k) { return !biased[k]; });
+    const std::size_t yardstick = best == order.end() ? order.size() : *best;
+    keep([&](std::size_t k) { return k == yardstick; }, order.size());
+    if (has_default) keep([](std::size_t k) { return k == 0; }, yardstick);
   }
   order.resize(kept);
   std::sort(order.begin(), order.end());

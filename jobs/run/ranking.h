@@ -37,10 +37,14 @@ struct PictureError {
 std::vector<std::optional<PictureError>> picture_errors(std::span<const CandidatePicture> pictures,
                                                         RankingMetric metric);
 
+/// What the error of the default counts beside those of others: after few iterations estimates are
+/// not known better, and methods that learn have only begun to.
+inline constexpr double default_advantage = 0.5;
+
 /// The half of candidates, rounded up, with the least `errors`, in their order; one without an
-/// error only where all of those with one stay. The best of those that are not `biased` is always
-/// among two or more.
+/// error only where all of those with one stay. The best of those that are not `biased`, and the
+/// first if it is the default, are always among two or more.
 std::vector<std::size_t> better_half(std::span<const std::optional<double>> errors,
-                                     const std::vector<bool>& biased);
+                                     const std::vector<bool>& biased, bool has_default);
 
 }  // namespace lacuna

@@ -75,9 +75,11 @@ void describe(V& v, AutoSettings& s) {
   describe_lengths(v, s);
   v("candidates", s.candidates,
     {.doc = "integrators to choose from; they have the path lengths of `auto`, and may name no "
-            "others. Empty: `path` with `reuse` 16, the same with `reuse` 64 and the guide "
-            "`learned_skeleton`, `metropolis`, `bdpt` with `skeleton` and `many_lights` with "
-            "`probabilistic`; where `allow` permits it `vcm` and `sppm`, and `photon_map` and "
+            "others. The first is the default: another is chosen if it is expected to have less "
+            "than half of the error. Empty: `path` with `reuse` 64 and the guide "
+            "`learned_skeleton`, `path` with `reuse` 16, `metropolis`, `bdpt` with `skeleton` and "
+            "`many_lights` with `probabilistic`; where `allow` permits it `vcm` and `sppm`, and "
+            "`photon_map` and "
             "`many_lights` with `view_maps`",
      .max = 32});
   v("allow", s.allow,

@@ -7,6 +7,7 @@
 
 #include "jobs/run/advise.h"
 #include "tests/jobs/run/run_job_fixture.h"
+#include "tests/statistics.h"
 
 namespace lacuna {
 namespace {
@@ -32,6 +33,8 @@ class Choose : public test::RunJob {
   }
   static Choice choice_in(const JobFolder& folder) { return *read_choice(folder); }
 };
+
+class LongChoose : public Choose {};
 
 TEST_F(Choose, ThePictureIsThatOfTheChosenMethod) {
   const JobSpec job = choosing(three());
@@ -109,6 +112,38 @@ TEST_F(Choose, AMethodThatMissesTheLightIsNotChosen) {
   const JobFolder folder = create(job);
   ASSERT_EQ(run(folder), Outcome::done);
   EXPECT_NE(choice_in(folder).chosen, 0);
+}
+
+// The picture holds the iterations that it was chosen by, and a method whose bright paths are
+// missing looks better than it is. What that costs stays below the noise of a picture.
+TEST_F(LongChoose, HardlyDarkensThePicture) {
+  PathSettings blind;
+  blind.next_event_estimation = false;
+  const auto brightness = [&](const JobSpec& job, const std::string& name) {
+    const JobFolder folder = create(job, name);
+    EXPECT_EQ(run(folder), Outcome::done);
+    double sum = 0;
+    const std::vector<float> all = pixels(folder);
+    for (const float v : all) sum += double(v) / double(all.size());
+    return sum;
+  };
+  statistics::Moments found, expected;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    JobSpec job = choosing({PathSettings{}, blind, BdptSettings{}}, 12);
+    job.scene = "cornell.glb";
+    job.camera.name.clear();
+    job.resolution = {12, 8};
+    job.seed = seed;
+    found.add(brightness(job, "chosen" + std::to_string(seed)));
+    job.integrator = BdptSettings{};
+    std::get<BdptSettings>(job.integrator).max_depth = 4;
+    job.seed = 1000 + seed;
+    expected.add(brightness(job, "plain" + std::to_string(seed)));
+  }
+  const double ratio = found.mean() / expected.mean();
+  RecordProperty("ratio", std::to_string(ratio));
+  EXPECT_NEAR(ratio, 1,
+              0.02 + 3 * (found.standard_error() + expected.standard_error()) / expected.mean());
 }
 
 TEST_F(Choose, OneCandidateNeedsNoTurns) {

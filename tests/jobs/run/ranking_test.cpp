@@ -81,8 +81,8 @@ TEST(Ranking, OfOneIterationTheDistancesToOthersTellTheNoise) {
 TEST(Ranking, TheBetterHalfStays) {
   using Errors = std::vector<std::optional<double>>;
   using Kept = std::vector<std::size_t>;
-  const auto kept = [](const Errors& errors, const std::vector<bool>& biased) {
-    return better_half(errors, biased);
+  const auto kept = [](const Errors& errors, const std::vector<bool>& biased, bool first = false) {
+    return better_half(errors, biased, first);
   };
   EXPECT_EQ(kept({5, 1, 3, 2, 4}, std::vector<bool>(5)), (Kept{1, 2, 3}));
   EXPECT_EQ(kept({2, 1}, std::vector<bool>(2)), Kept{1});
@@ -91,6 +91,11 @@ TEST(Ranking, TheBetterHalfStays) {
   // Bias is known by a difference to an unbiased picture.
   EXPECT_EQ(kept({1, 2, 3, 4}, {true, true, false, false}), (Kept{0, 2}));
   EXPECT_EQ(kept({1, 2}, {true, false}), Kept{0});
+  // The default stays in doubt.
+  EXPECT_EQ(kept({9, 1, 3, 2, 4}, std::vector<bool>(5), true), (Kept{0, 1, 3}));
+  EXPECT_EQ(kept({1.9, 1}, std::vector<bool>(2), true), Kept{0});
+  EXPECT_EQ(kept({2.1, 1}, std::vector<bool>(2), true), Kept{1});
+  EXPECT_EQ(kept({9, 1, 2, 3}, {true, true, true, false}, true), (Kept{0, 3}));
 }
 
 }  // namespace
