@@ -33,13 +33,12 @@ Budget part_of(const Budget& whole, double share) {
   return part;
 }
 
-/// The cost of a candidate's turns so far, over what the whole budget is worth.
+/// The cost of a candidate's turns so far, over what the whole budget is worth: in time, or in rays
+/// of the first candidate, of which the budget has so many iterations.
 double part_spent(const Turn& turn, const Budget& whole, const Turn& first) {
-  if (whole.seconds || !whole.iterations) {
-    return turn.seconds / whole.seconds.value_or(Budget::default_seconds);
-  }
+  if (whole.seconds) return turn.seconds / *whole.seconds;
   if (whole.cpu_seconds) return turn.cpu_seconds / *whole.cpu_seconds;
-  // In rays of the first candidate, of which the budget has so many iterations.
+  if (!whole.iterations) return turn.seconds / Budget::default_seconds;
   return turn.rays * double(first.iterations) / (first.rays * double(*whole.iterations));
 }
 

@@ -38,35 +38,54 @@ struct Blocks {
   }
 };
 
-/// What pictures are compared by: the mean brightness of each block over all pictures, and what
-/// squared errors there are divided by.
-struct Scale {
-  Blocks blocks;
-  Values brightness, divisor;
+/// The value of a pixel that half of the pictures reach: an outlier of one does not raise it. 0 of
+/// one picture.
+double lower_median(const std::vector<Values>& pictures, std::size_t i) {
+  if (pictures.size() < 2) return 0;
+  Values all;
+  for (const Values& p : pictures) all.push_back(p[i]);
+  const auto middle = all.begin() + std::ptrdiff_t((all.size() - 1) / 2);
+  std::nth_element(all.begin(), middle, all.end());
+  return *middle;
+}
 
-  Scale(const Blocks& b, const std::vector<Values>& block_means, RankingMetric metric)
-      : blocks(b), brightness(b.count()), divisor(b.count(), 1) {
+/// What pictures are compared by: the mean brightness of each block over all pictures, and what
+/// squared errors are divided by, in blocks and for each value of a pixel.
+struct Scale {
+  Values brightness, block_divisor, divisor;
+
+  Scale(const Blocks& blocks, const std::vector<Values>& means,
+        const std::vector<Values>& block_means, RankingMetric metric)
+      : brightness(blocks.count()),
+        block_divisor(blocks.count(), 1),
+        divisor(means.front().size(), 1) {
     for (std::size_t k = 0; k < brightness.size(); ++k) {
       for (const Values& m : block_means) brightness[k] += m[k] / double(block_means.size());
-      if (metric == RankingMetric::relmse) divisor[k] = brightness[k] * brightness[k] + 0.01;
+    }
+    if (metric == RankingMetric::mse) return;
+    for (std::size_t k = 0; k < brightness.size(); ++k) block_divisor[k] = over(brightness[k]);
+    for (std::size_t i = 0; i < divisor.size(); ++i) {
+      const double block = brightness[blocks.of_pixel(i / 3)];
+      divisor[i] = over(std::max(block, lower_median(means, i)));
     }
   }
 
   double distance(const Values& a, const Values& b) const {
     double sum = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      sum += squared_error(a[i], b[i]) / divisor[blocks.of_pixel(i / 3)];
-    }
+    for (std::size_t i = 0; i < a.size(); ++i) sum += squared_error(a[i], b[i]) / divisor[i];
     return sum / double(a.size());
   }
   double missing(const Values& block_means) const {
     double sum = 0;
-    for (std::size_t k = 0; k < divisor.size(); ++k) {
+    for (std::size_t k = 0; k < brightness.size(); ++k) {
       if (block_means[k] >= brightness[k] / 2) continue;
-      sum += squared_error(block_means[k], brightness[k]) / divisor[k];
+      sum += squared_error(block_means[k], brightness[k]) / block_divisor[k];
     }
-    return sum / double(divisor.size());
+    return sum / double(brightness.size());
   }
+
+ private:
+  static double over(double r) { return r * r + 0.01; }
 };
 
 bool is_dark(const Values& values) {
@@ -104,7 +123,7 @@ std::vector<std::optional<PictureError>> picture_errors(std::span<const Candidat
     means.push_back(p.film->mean());
     block_means.push_back(blocks.means(means.back()));
   }
-  const Scale scale(blocks, block_means, metric);
+  const Scale scale(blocks, means, block_means, metric);
   const bool all_dark = std::all_of(means.begin(), means.end(), is_dark);
 
   std::vector<std::optional<PictureError>> errors(pictures.size());

@@ -32,8 +32,8 @@ struct PictureError {
 /// the two nearest ones y and z, (d_xy + d_xz - d_yz) / 2 (the "three-cornered hat", Gray and Allan
 /// 1974), and is at least a 16th of the shorter one. None where there are no two others, and of a
 /// picture that is black where another is not. Relative errors are divided by r^2 + 0.01, as
-/// ErrorMetric::relmse has it, with the mean of all pictures in a block as r: a bright pixel of one
-/// picture must not hide itself.
+/// ErrorMetric::relmse has it, with the larger of the mean of all pictures in a block of 16 x 16
+/// pixels and their lower median in the pixel as r: an outlier of one picture must not hide itself.
 std::vector<std::optional<PictureError>> picture_errors(std::span<const CandidatePicture> pictures,
                                                         RankingMetric metric);
 

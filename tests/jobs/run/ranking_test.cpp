@@ -41,6 +41,20 @@ TEST(Ranking, NoiseIsTheSquaredErrorOfTheMean) {
   EXPECT_NEAR(picture_errors(one, RankingMetric::relmse)[0]->noise, relative, 0.06 * relative);
 }
 
+// Relative to what other pictures show there, not to itself.
+TEST(Ranking, AnOutlierDoesNotHideItself) {
+  const Film plain = picture(8, 1, 0.1F, 1), other = picture(8, 1, 0.1F, 2);
+  Film outlier = picture(7, 1, 0.1F, 3);
+  Image bright(width, height);
+  bright.pixels[0] = Rgb(8e4F, 8e4F, 8e4F);
+  outlier.add(7, bright);
+  const auto errors = picture_errors(
+      std::vector<CandidatePicture>{{&plain, false}, {&outlier, false}, {&other, false}},
+      RankingMetric::relmse);
+  // (1e4)^2 in one of 3072 pixels, over about (1e4 / 256 / 3 + 1)^2.
+  EXPECT_GT(errors[1]->noise, 1e8 / 3072 / (14 * 14 + 1) / 2);
+}
+
 TEST(Ranking, BiasIsTheDifferenceToTheBestUnbiasedPicture) {
   const Film right = picture(16, 1, 0.3F, 1), noisy = picture(4, 1, 1, 2);
   const Film darker = picture(16, 0.9F, 0.3F, 3), same = picture(16, 1, 0.3F, 4);
