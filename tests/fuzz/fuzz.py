@@ -1,4 +1,5 @@
-"""Runs the fuzz targets of build/fuzz: each for so many seconds, from its seeds. Exit code 1: a finding. It is kept
+"""Runs the fuzz targets of build/fuzz: each for so many seconds, from its seeds; or with --replay those of build/release
+on their seeds alone, as they are. Exit code 1: a finding. It is kept
 below build/fuzz/findings and tried again first in every run; `build/fuzz/bin/fuzz_TARGET FILE` repeats it. Once it is
 mended, a small one belongs into tests/fuzz/corpus."""
 
@@ -132,6 +133,21 @@ def run(target, seconds, grow):
         return passed
 
 
+def replay(target):
+    """The seeds and what was found before, in a build without libFuzzer. True: no finding."""
+    with tempfile.TemporaryDirectory(prefix="lacuna-fuzz-") as folder:
+        own = [f for pattern in target.seeds for f in ROOT.glob(pattern) if f.stat().st_size <= target.max_bytes]
+        kept = [f for f in (ROOT / "tests/fuzz/corpus" / target.name).glob("*") if f.is_file()]
+        files = sorted(own + kept) or [os.devnull]  # nothing is an input, too
+        done = subprocess.run([ROOT / f"build/release/tests/replay_{target.name}", *files], capture_output=True, text=True,
+                              env={**os.environ, "TMPDIR": folder}, timeout=20 * SECONDS_PER_INPUT, check=False)
+    passed = done.returncode == 0
+    print(f"{target.name:<12} {'passed' if passed else 'FAILED'} {len(files)} inputs", flush=True)
+    if not passed:
+        print("\n".join(done.stdout.splitlines()[-1:]), done.stderr[-6000:], sep="\n", flush=True)
+    return passed
+
+
 def main():
     names = [t.name for t in TARGETS]
     parser = argparse.ArgumentParser(prog="fuzz.py", description=__doc__)
@@ -139,15 +155,16 @@ def main():
     parser.add_argument("--seconds", type=int, default=10, help="for each target (default: %(default)s)")
     parser.add_argument("--grow", action="store_true",
                         help="keep inputs that reach new code in build/fuzz/corpus, and begin with them")
+    parser.add_argument("--replay", action="store_true", help="the seeds alone, by the programs of build/release")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="targets at a time")
     asked = parser.parse_args()
     if unknown := set(asked.targets) - set(names):
         parser.error(f"no target {min(unknown)}; there are {', '.join(names)}")
     chosen = [t for t in TARGETS if not asked.targets or t.name in asked.targets]
-    if missing := [t.name for t in chosen if not (BUILD / f"bin/fuzz_{t.name}").exists()]:
+    if not asked.replay and (missing := [t.name for t in chosen if not (BUILD / f"bin/fuzz_{t.name}").exists()]):
         sys.exit(f"build/fuzz has no {', '.join(missing)}: ./dev build fuzz fuzz")
     with concurrent.futures.ThreadPoolExecutor(asked.jobs) as pool:
-        results = list(pool.map(lambda t: run(t, asked.seconds, asked.grow), chosen))
+        results = list(pool.map(lambda t: replay(t) if asked.replay else run(t, asked.seconds, asked.grow), chosen))
     print(f"{sum(results)} passed, {len(results) - sum(results)} failed")
     return 0 if all(results) else 1
 
