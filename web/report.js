@@ -102,7 +102,7 @@ function candidateTable({ candidates, chosen, metric }) {
     }), true);
 }
 
-const choiceView = (choice) => h("div.choice", candidateTable(choice), h("div.effort", turnsFigure(choice)));
+const choiceView = (choice) => h("div.candidates", candidateTable(choice), h("div.effort", turnsFigure(choice)));
 
 /// All that a job's view shows of report.json.
 export const reportParts = (report) => [

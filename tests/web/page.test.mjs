@@ -114,11 +114,11 @@ test("a job shows its report with units, its files and its settings", async () =
 
 test("a job of auto shows how its method was chosen", async () => {
   await open(views.choice);
-  const choice = await page.locator(".choice").innerText();
+  const choice = await page.locator(".candidates").innerText();
   assert.match(choice, /path, reuse 16\s+8\s+0\.200\ss\s+0\.00400\s+a larger error than that of others/);
   assert.match(choice, /metropolis, path_space\s+6\s+0\.200\ss\s+0\.00160\s+chosen/);
   assert.match(choice, /bdpt, skeleton\s+0\s+0\.100\ss\s+an iteration takes longer than its turn/);
-  assert.equal(await count(".choice g.curve"), 2);
+  assert.equal(await count(".candidates g.curve"), 2);
   assert.doesNotMatch(await page.locator(".report").innerText(), /candidates/i);
   await screenshot(page, "choice");
 });
