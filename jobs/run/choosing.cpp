@@ -257,7 +257,7 @@ void Choosing::judge() {
   const std::vector<std::size_t> kept = better_half(expected, with_bias, judged.front()->k == 0);
   for (std::size_t i = 0; i < judged.size(); ++i) {
     if (std::find(kept.begin(), kept.end(), i) != kept.end()) continue;
-    leave(*judged[i], expected[i] ? "a larger error than that of others" : "no error is known");
+    leave(*judged[i], expected[i] ? "not among the better half" : "no error is known");
   }
 }
 
