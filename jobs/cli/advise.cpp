@@ -64,7 +64,7 @@ void print_table(const Choice& choice) {
   fmt::print("\n\"{} then\": expected at the end of the budget\n", enum_name(choice.metric));
 }
 
-/// A folder for a job that nobody keeps.
+/// A temporary folder, removed with the object.
 class TemporaryFolder {
  public:
   TemporaryFolder() {

@@ -23,7 +23,7 @@ Choice advise(const JobFolder& folder, const RunContext& context) {
   const Prepared prepared = prepare(spec, context);
   for (const std::string& w : prepared.warnings) context.observer.warning(w);
   context.observer.phase("analysing");
-  Choosing choosing(folder, spec, prepared, context);
+  Choosing choosing(folder, spec, new_choice(spec), prepared, context);
   context.observer.phase("choosing");
   if (!choosing.run()) throw Stopped{};
   return choosing.choice();

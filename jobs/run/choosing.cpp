@@ -36,8 +36,7 @@ Budget part_of(const Budget& whole, double share) {
 /// The cost of a candidate's turns so far, over what the whole budget is worth: in time, or in rays
 /// of the first candidate, of which the budget has so many iterations.
 double part_spent(const Turn& turn, const Budget& whole, const Turn& first) {
-  if (whole.seconds) return turn.seconds / *whole.seconds;
-  if (whole.cpu_seconds) return turn.cpu_seconds / *whole.cpu_seconds;
+  if (is_timed(whole)) return share(whole, {0, turn.seconds, turn.cpu_seconds});
   if (!whole.iterations) return turn.seconds / Budget::default_seconds;
   return turn.rays * double(first.iterations) / (first.rays * double(*whole.iterations));
 }
@@ -121,11 +120,9 @@ class Choosing::Entrant final : private Observer {
   std::unique_ptr<RenderLoop> loop_;
 };
 
-Choosing::Choosing(const JobFolder& folder, const JobSpec& spec, const Prepared& prepared,
-                   const RunContext& context)
-    : folder_(folder), spec_(spec), context_(context) {
-  const auto earlier = read_choice(folder);
-  choice_ = earlier ? *earlier : new_choice(spec);
+Choosing::Choosing(const JobFolder& folder, const JobSpec& spec, Choice choice,
+                   const Prepared& prepared, const RunContext& context)
+    : folder_(folder), spec_(spec), context_(context), choice_(std::move(choice)) {
   entrants_.resize(choice_.candidates.size());
   for (std::size_t k = 0; k < entrants_.size(); ++k) {
     Candidate& candidate = choice_.candidates[k];
@@ -179,18 +176,19 @@ void Choosing::record() {
 
 void Choosing::play(int round) {
   const Budget part = part_of(spec_.budget, share_of_turns(choice_.candidates.size(), round));
-  bool is_first = true;
+  bool may_be_late = true;  // until one has an iteration
   for (auto& entrant : entrants_) {
-    if (entrant != nullptr) take_turn(*entrant, part, std::exchange(is_first, false));
+    if (entrant != nullptr) take_turn(*entrant, part, may_be_late);
+    if (entrant != nullptr) may_be_late = false;
   }
   judge();
 }
 
-void Choosing::take_turn(Entrant& entrant, const Budget& part, bool is_first) {
+void Choosing::take_turn(Entrant& entrant, const Budget& part, bool may_be_late) {
   try {
     RenderLoop& loop = entrant.loop();
     std::optional<Budget> limit;
-    if (!is_first) limit = part_of(spec_.budget, first_iteration_share);
+    if (!may_be_late) limit = part_of(spec_.budget, first_iteration_share);
     const RenderLoop::End end = loop.run_part(part, limit);
     if (end == RenderLoop::End::interrupted) throw Stopped{};
     const Spent spent = loop.elapsed();
@@ -201,7 +199,7 @@ void Choosing::take_turn(Entrant& entrant, const Budget& part, bool is_first) {
     turn.cpu_seconds = spent.cpu_seconds;
     turn.rays = double(counters.rays + counters.shadow_rays);
     if (end == RenderLoop::End::no_iteration) {
-      leave(entrant, "its first iteration takes too long for the budget");
+      leave(entrant.k, "its first iteration takes too long for the budget");
     }
   } catch (const Stopped&) {
     throw;
@@ -210,16 +208,15 @@ void Choosing::take_turn(Entrant& entrant, const Budget& part, bool is_first) {
   }
 }
 
-void Choosing::leave(Entrant& entrant, const std::string& why) {
-  entrant.record().left = why;
-  entrants_[entrant.k].reset();
+void Choosing::leave(std::size_t k, const std::string& why) {
+  choice_.candidates[k].left = why;
+  entrants_[k].reset();
 }
 
 void Choosing::leave_by_error(std::size_t k, const std::exception& e) {
   const Obstacle obstacle = obstacle_of(e);
   if (obstacle == Obstacle::storage || obstacle == Obstacle::input) throw;
-  choice_.candidates[k].left = reason_of(e);
-  entrants_[k].reset();
+  leave(k, reason_of(e));
   const bool is_last = std::all_of(choice_.candidates.begin(), choice_.candidates.end(),
                                    [](const Candidate& c) { return !c.left.empty(); });
   if (is_last) throw;
@@ -245,7 +242,7 @@ void Choosing::judge() {
       turn.bias = errors[i]->bias;
       turn.expected =
           turn.bias + turn.missing + *turn.noise * part_spent(turn, spec_.budget, first);
-    } else if (const auto before = judged[i]->record().turns; before.size() > 1) {
+    } else if (const auto& before = judged[i]->record().turns; before.size() > 1) {
       // Of one iteration, when there were others to compare it with.
       const Turn& last = before[before.size() - 2];
       turn.noise = last.noise, turn.missing = last.missing, turn.bias = last.bias;
@@ -257,7 +254,7 @@ void Choosing::judge() {
   const std::vector<std::size_t> kept = better_half(expected, with_bias, judged.front()->k == 0);
   for (std::size_t i = 0; i < judged.size(); ++i) {
     if (std::find(kept.begin(), kept.end(), i) != kept.end()) continue;
-    leave(*judged[i], expected[i] ? "not among the better half" : "no error is known");
+    leave(judged[i]->k, expected[i] ? "not among the better half" : "no error is known");
   }
 }
 

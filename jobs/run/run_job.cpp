@@ -209,7 +209,7 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
     const ScopedSeconds timed(phases["analysis"]);
     if (prepared.integrator == nullptr) {
       running.phase("analysing");
-      choosing.emplace(folder, spec, prepared, context);
+      choosing.emplace(folder, spec, *choice, prepared, context);
     } else {
       if (prepared.integrator->needs().space) running.phase("analysing");
       analyse(prepared, *prepared.integrator);

@@ -64,7 +64,7 @@ TEST_F(Choose, CandidatesAreJobsInFoldersOfTheirOwn) {
             choice.candidates[2].turns.front().iterations);
 }
 
-// Budgets without a time count rays, so that the same job has the same bits on every machine.
+// Budgets without a time count rays, so that decisions do not depend on clocks.
 TEST_F(Choose, DecisionsAndBitsAreTheSameForAnyThreadsAndInterruptions) {
   const JobSpec job = choosing(three());
   const JobFolder straight = create(job, "straight");
@@ -146,6 +146,24 @@ TEST_F(LongChoose, HardlyDarkensThePicture) {
               0.02 + 3 * (found.standard_error() + expected.standard_error()) / expected.mean());
 }
 
+// The only one left has an iteration, however long that takes.
+TEST_F(LongChoose, TheFirstThatRendersMayBeLate) {
+  ImportanceCacheSettings records;
+  records.light_paths = 1 << 16;
+  records.record_density = 0.1;
+  BdptSettings large;
+  large.connections = records;
+  JobSpec job = choosing({large, PathSettings{}});
+  job.resolution = {2048, 1536};
+  job.budget = {};
+  job.budget.cpu_seconds = 1e-6;
+  const JobFolder folder = create(job);
+  ASSERT_EQ(run(folder), Outcome::done);
+  const Choice choice = choice_in(folder);
+  EXPECT_NE(choice.candidates[0].left.find("MiB"), std::string::npos) << choice.candidates[0].left;
+  EXPECT_EQ(choice.chosen, 1);
+}
+
 TEST_F(Choose, OneCandidateNeedsNoTurns) {
   const JobFolder folder = create(choosing({BdptSettings{}}, 6));
   ASSERT_EQ(run(folder), Outcome::done);
@@ -170,7 +188,7 @@ TEST_F(Choose, TimeOfAllCandidatesCounts) {
   EXPECT_EQ(curve.find("\n0,"), std::string::npos);
 }
 
-TEST_F(Choose, WhatCannotRenderLeaves) {
+TEST_F(Choose, WithoutLightAllIsBlack) {
   MetropolisSettings chains;
   JobSpec job = choosing({chains, PathSettings{}});
   // Nothing emits: chains have nowhere to begin, and all pictures are black.
