@@ -70,7 +70,7 @@ std::optional<bool> JsonCursor::boolean() const {
 }
 
 std::optional<double> JsonCursor::number(const Limits& limits) const {
-  // JSON has no NaN, and the parser refuses what no double holds: every number is finite.
+  // JSON has no NaN, and the parser refuses numbers beyond double's range: every number is finite.
   if (value_->is_number() && limits.allow(value_->get<double>())) return value_->get<double>();
   refuse(with_limits("a number", range_text(limits)));
   return {};
@@ -78,7 +78,7 @@ std::optional<double> JsonCursor::number(const Limits& limits) const {
 
 std::optional<std::int64_t> JsonCursor::integer(const Limits& limits) const {
   if (value_->is_number()) {
-    // A double holds every integer that the limits allow.
+    // A double represents every allowed integer exactly.
     const double x = value_->get<double>();
     if (x == std::trunc(x) && limits.allow(x)) return static_cast<std::int64_t>(x);
   }

@@ -11,7 +11,8 @@
 
 namespace lacuna {
 
-/// Takes what a reader finds wrong with a document. Where it throws, the reading ends.
+/// Receives the problems that a reader finds in a document. An exception from add() ends the
+/// reading.
 class JsonProblems {
  public:
   virtual ~JsonProblems() = default;
@@ -20,9 +21,9 @@ class JsonProblems {
   virtual void add(const std::string& pointer, const std::string& message) = 0;
 };
 
-/// One value of a parsed document, and where it stands. A read checks the type and the range; where
-/// the value is not what is allowed, it adds a problem and gives nothing (or false). The document
-/// and `problems` outlive the cursor.
+/// A value of a parsed document and its position. Each read checks type and range; for a value that
+/// is not allowed it adds a problem and returns none (or false). The document and `problems` must
+/// outlive the cursor.
 class JsonCursor {
  public:
   JsonCursor(const Json& value, std::string pointer, JsonProblems& problems)
@@ -31,9 +32,9 @@ class JsonCursor {
   const Json& value() const { return *value_; }
   const std::string& pointer() const { return pointer_; }
 
-  /// Another value in this one's place: what a short form stands for.
+  /// A cursor to another value at the same position: the expansion of a short form.
   JsonCursor in_place(const Json& value) const { return {value, pointer_, *problems_}; }
-  /// The member of an object, or the element of a list, that is known to be there.
+  /// A member of an object, or an element of a list, which must exist.
   JsonCursor at(std::string_view key) const;
   JsonCursor at(std::size_t index) const;
   /// The member of an object; none if the key is absent.
@@ -41,22 +42,22 @@ class JsonCursor {
 
   std::optional<bool> boolean() const;
   std::optional<double> number(const Limits& limits) const;
-  /// Limits within +-2^53. 512.0 and 1e3 are integers, too.
+  /// `limits` lie within +-2^53. Accepts 512.0 and 1e3, too.
   std::optional<std::int64_t> integer(const Limits& limits) const;
-  /// Limits from 0. Digits alone, as glTF writes integers: neither 512.0 nor 1e3.
+  /// `limits` are not negative. Accepts digits only, as glTF writes integers: not 512.0 or 1e3.
   std::optional<std::uint64_t> digits(const Limits& limits) const;
   std::optional<std::string> string() const;
   bool check_object() const;
   bool check_list(const Limits& length = {}) const;
-  /// A list of so many elements.
+  /// A list of exactly `size` elements.
   bool check_list_of(std::size_t size) const;
 
   /// Adds the problem "found string "abc"; allowed: ...".
   void refuse(const std::string& allowed) const;
-  /// Adds the problem of a member that is not there: "missing; required: ...".
+  /// Adds the problem of a missing member: "missing; required: ...".
   void refuse_missing(std::string_view key, std::string_view required) const;
   void add_problem(const std::string& message) const { problems_->add(pointer_, message); }
-  /// A problem of a member that need not be there.
+  /// Adds a problem of a member, which may be missing.
   void add_problem(std::string_view key, const std::string& message) const;
 
  private:
@@ -68,12 +69,12 @@ class JsonCursor {
 /// `base` with one more reference token, escaped (RFC 6901).
 std::string child_pointer(const std::string& base, std::string_view key);
 
-/// A string as it would stand in JSON, in printable ASCII, cut where it is long.
+/// A string as JSON, in printable ASCII, truncated if it is long.
 std::string in_quotes(std::string_view text);
-/// The type of a value and, of anything but an object or a list, the value, cut where it is long.
+/// The type of a value and, unless it is an object or a list, the value, truncated if it is long.
 std::string shown(const Json& value);
 
-/// "THING LIMITS", or the thing alone where the text of its limits is empty.
+/// "THING LIMITS", or only the thing if the text of its limits is empty.
 std::string with_limits(std::string_view thing, const std::string& limits);
 
 }  // namespace lacuna

@@ -22,7 +22,7 @@ std::string document_text(const OrderedJson& json) {
 
 OrderedJson parse_own(std::string_view text) {
   OrderedJson json = OrderedJson::parse(text, nullptr, false);
-  if (json.is_discarded()) throw std::logic_error("text of our own is no JSON");
+  if (json.is_discarded()) throw std::logic_error("Lacuna's own text is not valid JSON");
   return json;
 }
 

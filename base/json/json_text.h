@@ -6,11 +6,12 @@
 
 namespace lacuna {
 
-using Json = nlohmann::json;                 // keys in alphabetical order: documents that are read
-using OrderedJson = nlohmann::ordered_json;  // keys as they were put: documents that are written
+using Json = nlohmann::json;  // keys in alphabetical order: documents that are read
+using OrderedJson =
+    nlohmann::ordered_json;  // keys in order of insertion: documents that are written
 
-// Converts JSON to text and back. In one source, because the library's writer and parser cost
-// seconds of compilation in each.
+// Converts JSON to text and back. One source file instantiates the library's writer and parser,
+// which take seconds to compile.
 
 enum class Escape { as_needed, all_but_ascii };
 

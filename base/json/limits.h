@@ -10,8 +10,8 @@ namespace lacuna {
 /// number in a double (the page's JavaScript among them) change it silently.
 inline constexpr double max_exact_integer = 9007199254740991.0;
 
-/// What a number, or the length of a string or list, may be. Both ends included, but for `min`
-/// where `above_min` is set.
+/// The range of a number, or of the length of a string or list. Inclusive, except `min` if
+/// `above_min` is set.
 struct Limits {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
@@ -21,7 +21,7 @@ struct Limits {
   bool allow(double x) const { return (above_min ? x > min : x >= min) && x <= max; }
 };
 
-/// "12", "0.05", "1e+12": shortest text that reads back as the same number.
+/// "12", "0.05", "1e+12": the shortest text that parses to the same number.
 std::string number_text(double x);
 /// "from 1 to 1024 edges", "above 0, at most 10000000 s", "at least 1"; empty: no limit.
 std::string range_text(const Limits& limits);

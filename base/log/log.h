@@ -8,22 +8,21 @@
 
 namespace lacuna::log {
 
-// What a program does beside its results, line by line; no source but log.cpp pays for the
-// library's headers.
+// The log of a program. Only log.cpp includes the library's headers.
 
 enum class Level { debug, info, warning, error };
 
-/// Lines go to standard error, with the time; `verbose`: debug lines, too.
+/// Writes lines to standard error, with the time; `verbose`: debug lines, too.
 void start(const char* name, bool verbose);
-/// Warnings and errors go to `sink`, from any thread, and other lines nowhere.
+/// Passes warnings and errors to `sink`, from any thread, and drops other lines.
 void start(std::function<void(Level, std::string_view)> sink);
-/// Whether lines of `level` are written at all.
+/// Whether lines of `level` are written.
 bool shows(Level level);
 void write(Level level, std::string_view line);
 
 template <class... Args>
 void debug(fmt::format_string<Args...> text, Args&&... args) {
-  if (!shows(Level::debug)) return;  // every request comes by here
+  if (!shows(Level::debug)) return;  // called for every request
   write(Level::debug, fmt::format(text, std::forward<Args>(args)...));
 }
 template <class... Args>

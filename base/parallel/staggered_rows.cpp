@@ -13,7 +13,7 @@
 namespace lacuna {
 namespace {
 
-/// The tasks that may run, and how far each column is.
+/// The runnable tasks, and the progress of each column.
 class Stagger {
  public:
   Stagger(int columns, const std::function<void(int, int)>& body,
@@ -25,7 +25,7 @@ class Stagger {
     offer(0, 0);
   }
 
-  /// Works until there is nothing left, alone or beside others. Waits only while somebody works.
+  /// Runs tasks until none is left; for several threads. Waits only while another thread works.
   void work() {
     std::unique_lock lock(mutex_);
     for (;;) {
@@ -61,7 +61,7 @@ class Stagger {
   int last() const { return static_cast<int>(done_.size()) - 1; }
   int& of(std::vector<int>& rows, int column) { return rows[static_cast<std::size_t>(column)]; }
 
-  /// False: nothing follows.
+  /// Returns false if no task follows.
   bool run(int row, int column) {
     try {
       body_(row, column);
@@ -80,14 +80,14 @@ class Stagger {
     if (column == last()) offer(row + 1, column);
   }
   void offer(int row, int column) {
-    if (of(begun_, column) != row) return;  // already, or not its turn
+    if (of(begun_, column) != row) return;  // already offered, or not its turn
     if (column > 0 && of(done_, column - 1) <= row) return;
     if (of(done_, std::min(column + 1, last())) < row) return;
     of(begun_, column) = row + 1;
     ready_.push_back({row, column});
   }
 
-  /// Most waits are shorter than going to sleep would take.
+  /// Spins first: most waits are shorter than it takes to go to sleep.
   void wait(std::unique_lock<std::mutex>& lock) {
     lock.unlock();
     for (int i = 0; i < 400 && ready_count_.load(std::memory_order_relaxed) == 0; ++i) _mm_pause();

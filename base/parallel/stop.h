@@ -2,8 +2,8 @@
 
 namespace lacuna {
 
-/// Thrown by loops when ThreadPool's `stop` returned true: what was being built is discarded. No
-/// std::exception, so that nobody takes it for a fault.
+/// Thrown by loops when ThreadPool's `stop` returned true: the unfinished result is discarded. Not
+/// a std::exception, so that no handler treats it as an error.
 struct Stopped {};
 
 }  // namespace lacuna

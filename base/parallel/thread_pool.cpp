@@ -12,8 +12,8 @@
 namespace lacuna {
 namespace {
 
-/// Says to ThreadSanitizer what TBB, which is not instrumented, keeps to itself: all of a loop's
-/// calls come after what was before the loop, and before what follows it.
+/// Gives ThreadSanitizer the order that it cannot see in TBB, which is not instrumented: all calls
+/// of a loop happen after what precedes the loop, and before what follows it.
 class LoopOrder {
 #ifdef __SANITIZE_THREAD__
  public:
@@ -49,7 +49,7 @@ ThreadPool::~ThreadPool() = default;
 
 namespace {
 
-/// The caller's own rounding and denormals, which its share of a loop changes.
+/// Restores the caller's rounding and denormal modes, which its share of a loop changes.
 class KeptControl {
  public:
   ~KeptControl() { _mm_setcsr(control_); }
@@ -68,7 +68,7 @@ void ThreadPool::for_each(int n, const std::function<void(int)>& body) const {
     tbb::parallel_for(
         0, n,
         [&](int i) {
-          // Set where the work is done: pool threads may have served somebody else before.
+          // Set in each body: pool threads may have run other work before.
           _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
           _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
           order.enter();

@@ -7,12 +7,12 @@
 
 namespace lacuna {
 
-/// A fixed number of threads that treat denormal numbers as zero (Embree needs it for its speed,
-/// and the same everywhere for the same bits).
+/// A fixed number of threads that treat denormal numbers as zero: Embree needs it for speed, and
+/// all threads must agree to give the same bits.
 class ThreadPool {
  public:
-  /// `threads` 0: one for each core. `stop`, called by several threads, says whether all work is to
-  /// be given up; empty: never.
+  /// `threads` 0: one for each core. `stop` is called by several threads; true abandons all work;
+  /// empty: never.
   explicit ThreadPool(int threads, std::function<bool()> stop = {});
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;

@@ -25,7 +25,7 @@ struct Field {
   bool above_min = false;                       ///< `min` itself is not allowed
   bool required = false;                        ///< there is no default
   std::string_view unit = {};
-  /// The paper's own value, as JSON, where the default is another: there to reproduce the paper.
+  /// The value in the paper, as JSON, if the default differs from it.
   std::string_view published = {};
 };
 

@@ -14,17 +14,17 @@
 namespace lacuna {
 namespace {
 
-/// Bytes between two calls that start writing to disk. So 900 MB took as long as with one fsync at
-/// their end (1.2 and 1.4 s, medians of six), and half of what an fsync for each 8 MiB makes of it.
+/// Bytes between calls that start writeback. 900 MB take as long as with one fsync at their end
+/// (1.2 and 1.4 s, medians of six), and half as long as with an fsync for each 8 MiB.
 constexpr std::uint64_t window = std::uint64_t{4} << 20;
-/// The unit of holes: that of the page cache and of most file systems.
+/// Granularity of holes: that of the page cache and of most file systems.
 constexpr std::size_t block = 4096;
 
 bool is_zero(std::string_view bytes) {
   return bytes.front() == 0 && std::memcmp(bytes.data(), bytes.data() + 1, bytes.size() - 1) == 0;
 }
 
-/// The old content of a file that is about to be replaced, under a second name.
+/// Keeps the old content of a file that is about to be replaced, by a hard link.
 class OldContent {
  public:
   explicit OldContent(const std::filesystem::path& file)
@@ -37,7 +37,7 @@ class OldContent {
     if (error_ == 0) ::unlink(kept_.c_str());
   }
 
-  /// Puts it back in its place, or removes the file that was not there before. False: it cannot.
+  /// Restores the old content, or removes the file if there was none. False if this fails.
   bool restore() {
     if (error_ == ENOENT) return ::unlink(file_.c_str()) == 0;
     if (error_ != 0) return false;  // a file system without links
@@ -49,8 +49,7 @@ class OldContent {
   const int error_;
 };
 
-/// How many bytes from the front of `content`, which begins at `offset` of a file, are no block of
-/// zeros.
+/// Number of bytes of `content`, at `offset` of a file, before its first block of zeros.
 std::size_t bytes_before_hole(std::uint64_t offset, std::string_view content) {
   std::size_t n = std::min<std::size_t>(content.size(), (block - offset % block) % block);
   while (n + block <= content.size() && !is_zero(content.substr(n, block))) n += block;
@@ -94,7 +93,7 @@ void AtomicFile::write(std::string_view content) {
 void AtomicFile::start_syncing() {
   const auto range = [&](std::uint64_t from, unsigned flags) {
     const int done = ::sync_file_range(handle_.get(), static_cast<off_t>(from), window, flags);
-    // Not every file system can, and fsync follows; what it does report it reports once only.
+    // Some file systems do not support this, and fsync follows; but an error is reported only once.
     if (done != 0 && (errno == EIO || errno == ENOSPC || errno == EDQUOT)) {
       throw_file_error(errno, "sync", file_);
     }
@@ -146,7 +145,7 @@ std::string read_file(const std::filesystem::path& file, std::size_t max_bytes) 
   if (size > max_bytes) throw_too_large(file, max_bytes);
   std::string content(static_cast<std::size_t>(size), '\0');
   std::size_t filled = 0;
-  // A file that grows or shrinks meanwhile is read as far as it goes.
+  // The file may grow or shrink meanwhile: read up to its end.
   for (;;) {
     if (filled == content.size()) content.resize(content.size() + 4096);
     const ssize_t n = ::read(handle.get(), content.data() + filled, content.size() - filled);

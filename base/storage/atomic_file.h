@@ -9,27 +9,27 @@
 
 namespace lacuna {
 
-/// Replaces a file as a whole: a temporary beside it, write, fsync, rename, fsync of the folder. A
-/// reader sees the old content or the new, also after a power cut. What throws std::system_error
-/// names the file (disk full, no permission); the old content is then there again, even if only the
-/// last step failed. Where it cannot be put back, the new content stands and nothing is thrown:
-/// what is told and what is seen agree.
+/// Replaces a file atomically: a temporary file beside it, write, fsync, rename, fsync of the
+/// folder. A reader sees the old or the new content, also after a power failure. On failure (disk
+/// full, no permission) throws std::system_error that names the file, and the old content remains
+/// or is restored. If only the last step failed and the old content cannot be restored, the new
+/// content stays and nothing is thrown: the result agrees with the file.
 class AtomicFile {
  public:
-  /// `sync = false` leaves out both fsyncs, for what may be lost (progress).
+  /// `sync = false` omits both fsyncs, for data that may be lost (progress).
   explicit AtomicFile(std::filesystem::path file, bool sync = true);
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
-  /// Before commit(): the old content is still there, and no temporary is left.
+  /// Without commit(): keeps the old content and removes the temporary file.
   ~AtomicFile();
 
-  /// Appends. The disk writes meanwhile, at most 8 MiB behind, so that many calls of few bytes
-  /// wait for it rather than the one fsync, which nobody can stop. Blocks of zeros become holes,
-  /// which take no time and no room: layers of rare strategies are nearly nothing else.
+  /// Appends. Writeback to disk runs at most 8 MiB behind, so that many short calls wait for it
+  /// instead of the final fsync, which cannot be interrupted. Blocks of zeros become holes, which
+  /// take no time and no space: layers of rare strategies are mostly zeros.
   void write(std::string_view content);
-  /// Replaces bytes that were written.
+  /// Overwrites bytes that were written.
   void write_at(std::uint64_t offset, std::string_view content);
-  /// Ends the file and gives it its name.
+  /// Completes the file and renames it to its name.
   void commit();
 
  private:
@@ -45,8 +45,8 @@ class AtomicFile {
 void write_file_atomically(const std::filesystem::path& file, std::string_view content,
                            bool sync = true);
 
-/// The whole of a regular file (through links no further than the name itself), at most
-/// `max_bytes`. Throws std::system_error, or std::length_error if it is larger.
+/// Reads a regular file of at most `max_bytes`, which must not be a symbolic link itself. Throws
+/// std::system_error, or std::length_error if it is larger.
 std::string read_file(const std::filesystem::path& file, std::size_t max_bytes);
 
 }  // namespace lacuna

@@ -10,7 +10,7 @@
 namespace lacuna {
 namespace {
 
-/// What `resource` leaves of `bytes` to a process that has `used` pages of it.
+/// The part of `bytes` that the limit of `resource` leaves to a process that uses `used` pages.
 std::uint64_t within(std::uint64_t bytes, decltype(RLIMIT_AS) resource, std::uint64_t used) {
   rlimit limit{};
   if (::getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return bytes;

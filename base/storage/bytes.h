@@ -14,11 +14,11 @@
 
 namespace lacuna {
 
-// Values are stored as they lie in memory; that this is little-endian is part of every format.
+// Values are stored with their bytes in memory; every format is little-endian.
 static_assert(std::endian::native == std::endian::little);
 
 /// put() for a writer that has `append(const void*, std::size_t)`: plain values, lists and texts;
-/// the latter two with their length as 64 bits in front.
+/// the length of the latter two precedes them, 64 bits.
 template <class Writer>
 class PutsValues {
  public:
@@ -67,7 +67,7 @@ class GetsValues {
     reader().read(text.data(), text.size());
     return text;
   }
-  /// How many values of `size` bytes follow.
+  /// Reads the number of values of `size` bytes that follow.
   std::size_t get_length(std::size_t size) {
     const auto n = get<std::uint64_t>();
     if (n > reader().remaining() / size) throw std::runtime_error("saved state ends early");
@@ -78,18 +78,18 @@ class GetsValues {
   Reader& reader() { return static_cast<Reader&>(*this); }
 };
 
-/// The most bytes that ByteWriter hands on, and ByteReader asks for, at a time.
+/// Most bytes per call of ByteWriter's sink and of ByteReader's source.
 inline constexpr std::size_t piece_bytes = std::size_t{1} << 20;
 
-/// Appends plain values to a byte string, or hands them on in pieces, so that what is written needs
-/// the memory of one of them.
+/// Appends plain values to a byte string, or passes them to a sink in pieces, so that only one
+/// piece is in memory.
 class ByteWriter : public PutsValues<ByteWriter> {
  public:
   using Sink = std::function<void(std::string_view)>;
 
   /// Collects in bytes().
   ByteWriter() = default;
-  /// Hands on to `sink`, in order, pieces of 1 to piece_bytes bytes; the last of them in flush().
+  /// Passes pieces of 1 to piece_bytes bytes to `sink` in order, the last one in flush().
   explicit ByteWriter(Sink sink) : sink_(std::move(sink)) {}
 
   void append(const void* from, std::size_t n) {
@@ -97,7 +97,7 @@ class ByteWriter : public PutsValues<ByteWriter> {
       return hand_on({static_cast<const char*>(from), n});
     bytes_.append(static_cast<const char*>(from), n);
   }
-  /// Hands on what is left. Of a writer that collects: does nothing.
+  /// Passes the rest to the sink; without one, does nothing.
   void flush();
 
   const std::string& bytes() const { return bytes_; }
@@ -114,11 +114,11 @@ class ByteWriter : public PutsValues<ByteWriter> {
 /// early.
 class ByteReader : public GetsValues<ByteReader> {
  public:
-  /// Fills n bytes, those that follow the ones before.
+  /// Reads the next n bytes.
   using Source = std::function<void(char* to, std::size_t n)>;
 
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
-  /// Of `size` bytes that `source` gives, in pieces of 1 to piece_bytes bytes.
+  /// Reads `size` bytes from `source`, in pieces of 1 to piece_bytes bytes.
   ByteReader(std::uint64_t size, Source source) : ahead_(size), source_(std::move(source)) {}
   ByteReader(const ByteReader&) = delete;  // it points into itself
   ByteReader& operator=(const ByteReader&) = delete;
@@ -130,7 +130,7 @@ class ByteReader : public GetsValues<ByteReader> {
   }
   std::uint64_t remaining() const { return bytes_.size() + ahead_; }
   bool at_end() const { return remaining() == 0; }
-  /// Leaves out all that remains.
+  /// Skips all remaining bytes.
   void skip() {
     bytes_ = {};
     ahead_ = 0;
@@ -139,8 +139,8 @@ class ByteReader : public GetsValues<ByteReader> {
  private:
   void read_on(char* to, std::size_t n);
 
-  std::string_view bytes_;   // that are in memory
-  std::uint64_t ahead_ = 0;  // that the source has beside them
+  std::string_view bytes_;   // in memory
+  std::uint64_t ahead_ = 0;  // not yet read from the source
   Source source_;
   std::string buffer_;
 };

@@ -9,7 +9,7 @@
 
 namespace lacuna {
 
-/// XXH3-64 of bytes that come one part after the other: the parts do not count, only the bytes.
+/// XXH3-64 of bytes added part by part; independent of how they are divided.
 class Checksum {
  public:
   Checksum() : state_(XXH3_createState(), XXH3_freeState) {

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view temporary_suffix = ".tmp";
 
-/// The process in a name that temporary_name() made; 0: another name.
+/// The process id in a name from temporary_name(); 0: another name.
 pid_t owner_of(std::string_view name) {
   if (!name.starts_with('.') || !name.ends_with(temporary_suffix)) return 0;
   name.remove_suffix(temporary_suffix.size());
@@ -83,12 +83,12 @@ void remove_stale_temporaries(const std::filesystem::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     const pid_t owner = owner_of(entry.path().filename().string());
     if (owner == 0 || !is_gone(owner)) continue;
-    std::error_code vanished;  // another process may tidy up too
+    std::error_code vanished;  // another process may remove it, too
     if (!fs::is_regular_file(entry.symlink_status(vanished))) continue;
     const auto touched = entry.last_write_time(vanished);
     if (!vanished && touched < untouched_since) stale.push_back(entry.path());
   }
-  std::error_code ignored;  // what cannot be removed only takes space
+  std::error_code ignored;  // what remains only takes space
   for (const fs::path& file : stale) fs::remove(file, ignored);
 }
 

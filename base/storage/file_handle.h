@@ -22,7 +22,7 @@ class FileHandle {
   int get() const { return fd_; }
   explicit operator bool() const { return fd_ >= 0; }
   int release() { return std::exchange(fd_, -1); }
-  /// Closes now, and says whether that went well: some file systems report a full disk only here.
+  /// Closes now; false if this failed: some file systems report a full disk only here.
   bool close();
 
  private:
@@ -33,22 +33,22 @@ class FileHandle {
 [[noreturn]] void throw_file_error(int error, const std::string& action,
                                    const std::filesystem::path& file);
 
-/// Opens a regular file to be read (through links no further than the name itself), and gives its
-/// size in bytes as it is now. Throws std::system_error.
+/// Opens a regular file for reading, which must not be a symbolic link itself, and sets its present
+/// `size` in bytes. Throws std::system_error.
 FileHandle open_regular_file(const std::filesystem::path& file, std::uint64_t& size);
 
-/// Makes a rename or a new name in `folder` outlast a power cut.
+/// Makes renames and new names in `folder` durable (fsync).
 void sync_folder(const std::filesystem::path& folder);
 
-/// A name beside `file` that nothing else has: hidden, ends in ".tmp", tells the process it is of.
+/// A unique name beside `file`: hidden, ends in ".tmp", contains the process id.
 std::filesystem::path temporary_name(const std::filesystem::path& file);
 
-/// Removes the temporary files in `folder` that killed processes left: their process is gone from
-/// this machine and nobody has touched them for a minute (it may live on another machine).
+/// Removes the temporary files of killed processes from `folder`: their process does not exist on
+/// this machine, and they were not modified for a minute (it may run on another machine).
 void remove_stale_temporaries(const std::filesystem::path& folder);
 
-/// The same for whole folders with such names. Only for who owns `folder` on every machine: it does
-/// not wait for a minute.
+/// The same for folders with such names, of any age. Only for the sole owner of `folder` on all
+/// machines.
 void remove_stale_folders(const std::filesystem::path& folder);
 
 }  // namespace lacuna

@@ -10,7 +10,7 @@
 namespace lacuna {
 namespace {
 
-/// The open file still has its name: nobody removed it between open() and flock().
+/// Whether the open file still has its name: it was not removed between open() and flock().
 bool has_name(int fd, const std::filesystem::path& file) {
   struct stat held {
   }, named{};

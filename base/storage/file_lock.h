@@ -8,24 +8,23 @@
 
 namespace lacuna {
 
-/// flock on a file of its own: among processes and among threads one at most has it. The kernel
-/// releases it when the process dies, however it dies, so a killed owner keeps nobody waiting.
+/// An flock on a dedicated file, exclusive among processes and threads. The kernel releases it when
+/// the process ends, also when it is killed.
 class FileLock {
  public:
-  /// Makes the file if it is not there. Nothing if somebody else has it. Throws std::system_error
-  /// where the file cannot be made, or a file system knows no locks.
+  /// Creates the file if it is missing. None if the lock is held elsewhere. Throws
+  /// std::system_error if the file cannot be created or the file system has no locks.
   static std::optional<FileLock> try_take(const std::filesystem::path& file);
 
   FileLock(FileLock&&) = default;
   FileLock& operator=(FileLock&&) = delete;
   ~FileLock();
 
-  /// The file still has its name: nobody has removed it or put another in its place.
+  /// Whether the file still has its name: it was neither removed nor replaced.
   bool is_named() const;
-  /// Replaces what the file says, for people who ask who has it. Whether it could be written does
-  /// not matter.
+  /// Writes `text`, which names the owner for people, into the file. Ignores errors.
   void note(std::string_view text) const;
-  /// Removes the file, too, when this lock ends: whoever waits for it makes a new one.
+  /// Also removes the file on release; the next owner creates a new one.
   void remove_at_end() { removes_ = true; }
 
  private:

@@ -48,7 +48,7 @@ class OpenInput {
       const ssize_t got = ::read(handle_.get(), part.data(), part.size());
       if (got < 0 && errno == EINTR) continue;
       if (got < 0) fail(errno, "read", file_);
-      if (got == 0) {  // somebody writes it now
+      if (got == 0) {  // it is being written
         throw InputUnreadable(EAGAIN,
                               fmt::format("{} was cut short while it was read", file_.string()));
       }
@@ -67,7 +67,7 @@ class OpenInput {
 void throw_if_it_may_pass(int error, const fs::path& file, const fs::path& folder) {
   if (may_pass(error)) throw InputUnreadable(error, fmt::format("cannot read {}", file.string()));
   if (error != ENOENT) return;
-  std::error_code unknown;  // what cannot be looked into is not known to have something in it
+  std::error_code unknown;  // an unreadable folder counts as empty
   if (fs::exists(folder, unknown) && !fs::is_empty(folder, unknown) && !unknown) return;
   throw InputUnreadable(
       error, fmt::format("cannot read {}: {} is missing or empty", file.string(), folder.string()));

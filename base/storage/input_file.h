@@ -11,7 +11,7 @@
 
 namespace lacuna {
 
-/// What a file is to the result that was made from it.
+/// The role of a file among the inputs of a result.
 enum class InputRole { scene, buffer, texture, environment, reference };
 
 template <>
@@ -25,29 +25,28 @@ struct EnumTable<InputRole> {
   }};
 };
 
-/// A file that a result was made from, as it was when it was read.
+/// An input file of a result, as it was when it was read.
 struct InputFile {
   InputRole role = InputRole::scene;
-  std::string name = {};  ///< as the job names it, or the scene (`uri`)
+  std::string name = {};  ///< in the job, or in the scene (`uri`)
   std::uint64_t bytes = 0;
-  std::string hash = {};  ///< XXH3-64 of the content, 16 hexadecimal digits; empty: it is not there
+  std::string hash = {};  ///< XXH3-64 of the content, 16 hexadecimal digits; empty: missing
   bool operator==(const InputFile&) const = default;
 };
 
 using InputBytes = std::vector<std::uint8_t>;
 
-// The functions below are the only ones that open a file which a picture is made from, and the one
-// place where a fault that may pass is told from a file that is wrong.
+// Only the functions below open the input files of a picture, and only they distinguish transient
+// errors from invalid files.
 
-/// Throws InputUnreadable if what was met (`error`, an errno) with `file` may pass: may_pass(); or
-/// the file is missing, and `folder`, where it is looked for, is missing or empty, as a share that
-/// is not mounted.
+/// Throws InputUnreadable if `error` (an errno) of `file` is transient (may_pass()), or if the file
+/// is missing and `folder`, where it is looked up, is missing or empty, as an unmounted share is.
 void throw_if_it_may_pass(int error, const std::filesystem::path& file,
                           const std::filesystem::path& folder);
 
-/// The whole of a regular file of at most `max_bytes`; links are followed. Sets size and hash in
-/// `about`. Throws InputUnreadable; if the file itself is wrong std::invalid_argument, and
-/// std::length_error if it is larger, with the reason, which does not name the file.
+/// Reads a regular file of at most `max_bytes`, following links. Sets size and hash in `about`.
+/// Throws InputUnreadable, std::invalid_argument if the file is invalid, and std::length_error if
+/// it is larger; the latter two give a reason that does not name the file.
 InputBytes read_input(const std::filesystem::path& file, std::uint64_t max_bytes, InputFile& about);
 
 /// The size and the hash of a file; no hash if the size is not `expected`. Throws as read_input().

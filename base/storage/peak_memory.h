@@ -6,7 +6,7 @@
 
 namespace lacuna {
 
-/// The most main memory that this process has held so far, bytes.
+/// Peak resident memory of this process, bytes.
 inline std::uint64_t peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
