@@ -19,7 +19,7 @@ using std::chrono::system_clock;
 
 constexpr std::string_view lock_suffix = ".lock";
 
-/// What the folder itself says of a file; false: it is no regular file, or gone.
+/// Reads the file's size and time; false: not a regular file, or gone.
 bool look_at(const fs::path& file, CacheEntry& entry) {
   struct stat status {};
   if (::lstat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return false;
@@ -36,7 +36,7 @@ bool is_lock_name(std::string_view name) {
   return is_entry_name(name.substr(1, name.size() - 1 - lock_suffix.size()));
 }
 
-/// The names in a folder; none if it is not there.
+/// The files in a folder; none if it is missing.
 std::vector<fs::path> files_in(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
@@ -49,7 +49,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
-/// The entries, the last used first, without a look into them.
+/// The entries, most recently used first, without their headers.
 std::vector<CacheEntry> entries_of(const fs::path& folder) {
   std::vector<CacheEntry> entries;
   for (const fs::path& file : files_in(folder)) {
@@ -64,8 +64,8 @@ std::vector<CacheEntry> entries_of(const fs::path& folder) {
   return entries;
 }
 
-/// Removes an entry that is still as it was listed. Its lock is held meanwhile, so that none is
-/// lost that somebody has just put in its place.
+/// Removes an entry if it is unchanged since it was listed. Holds its lock, so that an entry that
+/// was just written in its place is not lost.
 bool remove_entry(const CacheEntry& entry) {
   auto lock = FileLock::try_take(entry_lock_file(entry.file));
   if (!lock) return false;
@@ -78,7 +78,7 @@ bool remove_entry(const CacheEntry& entry) {
   return false;
 }
 
-/// Locks whose owners were killed, and their half-written files.
+/// Removes the locks and half-written files of killed processes.
 void tidy(const fs::path& folder) {
   for (const fs::path& file : files_in(folder)) {
     if (!is_lock_name(file.filename().string())) continue;
@@ -99,7 +99,7 @@ std::vector<CacheEntry> list_cache(const fs::path& folder, CacheCheck check) {
     const auto look = check == CacheCheck::headers ? read_entry_header : verify_entry;
     entry.refusal = look(entry.file, entry.header);
   }
-  // Removed by somebody else while they were looked at.
+  // Removed by another process meanwhile.
   std::erase_if(entries, [](const CacheEntry& entry) {
     return entry.refusal && entry.refusal->fault == EntryFault::missing;
   });
@@ -134,7 +134,7 @@ CacheRemoval trim_cache(const fs::path& folder, std::uint64_t byte_limit, const 
       removed.bytes += oldest.bytes;
     }
   } catch (const std::system_error&) {
-    // An artefact is no less right for a folder that cannot be tidied.
+    // A failure to remove entries does not concern the artefact.
   }
   return removed;
 }

@@ -20,7 +20,7 @@ bool is_symmetric(const SkeletonGraph& graph) {
   return true;
 }
 
-/// The promises of SkeletonGraph.
+/// Checks the invariants of SkeletonGraph.
 void check(const SkeletonGraph& graph) {
   const std::size_t nodes = graph.nodes();
   require(graph.radii.size() == nodes, "a graph needs a radius for each node");
@@ -34,7 +34,7 @@ void check(const SkeletonGraph& graph) {
   require(graph.first.size() == nodes + 1 && graph.first.front() == 0 &&
               graph.first.back() == graph.neighbours.size() &&
               std::is_sorted(graph.first.begin(), graph.first.end()),
-          "a graph's lists of neighbours follow each other");
+          "a graph's lists of neighbours are consecutive");
   for (std::uint32_t node = 0; node < nodes; ++node) {
     const auto list = graph.of(node);
     for (std::size_t i = 0; i < list.size(); ++i) {
@@ -45,7 +45,7 @@ void check(const SkeletonGraph& graph) {
   require(is_symmetric(graph), "a graph is symmetric");
 }
 
-/// The bits of one layer of a block that lie in a grid with so many cells left along x and y.
+/// The bits of one layer of a block in a grid with these numbers of cells left along x and y.
 std::uint64_t inside_mask(int x_left, int y_left) {
   std::uint64_t mask = 0;
   const std::uint64_t row = x_left < BitBlock::side ? (std::uint64_t{1} << x_left) - 1 : 0xff;
@@ -95,7 +95,7 @@ void Codec<BitGrid3>::write(ArtefactWriter& out, const BitGrid3& grid) {
 BitGrid3 Codec<BitGrid3>::read(ArtefactReader& in) {
   BitGrid3 grid(read_grid_size(in, BitBlock::side, sizeof(BitBlock)));
   in.read(grid.data().data(), sizeof(BitBlock) * grid.data().size());
-  // Whoever counts bits relies on it.
+  // count() relies on it.
   require(only_inside(grid), "a grid's bits beyond its size are 0");
   return grid;
 }

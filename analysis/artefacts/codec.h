@@ -31,7 +31,7 @@ inline void require(bool holds, const char* what) {
   if (!holds) throw std::runtime_error(what);
 }
 
-/// Every pattern of bytes is a value of T, and T has no padding: specialise it for such structs.
+/// True if every byte pattern is a value of T and T has no padding: specialise it for such structs.
 template <class T>
 inline constexpr bool is_plain =
     std::is_arithmetic_v<T> && !std::is_same_v<T, bool> && !std::is_same_v<T, long double>;

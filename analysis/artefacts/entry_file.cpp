@@ -18,13 +18,13 @@ namespace {
 constexpr std::string_view suffix = ".artefact";
 constexpr std::size_t hash_digits = 32;
 
-// Not text, and damaged by whatever takes it for text.
+// Not text, and damaged by a conversion of line ends or encodings.
 constexpr std::array<char, 8> magic{'\x89', 'L', 'A', 'C', 'U', 'N', 'A', '\n'};
-/// Another one whenever the layout of the file changes.
+/// Changes whenever the layout of the file changes.
 constexpr std::uint32_t format_version = 1;
 constexpr std::uint32_t max_header_bytes = 1 << 16;
 
-/// The head of the file. The checksum is of all bytes but its own.
+/// The start of the file. The checksum covers all bytes but its own.
 struct Prefix {
   std::array<char, 8> magic;
   std::uint32_t format;
@@ -67,10 +67,10 @@ void check_sizes(const Prefix& p, std::uint64_t file_bytes) {
     refuse(EntryFault::cut_short, fmt::format("cut short: it has {} bytes", file_bytes));
   }
   if (file_bytes - before > p.packed_bytes) {
-    refuse(EntryFault::damaged, "damaged (longer than it says)");
+    refuse(EntryFault::damaged, "damaged (longer than its header says)");
   }
   if (p.content_bytes > most_content(p.packed_bytes)) {
-    refuse(EntryFault::damaged, "damaged (its content cannot be as large as it says)");
+    refuse(EntryFault::damaged, "damaged (its content cannot have the size in its header)");
   }
 }
 
@@ -112,7 +112,7 @@ class OpenEntry {
     read_at(file_.get(), 0, &prefix_, there);
     const std::size_t of_magic = std::min(there, magic.size());
     if (!std::equal(magic.begin(), magic.begin() + of_magic, prefix_.magic.begin())) {
-      refuse(EntryFault::foreign, "no entry of a cache of Lacuna");
+      refuse(EntryFault::foreign, "not an entry of a Lacuna cache");
     }
     if (there < sizeof(Prefix)) {
       refuse(EntryFault::cut_short, fmt::format("cut short: it has {} bytes", file_bytes));
@@ -151,16 +151,16 @@ void check_key(const ArtefactKey& key, const EntryHeader& header) {
     refuse(EntryFault::other_version, fmt::format("of version {} of \"{}\"; this one makes {}",
                                                   header.version, key.type(), key.version()));
   }
-  refuse(EntryFault::other_key, "of something else (its key differs)");
+  refuse(EntryFault::other_key, "of another artefact (its key differs)");
 }
 
 void check_name(const std::filesystem::path& file, const EntryHeader& header) {
   if (file.filename() != name_of(header.key)) {
-    refuse(EntryFault::other_key, "of something else (it has not the name of its key)");
+    refuse(EntryFault::other_key, "of another artefact (its name does not match its key)");
   }
 }
 
-/// Runs `action`; nothing if it refuses nothing.
+/// Runs `action` and returns its refusal, if any.
 std::optional<EntryRefusal> refusal_of(const std::function<void()>& action) {
   try {
     action();

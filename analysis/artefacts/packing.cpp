@@ -13,14 +13,14 @@
 namespace lacuna {
 namespace {
 
-// Fast first: an artefact is worth keeping only if it loads sooner than it is built.
+// Prefers speed: caching an artefact pays only if it loads faster than it is built.
 constexpr int level = 1;
 
 std::size_t check(std::size_t result) {
   if (ZSTD_isError(result) == 0) return result;
   if (ZSTD_getErrorCode(result) == ZSTD_error_memory_allocation) throw std::bad_alloc();
   throw std::runtime_error(
-      fmt::format("its content cannot be unpacked: {}", ZSTD_getErrorName(result)));
+      fmt::format("its content cannot be decompressed: {}", ZSTD_getErrorName(result)));
 }
 
 [[noreturn]] void throw_early_end() { throw std::runtime_error("its content ends early"); }
@@ -62,7 +62,7 @@ ArtefactReader::ArtefactReader(int fd, std::uint64_t offset, std::uint64_t packe
       packed_left_(packed_bytes),
       remaining_(content_bytes) {
   if (!context_) throw std::bad_alloc();
-  // Of a frame that says it needs more than our own ever do.
+  // For a frame that claims to need more than any frame of this writer.
   check(ZSTD_DCtx_setParameter(context_.get(), ZSTD_d_windowLogMax, 24));
 }
 

@@ -15,8 +15,8 @@ struct ArtefactRecord {
   };
   std::string type;
   Origin origin = Origin::not_needed;
-  double seconds = 0;         ///< to build or load it, without its inputs, which have records too
-  double waited_seconds = 0;  ///< for another process that built it
+  double seconds = 0;  ///< to build or load it, without its inputs, which have their own records
+  double waited_seconds = 0;                   ///< for another process that built it
   std::uint64_t disk_bytes = 0;                ///< of its cache entry; 0: none
   std::optional<std::uint64_t> content_bytes;  ///< uncompressed, if known
   std::string remark;  ///< why an entry was refused, or not written; empty: no problem

@@ -28,11 +28,10 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Seconds that this thread has spent in requests that are over, since the request around them
-/// began.
+/// Seconds that this thread has spent in completed requests nested in the present one.
 thread_local double inner_seconds = 0;
 
-/// The time of one request, without that of the requests for its inputs.
+/// The time of one request, without the requests for its inputs.
 class OwnTime {
  public:
   OwnTime() { inner_seconds = 0; }
@@ -46,7 +45,7 @@ class OwnTime {
   const Clock::time_point start_ = Clock::now();
 };
 
-/// For those who wait: who has a lock.
+/// Text of a lock file for waiting processes: the owner.
 std::string owner_text() {
   char host[256] = "unknown";
   ::gethostname(host, sizeof host - 1);
@@ -60,14 +59,14 @@ std::string owner_of(const fs::path& lock) {
     std::string text = read_file(lock, longest);
     if (!text.empty()) return text;
   } catch (const std::exception&) {
-    // It is released just now, or has no such text.
+    // The lock was just released, or has no such text.
   }
   return "another process";
 }
 
 }  // namespace
 
-/// One request, from the first look into the cache on.
+/// One request that this process cannot serve from memory.
 class ArtefactStore::Attempt {
  public:
   Attempt(const ArtefactStore& store, const ArtefactKey& key, const Request& request)
@@ -80,12 +79,12 @@ class ArtefactStore::Attempt {
   }
 
   std::shared_ptr<const void> run();
-  /// After run().
+  /// Valid after run().
   ArtefactRecord record() const { return record_; }
 
  private:
   std::shared_ptr<const void> load();
-  /// Nothing: there is none to be had, and it was said why.
+  /// None if there is no lock; the reason was reported.
   std::optional<FileLock> take_lock();
   std::optional<FileLock> wait_for_lock(const fs::path& file);
   void keep(const void* value);
@@ -124,7 +123,7 @@ std::shared_ptr<const void> ArtefactStore::Attempt::run() {
   if (auto value = load()) return finish(std::move(value), ArtefactRecord::Origin::loaded);
   if (!request_.build) return nullptr;
   auto lock = take_lock();
-  // Whoever had the lock may have made it.
+  // The previous owner of the lock may have built it.
   if (lock) {
     if (auto value = load()) return finish(std::move(value), ArtefactRecord::Origin::loaded);
   }
@@ -141,7 +140,7 @@ std::shared_ptr<const void> ArtefactStore::Attempt::load() {
     value = request_.decode(in);
   });
   if (!refusal) {
-    // The time of its last use. On a disk that cannot be written the order does not matter.
+    // Records the time of its last use. On a read-only disk the order does not matter.
     ::utimensat(AT_FDCWD, file_.c_str(), nullptr, 0);
     struct stat status {};
     if (::stat(file_.c_str(), &status) == 0) {
@@ -151,7 +150,7 @@ std::shared_ptr<const void> ArtefactStore::Attempt::load() {
     record_.remark.clear();
     return value;
   }
-  const std::string found = fmt::format("its entry: {}", refusal->text);
+  const std::string found = fmt::format("its cache entry: {}", refusal->text);
   if (refusal->fault != EntryFault::missing && record_.remark != found) report(found);
   return nullptr;
 }
@@ -161,8 +160,8 @@ std::optional<FileLock> ArtefactStore::Attempt::take_lock() {
     fs::create_directories(settings_.folder);
     return wait_for_lock(entry_lock_file(file_));
   } catch (const std::system_error&) {
-    // A folder that cannot be written tells so when the artefact is to be kept; a file system
-    // without locks only lets it be made twice.
+    // An unwritable folder is reported when the artefact is cached; without file locks it may
+    // merely be built twice.
     return std::nullopt;
   }
 }
@@ -205,16 +204,16 @@ void ArtefactStore::Attempt::keep(const void* value) {
       record_.content_bytes = out.written();
     });
     if (entry.size() > settings_.byte_limit) {
-      return report(fmt::format("it is not kept: its {} bytes are beyond the cache's limit, {}",
+      return report(fmt::format("it is not cached: its {} bytes exceed the cache's limit, {}",
                                 entry.size(), settings_.byte_limit));
     }
     fs::create_directories(settings_.folder);
     write_file_atomically(file_, entry);
     record_.disk_bytes = entry.size();
   } catch (const std::system_error& e) {
-    return report(fmt::format("it is not kept: {}", e.what()));
+    return report(fmt::format("it is not cached: {}", e.what()));
   } catch (const std::bad_alloc&) {
-    return report("it is not kept: no memory to pack it");
+    return report("it is not cached: not enough memory to compress it");
   }
   trim_cache(settings_.folder, settings_.byte_limit, file_);
 }

@@ -24,7 +24,7 @@ struct StoreSettings {
   std::string label;             ///< readable name of the scene, stored in the entries
   std::function<void(const std::string&)> message;        ///< reports waits; may be empty
   std::function<void(const std::string&)> warning;        ///< reports problems; may be empty
-  std::function<void(const std::string&)> building = {};  ///< gets the type before; may be empty
+  std::function<void(const std::string&)> building = {};  ///< called before builds; may be empty
   std::function<bool()> interrupted;  ///< true ends waits and packing; may be empty
 };
 
@@ -47,7 +47,7 @@ class ArtefactStore {
   template <class T>
   std::shared_ptr<const T> get(const ArtefactKey& key, const std::function<T()>& build);
 
-  /// The same, where somebody built it before; null: nobody did.
+  /// The same without building; null if the artefact is neither in use nor cached.
   template <class T>
   std::shared_ptr<const T> find(const ArtefactKey& key);
 
@@ -57,7 +57,7 @@ class ArtefactStore {
   std::vector<ArtefactRecord> records() const;
 
  private:
-  /// A type-erased request. Without `build` for what is there already.
+  /// A type-erased request. An empty `build`: only an existing artefact.
   struct Request {
     std::type_index type;
     std::function<std::shared_ptr<const void>()> build;

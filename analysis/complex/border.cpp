@@ -5,7 +5,7 @@ namespace {
 
 constexpr FaceType X = 1, Y = 2, Z = 4;
 
-/// Counts bits per cell: `one` has the cells with at least one, `more` those with several.
+/// Counts bits per cell: `one` contains the cells with at least one, `more` those with several.
 struct ContactCount {
   Plane one, more;
 

@@ -9,7 +9,7 @@
 
 namespace lacuna {
 
-/// The data of a block that a collapse needs besides the complex.
+/// The data of a block that a collapse needs in addition to the complex.
 struct alignas(64) BorderBlock {
   std::array<Plane, 3> free_edges;  ///< by axis: edges that exactly one square contains
   Plane free_vertices;              ///< vertices that exactly one edge contains

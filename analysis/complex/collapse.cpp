@@ -12,11 +12,11 @@
 namespace lacuna {
 namespace {
 
-/// The layers of Alg. 2. A layer is one ascending walk through the slices of blocks across y or z,
-/// in `steps` steps of which each is one slice behind the one before: what a step reads beyond its
-/// own slice, one away, has then been through the step before, and not yet through its own or the
-/// one after where that matters. So a block is still in the cache for all steps. Layers follow one
-/// another through the grid in the same way (staggered_rows).
+/// The layers of Alg. 2. A layer is one ascending traversal of the slices of blocks across y or z,
+/// in `steps` steps, each one slice behind the one before: the adjacent slices that a step reads
+/// are past the previous step and, where it matters, not yet past its own or the next. So a block
+/// stays in the cache for all steps. Successive layers are staggered in the same way
+/// (staggered_rows).
 class Collapse {
  public:
   Collapse(CubicalComplex& complex, const KeptEdges& kept, LayerObserver* observer, int layers,
@@ -58,16 +58,16 @@ class Collapse {
   }
 
  private:
-  /// Of a layer, while it is on its way.
+  /// The data of a layer in progress.
   struct Layer {
     Layer(Imath::V3i blocks, int across) : candidates(blocks) {
       const auto n =
           static_cast<std::size_t>(blocks.x) * static_cast<std::size_t>(blocks[3 - across]);
       for (auto& slice : taken) slice.resize(n);
     }
-    BlockSet candidates;  // where its border or its pairs may differ from those of the layer before
+    BlockSet candidates;  // where its border or its pairs may differ from the previous layer's
     std::atomic<bool> changed{false};
-    std::array<std::vector<TakenFaces>, 2> taken;  // by its pass along `across`, of the last slices
+    std::array<std::vector<TakenFaces>, 2> taken;  // by its pass along `across`, in the last slices
   };
 
   static constexpr int steps = 9;
@@ -76,8 +76,8 @@ class Collapse {
   Layer& layer(int date) { return *in_flight_[static_cast<std::size_t>(date) % in_flight_.size()]; }
   std::size_t index(int x, int y, int z) const { return complex_.index(x, y, z); }
 
-  /// Positions of the first step, cut into columns: a layer's may begin where the layer before is
-  /// `steps` ahead, so that no column is shorter.
+  /// Cuts the positions of the first step into columns of at least `steps`: a layer may begin once
+  /// the previous one is `steps` ahead.
   void cut(const ThreadPool* pool) {
     const int begin = 1, end = complex_.blocks()[across_] - 1 + steps;
     const int threads = pool != nullptr ? pool->threads() : 1;
@@ -99,7 +99,7 @@ class Collapse {
   }
   bool in_grid(int slice) const { return slice >= 0 && slice < complex_.blocks()[across_]; }
 
-  /// What is free, and what the observer wants to know of the edges.
+  /// Finds the free faces, and passes the edges to the observer.
   void look(int date, const Layer& now, int slice) {
     if (!in_grid(slice)) return;
     now.candidates.for_each(across_, slice, -1, [&](int x, int y, int z) {
@@ -112,14 +112,14 @@ class Collapse {
     });
   }
 
-  /// The layer's border, and the blocks where a pair of it may be taken.
+  /// Finds the layer's border, and the blocks in which its pairs may be removed.
   void take_border(const Layer& now, int slice) {
     if (!in_grid(slice)) return;
     now.candidates.for_each(across_, slice, -1, [&](int x, int y, int z) {
       const Plane any = take_border_of(complex_, border_, index(x, y, z));
       if (!any.any()) return;
       active_.insert(x, y, z);
-      // A face at the block's upper end makes a pair with one in the next block.
+      // A face at the block's upper end pairs with one in the next block.
       if ((any & high_slice<0>()).any()) active_.insert(x + 1, y, z);
       if ((any & high_slice<1>()).any()) active_.insert(x, y + 1, z);
       if ((any & high_slice<2>()).any()) active_.insert(x, y, z + 1);
@@ -146,8 +146,8 @@ class Collapse {
     }
   }
 
-  /// Blocks whose border or whose pairs may differ after this layer: a face depends on faces at
-  /// most two cells away.
+  /// Inserts the blocks whose border or pairs may differ after this layer: a face depends on faces
+  /// at most two cells away.
   void next_candidates(Layer& now, Layer& next, int slice) {
     if (!in_grid(slice)) return;
     bool any = false;

@@ -17,9 +17,9 @@ void gather(const CubicalComplex& c, FaceType type, int y, int z, BitRow& row) {
   }
 }
 
-/// Rows of a grid with one cell more on every side than the complex: which cells exist, and which
-/// are linked to the one before them along an axis. `Cells` has present(y, z, row) and
-/// links(axis, y, z, row), with y and z as the complex has them.
+/// Rows of a grid with one more cell on every side than the complex: which cells exist, and which
+/// are linked to the preceding cell along an axis. `Cells` has present(y, z, row) and links(axis,
+/// y, z, row), with y and z in the complex.
 template <class Cells>
 struct ComplexRows {
   Cells cells;

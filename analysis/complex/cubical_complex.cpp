@@ -94,7 +94,7 @@ std::ptrdiff_t CubicalComplex::euler() const {
 
 std::uint64_t closure_faces(const BitGrid3& voxels) {
   const Imath::V3i size = voxels.size(), blocks = voxels.blocks();
-  // A face depends on voxels at its cell and before it: slice after slice, with the one before.
+  // A face depends on voxels at its cell and before it: process pairs of slices.
   BitGrid3 pair(Imath::V3i(size.x, size.y, 2 * BitBlock::side));
   std::uint64_t faces = 0;
   for (int z = 0; z <= blocks.z; ++z) {

@@ -80,7 +80,7 @@ class CubicalComplex {
   std::vector<ComplexBlock> data_;
 };
 
-/// Number of faces, of all dimensions, of the closure of the cubes of `voxels`. Takes the memory of
+/// Number of faces, of all dimensions, of the closure of the cubes of `voxels`. Needs the memory of
 /// two slices of blocks.
 std::uint64_t closure_faces(const BitGrid3& voxels);
 
@@ -92,7 +92,7 @@ void for_each_bit(const Plane& plane, const F& visit) {
     for_each_bit(bits.z[static_cast<std::size_t>(z)], [&](int bit) { visit(z * 64 + bit); });
   }
 }
-/// The cell of such a position, from the block's first.
+/// The cell of such a position, relative to the block's first cell.
 inline Imath::V3i cell_of(int position) { return {position & 7, position >> 3 & 7, position >> 6}; }
 
 }  // namespace lacuna

@@ -5,7 +5,7 @@
 namespace lacuna {
 namespace {
 
-/// Adds to `kept` what the rule finds in `complex`, which is collapsed for it.
+/// Adds the edges that the rule keeps in `complex` to `kept`, by a collapse of a copy.
 int ask_rule(CubicalComplex complex, const SpaceMaps& maps, KeptEdges& kept, ThinningReport& report,
              const ThreadPool* pool) {
   KeepRule rule(complex, maps, kept);
@@ -30,7 +30,7 @@ ThinComplex thin(const BitGrid3& domain, const SpaceMaps& maps, ThinningReport& 
 CubicalComplex curvilinear_skeleton(const BitGrid3& domain, const SpaceMaps& maps,
                                     ThinningReport& report, const ThreadPool* pool,
                                     std::uint64_t byte_limit) {
-  // The complex, its copy that the rule is asked on, and what is held of both beside them.
+  // The complex, its copy for the rule, and the data per block of both.
   const std::uint64_t block = 2 * sizeof(ComplexBlock) + collapse_bytes_per_block +
                               KeepRule::bytes_per_block + KeptEdges::bytes_per_block;
   require_memory("thinning", domain.size(), CubicalComplex::blocks_of(domain.size()) * block,

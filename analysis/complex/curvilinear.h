@@ -8,7 +8,7 @@ namespace lacuna {
 
 /// Counts of the computation of a skeleton.
 struct ThinningReport {
-  int layers = 0;              ///< of the first collapse: how deep the space is
+  int layers = 0;              ///< of the first collapse: the depth of the space
   std::size_t kept_edges = 0;  ///< edges of W before piercing
   std::size_t openings_asked = 0;
   int pierce_rounds = 0;  ///< 0: the space had no surface left

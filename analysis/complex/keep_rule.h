@@ -28,7 +28,7 @@ struct SpaceMaps {
 /// of closed surfaces, which are never born, are not kept; otherwise piercing would free nothing.
 class KeepRule final : public LayerObserver {
  public:
-  /// Memory per block, without the few dates.
+  /// Memory per block, without the dates, which are few.
   static constexpr std::uint64_t bytes_per_block =
       sizeof(std::array<Plane, 3>) + sizeof(std::vector<int>);
 

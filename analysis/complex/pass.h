@@ -6,15 +6,15 @@
 
 namespace lacuna {
 
-/// The faces that a pass removed from a block along its axis: cubes, both kinds of squares, edges.
+/// The faces that a pass removed from a block along its axis: cubes, both types of squares, edges.
 using TakenFaces = std::array<Plane, 4>;
 
-/// One axis t and orientation of a layer (thesis Alg. 2, lines 5 to 8), for a block: takes its free
-/// pairs, of dimension 3, then 2, then 1, each at once for all blocks. A pair's test looks along t
-/// at faces of its own kind, and across, at the blocks before it along the other axes, at faces
-/// that only a higher dimension takes. So one walk may take all three at each block: ascending
-/// across, and along t against the orientation, or with what was taken of the block before (take()
-/// tells).
+/// One axis t and orientation of a layer (thesis Alg. 2, lines 5 to 8), for a block: removes its
+/// free pairs, of dimension 3, then 2, then 1, each in all blocks at once. The test of a pair reads
+/// faces of its own type along t and, in the preceding blocks along the other axes, faces that only
+/// a higher dimension removes. So one traversal may remove all three in each block: ascending
+/// across t, and along t against the orientation, or with the faces removed from the preceding
+/// block.
 template <int t, int orientation>
 class Pass {
  public:
@@ -27,8 +27,9 @@ class Pass {
         dv_(complex.stride(v)) {}
 
   void take(std::size_t index) const { all(index, nullptr, nullptr); }
-  /// Where a walk ascends along t although the orientation is 0: with what the pass took of the
-  /// block before along t, if anything; tells what it takes here.
+  /// For a traversal that ascends along t although the orientation is 0: `before` holds the faces
+  /// that the pass removed from the preceding block along t (null: none); sets `here` to those
+  /// removed now.
   void take(std::size_t index, const TakenFaces* before, TakenFaces& here) const {
     all(index, before, &here);
   }
@@ -54,8 +55,8 @@ class Pass {
                     before, here);
   }
 
-  /// Takes the pairs (f, g) of these types where g is free along t and nothing blocks it.
-  /// (Called, it would pass planes through memory, which costs as much as the rest.)
+  /// Removes the pairs (f, g) of these types where g is free along t and not blocked. (Always
+  /// inline: a call passes planes through memory, which costs as much as the rest.)
   template <std::size_t kind, FaceType f, FaceType g>
   [[gnu::always_inline]] void remove(std::size_t index, Plane blocked, const TakenFaces* before,
                                      TakenFaces* here) const {

@@ -12,14 +12,14 @@ namespace {
 
 int normal_axis(FaceType square) { return square == 6 ? 0 : square == 5 ? 1 : 2; }
 
-/// The voxel on the other side of a square than the one at its cell.
+/// The voxel on the other side of a square, opposite the one at its cell.
 Imath::V3i voxel_before(const Square& s) {
   Imath::V3i cell = s.cell;
   cell[normal_axis(s.type)] -= 1;
   return cell;
 }
 
-/// The squares of one block in a slice of cells, 8 x 8 bits a type.
+/// The squares of one block in a slice of cells, 8 x 8 bits per type.
 struct SquareBits {
   int x;  // the block's first cell
   std::uint64_t xy, xz, yz;
@@ -38,8 +38,8 @@ void visit_row(const std::vector<SquareBits>& blocks, int y, int z, const F& vis
   }
 }
 
-/// Visits the squares of a slice of blocks across z by cell (x fastest), then type: not in the
-/// order of blocks, so that what is made of it commutes with translations of the grid.
+/// Visits the squares of a slice of blocks across z by cell (x fastest), then type: not by block,
+/// so that the results commute with translations of the grid.
 template <class F>
 void for_each_square(const CubicalComplex& complex, int slice, const F& visit) {
   const Imath::V3i n = complex.blocks();
@@ -60,8 +60,8 @@ void for_each_square(const CubicalComplex& complex, int slice, const F& visit) {
   }
 }
 
-/// What `look(square, add)` adds for the squares, in the order of falling distance of these to the
-/// scene, then of cells and types.
+/// The values that `look(square, add)` adds, ordered by descending distance of the squares to the
+/// scene, then by cell and type.
 template <class T, class Look>
 std::vector<T> farthest_first(const CubicalComplex& complex, const Grid3<std::uint16_t>& distance,
                               const ThreadPool* pool, const Look& look) {
@@ -97,7 +97,7 @@ std::vector<T> farthest_first(const CubicalComplex& complex, const Grid3<std::ui
   return all;
 }
 
-/// The squares of a spanning forest: components of the complement are its nodes.
+/// The squares of a spanning forest, whose nodes are the components of the complement.
 std::vector<Square> between_components(const CubicalComplex& thin,
                                        const Grid3<std::uint16_t>& distance,
                                        const ThreadPool* pool) {
@@ -120,7 +120,7 @@ std::vector<Square> between_components(const CubicalComplex& thin,
   return chosen;
 }
 
-/// One square of each part that hangs together through edges.
+/// One square of each part connected through edges.
 std::vector<Square> one_of_each_part(const CubicalComplex& thin,
                                      const Grid3<std::uint16_t>& distance, const ThreadPool* pool) {
   const auto all =
@@ -128,7 +128,7 @@ std::vector<Square> one_of_each_part(const CubicalComplex& thin,
   const Imath::V3i size = thin.size();
   DisjointSets parts(all.size());
   std::unordered_map<std::uint64_t, std::uint32_t> square_at_edge;
-  // The grid of cells, one more than voxels along each axis.
+  // The grid of cells has one more than voxels along each axis.
   const std::uint64_t w = static_cast<std::uint64_t>(size.x) + 1,
                       h = static_cast<std::uint64_t>(size.y) + 1;
   for (std::uint32_t i = 0; i < all.size(); ++i) {

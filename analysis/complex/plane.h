@@ -16,8 +16,8 @@ struct Plane {
 
   Plane() = default;
   Plane(Half l, Half h) : lo(l), hi(h) {}
-  // Member by member: as a mere aggregate GCC copies it through the stack in quarters, which costs
-  // the collapse more than half its speed.
+  // Member by member: GCC copies an aggregate through the stack in quarters, which more than halves
+  // the speed of the collapse.
   Plane(const Plane& o) : lo(o.lo), hi(o.hi) {}
   Plane& operator=(const Plane& o) {
     lo = o.lo;
@@ -44,7 +44,7 @@ inline Plane operator~(Plane a) { return {~a.lo, ~a.hi}; }
 inline Plane& operator&=(Plane& a, Plane b) { return a = a & b; }
 inline Plane& operator|=(Plane& a, Plane b) { return a = a | b; }
 
-/// The bits of the slice of a block that lies highest along an axis.
+/// The bits of the highest slice of a block along an axis.
 template <int axis>
 inline Plane high_slice() {
   constexpr std::uint64_t w = axis == 0   ? 0x8080808080808080u

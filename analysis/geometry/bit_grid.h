@@ -66,7 +66,7 @@ class BitGrid3 {
     block(v.x >> 3, v.y >> 3, v.z >> 3).z[static_cast<std::size_t>(v.z & 7)] &=
         ~(std::uint64_t{1} << bit(v.x, v.y));
   }
-  /// How many bits are 1.
+  /// Number of bits that are 1.
   std::size_t count() const {
     std::size_t n = 0;
     for (const BitBlock& b : data_) n += static_cast<std::size_t>(b.count());

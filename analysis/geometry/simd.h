@@ -8,7 +8,7 @@
 namespace lacuna {
 
 // Eight numbers in a register. std::experimental::simd is not used: in long loops GCC 12 calls a
-// function wherever it broadcasts a scalar, and a picture with probabilistic visibility takes a
+// function for each broadcast of a scalar, and a picture with probabilistic visibility takes a
 // third more time.
 
 /// The result of a comparison of eight floats.
@@ -19,7 +19,7 @@ inline Mask8 operator&&(Mask8 a, Mask8 b) { return {_mm256_and_ps(a.v, b.v)}; }
 inline bool any(Mask8 m) { return _mm256_movemask_ps(m.v) != 0; }
 /// Bit i is element i.
 inline unsigned movemask(Mask8 m) { return static_cast<unsigned>(_mm256_movemask_ps(m.v)); }
-/// The inverse, from the lowest eight bits.
+/// The inverse of movemask(), of the lowest eight bits.
 inline Mask8 mask_from_bits(unsigned bits) {
   const __m256i lane = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
   const __m256i set = _mm256_and_si256(_mm256_set1_epi32(static_cast<int>(bits)), lane);
@@ -37,7 +37,7 @@ struct Float8 {
   void store(float* to) const { _mm256_store_ps(to, v); }
   static Float8 load_unaligned(const float* from) { return _mm256_loadu_ps(from); }
   void store_unaligned(float* to) const { _mm256_storeu_ps(to, v); }
-  /// From and to eight half floats at any address, rounded to the nearest.
+  /// Eight half floats at any address; stores round to the nearest.
   static Float8 load_half(const std::uint16_t* from) {
     return _mm256_cvtph_ps(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from)));
   }
@@ -54,9 +54,9 @@ inline Float8 operator-(Float8 a) { return _mm256_xor_ps(a.v, _mm256_set1_ps(-0.
 // A comparison with NaN is false.
 inline Mask8 operator>(Float8 a, Float8 b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_GT_OQ)}; }
 inline Mask8 operator>=(Float8 a, Float8 b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_GE_OQ)}; }
-/// Where `m` holds `a`, else `b`.
+/// `a` where `m` holds, else `b`.
 inline Float8 select(Mask8 m, Float8 a, Float8 b) { return _mm256_blendv_ps(b.v, a.v, m.v); }
-/// Where `m` holds `a`, else 0, whatever `a` is there.
+/// `a` where `m` holds, else 0, also where `a` is NaN.
 inline Float8 keep_where(Mask8 m, Float8 a) { return _mm256_and_ps(m.v, a.v); }
 inline Float8 min(Float8 a, Float8 b) { return _mm256_min_ps(a.v, b.v); }
 inline Float8 max(Float8 a, Float8 b) { return _mm256_max_ps(a.v, b.v); }
@@ -74,7 +74,7 @@ inline float reduce_add(Float8 a) {
   return _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)));
 }
 
-/// Eight whole numbers of 32 bits, which wrap around.
+/// Eight 32-bit integers, which wrap around.
 struct Int8 {
   __m256i v;
 
@@ -116,7 +116,7 @@ inline Int8 lane_numbers() { return _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7); }
 inline Float8 permute(Float8 a, Int8 order) { return _mm256_permutevar8x32_ps(a.v, order.v); }
 inline Int8 permute(Int8 a, Int8 order) { return _mm256_permutevar8x32_epi32(a.v, order.v); }
 
-/// Of each eight bits the numbers of those that are set, ascending, one a byte.
+/// For each byte the indices of its set bits, ascending, one per byte.
 inline constexpr std::array<std::uint64_t, 256> set_lanes = [] {
   std::array<std::uint64_t, 256> table{};
   for (unsigned bits = 0; bits < 256; ++bits) {

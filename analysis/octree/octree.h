@@ -13,7 +13,7 @@ namespace lacuna {
 
 /// A sparse voxel octree (Kol et al. 2018, 3.1): only occupied cubes have a node.
 struct Octree {
-  static constexpr int most_levels = 12;  ///< below the root; TriangleBox is exact to there
+  static constexpr int most_levels = 12;  ///< below the root; the limit of TriangleBox's precision
 
   struct Node {
     Imath::V3f centre;              ///< of its cube, scene units
@@ -24,8 +24,8 @@ struct Octree {
   };
 
   std::vector<Node> nodes;           ///< the root, then level by level, each along the Morton curve
-  std::vector<std::uint32_t> first;  ///< of each level, and the end
-  Imath::V3d corner{0.0};            ///< of the root's cube, the lowest; scene units
+  std::vector<std::uint32_t> first;  ///< index of the first node of each level, then nodes.size()
+  Imath::V3d corner{0.0};            ///< lowest corner of the root's cube, scene units
   double side = 0;                   ///< of the root's cube
 
   int levels() const { return static_cast<int>(first.size()) - 2; }

@@ -14,9 +14,9 @@ namespace lacuna {
 
 namespace {
 
-constexpr int chunks = 64;  // into which the triangles are cut, whatever the threads
+constexpr int chunks = 64;  // of triangles, for any number of threads
 
-/// Calls `use(axis, first, count)` for the lines of cells that the triangles of a chunk meet.
+/// Calls `use(axis, first, count)` for the lines of cells that the triangles of a chunk intersect.
 template <class Use>
 void for_each_line(const TriangleSoup& soup, const OctreeCube& cube, int chunk, Use&& use) {
   const std::size_t n = soup.triangles.size();
@@ -53,7 +53,7 @@ OctreeCube octree_cube(const Imath::V3d& low, const Imath::V3d& high, double lev
   const Imath::V3d size = high - low;
   double longest = std::max({size.x, size.y, size.z});
   if (!(longest > 0)) longest = 1;
-  // Room for what rounding puts outside: no cell is cut off.
+  // A margin for rounding: no cell is cut off.
   OctreeCube cube;
   cube.levels = static_cast<int>(std::ceil(levels));
   cube.side = longest * (1 + 0x1p-16) * std::exp2(cube.levels - levels);
@@ -72,7 +72,7 @@ Octree surface_octree(const TriangleSoup& soup, double levels, const ThreadPool&
   });
   std::uint64_t total = 0;
   for (const std::uint64_t n : counts) total += n;
-  // The codes, twice while they are joined, and the nodes.
+  // The codes, twice while they are merged, and the nodes.
   const std::uint64_t bytes = total * (2 * sizeof(std::uint64_t) + 2 * sizeof(Octree::Node));
   if (bytes > byte_limit) {
     throw MemoryLimitError(

@@ -6,8 +6,8 @@
 
 namespace lacuna {
 
-/// The cube of a scene's octree: contains the bounding box of all triangles with a margin, and is
-/// as much larger as makes 2^levels leaves span that, where `levels` is no whole number.
+/// The cube of a scene's octree: contains the bounding box of all triangles with a margin. For a
+/// fractional `levels` it is larger, such that 2^levels leaves span the box.
 struct OctreeCube {
   Imath::V3d corner{0.0};
   double side = 1;

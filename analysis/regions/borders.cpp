@@ -59,7 +59,7 @@ Borders find_borders(const RegionLabels& labels, BorderFaces which, const Thread
       borders.voxels[add_one(next[group])] = voxel;
     });
   });
-  // Threads came in any order; the result does not tell.
+  // Threads append in any order; sorting makes the result deterministic.
   run_parallel(pool, static_cast<int>(labels.regions.size()), [&](int r) {
     for (std::size_t g = 6 * static_cast<std::size_t>(r); g < 6 * static_cast<std::size_t>(r) + 6;
          ++g)

@@ -7,8 +7,8 @@
 #include "analysis/regions/stray_pieces.h"
 #include "analysis/space/run_components.h"
 
-// The forest's grid of centres is turned into labels in place: roots of equal opening that touch
-// are components, every voxel is led to the first voxel of its root's component, and these get the
+// The forest's grid of centres is converted to labels in place: touching roots of equal opening are
+// components, every voxel points to the first voxel of its root's component, and these get the
 // component's number.
 
 namespace lacuna {
@@ -20,7 +20,7 @@ class Labeller {
   Labeller(OpeningForest& forest, const ThreadPool& pool)
       : opening_(forest.opening), lead_(forest.centre), pool_(pool) {}
 
-  /// Leaves the labels in the grid of centres.
+  /// Writes the labels into the grid of centres.
   std::vector<Region> run() {
     lead_roots();
     for_each_plane([&](std::size_t begin, std::size_t end) {
@@ -32,8 +32,8 @@ class Labeller {
   }
 
  private:
-  // Other threads may shorten the chain that is followed: each link is old or new, and both lead to
-  // the same end.
+  // Other threads may shorten the chain meanwhile: each link is old or new, and both lead to the
+  // same end.
   std::uint32_t lead(std::size_t i) const {
     return std::atomic_ref<std::uint32_t>(lead_[i]).load(std::memory_order_relaxed);
   }
@@ -60,7 +60,7 @@ class Labeller {
   void label_voxels();
 
   const Grid3<std::uint16_t>& opening_;
-  Grid3<std::uint32_t>& lead_;  // the voxel that each follows; itself at the end
+  Grid3<std::uint32_t>& lead_;  // the voxel that each points to; itself at the end
   const ThreadPool& pool_;
   std::vector<Region> regions_;
 };
@@ -85,7 +85,7 @@ void Labeller::lead_roots() {
 
 void Labeller::label_voxels() {
   for (std::size_t r = 0; r < regions_.size(); ++r)
-    lead_[regions_[r].root] = static_cast<std::uint32_t>(r);  // from here on a label, not an index
+    lead_[regions_[r].root] = static_cast<std::uint32_t>(r);  // a label from here on, not an index
   for_each_plane([&](std::size_t begin, std::size_t end) {
     auto next = std::lower_bound(regions_.begin(), regions_.end(), begin,
                                  [](const Region& r, std::size_t i) { return r.root < i; });

@@ -12,7 +12,7 @@ namespace lacuna {
 
 namespace {
 
-/// A face between two regions while it is sorted, seen from the lower one.
+/// A face between two regions during sorting, as a face of the lower one.
 struct Found {
   std::uint32_t a, b, voxel;
   std::uint8_t side;

@@ -15,7 +15,7 @@ namespace lacuna {
 struct Portal {
   std::uint32_t a = 0, b = 0;
   std::uint64_t first = 0;                 ///< into Portals::voxels
-  std::array<std::uint32_t, 6> by_side{};  ///< how many faces lie at each side of their voxels
+  std::array<std::uint32_t, 6> by_side{};  ///< number of faces at each side of their voxels
   std::uint64_t faces() const;
 };
 

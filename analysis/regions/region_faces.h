@@ -34,7 +34,7 @@ class RegionFaces {
  private:
   static constexpr int chunk = 16;
 
-  /// Whether `chunk` voxels along x and all their neighbours are alike: most are.
+  /// Whether `chunk` voxels along x and all their neighbours have one label, as most have.
   bool is_even(int x, int y, int z) const {
     const std::uint32_t *row = label_.row(y, z) + x, *low_y = label_.row(y - 1, z) + x,
                         *high_y = label_.row(y + 1, z) + x, *low_z = label_.row(y, z - 1) + x,

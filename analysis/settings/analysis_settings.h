@@ -6,7 +6,7 @@
 
 namespace lacuna {
 
-inline constexpr int max_resolution = 2048;  ///< distances keep to 16 bits
+inline constexpr int max_resolution = 2048;  ///< distances fit into 16 bits
 
 /// The distance of a voxel to the scene by which thinning decides which curves to keep.
 enum class ThinningDistance { l1, chebyshev };
@@ -53,7 +53,7 @@ struct AnalysisSettings {
   ThinningDistance distance = ThinningDistance::l1;
   NodeMapping mapping = NodeMapping::geodesic;
   double cluster_alpha = 0.2;
-  // As published it is otherwise, see its table:
+  // The published value differs, see describe():
   NodeRadius node_radius = NodeRadius::corner;
   bool operator==(const AnalysisSettings&) const = default;
 };
@@ -68,13 +68,13 @@ void describe(V& v, AnalysisSettings& s) {
   v("distance", s.distance, {.doc = "the distance that decides which curves thinning keeps"});
   v("mapping", s.mapping, {.doc = "the skeleton node that a voxel of empty space belongs to"});
   v("cluster_alpha", s.cluster_alpha,
-    {.doc = "by which share of its visibility cluster's largest radius a node's radius may fall "
-            "short of it (alpha of thesis 7.2.2)",
+    {.doc = "greatest relative difference between a node's radius and the largest radius of its "
+            "visibility cluster (alpha of thesis 7.2.2)",
      .min = 0,
      .max = 1});
   v("node_radius", s.node_radius,
-    {.doc = "the radius of a skeleton node, by which the skeleton is filtered and simplified and "
-            "visibility clusters and gates are made",
+    {.doc = "the radius of a skeleton node, used to filter and simplify the skeleton and to make "
+            "visibility clusters and gates",
      .published = "\"voxel\""});
 }
 

@@ -8,8 +8,8 @@
 
 namespace lacuna {
 
-/// Gives a graph, whose nodes are there already, its edges, in linear time. An edge may be listed
-/// several times, in either direction; edges from a node to itself are left out.
+/// Sets the edges of a graph, whose nodes are set already, in linear time. An edge may be listed
+/// several times, in either direction; edges from a node to itself are ignored.
 void set_edges(SkeletonGraph& graph, const std::vector<std::array<std::uint32_t, 2>>& edges);
 
 }  // namespace lacuna

@@ -18,9 +18,9 @@ void for_each_voxel_at(Imath::V3i corner, Use&& use) {
   for (int i = 0; i < 8; ++i) use(corner - Imath::V3i(i & 1, i >> 1 & 1, i >> 2));
 }
 
-/// Looks for the nearest scene voxel in boxes of voxels, halved again and again. A box is left out
-/// if it lies no nearer than what was found, or if the ball of L1 distance around its middle voxel
-/// shows that it is empty.
+/// Searches the nearest scene voxel in recursively halved boxes of voxels. Skips a box if it lies
+/// no nearer than the best voxel found, or if the L1 distance at its middle voxel shows that it is
+/// empty.
 class Search {
  public:
   Search(const Grid3<std::uint16_t>& l1, Imath::V3i corner, std::int64_t best)
@@ -28,7 +28,7 @@ class Search {
 
   std::int64_t best() const { return best_; }
 
-  /// Those voxels of [low, low + side) that are in the grid. `side` is a power of two.
+  /// Searches the voxels of [low, low + side) in the grid. `side` is a power of two.
   void visit(Imath::V3i low, int side) {
     std::int64_t distance2 = 0;
     int reach = 0;  // L1, from the middle to the farthest voxel

@@ -15,7 +15,7 @@ namespace lacuna {
 /// no Euclidean map is needed.
 std::int64_t squared_ball_radius(const Grid3<std::uint16_t>& l1, Imath::V3i corner);
 
-/// That of each of these corners.
+/// squared_ball_radius() of each of `corners`.
 std::vector<std::int64_t> squared_ball_radii(const Grid3<std::uint16_t>& l1,
                                              std::span<const Imath::V3i> corners,
                                              const ThreadPool& pool);

@@ -21,7 +21,7 @@ class Vertices {
   Vertices(const CubicalComplex& complex, const ThreadPool& pool);
 
   const std::vector<Imath::V3i>& cells() const { return cells_; }
-  /// The number of the vertex at a cell that holds one.
+  /// The number of the vertex at a cell, which must contain one.
   std::uint32_t at(Imath::V3i cell) const {
     const std::size_t block =
         complex_.index((cell.x >> 3) + 1, (cell.y >> 3) + 1, (cell.z >> 3) + 1);

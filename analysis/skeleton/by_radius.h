@@ -8,7 +8,7 @@
 
 namespace lacuna {
 
-/// The nodes, largest radius first, equal ones by index.
+/// The nodes by descending radius, then by index.
 inline std::vector<std::uint32_t> by_falling_radius(const SkeletonGraph& graph) {
   std::vector<std::uint32_t> order(graph.nodes());
   std::iota(order.begin(), order.end(), 0u);

@@ -30,7 +30,7 @@ class Growth {
   }
 
   void grow(std::uint32_t start) {
-    // The start is the widest node that is free.
+    // Starts at the free node of largest radius.
     const double least = (1 - alpha_) * static_cast<double>(graph_.radii[start]);
     queue_.clear();
     take(start);

@@ -7,7 +7,7 @@
 namespace lacuna {
 namespace {
 
-/// Of each node the node that it belongs to, itself included (lines 1-8 of Alg. 4).
+/// The node that each node belongs to, possibly itself (lines 1-8 of Alg. 4).
 std::vector<std::uint32_t> claim(const SkeletonGraph& graph) {
   std::vector<std::uint32_t> owner(graph.nodes(), no_node), found;
   for (const std::uint32_t centre : by_falling_radius(graph)) {
@@ -39,7 +39,7 @@ FilteredSkeleton filter_skeleton(const SkeletonGraph& graph) {
   filtered.parent.resize(graph.nodes());
   for (std::uint32_t n = 0; n < graph.nodes(); ++n) filtered.parent[n] = number[owner[n]];
 
-  // Lines 10-18: edges between parts become edges between the nodes that stand for them.
+  // Lines 10-18: edges between parts become edges between the nodes that represent them.
   std::vector<std::array<std::uint32_t, 2>> edges;
   for (std::uint32_t n = 0; n < graph.nodes(); ++n)
     for (const std::uint32_t m : graph.of(n))

@@ -37,7 +37,7 @@ struct SkeletonGraph {
   }
 };
 
-/// A node index that means: none.
+/// The node index for "no node".
 inline constexpr std::uint32_t no_node = 0xffffffff;
 
 }  // namespace lacuna

@@ -25,7 +25,7 @@ std::vector<bool> topology_nodes(const SkeletonGraph& graph) {
       }
   }
   for (std::uint32_t start = 0; start < graph.nodes(); ++start) {
-    if (ends[start] || reached[start]) continue;  // what is left lies on rings
+    if (ends[start] || reached[start]) continue;  // the remaining nodes lie on rings
     std::uint32_t widest = start, from = graph.of(start)[0];
     for (std::uint32_t n = start; !reached[n];) {
       reached[n] = true;

@@ -32,8 +32,8 @@ void start_from_nodes(Wavefront& front, const SkeletonGraph& graph, Imath::V3i s
   }
 }
 
-/// Voxels that paths over faces do not reach: few, if any. They are entered over edges and corners
-/// from what is labelled, then filled over faces, again and again.
+/// Labels the voxels that paths over faces do not reach, which are few: alternately enters them
+/// from labelled voxels over edges and corners, and fills them over faces.
 class Rest {
  public:
   Rest(Grid3<std::uint32_t>& map, std::vector<Imath::V3i> voxels) : map_(map) {
@@ -65,7 +65,7 @@ class Rest {
     open_.reset(e.voxel);
     queue_.push_back(e);
   }
-  /// Labels those of `voxels` that touch a labelled one, lowest labels first in the queue.
+  /// Labels each of `voxels` that touches a labelled one, in the order of labels in the queue.
   void enter(const std::vector<Imath::V3i>& voxels) {
     std::vector<Entry> entries;
     for (const Imath::V3i& v : voxels) {

@@ -9,10 +9,10 @@
 namespace lacuna {
 namespace {
 
-/// A walk along the line, from voxel to voxel. Each coordinate leads from the middle of a voxel to
-/// a face between two, so it changes by an odd number of halves, A, and the line crosses the planes
-/// across this axis at (2 i + 1) / A of its length; the last time at the corner. Places on the line
-/// are held as whole numbers: in 1 / (A_x A_y A_z).
+/// Traverses the voxels along the line. Each coordinate goes from the middle of a voxel to a face
+/// between two, so it changes by an odd number A of halves, and the line crosses the planes across
+/// this axis at (2 i + 1) / A of its length, the last at the corner. Positions on the line are
+/// integers, in units of 1 / (A_x A_y A_z).
 class Walk {
  public:
   Walk(const Grid3<std::uint16_t>& l1, Imath::V3i voxel, Imath::V3i corner,
@@ -35,7 +35,7 @@ class Walk {
     planes_ =
         static_cast<double>(length[0] + length[1] + length[2]) / (2 * static_cast<double>(end_));
     if (squared_radius == 0) return;
-    // The ball's part is left out, from where the line enters it, rounded up.
+    // The line ends where it enters the ball, rounded up.
     const std::int64_t length2 =
         length[0] * length[0] + length[1] * length[1] + length[2] * length[2];
     const double inside =
@@ -57,8 +57,8 @@ class Walk {
  private:
   static constexpr int worth_a_leap = 12;
 
-  /// Into the next voxel. Where the line meets an edge or a corner it touches all voxels around;
-  /// false if one of them, but the next, is scene.
+  /// Steps into the next voxel. At an edge or a corner the line touches all voxels around; false if
+  /// one of them, other than the next, is scene.
   bool cross() {
     const std::array<std::int64_t, 3> crossed{-std::int64_t{next_[0] == at_},
                                               -std::int64_t{next_[1] == at_},
@@ -67,7 +67,7 @@ class Walk {
     if ((all & (all - 1)) != 0) [[unlikely]]
       for (unsigned part = 1; part < all; ++part)
         if ((part & ~all) == 0 && *stepped(part) == 0) return false;
-    // Which axis it is cannot be predicted: no branches.
+    // The axis is unpredictable: no branches.
     here_ += (crossed[0] & step_[0]) + (crossed[1] & step_[1]) + (crossed[2] & step_[2]);
     for (std::size_t a = 0; a < 3; ++a) next_[a] += crossed[a] & apart_[a];
     return true;
@@ -77,8 +77,8 @@ class Walk {
     for (unsigned a = 0; a < 3; ++a) p += (axes >> a & 1) != 0 ? step_[a] : 0;
     return p;
   }
-  /// Crosses as many planes at once as lead to voxels nearer than the scene: in a stretch of length
-  /// s at most s / apart + 1 across each axis. True if this leads to the end.
+  /// Crosses as many planes at once as the distance to the scene allows: in a stretch of length s
+  /// at most s / apart + 1 across each axis. True if this reaches the end.
   bool leap() {
     at_ += static_cast<std::int64_t>((*here_ - 4) / planes_);
     if (at_ >= end_) return true;
@@ -93,8 +93,8 @@ class Walk {
 
   const std::uint16_t* here_;
   std::int64_t at_ = 0, end_;
-  std::array<std::int64_t, 3> next_;   // where the next plane across an axis is crossed
-  std::array<std::int64_t, 3> apart_;  // between two such places
+  std::array<std::int64_t, 3> next_;   // position of the next plane across each axis
+  std::array<std::int64_t, 3> apart_;  // between two such positions
   std::array<std::ptrdiff_t, 3> step_;
   double planes_;  // crossed in a stretch of length 1, on average
 };

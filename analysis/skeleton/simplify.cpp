@@ -74,7 +74,7 @@ std::optional<std::size_t> Simplifier::most_curved(Part part) const {
   return best;
 }
 
-/// The middle one of the nodes that lie in the ball of neither extremum.
+/// The middle one of the nodes in neither extremum's ball.
 std::optional<std::size_t> Simplifier::uncovered(Part part) const {
   std::vector<std::size_t> outside;
   for (std::size_t i = 1; i + 1 < part.size(); ++i)
@@ -84,7 +84,7 @@ std::optional<std::size_t> Simplifier::uncovered(Part part) const {
   return outside[outside.size() / 2];
 }
 
-/// Curvature first, on the whole line; coverage of the parts that this leaves.
+/// Splits the whole line by curvature, then the resulting parts by coverage.
 void Simplifier::split(Part line) {
   for (const NodeKind kind : {NodeKind::curvature, NodeKind::coverage}) {
     std::vector<Part> todo = parts(line);
@@ -100,7 +100,7 @@ void Simplifier::split(Part line) {
   }
 }
 
-/// A line cut at the nodes that are kept.
+/// Cuts a line at the nodes that are kept.
 std::vector<Part> Simplifier::parts(Part line) const {
   std::vector<Part> parts;
   for (std::size_t from = 0, i = 1; i < line.size(); ++i)
@@ -120,7 +120,7 @@ std::vector<Part> Simplifier::all_parts() const {
   return all;
 }
 
-/// Keeps the middle of parts that a graph without loops of one node and double edges would lose.
+/// Keeps the middle nodes of parts that would otherwise become self-loops or double edges.
 void Simplifier::keep_loops() {
   struct Bridge {
     std::uint32_t a, b;

@@ -24,16 +24,16 @@ struct SimplifiedSkeleton {
 };
 
 /// Noel 2015, 7.2.1. It has as many components and as many independent loops as `graph`, and every
-/// node of `graph` lies in the ball of one of the two extrema of its line. Decided here, where the
-/// text leaves it open:
+/// node of `graph` lies in the ball of one of the two extrema of its line. The thesis leaves open
+/// what is decided here:
 /// - A line is split at its node of largest curvature (eq. 156) while that is above 1; among equals
 ///   at the one nearest to the line's middle. The curvature of a node of radius 0 off the straight
 ///   line is infinite. Where both extrema are one node, the distance is to this node.
-/// - Then at the middle one of the nodes that no extremum covers, while there are any.
+/// - Then it is split at the middle one of the nodes that no extremum covers, until none is left.
 /// - A ring without any node of degree other than two starts at its node of largest radius.
-/// - Where a line would end where it began, or run beside another between the same two extrema,
-///   its middle node is kept as well, as a topology node: a graph without double edges would lose
-///   the loop.
+/// - Of a line that would begin and end at one node, or be parallel to another between the same two
+///   extrema, the middle node is kept as well, as a topology node: a graph without double edges
+///   would lose the loop.
 /// - s(n) is nearest in edges along the line; between equals the one of lower index.
 SimplifiedSkeleton simplify_skeleton(const SkeletonGraph& graph);
 

@@ -6,8 +6,8 @@
 
 namespace lacuna {
 
-/// Gives `taken` the nodes of `graph` that are `kept`, in their order and without edges, and
-/// `source` their indices in `graph`. Returns of each node of `graph` its index in `taken`, or
+/// Copies the `kept` nodes of `graph` to `taken`, in their order and without edges, and sets
+/// `source` to their indices in `graph`. Returns for each node of `graph` its index in `taken`, or
 /// no_node.
 inline std::vector<std::uint32_t> take_nodes(const SkeletonGraph& graph,
                                              const std::vector<bool>& kept, SkeletonGraph& taken,

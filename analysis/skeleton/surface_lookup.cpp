@@ -14,7 +14,7 @@ bool finite(Imath::V3d v) { return std::isfinite(v.x) && std::isfinite(v.y) && s
 constexpr std::size_t neighbours = 26;
 
 /// The offsets of the shell of radius 1, the nearest first, then in the order of
-/// for_each_in_shell(): of equal products the first is the one to take.
+/// for_each_in_shell(): among equal products the first wins.
 std::array<Imath::V3i, neighbours> nearest_first() {
   std::array<Imath::V3i, neighbours> offsets;
   std::size_t n = 0;
@@ -24,16 +24,16 @@ std::array<Imath::V3i, neighbours> nearest_first() {
   return offsets;
 }
 
-/// What BestAlongNormal finds in the shell of radius 1, most often at its first look into the map:
-/// eye paths ask this at every vertex.
+/// The result of BestAlongNormal in the shell of radius 1, usually with one read of the map: eye
+/// paths call this at every vertex.
 template <class Mapped>
 std::optional<Imath::V3i> best_neighbour(const Imath::V3i& s, const Imath::V3d& n,
                                          Mapped&& mapped) {
-  // The largest product is almost always that of the corner, edge or face which n points to, and
-  // mapped; of those along which n has no part none is nearer.
+  // The corner, edge or face that n points to has the largest product and is almost always mapped;
+  // along axes without a component of n no other is nearer.
   const Imath::V3i corner = sign_of(n);
   const double most = Imath::V3d(corner).dot(n);
-  const auto is_needed = [&](int a) {  // not lost in rounding
+  const auto is_needed = [&](int a) {  // not lost by rounding
     Imath::V3i nearer = corner;
     nearer[a] = 0;
     return corner[a] == 0 || most > Imath::V3d(nearer).dot(n);

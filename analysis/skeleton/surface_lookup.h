@@ -28,17 +28,17 @@ class SurfaceLookup {
 
   /// The voxel of empty space in front of a surface point: the mapped voxel v around the point's
   /// own voxel s with the largest (v - s) . n, n the normal turned to the side of `w` (eq.
-  /// 152-154). `x` in scene units; `n` and `w` of any length; `w` leads from the surface to where
-  /// it is seen from. Unlike the thesis, voxels behind the surface or beside it (product not above
-  /// 0) are not taken: they may lie beyond a wall. If none of the 26 neighbours will do, shells
-  /// further out are tried, up to lookup_reach. If s itself is mapped, it is taken. Among equals
-  /// the nearest, then the first in memory. None, if there is no such voxel, if `x` lies more than
-  /// half a voxel outside the grid (nearer ones, by rounding, belong to the outermost voxels), if
-  /// `n` is 0, or if x, n or w is not finite.
+  /// 152-154). `x` in scene units; `n` and `w` of any length; `w` points from the surface to the
+  /// viewer. Unlike the thesis, excludes voxels behind the surface or beside it (product not above
+  /// 0), which may lie beyond a wall. If none of the 26 neighbours qualifies, searches further
+  /// shells, up to lookup_reach. Returns s itself if it is mapped. Among equals returns the
+  /// nearest, then the first in memory. None if there is no such voxel, if `x` lies more than half
+  /// a voxel outside the grid (nearer points, by rounding, belong to the outermost voxels), if `n`
+  /// is 0, or if x, n or w is not finite.
   std::optional<Imath::V3i> voxel(Imath::V3d x, Imath::V3d n, Imath::V3d w) const;
 
-  /// Prefetches from the map what voxel() of the same arguments looks at first, and returns the
-  /// index of the voxel that it most often finds; none, if it finds none.
+  /// Prefetches the map entries that voxel() with the same arguments reads first, and returns the
+  /// index of its most likely result; none if `x` lies outside the grid.
   std::optional<std::size_t> prefetch(const Imath::V3d& x, const Imath::V3d& n,
                                       const Imath::V3d& w) const {
     const Imath::V3i size = map_->size();

@@ -23,7 +23,7 @@ std::int64_t l1_length(Imath::V3i d) {
   return std::int64_t{std::abs(d.x)} + std::abs(d.y) + std::abs(d.z);
 }
 
-/// Finds the nodes around a node that its voxels may try: all at up to 4 edges from it, then at
+/// Finds the candidate nodes for the voxels of a node: all at up to 4 edges from it, then at
 /// distances that grow by a quarter.
 class Candidates {
  public:
@@ -55,7 +55,7 @@ class Candidates {
 
  private:
   const SkeletonGraph& graph_;
-  std::vector<std::uint32_t> met_;  // by which search
+  std::vector<std::uint32_t> met_;  // the search that last reached each node
   std::vector<std::uint32_t> found_, level_, next_;
 };
 
@@ -67,7 +67,7 @@ struct Unseeing {
 /// Some planes of the map.
 class Slab {
  public:
-  /// `clear`: of each node the square of a radius within which nothing is.
+  /// `clear`: for each node the squared radius of an empty ball around it.
   Slab(Grid3<std::uint32_t>& map, const SkeletonGraph& graph, const Grid3<std::uint16_t>& l1,
        const std::vector<std::int64_t>& clear)
       : map_(map), graph_(graph), l1_(l1), clear_(clear) {}
@@ -133,7 +133,7 @@ SightReport prefer_visible_nodes(Grid3<std::uint32_t>& map, const SkeletonGraph&
     throw std::invalid_argument(
         fmt::format("a node map of {} x {} x {} voxels, distances of {} x {} x {}", map.size().x,
                     map.size().y, map.size().z, l1.size().x, l1.size().y, l1.size().z));
-  // Not the nodes' own radii, which may reach into the scene (NodeRadius::voxel).
+  // Not the nodes' own radii, whose balls may reach into the scene (NodeRadius::voxel).
   const std::vector<std::int64_t> clear = squared_ball_radii(l1, graph.corners, pool);
   const int depth = map.size().z;
   const int slabs = (depth + planes_at_a_time - 1) / planes_at_a_time;

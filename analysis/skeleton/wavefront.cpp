@@ -146,8 +146,8 @@ bool Wavefront::step(std::size_t block) {
   return true;
 }
 
-/// Labels the way from a voxel back to the next one that has a label. Ways meet: several threads
-/// may label a voxel, all alike.
+/// Labels the path from a voxel back to the first labelled one. Paths merge: several threads may
+/// label a voxel, with the same label.
 void Wavefront::trace(Imath::V3i voxel, std::vector<Imath::V3i>& way) {
   way.clear();
   std::uint32_t label = no_node;
@@ -172,7 +172,7 @@ void Wavefront::label_across_planes(int slice) {
   }
 }
 
-/// Labels what was reached along y, from where ways do not leave the plane any more, then along x.
+/// Labels the voxels reached along y, whose paths stay in the plane, then those along x.
 void Wavefront::label_plane(int z) {
   std::vector<Imath::V3i> way;
   const auto lane = static_cast<std::size_t>(z & 7);

@@ -12,33 +12,33 @@
 
 namespace lacuna {
 
-/// A front that walks through a domain over shared faces from labelled voxels, all voxels of one
+/// A breadth-first propagation of labels through a domain over shared faces, all voxels of one
 /// distance at a time. A voxel takes the label of a neighbour that was reached one step before, of
 /// the first in the order -x, +x, -y, +y, -z, +z.
 ///
-/// Works on bit planes of 8^3 voxels, and only where the front is. The planes hold which neighbour
-/// that was, as 3 bits a voxel; labels follow at the end: because x comes first, then y, most of
-/// them are runs along x, and nearly all the rest stays in a plane.
+/// Works on bit planes of 8^3 voxels, and only where the front is. The planes store which neighbour
+/// that was, 3 bits per voxel; labels are written at the end: because x comes first, then y, most
+/// of them are runs along x, and nearly all the rest stays in a plane.
 class Wavefront {
  public:
   /// `labels`, as large as the domain and no_node everywhere, receives the labels.
   Wavefront(const BitGrid3& domain, Grid3<std::uint32_t>& labels);
 
-  /// Gives a voxel its label, at distance 0; nothing if it is not in the domain or has one.
+  /// Labels a voxel, at distance 0, unless it lies outside the domain or has a label.
   void start(Imath::V3i voxel, std::uint32_t label);
-  /// Walks until nothing more can be reached, and labels all that was.
+  /// Propagates until no more voxel can be reached, and labels the reached ones.
   void run(const ThreadPool& pool);
   /// The voxels of the domain that were not reached, by block.
   std::vector<Imath::V3i> unreached() const;
 
-  /// Bytes that a front takes in a grid of that size.
+  /// Memory of a front in a grid of that size, bytes.
   static std::uint64_t bytes(Imath::V3i size);
 
  private:
   struct Block {
     Plane open;  // in the domain, not reached
-    /// Where a voxel was reached from, a bit of it in each plane: 1 to 6 in the order of preference
-    /// (1 is -x, 2 is +x), 7 at a start, 0 where it was not.
+    /// The neighbour from which a voxel was reached, one bit per plane: 1 to 6 in the order of
+    /// preference (1 is -x, 2 is +x), 7 at a start, 0 if it was not reached.
     std::array<BitBlock, 3> from;
   };
 
@@ -59,7 +59,7 @@ class Wavefront {
   void label_row(int y, int z);
 
   Grid3<std::uint32_t>& labels_;
-  // Blocks lie in a ring of empty ones.
+  // Blocks are surrounded by a ring of empty ones.
   Imath::V3i ringed_;
   std::array<std::ptrdiff_t, 3> stride_;
   std::vector<Block> blocks_;

@@ -8,7 +8,7 @@ namespace lacuna {
 /// The connected components of the 1 bits of a grid.
 struct Components : RunComponents {
   std::vector<std::uint64_t> voxels;  ///< of each component
-  std::vector<bool> touches_border;   ///< whether it holds a voxel at a face of the grid
+  std::vector<bool> touches_border;   ///< whether it contains a voxel at a face of the grid
 };
 
 /// Throws as label_runs().

@@ -18,7 +18,7 @@ namespace {
 using Row = std::uint16_t*;
 using ConstRow = const std::uint16_t*;
 
-/// What lies outside the grid has distance 0.
+/// The outside of the grid has distance 0.
 void limit_to_one(Row __restrict row, int width) {
   for (int x = 0; x < width; ++x) row[x] = std::min<std::uint16_t>(row[x], 1);
 }
@@ -29,7 +29,7 @@ void step_over_face(Row __restrict row, ConstRow __restrict from, int width) {
     row[x] = std::min(row[x], static_cast<std::uint16_t>(from[x] + 1));
 }
 
-/// row = min(row, 1 + the least of `from` at x - 1, x, x + 1).
+/// row = min(row, 1 + min of `from` at x - 1, x, x + 1).
 void step_over_corner(Row __restrict row, ConstRow __restrict from, int width) {
   row[0] = std::min<std::uint16_t>(row[0], 1);
   row[width - 1] = std::min<std::uint16_t>(row[width - 1], 1);
@@ -39,7 +39,7 @@ void step_over_corner(Row __restrict row, ConstRow __restrict from, int width) {
   }
 }
 
-/// As step_over_corner() from three rows side by side.
+/// step_over_corner() from three adjacent rows.
 void step_over_corner(Row __restrict row, ConstRow __restrict a, ConstRow __restrict b,
                       ConstRow __restrict c, int width) {
   row[0] = std::min<std::uint16_t>(row[0], 1);
@@ -73,7 +73,7 @@ void step_face_rows(Grid3<std::uint16_t>& map, int z, int from, int y0, int y1) 
 
 void step_corner_rows(Grid3<std::uint16_t>& map, int z, int from, int y0, int y1) {
   const int width = map.size().x, height = map.size().y;
-  // Rows at the rim are at most 1 already, wherever they come from.
+  // Rows at the rim are at most 1 already.
   for (int y = std::max(y0, 1); y < std::min(y1, height - 1); ++y)
     step_over_corner(map.row(y, z), map.row(y - 1, from), map.row(y, from), map.row(y + 1, from),
                      width);

@@ -9,8 +9,8 @@
 namespace lacuna {
 
 /// Distance maps (Noel 2015, 6.2.2, 10.3.1): for every voxel the distance to the nearest voxel that
-/// is not in the domain, between voxel centres, in voxels; 0 outside the domain. What lies outside
-/// the grid counts as scene, so a voxel at the grid's face has at most distance 1. Exact, in linear
+/// is not in the domain, between voxel centres, in voxels; 0 outside the domain. The outside of the
+/// grid counts as scene, so a voxel at the grid's face has at most distance 1. Exact, in linear
 /// time, the same bits for any number of threads. All throw MemoryLimitError if they would take
 /// more than `byte_limit` bytes.
 

@@ -99,13 +99,13 @@ void check(const Seed& seed, std::size_t i) {
   if (!seed.normal) return;
   const Imath::V3d& n = *seed.normal;
   if (!finite(n) || n == Imath::V3d(0.0))
-    throw std::invalid_argument(fmt::format(
-        "seed {}: normal ({}, {}, {}) is to be finite and other than 0", i, n.x, n.y, n.z));
+    throw std::invalid_argument(
+        fmt::format("seed {}: normal ({}, {}, {}) must be finite and not 0", i, n.x, n.y, n.z));
 }
 
 /// Clears the runs of components that are not kept.
 void drop(BitGrid3& grid, const Components& c, const Selection& selection, const ThreadPool& pool) {
-  run_parallel(pool, grid.blocks().z, [&](int bz) {  // a thread has its blocks for itself
+  run_parallel(pool, grid.blocks().z, [&](int bz) {  // threads share no block
     for (int z = 8 * bz; z < std::min(8 * bz + 8, c.size.z); ++z)
       for (int y = 0; y < c.size.y; ++y)
         for (std::uint32_t i = c.first[c.row(y, z)]; i < c.first[c.row(y, z) + 1]; ++i)

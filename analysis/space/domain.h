@@ -39,11 +39,10 @@ inline constexpr int seed_reach = 8;
 /// corners) that a seed selects:
 /// - A seed in an empty voxel selects the component of this voxel.
 /// - A seed with a normal in a scene voxel takes the empty voxel v of the nearest cubic shell
-/// around
-///   its own voxel s that has one on the normal's side, by the largest (v - s) . normal (Noel 2015,
-///   eq. 154), the first in memory among equals. What lies outside the grid is empty, too.
-/// - A seed without a normal in a scene voxel may look to any side: it selects all components that
-///   meet the nearest shell with an empty voxel.
+///   around its own voxel s that has one on the normal's side, by the largest (v - s) . normal
+///   (Noel 2015, eq. 154), the first in memory among equals. The outside of the grid is empty, too.
+/// - A seed without a normal in a scene voxel selects all components that intersect the nearest
+///   shell with an empty voxel, on any side.
 /// - A seed outside the grid, and light from infinity, selects every component that touches the
 ///   grid's border.
 /// Without seeds nothing is kept. Throws std::invalid_argument on a seed that is not finite or has

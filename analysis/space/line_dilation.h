@@ -6,8 +6,8 @@
 
 namespace lacuna {
 
-/// Alg. 7 of Noel 2015 in both directions of a line: every ball spreads over the positions nearer
-/// than its radius, the largest wins, and a position keeps its own where none is larger.
+/// Alg. 7 of Noel 2015 in both directions of a line: each position takes the largest ball whose
+/// radius exceeds its distance, and keeps its own unless that is larger.
 class LineDilation {
  public:
   /// For lines of up to `length` positions.
@@ -28,7 +28,7 @@ class LineDilation {
 
   template <int step>
   void scan(std::uint16_t* radius, std::uint32_t* centre, int n) {
-    // The balls that a later position may take, by falling radius and so by rising end.
+    // The balls that a later position may take, by descending radius and so by ascending end.
     std::size_t front = 0, back = 0;
     for (int i = 0; i < n; ++i, radius += step, centre += step) {
       const std::uint16_t r = *radius;

@@ -9,7 +9,7 @@
 
 namespace lacuna {
 
-/// A step of the analysis would take more memory than its caller allows; it has not allocated it.
+/// A step of the analysis would need more memory than its caller allows; thrown before allocation.
 /// The message names the step, the grid, the memory needed and the limit.
 class MemoryLimitError : public std::runtime_error {
  public:
@@ -18,7 +18,7 @@ class MemoryLimitError : public std::runtime_error {
 
 inline constexpr std::uint64_t no_memory_limit = std::numeric_limits<std::uint64_t>::max();
 
-/// The longest side of a grid that coordinates of 16 bits reach.
+/// The longest side of a grid with coordinates of 16 bits.
 inline constexpr int max_grid_side = 65535;
 
 /// Number of voxels of a grid. Throws std::invalid_argument on a side outside [0, max_grid_side].

@@ -10,24 +10,23 @@
 #include "analysis/space/sweep.h"
 
 // Alg. 6 of Noel 2015 (its line 8 should read [1 ... h]). One pass an axis gives definition 10.4
-// exactly: a ball that loses a position to a larger one is contained there, along the axes that
-// follow, in what the larger one covers; and a ball that a scan spreads on from a position that it
-// has reached stays within its own reach. Balls are cubes of empty voxels, so none passes a scene
-// voxel.
+// exactly: where a ball loses a position to a larger one, the larger one covers it there along the
+// following axes; and a ball that a scan propagates from a reached position stays within its own
+// extent. Balls are cubes of empty voxels, so none passes a scene voxel.
 
 namespace lacuna {
 
 namespace {
 
-/// Dilates up to `lanes` neighbouring lines that do not run along x: they are copied side by side
-/// and back.
+/// Dilates up to `lanes` neighbouring lines across x, by copying them side by side and back.
 class LinesAcross {
  public:
   static constexpr int lanes = 32;
 
   explicit LinesAcross(int length)
       : length_(length),
-        pitch_(static_cast<std::size_t>(length) + 24),  // off powers of two, which share cache sets
+        pitch_(static_cast<std::size_t>(length) +
+               24),  // not a power of two, which would share cache sets
         radius_(pitch_ * lanes),
         centre_(pitch_ * lanes),
         dilate_(length) {}
@@ -57,7 +56,7 @@ class LinesAcross {
   LineDilation dilate_;
 };
 
-/// Every voxel its own ball, then the lines along x and along y.
+/// Sets every voxel to its own ball, then dilates the lines along x and y.
 void dilate_plane(OpeningForest& forest, const Grid3<std::uint16_t>& chebyshev, int z) {
   const Imath::V3i size = chebyshev.size();
   const auto width = static_cast<std::size_t>(size.x);

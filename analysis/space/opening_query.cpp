@@ -55,13 +55,13 @@ struct OpeningQuery::Search {
   const OpeningQuery& query;
   Imath::V3i x;
   int best;
-  int enough = 65535;  // the search may end once `best` has come so far
+  int enough = 65535;  // the search may end once `best` reaches this
 
   bool worth(int largest, int distance) const {
     return largest > best && distance < largest && best < enough;
   }
 
-  /// Up the slope of D_1 as far as its balls hold x.
+  /// Ascends D_1 while its balls contain x.
   void climb() {
     const Grid3<std::uint16_t>& d = *query.l1_;
     for (Imath::V3i at = x;;) {

@@ -15,12 +15,12 @@ class OpeningQuery {
   /// `l1` is the result of l1_distance(), held by reference; it must outlive the query.
   OpeningQuery(const Grid3<std::uint16_t>& l1, const ThreadPool& pool);
 
-  /// max { D_1(y) : |x - y|_1 < D_1(y) }: the radius of the largest ball in the domain that holds
-  /// `voxel`; 0 outside the domain. The voxel must lie in the grid. Safe from several threads.
+  /// max { D_1(y) : |x - y|_1 < D_1(y) }: the radius of the largest ball in the domain that
+  /// contains `voxel`; 0 outside the domain. The voxel must lie in the grid. Thread-safe.
   std::uint16_t operator()(Imath::V3i voxel) const;
 
-  /// Whether that radius is at least `radius` (> 0). Much faster: smaller balls are skipped, and
-  /// the first large enough one ends the search.
+  /// Whether that radius is at least `radius` (> 0). Much faster: it skips smaller balls, and the
+  /// first one large enough ends the search.
   bool reaches(Imath::V3i voxel, int radius) const;
 
  private:

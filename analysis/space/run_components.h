@@ -15,7 +15,7 @@ namespace lacuna {
 
 enum class Connectivity { faces, corners };  ///< 6: through shared faces; 26: shared corners
 
-/// A component that means: the voxel is in none.
+/// The component of voxels in no component.
 inline constexpr std::uint32_t no_component = 0xffffffff;
 
 /// Voxels [x0, x1) of one line along x, all in one component.
@@ -88,8 +88,8 @@ class EqualValueRows {
   }
 };
 
-/// Finds the runs of a grid and joins those that touch: union-find by their index, with `component`
-/// the index of a run of the same component that comes no later. `Rows` as label_runs() has it.
+/// Finds the runs of a grid and joins those that touch: union-find by index, where `component` is
+/// the index of a run of the same component, not after its own. `Rows` as for label_runs().
 template <class Rows>
 class RunLabeller {
   RunComponents& c_;
@@ -105,7 +105,7 @@ class RunLabeller {
       const ComponentRun &p = c_.runs[a], &q = c_.runs[b];
       if (p.x0 < q.x1 + reach_ && q.x0 < p.x1 + reach_ && source.linked(p, q))
         join_sets(a, b, link);
-      // Runs of a row are disjoint, so the one that ends first meets nothing further on.
+      // Runs of a row are disjoint, so the one that ends first touches no later run.
       ++(p.x1 <= q.x1 ? a : b);
     }
   }
@@ -114,7 +114,7 @@ class RunLabeller {
   RunLabeller(RunComponents& c, const Rows& rows, Connectivity connectivity, const ThreadPool& pool)
       : c_(c), rows_(rows), reach_(connectivity == Connectivity::corners ? 1 : 0), pool_(pool) {}
 
-  /// Counts the runs of each row and makes offsets of the counts.
+  /// Counts the runs of each row and converts the counts to offsets.
   void count_runs(std::uint64_t byte_limit) {
     const auto rows = static_cast<std::size_t>(c_.size.y) * static_cast<std::size_t>(c_.size.z);
     require_memory("components", c_.size, (rows + 1) * sizeof(std::uint32_t), byte_limit);
@@ -148,7 +148,7 @@ class RunLabeller {
       }
     });
   }
-  /// Slabs of planes each by itself, then what joins them.
+  /// Joins runs within slabs of planes in parallel, then across their boundaries.
   void join_runs() {
     const auto join_within = [&](int z) {
       Rows source = rows_;
@@ -177,7 +177,7 @@ class RunLabeller {
     });
     for (int s = 1; s < slabs; ++s) join_to_before(cut(s));
   }
-  /// From roots to numbers. A root comes before the runs that lead to it.
+  /// Replaces roots by component numbers. A root precedes the runs that point to it.
   void number_components() {
     for (std::uint32_t i = 0; i < c_.runs.size(); ++i) {
       std::uint32_t& component = c_.runs[i].component;
@@ -185,7 +185,7 @@ class RunLabeller {
         component = static_cast<std::uint32_t>(c_.first_run.size());
         c_.first_run.push_back(i);
       } else {
-        component = c_.runs[component].component;  // which has its number already
+        component = c_.runs[component].component;  // already numbered
       }
     }
   }
@@ -195,9 +195,8 @@ class RunLabeller {
 /// `byte_limit` bytes, std::invalid_argument on a side above max_grid_side. `Rows` says what the
 /// runs are; each thread has a copy:
 ///   for_each_run(y, z, visit)  calls visit(x0, x1) for the runs of a row, ascending;
-///   read_links(y, z, axis)     what follows is about the rows (y, z) and the one before it along
-///                              `axis` (1: y, 2: z);
-///   linked(here, before)       whether two runs of these rows that touch are of one component; for
+///   read_links(y, z, axis)     selects row (y, z) and the one before it along `axis` (1: y, 2: z);
+///   linked(here, before)       whether touching runs of these rows are of one component; for
 ///                              Connectivity::corners always true.
 template <class Rows>
 RunComponents label_runs(Imath::V3i size, const Rows& rows, Connectivity connectivity,

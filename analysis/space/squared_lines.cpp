@@ -8,7 +8,7 @@ namespace lacuna {
 
 namespace {
 
-/// Up to this distance lines search outwards, beyond it they take the envelope. An estimate.
+/// Up to this distance run() searches outwards, beyond it it takes the envelope. An estimate.
 constexpr std::uint32_t search_limit = 160;
 
 }  // namespace
@@ -55,7 +55,7 @@ void SquaredLines::lower_envelope() {
 }
 
 void SquaredLines::lower_envelope(std::size_t lane) {
-  const int n = length_ + 2;  // position 0 is outside, and so is n - 1
+  const int n = length_ + 2;  // positions 0 and n - 1 are outside
   line_.front() = 0;
   line_.back() = 0;
   for (int i = 0; i < length_; ++i) line_[static_cast<std::size_t>(i) + 1] = at(i)[lane];
@@ -66,7 +66,7 @@ void SquaredLines::lower_envelope(std::size_t lane) {
   std::size_t q = 0;
   vertex_[0] = 0;
   begin_[0] = 0;
-  // The vertex at 0 is lowest at 0 for good, so one parabola always stays.
+  // The parabola at 0 stays lowest at 0, so one always remains.
   for (int u = 1; u < n; ++u) {
     while (q > 0 && height(begin_[q], vertex_[q]) > height(begin_[q], u)) --q;
     const std::int64_t i = vertex_[q], j = u;

@@ -15,14 +15,14 @@ class SquaredLines {
   /// Lines of `length` positions.
   explicit SquaredLines(int length);
 
-  /// Value of position i in [0, length) of a line; whoever runs a pass fills all lanes.
+  /// Values of position i in [0, length), one per line; the caller of a pass fills all lanes.
   std::uint32_t* at(int i) { return &values_[static_cast<std::size_t>(i) * lanes]; }
 
-  /// All lines at once, from each position outwards until no farther position can be nearer: fast
-  /// where distances are short. The result is read from at().
+  /// Processes all lines at once, from each position outwards until no farther position can be
+  /// nearer: fast for short distances. The result is in at().
   void search_outwards();
-  /// Line after line by the lower envelope of parabolas (Meijster, Roerdink and Hesselink 2000): in
-  /// linear time.
+  /// Processes each line by the lower envelope of parabolas (Meijster, Roerdink and Hesselink
+  /// 2000), in linear time.
   void lower_envelope();
   /// The faster of the two.
   void run();
@@ -32,7 +32,7 @@ class SquaredLines {
 
   int length_;
   std::vector<std::uint32_t> values_, result_;
-  std::vector<std::int64_t> line_;  // of one lane, with the two positions outside
+  std::vector<std::int64_t> line_;  // one lane, with the two positions outside
   std::vector<int> vertex_,
       begin_;  // parabolas of the envelope: where its vertex is, and its start
 };

@@ -30,7 +30,7 @@ void run_parallel(const ThreadPool& pool, int n, const std::function<void(int)>&
 void sweep(const PlaneSweep& pass, const ThreadPool& pool) {
   const int height = pass.size.y, depth = pass.size.z;
   const int blocks = block_count(height, pass.reach, pool.threads());
-  // One thread prepares a plane just before it is used, while it is in its cache.
+  // With one thread, prepares each plane just before its use, while it is in the cache.
   const int together = blocks == 1 && pool.threads() == 1 ? 1 : planes_at_a_time;
   const auto cut = [&](int b) { return static_cast<int>(std::int64_t{height} * b / blocks); };
   for (int first = 0; first < depth; first += together) {

@@ -9,7 +9,7 @@ namespace lacuna {
 
 enum class SweepDirection { ascending, descending };
 
-/// Runs `body(i)` for i in [0, n), without the pool where it cannot help.
+/// Runs `body(i)` for i in [0, n), without the pool if it cannot help.
 void run_parallel(const ThreadPool& pool, int n, const std::function<void(int)>& body);
 
 /// One pass over the planes of a grid where plane z depends on the plane before it, z - 1
@@ -17,7 +17,7 @@ void run_parallel(const ThreadPool& pool, int n, const std::function<void(int)>&
 struct PlaneSweep {
   Imath::V3i size;
   SweepDirection direction;
-  int reach;  ///< a row depends on rows up to so far from it in the plane before: 0 or 1
+  int reach;  ///< a row depends on rows up to this distance in the plane before: 0 or 1
   /// Called once for every plane before its steps, in any order, also while steps of earlier planes
   /// have not run. May be empty.
   std::function<void(int z)> prepare;
@@ -25,9 +25,9 @@ struct PlaneSweep {
   std::function<void(int z, int y0, int y1)> step;
 };
 
-/// Threads take blocks of rows through several planes at a time: each block shrinks by `reach` rows
-/// a plane, then the gaps between blocks, which grow as fast, are filled. So threads meet once in
-/// many planes.
+/// Each thread processes a block of rows through several planes: the block shrinks by `reach` rows
+/// per plane, and the gaps between blocks, which grow at the same rate, are filled afterwards. So
+/// threads synchronise once in many planes.
 void sweep(const PlaneSweep& pass, const ThreadPool& pool);
 
 }  // namespace lacuna

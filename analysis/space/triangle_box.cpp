@@ -6,8 +6,8 @@ namespace {
 
 constexpr double unlimited = 1e300;
 
-/// Below this, an axis says nothing of a dimension that the bounding box does not: over 4096 cells
-/// it makes less than the slack.
+/// Below this an axis constrains a dimension no more than the bounding box does: over 4096 cells it
+/// contributes less than the slack.
 constexpr double negligible = 1e-13;
 
 double largest(Imath::V3d v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }

@@ -14,14 +14,14 @@ struct CellBox {
   int side(int axis) const { return high[axis] - low[axis]; }
 };
 
-/// Which closed unit cells meet a closed triangle, by separating axes: the cell's three, the
-/// triangle's normal, and the normals of its edges projected along the cell's axes (Schwarz and
-/// Seidel 2010). A triangle may be degenerate: a segment or a point.
+/// Finds the closed unit cells that intersect a closed triangle, by separating axes: the cell's
+/// three, the triangle's normal, and the normals of its edges projected along the cell's axes
+/// (Schwarz and Seidel 2010). A triangle may be degenerate: a segment or a point.
 ///
-/// In double, not in integers on a lattice, so that triangles stay where they are. Every comparison
-/// is relaxed by `slack`, which passes by far the rounding of all that is computed while
-/// coordinates stay within 4096 cells (about 1e-11: axes are scaled by the edges they come from, so
-/// a sliver's uncertain normal has a small weight): a cell that meets the triangle is never missed.
+/// In double, not in integers on a lattice, so that triangles are not moved. Every comparison is
+/// relaxed by `slack`, which by far exceeds the rounding error while coordinates stay within 4096
+/// cells (about 1e-11: axes are scaled by the edges they come from, so a sliver's uncertain normal
+/// has a small weight): a cell that intersects the triangle is never missed.
 class TriangleBox {
  public:
   static constexpr double slack = 1e-9;
@@ -29,11 +29,11 @@ class TriangleBox {
   /// The triangle's corners, in cells.
   explicit TriangleBox(const std::array<Imath::V3d, 3>& corners);
 
-  /// The cells that meet the triangle's bounding box.
+  /// The cells that intersect the triangle's bounding box.
   const CellBox& bounds() const { return bounds_; }
 
   /// Calls emit(axis, first, count) for lines of `count` cells along `axis` from cell `first` on:
-  /// all cells of `clip` that meet the triangle, each once.
+  /// all cells of `clip` that intersect the triangle, each once.
   template <class Emit>
   void for_each_line(const CellBox& clip, Emit&& emit) const {
     CellBox box;
@@ -44,7 +44,7 @@ class TriangleBox {
     }
     int thick = 0;
     for (int a = 0; a < 3; ++a) thick += bounds_.side(a) > 1 ? 1 : 0;
-    if (thick <= 1) {  // one line of cells: the triangle, which is connected, meets each of them
+    if (thick <= 1) {  // one line of cells: the triangle, which is connected, intersects each
       const int along = bounds_.side(0) > 1 ? 0 : bounds_.side(1) > 1 ? 1 : 2;
       emit(along, box.low, box.side(along));
     } else {

@@ -13,8 +13,8 @@
 #include "analysis/space/sweep.h"
 #include "analysis/space/triangle_box.h"
 
-// Triangles are first sorted into tiles of voxels, a large one into each tile that it meets; then a
-// thread fills a tile at a time, which nobody else writes.
+// Triangles are first sorted into tiles of voxels, a large one into each tile that it intersects;
+// then each thread fills one tile at a time, which no other thread writes.
 
 namespace lacuna {
 
@@ -22,9 +22,9 @@ namespace {
 
 constexpr int tile_side = 32;  // voxels: whole blocks of a BitGrid3
 static_assert(tile_side % BitBlock::side == 0);
-constexpr int max_chunks = 32;  // into which the triangles are cut for sorting
+constexpr int max_chunks = 32;  // of triangles, for sorting
 
-/// Threads of a pool take denormal floats for 0; a voxel is to be far larger than that.
+/// Pool threads treat denormal floats as 0; a voxel must be far larger.
 constexpr double least_extent = 1e-25;
 
 Imath::V3i tiles_of(Imath::V3i size) { return (size + Imath::V3i(tile_side - 1)) / tile_side; }
@@ -57,7 +57,7 @@ Bounds bounds_of(const TriangleSoup& soup) {
         const double x = soup.positions[i][a];
         if (!std::isfinite(x))
           throw GeometryError(
-              fmt::format("position {} has coordinate {}: it is to be finite", i, x));
+              fmt::format("position {} has coordinate {}: it must be finite", i, x));
         b.low[a] = std::min(b.low[a], x);
         b.high[a] = std::max(b.high[a], x);
       }
@@ -104,7 +104,7 @@ class Voxelizer {
   int chunks_;
 };
 
-/// Calls visit(tile, triangle) for the triangles of a chunk and the tiles that each meets.
+/// Calls visit(tile, triangle) for the triangles of a chunk and the tiles that each intersects.
 template <class Visit>
 void Voxelizer::for_each_tile(int chunk, Visit&& visit) const {
   const std::uint64_t n = soup_.triangles.size(), count = static_cast<std::uint64_t>(chunks_);
@@ -120,7 +120,7 @@ void Voxelizer::for_each_tile(int chunk, Visit&& visit) const {
 
 TileLists Voxelizer::sort_into_tiles(std::uint64_t byte_limit) const {
   const auto tiles = static_cast<std::size_t>(tile_count());
-  // Where each chunk writes in each tile's list: first how many, then the position.
+  // By chunk and tile: first the number of triangles, then the chunk's offset in the tile's list.
   std::vector<std::vector<std::uint64_t>> next(static_cast<std::size_t>(chunks_));
   run_parallel(pool_, chunks_, [&](int c) {
     auto& counts = next[static_cast<std::size_t>(c)];
@@ -169,7 +169,7 @@ GridPlan plan_grid(const TriangleSoup& soup, int resolution) {
   if (resolution < 1 || resolution > max_resolution)
     throw std::invalid_argument(
         fmt::format("resolution {}: 1 to {} are allowed", resolution, max_resolution));
-  if (soup.triangles.empty()) throw GeometryError("the scene has no triangle to lay a grid over");
+  if (soup.triangles.empty()) throw GeometryError("the scene has no triangles, so it has no grid");
   if (soup.triangles.size() > std::numeric_limits<std::uint32_t>::max())
     throw GeometryError(
         fmt::format("{} triangles: up to 2^32 - 1 are allowed", soup.triangles.size()));
@@ -186,7 +186,7 @@ GridPlan plan_grid(const TriangleSoup& soup, int resolution) {
   } else {
     plan.transform = {bounds.low, longest / resolution};
     for (int a = 0; a < 3; ++a) {
-      // A side that is a whole number of voxels up to rounding takes no voxel more.
+      // A side that is an integer number of voxels up to rounding gets no extra voxel.
       const double voxels = std::ceil(extent[a] / plan.transform.voxel_size - 1e-10);
       plan.size[a] = std::clamp(static_cast<int>(voxels), 1, resolution);
     }

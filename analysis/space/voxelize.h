@@ -25,8 +25,8 @@ struct GridPlan {
 };
 
 /// Covers the bounding box of all triangles with cubic voxels. `resolution`: voxels along its
-/// longest side, in [1, max_resolution], else std::invalid_argument. Triangles that all lie in one
-/// point give one voxel of side 1 around it. Throws GeometryError. Allocates nothing.
+/// longest side, in [1, max_resolution], else std::invalid_argument. If all triangles lie in one
+/// point, the grid is one voxel of side 1 around it. Throws GeometryError. Allocates nothing.
 GridPlan plan_grid(const TriangleSoup& soup, int resolution);
 
 /// The digital scene (Noel 2015, 6.1.2): a bit for every voxel that contains surface.
@@ -35,11 +35,11 @@ struct Voxels {
   BitGrid3 scene;
 };
 
-/// Conservative: every voxel of the grid whose closed cube meets a closed triangle is scene, also
-/// where the triangle is a segment or a point, so no 26-path of empty voxels crosses a closed wall.
-/// A voxel whose cube misses a triangle by less than about 1e-8 of its side may be scene, too. The
-/// same bits for any number of threads. Throws as plan_grid(), and MemoryLimitError if it would
-/// take more than `byte_limit` bytes.
+/// Conservative: every voxel of the grid whose closed cube intersects a closed triangle is scene,
+/// also where the triangle is a segment or a point, so no 26-path of empty voxels crosses a closed
+/// wall. A voxel whose cube misses a triangle by less than about 1e-8 of its side may be scene,
+/// too. The same bits for any number of threads. Throws as plan_grid(), and MemoryLimitError if it
+/// would take more than `byte_limit` bytes.
 Voxels voxelize(const TriangleSoup& soup, int resolution, const ThreadPool& pool,
                 std::uint64_t byte_limit);
 

@@ -15,7 +15,7 @@
 namespace lacuna {
 namespace {
 
-/// Raised when the same inputs give other bits.
+/// Incremented when the same inputs give other bits.
 constexpr std::uint32_t voxels_version = 1, domain_version = 1, skeleton_version = 1,
                         filtered_version = 1, map_version = 1, simplified_version = 1,
                         clusters_version = 1, gates_version = 1, regions_version = 1,
@@ -44,11 +44,11 @@ std::string hash_of(const BitGrid3& grid) {
                                    blocks.size() * sizeof(BitBlock)}));
 }
 
-/// What came from disk and what it points into must agree; a checksum cannot know.
+/// Checks a map from disk against the graph that it refers to; a checksum cannot.
 void require_map(const Grid3<std::uint32_t>& map, Imath::V3i size, std::size_t nodes) {
   bool fits = map.size() == size;
   for (std::size_t i = 0; fits && i < map.count(); ++i) fits = map[i] < nodes || map[i] == no_node;
-  if (!fits) throw std::runtime_error("the cache's node mapping grid is not of its skeleton");
+  if (!fits) throw std::runtime_error("the cached node mapping grid does not match its skeleton");
 }
 
 }  // namespace
@@ -104,7 +104,7 @@ ArtefactKey SpaceAnalysis::map_key(const char* type, const ArtefactKey& graph) {
 
 const Voxels& SpaceAnalysis::voxels() {
   return get<Voxels>(voxels_, voxels_key(), [this] {
-    const TriangleSoup triangles = input_.triangles();  // first: the limit is of what is left then
+    const TriangleSoup triangles = input_.triangles();  // before byte_limit(): it takes memory
     return voxelize(triangles, input_.settings.resolution, pool_, input_.byte_limit());
   });
 }
@@ -222,7 +222,7 @@ std::shared_ptr<const Octree> SpaceAnalysis::octree(double levels) {
   const ArtefactKey key = ArtefactKey("octree", octree_version, fmt::format("levels={}", levels))
                               .from("geometry", input_.geometry);
   return store_.get<Octree>(key, [&] {
-    const TriangleSoup triangles = input_.triangles();  // first: the limit is of what is left then
+    const TriangleSoup triangles = input_.triangles();  // before byte_limit(): it takes memory
     return surface_octree(triangles, levels, pool_, input_.byte_limit());
   });
 }

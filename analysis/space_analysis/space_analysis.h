@@ -89,8 +89,8 @@ class SpaceAnalysis {
   };
   template <class T>
   const T& get(Part<T>& part, const ArtefactKey& key, const std::function<T()>& build);
-  /// Keys name all that the bits depend on: the domain's own voxels stand for scene
-  /// and seeds, so two cameras in one room share what is made from it.
+  /// Keys contain everything that the bits depend on: the domain's own voxels represent scene and
+  /// seeds, so two cameras in one room share all artefacts of its domain.
   ArtefactKey voxels_key() const;
   ArtefactKey domain_key(const DomainSeeds& seeds) const;
   ArtefactKey of_domain(const char* type, std::uint32_t version, std::string settings = {});

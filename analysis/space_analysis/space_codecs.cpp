@@ -11,7 +11,7 @@ void require_below(const Values& values, std::size_t bound, const char* what) {
   require(std::all_of(values.begin(), values.end(), [bound](auto v) { return v < bound; }), what);
 }
 
-/// Offsets of consecutive lists: from 0 to `total`, ascending, one more than there are lists.
+/// Checks offsets of consecutive lists: ascending from 0 to `total`, one more than there are lists.
 template <class Values>
 void require_offsets(const Values& first, std::size_t lists, std::size_t total, const char* what) {
   require(first.size() == lists + 1 && first.front() == 0 && first.back() == total &&
@@ -78,7 +78,7 @@ SimplifiedSkeleton Codec<SimplifiedSkeleton>::read(ArtefactReader& in) {
   require(kinds.size() == s.graph.nodes() && s.source.size() == s.graph.nodes(),
           "a simplified node has a kind and a source");
   require_below(kinds, static_cast<std::size_t>(NodeKind::coverage) + 1,
-                "kinds of nodes are known");
+                "kinds of nodes must be known");
   require_below(s.source, s.parent.size(), "sources are nodes of the whole skeleton");
   require_below(s.parent, s.graph.nodes(), "parents are simplified nodes");
   s.kinds.resize(kinds.size());
@@ -94,7 +94,7 @@ VisibilityClusters Codec<VisibilityClusters>::read(ArtefactReader& in) {
   VisibilityClusters c;
   c.count = decode<std::uint32_t>(in);
   c.of_node = decode<std::vector<std::uint32_t>>(in);
-  require_below(c.of_node, c.count, "nodes lie in clusters that are there");
+  require_below(c.of_node, c.count, "nodes lie in existing clusters");
   return c;
 }
 
@@ -123,10 +123,10 @@ VisibilityGates Codec<VisibilityGates>::read(ArtefactReader& in) {
   g.by_cluster = decode<std::vector<std::uint32_t>>(in);
   require(!g.first.empty(), "gates are listed by cluster");
   require_offsets(g.first, g.first.size() - 1, g.by_cluster.size(),
-                  "lists of gates follow each other");
-  require_below(g.by_cluster, g.gates.size(), "lists name gates that are there");
+                  "lists of gates are consecutive");
+  require_below(g.by_cluster, g.gates.size(), "lists contain existing gates");
   for (const VisibilityGate& gate : g.gates) {
-    require_below(gate.clusters, g.first.size() - 1, "gates lie between clusters that are there");
+    require_below(gate.clusters, g.first.size() - 1, "gates lie between existing clusters");
   }
   return g;
 }
@@ -152,7 +152,7 @@ RegionLabels Codec<RegionLabels>::read(ArtefactReader& in) {
     require(region.root < r.label.count(), "a region's root is a voxel");
   }
   for (std::size_t i = 0; i < r.label.count(); ++i) {
-    require(r.label[i] < r.regions.size() || r.label[i] == no_region, "labels name regions");
+    require(r.label[i] < r.regions.size() || r.label[i] == no_region, "labels are regions");
   }
   return r;
 }
@@ -178,18 +178,17 @@ Portals Codec<Portals>::read(ArtefactReader& in) {
   p.of_region = decode<std::vector<std::uint32_t>>(in);
   require(!p.first.empty(), "portals are listed by region");
   const std::size_t regions = p.first.size() - 1;
-  require_offsets(p.first, regions, p.of_region.size(), "lists of portals follow each other");
-  require_below(p.of_region, p.portals.size(), "lists name portals that are there");
+  require_offsets(p.first, regions, p.of_region.size(), "lists of portals are consecutive");
+  require_below(p.of_region, p.portals.size(), "lists contain existing portals");
   for (const Portal& portal : p.portals) {
-    require(portal.a < portal.b && portal.b < regions,
-            "portals lie between regions that are there");
+    require(portal.a < portal.b && portal.b < regions, "portals lie between existing regions");
     require(portal.first <= p.voxels.size() && portal.faces() <= p.voxels.size() - portal.first,
-            "a portal's faces are there");
+            "a portal has faces");
   }
   return p;
 }
 
-/// The octants of every inner node, from the root on: all else follows.
+/// Stores the octants of every inner node, from the root on, which determine the rest.
 void Codec<Octree>::write(ArtefactWriter& out, const Octree& tree) {
   std::vector<std::uint8_t> octants;
   for (const Octree::Node& n : tree.nodes) {
@@ -206,7 +205,7 @@ Octree Codec<Octree>::read(ArtefactReader& in) {
   const int levels = decode<std::uint8_t>(in);
   require(levels <= Octree::most_levels, "an octree has 12 levels or less");
   const auto roots = decode<std::uint8_t>(in);
-  require(roots <= 1, "there is one root or none");
+  require(roots <= 1, "there is at most one root");
   const auto octants = decode<std::vector<std::uint8_t>>(in);
   std::vector<std::uint64_t> codes(roots, 0);
   std::size_t node = 0;

@@ -146,7 +146,7 @@ TEST(ArtefactStore, AnEntryThatIsRefusedIsMadeAnewAndReported) {
     TestStore store(tmp.path());
     EXPECT_EQ(store.get(1), noise(1));
     EXPECT_EQ(store.built, 1);
-    EXPECT_TRUE(contains(store.last().remark, "its entry: ")) << store.last().remark;
+    EXPECT_TRUE(contains(store.last().remark, "its cache entry: ")) << store.last().remark;
     ASSERT_EQ(store.warnings.size(), 1u) << "said once";
     EXPECT_TRUE(contains(store.warnings[0], "\"numbers\""));
     EXPECT_EQ(content_of(file), whole);
@@ -210,7 +210,7 @@ TEST(ArtefactStore, AFolderThatCannotBeMadeCostsNoArtefact) {
   EXPECT_EQ(store.get(1), noise(1));
   EXPECT_EQ(store.last().origin, Origin::built);
   EXPECT_EQ(store.last().disk_bytes, 0u);
-  EXPECT_TRUE(contains(store.last().remark, "not kept")) << store.last().remark;
+  EXPECT_TRUE(contains(store.last().remark, "not cached")) << store.last().remark;
 }
 
 /// Loads from a folder that it must not write to, and builds what is not there.
@@ -219,7 +219,7 @@ int use_read_only(const std::filesystem::path& folder) {
   TestStore store(folder);
   if (store.get(1) != noise(1) || store.built != 0 || !store.warnings.empty()) return 3;
   if (store.get(2) != noise(2) || store.built != 1 || store.warnings.size() != 1) return 4;
-  return contains(store.last().remark, "not kept") ? 0 : 5;
+  return contains(store.last().remark, "not cached") ? 0 : 5;
 }
 
 TEST(ArtefactStore, AReadOnlyFolderIsRead) {
@@ -238,7 +238,7 @@ int build_on_a_full_disk(const std::filesystem::path& folder) {
   if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) return 2;
   TestStore store(folder);
   if (store.get(1) != noise(1)) return 3;
-  return store.warnings.size() == 1 && contains(store.last().remark, "not kept") ? 0 : 4;
+  return store.warnings.size() == 1 && contains(store.last().remark, "not cached") ? 0 : 4;
 }
 
 TEST(ArtefactStore, AFullDiskCostsNoArtefactAndLeavesNothing) {

@@ -42,7 +42,7 @@ test("cache list: what cannot be read is shown, and no byte of it reaches the te
   writeFileSync(join(cacheFolder, names[2]), bytes);
   const { code, out } = await run(folder, "cache", "list");
   assert.equal(code, 0);
-  assert.match(out, /^\? .*no entry of a cache/m);
+  assert.match(out, /^\? .*not an entry of a Lacuna cache/m);
   assert.ok(!out.includes("\x1b"));
 });
 

@@ -14,11 +14,11 @@ TEST(ArtefactsJson, TellsWhatBecameOfEachRequest) {
       {"skeleton", Origin::built, 1.5, 0, 100, 400, ""},
       {"portals", Origin::not_needed, 0, 0, 0, std::nullopt, ""},
       {"domain", Origin::loaded, 0.25, 0.5, 10, 40, ""},
-      {"opening", Origin::built, 2, 0, 0, std::nullopt, "it is not kept: the disk is full"}};
+      {"opening", Origin::built, 2, 0, 0, std::nullopt, "it is not cached: the disk is full"}};
   EXPECT_EQ(artefacts_json(records), nlohmann::ordered_json::parse(R"({
     "built": [
       {"name": "skeleton", "seconds": 1.5, "disk_bytes": 100, "memory_bytes": 400},
-      {"name": "opening", "seconds": 2.0, "disk_bytes": 0, "remark": "it is not kept: the disk is full"}
+      {"name": "opening", "seconds": 2.0, "disk_bytes": 0, "remark": "it is not cached: the disk is full"}
     ],
     "loaded": [
       {"name": "domain", "seconds": 0.25, "waited_seconds": 0.5, "disk_bytes": 10, "memory_bytes": 40}
