@@ -8,12 +8,12 @@ namespace lacuna {
 /// either was received. A second SIGINT ends the process at once.
 const std::function<bool()>& interrupt_requested();
 
-/// Seconds that a stop may take, LACUNA_GRACE or 2, whichever is longer. Throws BadJob.
+/// Seconds that a stop may take: the larger of LACUNA_GRACE and 2. Throws BadJob.
 double stop_grace();
 
-/// The seconds that are left after the first signal to write what is to be kept. It is given half
-/// of `grace`: the rest is for what cannot be stopped. To remove 700 MB that came too late and to
-/// return 1.4 GB of memory took 0.8 s on two busy cores.
+/// Seconds left after the first signal to write a checkpoint: half of `grace`. The other half is
+/// for work that cannot be interrupted: removing 700 MB that were written too late and freeing 1.4
+/// GB of memory took 0.8 s on two busy cores.
 double seconds_to_write(double grace);
 
 }  // namespace lacuna

@@ -11,20 +11,19 @@
 
 namespace lacuna {
 
-/// "1,4-7,9": indices of runs, from 1, which are sorted.
+/// "1,4-7,9": the text of sorted indices of runs, from 1.
 std::string index_ranges(const std::vector<std::size_t>& indices);
-/// Indices in that form; none is above `runs`. Throws BadJob.
+/// Parses that form; indices are at most `runs`. Throws BadJob.
 std::set<std::size_t> parse_indices(const std::string& text, std::size_t runs);
 
-/// The runs that are left to do: what is not done, and what was made from other files than there
-/// are now.
+/// The runs that remain to be rendered: unfinished ones, and those whose input files have changed.
 class LeftRuns {
  public:
-  /// Only of those that are `wanted`, by their indices; empty: of all.
+  /// `wanted`: indices of the runs to consider; empty: all.
   LeftRuns(const SweepFolder& folder, std::set<std::size_t> wanted, Terminal& terminal);
 
-  /// By their indices. Warns of each run whose inputs have changed and, unless only `looking`,
-  /// discards its results.
+  /// The remaining runs by index. Warns of each run whose inputs have changed and, unless
+  /// `looking`, discards its results.
   std::map<std::size_t, JobState> find(bool looking);
 
  private:
@@ -35,7 +34,7 @@ class LeftRuns {
   const SweepFolder& folder_;
   const std::set<std::size_t> wanted_;
   Terminal& terminal_;
-  bool told_ = false;  // that some runs did not record their inputs
+  bool told_ = false;  // whether the warning of unrecorded inputs was given
 };
 
 }  // namespace lacuna

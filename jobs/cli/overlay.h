@@ -17,8 +17,8 @@ struct OverlayMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Pictures of the analysis as triangles, so that every viewer (and Lacuna itself) shows them.
-/// Edges are square bars, nodes and gates what their names say; thickness in voxels.
+/// The analysis as triangles, for any viewer and for Lacuna itself. Edges are square bars, nodes
+/// balls, gates disks; thickness in voxels.
 std::vector<OverlayMesh> skeleton_overlay(const SkeletonGraph& graph, const GridTransform& grid);
 /// The simplified skeleton, a colour for each visibility cluster, as edges and balls.
 std::vector<OverlayMesh> cluster_overlay(const SimplifiedSkeleton& skeleton,
@@ -30,8 +30,7 @@ std::vector<OverlayMesh> portal_overlay(const Portals& portals, const RegionLabe
                                         const GridTransform& grid);
 
 /// A GLB in the coordinates of the scene's file, with these meshes and the scene's triangles and
-/// cameras; the scene is grey and see-through
-/// (alphaMode BLEND). Throws std::system_error.
+/// cameras; the scene is grey and transparent (alphaMode BLEND). Throws std::system_error.
 void write_overlay(const std::filesystem::path& file, const SceneData& scene,
                    const std::vector<OverlayMesh>& overlay);
 

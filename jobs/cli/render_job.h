@@ -12,11 +12,11 @@ struct RenderOptions {
   const std::vector<Shard>* shards = nullptr;  ///< the job is merged from these, not rendered
 };
 
-/// Makes the job begin anew the next time it is rendered; its pictures stay until then. Throws
-/// FolderBusy.
+/// Makes the next rendering of the job start from the first iteration; keeps its pictures until
+/// then. Throws FolderBusy.
 void start_again(const JobFolder& folder);
 
-/// Renders a job's folder from where it stands, shows its progress, and returns the exit code.
+/// Renders a job's folder, resuming from its checkpoint, shows progress, and returns the exit code.
 int render_folder(const JobFolder& folder, const RenderOptions& options);
 
 }  // namespace lacuna

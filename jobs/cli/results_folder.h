@@ -15,8 +15,8 @@ inline std::filesystem::path results_folder(const std::filesystem::path& file,
   return folder_path(out.empty() ? std::filesystem::path(file.stem().string() + extension) : out);
 }
 
-/// For CLI11: what is wrong with the name of something that has to be there; empty: nothing. Unlike
-/// CLI::ExistingPath it throws std::system_error where that cannot be told now.
+/// For CLI11: the error if a path does not exist; empty: none. Unlike CLI::ExistingPath throws
+/// std::system_error if this cannot be determined.
 inline std::string existing_path(const std::string& name) {
   const bool there = std::filesystem::exists(name);
   return there ? "" : "Path does not exist: " + name;

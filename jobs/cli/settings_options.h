@@ -35,7 +35,7 @@ class SettingsOptions {
           ->default_str(std::string(enum_name(value)));
     } else {
       static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool>,
-                    "add what else a settings struct holds");
+                    "no option for this type of member");
       CLI::Option* const added =
           command_.add_option(option, value, doc)
               ->check(CLI::Range(static_cast<T>(field.min), static_cast<T>(field.max)))

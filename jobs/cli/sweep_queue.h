@@ -22,19 +22,19 @@ namespace lacuna {
 struct SweepQueueSettings {
   int at_a_time = 1;
   int threads = -1;                         ///< of each renderer; -1: the job's own
-  std::optional<SlurmSettings> slurm = {};  ///< nothing: renderers are processes of this machine
+  std::optional<SlurmSettings> slurm = {};  ///< none: renderers are processes of this machine
 };
 
-/// Renders runs of a sweep as a service renders jobs. Its database is in memory: where a run stands
-/// is said by its folder alone, so that tasks of an array can share a sweep.
+/// Renders runs of a sweep as a service renders jobs. Its database is in memory and the state of a
+/// run is only in its folder, so that the tasks of a job array can share a sweep.
 class SweepQueue {
  public:
   SweepQueue(const SweepFolder& sweep, const SweepQueueSettings& settings, Terminal& terminal);
   SweepQueue(const SweepQueue&) = delete;
   SweepQueue& operator=(const SweepQueue&) = delete;
 
-  /// Until all these runs (their indices, from 1, and where they stand) are over, or `interrupted`,
-  /// or what keeps them from going on has not passed in a minute. Gives an exit code.
+  /// Renders these runs (by index from 1, with their states) until all are over, `interrupted`
+  /// returns true, or an obstacle has lasted a minute. Returns an exit code.
   int run(const std::map<std::size_t, JobState>& left, const std::function<bool()>& interrupted);
 
  private:
@@ -44,7 +44,7 @@ class SweepQueue {
   void add(const std::map<std::size_t, JobState>& left);
   void take_events();
   void take(const JobEntry& entry);
-  void report(const JobEntry& entry);  // of a run that is over
+  void report(const JobEntry& entry);  // for a run that is over
   void print_log();
   void look_after();
   void show();
@@ -60,12 +60,12 @@ class SweepQueue {
   DiskWatch disk_;
   Queue queue_;
 
-  std::map<std::string, const SweepRun*> open_;  // by their names
+  std::map<std::string, const SweepRun*> open_;  // by name
   std::int64_t seen_ = 0;                        // the last event
   std::size_t all_ = 0, finished_ = 0, failed_ = 0;
   std::string obstacle_;                    // of a run
-  std::string told_;                        // that keeps all runs from going on
-  std::optional<Clock::time_point> since_;  // an obstacle came up, and nothing has gone on
+  std::string told_;                        // the last reported obstacle of all runs
+  std::optional<Clock::time_point> since_;  // when an obstacle appeared; none: runs progress
   const Clock::time_point began_ = Clock::now();
   Clock::time_point next_look_, next_show_;
 };

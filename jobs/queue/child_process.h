@@ -13,35 +13,35 @@
 
 namespace lacuna {
 
-/// Held between fork and exec of a child, which until then has copies of all open files. Hold it
-/// too where such a copy would do harm: a lock on a job's folder would stay.
+/// Held between fork and exec of a child, which has copies of all open files until then. Also hold
+/// it where such a copy does harm: it would keep a lock on a job's folder.
 std::mutex& fork_mutex();
 
 struct Command {
   std::vector<std::string> arguments;    ///< the first is the program's path
   std::vector<std::string> environment;  ///< "NAME=value"
   std::filesystem::path directory;       ///< working directory
-  int output_fd = -1;                    ///< where its output goes; -1: nowhere
+  int output_fd = -1;                    ///< where its output goes; -1: discarded
   ChildLimits limits;
 };
 
 /// A running child process, the leader of its own process group. Only the thread that started it
-/// may use it: the kernel's notice of a dead parent goes by threads.
+/// may use it: the kernel signals the death of the parent thread, not process.
 class ChildProcess {
  public:
   /// Returns once the program runs; throws std::system_error if it cannot be started.
   explicit ChildProcess(const Command& command);
-  pid_t pid() const { return pid_; }  ///< and the number of its group
+  pid_t pid() const { return pid_; }  ///< also the number of its group
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
   ~ChildProcess();  ///< kills it if it still runs
 
-  /// Waits until it has ended or `also` is readable (-1: nothing) or the time is up (negative:
-  /// forever). True: it has ended.
+  /// Waits until it has ended, `also` is readable (-1: none) or `time` has passed (negative: no
+  /// limit). Returns whether it has ended.
   bool wait(int also, std::chrono::milliseconds time) const;
-  /// To the whole group.
+  /// Sends a signal to the whole group.
   void signal(int number) const;
-  /// Ends what is left of the group and takes the leader's status; only after wait() was true.
+  /// Kills the rest of the group and returns how the leader ended; only after wait() returned true.
   Ending reap();
 
  private:
@@ -49,9 +49,9 @@ class ChildProcess {
   FileHandle process_;
 };
 
-/// After `command` ended so: why its program does not even say its version, as one that is cut off,
-/// or a library of it; empty: it does, or it was no signal that ended it. Throws std::system_error
-/// if it cannot be started.
+/// If `command` ended by a signal, runs it with --version: why that fails, for example because the
+/// program or a library is truncated; empty: it succeeds, or no signal ended `command`. Throws
+/// std::system_error if it cannot be started.
 std::string why_it_cannot_begin(Command command, const Ending& end, const StopSignal& stop);
 
 }  // namespace lacuna

@@ -11,11 +11,11 @@
 
 namespace lacuna {
 
-/// Visitors of describe(): the columns of a table are the members of the struct that its rows are.
-/// Integers, bools, enums (by name) and texts are stored as such, lists and structs as JSON, what
-/// is optional and not there as NULL.
+/// Visitors of describe(): the columns of a table are the members of the struct of its rows.
+/// Integers, bools, enums (by name) and texts are stored as such, lists and structs as JSON, empty
+/// optionals as NULL.
 
-/// "a","b","c" in quotes, and ?,?,?.
+/// names: "a","b","c" in quotes; places: ?,?,?.
 class ColumnNames {
  public:
   template <class T>
@@ -71,8 +71,7 @@ class ColumnBinder {
   Statement& query_;
 };
 
-/// Reads each member from the next column. Throws DatabaseDamaged for what this program did not
-/// write.
+/// Reads each member from the next column. Throws DatabaseDamaged for invalid values.
 class ColumnReader {
  public:
   explicit ColumnReader(const Statement& query) : query_(query) {}

@@ -9,20 +9,20 @@
 
 namespace lacuna {
 
-/// Group commit: while one thread commits, the changes of the others collect, and the next of them
-/// commits all at once. So the number of changes in a second is not that of syncs of the disk.
+/// Group commit: while one thread commits, the changes of others collect, and one of them commits
+/// all at once. So the disk's syncs per second do not limit the changes per second.
 template <class Change>
 class CommitLine {
  public:
   struct Waiting {
     const std::function<void(Change&)>* make;
-    std::exception_ptr error = nullptr;  ///< why it was not made
+    std::exception_ptr error = nullptr;  ///< why the change failed
     bool done = false;
   };
   using Batch = std::vector<Waiting*>;
 
-  /// Returns once `commit` has been called with `mine` in its batch, on this thread or another, by
-  /// one thread at a time. `commit` does not throw.
+  /// Returns once `commit` was called with `mine` in its batch, on this thread or another; calls do
+  /// not overlap. `commit` does not throw.
   template <class Commit>
   void join(Waiting& mine, const Commit& commit) {
     std::unique_lock lock(mutex_);

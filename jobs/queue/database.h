@@ -12,7 +12,7 @@ struct sqlite3_stmt;
 
 namespace lacuna {
 
-/// The file is damaged, or is no database of this program's version.
+/// The file is damaged, or is not a database of this program's version.
 class DatabaseDamaged : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -23,23 +23,23 @@ class DatabaseInUse : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// One SQLite database with one owner: write-ahead log, every commit synced, locked for as long as
-/// it is open. For one thread at a time. All calls throw DatabaseDamaged, DatabaseInUse, and
+/// One SQLite database with one owner: write-ahead log, every commit synced, locked while it is
+/// open. For one thread at a time. All calls throw DatabaseDamaged, DatabaseInUse, and
 /// std::system_error with an errno if the file cannot be read or written.
 class Database {
  public:
-  /// Opens the file, or makes it.
+  /// Opens or creates the file.
   explicit Database(const std::filesystem::path& file);
   ~Database();
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
-  /// Runs statements that give no rows.
+  /// Runs statements that return no rows.
   void run(const char* sql);
   bool in_transaction() const;
-  /// Of the row inserted last.
+  /// Number of the row inserted last.
   std::int64_t last_number() const;
-  /// Throws what stands for the result `code` of a call.
+  /// Throws the exception for the result `code` of a call.
   [[noreturn]] void fail(int code) const;
 
  private:
@@ -48,7 +48,7 @@ class Database {
   sqlite3* handle_ = nullptr;
 };
 
-/// One statement with its parameters, and the row that it stands on.
+/// A statement with its parameters, and its current row.
 class Statement {
  public:
   Statement(const Database& database, std::string_view sql);
@@ -61,7 +61,7 @@ class Statement {
   Statement& bind(std::string_view value);
   Statement& bind_null();
 
-  /// Moves to the next row; false: there is none.
+  /// Moves to the next row; false if there is none.
   bool step();
   /// Runs it to the end.
   void run() {

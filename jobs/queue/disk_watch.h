@@ -17,18 +17,18 @@ struct DiskRoom {
 /// The free space on the disk of `folder`, compared with a floor below which no job starts.
 class DiskWatch {
  public:
-  /// `floor`: bytes; 0: any room is enough, of inodes too.
+  /// `floor`: bytes; 0: no floor, for inodes neither.
   DiskWatch(std::filesystem::path folder, std::uint64_t floor)
       : folder_(std::move(folder)), floor_(floor) {}
 
-  /// What may still be written. Throws std::system_error.
+  /// The free space now. Throws std::system_error.
   DiskRoom room() const;
   std::uint64_t floor() const { return floor_; }
   /// Checks the free space. Once it was below the floor, it stays low until a tenth above the floor
   /// (hysteresis), so that a few checkpoints do not stop all work again. If the disk does not
   /// answer, the last result is kept.
   bool is_low();
-  /// What it is low of; empty: it was not when it was last looked at.
+  /// The shortage at the last check; empty: none.
   std::string shortage() const;
 
  private:
@@ -38,8 +38,8 @@ class DiskWatch {
   std::string shortage_;
 };
 
-/// What `room` is short of where `floor` bytes and, where inodes are counted, 1024 of them or a
-/// sixteenth of all shall stay free; `was_low` raises both by a tenth. Empty: nothing.
+/// The shortage of `room` if `floor` bytes and, where inodes are limited, 1024 of them or a
+/// sixteenth of all must stay free; `was_low` raises both by a tenth. Empty: none.
 std::string shortage_of(const DiskRoom& room, std::uint64_t floor, bool was_low);
 
 }  // namespace lacuna

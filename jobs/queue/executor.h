@@ -14,28 +14,28 @@ namespace lacuna {
 
 /// How a renderer ended.
 struct Ending {
-  /// not_started: there is no program that starts, or the machine cannot start one; no fault of the
-  /// job. out_of_memory: it reported exit_memory, or the kernel killed it for lack of memory.
-  /// lost: its machine or its time was taken from it, or nobody knows. refused: who runs renderers
-  /// will not run this one, or its folder is damaged. left: it goes on, and whoever runs the job
-  /// next finds it.
+  /// not_started: the program or the machine cannot start a renderer; not an error of the job.
+  /// out_of_memory: it reported exit_memory, or the kernel killed it for lack of memory. lost: its
+  /// machine or its time was withdrawn, or its end is unknown. refused: the executor will not run
+  /// this job, or its folder is damaged. left: it continues, and the next run() of the job finds
+  /// it.
   enum class Kind { exited, killed, not_started, out_of_memory, lost, refused, left };
   Kind kind = Kind::exited;
-  /// exit code, out_of_memory too (128 + SIGKILL if killed); signal; errno; lost and refused: the
-  /// exit code if there was one, else 0
+  /// exited, out_of_memory: exit code (128 + SIGKILL if killed); killed: signal; not_started:
+  /// errno; lost, refused: exit code, or 0 if there is none
   int code = 0;
   std::string reason;  ///< "renderer ended by signal 9 (Killed)"
 };
 
-/// A program that ended so never began: it is not there, cannot be executed, or lacks a library
-/// (what shells and the dynamic loader exit with).
+/// Whether the program never began: it is missing, cannot be executed, or lacks a library (the exit
+/// codes of shells and the dynamic loader).
 inline bool never_began(const Ending& end) {
   return end.kind == Ending::Kind::not_started ||
          (end.kind == Ending::Kind::exited && (end.code == 126 || end.code == 127));
 }
 
-/// No renderer is started because a file of the job's folder could not be opened or written. One
-/// that is gone as a whole is no fault of the job: whoever looks for it next finds that out.
+/// The ending if no renderer was started because a file of the job's folder could not be opened or
+/// written. A missing folder is not an error of the job; its next reader detects it.
 Ending folder_unusable(const JobFolder& folder, const std::system_error& error);
 
 /// A request to stop, sent by any thread and awaited by one.
@@ -43,11 +43,11 @@ class StopSignal {
  public:
   StopSignal();  ///< throws std::system_error
   void request() const;
-  /// The process of the queue ends; the renderer does not.
+  /// The queue's process ends; the renderer continues.
   void leave() const;
   bool is_requested() const { return requested_.load(); }
   bool leaves() const { return leaves_.load(); }
-  int fd() const { return event_.get(); }  ///< readable from the first of both on
+  int fd() const { return event_.get(); }  ///< readable once either was called
 
  private:
   FileHandle event_;
@@ -58,35 +58,35 @@ class StopSignal {
 class Executor {
  public:
   virtual ~Executor() = default;
-  /// What is told of a job while it is run. Each may be empty, and must not throw.
+  /// Callbacks while a job runs. Each may be empty, and must not throw.
   struct Notices {
-    /// The process that renders, the leader of its own group, once it runs; 0: it is not of this
-    /// machine, or it waits elsewhere.
+    /// Called once the renderer runs, with its process, the leader of its own group; 0: it runs or
+    /// waits on another machine.
     std::function<void(pid_t)> started;
-    /// Where it runs or waits, for a person.
+    /// Called with the place where it runs or waits, for people.
     std::function<void(const std::string&)> place;
   };
   /// A job that is to be rendered.
   struct Task {
     JobFolder folder;
     int priority = 0;
-    int crashes = 0;  ///< renderers of it that crashed
+    int crashes = 0;  ///< number of its renderers that crashed
   };
-  /// Renders one job; returns when its renderer has ended. `stop` asks that renderer to write a
+  /// Renders one job; returns when its renderer has ended. `stop` makes the renderer write a
   /// checkpoint and end. Called from several threads.
   virtual Ending run(const Task& task, const StopSignal& stop, const Notices& notices) = 0;
 
-  /// Its renderers are run by somebody else, on machines of theirs: they outlive the queue, and
-  /// each job that wants a machine for itself gets one.
+  /// Whether another system runs the renderers, on other machines: they outlive the queue, and each
+  /// exclusive job gets a machine of its own.
   virtual bool is_remote() const { return false; }
-  /// A renderer of the job may run or wait, from an earlier queue, too: run() goes on with that
-  /// one, and until then the folder is not ours.
+  /// Whether a renderer of the job may run or wait, also one of an earlier queue: run() continues
+  /// with it, and until then the folder belongs to it.
   virtual bool holds(const JobFolder&) const { return false; }
-  /// Gives up what holds() says of a job whose renderer has ended. Throws std::system_error.
+  /// Makes holds() false for a job whose renderer has ended. Throws std::system_error.
   virtual void forget(const JobFolder&) {}
-  /// The priority of a job that it runs has changed.
+  /// Called when the priority of a running job has changed.
   virtual void set_priority(const JobFolder&, int) {}
-  /// What keeps it from running anything, and may pass; empty: nothing.
+  /// The transient obstacle to running any job; empty: none.
   virtual std::string obstacle() const { return {}; }
 };
 

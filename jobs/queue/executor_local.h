@@ -8,8 +8,8 @@
 
 namespace lacuna {
 
-/// The folders and the grace of `settings` as variables of a renderer's environment:
-/// "LACUNA_DATA=...". Throws std::invalid_argument for a folder that cannot be said so.
+/// The folders and the grace of `settings` as environment variables of a renderer:
+/// "LACUNA_DATA=...". Throws std::invalid_argument for a folder that these cannot express.
 std::vector<std::string> renderer_environment(const ExecutorSettings& settings);
 /// Throws std::invalid_argument if there is no such renderer.
 void check_renderer(const ExecutorSettings& settings);

@@ -8,19 +8,19 @@
 
 namespace lacuna {
 
-/// The state of a job that is over, that is queued (again), and that is held.
+/// `state` as that of a job that is over (in the state `how`), queued again, or held.
 JobState ended(JobState state, State how, const std::string& now);
 JobState queued(JobState state);
 JobState held(JobState state);
 
 /// The circumstances in which a renderer ended.
 struct Attempt {
-  JobState before;  ///< what the folder said before the renderer started
+  JobState before;  ///< the folder's state before the renderer started
   JobState after;   ///< and after it ended
   Ending ending;
   bool cancel = false;    ///< a client cancelled the job
   bool hold = false;      ///< a client put the job on hold
-  bool stopped = false;   ///< the queue has asked the renderer to stop
+  bool stopped = false;   ///< the queue requested the renderer to stop
   bool disk_low = false;  ///< free space is below the floor, so failures do not count as crashes
   bool found = false;     ///< `before` was read after the renderer had started
   int crashes = 0;        ///< crashes of this job's earlier renderers
@@ -32,17 +32,17 @@ struct Attempt {
 struct ExitClassification {
   JobState state;  ///< terminal, held, or queued again
   bool crashed = false;
-  std::string obstacle = {};  ///< what the job waits for to pass; empty: nothing
+  std::string obstacle = {};  ///< the transient obstacle that the job waits for; empty: none
 };
 
 /// Classifies the exit of a renderer by the exit codes of `lacuna render`: 0 done, 2 bad job, 3
 /// scene or asset, 71 out of memory, 75 interrupted and resumable; all others are crashes. A
-/// terminal state that the renderer wrote stands. Crashes, lack of memory, and interruptions that
-/// nobody requested and that completed no iteration are retried from the checkpoint, up to
+/// terminal state that the renderer wrote is kept. Crashes, lack of memory, and unrequested
+/// interruptions without a completed iteration are retried from the checkpoint, up to
 /// `max_attempts` times; while the disk is low they are retried without being counted. A renderer
 /// that could not be started, never began (never_began()), or could not read or write its files for
-/// a cause that may pass (may_pass()) is retried without being counted; a job that was refused
-/// fails. One that was lost is as one that nobody has asked to end.
+/// a transient reason (may_pass()) is retried without being counted; a refused job fails. A lost
+/// renderer counts as an unrequested interruption.
 ExitClassification classify_exit(const Attempt& attempt, int max_attempts, const std::string& now);
 
 }  // namespace lacuna

@@ -9,31 +9,31 @@
 
 namespace lacuna {
 
-/// One job of a queue: a row of the table of jobs and, while its renderer runs, the progress that
-/// it last wrote.
+/// One job of a queue: a row of the table of jobs and, while its renderer runs, its latest
+/// progress.
 struct JobEntry {
-  std::int64_t number = 0;    ///< the order in which jobs were accepted; the store gives it
-  std::int64_t revision = 0;  ///< number of the latest change; the store gives it
+  std::int64_t number = 0;    ///< order of acceptance; set by the store
+  std::int64_t revision = 0;  ///< number of the latest change; set by the store
   std::string id, label, scene, integrator, reference;
-  std::string sweep;   ///< that it is a run of; empty: none
+  std::string sweep;   ///< whose run it is; empty: none
   std::string shards;  ///< the sweep whose runs it is merged from; empty: none
   bool exclusive = false;
   JobState state;
   int priority = 0;
-  bool held = false;      ///< does not start, or go on, until it is released
-  bool cancel = false;    ///< a person has asked to stop it for good
-  bool reopened = false;  ///< what its folder says of an end is of before it was opened again
-  bool begun = false;     ///< a renderer was started for it, or it was submitted, and has not ended
-  int crashes = 0;        ///< renderers of it that crashed
-  std::optional<std::string> key;  ///< the poster's own name for it
-  std::string body_hash;           ///< of the posted text, in hexadecimal
+  bool held = false;               ///< does not start or continue until it is released
+  bool cancel = false;             ///< its cancellation was requested
+  bool reopened = false;           ///< an end recorded in its folder precedes its reopening
+  bool begun = false;              ///< a renderer was started or submitted for it and has not ended
+  int crashes = 0;                 ///< number of its renderers that crashed
+  std::optional<std::string> key;  ///< Idempotency-Key of the client
+  std::string body_hash;           ///< of the posted text, hexadecimal
   std::string spec;                ///< job.json
-  std::string obstacle;            ///< what keeps it from going on, and may pass; empty: nothing
+  std::string obstacle;            ///< transient reason why it does not continue; empty: none
   std::optional<Progress> progress;
-  bool pictured = false;            ///< image.png is there
+  bool pictured = false;            ///< image.png exists
   std::int64_t renderer_pid = 0;    ///< the latest renderer's process; 0: none
-  std::int64_t renderer_start = 0;  ///< when that began, in clock ticks since the machine did
-  std::string renderer_boot;        ///< the kernel's name of that boot
+  std::int64_t renderer_start = 0;  ///< its start, in clock ticks since boot
+  std::string renderer_boot;        ///< the kernel's identifier of that boot
   std::string place;                ///< where its renderer runs or waits; not stored
 
   bool over() const { return is_terminal(state.state); }
@@ -72,10 +72,10 @@ void describe(V& v, JobEntry& e) {
   v("renderer_boot", e.renderer_boot, {});
 }
 
-/// What of a job's settings the queue looks at.
+/// Sets the fields of `entry` that follow from the job's settings.
 void take_spec(JobEntry& entry, const JobSpec& spec);
 
-/// Whether the job's image.png is there.
+/// Whether the job's image.png exists.
 bool has_picture(const JobFolder& folder);
 
 }  // namespace lacuna

@@ -21,32 +21,32 @@ struct JobEvent {
   std::int64_t number = 0;
   Kind kind = Kind::changed;
   std::string id;                         ///< the job's
-  std::shared_ptr<const JobEntry> entry;  ///< after it; none if the job was removed
+  std::shared_ptr<const JobEntry> entry;  ///< after the event; none if the job was removed
 };
 
 /// The latest events of all jobs, numbered in their order; not every number is used. Safe from any
 /// thread.
 class Journal {
  public:
-  /// `name`: of the database that the numbers are of. Nothing is known of what happened up to
-  /// `begin`.
+  /// `name`: of the database that issued the numbers. Events up to `begin` are unknown.
   void start(std::string name, std::int64_t begin);
-  /// A later event than all others.
+  /// Adds an event, which must be later than all others.
   void add(JobEvent event);
 
   /// The number of the latest event.
   std::int64_t last() const;
-  /// An event's number as clients see it: "NAME-N". The same after a restart.
+  /// The public name of an event's number: "NAME-N". The same after a restart.
   std::string name(std::int64_t number) const;
-  /// The number in such a name; nothing if it is of another database, of the future, or no name.
+  /// The number in such a name; none if it belongs to another database, is in the future, or is not
+  /// a name.
   std::optional<std::int64_t> number(std::string_view name) const;
 
-  /// What happened after event `after`, waiting up to `time` for something; nothing if some of it
-  /// is forgotten.
+  /// The events after `after`, waiting up to `time` for the first; none if some of them were
+  /// discarded.
   std::optional<std::vector<JobEvent>> since(std::int64_t after, std::chrono::milliseconds time);
 
-  /// How many events are kept: some minutes of a busy service. Who was away longer lists the jobs
-  /// again.
+  /// Number of events kept: some minutes of a busy service. A client that was away longer lists the
+  /// jobs again.
   static constexpr std::size_t remembered = 8192;
 
  private:
@@ -54,7 +54,7 @@ class Journal {
   mutable std::mutex mutex_;
   std::condition_variable grown_;
   std::deque<JobEvent> events_;
-  std::int64_t forgotten_ = 0;  // the last number of which nothing is known any more
+  std::int64_t forgotten_ = 0;  // the last discarded number
   std::int64_t last_ = 0;
 };
 

@@ -21,8 +21,8 @@ struct ProcessIdentity {
   bool operator==(const ProcessIdentity&) const = default;
 };
 
-/// What /proc/PID/stat says of a process. The second field, its name in parentheses, may hold
-/// anything: spaces, parentheses, line breaks.
+/// Fields of /proc/PID/stat. The second field, the name in parentheses, may contain anything:
+/// spaces, parentheses, line breaks.
 struct ProcessStat {
   char state = '?';  ///< 'Z', 'X': it has ended
   pid_t group = 0;
@@ -30,15 +30,14 @@ struct ProcessStat {
 };
 std::optional<ProcessStat> parse_process_stat(std::string_view stat);
 
-/// The process that has this number now; nothing if none has.
+/// The process that has this number now; none if there is none.
 std::optional<ProcessIdentity> identity_of(pid_t pid);
 
-/// This very process is there and has not ended; one that waits for its parent to take its status
-/// has ended.
+/// Whether this process still runs; a zombie has ended.
 bool is_alive(const ProcessIdentity& identity);
 
-/// Sends a signal to the group that this process leads. False, and nothing is sent, if it has ended
-/// or leads no group.
+/// Sends a signal to the group that this process leads. Returns false and sends nothing if it has
+/// ended or leads no group.
 bool kill_group(const ProcessIdentity& identity, int signal);
 
 }  // namespace lacuna

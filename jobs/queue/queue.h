@@ -40,20 +40,20 @@ class Full : public std::runtime_error {
 };
 
 /// Renders the jobs of a store: by priority, then first come, first served; an exclusive job runs
-/// alone, and no job overtakes it. The store is the source of truth and this its only writer but
-/// for what is added; renderers write into their folders, and what they say of their end is taken
-/// over. Requests are on disk before the call returns.
+/// alone, and no job overtakes it. The store is the source of truth, and only the queue writes it,
+/// except for new jobs; renderers write their end into their folders, and the queue copies it.
+/// Requests are on disk before the call returns.
 ///
-/// A fault that may pass (may_pass()) costs no job. A job whose folder cannot be locked, read or
-/// written stays in the line, with its obstacle, and the queue pauses before it continues with the
-/// next one; the pauses grow with each fault, of a job and of all.
+/// A transient error (may_pass()) fails no job. A job whose folder cannot be locked, read or
+/// written stays queued, with its obstacle, and the queue pauses before it continues with the next
+/// one; the pauses, per job and of the queue, grow with each error.
 ///
 /// The calls that change a job take the `revision` that the client has read; empty: any. All throw
-/// Changed, Conflict, and std::system_error if the request could not be stored: then nothing has
+/// Changed, Conflict, and, if the request could not be stored, std::system_error; then nothing has
 /// changed.
 class Queue {
  public:
-  /// `jobs`: where the folders of the jobs lie.
+  /// `jobs`: the parent of the jobs' folders.
   Queue(Executor& executor, Store& store, std::filesystem::path jobs, DiskWatch& disk,
         QueueSettings settings);
   ~Queue() { stop(); }
@@ -62,43 +62,44 @@ class Queue {
 
   /// Begins with the unfinished jobs of the store.
   void start();
-  /// Asks all renderers to stop and waits for them; their jobs go on after the next start().
-  /// Renderers on other machines go on, and that start() finds them.
+  /// Stops all renderers and waits for them; their jobs continue after the next start(). Renderers
+  /// on other machines continue, and that start() finds them.
   void stop();
 
-  /// How many more jobs may wait or run.
+  /// Number of further jobs that may be added.
   std::size_t room() const;
   /// Throws Full if there is no room.
   void check_room() const;
-  /// Calls `notice` whenever a job is over: it may only take note. Before start().
+  /// Calls `notice` whenever a job is over; it must return quickly. Call before start().
   void on_over(std::function<void()> notice) { on_over_ = std::move(notice); }
-  /// Jobs were added to the store: makes their folders, as far as that can be done now.
+  /// To be called when jobs were added to the store: makes their folders if possible.
   void take_up(const std::vector<JobEntry>& added);
 
-  /// A running job that is held is stopped, with its checkpoint.
+  /// Holding a running job stops it, with a checkpoint.
   void change(const std::string& id, std::optional<int> priority, std::optional<bool> held,
               const std::string& revision = {});
-  /// Stops a job for good; nothing happens if it is cancelled already.
+  /// Ends a job; does nothing if it is cancelled already.
   void cancel(const std::string& id, const std::string& revision = {});
-  /// A failed or cancelled job goes on from its checkpoint.
+  /// Continues a failed or cancelled job from its checkpoint.
   void retry(const std::string& id, const std::string& revision = {});
-  /// A job that is over goes on until a larger budget is spent. Throws BadJob if it is no larger.
+  /// Continues a job that is over until a larger budget is spent. Throws BadJob if it is not
+  /// larger.
   void extend(const std::string& id, const Budget& budget, const std::string& revision = {});
-  /// Removes a job that is over, and its folder: none of a sweep that is not over.
+  /// Removes a job that is over, and its folder; not a run of an unfinished sweep.
   void remove(const std::string& id, const std::string& revision = {});
-  /// The same of many at once: all of them or, if one cannot be, none.
+  /// Removes several jobs: all or, if one cannot be removed, none.
   void remove_all(const std::vector<std::string>& ids);
   /// Throws Conflict if one of them cannot be removed.
   void check_removable(const std::vector<std::string>& ids) const;
 
-  /// While there is too little room on the disk, nothing starts and all renderers stop.
+  /// Checks the disk: while its free space is low, nothing starts and all renderers stop.
   void look_at_disk();
-  /// Takes over what the renderers have written about their jobs meanwhile.
+  /// Reads the progress that the renderers have written meanwhile.
   void look_at_running();
-  /// Its renderers write through a file system of many machines, where looking costs more.
+  /// Whether renderers write through a network file system, where reading progress costs more.
   bool is_remote() const { return executor_.is_remote(); }
-  /// Why the jobs that wait do not go on, for everybody: names no file. Empty: nothing keeps them.
-  /// Never waits for the disk.
+  /// Why waiting jobs do not start, as public text without file names; empty: no obstacle. Never
+  /// waits for the disk.
   std::string obstacle() const;
 
   JobFolder folder(const std::string& id) const { return JobFolder(jobs_ / id); }
@@ -106,21 +107,21 @@ class Queue {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// A job that a runner has.
+  /// A job in a runner's hands.
   struct Work {
     std::string id;
     bool exclusive = false;
     StopSignal stop;
-    int faults_of_all = 0;  // of the queue in a row, when its renderer started
+    int faults_of_all = 0;  // consecutive errors of the queue when its renderer started
     LiveState live;
   };
   using WorkPtr = std::shared_ptr<Work>;
 
-  /// What keeps a job waiting that is unfinished.
+  /// The pause of an unfinished job.
   struct Pause {
     Clock::time_point until{};
-    int faults = 0;                // that may pass, since its last progress
-    std::optional<Attempt> ended;  // a renderer that is not judged yet
+    int faults = 0;                // transient errors since its last progress
+    std::optional<Attempt> ended;  // a renderer's end not yet classified
   };
 
   void run(const std::stop_token& ends);
@@ -154,17 +155,17 @@ class Queue {
   std::function<void()> on_over_ = [] {};
   Trash trash_;
 
-  // Guards the next four, and is held while a request is stored, so that a request and the start of
-  // a renderer have one order.
+  // Guards the next four. Held while a request is stored, which orders requests and starts of
+  // renderers.
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::map<std::string, WorkPtr> work_;
   std::map<std::string, Pause> pauses_;
   bool exclusive_runs_ = false;
-  mutable std::mutex faults_mutex_;   // guards the next three; nothing is waited for under it
-  Clock::time_point paused_until_{};  // after a fault that may pass nothing starts until then
-  int faults_ = 0;                    // in a row
-  std::string obstacle_;              // the last of them
+  mutable std::mutex faults_mutex_;   // guards the next three; never held during a wait
+  Clock::time_point paused_until_{};  // nothing starts until then after a transient error
+  int faults_ = 0;                    // consecutive
+  std::string obstacle_;              // of the last error
   std::vector<std::jthread> runners_;
 };
 

@@ -11,8 +11,8 @@
 
 namespace lacuna::rows {
 
-/// The condition of jobs that wait or run; held ones are not among them. The index of the line
-/// holds for queries with this very text.
+/// The SQL condition for jobs that wait or run, without held ones. The index jobs_line applies to
+/// queries with exactly this text.
 inline constexpr const char* in_line = "state IN ('queued', 'running', 'cancelling')";
 
 template <class Row>
@@ -42,7 +42,7 @@ inline std::optional<JobEntry> job(const Database& database, const std::string& 
   return first<JobEntry>(database, "WHERE id=?", id);
 }
 
-/// Puts a row in the place of the one with its number.
+/// Replaces the row with the same number.
 template <class Row>
 void put(const Database& database, Row& row) {
   Statement query(database, std::string("UPDATE ") + table<Row> + " SET (" + columns<Row>().names +

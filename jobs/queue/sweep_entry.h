@@ -9,17 +9,17 @@
 
 namespace lacuna {
 
-/// All that is known of one sweep of a queue: a row of the table of sweeps.
+/// One sweep of a queue: a row of the table of sweeps.
 struct SweepEntry {
-  std::int64_t number = 0;  ///< the order in which sweeps were accepted; the store gives it
+  std::int64_t number = 0;  ///< order of acceptance; set by the store
   std::string id, label;
   SweepStage state = SweepStage::running;
   std::string created, finished;   ///< as in JobState
   std::size_t runs = 0;            ///< of the whole sweep
-  std::optional<std::string> key;  ///< the poster's own name for it
-  std::string body_hash;           ///< of the posted text, in hexadecimal
+  std::optional<std::string> key;  ///< Idempotency-Key of the client
+  std::string body_hash;           ///< of the posted text, hexadecimal
   std::string spec;                ///< sweep.json
-  std::string error;               ///< of `failed`: why
+  std::string error;               ///< why it `failed`
 };
 
 /// The columns of the table.

@@ -10,11 +10,11 @@
 
 namespace lacuna {
 
-/// Deletes folders already renamed by take_folders_away() on its own thread: deleting a job's dozen
+/// Deletes folders that take_folders_away() has renamed, on its own thread: deleting a job's dozen
 /// files takes tens of milliseconds, for which no request should wait.
 class Trash {
  public:
-  /// What is left when it ends, remove_stale_folders() finds when the service starts again.
+  /// remove_stale_folders() removes the rest at the next start of the service.
   Trash();
   Trash(const Trash&) = delete;
   Trash& operator=(const Trash&) = delete;

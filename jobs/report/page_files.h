@@ -4,8 +4,8 @@
 
 namespace lacuna {
 
-/// The page's style, and web/report_page.js with all modules that it imports as one script.
-/// Generated from these files by the build (jobs/report/bundle.py).
+/// The page's style, and web/report_page.js bundled with all modules that it imports. Generated
+/// from these files by the build (jobs/report/bundle.py).
 extern const std::string_view report_style;
 extern const std::string_view report_script;
 

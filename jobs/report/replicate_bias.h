@@ -16,7 +16,7 @@ class ReplicateBias {
  public:
   /// `reference`: interleaved RGB of `width` columns.
   ReplicateBias(std::vector<double> reference, int width);
-  /// One more picture, of the reference's size.
+  /// Adds a picture of the reference's size.
   void add(std::span<const double> picture);
 
   std::size_t pictures() const { return n_; }

@@ -6,8 +6,8 @@
 
 namespace lacuna {
 
-/// A self-contained HTML file with the answers of a sweep, as the page shows them, and crops of its
-/// pictures.
+/// A self-contained HTML file with the answers of a sweep, as on the service's page, and crops of
+/// its pictures.
 std::string report_html(const SweepFolder& sweep, const Answers& answers,
                         const SweepPictures& pictures);
 

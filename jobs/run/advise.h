@@ -5,11 +5,11 @@
 
 namespace lacuna {
 
-/// A job with the integrator `auto`, of the same path lengths where it has another.
+/// The job with the integrator `auto`; keeps the path lengths of another integrator.
 JobSpec with_auto_integrator(JobSpec spec);
 
-/// Chooses the method of the job of `folder`, whose integrator is `auto`, as run_job() does, and
-/// stops there: run_job() goes on from it. Throws what prepare() and Choosing throw, and Stopped.
+/// Chooses the method of the job in `folder`, whose integrator is `auto`, as run_job() does, which
+/// can continue from there. Throws the exceptions of prepare() and Choosing, and Stopped.
 Choice advise(const JobFolder& folder, const RunContext& context);
 
 }  // namespace lacuna

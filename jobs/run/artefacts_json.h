@@ -7,9 +7,9 @@
 
 namespace lacuna {
 
-/// What a job's report says of artefacts: {"built": [...], "loaded": [...], "left_out": [NAME...]}.
-/// Each of the first two has {name, seconds, disk_bytes} and, where there is something to say,
-/// waited_seconds, memory_bytes and remark.
+/// The artefacts in a job's report: {"built": [...], "loaded": [...], "left_out": [NAME...]}.
+/// Elements of the first two have {name, seconds, disk_bytes} and, if they apply, waited_seconds,
+/// memory_bytes and remark.
 OrderedJson artefacts_json(const std::vector<ArtefactRecord>& records);
 
 }  // namespace lacuna

@@ -8,10 +8,11 @@
 namespace lacuna {
 
 /// The methods that a job of `auto` chooses from, with its path lengths: those that it lists, or by
-/// default one of each kind that is best somewhere, the most robust first.
+/// default one of each type that is best for some scene, the most robust first.
 std::vector<CandidateSettings> candidates(const AutoSettings& settings);
 
-/// The integrator and what sets it apart from its defaults, as "path, learned_skeleton, reuse 64".
+/// The integrator and its settings that differ from the defaults: "path, learned_skeleton, reuse
+/// 64".
 std::string candidate_name(const CandidateSettings& settings);
 
 }  // namespace lacuna

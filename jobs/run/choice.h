@@ -12,14 +12,14 @@
 
 namespace lacuna {
 
-/// Where a candidate stands after one of its turns.
+/// The state of a candidate after one of its turns.
 struct Turn {
   std::int64_t iterations = 0;
-  double seconds = 0, cpu_seconds = 0;  ///< so far, of rendering; CPU divided by threads
+  double seconds = 0, cpu_seconds = 0;  ///< render time so far; CPU divided by threads
   double rays = 0;                      ///< so far
-  std::optional<double> noise;          ///< PictureError; none: not known
+  std::optional<double> noise;          ///< PictureError; none: unknown
   double missing = 0, bias = 0;
-  std::optional<double> expected;  ///< the error at the end of the budget, were it the method
+  std::optional<double> expected;  ///< predicted error at the end of the budget
   bool operator==(const Turn&) const = default;
 };
 template <class V>
@@ -31,9 +31,12 @@ void describe(V& v, Turn& t) {
   v("rays", t.rays, {.doc = "rays and shadow rays so far"});
   v("noise", t.noise, {.doc = "the picture's squared error, from its halves"});
   v("missing", t.missing,
-    {.doc = "squared, the light that blocks of pixels miss beside the other pictures"});
-  v("bias", t.bias, {.doc = "the squared difference to the best unbiased picture, without noise"});
-  v("expected", t.expected, {.doc = "squared error at the end of the budget with this method"});
+    {.doc =
+         "squared deficit of blocks of pixels with too little light against the other pictures"});
+  v("bias", t.bias,
+    {.doc = "squared difference to the best unbiased picture, less the noise of both"});
+  v("expected", t.expected,
+    {.doc = "predicted squared error at the end of the budget with this method"});
 }
 
 struct Candidate {
@@ -41,7 +44,7 @@ struct Candidate {
   CandidateSettings integrator;
   std::uint64_t seed = 0;  ///< of its job
   std::vector<Turn> turns;
-  std::string left;  ///< why it takes no turns any more; empty: it does, or is the method
+  std::string left;  ///< why it was eliminated; empty: it was not, or is the method
   bool operator==(const Candidate&) const = default;
 };
 template <class V>
@@ -50,11 +53,11 @@ void describe(V& v, Candidate& c) {
   v("integrator", c.integrator, {.doc = "its settings"});
   v("seed", c.seed, {.doc = "of its random numbers", .min = 0, .max = 9007199254740991.0});
   v("turns", c.turns, {.doc = "after each round"});
-  v("left", c.left, {.doc = "why it left; empty: it is still there"});
+  v("left", c.left, {.doc = "why it was eliminated; empty: it was not"});
 }
 
-/// choice.json: how the method of a job of `auto` is, or was, chosen. What it says holds: a job
-/// that goes on decides nothing again.
+/// choice.json: how the method of a job of `auto` is chosen. A resumed job repeats no decision in
+/// it.
 struct Choice {
   RankingMetric metric = RankingMetric::relmse;
   std::vector<Candidate> candidates;
@@ -65,26 +68,25 @@ template <class V>
 void describe(V& v, Choice& c) {
   v("metric", c.metric, {.doc = "of the errors"});
   v("candidates", c.candidates, {.doc = "all of them, in the order of their turns"});
-  v("chosen", c.chosen, {.doc = "which is the method, from 0; null: not chosen yet", .min = 0});
+  v("chosen", c.chosen, {.doc = "index of the chosen one, from 0; null: not chosen yet", .min = 0});
 }
 
 /// The choice before the first turn.
 Choice new_choice(const JobSpec& job);
-/// choice.json of a job's folder; none if there is no such file. Throws std::runtime_error: it is
+/// choice.json of a job's folder; none if there is no such file. Throws std::runtime_error if it is
 /// corrupt; std::system_error.
 std::optional<Choice> read_choice(const JobFolder& folder);
 void write_choice(const JobFolder& folder, const Choice& choice);  ///< synced
 
-/// Of candidate `k`: its job, and the folder of it below that of `auto`.
+/// The job of a candidate, and its folder below that of the job of `auto`.
 JobSpec candidate_job(const JobSpec& job, const Candidate& candidate);
 JobFolder candidate_folder(const JobFolder& folder, const Choice& choice, std::size_t k);
 
-/// Of the chosen candidate, and what was spent on the others.
+/// The folder of the chosen candidate, and the cost of the others.
 JobFolder chosen_folder(const JobFolder& folder, const Choice& choice);
 Spent spent_elsewhere(const Choice& choice);
 
-/// The job with the method that was chosen; `job` itself if it is not of `auto`. None: not chosen
-/// yet.
+/// The job with the chosen method; `job` itself if it is not of `auto`. None: not chosen yet.
 std::optional<JobSpec> chosen_job(const JobSpec& job, const std::optional<Choice>& choice);
 
 }  // namespace lacuna

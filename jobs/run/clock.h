@@ -6,8 +6,8 @@
 
 namespace lacuna {
 
-/// Measures rendering time by two clocks: wall seconds, and CPU seconds of the process divided by
-/// its threads, which other load on the machine does not add to.
+/// Measures render time by two clocks: wall seconds, and CPU seconds of the process divided by its
+/// threads, which do not include other load on the machine.
 class RenderClock {
  public:
   explicit RenderClock(int threads) : threads_(threads) {}

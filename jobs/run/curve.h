@@ -10,16 +10,16 @@
 
 namespace lacuna {
 
-/// The state of a job at one instant: what it has spent, and its errors.
+/// The costs and errors of a job at one instant.
 struct CurveRow {
   std::uint64_t iteration = 0;
   double seconds = 0, cpu_seconds = 0;  ///< render time; CPU divided by threads
-  double longest_seconds = 0;           ///< as Spent has it
+  double longest_seconds = 0;           ///< as in Spent
   Counters counters;
   std::optional<Errors> errors;  ///< against the reference, if there is one
   std::optional<double> est_rmse;
-  /// More than half of the measured mse is noise of the reference, so the curve no longer shows how
-  /// the method converges.
+  /// More than half of the measured mse is noise of the reference, so the curve no longer shows the
+  /// convergence of the method.
   bool at_floor = false;
 
   /// The value of `metric` in this row, if it has one.

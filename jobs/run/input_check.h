@@ -10,16 +10,16 @@
 
 namespace lacuna {
 
-/// Compares what jobs were made from with the files as they are now. Each file is read once in the
-/// life of the object, and only if its size is still the recorded one.
+/// Compares the recorded inputs of jobs with the present files. Each file is read once in the life
+/// of the object, and only if it has the recorded size.
 class InputCheck {
  public:
   InputCheck(DataRoot data, ScenesRoots scenes)
       : data_(std::move(data)), scenes_(std::move(scenes)) {}
 
-  /// What has changed since the job was rendered (changed_inputs()), if it is done or has a
-  /// checkpoint; nothing if its inputs are not recorded. Throws InputUnreadable; and what
-  /// JobFolder::read_state() and read_inputs() throw.
+  /// The changes since the job was rendered (changed_inputs()), if it is done or has a checkpoint;
+  /// none if its inputs are not recorded. Throws InputUnreadable and the exceptions of
+  /// JobFolder::read_state() and read_inputs().
   std::optional<std::vector<std::string>> changes(const JobFolder& folder);
 
  private:
@@ -31,8 +31,7 @@ class InputCheck {
   std::map<std::filesystem::path, InputFile> measured_;
 };
 
-/// Throws BadJob if there are any `changes`: the job's folder was made from other files than there
-/// are now.
+/// Throws BadJob if there are any `changes` of the files that the job's folder was made from.
 void refuse_changed_inputs(const JobFolder& folder, const std::vector<std::string>& changes);
 
 /// The warning about a folder of an older build.

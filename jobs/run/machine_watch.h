@@ -8,18 +8,18 @@ namespace lacuna {
 
 /// Ticks of all processors since the machine started, from /proc/stat.
 struct ProcessorTicks {
-  double all = 0;     ///< of all kinds
-  double idle = 0;    ///< nothing to do, or waiting for a disk
-  double stolen = 0;  ///< the host gave them to another machine
+  double all = 0;     ///< total
+  double idle = 0;    ///< idle, or waiting for a disk
+  double stolen = 0;  ///< taken by the hypervisor for another machine
 };
 /// Parses the first line of /proc/stat; none if it has another form.
 std::optional<ProcessorTicks> parse_processor_ticks(std::string_view stat);
 
-/// Other load on the machine during a measurement. Unless `others` + `stolen` is small, the
-/// measured time says little about the method.
+/// Other load on the machine during a measurement. Measured times are valid only if `others` +
+/// `stolen` is small.
 struct Disturbance {
-  double others = 0;          ///< share of all processors' time that other processes took, [0, 1]
-  double stolen = 0;          ///< share that the host took, [0, 1]
+  double others = 0;          ///< share of all processors' time that other processes used, [0, 1]
+  double stolen = 0;          ///< share taken by the hypervisor, [0, 1]
   double load = 0;            ///< load average over the last minute, at the end
   std::optional<double> mhz;  ///< mean frequency of the processors at the end, if it is known
 };

@@ -5,17 +5,16 @@
 
 namespace lacuna {
 
-/// The kind of a fault that interrupted a job and may pass, so that the job can continue from its
-/// checkpoint.
+/// The type of a transient error that interrupted a job, which can continue from its checkpoint.
 enum class Obstacle {
-  none,     ///< no such fault: the job would fail again
+  none,     ///< not transient: the job would fail again
   memory,   ///< memory ran out
-  storage,  ///< a file could not be read or written, and may_pass() holds for the reason
-  input,    ///< InputUnreadable: what the job is made from cannot be read now
+  storage,  ///< a file could not be read or written, and may_pass() holds for the error
+  input,    ///< InputUnreadable: an input of the job cannot be read now
 };
 
 /// From this call on the process records failed allocations. Libraries that catch std::bad_alloc
-/// report errors of their own, often without a reason; obstacle_of() uses the record for these.
+/// report their own errors, often without a reason; obstacle_of() uses the record for these.
 void watch_memory();
 
 Obstacle obstacle_of(const std::exception& e);

@@ -14,19 +14,19 @@ namespace lacuna {
 struct Reference {
   std::string name;
   std::vector<double> rgb;          ///< interleaved, top row first, of the job's resolution
-  std::optional<double> mse;        ///< of its own noise, estimated, if it is known
+  std::optional<double> mse;        ///< estimate of its own noise, if known
   std::filesystem::path file = {};  ///< where it was read from
   InputFile input = {};             ///< that file as it was read
 };
 
 /// The picture that a job names as its reference (not "auto" or empty): an EXR or a TIFF of floats
-/// below a scenes root, a job's id, or the name of a folder below the references. Throws
-/// SceneError: not there; InputUnreadable.
+/// below a scenes root, a job's id, or the name of a folder below the references. Throws SceneError
+/// if it is missing; InputUnreadable.
 std::filesystem::path reference_file(const std::string& name, const DataRoot& data,
                                      const ScenesRoots& scenes);
 
-/// Reads reference_file() of `spec.reference`. Throws SceneError: not there, unfinished, or of
-/// another size; InputUnreadable.
+/// Reads reference_file() of `spec.reference`. Throws SceneError if it is missing, unfinished, or
+/// of another size; InputUnreadable.
 Reference find_reference(const JobSpec& spec, const DataRoot& data, const ScenesRoots& scenes);
 
 /// Reads the file `image`, the image.exr of a job or another EXR. Throws SceneError, also if its

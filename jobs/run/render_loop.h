@@ -24,16 +24,14 @@ struct RenderTask {
   const ThreadPool& pool;
   Integrator& integrator;
   const Reference* reference;                ///< may be null
-  const std::function<bool()>& interrupted;  ///< from a signal: true asks the loop to stop
+  const std::function<bool()>& interrupted;  ///< true: a signal requests a stop
   Observer& observer;
   PhaseSeconds& phases;
   std::string content;  ///< hashes of the files the picture depends on
-  /// Once interrupted() is true: the seconds that are left to write what is to be kept. Empty: as
-  /// many as it takes.
+  /// Once interrupted() is true: the seconds left to write the checkpoint. Empty: no limit.
   std::function<double()> seconds_left = {};
 
-  /// Throws Stopped if the task was interrupted and has no seconds left. Whoever writes for long
-  /// calls it in between.
+  /// Throws Stopped if the task was interrupted and has no seconds left. Called during long writes.
   void stop_if_late() const {
     if (seconds_left && interrupted() && seconds_left() <= 0) throw Stopped{};
   }
@@ -49,28 +47,28 @@ class RenderLoop {
 
   /// Continues from the folder's checkpoint, if there is one of this picture. A damaged checkpoint
   /// is reported to the observer and renamed, and rendering starts from the first iteration. Throws
-  /// Stopped if it is interrupted while it reads a large one.
+  /// Stopped if it is interrupted while reading a large one.
   void resume();
 
-  /// Instead of resume(): begins with what the shards of the job have rendered, all of them in
-  /// order. run() then only ends the job. Throws as merge_shards(), and Stopped if it is
-  /// interrupted: then merging begins anew another time.
+  /// Instead of resume(): begins with the merged shards of the job, all of them in order; run()
+  /// then only finishes the job. Throws the exceptions of merge_shards(), and Stopped if it is
+  /// interrupted: the next attempt merges from the beginning.
   void merge(const std::vector<Shard>& shards);
 
-  /// Instead of resume(), where the folder has no checkpoint: begins with that of the job `other`
-  /// of the same picture, if it has one. `elsewhere`: what was spent on other pictures counts as
-  /// spent on this one.
+  /// Instead of resume(), if the folder has no checkpoint: begins with the checkpoint of the job
+  /// `other` of the same picture, if it has one. `elsewhere`: the cost of other pictures, which
+  /// counts as spent on this one.
   void begin_from(const JobFolder& other, const Spent& elsewhere);
 
   enum class End { spent, interrupted, no_iteration };
-  /// Renders until the budget is spent; then the checkpoint holds the final state, so that the job
-  /// can continue with a larger budget. Or until it is interrupted: a checkpoint was written, if
-  /// there were seconds left to.
+  /// Renders until the budget is spent; the checkpoint then holds the final state, so that the job
+  /// can continue with a larger budget. Or until it is interrupted: a checkpoint was written if
+  /// time was left.
   End run();
-  /// The same until `part` of the budget is spent. No iteration is abandoned but the first, if
-  /// there is a `limit` that it does not keep: no_iteration.
+  /// Renders until `part` of the budget is spent. Abandons no iteration, except a first one that
+  /// exceeds `limit`, if given: no_iteration.
   End run_part(const Budget& part, const std::optional<Budget>& limit);
-  /// How many of the iterations are in no checkpoint.
+  /// Number of iterations not yet in a checkpoint.
   std::uint64_t unsaved_iterations() const { return state_.spent.iterations - saved_.iterations; }
 
   const Film& film() const { return state_.film; }
@@ -79,24 +77,25 @@ class RenderLoop {
   const Curve& curve() const { return state_.curve; }
   const Counters& counters() const { return state_.counters; }
   Spent spent() const { return state_.spent; }
-  /// The same with what went into iterations that were abandoned.
+  /// spent() plus the cost of abandoned iterations.
   Spent elapsed() const;
   const MergedShards& merged() const { return state_.merged; }
-  /// Whether this many iterations on one machine give the same bits: always, but where a merged
+  /// Whether this number of iterations on one machine gives the same bits: always, unless a merged
   /// picture learned in its shards, has a gap, or rounded a sum.
   bool same_bits_as_one() const;
-  std::uint64_t refused_rays() const;  ///< as counted by RayCaster, of the whole job
+  std::uint64_t refused_rays() const;  ///< as counted by RayCaster, for the whole job
 
  private:
   std::string identity() const;
-  /// `late`: whether an iteration that is under way takes too long.
+  /// `late`: whether the present iteration takes too long.
   End run_until(const Budget& budget, const std::function<bool()>& late);
   bool iterate(const std::function<bool()>& late);
-  /// The checkpoint of `folder`; false: there is none, or it cannot be used and is kept aside.
+  /// Loads the checkpoint of `folder`; false if there is none, or if it is unusable and was
+  /// renamed.
   bool load(const JobFolder& folder);
   void count_phases();
   void add_row();
-  /// False: interrupted, without seconds left. The checkpoint before stays.
+  /// False if interrupted without seconds left; the previous checkpoint remains.
   bool write_checkpoint_now();
   bool write_last_checkpoint();
   void write_preview_now();
@@ -108,8 +107,8 @@ class RenderLoop {
   RunState state_;
   Image frame_;
   bool merging_ = false;     // run() renders nothing
-  Spent saved_;              // of what the checkpoint holds
-  bool floor_told_ = false;  // that the reference bounds the errors
+  Spent saved_;              // in the checkpoint
+  bool floor_told_ = false;  // whether the warning of the reference's noise was given
   RenderClock clock_;
   Pace checkpoints_, previews_, progress_;
 };

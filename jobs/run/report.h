@@ -10,23 +10,23 @@
 
 namespace lacuna {
 
-/// What a job did and what it cost, beside its picture.
+/// The input of a job's report.
 struct ReportInput {
   const RenderTask& task;
   const RenderLoop& loop;
-  const std::string& camera;  ///< the name of the one that was rendered
+  const std::string& camera;  ///< name of the camera used
   std::vector<std::string> warnings;
   std::vector<ArtefactRecord> artefacts = {};   ///< ArtefactStore::records()
-  std::optional<Disturbance> disturbance = {};  ///< while it was rendered
+  std::optional<Disturbance> disturbance = {};  ///< during rendering
   double started = 0;                           ///< when the job began, on the monotonic clock
   const std::optional<Choice>& choice;          ///< of a job of `auto`: how its method was chosen
 };
 
-/// The tail of the squared errors that est_rmse is a mean of; none where too few are known of it.
+/// The tail of the squared errors whose mean est_rmse is; none if there are too few of them.
 std::optional<ParetoTail> error_tail(const Film& film);
 
-/// report.json: seconds by phase, counts, rates, what of the scene was built and what was not
-/// needed, artefacts built, loaded and left out, errors, memory, machine.
+/// report.json: seconds by phase, counts, rates, built and unneeded parts of the scene, artefacts
+/// built, loaded and left out, errors, memory, machine.
 std::string write_report(const ReportInput& input);
 
 }  // namespace lacuna

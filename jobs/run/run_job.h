@@ -9,12 +9,12 @@
 
 namespace lacuna {
 
-/// What surrounds a job.
+/// The environment of a job.
 struct RunContext {
   DataRoot data;
   ScenesRoots scenes;
-  int threads = -1;                          ///< >= 0: in place of the job's own
-  const std::function<bool()>& interrupted;  ///< true asks to stop soon, from any thread
+  int threads = -1;                          ///< >= 0: overrides the job's own
+  const std::function<bool()>& interrupted;  ///< true requests a stop; called from any thread
   Observer& observer;
   const std::vector<Shard>* shards = nullptr;  ///< the job is merged from these, not rendered
   std::function<double()> seconds_left = {};   ///< see RenderTask
@@ -22,21 +22,20 @@ struct RunContext {
 
 enum class Outcome { done, interrupted };
 
-/// The folder is another process's at present.
+/// Another process has the folder's lock.
 class FolderBusy : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Does the job of `folder`, from its checkpoint if there is one, or from the shards that a service
-/// has had rendered for it: outcome.json becomes `running`,
-/// then `done`, `interrupted`, or `failed` with the reason (and the exception goes on): BadJob,
-/// SceneError and others. What another time may bring (see Obstacle) leaves the job `interrupted`
-/// with the reason, if the state can be written at all, and the exception goes on, too. A job that
-/// is done is left as it is. Throws FolderBusy.
+/// Renders the job of `folder`, from its checkpoint if there is one, or from the shards that a
+/// service has rendered for it. outcome.json becomes `running`, then `done`, `interrupted`, or
+/// `failed` with the reason, and the exception is rethrown: BadJob, SceneError and others. A
+/// transient error (Obstacle) leaves the job `interrupted` with the reason, if the state can be
+/// written, and is rethrown, too. Does nothing for a job that is done. Throws FolderBusy.
 ///
-/// What a job reads is recorded in inputs.json. A job that has a checkpoint, or is done, throws
-/// BadJob if its inputs have changed since (InputCheck); then a result that is there stays.
+/// The input files of a job are recorded in inputs.json. Throws BadJob if they have changed since
+/// the job's checkpoint or end (InputCheck); an existing result is kept.
 Outcome run_job(const JobFolder& folder, const RunContext& context);
 
 }  // namespace lacuna

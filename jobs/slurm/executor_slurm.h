@@ -11,13 +11,13 @@
 
 namespace lacuna {
 
-/// Hands each job to Slurm, by a submission of its own that is written down before it is made, and
-/// waits until its folder, or Slurm, says that it is over. Renderers outlive the queue; the next
-/// one finds them by what is written down.
+/// Submits each job to Slurm, after recording the submission in its folder, and waits until the
+/// folder or Slurm reports the end. Renderers outlive the queue; the next queue finds them by the
+/// recorded submissions.
 class SlurmExecutor : public Executor {
  public:
-  /// Throws std::invalid_argument if there is no such renderer, or a program of Slurm is not there.
-  /// `run`: for tests; empty: programs in PATH.
+  /// Throws std::invalid_argument if the renderer or a program of Slurm is missing. `run`: for
+  /// tests; empty: programs in PATH.
   SlurmExecutor(ExecutorSettings settings, SlurmSettings slurm, RunProgram run = {});
 
   Ending run(const Task& task, const StopSignal& stop, const Notices& notices) override;
@@ -29,7 +29,8 @@ class SlurmExecutor : public Executor {
 
  private:
   class Stopping;
-  /// A submission, and what sbatch said where it gave no number, or why it could not be called.
+  /// A submission, and the output of sbatch if it returned no number, or why it could not be
+  /// called.
   struct Attempted {
     Submission submission;
     std::string said;
@@ -47,7 +48,8 @@ class SlurmExecutor : public Executor {
   const SlurmPrograms programs_;
   std::mutex submitting_;  // one sbatch at a time
   mutable std::mutex mutex_;
-  std::string refusal_;  // what sbatch said last, until it took a job; under the mutex
+  std::string refusal_;  // the latest output of a failed sbatch; empty once it accepts a job; under
+                         // the mutex
   SlurmWatch watch_;
 };
 

@@ -6,19 +6,19 @@
 
 namespace lacuna {
 
-/// What the batch script of a submission does.
+/// The input of the batch script of a submission.
 struct SlurmScript {
   std::string name;  ///< of the submission
   std::filesystem::path folder, renderer, directory;
-  std::vector<std::string> environment;  ///< "NAME=value", which hold whatever sbatch exports
-  bool all_cores = false;                ///< the job names no threads: what Slurm gives it
+  std::vector<std::string> environment;  ///< "NAME=value", which override what sbatch exports
+  bool all_cores = false;  ///< the job sets no threads: uses those that Slurm allocates
 };
 
-/// Waits until the folder is there and names this submission, and until no earlier renderer has the
-/// folder; then renders, hands SIGTERM on, and leaves the exit code in slurm.exit.
+/// Waits until the folder exists and names this submission, and until no earlier renderer locks it;
+/// then renders, forwards SIGTERM, and writes the exit code to slurm.exit.
 std::string script_text(const SlurmScript& script);
 
-/// A text as one word of a shell.
+/// A text quoted as one word of a shell.
 std::string shell_word(const std::string& text);
 
 }  // namespace lacuna

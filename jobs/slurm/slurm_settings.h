@@ -6,13 +6,13 @@
 
 namespace lacuna {
 
-/// Jobs that Slurm has of one queue at a time, unless a person says more.
+/// Default number of jobs that one queue has in Slurm at a time.
 inline constexpr int slurm_jobs_at_a_time = 64;
 
-/// Settings of the executor that hands jobs to Slurm.
+/// Settings of the executor that submits jobs to Slurm.
 struct SlurmSettings {
-  std::vector<std::string> arguments;    ///< further words for sbatch; they win over Lacuna's own
-  int cores = 0;                         ///< of a job that names no threads; 0: all of a node
+  std::vector<std::string> arguments;  ///< further arguments of sbatch; they override Lacuna's own
+  int cores = 0;                       ///< of a job that sets no threads; 0: all of a node
   std::chrono::milliseconds poll{3000};  ///< between two calls of squeue
 };
 

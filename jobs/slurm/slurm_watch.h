@@ -20,25 +20,25 @@
 
 namespace lacuna {
 
-/// How the job of a submission ended, by its folder and, where that says nothing, by Slurm.
-/// `code`: as read_submission_exit() has it. `last`: what Slurm said last, if it ever did.
+/// How the job of a submission ended, according to its folder or else to Slurm. `code`: from
+/// read_submission_exit(). `last`: Slurm's latest record, if any.
 Ending slurm_ending(std::optional<int> code, const std::optional<SlurmJob>& last, bool known_now);
 
-/// One submission that a runner waits for. Its members belong to the watch's lock.
+/// One submission that a runner waits for. The watch's lock guards its members.
 struct SlurmWatched {
   using Clock = std::chrono::steady_clock;
   JobFolder folder;
   Submission submission;
   std::function<void(const std::string&)> place;
-  FileHandle event;                        ///< readable when there is something new for the runner
-  Clock::time_point since = Clock::now();  ///< listings that began earlier say nothing of it
+  FileHandle event;                        ///< readable when there is news for the runner
+  Clock::time_point since = Clock::now();  ///< earlier listings do not concern it
   std::optional<SlurmJob> last = {};
-  std::optional<Clock::time_point> gone_since = {};  ///< Slurm does not have it (any more)
-  int gone = 0;                                      ///< listings that say so
+  std::optional<Clock::time_point> gone_since = {};  ///< Slurm does not list it
+  int gone = 0;                                      ///< number of listings without it
   bool asked_accounts = false;
-  bool unknown = false;               ///< Slurm has never had it
-  std::optional<Ending> ending = {};  ///< it is over
-  std::optional<int> nice = {};       ///< the runner shall set this one
+  bool unknown = false;               ///< Slurm never listed it
+  std::optional<Ending> ending = {};  ///< set when it is over
+  std::optional<int> nice = {};       ///< to be set by the runner
 };
 
 /// Watches all submissions of this queue at once: their folders once a second, and squeue at most
@@ -61,18 +61,18 @@ class SlurmWatch {
     std::optional<int> nice;
   };
 
-  /// A submission is watched as long as this lives.
+  /// A submission is watched during the life of this object.
   class Guest {
    public:
-    /// Throws std::system_error: no descriptor is left.
+    /// Throws std::system_error if no descriptor is left.
     Guest(SlurmWatch& watch, const JobFolder& folder, const Submission& submission,
           std::function<void(const std::string&)> place);
     ~Guest();
     Guest(const Guest&) = delete;
     Guest& operator=(const Guest&) = delete;
-    /// Its event is quiet again.
+    /// Resets the event and returns the view.
     View look() const;
-    /// Readable when there is something new to see.
+    /// Readable when the view has changed.
     int event() const { return watched_->event.get(); }
 
    private:
@@ -80,9 +80,9 @@ class SlurmWatch {
     std::shared_ptr<SlurmWatched> watched_;
   };
 
-  /// The runner of this job, if there is one, shall set it.
+  /// Makes the runner of this job, if any, set it.
   void set_nice(const JobFolder& folder, int nice);
-  /// Why squeue could not be asked; empty: it could.
+  /// Why the last call of squeue failed; empty: it succeeded.
   std::string obstacle() const;
 
  private:

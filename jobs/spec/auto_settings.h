@@ -13,8 +13,7 @@
 
 namespace lacuna {
 
-/// The integrators that estimate all light of a picture. `light` is not among them: it does not see
-/// mirrors.
+/// The integrators that estimate all light of a picture; not `light`, which cannot render mirrors.
 using CandidateSettings =
     std::variant<PathSettings, BdptSettings, ManyLightsSettings, MetropolisSettings, VcmSettings,
                  SppmSettings, PhotonMapSettings>;
@@ -43,17 +42,18 @@ enum class RankingMetric { relmse, mse };
 template <>
 struct EnumTable<RankingMetric> {
   static constexpr std::array<EnumValue<RankingMetric>, 2> values{{
-      {RankingMetric::relmse, "relmse", "relative: what dark regions show counts as well"},
-      {RankingMetric::mse, "mse", "absolute: bright regions decide"},
+      {RankingMetric::relmse, "relmse", "relative: dark regions count as well"},
+      {RankingMetric::mse, "mse", "absolute: bright regions dominate"},
   }};
 };
 
-/// integrator: auto. The renderer has no such method: jobs/run/choose.h chooses one.
+/// integrator: auto. Not a method of the renderer: jobs/run/choosing.h chooses one.
 struct AutoSettings : PathLengths {
   static constexpr std::string_view name = "auto";
   static constexpr std::string_view doc =
-      "the method with the least error on this picture: candidates render it in turns, the worse "
-      "half leaves after each round, and the last one goes on with the rest of the budget";
+      "the method with the smallest error on this picture: candidates render it in turns, the "
+      "worse half is eliminated after each round, and the last one renders with the rest of the "
+      "budget";
   static constexpr auto retired = std::to_array<RetiredKey>({
       {"regions", "true", "the job has one method"},
       {"sampling", "\"adaptive\"", "pixels have equal numbers of samples"},
@@ -74,17 +74,17 @@ template <class V>
 void describe(V& v, AutoSettings& s) {
   describe_lengths(v, s);
   v("candidates", s.candidates,
-    {.doc = "integrators to choose from; they have the path lengths of `auto`, and may name no "
-            "others. The first is the default: another is chosen if it is expected to have less "
-            "than half of the error. Empty: `path` with `reuse` 64 and the guide "
+    {.doc = "integrators to choose from; they have the path lengths of `auto`, and may set no "
+            "others. The first is the default: another is chosen if its expected error is less "
+            "than half. Empty: `path` with `reuse` 64 and the guide "
             "`learned_skeleton`, `path` with `reuse` 16, `metropolis`, `bdpt` with `skeleton` and "
             "`many_lights` with `probabilistic`; where `allow` permits it `vcm` and `sppm`, and "
             "`photon_map` and "
             "`many_lights` with `view_maps`",
      .max = 32});
   v("allow", s.allow,
-    {.doc = "the bias that candidates may have. It counts as error, by the difference to the best "
-            "unbiased candidate; one must be unbiased"});
+    {.doc = "the bias that candidates may have. It counts as error, measured as the difference to "
+            "the best unbiased candidate; one must be unbiased"});
   v("metric", s.metric, {.doc = "the error by which candidates are ranked"});
 }
 

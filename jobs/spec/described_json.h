@@ -10,7 +10,7 @@
 
 namespace lacuna {
 
-/// Throws BadJob if there are problems: the first hundred, and the number of the rest.
+/// Throws BadJob if there are problems, with the first hundred and the number of the rest.
 inline void throw_if_any(std::vector<Problem> problems) {
   constexpr std::size_t most = 100;
   if (problems.empty()) return;

@@ -15,7 +15,7 @@
 namespace lacuna {
 
 // The identities of a picture, a reference and a cold preparation: each is the whole job without a
-// list of keys. A new key in the job's table is part of all three until it is listed here.
+// list of keys. A new key of a job belongs to all three unless it is listed here.
 
 /// Names of keys of a table.
 using KeyList = std::span<const std::string_view>;
@@ -26,10 +26,10 @@ inline constexpr auto not_in_the_picture = std::to_array<std::string_view>({
     "budget",                // when to stop, not what is estimated
     "reference",             // what the estimate is compared with
     "reference_iterations",  // likewise
-    "shards",                // iterations are the same whoever renders them
-    "shard",                 // which iterations; checkpoints tell theirs apart
-    "threads",               // random numbers are counted, not drawn
-    "layers",                // filled beside the estimate; checkpoints tell theirs apart
+    "shards",                // iterations do not depend on who renders them
+    "shard",                 // which iterations; checkpoints record theirs
+    "threads",               // random numbers are counter-based
+    "layers",                // filled in addition to the estimate; checkpoints record theirs
     "pixel_type",            // rounds the file, not the film
     "checkpoint_seconds",    // when to save
     "exclusive",             // what else runs meanwhile
@@ -47,8 +47,8 @@ inline constexpr auto not_in_a_reference = std::to_array<std::string_view>({
     "sampler",               // how they are spread
     "shards",                // who renders which iterations
     "shard",                 // likewise
-    "threads",               // how many at work
-    "layers",                // filled beside the estimate
+    "threads",               // how many
+    "layers",                // filled in addition to the estimate
     "pixel_type",            // rounds the file
     "checkpoint_seconds",    // when to save
     "exclusive",             // what else runs meanwhile
@@ -78,7 +78,7 @@ inline constexpr auto not_in_a_preparation = std::to_array<std::string_view>({
     "pixel_filter",          // likewise
     "pixel_type",            // likewise
     "checkpoint_seconds",    // of the rendering
-    "exclusive",             // whoever shares the machine is reported as such (taint.h)
+    "exclusive",             // other load on the machine is reported (taint.h)
 });
 
 /// Hash of a written job without the keys `left_out`: 32 hexadecimal digits.

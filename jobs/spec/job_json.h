@@ -24,8 +24,8 @@ JobSpec parse_job(std::string_view json);
 /// parse_job(write_job(s)) == s.
 std::string write_job(const JobSpec& spec);
 
-/// The most shards of a job with so many iterations: these are dealt in pairs, and each shard gets
-/// some.
+/// The largest number of shards of a job with this number of iterations: each gets at least one
+/// pair.
 std::int64_t most_shards(std::int64_t iterations);
 
 /// JSON Schema 2020-12 of the job file, made from the settings tables.

@@ -96,7 +96,7 @@ void describe(V& v, CropSettings& s) {
      .required = true,
      .unit = "pixels"});
   v("from", s.from,
-    {.doc = "its column and row, from the upper left, at which the crop begins",
+    {.doc = "column and row in the larger picture, from the upper left, at which the crop begins",
      .min = 0,
      .max = 65535,
      .unit = "pixels"});
@@ -105,7 +105,7 @@ void describe(V& v, CropSettings& s) {
 /// Shards of a job, at most.
 inline constexpr int max_shards = 1 << 16;
 
-/// One job: what is posted to the service and given to `lacuna render`.
+/// One job, as posted to the service or passed to `lacuna render`.
 struct JobSpec {
   std::string scene;
   NameOr<CameraSettings> camera;
@@ -132,7 +132,7 @@ struct JobSpec {
   bool exclusive = false;
   bool operator==(const JobSpec&) const = default;
 };
-/// Whether the iterations of a job are independent; if not, its halves are.
+/// Whether the iterations of a job are independent; otherwise its two halves are.
 inline bool independent_iterations(const JobSpec& s) {
   return s.sampler == Sampler::independent || !spreads_samples(s.integrator);
 }
@@ -141,7 +141,7 @@ void describe(V& v, JobSpec& s) {
   v("scene", s.scene,
     {.doc = "glTF or GLB file, below a scenes root", .min = 1, .max = 1024, .required = true});
   v("camera", s.camera,
-    {.doc = "name of one of the scene's cameras, or where a camera of your own stands and looks; "
+    {.doc = "name of one of the scene's cameras, or position and direction of another camera; "
             "empty: the scene's first",
      .max = 1024});
   v("label", s.label, {.doc = "a description of your own", .max = 200});
@@ -168,7 +168,7 @@ void describe(V& v, JobSpec& s) {
   v("seed", s.seed, {.doc = "seed of the random numbers", .min = 0, .max = 9007199254740991.0});
   v("sampler", s.sampler, {.doc = "random numbers of eye paths and light paths"});
   v("shards", s.shards,
-    {.doc = "how many parts of the iterations may be rendered apart, and merged",
+    {.doc = "number of parts of the iterations that are rendered separately and merged",
      .min = 1,
      .max = max_shards});
   v("shard", s.shard,
@@ -177,9 +177,8 @@ void describe(V& v, JobSpec& s) {
      .max = max_shards});
   v("threads", s.threads, {.doc = "number of threads; 0: one per core", .min = 0, .max = 1024});
   v("layers", s.layers,
-    {.doc =
-         "additional layers of image.exr; strategies and distributions only with a method that has "
-         "them",
+    {.doc = "additional layers of image.exr; strategies and distributions only with a method that "
+            "has them",
      .max = 16});
   v("pixel_filter", s.pixel_filter, {.doc = "reconstruction filter of a pixel"});
   v("pixel_type", s.pixel_type, {.doc = "precision of image.exr"});

@@ -20,7 +20,7 @@
 
 namespace lacuna {
 
-/// Puts what a reader finds into a list.
+/// Collects the problems of a reader in a list.
 class ProblemList final : public JsonProblems {
  public:
   explicit ProblemList(std::vector<Problem>& problems) : problems_(problems) {}
@@ -32,8 +32,8 @@ class ProblemList final : public JsonProblems {
   std::vector<Problem>& problems_;
 };
 
-// What JsonCursor does not read. Each adds a problem and returns nothing, or false, if the value is
-// not allowed.
+// Types that JsonCursor does not read. Each adds a problem and returns none, or false, if the value
+// is not allowed.
 std::optional<AutoNumber> read_auto_number(const JsonCursor& found, const Limits& limits);
 /// No U+0000; `length` in code points.
 std::optional<std::string> read_string(const JsonCursor& found, const Limits& length);
@@ -41,7 +41,7 @@ std::optional<std::string> read_string(const JsonCursor& found, const Limits& le
 bool check_size(const JsonCursor& found, const Limits& size);
 /// Any value, as one line of text.
 std::string any_value(const JsonCursor& found);
-/// Refuses any other value than the one that a retired key may have.
+/// Adds a problem for any value but the one allowed for a retired key.
 void check_retired(const JsonCursor& found, const RetiredKey& key);
 void check_keys(const JsonCursor& found, const std::vector<std::string_view>& known);
 /// The index of the value in `names`.

@@ -25,7 +25,7 @@ class ObjectWriter {
   static OrderedJson value_of(const T& member);
 
   template <Described T>
-  void write(T settings) {  // a copy: tables take what they describe by reference
+  void write(T settings) {  // a copy: describe() takes a mutable reference
     describe(*this, settings);
   }
 

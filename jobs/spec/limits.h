@@ -27,7 +27,7 @@ inline Limits length_limits(const Field& field) {
   return {std::max(field.min, 0.0), field.max, field.above_min, {}};
 }
 
-/// What a field is about, and the value as published if it has one.
+/// The description of a field, with its published value if it has one.
 std::string meaning_text(const Field& field);
 
 }  // namespace lacuna

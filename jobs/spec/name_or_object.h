@@ -10,13 +10,13 @@ namespace lacuna {
 /// document contains a string, or an object with T's settings.
 template <class T>
 struct NameOr {
-  std::string name;  ///< meaningless where there is an object
+  std::string name;  ///< unused if there is an object
   std::optional<T> object;
 
   NameOr() = default;
   NameOr(std::string of) : name(std::move(of)) {}
   NameOr(const char* of) : name(of) {}
-  /// Neither a name nor an object is given.
+  /// Whether neither a name nor an object is given.
   bool is_default() const { return name.empty() && !object; }
   bool operator==(const NameOr&) const = default;
 };

@@ -6,7 +6,7 @@
 
 namespace lacuna {
 
-/// The program's tables that the page uses:
+/// Tables of the program for the page:
 ///
 ///     metrics         [{key, label, unit, slope, reference}], as error_metrics; a Monte Carlo
 ///                     estimate's error falls as samples^slope; reference: it needs one

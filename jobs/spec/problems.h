@@ -14,7 +14,7 @@ struct Problem {
   bool operator==(const Problem&) const = default;
 };
 
-/// A document with problems: all that could be found at once. Exit code 2; HTTP 400.
+/// A document with problems, as many as could be found at once. Exit code 2; HTTP 400.
 class BadJob : public std::runtime_error {
  public:
   explicit BadJob(std::vector<Problem> problems);

@@ -8,7 +8,7 @@
 
 namespace lacuna {
 
-/// The path lengths that all methods of light share, as a table of their own.
+/// The path lengths shared by all methods that estimate light, as a settings table.
 struct LightLengths : PathLengths {};
 template <class V>
 void describe(V& v, LightLengths& s) {
@@ -24,7 +24,7 @@ JobIntegrator reference_integrator(const JobIntegrator& integrator);
 inline constexpr std::uint64_t reference_seed = 0x726566657265;  // below 2^53, the largest seed
 
 /// The job that renders the "auto" reference of `job`: the same except for the keys
-/// `not_in_a_reference`, which have values of their own.
+/// `not_in_a_reference`, which get other values.
 template <std::derived_from<JobSpec> Job>
 Job reference_spec(const Job& job) {
   Job r = without(job, not_in_a_reference);
@@ -44,7 +44,7 @@ Job reference_spec(const Job& job) {
 }
 
 /// Identifies the picture that a job's error is measured against: only errors of jobs with the same
-/// text can be compared. Against a named reference, path lengths are part of the method: they trade
+/// result can be compared. With a named reference, path lengths belong to the method: they trade
 /// bias for speed.
 template <std::derived_from<JobSpec> Job>
 std::string picture_name(const Job& job) {

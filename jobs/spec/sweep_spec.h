@@ -18,8 +18,8 @@ template <>
 struct EnumTable<SweepOrder> {
   static constexpr std::array<EnumValue<SweepOrder>, 2> values{{
       {SweepOrder::interleave, "interleave",
-       "every cell with its first seed, then every cell with its second: what the machine does "
-       "meanwhile meets all alike"},
+       "every cell with its first seed, then every cell with its second: background load affects "
+       "all cells equally"},
       {SweepOrder::sequence, "sequence", "every seed of a cell, then the next cell"},
   }};
 };
@@ -32,7 +32,7 @@ struct EnumTable<SweepClock> {
   static constexpr std::array<EnumValue<SweepClock>, 2> values{{
       {SweepClock::seconds, "seconds", "render time, wall clock"},
       {SweepClock::cpu_seconds, "cpu_seconds",
-       "CPU seconds divided by threads: holds still on a busy machine"},
+       "CPU seconds divided by threads: unaffected by other load on the machine"},
   }};
 };
 
@@ -47,7 +47,7 @@ template <class V>
 void describe(V& v, CompareAt& s) {
   v("seconds", s.seconds,
     {.doc = "render times at which errors are compared; none: the last time that all cells reach, "
-            "and a half, a quarter and a tenth of it",
+            "and 1/2, 1/4 and 1/10 of it",
      .max = 16});
   v("errors", s.errors,
     {.doc = "errors for which times are compared; none: the smallest error that all cells reach, "
@@ -78,22 +78,22 @@ void describe(V& v, SweepSpec& s) {
   v("job", s.job,
     {.doc = "the job file that all runs share; settings of axes may be missing", .required = true});
   v("axes", s.axes,
-    {.doc = "settings and their values, which are combined in all ways: "
+    {.doc = "settings and their values; all combinations are run: "
             "{\"/integrator/max_depth\": [4, 8]}",
      .max = 16});
   v("zip", s.zip,
-    {.doc = "settings that change together, as one axis: lists of equal length, for example of "
-            "scenes and their cameras",
+    {.doc = "settings that vary together as one axis: lists of equal length, for example scenes "
+            "and their cameras",
      .max = 16});
   v("exclude", s.exclude,
     {.doc = "combinations to leave out: all cells with all values of an entry", .max = 1000});
   v("seeds", s.seeds,
-    {.doc = "runs of each cell, with the job's seed and the seeds that follow it",
+    {.doc = "runs of each cell, with the job's seed and the following seeds",
      .min = 1,
      .max = 1000});
   v("baseline", s.baseline,
     {.doc = "values of the baseline: each cell is compared with the cell that has these values and "
-            "otherwise the same",
+            "otherwise equal ones",
      .max = 16});
   v("compare_at", s.compare_at, {.doc = "times and errors at which cells are compared"});
   v("order", s.order, {.doc = "order of the runs"});

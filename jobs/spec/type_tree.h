@@ -43,7 +43,7 @@ struct Type {
   std::size_t array_size = 0;
   std::vector<Name> names;      ///< word, choice
   std::vector<Type> elements;   ///< array, list, table: one; choice: an object for each name
-  std::vector<Member> members;  ///< object; the one in a name's place
+  std::vector<Member> members;  ///< object, or alternative to a name
 };
 
 /// One line of a table.
@@ -69,7 +69,7 @@ class TypeReader {
 
  private:
   template <class T>
-  static Type object_of(T settings) {  // a copy: tables take what they describe by reference
+  static Type object_of(T settings) {  // a copy: describe() takes a mutable reference
     TypeReader reader;
     describe(reader, settings);
     Type type;

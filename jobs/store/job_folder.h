@@ -36,7 +36,7 @@ void describe(V& v, Progress& s) {
   v("error_metric", s.error_metric, {.doc = "which error"});
 }
 
-/// The files of a job's folder: this list is the manifest; no other file is served.
+/// The files of a job's folder. No other file is served.
 struct FileInfo {
   std::string_view name;
   std::string_view media_type;
@@ -45,7 +45,7 @@ struct FileInfo {
 };
 const std::vector<FileInfo>& job_files();
 
-/// One job's folder (DESIGN, "A job's folder"). Cheap to copy: only a path.
+/// One job's folder (docs/jobs.md). Cheap to copy: only a path.
 class JobFolder {
  public:
   explicit JobFolder(std::filesystem::path dir) : dir_(std::move(dir)) {}
@@ -53,19 +53,19 @@ class JobFolder {
   std::string id() const { return dir_.filename().string(); }
   std::filesystem::path file(std::string_view name) const { return dir_ / name; }
 
-  /// Creates the folder with job.json, synced, or nothing: it is made under a temporary name and
-  /// renamed. Throws std::system_error; std::invalid_argument if `dir` is there already.
+  /// Creates the folder with job.json atomically: synced under a temporary name, then renamed.
+  /// Throws std::system_error; std::invalid_argument if `dir` exists.
   static JobFolder create(const std::filesystem::path& dir, const JobSpec& spec);
 
   JobSpec read_job() const;           ///< throws BadJob, std::system_error
-  std::string read_job_text() const;  ///< what read_job() parses; throws the same
-  /// outcome.json, which renderers write; `queued` where none has begun. Throws std::system_error,
-  /// and std::runtime_error if it is corrupt.
+  std::string read_job_text() const;  ///< the input of read_job(); same exceptions
+  /// outcome.json, which renderers write; `queued` if none has begun. Throws std::system_error, and
+  /// std::runtime_error if it is corrupt.
   JobState read_state() const;
   void write_job(const JobSpec& spec) const;  ///< synced
   void write_state(const JobState& s, bool synced = true) const;
-  /// Makes a job that has ended one that waits; only with its lock. Throws what read_state() and
-  /// write_state() throw.
+  /// Changes the state of a job that has ended to queued; requires its lock. Throws the exceptions
+  /// of read_state() and write_state().
   void reopen() const;
   Acceptance read_acceptance()
       const;  ///< all defaults if missing; throws std::runtime_error if corrupt
@@ -73,9 +73,9 @@ class JobFolder {
   std::optional<Progress> read_progress() const;
   void write_progress(const Progress& p) const;
 
-  /// Takes the folder for this process until the object dies, so that two renderers never write
-  /// into one folder. Nothing if another process has it. Whoever gets it also tidies up the
-  /// temporary files of renderers that were killed. Throws std::system_error.
+  /// Locks the folder for this process during the life of the object, so that only one renderer
+  /// writes into it. None if another process has the lock. Also removes the temporary files of
+  /// killed renderers. Throws std::system_error.
   using Lock = FileLock;
   std::optional<Lock> try_lock() const;
 
@@ -97,10 +97,10 @@ struct DataRoot {
     return cache_folder.empty() ? dir / "cache" : cache_folder;
   }
 
-  /// $LACUNA_DATA, or `lacuna-data` in the working directory, and of the cache as at() has it.
+  /// $LACUNA_DATA, or `lacuna-data` in the working directory; the cache as in at().
   static DataRoot from_environment();
-  /// `dir`, with the cache where $LACUNA_CACHE and as large as $LACUNA_CACHE_LIMIT say, if they do.
-  /// All paths become absolute. Throws std::invalid_argument: no such limit.
+  /// `dir`, with the cache's folder and limit from $LACUNA_CACHE and $LACUNA_CACHE_LIMIT if they
+  /// are set. All paths become absolute. Throws std::invalid_argument for an invalid limit.
   static DataRoot at(const std::filesystem::path& dir);
 };
 
@@ -110,27 +110,27 @@ class ScenesRoots {
  public:
   explicit ScenesRoots(std::vector<std::filesystem::path> roots) : roots_(std::move(roots)) {}
   /// $LACUNA_SCENES if set, else `jobs/scenes` in the working directory, then those installed with
-  /// this program or, where it is not installed, of the source tree that it was built from.
+  /// this program or, if it is not installed, in its source tree.
   static ScenesRoots from_environment();
   const std::vector<std::filesystem::path>& roots() const { return roots_; }
 
-  /// The regular file named `name`: a relative path with '/' between parts that does not leave its
-  /// root in any spelling, nor through a symbolic link. `extensions` include the dot (".glb"); case
-  /// does not matter. Throws std::invalid_argument with the reason and the available names, and
-  /// InputUnreadable if it is not known now whether there is such a file: it cannot be examined (no
-  /// permission or descriptor, a failing disk), or no root has it and one is missing or empty.
+  /// The regular file named `name`: a relative path, separated by '/', that cannot leave its root,
+  /// nor through a symbolic link. `extensions` include the dot (".glb"); case does not matter.
+  /// Throws std::invalid_argument with the reason and the available names, and InputUnreadable if
+  /// its existence cannot be determined now: it cannot be examined (no permission or descriptor, a
+  /// failing disk), or no root has it and one is missing or empty.
   std::filesystem::path resolve(std::string_view name,
                                 const std::vector<std::string_view>& extensions) const;
 
-  /// Names of all scenes (.glb, .gltf) below the roots, sorted: four folders deep, of the first
-  /// 10,000 entries of each root, without hidden ones and without following links.
+  /// Names of all scenes (.glb, .gltf) below the roots, sorted: four folders deep, among the first
+  /// 10,000 entries of each root, without hidden files and without following links.
   std::vector<std::string> list() const;
 
  private:
   std::vector<std::filesystem::path> roots_;
 };
 
-/// How the files end that a job can name.
+/// Extensions of the files that a job can name.
 inline const std::vector<std::string_view> scene_extensions{".glb", ".gltf"};
 inline const std::vector<std::string_view> environment_extensions{".exr", ".hdr"};
 
@@ -143,16 +143,15 @@ bool is_job_id(std::string_view s);
 /// increased by 1 + `index` (modulo 36^6). A pure function, so the mapping need not be stored.
 std::string run_job_id(std::string_view sweep_id, std::size_t index);
 /// The inverse of run_job_id(), for any index, whether or not the sweep has such a run; none if
-/// `job_id` is not of that form.
+/// `job_id` does not have that form.
 std::optional<std::size_t> run_index(std::string_view sweep_id, std::string_view job_id);
-/// Names of all folders below `jobs` that have the form of an id, sorted: oldest first. Looks into
-/// none of them.
+/// Names of all folders below `jobs` that have the form of an id, oldest first. Does not open them.
 std::vector<std::string> list_job_names(const std::filesystem::path& jobs);
-/// Whether the folder holds a job; true, too, where that cannot be told now.
+/// Whether the folder contains a job; true, too, if this cannot be determined now.
 bool is_job(const JobFolder& folder);
-/// All jobs below `jobs`, oldest first; folders that are no jobs are left out.
+/// All jobs below `jobs`, oldest first, without other folders.
 std::vector<JobFolder> list_jobs(const std::filesystem::path& jobs);
-/// A time as JobState has it: UTC, ISO 8601 with milliseconds; such texts sort by time.
+/// A time as in JobState: UTC, ISO 8601 with milliseconds; such texts sort by time.
 std::string utc_text(std::chrono::system_clock::time_point time);
 /// Now.
 std::string utc_now();

@@ -10,8 +10,8 @@
 
 namespace lacuna {
 
-/// Reads a file that Lacuna itself has written, small unless `limits` say otherwise: one described
-/// struct. Throws std::system_error, and std::runtime_error if it is corrupt.
+/// Reads a small file that Lacuna itself has written: one described struct, within `limits`. Throws
+/// std::system_error, and std::runtime_error if it is corrupt.
 template <Described T>
 T read_own(const std::filesystem::path& path, DocumentLimits limits = {1 << 20, 8}) {
   try {

@@ -19,7 +19,7 @@ constexpr Transition transitions[] = {
      "its folder is damaged, or Slurm refuses what it asks for"},
     {State::running, State::cancelling, person, "cancels it; its renderer is asked to stop"},
     {State::running, State::queued, service,
-     "its renderer stopped before the end or crashed: it goes on from its checkpoint"},
+     "its renderer stopped before the end or crashed: it continues from its checkpoint"},
     {State::running, State::held, service, "its renderer has stopped because the job is held"},
     {State::running, State::done, service, "the budget is spent, the results are written"},
     {State::running, State::failed, service,

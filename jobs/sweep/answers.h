@@ -12,7 +12,7 @@
 namespace lacuna {
 
 /// Seconds before the first iteration. Cold: all artefacts are built. Warm: they are loaded from
-/// the cache. None: no run of the sweep measured it.
+/// the cache. None: not measured by any run of the sweep.
 struct Preparation {
   std::optional<double> cold, warm;
 };
@@ -45,7 +45,7 @@ struct CellAnswer {
 struct PictureAnswer {
   std::string text;                     ///< the settings that differ from the other pictures
   std::vector<std::size_t> cells;       ///< indices into Answers::cells
-  std::vector<double> seconds, errors;  ///< where its cells are compared
+  std::vector<double> seconds, errors;  ///< at which its cells are compared
   /// The cells of lowest error over time: by render time, and with warm and cold preparation.
   /// `best` and `tied` are indices into plan().cells.
   std::vector<FrontPart> render, warm, cold;
@@ -65,7 +65,7 @@ struct Answers {
   std::vector<PictureAnswer> pictures;
   std::map<State, std::size_t> states;  ///< runs in each state
   std::vector<Tainted> tainted;
-  std::map<std::size_t, std::string> stale;  ///< runs that are left out (stale_runs())
+  std::map<std::size_t, std::string> stale;  ///< excluded runs (stale_runs())
   std::vector<std::string> warnings;
 };
 
@@ -73,8 +73,7 @@ struct Answers {
 /// read_result().
 Answers answer(const SweepFolder& sweep);
 
-/// The answers as JSON: what the page and the report show (documented in
-/// docs/sweeps-and-reports.md).
+/// The answers as JSON, for the page and the report (docs/sweeps-and-reports.md).
 std::string answers_text(const SweepFolder& sweep, const Answers& answers);
 
 }  // namespace lacuna

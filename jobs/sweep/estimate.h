@@ -5,7 +5,7 @@
 
 namespace lacuna {
 
-/// Probability with which the intervals of this project hold the truth.
+/// Coverage probability of all confidence intervals.
 inline constexpr double confidence = 0.95;
 
 struct Interval {
@@ -31,8 +31,8 @@ Estimate geometric_mean(std::span<const double> values);
 /// Throws as geometric_mean().
 Estimate ratio_of_means(std::span<const double> a, std::span<const double> b);
 
-/// Whether the interval of ratio_of_means() contains 1, so that it is not known which mean is
-/// larger. False if there is no interval. Throws as geometric_mean().
+/// Whether the interval of ratio_of_means() contains 1: the means do not differ significantly.
+/// False if there is no interval. Throws as geometric_mean().
 bool may_be_equal(std::span<const double> a, std::span<const double> b);
 
 /// The least number of values whose interval is expected to be at most half as wide as that of `n`

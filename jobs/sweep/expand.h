@@ -22,7 +22,7 @@ inline constexpr std::size_t max_sweep_runs = 20'000;
 struct SweepCell {
   JsonTable<JsonValue> settings;        ///< by pointer
   JobSpec job;                          ///< with its first seed
-  std::optional<std::size_t> baseline;  ///< the cell that it is compared with, if any
+  std::optional<std::size_t> baseline;  ///< the cell to compare it with, if any
 };
 
 /// One job of a sweep.
@@ -56,13 +56,13 @@ SweepPlan expand(const SweepSpec& sweep, const JobCheck& check = {});
 
 /// The settings of some cells of a plan.
 struct VaryingSettings {
-  JsonTable<JsonValue> shared;    ///< all of these cells have, and not all of the plan
-  std::vector<std::string> vary;  ///< pointers to those in which these cells differ
+  JsonTable<JsonValue> shared;    ///< equal in all of these cells, but not in the whole plan
+  std::vector<std::string> vary;  ///< pointers to settings that differ among these cells
 };
 VaryingSettings settings_that_vary(const SweepPlan& plan, const std::vector<std::size_t>& cells);
 
 /// "max_depth 8, resolution [64,64]": the settings of a cell, by the last part of each pointer,
-/// longer where two end alike.
+/// extended where two have the same end.
 std::string cell_text(const JsonTable<JsonValue>& settings);
 
 }  // namespace lacuna

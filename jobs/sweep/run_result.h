@@ -31,7 +31,7 @@ struct RunResult {
   JobState state;
   ErrorCurve curve;
   std::optional<double> efficiency;    ///< 1 / (squared error x seconds) at its end
-  std::optional<double> bias_squared;  ///< of the last row, less the reference's own noise
+  std::optional<double> bias_squared;  ///< of the last row, less the reference's noise
   std::optional<double> variance;      ///< likewise, from the two halves
   std::optional<RunPreparation> preparation;
   std::optional<std::string> camera;  ///< the one rendered, also where the job names none
@@ -39,7 +39,7 @@ struct RunResult {
   std::optional<double> others,
       stolen;  ///< shares of the processors' time (jobs/run/machine_watch.h)
   std::optional<double> mhz;
-  InputList inputs;  ///< that it was made from; empty: not recorded
+  InputList inputs;  ///< its input files; empty: not recorded
 };
 
 /// Reads curve.csv and report.json of a folder, if they exist. `budget`: of its job. Squared errors

@@ -8,10 +8,9 @@
 
 namespace lacuna {
 
-/// The finished runs that were made from another content of a file than the run of the same scene
-/// that ended last, by their index, and the first file that differs: their errors are those of
-/// another picture. `results`: of all runs of the plan. A run that did not record its inputs is not
-/// among them.
+/// The finished runs with other contents of an input file than the run of the same scene that ended
+/// last, by index, with the first differing file: their errors are of another picture. `results`:
+/// of all runs of the plan. Excludes runs that did not record their inputs.
 std::map<std::size_t, std::string> stale_runs(std::span<const RunResult> results);
 
 }  // namespace lacuna

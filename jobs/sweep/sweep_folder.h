@@ -14,14 +14,14 @@ namespace lacuna {
 /// its runs are jobs of the service, DATA/jobs/ID, whose ids follow from the sweep's.
 class SweepFolder {
  public:
-  /// Makes the folder, or opens it where this very sweep lies there; it takes over where its runs
-  /// are to be compared. Throws BadJob: another sweep, or something else, is there; what expand()
-  /// throws; std::system_error.
+  /// Creates the folder, or opens it if it contains the same sweep, updating `compare_at`. Throws
+  /// BadJob if it contains another sweep or something else; the exceptions of expand();
+  /// std::system_error.
   static SweepFolder create(const std::filesystem::path& dir, const SweepSpec& spec);
-  /// The same without touching the disk: what would be in the folder, if it is not there.
+  /// The same without writing to the disk.
   static SweepFolder preview(const std::filesystem::path& dir, const SweepSpec& spec);
-  /// A sweep of a service; its sweep.json is written where it is missing. `plan` is what expand()
-  /// makes of `spec`. Throws std::system_error.
+  /// A sweep of a service; writes its sweep.json if it is missing. `plan`: expand() of `spec`.
+  /// Throws std::system_error.
   static SweepFolder of_service(const DataRoot& data, const std::string& id, SweepSpec spec,
                                 SweepPlan plan);
   /// Opens the folder of a sweep. Throws BadJob, std::system_error.
@@ -30,18 +30,18 @@ class SweepFolder {
   const std::filesystem::path& dir() const { return dir_; }
   const SweepSpec& spec() const { return spec_; }
   const SweepPlan& plan() const { return plan_; }
-  /// Whether it is a service's.
+  /// Whether it is a sweep of a service.
   bool is_served() const { return served_; }
   std::string id() const { return dir_.filename().string(); }
 
-  /// Where its runs lie, of a sweep from the command line.
+  /// The parent folder of its runs, for a sweep from the command line.
   std::filesystem::path runs_dir() const;
-  /// The id of the job of a service that is this run.
+  /// The id of this run's job in a service.
   std::string job_id(const SweepRun& run) const;
-  /// The folder of a run, which may not be there yet.
+  /// The folder of a run, which may not exist yet.
   JobFolder folder(const SweepRun& run) const;
-  /// Where a run stands; `queued` if its folder is not there. Throws what JobFolder::read_state()
-  /// throws.
+  /// The state of a run; `queued` if its folder is missing. Throws the exceptions of
+  /// JobFolder::read_state().
   JobState state(const SweepRun& run) const;
 
  private:
@@ -54,10 +54,10 @@ class SweepFolder {
   bool served_;
 };
 
-/// What a sweep's folder says without its plan being made. Throws BadJob, std::system_error.
+/// sweep.json of a sweep's folder, without making the plan. Throws BadJob, std::system_error.
 SweepSpec read_sweep_spec(const std::filesystem::path& dir);
-/// state.json of a service's sweep; a running one where there is none. Throws std::system_error;
-/// std::runtime_error if it is corrupt. Not synced when written: the database has it too.
+/// state.json of a service's sweep; `running` if it is missing. Throws std::system_error;
+/// std::runtime_error if it is corrupt. Writing does not sync: the database has it, too.
 SweepState read_sweep_state(const std::filesystem::path& dir);
 void write_sweep_state(const std::filesystem::path& dir, const SweepState& state);
 
