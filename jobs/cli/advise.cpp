@@ -91,7 +91,7 @@ class TemporaryFolder {
 void add_advise(CLI::App& app, int& code) {
   const auto o = std::make_shared<AdviseOptions>();
   CLI::App* command = app.add_subcommand(
-      "advise", "Choose the best method for a scene and a budget by rendering with each");
+      "advise", "Choose the best method for a scene and a budget by rendering with several");
   command
       ->add_option("WHAT", o->what,
                    "a scene (.glb, .gltf) below a scenes root, or a job file (.json)")
@@ -111,7 +111,7 @@ void add_advise(CLI::App& app, int& code) {
                    "number of threads; 0: one per core (default: job's)")
       ->check(CLI::Range(0, 1024));
   command->add_option("-o,--out", o->out,
-                      "keep the job in this folder, for `lacuna render` to go on with");
+                      "keep the job in this folder, so that `lacuna render` can continue it");
   command->add_flag("--json", o->json, "print choice.json instead of a table");
   command->callback([o, &code] {
     Terminal terminal({}, true);

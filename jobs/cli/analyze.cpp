@@ -192,8 +192,7 @@ void add_analyze(CLI::App& app, int& code) {
       "write skeleton, filtered, clusters, gates and portals (.glb), each with the scene, to DIR");
   command->add_option("--threads", o->threads, "number of threads; 0: one per core (default)")
       ->check(CLI::NonNegativeNumber);
-  command->add_flag("--no-cache", o->no_cache,
-                    "build everything anew and store nothing in the cache");
+  command->add_flag("--no-cache", o->no_cache, "rebuild everything and store nothing in the cache");
   command->add_flag("--json", o->json, "print JSON, for scripts");
   command->callback([o, &code] {
     try {

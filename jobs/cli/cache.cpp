@@ -59,10 +59,10 @@ int verify(const CacheOptions& o) {
   }
   fmt::print("{} in {}: ", count_text(entries.size(), bytes), folder_of(o).string());
   if (damaged == 0) {
-    fmt::print("all whole\n");
+    fmt::print("all intact\n");
     return exit_done;
   }
-  fmt::print("{} not whole; made anew when next asked for\n", damaged);
+  fmt::print("{} damaged; rebuilt at the next request\n", damaged);
   return exit_error;
 }
 

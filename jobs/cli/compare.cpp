@@ -80,7 +80,7 @@ std::vector<double> variance_of_difference(const CompareOptions& o, const Crop& 
 void print_blocks(const CompareOptions& o, const Crop& crop, const std::vector<double>& a,
                   const std::vector<double>& b) {
   if (o.block > std::min(crop.width, crop.height)) {
-    throw SceneError(fmt::format("--block {} is larger than what is compared, {} x {}", o.block,
+    throw SceneError(fmt::format("--block {} is larger than the compared area, {} x {}", o.block,
                                  crop.width, crop.height));
   }
   const std::vector<double> variance = variance_of_difference(o, crop);

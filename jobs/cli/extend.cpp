@@ -39,7 +39,8 @@ Budget larger_budget(const Budget& old, const ExtendOptions& o) {
 void extend(const JobFolder& folder, const ExtendOptions& o) {
   const auto lock = folder.try_lock();
   if (!lock) {
-    throw FolderBusy(fmt::format("{}: another process works on this job", folder.dir().string()));
+    throw FolderBusy(
+        fmt::format("{}: another process is rendering this job", folder.dir().string()));
   }
   JobSpec spec = folder.read_job();
   const Budget larger = larger_budget(spec.budget, o);
@@ -59,21 +60,20 @@ void extend(const JobFolder& folder, const ExtendOptions& o) {
 
 void add_extend(CLI::App& app, int& code) {
   const auto o = std::make_shared<ExtendOptions>();
-  CLI::App* command = app.add_subcommand(
-      "extend",
-      "Give a job's folder a larger budget and go on rendering from its checkpoint, also after it "
-      "is done");
+  CLI::App* command = app.add_subcommand("extend",
+                                         "Give a job's folder a larger budget and continue "
+                                         "rendering from its checkpoint, also after it is done");
   command->footer(
-      "The limits given are the whole new budget: the others that the job had are dropped. None "
-      "may be\nsmaller than before. If it is stopped, `lacuna render FOLDER` goes on.");
+      "The given limits replace the whole budget: other limits of the job are dropped. None may "
+      "be\nsmaller than before. After a stop, `lacuna render FOLDER` continues.");
   command->add_option("FOLDER", o->folder, "a job's folder")
       ->required()
       ->check(CLI::ExistingDirectory);
-  command->add_option("--seconds", o->budget.seconds, "render time in all, wall clock");
+  command->add_option("--seconds", o->budget.seconds, "total render time, wall clock");
   command->add_option("--cpu-seconds", o->budget.cpu_seconds,
-                      "render time in all, CPU seconds / threads");
-  command->add_option("--iterations", o->budget.iterations, "iterations in all");
-  command->add_option("--error", o->error, "error target, in the metric of the job's own");
+                      "total render time, CPU seconds / threads");
+  command->add_option("--iterations", o->budget.iterations, "total iterations");
+  command->add_option("--error", o->error, "error target, in the job's metric");
   command
       ->add_option("-t,--threads", o->render.threads,
                    "number of threads instead of the job's; 0: one per core")

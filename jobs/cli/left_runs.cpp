@@ -80,7 +80,7 @@ bool LeftRuns::is_stale(const SweepRun& run, const JobState& state, InputCheck& 
     return false;
   }
   if (changes->empty()) return false;
-  terminal_.warning(fmt::format("{} was rendered from other files ({}): it is rendered again",
+  terminal_.warning(fmt::format("the input files of {} have changed ({}): it is rendered again",
                                 run.name, fmt::join(*changes, "; ")));
   return true;
 }

@@ -41,7 +41,8 @@ std::vector<Listed> jobs_of(const fs::path& folder) {
       fs::is_regular_file(folder / "sweep.json") && fs::is_directory(folder / "runs");
   auto found = jobs_in(sweep ? folder / "runs" : folder, "");
   if (found.empty()) {
-    throw BadJob({{"", fmt::format("{} is no job's folder and holds none", folder.string())}});
+    throw BadJob(
+        {{"", fmt::format("{} is not a job's folder and contains none", folder.string())}});
   }
   return found;
 }

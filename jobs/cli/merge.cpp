@@ -39,13 +39,13 @@ void add_merge(CLI::App& app, int& code) {
   };
   const auto o = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
-      "merge", "Make one job's folder of all shards of a job (`lacuna render --shard K/N`)");
+      "merge", "Merge all shards of a job (`lacuna render --shard K/N`) into one job's folder");
   command->footer(
-      "The order of the shards does not matter. The picture has the bits of one machine's, unless "
-      "the\nmethod learns: then each shard learned from its own iterations, and report.json says "
-      "so. Times\nare sums; the column longest_seconds of curve.csv is the longest clock. `lacuna "
-      "extend OUT` goes on.");
-  command->add_option("OUT", o->out, "the folder to be made")->required();
+      "The order of the shards does not matter. The picture has the same bits as on one machine, "
+      "unless the\nmethod learns: then each shard learned from its own iterations, as report.json "
+      "states. Times\nare sums; the column longest_seconds of curve.csv is the longest clock. "
+      "`lacuna extend OUT` continues.");
+  command->add_option("OUT", o->out, "the new folder")->required();
   command->add_option("SHARD", o->shards, "the shards' folders, all of them")
       ->required()
       ->check(CLI::ExistingDirectory);

@@ -51,7 +51,7 @@ void choose_shard(JobSpec& spec, const std::string& text) {
                        spec.shards, spec.shards));
   }
   if (spec.shard > 0 && spec.shard != k) {
-    refuse(fmt::format("the job is that of shard {}", spec.shard));
+    refuse(fmt::format("the job is already shard {}", spec.shard));
   }
   spec.shards = n;
   spec.shard = k;
@@ -82,8 +82,8 @@ JobFolder folder_for(const fs::path& job_file, const fs::path& named, const std:
   }
   JobFolder folder(out);
   if (folder.read_job() != spec) {
-    throw BadJob(
-        {{"", fmt::format("{} holds another job; name another folder with --out", out.string())}});
+    throw BadJob({{"", fmt::format("{} contains another job; choose another folder with --out",
+                                   out.string())}});
   }
   return folder;
 }
@@ -95,13 +95,13 @@ std::string advice_for(Obstacle obstacle) {
       return "";
     case Obstacle::memory:
       return memory_limit_advice() +
-             "free memory, or ask for a smaller resolution or fewer layers; the same command goes "
-             "on from the last checkpoint";
+             "free memory, or use a smaller resolution or fewer layers; the same command continues "
+             "from the last checkpoint";
     case Obstacle::storage:
-      return "nothing stored is lost: with room to write the same command goes on from the last "
-             "checkpoint";
+      return "nothing stored is lost: once there is space, the same command continues from the "
+             "last checkpoint";
     case Obstacle::input:
-      return "this may pass: once the file can be read the same command goes on";
+      return "this may be transient: once the file can be read, the same command continues";
   }
   return "";
 }
@@ -111,7 +111,8 @@ std::string advice_for(Obstacle obstacle) {
 void start_again(const JobFolder& folder) {
   const auto lock = folder.try_lock();
   if (!lock) {
-    throw FolderBusy(fmt::format("{}: another process works on this job", folder.dir().string()));
+    throw FolderBusy(
+        fmt::format("{}: another process is rendering this job", folder.dir().string()));
   }
   folder.reopen();  // first: a job that is done has a checkpoint
   for (const char* name :
@@ -136,7 +137,7 @@ int render_folder(const JobFolder& folder, const RenderOptions& options) {
     const bool was_done = folder.read_state().state == State::done;
     const Outcome outcome = run_job(folder, context);
     if (was_done) {
-      terminal.milestone(fmt::format("{}: done already", folder.dir().string()));
+      terminal.milestone(fmt::format("{}: already done", folder.dir().string()));
       return exit_done;
     }
     if (outcome == Outcome::interrupted) {
@@ -167,20 +168,21 @@ void add_render(CLI::App& app, int& code) {
   command->add_option(
       "--shard", o->shard,
       "K/N: render only the K-th of N parts of the iterations, into NAME.K-of-N.job; "
-      "`lacuna merge` puts all N together");
+      "`lacuna merge` merges all N");
   command
       ->add_option("-t,--threads", o->threads,
                    "number of threads instead of the job's; 0: one per core")
       ->check(CLI::Range(0, 1024));
   command->add_flag("--again", o->again,
-                    "render anew what is rendered already, from the files as they are now");
+                    "discard the results and render again from the present files");
   command->add_flag("-q,--quiet", o->quiet, "show warnings and errors only");
   command->callback([o, &code] {
     const bool is_folder = fs::is_directory(o->job);
     if (is_folder && !o->shard.empty()) {
-      throw BadJob({{"", fmt::format("--shard {}: {} is a folder, which knows its shard; allowed: "
-                                     "with a job file",
-                                     o->shard, o->job.string())}});
+      throw BadJob(
+          {{"",
+            fmt::format("--shard {}: {} is a folder, which has its shard; allowed: with a job file",
+                        o->shard, o->job.string())}});
     }
     const JobFolder folder =
         is_folder ? JobFolder(folder_path(o->job)) : folder_for(o->job, o->out, o->shard);

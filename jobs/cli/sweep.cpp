@@ -69,10 +69,11 @@ void check_not_submitted(const SweepFolder& folder, bool on_slurm) {
                                    number, allowed)}});
   };
   refuse(JobFolder(folder.dir()),
-         "to let this array of an earlier version end, or scancel, and then to remove slurm.json");
+         "to wait for this array of an earlier version or to scancel it, and then to remove "
+         "slurm.json");
   if (on_slurm) return;
   for (const SweepRun& run : folder.plan().runs) {
-    refuse(folder.folder(run), "to go on with --executor slurm, also after scancel");
+    refuse(folder.folder(run), "to continue with --executor slurm, also after scancel");
   }
 }
 
@@ -80,9 +81,10 @@ int sweep(const SweepOptions& o) {
   const SweepFolder folder = open(o);
   const auto& runs = folder.plan().runs;
   if (folder.is_served() && !o.list && !o.missing) {
-    throw BadJob({{"", fmt::format("{} is a sweep of a service, which does its runs; from here: "
-                                   "--list, --missing",
-                                   folder.dir().string())}});
+    throw BadJob(
+        {{"", fmt::format(
+                  "{} is a sweep of a service, which renders its runs; allowed: --list, --missing",
+                  folder.dir().string())}});
   }
   if (o.list) return print_runs(folder), exit_done;
   Terminal terminal({}, o.quiet);
@@ -91,7 +93,7 @@ int sweep(const SweepOptions& o) {
     return fmt::print("{}\n", index_ranges(indices_of(left_runs.find(true)))), exit_done;
   }
   if (o.chunk > 0) {
-    terminal.warning("--chunk has no effect any more: each run is a Slurm job of its own");
+    terminal.warning("--chunk has no effect: each run is a separate Slurm job");
   }
   // Tasks of an array do parts of it.
   if (o.index.empty()) check_not_submitted(folder, o.on_slurm);
@@ -133,8 +135,8 @@ void add_slurm_options(CLI::App& command, SweepOptions& o) {
   command
       .add_option_function<std::string>(
           "--executor", [&o](const std::string& name) { o.on_slurm = name == "slurm"; },
-          "who renders: local (this machine) or slurm (each run is a Slurm job, from a folder that "
-          "all nodes share)")
+          "where runs are rendered: local (this machine) or slurm (each run is a Slurm job, in a "
+          "folder that all nodes share)")
       ->check(CLI::IsMember({"local", "slurm"}))
       ->default_str("local");
   command
@@ -151,12 +153,12 @@ void add_slurm_options(CLI::App& command, SweepOptions& o) {
               }
             }
           },
-          "further options of sbatch, for example \"--partition=long --account=me\"; they win "
-          "over those that follow from the runs")
+          "further options of sbatch, for example \"--partition=long --account=me\"; they override "
+          "those derived from the runs")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
       .add_option("--slurm-cores", o.slurm.cores,
-                  "cores in Slurm of a run that names no threads; 0: a node of its own")
+                  "cores in Slurm for a run that sets no threads; 0: an exclusive node")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command
@@ -168,7 +170,7 @@ void add_slurm_options(CLI::App& command, SweepOptions& o) {
           "seconds between two calls of squeue")
       ->check(CLI::Range(0.05, 3600.0))
       ->default_str("3");
-  command.add_option("--chunk", o.chunk, "has no effect any more: each run is a Slurm job")
+  command.add_option("--chunk", o.chunk, "has no effect: each run is a separate Slurm job")
       ->check(CLI::PositiveNumber);
 }
 
@@ -184,8 +186,8 @@ void add_sweep(CLI::App& app, int& code) {
   command->add_option("-o,--out", o->out, "folder for the results (default: NAME.sweep)");
   command
       ->add_option("-j,--jobs", o->queue.at_a_time,
-                   "runs at a time; more than one on a machine disturb each other's timings; with "
-                   "Slurm, those that it has at a time, default 64")
+                   "runs at a time; several on one machine disturb each other's timings; with "
+                   "Slurm, runs submitted at a time, default 64")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   command

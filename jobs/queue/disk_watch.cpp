@@ -48,8 +48,9 @@ bool DiskWatch::is_low() {
   try {
     std::string shortage = shortage_of(room(), floor_, !shortage_.empty());
     if (shortage.empty() != shortage_.empty()) {
-      log::warn("{}: {}", folder_.string(),
-                shortage.empty() ? "there is room again: jobs go on" : shortage + ": jobs wait");
+      log::warn(
+          "{}: {}", folder_.string(),
+          shortage.empty() ? "enough free space again: jobs continue" : shortage + ": jobs wait");
     }
     shortage_ = std::move(shortage);
   } catch (const std::system_error& error) {

@@ -81,9 +81,9 @@ std::vector<std::string> renderer_environment(const ExecutorSettings& settings) 
   std::string roots;
   for (const auto& root : settings.scenes) {
     if (root.string().find(':') != std::string::npos) {
-      throw std::invalid_argument(
-          fmt::format("{}: a scenes folder's path may not hold ':', which separates the folders",
-                      root.string()));
+      throw std::invalid_argument(fmt::format(
+          "{}: a scenes folder's path must not contain ':', which separates the folders",
+          root.string()));
     }
     if (!roots.empty()) roots += ':';
     roots += root.string();
@@ -97,7 +97,7 @@ std::vector<std::string> renderer_environment(const ExecutorSettings& settings) 
 void check_renderer(const ExecutorSettings& settings) {
   if (::access(settings.renderer.c_str(), X_OK) != 0) {
     throw std::invalid_argument(
-        fmt::format("{} is not a program that can be started", settings.renderer.string()));
+        fmt::format("{} is not an executable program", settings.renderer.string()));
   }
 }
 
@@ -136,7 +136,7 @@ Ending LocalExecutor::run(const Task& task, const StopSignal& stop, const Notice
     if (!child.wait(stop.fd(), std::chrono::milliseconds(-1))) {
       child.signal(SIGTERM);
       if (!child.wait(-1, settings_.grace)) {
-        log::warn("{}: its renderer did not end within {} s of being asked and is killed",
+        log::warn("{}: its renderer did not stop within {} s of the request and is killed",
                   folder.id(), static_cast<double>(settings_.grace.count()) / 1000);
         child.signal(SIGKILL);
         killed = true;

@@ -54,7 +54,7 @@ bool made_progress(const Attempt& attempt) {
 
 std::string reason_of(const Attempt& attempt) {
   const Ending& end = attempt.ending;
-  if (interrupted(end)) return end.reason + ", without a request and without progress";
+  if (interrupted(end)) return end.reason + ", without a request or progress";
   const bool silent = end.kind == Ending::Kind::exited && end.code == exit_done;
   return silent ? end.reason + " but left no result" : end.reason;
 }

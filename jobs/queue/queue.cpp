@@ -43,8 +43,7 @@ std::size_t Queue::room() const {
 
 void Queue::check_room() const {
   if (room() == 0) {
-    throw Full(
-        fmt::format("{} jobs wait or run, and there may be no more.", settings_.max_waiting));
+    throw Full(fmt::format("{} jobs wait or run, which is the maximum.", settings_.max_waiting));
   }
 }
 
@@ -201,10 +200,10 @@ void Queue::check_all_removable(const std::vector<std::string>& ids) const {
     }
     const auto sweep = store_.find_sweep(entry.sweep);
     if (sweep && !is_over(sweep->state)) {
-      throw Conflict(fmt::format("Sweep {}, which it is a run of, is not over.", entry.sweep));
+      throw Conflict(fmt::format("It is a run of sweep {}, which is not over.", entry.sweep));
     }
     if (const auto user = store_.merged_from(entry.sweep); user && !user->over()) {
-      throw Conflict(fmt::format("Job {} is to be merged from {}.", user->id, id));
+      throw Conflict(fmt::format("Job {} will be merged from {}.", user->id, id));
     }
     if (const auto user = store_.measured_against(id)) {
       throw Conflict(fmt::format("Job {} measures its error against {}.", *user, id));

@@ -103,7 +103,7 @@ Queue::WorkPtr Queue::take(const std::stop_token& ends) {
         return work;
       }
     } catch (const std::exception& error) {  // the database, or no descriptor is left
-      log::warn("no job is taken: {}", error.what());
+      log::warn("no job can be started: {}", error.what());
       look_again = Clock::now() + longest_pause;
     }
     changed_.wait_until(lock, look_again);
@@ -172,7 +172,7 @@ bool Queue::wait_until_free(const JobEntry& entry, const std::stop_token& ends) 
   while (!is_free()) {
     if (!killed && Clock::now() >= patience) {
       killed = kill_group(renderer_of(entry), SIGKILL);
-      if (killed) log::warn("{}: an earlier renderer did not end and is killed", entry.id);
+      if (killed) log::warn("{}: an earlier renderer did not stop and is killed", entry.id);
     }
     std::unique_lock lock(mutex_);
     if (changed_.wait_for(lock, look_again_at_lock, [&] { return ends.stop_requested(); })) {
@@ -216,7 +216,7 @@ std::optional<Attempt> Queue::render(Work& work, const JobEntry& entry) {
   }
   if (!may_render(work, attempt)) return std::nullopt;
   log::info("{}: {}", work.id,
-            attempt.found ? "its renderer is found again" : "a renderer is started");
+            attempt.found ? "continuing with its running renderer" : "starting a renderer");
   attempt.ending =
       executor_.run({job, entry.priority, entry.crashes}, work.stop,
                     {.started = [&](pid_t pid) { note_start(work, pid); },
@@ -312,7 +312,7 @@ void Queue::judge(Work& work, Attempt attempt, const std::stop_token& ends) {
       return settle(work, attempt);
     } catch (const std::exception& error) {
       if (!may_pass(error)) throw;
-      log::warn("{}: its state cannot be stored: {}", work.id, error.what());
+      log::warn("{}: its state cannot be saved: {}", work.id, error.what());
       {
         const std::lock_guard lock(faults_mutex_);
         faults_ = std::max(faults_, faults);
@@ -402,7 +402,7 @@ void Queue::note_obstacle(const std::string& id, const std::string& what,
 
 /// The job cannot be done: its folder is damaged.
 void Queue::give_up(const std::string& id, const std::string& reason) {
-  log::error("{} is given up: {}", id, reason);
+  log::error("{} has failed: {}", id, reason);
   try {
     store_.change([&](StoreChange& c) {
       auto entry = c.find_job(id);

@@ -58,7 +58,7 @@ std::optional<int> read_submission_exit(const JobFolder& folder, const std::stri
   std::string text;
   try {
     text = read_file(folder.file(exit_file), longest);
-  } catch (const std::exception&) {  // it will be read another time, or Slurm says what it knows
+  } catch (const std::exception&) {  // it is read again later, or Slurm reports the end
     return std::nullopt;
   }
   if (!text.starts_with(name + " ")) return std::nullopt;

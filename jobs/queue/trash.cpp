@@ -26,7 +26,7 @@ void Trash::run(const std::stop_token& ends) {
     }
     std::error_code error;
     std::filesystem::remove_all(folder, error);
-    if (error) log::warn("{} is left: {}", folder.string(), error.message());
+    if (error) log::warn("{} was not removed: {}", folder.string(), error.message());
   }
 }
 

@@ -14,7 +14,7 @@ ReplicateBias::ReplicateBias(std::vector<double> reference, int width)
 
 void ReplicateBias::add(std::span<const double> picture) {
   if (picture.size() != reference_.size()) {
-    throw std::invalid_argument("a replicate's picture has another size than the reference");
+    throw std::invalid_argument("a replicate's picture differs in size from the reference");
   }
   for (std::size_t i = 0; i < picture.size(); ++i) {
     const double error = picture[i] - reference_[i];

@@ -1,7 +1,7 @@
 """Tables and figures of the papers beside ours: the paper's number, ours with its interval, their ratio, a verdict.
 
 Without NAME: the list of all, and which are built. Exit codes: 0 nothing missed; 1 a claim is missed, a run failed, or
-NAME is not built yet; 2 there is no NAME, or options that do not go together; 75 interrupted, and the same command goes on;
+NAME is not built yet; 2 there is no NAME, or options that do not go together; 75 interrupted, and the same command continues;
 else those of `lacuna`."""
 
 import argparse
@@ -80,7 +80,7 @@ def reproduce_all(options):
         for outcome in everything.measure_all(catalogue.ENTRIES, options.full, options.out.absolute(), options.kept):
             outcomes.append(outcome)
     except (child.Failed, KeyboardInterrupt) as stopped:
-        error(f"{stopped or 'interrupted'}; the same command goes on")
+        error(f"{stopped or 'interrupted'}; the same command continues")
         code = stopped.code if isinstance(stopped, child.Failed) and stopped.code not in everything.STOPPED else 75
     if options.write:
         code = write([o.run for o in outcomes if o.run is not None]) or code

@@ -46,7 +46,7 @@ class OpenCheckpoint {
 
   /// Throws std::runtime_error unless the content is as it was written, to the last byte.
   void verify(const BetweenPieces& between) const {
-    if (bytes_ - start_ < frame_.content_bytes) throw std::runtime_error("cut short");
+    if (bytes_ - start_ < frame_.content_bytes) throw std::runtime_error("truncated");
     Checksum checksum;
     std::string piece(piece_bytes, '\0');
     ByteReader in = content(between);
@@ -70,7 +70,7 @@ class OpenCheckpoint {
 
  private:
   void take(void* to, std::size_t n) {
-    if (n > bytes_ - start_) throw std::runtime_error("cut short");
+    if (n > bytes_ - start_) throw std::runtime_error("truncated");
     read_at(start_, static_cast<char*>(to), n);
     start_ += n;
   }
@@ -88,7 +88,7 @@ class OpenCheckpoint {
       const ssize_t got = ::pread(handle_.get(), to, n, static_cast<off_t>(at));
       if (got < 0 && errno == EINTR) continue;
       if (got < 0) throw_file_error(errno, "read", file_);
-      if (got == 0) throw std::runtime_error("cut short");
+      if (got == 0) throw std::runtime_error("truncated");
       to += got;
       at += static_cast<std::uint64_t>(got);
       n -= static_cast<std::size_t>(got);
@@ -164,7 +164,7 @@ bool read_checkpoint(const std::filesystem::path& file, const std::string& key,
   naming(file, [&] {
     const OpenCheckpoint checkpoint(file);
     if (checkpoint.key() != key) {
-      throw std::runtime_error("a checkpoint of another picture, or of other layers");
+      throw std::runtime_error("a checkpoint of another picture or other layers");
     }
     checkpoint.verify(between);
     ByteReader in = checkpoint.content(between);

@@ -37,7 +37,7 @@ std::optional<Choice> read_choice(const JobFolder& folder) {
     auto choice = read_document<Choice>(read_file(file, most_bytes), {most_bytes, most_levels});
     const auto count = choice.candidates.size();
     if (count == 0 || (choice.chosen && std::size_t(*choice.chosen) >= count)) {
-      throw std::runtime_error("it has no such candidate");
+      throw std::runtime_error("the chosen candidate does not exist");
     }
     return choice;
   } catch (const std::system_error&) {

@@ -254,7 +254,7 @@ void Choosing::judge() {
   const std::vector<std::size_t> kept = better_half(expected, with_bias, judged.front()->k == 0);
   for (std::size_t i = 0; i < judged.size(); ++i) {
     if (std::find(kept.begin(), kept.end(), i) != kept.end()) continue;
-    leave(judged[i]->k, expected[i] ? "not among the better half" : "no error is known");
+    leave(judged[i]->k, expected[i] ? "not in the better half" : "its error is unknown");
   }
 }
 

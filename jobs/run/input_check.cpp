@@ -14,8 +14,8 @@
 namespace lacuna {
 
 const char* const inputs_not_recorded =
-    "an older build rendered this and did not record its inputs: whether its scene, textures, "
-    "environment or reference have changed since is not known";
+    "rendered by an older version that did not record its inputs: changes of its scene, textures, "
+    "environment or reference are not detected";
 
 std::optional<std::vector<std::string>> InputCheck::changes(const JobFolder& folder) {
   const bool begun = std::filesystem::exists(folder.file("checkpoint.bin")) ||
@@ -77,8 +77,8 @@ void refuse_changed_inputs(const JobFolder& folder, const std::vector<std::strin
   throw BadJob(
       {{"",
         fmt::format(
-            "{} was rendered from other files than there are now: {}{}; allowed: the "
-            "same files, or to render it anew (`lacuna render --again`)",
+            "the input files of {} have changed since it was rendered: {}{}; allowed: the same "
+            "files, or to render it again (`lacuna render --again`)",
             folder.dir().string(),
             fmt::join(changes.begin(), changes.begin() + std::ptrdiff_t(named), "; "),
             changes.size() > named ? fmt::format("; and {} more", changes.size() - named) : "")}});

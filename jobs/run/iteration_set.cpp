@@ -65,7 +65,7 @@ bool IterationSet::serves(const IterationSet& other) const {
 void IterationSet::merge(const IterationSet& shard) {
   if (shard.shards_ != shards_) {
     throw std::invalid_argument(
-        fmt::format("shards of {} and of {} make no picture", shards_, shard.shards_));
+        fmt::format("shards of {} and of {} cannot be merged", shards_, shard.shards_));
   }
   if (counts_.size() < shards_) {
     std::vector<std::uint64_t> all(shards_, 0);
@@ -77,7 +77,7 @@ void IterationSet::merge(const IterationSet& shard) {
     std::uint64_t& count = counts_[shard.first_ + k];
     if (count > 0 && shard.counts_[k] > 0) {
       throw std::invalid_argument(
-          fmt::format("shard {} of {} is in already", shard.first_ + k + 1, shards_));
+          fmt::format("shard {} of {} was added already", shard.first_ + k + 1, shards_));
     }
     count += shard.counts_[k];
   }
@@ -106,7 +106,7 @@ void IterationSet::load(ByteReader& in) {
   const bool small = std::all_of(counts_.begin(), counts_.end(),
                                  [](std::uint64_t n) { return n <= max_iterations; });
   if (shards_ == 0 || shards_ > std::uint32_t{max_shards} || !(one || all) || !small) {
-    throw std::runtime_error("saved iterations are no part of a job");
+    throw std::runtime_error("saved iterations do not belong to a job");
   }
 }
 

@@ -20,9 +20,9 @@ RunState load(const Shard& shard, const std::string& key, const std::vector<std:
     const auto read = [&](ByteReader& in) {
       state.load(in);
       if (state.film.iterations() != shard.iterations) {
-        throw std::runtime_error(
-            fmt::format("it has {} iterations, its report {}: it could not be written at the end",
-                        state.film.iterations(), shard.iterations));
+        throw std::runtime_error(fmt::format(
+            "it has {} iterations and its report {}: the last checkpoint could not be written",
+            state.film.iterations(), shard.iterations));
       }
       learned(in);
     };

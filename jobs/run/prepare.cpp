@@ -132,10 +132,9 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   if (biased(spec.integrator)) {
     p.warnings.emplace_back(
         consistent(spec.integrator)
-            ? "every iteration is biased by its radius: the error vanishes as that shrinks, but "
-              "noise "
-              "alone does not bound it"
-            : "the integrator's settings make it biased: however long it runs, an error remains");
+            ? "each iteration is biased by its radius: the error vanishes as the radius shrinks, "
+              "but is not bounded by the noise"
+            : "the integrator's settings make it biased: an error remains for any render time");
   }
   p.content = fmt::format("{:016x}", data.content_hash);
 

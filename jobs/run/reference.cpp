@@ -31,8 +31,8 @@ Reference read_reference(const std::string& name, const std::filesystem::path& i
                          const std::array<int, 2>& resolution) {
   const FloatImage file = read_reference_image(image);
   if (file.width != resolution[0] || file.height != resolution[1]) {
-    throw SceneError(fmt::format("reference \"{}\" has {} x {} pixels, the job {} x {}", name,
-                                 file.width, file.height, resolution[0], resolution[1]));
+    throw SceneError(fmt::format("reference \"{}\" has {} x {} pixels, but the job has {} x {}",
+                                 name, file.width, file.height, resolution[0], resolution[1]));
   }
   require_finite(file, fmt::format("reference \"{}\"", name));
   Reference r{name, {file.rgb.begin(), file.rgb.end()}, std::nullopt, image, file.file};
@@ -66,14 +66,14 @@ std::filesystem::path reference_file(const std::string& name, const DataRoot& da
   if (is_job_id(name)) {
     const JobFolder folder(data.jobs() / name);
     if (is_there(folder.dir())) return folder.file("image.exr");
-    throw SceneError(fmt::format("reference \"{}\": there is no such job", name));
+    throw SceneError(fmt::format("reference \"{}\": no such job", name));
   }
   const auto file = data.references() / name / "image.exr";
   if (is_plain_name(name) && is_there(file)) return file;
-  throw SceneError(fmt::format(
-      "reference \"{}\": neither \"auto\", nor an .exr or .tif below a scenes root, nor a job's "
-      "id, nor a folder of {}",
-      name, data.references().string()));
+  throw SceneError(
+      fmt::format("reference \"{}\": neither \"auto\", nor an .exr or .tif below a scenes root, "
+                  "nor a job's id, nor a folder in {}",
+                  name, data.references().string()));
 }
 
 Reference find_reference(const JobSpec& spec, const DataRoot& data, const ScenesRoots& scenes) {

@@ -60,7 +60,7 @@ bool RenderLoop::load(const JobFolder& folder) {
   } catch (const std::runtime_error& e) {
     std::filesystem::rename(file, folder.file("checkpoint.unusable"));
     task_.observer.warning(
-        fmt::format("{}; kept as checkpoint.unusable, beginning anew", e.what()));
+        fmt::format("{}; kept as checkpoint.unusable, rendering starts again", e.what()));
     const std::vector<std::string> layers = state_.layers.names();
     state_.layers = {};  // their memory is taken again
     state_ = RunState(task_.spec, layers, memory_to_take());
@@ -237,10 +237,10 @@ void RenderLoop::add_row() {
   if (state_.curve.rows().back().at_floor) line += ", at the reference's noise";
   task_.observer.milestone(line);
   if (state_.curve.rows().back().at_floor && !std::exchange(floor_told_, true)) {
-    task_.observer.milestone(
-        fmt::format("the reference's own noise, rmse {:.4g}, is more than half of the mse: errors "
-                    "fall no further; a better reference shows more (reference_iterations)",
-                    std::sqrt(*task_.reference->mse)));
+    task_.observer.milestone(fmt::format(
+        "the reference's own noise, rmse {:.4g}, is more than half of the mse: measured errors "
+        "stop falling; use a reference with less noise (reference_iterations)",
+        std::sqrt(*task_.reference->mse)));
   }
 }
 

@@ -146,10 +146,10 @@ void warn_of_processors(const std::vector<Shard>& shards, Running& running) {
   std::set<std::string> names;
   for (const Shard& shard : shards) names.insert(shard.processor);
   if (names.size() < 2) return;
-  running.warn(fmt::format(
-      "the shards were rendered on {} kinds of processors ({}): their last bits may differ from "
-      "those of one machine",
-      names.size(), fmt::join(names, "; ")));
+  running.warn(
+      fmt::format("the shards were rendered on {} processor models ({}): their last bits may "
+                  "differ from those of one machine",
+                  names.size(), fmt::join(names, "; ")));
 }
 
 /// The inputs of what this run goes on from, its own checkpoint or shards; nothing if it begins
@@ -244,7 +244,7 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
       spec.budget.seconds ? spec.budget.seconds : spec.budget.cpu_seconds;
   if (limit && preparation > *limit) {
     running.warn(fmt::format(
-        "preparation took {:.1f} s, more than the budget of {:g} s, which counts rendering only",
+        "preparation took {:.1f} s, more than the budget of {:g} s, which limits only rendering",
         preparation, *limit));
   }
 
@@ -297,8 +297,8 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
     write_results(task, loop);
   }
   if (loop.counters().rejected > 0) {
-    running.warn(fmt::format("{} contributions were not finite and were left out",
-                             loop.counters().rejected));
+    running.warn(
+        fmt::format("{} non-finite contributions were discarded", loop.counters().rejected));
   }
   if (const auto paths = light_paths_of_iteration(spec)) {
     const double all = *paths * static_cast<double>(loop.film().iterations());
@@ -308,8 +308,8 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
   }
   if (const auto tail = error_tail(loop.film()); tail && !tail->mean_is_known()) {
     running.warn(fmt::format(
-        "the error may be far larger than est_rmse says, and the picture too dark: squared errors "
-        "have a tail of index {:.2f}, and can be trusted to {:.2f}; rare bright paths carry them",
+        "est_rmse is unreliable: the squared errors are heavy-tailed (Pareto index {:.2f}, "
+        "reliable up to {:.2f}), so rare bright paths dominate and the picture may be too dark",
         tail->index, tail->limit));
   }
   write_file_atomically(
@@ -338,7 +338,8 @@ Outcome run_job(const JobFolder& folder, const RunContext& context) {
   if (is_done(folder, context)) return Outcome::done;
   const auto lock = folder.try_lock();
   if (!lock) {
-    throw FolderBusy(fmt::format("{}: another process works on this job", folder.dir().string()));
+    throw FolderBusy(
+        fmt::format("{}: another process is rendering this job", folder.dir().string()));
   }
   if (is_done(folder, context)) return Outcome::done;
   Running running(folder, context.observer);
@@ -350,9 +351,9 @@ Outcome run_job(const JobFolder& folder, const RunContext& context) {
     running.finish(State::interrupted);
     return Outcome::interrupted;
   } catch (const std::bad_alloc&) {
-    const MemoryLimitError named(fmt::format(
-        "{}: an allocation failed; {} were held, {} are available", running.phase_name(),
-        byte_size_text(peak_memory()), byte_size_text(available_memory())));
+    const MemoryLimitError named(fmt::format("{}: an allocation failed; {} in use, {} available",
+                                             running.phase_name(), byte_size_text(peak_memory()),
+                                             byte_size_text(available_memory())));
     running.stop(named);
     throw named;
   } catch (const std::exception& e) {

@@ -33,7 +33,7 @@ PhaseSeconds load_phases(ByteReader& in) {
     const std::string name = in.get_string();
     const auto seconds = in.get<double>();
     const bool follows = phases.empty() || phases.rbegin()->first < name;
-    if (!follows || !is_time(seconds)) throw std::runtime_error("saved phases are not phases");
+    if (!follows || !is_time(seconds)) throw std::runtime_error("saved phases are invalid");
     phases[name] = seconds;
   }
   return phases;
@@ -48,8 +48,8 @@ Budget budget_of(const JobSpec& spec) {
   const std::int64_t all = budget.iterations.value_or(std::int64_t{max_iterations});
   budget.iterations = static_cast<std::int64_t>(own.count_below(static_cast<std::uint64_t>(all)));
   if (*budget.iterations > 0) return budget;
-  throw BadJob({{"/shards", fmt::format("shard {} of {} has none of {} iterations, which are dealt "
-                                        "in pairs; allowed: 1 to {} shards",
+  throw BadJob({{"/shards", fmt::format("shard {} of {} has none of {} iterations, which are "
+                                        "distributed in pairs; allowed: 1 to {} shards",
                                         spec.shard, spec.shards, all, most_shards(all))}});
 }
 
@@ -96,18 +96,18 @@ void RunState::load(ByteReader& in) {
   merged.learned = in.get<std::uint8_t>();
   phases = load_phases(in);
   if (in.get<std::uint64_t>() != in.remaining()) {
-    throw std::runtime_error("saved state of the integrator has another size");
+    throw std::runtime_error("saved state of the integrator has the wrong size");
   }
-  if (!done.serves(own)) throw std::runtime_error("saved iterations are those of another shard");
+  if (!done.serves(own)) throw std::runtime_error("saved iterations belong to another shard");
   if (film.iterations() != spent.iterations || film.iterations() != done.count() ||
       film.half_iterations(0) != done.count_even()) {
-    throw std::runtime_error("saved film has another number of iterations");
+    throw std::runtime_error("saved film has the wrong number of iterations");
   }
   if (!is_time(spent.seconds) || !is_time(spent.cpu_seconds) || !is_time(spent.longest_seconds)) {
-    throw std::runtime_error("saved times are not times");
+    throw std::runtime_error("saved times are invalid");
   }
   if (merged.learned > 1 || !is_time(merged.between)) {
-    throw std::runtime_error("saved shards are not shards");
+    throw std::runtime_error("saved shards are invalid");
   }
 }
 

@@ -58,8 +58,9 @@ class Reader {
     const JobState state = folder.read_state();
     if (state.state != State::done) {
       const std::string reason = state.error.empty() ? "" : fmt::format(" ({})", state.error);
-      return refuse(folder, fmt::format("shard {} of {} is {}, not done{}; `lacuna render` goes on",
-                                        number, shard.spec.shards, enum_name(state.state), reason));
+      return refuse(folder,
+                    fmt::format("shard {} of {} is {}, not done{}; `lacuna render` continues it",
+                                number, shard.spec.shards, enum_name(state.state), reason));
     }
     const auto report = nlohmann::json::parse(read_file(folder.file("report.json"), 1 << 24));
     shard.iterations = report.at("counts").at("iterations").get<std::uint64_t>();
@@ -76,7 +77,7 @@ class Reader {
     }
     const auto [there, is_new] = shards_.emplace(number, std::move(shard));
     if (is_new) return;
-    refuse(folder, fmt::format("shard {} of {} again, which {} is; allowed: each once", number,
+    refuse(folder, fmt::format("shard {} of {} is a duplicate of {}; allowed: each once", number,
                                there->second.spec.shards, there->second.folder.dir().string()));
   }
 
@@ -90,7 +91,7 @@ class Reader {
     }
     const auto changes = changed_inputs(inputs_, inputs);
     for (const std::string& change : changes) {
-      refuse(folder, fmt::format("{} in {}; allowed: shards made from the same files", change,
+      refuse(folder, fmt::format("{} in {}; allowed: shards with the same input files", change,
                                  first_.string()));
     }
     if (changes.empty()) compare(folder, "the hash of the scene", key.scene, key_.scene);
@@ -118,7 +119,7 @@ class Reader {
     const std::size_t more = missing.size() - std::min(most, missing.size());
     missing.resize(missing.size() - more);
     problems_.push_back(
-        {"", fmt::format("of {} shards these are missing: {}{}", count, fmt::join(missing, ", "),
+        {"", fmt::format("missing shards of {}: {}{}", count, fmt::join(missing, ", "),
                          more > 0 ? fmt::format(" and {} more", more) : "")});
   }
 

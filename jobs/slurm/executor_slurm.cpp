@@ -48,7 +48,7 @@ void wait_for(int one, int other, std::chrono::milliseconds time) {
 Ending not_submitted(const std::string& said) {
   if (refuses_the_job(said)) return {Ending::Kind::refused, 0, said};
   return {Ending::Kind::not_started, EAGAIN,
-          said.empty() ? "its submission had not reached Slurm" : said};
+          said.empty() ? "its submission did not reach Slurm" : said};
 }
 
 }  // namespace
@@ -190,7 +190,7 @@ Ending SlurmExecutor::follow(const JobFolder& folder, Attempted attempted, const
   bool told = false;
   for (;;) {
     const SlurmWatch::View view = guest.look();
-    if (stop.leaves()) return {Ending::Kind::left, 0, "the service ends, its renderer does not"};
+    if (stop.leaves()) return {Ending::Kind::left, 0, "the service ends; its renderer continues"};
     if (view.submission.job != known.job) {
       known.job = view.submission.job;
       write_submission(folder, known);

@@ -108,8 +108,8 @@ std::vector<std::string> slurm_arguments(const std::string& text) {
   for (std::string word; stream >> word;) {
     if (is_own_option(word)) {
       throw std::invalid_argument(
-          fmt::format("found \"{}\", which Lacuna gives sbatch itself or cannot do with; allowed: "
-                      "other options of sbatch, such as --partition, --account, --time",
+          fmt::format("found \"{}\", which Lacuna sets itself or does not support; allowed: other "
+                      "options of sbatch, such as --partition, --account, --time",
                       word));
     }
     words.push_back(std::move(word));
@@ -126,8 +126,7 @@ std::string slurm_path(const std::filesystem::path& path) {
   for (const char c : path.string()) {
     if (c == '\\' || static_cast<unsigned char>(c) < 0x20) {
       throw std::invalid_argument(fmt::format(
-          "{}: sbatch takes no file below a folder with a backslash or a control character",
-          path.string()));
+          "{}: sbatch accepts no path with a backslash or a control character", path.string()));
     }
     pattern += c;
     if (c == '%') pattern += c;

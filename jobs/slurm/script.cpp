@@ -30,7 +30,7 @@ tries=0
 until grep -qsF "\"$name\"" "$folder/slurm.json"; do
   tries=$((tries + 1))
   if [ "$tries" -gt 60 ]; then
-    echo "$(hostname): $folder does not wait for $name, or is not to be seen here" >&2
+    echo "$(hostname): $folder does not name $name, or is not visible on this node" >&2
     exit 0
   fi
   sleep 1

@@ -114,7 +114,7 @@ std::int64_t SlurmPrograms::submit(const std::vector<std::string>& words) const 
   each_line(text, [&](std::string_view line) {
     if (const auto id = number(line.substr(0, line.find(';')))) job = id;
   });
-  if (!job) throw SlurmError(fmt::format("sbatch named no job: {}", words_of(text)));
+  if (!job) throw SlurmError(fmt::format("sbatch returned no job number: {}", words_of(text)));
   return *job;
 }
 

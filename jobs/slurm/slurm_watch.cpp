@@ -21,9 +21,9 @@ using Phase = SlurmJob::Phase;
 
 /// "Slurm job 17: TIMEOUT"
 std::string slurm_words(const std::optional<SlurmJob>& last, bool known_now) {
-  if (!last) return "Slurm knows nothing of it";
+  if (!last) return "Slurm has no record of it";
   const std::string name = fmt::format("Slurm job {}", last->id);
-  if (!known_now) return name + " is not known any more";
+  if (!known_now) return name + "  is no longer known";
   const bool reason = !last->reason.empty() && last->reason != "None";
   return fmt::format("{}: {}{}", name, last->state, reason ? " (" + last->reason + ")" : "");
 }
@@ -55,7 +55,7 @@ Ending slurm_ending(std::optional<int> code, const std::optional<SlurmJob>& last
     return {Ending::Kind::out_of_memory, *code, "renderer ran out of memory; " + words};
   }
   if (code && *code == signals + SIGTERM) {
-    return {Ending::Kind::lost, *code, "renderer was ended before it began; " + words};
+    return {Ending::Kind::lost, *code, "renderer was stopped before it began;  " + words};
   }
   if (code && *code > signals) {
     const int number = *code - signals;
@@ -67,10 +67,10 @@ Ending slurm_ending(std::optional<int> code, const std::optional<SlurmJob>& last
   }
   const bool told = state == "TIMEOUT" || state == "PREEMPTED" || state == "NODE_FAIL" ||
                     state == "BOOT_FAIL" || state == "DEADLINE";
-  return {
-      Ending::Kind::lost, 0,
-      told ? words
-           : "renderer ended without a word, or its node does not see the data folder; " + words};
+  return {Ending::Kind::lost, 0,
+          told
+              ? words
+              : "renderer left no exit code, or its node cannot access the data folder;  " + words};
 }
 
 SlurmWatch::SlurmWatch(const SlurmPrograms& programs, std::chrono::milliseconds poll)
@@ -173,7 +173,8 @@ void SlurmWatch::list() {
   std::vector<WatchedPtr> to_ask;
   {
     const std::lock_guard lock(mutex_);
-    if (failed != obstacle_ && !failed.empty()) log::warn("jobs of Slurm are not seen: {}", failed);
+    if (failed != obstacle_ && !failed.empty())
+      log::warn("Slurm's jobs cannot be listed: {}", failed);
     obstacle_ = failed;
     if (!failed.empty()) return;
     for (const WatchedPtr& watched : watched_) {

@@ -43,8 +43,8 @@ class Comparison {
 
  private:
   void refuse(std::string_view key, double found, std::string_view bound, double old) {
-    add(key, fmt::format("found {}; allowed: {} {}, the limit before, or none", number_text(found),
-                         bound, number_text(old)));
+    add(key, fmt::format("found {}; allowed: {} {}, the previous limit, or none",
+                         number_text(found), bound, number_text(old)));
   }
   void add(std::string_view key, std::string message) {
     problems_.push_back({fmt::format("/budget/{}", key), std::move(message)});
@@ -58,7 +58,7 @@ class Comparison {
 
 std::vector<Problem> extension_problems(const Budget& old, const Budget& larger) {
   if (!larger.seconds && !larger.cpu_seconds && !larger.iterations && !larger.error) {
-    return {{"/budget", "names no limit; allowed: at least one"}};
+    return {{"/budget", "sets no limit; allowed: at least one"}};
   }
   Comparison compare;
   compare.limit("seconds", old.seconds, larger.seconds);

@@ -15,10 +15,10 @@ constexpr std::string_view units = "KMGT";
 
 std::uint64_t parse_byte_size(std::string_view text) {
   const auto refuse = [&] {
-    throw std::invalid_argument(fmt::format(
-        "found \"{}\"; allowed: a whole number of bytes, or of K, M, G or T (powers of 1024), as "
-        "in 4G, below 2^63 bytes",
-        text));
+    throw std::invalid_argument(
+        fmt::format("found \"{}\"; allowed: an integer number of bytes, or of K, M, G or T (powers "
+                    "of 1024), as in 4G, below 2^63 bytes",
+                    text));
   };
   std::string_view digits = text;
   unsigned shift = 0;

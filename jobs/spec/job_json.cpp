@@ -71,10 +71,9 @@ void check_candidates(const JobSpec& spec, std::vector<Problem>& problems) {
                            settings->roulette_depth)});
     }
     if (!is_allowed(settings->candidates[i], settings->allow)) {
-      problems.push_back(
-          {at, fmt::format("found settings that make the picture biased; allowed by \"allow\": "
-                           "\"{}\" are those without more",
-                           enum_name(settings->allow))});
+      problems.push_back({at, fmt::format("found settings that make the picture biased; allowed by "
+                                          "\"allow\": \"{}\": settings with no more bias",
+                                          enum_name(settings->allow))});
     }
     CandidateSettings complete = settings->candidates[i];
     std::visit([&](PathLengths& lengths_there) { lengths_there = *settings; }, complete);
@@ -85,8 +84,8 @@ void check_candidates(const JobSpec& spec, std::vector<Problem>& problems) {
       all.empty() || std::any_of(all.begin(), all.end(), [](const auto& c) { return !biased(c); });
   if (!one_is_right && settings->allow != Allow::unbiased) {
     problems.push_back({"/integrator/candidates",
-                        "found none without bias; allowed: lists with one, by which the bias of "
-                        "the others is known"});
+                        "found no unbiased one; allowed: lists with one, against which the bias of "
+                        "the others is measured"});
   }
 }
 
@@ -120,10 +119,10 @@ void check_camera(const JobSpec& spec, std::vector<Problem>& problems) {
   CameraSettings upright = camera, sideways = camera;
   upright.up = {0, 1, 0}, sideways.up = {1, 0, 0};
   if (!frame_of(upright) && !frame_of(sideways)) {
-    problems.push_back({"/camera/target", fmt::format("found {}, the camera's position or nearer "
-                                                      "to it than doubles tell apart; allowed: "
-                                                      "another point",
-                                                      json_text(OrderedJson(camera.target)))});
+    problems.push_back(
+        {"/camera/target", fmt::format("found {}, the camera's position, or too near to it for "
+                                       "double precision; allowed: another point",
+                                       json_text(OrderedJson(camera.target)))});
     return;
   }
   problems.push_back({"/camera/up", fmt::format("found {}, which is 0 or along the view; allowed: "

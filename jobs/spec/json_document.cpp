@@ -77,7 +77,7 @@ class Builder final : public nlohmann::json_sax<Json> {
     Level& level = open_.back();
     level.key = std::move(name);
     if (level.value.contains(level.key)) {
-      problems_.push_back({pointer(), "the key stands here more than once; allowed: once"});
+      problems_.push_back({pointer(), "duplicate key; allowed: once"});
     }
     return true;
   }

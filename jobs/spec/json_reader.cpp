@@ -82,8 +82,7 @@ std::string any_value(const JsonCursor& found) {
 void check_retired(const JsonCursor& found, const RetiredKey& key) {
   if (found.value() == Json::parse(key.only)) return;
   found.add_problem(
-      fmt::format("found {}, a setting of an earlier version: {}; allowed: {}, or no "
-                  "such key",
+      fmt::format("found {}, a setting of an earlier version: {}; allowed: {}, or no such key",
                   shown(found.value()), key.now, key.only));
 }
 

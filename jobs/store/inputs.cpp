@@ -29,7 +29,7 @@ std::string change_of(const InputFile& before, const InputFile& now) {
   if (now.bytes != before.bytes && (now.bytes > 0 || !now.hash.empty())) {
     return fmt::format("has {} bytes, and had {}", now.bytes, before.bytes);
   }
-  return now.hash.empty() ? "is not there any more" : "has another content of the same size";
+  return now.hash.empty() ? "no longer exists" : "has changed contents of the same size";
 }
 
 }  // namespace

@@ -40,22 +40,24 @@ bool is_missing(const std::filesystem::path& path) {
 const std::vector<FileInfo>& job_files() {
   static const std::vector<FileInfo> files{
       {"job.json", "application/json", "the job with every default filled in", true},
-      {"outcome.json", "application/json", "how far its renderer came, and how it ended", true},
-      {"progress.json", "application/json", "how far it has come", true},
-      {"accepted.json", "application/json", "what the service took it for", false},
+      {"outcome.json", "application/json", "the state that its renderer reached, and how it ended",
+       true},
+      {"progress.json", "application/json", "progress of the renderer", true},
+      {"accepted.json", "application/json", "data of the service about its acceptance", false},
       {"slurm.json", "application/json", "its submission to Slurm", false},
       {"slurm.sh", "text/x-shellscript", "the batch script of its last submission", false},
       {"slurm.exit", "text/plain", "how the renderer of that submission ended", false},
       {"image.exr", "image/x-exr", "the picture and its layers", true},
       {"image.png", "image/png", "a tone-mapped thumbnail", true},
       {"layers.half", "application/octet-stream", "the layers, for viewers that read no EXR", true},
-      {"layers.json", "application/json", "what lies where in layers.half", true},
+      {"layers.json", "application/json", "index of layers.half", true},
       {"curve.csv", "text/csv", "error and counts against time", true},
-      {"report.json", "application/json", "where time and rays went", true},
-      {"checkpoint.bin", "application/octet-stream", "what it takes to go on", false},
+      {"report.json", "application/json", "time and rays by phase, errors, warnings", true},
+      {"checkpoint.bin", "application/octet-stream", "the state from which rendering resumes",
+       false},
       {"choice.json", "application/json", "how the method of `auto` was chosen", true},
       {"inputs.json", "application/json", "the files it was made from, with their hashes", true},
-      {"log.txt", "text/plain; charset=utf-8", "what a person would want to read", true},
+      {"log.txt", "text/plain; charset=utf-8", "log of the renderers", true},
   };
   return files;
 }

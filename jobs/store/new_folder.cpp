@@ -24,7 +24,7 @@ void rename_folder(const std::filesystem::path& from, const std::filesystem::pat
       return;
     }
   }
-  if (errno == EEXIST) throw std::invalid_argument(fmt::format("{} is there already", to.string()));
+  if (errno == EEXIST) throw std::invalid_argument(fmt::format("{} already exists", to.string()));
   throw_file_error(errno, "create", to);
 }
 

@@ -130,7 +130,7 @@ std::string available(std::string_view wanted, const std::vector<std::string>& n
   const std::string kinds = fmt::format("{}", fmt::join(extensions, ", "));
   if (names.empty()) return fmt::format("; there is no {} file below the scenes roots", kinds);
   std::string text = nearest_hint(wanted, {names.begin(), names.end()});
-  text += fmt::format("; there are ({}): ", kinds);
+  text += fmt::format("; available ({}):  ", kinds);
   for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
     text += (i == 0 ? "" : ", ") + names[i];
   }
@@ -181,9 +181,9 @@ fs::path ScenesRoots::resolve(std::string_view name, const Extensions& extension
       if (error != ENOENT && error != ENOTDIR) worst = error;
     }
     if (away && worst == ENOENT) std::rethrow_exception(away);
-    fault = worst == ENOENT  ? "it is not there"
+    fault = worst == ENOENT  ? "it does not exist"
             : worst == ELOOP ? "a part of it is a symbolic link; links are not followed"
-                             : "it is not a regular file that can be read";
+                             : "it is not a readable regular file";
   }
   throw std::invalid_argument(
       fmt::format("{} cannot be used: {}{}", shown(name), fault,

@@ -58,8 +58,8 @@ class Comparison {
       return read_result(sweep_.folder(run), answers_.axes, plan_.cells[run.cell].job.budget);
     } catch (const std::runtime_error& error) {
       if (may_pass(error)) throw;
-      answers_.warnings.push_back(
-          fmt::format("run {} is left out, its folder is damaged: {}", run.name, error.what()));
+      answers_.warnings.push_back(fmt::format(
+          "run {} is excluded because its folder is damaged: {}", run.name, error.what()));
       RunResult damaged;
       damaged.state.state = State::failed;
       return damaged;
@@ -229,26 +229,25 @@ class Comparison {
     auto& w = answers_.warnings;
     const auto unfinished = plan_.runs.size() - answers_.states[State::done];
     if (unfinished > 0) {
-      w.push_back(fmt::format("{} of {} runs are not done: what follows is provisional", unfinished,
+      w.push_back(fmt::format("{} of {} runs are not done: results are provisional", unfinished,
                               plan_.runs.size()));
     }
     if (!answers_.stale.empty()) {
       const auto& [run, change] = *answers_.stale.begin();
-      w.push_back(fmt::format(
-          "{} of {} runs were made from other files than the latest run and are left out (as {}: "
-          "{}): `lacuna sweep` renders those anew whose files have changed",
-          answers_.stale.size(), plan_.runs.size(), plan_.runs[run].name, change));
+      w.push_back(
+          fmt::format("{} of {} runs have other input files than the latest run and are excluded "
+                      "(such as {}: {}): `lacuna sweep` renders runs with changed files again",
+                      answers_.stale.size(), plan_.runs.size(), plan_.runs[run].name, change));
     }
     if (sweep_.spec().seeds == 1) {
-      w.emplace_back(
-          "one seed for each cell: there are no intervals; \"seeds\" 3 or more has them");
+      w.emplace_back("one seed per cell gives no intervals; set \"seeds\" to 3 or more");
     }
     hint_at_seeds();
     if (!answers_.tainted.empty()) {
       const bool wall = sweep_.spec().compare_at.clock == SweepClock::seconds;
-      w.push_back(fmt::format("{} of {} runs were timed while the machine did something else{}",
+      w.push_back(fmt::format("{} of {} runs were timed under other load on the machine{}",
                               answers_.tainted.size(), plan_.runs.size(),
-                              wall ? "; compare_at.clock \"cpu_seconds\" suffers less" : ""));
+                              wall ? "; compare_at.clock \"cpu_seconds\" is less affected" : ""));
     }
   }
 

@@ -60,7 +60,7 @@ class Expansion {
       for (const auto& [pointer, values] : axis.values) {
         if (values.size() == axis.steps) continue;
         problem(child_pointer(axis.at, pointer),
-                fmt::format("found a list of {} beside one of {}; allowed: lists of equal length",
+                fmt::format("found lists of {} and {}; allowed: lists of equal length",
                             values.size(), axis.steps));
       }
       axes_.push_back(std::move(axis));
@@ -75,7 +75,7 @@ class Expansion {
     const std::string at = child_pointer(axis.at, pointer);
     if (const auto why = pointer_problem(pointer)) return problem(at, *why);
     if (!axis_of_.emplace(pointer, &axis).second) return problem(at, "is swept twice");
-    if (pointer == "/label") problem(at, "is made from the settings; allowed: other keys");
+    if (pointer == "/label") problem(at, "is derived from the settings; allowed: other keys");
     if (pointer == "/seed" && sweep_.seeds > 1) {
       problem(at, "is swept by \"seeds\", too; allowed: one of the two");
     }
@@ -107,7 +107,7 @@ class Expansion {
   void check_combinations(const std::vector<JsonTable<JsonValue>>& all) {
     for (std::size_t i = 0; i < all.size(); ++i) {
       const std::string at = fmt::format("/exclude/{}", i);
-      if (all[i].empty()) problem(at, "would leave out everything; allowed: at least one setting");
+      if (all[i].empty()) problem(at, "would exclude everything; allowed: at least one setting");
       check_values(all[i], at);
     }
   }
@@ -137,7 +137,7 @@ class Expansion {
       }
       if (!is_excluded(cell.settings)) plan_.cells.push_back(std::move(cell));
     } while (next(step));
-    if (plan_.cells.empty()) problem("/exclude", "leaves nothing to run");
+    if (plan_.cells.empty()) problem("/exclude", "excludes all runs");
   }
   bool next(std::vector<std::size_t>& step) const {
     for (std::size_t a = axes_.size(); a-- > 0; step[a] = 0) {
@@ -155,7 +155,7 @@ class Expansion {
   void check_jobs() {
     const Json base = Json(parse_own(sweep_.job.text));
     const Json defaults = Json(parse_own(write_job(JobSpec{})));
-    if (!base.is_object()) return problem("/job", "found no object; allowed: a job");
+    if (!base.is_object()) return problem("/job", "is not an object; allowed: a job");
     for (SweepCell& cell : plan_.cells) {
       Json job = base;
       try {
@@ -179,7 +179,7 @@ class Expansion {
     const auto& metric = sweep_.compare_at.metric;
     if (!metric || !needs_reference(*metric) || !job.reference.empty()) return;
     problem("/compare_at/metric",
-            fmt::format("found \"{}\", and a job without \"reference\"; allowed: \"{}\", or a "
+            fmt::format("found \"{}\" with a job without \"reference\"; allowed: \"{}\", or a "
                         "reference for all",
                         enum_name(*metric), enum_name(ErrorMetric::est_rmse)));
   }

@@ -29,7 +29,7 @@ std::optional<std::string> pointer_problem(std::string_view pointer) {
     good = pointer[i] != '~' || next == '0' || next == '1';
   }
   if (good) return {};
-  return "is no JSON pointer to a setting; allowed: as \"/integrator/max_depth\"";
+  return "is not a JSON pointer to a setting; allowed: such as \"/integrator/max_depth\"";
 }
 
 std::optional<std::string> set_at(Json& document, const Json& defaults, std::string_view pointer,

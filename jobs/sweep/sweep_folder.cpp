@@ -33,7 +33,7 @@ bool is_served(const fs::path& dir) {
 SweepSpec read_sweep_spec(const fs::path& dir) {
   if (!fs::exists(dir / spec_file)) {
     throw BadJob(
-        {{"", fmt::format("{} is no sweep's folder: it has no {}", dir.string(), spec_file)}});
+        {{"", fmt::format("{} is not a sweep's folder: it has no {}", dir.string(), spec_file)}});
   }
   return parse_sweep(read_file(dir / spec_file, max_sweep_bytes));
 }
@@ -71,11 +71,11 @@ SweepFolder SweepFolder::preview(const fs::path& dir, const SweepSpec& spec) {
   const bool occupied = fs::exists(dir) && !fs::is_empty(dir);  // first: another may make it now
   if (fs::exists(dir / spec_file)) {
     if (same_runs(read_sweep_spec(dir), spec)) return folder;
-    throw BadJob({{"", fmt::format("{} holds another sweep; name another folder with --out",
+    throw BadJob({{"", fmt::format("{} contains another sweep; choose another folder with --out",
                                    dir.string())}});
   }
   if (occupied) {
-    throw BadJob({{"", fmt::format("{} is there already and is no sweep's folder", dir.string())}});
+    throw BadJob({{"", fmt::format("{} exists and is not a sweep's folder", dir.string())}});
   }
   return folder;
 }

@@ -31,7 +31,7 @@ test("what cannot work is refused with a message", async (t) => {
   await refused(["--bind", "0.0.0.0"], /0\.0\.0\.0 can be reached from other machines/);
   await refused(["--bind", "::"], /other machines/);
   await refused(["--bind", "example.com"], /not an address/);
-  await refused(["--renderer", "/nowhere/lacuna"], /\/nowhere\/lacuna is not a program/);
+  await refused(["--renderer", "/nowhere/lacuna"], /\/nowhere\/lacuna is not an executable program/);
   await refused(["--web", places.data], /index\.html/);
   await refused(["--scenes", "/nowhere"], /\/nowhere is no folder of scenes/);
   await refused(["--port", "70000"], /70000/);

@@ -94,7 +94,7 @@ test("scenes that are away for a moment are waited for; scenes that have changed
   fs.writeFileSync(own, String(scene.toString("latin1")).replace("0.5", "0.4"), "latin1");
   assert.equal((await post(`/api/jobs/${id}/extend`, { budget: { iterations: 4 } })).status, 200);
   const { state } = await service.reaches(id, "failed", 60000);
-  assert.match(state.error, /scene "own\.glb" has another content of the same size/);
+  assert.match(state.error, /scene "own\.glb" has changed contents of the same size/);
   assert.ok(fs.existsSync(path.join(service.folder(id), "image.exr")));
 });
 

@@ -137,7 +137,7 @@ test("what belongs to a sweep is removed with it, when it is over, and not befor
   await until(async () => {
     const answer = await service.fetch(`/api/jobs/${first}`, { method: "DELETE" });
     assert.equal(answer.status, 409);
-    return (await answer.json()).detail.includes(`Sweep ${id}, which it is a run of, is not over`);
+    return (await answer.json()).detail.includes(`It is a run of sweep ${id}, which is not over`);
   }, "the reason is the sweep");
   assert.equal(await remove(`/api/sweeps/${id}`), 409);
   for (const run of [1, 2]) {
@@ -177,5 +177,5 @@ test("the shell lists a sweep of the service, and leaves its runs to it", async 
   assert.equal(shell("--missing").out, "2-4\n");
   const done = shell();
   assert.equal(done.status, 2);
-  assert.match(done.err, /is a sweep of a service, which does its runs/);
+  assert.match(done.err, /is a sweep of a service, which renders its runs/);
 });

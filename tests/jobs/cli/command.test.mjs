@@ -26,11 +26,11 @@ test("render: results, a line a milestone, done already, another job in the way"
   assert.match(first.err, /iteration 2, /);
   const again = await run(folder, "render", "a.json");
   assert.equal(again.code, 0);
-  assert.match(again.err, /done already/);
+  assert.match(again.err, /already done/);
   job(folder, "b.json", { seed: 7 });
   const other = await run(folder, "render", "b.json", "--out", "a.job");
   assert.equal(other.code, 2);
-  assert.match(other.err, /holds another job/);
+  assert.match(other.err, /contains another job/);
   writeFileSync(join(folder, "file"), "mine");
   assert.equal((await run(folder, "render", "b.json", "--out", "file")).code, 2);
   assert.equal(readFileSync(join(folder, "file"), "utf8"), "mine");
@@ -93,7 +93,7 @@ test("list: scenes and jobs", async (t) => {
   mkdirSync(join(folder, "empty"));
   const none = await run(folder, "list", "empty");
   assert.equal(none.code, 2);
-  assert.match(none.err, /empty is no job's folder and holds none/);
+  assert.match(none.err, /empty is not a job's folder and contains none/);
 });
 
 test("extend: a done job goes on from its checkpoint to the bits of one run", async (t) => {
@@ -104,7 +104,7 @@ test("extend: a done job goes on from its checkpoint to the bits of one run", as
   const smaller = await run(folder, "extend", "a.job", "--iterations", "1");
   assert.equal(smaller.code, 2);
   assert.match(smaller.err, /\/budget\/iterations: found 1; allowed: at least 2/);
-  assert.match((await run(folder, "extend", "a.job")).err, /names no limit/);
+  assert.match((await run(folder, "extend", "a.job")).err, /sets no limit/);
   assert.match((await run(folder, "extend", "a.job", "--seconds", "-1")).err, /\/budget\/seconds.*-1/);
   assert.match((await run(folder, "extend", "a.job", "--error", "0.1")).err, /the job has no error target/);
   const same = JSON.parse(readFileSync(join(folder, "a.job/job.json"), "utf8"));

@@ -37,14 +37,14 @@ test("render, extend, compare: changed inputs are refused by name, --again rende
   assert.equal((await run(folder, "render", "a.json", "-q")).code, 0);
   utimesSync(join(folder, "own.glb"), 1, 1);
   const same = await run(folder, "render", "a.json");
-  assert.deepEqual([same.code, /done already/.test(same.err)], [0, true], same.err);
+  assert.deepEqual([same.code, /already done/.test(same.err)], [0, true], same.err);
 
   const picture = bytes(folder, "a.job/image.exr"), was = read(folder, "a.job/job.json");
   putScene(folder, true);
   for (const words of [["render", "a.json"], ["render", "a.job"], ["extend", "a.job", "--iterations", "8"]]) {
     const refused = await run(folder, ...words);
     assert.equal(refused.code, 2, refused.err);
-    assert.match(refused.err, /scene "own\.glb" has another content of the same size; .*--again/);
+    assert.match(refused.err, /scene "own\.glb" has changed contents of the same size; .*--again/);
   }
   assert.ok(bytes(folder, "a.job/image.exr").equals(picture));
   assert.deepEqual(read(folder, "a.job/job.json"), was);
@@ -74,7 +74,7 @@ test("sweep: runs of changed inputs are rendered anew, and told", async (t) => {
   assert.equal((await run(folder, "sweep", "s.json", "--missing")).out, "1-2\n");
   const resumed = await run(folder, "sweep", "s.json");
   assert.equal(resumed.code, 0, resumed.err);
-  assert.match(resumed.err, /0001-1 was rendered from other files \(scene "own\.glb" has another content.*rendered again/);
+  assert.match(resumed.err, /the input files of 0001-1 have changed \(scene "own\.glb" has changed contents.*rendered again/);
   assert.notDeepEqual(read(folder, inputs), old);
   assert.deepEqual(read(folder, inputs), read(folder, "s.sweep/runs/0002-1/inputs.json"));
   assert.equal((await run(folder, "sweep", "s.json", "--missing")).out, "\n");

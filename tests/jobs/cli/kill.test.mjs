@@ -96,7 +96,7 @@ test("a file that does not fit: interrupted with the reason, the old checkpoint 
   const checkpoint = await begin(folder);
   const full = await runAfter("ulimit -f 16", folder, "render", "a.json");
   assert.equal(full.code, 75, full.err);
-  assert.match(full.err, /error: cannot write .*(checkpoint\.bin|image\.png).*File too large.*the same command goes on/);
+  assert.match(full.err, /error: cannot write .*(checkpoint\.bin|image\.png).*File too large.*the same command continues/);
   assert.match(readFileSync(join(folder, "a.job/log.txt"), "utf8"), /File too large/);
   assert.equal(stateOf(folder).state, "interrupted");
   assert.match(stateOf(folder).error, /cannot write/);

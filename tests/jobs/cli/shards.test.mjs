@@ -149,7 +149,7 @@ test("what makes no picture is refused by name", async (t) => {
     assert.match(err, pattern);
     assert.ok(!existsSync(join(folder, "m.job")));
   };
-  await refused(/of 3 shards these are missing: 2\b/, "m.job", made[0], made[2]);
+  await refused(/missing shards of 3: 2\b/, "m.job", made[0], made[2]);
   await refused(/a\.2-of-3\.job: shard 2 of 3 again, which .*a\.2-of-3\.job is/, "m.job", ...made, made[1]);
   cpSync(join(folder, made[1]), join(folder, "copy.job"), { recursive: true });
   await refused(/copy\.job: shard 2 of 3 again, which .*a\.2-of-3\.job is/, "m.job", ...made, "copy.job");
@@ -179,7 +179,7 @@ test("what makes no picture is refused by name", async (t) => {
   scene[scene.indexOf("CC0") + 2] = "1".charCodeAt();
   writeFileSync(join(folder, "own.glb"), scene);
   await done(folder, "render", "c.json", "--shard", "2/2");
-  await refused(/c\.2-of-2\.job: scene "own\.glb" has another content of the same size in .*c\.1-of-2\.job; allowed/,
+  await refused(/c\.2-of-2\.job: scene "own\.glb" has changed contents of the same size in .*c\.1-of-2\.job; allowed/,
     "m.job", "c.1-of-2.job", "c.2-of-2.job");
 });
 
@@ -199,7 +199,7 @@ test("a damaged shard, and one of another version, are named", async (t) => {
   flipped[whole.length >> 1] ^= 1;
   await attempt(flipped, 1, /shard 2 of 2 \(.*a\.2-of-2\.job\): .*checkpoint\.bin: damaged/);
   assert.equal(read(folder, "m.job/outcome.json").state, "failed");
-  await attempt(whole.subarray(0, whole.length - 100), 1, /shard 2 of 2 .*cut short/);
+  await attempt(whole.subarray(0, whole.length - 100), 1, /shard 2 of 2 .*truncated/);
   await attempt(Buffer.alloc(3), 2, /a\.2-of-2\.job: .*checkpoint\.bin: /);
   const version = read(folder, "a.2-of-2.job/report.json").version;
   const at = whole.indexOf(version);
@@ -242,7 +242,7 @@ test("--shard: bad values, and what a job says itself", async (t) => {
   job(folder, "eight.json", { ...spec, shards: 8 });
   await refused(/the job has 8 shards; allowed: 1\/8 to 8\/8/, "eight.json", "--shard", "1/3");
   await done(folder, "render", "eight.json", "--shard", "1/8");
-  await refused(/is a folder, which knows its shard/, "eight.1-of-8.job", "--shard", "1/8");
+  await refused(/is a folder, which has its shard/, "eight.1-of-8.job", "--shard", "1/8");
   job(folder, "bad.json", { ...spec, shards: 2, shard: 3 });
   await refused(/\/shard: found 3; allowed: 0 to 2/, "bad.json");
 });

@@ -154,7 +154,7 @@ test("sweep: mistakes are told before anything is done", async (t) => {
   writeFileSync(join(folder, "a.json"), JSON.stringify({ ...small, seeds: 3 }));
   const other = await run(folder, "sweep", "a.json");
   assert.equal(other.code, 2);
-  assert.match(other.err, /holds another sweep; name another folder with --out/);
+  assert.match(other.err, /contains another sweep; choose another folder with --out/);
 });
 
 test("report: what the runs say of their settings, as text, as JSON, and as files", async (t) => {
@@ -181,7 +181,7 @@ test("report: what the runs say of their settings, as text, as JSON, and as file
   assert.equal(existsSync(join(folder, "a.sweep/report.html")), false, "--json writes nothing");
   const none = await run(folder, "report", folder);
   assert.equal(none.code, 2);
-  assert.match(none.err, /is no sweep's folder: it has no sweep\.json/);
+  assert.match(none.err, /is not a sweep's folder: it has no sweep\.json/);
 });
 
 test("report: where runs are compared may change afterwards", async (t) => {

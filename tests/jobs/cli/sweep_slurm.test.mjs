@@ -39,7 +39,7 @@ const names = ["0001-1", "0001-2", "0002-1", "0002-2", "0003-1", "0003-2"];
 onCluster("sweep on Slurm: every run is a job of its own, done once", async (cluster, folder) => {
   const done = await sweep(cluster, folder, "--chunk", "4", "--jobs", "3", "--slurm-args", "--partition=long");
   assert.equal(done.code, 0, done.err);
-  assert.match(done.err, /^warning: --chunk has no effect any more/m);
+  assert.match(done.err, /^warning: --chunk has no effect/m);
   assert.match(done.err, /^6 runs go to Slurm, at most 3 at a time$/m);
   const jobs = cluster.jobs();
   assert.equal(jobs.length, 6);
@@ -98,11 +98,11 @@ onCluster("sweep on Slurm: an interrupted command leaves its jobs, and the next 
     && JSON.parse(readFileSync(record(folder, each))).job > 0), "all are submitted");
   const local = await run(folder, "sweep", "a.json");
   assert.equal(local.code, 2);
-  assert.match(local.err, /0001-1 is submitted to Slurm as job \d; allowed: to go on with --executor slurm/);
+  assert.match(local.err, /0001-1 is submitted to Slurm as job \d; allowed: to continue with --executor slurm/);
   first.child.kill("SIGTERM");
   const { code, err } = await first.ended;
   assert.equal(code, 75);
-  assert.match(err, /^interrupted; what was submitted goes on in Slurm/m);
+  assert.match(err, /^interrupted; submitted runs continue in Slurm/m);
   cluster.unset("full");
   cluster.startWaiting();
   const second = await sweep(cluster, folder);

@@ -61,7 +61,7 @@ TEST(ExitClassification, AnInterruptionThatNobodyAskedForIsACrashUnlessTheJobCam
   EXPECT_TRUE(v.crashed);
   a.crashes = 1;
   EXPECT_EQ(classified(a).state.error,
-            interruption.reason + ", without a request and without progress, 2 times");
+            interruption.reason + ", without a request or progress, 2 times");
   a.iteration_after = 41;
   v = classified(a);
   EXPECT_EQ(v.state.state, State::queued);

@@ -49,7 +49,7 @@ class ChangedInputs : public RunJob {
   std::vector<std::pair<std::string, std::function<void()>>> changes() {
     return {{"scene \"room/room.gltf\" has ",
              [&] { temp.write("room/room.gltf", content_of(temp / "room/room.gltf") + " "); }},
-            {"buffer \"room.bin\" has another content of the same size",
+            {"buffer \"room.bin\" has changed contents of the same size",
              [&] {
                std::string bytes = content_of(temp / "room/room.bin");
                bytes[3] = static_cast<char>(bytes[3] ^ 0x10);
@@ -98,8 +98,8 @@ TEST_F(ChangedInputs, AreNamedAndWhatWasMadeStays) {
   EXPECT_EQ(run(done), Outcome::done);
   EXPECT_EQ(content_of(done.file("image.exr")), picture);
   fs::remove(temp / "room/a b.png");
-  EXPECT_TRUE(contains(message_of<BadJob>([&] { run(done); }),
-                       "texture \"a%20b.png\" is not there any more"));
+  EXPECT_TRUE(
+      contains(message_of<BadJob>([&] { run(done); }), "texture \"a%20b.png\" no longer exists"));
   fs::remove(done.file("inputs.json"));
   EXPECT_EQ(run(done), Outcome::done);
   EXPECT_TRUE(contains(observer.warnings.back(), "did not record its inputs"));

@@ -196,7 +196,7 @@ TEST_F(RunJob, SaysWhenTheErrorEstimateIsNotKnown) {
   EXPECT_EQ(tail_of(rare).at("known"), false);
   const auto warnings = rare.read_state().warnings;
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_NE(warnings[0].find("tail of index"), std::string::npos);
+  EXPECT_NE(warnings[0].find("Pareto index"), std::string::npos);
   const JobFolder plain = create(spec("cornell.glb", 64), "plain");
   EXPECT_EQ(tail_of(plain).at("known"), true);
   EXPECT_TRUE(plain.read_state().warnings.empty());

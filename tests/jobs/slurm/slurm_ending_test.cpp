@@ -31,10 +31,9 @@ TEST(SlurmEnding, WhatCannotWriteIsLostWithSlurmsWord) {
     EXPECT_EQ(end.kind, How::lost);
     EXPECT_EQ(end.reason, std::string("Slurm job 17: ") + state);
   }
-  EXPECT_EQ(
-      slurm_ending(std::nullopt, over("FAILED", "JobLaunchFailure"), true).reason,
-      "renderer ended without a word, or its node does not see the data folder; Slurm job 17: "
-      "FAILED (JobLaunchFailure)");
+  EXPECT_EQ(slurm_ending(std::nullopt, over("FAILED", "JobLaunchFailure"), true).reason,
+            "renderer left no exit code, or its node cannot access the data folder; Slurm job 17: "
+            "FAILED (JobLaunchFailure)");
   EXPECT_EQ(slurm_ending(std::nullopt, over("RUNNING"), false).kind, How::lost);
   EXPECT_EQ(slurm_ending(std::nullopt, std::nullopt, false).kind, How::lost);
   EXPECT_EQ(slurm_ending(std::nullopt, over("OUT_OF_MEMORY"), true).kind, How::out_of_memory);

@@ -192,7 +192,7 @@ TEST_F(SlurmScriptTest, ASubmissionThatWasGivenUpRendersNothing) {
   EXPECT_EQ(run("exit 3"), 0);
   EXPECT_EQ(read_submission_exit(folder, name), std::nullopt);
   EXPECT_EQ(content_of(temp / "sleep.times").size(), 60U);
-  EXPECT_NE(content_of(temp / "out").find("does not wait for " + name), std::string::npos);
+  EXPECT_NE(content_of(temp / "out").find("does not name " + name), std::string::npos);
 }
 
 TEST_F(SlurmScriptTest, WaitsForAFolderThatLags) {

@@ -39,11 +39,11 @@ TEST(BudgetExtension, EachProblemIsNamedWithItsPlaceAndTheLimitBefore) {
   const auto problems = extension_problems(budget(60, 10, 0.1), budget(30, 9, 0.2));
   ASSERT_EQ(problems.size(), 3u);
   EXPECT_EQ(problems[0].pointer, "/budget/seconds");
-  EXPECT_EQ(problems[0].message, "found 30; allowed: at least 60, the limit before, or none");
+  EXPECT_EQ(problems[0].message, "found 30; allowed: at least 60, the previous limit, or none");
   EXPECT_EQ(problems[1].pointer, "/budget/iterations");
-  EXPECT_EQ(problems[1].message, "found 9; allowed: at least 10, the limit before, or none");
+  EXPECT_EQ(problems[1].message, "found 9; allowed: at least 10, the previous limit, or none");
   EXPECT_EQ(problems[2].pointer, "/budget/error/target");
-  EXPECT_EQ(problems[2].message, "found 0.2; allowed: at most 0.1, the limit before, or none");
+  EXPECT_EQ(problems[2].message, "found 0.2; allowed: at most 0.1, the previous limit, or none");
 }
 
 TEST(BudgetExtension, ALimitThatShrinksIsRefusedEvenIfAnotherGrows) {

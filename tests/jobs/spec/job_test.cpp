@@ -94,7 +94,7 @@ TEST(Job, CandidatesHaveThePathLengthsOfAutoAndNoBias) {
   expect_one(job_problems(allowing("consistent", R"("photon_map", "path")")),
              "/integrator/candidates/0", {"\"consistent\""});
   expect_one(job_problems(allowing("biased", R"("photon_map", "sppm")")), "/integrator/candidates",
-             {"found none without bias"});
+             {"found no unbiased one"});
   expect_one(job_problems(with(R"("inspect")")), "/integrator/candidates/0", {"\"path\""});
 }
 

@@ -31,8 +31,8 @@ TEST(Inputs, ChangesAreToldByRoleAndName) {
   EXPECT_EQ(changed_inputs(recorded, now),
             (std::vector<std::string>{
                 "scene \"a.gltf\" has 11 bytes, and had 10",
-                "texture \"tex/\u00e4 \"b\".png\" has another content of the same size",
-                "environment \"sky.hdr\" is not there any more"}));
+                "texture \"tex/\u00e4 \"b\".png\" has changed contents of the same size",
+                "environment \"sky.hdr\" no longer exists"}));
   now = {{InputRole::reference, "sky.hdr", 1, "1"}};
   EXPECT_TRUE(changed_inputs(recorded, now).empty()) << "only what both lists have is compared";
 }

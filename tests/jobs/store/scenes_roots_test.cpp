@@ -60,7 +60,7 @@ TEST_F(ScenesRootsTest, ANameCannotLeaveItsRootInAnySpelling) {
         std::string("box.glb\n"), std::string("\x7f.glb"), std::string("..")}) {
     const std::string message = refusal(name);
     EXPECT_TRUE(contains(message, "it ")) << message;
-    EXPECT_FALSE(contains(message, "it is not there")) << message;  // refused before any look-up
+    EXPECT_FALSE(contains(message, "it does not exist")) << message;  // refused before any look-up
   }
 }
 
@@ -117,9 +117,9 @@ TEST_F(ScenesRootsTest, WhereARootIsMissingOrEmptyNothingIsKnownToBeMissing) {
       EXPECT_EQ(roots.resolve("box.glb", scenes), root_ / "box.glb");
     }
   }
-  EXPECT_TRUE(contains(refusal("away.glb"), "it is not there"));
+  EXPECT_TRUE(contains(refusal("away.glb"), "it does not exist"));
   fs::create_directory(root_ / "mount");
-  EXPECT_TRUE(contains(refusal("mount/away.glb"), "it is not there"));
+  EXPECT_TRUE(contains(refusal("mount/away.glb"), "it does not exist"));
 }
 
 TEST_F(ScenesRootsTest, TheRootItselfMayBeALink) {

@@ -120,8 +120,8 @@ TEST_F(SweepAnswers, RunsOfOtherInputsThanTheLatestAreLeftOut) {
   EXPECT_EQ(a.cells[0].done, (std::vector<std::size_t>{0, 2}));
   EXPECT_EQ(a.cells[1].done, (std::vector<std::size_t>{3})) << "of run 3 nothing is known";
   EXPECT_EQ(a.states[State::done], 4U);
-  EXPECT_TRUE(a.warnings[0].starts_with("1 of 4 runs were made from other files")) << a.warnings[0];
-  EXPECT_NE(a.warnings[0].find("scene \"a.glb\" has another content"), std::string::npos);
+  EXPECT_TRUE(a.warnings[0].starts_with("1 of 4 runs have other input files")) << a.warnings[0];
+  EXPECT_NE(a.warnings[0].find("scene \"a.glb\" has changed contents"), std::string::npos);
   record(1, "2026-01-01T00:00:02.000Z", "1");
   a = answer(sweep);
   EXPECT_EQ(a.cells[1].done.size(), 2U);
@@ -134,7 +134,7 @@ TEST_F(SweepAnswers, ADamagedRunIsNamedAndHidesNoOther) {
   const Answers a = answer(sweep);
   EXPECT_EQ(a.cells[0].done.size(), 2U);
   EXPECT_EQ(a.cells[1].done, (std::vector<std::size_t>{3}));
-  EXPECT_TRUE(a.warnings[0].starts_with("run " + run.name + " is left out")) << a.warnings[0];
+  EXPECT_TRUE(a.warnings[0].starts_with("run " + run.name + " is excluded")) << a.warnings[0];
   EXPECT_NE(sweep_table(sweep).find(run.name + ",2,1,1,1,damaged,"), std::string::npos);
 }
 
@@ -206,7 +206,7 @@ TEST_F(SweepAnswers, WhatIsNotDoneTakesNoPart) {
   EXPECT_TRUE(a.cells[1].done.empty());
   EXPECT_TRUE(a.cells[1].at.empty());
   ASSERT_FALSE(a.warnings.empty());
-  EXPECT_EQ(a.warnings[0], "3 of 4 runs are not done: what follows is provisional");
+  EXPECT_EQ(a.warnings[0], "3 of 4 runs are not done: results are provisional");
 }
 
 std::string prepared(double analysis, const char* built, const char* loaded) {

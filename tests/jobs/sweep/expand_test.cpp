@@ -148,9 +148,9 @@ TEST(Sweep, MistakesAreToldWhereTheyStand) {
       R"({"job": {"scene": "a.glb"}, "axes": {"/integrator": [{"type": "path", "max_depth": 0}]}})",
       "/axes/~1integrator/0/max_depth: found number 0");
   expect_problem(R"({"job": {"scene": "a.glb"}, "axes": {"threads": [1]}})",
-                 "/axes/threads: is no JSON pointer");
+                 "/axes/threads: is not a JSON pointer");
   expect_problem(R"({"job": {"scene": "a.glb"}, "axes": {"/seed/~2": [1]}})",
-                 "/axes/~1seed~1~02: is no JSON pointer");
+                 "/axes/~1seed~1~02: is not a JSON pointer");
   expect_problem(R"({"job": {"scene": "a.glb"}, "axes": {"/resolution/2": [1]}})",
                  "/axes/~1resolution~12: points to no setting");
   expect_problem(R"({"job": {"scene": "a.glb"}, "axes": {"/threads": []}})",
@@ -161,7 +161,7 @@ TEST(Sweep, MistakesAreToldWhereTheyStand) {
       R"({"job": {"scene": "a.glb"}, "axes": {"/threads": [1]}, "zip": [{"/threads": [1]}]})",
       "/zip/0/~1threads: is swept twice");
   expect_problem(R"({"job": {}, "zip": [{"/scene": ["a.glb", "b.glb"], "/camera": [""]}]})",
-                 "/zip/0/~1scene: found a list of 2 beside one of 1");
+                 "/zip/0/~1scene: found lists of 2 and 1");
   expect_problem(R"({"job": {"scene": "a.glb"}, "seeds": 2, "axes": {"/seed": [1]}})",
                  "/axes/~1seed: is swept by \"seeds\", too");
   expect_problem(
@@ -169,11 +169,11 @@ TEST(Sweep, MistakesAreToldWhereTheyStand) {
       "/exclude/0/~1threads: found 2; allowed: a value that is swept");
   expect_problem(
       R"({"job": {"scene": "a.glb"}, "axes": {"/threads": [1]}, "exclude": [{"/threads": 1}]})",
-      "/exclude: leaves nothing to run");
+      "/exclude: excludes all runs");
   expect_problem(
       R"({"job": {"scene": "a.glb"}, "axes": {"/threads": [1]}, "baseline": {"/seed": 1}})",
       "/baseline/~1seed: is not swept");
-  expect_problem(R"({"job": []})", "/job: found no object");
+  expect_problem(R"({"job": []})", "/job: is not an object");
   expect_problem(R"({"job": {}})", "/job/scene: ");
   expect_problem(R"({"axes": {}})", "/job: ");
 }
@@ -207,7 +207,7 @@ TEST(SweepProblems, WhereItIsCompared) {
   expect_problem(R"({"job": {"scene": "a.glb"}, "compare_at": {"errors": [-1]}})",
                  "/compare_at/errors/0: found -1; allowed: above 0");
   expect_problem(R"({"job": {"scene": "a.glb"}, "compare_at": {"metric": "mse"}})",
-                 "/compare_at/metric: found \"mse\", and a job without \"reference\"; allowed: "
+                 "/compare_at/metric: found \"mse\" with a job without \"reference\"; allowed: "
                  "\"est_rmse\", or a reference for all");
   EXPECT_EQ(problems_of(R"({"job": {"scene": "a.glb"}, "compare_at": {"metric": "est_rmse"}})"),
             "none");
