@@ -49,7 +49,7 @@ JobSpec job_of(const AdviseOptions& o) {
   return with_auto_integrator(spec);
 }
 
-/// Where a candidate stood when it left, or at the end.
+/// Prints the last turn of each candidate.
 void print_table(const Choice& choice) {
   const std::string error = fmt::format("{} then", enum_name(choice.metric));
   fmt::print("{:<32} {:>10} {:>9} {:>12}  {}\n", "method", "iterations", "CPU s", error, "");

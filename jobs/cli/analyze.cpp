@@ -33,7 +33,7 @@ struct AnalyzeOptions {
   bool json = false;
 };
 
-/// A path as it is, or a name below the scenes roots.
+/// An existing path, or a name below the scenes roots.
 std::filesystem::path find_scene(const std::string& name) {
   if (std::filesystem::is_regular_file(name)) return name;
   return ScenesRoots::from_environment().resolve(name, {".glb", ".gltf"});
@@ -53,14 +53,14 @@ struct GraphCounts {
   }
 };
 
-/// Gates that let no light through: a node beside them touches the scene.
+/// Number of gates of radius 0, next to a node that touches the scene.
 std::size_t gates_of_radius_0(const VisibilityGates& gates) {
   return static_cast<std::size_t>(
       std::count_if(gates.gates.begin(), gates.gates.end(),
                     [](const VisibilityGate& gate) { return gate.radius == 0; }));
 }
 
-/// What a scene's empty space is like, in numbers.
+/// Counts that describe a scene's empty space.
 OrderedJson shape(const AnalyzeOptions& o, SpaceAnalysis& space) {
   const Voxels& v = space.voxels();
   const Imath::V3i n = v.scene.size();

@@ -21,7 +21,7 @@ std::filesystem::path folder_of(const CacheOptions& o) {
   return o.folder.empty() ? DataRoot::from_environment().cache() : o.folder;
 }
 
-/// What a file says of itself may hold anything: a line of a terminal shows it as it is.
+/// Escapes text from a file, which may contain anything, for one line of a terminal.
 std::string on_a_line(std::string text) {
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
   std::replace_if(text.begin(), text.end(), is_control, '?');

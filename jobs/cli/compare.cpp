@@ -40,7 +40,7 @@ Crop crop_of(const CompareOptions& o, const FloatImage& image) {
   return c;
 }
 
-/// The rectangle's values, three a pixel. Throws SceneError, with `label`, if one is not finite.
+/// The rectangle's values, three per pixel. Throws SceneError, with `label`, if one is not finite.
 std::vector<double> in_double(const FloatImage& image, const Crop& crop, const std::string& label) {
   FloatImage part{crop.width, crop.height, {}, {}};
   for (int y = crop.y; y < crop.y + crop.height; ++y) {
@@ -57,7 +57,7 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// Variance of a - b as far as it is known; empty: A has no such layer.
+/// Variance of a - b, from the known layers; empty: A has no such layer.
 std::vector<double> variance_of_difference(const CompareOptions& o, const Crop& crop) {
   std::vector<double> sum;
   for (const auto& file : {o.a, o.b}) {
@@ -94,12 +94,12 @@ void print_blocks(const CompareOptions& o, const Crop& crop, const std::vector<d
              s.z_beyond);
 }
 
-/// The picture that a path names: of a job's folder its own.
+/// The picture at a path, which may be a job's folder.
 std::filesystem::path picture_of(const std::filesystem::path& named) {
   return std::filesystem::is_directory(named) ? named / "image.exr" : named;
 }
 
-/// What a picture in a job's folder was made from, but the reference; empty: not known.
+/// The input files of a picture in a job's folder, except the reference; empty: unknown.
 InputList inputs_of(const std::filesystem::path& picture) {
   InputList inputs = read_inputs(JobFolder(picture.parent_path())).value_or(InputList{});
   std::erase_if(inputs, [](const InputFile& file) { return file.role == InputRole::reference; });

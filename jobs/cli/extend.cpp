@@ -18,7 +18,7 @@ namespace {
 struct ExtendOptions {
   std::filesystem::path folder;
   Budget budget;                ///< without its error target
-  std::optional<double> error;  ///< in the metric that the job has
+  std::optional<double> error;  ///< in the job's metric
   RenderOptions render;
 };
 
@@ -35,7 +35,7 @@ Budget larger_budget(const Budget& old, const ExtendOptions& o) {
   return larger;
 }
 
-/// Writes the larger budget and opens the job again.
+/// Writes the larger budget and reopens the job.
 void extend(const JobFolder& folder, const ExtendOptions& o) {
   const auto lock = folder.try_lock();
   if (!lock) {
@@ -46,12 +46,12 @@ void extend(const JobFolder& folder, const ExtendOptions& o) {
   const Budget larger = larger_budget(spec.budget, o);
   throw_if_any(extension_problems(spec.budget, larger));
   spec.budget = larger;
-  parse_job(write_job(spec));  // the ranges
-  // Before anything is written: what is refused stays as it is.
+  parse_job(write_job(spec));  // checks ranges
+  // Before anything is written: a refusal changes nothing.
   InputCheck check(DataRoot::from_environment(), ScenesRoots::from_environment());
   refuse_changed_inputs(folder, check.changes(folder).value_or(std::vector<std::string>{}));
-  // First the state: a crash in between leaves a job that ends at once with its old budget, and not
-  // one that says it is done and is not.
+  // State first: after a crash in between, the job ends at once with its old budget instead of
+  // being marked done although it is not.
   if (is_terminal(folder.read_state().state)) folder.reopen();
   folder.write_job(spec);
 }

@@ -73,7 +73,7 @@ std::map<std::size_t, JobState> LeftRuns::find(bool looking) {
 
 bool LeftRuns::is_stale(const SweepRun& run, const JobState& state, InputCheck& check,
                         std::size_t& unrecorded) {
-  if (state.created.empty()) return false;  // not made yet
+  if (state.created.empty()) return false;  // not created yet
   const auto changes = check.changes(folder_.folder(run));
   if (!changes) {
     ++unrecorded;
@@ -85,7 +85,7 @@ bool LeftRuns::is_stale(const SweepRun& run, const JobState& state, InputCheck& 
   return true;
 }
 
-/// False: another process has it.
+/// False if another process has its lock.
 bool LeftRuns::start_anew(const SweepRun& run) {
   try {
     start_again(folder_.folder(run));

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A job and what it is listed as.
+/// A job and its name in the list.
 struct Listed {
   std::string name;
   JobFolder folder;
@@ -34,7 +34,7 @@ std::vector<Listed> jobs_in(const fs::path& folder, const std::string& ending) {
   return found;
 }
 
-/// The job that `folder` is, or those in it; of a sweep, its runs.
+/// The job in `folder`, the jobs below it, or the runs of a sweep.
 std::vector<Listed> jobs_of(const fs::path& folder) {
   if (is_job(folder)) return {{folder.string(), JobFolder(folder)}};
   const bool sweep =
@@ -47,7 +47,7 @@ std::vector<Listed> jobs_of(const fs::path& folder) {
   return found;
 }
 
-/// Those of the data folder, and those that `lacuna render` left in the working directory.
+/// The jobs of the data folder, and the results of `lacuna render` in the working directory.
 std::vector<Listed> usual_jobs() {
   std::vector<Listed> found;
   for (const JobFolder& folder : list_jobs(DataRoot::from_environment().jobs())) {

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The merged job's folder: made now, or left unfinished by the same command.
+/// Creates the merged job's folder, or reuses an unfinished one of the same command.
 JobFolder merged_folder(const fs::path& named, const Shard& first) {
   JobSpec spec = first.spec;
   spec.shard = 0;

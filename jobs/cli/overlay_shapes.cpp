@@ -11,7 +11,7 @@ namespace {
 constexpr double bar = 0.12;   // half the width of an edge, voxels
 constexpr double knot = 0.35;  // half the width of a node
 
-/// Two unit vectors that make a right-handed frame with `n`.
+/// Two unit vectors that form a right-handed frame with `n`.
 std::array<V3d, 2> across(const V3d& n) {
   const V3d other = std::abs(n.x) < 0.6 ? V3d(1, 0, 0) : V3d(0, 1, 0);
   const V3d u = n.cross(other).normalized();
@@ -115,7 +115,7 @@ std::vector<OverlayMesh> gate_overlay(const VisibilityGates& gates, const GridTr
   for (std::size_t i = 0; i < gates.gates.size(); ++i) {
     const VisibilityGate& g = gates.gates[i];
     Builder b(grid, "gate " + std::to_string(i), false_colour(static_cast<std::uint32_t>(i), 2));
-    constexpr double least = 0.25;  // voxels: one that touches the scene is seen, too
+    constexpr double least = 0.25;  // voxels: keeps gates of radius 0 visible
     b.disk(V3d(g.centre), V3d(g.axis), std::max<double>(g.radius, least));
     meshes.push_back(b.take());
   }

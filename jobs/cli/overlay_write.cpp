@@ -8,10 +8,10 @@
 namespace lacuna {
 namespace {
 
-/// A glTF document and its one buffer, in the making.
+/// Builds a glTF document with one buffer.
 class Document {
  public:
-  /// What is added lies relative to `origin`.
+  /// Positions are relative to `origin`.
   explicit Document(const V3d& origin) {
     json_["asset"] = {{"version", "2.0"}, {"generator", "lacuna analyze"}};
     json_["scene"] = 0;

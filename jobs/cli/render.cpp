@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "raise the limit of 4.0 GiB (ulimit -d), ", for each that this process has.
+/// "raise the limit of 4.0 GiB (ulimit -d), ", for each limit of this process.
 std::string memory_limit_advice() {
   std::string advice;
   for (const auto& [resource, option] : {std::pair{RLIMIT_DATA, "-d"}, {RLIMIT_AS, "-v"}}) {
@@ -55,7 +55,7 @@ void choose_shard(JobSpec& spec, const std::string& text) {
   }
   spec.shards = n;
   spec.shard = k;
-  parse_job(write_job(spec));  // the ranges
+  parse_job(write_job(spec));  // checks ranges
   budget_of(spec);
 }
 
@@ -66,7 +66,7 @@ std::string folder_ending(const JobSpec& spec) {
   return fmt::format(".{:0{}}-of-{}.job", spec.shard, all.size(), all);
 }
 
-/// The folder of a job file's results: there already with this very job, or made now. `shard`: of
+/// The folder of a job file's results: an existing one with the same job, or a new one. `shard`: of
 /// the command line; empty: none.
 JobFolder folder_for(const fs::path& job_file, const fs::path& named, const std::string& shard) {
   JobSpec spec = parse_job(read_file(job_file, max_job_bytes));
@@ -88,7 +88,7 @@ JobFolder folder_for(const fs::path& job_file, const fs::path& named, const std:
   return folder;
 }
 
-/// What a person can do about it.
+/// Advice about the obstacle.
 std::string advice_for(Obstacle obstacle) {
   switch (obstacle) {
     case Obstacle::none:

@@ -58,7 +58,7 @@ std::vector<std::size_t> indices_of(const std::map<std::size_t, JobState>& runs)
   return indices;
 }
 
-/// Two executors would render the same runs at once.
+/// Refuses runs that another executor may be rendering.
 void check_not_submitted(const SweepFolder& folder, bool on_slurm) {
   const auto refuse = [](const JobFolder& job, const std::string& allowed) {
     const auto submission = read_submission(job);
@@ -95,11 +95,11 @@ int sweep(const SweepOptions& o) {
   if (o.chunk > 0) {
     terminal.warning("--chunk has no effect: each run is a separate Slurm job");
   }
-  // Tasks of an array do parts of it.
+  // Array tasks render parts of it.
   if (o.index.empty()) check_not_submitted(folder, o.on_slurm);
   std::map<std::size_t, JobState> left = left_runs.find(false);
   int code = exit_done;
-  // What changed meanwhile would mix two contents in one report: it is rendered again.
+  // Renders runs whose files changed meanwhile again: one report must not mix two contents.
   while (code == exit_done && !left.empty()) {
     code = SweepQueue(folder, o.queue, terminal).run(left, interrupt_requested());
     if (code == exit_done) left = left_runs.find(false);

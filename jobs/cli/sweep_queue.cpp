@@ -23,7 +23,7 @@ constexpr std::chrono::seconds default_grace{30};
 constexpr std::chrono::minutes patience{1};
 constexpr std::chrono::milliseconds tick{100}, look_at_slurm{2000}, show_again{200};
 
-/// Between SIGTERM and SIGKILL of a renderer.
+/// Time between SIGTERM and SIGKILL of a renderer.
 std::chrono::milliseconds grace() {
   if (std::getenv("LACUNA_GRACE") == nullptr) return default_grace;
   return std::chrono::milliseconds(static_cast<std::int64_t>(1000 * stop_grace()));
@@ -49,7 +49,7 @@ std::unique_ptr<Executor> make_executor(const SweepQueueSettings& settings) {
 
 }  // namespace
 
-/// What the queue says, on its threads.
+/// Log lines of the queue's threads.
 struct SweepQueue::LogLines {
   std::mutex mutex;  // guards the next
   std::vector<std::string> lines;
@@ -106,7 +106,7 @@ void SweepQueue::add(const std::map<std::size_t, JobState>& left) {
       const JobFolder folder = sweep_.folder(run);
       JobEntry job;
       job.id = run.name;
-      if (fs::exists(folder.file("job.json"))) {  // which a person may have extended
+      if (fs::exists(folder.file("job.json"))) {  // a person may have extended it
         const std::string text = folder.read_job_text();
         take_spec(job, parse_job(text));
         job.spec = text;
@@ -123,10 +123,10 @@ void SweepQueue::add(const std::map<std::size_t, JobState>& left) {
   });
 }
 
-/// Waits a little for something to happen.
+/// Waits up to `tick` for events.
 void SweepQueue::take_events() {
   const auto events = store_.journal().since(seen_, tick);
-  if (!events) {  // too many are new: what is over is asked for
+  if (!events) {  // some were discarded: read all runs
     seen_ = store_.journal().last();
     std::vector<std::string> names;
     for (const auto& [name, run] : open_) names.push_back(name);
@@ -186,7 +186,7 @@ void SweepQueue::show() {
   const auto now = Clock::now();
   if (!terminal_.shows_status() || now < next_show_) return;
   next_show_ = now + show_again;
-  constexpr std::size_t most = 1024;  // that are rendered at a time
+  constexpr std::size_t most = 1024;  // at least --jobs
   double share = static_cast<double>(finished_);
   for (const JobEntry& entry : store_.unfinished(0, most)) {
     if (entry.begun && entry.progress) share += entry.progress->share;
@@ -197,7 +197,7 @@ void SweepQueue::show() {
                                failed_, 100 * share / static_cast<double>(all_), rest));
 }
 
-/// Somebody has to look after what keeps the runs from going on.
+/// Whether an obstacle has lasted so long that a person must remove it.
 bool SweepQueue::gives_up() const { return since_ && Clock::now() - *since_ > patience; }
 
 }  // namespace lacuna

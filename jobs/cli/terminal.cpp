@@ -16,7 +16,7 @@ namespace lacuna {
 
 namespace {
 
-/// Standard error is this very file: the service sends it there.
+/// Whether standard error is this file, as set by the service.
 bool stderr_goes_to(const std::filesystem::path& file) {
   struct stat a {};
   struct stat b {};
@@ -61,7 +61,7 @@ Terminal::Terminal(const std::filesystem::path& log, bool quiet)
     const auto file = std::make_shared<spdlog::sinks::basic_file_sink_mt>(log.string());
     file->set_pattern("%Y-%m-%d %T.%e %v");
     logger_->sinks().push_back(file);
-  } catch (const spdlog::spdlog_ex& e) {  // a full or read-only disk; the job itself will say so
+  } catch (const spdlog::spdlog_ex& e) {  // a full or read-only disk, which the job reports, too
     warning(e.what());
   }
 }

@@ -34,7 +34,7 @@ std::vector<char*> c_strings(const std::vector<std::string>& strings) {
   throw std::system_error(error, std::generic_category(), what);
 }
 
-/// Everything the child needs, made before the fork: after it, only system calls are safe.
+/// Everything that the child needs, prepared before the fork: after it only system calls are safe.
 struct Prepared {
   char* const* arguments;
   char* const* environment;
@@ -43,7 +43,7 @@ struct Prepared {
   pid_t parent;
   std::uint64_t memory_bytes, file_bytes;
   int niceness;               // absolute
-  const char* oom_score_adj;  // as text; empty: as it is
+  const char* oom_score_adj;  // as text; empty: unchanged
   std::size_t oom_score_adj_length;
 };
 
@@ -135,7 +135,7 @@ ChildProcess::ChildProcess(const Command& command) {
   if (pid_ < 0) fail(errno, "fork");
   if (pid_ == 0) become(prepared);
   child_report.close();
-  // Closed by a successful exec; otherwise it brings what went wrong.
+  // A successful exec closes it; otherwise it delivers the errno.
   int error = 0;
   const ssize_t n = ::read(report.get(), &error, sizeof error);
   process_ = FileHandle(static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0)));
@@ -178,7 +178,7 @@ Ending ChildProcess::reap() {
 }
 
 std::string why_it_cannot_begin(Command command, const Ending& end, const StopSignal& stop) {
-  constexpr std::chrono::seconds longest{10};  // to say a version
+  constexpr std::chrono::seconds longest{10};  // for --version
   if (end.kind != Ending::Kind::killed || end.code == SIGXFSZ || stop.is_requested()) return {};
   command.arguments = {command.arguments.front(), "--version"};
   command.output_fd = -1;

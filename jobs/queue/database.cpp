@@ -9,7 +9,7 @@
 namespace lacuna {
 namespace {
 
-/// The errno that stands for a result of SQLite, 0: none does. `system` is that of the failed call.
+/// The errno for a result of SQLite; 0: none. `system`: errno of the failed call.
 int errno_of(int code, int system) {
   switch (code & 0xff) {
     case SQLITE_FULL:
@@ -37,10 +37,10 @@ Database::Database(const std::filesystem::path& file) : file_(file) {
       nullptr);
   try {
     if (code != SQLITE_OK) fail(code);
-    // A service that is killed leaves no lock; one that ends may need a moment.
+    // A killed service leaves no lock; one that is stopping may need a moment.
     sqlite3_busy_timeout(handle_, 3000);
-    // The lock before the log: then SQLite keeps the log's index in its own memory, and no memory
-    // is shared between processes, which file systems of many machines do not offer.
+    // Locking mode before WAL: SQLite then keeps the WAL index in its own memory instead of shared
+    // memory, which network file systems do not support.
     run("PRAGMA locking_mode=EXCLUSIVE");
     run("PRAGMA journal_mode=WAL");
     run("PRAGMA synchronous=FULL");
@@ -93,7 +93,7 @@ Statement& Statement::bind(std::int64_t value) {
 }
 
 Statement& Statement::bind(std::string_view value) {
-  // A view of nothing would be NULL.
+  // A null data pointer would bind NULL.
   sqlite3_bind_text64(statement_, ++bound_, value.empty() ? "" : value.data(), value.size(),
                       SQLITE_TRANSIENT, SQLITE_UTF8);
   return *this;

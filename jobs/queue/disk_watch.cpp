@@ -12,7 +12,7 @@
 namespace lacuna {
 namespace {
 
-// A job's folder has a dozen files, and each is written beside itself first.
+// A job's folder has a dozen files, each of which is first written to a temporary.
 constexpr std::uint64_t most_inodes_kept = 1024, inode_share = 16;
 
 std::string megabytes(std::uint64_t bytes) {

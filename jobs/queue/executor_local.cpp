@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The ending, classified as out of memory where memory ran out.
+/// The ending, classified as out_of_memory if memory ran out.
 Ending name_memory(Ending end, std::uint64_t limit, bool kernel_killed) {
   if (end.kind == Ending::Kind::exited && end.code == exit_memory) {
     const std::string size = limit > 0 ? fmt::format(" (limit {})", byte_size_text(limit)) : "";
@@ -116,7 +116,7 @@ Ending LocalExecutor::run(const Task& task, const StopSignal& stop, const Notice
   const JobFolder& folder = task.folder;
   FileHandle output;
   try {
-    forget_submission(folder);  // of a service that ran its jobs on a cluster
+    forget_submission(folder);  // from a service that ran its jobs on a cluster
     output = open_log(folder.file("log.txt"));
   } catch (const std::system_error& error) {
     return folder_unusable(folder, error);

@@ -15,14 +15,14 @@ ExitClassification failed(JobState state, const std::string& error, const std::s
   return {ended(std::move(state), State::failed, now)};
 }
 
-/// The code of this ending is an exit code.
+/// Whether `code` of this ending is an exit code.
 bool exited(const Ending& end) {
   const bool by_others = end.kind == Ending::Kind::lost || end.kind == Ending::Kind::refused;
   return end.kind == Ending::Kind::exited || end.kind == Ending::Kind::out_of_memory ||
          (by_others && end.code != 0);
 }
 
-/// Another renderer would end likewise.
+/// Whether another renderer would end in the same way.
 bool is_final(const Ending& end) {
   if (end.kind == Ending::Kind::refused) return true;
   return end.kind == Ending::Kind::exited && (end.code == exit_bad_job || end.code == exit_asset);
@@ -32,13 +32,13 @@ bool interrupted(const Ending& end) {
   return end.kind == Ending::Kind::exited && end.code == exit_interrupted;
 }
 
-/// What kept it from being started, or from writing its files, and may pass; empty: nothing did.
-/// Interrupted without being asked, a renderer says why in outcome.json, or could not write even
-/// that; one that somebody else has stopped leaves no error there.
+/// The transient reason why it could not be started or write its files; empty: none. A renderer
+/// that was interrupted without a request writes the reason to outcome.json, if it can; one stopped
+/// by another program leaves no error there.
 std::string obstacle_of(const Attempt& attempt) {
   const Ending& end = attempt.ending;
   if (never_began(end)) return end.reason;
-  // SIGBUS: a page of a file in memory, as of a program or a library, is cut off or unreadable.
+  // SIGBUS: a page of a mapped file, such as the program or a library, is truncated or unreadable.
   const bool by_file = end.code == SIGXFSZ || end.code == SIGBUS;
   if (end.kind == Ending::Kind::killed && by_file) return end.reason;
   if (!interrupted(end)) return "";
@@ -46,7 +46,7 @@ std::string obstacle_of(const Attempt& attempt) {
   return attempt.after.error;
 }
 
-/// Stopped by somebody else, but not in vain.
+/// Whether a stopped renderer has completed an iteration.
 bool made_progress(const Attempt& attempt) {
   const bool stopped = interrupted(attempt.ending) || attempt.ending.kind == Ending::Kind::lost;
   return stopped && attempt.iteration_after > attempt.iteration_before;
@@ -87,7 +87,7 @@ ExitClassification classify_exit(const Attempt& attempt, int max_attempts, const
   JobState state = attempt.after;
   const Ending& end = attempt.ending;
   if (exited(end)) state.exit_code = end.code;
-  if (end.kind == Ending::Kind::killed) state.exit_code = 128 + end.code;  // as shells have it
+  if (end.kind == Ending::Kind::killed) state.exit_code = 128 + end.code;  // as in shells
   const bool started = !never_began(end) && end.kind != Ending::Kind::refused;
   // A renderer that died early did not count itself.
   state.attempts =

@@ -15,7 +15,7 @@
 namespace lacuna {
 namespace {
 
-/// queue.json of version 0.1: what clients had asked for.
+/// queue.json of version 0.1: the requests of clients.
 struct OldControl {
   int priority = 0;
   bool held = false;
@@ -39,10 +39,10 @@ void describe(V& v, OldControl& s) {
   v("shards", s.shards, {});
 }
 
-/// What can be read of a folder; the first thing that cannot is its damage.
+/// Reads parts of a folder; the first failure is recorded as its damage.
 class Reading {
  public:
-  /// Throws what may pass.
+  /// Throws transient errors.
   template <class Read>
   void try_to(Read&& read) {
     try {
@@ -71,10 +71,10 @@ void set_state(JobEntry& job, const std::string& damage) {
   }
 }
 
-/// A job, and its place among the others.
+/// A job and its order.
 struct Found {
   JobEntry job;
-  std::int64_t number = 0;  // that it was accepted with; 0: by version 0.1
+  std::int64_t number = 0;  // of its acceptance; 0: by version 0.1
   auto order() const { return std::tie(number, job.state.created, job.id); }
 };
 

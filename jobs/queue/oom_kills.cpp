@@ -10,7 +10,7 @@ namespace {
 
 std::string text_of(const std::filesystem::path& file) {
   std::ostringstream text;
-  text << std::ifstream(file).rdbuf();  // /proc's files have no size
+  text << std::ifstream(file).rdbuf();  // files in /proc have no size
   return std::move(text).str();
 }
 

@@ -17,7 +17,7 @@ std::optional<ProcessStat> stat_of(pid_t pid) {
   return parse_process_stat(std::move(text).str());
 }
 
-/// What this very process is now; nothing if it has ended.
+/// The present state of the process; none if it has ended.
 std::optional<ProcessStat> living(const ProcessIdentity& identity) {
   if (identity.boot != boot_id()) return std::nullopt;
   const auto now = stat_of(identity.pid);
@@ -37,13 +37,13 @@ const std::string& boot_id() {
 }
 
 std::optional<ProcessStat> parse_process_stat(std::string_view stat) {
-  const auto name_end = stat.rfind(')');  // no later field has one
+  const auto name_end = stat.rfind(')');  // no later field contains one
   if (name_end == std::string_view::npos) return std::nullopt;
   std::istringstream rest{std::string(stat.substr(name_end + 1))};
   ProcessStat found;
   pid_t parent = 0;
   if (!(rest >> found.state >> parent >> found.group)) return std::nullopt;
-  constexpr int group_field = 5, start_field = 22;  // as proc(5) counts them
+  constexpr int group_field = 5, start_field = 22;  // numbered as in proc(5)
   std::string skipped;
   for (int field = group_field + 1; field < start_field; ++field) rest >> skipped;
   if (!(rest >> found.start_ticks)) return std::nullopt;
@@ -60,7 +60,7 @@ bool is_alive(const ProcessIdentity& identity) { return living(identity).has_val
 
 bool kill_group(const ProcessIdentity& identity, int signal) {
   const auto now = living(identity);
-  // A number is not given anew while a group has it, so no other group can be meant.
+  // A number is not reused while a group has it, so this is the same group.
   return now && now->group == identity.pid && ::kill(-identity.pid, signal) == 0;
 }
 

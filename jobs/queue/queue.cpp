@@ -17,7 +17,7 @@
 namespace lacuna {
 namespace {
 
-/// The job, as the client knows it.
+/// Checks that the job has the client's `revision`.
 JobEntry checked(std::optional<JobEntry> entry, const std::string& revision) {
   if (!entry) throw Conflict("The job no longer exists.");
   const std::string now = std::to_string(entry->revision);
@@ -51,7 +51,7 @@ void Queue::take_up(const std::vector<JobEntry>& added) {
   for (const JobEntry& entry : added) {
     try {
       make_folder(entry);
-    } catch (const std::exception& error) {  // its runner tries again
+    } catch (const std::exception& error) {  // its runner retries
       log::warn("{}: {}", entry.id, error.what());
     }
   }
@@ -59,18 +59,18 @@ void Queue::take_up(const std::vector<JobEntry>& added) {
   changed_.notify_all();
 }
 
-/// The folder of a job that has ended says so, also where no renderer came to say it.
+/// Writes the end of a job into its folder if no renderer has.
 void Queue::note_end(const JobEntry& entry) const {
   const JobFolder job = folder(entry.id);
   try {
     if (job.read_state().state != entry.state.state) job.write_state(entry.state, false);
-  } catch (const std::exception& error) {  // the store knows
+  } catch (const std::exception& error) {  // the store has it
     log::warn("{}: {}", entry.id, error.what());
   }
   on_over_();
 }
 
-/// The folder with what the store says. Not synced: it is made again where it is missing.
+/// Creates the folder from the store. Not synced: it is created again if it is missing.
 void Queue::make_folder(const JobEntry& entry) const {
   const JobFolder job = folder(entry.id);
   std::filesystem::create_directories(job.dir());
@@ -107,7 +107,7 @@ void Queue::change(const std::string& id, std::optional<int> priority, std::opti
     if (entry.cancel) throw Conflict("The job is being cancelled.");
     entry.priority = priority.value_or(entry.priority);
     entry.held = held.value_or(entry.held);
-    // One that a runner has is held when its renderer has ended.
+    // A job with a runner is held when its renderer has ended.
     if (taken == work_.end() && !entry.begun) {
       entry.state.state = entry.held ? State::held : State::queued;
     }
@@ -142,7 +142,7 @@ void Queue::cancel(const std::string& id, const std::string& revision) {
   if (taken != work_.end()) taken->second->stop.request();
 }
 
-/// A job that was over, open again. Throws Conflict, std::system_error.
+/// Reopens a job that was over. Throws Conflict, std::system_error.
 JobEntry Queue::reopened(JobEntry entry) const {
   const JobFolder job = folder(entry.id);
   if (std::filesystem::exists(job.dir())) {
@@ -227,8 +227,8 @@ void Queue::remove_all(const std::vector<std::string>& ids) {
   take_away(ids);
 }
 
-/// Only under the lock. The folders get hidden names first: a crash in between leaves jobs without
-/// results, which can be removed once more.
+/// Only under the lock. Renames the folders to hidden names first: after a crash in between, jobs
+/// without results remain, which can be removed again.
 void Queue::take_away(const std::vector<std::string>& ids) {
   check_all_removable(ids);
   const std::lock_guard no_forks(fork_mutex());
@@ -249,7 +249,7 @@ void Queue::take_away(const std::vector<std::string>& ids) {
     });
   } catch (...) {
     for (std::size_t i = 0; i < hidden.size(); ++i) {
-      std::error_code lost;  // then its results are: the job stays
+      std::error_code lost;  // the results are lost, the job remains
       std::filesystem::rename(hidden[i], folders[i], lost);
     }
     throw;

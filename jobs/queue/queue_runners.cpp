@@ -1,5 +1,5 @@
-// What the runners of a queue do: each takes the first job that may start, has it rendered, and
-// judges how that ended.
+// The runners of a queue: each takes the first job that may start, renders it with the executor,
+// and classifies the end.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,15 +15,15 @@
 namespace lacuna {
 namespace {
 
-// Between two looks at a lock that a renderer of somebody else holds, and at a job's shards.
+// Polling interval for a lock held by another renderer, and for a job's shards.
 constexpr std::chrono::milliseconds look_again_at_lock{100};
 constexpr std::chrono::seconds look_again_at_shards{1};
-// What brings a job down may pass. A crash may be the job's own doing; a fault that passes shall
-// not be waited for much longer than it lasts, least of all by the whole queue.
+// Longest pauses. After a crash, which the job itself may cause; and after transient errors, for
+// which the queue should not wait much longer than they last.
 constexpr std::chrono::minutes longest_after_crash{1};
 constexpr std::chrono::seconds longest_after_fault{30}, longest_pause{5};
 
-/// What of an error concerns everybody: without the names of files.
+/// The public part of an error, without file names.
 std::string general_reason(const std::exception& error) {
   const auto* system = dynamic_cast<const std::system_error*>(&error);
   return system != nullptr ? system->code().message() : error.what();
@@ -37,7 +37,7 @@ ProcessIdentity renderer_of(const JobEntry& entry) {
 }  // namespace
 
 void Queue::start() {
-  // Renderers of this machine have ended with the service before, or are about to.
+  // Local renderers have ended with the previous service, or are about to.
   if (!executor_.is_remote()) {
     store_.change([&](StoreChange& c) {
       for (const JobEntry& known : c.begun_jobs()) {
@@ -102,7 +102,7 @@ Queue::WorkPtr Queue::take(const std::stop_token& ends) {
         work_[id] = work;
         return work;
       }
-    } catch (const std::exception& error) {  // the database, or no descriptor is left
+    } catch (const std::exception& error) {  // the database failed, or no descriptor is left
       log::warn("no job can be started: {}", error.what());
       look_again = Clock::now() + longest_pause;
     }
@@ -110,7 +110,7 @@ Queue::WorkPtr Queue::take(const std::stop_token& ends) {
   }
 }
 
-/// The first in the line that may start now; `look_again` is when time alone may change that. Only
+/// The first queued job that may start now; sets `look_again` to the time when a pause ends. Only
 /// under the lock.
 std::optional<JobEntry> Queue::first_ready(Clock::time_point& look_again) const {
   if (exclusive_runs_ || disk_.is_low()) return std::nullopt;
@@ -142,26 +142,26 @@ std::optional<JobEntry> Queue::first_ready(Clock::time_point& look_again) const 
   }
 }
 
-/// A job is merged once its shards are rendered; one with a checkpoint was merged before.
+/// A job is merged once its shards are rendered; one with a checkpoint is merged already.
 bool Queue::waits_for_shards(const JobEntry& entry) const {
   if (entry.shards.empty() || entry.cancel) return false;
   const auto sweep = store_.find_sweep(entry.shards);
   if (!sweep) return false;
   if (is_over(sweep->state) && unfinished_of(store_.run_counts(entry.shards)) == 0) return false;
-  std::error_code unknown;  // it waits until that can be told
+  std::error_code unknown;  // it waits until this can be determined
   return !std::filesystem::exists(folder(entry.id).file("checkpoint.bin"), unknown);
 }
 
-/// The job's folder for ourselves; nothing while a renderer has it, or may be about to take it.
-/// Only under the fork mutex.
+/// Locks the job's folder; none while a renderer holds it or may be about to lock it. Only under
+/// the fork mutex.
 std::optional<JobFolder::Lock> Queue::try_folder(const JobEntry& entry) const {
   const ProcessIdentity renderer = renderer_of(entry);
   if (renderer.pid > 0 && is_alive(renderer)) return std::nullopt;
   return folder(entry.id).try_lock();
 }
 
-/// Waits while somebody else's renderer has the folder; one that an earlier run of this service
-/// started has had its notice to stop and is killed after the grace. False: stop was asked for.
+/// Waits while another renderer holds the folder; one that an earlier run of this service started
+/// was told to stop and is killed after the grace period. False if a stop was requested.
 bool Queue::wait_until_free(const JobEntry& entry, const std::stop_token& ends) {
   const auto is_free = [&] {
     const std::lock_guard no_forks(fork_mutex());
@@ -200,7 +200,8 @@ void Queue::attend(Work& work, const std::stop_token& ends) {
   if (attempt) judge(work, std::move(*attempt), ends);
 }
 
-/// Has the job rendered. Nothing: it is not to be, or its renderer goes on without this service.
+/// Renders the job. None if it shall not be rendered, or if its renderer continues without this
+/// service.
 std::optional<Attempt> Queue::render(Work& work, const JobEntry& entry) {
   const JobFolder job = folder(work.id);
   Attempt attempt;
@@ -208,7 +209,7 @@ std::optional<Attempt> Queue::render(Work& work, const JobEntry& entry) {
   if (entry.reopened && !attempt.found) job.reopen();
   attempt.before = job.read_state();
   if (const auto progress = job.read_progress()) attempt.iteration_before = progress->iteration;
-  // A renderer of an earlier service came to the end.
+  // A renderer of an earlier service has finished.
   if (!attempt.found && is_terminal(attempt.before.state)) {
     attempt.found = true;
     attempt.ending.reason = "an earlier renderer had ended";
@@ -229,7 +230,7 @@ std::optional<Attempt> Queue::render(Work& work, const JobEntry& entry) {
   return attempt;
 }
 
-/// Notes what is known before the renderer starts. False: somebody has asked for something else.
+/// Records the state before the renderer starts. False if a request prevents the start.
 bool Queue::may_render(Work& work, Attempt& attempt) {
   bool may = false;
   std::optional<JobEntry> over;
@@ -256,14 +257,14 @@ bool Queue::may_render(Work& work, Attempt& attempt) {
   return may;
 }
 
-/// A renderer has begun: no fault keeps the queue from going on any more. It is noted so that it is
-/// known again after a restart, should it outlive the service.
+/// Called when a renderer has begun: ends the queue's pauses, and stores the process so that it is
+/// found after a restart if it outlives the service.
 void Queue::note_start(Work& work, pid_t pid) {
   {
     const std::lock_guard lock(mutex_);
     const std::lock_guard faults(faults_mutex_);
     work.faults_of_all = std::exchange(faults_, 0);
-    if (work.faults_of_all > 1) {  // which not one folder alone had
+    if (work.faults_of_all > 1) {  // errors of more than one folder
       for (auto& [id, pause] : pauses_) {
         if (pause.faults > 0) pause.until = {};
       }
@@ -291,13 +292,13 @@ void Queue::note_start(Work& work, pid_t pid) {
   }
 }
 
-/// Judges how a renderer ended, however long it takes until that can be read and stored: as long
-/// as it is not, nothing else can be begun either.
+/// Classifies how a renderer ended, retrying until this can be read and stored: as long as that
+/// fails, nothing else can start either.
 void Queue::judge(Work& work, Attempt attempt, const std::stop_token& ends) {
   try {
     attempt.after = folder(work.id).read_state();
   } catch (const std::exception& error) {
-    if (may_pass(error)) {  // the renderer is judged when that can be read
+    if (may_pass(error)) {  // classified when it can be read
       const std::lock_guard lock(mutex_);
       pauses_[work.id].ended = std::move(attempt);
       throw;
@@ -361,7 +362,7 @@ void Queue::settle(Work& work, Attempt& attempt) {
     if (exit.obstacle.empty() && !exit.crashed) pauses_.erase(work.id);
     if (!exit.obstacle.empty() && !came_on) {
       const std::lock_guard faults(faults_mutex_);
-      faults_ = std::max(faults_, work.faults_of_all);  // it began in vain
+      faults_ = std::max(faults_, work.faults_of_all);  // its start was no progress
     }
   }
   if (!exit.obstacle.empty()) {
@@ -370,13 +371,13 @@ void Queue::settle(Work& work, Attempt& attempt) {
   if (settled->over()) note_end(*settled);
 }
 
-/// A fault that may pass keeps the job from going on.
+/// Postpones a job after a transient error.
 void Queue::postpone(const std::string& id, const std::exception& error) {
   note_obstacle(id, error.what(), general_reason(error));
 }
 
-/// The next job is tried after a pause, and this one later still: what keeps one folder from being
-/// used may leave the others alone. `for_all`: `what` without the names of files.
+/// Tries the next job after a pause, and this one later: an error of one folder may not concern
+/// others. `for_all`: `what` without file names.
 void Queue::note_obstacle(const std::string& id, const std::string& what,
                           const std::string& for_all) {
   {
@@ -400,7 +401,7 @@ void Queue::note_obstacle(const std::string& id, const std::string& what,
   }
 }
 
-/// The job cannot be done: its folder is damaged.
+/// Fails a job whose folder is damaged.
 void Queue::give_up(const std::string& id, const std::string& reason) {
   log::error("{} has failed: {}", id, reason);
   try {

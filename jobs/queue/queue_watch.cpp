@@ -1,4 +1,4 @@
-// What a queue sees and says of its jobs beside rendering them.
+// Monitoring of a queue: obstacle, disk and progress.
 #include "base/log/log.h"
 #include "jobs/queue/queue.h"
 
@@ -41,13 +41,13 @@ void Queue::look_at_running() {
   for (const WorkPtr& work : running) {
     try {
       look_at(*work);
-    } catch (const std::exception& error) {  // its runner will find out, too
+    } catch (const std::exception& error) {  // its runner reports it
       log::debug("{}: {}", work->id, error.what());
     }
   }
 }
 
-/// What a renderer has written since.
+/// Reads the progress of a renderer.
 void Queue::look_at(Work& work) {
   const JobFolder job = folder(work.id);
   const auto progress = job.read_progress();
@@ -60,7 +60,7 @@ void Queue::look_at(Work& work) {
     live.progress = progress;
     live.pictured = pictured;
   });
-  // A renderer of another machine is not seen to start.
+  // The start of a remote renderer is not reported.
   if (!executor_.is_remote()) return;
   store_.change([&](StoreChange& c) {
     auto entry = c.find_job(work.id);

@@ -12,13 +12,13 @@
 namespace lacuna {
 namespace {
 
-// Of the tables below: another program's database is not read as if it were ours.
+// Version of the tables below; a database of another version is refused.
 constexpr int version = 1;
 
-// Numbers of one run of the program: events that are not stored have some, and none is given twice.
+// Numbers reserved for one run of the program: unstored events use some, and none is reused.
 constexpr std::int64_t numbers_of_a_run = std::int64_t{1} << 40;
 
-// Jobs that changed last, and jobs that were removed last, that clients hear of after a restart.
+// Number of last changed and last removed jobs that the journal contains after a restart.
 constexpr int remembered_after_restart = 1000;
 
 std::string random_word() {
@@ -70,7 +70,7 @@ void Store::make_tables() {
                  "CREATE INDEX jobs_reference ON jobs(reference) WHERE reference != '';"
                  "CREATE UNIQUE INDEX sweeps_id ON sweeps(id);"
                  "CREATE UNIQUE INDEX sweeps_key ON sweeps(key);"
-                 // Of events: jobs that are gone.
+                 // Events of removed jobs.
                  "CREATE TABLE removed(number INTEGER PRIMARY KEY, id);"
                  "CREATE TABLE facts(name PRIMARY KEY, value);"
                  "INSERT INTO facts VALUES ('name', '" +
@@ -79,7 +79,7 @@ void Store::make_tables() {
                     .c_str());
 }
 
-/// Gives this run its numbers, and the journal what happened before it.
+/// Reserves the numbers of this run, and fills the journal with earlier events.
 void Store::remember_events() {
   Statement facts(database_,
                   "SELECT (SELECT value FROM facts WHERE name='name'),"
@@ -146,7 +146,7 @@ void Store::commit(const Line::Batch& batch) {
   for (const auto& effect : effects) take_effect(effect);
 }
 
-/// What one change throws takes back that one alone.
+/// An exception of one change rolls back only that change.
 void Store::make_each(const Line::Batch& batch, std::vector<StoreChange::Effect>& effects) {
   for (Line::Waiting* w : batch) {
     database_.run("SAVEPOINT one");
@@ -155,7 +155,7 @@ void Store::make_each(const Line::Batch& batch, std::vector<StoreChange::Effect>
       (*w->make)(change);
     } catch (...) {
       w->error = std::current_exception();
-      if (!database_.in_transaction()) throw;  // the disk has failed: SQLite took back all
+      if (!database_.in_transaction()) throw;  // the disk has failed: SQLite rolled back everything
       database_.run("ROLLBACK TO one; RELEASE one");
       continue;
     }
@@ -165,9 +165,9 @@ void Store::make_each(const Line::Batch& batch, std::vector<StoreChange::Effect>
   }
 }
 
-/// A commit whose sync failed may lie in the log as a whole, and would be found there after a
-/// crash: the next commit overwrites it. So that this is not left to chance, one is made at once;
-/// where the disk does not even take that, the next that it takes does it.
+/// A commit whose sync failed may be complete in the WAL and would be found there after a crash,
+/// until the next commit overwrites it. So this makes one at once; if the disk refuses it, too, the
+/// next successful commit does so.
 void Store::overwrite_failed_commit() {
   try {
     if (database_.in_transaction()) database_.run("ROLLBACK");

@@ -15,12 +15,12 @@ std::int64_t number_of(const std::string& cursor) {
   const char* end = cursor.data() + cursor.size();
   const auto read = std::from_chars(cursor.data(), end, number);
   if (read.ec != std::errc() || read.ptr != end) {
-    throw std::invalid_argument("it is not the `next` of another page");
+    throw std::invalid_argument("it is not the `next` of a page");
   }
   return number;
 }
 
-/// What of the list a query wants, but for the states: a condition with its values.
+/// The condition of a query, except the states, with its values.
 struct Condition {
   std::string sql = "number<?";
   std::int64_t before = INT64_MAX;
@@ -49,7 +49,7 @@ void bind(Statement& sql, const Condition& condition, const std::string* state) 
   if (state != nullptr) sql.bind(*state);
 }
 
-/// The states that are wanted; empty: all.
+/// The names of the requested states; empty: all.
 std::vector<std::string> names_of(const std::vector<State>& states) {
   std::vector<std::string> names;
   names.reserve(states.size());
@@ -57,7 +57,7 @@ std::vector<std::string> names_of(const std::vector<State>& states) {
   return names;
 }
 
-/// `of_one` once for each state: so the index of each state gives its jobs in their order.
+/// Runs the query once for each state, so that the index of each state returns its jobs in order.
 template <class Use>
 void for_each_state(const Database& database, const std::string& of_one, const JobQuery& query,
                     const Condition& condition, const Use& use) {
@@ -77,8 +77,8 @@ void for_each_state(const Database& database, const std::string& of_one, const J
   }
 }
 
-/// Whether the id, or one of so many runs of a sweep of this id, is that of a job or a sweep, or
-/// can become that of a sweep's run. Only ids of the same second can.
+/// Whether the id, or that of one of `runs` runs of a sweep with this id, belongs to a job or a
+/// sweep or can become that of a sweep's run. Only ids of the same second can.
 bool is_taken(const Database& database, const std::string& id, std::size_t runs) {
   constexpr std::size_t to_the_second = std::string_view("20260131-235959-").size();
   const std::string second = id.substr(0, to_the_second);
@@ -95,7 +95,7 @@ bool is_taken(const Database& database, const std::string& id, std::size_t runs)
        rows::select<SweepEntry>(database, "WHERE id>=? AND id<?", second, second + "~")) {
     const auto index = run_index(sweep.id, id);
     if (is_mine(sweep.id) || (index && *index < sweep.runs)) return true;
-    // The first of its runs lies among mine.
+    // Its first run is among the new ids.
     if (is_mine(run_job_id(sweep.id, 0))) return true;
   }
   return false;

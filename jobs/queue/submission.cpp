@@ -32,7 +32,7 @@ std::string new_submission_name(const JobFolder& folder) {
   std::uniform_int_distribution<std::size_t> any(0, letters.size() - 1);
   constexpr std::size_t longest = 64;
   std::string name = fmt::format("lacuna-{}-", folder.id().substr(0, longest));
-  // A folder that a person has named: what the batch script looks for stands in JSON as it is.
+  // A person may have named the folder: replace characters that JSON would escape.
   for (char& c : name) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
     if (!plain && c != '.' && c != '_') c = '-';

@@ -38,7 +38,7 @@ std::optional<Estimate> ReplicateBias::bias_squared(std::optional<double> refere
     block.sum += (sum_[i] * sum_[i] - squares_[i]) / pairs;
     block.count += 1;
   }
-  // Blocks at the border are smaller: a ratio of sums, whose variance is that of its residuals.
+  // Blocks at the border are smaller: use a ratio of sums, with the variance of its residuals.
   double total = 0, count = 0, residuals = 0;
   for (const auto& [place, b] : blocks) {
     total += b.sum;

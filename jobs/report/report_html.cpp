@@ -45,7 +45,7 @@ OrderedJson to_json(const PictureCrops& crops) {
           {"cells", std::move(cells)}};
 }
 
-/// JSON that can stand in a script element: no "</script>", no "<!--".
+/// JSON that is safe in a script element: no "</script>", no "<!--".
 std::string in_script(const OrderedJson& json) {
   std::string text;
   for (const char c : json_text(json)) {

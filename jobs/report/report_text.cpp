@@ -18,7 +18,7 @@ std::string gain_text(const std::optional<Gain>& gain) {
   return fmt::format("{}{}x", gain->at_least ? "> " : "", interval(gain->ratio));
 }
 
-/// Marks what the reference is too noisy for.
+/// Parenthesises values at the reference's noise.
 std::string supported(const std::string& text, bool at_floor) {
   return at_floor ? "(" + text + ")" : text;
 }
@@ -34,7 +34,7 @@ std::string time_text(const TimeToError& to, std::size_t runs) {
   return to.at_least ? fmt::format("not in {:.3g}", *to.at_least) : "not reached";
 }
 
-/// A cell among those of its picture.
+/// The name of a cell among those of its picture.
 std::string name_of(const SweepFolder& sweep, const PictureAnswer& p, std::size_t cell) {
   const auto& settings = sweep.plan().cells[cell].settings;
   JsonTable<JsonValue> own;
@@ -58,7 +58,7 @@ std::string front_text(const SweepFolder& sweep, const PictureAnswer& p) {
 
 using TextRow = std::vector<std::string>;
 
-/// Columns as wide as they must be; the first two to the right.
+/// Aligns columns; the first two to the right.
 std::string columns_text(const std::vector<TextRow>& rows) {
   std::vector<std::size_t> widths(rows.front().size(), 0);
   for (const TextRow& row : rows) {

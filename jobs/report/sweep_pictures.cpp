@@ -46,7 +46,7 @@ std::vector<double> errors_of(const std::vector<Rectangle>& grid, const Pixels& 
   return sums;
 }
 
-/// Rectangles side by side that lie within the picture, half a side apart.
+/// Rectangles within the picture, half a side apart.
 std::vector<Rectangle> grid_of(int width, int height) {
   const int w = std::min(crop_side, width), h = std::min(crop_side, height);
   std::vector<Rectangle> grid;
@@ -79,7 +79,7 @@ class PictureReader {
     }
   }
 
-  /// Of the first run that names one that can be read.
+  /// Reads the reference of a run, unless one was read before.
   void find_reference(std::size_t run) {
     const auto& file = answers_.results[run].reference_file;
     if (reference_ || !file || *file == tried_) return;
@@ -139,7 +139,7 @@ class PictureReader {
     PictureCrops crops{picture_, r.x, r.y, r.width, r.height, {}, {}};
     if (reference_) crops.reference_png = png(cut(reference_->rgb, width_, r));
     for (const auto& [cell, run] : firsts_) {
-      // Read once more: all at once might not fit into memory.
+      // Read again: all at once might not fit into memory.
       const auto image = read(run);
       if (!image) continue;
       const Pixels pixels(image->rgb.begin(), image->rgb.end());

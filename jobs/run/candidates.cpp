@@ -6,7 +6,7 @@ namespace lacuna {
 
 namespace {
 
-/// Path tracing that shares light among `pixels`, where paths of these lengths may.
+/// Path tracing with `reuse` of `pixels`, if these path lengths allow it.
 PathSettings sharing(const PathLengths& lengths, int pixels) {
   PathSettings path{lengths};
   path.reuse = pixels;
@@ -32,8 +32,7 @@ std::vector<CandidateSettings> by_default(const AutoSettings& settings) {
   return all;
 }
 
-/// Collects the names of strategies that are not the first of their kind, and how many pixels share
-/// light.
+/// Collects the names of strategies that are not the default, and `reuse`.
 struct StrategyNames {
   std::string text;
   void operator()(std::string_view name, int& value, const Field&) {

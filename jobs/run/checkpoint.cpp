@@ -16,11 +16,11 @@ namespace lacuna {
 
 namespace {
 
-// Changes with the layout of anything that is saved.
+// Changes with the layout of any saved data.
 constexpr std::string_view format_name = "lacuna-checkpoint-4";
 constexpr std::size_t most_text_bytes = std::size_t{1} << 24;  // far more than a key takes
 
-/// What stands between the key and the content.
+/// The data between the key and the content.
 struct FileFrame {
   std::uint64_t checksum = 0, content_bytes = 0;
 };
@@ -44,7 +44,7 @@ class OpenCheckpoint {
 
   const std::string& key() const { return key_; }
 
-  /// Throws std::runtime_error unless the content is as it was written, to the last byte.
+  /// Throws std::runtime_error if the content differs from what was written.
   void verify(const BetweenPieces& between) const {
     if (bytes_ - start_ < frame_.content_bytes) throw std::runtime_error("truncated");
     Checksum checksum;
@@ -74,7 +74,7 @@ class OpenCheckpoint {
     read_at(start_, static_cast<char*>(to), n);
     start_ += n;
   }
-  /// As ByteWriter puts it.
+  /// Reads a text of ByteWriter.
   std::string take_text() {
     std::uint64_t size = 0;
     take(&size, sizeof size);
@@ -100,15 +100,15 @@ class OpenCheckpoint {
   FileHandle handle_;
   std::string key_;
   FileFrame frame_;
-  std::uint64_t start_ = 0;  // of the content: where the header ends
+  std::uint64_t start_ = 0;  // of the content, after the header
 };
 
-/// Runs `read`; what it says of the checkpoint then names the file.
+/// Runs `read`; adds the file's name to its errors.
 void naming(const std::filesystem::path& file, const std::function<void()>& read) {
   try {
     read();
   } catch (const std::system_error&) {
-    throw;  // names it already
+    throw;  // contains the name already
   } catch (const std::runtime_error& e) {
     throw std::runtime_error(fmt::format("{}: {}", file.string(), e.what()));
   }
@@ -143,7 +143,7 @@ void write_checkpoint(const std::filesystem::path& file, const std::string& key,
   const auto bytes_of_frame = [&] {
     return std::string_view(reinterpret_cast<const char*>(&frame), sizeof frame);
   };
-  out.write(bytes_of_frame());  // known at the end
+  out.write(bytes_of_frame());  // rewritten at the end
   Checksum checksum;
   ByteWriter content([&](std::string_view piece) {
     checksum.add(piece.data(), piece.size());

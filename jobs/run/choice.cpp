@@ -21,7 +21,8 @@ Choice new_choice(const JobSpec& job) {
   Choice choice;
   choice.metric = settings.metric;
   for (const CandidateSettings& c : candidates(settings)) {
-    // Pictures of the same numbers would not be independent, and their difference no error.
+    // With equal seeds pictures are not independent, and their difference does not estimate the
+    // error.
     const std::uint64_t number = choice.candidates.size();
     const std::uint64_t seed = (job.seed ^ (number * 0x9E3779B97F4A7C15)) & seed_mask;
     choice.candidates.push_back({candidate_name(c), c, seed, {}, {}});

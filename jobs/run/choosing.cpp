@@ -17,8 +17,8 @@ namespace {
 
 bool is_timed(const Budget& budget) { return budget.seconds || budget.cpu_seconds; }
 
-/// What a candidate may have spent by the end of a turn: a `share` of all limits. Iterations come
-/// in pairs, one for each half of the picture.
+/// The budget of a candidate by the end of a turn: a `share` of all limits. Iterations come in
+/// pairs, one for each half of the picture.
 Budget part_of(const Budget& whole, double share) {
   Budget part;
   if (whole.seconds) part.seconds = *whole.seconds * share;
@@ -33,8 +33,8 @@ Budget part_of(const Budget& whole, double share) {
   return part;
 }
 
-/// The cost of a candidate's turns so far, over what the whole budget is worth: in time, or in rays
-/// of the first candidate, of which the budget has so many iterations.
+/// The cost of a candidate's turns so far relative to the whole budget: in time or, for a budget of
+/// iterations, in rays per iteration of the first candidate.
 double part_spent(const Turn& turn, const Budget& whole, const Turn& first) {
   if (is_timed(whole)) return share(whole, {0, turn.seconds, turn.cpu_seconds});
   if (!whole.iterations) return turn.seconds / Budget::default_seconds;
@@ -52,7 +52,7 @@ double share_of_turns(std::size_t candidates, int round) {
   return all > 0 ? choosing_share / all * std::exp2(round) : 0;
 }
 
-/// A candidate that takes turns.
+/// A remaining candidate.
 class Choosing::Entrant final : private Observer {
  public:
   Entrant(Choosing& all, std::size_t number, const Prepared& prepared)
@@ -93,7 +93,7 @@ class Choosing::Entrant final : private Observer {
     JobFolder::create(folder.dir(), spec);
   }
 
-  // As the progress of the job.
+  // Reported as progress of the job.
   void phase(const std::string&) override {}
   void progress(const Progress& own) override {
     Progress p = own;
@@ -176,7 +176,7 @@ void Choosing::record() {
 
 void Choosing::play(int round) {
   const Budget part = part_of(spec_.budget, share_of_turns(choice_.candidates.size(), round));
-  bool may_be_late = true;  // until one has an iteration
+  bool may_be_late = true;  // until one has finished an iteration
   for (auto& entrant : entrants_) {
     if (entrant != nullptr) take_turn(*entrant, part, may_be_late);
     if (entrant != nullptr) may_be_late = false;
@@ -243,7 +243,7 @@ void Choosing::judge() {
       turn.expected =
           turn.bias + turn.missing + *turn.noise * part_spent(turn, spec_.budget, first);
     } else if (const auto& before = judged[i]->record().turns; before.size() > 1) {
-      // Of one iteration, when there were others to compare it with.
+      // After one iteration, from the comparison with other pictures.
       const Turn& last = before[before.size() - 2];
       turn.noise = last.noise, turn.missing = last.missing, turn.bias = last.bias;
       turn.expected = last.expected;

@@ -32,13 +32,13 @@ std::optional<std::vector<std::string>> InputCheck::changes(const JobFolder& fol
   return changed_inputs(*recorded, files);
 }
 
-/// The file as it is now; without a size and a hash if it is not there, or is none of its kind.
+/// The present file; without size and hash if it is missing or not of its type.
 InputFile InputCheck::now(const InputFile& recorded, const std::string& scene) {
   InputFile file;
   try {
     const std::filesystem::path path = find(recorded, scene);
     const auto known = measured_.find(path);
-    // A hash is known only of the size that was looked for.
+    // The hash was computed only if the size matched.
     if (known != measured_.end() &&
         (!known->second.hash.empty() || known->second.bytes != recorded.bytes)) {
       file = known->second;
@@ -53,7 +53,7 @@ InputFile InputCheck::now(const InputFile& recorded, const std::string& scene) {
   return file;
 }
 
-/// Where the job, or its scene, would read it from.
+/// The path from which the job or its scene reads it.
 std::filesystem::path InputCheck::find(const InputFile& recorded, const std::string& scene) const {
   const auto scene_file = [&] { return scenes_.resolve(scene, scene_extensions); };
   switch (recorded.role) {

@@ -17,7 +17,7 @@ std::uint64_t iteration(std::uint64_t n, std::uint64_t k, std::uint64_t done) {
   return 2 * (done / 2 * n + k) + done % 2;
 }
 
-/// How many iterations of shard `k` of `n` are below `end`.
+/// Number of iterations of shard `k` of `n` below `end`.
 std::uint64_t dealt(std::uint64_t n, std::uint64_t k, std::uint64_t end) {
   const std::uint64_t pairs = end / 2;
   const std::uint64_t whole = k < pairs ? (pairs - 1 - k) / n + 1 : 0;
@@ -86,7 +86,7 @@ void IterationSet::merge(const IterationSet& shard) {
 void IterationSet::simplify() {
   if (counts_.size() < shards_ || shards_ == 1) return;
   const std::uint64_t n = count();
-  if (next() != n) return;  // there is a gap, and something behind it
+  if (next() != n) return;  // there is a gap before the last iteration
   shards_ = 1;
   counts_ = {n};
 }

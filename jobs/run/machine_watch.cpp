@@ -56,7 +56,7 @@ MachineWatch::MachineWatch()
 
 std::optional<Disturbance> MachineWatch::disturbance() const {
   const auto now = processor_ticks();
-  constexpr double few = 20;  // a tick is the unit of what follows
+  constexpr double few = 20;  // ticks: resolution of the shares
   if (!began_ || !now || now->all - began_->all < few) return {};
   const double all = now->all - began_->all;
   const double idle = now->idle - began_->idle, stolen = now->stolen - began_->stolen;

@@ -11,7 +11,7 @@ namespace lacuna {
 
 namespace {
 
-/// The state of `shard`; what its integrator has learned goes to `learned`.
+/// Loads the state of `shard`; `learned` reads its integrator's learned state.
 RunState load(const Shard& shard, const std::string& key, const std::vector<std::string>& layers,
               const std::function<void(ByteReader&)>& learned, const BetweenPieces& between) {
   const auto file = shard.folder.file("checkpoint.bin");
@@ -29,14 +29,14 @@ RunState load(const Shard& shard, const std::string& key, const std::vector<std:
     if (read_checkpoint(file, key, read, between)) return state;
     throw std::runtime_error(fmt::format("{} is missing", file.string()));
   } catch (const std::system_error&) {
-    throw;  // another time it may be read
+    throw;  // transient
   } catch (const std::runtime_error& e) {
     throw std::runtime_error(fmt::format("shard {} of {} ({}): {}", shard.spec.shard,
                                          shard.spec.shards, shard.folder.dir().string(), e.what()));
   }
 }
 
-/// Deviations of the union of two sets of iterations (Chan, Golub and LeVeque 1979).
+/// Adds the squared deviations of the union of two sets (Chan, Golub and LeVeque 1979).
 void add_spread(MergedShards& merged, const Film& film, const Film& shard) {
   const auto a = static_cast<double>(film.iterations()),
              b = static_cast<double>(shard.iterations());

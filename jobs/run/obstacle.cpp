@@ -13,7 +13,7 @@ namespace {
 
 std::atomic<bool> ran_out{false};
 
-bool is_bad_alloc(const std::exception& e) {  // also TBB's, which derive from it
+bool is_bad_alloc(const std::exception& e) {  // TBB's derive from it, too
   return dynamic_cast<const std::bad_alloc*>(&e) != nullptr;
 }
 

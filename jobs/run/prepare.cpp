@@ -32,7 +32,7 @@ std::filesystem::path resolve(const RunContext& context, const std::string& what
   }
 }
 
-/// What a job of this integrator needs.
+/// The parts of the scene that a job of this integrator needs.
 SceneNeeds needs_of(const JobSpec& spec, const Integrator& integrator) {
   SceneNeeds needs = integrator.needs();
   if (std::find(spec.layers.begin(), spec.layers.end(), ImageLayer::albedo) != spec.layers.end()) {
@@ -42,7 +42,7 @@ SceneNeeds needs_of(const JobSpec& spec, const Integrator& integrator) {
   return needs;
 }
 
-/// What any of the candidates of a job of `auto` needs.
+/// The parts of the scene that any candidate of a job of `auto` needs.
 SceneNeeds needs_of_candidates(const JobSpec& spec) {
   SceneNeeds all;
   for (const Candidate& c : new_choice(spec).candidates) {
@@ -56,7 +56,7 @@ SceneNeeds needs_of_candidates(const JobSpec& spec) {
   return all;
 }
 
-/// The environment of the job, as it is now.
+/// Measures the job's environment file.
 InputFile measure_environment(const std::string& name, const std::filesystem::path& file) {
   try {
     InputFile measured = measure_input(file);
@@ -68,7 +68,7 @@ InputFile measure_environment(const std::string& name, const std::filesystem::pa
   }
 }
 
-/// The analysis of the scene's empty space as seen by the job's camera, of which nothing is built.
+/// Sets up the analysis of the scene's empty space around the job's camera, without building it.
 void set_up_analysis(Prepared& p, const JobSpec& spec, const RunContext& context,
                      const CameraData& camera) {
   Observer& observer = context.observer;
@@ -93,7 +93,7 @@ void set_up_analysis(Prepared& p, const JobSpec& spec, const RunContext& context
       *p.artefacts, *p.pool);
 }
 
-/// What a person should know before the scene is rendered.
+/// Warnings before rendering.
 std::vector<std::string> warnings_of(const Scene& scene, const Camera& camera,
                                      const JobIntegrator& integrator) {
   std::vector<std::string> all = close_surfaces(scene);

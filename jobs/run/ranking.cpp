@@ -12,7 +12,7 @@ namespace {
 
 using Values = std::vector<double>;
 
-/// Square blocks of pixels, over which noise is averaged out of a picture's brightness.
+/// Square blocks of pixels, which average the noise of a picture's brightness.
 struct Blocks {
   static constexpr int side = 16;
   int width, height;
@@ -38,8 +38,7 @@ struct Blocks {
   }
 };
 
-/// The value of a pixel that half of the pictures reach: an outlier of one does not raise it. 0 of
-/// one picture.
+/// The lower median of a pixel over the pictures, robust to an outlier of one; 0 for one picture.
 double lower_median(const std::vector<Values>& pictures, std::size_t i) {
   if (pictures.size() < 2) return 0;
   Values all;
@@ -49,8 +48,8 @@ double lower_median(const std::vector<Values>& pictures, std::size_t i) {
   return *middle;
 }
 
-/// What pictures are compared by: the mean brightness of each block over all pictures, and what
-/// squared errors are divided by, in blocks and for each value of a pixel.
+/// The scale of comparison: the mean brightness of each block over all pictures, and the divisors
+/// of squared errors, per block and per value of a pixel.
 struct Scale {
   Values brightness, block_divisor, divisor;
 
@@ -99,7 +98,7 @@ std::optional<double> noise_from_halves(const Film& film, const Scale& scale) {
   return scale.distance(film.half_mean(0), film.half_mean(1)) * scale_from_halves(even, odd);
 }
 
-/// And of picture `k` from the distances to the others.
+/// The noise of picture `k` from its distances to the others.
 std::optional<double> noise_from_others(const std::vector<Values>& means, std::size_t k,
                                         const Scale& scale) {
   std::vector<std::pair<double, std::size_t>> others;
@@ -154,7 +153,7 @@ std::vector<std::size_t> better_half(std::span<const std::optional<double>> erro
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return known[a] < known[b]; });
   const std::size_t kept = (errors.size() + 1) / 2;
-  // Brings the best of those that `belong` among the kept, in place of the worst but `spared`.
+  // Moves the best candidate that `belongs` among the kept, in place of the worst except `spared`.
   const auto keep = [&](const auto& belongs, std::size_t spared) {
     const auto found = std::find_if(order.begin(), order.end(), belongs);
     const auto end = order.begin() + std::ptrdiff_t(kept);

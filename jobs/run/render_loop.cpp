@@ -20,11 +20,11 @@ namespace lacuna {
 
 namespace {
 
-// Shares of all time that keeping watch may cost.
+// Maximum shares of time for checkpoints and previews.
 constexpr double checkpoint_share = 0.01;
 constexpr double preview_share = 0.005;
 constexpr double progress_interval = 0.5;  // seconds
-constexpr double preview_interval = 1;  // seconds: what is done sooner has its picture at its end
+constexpr double preview_interval = 1;     // seconds: shorter jobs write their picture at the end
 
 }  // namespace
 
@@ -56,13 +56,13 @@ bool RenderLoop::load(const JobFolder& folder) {
   try {
     return read_checkpoint(file, identity(), load, [&] { stop_if_interrupted(); });
   } catch (const std::system_error&) {
-    throw;  // the checkpoint may be good
+    throw;  // transient: the checkpoint may be intact
   } catch (const std::runtime_error& e) {
     std::filesystem::rename(file, folder.file("checkpoint.unusable"));
     task_.observer.warning(
         fmt::format("{}; kept as checkpoint.unusable, rendering starts again", e.what()));
     const std::vector<std::string> layers = state_.layers.names();
-    state_.layers = {};  // their memory is taken again
+    state_.layers = {};  // frees their memory
     state_ = RunState(task_.spec, layers, memory_to_take());
     return false;
   }
@@ -89,9 +89,9 @@ void RenderLoop::begin_from(const JobFolder& other, const Spent& elsewhere) {
   spent.cpu_seconds += elsewhere.cpu_seconds;
   spent.longest_seconds += elsewhere.seconds;
   count_phases();
-  // Its rays were counted by the ray caster of this scene, perhaps in this process.
+  // The ray caster of this scene may have counted its rays in this process.
   state_.refused_rays -= std::min(state_.refused_rays, task_.scene.rays().refused_rays());
-  state_.curve = {};  // its times are others
+  state_.curve = {};  // its times do not include `elsewhere`
   add_row();
 }
 
@@ -140,7 +140,7 @@ RenderLoop::End RenderLoop::run_until(const Budget& budget, const std::function<
     report_progress(saved_);
     return End::interrupted;
   };
-  bool kept = false;  // the checkpoint holds this very state
+  bool kept = false;  // the checkpoint contains this state
   while (!merging_ && !exhausted(budget, state_.spent) && !would_overrun(budget, state_.spent) &&
          !target_met(budget, state_.curve)) {
     if (task_.interrupted() || !iterate(late)) {
@@ -148,7 +148,7 @@ RenderLoop::End RenderLoop::run_until(const Budget& budget, const std::function<
       if (!kept) write_checkpoint_now();
       return stopped();
     }
-    // An error target is looked at after each of the instants, like any other use of the error.
+    // The error target is tested only at these instants, like any other use of the error.
     if (state_.curve.due(state_.spent.seconds)) add_row();
     kept = checkpoints_.due() && write_checkpoint_now();
     if (progress_.due()) report_progress(state_.spent);
@@ -166,7 +166,7 @@ bool RenderLoop::write_last_checkpoint() {
     return write_checkpoint_now();
   } catch (const std::system_error& e) {
     if (obstacle_of(e) != Obstacle::storage) throw;
-    // The results need less room. A larger budget would go on from the checkpoint before.
+    // The results need less space. A larger budget would continue from the previous checkpoint.
     task_.observer.warning(e.what());
     return true;
   }
@@ -199,7 +199,7 @@ bool RenderLoop::iterate(const std::function<bool()>& late) {
   const double longest = spent.longest_seconds + clock_.seconds() - spent.seconds;
   spent = {spent.iterations + 1, clock_.seconds(), clock_.cpu_seconds(), longest};
   if (!layers.empty()) {
-    const ScopedSeconds timed(task_.phases["layers"]);  // no part of the estimate
+    const ScopedSeconds timed(task_.phases["layers"]);  // not part of the estimate
     state_.layers.add(task_.pool);
   }
   return true;

@@ -29,7 +29,7 @@ OrderedJson seconds(const PhaseSeconds& phases, const Spent& spent) {
   return j;
 }
 
-/// Limits of time, against what they count and what they do not.
+/// Time limits, with the times that count and that do not.
 OrderedJson budget(const RenderTask& task, const Spent& spent) {
   const auto phase = [&](const char* name) {
     const auto found = task.phases.find(name);
@@ -78,7 +78,7 @@ OrderedJson scene(const Scene& s, const std::string& camera) {
       {"geometry_hash", fmt::format("{:016x}", d.geometry_hash)}};
 }
 
-/// Whether est_rmse is known; null where too few iterations say so.
+/// Whether est_rmse is reliable; null for too few iterations.
 OrderedJson tail_json(const std::optional<ParetoTail>& tail) {
   if (!tail) return nullptr;
   return {{"index", std::isfinite(tail->index) ? OrderedJson(tail->index) : OrderedJson(nullptr)},
@@ -109,7 +109,7 @@ OrderedJson errors_json(const RenderTask& task, const RenderLoop& loop) {
   return j;
 }
 
-/// Where a merged picture comes from.
+/// Statistics of a merged picture.
 OrderedJson merged_json(const RenderLoop& loop) {
   const MergedShards& merged = loop.merged();
   return {{"shards", merged.shards},
@@ -134,8 +134,8 @@ OrderedJson machine(const ThreadPool& pool, const std::optional<Disturbance>& di
   return j;
 }
 
-/// When the module of images was loaded, seconds from the job's start (below 0: before it, by
-/// another job of the process), and what that took. What the job waited for it is phase "images".
+/// When the image module was loaded, seconds from the job's start (negative: by an earlier job of
+/// the process), and its cost. The time that the job waited for it is phase "images".
 OrderedJson image_module(double started) {
   const auto times = image_module_times();
   if (!times) return "not needed";

@@ -20,7 +20,7 @@ namespace {
 
 const std::vector<std::string> rgb{"R", "G", "B"};
 
-/// A layer that tells of the first hit: the mean over a few iterations of integrator `inspect`.
+/// A layer of the first hit: the mean over a few iterations of integrator `inspect`.
 std::vector<double> first_hit(const RenderTask& task, InspectQuantity quantity) {
   constexpr std::uint64_t iterations = 16;
   const auto inspect = make_integrator(InspectSettings{quantity});
@@ -41,9 +41,9 @@ std::vector<double> every_third(const std::vector<double>& values) {
   return result;
 }
 
-/// The power of two by which variances are multiplied in a file of `type`. Squares of small or
-/// large radiances leave a float's range long before the radiances do; then, and always in halves,
-/// the largest is brought near 1.
+/// The power of two by which variances are multiplied in a file of `type`. Squares of radiances
+/// leave a float's range long before the radiances do; then, and always in halves, the largest is
+/// scaled to near 1.
 double variance_scale(const std::vector<double>& variance, PixelType type) {
   const double largest = *std::max_element(variance.begin(), variance.end());
   const bool fits = type == PixelType::single_float && largest > 0x1p-80 && largest < 0x1p100;
@@ -80,7 +80,7 @@ void add_layer(const RenderTask& task, const Film& film, ImageLayer layer,
   }
 }
 
-/// Scales the variance among the layers, and says so among the file's attributes.
+/// Scales the layer `variance`, and records the scale in the file's attributes.
 void scale_variance(std::vector<ExrLayer>& layers, PixelType type,
                     std::map<std::string, std::string>& attributes) {
   for (ExrLayer& layer : layers) {
@@ -106,7 +106,7 @@ std::map<std::string, std::string> attributes(const RenderTask& task, const Rend
   return a;
 }
 
-/// layers.half, then layers.json, which says what lies where in it.
+/// Writes layers.half, then its index layers.json.
 void write_half_layers(const RenderTask& task, const std::vector<ExrLayer>& layers) {
   AtomicFile file(task.folder.file("layers.half"));
   ByteWriter out([&](std::string_view piece) {

@@ -48,7 +48,7 @@ class Running {
   }
 
   void phase(const std::string& name) {
-    // Synced once, so that no earlier end is found after a power cut.
+    // Synced once, so that no earlier end is found after a power failure.
     const bool begins = std::exchange(state_.phase, name).empty();
     folder_.write_state(state_, begins);
     observer_.phase(name);
@@ -65,7 +65,7 @@ class Running {
     state_.finished = utc_now();
     folder_.write_state(state_);
   }
-  /// After an exception, which is what counts: that the state cannot be written, too, is only told.
+  /// After an exception, which takes precedence: a failure to write the state is only a warning.
   void stop(const std::exception& e) {
     const bool may_go_on = obstacle_of(e) != Obstacle::none;
     try {
@@ -82,7 +82,7 @@ class Running {
   JobState state_;
 };
 
-/// Shows a reference's progress as that of the job that waits for it.
+/// Reports a reference's progress as that of the waiting job.
 class ReferenceObserver final : public Observer {
  public:
   ReferenceObserver(const JobFolder& job, Observer& inner) : job_(job), inner_(inner) {}
@@ -99,7 +99,7 @@ class ReferenceObserver final : public Observer {
   Observer& inner_;
 };
 
-/// Runs `folder`, or waits while another process does.
+/// Runs the job in `folder`, or waits while another process does.
 Outcome run_or_wait(const JobFolder& folder, const RunContext& context) {
   constexpr auto pause = std::chrono::milliseconds(200);
   while (!context.interrupted()) {
@@ -112,11 +112,11 @@ Outcome run_or_wait(const JobFolder& folder, const RunContext& context) {
   return Outcome::interrupted;
 }
 
-/// The reference as a job of its own in a folder of its own, made by whoever needs it first.
-/// Nothing if interrupted.
+/// Renders the reference as a separate job, by the first process that needs it. None if
+/// interrupted.
 std::optional<Reference> make_auto_reference(const JobFolder& folder, const JobSpec& spec,
                                              const Prepared& prepared, const RunContext& context) {
-  // A job that names no camera has the reference of one that names the first.
+  // A job without a camera shares the reference of one that names the first.
   JobSpec named = spec;
   if (!named.camera.object) named.camera.name = prepared.camera_name;
   const ReferenceJob job = auto_reference(named, context.data, prepared.content);
@@ -129,7 +129,7 @@ std::optional<Reference> make_auto_reference(const JobFolder& folder, const JobS
     try {
       JobFolder::create(dir, job.spec);
     } catch (const std::invalid_argument&) {
-      // Somebody else was quicker: the lock decides who renders.
+      // Another process created it: the lock decides which renders.
     }
   }
   // Its inputs are unchanged: their hashes are in its name.
@@ -141,7 +141,7 @@ std::optional<Reference> make_auto_reference(const JobFolder& folder, const JobS
   return read();
 }
 
-/// Bits are a contract on one machine, and its libraries may choose by the processor.
+/// Bits are guaranteed on one machine only: libraries may select code by the processor.
 void warn_of_processors(const std::vector<Shard>& shards, Running& running) {
   std::set<std::string> names;
   for (const Shard& shard : shards) names.insert(shard.processor);
@@ -152,8 +152,8 @@ void warn_of_processors(const std::vector<Shard>& shards, Running& running) {
                   names.size(), fmt::join(names, "; ")));
 }
 
-/// The inputs of what this run goes on from, its own checkpoint or shards; nothing if it begins
-/// anew, or they are not recorded.
+/// The inputs of the checkpoint or shards from which this run continues; none if it starts from the
+/// beginning, or if they are not recorded.
 std::optional<InputList> earlier_inputs(const JobFolder& folder, const std::vector<Shard>* shards,
                                         Running& running) {
   const bool resumes = std::filesystem::exists(folder.file("checkpoint.bin")) ||
@@ -164,7 +164,7 @@ std::optional<InputList> earlier_inputs(const JobFolder& folder, const std::vect
   return inputs;
 }
 
-/// Of a job of `auto`: how its method was chosen so far. What cannot be read is kept aside.
+/// The choice so far, for a job of `auto`. An unreadable file is renamed.
 std::optional<Choice> choice_of(const JobSpec& spec, const JobFolder& folder, Running& running) {
   if (!std::holds_alternative<AutoSettings>(spec.integrator)) return std::nullopt;
   try {
@@ -180,9 +180,9 @@ std::optional<Choice> choice_of(const JobSpec& spec, const JobFolder& folder, Ru
 
 Outcome render(const JobFolder& folder, const RunContext& context, Running& running) {
   const double started = clock_seconds(CLOCK_MONOTONIC);
-  // TBB loads libraries of its own when it is first used, and would wait for those of the images.
+  // TBB loads its own libraries at first use, and would wait for those of the image module.
   ThreadPool(1).for_each(1, [](int) {});
-  const ImageModuleLoading images;  // what every job writes needs it
+  const ImageModuleLoading images;  // every job writes images
   PhaseSeconds phases;
   running.phase("loading");
   JobSpec spec = folder.read_job();
@@ -235,7 +235,7 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
   write_inputs(folder, inputs);
 
   {
-    // What loads must not compete with what is timed.
+    // Loading must not compete with timed work.
     const ScopedSeconds timed(phases["images"]);
     images.wait();
   }
@@ -320,7 +320,7 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
   return Outcome::done;
 }
 
-/// Whether the job is done with the inputs that there are now. Throws BadJob if these are others.
+/// Whether the job is done. Throws BadJob if its inputs have changed since.
 bool is_done(const JobFolder& folder, const RunContext& context) {
   if (folder.read_state().state != State::done) return false;
   const auto changes = InputCheck(context.data, context.scenes).changes(folder);

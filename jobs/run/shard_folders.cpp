@@ -23,8 +23,8 @@ namespace {
 /// The keys in which shards of one job may differ.
 constexpr auto not_in_a_merge = std::to_array<std::string_view>({
     "label",               // for people
-    "shard",               // which of them
-    "threads",             // how many at work
+    "shard",               // which shard
+    "threads",             // how many
     "checkpoint_seconds",  // when to save
     "exclusive",           // what else runs meanwhile
 });
@@ -36,7 +36,7 @@ class Reader {
     try {
       read(folder);
     } catch (const std::exception& e) {
-      if (may_pass(e)) throw;  // what it says is not known
+      if (may_pass(e)) throw;  // transient: its content is unknown
       refuse(folder, e.what());
     }
   }
@@ -128,7 +128,7 @@ class Reader {
   }
 
   std::map<int, Shard> shards_;
-  std::filesystem::path first_;  // the folder that the others are compared with
+  std::filesystem::path first_;  // the folder to which the others are compared
   OrderedJson job_;
   CheckpointKey key_;
   InputList inputs_;  // of the first; empty: not recorded

@@ -38,13 +38,13 @@ std::uint64_t scene_bytes(const ExecutorSettings& settings, const std::string& s
   return 0;
 }
 
-/// Waits for one of both; negative: without a limit.
+/// Waits until one of two descriptors is readable; negative `time`: no limit.
 void wait_for(int one, int other, std::chrono::milliseconds time) {
   std::array<pollfd, 2> fds{{{one, POLLIN, 0}, {other, POLLIN, 0}}};
   ::poll(fds.data(), fds.size(), static_cast<int>(time.count()));
 }
 
-/// How a submission that Slurm never had, or had refused at once, came to nothing.
+/// The ending of a submission that Slurm never had or refused.
 Ending not_submitted(const std::string& said) {
   if (refuses_the_job(said)) return {Ending::Kind::refused, 0, said};
   return {Ending::Kind::not_started, EAGAIN,
@@ -53,9 +53,9 @@ Ending not_submitted(const std::string& said) {
 
 }  // namespace
 
-/// Ends a job of Slurm as the service ends a child: SIGTERM, and after the grace scancel, which
-/// ends with SIGKILL. What waits is just taken out of the line. Each step is repeated until Slurm
-/// says that it is over: a request can be lost.
+/// Ends a job of Slurm as the service ends a child: SIGTERM, and after the grace period scancel,
+/// which ends with SIGKILL. A waiting job is only removed from the queue. Each step is repeated
+/// until Slurm reports the end: a request can be lost.
 class SlurmExecutor::Stopping {
  public:
   Stopping(const SlurmPrograms& programs, std::chrono::milliseconds grace,
@@ -64,7 +64,7 @@ class SlurmExecutor::Stopping {
 
   void go_on(const SlurmWatch::View& view) {
     const std::int64_t job = view.submission.job;
-    if (job == 0 || Clock::now() < next_) return;  // as soon as its number is known
+    if (job == 0 || Clock::now() < next_) return;  // once its number is known
     next_ = Clock::now() + again_;
     try {
       if (!view.last || view.last->phase == Phase::waits) {
@@ -119,8 +119,8 @@ Ending SlurmExecutor::run(const Task& task, const StopSignal& stop, const Notice
   return follow(folder, std::move(attempted), stop, notices);
 }
 
-/// Writes down what is about to be submitted, and submits it. Throws std::system_error: the job's
-/// folder cannot be written.
+/// Records a submission and submits it. Throws std::system_error if the job's folder cannot be
+/// written.
 SlurmExecutor::Attempted SlurmExecutor::submit(const Task& task) {
   const JobFolder& folder = task.folder;
   Attempted attempted{{new_submission_name(folder), 0, utc_now()}, {}};
@@ -171,7 +171,7 @@ std::vector<std::string> SlurmExecutor::words_for(const Task& task,
   return words;
 }
 
-/// A priority that was changed while the job waits in Slurm.
+/// Applies a priority that was changed while the job waits in Slurm.
 void SlurmExecutor::show_priority(const SlurmWatch::View& view) const {
   if (!view.nice || !view.last || view.last->phase != Phase::waits) return;
   try {
@@ -181,7 +181,7 @@ void SlurmExecutor::show_priority(const SlurmWatch::View& view) const {
   }
 }
 
-/// Waits for the end of a submission, of this service or of an earlier one.
+/// Waits for the end of a submission of this or an earlier service.
 Ending SlurmExecutor::follow(const JobFolder& folder, Attempted attempted, const StopSignal& stop,
                              const Notices& notices) {
   Submission& known = attempted.submission;

@@ -13,8 +13,8 @@ namespace {
 
 constexpr int margin_minutes = 15;
 
-/// Seconds that merging the job from its shards takes at most, several times of what
-/// docs/scaling.md has measured.
+/// Upper bound of the seconds to merge the job from its shards, several times the measurement in
+/// docs/scaling.md.
 double merging_seconds(const JobSpec& spec) {
   constexpr double of_shard = 0.05, of_pixel = 2e-6;
   if (spec.shards == 1 || spec.shard != 0) return 0;
@@ -36,8 +36,8 @@ std::optional<int> minutes_of(const JobSpec& spec) {
   return static_cast<int>(std::ceil(all / 60));
 }
 
-/// Bytes that a renderer of the job is likely to stay below: libraries and tables, the scene as
-/// triangles, the image in film, layers, checkpoint and file, the space as voxels.
+/// Likely upper bound of a renderer's memory, bytes: libraries and tables, the scene as triangles,
+/// the image in film, layers, checkpoint and file, the space as voxels.
 double estimated_bytes(const JobSpec& spec, const RequestBasis& basis) {
   constexpr double base = 1024.0 * (1 << 20), of_scene = 24, of_pixel = 400, of_layer = 64;
   const double pixels = static_cast<double>(spec.resolution[0]) * spec.resolution[1];
@@ -48,7 +48,7 @@ double estimated_bytes(const JobSpec& spec, const RequestBasis& basis) {
 
 std::int64_t megabytes_of(const JobSpec& spec, const RequestBasis& basis) {
   constexpr double megabyte = 1 << 20;
-  // What a limit of data does not count: the program and its libraries.
+  // Memory that RLIMIT_DATA does not count: the program and its libraries, MB.
   constexpr std::int64_t beside_the_limit = 512;
   if (basis.memory_limit > 0) {
     return static_cast<std::int64_t>(
@@ -60,7 +60,7 @@ std::int64_t megabytes_of(const JobSpec& spec, const RequestBasis& basis) {
   return static_cast<std::int64_t>(std::ceil(factor * estimated_bytes(spec, basis) / megabyte));
 }
 
-/// Options that Lacuna gives itself, or that would make it lose its jobs.
+/// Options that Lacuna sets itself, or with which it could not find its jobs.
 constexpr std::string_view own_options[] = {
     "--array",    "--chdir",  "--clusters",  "--error",    "--help",      "--input",
     "--job-name", "--output", "--open-mode", "--parsable", "--test-only", "--usage",
@@ -72,7 +72,7 @@ bool is_own_option(const std::string& word) {
   if (!name.starts_with("--")) {
     return word.size() >= 2 && word[0] == '-' && own_letters.find(word[1]) != own_letters.npos;
   }
-  constexpr std::size_t shortest = 5;  // sbatch takes a beginning of a name for the whole
+  constexpr std::size_t shortest = 5;  // sbatch accepts unambiguous prefixes
   return std::any_of(std::begin(own_options), std::end(own_options), [&](std::string_view own) {
     return own == name || (name.size() >= shortest && own.starts_with(name));
   });

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::chrono::seconds patience{60};
 
-/// The program's file in PATH; empty: there is none.
+/// The program's file in PATH; empty if there is none.
 std::filesystem::path find_program(const std::string& name) {
   const char* set = std::getenv("PATH");
   std::string_view path = set == nullptr ? "" : set;
@@ -48,7 +48,7 @@ std::vector<std::string> slurm_environment() {
   return result;
 }
 
-/// What a program has written to a file; no more than 64 MiB.
+/// The output of a program in a file, at most 64 MiB.
 std::string program_output(int file) {
   constexpr std::size_t at_once = 1 << 16, longest = 64 << 20;
   std::string text;

@@ -37,7 +37,7 @@ until grep -qsF "\"$name\"" "$folder/slurm.json"; do
 done
 )";
 
-/// Gives $code.
+/// Sets $code.
 std::string render_and_hand_on(const std::filesystem::path& directory, const std::string& command) {
   return fmt::format(R"(child=
 asked=

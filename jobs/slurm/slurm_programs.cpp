@@ -16,7 +16,7 @@ constexpr std::string_view over[] = {"COMPLETED",     "CANCELLED", "FAILED",
                                      "TIMEOUT",       "DEADLINE",  "NODE_FAIL",
                                      "OUT_OF_MEMORY", "BOOT_FAIL", "PREEMPTED"};
 
-// What of a job's own wishes no cluster of this form can fulfil, in sbatch's words.
+// sbatch's errors for requests that this cluster can never satisfy.
 constexpr std::string_view refusals[] = {
     "Requested node configuration is not available", "Memory specification can not be satisfied",
     "CPU count per node can not be satisfied",       "CPU count specification invalid",
@@ -27,7 +27,7 @@ bool holds(const std::string_view (&words)[N], std::string_view word) {
   return std::find(std::begin(words), std::end(words), word) != std::end(words);
 }
 
-/// The first `count - 1` fields, and the rest of the line as the last: a name may hold a bar.
+/// The first `count - 1` fields, and the rest of the line as the last: a name may contain a bar.
 template <std::size_t count>
 bool split(std::string_view line, std::array<std::string_view, count>& fields) {
   for (std::size_t i = 0; i + 1 < count; ++i) {
@@ -56,7 +56,7 @@ void each_line(std::string_view text, Take&& take) {
   }
 }
 
-/// What it printed as one line.
+/// The output as one line.
 std::string words_of(std::string_view text) {
   std::string line;
   each_line(text, [&](std::string_view part) {
@@ -81,7 +81,7 @@ std::vector<SlurmJob> parse_slurm_jobs(std::string_view text) {
   each_line(text, [&](std::string_view line) {
     std::array<std::string_view, 5> fields;  // number, state, reason, nodes, name
     const auto id = split(line, fields) ? number(fields[0]) : std::nullopt;
-    if (!id) return;  // a warning, or a task of somebody's array
+    if (!id) return;  // a warning, or a task of another array
     const std::string_view state = fields[1].substr(0, fields[1].find(' '));  // "CANCELLED by 0"
     jobs.push_back({*id, std::string(fields[4]), std::string(state), std::string(fields[2]),
                     std::string(fields[3]), slurm_phase(state)});
@@ -95,7 +95,7 @@ bool refuses_the_job(std::string_view words) {
   });
 }
 
-/// What the program printed; throws SlurmError if it failed.
+/// The output of the program; throws SlurmError if it failed.
 std::string SlurmPrograms::call(const std::vector<std::string>& words) const {
   const ProgramAnswer answer = run_(words);
   if (answer.code == 0) return answer.text;
@@ -110,7 +110,7 @@ std::int64_t SlurmPrograms::submit(const std::vector<std::string>& words) const 
   all.insert(all.end(), words.begin(), words.end());
   const std::string text = call(all);
   std::optional<std::int64_t> job;
-  // The number, or number;cluster. Beside it there may be lines of advice.
+  // The number, or number;cluster. Other lines may be advice.
   each_line(text, [&](std::string_view line) {
     if (const auto id = number(line.substr(0, line.find(';')))) job = id;
   });

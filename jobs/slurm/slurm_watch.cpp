@@ -28,11 +28,11 @@ std::string slurm_words(const std::optional<SlurmJob>& last, bool known_now) {
   return fmt::format("{}: {}{}", name, last->state, reason ? " (" + last->reason + ")" : "");
 }
 
-/// The folder says that a renderer came to the end, and how.
+/// Whether the folder records the end of a renderer.
 bool is_told(const JobFolder& folder) {
   try {
     return is_terminal(folder.read_state().state);
-  } catch (const std::exception&) {  // it lags, or is damaged, which the queue finds out
+  } catch (const std::exception&) {  // it lags behind, or is damaged, which the queue detects
     return false;
   }
 }
@@ -141,7 +141,7 @@ void SlurmWatch::run(const std::stop_token& ends) {
   }
 }
 
-/// What the folders say by themselves: a renderer that came to the end.
+/// Reads ends of renderers from the folders.
 void SlurmWatch::look_at_folders() {
   std::list<WatchedPtr> all;
   {
@@ -194,7 +194,7 @@ void SlurmWatch::list() {
   if (!to_ask.empty()) account(to_ask);
 }
 
-/// Those that squeue does not know may be in the accounts.
+/// Looks up jobs that squeue does not list in the accounting.
 void SlurmWatch::account(const std::vector<WatchedPtr>& whom) {
   std::vector<std::string> names;
   names.reserve(whom.size());
@@ -210,7 +210,7 @@ void SlurmWatch::account(const std::vector<WatchedPtr>& whom) {
   }
 }
 
-/// After a listing, under the lock.
+/// Called after a listing, under the lock.
 void SlurmWatch::judge(SlurmWatched& watched, bool listed) {
   note_place(watched);
   const bool over = !listed || watched.last->phase == Phase::over;

@@ -25,7 +25,7 @@ std::string sentence(std::string_view text) {
   return s + '.';
 }
 
-/// What a value of this type is and may be.
+/// The type and range of a value.
 std::string type_text(const Type& type) {
   const auto with = [](std::string_view thing, const std::string& limits) {
     return limits.empty() ? std::string(thing) : fmt::format("{} {}", thing, limits);
@@ -86,7 +86,7 @@ void put_names(std::string& page, const Member& member) {
 
 void put_section(std::string& page, const Type& object, const std::string& path);
 
-/// The sections of what a member holds.
+/// Appends the sections for the contents of a member.
 void put_parts(std::string& page, const Member& member, const std::string& path) {
   if (member.type.kind == Type::Kind::object || member.type.kind == Type::Kind::name_or_object) {
     page += fmt::format("\n## {}\n\n{}\n", path, sentence(member.field.doc));
@@ -104,7 +104,7 @@ void put_parts(std::string& page, const Member& member, const std::string& path)
   }
 }
 
-/// One object: its keys in a table, what their names mean, then its parts.
+/// Appends one object: a table of keys, the meaning of names, then its parts.
 void put_section(std::string& page, const Type& object, const std::string& path) {
   if (object.members.empty()) {
     page += "\nIt has no settings.\n";

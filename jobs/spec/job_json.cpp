@@ -10,8 +10,7 @@
 namespace lacuna {
 namespace {
 
-/// No problem was found at this place or below it: what the settings hold there is what the
-/// document says.
+/// Whether no problem was found at this position or below: the settings there equal the document.
 bool is_good(const std::vector<Problem>& problems, const std::string& at) {
   return std::none_of(problems.begin(), problems.end(), [&](const Problem& p) {
     return p.pointer == at || p.pointer.starts_with(at + '/');
@@ -29,7 +28,7 @@ void check_error_target(const JobSpec& spec, std::vector<Problem>& problems) {
                    enum_name(spec.budget.error->metric), enum_name(ErrorMetric::est_rmse))});
 }
 
-/// Which layers there are depends on the integrator.
+/// The available layers depend on the integrator.
 void check_layers_of_integrator(const JobSpec& spec, std::vector<Problem>& problems) {
   if (!is_good(problems, "/layers") || !is_good(problems, "/integrator")) return;
   const std::vector<ImageLayer> offered = offered_layers(spec.integrator);
@@ -55,7 +54,7 @@ void check_conflict(const std::string& at, const Settings& settings,
   }
 }
 
-/// Candidates take the path lengths from `auto`, and have no more bias than it allows.
+/// Candidates have the path lengths of `auto` and at most the bias that it allows.
 void check_candidates(const JobSpec& spec, std::vector<Problem>& problems) {
   const auto* settings = std::get_if<AutoSettings>(&spec.integrator);
   if (settings == nullptr || !is_good(problems, "/integrator")) return;

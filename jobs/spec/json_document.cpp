@@ -10,8 +10,8 @@
 namespace lacuna {
 namespace {
 
-/// Line and column (from 1) of a byte, the line's text about it, and a caret below the byte. What
-/// is not printable ASCII shows as '?', one a character, so that the caret stays in its column.
+/// Line and column (from 1) of a byte, the surrounding text, and a caret below the byte. Each
+/// character that is not printable ASCII becomes '?', so that the caret stays in its column.
 std::string excerpt(std::string_view text, std::size_t byte) {
   constexpr std::size_t width = 30;
   byte = std::min(byte, text.size());
@@ -33,7 +33,7 @@ std::string excerpt(std::string_view text, std::size_t byte) {
   return fmt::format("line {}, column {}:\n{}\n{}^", line, column, shown, std::string(caret, ' '));
 }
 
-/// The parser's own words without its tags, its position and the text it read.
+/// The parser's message without its tags, its position and the text it read.
 std::string reason(std::string what) {
   if (const auto tag = what.find("] "); tag != std::string::npos) what.erase(0, tag + 2);
   if (what.starts_with("parse error")) {
@@ -51,8 +51,8 @@ std::string reason(std::string what) {
   return what;
 }
 
-/// Builds the document from the parser's events, and stops it where the nesting gets too deep.
-/// The library's own builder lets the last of equal keys win without a word.
+/// Builds the document from the parser's events, and stops if it is nested too deeply. The
+/// library's own builder silently uses the last of duplicate keys.
 class Builder final : public nlohmann::json_sax<Json> {
  public:
   Builder(std::string_view text, int max_depth, std::vector<Problem>& problems)
@@ -95,7 +95,7 @@ class Builder final : public nlohmann::json_sax<Json> {
     std::string key;
   };
 
-  /// Of the value that comes next.
+  /// The pointer of the next value.
   std::string pointer() const {
     std::string at;
     for (const Level& level : open_) {

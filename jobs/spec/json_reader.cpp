@@ -15,7 +15,7 @@ std::string choices(std::span<const std::string_view> names) {
   return fmt::format("\"{}\"", fmt::join(names, "\", \""));
 }
 
-/// Code points; the parser has checked the encoding.
+/// Number of code points; the parser has checked the encoding.
 std::size_t characters(std::string_view utf8) {
   return static_cast<std::size_t>(
       std::count_if(utf8.begin(), utf8.end(), [](char c) { return (c & 0xC0) != 0x80; }));
@@ -63,7 +63,7 @@ bool check_size(const JsonCursor& found, const Limits& size) {
 }
 
 std::string any_value(const JsonCursor& found) {
-  // 4 and 4.0 are one number, and so is its text.
+  // 4 and 4.0 are the same number and get the same text.
   const auto plain = [](const auto& self, const Json& value) -> Json {
     if (value.is_number_float()) {
       const double x = value.get<double>();

@@ -11,7 +11,7 @@ namespace {
 
 OrderedJson schema_of(const Type& type);
 
-/// The key's own line, its unit, and what each name means.
+/// The key's description, its unit, and the meaning of each name.
 std::string description(const Member& member) {
   std::string text = meaning_text(member.field);
   if (!member.field.unit.empty()) text += fmt::format(" [{}]", member.field.unit);
@@ -39,7 +39,7 @@ void put_lengths(OrderedJson& schema, const Limits& length, const char* min, con
   if (std::isfinite(length.max)) schema[max] = static_cast<std::int64_t>(length.max);
 }
 
-/// Into an object's schema: its keys. `name`: of the alternative that it is, if it is one.
+/// Adds the keys to an object's schema. `name`: of the alternative, if it is one.
 void put_members(OrderedJson& schema, const Type& type, std::string_view name = {}) {
   OrderedJson properties = OrderedJson::object();
   OrderedJson required = OrderedJson::array();
@@ -87,7 +87,7 @@ OrderedJson enum_schema(const Type& type) {
   return {{"enum", names}};
 }
 
-/// A number, or the word that leaves it to the method.
+/// A number, or "auto".
 OrderedJson auto_schema(const Type& type) {
   OrderedJson number = {{"type", "number"}};
   put_limits(number, type);

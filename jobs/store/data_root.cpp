@@ -9,7 +9,7 @@
 namespace lacuna {
 namespace {
 
-/// Empty: it is not set.
+/// The value of an environment variable; empty if it is not set.
 std::string variable(const char* name) {
   const char* value = std::getenv(name);
   return value != nullptr ? value : "";

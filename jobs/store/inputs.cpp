@@ -20,10 +20,10 @@ struct InputRecord {
 };
 template <class V>
 void describe(V& v, InputRecord& s) {
-  v("files", s.files, {.doc = "what the job was made from", .required = true});
+  v("files", s.files, {.doc = "the input files of the job", .required = true});
 }
 
-/// How a file differs from what it was; empty: not at all.
+/// How a file has changed; empty: not.
 std::string change_of(const InputFile& before, const InputFile& now) {
   if (now.hash == before.hash && now.bytes == before.bytes) return "";
   if (now.bytes != before.bytes && (now.bytes > 0 || !now.hash.empty())) {

@@ -17,7 +17,7 @@
 namespace lacuna {
 namespace {
 
-/// What goes into a one-line field of outcome.json: no control characters, of bounded length.
+/// Text for a one-line field of outcome.json: no control characters, of bounded length.
 std::string one_line(std::string text) {
   constexpr std::size_t longest = 4000;
   if (text.size() > longest) {
@@ -30,7 +30,8 @@ std::string one_line(std::string text) {
   return text;
 }
 
-/// There is no such file. What cannot be looked at is there: reading it says why it cannot be read.
+/// Whether the file does not exist; false if this cannot be determined: reading it then throws the
+/// reason.
 bool is_missing(const std::filesystem::path& path) {
   return ::access(path.c_str(), F_OK) != 0 && errno == ENOENT;
 }
@@ -115,7 +116,7 @@ void JobFolder::write_state(const JobState& s, bool synced) const {
 }
 
 std::optional<Progress> JobFolder::read_progress() const {
-  // Not synced: after a power cut it may be empty or missing, which only means that nothing is
+  // Not synced: after a power failure it may be empty or missing, which means that nothing is
   // known.
   try {
     return read_own<Progress>(file("progress.json"));

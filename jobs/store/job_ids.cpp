@@ -17,11 +17,11 @@ namespace {
 
 /// The form of an id: 'd' a digit, 'x' a lower-case letter or digit, else itself.
 constexpr std::string_view id_form = "dddddddd-dddddd-xxxxxx";
-/// The digits to base 36: ids of one second sort as the numbers that their letters are.
+/// The digits of base 36: ids of one second sort by the numbers of their letters.
 constexpr std::string_view id_letters = "0123456789abcdefghijklmnopqrstuvwxyz";
 constexpr std::size_t id_time_size = id_form.find('x');
 
-/// The number that the letters of an id are, and how many there are of such.
+/// The number represented by the letters of an id, and the count of such numbers.
 std::uint64_t letters_value(std::string_view id) {
   std::uint64_t value = 0;
   for (const char c : id.substr(id_time_size))
@@ -34,7 +34,7 @@ std::uint64_t letters_values() {
   return values;
 }
 
-/// It is of this type, or that cannot be told now.
+/// Whether the file is of this type, or this cannot be determined now.
 bool may_be(const std::filesystem::path& file, std::filesystem::file_type type) {
   std::error_code error;
   const auto found = std::filesystem::symlink_status(file, error).type();
@@ -99,7 +99,7 @@ std::vector<std::string> list_job_names(const std::filesystem::path& jobs) {
     if (entry == nullptr && errno != 0) throw_file_error(errno, "read", jobs);
     if (entry == nullptr) break;
     if (!is_job_id(entry->d_name)) continue;
-    // What kind of file it is mostly stands in the folder itself, and costs no look at the file.
+    // The directory entry mostly contains the type, which saves a stat of the file.
     bool is_folder = entry->d_type == DT_DIR;
     if (entry->d_type == DT_UNKNOWN) {
       is_folder = may_be(jobs / entry->d_name, std::filesystem::file_type::directory);

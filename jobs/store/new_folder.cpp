@@ -14,7 +14,7 @@
 namespace lacuna {
 namespace {
 
-/// Puts a new folder, complete, in its place; it must not be there yet.
+/// Renames a complete new folder to its name, which must not exist.
 void rename_folder(const std::filesystem::path& from, const std::filesystem::path& to) {
   if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return;
   if (errno == EINVAL || errno == ENOSYS) {  // a file system without that flag
@@ -44,7 +44,7 @@ void create_folder_whole(const std::filesystem::path& target,
     fill(draft);
     rename_folder(draft, target);
   } catch (...) {
-    std::error_code ignored;  // the first error is the one to tell
+    std::error_code ignored;  // the first error is reported
     std::filesystem::remove_all(draft, ignored);
     throw;
   }

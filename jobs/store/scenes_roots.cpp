@@ -26,10 +26,10 @@ using Extensions = std::vector<std::string_view>;
 constexpr int max_list_depth = 4;
 constexpr int max_list_entries = 10000;
 
-/// The folder of the scenes that come with the source tree this was built from.
+/// The folder of scenes in the source tree of this build.
 fs::path source_scenes() { return fs::path(__FILE__).parent_path().parent_path() / "scenes"; }
 
-/// Those that are installed with this program; the folder need not be there.
+/// The folder of scenes installed with this program; it may be missing.
 fs::path installed_scenes() {
   std::error_code ignored;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
@@ -55,7 +55,7 @@ bool has_extension(std::string_view name, const Extensions& extensions) {
   });
 }
 
-/// Why a name is refused before anything is looked up; empty: it is not.
+/// Why a name is refused before any lookup; empty: it is not.
 std::string fault_of(std::string_view name, const Extensions& extensions) {
   if (name.empty()) return "it is empty";
   if (name.front() == '/') return "it is absolute; allowed: a name below a scenes root";
@@ -73,7 +73,7 @@ std::string fault_of(std::string_view name, const Extensions& extensions) {
   return {};
 }
 
-/// The name as it may stand in a message.
+/// The name, escaped for messages.
 std::string shown(std::string_view name) {
   constexpr std::size_t longest = 200;
   std::string text(name.substr(0, longest));
@@ -83,8 +83,7 @@ std::string shown(std::string_view name) {
   return '"' + text + (name.size() > longest ? "...\"" : "\"");
 }
 
-/// Opens part after part, none of them through a link. 0: a regular file stands there; else an
-/// errno.
+/// Opens part after part without following links. Returns 0 for a regular file, else an errno.
 int walk(const fs::path& root, std::string_view name) {
   FileHandle at(::open(root.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
   struct stat info {};
@@ -101,7 +100,7 @@ int walk(const fs::path& root, std::string_view name) {
 
 /// Names below one root, without hidden ones and without following links.
 void list_root(const fs::path& root, const Extensions& extensions, std::set<std::string>& names) {
-  std::error_code error;  // a root or folder that cannot be read has nothing to offer
+  std::error_code error;  // an unreadable root or folder has no names
   fs::recursive_directory_iterator it(root, fs::directory_options::skip_permission_denied, error);
   for (int entries = 0; !error && it != fs::end(it) && entries < max_list_entries; ++entries) {
     const auto status = it->symlink_status(error);
@@ -153,7 +152,7 @@ ScenesRoots ScenesRoots::from_environment() {
     return ScenesRoots(std::move(roots));
   }
   roots.push_back(fs::absolute("jobs/scenes"));
-  std::error_code ignored;  // false where either is missing
+  std::error_code ignored;  // false if either is missing
   for (const fs::path& own : {installed_scenes(), source_scenes()}) {
     if (!fs::is_directory(own, ignored) || fs::equivalent(roots.front(), own, ignored)) continue;
     if (!fs::is_directory(roots.front(), ignored)) roots.clear();
@@ -167,14 +166,14 @@ fs::path ScenesRoots::resolve(std::string_view name, const Extensions& extension
   std::string fault = fault_of(name, extensions);
   if (fault.empty()) {
     int worst = ENOENT;
-    std::exception_ptr away;  // a root that is missing or empty, as one that is not mounted
+    std::exception_ptr away;  // a root that is missing or empty, such as an unmounted one
     for (const fs::path& root : roots_) {
       const int error = walk(root, name);
       if (error == 0) return root / name;
       try {
         throw_if_it_may_pass(error, root / name, root);
       } catch (const InputUnreadable&) {
-        // What cannot be looked at now is not missing: a later root's file is another one.
+        // An unreadable file is not missing: do not fall back to a later root's file.
         if (error != ENOENT) throw;
         if (!away) away = std::current_exception();
       }

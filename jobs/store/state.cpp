@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::string_view service = "service", person = "person";
 
-// `interrupted` is what the folder of a job says that a renderer has left before its end.
+// `interrupted` occurs only in the folder of a job, after a renderer that stopped before the end.
 constexpr Transition transitions[] = {
     {State::queued, State::running, service, "its renderer starts"},
     {State::queued, State::held, person, "holds it"},

@@ -15,7 +15,7 @@
 namespace lacuna {
 namespace {
 
-/// The usual metric of cells that all have a reference, or do not, unless the sweep says which.
+/// The metric of the sweep, or the default for cells with or without references.
 ErrorMetric chosen_metric(const SweepFolder& sweep) {
   if (const auto& asked = sweep.spec().compare_at.metric) return *asked;
   const auto& cells = sweep.plan().cells;
@@ -52,7 +52,7 @@ class Comparison {
     }
   }
 
-  /// A run whose folder is damaged is named, and hides no other.
+  /// Reports a run whose folder is damaged and excludes only that run.
   RunResult read(const SweepRun& run) {
     try {
       return read_result(sweep_.folder(run), answers_.axes, plan_.cells[run.cell].job.budget);
@@ -130,14 +130,14 @@ class Comparison {
     std::sort(p.errors.begin(), p.errors.end(), std::greater<>());
   }
 
-  /// The curves that a cell is compared with; empty if there are none of the same picture.
+  /// The curves of a cell's baseline; empty if it has none of the same picture.
   Replicates baseline_of(const CellAnswer& cell) const {
     const auto base = plan_.cells[cell.cell].baseline;
     if (!base || *base == cell.cell || answers_.cells[*base].picture != cell.picture) return {};
     return curves_[*base];
   }
 
-  /// One quantity of all finished runs of a cell that tell it.
+  /// A quantity of all finished runs of a cell that have it.
   std::vector<double> values(const CellAnswer& cell, std::optional<double> RunResult::*what) const {
     std::vector<double> found;
     for (const std::size_t r : cell.done) {
@@ -190,7 +190,7 @@ class Comparison {
     cell.preparation = preparation(finished(cell), same_space(cell.cell));
   }
 
-  /// After prepare() of all.
+  /// Requires prepare() of all cells.
   void pay_off(CellAnswer& cell) {
     const Replicates base = baseline_of(cell);
     if (cell.done.empty() || base.empty()) return;
@@ -202,7 +202,7 @@ class Comparison {
                  pays(cell.preparation.warm, theirs.warm)};
   }
 
-  /// `charge` null: nothing.
+  /// `charge` null: no preparation.
   std::vector<FrontPart> front(const PictureAnswer& p, std::optional<double> Preparation::*charge) {
     std::vector<Contender> contenders;
     std::vector<std::size_t> cell_of;
@@ -251,7 +251,8 @@ class Comparison {
     }
   }
 
-  /// How many seeds would halve the intervals, where the widest of errors spans a factor of two.
+  /// Warns of the number of seeds that would halve the intervals, if the widest error interval
+  /// spans a factor of two.
   void hint_at_seeds() {
     constexpr double wide = 2;
     double widest = 1;

@@ -53,8 +53,7 @@ OrderedJson to_json(const TimeToError& to) {
           {"supported", !to.at_floor}};
 }
 
-/// Time, mean, bounds (the mean, where there are none), and whether the reference's noise is
-/// reached.
+/// Time, mean, bounds (the mean if there are none), and whether the reference's noise is reached.
 OrderedJson to_json(const BandPoint& p) {
   const Interval bounds = p.error.interval.value_or(Interval{p.error.value, p.error.value});
   return {p.time, p.error.value, bounds.low, bounds.high, p.at_floor ? 1 : 0};

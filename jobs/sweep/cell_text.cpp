@@ -17,7 +17,7 @@ std::string ending(const std::vector<std::string>& tokens, std::size_t parts) {
                      fmt::join(tokens.end() - static_cast<std::ptrdiff_t>(n), tokens.end(), "/"));
 }
 
-/// The shortest ending that no other pointer has.
+/// The shortest ending that is unique among the pointers.
 std::string short_name(const std::string& pointer, const JsonTable<JsonValue>& all) {
   const auto tokens = pointer_tokens(pointer);
   for (std::size_t parts = 1; parts < tokens.size(); ++parts) {
@@ -30,7 +30,7 @@ std::string short_name(const std::string& pointer, const JsonTable<JsonValue>& a
   return ending(tokens, tokens.size());
 }
 
-/// All cells of `some` have the same value there.
+/// Whether all cells of `some` have the same value there.
 template <class Cells, class CellOf>
 bool agree(const Cells& some, const std::string& pointer, CellOf&& cell_of) {
   const JsonValue& first = cell_of(*some.begin()).settings.at(pointer);

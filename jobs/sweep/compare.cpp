@@ -64,7 +64,7 @@ TimeToError time_to_error(Replicates cell, Replicates baseline, double error) {
   if (own.values.empty() || own.values.size() < cell.size()) return answer;
   answer.time = geometric_mean(own.values);
   if (baseline.empty()) return answer;
-  if (base.at_most) return answer;  // how long it took is not known
+  if (base.at_most) return answer;  // its time is unknown
   if (base.values.size() == baseline.size()) {
     answer.speed_up = Gain{ratio_of_means(base.values, own.values), own.at_most};
     if (own.at_most) answer.speed_up->ratio.interval.reset();

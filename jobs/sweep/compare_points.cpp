@@ -10,12 +10,11 @@
 namespace lacuna {
 namespace {
 
-/// `value` with so many digits, towards `direction` (std::floor or std::ceil), as people would
-/// write it.
+/// `value` rounded to this number of digits, towards `direction` (std::floor or std::ceil).
 template <class Round>
 double rounded(double value, int digits, Round direction) {
   const int exponent = static_cast<int>(std::floor(std::log10(value))) - digits + 1;
-  // Not times a power of ten, which is none in binary: 0.94, not 0.9400000000000001.
+  // Via decimal text, because powers of ten are inexact in binary: 0.94, not 0.9400000000000001.
   return std::stod(fmt::format("{}e{}", direction(value * std::pow(10, -exponent)), exponent));
 }
 

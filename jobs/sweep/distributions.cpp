@@ -6,7 +6,7 @@
 namespace lacuna {
 namespace {
 
-/// In double throughout: twelve digits are enough, and it compiles in two thirds of the time.
+/// Double throughout: twelve digits suffice, and it compiles in two thirds of the time.
 using Policy = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 using Student = boost::math::students_t_distribution<double, Policy>;
 
@@ -23,7 +23,7 @@ double student_bound(double probability, double df) {
   if (!(probability > 0 && probability < 1)) {
     throw std::domain_error("Student's t needs a probability in (0, 1)");
   }
-  // Many intervals in a row have the same number of replicates.
+  // Cached: many consecutive intervals have the same number of replicates.
   struct Known {
     double probability = 0, df = 0, t = 0;
   };

@@ -6,7 +6,7 @@
 namespace lacuna {
 namespace {
 
-/// y at x on the line in log-log through two points; of equal x, the second's.
+/// y at x on the log-log line through two points; for equal x, the second's y.
 double log_log(double x0, double y0, double x1, double y1, double x) {
   if (x0 == x1) return y1;
   return y0 * std::exp(std::log(y1 / y0) * std::log(x / x0) / std::log(x1 / x0));

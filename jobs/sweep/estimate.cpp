@@ -49,7 +49,7 @@ std::optional<double> half_width(const Moments& m) {
   return student_bound(confidence, m.df()) * std::sqrt(m.variance_of_mean);
 }
 
-/// Between the means of two groups; Welch's degrees of freedom.
+/// Difference of the means of two groups, with Welch's degrees of freedom.
 struct Difference {
   Difference(const Moments& a, const Moments& b)
       : mean(a.mean - b.mean),

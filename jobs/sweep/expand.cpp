@@ -11,7 +11,7 @@
 namespace lacuna {
 namespace {
 
-/// Settings that change together: at each step one value for each pointer.
+/// Settings that vary together: at each step one value for each pointer.
 struct Axis {
   JsonTable<std::vector<JsonValue>> values;
   std::string at;  // in the sweep file
@@ -89,7 +89,7 @@ class Expansion {
     }
   }
 
-  /// Of pointers and values that must be some that are swept.
+  /// Checks that pointers and values are swept ones.
   void check_values(const JsonTable<JsonValue>& some, const std::string& at) {
     for (const auto& [pointer, value] : some) {
       const auto axis = axis_of_.find(pointer);
@@ -159,7 +159,7 @@ class Expansion {
     for (SweepCell& cell : plan_.cells) {
       Json job = base;
       try {
-        // Pointers in their order: a setting before what lies within it.
+        // In the order of pointers: a setting before its parts.
         for (const auto& [pointer, value] : cell.settings) {
           if (const auto why = set_at(job, defaults, pointer, Json(parse_own(value.text)))) {
             problem(child_pointer(axis_of_.at(pointer)->at, pointer), *why);
@@ -183,7 +183,7 @@ class Expansion {
                         "reference for all",
                         enum_name(*metric), enum_name(ErrorMetric::est_rmse)));
   }
-  /// Where in the sweep file a place of a cell's job comes from.
+  /// The position in the sweep file from which a position in a cell's job comes.
   std::string origin(const std::string& at, const SweepCell& cell) const {
     std::string from;
     for (const auto& [pointer, value] : cell.settings) {  // the longest comes last

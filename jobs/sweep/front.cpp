@@ -17,9 +17,9 @@ class Entrant {
   double begin() const { return mean_.begin() + contender_.preparation; }
   double end() const { return mean_.end() + contender_.preparation; }
 
-  /// The time of its own at which its picture of a total time was finished.
+  /// The render time at which its picture at a total time was finished.
   double own_time(double total) const {
-    // What was added and is taken away again may round below the first instant.
+    // Adding and subtracting may round below the first instant.
     return std::clamp(total - contender_.preparation, mean_.begin(), mean_.end());
   }
   std::optional<CurvePoint> at(double total) const {
@@ -39,7 +39,7 @@ class Entrant {
   ErrorCurve mean_;
 };
 
-/// The intervals leave open which of the two is better.
+/// Whether the difference of the two is not significant.
 bool not_told_apart(const Entrant& a, const Entrant& b, double total) {
   const auto ea = a.errors_at(total), eb = b.errors_at(total);
   if (ea.empty() || eb.empty()) return false;
@@ -73,7 +73,7 @@ void join(FrontPart& last, const FrontPart& next) {
   last.tied = std::move(all);
 }
 
-/// The instants of all curves, and where each of them begins: there the front may change at once.
+/// The instants of all curves, including their begins, where the front may jump.
 std::vector<double> instants_of(const std::vector<Entrant>& entrants) {
   std::vector<double> begins;
   double last = 0;
@@ -112,7 +112,7 @@ std::vector<FrontPart> pareto_front(std::span<const Contender> contenders) {
 std::optional<BreakEven> break_even(const Contender& cell, const Contender& baseline) {
   const Entrant c(cell), b(baseline);
   if (c.empty() || b.empty()) return {};
-  // Before the cell's first picture the baseline's is the better one.
+  // Before the cell's first picture the baseline's is better.
   const double first = std::max(c.begin(), b.begin()), last = std::min(c.end(), b.end());
   if (first > last) return {};
   const auto lead = [&](double t) { return std::log(b.at(t)->error / c.at(t)->error); };

@@ -70,15 +70,15 @@ class NumberTable {
   std::vector<std::vector<double>> rows_;
 };
 
-/// The end of a finished job's budget of `clock`; 0 unless that alone can have ended it.
+/// The limit of `clock` in a finished job's budget; 0 unless only that limit can have ended it.
 double budget_end(const Budget& budget, const std::string& clock) {
   if (budget.iterations || budget.error) return 0;
   if (budget.seconds && budget.cpu_seconds) return 0;
   return (clock == "seconds" ? budget.seconds : budget.cpu_seconds).value_or(0);
 }
 
-/// A later picture would have been finished one more iteration after the last; and no later one was
-/// finished within the budget: an iteration under way at its end is given up.
+/// The next picture would have been finished one iteration after the last; and none was finished
+/// later within the budget, because the unfinished iteration is discarded at its end.
 double held_until(const NumberTable& table, const CurveAxes& axes, const Budget& budget) {
   const std::size_t last = table.rows() - 1;
   const double time = table.at(last, axes.clock), iterations = table.at(last, "iteration");
@@ -105,7 +105,7 @@ std::optional<double> efficiency(const ErrorCurve& curve, ErrorMetric metric) {
   return 1 / ((row_of(metric).squared ? last.error : last.error * last.error) * last.time);
 }
 
-/// A value of a JSON document, by its keys; null if it is not there.
+/// A value of a JSON document, by its keys; null if it is missing.
 template <class... Keys>
 const Json* find(const Json& json, const Keys&... keys) {
   const Json* here = &json;
@@ -143,7 +143,7 @@ std::set<std::string> artefact_names(const Json& report, const char* origin) {
   return names;
 }
 
-/// MSE = bias^2 + variance + the reference's own noise; the halves know the variance alone.
+/// MSE = bias^2 + variance + the reference's noise; the halves estimate only the variance.
 void tell_bias(const NumberTable& table, const Json& report, RunResult& result) {
   const std::size_t last = table.rows() - 1;
   const double mse = table.at(last, enum_name(ErrorMetric::mse)),

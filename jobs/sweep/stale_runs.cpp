@@ -13,7 +13,7 @@ std::map<std::size_t, std::string> stale_runs(std::span<const RunResult> results
   std::stable_sort(runs.begin(), runs.end(), [&](std::size_t a, std::size_t b) {
     return results[a].state.finished > results[b].state.finished;
   });
-  // Of each scene, by its name, the files as they were last.
+  // For each scene, by name, the latest files.
   std::map<std::string, InputList> latest;
   std::map<std::size_t, std::string> stale;
   for (const std::size_t i : runs) {

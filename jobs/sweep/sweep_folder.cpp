@@ -16,7 +16,7 @@ constexpr const char* spec_file = "sweep.json";
 constexpr const char* state_file = "state.json";
 constexpr const char* runs_folder = "runs";
 
-/// The runs of two sweeps are the same: where they are compared may change afterwards.
+/// Whether two sweeps have the same runs; `compare_at` may change afterwards.
 bool same_runs(SweepSpec a, const SweepSpec& b) {
   a.compare_at = b.compare_at;
   return a == b;
@@ -68,7 +68,8 @@ SweepFolder SweepFolder::of_service(const DataRoot& data, const std::string& id,
 
 SweepFolder SweepFolder::preview(const fs::path& dir, const SweepSpec& spec) {
   SweepFolder folder(folder_path(dir), spec);
-  const bool occupied = fs::exists(dir) && !fs::is_empty(dir);  // first: another may make it now
+  const bool occupied =
+      fs::exists(dir) && !fs::is_empty(dir);  // first: another process may create it now
   if (fs::exists(dir / spec_file)) {
     if (same_runs(read_sweep_spec(dir), spec)) return folder;
     throw BadJob({{"", fmt::format("{} contains another sweep; choose another folder with --out",

@@ -27,7 +27,7 @@ std::string field(const JsonValue& value) {
   return field(v.is_string() ? v.get<std::string>() : value.text);
 }
 
-/// The values in an object as settings of their own, by keys joined with '.', at any depth.
+/// Flattens the values in an object, at any depth, with keys joined by '.'.
 void flatten(const std::string& name, const OrderedJson& value, JsonTable<std::string>& flat) {
   for (const auto& [key, inner] : value.items()) {
     const std::string below = fmt::format("{}.{}", name, key);
@@ -39,7 +39,7 @@ void flatten(const std::string& name, const OrderedJson& value, JsonTable<std::s
   }
 }
 
-/// The settings of a cell that lie in objects.
+/// The settings of a cell that are in objects.
 JsonTable<std::string> flat_settings(const SweepCell& cell) {
   JsonTable<std::string> flat;
   for (const auto& [pointer, value] : cell.settings) {
@@ -58,7 +58,7 @@ std::vector<std::string> flat_columns(const SweepPlan& plan) {
   return {names.begin(), names.end()};
 }
 
-/// Where a run stands; "damaged": its folder does not say.
+/// The state of a run; "damaged" if its folder is.
 std::string state_name(const SweepFolder& sweep, const SweepRun& run) {
   try {
     return std::string(enum_name(sweep.state(run).state));
