@@ -1,4 +1,4 @@
-// lacuna-server: takes jobs over HTTP and hands them to renderers.
+// lacuna-server: accepts jobs over HTTP and runs renderers.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -18,7 +18,7 @@ namespace {
 
 using namespace lacuna;
 
-/// Throws CLI::ValidationError: no number of bytes.
+/// Throws CLI::ValidationError for an invalid number of bytes.
 std::uint64_t byte_size(const char* option, const std::string& text) {
   try {
     return parse_byte_size(text);
@@ -27,7 +27,7 @@ std::uint64_t byte_size(const char* option, const std::string& text) {
   }
 }
 
-/// Throws CLI::ValidationError, too, if that is too little for any renderer.
+/// Also throws CLI::ValidationError if no renderer could run with it.
 std::uint64_t memory_limit(const std::string& text) {
   constexpr std::uint64_t least = 256 << 20;
   const std::uint64_t bytes = byte_size("--memory-limit", text);
@@ -37,7 +37,7 @@ std::uint64_t memory_limit(const std::string& text) {
       fmt::format("found \"{}\"; allowed: 0, or at least {}", text, byte_size_text(least)));
 }
 
-/// Throws CLI::ValidationError: an option that Lacuna gives sbatch itself.
+/// Throws CLI::ValidationError for an option that Lacuna sets itself.
 void add_slurm_arguments(ServiceSettings& s, const std::string& text) {
   try {
     for (std::string& word : slurm_arguments(text)) s.slurm.arguments.push_back(std::move(word));
@@ -46,7 +46,7 @@ void add_slurm_arguments(ServiceSettings& s, const std::string& text) {
   }
 }
 
-/// What only one of the executors knows.
+/// Checks options and defaults of one executor only.
 void check_executor(const CLI::App& app, ServiceSettings& s) {
   if (s.executor == ExecutorKind::slurm) {
     if (app.count("--jobs") == 0) s.queue.children = slurm_jobs_at_a_time;
@@ -153,7 +153,7 @@ void define_options(CLI::App& app, ServiceSettings& s) {
   app.add_option("--web", s.web, "folder of the page; default: web of the source tree");
 }
 
-/// Blocks the signals that end the service in every thread, so that wait_for_end() gets them.
+/// Blocks the signals that end the service in every thread, so that wait_for_end() receives them.
 sigset_t block_ends() {
   sigset_t ends;
   sigemptyset(&ends);

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 
 fs::path own_folder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
 
-/// The page's folder: installed beside the program, or `web` of the tree that it was built in.
+/// The page's folder: installed beside the program, or `web` in the source tree.
 fs::path find_web() {
   const fs::path bin = own_folder();
   for (const fs::path& place : {bin / "../share/lacuna/web", bin / "../../../web"}) {
@@ -40,7 +40,7 @@ fs::path find_web() {
   throw std::invalid_argument("the page is not found; name its folder with --web");
 }
 
-/// Folders in a form that holds in the children's working directory, too.
+/// Absolute paths, which are valid in the children's working directory, too.
 std::vector<fs::path> absolute(const std::vector<fs::path>& folders) {
   std::vector<fs::path> result;
   for (const fs::path& folder : folders) {
@@ -56,7 +56,7 @@ fs::path renderer(const ServiceSettings& settings) {
   return settings.renderer.empty() ? own_folder() / "lacuna" : fs::absolute(settings.renderer);
 }
 
-/// Where uploaded scenes lie: the last of the scenes roots, so that they hide no other.
+/// The folder of uploaded scenes: the last of the scenes roots, so that they hide no other scene.
 fs::path uploads_folder(const DataRoot& data) { return data.dir / "scenes"; }
 
 std::vector<fs::path> given_roots(const ServiceSettings& settings) {
@@ -114,9 +114,8 @@ void check(const ServiceSettings& settings) {
   }
 }
 
-/// Raises the number of files that may be open at a time: what was allowed at the start is often
-/// too little. A quarter of them is for connections, as many for the files that these answer with,
-/// and half for the service and its renderers.
+/// Raises the limit of open files to its maximum. A quarter of them is for connections, a quarter
+/// for the files that these send, and half for the service and its renderers.
 HttpSettings http_settings(const ServiceSettings& settings) {
   constexpr rlim_t wanted = 8192;
   HttpSettings http = settings.http;
@@ -141,13 +140,12 @@ QueueSettings queue_settings(const ServiceSettings& settings) {
   return queue;
 }
 
-/// Gives a database another name: what it says is kept, should somebody want to look. Throws
-/// DatabaseInUse, std::system_error.
+/// Renames a database, which keeps its content for people. Throws DatabaseInUse, std::system_error.
 void put_aside(const fs::path& file) {
   try {
     const Database not_in_use(file);
   } catch (const DatabaseDamaged&) {
-    // That is why it is put aside.
+    // It is damaged, which is why it is renamed.
   }
   const std::string aside = file.string() + ".replaced-" + new_job_id();
   for (const char* part : {"", "-wal"}) {
@@ -155,7 +153,7 @@ void put_aside(const fs::path& file) {
   }
 }
 
-/// The database of the jobs, with what lay in folders before there was one. Throws
+/// Opens the database of the jobs, importing existing folders into a new one. Throws
 /// std::invalid_argument with advice if it cannot be used.
 std::unique_ptr<Store> open_store(const ServiceSettings& settings, const DataRoot& data) {
   const fs::path file = data.dir / "lacuna.db";

@@ -13,12 +13,12 @@ std::string service_version();
 /// The whole service.
 class Service {
  public:
-  /// Throws std::exception with a message for a person: an address that is no loopback, a data
-  /// folder that another service has, a renderer or a page that is not there.
+  /// Throws std::exception with a message for people: an address beyond loopback, a data folder in
+  /// use by another service, a missing renderer or page.
   explicit Service(const ServiceSettings& settings);
   ~Service();
 
-  /// Takes up the jobs that are there, and listens.
+  /// Continues the existing jobs, and listens.
   void start();
   /// Refuses new requests and lets every renderer write its checkpoint.
   void stop();

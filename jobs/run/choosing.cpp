@@ -243,7 +243,7 @@ void Choosing::judge() {
       turn.expected =
           turn.bias + turn.missing + *turn.noise * part_spent(turn, spec_.budget, first);
     } else if (const auto& before = judged[i]->record().turns; before.size() > 1) {
-      // After one iteration, from the comparison with other pictures.
+      // Keeps the estimate after one iteration, which compared it with other pictures.
       const Turn& last = before[before.size() - 2];
       turn.noise = last.noise, turn.missing = last.missing, turn.bias = last.bias;
       turn.expected = last.expected;

@@ -18,7 +18,7 @@ HttpError token_needed(const char* why) {
   return HttpError(401, why).with("WWW-Authenticate", "Bearer");
 }
 
-/// The token of an Authorization header; nothing if there is none. Throws HttpError 401.
+/// The token of an Authorization header, if any. Throws HttpError 401.
 std::optional<std::string> bearer(const Request& request) {
   const auto value = request.header("authorization");
   if (!value) return std::nullopt;
@@ -66,7 +66,7 @@ std::string shown_token(const Request& request) {
 }
 
 Response cookie_answer(const Request& request, const std::string& id, const char* more) {
-  // Over TLS (a proxy's) the cookie stays there.
+  // Behind a TLS proxy the cookie is sent over TLS only.
   const bool secure = request.header("origin").value_or("").starts_with("https://");
   Response response;
   response.status = 204;
@@ -92,7 +92,7 @@ void Access::admit(const Request& request) {
   if (!token_ || request.path == session_path) return;
   if (is_safe(request) && (request.path == "/health" || is_public_(request.path))) return;
   if (const auto shown = bearer(request)) return check_token(*shown);
-  // An id has 256 random bits: trying some is hopeless, so these tries need not be counted.
+  // An id has 256 random bits and cannot be guessed, so wrong ids need not be counted.
   if (!sessions_.holds(session_id(request))) {
     throw token_needed("A token is needed: Authorization: Bearer TOKEN.");
   }
@@ -120,8 +120,8 @@ Response Access::end_session(const Request& request) {
   return cookie_answer(request, "", "; Max-Age=0");
 }
 
-/// The right token always passes, whatever strangers show: it is too long to be guessed at any rate
-/// that the service answers, so the limit spares the service and guards no secret.
+/// The right token always passes, however many wrong ones were sent: it is too long to be guessed
+/// at any rate, so the limit protects the service's load, not the secret.
 void Access::check_token(std::string_view shown) {
   if (token_->is(shown)) return;
   const std::lock_guard lock(mutex_);

@@ -17,7 +17,7 @@ namespace lacuna {
 
 /// Access control. Without a token file, every client that reaches the address is admitted, except
 /// pages of other sites. With one, clients must send the token, or the cookie that POST
-/// /api/session issued for it; GET /health and the page's own files are public.
+/// /api/session issued for it; GET /health and the page's files are public.
 class Access {
  public:
   /// `is_public`: whether a path is one of the page's files. Throws std::runtime_error for the
@@ -28,7 +28,7 @@ class Access {
   /// Returns if the request is admitted. Throws HttpError 400, 401, 403, and 429 after too many
   /// wrong tokens.
   void admit(const Request& request);
-  /// With a token file: adds the routes that begin and end a session. Outlives `router`.
+  /// With a token file: adds the routes that begin and end a session. Must outlive `router`.
   void add_to(Router& router);
 
  private:

@@ -17,24 +17,24 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Closing a connection on which more comes in resets it, which takes back an answer that the client
-// has not read: it has this long.
+// Closing a connection with unread input resets it, which discards a response that the client has
+// not read yet; so wait this long first.
 constexpr auto linger_time = 1s;
 constexpr std::size_t piece_bytes = 64 * 1024;
 
 }  // namespace
 
-// The library closes a connection after a content provider has failed: where it has to be closed,
-// the provider says so at its end.
+// The library closes a connection after a failed content provider: to close it, the provider fails
+// at its end.
 void AnswerWriter::put(Response response, bool closes, const httplib::Request& sent,
                        httplib::Response& out) const {
-  // The library's request, of which it hands out a constant reference, decides what it writes. It
-  // would cut any answer to the ranges; those of files are cut already. For a HEAD it calls no
-  // provider, so one that has to close is answered as a GET.
+  // The library passes its request as a constant reference, but writes the response by it. It would
+  // apply ranges to any response, which files have done already. For HEAD it calls no provider, so
+  // a HEAD that must close is answered as a GET.
   auto& request = const_cast<httplib::Request&>(sent);
   request.ranges.clear();
   if (closes && request.method == "HEAD") request.method = "GET";
-  if (response.stream && request.version == "HTTP/1.0") closes = true;  // which knows no chunks
+  if (response.stream && request.version == "HTTP/1.0") closes = true;  // without chunked encoding
   out.status = response.status;
   for (const auto& [name, value] : response.headers) out.set_header(name, value);
   if (closes) out.set_header("Connection", "close");
@@ -71,8 +71,8 @@ AnswerWriter::Source AnswerWriter::source_of(Response response) {
   };
 }
 
-// Texts, too, go out by a provider: the library would pack the body of a response, and an ETag
-// stands for bytes.
+// Texts are sent by a provider, too: the library would compress the body of a response, but an ETag
+// identifies bytes.
 void AnswerWriter::put_content(std::size_t size, Response response, bool closes,
                                httplib::Response& out) const {
   const std::string type = response.content_type;
@@ -102,7 +102,7 @@ void AnswerWriter::put_stream(Response response, bool closes, httplib::Response&
       }
       client.done();
       return !closes;
-    } catch (const std::exception& error) {  // the head has gone out already
+    } catch (const std::exception& error) {  // the head is sent already
       log::error("an answer ends early: {}", error.what());
       return false;
     }

@@ -17,21 +17,21 @@ class DataSink;
 
 namespace lacuna {
 
-/// Hands responses to the HTTP library.
+/// Passes responses to the HTTP library.
 class AnswerWriter {
  public:
   /// `stopping`: streams end as soon as it is true. Both references outlive it.
   AnswerWriter(HttpMetrics& metrics, const std::atomic<bool>& stopping)
       : metrics_(metrics), stopping_(stopping) {}
 
-  /// Makes `out` the response to `sent`. `closes`: what follows on the connection is not a next
-  /// request, so the connection ends with this answer.
+  /// Sets `out` to the response to `sent`. `closes`: the connection ends with this response,
+  /// because the next bytes on it are not a request.
   void put(Response response, bool closes, const httplib::Request& sent,
            httplib::Response& out) const;
 
  private:
-  /// Some bytes of an answer from `offset` on, at most `length` and at least one; none: they cannot
-  /// be read.
+  /// Returns bytes of a response from `offset` on, at least one and at most `length`; none if they
+  /// cannot be read.
   using Source = std::function<std::string_view(std::size_t offset, std::size_t length)>;
 
   static Source source_of(Response response);

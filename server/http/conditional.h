@@ -14,7 +14,7 @@ Response json_response(int status, const OrderedJson& json);
 Response json_response(int status, std::string text);
 
 /// Adds an ETag, "PREFIX.HASH" with a hash of the response's text (without `prefix`: "HASH"), and
-/// turns the response into a 304 if the client already has it (If-None-Match).
+/// replaces the response by a 304 if the client already has it (If-None-Match).
 Response with_tag(const Request& request, Response response, std::string_view prefix = {});
 
 /// The revision in If-Match: the prefix of its single tag, "*", or empty. Throws HttpError 400 for

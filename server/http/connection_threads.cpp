@@ -14,8 +14,8 @@
 namespace lacuna {
 namespace {
 
-// The HTTP library matches a Range header by std::regex, which recurses once a character: the 8 KiB
-// that a header may have take 5 MiB.
+// The HTTP library matches a Range header by std::regex, which recurses per character: the 8 KiB of
+// a header take 5 MiB.
 constexpr std::size_t stack_bytes = 8 << 20;
 constexpr std::chrono::milliseconds pause_without_thread{10};
 
@@ -42,7 +42,7 @@ void ConnectionThreads::start(std::function<void()> serve) {
     ended_.wait(lock, [this] { return count_ < most_; });
     ++count_;
   }
-  pthread_attr_t attributes;  // of which std::thread knows no stack size
+  pthread_attr_t attributes;  // std::thread cannot set a stack size
   ::pthread_attr_init(&attributes);
   ::pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
   ::pthread_attr_setstacksize(&attributes, stack_bytes);
@@ -52,7 +52,7 @@ void ConnectionThreads::start(std::function<void()> serve) {
     log::warn("no thread for a connection: {}", std::strerror(error));
     std::this_thread::sleep_for(pause_without_thread);
   }
-  task.release();  // it is the thread's
+  task.release();  // owned by the thread
   ::pthread_attr_destroy(&attributes);
 }
 
@@ -67,7 +67,7 @@ void* ConnectionThreads::run(void* pointer) {
   task.reset();
   const std::lock_guard lock(threads.mutex_);
   --threads.count_;
-  threads.ended_.notify_all();  // under the lock: `threads` may go as soon as that is free
+  threads.ended_.notify_all();  // under the lock: `threads` may be destroyed once it is free
   return nullptr;
 }
 

@@ -7,18 +7,18 @@
 
 namespace lacuna {
 
-/// A thread for each connection, as long as it lasts. Thread-safe.
+/// One thread per open connection. Thread-safe.
 class ConnectionThreads {
  public:
   explicit ConnectionThreads(std::size_t most) : most_(most) {}
   ConnectionThreads(const ConnectionThreads&) = delete;
   ConnectionThreads& operator=(const ConnectionThreads&) = delete;
-  /// Waits for the end of all.
+  /// Waits for all threads.
   ~ConnectionThreads();
 
-  /// Starts `serve` on a thread of its own; waits first while there are as many as there may be.
+  /// Starts `serve` on a new thread; waits first while `most` threads run.
   void start(std::function<void()> serve);
-  /// How many there are.
+  /// Number of threads.
   std::size_t count() const;
 
  private:

@@ -13,12 +13,12 @@
 namespace lacuna {
 namespace {
 
-/// The regular file `name` in `folder`, neither reached through a symbolic link, and its status; an
-/// empty handle if there is none.
+/// Opens the regular file `name` in `folder`, neither of which may be a symbolic link, with its
+/// status; an empty handle if there is none.
 FileHandle open_regular(const std::filesystem::path& folder, std::string_view name,
                         struct stat& status) {
   const FileHandle dir(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
-  // Not blocking, so that a FIFO in a file's place holds no thread.
+  // Non-blocking, so that a FIFO does not block a thread.
   FileHandle file(dir ? ::openat(dir.get(), std::string(name).c_str(),
                                  O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC)
                       : -1);

@@ -17,7 +17,7 @@ struct HostPort {
   std::string port;  ///< may be empty
 };
 
-/// Nothing if it is not NAME or NAME:PORT.
+/// None if it is not NAME or NAME:PORT.
 std::optional<HostPort> parse(std::string_view text) {
   const std::size_t bracket = text.find(']');
   const std::size_t colon = text.find(':', bracket == std::string_view::npos ? 0 : bracket);
@@ -43,7 +43,7 @@ bool holds(const std::vector<std::string>& list, const std::string& name) {
 }  // namespace
 
 void check_framing(const Request& request) {
-  constexpr std::size_t max_digits = 18;  // of 64 bits
+  constexpr std::size_t max_digits = 18;  // fit into 64 bits
   const auto encoding = request.header("transfer-encoding");
   const auto length = request.header("content-length");
   if (encoding && length) throw HttpError(400, "Content-Length and Transfer-Encoding together.");
@@ -97,7 +97,7 @@ void Guard::check(const Request& request) const {
         403, fmt::format("Header Host names another machine: use {}.", fmt::join(names_, ", ")));
   }
   const auto origin = request.header("origin");
-  // https: where a proxy that speaks TLS stands before the service.
+  // https: behind a TLS proxy.
   const bool own = !origin || *origin == "http://" + *host || *origin == "https://" + *host;
   if (!is_safe(request) && !own) {
     throw HttpError(403, "Pages of other sites may not change anything here (header Origin).");
@@ -105,7 +105,7 @@ void Guard::check(const Request& request) const {
 }
 
 void Guard::check_own_page(const Request& request) const {
-  if (is_safe(request) || request.header("origin")) return;  // check() has compared it
+  if (is_safe(request) || request.header("origin")) return;  // checked by check()
   if (request.header("sec-fetch-site").value_or("") == "same-origin") return;
   throw HttpError(403,
                   "A request with a cookie must say that it comes from a page of this service "

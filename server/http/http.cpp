@@ -1,4 +1,4 @@
-// This source and answer_writer.cpp include cpp-httplib, no other.
+// Only this source and answer_writer.cpp include cpp-httplib.
 #include "server/http/http.h"
 
 #include <fmt/chrono.h>
@@ -28,23 +28,23 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-// In the kernel: hundreds of clients may come at once.
+// In the kernel: hundreds of clients may connect at once.
 constexpr int backlog = 512;
-// Else clients that take nothing could each hold megabytes of the kernel's memory.
+// Otherwise each client that reads nothing could occupy megabytes of kernel memory.
 constexpr int send_buffer = 256 * 1024;
-// The library wants a number; clients need no end.
+// The library requires a limit; there is no reason for one.
 constexpr std::size_t requests_a_connection = 1'000'000;
-// An idle connection holds a thread, which looks at it a hundred times a second: long enough for
-// the requests of a page, shorter than browsers would keep it.
+// An idle connection holds a thread, which polls it a hundred times a second: long enough for the
+// requests of a page, shorter than browsers' timeouts.
 constexpr time_t idle_seconds = 5;
 constexpr std::size_t max_target_bytes = 1024;
-// How long stop() waits for answers on their way.
+// Time that stop() waits for responses in progress.
 constexpr auto stop_time = 1s;
 
 constexpr const char* problem_type = "application/problem+json";
 
-// The page holds no foreign content and is nobody's frame. A figure of it in a frame elsewhere is
-// not possible: its address says so only behind the #, which the service never sees.
+// The page has no foreign content and may not be framed. Figures cannot be framed elsewhere either:
+// only the fragment after the #, which the service never receives, distinguishes them.
 const httplib::Headers headers_of_every_answer{
     {"Content-Security-Policy",
      "default-src 'self'; img-src 'self' blob: data:; object-src 'none'; frame-ancestors 'none'; "
@@ -53,7 +53,7 @@ const httplib::Headers headers_of_every_answer{
     {"Referrer-Policy", "no-referrer"},
     {"Cross-Origin-Resource-Policy", "same-origin"}};
 
-/// The library's door to the threads.
+/// Connects the library to the threads.
 class Tasks final : public httplib::TaskQueue {
  public:
   Tasks(ConnectionThreads& threads, HttpMetrics& metrics) : threads_(threads), metrics_(metrics) {}
@@ -67,7 +67,7 @@ class Tasks final : public httplib::TaskQueue {
     });
     return Enqueued(true);
   }
-  /// The library calls it when it accepts no more, also because of a fault: connections live on.
+  /// The library calls it when it stops accepting, also after an error: connections continue.
   void shutdown() override {}
 
  private:
@@ -75,14 +75,14 @@ class Tasks final : public httplib::TaskQueue {
   HttpMetrics& metrics_;
 };
 
-/// What belongs to a request, from its head to the end of its answer.
+/// The data of a request, from its head to the end of its response.
 struct Exchange {
   explicit Exchange(HttpMetrics& metrics) : in_progress(metrics.in_progress) {}
   Clock::time_point begin = Clock::now();
   Counted in_progress;
-  bool closes = false;  ///< its body has not been read: what follows is not a next request
+  bool closes = false;  ///< its body was not read: the next bytes are not a request
 };
-/// Of the request that this thread answers: the library has no place for it.
+/// For the request that this thread answers: the library cannot store it.
 thread_local std::optional<Exchange> exchange;
 
 bool is_plain_path(std::string_view path) {
@@ -97,13 +97,14 @@ std::string path_as_sent(const httplib::Request& sent) {
   return sent.target.substr(0, sent.target.find('?'));
 }
 
-/// A request's head, but for its query.
+/// A request's head, without its query.
 Request head_of(const httplib::Request& sent) {
   Request request;
   request.method = sent.method;
   request.path = path_as_sent(sent);
   for (const auto& [name, value] : sent.headers) {
-    if (name.starts_with("REMOTE_") || name.starts_with("LOCAL_")) continue;  // the library's own
+    if (name.starts_with("REMOTE_") || name.starts_with("LOCAL_"))
+      continue;  // added by the library
     request.headers.emplace(lower_case(name), value);
   }
   if (sent.ranges.size() == 1) {
@@ -112,11 +113,11 @@ Request head_of(const httplib::Request& sent) {
   return request;
 }
 
-/// Gives each piece of the body to `sink`. Throws as Request::read_body says.
+/// Passes each piece of the body to `sink`. Throws as Request::read_body.
 template <class Sink>
 void read_body(const Request& head, const httplib::ContentReader& reader, std::uint64_t max_bytes,
                const Sink& sink) {
-  if (!announces_body(head)) return;  // the library would wait for the end of the connection
+  if (!announces_body(head)) return;  // the library would read until the connection ends
   const HttpError too_large(413, fmt::format("The body is larger than {} bytes.", max_bytes));
   if (std::stoull(head.header("content-length").value_or("0")) > max_bytes) throw too_large;
   std::uint64_t total = 0;
@@ -138,13 +139,13 @@ void write_all(int fd, const char* data, std::size_t size) {
   }
 }
 
-/// "/jobs/{id}" as a regular expression; paths hold no other special character than the point.
+/// "/jobs/{id}" as a regular expression; paths contain no special character but the dot.
 std::string expression(const Router::Route& route) {
   static const std::regex point("\\."), name("\\{[^}]*\\}");
   return std::regex_replace(std::regex_replace(route.pattern, point, "\\."), name, "([^/]+)");
 }
 
-/// What a client learns of an exception. `path`: of its request.
+/// The response to an exception. `path`: of the request.
 Response answer_to(const std::exception_ptr& thrown, const std::string& path) {
   try {
     std::rethrow_exception(thrown);
@@ -162,7 +163,7 @@ Response answer_to(const std::exception_ptr& thrown, const std::string& path) {
   return problem_response(HttpError(500, "The service failed; its log says more."), path);
 }
 
-/// The local port of a connection; 0 of any other descriptor.
+/// The local port of a connection; 0 for any other descriptor.
 int port_of_connection(int fd) {
   sockaddr_storage own{}, peer{};
   socklen_t size = sizeof own, peer_size = sizeof peer;
@@ -171,10 +172,10 @@ int port_of_connection(int fd) {
       (own.ss_family != AF_INET && own.ss_family != AF_INET6)) {
     return 0;
   }
-  return ntohs(reinterpret_cast<const sockaddr_in&>(own).sin_port);  // IPv6 has it there, too
+  return ntohs(reinterpret_cast<const sockaddr_in&>(own).sin_port);  // at the same offset for IPv6
 }
 
-/// The library tells nobody the descriptors of its connections.
+/// Shuts down the connections; the library does not expose their descriptors.
 void shut_connections(int port) {
   std::error_code unreadable;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", unreadable)) {
@@ -208,14 +209,14 @@ HttpServer::~HttpServer() { stop(); }
 void HttpServer::configure() {
   server_->new_task_queue = [this] { return new Tasks(threads_, metrics_); };
   server_->set_default_headers(headers_of_every_answer);
-  server_->set_tcp_nodelay(true);  // answers and events are written whole: nothing to wait for
+  server_->set_tcp_nodelay(true);  // responses and events are written whole
   server_->set_keep_alive_max_count(requests_a_connection);
   server_->set_keep_alive_timeout(idle_seconds);
   server_->set_read_timeout(settings_.silence);
   server_->set_write_timeout(settings_.silence);
   server_->set_socket_options([this](socket_t listener) {
     listener_ = listener;
-    const int yes = 1;  // a restart need not wait for old connections to be forgotten
+    const int yes = 1;  // a restart need not wait for old connections in TIME_WAIT
     ::setsockopt(listener, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     ::setsockopt(listener, SOL_SOCKET, SO_SNDBUF, &send_buffer, sizeof send_buffer);
   });
@@ -228,7 +229,7 @@ void HttpServer::configure() {
       [this](const httplib::Request& sent, httplib::Response& out, const std::exception_ptr& e) {
         writer_.put(answer_to(e, path_as_sent(sent)), exchange->closes, sent, out);
       });
-  // For what the library refuses by itself, at any place of a head: nothing can follow.
+  // For requests that the library itself refuses, anywhere in a head: close the connection.
   const httplib::Server::HandlerWithResponse refused = [this](const auto& sent, auto& out) {
     if (out.get_header_value("Content-Type") == problem_type) return Handled::Unhandled;
     const HttpError error(out.status, "The request is malformed, or ends early.");
@@ -254,7 +255,7 @@ void HttpServer::add(const std::string& method, const std::string& expression,
   if (method == "DELETE") server_->Delete(expression, handle);
 }
 
-/// What no route takes: the library would read its body into memory first.
+/// Refuses requests without a route, whose bodies the library would read into memory.
 void HttpServer::refuse_rest(const Router& routes) {
   std::vector<std::pair<std::regex, std::string>> known;
   for (const Router::Route& route : routes.routes()) {
@@ -276,14 +277,14 @@ void HttpServer::refuse_rest(const Router& routes) {
   }
 }
 
-/// Throws HttpError for a request that is not taken.
+/// Throws HttpError for a refused request.
 void HttpServer::admit(const httplib::Request& sent) {
   const Request head = head_of(sent);
   exchange.emplace(metrics_).closes = announces_body(head) || stopping_;
   if (stopping_) throw HttpError(503, "The service is shutting down.");
   check_framing(head);
   if (sent.target.size() > max_target_bytes) throw HttpError(414, "The address is too long.");
-  // The library knows more, and would read their bodies into memory.
+  // The library supports more methods, and would read their bodies into memory.
   for (const char* method : {"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"}) {
     if (sent.method != method) continue;
     if (admit_) admit_(head);
@@ -300,7 +301,7 @@ void HttpServer::respond(const Router::Route& route, const httplib::Request& sen
     request.query = Query(std::string_view(sent.target).substr(request.path.size() + 1));
   }
   if (route.doc.for_programs) check_query(request.query, route.doc);
-  // Of chunks the library takes any bytes for the end: what follows may be anything.
+  // The library accepts any bytes as the end of chunks, so the next bytes may be anything.
   const auto has_read = [&] { exchange->closes = request.headers.contains("transfer-encoding"); };
   request.read_body = [&](std::size_t max_bytes) {
     std::string text;
@@ -322,14 +323,14 @@ void HttpServer::respond(const Router::Route& route, const httplib::Request& sen
   writer_.put(std::move(response), exchange->closes, sent, out);
 }
 
-/// The last look at an answer's head.
+/// Completes a response's head.
 void HttpServer::complete(const httplib::Request& sent, httplib::Response& out) {
   out.set_header("Date",
                  fmt::format("{:%a, %d %b %Y %H:%M:%S} GMT", fmt::gmtime(std::time(nullptr))));
   if (out.status == 204 || out.status == 304) out.headers.erase("Content-Length");
   if (out.has_header("Connection")) {
     out.headers.erase("Keep-Alive");
-    out.headers.erase("Connection");  // of ours and the library's one stays
+    out.headers.erase("Connection");  // keep only one of ours and the library's
     out.set_header("Connection", "close");
   }
   const auto time = exchange ? Clock::now() - exchange->begin : Clock::duration{};
@@ -365,7 +366,8 @@ void HttpServer::start() {
   listener_thread_ = std::thread([this] { listen(); });
 }
 
-/// The library gives up where the machine has no file or memory for a connection: that may pass.
+/// The library stops listening when no descriptor or memory is left for a connection, which is
+/// transient.
 void HttpServer::listen() {
   while (!stopping_) {
     server_->listen_after_bind();

@@ -20,13 +20,13 @@ class Server;
 
 namespace lacuna {
 
-/// An HTTP/1.1 server: that of cpp-httplib, which listens, parses requests, matches routes, keeps
-/// connections alive, reads bodies, bounds silences and writes answers. This class adds a thread
-/// for each connection, the refusal of what the library would misread, the limits of bodies, and
-/// errors as problem+json.
+/// An HTTP/1.1 server: cpp-httplib, which listens, parses requests, matches routes, keeps
+/// connections alive, reads bodies, applies timeouts and writes responses. This class adds a thread
+/// for each connection, the refusal of requests that the library would misread, size limits of
+/// bodies, and errors as problem+json.
 class HttpServer {
  public:
-  /// Called when a request's head has come: throws HttpError to refuse it.
+  /// Called when a request's head has arrived; throws HttpError to refuse it.
   using Admit = std::function<void(const Request&)>;
 
   /// An HttpError of a handler becomes a problem+json response; any other exception is logged and
@@ -36,11 +36,11 @@ class HttpServer {
 
   /// Binds the address; throws std::system_error, or std::invalid_argument for an invalid address.
   void bind();
-  /// "http://127.0.0.1:8017/"; once it is bound.
+  /// "http://127.0.0.1:8017/"; after bind().
   std::string url() const;
-  /// Starts serving, on its own threads.
+  /// Starts serving on its own threads.
   void start();
-  /// Refuses new requests, ends streams, waits a second for answers on their way, and closes every
+  /// Refuses new requests, ends streams, waits a second for responses in progress, and closes every
   /// connection.
   void stop();
 
@@ -63,7 +63,7 @@ class HttpServer {
   const AnswerWriter writer_;
   ConnectionThreads threads_;
   const std::unique_ptr<httplib::Server> server_;
-  int listener_ = -1;  ///< the library's
+  int listener_ = -1;  ///< of the library
   int port_ = 0;
   std::thread listener_thread_;
 };

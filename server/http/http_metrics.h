@@ -20,17 +20,17 @@ struct HttpMetrics {
 
   Count accepted{0};     ///< connections
   Count connections{0};  ///< gauge: open ones, each with a thread
-  Count in_progress{0};  ///< gauge: requests whose head has come and whose answer has not gone out
+  Count in_progress{0};  ///< gauge: requests whose head has arrived and whose response is not sent
   Count streams{0};      ///< gauge: open event streams
-  Count bytes_out{0};    ///< of answers, heads not counted
+  Count bytes_out{0};    ///< of responses, without heads
   std::array<Count, 5> requests{};                 ///< answered, by the first digit of the status
-  std::array<Count, bounds.size() + 1> seconds{};  ///< from a request's head to its answer's
+  std::array<Count, bounds.size() + 1> seconds{};  ///< from a request's head to the response's
   Count microseconds{0};                           ///< their sum
 
   void answered(int status, std::chrono::nanoseconds time);
 };
 
-/// Keeps a gauge up for as long as it lives.
+/// Increments a gauge during its life.
 class Counted {
  public:
   explicit Counted(HttpMetrics::Count& count) : count_(count) { ++count_; }
@@ -42,7 +42,7 @@ class Counted {
   HttpMetrics::Count& count_;
 };
 
-/// Writes all of them as lacuna_http_...
+/// Writes all metrics, named lacuna_http_...
 void write_metrics(PrometheusText& text, const HttpMetrics& metrics);
 
 }  // namespace lacuna

@@ -20,7 +20,7 @@ namespace lacuna {
 /// each %XX in them.
 using Headers = std::multimap<std::string, std::string>;
 
-/// The same text with the letters of ASCII in lower case.
+/// The text with ASCII letters in lower case.
 std::string lower_case(std::string text);
 
 /// First and last byte of a range as a client sends it: `last` -1 is the end; with `first` -1,
@@ -29,27 +29,27 @@ struct ByteRange {
   std::int64_t first = -1, last = -1;
 };
 
-/// A request as handlers get it.
+/// A request, as passed to handlers.
 struct Request {
   std::string method;
-  std::string path;  ///< as sent, without the query; nothing is decoded: no name here needs it
-  Query query;       ///< what stands behind the path, decoded
+  std::string path;  ///< as sent, without the query and not decoded, which no name here needs
+  Query query;       ///< decoded
   Headers headers;
-  std::optional<ByteRange> range;  ///< header Range, if it is one range
+  std::optional<ByteRange> range;  ///< header Range, if it is a single range
 
-  /// Reads the body, at most `max_bytes` of it; throws HttpError: 413 if it is larger, 400 if it
-  /// ends early, stops for too long, or is malformed. A body can be read once.
+  /// Reads the body, at most `max_bytes`; throws HttpError 413 if it is larger, 400 if it ends
+  /// early, pauses too long, or is malformed. A body can be read once.
   std::function<std::string(std::size_t max_bytes)> read_body;
-  /// The same for a large body, which goes to a file from where that stands; gives its number of
-  /// bytes. Throws std::system_error, too, when the file cannot take it.
+  /// The same for a large body, written to a file at its present position; returns the number of
+  /// bytes. Also throws std::system_error if the file cannot be written.
   std::function<std::uint64_t(int fd, std::uint64_t max_bytes)> read_body_to;
 
-  /// The value of a header, by its name in lower case; nothing if it is absent. Throws HttpError if
-  /// it stands twice.
+  /// The value of a header, by its name in lower case; none if it is absent. Throws HttpError if it
+  /// is repeated.
   std::optional<std::string> header(const std::string& name) const;
 };
 
-/// Whether bytes follow the request's head that are not a next request.
+/// Whether the request has a body.
 bool announces_body(const Request& request);
 
 /// The media type of the body, in lower case and without parameters: "application/json"; empty if
@@ -67,15 +67,15 @@ struct FilePart {
 struct Response {
   int status = 200;
   std::string content_type;
-  std::vector<std::pair<std::string, std::string>> headers;  ///< never anything a client sent
+  std::vector<std::pair<std::string, std::string>> headers;  ///< never text from a client
   std::string body;
   std::optional<FilePart> file;
-  /// Called again and again: gives the next text (empty: nothing new, after a short wait), or
-  /// nothing at the end.
+  /// Called repeatedly: returns the next text (empty: nothing new after a short wait), or none at
+  /// the end.
   std::function<std::optional<std::string>()> stream;
 };
 
-/// "Not found" and the like.
+/// The title of a status: "Not found".
 const char* status_title(int status);
 
 /// A refusal of a request: becomes an application/problem+json response.
@@ -85,7 +85,7 @@ class HttpError : public std::runtime_error {
       : std::runtime_error(detail), status_(status), errors_(std::move(errors)) {}
   int status() const { return status_; }
   const std::vector<Problem>& errors() const { return errors_; }
-  /// One more header of the answer, such as Allow.
+  /// Adds a header to the response, such as Allow.
   HttpError& with(std::string name, std::string value) {
     headers_.emplace_back(std::move(name), std::move(value));
     return *this;
@@ -98,11 +98,11 @@ class HttpError : public std::runtime_error {
   std::vector<std::pair<std::string, std::string>> headers_;
 };
 
-/// A file could not be written or read: 503 where descriptors lack, else 507. `what`: the beginning
-/// of the sentence; the answer names no file.
+/// The error for a file that could not be written or read: 503 if no descriptor was left, else 507.
+/// `what`: the beginning of the sentence; the response names no file.
 HttpError storage_error(const std::system_error& error, const std::string& what);
 
-/// The application/problem+json answer (RFC 9457) to a request for `path`.
+/// The application/problem+json response (RFC 9457) to a request for `path`.
 Response problem_response(const HttpError& error, const std::string& path);
 
 }  // namespace lacuna

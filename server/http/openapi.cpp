@@ -62,7 +62,7 @@ OrderedJson operation(const RouteDoc& doc, OrderedJson parameters) {
   return result;
 }
 
-/// RFC 9457, and the places in a document.
+/// RFC 9457, with positions in a document.
 OrderedJson problem_schema() {
   const OrderedJson text = {{"type", "string"}};
   const OrderedJson place = {
@@ -92,7 +92,7 @@ OrderedJson Router::openapi(const OrderedJson& info) const {
   }
   return {{"openapi", "3.1.0"},
           {"info", info},
-          // The token is asked for only by services that have one: {} stands for those that do not.
+          // Only services with a token require it; {} represents the others.
           {"security",
            {OrderedJson::object(),
             {{"token", OrderedJson::array()}},

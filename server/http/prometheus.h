@@ -16,20 +16,22 @@ class PrometheusText {
   using Labels = std::vector<std::pair<std::string, std::string>>;
   static constexpr std::string_view media_type = "text/plain; version=0.0.4; charset=utf-8";
 
-  /// Begins a metric; its values follow. Throws std::invalid_argument for a name that is none, or
-  /// was used before.
+  /// Begins a metric; its values follow. Throws std::invalid_argument for an invalid or repeated
+  /// name.
   PrometheusText& counter(std::string_view name, std::string_view help);
   PrometheusText& gauge(std::string_view name, std::string_view help);
-  /// One value of the metric begun last. Throws std::invalid_argument for a bad label's name.
+  /// Adds a value of the latest metric. Throws std::invalid_argument for an invalid name of a
+  /// label.
   PrometheusText& value(double value, const Labels& labels = {});
 
   /// The values of a histogram.
   struct Histogram {
     std::vector<double> bounds;         ///< upper bounds of the buckets, ascending
-    std::vector<std::uint64_t> counts;  ///< of each bucket, not cumulative, and above all bounds
+    std::vector<std::uint64_t> counts;  ///< of each bucket, not cumulative, then above all bounds
     double sum = 0;                     ///< of all values
   };
-  /// A metric with one histogram. Throws std::invalid_argument if bounds and counts do not fit.
+  /// A metric with one histogram. Throws std::invalid_argument if the numbers of bounds and counts
+  /// do not match.
   PrometheusText& histogram(std::string_view name, std::string_view help,
                             const Histogram& histogram, const Labels& labels = {});
 

@@ -21,7 +21,7 @@ bool is_plain_text(const std::string& text) {
   }
   try {
     return !nlohmann::json(text).dump().empty();
-  } catch (const nlohmann::json::type_error&) {  // no UTF-8
+  } catch (const nlohmann::json::type_error&) {  // not UTF-8
     return false;
   }
 }

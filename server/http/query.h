@@ -9,13 +9,13 @@
 
 namespace lacuna {
 
-/// The parameters of an address, "state=done&limit=10", decoded: %XX is a byte and + a blank.
+/// The parameters of a URL, "state=done&limit=10", decoded: %XX is a byte and + a blank.
 class Query {
  public:
   Query() = default;
-  /// `sent`: what stands behind the ?. Throws HttpError 400 for a bad escape, a second "=" in a
-  /// parameter, a control character, text that is not UTF-8, an empty name and a name that stands
-  /// twice. (The HTTP library passes over all of these.)
+  /// `sent`: the text after the ?. Throws HttpError 400 for an invalid escape, a second "=" in a
+  /// parameter, a control character, text that is not UTF-8, an empty name and a repeated name.
+  /// (The HTTP library ignores all of these.)
   explicit Query(std::string_view sent);
 
   bool has(const std::string& name) const { return values_.contains(name); }
@@ -25,7 +25,7 @@ class Query {
                                       std::int64_t max = INT64_MAX) const;
   /// "1" or "true", "0" or "false"; false if it is absent. Throws HttpError 400.
   bool flag(const std::string& name) const;
-  /// Throws HttpError 400 if there is a parameter beside these.
+  /// Throws HttpError 400 for a parameter with another name.
   void check_known(const std::vector<std::string>& names) const;
 
  private:

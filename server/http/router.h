@@ -11,7 +11,7 @@
 
 namespace lacuna {
 
-/// A parameter behind the ? of an address, checked before the handler is called.
+/// A query parameter, checked before the handler is called.
 struct QueryParameter {
   enum class Type { text, integer, flag };
   std::string name;
@@ -27,15 +27,15 @@ struct RouteDoc {
   std::string body_type = {};                             ///< media type; empty: it takes no body
   std::string body_schema = {};                           ///< JSON Schema, as text; empty: none
   std::vector<std::pair<int, std::string>> answers = {};  ///< status, and what it means
-  bool needs_token = true;                                ///< where the service has one
+  bool needs_token = true;                                ///< if the service has one
   bool for_programs = true;  ///< false: a file of the page, which takes any query
-  /// The parts in braces may hold escapes (%20): the handler says what is allowed. Elsewhere an
-  /// address with one is none.
+  /// The parts in braces may contain escapes (%20), which the handler checks; other routes do not
+  /// match them.
   bool any_characters = false;
 };
 
 /// A table of methods and path patterns such as "/api/jobs/{id}/files/{name}"; each name in braces
-/// stands for one part of the path, given to the handler in order. The HTTP library matches them,
+/// matches one part of the path, passed to the handler in order. The HTTP library tries the routes
 /// in the order in which they were added; HEAD is answered as GET.
 class Router {
  public:
@@ -56,19 +56,18 @@ class Router {
     add(std::move(method), std::move(pattern), {}, std::move(handler));
   }
   const std::vector<Route>& routes() const { return routes_; }
-  /// The OpenAPI 3.1 document of all routes that are for programs. `info`: {"title", "version",
-  /// ...}. Throws std::logic_error for a body_schema that is no JSON.
+  /// The OpenAPI 3.1 document of all routes for programs. `info`: {"title", "version", ...}. Throws
+  /// std::logic_error for a body_schema that is not JSON.
   OrderedJson openapi(const OrderedJson& info) const;
 
  private:
   std::vector<Route> routes_;
 };
 
-/// Throws HttpError 400 for a parameter that the route does not know, or whose value it cannot
-/// have.
+/// Throws HttpError 400 for an unknown parameter or an invalid value.
 void check_query(const Query& query, const RouteDoc& doc);
 
-/// A handler of an address whose first part is an id: calls `routes`, which outlives it.
+/// A handler of a path whose first part is an id: calls `routes`, which must outlive it.
 template <class Routes>
 Router::Handler with_id(Routes& routes,
                         Response (Routes::*handler)(const Request&, const std::string&)) {

@@ -12,18 +12,18 @@ namespace lacuna {
 /// The page: a fixed list of files, made when the service starts.
 class StaticFiles {
  public:
-  /// Lists the regular files directly in `folder` with the endings of web pages; `index.html` is
+  /// Lists the regular files directly in `folder` with the extensions of web pages; `index.html` is
   /// also "/". Throws std::invalid_argument if there is no index.html.
   explicit StaticFiles(const std::filesystem::path& folder);
 
-  /// Serves one more file, at `path`; nothing happens if it is not there.
+  /// Also serves `file` at `path`, unless it is missing.
   void add(const std::string& path, const std::filesystem::path& file);
 
-  /// Serves a file of the page that the program makes itself, in place of any at `path`.
+  /// Serves a generated file of the page, in place of any file at `path`.
   void add_made(const std::string& path, std::string text);
 
   bool has(const std::string& path) const { return files_.contains(path) || made_.contains(path); }
-  /// Adds a route for each; outlives `router`.
+  /// Adds a route for each; must outlive `router`.
   void add_to(Router& router) const;
 
  private:

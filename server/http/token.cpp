@@ -62,7 +62,7 @@ Token Token::read(const std::filesystem::path& file) {
 }
 
 bool Token::is(std::string_view shown) const {
-  // As many steps as what is shown has characters, whatever they are.
+  // The number of steps depends only on the length of `shown`.
   volatile std::size_t different = shown.size() ^ secret_.size();
   for (std::size_t i = 0; i < shown.size(); ++i) {
     different = different | static_cast<unsigned char>(shown[i] ^ secret_[i % secret_.size()]);

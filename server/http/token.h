@@ -12,13 +12,13 @@ namespace lacuna {
 class Token {
  public:
   explicit Token(std::string secret) : secret_(std::move(secret)) {}
-  /// Reads it off a file: one line of 16 to 256 printable ASCII characters, no blank and no %
-  /// (which the HTTP library takes for an escape in the header that shows it). Throws
-  /// std::runtime_error, naming the file, if that is not so, or if the file is not a regular file
-  /// of this user that nobody else can read or write (mode 0600).
+  /// Reads it from a file: one line of 16 to 256 printable ASCII characters without blanks and %
+  /// (which the HTTP library decodes as an escape in headers). Throws std::runtime_error, naming
+  /// the file, otherwise, and if it is not a regular file of this user that nobody else can read or
+  /// write (mode 0600).
   static Token read(const std::filesystem::path& file);
 
-  /// Takes a time that tells nothing about the secret, not even its length.
+  /// Constant time with respect to the secret, including its length.
   bool is(std::string_view shown) const;
 
  private:
@@ -33,10 +33,10 @@ class Sessions {
  public:
   static constexpr std::size_t max_sessions = 64;
 
-  /// A new session's id. Throws std::system_error.
+  /// Opens a session and returns its id. Throws std::system_error.
   std::string open();
   bool holds(std::string_view id) const;
-  /// Nothing happens if it is not there.
+  /// Does nothing if there is no such session.
   void close(std::string_view id);
 
  private:

@@ -10,13 +10,12 @@
 namespace lacuna {
 namespace {
 
-// Renderers write their progress a few times a second: looking at two small files as often is
-// simpler than a notice from the kernel, and costs next to nothing.
+// Renderers write their progress a few times a second: polling two small files as often is simpler
+// than inotify, and its cost is negligible.
 constexpr std::chrono::milliseconds tick{250};
-constexpr int ticks_to_remote = 8;  // two files of each job, over the network
+constexpr int ticks_to_remote = 8;  // two files per job, over the network
 constexpr int ticks_to_disk = 4, ticks_to_retention = 240;
-// Temporary files are looked for at the start, and once more when all that were left then are old
-// enough to be taken away.
+// Temporary files are removed at the start, and once more when all of that time are old enough.
 constexpr int ticks_to_tidy = 480;
 
 }  // namespace
@@ -43,7 +42,7 @@ void MaintenanceThread::run(const std::stop_token& ends) {
 }
 
 void MaintenanceThread::do_round(int number) {
-  // What fails keeps nothing else from being done.
+  // A failed step does not prevent the others.
   const auto each = [&](int rounds, const auto& step) {
     if (number % rounds != 0) return;
     try {
@@ -59,7 +58,7 @@ void MaintenanceThread::do_round(int number) {
   each(1, [&] { tidy_some(); });
 }
 
-/// Those in which a killed write may have left its temporary file.
+/// Lists the folders in which a killed process may have left a temporary file.
 void MaintenanceThread::list_folders() {
   jobs_to_tidy_ = list_job_names(data_.jobs());
   for (const std::string& id : list_job_names(data_.sweeps())) {
@@ -85,7 +84,7 @@ void MaintenanceThread::remove_old() {
     try {
       queue_.remove(id);
       log::info("{}: removed, as the settings of what is kept say", id);
-    } catch (const std::exception& error) {  // it was asked to go on, or its folder resists
+    } catch (const std::exception& error) {  // it was reopened, or its folder cannot be removed
       log::warn("{} is kept: {}", id, error.what());
     }
   }

@@ -13,7 +13,7 @@
 namespace lacuna {
 
 /// Periodic maintenance: reads the progress of renderers, checks the disk space, removes outdated
-/// jobs and what killed writes have left.
+/// jobs and the temporary files of killed processes.
 class MaintenanceThread {
  public:
   MaintenanceThread(const Store& store, Queue& queue, DataRoot data, CareSettings settings);

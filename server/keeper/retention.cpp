@@ -15,7 +15,7 @@ std::vector<std::string> outdated(const std::vector<JobEntry>& removable,
   const std::string too_old = utc_text(now - age);
   std::vector<std::string> ids;
   for (std::size_t i = 0; i < removable.size(); ++i) {
-    // The clock of the machine that rendered it may be behind.
+    // The clock of the rendering machine may be behind.
     const JobState& state = removable[i].state;
     const bool old = settings.keep_days > 0 && std::max(state.finished, state.created) < too_old;
     if (i < surplus || old) ids.push_back(removable[i].id);

@@ -9,8 +9,7 @@
 
 namespace lacuna {
 
-/// Those of `removable` jobs (Store::removable()) that `settings` do not keep, oldest first. `now`:
-/// UTC as in JobState.
+/// The `removable` jobs (Store::removable()) that `settings` do not keep, oldest first. `now`: UTC.
 std::vector<std::string> outdated(const std::vector<JobEntry>& removable,
                                   const CareSettings& settings,
                                   std::chrono::system_clock::time_point now);

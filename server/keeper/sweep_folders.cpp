@@ -38,7 +38,7 @@ void SweepFolders::note(const SweepEntry& sweep) const {
                                       .runs = sweep.runs,
                                       .idempotency_key = sweep.key.value_or(""),
                                       .body_hash = sweep.body_hash});
-  } catch (const std::exception& error) {  // the store knows
+  } catch (const std::exception& error) {  // the store has it
     log::warn("{}: {}", sweep.id, error.what());
   }
 }

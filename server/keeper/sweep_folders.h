@@ -10,28 +10,28 @@
 
 namespace lacuna {
 
-/// The folders of a service's sweeps, with their plans; those that were used last are kept, so that
-/// a page that looks at a sweep again and again does not have its plan made each time. Thread-safe.
+/// The folders of a service's sweeps, with their plans. Caches the most recently used ones, so that
+/// a page that polls a sweep does not rebuild its plan each time. Thread-safe.
 class SweepFolders {
  public:
   using FolderPtr = std::shared_ptr<const SweepFolder>;
   explicit SweepFolders(DataRoot data) : data_(std::move(data)) {}
 
-  /// Made where it is missing. Throws BadJob, std::system_error.
+  /// Opens the folder, or creates it if it is missing. Throws BadJob, std::system_error.
   FolderPtr open(const SweepEntry& sweep);
-  /// The same of a new sweep whose plan is known.
+  /// The same for a new sweep whose plan is known.
   FolderPtr keep(const SweepEntry& sweep, const SweepSpec& spec, SweepPlan plan);
-  /// Its folder says where the sweep stands, for people and should the database be lost. Does not
-  /// throw.
+  /// Writes the sweep's state into its folder, for people and in case the database is lost. Does
+  /// not throw.
   void note(const SweepEntry& sweep) const;
-  /// Removes it, but none of its jobs. Throws std::system_error.
+  /// Removes the folder, but none of its jobs. Throws std::system_error.
   void remove(const std::string& id);
   std::filesystem::path dir(const std::string& id) const { return data_.sweeps() / id; }
 
  private:
   const DataRoot data_;
   std::mutex mutex_;
-  std::list<FolderPtr> opened_;  // the latest first; under the mutex
+  std::list<FolderPtr> opened_;  // latest first; guarded by the mutex
 };
 
 }  // namespace lacuna

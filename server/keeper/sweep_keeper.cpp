@@ -13,7 +13,7 @@
 namespace lacuna {
 namespace {
 
-// Notices bring nearly all that happens; this finds the rest, as room on the disk.
+// Notices report nearly all changes; polling finds the rest, such as free disk space.
 constexpr std::chrono::seconds look_again{1};
 
 SweepEntry checked(std::optional<SweepEntry> sweep) {
@@ -69,13 +69,13 @@ void SweepKeeper::look_after_all(const std::stop_token& ends) {
     if (ends.stop_requested()) return;
     try {
       look_after(sweep);
-    } catch (const std::exception& error) {  // the others go on
+    } catch (const std::exception& error) {  // the others continue
       log::error("{}: {}", sweep.id, error.what());
     }
   }
 }
 
-/// The job that is to be merged from its runs has come to another end.
+/// Whether the job to be merged from its runs has ended already.
 bool SweepKeeper::is_in_vain(const std::string& id) const {
   const auto job = store_.merged_from(id);
   return job && job->over() && job->state.state != State::done;
@@ -90,7 +90,7 @@ void SweepKeeper::look_after(const SweepEntry& sweep) {
   }
 }
 
-/// Makes as many runs as there may be more, or ends the sweep.
+/// Creates as many further runs as allowed, or ends the sweep.
 void SweepKeeper::make_runs(const SweepEntry& sweep) {
   SweepFolders::FolderPtr folder;
   try {
@@ -161,7 +161,7 @@ void SweepKeeper::cancel(const std::string& id) {
   notice();
 }
 
-/// Those that wait first: or they would begin as those that run end.
+/// Waiting runs first: otherwise they would start as running ones end.
 void SweepKeeper::cancel_runs(const std::string& id) {
   if (unfinished_of(store_.run_counts(id)) == 0) return;
   const std::vector<JobEntry> runs = store_.runs(id);
@@ -170,7 +170,7 @@ void SweepKeeper::cancel_runs(const std::string& id) {
       if (run.over() || run.cancel || run.begun != begun) continue;
       try {
         queue_.cancel(run.id);
-      } catch (const std::exception& error) {  // it is over just now; or tried again later
+      } catch (const std::exception& error) {  // it just ended, or is retried later
         log::debug("{}: {}", run.id, error.what());
       }
     }
@@ -186,8 +186,8 @@ void SweepKeeper::remove(const std::string& id) {
   std::vector<std::string> jobs;
   for (const JobEntry& run : store_.runs(id)) jobs.push_back(run.id);
   queue_.check_removable(jobs);
-  // The sweep last: a crash before leaves one that can be removed once more.
-  constexpr std::size_t at_once = 100;  // the queue stands still meanwhile
+  // The sweep last: after a crash before, it can be removed again.
+  constexpr std::size_t at_once = 100;  // blocks the queue
   for (std::size_t i = 0; i < jobs.size(); i += at_once) {
     const auto begin = jobs.begin() + static_cast<std::ptrdiff_t>(i);
     const auto n = std::min(at_once, jobs.size() - i);

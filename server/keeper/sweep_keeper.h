@@ -16,16 +16,17 @@
 
 namespace lacuna {
 
-/// Feeds the runs of sweeps into the queue as jobs, a few at a time and in the plan's order, and
-/// detects when a sweep is over. Stops the sweep of a job's shards with its job. Its state is in
+/// Adds the runs of sweeps to the queue as jobs, a few at a time and in the plan's order, and
+/// detects when a sweep is over. Stops the sweep of a job's shards with that job. Its state is in
 /// the store: a run that is a job there is not created again, even after a restart.
 class SweepKeeper {
  public:
-  /// Runs of one sweep that are jobs and not over: the queue never has to wait for the next, and
-  /// other people's jobs wait for no more than these.
+  /// Maximum unfinished runs of one sweep in the queue: enough that the queue never waits for the
+  /// next, and other jobs wait for no more than these.
   static constexpr std::size_t most_waiting = 32;
 
-  /// `kept_free`: so much of the queue's room is left to other jobs. The references outlive it.
+  /// `kept_free`: number of jobs in the queue's limit reserved for others. The references must
+  /// outlive it.
   SweepKeeper(Store& store, SweepFolders& folders, Queue& queue, DiskWatch& disk,
               std::size_t kept_free);
   ~SweepKeeper() { stop(); }
@@ -34,12 +35,11 @@ class SweepKeeper {
 
   void start();
   void stop();
-  /// Call when something has changed that may concern a sweep; from any thread, under any lock.
+  /// Call after any change that may concern a sweep, from any thread, under any lock.
   void notice();
 
-  /// Stops a sweep for good: what is not over is cancelled, and no run is made any more. On disk
-  /// before it returns; nothing happens if it is cancelled already. Throws Conflict and
-  /// std::system_error.
+  /// Ends a sweep: cancels its unfinished runs and creates no more. On disk before it returns; does
+  /// nothing if it is cancelled already. Throws Conflict and std::system_error.
   void cancel(const std::string& id);
   /// Removes a sweep that is over, and its jobs. Throws Conflict, with nothing removed yet, and
   /// std::system_error.
@@ -59,10 +59,10 @@ class SweepKeeper {
   Queue& queue_;
   DiskWatch& disk_;
   const std::size_t kept_free_;
-  // Of a sweep: all runs before this one, in the plan's order, are jobs. Its own thread's.
+  // By sweep: all runs before this one, in the plan's order, are jobs. Used by its own thread only.
   std::map<std::string, std::size_t> next_;
 
-  std::mutex signal_;  // guards all below; nothing is waited for under it
+  std::mutex signal_;  // guards all below; never held during a wait
   std::condition_variable_any changed_;
   bool noticed_ = false;
   std::jthread thread_;

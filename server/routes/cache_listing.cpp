@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::system_clock;
 
-/// With `bytes` and `used` in front, for the order.
+/// `bytes` and `used` first, for sorting.
 struct Entry {
   std::uint64_t bytes = 0;
   system_clock::time_point used;
@@ -30,7 +30,7 @@ Entry entry_of(const char* kind, const std::string& name, std::uint64_t bytes,
       bytes, used, {{"kind", kind}, {"name", name}, {"bytes", bytes}, {"used", utc_text(used)}}};
 }
 
-/// All regular files of a reference's folder, or the one file that it is.
+/// The regular files in a reference's folder, or its single file.
 Entry reference_entry(const fs::path& path) {
   std::uint64_t bytes = 0;
   std::time_t used = 0;
@@ -41,7 +41,7 @@ Entry reference_entry(const fs::path& path) {
     used = std::max({used, status.st_mtim.tv_sec, status.st_atim.tv_sec});
   };
   add(path);
-  std::error_code gone;  // files come and go meanwhile
+  std::error_code gone;  // files may change meanwhile
   if (fs::is_directory(fs::symlink_status(path, gone))) {
     for (const auto& part : fs::recursive_directory_iterator(path, gone)) add(part.path());
   }
@@ -67,7 +67,7 @@ OrderedJson cache_listing(const DataRoot& data) {
   std::vector<Entry> entries;
   std::error_code gone;
   for (const auto& item : fs::directory_iterator(data.references(), gone)) {
-    // Hidden ones are unfinished.
+    // Hidden files are unfinished.
     if (item.path().filename().string().starts_with('.')) continue;
     entries.push_back(reference_entry(item.path()));
   }

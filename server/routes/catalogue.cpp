@@ -10,7 +10,7 @@
 namespace lacuna {
 namespace {
 
-/// A regular file's size; nothing for what is not there or is something else.
+/// A regular file's size; none if there is no regular file.
 std::optional<std::int64_t> size_of(const std::filesystem::path& file) {
   struct stat status {};
   if (::lstat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;

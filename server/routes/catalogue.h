@@ -5,10 +5,10 @@
 
 namespace lacuna {
 
-/// A job that is there; throws HttpError 404.
+/// The job with this id; throws HttpError 404.
 JobEntry find_job(const Store& store, const std::string& id);
 
-/// How many jobs there are in each state: {"queued": 2, ...}.
+/// Number of jobs in each state: {"queued": 2, ...}.
 OrderedJson counts_json(const Counts& counts);
 
 /// A page of the list: {"jobs", "total", "counts", "next", "last_event"}.

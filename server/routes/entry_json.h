@@ -6,7 +6,7 @@
 namespace lacuna {
 
 OrderedJson to_json(const Progress& progress);
-/// Its state, the obstacle that keeps it from going on, and where it runs or waits.
+/// State, transient obstacle, and the place where it runs or waits.
 OrderedJson state_json(const JobEntry& entry);
 /// As an element of the API's list of jobs.
 OrderedJson to_json(const JobEntry& entry);

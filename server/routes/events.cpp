@@ -14,11 +14,11 @@
 namespace lacuna {
 namespace {
 
-// How long a stream may wait before it looks whether its client is still there.
+// Interval at which a waiting stream checks its client's connection.
 constexpr std::chrono::milliseconds look_at_client{250};
 constexpr std::chrono::seconds heartbeat{15};
 
-/// Counts one open stream for as long as it lives.
+/// Counts one open stream during its life.
 class Seat {
  public:
   explicit Seat(std::shared_ptr<std::atomic<int>> taken) : taken_(std::move(taken)) {
@@ -37,7 +37,7 @@ class Seat {
   std::shared_ptr<std::atomic<int>> taken_;
 };
 
-/// What all streams do: follow the journal, and let the client know now and then that they live.
+/// Base of all streams: follows the journal, and sends heartbeats.
 class Stream {
  public:
   Stream(Journal& journal, std::shared_ptr<std::atomic<int>> seats)
@@ -57,7 +57,7 @@ class Stream {
   /// The first texts; sets `seen_`.
   virtual std::string begin() = 0;
   virtual std::string text_of(const JobEvent& event) = 0;
-  /// The events after `seen_` are forgotten.
+  /// Called if events after `seen_` were discarded.
   virtual std::string forgotten() = 0;
 
   std::string format(std::string_view name, std::string_view data) const {
@@ -100,14 +100,14 @@ class JobStream final : public Stream {
     if (!missed) return forgotten();
     const bool news = std::any_of(missed->begin(), missed->end(),
                                   [&](const JobEvent& event) { return event.id == id_; });
-    // Browsers come back to a stream that has ended: they have seen all.
+    // Browsers reconnect to a stream that has ended, although they have all events.
     const auto entry = store_.find(id_);
     over_ = !news && (!entry || entry->over());
     return {};
   }
 
   std::string forgotten() override {
-    seen_ = journal_.last();  // before the entry: what happens in between is sent twice, not never
+    seen_ = journal_.last();  // before the entry: changes in between are sent twice, not lost
     const auto entry = store_.find(id_);
     return entry ? tell(*entry) : end();
   }

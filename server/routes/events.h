@@ -11,8 +11,8 @@
 namespace lacuna {
 
 /// Streams of server-sent events, made from the store's journal. Every event has the journal's
-/// number as its id; a client that comes back with the last one it saw (Last-Event-ID) misses
-/// nothing, or is told so. All throw HttpError 503 if too many streams are open.
+/// number as its id; a client that reconnects with the last one (Last-Event-ID) misses nothing, or
+/// gets `reset`. All throw HttpError 503 if too many streams are open.
 class Events {
  public:
   /// For Response::stream.
@@ -20,11 +20,11 @@ class Events {
 
   explicit Events(Store& store) : store_(store) {}
 
-  /// One job: begins with what is now (`progress`, if there is any, and `state`), follows every
-  /// change, and ends once it is over. `last`: the client's Last-Event-ID.
+  /// One job: begins with the present `progress`, if any, and `state`, sends every change, and ends
+  /// once the job is over. `last`: the client's Last-Event-ID.
   Stream job(const std::string& id, const std::optional<std::string>& last);
-  /// All jobs: `job` with an entry of the list, `removed`, and `reset` where some events are
-  /// forgotten and the list has to be read again. Begins after `last`, or now.
+  /// All jobs: `job` with an entry of the list, `removed`, and `reset` if events were discarded and
+  /// the list must be read again. Begins after `last`, or now.
   Stream all(const std::optional<std::string>& last);
 
  private:

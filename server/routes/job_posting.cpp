@@ -22,7 +22,7 @@ namespace {
 
 bool has_shards(const JobSpec& spec) { return spec.shards > 1 && spec.shard == 0; }
 
-/// Throws BadJob: more than a sweep has runs, or than there are iterations to share.
+/// Throws BadJob for more shards than runs of a sweep, or than the iterations allow.
 void check_shards(const JobSpec& spec) {
   auto most = static_cast<std::int64_t>(max_sweep_runs);
   std::string reason = "runs of a sweep";
@@ -43,7 +43,7 @@ Response JobPosting::dry_run(const Request& request) const {
                        {{"job", parse_own(write_job(spec))}, {"warnings", OrderedJson::array()}});
 }
 
-/// The sweep whose runs are the job's shards; nothing: it has none.
+/// The sweep whose runs are the job's shards, if it has any.
 std::optional<SweepEntry> JobPosting::sweep_of_shards(const JobSpec& spec) const {
   if (!has_shards(spec)) return std::nullopt;
   const SweepSpec shards = shard_sweep(spec);
@@ -97,7 +97,7 @@ Response JobPosting::post(const Request& request) {
   return created(replayed, "/api/jobs/" + job.id, job_detail(queue_.folder(job.id), job));
 }
 
-/// What the job names must be there, too, before it is taken.
+/// Also checks that the files of the job exist.
 JobSpec JobPosting::checked_spec(const std::string& body) const {
   try {
     JobSpec spec = parse_job(body);

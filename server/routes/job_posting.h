@@ -7,18 +7,18 @@
 
 namespace lacuna {
 
-/// Takes new jobs. A job with shards becomes a job that waits, and a sweep whose runs are these; it
-/// is merged when they are rendered. All references outlive it.
+/// Accepts new jobs. A job with shards becomes a waiting job and a sweep whose runs are the shards;
+/// it is merged when they are rendered. All references must outlive it.
 class JobPosting {
  public:
   JobPosting(const ScenesRoots& scenes, Store& store, Queue& queue, SweepKeeper& keeper)
       : scenes_(scenes), store_(store), queue_(queue), keeper_(keeper) {}
 
-  /// 201 with the job, once it is stored; 200 with the one that the same Idempotency-Key and body
-  /// have made before. Throws HttpError 400, 415, 422 (the key stands for another body), 429 (too
-  /// many wait), 507.
+  /// 201 with the job, once it is stored; 200 with the one created before by the same
+  /// Idempotency-Key and body. Throws HttpError 400, 415, 422 (the key was used with another body),
+  /// 429 (too many jobs), 507.
   Response post(const Request& request);
-  /// The same checks, but nothing is stored: 200 with the job and its defaults.
+  /// The same checks without storing: 200 with the job and its defaults.
   Response dry_run(const Request& request) const;
 
  private:

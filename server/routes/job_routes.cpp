@@ -154,7 +154,7 @@ RouteDoc post_doc() {
                       {507, "it could not be stored"}}};
 }
 
-/// Of what changes a job.
+/// The description of a route that changes a job.
 RouteDoc change_doc(std::string summary, std::string conflict, std::string body_schema = {}) {
   RouteDoc doc{.summary = std::move(summary)};
   if (!body_schema.empty()) doc.body_type = "application/json";

@@ -8,7 +8,7 @@
 
 namespace lacuna {
 
-/// The addresses below /api/jobs, and /api/events. All references outlive it.
+/// The routes below /api/jobs, and /api/events. All references must outlive it.
 class JobRoutes {
  public:
   JobRoutes(const ScenesRoots& scenes, Store& store, Queue& queue, SweepKeeper& keeper);

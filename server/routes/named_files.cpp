@@ -21,10 +21,10 @@ std::vector<Problem> NamedFiles::missing(const JobSpec& spec) {
   return problems;
 }
 
-/// What is wrong with a name.
+/// The error of a name; empty: none.
 const std::string& NamedFiles::look_up(const std::string& name,
                                        const std::vector<std::string_view>& extensions) {
-  // One name may be asked for as a scene and as an image.
+  // One name may be looked up as a scene and as an image.
   const auto [found, fresh] = seen_.try_emplace(name + '\0' + std::string(extensions.front()));
   if (!fresh) return found->second;
   try {

@@ -10,8 +10,8 @@
 
 namespace lacuna {
 
-/// Checks whether the files that jobs name exist. Each name is looked up once for all jobs. The
-/// scenes roots must outlive it.
+/// Checks whether the files that jobs name exist. Looks up each name once for all jobs. The scenes
+/// roots must outlive it.
 class NamedFiles {
  public:
   explicit NamedFiles(const ScenesRoots& scenes) : scenes_(scenes) {}
@@ -23,7 +23,7 @@ class NamedFiles {
                              const std::vector<std::string_view>& extensions);
 
   const ScenesRoots& scenes_;
-  std::map<std::string, std::string> seen_;  // name -> what is wrong with it; empty: nothing
+  std::map<std::string, std::string> seen_;  // name -> error; empty: none
 };
 
 }  // namespace lacuna

@@ -9,23 +9,22 @@
 
 namespace lacuna {
 
-/// The Idempotency-Key of a request that creates something, and what it stands for.
+/// The Idempotency-Key of a request that creates something, and the hash of its body.
 struct PostKey {
-  std::optional<std::string> name;  ///< nothing: it has none
+  std::optional<std::string> name;  ///< none: no key
   std::string body_hash;
 };
 
-/// Throws HttpError 400 if the header is no key.
+/// Throws HttpError 400 if the header is not a valid key.
 PostKey key_of(const Request& request, const std::string& body);
 
-/// 201 with the description of what was created at `place`; 200 for a replay.
+/// 201 with the description of the object created at `place`; 200 for a replay.
 Response created(bool replayed, const std::string& place, const OrderedJson& description);
 
-/// Throws HttpError 422: the key belongs to this job or sweep (`noun`), made of another body.
+/// Throws HttpError 422: the key belongs to this job or sweep (`noun`), created from another body.
 [[noreturn]] void refuse_key(const std::string& noun, const std::string& id);
 
-/// Whether `known`, what the key has made before, was made by the same request. Throws as
-/// refuse_key().
+/// Whether `known`, created with the same key, came from the same request. Throws as refuse_key().
 template <class Entry>
 bool is_replay(const std::optional<Entry>& known, const PostKey& key, const char* noun) {
   if (!known) return false;

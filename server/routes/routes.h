@@ -17,7 +17,7 @@ struct ServiceWork {
   SweepKeeper& keeper;
 };
 
-/// The service's addresses and what each does. All references outlive it.
+/// All routes of the service. All references must outlive it.
 class Routes {
  public:
   Routes(const ServiceFacts& facts, const ServiceWork& work, const StaticFiles& page,

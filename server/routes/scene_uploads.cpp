@@ -37,7 +37,7 @@ bool is_glb(const fs::path& file) {
   return std::string_view(magic.data(), magic.size()) == "glTF";
 }
 
-/// Two regular files with the same bytes; no link is followed for `there`.
+/// Whether two regular files have the same bytes; does not follow a link at `there`.
 bool same_bytes(const fs::path& there, const fs::path& draft) {
   if (!fs::is_regular_file(fs::symlink_status(there))) return false;
   if (fs::file_size(there) != fs::file_size(draft)) return false;
@@ -54,14 +54,14 @@ bool same_bytes(const fs::path& there, const fs::path& draft) {
   return a.eof() && b.eof();
 }
 
-/// A file in memory that a child's output goes to.
+/// A file in memory for a child's output.
 FileHandle output_file() {
   FileHandle file(::memfd_create("check", MFD_CLOEXEC));
   if (!file) throw std::system_error(errno, std::generic_category(), "memfd_create");
   return file;
 }
 
-/// The last line of what a child said; a reason comes last.
+/// The last line of a child's output, which contains the reason.
 std::string last_line(int fd) {
   struct stat info {};
   if (::fstat(fd, &info) != 0) return {};
@@ -74,7 +74,7 @@ std::string last_line(int fd) {
   return text;
 }
 
-/// `text` without "lacuna: " before it and the place where the draft happened to lie in it.
+/// `text` without the prefix "lacuna: " and the draft's path.
 std::string tidy(std::string text, const fs::path& draft) {
   for (const std::string& noise : {std::string("lacuna: "), draft.string() + ": "}) {
     if (text.starts_with(noise)) text.erase(0, noise.size());
@@ -123,7 +123,7 @@ SceneUploads::Draft::Draft(const fs::path& folder) {
 
 SceneUploads::Draft::~Draft() {
   if (own_folder_.empty()) return;  // moved away
-  std::error_code ignored;          // what is left is removed at the next start
+  std::error_code ignored;          // the rest is removed at the next start
   fs::remove_all(own_folder_, ignored);
 }
 
@@ -135,7 +135,7 @@ void SceneUploads::Draft::finish() {
 
 SceneUploads::SceneUploads(SceneUploadSettings settings) : settings_(std::move(settings)) {
   fs::create_directories(settings_.folder);
-  // A root with nothing in it would be taken for one that is away (ScenesRoots::resolve).
+  // An empty root would count as unmounted (ScenesRoots::resolve).
   std::ofstream(settings_.folder / ".uploads");
   std::vector<fs::path> left;
   for (const auto& entry : fs::directory_iterator(settings_.folder)) {
@@ -158,7 +158,7 @@ SceneUploads::Result SceneUploads::publish(Draft draft, const std::string& name)
   const auto known = [&](const fs::path& there) {
     return Result{same_bytes(there, draft.file()) ? Outcome::same : Outcome::conflict, bytes};
   };
-  // A job that names the scene would get that of the older root.
+  // A job that names the scene would get the older root's.
   for (const fs::path& root : settings_.older) {
     if (fs::is_regular_file(fs::symlink_status(root / name))) return known(root / name);
   }
@@ -177,20 +177,20 @@ SceneUploads::Result SceneUploads::publish(Draft draft, const std::string& name)
     }
   }();
   if (result.outcome != Outcome::created) return result;
-  // Unlike a rename, a link never replaces what is there.
+  // Unlike a rename, a link never replaces a file.
   if (::link(draft.file().c_str(), target.c_str()) != 0) {
     if (errno == EEXIST) return known(target);
     throw_file_error(errno, "create", target);
   }
   try {
     sync_folder(settings_.folder);
-  } catch (const std::system_error&) {  // what is refused is not there later
+  } catch (const std::system_error&) {  // a failed upload must not remain
     if (::unlink(target.c_str()) == 0) throw;
   }
   return result;
 }
 
-/// `created` if it may be.
+/// Returns `created` if the scene is valid.
 SceneUploads::Result SceneUploads::check(const fs::path& file, std::uint64_t bytes) const {
   const FileHandle output = output_file();
   ChildLimits limits = settings_.limits;

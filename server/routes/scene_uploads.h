@@ -15,12 +15,11 @@
 namespace lacuna {
 
 struct SceneUploadSettings {
-  std::filesystem::path folder;  ///< of the uploaded scenes; made if it is not there
-  std::vector<std::filesystem::path> older =
-      {};                                   ///< scenes roots that a name is looked up in before
-  std::filesystem::path renderer;           ///< the `lacuna` command, which checks them
-  ChildLimits limits;                       ///< of the check
-  std::chrono::milliseconds time{120'000};  ///< that a check may take
+  std::filesystem::path folder;                   ///< of the uploaded scenes; created if missing
+  std::vector<std::filesystem::path> older = {};  ///< scenes roots that precede `folder`
+  std::filesystem::path renderer;                 ///< the `lacuna` command, which checks them
+  ChildLimits limits;                             ///< of the check
+  std::chrono::milliseconds time{120'000};        ///< that a check may take
 };
 
 /// "NAME.glb": a letter or digit, then at most 79 letters, digits, '.', '_' or '-', never "..".
@@ -30,25 +29,25 @@ inline constexpr const char* upload_name_rule =
     "and "
     "\".glb\" (letters are a to z and A to Z)";
 
-/// Scenes that come over the network: each is checked by a child process before it gets its name,
-/// and never replaces another. A scene may name no other file: while it is checked it lies alone in
-/// a folder, under a name that nobody can guess.
+/// Scenes uploaded over the network: a child process checks each before it gets its name; it never
+/// replaces another. A scene may refer to no other file: during the check it lies alone in a
+/// folder, with an unguessable name.
 class SceneUploads {
  public:
-  /// Makes the folder, and removes what an earlier service left unfinished. Throws
+  /// Creates the folder, and removes unfinished uploads of an earlier service. Throws
   /// std::system_error.
   explicit SceneUploads(SceneUploadSettings settings);
 
-  /// A place for the body; gone with the object.
+  /// A file for the body, removed with the object.
   class Draft {
    public:
     explicit Draft(const std::filesystem::path& folder);  ///< throws std::system_error
     Draft(Draft&& o) noexcept = default;
     Draft& operator=(Draft&&) = delete;
     ~Draft();
-    int fd() const { return handle_.get(); }  ///< to write the body to, from its start
+    int fd() const { return handle_.get(); }  ///< for writing the body, from the start
     const std::filesystem::path& file() const { return file_; }
-    void finish();  ///< all is written: syncs and closes; throws std::system_error
+    void finish();  ///< call after writing: syncs and closes; throws std::system_error
 
    private:
     std::filesystem::path own_folder_, file_;
@@ -57,24 +56,24 @@ class SceneUploads {
   Draft begin() const { return Draft(settings_.folder); }
 
   enum class Outcome {
-    created,   ///< it is there under its name now
-    same,      ///< the very same bytes were there already
-    conflict,  ///< another scene of that name is there, or in an older root, which would hide it
-    refused,   ///< it is not a scene that can be rendered; `reason` says why
-    busy,      ///< it cannot be checked now, as another one is, or the service ends, or its files
-               ///< cannot be used; `reason` says why
+    created,   ///< stored under its name
+    same,      ///< the same bytes were stored already
+    conflict,  ///< another scene has the name, here or in a preceding root, which would hide it
+    refused,   ///< not a valid scene; see `reason`
+    busy,  ///< it cannot be checked now: another check runs, the service stops, or its files cannot
+           ///< be used; see `reason`
   };
   struct Result {
     Outcome outcome;
     std::uint64_t bytes = 0;  ///< of the scene
     std::string reason = {};  ///< one line, at most 4 KiB
   };
-  /// Checks a draft and gives it its name. Takes as long as the check; called from several threads.
-  /// Throws std::invalid_argument if is_upload_name() does not hold, std::system_error if the
-  /// scene cannot be stored or the check not be started.
+  /// Checks a draft and gives it its name. Blocks during the check; called from several threads.
+  /// Throws std::invalid_argument if is_upload_name() is false, std::system_error if the scene
+  /// cannot be stored or the check cannot be started.
   Result publish(Draft draft, const std::string& name);
 
-  /// Ends a check that is under way; from then on all are `busy`.
+  /// Ends a running check; later ones are `busy`.
   void stop() const { stop_.request(); }
 
  private:

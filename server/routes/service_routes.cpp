@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint64_t max_scene_bytes = std::uint64_t{256} << 20;
 
-/// The state machine, for programs.
+/// The state machine as JSON.
 OrderedJson states() {
   OrderedJson states = OrderedJson::array(), transitions = OrderedJson::array();
   for (const auto& [state, name, doc] : EnumTable<State>::values) {

@@ -14,7 +14,7 @@
 
 namespace lacuna {
 
-/// What the addresses that are about the service itself need to know. All outlive them.
+/// The input of the routes about the service itself. All must outlive them.
 struct ServiceFacts {
   const ServiceSettings& settings;
   const DataRoot& data;

@@ -65,7 +65,7 @@ SweepEntry find_sweep(const Store& store, const std::string& id) {
 OrderedJson to_json(const SweepEntry& sweep, const Store& store) {
   Counts counts = store.run_counts(sweep.id);
   const double share = share_done(sweep.runs, counts, store.unfinished_runs(sweep.id));
-  if (!is_over(sweep.state)) {  // what is no job yet
+  if (!is_over(sweep.state)) {  // runs that are not yet jobs
     counts[State::queued] += sweep.runs - std::min(sweep.runs, all_of(counts));
   }
   return {{"id", sweep.id},

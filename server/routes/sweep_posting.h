@@ -7,16 +7,17 @@
 
 namespace lacuna {
 
-/// Takes new sweeps. All references outlive it.
+/// Accepts new sweeps. All references must outlive it.
 class SweepPosting {
  public:
   SweepPosting(const ScenesRoots& scenes, Store& store, SweepFolders& folders, SweepKeeper& keeper)
       : scenes_(scenes), store_(store), folders_(folders), keeper_(keeper) {}
 
-  /// 201 with the sweep, once it is stored; 200 with the one that the same Idempotency-Key and body
-  /// have made before. Throws HttpError 400, with pointers into the sweep file, 415, 422 and 507.
+  /// 201 with the sweep, once it is stored; 200 with the one created before by the same
+  /// Idempotency-Key and body. Throws HttpError 400, with pointers into the sweep file, 415, 422
+  /// and 507.
   Response post(const Request& request);
-  /// The same checks, but nothing is stored: 200 with what the sweep comes to.
+  /// The same checks without storing: 200 with the plan of the sweep.
   Response dry_run(const Request& request) const;
 
  private:

@@ -17,7 +17,7 @@ SweepRoutes::SweepRoutes(const ScenesRoots& scenes, Store& store, SweepFolders& 
                          SweepKeeper& keeper)
     : store_(store), folders_(folders), keeper_(keeper), posting_(scenes, store, folders, keeper) {}
 
-/// Throws HttpError 409 for one whose file cannot be read.
+/// Throws HttpError 409 if its file cannot be read.
 SweepFolders::FolderPtr SweepRoutes::open(const SweepEntry& sweep) {
   try {
     return folders_.open(sweep);
@@ -71,7 +71,7 @@ std::string SweepRoutes::answers_of(const SweepEntry& sweep) {
   const auto folder = open(sweep);
   const Answers answers = answer(*folder);
   std::string text = answers_text(*folder, answers);
-  // A warning may be of a file that a person mends.
+  // A warning may concern a file that a person repairs.
   if (!is_over(sweep.state) || !answers.warnings.empty()) return text;
   constexpr std::size_t most = 4;
   const std::lock_guard lock(mutex_);
@@ -153,7 +153,7 @@ void SweepRoutes::add_one(Router& router) {
              with_id(*this, &SweepRoutes::remove));
 }
 
-/// What its runs have come to.
+/// Adds the routes of results.
 void SweepRoutes::add_results(Router& router) {
   router.add("GET", "/api/sweeps/{id}/answers",
              {.summary = "The comparison of its finished runs, with intervals",

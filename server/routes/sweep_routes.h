@@ -11,7 +11,7 @@
 
 namespace lacuna {
 
-/// The addresses below /api/sweeps, and /api/schema/sweep. All references outlive it.
+/// The routes below /api/sweeps, and /api/schema/sweep. All references must outlive it.
 class SweepRoutes {
  public:
   SweepRoutes(const ScenesRoots& scenes, Store& store, SweepFolders& folders, SweepKeeper& keeper);
@@ -37,11 +37,11 @@ class SweepRoutes {
   SweepKeeper& keeper_;
   SweepPosting posting_;
 
-  /// The answers of a sweep that is over, which are read from all its curves.
+  /// Cached answers of a sweep that is over, which require reading all its curves.
   struct KnownAnswers {
     std::string sweep;
-    std::int64_t change;  // the latest of its runs
-    std::size_t runs;     // that are there
+    std::int64_t change;  // latest of its runs
+    std::size_t runs;     // existing ones
     std::string text;
   };
   std::mutex mutex_;  // guards the next

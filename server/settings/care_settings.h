@@ -9,7 +9,7 @@ namespace lacuna {
 struct CareSettings {
   std::uint64_t disk_floor = 256 << 20;  ///< bytes; with less free, jobs wait and renderers stop
   std::size_t keep_jobs = 0;             ///< jobs that are over; 0: all
-  double keep_days = 0;                  ///< since they ended; 0: for ever
+  double keep_days = 0;                  ///< since they ended; 0: no limit
 };
 
 }  // namespace lacuna

@@ -8,23 +8,23 @@
 
 namespace lacuna {
 
-/// Watchers of events at a time: each holds a thread.
+/// Maximum open event streams, each of which holds a thread.
 inline constexpr int max_event_streams = 16;
 
-/// Who may ask.
+/// Which clients are admitted.
 struct AccessSettings {
-  std::filesystem::path token_file;  ///< empty: whoever reaches the address
-  std::vector<std::string> hosts;    ///< NAME or NAME:PORT of this service, beside its own address
+  std::filesystem::path token_file;  ///< empty: every client that reaches the address
+  std::vector<std::string> hosts;    ///< NAME or NAME:PORT of this service, besides its address
 };
 
 struct HttpSettings {
   std::string bind = "127.0.0.1";
   int port = 8017;  ///< 0: any free one
-  /// Connections at a time, each with a thread; others wait in the kernel's line. Fewer where the
-  /// process may open few files: set at the service's start.
+  /// Maximum connections, each with a thread; others wait in the kernel's queue. The service
+  /// reduces it at the start if the process may open few files.
   std::size_t threads = 1024;
-  /// A connection is closed when nothing of a head or body comes for so long, or nothing of an
-  /// answer is taken.
+  /// Timeout after which a connection is closed if no part of a head or body arrives, or no part of
+  /// a response is read.
   std::chrono::milliseconds silence{5'000};
 };
 

@@ -12,15 +12,15 @@ namespace lacuna {
 
 enum class ExecutorKind { local, slurm };
 
-/// What the command line says; paths that are empty take their defaults.
+/// The settings of the command line; empty paths mean their defaults.
 struct ServiceSettings {
   HttpSettings http;
   AccessSettings access;
   QueueSettings queue;
   CareSettings care;
-  bool uploads = false;  ///< scenes may be put
-  bool import = false;   ///< the database is made anew from the folders
-  bool verbose = false;  ///< every request is logged
+  bool uploads = false;  ///< accepts PUT of scenes
+  bool import = false;   ///< rebuilds the database from the folders
+  bool verbose = false;  ///< logs every request
   double grace_seconds = 10;
   ExecutorKind executor = ExecutorKind::local;
   SlurmSettings slurm;
