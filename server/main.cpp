@@ -74,21 +74,18 @@ void define_options(CLI::App& app, ServiceSettings& s) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_flag("--verbose", s.verbose, "log every request");
   app.add_option("--data", s.data, "folder of the jobs; default: $LACUNA_DATA or lacuna-data");
-  app.add_flag(
-      "--import", s.import,
-      "puts DATA/lacuna.db aside, if it is damaged, and takes over the jobs and sweeps from "
-      "their folders");
+  app.add_flag("--import", s.import,
+               "rename a damaged DATA/lacuna.db and import the jobs and sweeps from their folders");
   app.add_option("--scenes", s.scenes,
                  "folder of scenes, may be repeated; default: $LACUNA_SCENES or jobs/scenes")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--jobs", s.queue.children,
-                 "renderers at a time; with Slurm, jobs that it has at a time, default 64")
+                 "renderers at a time; with Slurm, submitted jobs at a time, default 64")
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
-  app.add_option(
-         "--executor", s.executor,
-         "who runs renderers: local (this machine) or slurm (sbatch, from a data folder that "
-         "all nodes share)")
+  app.add_option("--executor", s.executor,
+                 "where renderers run: local (this machine) or slurm (sbatch, with a data folder "
+                 "that all nodes share)")
       ->transform(CLI::CheckedTransformer(std::map<std::string, ExecutorKind>{
           {"local", ExecutorKind::local}, {"slurm", ExecutorKind::slurm}}))
       ->default_str("local");
@@ -97,11 +94,11 @@ void define_options(CLI::App& app, ServiceSettings& s) {
          [&s](const std::vector<std::string>& texts) {
            for (const std::string& text : texts) add_slurm_arguments(s, text);
          },
-         "further options of sbatch, for example \"--partition=long --account=me\"; they win over "
-         "those that follow from a job")
+         "further options of sbatch, for example \"--partition=long --account=me\"; they override "
+         "those derived from a job")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--slurm-cores", s.slurm.cores,
-                 "cores in Slurm of a job that names no threads; 0: a node of its own")
+                 "cores in Slurm for a job that sets no threads; 0: an exclusive node")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   app.add_option_function<double>(
@@ -113,7 +110,7 @@ void define_options(CLI::App& app, ServiceSettings& s) {
       ->check(CLI::Range(0.05, 3600.0))
       ->default_str("3");
   app.add_option("--max-attempts", s.queue.max_attempts,
-                 "how often the renderer of a job is started if it crashes")
+                 "maximum starts of a job's renderer if it crashes")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   app.add_option("--grace", s.grace_seconds,
@@ -125,19 +122,18 @@ void define_options(CLI::App& app, ServiceSettings& s) {
          [&s](const std::string& text) { s.limits.memory_bytes = memory_limit(text); },
          "memory limit of a renderer, for example 4G or 512M; 0: no limit")
       ->default_str("0");
-  app.add_option("--nice", s.limits.niceness,
-                 "niceness of renderers: how far they yield to other processes")
+  app.add_option("--nice", s.limits.niceness, "niceness of renderers")
       ->check(CLI::Range(0, 19))
       ->capture_default_str();
   app.add_option("--max-jobs", s.queue.max_waiting,
-                 "limit of jobs that wait or run; more are refused")
+                 "limit of jobs that wait or run; further ones are refused")
       ->check(CLI::Range(1, 10'000'000))
       ->capture_default_str();
   app.add_option_function<std::string>(
          "--disk-floor",
          [&s](const std::string& text) { s.care.disk_floor = byte_size("--disk-floor", text); },
          "free disk space to keep, for example 1G; with less, or with few inodes, jobs wait and "
-         "renderers stop; 0: none")
+         "renderers stop; 0: no floor")
       ->default_str(byte_size_text(s.care.disk_floor));
   app.add_option(
          "--keep-jobs", s.care.keep_jobs,
@@ -168,7 +164,7 @@ sigset_t block_ends() {
 
 int main(int argc, char** argv) {
   ServiceSettings settings;
-  CLI::App app{"Lacuna's render service: takes jobs over HTTP and hands them to renderers."};
+  CLI::App app{"Lacuna's render service: accepts jobs over HTTP and runs renderers."};
   define_options(app, settings);
   app.final_callback([&] { check_executor(app, settings); });
   CLI11_PARSE(app, argc, argv);

@@ -37,7 +37,7 @@ fs::path find_web() {
   for (const fs::path& place : {bin / "../share/lacuna/web", bin / "../../../web"}) {
     if (fs::exists(place / "index.html")) return fs::canonical(place);
   }
-  throw std::invalid_argument("the page is not found; name its folder with --web");
+  throw std::invalid_argument("the page is not found; set its folder with --web");
 }
 
 /// Absolute paths, which are valid in the children's working directory, too.
@@ -45,7 +45,7 @@ std::vector<fs::path> absolute(const std::vector<fs::path>& folders) {
   std::vector<fs::path> result;
   for (const fs::path& folder : folders) {
     if (!fs::is_directory(folder)) {
-      throw std::invalid_argument(fmt::format("{} is no folder of scenes", folder.string()));
+      throw std::invalid_argument(fmt::format("{} is not a folder of scenes", folder.string()));
     }
     result.push_back(fs::absolute(folder));
   }
@@ -107,10 +107,10 @@ DataRoot data_root(const ServiceSettings& settings) {
 
 void check(const ServiceSettings& settings) {
   if (!is_loopback(settings.http.bind) && settings.access.token_file.empty()) {
-    throw std::invalid_argument(fmt::format(
-        "{} can be reached from other machines, where everybody could use the service: name a "
-        "--token-file, or bind to 127.0.0.1 or ::1 and tunnel to it",
-        settings.http.bind));
+    throw std::invalid_argument(
+        fmt::format("other machines can reach {}, so anyone there could use the service: set a "
+                    "--token-file, or bind to 127.0.0.1 or ::1 and tunnel to it",
+                    settings.http.bind));
   }
 }
 
@@ -128,7 +128,7 @@ HttpSettings http_settings(const ServiceSettings& settings) {
   }
   if (limit.rlim_cur < 4 * http.threads) {
     http.threads = std::max<std::size_t>(1, limit.rlim_cur / 4);
-    log::warn("only {} files may be open at a time: {} clients can be connected at once",
+    log::warn("only {} files may be open at a time: at most {} clients can be connected",
               limit.rlim_cur, http.threads);
   }
   return http;
@@ -162,18 +162,16 @@ std::unique_ptr<Store> open_store(const ServiceSettings& settings, const DataRoo
     auto store = std::make_unique<Store>(file);
     const Imported taken = import_folders(*store, data);
     if (taken.jobs + taken.sweeps > 0) {
-      log::info("{} jobs and {} sweeps were taken over from their folders", taken.jobs,
-                taken.sweeps);
+      log::info("imported {} jobs and {} sweeps from their folders", taken.jobs, taken.sweeps);
     }
     return store;
   } catch (const DatabaseDamaged& error) {
-    throw std::invalid_argument(
-        fmt::format("{}; `lacuna-server --import --data {}` puts it aside and takes over the jobs "
-                    "from their folders",
-                    error.what(), data.dir.string()));
+    throw std::invalid_argument(fmt::format(
+        "{}; `lacuna-server --import --data {}` renames it and imports the jobs from their folders",
+        error.what(), data.dir.string()));
   } catch (const DatabaseInUse&) {
     throw std::invalid_argument(
-        fmt::format("another lacuna-server works in {}", data.dir.string()));
+        fmt::format("another lacuna-server is using {}", data.dir.string()));
   }
 }
 

@@ -16,7 +16,7 @@ constexpr Transition transitions[] = {
     {State::queued, State::cancelling, person, "cancels it while a renderer starts or ends"},
     {State::queued, State::done, service, "an earlier renderer had finished"},
     {State::queued, State::failed, service, "its folder is damaged, or Slurm refuses its request"},
-    {State::running, State::cancelling, person, "cancels it; its renderer is asked to stop"},
+    {State::running, State::cancelling, person, "cancels it, which stops its renderer"},
     {State::running, State::queued, service,
      "its renderer stopped before the end or crashed: it continues from its checkpoint"},
     {State::running, State::held, service, "its renderer has stopped because the job is held"},

@@ -103,7 +103,7 @@ void AnswerWriter::put_stream(Response response, bool closes, httplib::Response&
       client.done();
       return !closes;
     } catch (const std::exception& error) {  // the head is sent already
-      log::error("an answer ends early: {}", error.what());
+      log::error("a response ends early: {}", error.what());
       return false;
     }
   };

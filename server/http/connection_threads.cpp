@@ -62,7 +62,7 @@ void* ConnectionThreads::run(void* pointer) {
   try {
     task->serve();
   } catch (const std::exception& error) {
-    log::error("a connection is given up: {}", error.what());
+    log::error("a connection failed: {}", error.what());
   }
   task.reset();
   const std::lock_guard lock(threads.mutex_);

@@ -46,7 +46,8 @@ void check_framing(const Request& request) {
   constexpr std::size_t max_digits = 18;  // fit into 64 bits
   const auto encoding = request.header("transfer-encoding");
   const auto length = request.header("content-length");
-  if (encoding && length) throw HttpError(400, "Content-Length and Transfer-Encoding together.");
+  if (encoding && length)
+    throw HttpError(400, "Content-Length and Transfer-Encoding exclude each other.");
   if (encoding && *encoding != "chunked") {
     throw HttpError(400, "Transfer-Encoding may only be \"chunked\".");
   }
@@ -58,7 +59,7 @@ void check_framing(const Request& request) {
     throw HttpError(415, "An encoded body (Content-Encoding) is not accepted.");
   }
   if (media_type(request).starts_with("multipart/")) {
-    throw HttpError(415, "A body of parts is not accepted.");
+    throw HttpError(415, "A multipart body is not accepted.");
   }
 }
 
@@ -93,14 +94,14 @@ void Guard::check(const Request& request) const {
   const auto host = request.header("host");
   if (!host || host->empty()) throw HttpError(400, "Header Host is missing.");
   if (!is_own(*host)) {
-    throw HttpError(
-        403, fmt::format("Header Host names another machine: use {}.", fmt::join(names_, ", ")));
+    throw HttpError(403, fmt::format("Header Host is not a name of this service: use {}.",
+                                     fmt::join(names_, ", ")));
   }
   const auto origin = request.header("origin");
   // https: behind a TLS proxy.
   const bool own = !origin || *origin == "http://" + *host || *origin == "https://" + *host;
   if (!is_safe(request) && !own) {
-    throw HttpError(403, "Pages of other sites may not change anything here (header Origin).");
+    throw HttpError(403, "Pages of other sites may not change anything (header Origin).");
   }
 }
 

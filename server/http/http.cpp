@@ -127,7 +127,7 @@ void read_body(const Request& head, const httplib::ContentReader& reader, std::u
     sink(data, size);
     return true;
   });
-  if (!whole) throw HttpError(400, "The body ends early, stops for too long, or is malformed.");
+  if (!whole) throw HttpError(400, "The body ends early, pauses too long, or is malformed.");
 }
 
 void write_all(int fd, const char* data, std::size_t size) {
@@ -154,13 +154,13 @@ Response answer_to(const std::exception_ptr& thrown, const std::string& path) {
   } catch (const std::system_error& error) {
     log::error("{}: {}", path, error.what());
     if (may_pass(error)) {
-      return problem_response(storage_error(error, "The service cannot use its files for now"),
-                              path);
+      return problem_response(
+          storage_error(error, "The service cannot access its files at present"), path);
     }
   } catch (const std::exception& error) {
     log::error("{}: {}", path, error.what());
   }
-  return problem_response(HttpError(500, "The service failed; its log says more."), path);
+  return problem_response(HttpError(500, "Internal error; see the service's log."), path);
 }
 
 /// The local port of a connection; 0 for any other descriptor.
@@ -271,7 +271,7 @@ void HttpServer::refuse_rest(const Router& routes) {
       }
       if (allowed.empty() || !is_plain_path(path_as_sent(sent))) refuse_address();
       const std::string list = fmt::format("{}", fmt::join(allowed, ", "));
-      throw HttpError(405, fmt::format("{} is not possible here, only {}.", sent.method, list))
+      throw HttpError(405, fmt::format("{} is not allowed here; allowed: {}.", sent.method, list))
           .with("Allow", list);
     });
   }
@@ -372,7 +372,7 @@ void HttpServer::listen() {
   while (!stopping_) {
     server_->listen_after_bind();
     for (bool bound = false; !bound && !stopping_;) {
-      log::error("the service accepts no connections; it tries again");
+      log::error("the service cannot accept connections; retrying");
       std::this_thread::sleep_for(100ms);
       try {
         bind();

@@ -19,9 +19,8 @@ void HttpMetrics::answered(int status, std::chrono::nanoseconds time) {
 
 void write_metrics(PrometheusText& text, const HttpMetrics& m) {
   const auto value = [](const HttpMetrics::Count& count) { return static_cast<double>(count); };
-  text.counter("lacuna_http_connections_total", "Connections that were accepted.")
-      .value(value(m.accepted));
-  auto& requests = text.counter("lacuna_http_requests_total", "Answers, by class of status.");
+  text.counter("lacuna_http_connections_total", "Accepted connections.").value(value(m.accepted));
+  auto& requests = text.counter("lacuna_http_requests_total", "Responses, by class of status.");
   for (std::size_t i = 0; i < m.requests.size(); ++i) {
     requests.value(value(m.requests[i]), {{"status", fmt::format("{}xx", i + 1)}});
   }
@@ -30,13 +29,12 @@ void write_metrics(PrometheusText& text, const HttpMetrics& m) {
                  {{m.bounds.begin(), m.bounds.end()},
                   {m.seconds.begin(), m.seconds.end()},
                   1e-6 * value(m.microseconds)});
-  text.counter("lacuna_http_sent_bytes_total", "Bytes of answers, heads not counted.")
+  text.counter("lacuna_http_sent_bytes_total", "Bytes of responses, without heads.")
       .value(value(m.bytes_out));
   text.gauge("lacuna_http_connections", "Open connections, each with a thread.")
       .value(value(m.connections));
-  text.gauge("lacuna_http_in_progress", "Requests that are being answered.")
-      .value(value(m.in_progress));
-  text.gauge("lacuna_http_streams", "Open streams of events.").value(value(m.streams));
+  text.gauge("lacuna_http_in_progress", "Requests in progress.").value(value(m.in_progress));
+  text.gauge("lacuna_http_streams", "Open event streams.").value(value(m.streams));
 }
 
 }  // namespace lacuna

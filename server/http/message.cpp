@@ -28,17 +28,17 @@ const char* status_title(int status) {
       {405, "Method not allowed"},
       {409, "Conflict"},
       {410, "Gone"},
-      {412, "Changed meanwhile"},
+      {412, "Precondition failed"},
       {413, "Too large"},
       {414, "Address too long"},
       {415, "Unsupported media type"},
       {416, "Range not satisfiable"},
-      {422, "Not usable"},
-      {429, "Too many"},
+      {422, "Unprocessable"},
+      {429, "Too many requests"},
       {500, "Internal error"},
-      {501, "Unknown method"},
-      {503, "Busy"},
-      {507, "Cannot store"},
+      {501, "Not implemented"},
+      {503, "Service unavailable"},
+      {507, "Insufficient storage"},
   }};
   for (const auto& [number, text] : titles) {
     if (number == status) return text;
@@ -55,7 +55,7 @@ std::optional<std::string> Request::header(const std::string& name) const {
   const auto [first, last] = headers.equal_range(name);
   if (first == last) return std::nullopt;
   if (std::next(first) != last) {
-    throw HttpError(400, fmt::format("Header {} is given more than once.", name));
+    throw HttpError(400, fmt::format("Header {} is repeated.", name));
   }
   return first->second;
 }

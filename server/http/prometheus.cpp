@@ -50,7 +50,7 @@ PrometheusText& PrometheusText::begin(std::string_view name, std::string_view he
   check_name(name, true);
   name_ = name;
   if (std::find(names_.begin(), names_.end(), name_) != names_.end()) {
-    throw std::invalid_argument(fmt::format("metric {} stands twice", name));
+    throw std::invalid_argument(fmt::format("metric {} is repeated", name));
   }
   names_.push_back(name_);
   text_ += fmt::format("# HELP {} {}\n# TYPE {} {}\n", name, escaped(help, false), name, type);
@@ -74,7 +74,8 @@ PrometheusText& PrometheusText::histogram(std::string_view name, std::string_vie
                                           const Histogram& histogram, const Labels& labels) {
   const auto& [bounds, counts, sum] = histogram;
   if (counts.size() != bounds.size() + 1 || !std::is_sorted(bounds.begin(), bounds.end())) {
-    throw std::invalid_argument(fmt::format("histogram {}: buckets and counts do not fit", name));
+    throw std::invalid_argument(
+        fmt::format("histogram {}: numbers of buckets and counts do not match", name));
   }
   begin(name, help, "histogram");
   std::uint64_t total = 0;

@@ -56,12 +56,12 @@ Query::Query(std::string_view sent) {
     const std::size_t equals = std::min(part.find('='), part.size());
     if (equals == 0) throw HttpError(400, "The query contains a parameter without a name.");
     if (part.find('=', equals + 1) != std::string_view::npos) {
-      throw HttpError(400, "The query holds a second \"=\" in a parameter: write it as %3D.");
+      throw HttpError(400, "The query contains a second \"=\" in a parameter: write it as %3D.");
     }
     const std::string name = decoded(part.substr(0, equals));
     const bool has_value = equals < part.size();
     if (!values_.emplace(name, has_value ? decoded(part.substr(equals + 1)) : "").second) {
-      throw HttpError(400, fmt::format("Query parameter \"{}\" is given more than once.", name));
+      throw HttpError(400, fmt::format("Query parameter \"{}\" is repeated.", name));
     }
     sent.remove_prefix(std::min(sent.size(), part.size() + 1));
   }

@@ -42,7 +42,7 @@ StaticFiles::StaticFiles(const fs::path& folder) {
     }
   }
   if (!has("/index.html")) {
-    throw std::invalid_argument(fmt::format("{} holds no page (index.html)", folder.string()));
+    throw std::invalid_argument(fmt::format("{} contains no page (index.html)", folder.string()));
   }
   files_["/"] = files_.at("/index.html");
 }

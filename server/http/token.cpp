@@ -44,7 +44,7 @@ Token Token::read(const std::filesystem::path& file) {
   if (!S_ISREG(status.st_mode)) refuse("it is not a regular file");
   if (status.st_uid != ::geteuid()) refuse("it belongs to another user");
   if ((status.st_mode & 077U) != 0) {
-    refuse(fmt::format("others may use it (mode {:04o}): chmod 600", status.st_mode & 07777U));
+    refuse(fmt::format("others can access it (mode {:04o}): chmod 600", status.st_mode & 07777U));
   }
   std::array<char, max_characters + 2> buffer;
   const ssize_t n = ::read(handle.get(), buffer.data(), buffer.size());

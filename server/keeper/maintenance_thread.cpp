@@ -48,7 +48,7 @@ void MaintenanceThread::do_round(int number) {
     try {
       step();
     } catch (const std::exception& error) {
-      log::error("looking after the jobs: {}", error.what());
+      log::error("maintenance of jobs: {}", error.what());
     }
   };
   each(queue_.is_remote() ? ticks_to_remote : 1, [&] { queue_.look_at_running(); });
@@ -83,9 +83,9 @@ void MaintenanceThread::remove_old() {
        outdated(store_.removable(), settings_, std::chrono::system_clock::now())) {
     try {
       queue_.remove(id);
-      log::info("{}: removed, as the settings of what is kept say", id);
+      log::info("{}: removed by the retention settings", id);
     } catch (const std::exception& error) {  // it was reopened, or its folder cannot be removed
-      log::warn("{} is kept: {}", id, error.what());
+      log::warn("{} is not removed: {}", id, error.what());
     }
   }
 }

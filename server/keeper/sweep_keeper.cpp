@@ -54,7 +54,7 @@ void SweepKeeper::run(const std::stop_token& ends) {
     try {
       look_after_all(ends);
     } catch (const std::exception& error) {
-      log::error("looking after the sweeps: {}", error.what());
+      log::error("maintenance of sweeps: {}", error.what());
     }
   }
 }

@@ -15,7 +15,7 @@ OrderedJson or_null(const std::optional<T>& value) {
 std::string place_of(const JobEntry& e) {
   const bool waits = e.state.state == State::queued && e.state.attempts == 0 && !e.shards.empty();
   if (!e.place.empty() || !waits) return e.place;
-  return fmt::format("nowhere yet: it waits for its shards, the runs of {}", e.shards);
+  return fmt::format("waiting for its shards, the runs of {}", e.shards);
 }
 
 }  // namespace

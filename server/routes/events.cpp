@@ -24,9 +24,9 @@ class Seat {
   explicit Seat(std::shared_ptr<std::atomic<int>> taken) : taken_(std::move(taken)) {
     if (taken_->fetch_add(1) < max_event_streams) return;
     taken_->fetch_sub(1);
-    throw HttpError(503, fmt::format("{} streams of events are open, and there may be no more: "
-                                     "poll instead.",
-                                     max_event_streams))
+    throw HttpError(503,
+                    fmt::format("{} event streams are open, which is the maximum: poll instead.",
+                                max_event_streams))
         .with("Retry-After", "5");
   }
   Seat(const Seat&) = delete;

@@ -28,7 +28,7 @@ void check_shards(const JobSpec& spec) {
   std::string reason = "runs of a sweep";
   if (spec.budget.iterations && most_shards(*spec.budget.iterations) < most) {
     most = most_shards(*spec.budget.iterations);
-    reason = fmt::format("as {} iterations are dealt in pairs", *spec.budget.iterations);
+    reason = fmt::format("because {} iterations are distributed in pairs", *spec.budget.iterations);
   }
   if (!has_shards(spec) || spec.shards <= most) return;
   throw BadJob(

@@ -115,7 +115,7 @@ Response JobRoutes::file(const Request& request, const std::string& id, const st
     }
   }
   if (name == "state.json") {  // of version 0.1
-    throw HttpError(410, "The state is a part of /api/jobs/ID; outcome.json says how it ended.");
+    throw HttpError(410, "The state is part of /api/jobs/ID; the end is in outcome.json.");
   }
   throw HttpError(404, fmt::format("Jobs have no file \"{}\".", name));
 }
@@ -137,8 +137,8 @@ RouteDoc list_doc() {
                     {"sweep", QueryType::text, "the runs of this sweep; empty: jobs of no sweep"},
                     {"limit", QueryType::integer,
                      fmt::format("jobs on a page; default {}", JobQuery{}.limit), 1, max_page},
-                    {"cursor", QueryType::text, "`next` of the page before"}},
-          .answers = {{200, "{jobs, total, counts, next, last_event}"}, {304, "as you have it"}}};
+                    {"cursor", QueryType::text, "`next` of the previous page"}},
+          .answers = {{200, "{jobs, total, counts, next, last_event}"}, {304, "not modified"}}};
 }
 
 RouteDoc post_doc() {
@@ -146,11 +146,11 @@ RouteDoc post_doc() {
           .query = {{"dry_run", QueryType::flag, "only check it and fill in its defaults"}},
           .body_type = "application/json",
           .body_schema = job_schema(),
-          .answers = {{201, "the job is on disk and waits"},
-                      {200, "dry run; or the job that the same key has made before"},
-                      {400, "the job is not valid: `errors` has every mistake"},
-                      {422, "the key stands for another body"},
-                      {429, "too many jobs wait"},
+          .answers = {{201, "the job is stored and queued"},
+                      {200, "dry run; or the job created before with the same key"},
+                      {400, "the job is not valid: `errors` lists every error"},
+                      {422, "the key was used with another body"},
+                      {429, "too many jobs"},
                       {507, "it could not be stored"}}};
 }
 
@@ -159,10 +159,10 @@ RouteDoc change_doc(std::string summary, std::string conflict, std::string body_
   RouteDoc doc{.summary = std::move(summary)};
   if (!body_schema.empty()) doc.body_type = "application/json";
   doc.body_schema = std::move(body_schema);
-  doc.answers = {{200, "the job as it is now"},
-                 {404, "there is no such job"},
+  doc.answers = {{200, "the changed job"},
+                 {404, "no such job"},
                  {409, std::move(conflict)},
-                 {412, "it is not the job of If-Match any more"}};
+                 {412, "the job changed since the ETag of If-Match"}};
   return doc;
 }
 
@@ -203,8 +203,8 @@ void JobRoutes::add_changes(Router& router) {
       "PATCH", "/api/jobs/{id}",
       change_doc("Changes its priority; holds or releases it", "it is over", job_change_schema()),
       with_id(*this, &JobRoutes::change));
-  auto cancel = change_doc("Stops it for good", "it was over before");
-  cancel.answers.emplace_back(202, "its renderer is asked to stop");
+  auto cancel = change_doc("Cancels it", "it was already over");
+  cancel.answers.emplace_back(202, "its renderer is stopping");
   router.add("POST", "/api/jobs/{id}/cancel", std::move(cancel),
              with_id(*this, &JobRoutes::cancel));
   router.add("POST", "/api/jobs/{id}/retry",
@@ -213,15 +213,14 @@ void JobRoutes::add_changes(Router& router) {
   router.add("POST", "/api/jobs/{id}/extend",
              change_doc("Continues it with a larger budget", "it is not over", extension_schema()),
              with_id(*this, &JobRoutes::extend));
-  router.add(
-      "DELETE", "/api/jobs/{id}",
-      {.summary = "Removes it and its results",
-       .answers = {{204, "it is gone"},
-                   {409,
-                    "it is not over, or is the reference of a job that is not, or a run of a "
-                    "sweep that is not"},
-                   {412, "it is not the job of If-Match any more"}}},
-      with_id(*this, &JobRoutes::remove));
+  router.add("DELETE", "/api/jobs/{id}",
+             {.summary = "Removes it and its results",
+              .answers = {{204, "it is removed"},
+                          {409,
+                           "it is not over, or is the reference of an unfinished job, or a run of "
+                           "an unfinished sweep"},
+                          {412, "the job changed since the ETag of If-Match"}}},
+             with_id(*this, &JobRoutes::remove));
 }
 
 void JobRoutes::add_results(Router& router) {
@@ -229,7 +228,7 @@ void JobRoutes::add_results(Router& router) {
   router.add("GET", "/api/jobs/{id}", {.summary = "One job"}, with_id(*this, &JobRoutes::detail));
   router.add("GET", "/api/jobs/{id}/log",
              {.summary = "Its log from a byte offset on; header Next-Offset has the next offset",
-              .query = {{"offset", QueryType::integer, "bytes to leave out", 0, INT64_MAX}}},
+              .query = {{"offset", QueryType::integer, "bytes to skip", 0, INT64_MAX}}},
              with_id(*this, &JobRoutes::log));
   router.add("GET", "/api/jobs/{id}/events",
              {.summary = "Its state and progress as server-sent events, until it is over"},
@@ -237,13 +236,12 @@ void JobRoutes::add_results(Router& router) {
                const JobEntry entry = find_job(store_, parts[0]);
                return event_stream(events_.job(entry.id, request.header("last-event-id")));
              });
-  router.add(
-      "GET", "/api/jobs/{id}/files/{name}",
-      {.summary = "A result; knows ETag, If-None-Match, Range and If-Range",
-       .query = {{"v", QueryType::text, "anything: another address, so that it is read anew"}}},
-      [this](const Request& request, const Parts& parts) {
-        return file(request, parts[0], parts[1]);
-      });
+  router.add("GET", "/api/jobs/{id}/files/{name}",
+             {.summary = "A result; supports ETag, If-None-Match, Range and If-Range",
+              .query = {{"v", QueryType::text, "any text, to bypass caches"}}},
+             [this](const Request& request, const Parts& parts) {
+               return file(request, parts[0], parts[1]);
+             });
 }
 
 }  // namespace lacuna

@@ -10,7 +10,7 @@ template <class V>
 void describe(V& v, JobChange& s) {
   v("priority", s.priority,
     {.doc = "higher is rendered earlier", .min = -max_priority, .max = max_priority});
-  v("held", s.held, {.doc = "true: it does not start, or go on, until this is false"});
+  v("held", s.held, {.doc = "true: it does not start or continue until this is false"});
 }
 
 namespace {
@@ -20,7 +20,7 @@ struct Extension {
 };
 template <class V>
 void describe(V& v, Extension& s) {
-  v("budget", s.budget, {.doc = "the whole new budget", .required = true});
+  v("budget", s.budget, {.doc = "the new budget, which replaces the old one", .required = true});
 }
 
 template <Described T>
@@ -38,7 +38,7 @@ T read_settings_body(const Request& request, const char* what) {
 
 std::string read_json_body(const Request& request, std::size_t max_bytes) {
   if (media_type(request) != "application/json") {
-    throw HttpError(415, "This takes a body with Content-Type: application/json.");
+    throw HttpError(415, "The body must have Content-Type: application/json.");
   }
   return request.read_body(max_bytes);
 }

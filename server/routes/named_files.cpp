@@ -33,7 +33,7 @@ const std::string& NamedFiles::look_up(const std::string& name,
     found->second = error.what();
   } catch (const InputUnreadable& error) {
     seen_.erase(found);
-    throw HttpError(503, fmt::format("Whether there is a file \"{}\" is not known now: {}.", name,
+    throw HttpError(503, fmt::format("The file \"{}\" cannot be looked up at present: {}.", name,
                                      error.code() == std::errc::no_such_file_or_directory
                                          ? "a folder of scenes is missing or empty"
                                          : error.code().message()))

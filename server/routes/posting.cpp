@@ -24,9 +24,9 @@ PostKey key_of(const Request& request, const std::string& body) {
 }
 
 void refuse_key(const std::string& noun, const std::string& id) {
-  throw HttpError(422, fmt::format("This Idempotency-Key belongs to {} {}, which was posted with "
-                                   "another body.",
-                                   noun, id));
+  throw HttpError(
+      422, fmt::format("This Idempotency-Key belongs to {} {}, which was posted with another body.",
+                       noun, id));
 }
 
 Response created(bool replayed, const std::string& place, const OrderedJson& description) {

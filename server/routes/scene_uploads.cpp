@@ -164,7 +164,7 @@ SceneUploads::Result SceneUploads::publish(Draft draft, const std::string& name)
   }
   const std::unique_lock lock(checking_, std::try_to_lock);
   if (!lock) return {Outcome::busy, bytes, "Another scene is being checked."};
-  if (is_requested(stop_)) return {Outcome::busy, bytes, "The service ends."};
+  if (is_requested(stop_)) return {Outcome::busy, bytes, "The service is shutting down."};
   if (fs::exists(fs::symlink_status(target))) return known(target);
   if (!is_glb(draft.file())) {
     return {Outcome::refused, bytes, "it is not a GLB: it does not begin with \"glTF\""};
@@ -206,7 +206,7 @@ SceneUploads::Result SceneUploads::check(const fs::path& file, std::uint64_t byt
     child.signal(SIGKILL);
     child.wait(-1, std::chrono::milliseconds(-1));
     child.reap();
-    if (is_requested(stop_)) return {Outcome::busy, bytes, "The service ends."};
+    if (is_requested(stop_)) return {Outcome::busy, bytes, "The service is shutting down."};
     return {Outcome::refused, bytes,
             fmt::format("it could not be checked within {} s",
                         static_cast<double>(settings_.time.count()) / 1000)};
@@ -216,7 +216,7 @@ SceneUploads::Result SceneUploads::check(const fs::path& file, std::uint64_t byt
   if (exited && end.code == exit_done) return {Outcome::created, bytes};
   if (exited && end.code == exit_memory) {
     return {Outcome::refused, bytes,
-            fmt::format("loading it takes more memory than is allowed{}",
+            fmt::format("loading it takes more memory than allowed{}",
                         limits.memory_bytes > 0 ? ", " + byte_size_text(limits.memory_bytes) : "")};
   }
   const std::string said = tidy(last_line(output.get()), file);

@@ -96,9 +96,9 @@ Response ServiceRoutes::metrics() const {
       .value(static_cast<double>(room.bytes));
   text.gauge("lacuna_disk_free_inodes", "Free inodes on the disk of the jobs.")
       .value(static_cast<double>(room.inodes));
-  text.gauge("lacuna_waiting", "1: jobs wait for an obstacle that may pass.")
+  text.gauge("lacuna_waiting", "1: a transient obstacle keeps jobs waiting.")
       .value(facts_.queue.obstacle().empty() ? 0 : 1);
-  text.gauge("lacuna_disk_floor_bytes", "With less room than this, jobs wait.")
+  text.gauge("lacuna_disk_floor_bytes", "Free disk space below which jobs wait.")
       .value(static_cast<double>(facts_.disk.floor()));
   text.counter("lacuna_events_total", "Number of the latest event of jobs.")
       .value(static_cast<double>(facts_.store.journal().last()));
@@ -137,8 +137,7 @@ Response ServiceRoutes::put_scene(const Request& request, const std::string& nam
     case Outcome::conflict:
       throw HttpError(
           409,
-          fmt::format("Another scene has the name \"{}\", here or in a folder that comes before.",
-                      name));
+          fmt::format("Another scene has the name \"{}\", here or in a preceding folder.", name));
     case Outcome::busy:
       throw HttpError(503, result.reason).with("Retry-After", "2");
     case Outcome::refused:
@@ -149,13 +148,14 @@ Response ServiceRoutes::put_scene(const Request& request, const std::string& nam
 
 void ServiceRoutes::add_to(Router& router) {
   using Parts = Router::Parts;
-  router.add("GET", "/health",
-             {.summary = "The service is up",
-              .answers = {{200,
-                           "{\"status\": \"ok\"}, or \"waiting\" with the \"obstacle\" that keeps "
-                           "jobs from going on"}},
-              .needs_token = false},
-             [this](const Request&, const Parts&) { return health(); });
+  router.add(
+      "GET", "/health",
+      {.summary = "The service is up",
+       .answers =
+           {{200,
+             "{\"status\": \"ok\"}, or \"waiting\" with the \"obstacle\" for which jobs wait"}},
+       .needs_token = false},
+      [this](const Request&, const Parts&) { return health(); });
   router.add("GET", "/metrics", {.summary = "Metrics, for Prometheus"},
              [this](const Request&, const Parts&) { return metrics(); });
   router.add("GET", "/api/info", {.summary = "Version, settings, machine, free disk space"},
@@ -182,14 +182,13 @@ void ServiceRoutes::add_to(Router& router) {
       "PUT", "/api/scenes/{name}",
       {.summary = "Stores a scene if it can be rendered; never replaces one",
        .body_type = "model/gltf-binary",
-       .answers = {{201, "it is there now"},
-                   {200, "the very same bytes were there"},
+       .answers = {{201, "it is stored"},
+                   {200, "the same bytes were stored already"},
                    {400, upload_name_rule},
                    {404, "the service runs without --uploads"},
-                   {409,
-                    "another scene has that name, here or in a scenes folder that comes before"},
+                   {409, "another scene has that name, here or in a preceding scenes folder"},
                    {413, "it is larger than 256 MiB"},
-                   {422, "it is not a scene that can be rendered"},
+                   {422, "it is not a valid scene"},
                    {503, "it cannot be checked now"}},
        .any_characters = true},
       [this](const Request& request, const Parts& parts) { return put_scene(request, parts[0]); });

@@ -95,13 +95,13 @@ RouteDoc sweep_post_doc() {
   return {.summary =
               "Queues a sweep: many jobs that differ in some settings; with an "
               "Idempotency-Key, once",
-          .query = {{"dry_run", QueryParameter::Type::flag, "only check it and tell its cells"}},
+          .query = {{"dry_run", QueryParameter::Type::flag, "only check it and return its cells"}},
           .body_type = "application/json",
           .body_schema = sweep_schema(),
-          .answers = {{201, "the sweep is on disk; its runs become jobs, a few at a time"},
-                      {200, "dry run; or the sweep that the same key has made before"},
-                      {400, "the sweep is not valid: `errors` has every mistake"},
-                      {422, "the key stands for another body"},
+          .answers = {{201, "the sweep is stored; its runs become jobs, a few at a time"},
+                      {200, "dry run; or the sweep created before with the same key"},
+                      {400, "the sweep is not valid: `errors` lists every error"},
+                      {422, "the key was used with another body"},
                       {507, "it could not be stored"}}};
 }
 
@@ -134,22 +134,22 @@ void SweepRoutes::add_one(Router& router) {
                            "{id, label, state, created, finished, error, run_count, counts, "
                            "share, spec, cell_count, cells, runs}; only up to share if its folder "
                            "cannot be read"},
-                          {404, "there is no such sweep"}}},
+                          {404, "no such sweep"}}},
              with_id(*this, &SweepRoutes::detail));
   router.add("POST", "/api/sweeps/{id}/cancel",
              {.summary = "Cancels it and all its runs",
               .answers = {{200, "it is cancelled"},
-                          {202, "renderers are asked to stop"},
-                          {404, "there is no such sweep"},
-                          {409, "it was over before"}}},
+                          {202, "renderers are stopping"},
+                          {404, "no such sweep"},
+                          {409, "it was already over"}}},
              with_id(*this, &SweepRoutes::cancel));
   router.add("DELETE", "/api/sweeps/{id}",
              {.summary = "Removes it, its runs' jobs and their results",
-              .answers = {{204, "it is gone"},
-                          {404, "there is no such sweep"},
+              .answers = {{204, "it is removed"},
+                          {404, "no such sweep"},
                           {409,
-                           "it is not over, or one of its jobs is not, or is the reference of "
-                           "a job that is not"}}},
+                           "it is not over, or one of its jobs is not, or is the reference of an "
+                           "unfinished job"}}},
              with_id(*this, &SweepRoutes::remove));
 }
 
@@ -158,14 +158,14 @@ void SweepRoutes::add_results(Router& router) {
   router.add("GET", "/api/sweeps/{id}/answers",
              {.summary = "The comparison of its finished runs, with intervals",
               .answers = {{200, "the answers (docs/sweeps-and-reports.md)"},
-                          {304, "as you have it"},
-                          {404, "there is no such sweep"}}},
+                          {304, "not modified"},
+                          {404, "no such sweep"}}},
              with_id(*this, &SweepRoutes::answers));
   router.add("GET", "/api/sweeps/{id}/table.csv",
-             {.summary = "All curves as one table: a row a run and instant",
+             {.summary = "All curves as one table: a row for each run and instant",
               .answers = {{200, "the table; empty: no run has a curve yet"},
-                          {304, "as you have it"},
-                          {404, "there is no such sweep"}}},
+                          {304, "not modified"},
+                          {404, "no such sweep"}}},
              with_id(*this, &SweepRoutes::table));
 }
 

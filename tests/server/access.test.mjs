@@ -94,7 +94,7 @@ test("a token file that others can read, or that is none, is refused", async (t)
     assert.match(err, message);
     assert.ok(!err.includes(token));
   };
-  await refused(tokenFile(places, 0o640), /token: others may use it \(mode 0640\): chmod 600/);
+  await refused(tokenFile(places, 0o640), /token: others can access it \(mode 0640\): chmod 600/);
   await refused(path.join(places.root, "none"), /none: No such file/);
   await refused(places.root, /it is not a regular file/);
   await refused(tokenFile(places), /--host "http:\/\/x" is not a host name/, ["--host", "http://x"]);

@@ -28,12 +28,12 @@ test("what cannot work is refused with a message", async (t) => {
     assert.equal(out, "");
     assert.match(err, message);
   };
-  await refused(["--bind", "0.0.0.0"], /0\.0\.0\.0 can be reached from other machines/);
+  await refused(["--bind", "0.0.0.0"], /other machines can reach 0\.0\.0\.0/);
   await refused(["--bind", "::"], /other machines/);
   await refused(["--bind", "example.com"], /not an address/);
   await refused(["--renderer", "/nowhere/lacuna"], /\/nowhere\/lacuna is not an executable program/);
   await refused(["--web", places.data], /index\.html/);
-  await refused(["--scenes", "/nowhere"], /\/nowhere is no folder of scenes/);
+  await refused(["--scenes", "/nowhere"], /\/nowhere is not a folder of scenes/);
   await refused(["--port", "70000"], /70000/);
   await refused(["--jobs", "0"], /--jobs/);
   await refused(["--grace", "-1"], /--grace/);

@@ -141,7 +141,7 @@ TEST_F(Uploads, ACheckThatEndsBadlyRefusesTheScene) {
     EXPECT_EQ(result.outcome, Outcome::refused);
     return result.reason;
   };
-  EXPECT_TRUE(contains(reason("exit 71"), "more memory than is allowed, 1.0 GiB"));
+  EXPECT_TRUE(contains(reason("exit 71"), "more memory than allowed, 1.0 GiB"));
   EXPECT_TRUE(contains(reason("[ $1 = --version ] || kill -11 $$"), "signal 11"));
   EXPECT_TRUE(contains(reason("exit 5"), "exit code 5"));
   EXPECT_EQ(reason("echo first >&2; echo 'lacuna: it is bad' >&2; exit 3"), "it is bad");

@@ -64,7 +64,7 @@ test("a shard that was cancelled fails the job by name; retried, both are done",
   }, "its shards are made");
   await service.cancel(one);
   assert.equal((await service.json(`/api/jobs/${one}`)).state.state, "cancelled");
-  assert.match((await service.json(`/api/jobs/${id}`)).state.place, /waits for its shards, the runs of/);
+  assert.match((await service.json(`/api/jobs/${id}`)).state.place, /waiting for its shards, the runs of/);
   await service.cancel(first);
   await service.reaches(two, "done");
   const failed = await service.reaches(id, "failed");

@@ -174,7 +174,7 @@ const faults = {
     return start();
   },
   async "second service"(service) {
-    await assert.rejects(start(), /another lacuna-server works in/);
+    await assert.rejects(start(), /another lacuna-server is using/);
     return service;
   },
   async "each n-th call"(service) {
