@@ -13,11 +13,11 @@ function estimateText(estimate, unit = "") {
   return `${least ? "> " : ""}${significant(value)}${unit}${interval}`;
 }
 
-/// What an interval says of "no difference", 1: "better", "worse", or "" where it cannot tell.
+/// Compares a gain's interval with 1 (no difference): "better", "worse", or "" if it contains 1.
 const verdict = (gain) => ((gain?.at_least ? gain.value : gain?.low) > 1 ? "better"
   : !gain?.at_least && gain?.high < 1 ? "worse" : "");
 
-/// The last part of each pointer, longer where two end alike.
+/// The last part of each pointer, extended where two have the same end.
 function settingNames(pointers) {
   return pointers.map((pointer) => {
     const parts = pointer.split("/").slice(1);
@@ -35,7 +35,7 @@ function varyingSettings(pointers, cells) {
   return settingNames(varying).map((name, i) => ({ name, pointer: varying[i] }));
 }
 
-/// A cell among `cells`, by the settings in which they differ.
+/// The names of `cells`, from the settings in which they differ.
 function cellNames(answers, cells) {
   const settings = varyingSettings(answers.settings, cells);
   return new Map(cells.map(({ cell, settings: values }) => [cell,
@@ -51,12 +51,12 @@ function timeText(to, runs) {
 const errorText = (at, runs) => (at.error ? estimateText(at.error) : `measured in ${at.reached} of ${runs} runs`);
 
 function paysText({ pays: { cold: pays }, preparation }) {
-  if (preparation.cold === null) return "not known";
+  if (preparation.cold === null) return "unknown";
   if (!pays) return "not within the measured time";
-  return pays.from_the_start ? "at once" : `after ${significant(pays.seconds)}${thin}s`;
+  return pays.from_the_start ? "immediately" : `after ${significant(pays.seconds)}${thin}s`;
 }
 
-/// The bias that the runs show, as a share of the squared error: an interval above 0 is a bias.
+/// The measured bias as text: an interval above 0 is a bias.
 function biasText(cell) {
   const bias = cell.bias_between_runs ?? cell.bias_squared;
   if (!bias) return "—";
@@ -68,12 +68,12 @@ const someOf = (cells, names) => cells.slice(0, 3).map((c) => names.get(c)).join
   + (cells.length > 3 ? ` and ${cells.length - 3} more` : "");
 
 const charges = [
-  { key: "render", label: "rendering alone" },
+  { key: "render", label: "rendering only" },
   { key: "warm", label: "with preparation, cache warm" },
   { key: "cold", label: "with preparation, cache cold" },
 ];
 
-/// A cell's mean curve: {x, y, low, high, floor}, with the seconds that `charge` adds; empty if they are not known.
+/// A cell's mean curve: {x, y, low, high, floor}, with the preparation seconds of `charge`; empty if they are unknown.
 function bandPoints(cell, charge) {
   const shift = charge === "render" ? 0 : cell.preparation[charge];
   if (shift === null) return [];
@@ -88,7 +88,7 @@ const tables = [
   { key: "cost", label: "efficiency, preparation, bias" },
 ];
 
-/// What the reference is too noisy to tell stands in parentheses.
+/// Values at the reference's noise are in parentheses.
 const told = (text, supported) => (supported ? text : h("span.muted",
   { title: "At the reference's own noise: not supported" }, `(${text})`));
 
@@ -96,8 +96,8 @@ const gainCell = (gain, supported = true) => h("span", { className: verdict(gain
   title: gain && verdict(gain) === "" ? "Not significantly different from 1" : "" },
     told(estimateText(gain, "×"), supported));
 
-/// A pair of columns for each of `values`, the last first: that is where a reader looks. `list` of a cell has what was
-/// found there, by the names of `what`: {value, gain, head, show(found, runs), gainHead}.
+/// A pair of columns for each of `values`, the last first, as the most interesting. `list` of a cell has the results,
+/// under the names in `what`: {value, gain, head, show(found, runs), gainHead}.
 const pairColumns = (values, list, what) => values.map((value, i) => [
   { key: list + i, head: what.head(value), value: (c) => c[list][i]?.[what.value]?.value,
     show: (c) => (c[list][i] ? told(what.show(c[list][i], c.done), c[list][i].supported) : "—") },
@@ -138,7 +138,7 @@ function columnsOf(answers, picture, cells, which) {
   return [...settings, runs, ...{ time: timeColumns, error: errorColumns, cost: () => costColumns }[which](picture)];
 }
 
-/// Numbers before words, what is not there last.
+/// Sorts numbers before text, and missing values last.
 function order(a, b) {
   if (a === undefined || a === null) return b === undefined || b === null ? 0 : 1;
   if (b === undefined || b === null) return -1;
@@ -147,7 +147,7 @@ function order(a, b) {
 }
 
 /// The cells of one picture as a table that can be sorted. `which`: a key of `tables`; `query` has `sort` ("KEY", or
-/// "-KEY" for the other way round), the cells in `chosen` (a Set) are ticked; `choose(key)(value)` changes the query.
+/// "-KEY" for the reverse), the cells in `chosen` (a Set) are checked; `choose(key)(value)` changes the query.
 function answersTable({ answers, picture, cells, which, query, chosen, choose }) {
   const columns = columnsOf(answers, picture, cells, which);
   const asked = query.get("sort") ?? "";
@@ -173,20 +173,20 @@ function answersTable({ answers, picture, cells, which, query, chosen, choose })
       h("tbody", rows)));
 }
 
-/// The cells that are shown at first: those of the front and their baselines.
+/// The cells shown initially: those of the front and their baselines.
 function natural(picture, cells) {
   const leading = [...picture.front.render, ...picture.front.cold].map((part) => part.cell);
   const all = leading.flatMap((n) => [n, cells.find((c) => c.cell === n)?.baseline]);
   return [...new Set(all.filter(Boolean))].slice(0, colours);
 }
 
-/// The part of a curve between two times, its ends interpolated in log-log.
+/// The part of a curve between two times, with its ends interpolated in log-log.
 function clipped(curve, from, to) {
   const at = (x) => ({ x, y: errorAt(curve, x) ?? (x < curve[0].x ? curve[0] : curve.at(-1)).y });
   return [at(from), ...curve.filter((p) => p.x > from && p.x < to), at(to)];
 }
 
-/// A figure of `cells`, on the time axis of `charge`: the chosen ones with marks and bands, and what leads when.
+/// A figure of `cells`, on the time axis of `charge`: the chosen ones with marks and bands, and the front.
 function figureOf(answers, picture, cells, names, charge, chosen) {
   const points = new Map(cells.map((c) => [c.cell, bandPoints(c, charge.key)]).filter(([, of]) => of.length > 0));
   const index = (cell) => (chosen.includes(cell) ? chosen.indexOf(cell) : undefined);
@@ -212,8 +212,8 @@ function frontList(front, names, charge) {
   }));
 }
 
-/// The answers with their switches. `query` (URLSearchParams) and the address hold every choice. `pictures(picture,
-/// cells, names)` gives an element for the chosen cells' pictures, or null. `show(answers)` draws anew.
+/// The answers with their controls. `query` (URLSearchParams) and the URL store every choice. `pictures(picture, cells,
+/// names)` returns an element with the chosen cells' pictures, or null. `show(answers)` redraws.
 export function answersView(query, pictures) {
   const [above, below, crops] = [h("div"), h("div"), h("section")];
   const figure = figureBox("No run is done yet.");

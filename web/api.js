@@ -2,7 +2,7 @@
 import { ask, h, update } from "./dom.js";
 import { shellQuote } from "./format.js";
 
-/// A request that did not succeed: problem+json, or `status` 0 where no answer came.
+/// A failed request: problem+json, or `status` 0 without a response.
 export class ApiError extends Error {
   constructor(status, problem) {
     super(problem.detail || problem.title);
@@ -27,53 +27,53 @@ async function request(path, options = {}) {
   throw new ApiError(response.status, await response.json().catch(() => fallback));
 }
 
-/// A request that changes something; `body` is JSON, undefined: there is none.
+/// An unsafe request; `body` is JSON, or undefined for none.
 const send = (method, path, body) => request(path, {
   method, body, headers: body === undefined ? {} : { "Content-Type": "application/json" },
 });
 
 let signingIn = null;
 
-/// Asks for the token, once for all that wait for it, until it is right (true) or the reader gives up.
+/// Asks for the token, once for all waiting requests, until it is right (true) or the user cancels.
 function signIn() {
   const field = h("input", { type: "password", required: true, autocomplete: "off" });
   signingIn ??= ask("This service requires a token", [
     h("p", "The token is in the file passed to lacuna-server as --token-file."), h("label", "Token ", field)],
-  "Go on", () => send("POST", session, JSON.stringify({ token: field.value }))).finally(() => { signingIn = null; });
+  "Continue", () => send("POST", session, JSON.stringify({ token: field.value }))).finally(() => { signingIn = null; });
   return signingIn;
 }
 
 export const jobPath = (id) => `/api/jobs/${encodeURIComponent(id)}`;
 const sweepPath = (id) => `/api/sweeps/${encodeURIComponent(id)}`;
-/// An address's query without what is empty or 0.
+/// A query string without empty or zero values.
 export const queryOf = (values) => new URLSearchParams(Object.entries(values).filter(([, value]) => value)).toString();
 
-/// The address of one file of a job. `version` tells the browser that the content has changed.
+/// The URL of a file of a job. `version` changes with the content, to bypass the browser's cache.
 export const fileUrl = (id, name, version) => `${jobPath(id)}/files/${encodeURIComponent(name)}`
   + (version === undefined ? "" : `?v=${encodeURIComponent(version)}`);
 
 const json = async (path, signal) => (await request(path, { signal })).json();
-/// [{name, doc, terminal, actions}]: what a job can be, and what may be asked of it then.
+/// [{name, doc, terminal, actions}]: the states of a job, and the actions allowed in each.
 export const getStates = async () => (await json("/api/states")).states;
-/// A part of the list: {jobs, total, counts, next, last_event}; `wanted`: {state, label, limit, cursor}.
+/// A page of the list: {jobs, total, counts, next, last_event}; `wanted`: {state, label, limit, cursor}.
 export const getJobs = (wanted, signal) => json(`/api/jobs?${queryOf(wanted)}`, signal);
 export const getJob = (id, signal) => json(jobPath(id), signal);
-/// {status}, and what keeps all jobs from going on: {obstacle}.
+/// {status}, and the obstacle of all jobs: {obstacle}.
 export const getHealth = (signal) => json("/health", signal);
 export const getScenes = async (signal) => (await json("/api/scenes", signal)).scenes;
 /// All sweeps, newest first: [{id, label, state, created, run_count, counts, share}].
 export const getSweeps = async (signal) => (await json("/api/sweeps", signal)).sweeps;
-/// One with its file, cells and runs.
+/// One sweep with its file, cells and runs.
 export const getSweep = (id, signal) => json(sweepPath(id), signal);
-/// What its finished runs say (docs/sweeps-and-reports.md).
+/// The answers of its finished runs (docs/sweeps-and-reports.md).
 export const getAnswers = (id, signal) => json(`${sweepPath(id)}/answers`, signal);
 export const tableUrl = (id) => `${sweepPath(id)}/table.csv`;
-/// A file as it is now: a Response.
+/// The present content of a file: a Response.
 export const getFile = (id, name, signal) => request(fileUrl(id, name), { signal, cache: "no-cache" });
 export const getText = async (id, name, signal) => (await getFile(id, name, signal)).text();
 
 /// Up to `bytes` bytes of a file from `offset` on, none beyond its end: {data, total, tag}, with its length and its
-/// ETag, which two versions of it never share.
+/// ETag, which differs between versions.
 export async function getPart(id, name, offset, bytes, signal) {
   const headers = { Range: `bytes=${offset}-${offset + bytes - 1}` };
   const response = await request(fileUrl(id, name), { signal, headers, cache: "no-store" }).catch((error) => {
@@ -93,21 +93,21 @@ export const remove = (id) => send("DELETE", jobPath(id));
 export const cancelSweep = (id) => send("POST", `${sweepPath(id)}/cancel`);
 export const removeSweep = (id) => send("DELETE", sweepPath(id));
 
-/// Posts a job file as it was typed; gives the new job's id.
+/// Posts the text of a job file; returns the new job's id.
 export async function postJob(text) {
   const response = await send("POST", "/api/jobs", text);
   return decodeURIComponent(response.headers.get("Location").split("/").pop());
 }
 
-/// The command that posts `body` (an object) to "jobs" or "sweeps" of this server.
+/// The shell command that posts `body` (an object) to "jobs" or "sweeps" of this server.
 export const curlLine = (kind, body) => `curl -sS -X POST ${location.origin}/api/${kind} `
   + `-H 'Content-Type: application/json' \\\n  -d ${shellQuote(JSON.stringify(body))}`;
 
-/// Says in the head of the page how the service answers.
+/// Shows the state of the connection in the header.
 const sayLink = (text) => update(document.getElementById("link-state"), text);
 
-/// `soon(ms)` calls `step` after that time, however often it is asked until then; who is in a greater hurry goes first,
-/// one call ends before the next begins. An unanswered request is tried again; `failed` gets what else `step` throws.
+/// `soon(ms)` calls `step` once after that time, or earlier if a later call asks for less; calls of `step` do not
+/// overlap. Retries unanswered requests; passes other exceptions of `step` to `failed`.
 export function soon(step, failed, signal) {
   let due = Infinity;
   let timer;
@@ -135,8 +135,8 @@ export function soon(step, failed, signal) {
   return call;
 }
 
-/// Calls `step` `ms` (a number, or a function that gives one) from now and after each of its ends, while the page is
-/// seen, until `signal` is aborted, `step` gives false or the reader does not show the token.
+/// Calls `step` after `ms` (a number, or a function that returns one) and again after each of its ends, while the page
+/// is visible, until `signal` is aborted, `step` returns false or the user does not enter the token.
 export function pollOn(step, ms, signal) {
   const next = () => again(typeof ms === "function" ? ms() : ms);
   const again = soon(async () => {
@@ -148,13 +148,13 @@ export function pollOn(step, ms, signal) {
   next();
 }
 
-/// Calls `step` now, whose errors are thrown to the caller, and then goes on as pollOn() does unless it gives false.
+/// Calls `step` now, rethrowing its errors, and then continues as pollOn() unless it returns false.
 export async function poll(step, ms, signal) {
   if (await step() !== false) pollOn(step, ms, signal);
 }
 
-/// Listens to events while the page can be seen: `on[name](data, id)`. `path()` is asked whenever the stream is opened,
-/// `lost` called where no events can be had (many listeners, shutdown, no token). Gives a function that ends it.
+/// Listens to events while the page is visible: `on[name](data, id)`. Calls `path()` whenever the stream is opened, and
+/// `lost` if no stream is available (many listeners, shutdown, no token). Returns a function that ends it.
 export function listen(path, on, lost, signal) {
   let source = null;
   function follow() {

@@ -1,4 +1,4 @@
-// The router: a view per hash route, or its curves alone (`embed`), until its AbortSignal. And the list of keys.
+// The router: one view per hash route, or only its curves (`embed`), until its AbortSignal; and the list of keys.
 import { ApiError, getStates } from "./api.js";
 import { ask, button, facts, h, problem, replace } from "./dom.js";
 import { states } from "./format.js";
@@ -68,7 +68,7 @@ window.addEventListener("hashchange", () => {
   else route();
 });
 
-/// Shows the keys, unless a question is open already.
+/// Shows the keys, unless a dialog is open already.
 const showKeys = () => document.querySelector("dialog")
   ?? ask("Keys", [facts(keys, "keys-help"), "The keys for pictures work while a picture has the focus."]);
 

@@ -20,7 +20,7 @@ export function parseCurve(text) {
 /// The metrics with at least one value in a curve.
 export const presentMetrics = (rows) => metrics.filter((m) => rows.some((row) => Number.isFinite(row[m.key])));
 
-/// The points of a curve that log axes can show, in order of x. `floor`: the reference's own noise is reached there.
+/// The points of a curve that log axes can show, in order of x. `floor`: at the reference's noise.
 export function points(rows, x, y) {
   const referenced = metrics.find((m) => m.key === y)?.reference;
   return rows
@@ -29,7 +29,7 @@ export function points(rows, x, y) {
     .sort((a, b) => a.x - b.x);
 }
 
-/// The value of `what` of a curve where `where` is `at`, in log-log, between the point `after` and the one before it.
+/// The value of `what` where `where` is `at`, interpolated in log-log between the point `after` and the one before it.
 function between(curve, after, where, what, at) {
   const [a, b] = [curve[after - 1], curve[after]].map((p) => ({ u: Math.log(p[where]), v: Math.log(p[what]) }));
   return a.u === b.u ? curve[after][what] : Math.exp(a.v + ((Math.log(at) - a.u) / (b.u - a.u)) * (b.v - a.v));
@@ -48,7 +48,7 @@ export function reaches(curve, y) {
   return after > 0 && after < curve.length ? between(curve, after, "y", "x", y) : curve[after]?.x ?? null;
 }
 
-/// The last instant that all curves reach, and 1/2, 1/4, 1/10 and 1/100 of it where all of them have begun. Ascending.
+/// The last instant that all curves reach, and 1/2, 1/4, 1/10 and 1/100 of it once all curves have begun; ascending.
 export function commonInstants(curves) {
   const filled = curves.filter((c) => c.length > 0);
   const [first, last] = [Math.max(...filled.map((c) => c[0].x)), Math.min(...filled.map((c) => c.at(-1).x))];
@@ -61,7 +61,7 @@ export function commonError(curves) {
   return last.length === 0 ? null : Math.max(...last);
 }
 
-/// Two ends of the line of the given slope that fits the points above the floor in log-log; empty below two points.
+/// The ends of the line of given slope fitted in log-log to the points above the floor; empty below two points.
 export function slopeLine(curves, slope) {
   const all = curves.flat().filter((p) => !p.floor);
   if (all.length < 2) return [];
@@ -70,15 +70,15 @@ export function slopeLine(curves, slope) {
   return [Math.min(...xs), Math.max(...xs)].map((x) => ({ x, y: Math.exp(offset + slope * Math.log(x)) }));
 }
 
-/// A curve's rows as a table, for reading and for those who cannot see the plot: all columns that have a value.
+/// A curve's rows as a table, also for users who cannot see the plot: all columns that have a value.
 export function curveTable(rows) {
   const keys = Object.keys(rows[0] ?? {}).filter((key) => rows.some((row) => row[key] !== null));
   return table(keys.map(words), rows.map((row) => keys.map((key) => number(row[key], 4))), true);
 }
 
-const mostApart = 1.05;  // times that differ by no more count as equal
+const mostApart = 1.05;  // largest ratio of times that count as equal
 
-/// What can be said of pictures side by side: only the last of each job is kept.
+/// A note on the render times of compared pictures: only the last of each job is kept.
 export function aboutTimes(times) {
   const [least, most] = [Math.min(...times), Math.max(...times)];
   return most <= mostApart * least ? note("Of equal time: the jobs' last pictures, at most 5 % apart in render time.")

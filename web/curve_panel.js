@@ -1,4 +1,4 @@
-// Error curves of jobs: read and followed, named so that no two read the same, and plotted with switches, or alone.
+// Error curves of jobs: reads and follows them, with unique names, and plots them with controls, or as a single figure.
 import { getJob, getText, poll } from "./api.js";
 import { axes, parseCurve, points, presentMetrics } from "./curve.js";
 import { addressOf, choice, chooser, h, problem, replace, small, update } from "./dom.js";
@@ -8,7 +8,7 @@ import { metrics } from "./job_tables.js";
 
 const everyMs = 5000;
 
-/// A job with its curve and its report. One that has ended is read once.
+/// A job with its curve and its report. A job that has ended is read once.
 async function readJob(id, before, signal) {
   if (before && isTerminal(before.state.state)) return before;
   const job = await getJob(id, signal);
@@ -18,7 +18,7 @@ async function readJob(id, before, signal) {
   return { ...job, rows, report };
 }
 
-/// Jobs with a `name`, "label, integrator"; where two would read the same, with the end of the id.
+/// Jobs with a `name`, "label, integrator"; equal names are extended by the end of the id.
 function named(jobs) {
   const plain = jobs.map(({ job }) => `${jobTitle(job)}, ${integratorName(job.integrator)}`);
   const alone = (name) => plain.indexOf(name) === plain.lastIndexOf(name);
@@ -26,8 +26,8 @@ function named(jobs) {
     { ...job, name: alone(plain[i]) ? plain[i] : `${plain[i]} (${job.id.split("-").pop()})` }));
 }
 
-/// Reads the jobs, again while any of them goes on, and each time calls `draw` with {jobs, preferred, problems}: with
-/// a `name` and their curve in `rows`, the metric to show, and what is wrong with those that could not be read.
+/// Reads the jobs, repeatedly while any of them runs, and calls `draw` with {jobs, preferred, problems}: the jobs with
+/// a `name` and their curve in `rows`, the metric to show, and errors of jobs that could not be read.
 export function followJobs(ids, draw, signal) {
   const read = new Map();
   return poll(async () => {
@@ -46,8 +46,8 @@ export function followJobs(ids, draw, signal) {
 
 export const idsOf = (query) => [...new Set((query.get("jobs") ?? "").split(",").filter(Boolean))];
 
-/// A plot and its switches; the choice, `x` and `y`, is in `query` and the address. `show(series, preferred)` draws of
-/// [{name, rows}] that, else the metric `preferred`, else the first that all have; `drawn(axis, metric)` is told which.
+/// A plot and its controls; the choice, `x` and `y`, is in `query` and the URL. `show(series, preferred)` draws the
+/// chosen metric of [{name, rows}], else `preferred`, else the first that all have, and calls `drawn(axis, metric)`.
 export function curvePanel(query, drawn = () => {}) {
   const figure = figureBox("No errors have been measured.");
   const switches = h("div.switches");
@@ -88,7 +88,7 @@ export function curvePanel(query, drawn = () => {}) {
   };
 }
 
-/// The curves of one or more jobs as a single figure, to be saved or shown elsewhere.
+/// The curves of one or more jobs as a single figure, for saving or embedding.
 export async function show(main, { params, query, signal }) {
   document.title = "Figure · Lacuna";
   const panel = curvePanel(query);

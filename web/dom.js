@@ -1,8 +1,8 @@
-// Building and changing elements, and asking. Text only ever becomes text nodes, so that no name can turn into markup.
+// Builds and changes elements, and shows dialogs. Text only becomes text nodes, so that no name can become markup.
 
 /// An element: "tag.class.class", its properties if there are any, and children. Properties whose name has a dash, and
 /// `role`, are set as attributes. Children are nodes, text or numbers, also in arrays; undefined, null, false and ""
-/// are left out.
+/// are skipped.
 export function h(tag, ...content) {
   const [name, ...classes] = tag.split(".");
   const element = document.createElement(name);
@@ -24,14 +24,14 @@ export function append(element, ...children) {
   }
 }
 
-/// Puts what h() takes as children in the place of what `element` held.
+/// Replaces the children of `element`, given as for h().
 export function replace(element, ...children) {
   element.replaceChildren();
   append(element, ...children);
 }
 
-/// As replace(), with children made for it alone: what is like what was there stays, with the focus, a selection and
-/// loaded pictures. Children with an `id` are found again by it, others by their place.
+/// As replace(), with newly made children: elements equal to existing ones stay, with focus, selection and loaded
+/// pictures. Children with an `id` are matched by it, others by their position.
 export function update(element, ...children) {
   const next = document.createElement(element.nodeName);
   append(next, ...children);
@@ -55,10 +55,10 @@ function patchChildren(old, next) {
   while (old.childNodes.length > wanted.length) old.lastChild.remove();
 }
 
-// What elements have that is neither attribute nor child.
+// State of elements that is neither attribute nor child.
 const properties = ["onclick", "onchange", "oninput", "checked", "value"];
 
-/// Makes `old` like `next`, a node of the same name.
+/// Changes `old` to equal `next`, a node of the same name.
 export function patch(old, next) {
   if (old instanceof Text) {
     if (old.data !== next.data) old.data = next.data;
@@ -67,22 +67,22 @@ export function patch(old, next) {
   for (const { name } of [...old.attributes]) if (!next.hasAttribute(name)) old.removeAttribute(name);
   for (const { name, value } of next.attributes) if (old.getAttribute(name) !== value) old.setAttribute(name, value);
   patchChildren(old, next);
-  // What is being typed is the reader's.
+  // Keeps text that the user is typing.
   const typed = old === document.activeElement && old.matches("input:not([type=checkbox])");
   for (const key of properties) if (next[key] !== old[key] && !(key === "value" && typed)) old[key] = next[key];
 }
 
-/// Names and values, side by side; values that are empty are left out.
+/// Names and values; empty values are skipped.
 export const facts = (pairs, className = "facts") => h("dl", { className }, pairs
   .filter(([, value]) => value !== "" && value !== null && value !== undefined)
   .map(([name, value]) => h("div", h("dt", name), h("dd", value))));
 
-/// The address of this view with `query` (URLSearchParams), and giving it that without a new step in the history.
+/// The URL of this view with `query` (URLSearchParams), and setting it without a new history entry.
 export const addressOf = (query) =>
   `${(location.hash || "#/").split("?")[0]}?${query}`.replaceAll("%2C", ",").replace(/\?$/, "");
 export const remember = (query) => history.replaceState(null, "", addressOf(query));
 
-/// Puts `values` into `query` and the address; what is empty is left out.
+/// Sets `values` in `query` and the URL; deletes empty ones.
 export function keep(query, values) {
   for (const [key, value] of Object.entries(values)) {
     if (value) query.set(key, value);
@@ -91,7 +91,7 @@ export function keep(query, values) {
   remember(query);
 }
 
-/// `chooser(query, draw)(key)` is what a choice does: it keeps the value in `query` and the address, and draws.
+/// `chooser(query, draw)(key)` handles a choice: it stores the value in `query` and the URL, and draws.
 export const chooser = (query, draw) => (key) => (value) => {
   query.set(key, value);
   remember(query);
@@ -100,11 +100,11 @@ export const chooser = (query, draw) => (key) => (value) => {
 
 /// A button; `props` as for h().
 export const button = (text, onclick, props = {}) => h("button", { type: "button", onclick, ...props }, text);
-/// A small one; a label says what a sign means.
+/// A small button; the label explains a symbol.
 export const small = (text, onclick, label = null) =>
   button(text, onclick, { className: "small", title: label, "aria-label": label });
 
-/// What a button of change does: `call()`, and `then()` unless that gave false; an error is for `say(text)`.
+/// The handler of a button: `call()`, then `then()` unless it returned false; errors go to `say(text)`.
 export const action = (call, then, say) => async () => {
   say("");
   try {
@@ -114,11 +114,11 @@ export const action = (call, then, say) => async () => {
   }
 };
 
-/// Where there is nothing yet: what it would be, and the command that makes the first.
+/// An empty list: its description, and the command that creates the first item.
 export const emptyPlace = (title, text, command) => h("section.empty", h("h2", title), h("p", text),
   h("pre", { tabIndex: 0 }, command), copyButton(command));
 
-/// A button that copies `text` and says so.
+/// A button that copies `text` and confirms it.
 export const copyButton = (text) => small("Copy", async ({ target }) => {
   const copied = await navigator.clipboard?.writeText(text).then(() => true, () => false);
   target.textContent = copied ? "Copied" : "Not allowed here: select and copy";
@@ -137,14 +137,14 @@ export function select(options, value, onchange, props = {}) {
     groups.map((group) => (group ? h("optgroup", { label: group }, items(group)) : items(group))));
 }
 
-/// The same behind its label, which no other on the page has.
+/// A select after its label, which is unique on the page.
 export const choice = (label, ...given) => h("span.choice", h("label", { htmlFor: `choose-${label}` }, label), " ",
   select(...given, { id: `choose-${label}` }));
 
-/// A place for a table that may be wider than the page.
+/// A scrollable container for a table wider than the page.
 export const scroll = (label, content) => h("div.scroll", { tabIndex: 0, role: "group", "aria-label": label }, content);
 
-/// A table: rows of what h() takes as children; the first cell heads a row, and with `numbers` the others are numbers.
+/// A table: rows of children of h(); the first cell is the row's header, and with `numbers` the others are numbers.
 export function table(columns, rows, numbers = false) {
   const cell = (tag, scope) => (content, i) => h(i === 0 && scope === "row" ? "th" : tag, {
     scope: i === 0 || tag === "th" ? scope : null, className: numbers && i > 0 ? "number" : "" }, content);
@@ -153,8 +153,8 @@ export function table(columns, rows, numbers = false) {
     h("tbody", rows.map((row) => h("tr", row.map(cell("td", "row")))))));
 }
 
-/// Asks with `content` (as for h()), in a window that must be answered first; gives whether the answer was `yes`, for
-/// which `act()` is done: what it throws is said, and the question stays. Without a `yes` there is only a text to read.
+/// Shows a modal dialog with `content` (as for h()); returns whether the answer was `yes`, which runs `act()`: its
+/// errors are shown, and the dialog stays. Without `yes` the dialog only shows text.
 export function ask(title, content, yes = null, act = () => {}) {
   return new Promise((resolve) => {
     const trouble = h("div");

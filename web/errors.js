@@ -29,7 +29,7 @@ export function errorPicture(image, reference, key) {
     sum += values[i];
     largest = Math.max(largest, Math.abs(values[i]) || 0);
   }
-  // A power of two brings values into the range of a float.
+  // A power of two scales values into the range of a float.
   const scale = largest > 0 && Number.isFinite(largest) ? 2 ** Math.floor(Math.log2(largest)) : 1;
   const data = Float32Array.from(values, (value) => value / scale);
   const picture = { width: image.width, height: image.height, channels: [label], scale, data, mean: sum / values.length,
@@ -42,7 +42,7 @@ function compute(image, reference, kind) {
   worker ??= new Worker("/error_worker.js", { type: "module" });
   const { port1, port2 } = new MessageChannel();
   return new Promise((resolve, reject) => {
-    worker.addEventListener("error", () => {  // it could not be read: the next question starts another
+    worker.addEventListener("error", () => {  // it could not be loaded: the next request starts another
       worker = null;
       reject(new Error("The errors could not be computed."));
     }, { once: true });
@@ -53,7 +53,7 @@ function compute(image, reference, kind) {
 
 const kept = new WeakMap();
 
-/// Errors of one picture against another: a promise of what errorPicture() gives for the key `kind`.
+/// Errors of one picture against another: a promise of errorPicture() for the key `kind`.
 export function errorOf(image, reference, kind) {
   if (kept.get(image)?.reference !== reference) kept.set(image, { reference });
   const known = kept.get(image);

@@ -1,4 +1,4 @@
-// Figures: curves over log axes as SVG whose colours are the page's, on the page and saved as files.
+// Figures: curves over log axes as SVG in the page's colours, on the page and as files.
 import { slopeLine, slopeName } from "./curve.js";
 import { h, note, small } from "./dom.js";
 import { number } from "./format.js";
@@ -7,12 +7,12 @@ const size = { left: 68, right: 14, top: 14, plot: 360, below: 52, line: 18, col
 const narrowest = 280;
 const enlarged = 3;  // pixels of a saved PNG for one of the SVG
 export const colours = 8;
-/// The i-th curve's colour, as style.css names it; after eight they come again.
+/// The i-th curve's colour, named in style.css; eight colours repeat.
 export const curveColour = (i) => `var(--curve-${i % colours})`;
 const grid = "var(--line)";
 const muted = "var(--muted)";
 
-/// Ticks of a log axis: decades, and between them as many steps as the range leaves room for.
+/// Ticks of a log axis: decades, and as many steps between them as fit.
 export function logTicks(min, max) {
   const decades = Math.log10(max / min);
   if (!(decades > 0)) return [min];
@@ -37,7 +37,7 @@ function tickLabel(value) {
     : value.toExponential().replace("e+", "e");
 }
 
-/// An axis with room for `values`: `at(value)` is a place, and no two of the `ticks` are nearer than `apart`.
+/// An axis that includes `values`: `at(value)` is a position; `ticks` are at least `apart` from each other.
 function logAxis(values, from, to, apart) {
   const [min, max] = [Math.min(...values) / 1.15, Math.max(...values) * 1.15];
   const at = (v) => from + ((to - from) * Math.log(v / min)) / Math.log(max / min);
@@ -65,7 +65,7 @@ const dashed = { "stroke-dasharray": "6 4", "stroke-width": 1 };
 const thick = { "stroke-width": 9, "stroke-opacity": 0.3, "stroke-linecap": "round" };
 const thin = { "stroke-width": 0.7 };
 
-/// Marks that are told apart without their colours.
+/// Marks that are distinguishable without colours.
 const marks = [
   (x, y, r) => svg("circle", { cx: x, cy: y, r }),
   (x, y, r) => svg("rect", { x: x - r, y: y - r, width: 2 * r, height: 2 * r }),
@@ -96,7 +96,7 @@ function frame(width, x, y, axis, metric) {
     text(axisTitle(metric), { x: 14, y: middle, "text-anchor": "middle", transform: `rotate(-90 14 ${middle})` })];
 }
 
-/// The entries [label, symbol(place)] in columns below the plot, names that are too long cut short, and their height.
+/// The entries [label, symbol(place)] in columns below the plot, with long names truncated, and their height.
 function legend(width, entries, top) {
   const columns = Math.max(1, Math.min(Math.floor((width - 30) / size.column), Math.ceil(entries.length / 4)));
   const rows = Math.ceil(entries.length / columns);
@@ -111,7 +111,7 @@ function legend(width, entries, top) {
   return { parts, height: rows * size.line };
 }
 
-/// A curve with its interval, if it has one, and marks, each of which tells its values.
+/// A curve with its interval, if any, and marks with their values as tooltips.
 function markedCurve({ name, points, index }, place, axis, metric) {
   const colour = curveColour(index);
   const edge = (key) => points.map((p) => place({ x: p.x, y: p[key] ?? p.y }));
@@ -127,7 +127,7 @@ function markedCurve({ name, points, index }, place, axis, metric) {
   return svg("g", { class: "curve" }, ...band, line(points.map(place), colour), ...told);
 }
 
-/// What the names of a figure are: of curves with an index, and of lines that need words.
+/// The legend of a figure: curves with an index, and lines that need an explanation.
 function entriesOf({ curves, front = [], metric }, slope) {
   const stroke = (half, how) => ([u, v]) => line([[u - half, v], [u + half, v]], muted, how);
   const named = curves.filter((c) => c.index !== undefined);
@@ -169,8 +169,8 @@ export function figureSvg({ curves, front = [], axis, metric }, width = 720) {
   ...names.parts);
 }
 
-/// A place for a figure, as wide as there is room. `draw(what)` shows what figureSvg() makes of it, else `empty`.
-/// `saves(what, name)` are buttons that save it: `what` is in their text, `name()` is the file's name.
+/// A container for a figure, as wide as available. `draw(what)` shows figureSvg() of it, or `empty`. `saves(what,
+/// name)` returns buttons that save it: `what` is in their text, `name()` is the file name.
 export function figureBox(empty) {
   const box = h("div.plot");
   let shown = null;
@@ -189,7 +189,7 @@ export function figureBox(empty) {
     element: h("figure", box),
     draw(next) {
       shown = next;
-      // For those who look for them: of how many curves and points it is.
+      // For tests: the numbers of curves and points.
       box.dataset.curves = shown.curves.filter((c) => c.points.length > 0).length;
       box.dataset.points = shown.curves.flatMap((c) => c.points).length;
       redraw();
@@ -207,7 +207,7 @@ async function pngOf(source, { width, height }) {
   return new Promise((resolve) => { canvas.toBlob(resolve, "image/png"); });
 }
 
-/// Saves an SVG element, in the page's colours of now, as `name`, whose ending, svg or png, says how.
+/// Saves an SVG element, in the page's present colours, as `name`, whose extension, svg or png, selects the format.
 async function saveFigure(figure, name) {
   const page = getComputedStyle(document.documentElement);
   const now = matchMedia("(prefers-color-scheme: dark)").matches ? 1 : 0;

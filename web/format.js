@@ -1,4 +1,4 @@
-// Numbers, times, names and states as people read them.
+// Numbers, times, names and states as text.
 import { h } from "./dom.js";
 
 export const thin = "\u202f";
@@ -11,7 +11,7 @@ export function significant(value, digits = 3) {
   return value.toFixed(Math.max(0, digits - 1 - Math.floor(Math.log10(size))));
 }
 
-/// Whole numbers in groups of three, others with `digits` significant digits. null: an em dash.
+/// Integers in groups of three digits, other numbers with `digits` significant digits. null: an em dash.
 export function number(value, digits = 3) {
   if (value === null || value === undefined) return "—";
   if (!Number.isInteger(value) || Math.abs(value) >= 1e15) return significant(value, digits);
@@ -29,7 +29,7 @@ const rate = (unit) => [[1e9, `G${unit}`], [1e6, `M${unit}`], [1e3, `k${unit}`],
 /// Seconds with their unit, precise: "0.412 s", "35.2 s", "412 s".
 export const seconds = (value) => (value === null || value === undefined ? "—" : `${significant(value)}${thin}s`);
 
-/// A length of time to wait for, in two units at most: "8 s", "3 min 12 s", "2 h 5 min".
+/// A waiting time, in at most two units: "8 s", "3 min 12 s", "2 h 5 min".
 export function duration(value) {
   if (value === null || value === undefined) return "—";
   const s = Math.max(0, Math.round(value));
@@ -41,7 +41,7 @@ export function duration(value) {
 export const bytes = (value) => scaled(value, [
   [2 ** 40, "TiB"], [2 ** 30, "GiB"], [2 ** 20, "MiB"], [2 ** 10, "KiB"], [1, "B"]]);
 
-/// An ISO instant in the reader's time zone: "2026-01-31 23:59:59"; empty stays empty.
+/// An ISO instant in the local time zone: "2026-01-31 23:59:59"; empty stays empty.
 export function when(iso) {
   if (!iso) return "";
   const date = new Date(iso);
@@ -65,7 +65,7 @@ export function quantity(value, keys) {
   return (shows.find(Boolean) ?? number)(value);
 }
 
-/// A job file as people write one: short lists on one line.
+/// A job file as text, with short lists on one line.
 export const prettyJob = (job) => JSON.stringify(job, null, 2)
   .replace(/\[\n\s+([^[\]{}]*?)\n\s+\]/g, (_, items) => `[${items.replace(/\n\s+/g, " ")}]`);
 
@@ -76,7 +76,7 @@ export function integratorName(integrator) {
   return [integrator.type, ...slots.map((s) => s.type)].join(" · ");
 }
 
-/// What a job is called: its own label, else its scene.
+/// The title of a job: its label, else its scene.
 export const jobTitle = (job) => job.label || job.scene;
 
 export const firstJob = (scenes) => ({
@@ -85,19 +85,19 @@ export const firstJob = (scenes) => ({
 
 export const shellQuote = (text) => `'${text.replaceAll("'", "'\\''")}'`;
 
-/// A job without the keys that are null, which say nothing.
+/// A job without the keys that are null.
 export const withoutNulls = (job) =>
   JSON.parse(JSON.stringify(job, (key, value) => (value === null ? undefined : value)));
 
-/// The states of a job as the service tells (see getStates), by name; app.js fills it before any view is shown.
+/// The states of a job from the service (see getStates), by name; app.js fills it before any view is shown.
 export const states = {};
-/// done, failed, cancelled: nothing happens any more, unless it is asked for.
+/// done, failed, cancelled: the state changes only on request.
 export const isTerminal = (state) => states[state].terminal;
 
 export const badge = (state, phase) =>
   h("span", { className: `badge ${state}` }, phase && state === "running" ? `${state} · ${phase}` : state);
 
-/// A bar with what remains beside it. There is none once nothing more happens.
+/// A progress bar with the remaining time; none for terminal states.
 export const progressBar = (label, state, progress) => (!progress ? h("span.progress.empty") : h("span.progress",
   !isTerminal(state) && h("progress", { max: 1, value: progress.share, "aria-label": label }),
   h("span.remaining", remaining(state, progress))));

@@ -1,4 +1,4 @@
-// Jobs' pictures: their layers, where they are of one size, together in the viewer, else their image.png, and why.
+// Jobs' pictures: layers of equal size together in the viewer, else their image.png with the reason.
 import { fileUrl, getFile, getPart } from "./api.js";
 import { h, update } from "./dom.js";
 import { currentError } from "./format.js";
@@ -7,8 +7,8 @@ import { viewer } from "./viewer.js";
 
 const tries = 4;
 
-/// The layers of a job: {width, height, names, read(...names)}; `read` gives a picture (see pixels.js) for each name,
-/// all of one generation, and the same ones when asked again, unless `forget(name)` let one go.
+/// The layers of a job: {width, height, names, read(...names)}; `read` returns a picture (see pixels.js) for each name,
+/// all of one generation, cached until `forget(name)`.
 async function openLayers(id, signal) {
   const readIndex = () => getFile(id, "layers.json", signal)
     .then(async (response) => ({ tag: response.headers.get("ETag"), ...await response.json() }));
@@ -32,8 +32,8 @@ async function openLayers(id, signal) {
     throw error;
   }
 
-  /// A job that goes on replaces both files, one after the other. Parts belong together that come from
-  /// one layers.half, of the lengths that the index tells, while the index stayed the same.
+  /// A running job replaces both files, one after the other. Parts are consistent if they come from one layers.half,
+  /// have the lengths in the index, and the index stayed the same.
   async function read(...names) {
     for (let i = 0; i < tries; i += 1) {
       const anew = names.some((name) => !kept.has(name));
@@ -50,12 +50,12 @@ async function openLayers(id, signal) {
   return { width, height, names: index.layers.map((l) => l.name), read, forget: (name) => kept.delete(name) };
 }
 
-/// `show(jobs)` takes jobs with a `name`; it gives the first one's layers if others are shown than before, else null.
+/// `show(jobs)` takes jobs with a `name`; it returns the first one's layers if the shown layers changed, else null.
 /// `describe(job)` gives {alt, caption} of an image.png: of its `image`, its `layers`, and if they are `drawable` here.
 export function jobPictures(query, signal, describe) {
   const [place, apart] = [h("div"), h("div.gallery")];
   const opened = new Map();  // by id: {version, layers}, a promise
-  let numbers;  // the viewer, once there are layers; null: it cannot be had
+  let numbers;  // the viewer, once there are layers; null: no WebGL 2
   let shown = "";
 
   async function entryOf(job) {

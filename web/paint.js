@@ -1,5 +1,5 @@
-// How values become colours, and drawing pictures of numbers with WebGL 2: nearest pixels when magnified, means of
-// values when made smaller.
+// Maps values to colours, and draws pictures of numbers with WebGL 2: nearest pixels when magnified, means of values
+// when minified.
 
 /// The smallest of 1, 2 and 5 times a power of ten that is not below `value`.
 function rounded(value) {
@@ -19,7 +19,7 @@ function range(images) {
   return [Number.isFinite(low) ? Math.min(0, low) : 0, Math.max(1, high)];
 }
 
-/// What does not depend on the reader's choice, for pictures to be shown alike: {look, ev} or {look, map, low, high}.
+/// The automatic look of pictures that are shown alike: {look, ev} or {look, map, low, high}.
 export function lookOf(images) {
   const [{ channels, kind }] = images;
   if (channels.length === 1) {
@@ -32,8 +32,8 @@ export function lookOf(images) {
   return { look: "colour", ev: bright > 0 ? Math.round(10 * Math.log2(0.8 / bright)) / 10 : 0 };
 }
 
-/// A look with the reader's exposure: what the painter needs, and for a false colour its `low` and
-/// `high` end. `ev` null: the look's own. One stop up shows values half as large as brightly.
+/// A look with the user's exposure: the painter's parameters, and the `low` and `high` end of false colours. `ev` null:
+/// the look's own. One stop up shows values half as large equally bright.
 export function exposed(look, { ev, stops }) {
   if (look.look === "colour") return { ...look, gain: 2 ** (ev ?? look.ev), offset: 0 };
   if (look.look === "direction") return { ...look, gain: 0.5, offset: 0.5 };
@@ -44,9 +44,9 @@ export function exposed(look, { ev, stops }) {
 
 export const steps = 256;  // of a colour map
 
-/// Lightness, chroma and hue (OKLCH) for a value in [0, 1]: equal steps of it look like equal steps of lightness.
+/// Lightness, chroma and hue (OKLCH) for a value in [0, 1]: equal steps look like equal steps of lightness.
 const colourMaps = {
-  /// Dark violet over red to pale yellow: for values from 0, or from a least one, up.
+  /// Dark violet over red to pale yellow: for values from 0, or from a minimum, up.
   sequential: (t) => [0.14 + 0.82 * t, 0.04 + 0.13 * Math.sin(Math.PI * t), 285 + 175 * t],
   /// Blue below, orange above, dark in the middle: for values of both signs.
   diverging: (t) => {
@@ -126,7 +126,7 @@ void main() {
 const looks = { colour: 0, direction: 1, false: 2 };
 const keptTextures = 8;
 
-/// A texture that is only ever fetched by pixel, which floats need no extension for.
+/// A texture read only with texelFetch, for which floats need no extension.
 function upload(gl, { width, height, channels, data }) {
   const largest = gl.getParameter(gl.MAX_TEXTURE_SIZE);
   if (Math.max(width, height) > largest) throw new Error(`This browser draws at most ${largest} pixels a side.`);
@@ -142,7 +142,7 @@ function upload(gl, { width, height, channels, data }) {
   return texture;
 }
 
-/// What `make()` gives; null where the context is lost, before or meanwhile: no error that it then throws counts.
+/// The result of `make()`; null if the context is lost before or meanwhile, when its errors are ignored.
 function unlessLost(gl, make) {
   try {
     const made = gl.isContextLost() ? null : make();
@@ -153,7 +153,7 @@ function unlessLost(gl, make) {
   }
 }
 
-/// What one context holds; made anew when the context was lost.
+/// The resources of one context; created again when the context was lost.
 function resources(gl) {
   const program = gl.createProgram();
   for (const [type, source] of [[gl.VERTEX_SHADER, vertexSource], [gl.FRAGMENT_SHADER, fragmentSource]]) {
@@ -172,21 +172,21 @@ function resources(gl) {
   return { uniform, textures: new Map() };
 }
 
-/// A painter on `canvas`; null: there is no WebGL 2. `draw(parts, {x, y, pace})` (see the shader) paints [{image, look,
-/// gain, offset, map, from, to}], `from` and `to` in [0, 1] of the width. A machine may take the context away at any
-/// moment: `draw` then does nothing and gives false, and `onrestored` asks for it again.
+/// A painter on `canvas`; null without WebGL 2. `draw(parts, {x, y, pace})` (see the shader) paints [{image, look,
+/// gain, offset, map, from, to}], `from` and `to` in [0, 1] of the width. The context may be lost at any moment: `draw`
+/// then does nothing and returns false, and `onrestored` is called later.
 export function painter(canvas, onrestored) {
   const gl = canvas.getContext("webgl2", { antialias: false, depth: false, premultipliedAlpha: true });
   if (!gl) return null;
   let held = unlessLost(gl, () => resources(gl));
-  // Without this the browser would not give the context back.
+  // Without this the browser would not restore the context.
   canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
   canvas.addEventListener("webglcontextrestored", () => {
     held = unlessLost(gl, () => resources(gl));
     if (held) onrestored();
   });
 
-  /// The one that was not used for longest goes when they are too many.
+  /// Evicts the least recently used one if there are too many.
   function texture(image) {
     const { textures } = held;
     const found = textures.get(image) ?? upload(gl, image);
@@ -232,8 +232,8 @@ export function painter(canvas, onrestored) {
 }
 
 /// A function that draws `pictures`, [{image, canvas, wide}], alike: each `wide` CSS pixels wide, of which one has
-/// `ratio` of the screen's. One a frame, fetched in the next: many at once, or waiting for one, would be a pause.
-/// The next call ends the one before; one that lost its context is made again with a new one.
+/// `ratio` of the screen's. One per frame, read back in the next, because many at once, or waiting for one, would block
+/// the page. The next call cancels the previous one; a lost context is created again.
 export function stripPainter(signal) {
   const hidden = new OffscreenCanvas(1, 1);
   let paint = null;

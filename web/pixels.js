@@ -19,10 +19,10 @@ export function cut(image, { x, y, w, h }) {
   return { ...image, width: w, height: h, data };
 }
 
-// Enough for a percentile, and few enough that a large picture is no pause.
+// Enough for a percentile, and few enough that a large picture does not block the page.
 const most = 1 << 14;
 
-/// The values below which `shares` of what `of(r, g, b)` gives lie, over finite ones but 0; null: there are none.
+/// The quantiles `shares` of the finite non-zero values of `of(r, g, b)`; null if there are none.
 function quantiles({ width, height, channels, data, scale }, shares, of) {
   const n = channels.length;
   const step = n * Math.max(1, Math.floor((width * height) / most));
@@ -35,8 +35,8 @@ function quantiles({ width, height, channels, data, scale }, shares, of) {
   return shares.map((q) => sorted[Math.floor((found.length - 1) * q)] ?? null);
 }
 
-/// The values that decide how bright a picture is shown, [low, high], null where there is nothing: of colours, the 95th
-/// percentile of luminance; of errors, 99.5 % of all pixels; of other single channels, the least and the largest.
+/// The values that set a picture's brightness, [low, high], or null: for colours the 95th percentile of luminance; for
+/// errors that of 99.5 % of all pixels; for other single channels the minimum and maximum.
 export function extent(image) {
   if (image.channels.length > 1) {
     return [null, ...quantiles(image, [0.95], (r, g, b) => Math.max(0, 0.2126 * r + 0.7152 * g + 0.0722 * b))];
@@ -47,8 +47,8 @@ export function extent(image) {
 
 const budget = 8;  // ms of a frame
 
-/// A picture with blocks of `n` by `n` pixels averaged, and the `mean` of all its values. A large one takes several
-/// frames, so that none is a pause.
+/// A picture with blocks of `n` by `n` pixels averaged, and the `mean` of all its values. A large picture takes several
+/// frames, so that none blocks the page.
 export async function reduced({ width, height, channels, data, scale }, n) {
   const c = channels.length;
   const [w, h] = [width, height].map((size) => Math.ceil(size / n));

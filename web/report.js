@@ -1,4 +1,4 @@
-// report.json as tables, whatever keys it has, as bars of time and rays, and how a job of `auto` chose its method.
+// report.json as tables, for any keys, as bars of time and rays, and the choice of a job of `auto`.
 import { facts, h, note, table } from "./dom.js";
 import { colours, curveColour, figureSvg, svg } from "./figure.js";
 import { number, quantity, seconds, words } from "./format.js";
@@ -14,7 +14,7 @@ export function leaves(value, keys = []) {
   return Object.entries(value).flatMap(([key, v]) => leaves(v, [first ? String(Number(key) + first) : key, ...keys]));
 }
 
-/// What a value is called among its section's: "build voxelise".
+/// The name of a value within its section: "build voxelise".
 const leafName = (keys) => keys.toReversed().map(words).join(" ");
 
 function section(title, value) {
@@ -22,7 +22,7 @@ function section(title, value) {
   return rows.length > 0 && h("section", h("h3", words(title)), table(["", ""], rows, true));
 }
 
-/// A section for each of a report's parts, what stands alone first.
+/// A section for each part of a report, single values first.
 function reportTables({ artefacts, choice, ...report }) {
   const parts = Object.entries(report);
   const alone = parts.filter(([, v]) => v === null || typeof v !== "object");
@@ -39,7 +39,7 @@ function painted(element, i) {
   return element;
 }
 
-/// The numbers in `object` whose name `belongs`, the largest first, as shares of a bar with a legend.
+/// The numbers in `object` whose name `belongs`, largest first, as shares of a bar with a legend.
 function stackedBar(title, object, show, belongs) {
   const parts = leaves(object ?? {}).map(({ keys, value }) => ({ name: leafName(keys), value }))
     .filter(({ name, value }) => typeof value === "number" && belongs(name)).sort((a, b) => b.value - a.value);
@@ -53,7 +53,7 @@ function stackedBar(title, object, show, belongs) {
   });
   const entries = parts.map((part, i) => h("li", painted(h("span.swatch"), i),
     `${part.name} `, h("span.muted", `${show(part.value)}, ${percent(part).toFixed(1)} %`)));
-  return block(`${title}: ${show(total)} in all`,
+  return block(`${title}: ${show(total)} in total`,
     h("div.stacked-bar", { "aria-hidden": "true" }, pieces), h("ul", entries));
 }
 
@@ -66,7 +66,7 @@ function artefactText(artefact) {
   return more.length > 0 ? `${name} (${more.join(", ")})` : String(name);
 }
 
-/// What was built and loaded, and what of the scene was there and not needed.
+/// The built and loaded artefacts, and the unneeded parts of the scene.
 function builtList({ artefacts, scene = {} }) {
   const rows = { built: [], loaded: [], left_out: [], ...artefacts };
   const { in_scene: there = 0, decoded = 0 } = scene.textures ?? {};
@@ -77,7 +77,7 @@ function builtList({ artefacts, scene = {} }) {
     [words(key), list.map(artefactText).join(", ") || "nothing"])));
 }
 
-/// CPU seconds are the same work on another clock, so they are no part of the whole.
+/// CPU seconds measure the same work by another clock, so they are not part of the total.
 const effortView = (report) => h("div.effort",
   stackedBar("Time", report.seconds, seconds, (name) => !name.endsWith("cpu")),
   stackedBar("Rays", report.counts, number, (name) => ["rays", "shadow rays"].includes(name)),
@@ -104,9 +104,9 @@ function candidateTable({ candidates, chosen, metric }) {
 
 const choiceView = (choice) => h("div.candidates", candidateTable(choice), h("div.effort", turnsFigure(choice)));
 
-/// All that a job's view shows of report.json.
+/// Everything that a job's view shows of report.json.
 export const reportParts = (report) => [
-  report.choice && [h("h2", "The choice of the method"), choiceView(report.choice)],
+  report.choice && [h("h2", "Choice of the method"), choiceView(report.choice)],
   h("h2", "Time and rays"), effortView(report),
   h("h2", "Report"), reportTables(report),
 ];

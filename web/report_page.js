@@ -1,4 +1,4 @@
-// The report of a sweep: one file that needs no server (made by `lacuna report`).
+// The report of a sweep: one file that needs no server (written by `lacuna report`).
 import { answersView, summary } from "./answers.js";
 import { aboutTimes } from "./curve.js";
 import { h, note, replace } from "./dom.js";

@@ -1,4 +1,4 @@
-// What differs between jobs, and how a number of their reports grows with a setting or another number.
+// The differences between jobs, and how a number in their reports scales with a setting or another number.
 import { choice, chooser, h, note, update } from "./dom.js";
 import { figureBox } from "./figure.js";
 import { significant, words } from "./format.js";
@@ -9,7 +9,7 @@ import { leaves } from "./report.js";
 const settings = (job) => new Map(leaves(job).map(({ keys, value }) =>
   [`/${keys.toReversed().join("/")}`, JSON.stringify(value)]));
 
-/// The pointers whose values are not the same in all jobs' files, each with a value per job ("": there is none).
+/// The pointers whose values differ between the jobs' files, each with a value per job ("": missing).
 export function differences(files) {
   const all = files.map(settings);
   return [...new Set(all.flatMap((one) => [...one.keys()]))]
@@ -17,21 +17,21 @@ export function differences(files) {
     .filter(({ values }) => values.some((value) => value !== values[0]));
 }
 
-/// Those of `differences` with which jobs may estimate different pictures; one that the page does not know counts.
+/// The `differences` that may change the estimated picture, including keys unknown to the page.
 export const doubtful = (found) => found.map((d) => d.pointer)
   .filter((pointer) => inTheLight.includes(pointer) || !notInAReference.includes(pointer.split("/")[1]));
-/// What replicates differ in, and what has no part in what is measured.
+/// Keys in which replicates differ, and keys that do not affect measurements.
 const beside = ["/seed", "/label", "/threads"];
 const parts = ["integrator", "seconds", "counts", "rates", "errors"];  // of a report
 const parsed = (text) => (text === "" ? null : JSON.parse(text));
 
-/// "seconds render_cpu" -> 29.4, ... for the numbers of a report; none where there is no report.
+/// "seconds render_cpu" -> 29.4, ... for the numbers of a report; none without a report.
 const reported = (report) => new Map(parts.flatMap((part) => leaves(report?.[part] ?? {})
   .filter(({ value }) => typeof value === "number")
   .map(({ keys, value }) => [[part, ...keys.toReversed()].join(" "), value])));
 
-/// What can be shown of jobs: {x, y}, each [{key, label, group, values}] with a value a job or null, two apart above 0.
-/// x: settings, as pointers, and numbers of the reports; y: the latter.
+/// The quantities that can be plotted: {x, y}, each [{key, label, group, values}] with a value per job or null, and at
+/// least two different positive ones. x: settings, as pointers, and numbers of the reports; y: the latter.
 function quantities(jobs) {
   const set = differences(jobs.map(({ job }) => job))
     .map(({ pointer, values }) => ({ key: pointer, label: pointer, group: "settings", values: values.map(parsed) }))
@@ -52,8 +52,8 @@ function exponent(points) {
   return across > 0 ? places.reduce((sum, p) => sum + (p[0] - u) * (p[1] - v), 0) / across : null;
 }
 
-/// The points of `y` over `x`, which quantities() gave, as curves of a figure: jobs are one
-/// curve if they share all settings but that of x, and, where x is of the reports, all but numbers.
+/// The points of `y` over `x`, both of quantities(), as curves of a figure: jobs form one curve if they share all
+/// settings except x's and, if x is from the reports, all except numbers.
 function scalingCurves(jobs, x, y) {
   const apart = differences(jobs.map(({ job }) => job)).filter(({ pointer, values }) => pointer !== x.key
     && !beside.includes(pointer) && (x.group === "settings" || values.some((v) => typeof parsed(v) !== "number")));
@@ -71,8 +71,8 @@ function scalingCurves(jobs, x, y) {
   });
 }
 
-/// A figure and its switches; `query` holds the choice, `sx` and `sy`. `show(jobs)` draws jobs with their
-/// reports; the panel is hidden while there is nothing in which they differ.
+/// A figure and its controls; `query` stores the choice, `sx` and `sy`. `show(jobs)` draws jobs with their reports; the
+/// panel is hidden while they do not differ.
 export function scalingPanel(query) {
   const figure = figureBox("No report contains both quantities.");
   const switches = h("div.switches");

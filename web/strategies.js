@@ -1,4 +1,4 @@
-// What each strategy brought to a job's picture, as a pyramid with a row a path length, and each distribution.
+// The contribution of each strategy to a job's picture, as a pyramid with a row per path length, and each distribution.
 import { choice, h, keep, note, problem, replace, scroll, update } from "./dom.js";
 import { number, significant, thin } from "./format.js";
 import { exposed, lookOf, stripPainter } from "./paint.js";
@@ -20,7 +20,7 @@ function partsOf(names) {
 
 const edgesText = (n) => `${n} edge${n === 1 ? "" : "s"}`;
 
-/// Strategies in rows of one length, which stands in front, and columns of one s; those of merging to their right.
+/// Strategies in rows by length, the first column, and columns by s; merging strategies on the right.
 function pyramid(cells) {
   const lengths = [...new Set(cells.map((c) => c.edges))].sort((a, b) => a - b);
   const least = Math.min(...cells.map(({ s }) => s));
@@ -35,7 +35,7 @@ function pyramid(cells) {
     cells.map((c) => place(c.element, lengths.indexOf(c.edges), column(c)))));
 }
 
-/// The sets there are, and which of them is shown.
+/// The available sets, and the shown one.
 function offered(parts, query) {
   const options = sets.filter(({ key }) => parts.some((p) => p.set === key));
   return { options, set: (options.find(({ key }) => key === query.get("strategies")) ?? options[0])?.key };
@@ -53,15 +53,15 @@ function cellOf(part, { width, height }, open) {
 
 const aboutText = (set, steps, others) => [
   set && "s vertices are sampled from the light, t from the eye.",
-  steps.some((c) => c.merged) && "Merged: the last vertices of both are taken for one.",
+  steps.some((c) => c.merged) && "Merged: the last vertices of both subpaths are merged.",
   set === unweighted && "Each image estimates all light of its path length, with its mean below. Images in a row "
     + "agree, except for noise and paths that a strategy cannot sample.",
   (set !== unweighted || others.length > 0) && "In %: its share of the picture's light.",
   "All at one exposure; a click shows one in the viewer.",
 ].filter(Boolean).join(" ");
 
-/// Reads the layers of cells one by one, keeps of each what is drawn, and writes its light beside it; gives the `look`
-/// of the picture itself and the `shares` of techniques in words, or null once it is `over()`.
+/// Reads the layers of cells one by one, keeps the drawn part of each, and writes its light beside it; returns the
+/// `look` of the picture and the `shares` of techniques as text, or null once it is `over()`.
 async function readCells(layers, cells, over) {
   const small = (image) => reduced(image, Math.floor(image.width / cells[0].wide / window.devicePixelRatio) || 1);
   const [picture] = await layers.read("");
@@ -81,8 +81,8 @@ async function readCells(layers, cells, over) {
   return { look: lookOf([picture]), shares: cells.some((c) => c.merged && c.set !== unweighted) && `${told}.` };
 }
 
-/// `show(layers)` takes those of a job, read once this is in sight; `open(name)` is called with the one that the reader
-/// wants to look at. What is chosen is in `query`.
+/// `show(layers)` takes those of a job, read once this is visible; calls `open(name)` for the layer that the user
+/// selects. The choice is stored in `query`.
 export function strategies(query, signal, open) {
   const paint = stripPainter(signal);
   const [title, tools, about, shares, say, body] = [h("h2"), h("div.tools"), note(), note(), h("div"), h("div")];
@@ -129,7 +129,7 @@ export function strategies(query, signal, open) {
   /// One set of strategies, and the distributions.
   function build() {
     turn += 1;
-    body.ariaBusy = "true";  // until its pictures are there, which may wait for the reader to come
+    body.ariaBusy = "true";  // until its pictures are loaded, which may wait until they are visible
     const { set } = offered(parts, query);
     const [steps, others] = [set, "distributions"].map((of) =>
       parts.filter((p) => p.set === of).map((part) => cellOf(part, layers, open)));

@@ -1,4 +1,4 @@
-// Several jobs over one another: curves, error at equal time, time to equal error, pictures.
+// Comparison of jobs: curves, error at equal time, time to equal error, pictures.
 import { commonError, commonInstants, errorAt, points, reaches } from "./curve.js";
 import { curvePanel, followJobs, idsOf } from "./curve_panel.js";
 import { append, h, note, problem, replace, table, update, warning } from "./dom.js";
@@ -32,7 +32,7 @@ function equalTimes(series, axis, metric) {
   ];
 }
 
-/// What is said of a picture that the viewer cannot show.
+/// The caption of a picture that the viewer cannot show.
 export const describe = ({ id, name, layers, drawable }) => ({ alt: `Picture of ${name}`, caption: [
   h("a", { href: `#/job/${id}` }, name), !drawable ? noViewer
     : `${layers ? "Size differs from the first" : "No layers.json"}: image.png, each at its own exposure.`] });

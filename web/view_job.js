@@ -12,9 +12,9 @@ import { chosen } from "./view_jobs.js";
 import { noViewer } from "./viewer.js";
 
 const refreshMs = 2000;
-const logTail = 1 << 16;  // bytes of a long log that are shown
+const logTail = 1 << 16;  // shown bytes of a long log
 
-// A camera of the job's own in one line: "at 1, 2, 3 to 0, 0, 0, 45°".
+// A camera defined in the job, in one line: "at 1, 2, 3 to 0, 0, 0, 45°".
 const cameraText = (camera) => (camera && typeof camera === "object"
   ? `at ${camera.position.join(", ")} to ${camera.target.join(", ")}, ${camera.fov}°`
   : camera);
@@ -64,7 +64,7 @@ function askBudget(id, { budget }) {
   () => tell(id, "extend", JSON.stringify({ budget: JSON.parse(field.value) })));
 }
 
-/// What can be done to a job: a button each. `changed()` and `gone()` are called after it, `say(text)` if refused.
+/// A button for each action on a job. Calls `changed()` or `gone()` afterwards, `say(text)` if it is refused.
 function actionTools({ id, job, priority, state }, { changed, gone, say }) {
   const act = (call, then = changed) => action(call, then, say);
   const danger = { className: "danger" };
@@ -86,7 +86,7 @@ function actionTools({ id, job, priority, state }, { changed, gone, say }) {
     Object.keys(tools).filter((name) => actions.includes(name)).map((name) => tools[name]()));
 }
 
-/// A job's log: its last part, followed while it is open. `show(size)`: how large log.txt is, if there is one.
+/// The end of a job's log, followed while it is open. `show(size)`: the size of log.txt, if any.
 function logView(id, signal) {
   const text = h("pre.tall", { tabIndex: 0, "aria-label": "Log" });
   const note = h("p.note");
@@ -104,7 +104,7 @@ function logView(id, signal) {
       if (end !== shown) return;
       const lines = new TextDecoder().decode(data);
       const atEnd = text.scrollTop + text.clientHeight >= text.scrollHeight - 4;
-      // A part that begins amid the file begins amid a line, perhaps amid a letter.
+      // A part from the middle of the file begins within a line, perhaps within a character.
       update(text, begin > 0 ? lines.slice(lines.indexOf("\n") + 1) : lines);
       if (atEnd) text.scrollTop = text.scrollHeight;
       update(note, begin > 0 && `The last part of it, from ${bytes(begin)} on. `,
@@ -125,7 +125,7 @@ function logView(id, signal) {
   };
 }
 
-/// What is said of a picture that the viewer cannot show.
+/// The caption of a picture that the viewer cannot show.
 function describe({ image, drawable, state }) {
   const why = isTerminal(state.state)
     ? "This job has no layers.json (written by newer versions); its tone-mapped image.png is shown."
@@ -133,7 +133,8 @@ function describe({ image, drawable, state }) {
   return { alt: "The picture", caption: image && h("span.muted", drawable ? why : noViewer) };
 }
 
-/// The parts of the page that follow the job; `read(job)` shows its files, and those anew whose size or state changed.
+/// The parts of the page that follow the job; `read(job)` shows its files, rereading those that changed in size or
+/// state.
 function page(id, query, signal) {
   const [title, notes] = [h("div.title"), h("div.notes")];
   const [refusal, facts, files, report, source, curve, strategies] = Array.from({ length: 7 }, () => h("div"));
@@ -153,7 +154,7 @@ function page(id, query, signal) {
     pyramid.show(layers);
   }
 
-  /// The text of a file, "" where there is none; null: it is as it was.
+  /// The text of a file, "" if it is missing; null if it is unchanged.
   async function news(name, { state, files: all }) {
     const file = all.find((f) => f.name === name);
     const version = `${state.state} ${file?.bytes}`;
@@ -196,13 +197,13 @@ export async function show(main, { params, query, signal }) {
   };
   let shown = null;
   let told = 0;  // events
-  let stop;  // ends the listening, while there is any
+  let stop;  // ends the event stream, while open
 
   function drawStatus() {
     const { job, state, progress } = shown;
     update(view.title, h("h1", jobTitle(job)), badge(state.state, state.phase),
       progressBar("Share of the budget", state.state, progress), actionTools(shown, { changed, gone, say: view.say }));
-    update(view.notes, state.error && problem(state.error), state.obstacle && warning(`It waits: ${state.obstacle}`),
+    update(view.notes, state.error && problem(state.error), state.obstacle && warning(`Waiting: ${state.obstacle}`),
       state.warnings?.map(warning));
     update(view.facts, jobFacts(shown));
     view.element.dataset.state = state.state;
@@ -217,7 +218,7 @@ export async function show(main, { params, query, signal }) {
       replace(main, h("article", h("h1", id), problem(shown.state.error)));
       return false;
     }
-    // An event that came meanwhile may be newer, and has asked for the job again.
+    // An event that arrived meanwhile may be newer, and has requested the job again.
     if (told !== asked) shown = { ...shown, state: before.state, progress: before.progress };
     if (before === null) {
       view.log.element.open = shown.state.state === "failed";
@@ -236,13 +237,13 @@ export async function show(main, { params, query, signal }) {
 
   const refreshSoon = soon(refresh, (error) => view.say(error.message), signal);
   const rest = () => { stop = stop?.(); };
-  /// From when the job waits or runs until it is over, also when it goes on after that.
+  /// While the job waits or runs, also after it continues.
   function follow() {
     const on = (key, ms) => (value) => {
       told += 1;
       shown[key] = value;
       drawStatus();
-      if (isTerminal(shown.state.state)) rest();  // the server ends the stream: do not ask for it again
+      if (isTerminal(shown.state.state)) rest();  // the server ends the stream: do not reconnect
       refreshSoon(ms);
     };
     stop ??= listen(() => `${jobPath(id)}/events`, { state: on("state", 0), progress: on("progress", refreshMs) },

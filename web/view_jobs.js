@@ -1,4 +1,4 @@
-// The list of jobs, live, a page at a time, with a filter and a choice of jobs to compare.
+// The live list of jobs, in pages, with a filter and a selection of jobs to compare.
 import { fileUrl, curlLine, getHealth, getJobs, getScenes, listen, pollOn, queryOf, soon } from "./api.js";
 import { button, emptyPlace, h, note, patch, problem, remember, select, small, update, warning } from "./dom.js";
 import { badge, currentError, firstJob, integratorName, isTerminal, jobTitle, progressBar, states, when }
@@ -8,8 +8,8 @@ const pageSize = 100;
 const pollMs = 2000;
 const soonMs = 500;
 const typingMs = 150;
-const thumbSeconds = 10;  // of rendering, after which a running job's small picture is read anew
-/// The jobs to compare: the choice survives turning pages and looking at jobs.
+const thumbSeconds = 10;  // of rendering, after which a running job's thumbnail is reloaded
+/// The jobs to compare: the selection is kept across pages and views.
 export const chosen = new Set();
 
 const noJobs = (scenes) => [
@@ -18,13 +18,13 @@ const noJobs = (scenes) => [
   scenes.length === 0 && problem("The server has no scenes: start it with LACUNA_SCENES set to a folder of scenes."),
 ];
 
-/// What the page, the counts and the service's health change with.
+/// A job's state and obstacle, which change the page, the counts and the service's health.
 const standing = (job) => `${job.state} ${job.obstacle ? "waits" : ""}`;
 
-// The narrow layout shows rows as grids, and browsers then forget that they are a table's.
+// The narrow layout shows rows as grids, for which browsers drop the table semantics.
 const cell = (className, ...children) => h("td", { role: "cell", className }, children);
 
-/// A small picture of a job, loaded when it comes into sight; it changes with the state, and with time while it runs.
+/// A thumbnail of a job, loaded when visible; it changes with the state, and with time while it runs.
 function thumbnail({ id, state, picture, progress }) {
   const age = isTerminal(state) ? "" : Math.floor((progress?.seconds ?? 0) / thumbSeconds);
   return h("span.thumb", picture && h("img", { loading: "lazy", decoding: "async", alt: "",
@@ -62,7 +62,7 @@ const choiceTools = (redraw) => h("span.tools.choose-tools",
   button(chosen.size > 0 ? `Compare (${chosen.size})` : "Compare",
     () => { location.hash = `#/compare?jobs=${[...chosen].join(",")}`; }, { disabled: chosen.size < 2 }));
 
-/// Which jobs are asked for: `wanted` is {label, state, sweep}, `changed(values)` changes it.
+/// The filter of the list: `wanted` is {label, state, sweep}, `changed(values)` changes it.
 function filterTools(wanted, counts, changed) {
   const options = Object.keys(states).map((name) => ({ key: name, label: `${name} (${counts[name] ?? 0})` }));
   return [
@@ -76,9 +76,9 @@ function filterTools(wanted, counts, changed) {
 
 const first = { cursor: "", from: 0 };
 
-/// A function that gives the way to the pages before and after one; `go(place)` is called to get there.
+/// Returns a function that builds the navigation to the previous and next page; `go(place)` opens one.
 function pager(go) {
-  let back = [];  // the places of the pages before
+  let back = [];  // the previous pages
   return ({ here, jobs, total, next }) => {
     if (!here.cursor) back = [];
     const on = () => {
@@ -92,7 +92,7 @@ function pager(go) {
   };
 }
 
-/// What the address asks for.
+/// The filter and page in the URL.
 function addressed(query) {
   const given = (key) => query.get(key) ?? "";
   const state = given("state") in states ? given("state") : "";
@@ -104,13 +104,13 @@ export async function show(main, { query, signal }) {
   document.title = "Jobs · Lacuna";
   update(main, h("h1", "Jobs"));
   let { wanted, place } = addressed(query);
-  let found = null;  // the page that begins `here`, as the service gave it, and the `obstacle` of all jobs
-  let scenes = null;  // once there is no job
-  const known = new Map();  // the standing of every job that was told of
+  let found = null;  // the page that begins `here`, from the service, and the `obstacle` of all jobs
+  let scenes = null;  // read once there is no job
+  const known = new Map();  // the standing of every job in an event
   let asked = 0;
 
   const filter = () => ({ ...wanted, label: wanted.label.trim() });
-  /// The address holds what is not as at first.
+  /// The URL contains what differs from the initial view.
   function go(next, ms) {
     place = next;
     remember(queryOf({ ...filter(), ...place }));
@@ -141,7 +141,7 @@ export async function show(main, { query, signal }) {
       pages(found));
   }
 
-  /// Asks for the page; an answer that a newer question has overtaken is dropped.
+  /// Requests the page; drops a response if a newer request was sent.
   async function list() {
     asked += 1;
     const mine = asked;
@@ -166,7 +166,7 @@ export async function show(main, { query, signal }) {
         found.jobs[at] = entry;
         patch(document.getElementById(`row-${entry.id}`), jobRow(entry, onchoose));
       }
-      // What is on the page, and the counts, change only with the jobs' states.
+      // The page's entries and the counts change only with the jobs' states.
       if (known.get(entry.id) !== standing(entry)) listSoon(soonMs);
       known.set(entry.id, standing(entry));
     },

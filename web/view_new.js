@@ -1,4 +1,4 @@
-// Posting a job: its file as text, the scenes there are, and every problem with its place.
+// Posting a job: its file as text, the available scenes, and every problem with its position.
 import { getJob, getScenes, postJob } from "./api.js";
 import { append, h, problem, replace, select } from "./dom.js";
 import { firstJob, prettyJob, withoutNulls } from "./format.js";
@@ -17,7 +17,7 @@ export async function show(main, { query, signal }) {
     try {
       text.value = prettyJob({ ...JSON.parse(text.value), scene: name });
     } catch {
-      // What is no JSON yet is left alone.
+      // Text that is not yet JSON is kept.
     }
   }, { id: "scene" });
 
@@ -30,7 +30,7 @@ export async function show(main, { query, signal }) {
     } catch (error) {
       replace(errors, problem(`${error.title}. ${error.message}`),
         error.errors?.length > 0 && h("ul.errors", error.errors.map(({ pointer, message }) =>
-          h("li", h("code", pointer || "(the whole)"), " ", message))));
+          h("li", h("code", pointer || "(the document)"), " ", message))));
     }
     submit.disabled = false;
   }

@@ -1,4 +1,4 @@
-// The sweeps, newest first, and one of them: what its runs say about its settings, live while they are done.
+// The sweeps, newest first, and one sweep: the live comparison of its settings.
 import { cancelSweep, curlLine, getAnswers, getJob, getSweep, getSweeps, poll, removeSweep, tableUrl } from "./api.js";
 import { answersView, summary } from "./answers.js";
 import { action, append, ask, button, copyButton, emptyPlace, h, note, problem, replace, table, update }
@@ -9,7 +9,7 @@ import { describe } from "./view_compare.js";
 
 const listMs = 2000;
 const answersMs = 4000;
-const answersShare = 0.01;  // of all time: whoever looks at a large sweep must not disturb its times
+const answersShare = 0.01;  // of all time: viewing a large sweep must not disturb its timings
 
 const example = {
   label: "next event estimation",
@@ -58,12 +58,12 @@ function cellPictures(query, signal, failed) {
   };
 }
 
-/// Runs that need a look: failed ones, and those whose times were disturbed.
+/// Runs to check: failed ones, and those whose timings were disturbed.
 function doubtfulRuns(answers) {
   const rows = answers.cells.flatMap((cell) => cell.runs
     .filter((r) => r.tainted || r.state === "failed")
     .map((r) => [h("a", { href: `#/job/${r.job}` }, r.name), cell.text, r.state, r.tainted ?? ""]));
-  return rows.length > 0 && h("details", h("summary", `${rows.length} runs to look at`),
+  return rows.length > 0 && h("details", h("summary", `${rows.length} runs to check`),
     table(["Run", "Settings", "State", "Disturbed by"], rows));
 }
 
@@ -94,7 +94,7 @@ async function showOne(main, { params: { id }, query, signal }) {
     const over = isTerminal(sweep.state);
     document.title = `${sweep.label || "Sweep"} · Lacuna`;
     update(title, h("h1", sweep.label || "Sweep"), badge(sweep.state), shareBar(sweep), h("div.tools.actions",
-      // Above what is drawn late: a link that a picture moves is missed.
+      // Above elements that are drawn late, so that no picture moves the links.
       h("a", { href: `#/?sweep=${id}` }, "its runs"),
       h("a", { href: tableUrl(id), download: `${id}.csv` }, "table.csv"),
       over ? remove() : cancel()));

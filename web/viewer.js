@@ -1,4 +1,4 @@
-// The viewer of pictures of numbers: its state, as the address holds it, what the state asks for, and drawing that.
+// The viewer of pictures of numbers: its state, stored in the URL, the pictures that it requires, and drawing them.
 import { h, keep, problem, update } from "./dom.js";
 import { errorKinds, errorOf, kindOf } from "./errors.js";
 import { number, significant, words } from "./format.js";
@@ -9,31 +9,31 @@ import { listenTo, modes, modeTools, viewerActions, viewerTools, viewOf } from "
 import { colourBar, cropStrip, printPixels, stage } from "./viewer_parts.js";
 import { pointAt, settleCrop, zoomOf } from "./viewport.js";
 
-/// What is said where viewer() gives null.
-export const noViewer = "This browser offers no WebGL 2: image.png is shown, tone-mapped, instead of the values.";
+/// The message if viewer() returns null.
+export const noViewer = "This browser has no WebGL 2: the tone-mapped image.png is shown instead of the values.";
 const finite = (text) => (text?.trim() && Number.isFinite(Number(text)) ? Number(text) : null);
 const share = (text) => Math.min(1, Math.max(0, finite(text) ?? 0.5));
 const place = (text, otherwise = 0) => Math.max(0, Math.trunc(finite(text) ?? otherwise));
 const short = (value) => String(Number(value.toPrecision(5)));
 
-/// "x,y,w,h", in pixels; null where that is no rectangle.
+/// "x,y,w,h", in pixels; null if that is not a rectangle.
 function rectangle(text) {
   const [x, y, w, h] = (text ?? "").split(",").map((part) => place(part));
   return w > 0 && h > 0 ? { x, y, w, h } : null;
 }
 
-/// A viewer's state: how each part is read from the address, and what is written there, if the page chose otherwise.
+/// A viewer's state: how each part is parsed from the URL, and written to it unless it has its default.
 const fields = {
   /// A layer or an error, see choices().
   show: [(text) => text ?? "", ({ show }) => show],
   /// Exposure in stops, of colours and of false colours.
   ev: [finite, ({ ev }) => ev !== null && short(ev)],
   stops: [(text) => finite(text) ?? 0, ({ stops }) => stops !== 0 && short(stops)],
-  /// The part that is seen, see viewport.js.
+  /// The visible part, see viewport.js.
   zoom: [(text) => (finite(text) > 0 ? finite(text) : null), ({ zoom }) => zoom !== null && short(zoom)],
   at: [(text) => [0, 1].map((i) => share(text?.split(",")[i])),
     ({ zoom, at }) => zoom !== null && at.map(short).join()],
-  /// Of several pictures: which, where two are split, what the difference is measured by, and the crop.
+  /// For several pictures: which ones, the position of the split, the measure of the difference, and the crop.
   mode: [(text) => (Object.hasOwn(modes, text) ? text : "one"), ({ mode }) => mode !== "one" && mode],
   left: [place, ({ left }) => left],
   right: [(text) => place(text, 1), ({ mode, right }) => mode !== "one" && right !== 1 && String(right)],
@@ -45,7 +45,7 @@ const fields = {
 const reference = "reference";
 const errors = "error-";
 
-/// What all `sources` can show: {key, label, group}. The picture itself has the key "".
+/// The choices available for all `sources`: {key, label, group}. The picture itself has the key "".
 function choices(sources) {
   const shared = sources[0].layers.names.filter((name) => sources.every((s) => s.layers.names.includes(name)));
   const layers = shared.map((key) => {
@@ -57,7 +57,7 @@ function choices(sources) {
     ...kinds.map(({ key, label }) => ({ key: errors + key, label, group: "Error against the reference" }))];
 }
 
-/// The picture that a choice means for one source, and those that it was computed from, with names.
+/// The picture of a choice for one source, and those from which it was computed, with names.
 async function pictureOf({ layers }, key) {
   const kind = key.startsWith(errors) && kindOf(key.slice(errors.length))?.key;
   if (!kind) return { picture: (await layers.read(key))[0], from: [] };
@@ -65,7 +65,7 @@ async function pictureOf({ layers }, key) {
   return { picture: await errorOf(x, r, kind), from: [["x", x], ["r", r]] };
 }
 
-/// Makes `state` one that `sources` can show; gives their choices.
+/// Restricts `state` to what `sources` can show; returns their choices.
 function settle(state, sources) {
   const options = choices(sources);
   if (!options.some((o) => o.key === state.show)) state.show = options[0].key;
@@ -76,8 +76,8 @@ function settle(state, sources) {
   return options;
 }
 
-/// {images, shown, look, details}: the pictures that are needed (the first, which sets the exposure, and all that share
-/// a range); the one shown; how they look; and others, with names, whose values are read with it.
+/// {images, shown, look, details}: the required pictures (the first, which sets the exposure, and all that share a
+/// range); the shown one; their look; and others, with names, whose values are printed with it.
 async function contentOf(state, sources) {
   const read = (i) => pictureOf(sources[i], state.show);
   const first = await read(0);
@@ -112,7 +112,7 @@ function pixelText(image, details, x, y) {
     ...details.map(([name, of]) => `${name}: ${valueText(of, x, y)}`)].join("\n");
 }
 
-/// What a colour bar measures, with the mean: it is the error that the curve shows.
+/// The title of the colour bar, with the mean, which is the error in the curve.
 function barTitle({ kind: key, mean }, layer) {
   if (!key) return layer;
   const kind = kindOf(key);
@@ -139,7 +139,7 @@ function drawAll(own) {
   own.crops.show(state, sources, content.images, look, ratio);
   own.bar.show(look, barTitle(content.shown, state.show));
 
-  // Without a pointer, the pixel in the middle is read.
+  // Without a pointer, reads the pixel in the middle.
   const [u, v] = own.pointer ?? [box.width / 2, box.height / 2];
   const at = pointAt(view, size, box, u, v);
   update(own.readout, (own.pointer ? "" : "middle ")
@@ -153,9 +153,9 @@ function drawAll(own) {
   seen.frame.dataset.zoom = Number(zoom.toPrecision(4));
 }
 
-/// A viewer whose state is in `query` (URLSearchParams) and the address; null: there is no WebGL 2. `show(sources)`
-/// takes [{name, layers, seconds, error}] (see openLayers; render time, the error in words) of one size, shown alike;
-/// `open(key)` chooses what of them, and takes the reader there.
+/// A viewer whose state is in `query` (URLSearchParams) and the URL; null without WebGL 2. `show(sources)` takes
+/// [{name, layers, seconds, error}] (see openLayers; render time, error as text) of one size, shown alike; `open(key)`
+/// selects a layer of them and scrolls to the viewer.
 export function viewer(query, signal) {
   const seen = stage();
   const state = Object.fromEntries(Object.entries(fields).map(([key, [read]]) => [key, read(query.get(key))]));
@@ -193,7 +193,7 @@ export function viewer(query, signal) {
   if (!own.paint) return null;
   own.actions = viewerActions(own);
 
-  /// What was drawn stays until what is asked for is there.
+  /// The previous pictures stay until the requested ones are loaded.
   async function refresh() {
     turn += 1;
     const mine = turn;

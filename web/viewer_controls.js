@@ -1,11 +1,11 @@
-// What a reader can do to a viewer, whether by key, pointer or button.
+// The controls of a viewer: keys, pointer and buttons.
 import { choice, h, select, small } from "./dom.js";
 import { errorKinds } from "./errors.js";
 import { cropBetween, fitZoom, moved, movedCrop, pointAt, scaledCrop, zoomOf, zoomTo } from "./viewport.js";
 
 /// The view (see viewport.js) of a viewer's state.
 export const viewOf = ({ zoom, at: [x, y] }) => ({ zoom, x, y });
-const grip = 12;  // CSS pixels on each side of the split line that take hold of it
+const grip = 12;  // CSS pixels on each side of the split line in which a drag moves it
 
 /// Actions on a viewer that has content: {state, size(), seen, content, options, sources, change(values)}.
 export function viewerActions(own) {
@@ -22,7 +22,7 @@ export function viewerActions(own) {
     zoomBy: (factor, u, v) => setView(zoomTo(...view(), zoomOf(...view()) * factor, u, v)),
     fit: () => setView({ zoom: null, x: 0.5, y: 0.5 }),
     oneToOne: () => setView(zoomTo(...view(), 1 / window.devicePixelRatio)),
-    /// What a drag from (u, v) does, in CSS pixels: it moves the line, chooses a crop, or moves the picture.
+    /// The action of a drag from (u, v), in CSS pixels: move the line, choose a crop, or move the picture.
     begin(u, v) {
       if (state.mode === "split" && Math.abs(u - state.split * own.seen.box().width) < grip) {
         return (at) => setSplit(at / own.seen.box().width);
@@ -37,7 +37,7 @@ export function viewerActions(own) {
         last = at;
       };
     },
-    /// By a tenth of the frame, or of the crop; false where everything is seen already.
+    /// Moves by a tenth of the frame, or of the crop; false if everything is visible already.
     move(right, down) {
       const [, size, box] = view();
       if (state.mode === "crops") change({ crop: movedCrop(state.crop, right, down, size) });
@@ -45,7 +45,7 @@ export function viewerActions(own) {
       else setView(moved(...view(), 0.1 * right * box.width, 0.1 * down * box.height));
       return true;
     },
-    /// The line between two pictures, or the size of the crop, by a step.
+    /// Moves the line between two pictures, or resizes the crop, by a step.
     shift(step) {
       if (state.mode === "split") setSplit(state.split + 0.05 * step);
       if (state.mode === "crops") change({ crop: scaledCrop(state.crop, step, own.size()) });
@@ -55,7 +55,7 @@ export function viewerActions(own) {
       const at = options.findIndex((o) => o.key === state.show);
       change({ show: options[(at + by + options.length) % options.length].key });
     },
-    /// False where there is no picture to choose.
+    /// False if there is no such picture.
     pick(i) {
       if (own.sources.length < 2 || i >= own.sources.length) return false;
       change({ left: i });
@@ -66,7 +66,7 @@ export function viewerActions(own) {
 
 const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
-/// What a key does; false where it has no meaning.
+/// Handles a key; false if it has no meaning.
 function press(key, actions) {
   const plain = {
     "+": () => actions.zoomBy(2),
@@ -87,7 +87,7 @@ function press(key, actions) {
   return key in plain && plain[key]();
 }
 
-/// Keys, wheel and pointer over a viewer's frame. The wheel zooms only with the focus: the page scrolls past it.
+/// Keys, wheel and pointer over a viewer's frame. The wheel zooms only with the focus, and otherwise scrolls the page.
 export function listenTo(own) {
   const { actions, seen: { frame } } = own;
   let drag = null;
@@ -123,14 +123,14 @@ export function listenTo(own) {
   }, { passive: false });
 }
 
-/// Exposure in stops, and back to the page's own choice.
+/// Exposure in stops, and a reset to the automatic one.
 export const exposureTools = (value, setExposure) => h("span.exposure.tools",
   h("label", "EV ", h("input", { type: "number", step: "0.1", "aria-label": "Exposure in stops",
     value: Number(value.toFixed(2)),
     oninput: ({ target }) => target.value !== "" && setExposure(Number(target.value)) })),
-  small("Auto", () => setExposure(null), "The page's own exposure"));
+  small("Auto", () => setExposure(null), "Automatic exposure"));
 
-/// What is shown, how bright, and how large. `stops` null: what is shown has no exposure.
+/// The choice of layer, exposure and zoom. `stops` null: the layer has no exposure.
 export const viewerTools = (actions, { options, chosen, stops, zoom }) => [
   choice("Show", options, chosen, (show) => actions.change({ show })),
   h("span", { hidden: stops === null }, stops !== null && exposureTools(stops, actions.setExposure)),

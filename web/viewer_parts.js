@@ -1,4 +1,4 @@
-// What of a viewer can be seen: canvases, values printed in magnified pixels, the colour bar, and the crops.
+// The visible parts of a viewer: canvases, values printed in magnified pixels, the colour bar, and the crops.
 import { aboutTimes } from "./curve.js";
 import { h, note, replace, update } from "./dom.js";
 import { seconds, significant } from "./format.js";
@@ -15,7 +15,7 @@ export function stage() {
   const frame = h("div.stage", { tabIndex: 0, role: "group" }, canvas, text, line, crop);
   return {
     frame, canvas, text,
-    /// The line of a state that splits, and the crop of one that has crops.
+    /// Shows the line of a split, and the crop of a state with crops.
     mark({ mode, split, crop: chosen }, corner, zoom) {
       line.hidden = mode !== "split";
       line.style.left = `${100 * split}%`;
@@ -27,7 +27,7 @@ export function stage() {
     },
     box: () => ({ width: Math.max(1, frame.clientWidth), height: Math.max(1, frame.clientHeight) }),
     setSize: ({ width, height }) => frame.style.setProperty("--aspect", Math.min(4, Math.max(0.5, width / height))),
-    /// The canvases' size follows the frame's, in the screen's own pixels.
+    /// Resizes the canvases to the frame, in device pixels.
     fitCanvases(box, ratio) {
       const [width, height] = [box.width, box.height].map((n) => Math.round(n * ratio));
       if (canvas.width === width && canvas.height === height) return;
@@ -36,7 +36,7 @@ export function stage() {
   };
 }
 
-const least = 48;  // CSS pixels that a pixel needs
+const least = 48;  // CSS pixels per pixel for printed values
 const tints = { R: "#ff9a90", G: "#8fe29a", B: "#9cc4ff" };
 
 function print(context, image, x, y, left, top, zoom) {
@@ -70,7 +70,7 @@ export function printPixels(canvas, box, ratio, { corner, zoom, size, imageAt })
   }
 }
 
-/// A colour map with the values it stands for; `show(look, title)` hides it where colours are not false.
+/// A colour map with the values it stands for; `show(look, title)` hides it unless the colours are false.
 export function colourBar() {
   const canvas = h("canvas", { width: steps, height: 1, role: "img" });
   const [title, labels] = [h("span.bar-title"), h("div.bar-labels")];
@@ -89,8 +89,8 @@ export function colourBar() {
   };
 }
 
-/// One crop of several jobs side by side, at one exposure, with each job's time and error, where the state asks for it;
-/// `ratio` is how many of the screen's pixels make a CSS pixel.
+/// One crop of several jobs side by side, at one exposure, with each job's time and error, if the state requires it;
+/// `ratio`: device pixels per CSS pixel.
 export function cropStrip(signal) {
   const draw = stripPainter(signal);
   const [title, times, strip] = [note(), h("div"), h("div.crops")];

@@ -1,5 +1,5 @@
-// Which part of a picture is seen: arithmetic only. A view is {zoom, x, y}: CSS pixels a pixel (null: all of it), and
-// the middle, in [0, 1]. A crop is {x, y, w, h}, in whole pixels. `size` is the picture's and `box` the frame's.
+// The visible part of a picture: arithmetic only. A view is {zoom, x, y}: CSS pixels a pixel (null: all of it), and the
+// middle, in [0, 1]. A crop is {x, y, w, h}, in whole pixels. `size` is the picture's and `box` the frame's.
 
 const largestZoom = 256;
 /// The zoom that shows the whole picture.
@@ -12,7 +12,7 @@ export function pointAt(view, size, box, u, v) {
   return { x: view.x * size.width + (u - box.width / 2) / zoom, y: view.y * size.height + (v - box.height / 2) / zoom };
 }
 
-/// A view that shows no more emptiness than it must.
+/// A view with as little empty space as possible.
 function held({ zoom, x, y }, size, box) {
   const hold = (at, side) => {
     const half = Math.min(0.5, box[side] / 2 / zoomOf({ zoom }, size, box) / size[side]);
@@ -47,22 +47,22 @@ function cropIn({ x, y, w, h }, { width, height }) {
   return { x: within(x, 0, width - wide), y: within(y, 0, height - high), w: wide, h: high };
 }
 
-/// `crop` as it can be shown; null: the middle of the picture.
+/// `crop`, restricted to the picture; null: its middle.
 export function settleCrop(crop, size) {
   const side = Math.min(64, Math.ceil(Math.min(size.width, size.height) / 4));
   return cropIn(crop ?? { x: (size.width - side) / 2, y: (size.height - side) / 2, w: side, h: side }, size);
 }
 
-/// The pixels that a drag touches between two points of the picture.
+/// The pixels of a drag between two points of the picture.
 export function cropBetween(from, to, size) {
   const [x, y] = [Math.floor(Math.min(from.x, to.x)), Math.floor(Math.min(from.y, to.y))];
   return cropIn({ x, y, w: Math.ceil(Math.max(from.x, to.x)) - x, h: Math.ceil(Math.max(from.y, to.y)) - y }, size);
 }
 
-/// Moved by a tenth of itself to the `right` and `down`, each -1, 0 or 1.
+/// A crop moved by a tenth of its size to the `right` and `down`, each -1, 0 or 1.
 export const movedCrop = (crop, right, down, size) => cropIn({ ...crop,
   x: crop.x + right * Math.ceil(crop.w / 10), y: crop.y + down * Math.ceil(crop.h / 10) }, size);
 
-/// A fifth larger (`step` 1) or smaller (-1).
+/// A crop a fifth larger (`step` 1) or smaller (-1).
 export const scaledCrop = (crop, step, size) => cropIn({ ...crop,
   w: crop.w + step * Math.ceil(crop.w / 5), h: crop.h + step * Math.ceil(crop.h / 5) }, size);

@@ -127,12 +127,12 @@ test("a job that waits for a fault to pass says so, in the list, above it and on
   await page.getByText("Jobs wait: renderers cannot write their files").waitFor();
   assert.equal(await text(`tr[data-job="${waiting}"] .badge`), "queued", "it has not failed");
   await open(`/#/job/${waiting}`);
-  await page.getByText(`It waits: ${full}`).waitFor();
+  await page.getByText(`Waiting: ${full}`).waitFor();
   while (mock.listeners.size === 0) await page.waitForTimeout(20);
   mock.obstacle = "";
   mock.update(waiting, { state: { obstacle: "", place: "Slurm job 17 waits: Resources" } });
   await page.getByText("Slurm job 17 waits: Resources").waitFor();
-  await page.getByText("It waits:").waitFor({ state: "detached" });
+  await page.getByText("Waiting:").waitFor({ state: "detached" });
   await open("/");
   await page.getByText("Jobs wait:").waitFor({ state: "detached" });
   assert.equal(await reason.innerText(), "");
@@ -348,11 +348,11 @@ test("a service with a token asks for it once, and the page goes on where it was
   mock.token = "open sesame";
   await page.goto(`${origin}/#/job/${cornell}`);
   await page.getByRole("textbox", { name: "Token" }).fill("wrong");
-  await button("Go on").click();
+  await button("Continue").click();
   await page.getByText("That is not the token.").waitFor();
   await screenshot(page, "token");
   await page.getByRole("textbox", { name: "Token" }).fill(mock.token);
-  await button("Go on").click();
+  await button("Continue").click();
   await page.getByRole("heading", { name: "Cornell box, 6 edges" }).waitFor();
   await page.waitForSelector(".stage[data-shown]");
   assert.equal(await page.locator("dialog").count(), 0);

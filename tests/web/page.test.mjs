@@ -163,7 +163,7 @@ test("an answer that was asked for before an event takes nothing of it back", as
 test("a job shows where its time and rays went, and what was built, loaded and left out", async () => {
   await open(views.job);
   const effort = await page.locator(".effort").innerText();
-  assert.match(effort, /Time: 42\.9\ss in all/);
+  assert.match(effort, /Time: 42\.9\ss in total/);
   assert.match(effort, /render 30\.0\ss, 69\.9 %/);
   assert.match(effort, /shadow rays 512\s000\s000, 35\.7 %/);
   assert.match(effort, /built\s+skeleton \(1\.50\ss, 2\.00\sKiB disk\)\s+loaded\s+octree\s+left out\s+2 of 3 textures/);

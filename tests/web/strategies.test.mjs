@@ -111,7 +111,7 @@ test("all have one exposure: the picture's own, until the reader chooses another
   near(await halves(8), [srgb(4 / 32), srgb(4 / 32)]);
   await openStrategies("?stops-each=2");
   near(await halves(8), [srgb(4 / 32), srgb(4 / 32)]);
-  await page.locator("section:has(> div .pyramid)").getByRole("button", { name: "The page's own exposure" }).click();
+  await page.locator("section:has(> div .pyramid)").getByRole("button", { name: "Automatic exposure" }).click();
   for (let i = 0; i < 12; i += 1) await frames(page);
   near(await halves(0), [srgb(own / 4), 0]);
   assert.ok(!page.url().includes("stops-each"));

@@ -33,7 +33,7 @@ async function guarded(t, args = []) {
 }
 
 const field = (page) => page.getByRole("textbox", { name: "Token" });
-const submit = (page) => page.getByRole("button", { name: "Go on" }).click();
+const submit = (page) => page.getByRole("button", { name: "Continue" }).click();
 async function logIn(page) {
   await field(page).fill(token);
   await submit(page);

@@ -281,7 +281,7 @@ test("a browser without WebGL 2 shows image.png and says why", async () => {
   });
   await page.reload();
   await page.goto(origin + address());
-  await page.getByText("This browser offers no WebGL 2").waitFor();
+  await page.getByText("This browser has no WebGL 2").waitFor();
   await page.waitForFunction(() => document.querySelector(".frame img")?.naturalWidth === 128);
   assert.deepEqual(page.troubles, []);
   await page.close();
