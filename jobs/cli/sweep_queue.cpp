@@ -93,8 +93,8 @@ int SweepQueue::run(const std::map<std::size_t, JobState>& left,
   if (open_.empty()) return failed_ == 0 ? exit_done : exit_error;
   terminal_.milestone(
       fmt::format("{}; {}the same command continues from here",
-                  gave_up ? "gave up:  " + obstacle_ : "interrupted",
-                  remote_ ? "submitted runs continue in Slurm (scancel ends them), and  " : ""));
+                  gave_up ? "gave up: " + obstacle_ : "interrupted",
+                  remote_ ? "submitted runs continue in Slurm (scancel ends them), and " : ""));
   return exit_interrupted;
 }
 

@@ -23,7 +23,7 @@ using Phase = SlurmJob::Phase;
 std::string slurm_words(const std::optional<SlurmJob>& last, bool known_now) {
   if (!last) return "Slurm has no record of it";
   const std::string name = fmt::format("Slurm job {}", last->id);
-  if (!known_now) return name + "  is no longer known";
+  if (!known_now) return name + " is no longer known";
   const bool reason = !last->reason.empty() && last->reason != "None";
   return fmt::format("{}: {}{}", name, last->state, reason ? " (" + last->reason + ")" : "");
 }
@@ -55,7 +55,7 @@ Ending slurm_ending(std::optional<int> code, const std::optional<SlurmJob>& last
     return {Ending::Kind::out_of_memory, *code, "renderer ran out of memory; " + words};
   }
   if (code && *code == signals + SIGTERM) {
-    return {Ending::Kind::lost, *code, "renderer was stopped before it began;  " + words};
+    return {Ending::Kind::lost, *code, "renderer was stopped before it began; " + words};
   }
   if (code && *code > signals) {
     const int number = *code - signals;
@@ -68,9 +68,8 @@ Ending slurm_ending(std::optional<int> code, const std::optional<SlurmJob>& last
   const bool told = state == "TIMEOUT" || state == "PREEMPTED" || state == "NODE_FAIL" ||
                     state == "BOOT_FAIL" || state == "DEADLINE";
   return {Ending::Kind::lost, 0,
-          told
-              ? words
-              : "renderer left no exit code, or its node cannot access the data folder;  " + words};
+          told ? words
+               : "renderer left no exit code, or its node cannot access the data folder; " + words};
 }
 
 SlurmWatch::SlurmWatch(const SlurmPrograms& programs, std::chrono::milliseconds poll)

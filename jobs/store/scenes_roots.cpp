@@ -129,7 +129,7 @@ std::string available(std::string_view wanted, const std::vector<std::string>& n
   const std::string kinds = fmt::format("{}", fmt::join(extensions, ", "));
   if (names.empty()) return fmt::format("; there is no {} file below the scenes roots", kinds);
   std::string text = nearest_hint(wanted, {names.begin(), names.end()});
-  text += fmt::format("; available ({}):  ", kinds);
+  text += fmt::format("; available ({}): ", kinds);
   for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
     text += (i == 0 ? "" : ", ") + names[i];
   }

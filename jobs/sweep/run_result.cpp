@@ -161,7 +161,7 @@ void read_report(const fs::path& file, Json& report) {
   } catch (const BadJob& bad) {
     throw std::runtime_error(fmt::format("{}: {}", file.string(), bad.what()));
   }
-  if (!report.is_object()) throw std::runtime_error(file.string() + "  contains no report");
+  if (!report.is_object()) throw std::runtime_error(file.string() + " contains no report");
 }
 
 }  // namespace
