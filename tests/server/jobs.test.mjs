@@ -224,7 +224,7 @@ test("the cache: artefacts as `lacuna cache list` shows them, and references", a
   assert.equal(cache.bytes, 1490);
   assert.equal(cache.entries[1].key, "skeleton 3 {resolution=128} geometry:00ff");
   assert.equal(cache.entries[1].label, "door.glb");
-  assert.match(cache.entries[4].refused, /no entry/);
+  assert.match(cache.entries[4].refused, /not an entry/);
   for (const e of cache.entries) assert.match(e.used, /^\d{4}-\d\d-\d\dT.*Z$/);
 });
 

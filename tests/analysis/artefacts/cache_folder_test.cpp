@@ -56,7 +56,7 @@ TEST_F(CacheFolder, WhatWasJustWrittenStaysAndWhatIsTooLargeIsNotWritten) {
   TestStore small(tmp.path(), bytes - 1);
   EXPECT_EQ(small.get(51), noise(51));
   EXPECT_EQ(seeds_in(tmp.path()), (Seeds{50}));
-  EXPECT_TRUE(contains(small.last().remark, "beyond the cache's limit"));
+  EXPECT_TRUE(contains(small.last().remark, "exceed the cache's limit"));
   EXPECT_EQ(small.warnings.size(), 1u);
 }
 

@@ -50,7 +50,7 @@ test("cache verify: exit 1 where an artefact is not whole", async (t) => {
   const { folder, cacheFolder } = cache(t);
   const whole = await run(folder, "cache", "verify");
   assert.equal(whole.code, 0, whole.err);
-  assert.match(whole.out, /^3 artefacts, .*: all whole$/m);
+  assert.match(whole.out, /^3 artefacts, .*: all intact$/m);
   const file = join(cacheFolder, names[1]);
   const bytes = readFileSync(file);
   bytes[bytes.length - 1] ^= 1;
@@ -75,7 +75,7 @@ test("cache clear: all, or what nobody has used for long; nothing else", async (
 
 test("cache: none, another folder, and wrong ones", async (t) => {
   const folder = temporaryFolder(t);
-  for (const [command, answer] of [["list", /^0 artefacts/m], ["verify", /all whole/], ["clear", /^removed 0/]]) {
+  for (const [command, answer] of [["list", /^0 artefacts/m], ["verify", /all intact/], ["clear", /^removed 0/]]) {
     const { code, out, err } = await run(folder, "cache", command);
     assert.equal(code, 0, err);
     assert.match(out, answer);

@@ -53,7 +53,7 @@ test("render, extend, compare: changed inputs are refused by name, --again rende
   assert.equal((await run(folder, "render", "a.json", "--out", "b.job", "-q")).code, 0);
   const compared = await run(folder, "compare", "a.job", "b.job/image.exr");
   assert.equal(compared.code, 0);
-  assert.match(compared.err, /^warning: .*scene "own\.glb" has another content/);
+  assert.match(compared.err, /^warning: .*scene "own\.glb" has changed contents/);
   assert.doesNotMatch(compared.out, /^mse +0$/m);
 
   const again = await run(folder, "render", "a.json", "--again");

@@ -150,9 +150,9 @@ test("what makes no picture is refused by name", async (t) => {
     assert.ok(!existsSync(join(folder, "m.job")));
   };
   await refused(/missing shards of 3: 2\b/, "m.job", made[0], made[2]);
-  await refused(/a\.2-of-3\.job: shard 2 of 3 again, which .*a\.2-of-3\.job is/, "m.job", ...made, made[1]);
+  await refused(/a\.2-of-3\.job: shard 2 of 3 is a duplicate of .*a\.2-of-3\.job/, "m.job", ...made, made[1]);
   cpSync(join(folder, made[1]), join(folder, "copy.job"), { recursive: true });
-  await refused(/copy\.job: shard 2 of 3 again, which .*a\.2-of-3\.job is/, "m.job", ...made, "copy.job");
+  await refused(/copy\.job: shard 2 of 3 is a duplicate of .*a\.2-of-3\.job/, "m.job", ...made, "copy.job");
   await done(folder, "render", "a.json");
   await refused(/a\.job: a whole job; allowed: its shards/, "m.job", "a.job", ...made);
   await refused(/exists; allowed: a new folder/, made[0], ...made);
@@ -226,7 +226,7 @@ test("shards of another kind of processor are merged with a warning", async (t) 
   writeFileSync(file, JSON.stringify({ ...report, machine: { ...report.machine, processor: "Another 9000" } }));
   await done(folder, "merge", "m.job", ...made);
   const [warning] = read(folder, "m.job/outcome.json").warnings.filter((w) => /processors/.test(w));
-  assert.match(warning, /on 2 kinds of processors \(.*Another 9000.*\): their last bits may differ/);
+  assert.match(warning, /on 2 processor models \(.*Another 9000.*\): their last bits may differ/);
 });
 
 test("--shard: bad values, and what a job says itself", async (t) => {
