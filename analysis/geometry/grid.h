@@ -71,9 +71,8 @@ inline std::optional<Imath::V3i> voxel_at(Imath::V3d point, Imath::V3i size) {
   return v;
 }
 
-/// Where a grid lies in the scene: voxel (i, j, k) spans origin + voxel_size * [(i, j, k), (i, j,
-/// k)
-/// + 1]. Grid coordinates are in voxels, in double: scenes lie far from the origin, too.
+/// The position of a grid in the scene: voxel v spans origin + voxel_size * [v, v + 1]. Grid
+/// coordinates are in voxels, in double, because scenes may lie far from the origin.
 struct GridTransform {
   Imath::V3d origin{0.0};   ///< scene units
   double voxel_size = 1.0;  ///< scene units, above 0

@@ -11,8 +11,7 @@ namespace lacuna {
 /// default one of each type that is best for some scene, the most robust first.
 std::vector<CandidateSettings> candidates(const AutoSettings& settings);
 
-/// The integrator and its settings that differ from the defaults: "path, learned_skeleton, reuse
-/// 64".
+/// The integrator with its settings that are not defaults: "path, learned_skeleton, reuse 64".
 std::string candidate_name(const CandidateSettings& settings);
 
 }  // namespace lacuna

@@ -31,8 +31,7 @@ void describe(V& v, Turn& t) {
   v("rays", t.rays, {.doc = "rays and shadow rays so far"});
   v("noise", t.noise, {.doc = "the picture's squared error, from its halves"});
   v("missing", t.missing,
-    {.doc =
-         "squared deficit of blocks of pixels with too little light against the other pictures"});
+    {.doc = "squared deficit of light in blocks of pixels against the other pictures"});
   v("bias", t.bias,
     {.doc = "squared difference to the best unbiased picture, less the noise of both"});
   v("expected", t.expected,
@@ -56,8 +55,7 @@ void describe(V& v, Candidate& c) {
   v("left", c.left, {.doc = "why it was eliminated; empty: it was not"});
 }
 
-/// choice.json: how the method of a job of `auto` is chosen. A resumed job repeats no decision in
-/// it.
+/// choice.json: the choice of a method for a job of `auto`. Resumed jobs keep its decisions.
 struct Choice {
   RankingMetric metric = RankingMetric::relmse;
   std::vector<Candidate> candidates;

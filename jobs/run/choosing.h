@@ -52,8 +52,7 @@ class Choosing {
   void take_turn(Entrant& entrant, const Budget& part, bool may_be_late);
   void judge();
   void leave(std::size_t k, const std::string& why);
-  /// leave() because of the exception in flight, which is rethrown if none is left or it is
-  /// transient.
+  /// leave() for the exception in flight; rethrows it if none is left or it is transient.
   void leave_by_error(std::size_t k, const std::exception& e);
   void record();
 

@@ -32,8 +32,7 @@ struct MergedShards {
 /// two halves, shards are independent also where iterations learn from those before them.
 std::optional<double> estimated_rmse(const MergedShards& merged);
 
-/// The budget of a job or shard; a shard has its part of the iterations. Throws BadJob if that is
-/// 0.
+/// The budget of a job or shard; a shard has its part of the iterations. Throws BadJob if it is 0.
 Budget budget_of(const JobSpec& spec);
 
 /// The content of a checkpoint, except the integrator's learned state.

@@ -46,10 +46,9 @@ class SlurmExecutor : public Executor {
   const SlurmSettings slurm_;
   const std::vector<std::string> environment_;
   const SlurmPrograms programs_;
-  std::mutex submitting_;  // one sbatch at a time
-  mutable std::mutex mutex_;
-  std::string refusal_;  // the latest output of a failed sbatch; empty once it accepts a job; under
-                         // the mutex
+  std::mutex submitting_;     // one sbatch at a time
+  mutable std::mutex mutex_;  // guards the next
+  std::string refusal_;       // output of the last failed sbatch; empty once one succeeds
   SlurmWatch watch_;
 };
 

@@ -99,7 +99,7 @@ inline IntegratorSettings method_of(const JobIntegrator& integrator) {
   return std::visit(
       []<class S>(const S& settings) -> IntegratorSettings {
         if constexpr (std::is_same_v<S, AutoSettings>) {
-          throw std::logic_error("auto is no method of the renderer");
+          throw std::logic_error("auto is not a method of the renderer");
         } else {
           return settings;
         }

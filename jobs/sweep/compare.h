@@ -15,8 +15,7 @@ using Replicates = std::span<const ErrorCurve>;
 /// The ratio by which a cell is better than the baseline.
 struct Gain {
   Estimate ratio;
-  bool at_least = false;  ///< the ratio is a lower bound without an interval, because one of the
-                          ///< times is a bound
+  bool at_least = false;  ///< a lower bound without an interval: one of the times is a bound
 };
 
 /// The error of a cell at one time.

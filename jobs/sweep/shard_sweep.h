@@ -5,8 +5,7 @@
 
 namespace lacuna {
 
-/// The sweep whose runs are the shards of `job`, which is not a shard itself: run k renders shard k
-/// + 1.
+/// The sweep whose runs are the shards of the whole job `job`: run k renders shard k + 1.
 SweepSpec shard_sweep(const JobSpec& job);
 
 }  // namespace lacuna
