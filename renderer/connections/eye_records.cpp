@@ -16,13 +16,13 @@ void EyeRecords::place(const IterationContext& context, const LightVertices& lig
       static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(context.camera.height());
   const auto paths = static_cast<std::uint64_t>(std::ceil(density * static_cast<double>(pixels)));
   EyeBatch batch(longest);
-  const BsdfGuide guide;
-  Walk<BsdfGuide> walk(context.scene, guide,
-                       {.max_depth = longest,
-                        .last_scatters = true,
-                        .roulette_depth = longest + 1,
-                        .counts = eye_side(lights.counts())},
-                       counters);
+  const Guide guide;
+  Walk walk(context.scene, guide,
+            {.max_depth = longest,
+             .last_scatters = true,
+             .roulette_depth = longest + 1,
+             .counts = eye_side(lights.counts())},
+            counters);
   for (std::uint64_t first = 0; first < paths; first += EyeBatch::size) {
     context.check_stop();
     batch.states.clear();
@@ -50,10 +50,10 @@ void EyeRecords::place(const IterationContext& context, const LightVertices& lig
 RecordContributions contributions_to(const EyeRecords::Record& record,
                                      const IterationContext& context, const LightVertices& lights,
                                      int s, const WantedContributions& wanted) {
-  const BsdfGuide guide;
+  const Guide guide;
   Vertex unit = record.vertex;  // what light gives to the record, whatever it gives to a pixel
   unit.throughput = Rgb(1, 1, 1);
-  const SurfaceEndpoint<BsdfGuide> eye{unit, record.depth, Transport::radiance, guide};
+  const SurfaceEndpoint eye{unit, record.depth, Transport::radiance, guide};
   const auto finite = [](double w) { return std::isfinite(w) ? w : 0.0; };
   const std::size_t n = lights.count(s);
   RecordContributions all{std::vector<double>(n, 0.0), std::vector<double>(n, 0.0),

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "renderer/path/bsdf_guide.h"
+#include "renderer/path/guide.h"
 #include "renderer/path/light_vertices.h"
 #include "renderer/path/record_tree.h"
 #include "renderer/path/strategy.h"

@@ -49,19 +49,52 @@ std::optional<V3f> AimedLobes::sample(const V3f& x, Rng::FinePoint u) const {
   return direction_around(d / length, versine, u.point().y);
 }
 
-void AimedLobes::learn(std::span<const FoundLight> batch) {
+AimedLobes::AimedLobes(const V3f& pivot, std::span<const Target> targets) {
+  if (targets.empty()) return;
+  std::vector<Target> heaviest(targets.begin(), targets.end());
+  std::ranges::stable_sort(heaviest, std::ranges::greater{}, &Target::weight);
+  begin(pivot);
+  double all = 0;
+  for (std::size_t i = 0; i < std::min(count, heaviest.size()); ++i) all += heaviest[i].weight;
+  for (std::size_t i = 0; i < count; ++i) {
+    Lobe& lobe = lobes_[i];
+    lobe.share = given_share;
+    if (i >= heaviest.size()) continue;
+    const V3d to = V3d(heaviest[i].at) - V3d(pivot);
+    const double length = length_of(to);
+    if (length > 0) lobe.aim = {to / length, 1 / length};
+    lobe.share += heaviest[i].weight / all;
+  }
+  double sum = 0;
+  for (const Lobe& l : lobes_) sum += l.share;
+  for (Lobe& l : lobes_) l.share /= sum;
+  pack();
+}
+
+/// The irradiance that each sample estimates, where it found light.
+std::vector<AimedLobes::Found> AimedLobes::found(std::span<const TrainingSample> samples) {
+  std::vector<Found> found;
+  for (const TrainingSample& s : samples) {
+    const float weight = s.pdf > 0 ? s.radiance * s.cosine / s.pdf : 0.0F;
+    if (weight > 0 && std::isfinite(weight)) found.push_back({s.x, s.w, s.distance, weight});
+  }
+  return found;
+}
+
+void AimedLobes::learn(std::span<const TrainingSample> all) {
+  const std::vector<Found> batch = found(all);
   if (batch.empty()) return;
   V3d places(0, 0, 0);
-  for (const FoundLight& l : batch) places += V3d(l.x);
-  const bool first = empty();
-  if (first) begin(V3f(places / double(batch.size())));
+  for (const Found& l : batch) places += V3d(l.x);
+  const bool first = !(evidence_.weight > 0);
+  if (empty()) begin(V3f(places / double(batch.size())));
   places_ += places;
   placed_ += double(batch.size());
 
   const double most = most_weight(batch);
   std::vector<Seen> samples;
   samples.reserve(batch.size());
-  for (const FoundLight& l : batch) {
+  for (const Found& l : batch) {
     samples.push_back(seen(l));
     // At most 1: sums of floats do not overflow.
     samples.back().weight = static_cast<float>(std::min(double(l.weight) / most, 1.0));
@@ -77,16 +110,16 @@ void AimedLobes::learn(std::span<const FoundLight> batch) {
 
 /// The weight to which larger ones are reduced: a share most_of_all of all that are reduced so. The
 /// least one, if the first samples are too few for that.
-double AimedLobes::most_weight(std::span<const FoundLight> batch) const {
+double AimedLobes::most_weight(std::span<const Found> batch) const {
   double least = HUGE_VAL, most = 0;
-  for (const FoundLight& l : batch) {
+  for (const Found& l : batch) {
     least = std::min(least, double(l.weight));
     most = std::max(most, double(l.weight));
   }
-  const double floor = empty() ? least : 0;
+  const double floor = evidence_.weight > 0 ? 0 : least;
   for (;;) {
     double all = evidence_.weight;
-    for (const FoundLight& l : batch) all += std::min(double(l.weight), most);
+    for (const Found& l : batch) all += std::min(double(l.weight), most);
     const double lower = std::max(most_of_all * all, floor);
     if (lower > near_enough * most) return most;
     most = lower;
@@ -95,6 +128,7 @@ double AimedLobes::most_weight(std::span<const FoundLight> batch) const {
 
 void AimedLobes::begin(const V3f& pivot) {
   pivot_ = pivot;
+  begun_ = true;
   constexpr double golden_angle = 2.39996322972865332;
   for (std::size_t i = 0; i < count; ++i) {
     const double z = 1 - (2 * double(i) + 1) / double(count), r = std::sqrt(1 - z * z);
@@ -106,7 +140,7 @@ void AimedLobes::begin(const V3f& pivot) {
   pack();
 }
 
-AimedLobes::Seen AimedLobes::seen(const FoundLight& light) const {
+AimedLobes::Seen AimedLobes::seen(const Found& light) const {
   Seen distant{light.w, light.w, 0, 0};
   if (!std::isfinite(light.distance)) return distant;
   const V3d to = V3d(light.x) - V3d(pivot_) + V3d(light.w) * double(light.distance);
@@ -238,7 +272,7 @@ void AimedLobes::move_pivot(const V3f& to) {
 template <class Self, class Use>
 void AimedLobes::for_each_number(Self& self, const Use& use) {
   const auto each = [&use](auto&... all) { (use(all), ...); };
-  each(self.pivot_.x, self.pivot_.y, self.pivot_.z);
+  each(self.begun_, self.pivot_.x, self.pivot_.y, self.pivot_.z);
   each(self.places_.x, self.places_.y, self.places_.z, self.placed_);
   for (auto& l : self.lobes_) {
     each(l.aim.axis.x, l.aim.axis.y, l.aim.axis.z, l.aim.inverse_distance);

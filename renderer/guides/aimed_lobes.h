@@ -3,12 +3,14 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "base/storage/bytes.h"
 #include "renderer/core/density.h"
 #include "renderer/core/power8.h"
 #include "renderer/core/rng.h"
-#include "renderer/guides/found_light.h"
+#include "renderer/guides/lobe_set.h"
+#include "renderer/path/training_samples.h"
 
 namespace lacuna {
 
@@ -21,8 +23,13 @@ class AimedLobes {
  public:
   static constexpr std::size_t count = 8;
 
-  /// Nothing has been learned, and nothing can be sampled.
-  bool empty() const { return !(evidence_.weight > 0); }
+  AimedLobes() = default;
+  /// Lobes aimed at the heaviest of `targets`, as seen from `pivot`, before anything is learned;
+  /// empty() without targets.
+  AimedLobes(const V3f& pivot, std::span<const Target> targets);
+
+  /// Nothing can be sampled.
+  bool empty() const { return !begun_; }
 
   /// Samples a unit direction at `x`; nothing where the chosen lobe is aimed at `x` itself.
   /// Requires lobes that are not empty().
@@ -32,8 +39,9 @@ class AimedLobes {
     return Pdf<SolidAngle>(reduce_add(packed_.densities(x - pivot_, {w.x, w.y, w.z})));
   }
 
-  /// Fits to the light of `batch`, all at places near each other, and to what was learned before.
-  void learn(std::span<const FoundLight> batch);
+  /// Fits to the light that arrived at `samples`, all at places near each other, and to what was
+  /// learned before.
+  void learn(std::span<const TrainingSample> samples);
   /// What has been learned so far counts half from here on, and distances are kept as seen from the
   /// middle of the places since the last call.
   void next_round();
@@ -95,9 +103,15 @@ class AimedLobes {
     float inverse_distance, weight;
   };
 
-  double most_weight(std::span<const FoundLight> batch) const;
+  /// Light that a path found.
+  struct Found {
+    V3f x, w;
+    float distance, weight;
+  };
+  static std::vector<Found> found(std::span<const TrainingSample> samples);
+  double most_weight(std::span<const Found> batch) const;
   void begin(const V3f& pivot);
-  Seen seen(const FoundLight& light) const;
+  Seen seen(const Found& light) const;
   Evidence expect(std::span<const Seen> batch) const;
   void maximise(const Evidence& evidence);
   void move_pivot(const V3f& to);
@@ -111,6 +125,7 @@ class AimedLobes {
   V3d places_{0, 0, 0};  // of the samples of this round, summed
   double placed_ = 0;    // their number
   V3f pivot_{0, 0, 0};
+  bool begun_ = false;  // the lobes are set
 };
 
 }  // namespace lacuna

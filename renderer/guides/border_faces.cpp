@@ -89,20 +89,8 @@ std::uint64_t BorderFaceLight::index(std::uint32_t region, const VoxelFace& face
   return static_cast<std::uint64_t>(at - begin) - first(region);
 }
 
-void BorderFaceLight::accumulate(std::uint32_t region, const VoxelFace& face,
-                                 const GuidingSample& sample, Accumulator& accumulator) const {
-  const double light = double(sample.radiance) / double(sample.pdf.value);
-  if (!std::isfinite(light)) return;
-  accumulator.light[first(region) + index(region, face)] += light;
-}
-
-void BorderFaceLight::update(std::span<const Accumulator* const> accumulators,
-                             const ThreadPool& pool) {
-  for (const Accumulator* t : accumulators) {
-    for (const auto& [face, light] : t->light) light_[face] += light;
-  }
-  pool.for_each(static_cast<int>(tables_.size()),
-                [this](int r) { make_table(static_cast<std::uint32_t>(r)); });
+void BorderFaceLight::add(std::uint32_t region, const VoxelFace& face, double light) {
+  if (std::isfinite(light)) light_[first(region) + index(region, face)] += light;
 }
 
 void BorderFaceLight::make_table(std::uint32_t region) {

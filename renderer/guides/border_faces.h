@@ -1,12 +1,10 @@
 #pragma once
 
-#include <unordered_map>
-
 #include "analysis/regions/borders.h"
 #include "analysis/skeleton/surface_lookup.h"
 #include "renderer/core/alias_table.h"
 #include "renderer/guides/crossed_faces.h"
-#include "renderer/guides/guiding_distribution.h"
+#include "renderer/path/guiding_distribution.h"
 #include "renderer/settings/guide_settings.h"
 
 namespace lacuna {
@@ -52,13 +50,10 @@ class BorderFaceLight {
   double probability(std::uint32_t part, const CrossedFace& face, std::uint32_t near,
                      std::uint32_t far, const V3d& from) const;
 
-  struct Accumulator {
-    std::unordered_map<std::uint64_t, double> light;  // by face, over all regions
-    double bytes() const { return map_bytes(light); }
-  };
-  void accumulate(std::uint32_t region, const VoxelFace& face, const GuidingSample& sample,
-                  Accumulator& accumulator) const;
-  void update(std::span<const Accumulator* const> accumulators, const ThreadPool& pool);
+  /// Adds `light` >= 0 that was found through a face of the region's border.
+  void add(std::uint32_t region, const VoxelFace& face, double light);
+  /// Call after the last add() of the region.
+  void update(std::uint32_t region) { make_table(region); }
 
  private:
   /// A face with light through it to another region, where there are thresholds.

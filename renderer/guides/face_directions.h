@@ -3,9 +3,8 @@
 #include "analysis/regions/voxel_face.h"
 #include "analysis/skeleton/surface_lookup.h"
 #include "renderer/guides/crossed_faces.h"
-#include "renderer/guides/guiding_distribution.h"
 #include "renderer/guides/region_mixture.h"
-#include "renderer/guides/tuning.h"
+#include "renderer/path/guiding_distribution.h"
 #include "renderer/settings/guide_settings.h"
 
 namespace lacuna {
@@ -33,44 +32,30 @@ class FaceDirections final : public GuidingDistribution {
     lookup_.emplace(transform_, *label_);
     lattice_ = RegionLattice(*label_, settings_.mixing);
     faces_.prepare(context, *lookup_);
-    // Faces have no strength. Where the guide draws alone there is no probability to learn.
-    const AutoNumber probability =
-        settings_.guide_only ? AutoNumber{most_guided} : settings_.probability;
-    tuning_ = Tuning({1}, probability, context.space.regions().regions.size());
+    scene_regions_ = context.space.regions().regions.size();
   }
-  void save(ByteWriter& out) const override {
-    faces_.save(out);
-    tuning_.save(out);
-  }
-  void load(ByteReader& in) override {
-    faces_.load(in);
-    tuning_.load(in);
-  }
+  void save(ByteWriter& out) const override { faces_.save(out); }
+  void load(ByteReader& in) override { faces_.load(in); }
   std::vector<std::pair<std::string, double>> statistics() const override {
-    auto stats = faces_.statistics();
-    for (auto& s : tuning_.statistics()) {
-      if (s.first != "mean_strength") stats.push_back(std::move(s));
-    }
-    return stats;
+    return faces_.statistics();
   }
 
   GuidingCell cell(const Surface& s, const V3f& w) const override {
     const std::optional<Imath::V3i> voxel = lookup_->voxel(V3d(s.x), V3d(s.ng), V3d(w));
     if (!voxel) return {};
     const auto index = static_cast<std::uint32_t>(label_->index(*voxel));
-    const RegionMixture regions = mixture(transform_.to_grid(V3d(s.x)), index);
-    const double sum = sum_of(regions, as_used());
-    return {settings_.guide_only && sum > 0 ? 1.0F : static_cast<float>(sum), index};
+    const double mass = mass_of(mixture(transform_.to_grid(V3d(s.x)), index));
+    const bool alone = settings_.guide_only && mass > 0;
+    return {alone ? 1.0F : static_cast<float>(mass), (*label_)[index], index};
   }
 
   std::optional<V3f> sample(const GuidedVertex& at, Rng::FinePoint, Rng& rng) const override {
     const V3d from = transform_.to_grid(V3d(at.x()));
-    const RegionMixture regions = mixture(from, at.cell.index);
-    const auto used = as_used();
-    double left = rng.next_choice() * sum_of(regions, used);
+    const RegionMixture regions = mixture(from, at.cell.part);
+    double left = rng.next_choice() * mass_of(regions);
     std::uint32_t region = no_region;
     for (const auto& share : regions) {
-      const double part = share.weight * used(share.region);
+      const double part = share.weight * faces_.mass(share.region);
       if (!(part > 0)) continue;
       region = share.region;
       if (left < part) break;
@@ -87,93 +72,15 @@ class FaceDirections final : public GuidingDistribution {
   }
 
   Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const override {
-    return density(at.cell.index, at.x(), w, as_used());
-  }
-
-  bool idle() const override { return tuning_.idle(); }
-  std::optional<std::uint64_t> due_pilot() const override { return tuning_.due_pilot(); }
-  void begin_pilot() override { tuning_.begin_pilot(); }
-  bool learns() const override { return Faces::learns || tuning_.learns(); }
-  std::unique_ptr<Accumulator> accumulator() const override {
-    return std::make_unique<FaceAccumulator>();
-  }
-  void accumulate(const GuidingSample& sample, Accumulator& accumulator) const override {
-    const std::uint32_t voxel = sample.v.guiding_cell.index;
-    if (voxel >= label_->count()) return;
-    auto& both = static_cast<FaceAccumulator&>(accumulator);
-    const std::uint32_t region = (*label_)[voxel];
-    if (tuning_.wants(region)) {
-      // The density of the guide alone, including regions whose probability is 0 at present.
-      const float p = density(voxel, sample.v.surface.x, sample.wi, [this](std::uint32_t r) {
-                        return faces_.mass(r);
-                      }).value;
-      tuning_.accumulate(sample, region, std::span(&p, 1), both.tuning);
-    }
-    if constexpr (Faces::learns) {
-      // The sample is credited to the first face through which the ray leaves the point's region.
-      if (!(sample.radiance > 0)) return;
-      const V3d from = transform_.to_grid(V3d(sample.v.surface.x));
-      const GridRay ray(from, V3d(sample.wi));
-      for_each_crossed_face(ray, faces_.box(region), [&](const CrossedFace& face) {
-        if (label_at(face.from) != region || label_at(face.to) == region) return true;
-        const auto index = static_cast<std::uint32_t>(label_->index(face.from));
-        faces_.accumulate(region, {index, face.side_of_from()}, sample, both.faces);
-        return false;
-      });
-    }
-  }
-  void record_noise(double variance, double by_bsdf, Accumulator& accumulator) const override {
-    static_cast<FaceAccumulator&>(accumulator).tuning.noise.add(variance, by_bsdf);
-  }
-  void update(std::span<const std::unique_ptr<Accumulator>> accumulators, const ThreadPool& pool,
-              double iterations) override {
-    std::vector<const typename Faces::Accumulator*> of_faces;
-    std::vector<const Tuning::Accumulator*> of_tuning;
-    for (const auto& t : accumulators) {
-      of_faces.push_back(&static_cast<const FaceAccumulator&>(*t).faces);
-      of_tuning.push_back(&static_cast<const FaceAccumulator&>(*t).tuning);
-    }
-    faces_.update(of_faces, pool);
-    if (!tuning_.learns()) return;
-    tuning_.update(of_tuning, iterations);
-    tuning_.stop_if_useless();
-  }
-
- private:
-  RegionMixture mixture(const V3d& x, std::uint32_t voxel) const {
-    return lattice_.mixture(x, (*label_)[voxel]);
-  }
-  struct FaceAccumulator final : Accumulator {
-    typename Faces::Accumulator faces;
-    Tuning::Accumulator tuning;
-    double bytes() const override { return faces.bytes() + tuning.bytes(); }
-  };
-
-  /// The probability of sampling from a region's distribution.
-  auto as_used() const {
-    return [this](std::uint32_t region) {
-      return double(tuning_.probability(region)) * faces_.mass(region);
-    };
-  }
-  template <class Drawn>
-  static double sum_of(const RegionMixture& regions, const Drawn& drawn) {
-    double sum = 0;
-    for (const auto& share : regions) sum += share.weight * drawn(share.region);
-    return sum;
-  }
-  /// Density of `w` at `x`, where region r is sampled with probability `drawn(r)`.
-  template <class Drawn>
-  Pdf<SolidAngle> density(std::uint32_t voxel, const V3f& x, const V3f& w,
-                          const Drawn& drawn) const {
-    const V3d from = transform_.to_grid(V3d(x));
-    const RegionMixture regions = mixture(from, voxel);
-    const double all = sum_of(regions, drawn);
+    const V3d from = transform_.to_grid(V3d(at.x()));
+    const RegionMixture regions = mixture(from, at.cell.part);
+    const double all = mass_of(regions);
     if (!(all > 0)) return {};
     thread_local FaceParts parts;  // keeps its memory
     parts.clear();
     for (const auto& share : regions) {
-      const double often = drawn(share.region);
-      if (often > 0) faces_.add_parts(share.region, from, share.weight * often, parts);
+      const double mass = faces_.mass(share.region);
+      if (mass > 0) faces_.add_parts(share.region, from, share.weight * mass, parts);
     }
     const GridRay ray(from, V3d(w));
     double sum = 0;
@@ -190,12 +97,52 @@ class FaceDirections final : public GuidingDistribution {
     }
     return Pdf<SolidAngle>(static_cast<float>(sum / all));
   }
+
+  std::size_t cells() const override { return scene_regions_; }
+  /// Where the guide samples alone there is no probability to learn.
+  AutoNumber probability() const override {
+    return settings_.guide_only ? AutoNumber{1} : settings_.probability;
+  }
+  bool learns() const override { return Faces::learns; }
+  std::vector<std::uint32_t> update(const TrainingSamples& samples,
+                                    const ThreadPool& pool) override {
+    if constexpr (Faces::learns) {
+      pool.for_each(static_cast<int>(scene_regions_), [&](int r) {
+        const auto region = static_cast<std::uint32_t>(r);
+        for (const TrainingSample& s : samples.of(region)) add(region, s);
+        faces_.update(region);
+      });
+    }
+    return {};
+  }
+
+ private:
+  RegionMixture mixture(const V3d& x, std::uint32_t voxel) const {
+    return lattice_.mixture(x, (*label_)[voxel]);
+  }
+  /// Credits the sample to the first face through which its ray leaves the region.
+  void add(std::uint32_t region, const TrainingSample& s) {
+    if (!(s.pdf > 0) || !(s.radiance > 0)) return;
+    const GridRay ray(transform_.to_grid(V3d(s.x)), V3d(s.w));
+    for_each_crossed_face(ray, faces_.box(region), [&](const CrossedFace& face) {
+      if (label_at(face.from) != region || label_at(face.to) == region) return true;
+      const auto index = static_cast<std::uint32_t>(label_->index(face.from));
+      faces_.add(region, {index, face.side_of_from()}, double(s.radiance) / double(s.pdf));
+      return false;
+    });
+  }
+  /// The share of the light that the distributions of these regions cover.
+  double mass_of(const RegionMixture& regions) const {
+    double sum = 0;
+    for (const auto& share : regions) sum += share.weight * faces_.mass(share.region);
+    return sum;
+  }
   std::uint32_t label_at(const Imath::V3i& v) const {
     return in_grid(v, label_->size()) ? (*label_)(v) : no_region;
   }
   RegionGuideSettings settings_;
   Faces faces_;
-  Tuning tuning_;
+  std::size_t scene_regions_ = 0;
   GridTransform transform_;
   const Grid3<std::uint32_t>* label_ = nullptr;
   std::optional<SurfaceLookup> lookup_;

@@ -1,5 +1,6 @@
 #include "renderer/guides/learned_cells.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lacuna {
@@ -9,10 +10,13 @@ namespace {
 constexpr double leaf_share = 0.01;  // of a quadtree's energy in a leaf: rho of the paper
 constexpr int deepest_directions = 20;
 
-void learn(DirectionTree& tree, std::span<const FoundLight> batch) {
-  for (const FoundLight& l : batch) tree.add(l.w, double(l.weight), true);
+void learn(DirectionTree& tree, std::span<const TrainingSample> samples) {
+  for (const TrainingSample& s : samples) {
+    const float energy = s.pdf > 0 ? s.radiance / s.pdf : 0.0F;
+    if (energy > 0 && std::isfinite(energy)) tree.add(s.w, double(energy), true);
+  }
 }
-void learn(AimedLobes& lobes, std::span<const FoundLight> batch) { lobes.learn(batch); }
+void learn(AimedLobes& lobes, std::span<const TrainingSample> samples) { lobes.learn(samples); }
 
 void next_round(DirectionTree& sampling, DirectionTree& building) {
   building.build();
@@ -28,35 +32,29 @@ void next_round(AimedLobes& sampling, AimedLobes& building) {
 }  // namespace
 
 template <class Directions>
-void LearnedCells<Directions>::accumulate(std::uint32_t cell, const GuidingSample& sample,
-                                          float light, Accumulator& accumulator) {
-  accumulator.vertices.push_back(cell);
-  const float weight = light / sample.pdf.value;
-  if (weight > 0 && std::isfinite(weight)) {
-    accumulator.samples.push_back({cell, {sample.v.surface.x, sample.wi, sample.distance, weight}});
+LearnedCells<Directions>::LearnedCells(std::vector<Directions> first) {
+  for (Directions& d : first) {
+    Cell& cell = cells_.emplace_back();
+    cell.building = d;
+    cell.sampling = std::move(d);
   }
 }
 
 template <class Directions>
-bool LearnedCells<Directions>::update(std::span<const Accumulator* const> accumulators,
-                                      const ThreadPool& pool, double iterations) {
-  // By cell, each in the order of the accumulators: cells can then be filled in parallel.
-  std::vector<std::size_t> first(cells_.size() + 1, 0);
-  for (const Accumulator* a : accumulators) {
-    for (const std::uint32_t c : a->vertices) ++cells_[c].vertices;
-    for (const Found& s : a->samples) ++first[s.cell + 1];
-  }
-  for (std::size_t c = 0; c < cells_.size(); ++c) first[c + 1] += first[c];
-  std::vector<FoundLight> sorted(first.back());
-  std::vector<std::size_t> next(first.begin(), first.end() - 1);
-  for (const Accumulator* a : accumulators) {
-    for (const Found& s : a->samples) sorted[next[s.cell]++] = s.light;
-  }
+double LearnedCells<Directions>::most_vertices(int first) const {
+  return double(first) * std::sqrt(rounds_.last_length());
+}
+
+template <class Directions>
+bool LearnedCells<Directions>::update(const TrainingSamples& samples, const ThreadPool& pool) {
   pool.for_each(static_cast<int>(cells_.size()), [&](int i) {
     const auto c = static_cast<std::size_t>(i);
-    learn(cells_[c].building, std::span(sorted).subspan(first[c], first[c + 1] - first[c]));
+    const std::span<const TrainingSample> own = samples.of(c);
+    cells_[c].vertices +=
+        double(std::ranges::count_if(own, [](const auto& s) { return s.pdf > 0; }));
+    learn(cells_[c].building, own);
   });
-  return rounds_.add(iterations);
+  return rounds_.add(samples.share());
 }
 
 template <class Directions>
@@ -73,7 +71,6 @@ void LearnedCells<Directions>::next_round(const ThreadPool& pool) {
     lacuna::next_round(cell.sampling, cell.building);
     cell.vertices = 0;
   });
-  rounds_.next();
 }
 
 template <class Directions>

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <cmath>
-
 #include "renderer/guides/aimed_lobes.h"
 #include "renderer/guides/direction_tree.h"
-#include "renderer/guides/guiding_distribution.h"
-#include "renderer/guides/learning_rounds.h"
+#include "renderer/path/learning_rounds.h"
+#include "renderer/path/training_samples.h"
 
 namespace lacuna {
 
@@ -19,7 +17,9 @@ template <class Directions>
 class LearnedCells {
  public:
   LearnedCells() = default;
-  explicit LearnedCells(std::size_t cells) : cells_(cells) {}
+  /// One cell for each of `first`, from which directions are sampled before anything is learned.
+  explicit LearnedCells(std::vector<Directions> first);
+  explicit LearnedCells(std::size_t cells) : LearnedCells(std::vector<Directions>(cells)) {}
 
   std::size_t size() const { return cells_.size(); }
   /// What the last round found; empty where it found nothing.
@@ -28,32 +28,13 @@ class LearnedCells {
   double vertices(std::size_t cell) const { return cells_[cell].vertices; }
   /// Vertices above which a cell is divided at the end of this round, where `first` are of a round
   /// of one iteration: the paper's c sqrt(2^k) grows with the number of samples.
-  double most_vertices(int first) const { return double(first) * std::sqrt(rounds_.length()); }
+  double most_vertices(int first) const;
   /// Rounds that have ended.
   std::uint64_t rounds() const { return rounds_.ended(); }
 
-  struct Found {
-    std::uint32_t cell;
-    FoundLight light;
-  };
-  /// The samples of one part of an iteration.
-  struct Accumulator {
-    std::vector<std::uint32_t> vertices;  // the cell of each
-    std::vector<Found> samples;
-
-    /// What it takes until update() and in it, bytes.
-    double bytes() const {
-      return double(vertices.capacity() * sizeof(vertices[0]) +
-                    samples.capacity() * sizeof(samples[0]) + samples.size() * sizeof(FoundLight));
-    }
-  };
-  /// A vertex of `cell` < size() from which `light` was found in the direction of `sample`.
-  static void accumulate(std::uint32_t cell, const GuidingSample& sample, float light,
-                         Accumulator& accumulator);
-  /// Adds the samples of `iterations`, in the order of their parts. True: a round has ended. Cells
-  /// may then be divided, and next_round() must be called.
-  bool update(std::span<const Accumulator* const> accumulators, const ThreadPool& pool,
-              double iterations);
+  /// Adds the samples of a pass. True: a round ends. Cells may then be divided, and
+  /// next_round() must be called.
+  bool update(const TrainingSamples& samples, const ThreadPool& pool);
   /// Adds a cell that starts as a copy of `cell`; each has half of its vertices.
   void divide(std::size_t cell);
   void next_round(const ThreadPool& pool);

@@ -1,7 +1,6 @@
 #include "renderer/guides/make_guide.h"
 
 #include "renderer/guides/registry.h"
-#include "renderer/guides/skeleton_to_eye.h"
 
 namespace lacuna {
 
@@ -11,7 +10,7 @@ std::unique_ptr<GuidingDistribution> make_guiding_distribution(const GuideSettin
                                 if constexpr (std::derived_from<G, GuidingDistribution>) {
                                   return std::make_unique<G>(s);
                                 } else {
-                                  static_assert(std::is_same_v<G, BsdfGuide>);
+                                  static_assert(std::is_same_v<G, NoDistribution>);
                                   return nullptr;
                                 }
                               });
@@ -19,7 +18,11 @@ std::unique_ptr<GuidingDistribution> make_guiding_distribution(const GuideSettin
 
 std::unique_ptr<GuidingDistribution> make_guiding_distribution(const LightGuideSettings& settings) {
   const auto* s = std::get_if<SkeletonLightGuideSettings>(&settings);
-  return s == nullptr ? nullptr : std::make_unique<SkeletonToEye>(*s);
+  return s == nullptr ? nullptr : std::make_unique<SkeletonDirections>(*s);
+}
+
+Guide make_guide(const GuideSettings& eye, const LightGuideSettings& light) {
+  return Guide(make_guiding_distribution(eye), make_guiding_distribution(light));
 }
 
 }  // namespace lacuna

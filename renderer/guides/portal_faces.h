@@ -3,7 +3,7 @@
 #include "analysis/regions/portals.h"
 #include "analysis/skeleton/surface_lookup.h"
 #include "renderer/guides/crossed_faces.h"
-#include "renderer/guides/guiding_distribution.h"
+#include "renderer/path/guiding_distribution.h"
 #include "renderer/settings/guide_settings.h"
 
 namespace lacuna {
@@ -39,11 +39,6 @@ class PortalFaces {
     const Portal& p = portals_->portals[portal];
     return (p.a == near && p.b == far) || (p.a == far && p.b == near) ? 1 : 0;
   }
-
-  struct Accumulator {
-    static constexpr double bytes() { return 0; }
-  };
-  static void update(std::span<const Accumulator* const>, const ThreadPool&) {}
 
  private:
   struct Exit {

@@ -8,19 +8,21 @@
 #include "renderer/guides/portal_faces.h"
 #include "renderer/guides/sd_tree.h"
 #include "renderer/guides/skeleton_directions.h"
-#include "renderer/path/bsdf_guide.h"
+#include "renderer/path/strategy.h"
 #include "renderer/settings/guide_settings.h"
 
 namespace lacuna {
 
-/// All guides: the BSDF alone, or a distribution of directions that MixedGuide mixes with it. A new
-/// one is a row here and an alternative of GuideSettings.
-using GuideRegistry =
-    Registry<Entry<BsdfGuideSettings, BsdfGuide>, Entry<SkeletonGuideSettings, SkeletonDirections>,
-             Entry<PortalsGuideSettings, FaceDirections<PortalFaces>>,
-             Entry<FaceIrradianceGuideSettings, FaceDirections<BorderFaceLight>>,
-             Entry<SdTreeGuideSettings, SdTree>,
-             Entry<LearnedSkeletonGuideSettings, LearnedSkeleton>>;
+/// Stands for the BSDF alone.
+struct NoDistribution {};
+
+/// All guides: the BSDF alone, or a distribution of directions that Guide mixes with it. A new one
+/// is a row here and an alternative of GuideSettings.
+using GuideRegistry = Registry<
+    Entry<BsdfGuideSettings, NoDistribution>, Entry<SkeletonGuideSettings, SkeletonDirections>,
+    Entry<PortalsGuideSettings, FaceDirections<PortalFaces>>,
+    Entry<FaceIrradianceGuideSettings, FaceDirections<BorderFaceLight>>,
+    Entry<SdTreeGuideSettings, SdTree>, Entry<LearnedSkeletonGuideSettings, LearnedSkeleton>>;
 
 static_assert(std::is_same_v<GuideRegistry::Settings, GuideSettings>,
               "the registry and the settings list the same guides in the same order");

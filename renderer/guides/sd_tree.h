@@ -1,7 +1,7 @@
 #pragma once
 
 #include "renderer/guides/learned_cells.h"
-#include "renderer/guides/tuning.h"
+#include "renderer/path/guiding_distribution.h"
 #include "renderer/settings/guide_settings.h"
 
 namespace lacuna {
@@ -24,8 +24,7 @@ class SdTree final : public GuidingDistribution {
 
   GuidingCell cell(const Surface& s, const V3f&) const override {
     const std::uint32_t leaf = leaf_at(s.x);
-    const bool known = !leaves_.directions(leaf).empty();
-    return {known ? tuning_.probability(leaf) : 0.0F, leaf};
+    return {leaves_.directions(leaf).empty() ? 0.0F : 1.0F, leaf};
   }
   std::optional<V3f> sample(const GuidedVertex& at, Rng::FinePoint u, Rng&) const override {
     return leaves_.directions(at.cell.index).sample(u);
@@ -34,15 +33,11 @@ class SdTree final : public GuidingDistribution {
     return leaves_.directions(at.cell.index).pdf(w);
   }
 
-  bool idle() const override { return tuning_.idle(); }
-  std::optional<std::uint64_t> due_pilot() const override { return tuning_.due_pilot(); }
-  void begin_pilot() override { tuning_.begin_pilot(); }
+  std::size_t cells() const override { return leaves_.size(); }
+  AutoNumber probability() const override { return settings_.probability; }
   bool learns() const override { return true; }
-  std::unique_ptr<Accumulator> accumulator() const override;
-  void accumulate(const GuidingSample& sample, Accumulator& accumulator) const override;
-  void record_noise(double variance, double by_bsdf, Accumulator& accumulator) const override;
-  void update(std::span<const std::unique_ptr<Accumulator>> accumulators, const ThreadPool& pool,
-              double iterations) override;
+  std::vector<std::uint32_t> update(const TrainingSamples& samples,
+                                    const ThreadPool& pool) override;
 
  private:
   struct Node {
@@ -50,20 +45,14 @@ class SdTree final : public GuidingDistribution {
     std::uint32_t leaf = 0;
   };
   using Leaves = LearnedCells<DirectionTree>;
-  struct SampleAccumulator;
-
-  Tuning new_tuning() const {  // a tree has no strength
-    return {{1}, settings_.probability, leaves_.size(), Tuning::Directions::learned};
-  }
   std::uint32_t leaf_at(const V3f& x) const;
-  void divide(std::uint32_t node, int depth, double most);
+  void divide(std::uint32_t node, int depth, double most, std::vector<std::uint32_t>& origins);
 
   SdTreeGuideSettings settings_;
   V3d low_{0.0};
   double side_ = 1;  // of the cube around the scene
   std::vector<Node> nodes_;
   Leaves leaves_;
-  Tuning tuning_;  // a cell for each leaf
 };
 
 }  // namespace lacuna

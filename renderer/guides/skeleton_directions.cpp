@@ -1,39 +1,100 @@
 #include "renderer/guides/skeleton_directions.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
 
 #include "renderer/guides/arriving_power.h"
-#include "renderer/guides/skeleton_lobes.h"
+#include "renderer/guides/skeleton_targets.h"
 
 namespace lacuna {
 
 void SkeletonDirections::prepare(const PrepareContext& context) {
-  const SkeletonGraph& graph = context.space.skeleton();
+  const std::size_t nodes = context.space.skeleton().nodes();
   lookup_.emplace(context.space.voxels().transform, context.space.node_map());
   const std::vector<double> importance =
-      arriving_power(context.scene, *lookup_, graph.nodes(), settings_.light_rays, context.pool);
+      to_eye_
+          ? arriving_importance(context.scene, context.camera, *lookup_, nodes, rays_, context.pool)
+          : arriving_power(context.scene, *lookup_, nodes, rays_, context.pool);
   importance_nodes_ = static_cast<std::size_t>(
       std::count_if(importance.begin(), importance.end(), [](double f) { return f > 0; }));
-  std::vector<float> strengths{static_cast<float>(settings_.strength.value.value_or(0))};
-  if (settings_.strength.is_auto()) strengths = LobeSet::powers();
-  tuning_ = Tuning(std::move(strengths), settings_.probability, graph.nodes());
-  lobes_ = skeleton_lobes(context, importance, settings_.aim);
+  for (const std::vector<Target>& of :
+       skeleton_targets(context, importance, aim_, all_nodes(nodes))) {
+    lobes_.emplace_back(of);
+  }
+  if (strength_.is_auto()) {
+    found_.assign(nodes, Strengths{});
+    weights_.assign(nodes, weights(Strengths{}));
+  }
 }
 
-void SkeletonDirections::accumulate(const GuidingSample& sample, Accumulator& accumulator) const {
-  const GuidingCell& cell = sample.v.guiding_cell;
-  // A node whose probability is 0 at present keeps learning.
-  if (cell.index >= lobes_.size() || lobes_[cell.index].empty()) return;
-  if (!tuning_.wants(cell.index)) return;
-  const LobeSet& lobes = lobes_[cell.index];
-  const V3f& x = sample.v.surface.x;
-  auto& own = static_cast<TuningAccumulator&>(accumulator).tuning;
-  if (settings_.strength.is_auto()) {
-    tuning_.accumulate(sample, cell.index, lobes.pdf_of_powers(x, sample.wi), own);
-  } else {
-    const float density = lobes.pdf(x, sample.wi, tuning_.strength(cell.index)).value;
-    tuning_.accumulate(sample, cell.index, std::span(&density, 1), own);
+SkeletonDirections::Strengths SkeletonDirections::weights(const Strengths& found) {
+  // None is lost for ever: each begins with this share.
+  constexpr double given_share = 0.05;
+  const double all = std::accumulate(found.begin(), found.end(), 0.0);
+  Strengths weights;
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const double share = all > 0 ? found[k] / all : 1 / double(found.size());
+    weights[k] = (1 - given_share) * share + given_share / double(found.size());
   }
+  return weights;
+}
+
+std::optional<V3f> SkeletonDirections::sample(const GuidedVertex& at, Rng::FinePoint u,
+                                              Rng&) const {
+  const LobeSet& lobes = lobes_[at.cell.index];
+  if (!strength_.is_auto()) return lobes.sample(at.x(), fixed(), u);
+  const Strengths& weights = weights_[at.cell.index];
+  double left = static_cast<double>(u.x) * 0x1p-64;
+  std::size_t k = 0;
+  while (k + 1 < weights.size() && left >= weights[k]) left -= weights[k++];
+  u.x = static_cast<std::uint64_t>(std::min(left / weights[k], 1 - 0x1p-53) * 0x1p64);
+  return lobes.sample(at.x(), LobeSet::powers()[k], u);
+}
+
+Pdf<SolidAngle> SkeletonDirections::pdf(const GuidedVertex& at, const V3f& w) const {
+  const LobeSet& lobes = lobes_[at.cell.index];
+  if (!strength_.is_auto()) return lobes.pdf(at.x(), w, fixed());
+  const auto densities = lobes.pdf_of_powers(at.x(), w);
+  const Strengths& weights = weights_[at.cell.index];
+  double sum = 0;
+  for (std::size_t k = 0; k < weights.size(); ++k) sum += weights[k] * double(densities[k]);
+  return Pdf<SolidAngle>(static_cast<float>(sum));
+}
+
+std::vector<std::uint32_t> SkeletonDirections::update(const TrainingSamples& samples,
+                                                      const ThreadPool& pool) {
+  if (!strength_.is_auto()) return {};
+  pool.for_each(static_cast<int>(lobes_.size()), [&](int i) {
+    const auto node = static_cast<std::size_t>(i);
+    Strengths& found = found_[node];
+    for (const TrainingSample& s : samples.of(node)) {
+      if (!(s.pdf > 0) || !(s.reflected > 0)) continue;
+      const auto densities = lobes_[node].pdf_of_powers(s.x, s.w);
+      double sum = 0;
+      for (std::size_t k = 0; k < found.size(); ++k) {
+        sum += weights_[node][k] * double(densities[k]);
+      }
+      if (!(sum > 0)) continue;
+      for (std::size_t k = 0; k < found.size(); ++k) {
+        found[k] += double(s.reflected) * weights_[node][k] * double(densities[k]) / sum;
+      }
+    }
+    weights_[node] = weights(found);
+  });
+  return {};
+}
+
+void SkeletonDirections::load(ByteReader& in) {
+  std::vector<Strengths> found = in.get_vector<Strengths>();
+  bool good = found.size() == found_.size();
+  for (const Strengths& f : found) {
+    for (const double x : f) good = good && std::isfinite(x) && x >= 0;
+  }
+  if (!good) throw std::runtime_error("saved strengths belong to another scene");
+  found_ = std::move(found);
+  for (std::size_t node = 0; node < found_.size(); ++node) weights_[node] = weights(found_[node]);
 }
 
 std::vector<std::pair<std::string, double>> SkeletonDirections::statistics() const {
@@ -45,11 +106,17 @@ std::vector<std::pair<std::string, double>> SkeletonDirections::statistics() con
   }
   std::vector<std::pair<std::string, double>> stats{
       {"nodes", static_cast<double>(lobes_.size())},
-      {"importance_nodes", static_cast<double>(importance_nodes_)},
+      {to_eye_ ? "seen_nodes" : "importance_nodes", static_cast<double>(importance_nodes_)},
       {"guided_nodes", static_cast<double>(guided)},
       {"lobes_most", static_cast<double>(most)},
       {"lobes_mean", guided > 0 ? static_cast<double>(all) / static_cast<double>(guided) : 0.0}};
-  for (auto& s : tuning_.statistics()) stats.push_back(std::move(s));
+  if (!strength_.is_auto()) return stats;
+  double logs = 0;
+  for (const Strengths& w : weights_) {
+    for (std::size_t k = 0; k < w.size(); ++k) logs += w[k] * double(k);
+  }
+  const double n = double(std::max<std::size_t>(weights_.size(), 1));
+  stats.emplace_back("mean_strength", std::exp2(logs / n));
   return stats;
 }
 

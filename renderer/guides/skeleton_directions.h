@@ -1,70 +1,73 @@
 #pragma once
 
+#include <array>
+
 #include "analysis/skeleton/surface_lookup.h"
 #include "renderer/guides/lobe_set.h"
-#include "renderer/guides/tuning.h"
+#include "renderer/path/guiding_distribution.h"
 #include "renderer/settings/guide_settings.h"
+#include "renderer/settings/light_guide_settings.h"
 
 namespace lacuna {
 
-/// guide: skeleton. At the surfaces of a skeleton node, directions are sampled from lobes around
-/// its importance points, which lie on the visible parts of the shortest paths to where light
-/// arrives (Noel 2015, ch. 9). Uses the thesis' unfiltered skeleton.
+/// guide: skeleton, and light_guide: skeleton. At the surfaces of a skeleton node, directions are
+/// sampled from lobes around its importance points, which lie on the visible parts of the shortest
+/// paths to where light arrives, or, of light paths, to what the eye sees (Noel 2015, ch. 9; 9.1
+/// leaves the latter open). Uses the thesis' unfiltered skeleton.
+///
+/// Where the strength of the lobes is learned (9.6), each node has a mixture of strengths, whose
+/// weights expectation maximisation fits to the light that its paths found.
 class SkeletonDirections final : public GuidingDistribution {
  public:
-  explicit SkeletonDirections(const SkeletonGuideSettings& settings) : settings_(settings) {}
+  explicit SkeletonDirections(const SkeletonGuideSettings& settings)
+      : strength_(settings.strength),
+        probability_(settings.probability),
+        aim_(settings.aim),
+        rays_(settings.light_rays) {}
+  explicit SkeletonDirections(const SkeletonLightGuideSettings& settings)
+      : strength_{settings.strength},
+        probability_{settings.probability},
+        aim_(settings.aim),
+        rays_(settings.eye_rays),
+        to_eye_(true) {}
 
   bool needs_space() const override { return true; }
   void prepare(const PrepareContext& context) override;
-  void save(ByteWriter& out) const override { tuning_.save(out); }
-  void load(ByteReader& in) override { tuning_.load(in); }
+  void save(ByteWriter& out) const override { out.put(found_); }
+  void load(ByteReader& in) override;
   std::vector<std::pair<std::string, double>> statistics() const override;
 
   GuidingCell cell(const Surface& s, const V3f& w) const override {
     const std::uint32_t node = lookup_->node(V3d(s.x), V3d(s.ng), V3d(w));
     if (node == no_node || lobes_[node].empty()) return {};
-    return {tuning_.probability(node), node};
+    return {1, node};
   }
   void prefetch(const Surface& s, const V3f& w) const override {
     lookup_->prefetch(V3d(s.x), V3d(s.ng), V3d(w));
   }
-  std::optional<V3f> sample(const GuidedVertex& at, Rng::FinePoint u, Rng&) const override {
-    return lobes_[at.cell.index].sample(at.x(), tuning_.strength(at.cell.index), u);
-  }
-  Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const override {
-    return lobes_[at.cell.index].pdf(at.x(), w, tuning_.strength(at.cell.index));
-  }
+  std::optional<V3f> sample(const GuidedVertex& at, Rng::FinePoint u, Rng&) const override;
+  Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const override;
 
-  bool idle() const override { return tuning_.idle(); }
-  std::optional<std::uint64_t> due_pilot() const override { return tuning_.due_pilot(); }
-  void begin_pilot() override { tuning_.begin_pilot(); }
-  bool learns() const override { return tuning_.learns(); }
-  std::unique_ptr<Accumulator> accumulator() const override {
-    return std::make_unique<TuningAccumulator>();
-  }
-  void accumulate(const GuidingSample& sample, Accumulator& accumulator) const override;
-  void record_noise(double variance, double by_bsdf, Accumulator& accumulator) const override {
-    static_cast<TuningAccumulator&>(accumulator).tuning.noise.add(variance, by_bsdf);
-  }
-  void update(std::span<const std::unique_ptr<Accumulator>> accumulators, const ThreadPool&,
-              double iterations) override {
-    std::vector<const Tuning::Accumulator*> own;
-    for (const auto& t : accumulators)
-      own.push_back(&static_cast<const TuningAccumulator&>(*t).tuning);
-    tuning_.update(own, iterations);
-    tuning_.stop_if_useless();
-  }
+  std::size_t cells() const override { return lobes_.size(); }
+  AutoNumber probability() const override { return probability_; }
+  bool learns() const override { return strength_.is_auto(); }
+  std::vector<std::uint32_t> update(const TrainingSamples& samples,
+                                    const ThreadPool& pool) override;
 
  private:
-  struct TuningAccumulator final : Accumulator {
-    Tuning::Accumulator tuning;
-    double bytes() const override { return tuning.bytes(); }
-  };
+  /// Of each strength of LobeSet::powers().
+  using Strengths = std::array<double, LobeSet::doublings>;
+  /// The weights of a node's strengths, which add up to 1.
+  static Strengths weights(const Strengths& found);
+  float fixed() const { return static_cast<float>(*strength_.value); }
 
-  SkeletonGuideSettings settings_;
+  AutoNumber strength_, probability_;
+  ImportanceAim aim_;
+  int rays_;
+  bool to_eye_ = false;
   std::optional<SurfaceLookup> lookup_;
-  std::vector<LobeSet> lobes_;  // of each node
-  Tuning tuning_;
+  std::vector<LobeSet> lobes_;              // of each node
+  std::vector<Strengths> found_, weights_;  // of each node: the light found so far; from it
   std::size_t importance_nodes_ = 0;
 };
 

@@ -2,7 +2,6 @@
 
 #include "renderer/connections/registry.h"
 #include "renderer/core/pass_seconds.h"
-#include "renderer/guides/learning_memory.h"
 #include "renderer/guides/make_guide.h"
 #include "renderer/integrators/integrators.h"
 #include "renderer/path/light_pass.h"
@@ -27,13 +26,12 @@ struct Merging {
 /// et al. 2012). Then all light paths are walked before the eye paths, for their photons; the
 /// vertices that are connected are made anew from these, which takes less memory than to keep them
 /// whole.
-template <class Guide>
-class PairedBdpt final : public Bdpt<Guide> {
-  using Base = Bdpt<Guide>;
+class PairedBdpt final : public Bdpt {
+  using Base = Bdpt;
+  using Base::EyePaths;
   using Base::guide_;
   using Base::layers_;
   using Base::settings_;
-  using typename Base::EyePaths;
 
  public:
   PairedBdpt(const BdptSettings& settings, Guide guide, const Merging& merging = {})
@@ -95,7 +93,7 @@ class PairedBdpt final : public Bdpt<Guide> {
   };
   struct Pairs {
     EyePaths eye;
-    LightBatch<Guide> light;
+    LightBatch light;
     std::vector<Rng> rngs = {};
     EmittersAhead ahead = {};  // emitters of s = 1
     std::vector<LookUp> look_ups = {};
@@ -110,7 +108,7 @@ class PairedBdpt final : public Bdpt<Guide> {
     const LightPathSetting setting = light_setting(context, counts);
     const Counters sum = light_pass(
         {context, setting, Base::pixels(image), image}, guide_,
-        [&](std::size_t path, const LightBatch<Guide>& batch, std::size_t i) {
+        [&](std::size_t path, const LightBatch& batch, std::size_t i) {
           photons_.keep_path(path, batch, i);
         },
         Base::splat_layers(context));
@@ -123,13 +121,12 @@ class PairedBdpt final : public Bdpt<Guide> {
   Counters eye_pass(const IterationContext& context, const SampleCounts& counts, Image& image) {
     const LightPathSetting setting = light_setting(context, counts);
     const Tiling tiling(image);
-    typename Base::Accumulators accumulators = Base::start_accumulators(tiling);
-    LearningMemory memory(accumulators.size());
+    std::vector<TrainingSamples::Part> samples(static_cast<std::size_t>(tiling.tiles()));
     std::vector<double> seconds(static_cast<std::size_t>(tiling.tiles()), 0.0);
     const auto work = [&](int i, Counters& counters, Splats& splats) {
-      Pairs pairs{EyePaths(settings_.max_depth, counts), LightBatch<Guide>(setting, guide_)};
-      const typename Base::TilePass pass{context, image, counters};
-      Walk<Guide> walk(context.scene, guide_, Base::eye_limits(counts), counters);
+      Pairs pairs{EyePaths(settings_.max_depth, counts), LightBatch(setting, guide_)};
+      const Base::TilePass pass{context, image, counters};
+      Walk walk(context.scene, guide_, Base::eye_limits(counts), counters);
       const Tile tile = tiling.tile(i);
       for (int b = 0; b < tile.blocks(); ++b) {
         Base::start(pass, tile.block(b), pairs.eye);
@@ -137,17 +134,16 @@ class PairedBdpt final : public Bdpt<Guide> {
         do {
           walk_eye(pass, walk, pairs);
           look_up(context, pairs);
-          Base::finish(pass, pairs.eye, accumulators[static_cast<std::size_t>(i)],
+          Base::finish(pass, pairs.eye, samples[static_cast<std::size_t>(i)],
                        [](const BdptContribution&) {});
         } while (Base::resume(walk, pairs.eye));
       }
       seconds[static_cast<std::size_t>(i)] = pairs.look_up_seconds;
-      memory.add(accumulators[static_cast<std::size_t>(i)].bytes());
     };
     const Counters sum =
         for_each_splatting_part(context, tiling.tiles(), image, work, Base::splat_layers(context));
     for (const double s : seconds) seconds_.look_up += s;
-    Base::update_guide(context, accumulators);
+    Base::update_guide(context, samples);
     return sum;
   }
 
@@ -171,7 +167,7 @@ class PairedBdpt final : public Bdpt<Guide> {
     pairs.light.splat(paths, counters, splats);
   }
 
-  void walk_eye(const typename Base::TilePass& pass, Walk<Guide>& walk, Pairs& pairs) const {
+  void walk_eye(const Base::TilePass& pass, Walk& walk, Pairs& pairs) const {
     const IterationContext& context = pass.context;
     const NextEvent next_event(context.scene, emitters());
     const SampleCounts& counts = pairs.eye.counts;
@@ -188,10 +184,10 @@ class PairedBdpt final : public Bdpt<Guide> {
       if (longest == 0) return;
       if (counts.merge > 0) pairs.look_ups.push_back({static_cast<std::uint32_t>(i), depth});
       if (counts.nee == 0) return;
-      const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
+      const SurfaceEndpoint eye{v, depth, Transport::radiance, guide_};
       const EmitterPoint e = next_event.sample(v, pairs.ahead[i], pairs.eye.states[i].rng);
       const BdptContribution known = Base::contribution(pairs.eye, i);
-      Base::join(eye, EmitterEndpoint<Guide>{e, guide_}, 1, known, pairs.eye);
+      Base::join(eye, EmitterEndpoint{e, guide_}, 1, known, pairs.eye);
       const std::size_t path = pairs.eye.origin[i];
       pairs.light.for_each_vertex(path, [&](std::size_t j, int index) {
         if (index >= longest || !pairs.light.connectible(j, index)) return;
@@ -212,7 +208,7 @@ class PairedBdpt final : public Bdpt<Guide> {
     for (const LookUp& at : pairs.look_ups) {
       pairs.stop.check(context);
       const Vertex& v = pairs.eye.vertex(at.path, at.depth);
-      const SurfaceEndpoint<Guide> eye{v, at.depth, Transport::radiance, guide_};
+      const SurfaceEndpoint eye{v, at.depth, Transport::radiance, guide_};
       const std::uint32_t pixel = pairs.eye.pixels[at.path];
       Rgb sum(0, 0, 0);
       photons_.for_each_at(
@@ -225,7 +221,7 @@ class PairedBdpt final : public Bdpt<Guide> {
             layers_.merge(context.layers, p.index + 1, at.depth + 1, {pixel, value, w});
           });
       pairs.eye.radiance[at.path] += sum;
-      if (guide_.learns()) pairs.eye.gathered.add(at.path, at.depth, sum);
+      if (pairs.eye.gathers) pairs.eye.gathered.add(at.path, at.depth, sum);
     }
     pairs.look_ups.clear();
     pairs.look_up_seconds += clock_seconds(CLOCK_THREAD_CPUTIME_ID) - begin;
@@ -238,13 +234,13 @@ class PairedBdpt final : public Bdpt<Guide> {
 
 /// Connections to light paths that all pixels share, resampled at each eye vertex. The shared paths
 /// are the first of those connected to the eye (t = 1).
-template <class Guide, SharedConnections Choice>
-class ResampledBdpt final : public Bdpt<Guide> {
-  using Base = Bdpt<Guide>;
+template <SharedConnections Choice>
+class ResampledBdpt final : public Bdpt {
+  using Base = Bdpt;
+  using Base::EyePaths;
   using Base::guide_;
   using Base::layers_;
   using Base::settings_;
-  using typename Base::EyePaths;
 
  public:
   template <class Settings>
@@ -300,7 +296,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
     const LightPathSetting setting = Base::light_setting(context, counts);
     Counters counters = light_pass(
         {context, setting, lit ? paths : 0, image}, guide_,
-        [&](std::size_t path, const LightBatch<Guide>& batch, std::size_t place) {
+        [&](std::size_t path, const LightBatch& batch, std::size_t place) {
           if (path < resampled) lights.keep(path, batch, place);
         },
         Base::splat_layers(context));
@@ -318,16 +314,15 @@ class ResampledBdpt final : public Bdpt<Guide> {
                     const LightVertices& lights, Image& image) {
     const Tiling tiling(image);
     std::vector<CellStatistics::Accumulator> accumulators(static_cast<std::size_t>(tiling.tiles()));
-    typename Base::Accumulators guide_accumulators = Base::start_accumulators(tiling);
-    LearningMemory memory(guide_accumulators.size());
+    std::vector<TrainingSamples::Part> samples(static_cast<std::size_t>(tiling.tiles()));
     const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
       const auto index = static_cast<std::size_t>(i);
       EyePart part{lights, connections_.resampling().roulette * cell_statistics_.mean(index),
                    EyePaths(settings_.max_depth, counts),
                    CellStatistics::Accumulator(cell_statistics_.cells())};
       const auto record = [&](const BdptContribution& c) { arrived(c, part.accumulator); };
-      const typename Base::TilePass pass{context, image, counters};
-      Walk<Guide> walk(context.scene, guide_, Base::eye_limits(counts), counters);
+      const Base::TilePass pass{context, image, counters};
+      Walk walk(context.scene, guide_, Base::eye_limits(counts), counters);
       const NextEvent next_event(context.scene, EmitterChoice::power);
       const Tile tile = tiling.tile(i);
       for (int b = 0; b < tile.blocks(); ++b) {
@@ -341,16 +336,15 @@ class ResampledBdpt final : public Bdpt<Guide> {
                 join_lights(part, k, depth);
                 Base::flush_if_long(pass, part.batch, record);
               });
-          Base::finish(pass, part.batch, guide_accumulators[index], record);
+          Base::finish(pass, part.batch, samples[index], record);
         } while (Base::resume(walk, part.batch));
       }
       part.accumulator.add_paths(static_cast<std::uint64_t>(tile.pixels()));
       part.accumulator.close();
       accumulators[index] = std::move(part.accumulator);
-      memory.add(guide_accumulators[index].bytes());
     });
     cell_statistics_.add(accumulators);
-    Base::update_guide(context, guide_accumulators);
+    Base::update_guide(context, samples);
     return sum;
   }
 
@@ -378,7 +372,7 @@ class ResampledBdpt final : public Bdpt<Guide> {
     const int longest = Base::longest_light_path(v, depth);
     if (longest == 0 || part.lights.paths() == 0) return;
     Rng& rng = part.batch.states[k].rng;
-    const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
+    const SurfaceEndpoint eye{v, depth, Transport::radiance, guide_};
     const auto lookup = connections_.find(v, depth, rng);
     part.accumulator.visit(lookup.cell);
     const float throughput = luminance(v.throughput);
@@ -413,28 +407,22 @@ class ResampledBdpt final : public Bdpt<Guide> {
 }  // namespace
 
 std::unique_ptr<Integrator> make_bdpt(const BdptSettings& settings) {
-  return with_guides(settings.guide, settings.light_guide, [&]<class Guide>(Guide guide) {
-    return ConnectionsRegistry::visit(
-        settings.connections,
-        [&]<Connections C>(const auto& connections) -> std::unique_ptr<Integrator> {
-          if constexpr (std::is_same_v<C, PairedConnections>) {
-            return std::make_unique<PairedBdpt<Guide>>(settings, std::move(guide));
-          } else {
-            return std::make_unique<ResampledBdpt<Guide, C>>(settings, std::move(guide),
-                                                             connections);
-          }
-        });
-  });
+  return ConnectionsRegistry::visit(
+      settings.connections,
+      [&]<Connections C>(const auto& connections) -> std::unique_ptr<Integrator> {
+        Guide guide = make_guide(settings.guide, settings.light_guide);
+        if constexpr (std::is_same_v<C, PairedConnections>) {
+          return std::make_unique<PairedBdpt>(settings, std::move(guide));
+        } else {
+          return std::make_unique<ResampledBdpt<C>>(settings, std::move(guide), connections);
+        }
+      });
 }
 
 std::unique_ptr<Integrator> make_vcm(const VcmSettings& settings) {
   const BdptSettings bdpt{static_cast<const PathLengths&>(settings)};
-  return with_guides(settings.guide, settings.light_guide,
-                     [&]<class Guide>(Guide guide) -> std::unique_ptr<Integrator> {
-                       return std::make_unique<PairedBdpt<Guide>>(
-                           bdpt, std::move(guide),
-                           Merging{settings.merge, settings.connect, settings});
-                     });
+  return std::make_unique<PairedBdpt>(bdpt, make_guide(settings.guide, settings.light_guide),
+                                      Merging{settings.merge, settings.connect, settings});
 }
 
 }  // namespace lacuna

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "renderer/guides/gathered_light.h"
 #include "renderer/integrators/guided_integrator.h"
 #include "renderer/integrators/strategy_layers.h"
 #include "renderer/path/eye_batch.h"
+#include "renderer/path/gathered_light.h"
 #include "renderer/path/light_batch.h"
 #include "renderer/path/tiles.h"
 #include "renderer/settings/bdpt_settings.h"
@@ -25,19 +25,19 @@ struct BdptContribution {
 
 /// Bidirectional path tracing (Noel 2015, 4.3 and ch. 11), apart from the choice of the light
 /// vertices that an eye vertex is connected to.
-template <class Guide>
-class Bdpt : public GuidedIntegrator<Guide> {
+class Bdpt : public GuidedIntegrator {
  public:
   Bdpt(const BdptSettings& settings, Guide guide)
-      : GuidedIntegrator<Guide>(std::move(guide)), settings_(settings) {}
+      : GuidedIntegrator(std::move(guide)), settings_(settings) {}
 
  protected:
-  using GuidedIntegrator<Guide>::guide_;
+  using GuidedIntegrator::guide_;
 
   struct EyePaths : EyeBatch {
     EyePaths(int max_depth, const SampleCounts& n) : EyeBatch(max_depth), counts(n) {}
     SampleCounts counts;
     GatheredLight gathered{*this};  // for a guide that learns
+    bool gathers = false;
     ShadowQueue<BdptContribution> queue;
   };
   /// What the parts of a tile's work share.
@@ -50,7 +50,7 @@ class Bdpt : public GuidedIntegrator<Guide> {
   /// Adds the emission at a vertex of an eye path (s = 0).
   void gather_hit(const IterationContext& context, EyePaths& batch, std::size_t i, int depth,
                   const NextEvent& next_event) const {
-    if (guide_.learns()) batch.gathered.reach(i, depth);
+    if (batch.gathers) batch.gathered.reach(i, depth);
     const Vertex& v = batch.vertex(i, depth);
     std::optional<EmitterPoint> e = emitter_at(context.scene, v);
     if (!e) return;
@@ -60,7 +60,7 @@ class Bdpt : public GuidedIntegrator<Guide> {
     const Rgb value = v.throughput * e->emission;
     const auto w = static_cast<float>(hit_weight(v, depth, *e, batch.counts, guide_));
     batch.radiance[i] += value * w;
-    if (guide_.learns()) batch.gathered.add(i, depth, value * w);
+    if (batch.gathers) batch.gathered.add(i, depth, value * w);
     layers_.strategy(context.layers, 0, depth + 1, {batch.pixels[i], value, w});
   }
 
@@ -73,7 +73,7 @@ class Bdpt : public GuidedIntegrator<Guide> {
   /// Connects `eye` and `light` and queues the contribution, over `samples`: the expected number of
   /// samples of this light vertex. What the connection does not determine is as in `known`.
   template <class Light>
-  static void join(const SurfaceEndpoint<Guide>& eye, const Light& light, double samples,
+  static void join(const SurfaceEndpoint& eye, const Light& light, double samples,
                    BdptContribution known, EyePaths& batch) {
     const Connection c = connect(eye, light);
     if (!c) return;
@@ -98,7 +98,7 @@ class Bdpt : public GuidedIntegrator<Guide> {
         [&](const BdptContribution& c) {
           accumulate(pass.image.pixels[c.pixel], c.value * c.weight, pass.counters);
           arrived(c);
-          if (guide_.learns()) batch.gathered.add(c.path, c.t - 1, c.value * c.weight);
+          if (batch.gathers) batch.gathered.add(c.path, c.t - 1, c.value * c.weight);
           layers_.strategy(context.layers, c.s, c.t, {c.pixel, c.value, c.weight});
           layers_.distribution(context.layers, c.distribution, c.pixel, c.value * c.weight);
         },
@@ -113,38 +113,32 @@ class Bdpt : public GuidedIntegrator<Guide> {
   }
   /// Adds what the paths of the batch have found, and records samples for the guide.
   template <class Arrived>
-  void finish(const TilePass& pass, EyePaths& batch, typename Guide::Accumulator& accumulator,
+  void finish(const TilePass& pass, EyePaths& batch, TrainingSamples::Part& samples,
               Arrived&& arrived) const {
     for (std::size_t k = 0; k < batch.states.size(); ++k) {
       accumulate(pass.image.pixels[batch.pixels[k]], batch.radiance[k], pass.counters);
     }
     flush(pass, batch, arrived);
-    if (guide_.learns()) batch.gathered.record(guide_, accumulator);
+    if (batch.gathers) batch.gathered.record(samples);
   }
   /// Starts the paths of a Tile::block(), and counts them.
   void start(const TilePass& pass, const Tile& block, EyePaths& batch) const {
     start_paths(pass.context, pass.image, block, batch);
     pass.counters.samples += batch.states.size();
-    if (guide_.learns()) batch.gathered.clear();
+    batch.gathers =
+        guide_.learns() && guide_.learns_from(block.pixel(0), pass.context, settings_.max_depth);
+    if (batch.gathers) batch.gathered.clear();
   }
-  /// One accumulator for each tile.
-  using Accumulators = std::vector<typename Guide::Accumulator>;
   /// Continues with the branches of the paths; false if there are none left.
-  bool resume(Walk<Guide>& walk, EyePaths& batch) const {
+  bool resume(Walk& walk, EyePaths& batch) const {
     batch.store(walk.branches());
     if (!batch.resume()) return false;
-    if (guide_.learns()) batch.gathered.clear();
+    if (batch.gathers) batch.gathered.clear();
     return true;
   }
-  Accumulators start_accumulators(const Tiling& tiling) const {
-    Accumulators accumulators(static_cast<std::size_t>(tiling.tiles()));
-    if (guide_.learns()) {
-      for (auto& t : accumulators) t = guide_.accumulator();
-    }
-    return accumulators;
-  }
-  void update_guide(const IterationContext& context, Accumulators& accumulators) {
-    if (guide_.learns()) guide_.update(accumulators, context.pool, 1);
+  void update_guide(const IterationContext& context,
+                    std::span<const TrainingSamples::Part> samples) {
+    if (guide_.learns()) guide_.update(samples, {}, context, settings_.max_depth);
   }
   /// The callback of for_each_splatting_part() that adds splats to the layers.
   auto splat_layers(const IterationContext& context) const {

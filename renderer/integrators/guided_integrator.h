@@ -1,12 +1,12 @@
 #pragma once
 
 #include "renderer/integrators/integrator.h"
+#include "renderer/path/guide.h"
 
 namespace lacuna {
 
 /// An integrator whose paths follow a guide (renderer/guides). The guide determines its needs,
 /// its preparation and its learned state.
-template <class Guide>
 class GuidedIntegrator : public Integrator {
  public:
   explicit GuidedIntegrator(Guide guide) : guide_(std::move(guide)) {}

@@ -9,15 +9,8 @@ namespace lacuna {
 
 GuideView::GuideView(const InspectSettings& settings, const PrepareContext& context)
     : settings_(settings) {
-  with_guide(settings.guide, [&]<class Guide>(Guide guide) {
-    const auto tracer = std::make_shared<PathTracer<Guide>>(PathSettings{}, std::move(guide));
-    tracer->prepare(context);
-    trace_ = [tracer](const IterationContext& c, Image& image) { tracer->iterate(c, image); };
-    on_hit_ = [tracer](Vertex& v) { tracer->guide().on_hit(v); };
-    density_ = [tracer](const Vertex& v, const V3f& w) {
-      return tracer->guide().pdf(v, v.wp, w, Transport::radiance).value;
-    };
-  });
+  tracer_ = std::make_unique<PathTracer>(PathSettings{}, make_guide(settings.guide));
+  tracer_->prepare(context);
 }
 
 SceneNeeds GuideView::needs(const GuideSettings& guide) {
@@ -31,7 +24,7 @@ void GuideView::learn(const IterationContext& context, const Image& image) {
     Image ignored(image.width, image.height);
     IterationContext iteration = context;
     iteration.iteration = static_cast<std::uint64_t>(learned_);
-    trace_(iteration, ignored);
+    tracer_->iterate(iteration, ignored);
   }
 }
 
@@ -41,7 +34,7 @@ Vertex GuideView::vertex(const Scene& scene, const Surface& s, const V3f& d) con
   v.surface = s;
   v.wp = -d;
   scene.make_bsdf(v.surface, v.bsdf);
-  on_hit_(v);
+  tracer_->guide().on_hit(v);
   return v;
 }
 
@@ -66,7 +59,7 @@ Rgb GuideView::density(const Scene& scene, const Surface& s, const V3f& d,
   const V3f to = offset_end(s.x, s.ng, s.offset, -d, length);
   ++counters.shadow_rays;
   if (scene.rays().occluded({from, to - from, 1.0F})) return {0, 0, 0};
-  return Rgb(density_(point_, w));
+  return Rgb(tracer_->guide().pdf(point_, point_.wp, w, Transport::radiance).value);
 }
 
 Rgb GuideView::colour(const Scene& scene, const Surface& s, const V3f& d, std::uint64_t seed,

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <functional>
-
-#include "renderer/integrators/integrator.h"
+#include "renderer/integrators/path_tracer.h"
 #include "renderer/path/vertex.h"
 #include "renderer/settings/inspect_settings.h"
 
@@ -35,9 +33,7 @@ class GuideView {
 
   InspectSettings settings_;
   int learned_ = 0;  // iterations
-  std::function<void(const IterationContext&, Image&)> trace_;
-  std::function<void(Vertex&)> on_hit_;
-  std::function<float(const Vertex&, const V3f&)> density_;
+  std::unique_ptr<PathTracer> tracer_;
   Vertex point_;  // without Bsdf: the eye ray hit nothing
 };
 

@@ -10,11 +10,10 @@ namespace lacuna {
 namespace {
 
 /// Light tracing (Noel 2015, 4.2.5): the strategies t = 1 alone.
-template <class Guide>
-class Light final : public GuidedIntegrator<Guide> {
+class Light final : public GuidedIntegrator {
  public:
   Light(const LightSettings& settings, Guide guide)
-      : GuidedIntegrator<Guide>(std::move(guide)), settings_(settings) {}
+      : GuidedIntegrator(std::move(guide)), settings_(settings) {}
 
   Counters iterate(const IterationContext& context, Image& image) override {
     const std::int64_t paths = light_paths(settings_.light_paths, image);
@@ -25,7 +24,7 @@ class Light final : public GuidedIntegrator<Guide> {
                                    {.hit = 0, .splat = static_cast<double>(paths)}};
     return light_pass(
         {context, setting, paths, image}, this->guide_,
-        [](std::size_t, const LightBatch<Guide>&, std::size_t) {}, [](const Splat&) {});
+        [](std::size_t, const LightBatch&, std::size_t) {}, [](const Splat&) {});
   }
 
  private:
@@ -35,10 +34,7 @@ class Light final : public GuidedIntegrator<Guide> {
 }  // namespace
 
 std::unique_ptr<Integrator> make_light(const LightSettings& settings) {
-  return with_light_guide(settings.light_guide,
-                          [&]<class Guide>(Guide guide) -> std::unique_ptr<Integrator> {
-                            return std::make_unique<Light<Guide>>(settings, std::move(guide));
-                          });
+  return std::make_unique<Light>(settings, make_light_guide(settings.light_guide));
 }
 
 }  // namespace lacuna

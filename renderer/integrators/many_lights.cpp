@@ -168,7 +168,7 @@ class ManyLights final : public Integrator {
                                    SampleCounts{.hit = 0},  true};
     return light_pass(
         {context, setting, settings_.light_paths, image}, guide_,
-        [&](std::size_t path, const LightBatch<BsdfGuide>& batch, std::size_t place) {
+        [&](std::size_t path, const LightBatch& batch, std::size_t place) {
           lights.keep(path, batch, place);
         },
         [](const Splat&) {});
@@ -178,12 +178,12 @@ class ManyLights final : public Integrator {
   /// tracing.
   void trace(const IterationContext& context, const Gathering& with, Part& part,
              Counters& counters) const {
-    const DirectLight<BsdfGuide> direct(context.scene, guide_, true, EmitterChoice::power);
-    Walk<BsdfGuide> walk(context.scene, guide_,
-                         {.max_depth = settings_.max_depth,
-                          .roulette_depth = settings_.roulette_depth,
-                          .packets = true},
-                         counters);
+    const DirectLight direct(context.scene, guide_, true, EmitterChoice::power);
+    Walk walk(context.scene, guide_,
+              {.max_depth = settings_.max_depth,
+               .roulette_depth = settings_.roulette_depth,
+               .packets = true},
+              counters);
     const auto choose = [&](std::size_t i, int depth) {
       if (direct.draws() && depth < settings_.max_depth) {
         part.ahead[i] = direct.choose_ahead(part.batch.states[i].rng);
@@ -205,14 +205,14 @@ class ManyLights final : public Integrator {
   struct EyePass {
     const Scene& scene;
     const Gathering& with;
-    const DirectLight<BsdfGuide>& direct;
+    const DirectLight& direct;
     Part& part;
   };
   /// Visits a vertex of eye path `i`; false where the path ends.
   bool visit(const EyePass& pass, std::size_t i, int depth) const {
     const Gathering& with = pass.with;
     const VplContributions& terms = with.terms;
-    const DirectLight<BsdfGuide>& direct = pass.direct;
+    const DirectLight& direct = pass.direct;
     Part& part = pass.part;
     Vertex& v = part.batch.vertex(i, depth);
     const bool first = part.shaded[i] == 0;
@@ -313,7 +313,7 @@ class ManyLights final : public Integrator {
     return context.layers[static_cast<std::size_t>(index)];
   }
 
-  BsdfGuide guide_;
+  Guide guide_;
   ManyLightsSettings settings_;
   float least_alpha_;
   V visibility_;

@@ -10,6 +10,7 @@
 #include "renderer/integrators/path_tracer.h"
 #include "renderer/integrators/seen_emission.h"
 #include "renderer/mutations/registry.h"
+#include "renderer/path/tiles.h"
 
 namespace lacuna {
 
@@ -31,7 +32,7 @@ template <Mutation M, class Settings>
 class Metropolis final : public Integrator {
  public:
   Metropolis(const MetropolisSettings& settings, const Settings& mutation)
-      : settings_(settings), mutation_(mutation), direct_(direct_settings(settings), BsdfGuide{}) {}
+      : settings_(settings), mutation_(mutation), direct_(direct_settings(settings), Guide{}) {}
 
   SceneNeeds needs() const override { return {.materials = true, .emission = true}; }
 
@@ -312,8 +313,8 @@ class Metropolis final : public Integrator {
 
   MetropolisSettings settings_;
   Settings mutation_;
-  PathTracer<BsdfGuide> direct_;  // of direct_samples
-  SeenEmission seen_;             // without them
+  PathTracer direct_;  // of direct_samples
+  SeenEmission seen_;  // without them
   ByKind proposed_{}, accepted_{};
   Brightness brightness_;
   /// CPU seconds of all threads in the parts of an iteration.

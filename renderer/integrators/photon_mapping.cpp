@@ -28,10 +28,9 @@ struct Density {
 /// Every path of light is counted once, by what its first rough vertex x from the eye receives:
 /// direct light; caustics, which reach x from an emitter by way of mirrors and glass only; the
 /// rest. With a final gather the rest comes from the photons at the next rough vertex.
-template <class GuideOfLight>
 class PhotonMapping final : public Integrator {
  public:
-  PhotonMapping(const PhotonTracing& settings, const Density& density, GuideOfLight light_guide)
+  PhotonMapping(const PhotonTracing& settings, const Density& density, Guide light_guide)
       : light_guide_(std::move(light_guide)),
         settings_(settings),
         density_(density),
@@ -125,7 +124,7 @@ class PhotonMapping final : public Integrator {
     const Wanted kept = density_.final_gather ? Wanted{true, true, true} : at_first();
     return lacuna::light_pass(
         {context, setting, all, image}, light_guide_,
-        [&](std::size_t path, const LightBatch<GuideOfLight>& batch, std::size_t i) {
+        [&](std::size_t path, const LightBatch& batch, std::size_t i) {
           const auto number = static_cast<std::int64_t>(path);
           batch.for_each_branch(i, [&](std::size_t j) {
             bool caustic = true;  // so far
@@ -166,12 +165,12 @@ class PhotonMapping final : public Integrator {
   }
 
   void trace(const IterationContext& context, Part& part, Counters& counters) const {
-    const DirectLight<BsdfGuide> direct(context.scene, guide_, true, EmitterChoice::power);
-    Walk<BsdfGuide> walk(context.scene, guide_,
-                         {.max_depth = settings_.max_depth,
-                          .roulette_depth = settings_.roulette_depth,
-                          .packets = true},
-                         counters);
+    const DirectLight direct(context.scene, guide_, true, EmitterChoice::power);
+    Walk walk(context.scene, guide_,
+              {.max_depth = settings_.max_depth,
+               .roulette_depth = settings_.roulette_depth,
+               .packets = true},
+              counters);
     const auto choose = [&](std::size_t i, int depth) {
       if (direct.draws() && depth < settings_.max_depth && part.stage[i] <= Stage::at_first) {
         part.ahead[i] = direct.choose_ahead(part.batch.states[i].rng);
@@ -186,7 +185,7 @@ class PhotonMapping final : public Integrator {
   }
 
   /// Takes the edge to the vertex at `depth` into account; false where the path ends before it.
-  bool arrive(const DirectLight<BsdfGuide>& direct, Part& part, std::size_t i, int depth) const {
+  bool arrive(const DirectLight& direct, Part& part, std::size_t i, int depth) const {
     const Vertex& v = part.batch.vertex(i, depth);
     Stage& stage = part.stage[i];
     const Vertex& before = part.batch.vertex(i, depth - 1);
@@ -202,7 +201,7 @@ class PhotonMapping final : public Integrator {
   }
 
   /// One vertex of an eye path; false where the path ends.
-  bool visit(const DirectLight<BsdfGuide>& direct, Part& part, std::size_t i, int depth) const {
+  bool visit(const DirectLight& direct, Part& part, std::size_t i, int depth) const {
     const Vertex& v = part.batch.vertex(i, depth);
     if (!arrive(direct, part, i, depth)) return false;
     if (v.kind != Vertex::Kind::surface || depth == settings_.max_depth) return false;
@@ -254,7 +253,7 @@ class PhotonMapping final : public Integrator {
   /// light paths.
   Rgb estimate(const PhotonMap& map, const Wanted& wanted, const LookUp& at, Part& part) const {
     const Vertex& v = part.batch.vertex(at.path, at.depth);
-    const SurfaceEndpoint<BsdfGuide> eye{v, at.depth, Transport::radiance, guide_};
+    const SurfaceEndpoint eye{v, at.depth, Transport::radiance, guide_};
     part.found.clear();
     float each = 1;  // so many photons are there for one that is looked at
     map.for_each_at(v, part.batch.states[at.path].rng,
@@ -301,8 +300,8 @@ class PhotonMapping final : public Integrator {
     return 1;
   }
 
-  BsdfGuide guide_;  ///< of eye paths
-  GuideOfLight light_guide_;
+  Guide guide_;  ///< of eye paths
+  Guide light_guide_;
   PhotonTracing settings_;
   Density density_;
   float least_alpha_;
@@ -311,10 +310,7 @@ class PhotonMapping final : public Integrator {
 };
 
 std::unique_ptr<Integrator> make(const PhotonTracing& settings, const Density& density) {
-  return with_light_guide(
-      settings.light_guide, [&]<class Guide>(Guide guide) -> std::unique_ptr<Integrator> {
-        return std::make_unique<PhotonMapping<Guide>>(settings, density, std::move(guide));
-      });
+  return std::make_unique<PhotonMapping>(settings, density, make_light_guide(settings.light_guide));
 }
 
 }  // namespace

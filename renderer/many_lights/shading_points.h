@@ -43,9 +43,9 @@ class ShadingPoints {
   const IterationContext& context_;
   int max_depth_;
   float least_alpha_;
-  BsdfGuide guide_;
+  Guide guide_;
   EyeBatch batch_;
-  Walk<BsdfGuide> walk_;
+  Walk walk_;
 };
 
 }  // namespace lacuna

@@ -98,7 +98,7 @@ void VplContributions::diffuse_terms(const ShadingPoint& at, const DiffuseBlock&
 }
 
 Rgb VplContributions::general(const ShadingPoint& at, const GeneralLight& light) const {
-  const SurfaceEndpoint<BsdfGuide> eye{*at.vertex, at.depth, Transport::radiance, guide_};
+  const SurfaceEndpoint eye{*at.vertex, at.depth, Transport::radiance, guide_};
   return light.with_end(guide_, [&](const auto& end) -> Rgb {
     const Connection c = connect(eye, end);
     if (!c) return Rgb(0, 0, 0);
@@ -153,7 +153,7 @@ Ray VplContributions::ray_from_side(const ShadingPoint& at, std::size_t block, i
 }
 
 Ray VplContributions::ray(const ShadingPoint& at, std::size_t block, int i) const {
-  const SurfaceEndpoint<BsdfGuide> eye{*at.vertex, at.depth, Transport::radiance, guide_};
+  const SurfaceEndpoint eye{*at.vertex, at.depth, Transport::radiance, guide_};
   if (const DiffuseBlock* from = lights_.diffuse(block)) {
     const V3f x(from->x[i], from->y[i], from->z[i]);
     const V3f g(from->gx[i], from->gy[i], from->gz[i]);

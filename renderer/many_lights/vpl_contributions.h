@@ -2,8 +2,8 @@
 
 #include "renderer/many_lights/vpl_set.h"
 #include "renderer/materials/bsdf_seen.h"
-#include "renderer/path/bsdf_guide.h"
 #include "renderer/path/connect.h"
+#include "renderer/path/guide.h"
 
 namespace lacuna {
 
@@ -103,7 +103,7 @@ class VplContributions {
 
   const VplSet& lights_;
   float bound_;
-  BsdfGuide guide_;
+  Guide guide_;
 };
 
 }  // namespace lacuna

@@ -44,11 +44,10 @@ struct GeneralLight {
     return e != nullptr && e->delta();
   }
   /// Calls `use(endpoint)` with the endpoint of a connecting edge (endpoints.h).
-  template <class Guide, class Use>
+  template <class Use>
   decltype(auto) with_end(const Guide& guide, Use&& use) const {
-    if (const auto* e = std::get_if<EmitterPoint>(&at))
-      return use(EmitterEndpoint<Guide>{*e, guide});
-    return use(SurfaceEndpoint<Guide>{std::get<Vertex>(at), index, Transport::importance, guide});
+    if (const auto* e = std::get_if<EmitterPoint>(&at)) return use(EmitterEndpoint{*e, guide});
+    return use(SurfaceEndpoint{std::get<Vertex>(at), index, Transport::importance, guide});
   }
 };
 
@@ -82,8 +81,7 @@ class VplSet {
 
   /// Stores the lights of path `i` of `batch` as path number `path`. Several threads may store
   /// different paths at once.
-  template <class Guide>
-  void keep(std::size_t path, const LightBatch<Guide>& batch, std::size_t i) {
+  void keep(std::size_t path, const LightBatch& batch, std::size_t i) {
     const bool started = std::min(batch.length(i), choice_.longest) > 0;
     if (started && choice_.emitters) add(kept_[path], batch.emitter(i));
     batch.for_each_vertex(i, [&](std::size_t j, int index) {

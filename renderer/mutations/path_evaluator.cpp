@@ -107,11 +107,11 @@ void PathEvaluator::walk_eyes(std::span<const Point> points, Counters& counters)
     eyes_.start(context_.camera, rng, context_.camera.sample(film.pixel, film.u), pixel);
   }
   counters.samples += eyes_.states.size();
-  Walk<BsdfGuide> walk(context_.scene, guide_,
-                       {.max_depth = setting_.max_depth,
-                        .roulette_depth = setting_.roulette_depth,
-                        .counts = eye_side(counts_)},
-                       counters);
+  Walk walk(context_.scene, guide_,
+            {.max_depth = setting_.max_depth,
+             .roulette_depth = setting_.roulette_depth,
+             .counts = eye_side(counts_)},
+            counters);
   walk.trace_paths(
       eyes_.states, [](std::size_t, int) {},
       [&](std::size_t i, int depth) {
@@ -136,7 +136,7 @@ void PathEvaluator::gather(const Point& point, std::size_t i, int depth) {
       !v.bsdf->connectible()) {
     return;
   }
-  const SurfaceEndpoint<BsdfGuide> eye{v, depth, Transport::radiance, guide_};
+  const SurfaceEndpoint eye{v, depth, Transport::radiance, guide_};
   const auto join = [&](const auto& end) {
     const Connection c = connect(eye, end);
     if (!c) return;
@@ -146,7 +146,7 @@ void PathEvaluator::gather(const Point& point, std::size_t i, int depth) {
   for (int s = 1; s <= lights_.length(light); ++s) {
     if (!point.wanted.wants(s, t)) continue;
     if (s == 1) {
-      join(EmitterEndpoint<BsdfGuide>{lights_.emitter(light), guide_});
+      join(EmitterEndpoint{lights_.emitter(light), guide_});
     } else if (lights_.connectible(light, s - 1)) {
       join(lights_.end(light, s - 1));
     }

@@ -4,9 +4,9 @@
 
 #include "renderer/mutations/chain_state.h"
 #include "renderer/mutations/primary_samples.h"
-#include "renderer/path/bsdf_guide.h"
 #include "renderer/path/contexts.h"
 #include "renderer/path/eye_batch.h"
+#include "renderer/path/guide.h"
 #include "renderer/path/light_batch.h"
 #include "renderer/settings/path_lengths.h"
 
@@ -66,9 +66,9 @@ class PathEvaluator {
   const IterationContext& context_;
   SampleCounts counts_;
   LightPathSetting setting_;
-  BsdfGuide guide_;
+  Guide guide_;
   EyeBatch eyes_;
-  LightBatch<BsdfGuide> lights_;
+  LightBatch lights_;
   std::vector<Rng> rngs_;
   std::vector<int> vertices_;                           // that are wanted of each light path
   std::array<std::size_t, size> light_of_{};            // of each point, the light path's index

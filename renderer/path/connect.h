@@ -137,14 +137,13 @@ inline std::optional<EmitterPoint> emitter_at(const Scene& scene, const Vertex& 
 /// The MIS weight of an eye path whose vertex `v`, at `index` >= 1, is the point `e` on an emitter
 /// (s = 0). EmitterPoint::next_event_ratio must be the one for the vertex before it, if that is
 /// connectible and not the eye. `guide`: of the light paths that the hit is weighed against.
-template <class Guide>
-double hit_weight(const Vertex& v, int index, const EmitterPoint& e, const SampleCounts& n,
-                  const Guide& guide) {
+inline double hit_weight(const Vertex& v, int index, const EmitterPoint& e, const SampleCounts& n,
+                         const Guide& guide) {
   const double one_less = n.of(1, index);
   // x_0 is never merged, and a path of one edge has no next event estimation.
   const TechniqueCounts side{
       .none = 0, .one = one_less, .more = one_less * double(e.next_event_ratio)};
-  const double pdf_rev = v.mis_partial > 0 ? double(leaving_pdf(guide, e, v.wp).value) : 0.0;
+  const double pdf_rev = v.mis_partial > 0 ? double(guide.leaving_pdf(e, v.wp).value) : 0.0;
   return mis_weight(n.hit, 0.0,
                     double(e.pdf.value) / double(v.p_fwd.value) *
                         mis_partial_sum(side, index, v.prev_connectible, pdf_rev, v.mis_partial));

@@ -8,7 +8,6 @@ namespace lacuna {
 /// The two strategies of unidirectional path tracing, combined by the power heuristic: the eye path
 /// hits an emitter (s = 0), or a point on an emitter is sampled at one of its vertices (s = 1, next
 /// event estimation).
-template <class Guide>
 class DirectLight {
  public:
   /// Without `next_event`, or without emitters, no points on emitters are sampled and hits have
@@ -43,8 +42,8 @@ class DirectLight {
   [[gnu::flatten]] void draw(const Vertex& v, int depth, NextEvent::Ahead ahead, Rng& rng,
                              Add&& add) const {
     const EmitterPoint e = next_event_.sample(v, ahead, rng);
-    const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
-    const EmitterEndpoint<Guide> light{e, guide_};
+    const SurfaceEndpoint eye{v, depth, Transport::radiance, guide_};
+    const EmitterEndpoint light{e, guide_};
     if (const Connection c = connect(eye, light)) {
       const double w = power_of_two(weight(eye, light, c, counts_));
       add(shadow_ray(eye, light, c), c.contribution * static_cast<float>(w), c.w);

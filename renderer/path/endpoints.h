@@ -1,6 +1,7 @@
 #pragma once
 
 #include "renderer/emitters/emitter_point.h"
+#include "renderer/path/guide.h"
 #include "renderer/path/mis.h"
 #include "renderer/path/vertex.h"
 #include "renderer/scene/camera.h"
@@ -28,7 +29,6 @@ struct VertexPlace {
 };
 
 /// A surface vertex: vertex `index` of its path.
-template <class Guide>
 struct SurfaceEndpoint {
   const Vertex& v;
   int index;
@@ -71,18 +71,7 @@ struct SurfaceEndpoint {
   V3f end(const V3f& w, float distance) const { return VertexPlace{v}.end(w, distance); }
 };
 
-/// Density of unit `w` with which light paths leave the point `e`.
-template <class Guide>
-Pdf<SolidAngle> leaving_pdf(const Guide& guide, const EmitterPoint& e, const V3f& w) {
-  if constexpr (requires { guide.leaving_pdf(e, w); }) {
-    return guide.leaving_pdf(e, w);
-  } else {
-    return e.leaving_pdf(w);
-  }
-}
-
 /// A point on an emitter: vertex 0 of a light path.
-template <class Guide>
 struct EmitterEndpoint {
   const EmitterPoint& e;
   const Guide& guide;
@@ -98,7 +87,7 @@ struct EmitterEndpoint {
   }
   /// Times the density of the point on light paths over p_fwd().
   double pdf(const V3f& w) const {
-    return double(leaving_pdf(guide, e, w).value) / double(e.next_event_ratio);
+    return double(guide.leaving_pdf(e, w).value) / double(e.next_event_ratio);
   }
   static double pdf_rev(const V3f&) { return 0; }
   double area_factor(const V3f& w) const {

@@ -1,55 +1,128 @@
 #pragma once
 
-#include <optional>
-#include <span>
+#include <memory>
 
-#include "renderer/core/rng.h"
-#include "renderer/path/guiding_sample.h"
-#include "renderer/path/strategy.h"
+#include "renderer/emitters/emitter_set.h"
+#include "renderer/path/guiding_distribution.h"
+#include "renderer/path/learned_probability.h"
+#include "renderer/path/reflected_radiance.h"
 
 namespace lacuna {
 
-/// Samples the next direction of a path, and evaluates the density of any direction.
+/// Samples the next direction of a path, and evaluates the density of any direction: one-sample MIS
+/// of a GuidingDistribution and the BSDF (Noel 2015, 9.4). A direction is sampled from the
+/// distribution with probability c of its guiding cell, else from the BSDF; its density is
 ///
-/// - on_hit(v): called when a walk reaches the surface `v` and its BSDF is set. Stores the guiding
-///   cell in `v`.
-/// - prefetch(v), or none: called when the surface and wp of `v` are known, before its BSDF is.
-/// - sample(v, rng, transport): a direction with its weight f cos / pdf and its density; nothing
-///   where the sample fails. Eye paths (Transport::radiance) are guided; light paths may be.
-/// - pdf(v, wo, wi, transport): the density per steradian with which sample() returns unit `wi` for
-///   a walk that arrived from unit `wo`. Defined for any `wo` and `wi`, because MIS weights need
-///   the reverse densities. Its integral over the sphere is 1 less the probability of failure. It
-///   is above 0 wherever the BSDF is. pdf(v, wo, wi, transport, bsdf): the same where the density
-///   of `wi` by the BSDF is known.
-/// - learns(), accumulator(), accumulate(), update(): each part of an iteration accumulates its
-///   samples separately. update() adds the accumulators in the order of the parts, so the state has
-///   the same bits for any number of threads.
+///     p = c p_guide + (1 - c) p_bsdf,
 ///
-/// - has_expected: whether expected(v) and guides(transport) exist. The first is the luminance that
-///   an eye path of throughput 1 is expected to gather behind the connectible vertex `v`; below 0
-///   while that is unknown. Walks use it for roulette and splitting of paths whose transport the
-///   guide guides(). record(v, value, accumulator) adds the value of one path.
+/// which makes the weight the balance heuristic. c is a setting, or LearnedProbability. Delta lobes
+/// are sampled by the BSDF alone; where c is 1 they are lost, and so is what the distribution
+/// misses. Paths from the eye and paths from the lights have a distribution each, or none, and then
+/// follow the BSDF. pdf() takes the transport, so each walk can evaluate the densities of the
+/// other. Only the distribution of eye paths learns.
 ///
-/// - sample_first_edge(lights, e, rng) and leaving_pdf(e, w), both or neither: the first edge of a
-///   light path from the point `e` on an emitter, and its density per steradian. Without them light
-///   paths leave as emitters emit.
-///
-/// sample(), pdf(), on_hit() and accumulate() are const and are called by many threads.
-template <class G>
-concept Guide = Strategy<G> &&
-    requires(G g, const G& k, Vertex& v, const V3f& w, Rng& rng, Transport transport,
-             const GuidingSample& sample, typename G::Accumulator& accumulator,
-             std::span<typename G::Accumulator> accumulators, const ThreadPool& pool,
-             double iterations) {
-  k.on_hit(v);
-  { k.sample(v, rng, transport) } -> std::same_as<std::optional<BsdfSample>>;
-  { k.pdf(v, w, w, transport) } -> std::same_as<Pdf<SolidAngle>>;
-  { k.pdf(v, w, w, transport, Pdf<SolidAngle>()) } -> std::same_as<Pdf<SolidAngle>>;
-  { k.learns() } -> std::same_as<bool>;
-  { G::has_expected } -> std::convertible_to<bool>;
-  { k.accumulator() } -> std::same_as<typename G::Accumulator>;
-  k.accumulate(sample, accumulator);
-  g.update(accumulators, pool, iterations);
+/// Light paths are guided from their first edge on, but for emitters without area and those that
+/// emit on both sides.
+class Guide {
+ public:
+  /// Either may be null: those paths follow the BSDF.
+  explicit Guide(std::unique_ptr<GuidingDistribution> eye = nullptr,
+                 std::unique_ptr<GuidingDistribution> light = nullptr);
+
+  bool needs_space() const {
+    return (eye_ && eye_->needs_space()) || (light_ && light_->needs_space());
+  }
+  void prepare(const PrepareContext& context);
+  /// The learned state.
+  void save(ByteWriter& out) const;
+  /// Throws std::runtime_error for the state of another scene.
+  void load(ByteReader& in);
+  std::vector<std::pair<std::string, double>> statistics() const;
+
+  /// Whether paths of this transport do not follow the BSDF alone.
+  bool guides(Transport transport) const { return of(transport) != nullptr; }
+
+  /// Whether update() needs training samples of the coming iteration.
+  bool learns() const {
+    return eye_ && (eye_->learns() || !fixed_probability_ || reflected_.learns());
+  }
+  /// Whether the paths of the 8 x 8 pixels around `pixel` give training samples. Of large pictures
+  /// only a share does, so that an iteration keeps about most_samples. `edges`: the most of a path.
+  bool learns_from(const V2i& pixel, const IterationContext& context, int edges) const;
+  static constexpr double most_samples = 1 << 20;  ///< 72 MiB
+  /// The first pass of an iteration. update() needs the samples of each.
+  LearningPass first_pass() const { return LearningPass::begin(learns() && share_ == 0); }
+  /// Learns from the samples of a pass, one part for each part of its work.
+  void update(std::span<const TrainingSamples::Part> parts, const LearningPass& pass,
+              const IterationContext& context, int edges);
+
+  /// The luminance that an eye path of throughput 1 is expected to gather behind `v`, connectible;
+  /// below 0 while that is unknown.
+  float expected(const Vertex& v) const { return reflected_.at(v); }
+
+  /// Prefetches what on_hit() reads of `v`, whose surface and wp are known.
+  void prefetch(const Vertex& v) const {
+    if (eye_) eye_->prefetch(v.surface, v.wp);
+  }
+  /// Looks up the guiding cell of `v` for eye paths, on the side of v.wp. That for light paths is
+  /// looked up where it is needed: all paths would carry it, few are guided so.
+  void on_hit(Vertex& v) const {
+    if (eye_) v.guiding_cell = cell_at(v, v.wp, Transport::radiance);
+  }
+
+  /// A direction with its weight f |cos| / p and its density; nothing where the sample fails.
+  std::optional<BsdfSample> sample(const Vertex& v, Rng& rng, Transport transport) const {
+    if (of(transport) == nullptr) return sample_bsdf(v, rng, transport);
+    return sample_mixture(v, rng, transport);
+  }
+  /// Density with which sample() returns unit `wi`, for a walk of the given transport that arrived
+  /// at `v` from unit `wo`; of any `wo`, as MIS weights need it. Its integral over the sphere is 1
+  /// less the probability of failure. It is above 0 wherever the BSDF's is.
+  Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport) const {
+    return pdf(v, wo, wi, transport, v.bsdf->pdf(wo, wi, transport));
+  }
+  /// The same where the density of `wi` by the BSDF is known.
+  Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport,
+                      Pdf<SolidAngle> bsdf) const {
+    if (of(transport) == nullptr) return bsdf;
+    return mixed({v.surface, *v.bsdf, wo, cell_of(v, wo, transport)}, wi, transport, bsdf);
+  }
+
+  /// The first edge of a light path from the point `e` on one of `lights`. A surface emits as a
+  /// white Lambertian one scatters what arrives along its normal, but for the factor pi.
+  std::optional<Leaving> sample_first_edge(const EmitterSet& lights, const EmitterPoint& e,
+                                           Rng& rng) const;
+  /// Density of unit `w` with which sample_first_edge() leaves `e`, as EmitterPoint::leaving_pdf().
+  Pdf<SolidAngle> leaving_pdf(const EmitterPoint& e, const V3f& w) const;
+
+ private:
+  /// The distribution of paths of this transport; null: they follow the BSDF.
+  const GuidingDistribution* of(Transport transport) const {
+    return transport == Transport::importance ? light_.get() : eye_.get();
+  }
+  double share(const IterationContext& context, int edges) const;
+  float probability_of(std::uint32_t cell, Transport transport) const;
+  GuidingCell cell_at(const Vertex& v, const V3f& wo, Transport transport) const;
+  GuidingCell cell_of(const Vertex& v, const V3f& wo, Transport transport) const;
+  Pdf<SolidAngle> mixed(const GuidedVertex& at, const V3f& wi, Transport transport,
+                        Pdf<SolidAngle> bsdf) const;
+  static std::optional<BsdfSample> sample_bsdf(const Vertex& v, Rng& rng, Transport transport) {
+    const auto [u_lobe, u] = rng.next_choice_and_point();
+    return v.bsdf->sample(v.wp, u_lobe, u, transport);
+  }
+  std::optional<BsdfSample> sample_mixture(const Vertex& v, Rng& rng, Transport transport) const;
+
+  bool guides(const EmitterPoint& e) const {
+    return light_ && e.kind == EmitterPoint::Kind::area && !e.both_sides;
+  }
+  void make_white(const EmitterPoint& e, Vertex& v) const;
+
+  std::unique_ptr<GuidingDistribution> eye_, light_;
+  std::optional<double> fixed_probability_, fixed_light_probability_;
+  LearnedProbability probability_;  // of eye_, unless it is fixed
+  ReflectedRadiance reflected_;
+  double share_ = 0;  // one of so many groups of paths gives samples; 0: not known yet
+  Lobes white_{SurfaceParams{.f0 = Rgb(0, 0, 0), .f90 = 0}};
 };
 
 }  // namespace lacuna

@@ -28,7 +28,6 @@ struct LightPathSetting {
 /// At most `size` light paths that are traced together. Path i of the batch has index i throughout.
 /// Guided paths are split where their weight has grown (Walk). A branch has an index of its own,
 /// >= `size`, and the first vertices of the path that was split.
-template <class Guide>
 class LightBatch {
  public:
   static constexpr int size = 64;  // their vertices fit the second-level cache
@@ -65,14 +64,14 @@ class LightBatch {
                             .roulette_depth = setting_.roulette_depth,
                             .transport = Transport::importance,
                             .counts = light_side(setting_.counts)};
-    Walk<Guide> walk(setting_.scene, guide_, limits, counters);
+    Walk walk(setting_.scene, guide_, limits, counters);
     walk.trace_paths(
         states_, [](std::size_t, int) {},
         [&](std::size_t i, int depth) {
           const std::size_t path = path_of_[i];
           if (vertex(path, depth).kind == Vertex::Kind::surface) length_[path] = depth + 1;
           if (depth == 1) set_ratio(path);
-          hits_[path * places_ + static_cast<std::size_t>(depth)] = states_[i].hit;
+          hits_[path * places_ + static_cast<std::size_t>(depth)] = walk.hit(i);
           return goes_on(path, depth + 1);
         });
     trace_branches(walk);
@@ -142,7 +141,7 @@ class LightBatch {
     if (i < size) return hits_[i * places_ + static_cast<std::size_t>(index)];
     return branch(i).hits[static_cast<std::size_t>(index + 1 - branch(i).first)];
   }
-  SurfaceEndpoint<Guide> end(std::size_t i, int index) const {
+  SurfaceEndpoint end(std::size_t i, int index) const {
     return {vertex(i, index), index, Transport::importance, guide_};
   }
 
@@ -173,7 +172,7 @@ class LightBatch {
   template <class Joined>
   void join_eye(std::size_t i, int index, Joined&& joined) const {
     if (index == 0) {
-      if (!emitters_[i].delta()) join_eye(EmitterEndpoint<Guide>{emitters_[i], guide_}, joined);
+      if (!emitters_[i].delta()) join_eye(EmitterEndpoint{emitters_[i], guide_}, joined);
     } else if (connectible(i, index)) {
       join_eye(end(i, index), joined);
     }
@@ -211,7 +210,7 @@ class LightBatch {
   }
 
   /// Traces what paths were split into, at most `size` branches at a time, and their branches.
-  void trace_branches(Walk<Guide>& walk) {
+  void trace_branches(Walk& walk) {
     std::vector<std::pair<std::size_t, PathBranch>> pending;  // with the path that was split
     for (;;) {
       for (PathBranch& b : walk.branches()) pending.emplace_back(path_of_[b.walk], std::move(b));
@@ -234,7 +233,7 @@ class LightBatch {
             if (states_[k].path[at].kind == Vertex::Kind::surface) {
               branches_[path_of_[k] - size].length = depth + 1;
             }
-            traced_hits_[k * places_ + at] = states_[k].hit;
+            traced_hits_[k * places_ + at] = walk.hit(k);
           });
       for (std::size_t k = 0; k < states_.size(); ++k) {
         Branch& b = branches_[path_of_[k] - size];
@@ -281,7 +280,7 @@ class LightBatch {
     place_on(e, path[0]);
     PathState w{.rng = rng, .ray = leaving->ray, .p = leaving->pdf, .path = path};
     w.throughput = leaving->throughput;
-    w.carried_before = 1 / max_component(leaving->throughput);
+    w.roulette.carried_before = 1 / max_component(leaving->throughput);
     if (!e.delta()) w.mis_partial = light_side(setting_.counts).none / double(e.pdf.value);
     path_of_[states_.size()] = i;
     states_.push_back(w);

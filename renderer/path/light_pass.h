@@ -25,12 +25,12 @@ struct LightPathPass {
 /// image and hands each to `arrived(splat)`. Calls `keep(path, batch, i)` for each traced path,
 /// index `i` of its batch, from several threads: for the paths of a part, each `paths_of_part`, in
 /// their order.
-template <class Guide, class Keep, class Arrived>
+template <class Keep, class Arrived>
 Counters light_pass(const LightPathPass& pass, const Guide& guide, Keep&& keep, Arrived&& arrived) {
   const IterationContext& context = pass.context;
   const LightPathSetting& setting = pass.setting;
   const std::int64_t paths = pass.paths;
-  using Batch = LightBatch<Guide>;
+  using Batch = LightBatch;
   constexpr std::uint64_t no_path = (std::uint64_t{1} << 56) - 1;
   const std::uint32_t start =
       Rng(context.seed, context.iteration, no_path, Rng::Purpose::light_path).next_u32();

@@ -26,8 +26,7 @@ class LightVertices {
 
   /// Stores the connectible vertices of path `i` of `batch` as path number `path`. Several threads
   /// may store different paths at once.
-  template <class Guide>
-  void keep(std::size_t path, const LightBatch<Guide>& batch, std::size_t i) {
+  void keep(std::size_t path, const LightBatch& batch, std::size_t i) {
     Path& p = kept_[path];
     if (std::min(batch.length(i), longest_) > 0) p.emitter = batch.emitter(i);
     batch.for_each_vertex(i, [&](std::size_t j, int index) {
@@ -67,10 +66,10 @@ class LightVertices {
   }
 
   /// Calls `use(endpoint)` for connectible vertex `i`: an EmitterEndpoint or a SurfaceEndpoint.
-  template <class Guide, class Use>
+  template <class Use>
   decltype(auto) with_end(int s, std::size_t i, const Guide& guide, Use&& use) const {
-    if (s == 1) return use(EmitterEndpoint<Guide>{emitters_[i], guide});
-    return use(SurfaceEndpoint<Guide>{at(s, i), s - 1, Transport::importance, guide});
+    if (s == 1) return use(EmitterEndpoint{emitters_[i], guide});
+    return use(SurfaceEndpoint{at(s, i), s - 1, Transport::importance, guide});
   }
 
  private:

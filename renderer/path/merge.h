@@ -44,8 +44,7 @@ inline bool on_one_surface(const V3f& ng, const Photon& p) {
 /// The cosine is the photon's, because the probability that a photon arrives falls with it: the
 /// quotient stays bounded where the eye vertex lies on another triangle. Black at grazing
 /// incidence, where rounding would decide.
-template <class Guide>
-Rgb merged(const SurfaceEndpoint<Guide>& eye, const Photon& p) {
+inline Rgb merged(const SurfaceEndpoint& eye, const Photon& p) {
   const float cosine = abs_dot(p.ng, p.wp);
   if (!(cosine > cos_rounding)) return Rgb(0, 0, 0);
   return eye.scatter(p.wp) * p.throughput / cosine;
@@ -54,8 +53,7 @@ Rgb merged(const SurfaceEndpoint<Guide>& eye, const Photon& p) {
 /// The MIS weight of merging the eye vertex with the photon (mis.h). Both sums are relative to the
 /// density of merging, p_{j+1} g_j pi r^2 = p_j p_j(x_j) pi r^2; the vertex is taken to be one
 /// point.
-template <class Guide>
-double merge_weight(const SurfaceEndpoint<Guide>& eye, const Photon& p, const SampleCounts& n) {
+inline double merge_weight(const SurfaceEndpoint& eye, const Photon& p, const SampleCounts& n) {
   const double light_rev = p.mis_partial > 0 ? eye.pdf(p.wp) : 0.0;
   const double light =
       mis_partial_sum(light_side(n), p.index, p.prev_connectible, light_rev, p.mis_partial) /

@@ -25,7 +25,6 @@ namespace lacuna {
 ///
 /// Requires paths that are not ended before vertex 2. None of a batch is split before vertex 3:
 /// vertices 1 and 2 of those that share must stay until their branches have ended.
-template <class Guide>
 class PathReuse {
  public:
   /// Groups of `pixels` of a block, at most EyeBatch::size; 1: no reuse. What `batch` and `guide`
@@ -126,7 +125,7 @@ class PathReuse {
     carried_[i] = v.throughput;
     state.throughput = v.throughput = Rgb(1, 1, 1);
     // Roulette and splitting go on by the whole path.
-    state.carried_before = max_component(carried_[i]);
+    state.roulette.carried_before = max_component(carried_[i]);
     shares_[i] = true;
     near_[i] = far_[i] = Rgb(0, 0, 0);
   }
@@ -146,7 +145,7 @@ class PathReuse {
     for (const std::size_t k : group) {
       const Vertex& first = batch_.vertex(k, 1);
       if (k == j || !joinable(first)) continue;
-      const SurfaceEndpoint<Guide> from{first, 1, Transport::radiance, guide_};
+      const SurfaceEndpoint from{first, 1, Transport::radiance, guide_};
       const Connection c = edge_between(from, to);
       if (!(c.distance2 > 0)) continue;
       Pdf<SolidAngle> bsdf;

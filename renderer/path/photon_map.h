@@ -37,8 +37,7 @@ class PhotonMap {
   /// the photons so far let expect too many.
   void keep(std::size_t path, const Vertex& v, int index, bool caustic = false);
   /// Stores the photons of path `i` of `batch`, as keep(), and what restores its vertices.
-  template <class Guide>
-  void keep_path(std::size_t path, const LightBatch<Guide>& batch, std::size_t i) {
+  void keep_path(std::size_t path, const LightBatch& batch, std::size_t i) {
     Part& part = parts_[path / std::size_t{paths_of_part}];
     batch.for_each_vertex(i, [&](std::size_t j, int s) {
       const std::size_t before = part.photons.size();
@@ -48,8 +47,7 @@ class PhotonMap {
     part.ends.push_back(static_cast<std::uint32_t>(part.photons.size()));
   }
   /// Makes path `i` of `batch` the path that keep_path() stored, without vertex 0.
-  template <class Guide>
-  void restore_path(std::size_t path, LightBatch<Guide>& batch, std::size_t i) const {
+  void restore_path(std::size_t path, LightBatch& batch, std::size_t i) const {
     const Part& part = parts_[path / std::size_t{paths_of_part}];
     const std::size_t k = path % std::size_t{paths_of_part};
     const std::size_t begin = k > 0 ? part.ends[k - 1] : 0, n = part.ends[k] - begin;

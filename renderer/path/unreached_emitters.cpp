@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "renderer/path/bsdf_guide.h"
 #include "renderer/path/connect.h"
+#include "renderer/path/guide.h"
 #include "renderer/path/next_event.h"
 
 namespace lacuna {
@@ -24,12 +24,12 @@ struct Direct {
 
 Direct direct_light(const Scene& scene, const Vertex& v, Rng rng) {
   const NextEvent next_event(scene, EmitterChoice::tree);
-  const BsdfGuide guide;
-  const SurfaceEndpoint<BsdfGuide> eye{v, 1, Transport::radiance, guide};
+  const Guide guide;
+  const SurfaceEndpoint eye{v, 1, Transport::radiance, guide};
   Direct d;
   for (int k = 0; k < emitters_each; ++k) {
     const EmitterPoint e = next_event.sample(v, {}, rng);
-    const EmitterEndpoint<BsdfGuide> light{e, guide};
+    const EmitterEndpoint light{e, guide};
     const Connection c = connect(eye, light);
     if (!c || scene.rays().occluded(shadow_ray(eye, light, c))) continue;
     // c_i over the density of this selection, which is next_event_ratio times p_i.

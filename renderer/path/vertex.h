@@ -10,10 +10,12 @@ namespace lacuna {
 
 /// The cell of a guide (renderer/guides) whose distribution of directions is used at a surface.
 struct GuidingCell {
-  /// Probability of sampling the cell's distribution instead of the BSDF, < 1; 0: no distribution.
+  static constexpr std::uint32_t none = 0xffffffff;
+
+  /// Probability of sampling the cell's distribution instead of the BSDF; 0: there is none.
   float probability = 0;
-  std::uint32_t index = 0xffffffff;  ///< the guide's own number of the cell; 0xffffffff: none
-  std::uint32_t node = 0xffffffff;   ///< of the skeleton, for a guide that needs it; or none
+  std::uint32_t index = none;  ///< the distribution's number of the cell
+  std::uint32_t part = none;   ///< a place in the cell, for a distribution that needs it
 };
 
 /// One vertex of an eye path or a light path.

@@ -10,7 +10,6 @@
 #include "renderer/path/counters.h"
 #include "renderer/path/mis.h"
 #include "renderer/path/roulette.h"
-#include "renderer/path/vertex.h"
 #include "renderer/scene/scene.h"
 
 namespace lacuna {
@@ -26,38 +25,20 @@ struct WalkLimits {
   bool packets = false;
   /// Sample counts of this side's strategies; all 0: Vertex::mis_partial is not computed.
   TechniqueCounts counts = {};
-  /// Takes the place of the other kinds of roulette where it knows enough; null: there is none.
-  const Roulette* roulette = nullptr;
 };
 
 /// The state of a random walk between two edges.
 struct PathState {
   Rng rng;
   Ray ray;                  ///< the next edge
-  Hit hit{};                ///< of `ray`
   Rgb throughput{1, 1, 1};  ///< along `ray`
   Pdf<SolidAngle> p;        ///< density with which the direction of `ray` was sampled
-  /// BsdfSample::pdf_ratio of all vertices: throughput times this scale is the throughput that
-  /// sampling the BSDF would have left. A guide lowers throughput where it sends many paths, so
-  /// roulette by throughput alone would end just those.
-  float roulette_scale = 1;
-  std::span<Vertex> path;  ///< room for max_depth + 1 vertices; path[0] is set
+  std::span<Vertex> path;   ///< room for max_depth + 1 vertices; path[0] is set
   /// mis_partial_sum() of the last vertex over its density. At vertex 0 of a light path whose
   /// emitter can be hit: TechniqueCounts::none over its density.
   double mis_partial = 0;
-  int depth = 0;      ///< edges traced: path[depth] is the last vertex
-  int reference = 0;  ///< depth of the first vertex whose BSDF has a density; 0: none yet
-  /// Luminance that the path was expected to add behind that vertex; below 0 until it is needed.
-  float expected = -1;
-  float least = 0;  ///< luminance of throughput below which the path is not split
-  float split = 1;  ///< number of equal parts it was split into since it started or branched off
-  /// Roulette by what is known of the light has replaced that by throughput at the last vertex.
-  bool windowed = false;
-  float carried = 0;  ///< luminance of throughput when it left the last vertex; 0: it did not
-  /// `throughput` times this is what roulette goes by. Of an eye path: the largest component of
-  /// what PathReuse keeps apart from `throughput`; of a light path: 1 / that of the first edge.
-  float carried_before = 1;
-  std::uint32_t segment = 0;  ///< of PathTrees; a branch has that of the path that was split
+  int depth = 0;  ///< edges traced: path[depth] is the last vertex
+  RouletteState roulette = {};
 };
 
 /// One part of a path that was split at its last vertex. It continues there on its own.
@@ -77,11 +58,15 @@ struct NothingTogether {
 /// vertex needs is prefetched while the rays of the others are traced, which pays where a scene is
 /// larger than the caches. The guide (renderer/guides) samples the directions. The walks are
 /// independent: the results do not depend on the size of the batch.
-template <class Guide>
 class Walk {
  public:
   Walk(const Scene& scene, const Guide& guide, const WalkLimits& limits, Counters& counters)
-      : scene_(scene), guide_(guide), limits_(limits), counters_(counters) {}
+      : scene_(scene),
+        guide_(guide),
+        limits_(limits),
+        roulette_(guide, {limits.roulette_depth, limits.split_depth, limits.transport}),
+        counters_(counters) {}
+  virtual ~Walk() = default;
 
   /// Stores each vertex in its path and calls `visit(i, depth)`, with i the index of the path and
   /// depth the number of its edges, before the next direction is sampled. `before(i, depth)` is
@@ -95,6 +80,7 @@ class Walk {
   void trace_paths(std::span<PathState> states, Before&& before, Visit&& visit,
                    Together&& together = {}) {
     active_.resize(states.size());
+    hits_.resize(states.size());
     std::iota(active_.begin(), active_.end(), std::size_t{0});
     std::erase_if(active_,
                   [&](std::size_t i) { return states[i].depth > 0 && !sample_next(states[i]); });
@@ -103,11 +89,11 @@ class Walk {
       for (const std::size_t i : active_) {
         const int depth = ++states[i].depth;
         before(i, depth);
-        if (!packets) trace(states[i], depth);
+        if (!packets) trace(states[i], hits_[i]);
       }
       if (packets) trace_first(states);
       packets = false;
-      for (const std::size_t i : active_) on_hit(states[i], states[i].depth);
+      for (const std::size_t i : active_) on_hit(states[i], hits_[i]);
       const bool at_once = together.wanted();
       if (at_once) {
         for (const std::size_t i : active_) scatter(states[i], states[i].depth);
@@ -126,17 +112,25 @@ class Walk {
     }
   }
 
+  /// Where the last ray of path `i` hit.
+  const Hit& hit(std::size_t i) const { return hits_[i]; }
   /// The parts that paths were split into, in a fixed order. The caller removes and traces them.
   std::vector<PathBranch>& branches() { return branches_; }
+
+ protected:
+  /// The next direction of a path from its last vertex. Tests override it.
+  virtual std::optional<BsdfSample> sample(const Vertex& v, Rng& rng) const {
+    return guide_.sample(v, rng, limits_.transport);
+  }
 
  private:
   static Vertex& vertex(PathState& w, int depth) { return w.path[static_cast<std::size_t>(depth)]; }
 
-  void trace(PathState& w, int depth) {
+  void trace(PathState& w, Hit& hit) {
     ++counters_.rays;
-    const bool met = scene_.rays().intersect(w.ray, w.hit);
-    vertex(w, depth).kind = met ? Vertex::Kind::surface : Vertex::Kind::background;
-    if (met) scene_.prefetch(w.hit);
+    const bool met = scene_.rays().intersect(w.ray, hit);
+    vertex(w, w.depth).kind = met ? Vertex::Kind::surface : Vertex::Kind::background;
+    if (met) scene_.prefetch(hit);
   }
 
   /// trace() of all first edges, eight at a time. In a packet the nearest of two triangles that a
@@ -145,24 +139,24 @@ class Walk {
   void trace_first(std::span<PathState> states) {
     constexpr std::size_t together = 8;
     std::array<Ray, together> rays;
-    std::array<Hit, together> hits;
     std::array<std::uint8_t, together> met{};
     counters_.rays += states.size();
     for (std::size_t first = 0; first < states.size(); first += together) {
       const std::span<PathState> some =
           states.subspan(first, std::min(together, states.size() - first));
       for (std::size_t k = 0; k < some.size(); ++k) rays[k] = some[k].ray;
+      const std::span<Hit> hits = std::span(hits_).subspan(first, some.size());
       scene_.rays().intersect(std::span(rays).first(some.size()), hits, met);
       for (std::size_t k = 0; k < some.size(); ++k) {
         vertex(some[k], 1).kind = met[k] != 0 ? Vertex::Kind::surface : Vertex::Kind::background;
         if (met[k] == 0) continue;
-        some[k].hit = hits[k];
         scene_.prefetch(hits[k]);
       }
     }
   }
 
-  void on_hit(PathState& w, int depth) {
+  void on_hit(PathState& w, const Hit& hit) {
+    const int depth = w.depth;
     Vertex& v = vertex(w, depth);
     v.delta = false;
     v.next_event_ratio = 1;
@@ -171,10 +165,10 @@ class Walk {
     if (v.kind == Vertex::Kind::background) {
       v.surface.x = w.ray.d;
     } else {
-      v.surface = scene_.surface(w.ray, w.hit);
+      v.surface = scene_.surface(w.ray, hit);
       if (scatters(depth)) {
         scene_.prefetch_bsdf(v.surface);
-        if constexpr (requires { guide_.prefetch(v); }) guide_.prefetch(v);
+        guide_.prefetch(v);
       }
     }
     const Vertex& before = vertex(w, depth - 1);
@@ -193,115 +187,33 @@ class Walk {
     Vertex& v = vertex(w, depth);
     if (v.kind == Vertex::Kind::background || !scatters(depth)) return;
     scene_.make_bsdf(v.surface, v.bsdf);
-    if constexpr (requires { guide_.on_hit(v); }) guide_.on_hit(v);
+    guide_.on_hit(v);
   }
 
   /// False where the walk ends before a direction is sampled. May split the path.
   bool continues(PathState& w, std::size_t walk) {
     const Vertex& v = vertex(w, w.depth);
-    w.carried = 0;
     if (v.kind == Vertex::Kind::background || w.depth == limits_.max_depth) return false;
-    if (!keep(w, v, walk)) return false;
-    w.carried = luminance(w.throughput);
-    return true;
-  }
-
-  bool keep(PathState& w, const Vertex& v, std::size_t walk) {
-    if (limits_.roulette != nullptr) return keep_efficient(w, v, walk);
-    if constexpr (Guide::has_expected) {
-      return !guide_.guides(limits_.transport) || keep_expected(w, v, walk);
-    }
-    return true;
-  }
-
-  /// As many continuations as Roulette advises.
-  bool keep_efficient(PathState& w, const Vertex& v, std::size_t walk) {
-    w.windowed = false;
-    if (!v.bsdf->connectible()) return true;
-    const float carried = luminance(w.throughput);
-    if (w.reference == 0) begin_window(w, carried);
-    const float parts = limits_.roulette->continuations(v, limits_.max_depth - w.depth, carried);
-    if (parts < 0) return true;
-    w.windowed = true;
-    if (parts < 1) return survive(w, parts);
-    if (carried > w.least && parts > 1) split(w, v, static_cast<int>(std::lround(parts)), walk);
-    return true;
-  }
-
-  static void begin_window(PathState& w, float carried) {
-    w.reference = w.depth;
-    w.least = carried * least_part;
-  }
-
-  /// Russian roulette.
-  static bool survive(PathState& w, float survival) {
-    if (!w.rng.decide(survival)) return false;
-    w.throughput /= survival;
-    w.roulette_scale *= survival;
-    return true;
-  }
-
-  /// Adjoint-driven Russian roulette and splitting (Vorba and Krivanek 2016): keeps the luminance
-  /// that a guided path is expected to add to the picture within a window around what it was at the
-  /// first vertex. Guiding weights multiply by a factor at each vertex; without a window their
-  /// variance grows exponentially with the depth. False where roulette ends the path.
-  bool keep_expected(PathState& w, const Vertex& v, std::size_t walk) {
-    constexpr float low = 1.0F / 3, high = 5.0F / 3;  // 2 / (1 + s) and 2 s / (1 + s), s = 5
-    constexpr float min_survival = 0.1F;
-    constexpr int max_parts = 16;
-    w.windowed = false;
-    if (!v.bsdf->connectible()) return true;
-    const float carried = w.carried_before * luminance(w.throughput);
-    if (w.reference == 0) {
-      begin_window(w, carried);
-      return true;
-    }
-    // What the guide has added to the weight.
-    const float guiding_weight = 1 / w.roulette_scale;
-    if (guiding_weight <= high && w.depth < limits_.roulette_depth) return true;
-    if (w.expected < 0) {
-      w.expected = w.least / least_part * expected_behind(vertex(w, w.reference));
-    }
-    if (!(w.expected > 0)) return true;
-    const float ratio = carried * expected_behind(v) / w.expected;
-    w.windowed = true;
-    if (ratio < low && w.depth >= limits_.roulette_depth) {
-      return survive(w, std::max(ratio / low, min_survival));
-    } else {
-      // Splitting undoes what the guide has added to the weight, and no more: to split all paths
-      // that come into the light costs more time than it saves noise.
-      const float excess = std::min({ratio, guiding_weight, float{max_parts}});
-      if (excess > high && carried > w.least) {
-        split(w, v, static_cast<int>(std::lround(excess)), walk);
-      }
-    }
-    return true;
-  }
-
-  /// The luminance that a path of throughput 1 adds behind `v`; where that is unknown, as it is of
-  /// all light paths, as if it were equal everywhere.
-  float expected_behind(const Vertex& v) const {
-    const float known = limits_.transport == Transport::radiance ? guide_.expected(v) : -1;
-    return known < 0 ? 1 : known;
+    const int parts = roulette_.parts(w.roulette, v, w.depth, w.path, w.throughput, w.rng);
+    if (parts > 1) split(w, v, parts, walk);
+    return parts > 0;
   }
 
   /// The path itself keeps one of the parts.
   void split(PathState& w, const Vertex& v, int parts, std::size_t walk) {
-    if (w.depth < limits_.split_depth) return;
     const float share = 1.0F / static_cast<float>(parts);
     w.throughput *= share;
-    w.roulette_scale *= static_cast<float>(parts);
-    w.carried = luminance(w.throughput);
+    w.roulette.scale *= static_cast<float>(parts);
     for (int k = 1; k < parts; ++k) {
       PathBranch& b = branches_.emplace_back();
       b.state = w;
       b.state.rng = w.rng.branch();
-      b.state.split = 1;
+      b.state.roulette.split = 1;
       b.vertex = v;
       b.vertex.throughput *= share;
       b.walk = walk;
     }
-    w.split *= static_cast<float>(parts);
+    w.roulette.split *= static_cast<float>(parts);
   }
 
   /// Samples the next edge; false where the walk ends.
@@ -309,16 +221,11 @@ class Walk {
     const int depth = w.depth;
     Vertex& v = vertex(w, depth);
     w.rng.next_vertex();
-    const std::optional<BsdfSample> next = guide_.sample(v, w.rng, limits_.transport);
+    const std::optional<BsdfSample> next = sample(v, w.rng);
     if (!next) return false;
     w.throughput *= next->weight;
-    w.roulette_scale *= next->pdf_ratio;
-    if (depth >= limits_.roulette_depth && !w.windowed) {
-      const float survival =
-          std::min(1.0F, w.carried_before * max_component(w.throughput) * w.roulette_scale);
-      if (!w.rng.decide(survival)) return false;
-      w.throughput /= survival;
-    }
+    w.roulette.scale *= next->pdf_ratio;
+    if (!roulette_.goes_on(w.roulette, depth, w.throughput, w.rng)) return false;
     v.delta = next->delta;
     // Deltas cancel in all ratios of densities, if both walks leave them out.
     w.p = next->delta ? Pdf<SolidAngle>(1.0F) : next->pdf;
@@ -341,16 +248,14 @@ class Walk {
            double(v.p_fwd.value);
   }
 
-  // The throughputs of all parts of a path sum to at most its own, on average. A least part
-  // therefore bounds their number, and the time that wrong expectations cost.
-  static constexpr float least_part = 1.0F / 64;
-
   const Scene& scene_;
   const Guide& guide_;
   WalkLimits limits_;
+  Roulette roulette_;
   bool tracked_ = limits_.counts.any();
   Counters& counters_;
   std::vector<std::size_t> active_;
+  std::vector<Hit> hits_;  // of each path's last ray
   std::vector<PathBranch> branches_;
 };
 

@@ -7,7 +7,6 @@
 #include "renderer/settings/emitter_settings.h"
 #include "renderer/settings/guide_settings.h"
 #include "renderer/settings/path_lengths.h"
-#include "renderer/settings/roulette_settings.h"
 
 namespace lacuna {
 
@@ -18,22 +17,17 @@ struct PathSettings : PathLengths {
       "path tracing with next event estimation and multiple importance sampling (Noel 2015, 4.2)";
   static constexpr auto retired = std::to_array<RetiredKey>({
       {"sampling", "\"uniform\"", "pixels have equal numbers of samples"},
+      {"roulette", "\"throughput\"", "paths end by their throughput, guided ones within a window"},
   });
 
   GuideSettings guide = BsdfGuideSettings{};
   bool next_event_estimation = true;
   EmitterChoice emitters = EmitterChoice::automatic;
-  RouletteChoice roulette = RouletteChoice::throughput;
   int reuse = 1;
 
   /// Why these settings do not go together; empty: they do.
   std::string_view conflict() const {
-    if (reuse == 1) return {};
-    if (roulette != RouletteChoice::throughput) {
-      return "pixels that share light, with roulette by efficiency; allowed: the roulette "
-             "\"throughput\", or reuse 1";
-    }
-    if (roulette_depth < 2) {
+    if (reuse > 1 && roulette_depth < 2) {
       return "pixels that share light, with roulette at their first vertex; allowed: "
              "roulette_depth 2 or more, or reuse 1";
     }
@@ -51,11 +45,10 @@ void describe(V& v, PathSettings& s) {
   v("next_event_estimation", s.next_event_estimation,
     {.doc = "also sample a point on an emitter at every vertex"});
   describe_emitters(v, s.emitters);
-  v("roulette", s.roulette, {.doc = "what decides how often a path goes on"});
   v("reuse", s.reuse,
     {.doc = "pixels of a block of 8 x 8 that share the light that their paths gather behind the "
-            "second surface, by shadow rays to it (Bekaert et al. 2002); 1: none. With "
-            "roulette by throughput and a roulette_depth of at least 2",
+            "second surface, by shadow rays to it (Bekaert et al. 2002); 1: none. With a "
+            "roulette_depth of at least 2",
      .min = 1,
      .max = 64,
      .unit = "pixels"});

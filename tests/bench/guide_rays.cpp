@@ -23,7 +23,7 @@
 #include "jobs/spec/job_json.h"
 #include "renderer/guides/crossed_faces.h"
 #include "renderer/guides/make_guide.h"
-#include "renderer/path/bsdf_guide.h"
+#include "renderer/path/guide.h"
 #include "tests/jobs/run/silent_observer.h"
 
 namespace {
@@ -108,7 +108,7 @@ class GuidedPoint {
                                rng.next_fine_point(), rng);
   }
   std::optional<V3f> sample_bsdf(Rng& rng) const {
-    const auto s = BsdfGuide{}.sample(vertex_, rng, Transport::radiance);
+    const auto s = Guide{}.sample(vertex_, rng, Transport::radiance);
     return s ? std::optional(s->wi) : std::nullopt;
   }
 

@@ -4,7 +4,7 @@
 #include "renderer/gltf/gltf_guard.h"
 #include "renderer/gltf/gltf_load.h"
 #include "renderer/integrators/path_tracer.h"
-#include "renderer/path/bsdf_guide.h"
+#include "renderer/path/guide.h"
 #include "tests/fuzz/input_file.h"
 #include "tests/renderer/gltf/glb_frame.h"
 #include "tests/renderer/gltf/scene_promises.h"
@@ -28,7 +28,7 @@ void render(SceneData data) {
   const Camera camera(data.cameras.front(), side, side);
   PathSettings settings;
   settings.max_depth = 4;
-  PathTracer<BsdfGuide> integrator(settings, {});
+  PathTracer integrator(settings, {});
   const Scene scene(std::move(data), integrator.needs(), std::nullopt, pool());
   Image image(side, side);
   const std::function<bool()> never = [] { return false; };

@@ -31,7 +31,7 @@ Parts parts_of(const Lit& lit, const EyeRecords::Record& record, int s, std::siz
     if (is_black(arriving)) return;
     parts.bounded = double(luminance(given));
     parts.unshadowed = double(luminance(arriving));
-    const SurfaceEndpoint<BsdfGuide> eye{x, record.depth, Transport::radiance, lit.guide};
+    const SurfaceEndpoint eye{x, record.depth, Transport::radiance, lit.guide};
     const Connection c = connect(eye, light);
     parts.weight = weight(eye, light, c, Lit::counts);
     const std::vector<Ray> ray{shadow_ray(eye, light, c)};

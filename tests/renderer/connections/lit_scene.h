@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "renderer/path/bsdf_guide.h"
+#include "renderer/path/guide.h"
 #include "renderer/path/light_vertices.h"
 #include "tests/renderer/path/scenes.h"
 
@@ -18,11 +18,11 @@ struct Lit {
         camera(data.cameras.front(), 8, 8),
         scene(lit_scene(std::move(data), environment(s))) {
     const LightPathSetting setting{scene, camera, most_edges, most_edges + 1, counts};
-    LightBatch<BsdfGuide> batch(setting, guide);
+    LightBatch batch(setting, guide);
     Counters counters;
-    for (std::uint64_t first = 0; first < paths; first += LightBatch<BsdfGuide>::size) {
+    for (std::uint64_t first = 0; first < paths; first += LightBatch::size) {
       std::vector<Rng> rngs;
-      for (std::uint64_t j = 0; j < LightBatch<BsdfGuide>::size; ++j) {
+      for (std::uint64_t j = 0; j < LightBatch::size; ++j) {
         rngs.emplace_back(101, 0, first + j, Rng::Purpose::light_path);
       }
       batch.walk(rngs, counters);
@@ -39,7 +39,7 @@ struct Lit {
   SceneData data;
   Camera camera;
   Scene scene;
-  BsdfGuide guide;
+  Guide guide;
   LightVertices lights{paths, most_edges - 1, counts};
   std::vector<std::vector<Vertex>> walked;  ///< of each path vertices 2, 3, ...
 };

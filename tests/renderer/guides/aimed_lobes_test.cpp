@@ -12,6 +12,18 @@ namespace {
 
 constexpr float uniform_density = 1 / (4 * pi);
 
+/// Light of this weight that arrives at `x` from a point at this distance along `w`.
+TrainingSample found(const V3f& x, const V3f& w, float distance, float weight) {
+  return {.cell = {1, 0},
+          .x = x,
+          .n = {0, 0, 1},
+          .w = w,
+          .distance = distance,
+          .cosine = 1,
+          .pdf = 1,
+          .radiance = weight};
+}
+
 V3f direction(Rng& rng) { return from_square(rng.next2()); }
 
 /// A place in the cube of half-width `r` around the origin.
@@ -27,10 +39,10 @@ AimedLobes lobes_of(const Light& light, int samples) {
   AimedLobes lobes;
   for (std::uint64_t round = 0; round < 4; ++round) {
     Rng rng(41, round, 0, Rng::Purpose::test);
-    std::vector<FoundLight> batch;
+    std::vector<TrainingSample> batch;
     for (int i = 0; i < samples; ++i) {
       const V3f w = direction(rng);
-      if (light(w) > 0) batch.push_back({{0, 0, 0}, w, HUGE_VALF, light(w) / uniform_density});
+      if (light(w) > 0) batch.push_back(found({0, 0, 0}, w, HUGE_VALF, light(w) / uniform_density));
     }
     lobes.learn(batch);
     lobes.next_round();
@@ -43,10 +55,10 @@ AimedLobes aimed(const V3f& target, bool distances, int places) {
   Rng rng(42, 0, 0, Rng::Purpose::test);
   AimedLobes lobes;
   for (int round = 0; round < 3; ++round) {
-    std::vector<FoundLight> batch;
+    std::vector<TrainingSample> batch;
     for (int i = 0; i < places; ++i) {
       const V3f x = place(rng, 0.5F), d = target - x;
-      batch.push_back({x, d.normalized(), distances ? d.length() : HUGE_VALF, 1});
+      batch.push_back(found(x, d.normalized(), distances ? d.length() : HUGE_VALF, 1));
     }
     lobes.learn(batch);
     lobes.next_round();
@@ -121,8 +133,8 @@ TEST(AimedLobes, FollowThePlace) {
 TEST(AimedLobes, AreTheSameSeenFromElsewhere) {
   const V3f target(0.5F, 1.5F, 1);
   AimedLobes lobes = aimed(target, true, 100);
-  std::vector<FoundLight> elsewhere;
-  for (int i = 0; i < 100; ++i) elsewhere.push_back({{0.2F, 0.8F, 0.1F}, {0, 0, 1}, 3, 1});
+  std::vector<TrainingSample> elsewhere;
+  for (int i = 0; i < 100; ++i) elsewhere.push_back(found({0.2F, 0.8F, 0.1F}, {0, 0, 1}, 3, 1));
   lobes.learn(elsewhere);
   const AimedLobes before = lobes;
   lobes.next_round();
@@ -135,13 +147,13 @@ TEST(AimedLobes, AreTheSameSeenFromElsewhere) {
 }
 
 /// Light that comes from one direction at each of `n` places, from surfaces so near or far.
-std::vector<FoundLight> from_everywhere(const V3f& w, float nearest, float farthest, int n) {
+std::vector<TrainingSample> from_everywhere(const V3f& w, float nearest, float farthest, int n) {
   Rng rng(49, 0, 0, Rng::Purpose::test);
-  std::vector<FoundLight> batch;
+  std::vector<TrainingSample> batch;
   batch.reserve(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) {
     const V3f x = place(rng, 0.5F);
-    batch.push_back({x, w, nearest + (farthest - nearest) * rng.next(), 1});
+    batch.push_back(found(x, w, nearest + (farthest - nearest) * rng.next(), 1));
   }
   return batch;
 }
@@ -163,11 +175,11 @@ TEST(AimedLobes, TellAPlaceFromADirection) {
   const V3f target(0.5F, 1.5F, 1), w(0, 0, -1);
   AimedLobes lobes;
   for (int round = 0; round < 5; ++round) {
-    std::vector<FoundLight> batch = from_everywhere(w, 0.05F, 0.3F, 2000);
+    std::vector<TrainingSample> batch = from_everywhere(w, 0.05F, 0.3F, 2000);
     Rng rng(51, static_cast<std::uint64_t>(round), 0, Rng::Purpose::test);
     for (int i = 0; i < 2000; ++i) {
       const V3f x = place(rng, 0.5F), d = target - x;
-      batch.push_back({x, d.normalized(), d.length(), 1});
+      batch.push_back(found(x, d.normalized(), d.length(), 1));
     }
     lobes.learn(batch);
     lobes.next_round();
@@ -187,7 +199,7 @@ TEST(AimedLobes, AreNotCarriedAwayByOneSample) {
   const auto light = [](const V3f& w) { return w.x > 0.9F ? 1.0F : 0; };
   AimedLobes lobes = lobes_of(light, 4000);
   const float before = lobes.pdf({0, 0, 0}, {1, 0, 0}).value;
-  const std::array<FoundLight, 1> rare{FoundLight{{0, 0, 0}, {-1, 0, 0}, 2, 1e12F}};
+  const std::array<TrainingSample, 1> rare{found({0, 0, 0}, {-1, 0, 0}, 2, 1e12F)};
   lobes.learn(rare);
   EXPECT_GT(lobes.pdf({0, 0, 0}, {1, 0, 0}).value, 0.6F * before);
   EXPECT_GT(lobes.pdf({0, 0, 0}, {-1, 0, 0}).value, 0);
@@ -195,7 +207,7 @@ TEST(AimedLobes, AreNotCarriedAwayByOneSample) {
 
 TEST(AimedLobes, AreWideWhereOneSampleTells) {
   AimedLobes lobes;
-  lobes.learn(std::vector<FoundLight>{{{0, 0, 0}, {0, 0, 1}, HUGE_VALF, 1}});
+  lobes.learn(std::vector<TrainingSample>{found({0, 0, 0}, {0, 0, 1}, HUGE_VALF, 1)});
   const float angle = pi / 9;
   EXPECT_GT(lobes.pdf({0, 0, 0}, {std::sin(angle), 0, std::cos(angle)}).value, uniform_density);
 }
@@ -204,9 +216,10 @@ TEST(AimedLobes, AreWideWhereOneSampleTells) {
 TEST(AimedLobes, FindNewLight) {
   AimedLobes lobes;
   const auto teach = [&lobes](const std::vector<V3f>& axes) {
-    std::vector<FoundLight> batch;
+    std::vector<TrainingSample> batch;
     for (int i = 0; i < 20000; ++i)
-      batch.push_back({{0, 0, 0}, axes[static_cast<std::size_t>(i) % axes.size()], HUGE_VALF, 1});
+      batch.push_back(
+          found({0, 0, 0}, axes[static_cast<std::size_t>(i) % axes.size()], HUGE_VALF, 1));
     for (int k = 0; k < 4; ++k) lobes.learn(batch);
   };
   std::vector<V3f> old;
@@ -223,10 +236,10 @@ TEST(AimedLobes, AreTheSameAtEachScale) {
   const auto scaled = [](float places, float weights) {
     Rng rng(46, 0, 0, Rng::Purpose::test);
     AimedLobes lobes;
-    std::vector<FoundLight> batch;
+    std::vector<TrainingSample> batch;
     for (int i = 0; i < 500; ++i) {
       const V3f x = place(rng, 1) * places;
-      batch.push_back({x, direction(rng), places * (1 + rng.next()), weights * rng.next()});
+      batch.push_back(found(x, direction(rng), places * (1 + rng.next()), weights * rng.next()));
     }
     lobes.learn(batch);
     lobes.next_round();
@@ -251,7 +264,7 @@ TEST(AimedLobes, GoOnAsTheyWereSaved) {
   AimedLobes loaded;
   ByteReader in(out.bytes());
   loaded.load(in);
-  const std::array<FoundLight, 1> more{FoundLight{{0, 1, 0}, {1, 0, 0}, 2, 3}};
+  const std::array<TrainingSample, 1> more{found({0, 1, 0}, {1, 0, 0}, 2, 3)};
   for (AimedLobes* l : {&lobes, &loaded}) {
     l->learn(more);
     l->next_round();

@@ -77,36 +77,23 @@ struct BorderScene {
   std::vector<std::vector<VoxelFace>> border;  // of each region
 };
 
-using Accumulators = std::vector<BorderFaceLight::Accumulator>;
-
-void update(BorderFaceLight& faces, const Accumulators& accumulators) {
-  std::vector<const BorderFaceLight::Accumulator*> all;
-  for (const auto& a : accumulators) all.push_back(&a);
-  faces.update(all, ThreadPool(2));
+void update(BorderScene& s) {
+  for (std::uint32_t r = 0; r < s.border.size(); ++r) s.faces.update(r);
 }
 
-/// A sample of one face, through which a path found `radiance`, its direction drawn with `pdf`.
-void add(const BorderScene& s, std::uint32_t region, const VoxelFace& face, float radiance,
-         float pdf, BorderFaceLight::Accumulator& to) {
-  static const Vertex any{};
-  s.faces.accumulate(region, face, {any, V3f(0, 0, 1), Pdf<SolidAngle>(pdf), 1, radiance, 77}, to);
-}
-
-/// `n` samples of random faces of `region`, split over the accumulators; adds radiance / pdf of
-/// each to `light`.
-void add_random(const BorderScene& s, std::uint32_t region, int n, Rng& rng, Accumulators& to,
-                FaceLight& light) {
+/// `n` samples of light through random faces of `region`, also added to `light`.
+void add_random(BorderScene& s, std::uint32_t region, int n, Rng& rng, FaceLight& light) {
   const auto& border = s.border[region];
   const std::size_t few = std::max<std::size_t>(1, border.size() / 4);  // some several times
   for (int k = 0; k < n; ++k) {
     const VoxelFace& f = border[(rng.below(few) * 4 + 1) % border.size()];
-    const float radiance = std::exp(6 * rng.next() - 3), pdf = std::exp(6 * rng.next() - 3);
-    add(s, region, f, radiance, pdf, to[static_cast<std::size_t>(k) % to.size()]);
-    light[{f.voxel, f.side}] += double(radiance) / double(pdf);
+    const double found = std::exp(12 * double(rng.next()) - 6);
+    s.faces.add(region, f, found);
+    light[{f.voxel, f.side}] += found;
   }
 }
 
-TEST(BorderFaces, HaveTheirShareOfRadianceOverPdf) {
+TEST(BorderFaces, HaveTheirShareOfTheLight) {
   Rng rng(51, 0, 0, Rng::Purpose::test);
   for (const char* name : {"ajar", "bends"}) {
     SCOPED_TRACE(name);
@@ -116,14 +103,13 @@ TEST(BorderFaces, HaveTheirShareOfRadianceOverPdf) {
     std::vector<FaceLight> light(regions);
     s.expect_shares(light);
     for (int iteration = 0; iteration < 4; ++iteration) {
-      Accumulators accumulators(3);
       for (std::uint32_t r = 0; r < regions; r += 2) {  // others stay dark
-        if (iteration == 0 || r % 4 == 0) add_random(s, r, 60, rng, accumulators, light[r]);
+        if (iteration == 0 || r % 4 == 0) add_random(s, r, 60, rng, light[r]);
       }
-      update(s.faces, accumulators);
+      update(s);
       s.expect_shares(light);
     }
-    update(s.faces, Accumulators(2));
+    update(s);
     s.expect_shares(light);
 
     BorderFaceLight again(FaceIrradianceGuideSettings{});
@@ -147,10 +133,9 @@ TEST(BorderFaces, OfOtherRegionsAreUntouched) {
   const auto beyond = static_cast<std::uint32_t>(s.labels.label.index(s.crossing(face).to));
   const VoxelFace twin{beyond, static_cast<std::uint8_t>(face.side ^ 1)};
   std::vector<FaceLight> light(s.border.size());
-  Accumulators one(1);
-  add(s, p.a, face, 3, 0.5F, one[0]);
+  s.faces.add(p.a, face, 6);
   light[p.a][{face.voxel, face.side}] = 6;
-  update(s.faces, one);
+  update(s);
   s.expect_shares(light);
   EXPECT_EQ(s.probability(p.a, face, p.a), 1);
   EXPECT_EQ(s.faces.mass(p.b), 0);
@@ -158,10 +143,9 @@ TEST(BorderFaces, OfOtherRegionsAreUntouched) {
   const auto other = std::find_if(s.border[p.b].begin(), s.border[p.b].end(),
                                   [&](const VoxelFace& f) { return !(f == twin); });
   ASSERT_NE(other, s.border[p.b].end());
-  Accumulators two(1);
-  add(s, p.b, *other, 1, 1, two[0]);
+  s.faces.add(p.b, *other, 1);
   light[p.b][{other->voxel, other->side}] = 1;
-  update(s.faces, two);
+  update(s);
   s.expect_shares(light);
   EXPECT_EQ(s.probability(p.a, face, p.a), 1);
   EXPECT_EQ(s.probability(p.b, twin, p.b), 0);
@@ -169,18 +153,16 @@ TEST(BorderFaces, OfOtherRegionsAreUntouched) {
 
 TEST(BorderFaces, LeaveOutWhatIsNotFinite) {
   BorderScene s("ajar");
-  Accumulators all(1);
   std::vector<FaceLight> light(s.border.size());
   const auto& border = s.border[0];
   ASSERT_GT(border.size(), 4U);
-  add(s, 0, border[0], 1, 2, all[0]);
-  add(s, 0, border[1], 3, 2, all[0]);
+  s.faces.add(0, border[0], 0.5);
+  s.faces.add(0, border[1], 1.5);
   light[0][{border[0].voxel, border[0].side}] = 0.5;
   light[0][{border[1].voxel, border[1].side}] = 1.5;
-  add(s, 0, border[1], 1, 0, all[0]);
-  add(s, 0, border[2], HUGE_VALF, 1, all[0]);
-  add(s, 0, border[3], std::nanf(""), 1, all[0]);
-  update(s.faces, all);
+  s.faces.add(0, border[1], HUGE_VAL);
+  s.faces.add(0, border[3], std::nan(""));
+  update(s);
   s.expect_shares(light);
 }
 
@@ -188,10 +170,8 @@ TEST(BorderFaces, AreDrawnWithTheirProbability) {
   Rng rng(52, 0, 0, Rng::Purpose::test);
   BorderScene s("ajar");
   std::vector<FaceLight> light(s.border.size());
-  Accumulators accumulators(2);
-  for (std::uint32_t r = 0; r < s.border.size(); ++r)
-    add_random(s, r, 200, rng, accumulators, light[r]);
-  update(s.faces, accumulators);
+  for (std::uint32_t r = 0; r < s.border.size(); ++r) add_random(s, r, 200, rng, light[r]);
+  update(s);
   constexpr int draws = 20000;
   for (std::uint32_t r = 0; r < s.border.size(); ++r) {
     SCOPED_TRACE(r);

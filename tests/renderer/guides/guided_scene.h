@@ -57,8 +57,8 @@ class GuidedScene {
       batch.start(camera_, rng, camera_.ray(x, rng.next() * side), i);
     }
     Counters counters;
-    const BsdfGuide guide;
-    Walk<BsdfGuide> walk(scene_, guide, {.max_depth = 4, .roulette_depth = 4}, counters);
+    const Guide guide;
+    Walk walk(scene_, guide, {.max_depth = 4, .roulette_depth = 4}, counters);
     walk.trace_paths(
         batch.states, [](std::size_t, int) {},
         [&](std::size_t i, int depth) {

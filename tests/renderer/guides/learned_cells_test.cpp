@@ -21,9 +21,16 @@ std::pair<V3f, Pdf<SolidAngle>> from_above(Rng& rng) {
   return {w, Pdf<SolidAngle>((w.z > 0 ? 0.9F : 0.1F) / (2 * pi))};
 }
 
-/// A vertex at the origin from which light came from infinitely far.
-GuidingSample found(const Vertex& v, const V3f& w, Pdf<SolidAngle> p) {
-  return {v, w, p, HUGE_VALF, 0, 0};
+/// A vertex at the origin, of `cell`, at which `light` came from infinitely far.
+TrainingSample found(std::uint32_t cell, const V3f& w, Pdf<SolidAngle> p, float light) {
+  return {.cell = {1, cell},
+          .x = {0, 0, 0},
+          .n = {0, 0, 1},
+          .w = w,
+          .distance = HUGE_VALF,
+          .cosine = 1,
+          .pdf = p.value,
+          .radiance = light};
 }
 
 float density(const DirectionTree& tree, const V3f& w) { return tree.pdf(w).value; }
@@ -42,17 +49,15 @@ template <class Directions>
 LearnedCells<Directions> learned(int rounds, int samples, std::uint64_t seed,
                                  const ThreadPool& pool) {
   using Cells = LearnedCells<Directions>;
-  const Vertex v;
   Cells cells(2);
   for (std::uint64_t i = 0; cells.rounds() < static_cast<std::uint64_t>(rounds); ++i) {
     Rng rng(seed, i, 0, Rng::Purpose::test);
-    typename Cells::Accumulator part;
+    TrainingSamples::Part part;
     for (int k = 0; k < samples; ++k) {
       const auto [w, p] = from_above(rng);
-      Cells::accumulate(1, found(v, w, p), static_cast<float>(radiance(w)), part);
+      part.push_back(found(1, w, p, static_cast<float>(radiance(w))));
     }
-    const typename Cells::Accumulator* parts[] = {&part};
-    if (cells.update(parts, pool, 1)) cells.next_round(pool);
+    if (cells.update(TrainingSamples(std::span(&part, 1), 2), pool)) cells.next_round(pool);
   }
   return cells;
 }
@@ -93,16 +98,11 @@ TYPED_TEST(LearnedCellsOf, LearnTheLightThatArrives) {
 
 TYPED_TEST(LearnedCellsOf, CountAndDivideVertices) {
   using Cells = LearnedCells<TypeParam>;
-  const Vertex v;
-  const GuidingSample up = found(v, {0, 0, 1}, Pdf<SolidAngle>(1.0F));
+  const auto up = [](float light) { return found(0, {0, 0, 1}, Pdf<SolidAngle>(1.0F), light); };
   const ThreadPool pool(1);
   Cells cells(1);
-  typename Cells::Accumulator a, b;
-  Cells::accumulate(0, up, 1, a);
-  Cells::accumulate(0, up, 0, b);
-  Cells::accumulate(0, up, INFINITY, b);
-  const typename Cells::Accumulator* parts[] = {&a, &b};
-  ASSERT_TRUE(cells.update(parts, pool, 1));
+  const std::vector<TrainingSamples::Part> parts{{up(1)}, {up(0), up(INFINITY)}};
+  ASSERT_TRUE(cells.update(TrainingSamples(parts, 1), pool));
   EXPECT_EQ(cells.vertices(0), 3);
   cells.divide(0);
   EXPECT_EQ(cells.vertices(1), 1.5);
@@ -111,10 +111,9 @@ TYPED_TEST(LearnedCellsOf, CountAndDivideVertices) {
   EXPECT_FALSE(cells.directions(0).empty());
   EXPECT_FALSE(cells.directions(1).empty());
   // The second round has two iterations.
-  const typename Cells::Accumulator empty;
-  const typename Cells::Accumulator* none[] = {&empty};
-  EXPECT_FALSE(cells.update(none, pool, 1));
-  EXPECT_TRUE(cells.update(none, pool, 1));
+  const TrainingSamples none({}, 2);
+  EXPECT_FALSE(cells.update(none, pool));
+  EXPECT_TRUE(cells.update(none, pool));
   cells.next_round(pool);
   EXPECT_FALSE(cells.directions(0).empty()) << "without samples the old tree stays";
 }

@@ -30,13 +30,20 @@ TEST(LearnedSkeleton, LobesLearnFromAllLitVertices) {
   const ThreadPool pool(1);
   for (int round = 0; round < 6; ++round) {
     v.guiding_cell = guide->cell(v.surface, v.wp);
-    std::vector<std::unique_ptr<GuidingDistribution::Accumulator>> one;
-    one.push_back(guide->accumulator());
+    TrainingSamples::Part part;
     for (int i = 0; i < 400; ++i) {
-      const V3f& w = i % 4 == 0 ? seldom : often;
-      guide->accumulate({v, w, Pdf<SolidAngle>(0.1F), 1, 1, 1}, *one.front());
+      part.push_back({.cell = v.guiding_cell,
+                      .x = v.surface.x,
+                      .n = n,
+                      .w = i % 4 == 0 ? seldom : often,
+                      .distance = 1,
+                      .cosine = 1,
+                      .pdf = 0.1F,
+                      .radiance = 1});
     }
-    guide->update(one, pool, 1 << round);
+    for (int k = 0; k < 1 << round; ++k) {
+      guide->update(TrainingSamples(std::span(&part, 1), guide->cells()), pool);
+    }
   }
   v.guiding_cell = guide->cell(v.surface, v.wp);
   const GuidedVertex at{v.surface, *v.bsdf, v.wp, v.guiding_cell};

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/guides/mixed_guide.h"
-#include "renderer/guides/skeleton_to_eye.h"
+#include "renderer/guides/skeleton_directions.h"
+#include "renderer/path/guide.h"
 #include "tests/renderer/guides/density_check.h"
 #include "tests/renderer/guides/guided_scene.h"
 #include "tests/renderer/path/scenes.h"
@@ -21,12 +21,12 @@ constexpr std::size_t sites = 4;
 struct Site {
   explicit Site(const PathScene& s)
       : scene([&] { return load(s); }, SkeletonGuideSettings{}, 0, environment(s)),
-        guide(nullptr, std::make_unique<SkeletonToEye>(
+        guide(nullptr, std::make_unique<SkeletonDirections>(
                            SkeletonLightGuideSettings{.probability = 0.5, .strength = 8})) {
     guide.prepare(scene.context());
   }
   test::GuidedScene scene;
-  MixedGuide guide;
+  Guide guide;
 };
 
 void expect_density(const DensityCheck& c) {
@@ -79,11 +79,11 @@ TEST(LightGuide, ScattersWithItsDensity) {
       site.guide.on_hit(v);
       const V3f along = v.side();
       guided += site.guide.pdf(v, v.wp, along, Transport::importance).value !=
-                        BsdfGuide::pdf(v, v.wp, along, Transport::importance).value
+                        Guide{}.pdf(v, v.wp, along, Transport::importance).value
                     ? 1
                     : 0;
       EXPECT_EQ(site.guide.pdf(v, v.wp, along, Transport::radiance).value,
-                BsdfGuide::pdf(v, v.wp, along, Transport::radiance).value);
+                Guide{}.pdf(v, v.wp, along, Transport::radiance).value);
       std::size_t wrong = 0;
       const auto draw = [&]() -> std::optional<V3f> {
         const auto d = site.guide.sample(v, rng, Transport::importance);

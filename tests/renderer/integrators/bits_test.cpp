@@ -30,9 +30,6 @@ std::vector<test::Method> bidirectional(int max_depth) {
   all.push_back({"bdpt_towards_eye", test::joining_towards_eye(max_depth, PairedSettings{})});
   for (test::Method& m : test::guided(max_depth)) all.push_back(std::move(m));
   for (test::Method& m : test::metropolis(max_depth)) all.push_back(std::move(m));
-  PathSettings efficient = test::path_tracing(max_depth);
-  efficient.roulette = RouletteChoice::efficiency;
-  all.push_back({"path_efficiency", efficient});
   PathSettings sharing = test::path_tracing(max_depth);
   sharing.reuse = 16;
   all.push_back({"path_reuse", sharing});

@@ -127,25 +127,6 @@ void expect_no_harm(const char* scene) {
 TEST(GuideGain, WhatIsLearnedDoesNoHarm) { expect_no_harm("cornell"); }
 TEST(LongGuideGain, WhatIsLearnedDoesNoHarm) { expect_no_harm("atrium"); }
 
-// Where a guide cannot pay, pilots end it: all iterations have the bits of the BSDF's own paths.
-TEST(GuideGain, EndsWhereItDoesNotPay) {
-  const auto session = [](const GuideSettings& guide) {
-    PathSettings path = test::path_tracing(6);
-    path.guide = guide;
-    return std::make_unique<test::Session>(
-        test::load(test::PathScene{"atrium"}),
-        test::RenderSettings{.integrator = path, .width = 64, .height = 48});
-  };
-  const auto plain = session(BsdfGuideSettings{});
-  for (const GuideSettings& guide :
-       {skeleton({}, {}), GuideSettings{LearnedSkeletonGuideSettings{}}}) {
-    const auto guided = session(guide);
-    EXPECT_EQ(guided->iterate(0).pixels, plain->iterate(0).pixels);
-    for (std::uint64_t i = 1; i < 15; ++i) guided->iterate(i);
-    EXPECT_EQ(guided->iterate(15).pixels, plain->iterate(15).pixels);
-  }
-}
-
 // Light paths are guided to the eye as eye paths to the light: 0.52 and 0.56.
 TEST(GuideGain, LightRoundCorners) {
   const Pictures pictures{"bends", 12, 40};

@@ -88,20 +88,6 @@ TEST(GuidedDepth, BidirectionalPathTracingHasTheMeanOfAWhiteFurnace) {
   }
 }
 
-// Paths that are ended and split for efficiency, from their first edge on and of many.
-void expect_mean_one_of_efficient_paths(int depth) {
-  PathSettings path = guided_path(BsdfGuideSettings{}, depth);
-  path.roulette = RouletteChoice::efficiency;
-  expect_mean_one(path, depth);
-}
-TEST(GuidedDepth, EfficientPathsHaveTheMeanOfAWhiteFurnace) {
-  expect_mean_one_of_efficient_paths(6);
-}
-TEST(LongGuidedDepth, EfficientPathsHaveTheMeanOfAWhiteFurnace) {
-  expect_mean_one_of_efficient_paths(20);
-  expect_mean_one_of_efficient_paths(100);
-}
-
 /// Every guide of the registry, which draws nine of ten directions where it has any to draw.
 std::vector<std::pair<std::string, GuideSettings>> mostly_guided() {
   std::vector<std::pair<std::string, GuideSettings>> all;

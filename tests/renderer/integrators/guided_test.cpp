@@ -223,45 +223,5 @@ TEST(GuidedExtremes, ProbabilityNoneIsPathTracingItself) {
   EXPECT_EQ(render(make(), guided_picture(path, 2)).film.mean(), expected.film.mean());
 }
 
-// Where a guide does not pay, pilots have ended it before a path counts: the picture has the bits
-// of one without a guide.
-TEST(Pilots, EndAGuideBeforeItSpoilsThePicture) {
-  PathSettings guided = test::path_tracing(5);
-  guided.guide = LearnedSkeletonGuideSettings{};
-  test::RenderSettings s{.integrator = guided, .width = 96, .height = 96, .iterations = 2};
-  const test::Rendering with = test::render("cornell.glb", s);
-  s.integrator = test::path_tracing(5);
-  const test::Rendering without = test::render("cornell.glb", s);
-  EXPECT_EQ(with.film.mean(), without.film.mean());
-  // They count as samples: 16 to 32, of a sixteenth of the picture each.
-  const std::uint64_t iteration = 96 * 96;
-  EXPECT_GE(with.counters.samples, without.counters.samples + iteration);
-  EXPECT_LE(with.counters.samples, without.counters.samples + 2 * iteration);
-  EXPECT_GT(with.counters.rays, without.counters.rays);
-}
-
-// Of a large picture a pilot is a few tiles: 32 of them, of 47 blocks at most, are no iteration.
-TEST(Pilots, TakeNoMoreOfALargePicture) {
-  PathSettings guided = test::path_tracing(3);
-  guided.guide = SdTreeGuideSettings{};
-  std::get<SdTreeGuideSettings>(guided.guide).probability = AutoNumber{};
-  test::RenderSettings s{.integrator = guided, .width = 512, .height = 512, .iterations = 1};
-  const std::uint64_t samples = test::render("cornell.glb", s).counters.samples;
-  const std::uint64_t iteration = 512 * 512, block = 64;
-  EXPECT_GE(samples, iteration + 16 * 24 * block);
-  EXPECT_LE(samples, iteration + 32 * 47 * block);
-}
-
-// Where light comes through few gaps it is kept.
-TEST(Pilots, KeepAGuideThatPays) {
-  PathSettings guided = test::path_tracing(5);
-  guided.guide = LearnedSkeletonGuideSettings{};
-  test::RenderSettings s{.integrator = guided, .width = 96, .height = 96, .iterations = 1};
-  s.camera = "entrance";
-  const test::Rendering with = test::render("bends.glb", s);
-  s.integrator = test::path_tracing(5);
-  EXPECT_NE(with.film.mean(), test::render("bends.glb", s).film.mean());
-}
-
 }  // namespace
 }  // namespace lacuna

@@ -84,7 +84,7 @@ class LitScene {
     const IterationContext pass_context = context(seed_);
     light_pass(
         {pass_context, setting, light_paths_, image}, guide_,
-        [&](std::size_t path, const LightBatch<BsdfGuide>& batch, std::size_t place) {
+        [&](std::size_t path, const LightBatch& batch, std::size_t place) {
           lights.keep(path, batch, place);
           const int length = std::min(batch.length(place), max_depth - 1);
           for (int i = 1; i < length; ++i) {
@@ -101,7 +101,7 @@ class LitScene {
   std::uint64_t seed_;
   ThreadPool pool_{2};
   std::function<bool()> never_ = [] { return false; };
-  BsdfGuide guide_;
+  Guide guide_;
   SceneData data_;
   CameraData eye_;
   Camera camera_;

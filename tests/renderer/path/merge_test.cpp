@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/path/bsdf_guide.h"
+#include "renderer/path/guide.h"
 
 namespace lacuna {
 namespace {
@@ -24,8 +24,8 @@ TEST(Merged, IsBoundedWhereLightGrazesTheEyesTriangle) {
   Photon p;
   p.ng = v.surface.ns;
   p.throughput = Rgb(1, 1, 1);
-  const BsdfGuide guide;
-  const SurfaceEndpoint<BsdfGuide> eye{v, 1, Transport::radiance, guide};
+  const Guide guide;
+  const SurfaceEndpoint eye{v, 1, Transport::radiance, guide};
   for (const float z : {1e-3F, 1e-6F}) {
     p.wp = V3f(1, 0, z).normalized();
     const Rgb value = merged(eye, p);

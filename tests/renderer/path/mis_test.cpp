@@ -6,7 +6,7 @@
 
 #include <set>
 
-#include "renderer/path/bsdf_guide.h"
+#include "renderer/path/guide.h"
 #include "renderer/path/next_event.h"
 #include "tests/renderer/path/oracle.h"
 #include "tests/renderer/path/scenes.h"
@@ -42,7 +42,6 @@ const std::vector<Counts> tree_counts{{"path", {1, 1, 0, 0}}, {"paired", {1, 1, 
 const SampleCounts complete_counts{1, 1, 1, side* side};
 
 /// Real walks from both ends, which meet in all ways.
-template <class Guide>
 class Meeting {
  public:
   Meeting(const Scene& scene, const Camera& camera, const SampleCounts& n, const Guide& guide,
@@ -74,10 +73,9 @@ class Meeting {
         eye_.start(camera_, rng, camera_.ray(x, rng.next() * side), 0);
         join_eye(i, joined);
       }
-      Walk<Guide> walk(
-          scene_, guide_,
-          {.max_depth = longest, .roulette_depth = longest + 1, .counts = eye_side(counts_)},
-          counters);
+      Walk walk(scene_, guide_,
+                {.max_depth = longest, .roulette_depth = longest + 1, .counts = eye_side(counts_)},
+                counters);
       walk.trace_paths(
           eye_.states, [](std::size_t, int) {},
           [&](std::size_t i, int depth) {
@@ -120,7 +118,7 @@ class Meeting {
       const V3f w = s == 1 && e.infinite() ? x : (x - camera_.position()).normalized();
       if (!camera_.project(w)) continue;
       if (s == 1) {
-        if (!e.delta()) use(eye, EmitterEndpoint<Guide>{e, guide_}, i, 0, joined);
+        if (!e.delta()) use(eye, EmitterEndpoint{e, guide_}, i, 0, joined);
       } else if (light_.vertex(i, s - 1).bsdf->connectible()) {
         use(eye, light_.end(i, s - 1), i, 0, joined);
       }
@@ -131,12 +129,12 @@ class Meeting {
   void join(std::size_t i, int depth, const Joined& joined) {
     const Vertex& v = eye_.vertex(i, depth);
     if (v.kind != Vertex::Kind::surface || depth == longest || !v.bsdf->connectible()) return;
-    const SurfaceEndpoint<Guide> eye{v, depth, Transport::radiance, guide_};
+    const SurfaceEndpoint eye{v, depth, Transport::radiance, guide_};
     for (int s = 1; s <= std::min(longest - depth, light_.length(i)); ++s) {
       if (s == 1) {
         EmitterPoint e = light_.emitter(i);
         e.next_event_ratio = next_event_.ratio(e, v);
-        use(eye, EmitterEndpoint<Guide>{e, guide_}, i, depth, joined);
+        use(eye, EmitterEndpoint{e, guide_}, i, depth, joined);
       } else if (light_.vertex(i, s - 1).bsdf->connectible()) {
         use(eye, light_.end(i, s - 1), i, depth, joined);
       }
@@ -165,16 +163,16 @@ class Meeting {
   NextEvent next_event_;
   EyeBatch eye_;
   LightPathSetting setting_{scene_, camera_, longest, longest + 1, counts_, false, emitters_};
-  LightBatch<Guide> light_;
+  LightBatch light_;
 };
 
-/// Calls `test(guide, mixed, directions)` with the guide that follows the BSDF, and with those that
+/// Calls `test(guide, guided, directions)` with the guide that follows the BSDF, and with those that
 /// mix `directions` in: from the eye, from the lights, other ones from both.
 template <class Test>
 void for_all_guides(const Test& test) {
   {
     SCOPED_TRACE("bsdf");
-    test(BsdfGuide{}, nullptr, DirectionsOf{});
+    test(Guide{}, false, DirectionsOf{});
   }
   for (const auto& [name, from_eye, from_light] :
        {std::tuple{"eye", true, false}, {"light", false, true}, {"both", true, true}}) {
@@ -182,19 +180,16 @@ void for_all_guides(const Test& test) {
     auto eye = from_eye ? std::make_unique<test::SidedDirections>() : nullptr;
     auto light = from_light ? std::make_unique<test::SidedDirections>(-1.0F) : nullptr;
     const DirectionsOf directions{eye.get(), light.get()};
-    const MixedGuide guide(std::move(eye), std::move(light));
-    test(guide, &guide, directions);
+    const Guide guide(std::move(eye), std::move(light));
+    test(guide, true, directions);
   }
 }
 
 class Weights : public testing::TestWithParam<PathScene> {
  protected:
   Weights() : data_(load(GetParam())) {}
-  template <class Guide>
   void are_their_definition(const Guide& guide, const DirectionsOf& directions) const;
-  template <class Guide>
-  void add_up_to_one(const Guide& guide, const MixedGuide* mixed,
-                     const DirectionsOf& directions) const;
+  void add_up_to_one(const Guide& guide, bool guided, const DirectionsOf& directions) const;
 
   SceneData data_;
   const Camera camera_{data_.cameras.front(), side, side};
@@ -228,12 +223,10 @@ void expect_power(const Comparison& c, const SampleCounts& n) {
 // Real walks: what the renderer weighs, along the walks' own directions, so that only rounding is
 // left.
 TEST_P(Weights, AreTheirDefinition) {
-  for_all_guides([this](const auto& guide, const MixedGuide*, const DirectionsOf& directions) {
+  for_all_guides([this](const auto& guide, bool, const DirectionsOf& directions) {
     are_their_definition(guide, directions);
   });
 }
-
-template <class Guide>
 void Weights::are_their_definition(const Guide& guide, const DirectionsOf& directions) const {
   for (const Counts& counts : all_counts) {
     SCOPED_TRACE(counts.name);
@@ -245,7 +238,7 @@ void Weights::are_their_definition(const Guide& guide, const DirectionsOf& direc
       impossible += expected > 0 ? 0 : 1;
       c.add(weight, expected, s, path.edges() + 1 - s);
     };
-    Meeting<Guide>(scene_, camera_, counts.n, guide)
+    Meeting(scene_, camera_, counts.n, guide)
         .meet(
             6,
             [&](const WholePath& path, double weight) {
@@ -282,8 +275,8 @@ TEST_P(Weights, ByATreeAreTheirDefinition) {
           Oracle(scene_, camera_, path).weights(counts.n, ratio)[static_cast<std::size_t>(s)];
       c.add(weight, expected, s, path.edges() + 1 - s);
     };
-    const BsdfGuide guide;
-    Meeting<BsdfGuide>(scene_, camera_, counts.n, guide, EmitterChoice::tree)
+    const Guide guide;
+    Meeting(scene_, camera_, counts.n, guide, EmitterChoice::tree)
         .meet(
             6, [&](const WholePath& path, double weight) { compare(path, 0, weight); },
             [&](const WholePath& path, int s, double weight, bool) { compare(path, s, weight); });
@@ -310,21 +303,18 @@ TEST(PowerHeuristic, IsThatOfSquaredDensities) {
 // Whole paths, each made once more by every technique: what one walk knows of the other's densities
 // is what the other has.
 TEST_P(Weights, OfAllStrategiesAddUpToOne) {
-  for_all_guides(
-      [this](const auto& guide, const MixedGuide* mixed, const DirectionsOf& directions) {
-        add_up_to_one(guide, mixed, directions);
-      });
+  for_all_guides([this](const auto& guide, bool guided, const DirectionsOf& directions) {
+    add_up_to_one(guide, guided, directions);
+  });
 }
-
-template <class Guide>
-void Weights::add_up_to_one(const Guide& guide, const MixedGuide* mixed,
+void Weights::add_up_to_one(const Guide& guide, bool guided,
                             const DirectionsOf& directions) const {
   std::vector<Counts> counts_and_photons = all_counts;
   counts_and_photons.push_back({"photons", {1, 0, 0, 0, 0.5}});  // which join nothing
   for (const Counts& counts : counts_and_photons) {
     SCOPED_TRACE(counts.name);
     std::vector<WholePath> paths;
-    Meeting<Guide>(scene_, camera_, counts.n.merge > 0 ? complete_counts : counts.n, guide)
+    Meeting(scene_, camera_, counts.n.merge > 0 ? complete_counts : counts.n, guide)
         .meet(
             4, [&](const WholePath& path, double) { paths.push_back(path); },
             [&](const WholePath& path, int, double, bool visible) {
@@ -339,7 +329,7 @@ void Weights::add_up_to_one(const Guide& guide, const MixedGuide* mixed,
       const WholePath& path = paths[i];
       const std::vector<double> expected =
           Oracle(scene_, camera_, path, directions).weights(counts.n);
-      test::Remake remake(scene_, camera_, path, counts.n, mixed);
+      test::Remake remake(scene_, camera_, path, counts.n, guide);
       double sum = 0;
       bool complete = true;
       for (std::size_t s = 0; s < expected.size(); ++s) {
@@ -359,7 +349,7 @@ void Weights::add_up_to_one(const Guide& guide, const MixedGuide* mixed,
     EXPECT_LE(weights.apart, weights.compared / 100) << "the worst by " << weights.worst;
     EXPECT_LE(sums.apart, sums.compared / 100) << "the worst by " << sums.worst;
     // Guided walks also go where they only just fit through.
-    EXPECT_LE(lost, 2 + tried / (mixed != nullptr ? 10 : 25))
+    EXPECT_LE(lost, 2 + tried / (guided ? 10 : 25))
         << "of " << tried << " paths could not be made again";
     EXPECT_GT(sums.compared, 0);
     expect_power(weights, counts.n);

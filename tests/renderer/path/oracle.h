@@ -1,6 +1,6 @@
 #pragma once
 
-#include "renderer/guides/guiding_distribution.h"
+#include "renderer/path/guiding_distribution.h"
 #include "renderer/path/mis.h"
 #include "tests/renderer/path/whole_path.h"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/path/bsdf_guide.h"
+#include "renderer/path/guide.h"
 #include "tests/renderer/path/scenes.h"
 
 namespace lacuna {
@@ -36,8 +36,8 @@ TEST(PhotonMap, MergesOnOneSideOfOneSurface) {
   map.arrange(0.5, ThreadPool(1));
   ASSERT_EQ(map.size(), 3U);
   const Vertex v = diffuse_vertex({0.05F, 0, 0}, up, up);
-  const BsdfGuide guide{};
-  const SurfaceEndpoint<BsdfGuide> eye{v, 1, Transport::radiance, guide};
+  const Guide guide{};
+  const SurfaceEndpoint eye{v, 1, Transport::radiance, guide};
   Rng rng(1, 0, 0, Rng::Purpose::test);
   double of_this_side = 0;
   map.for_each_at(v, rng, [&](const Photon& p, float, float) {
@@ -58,12 +58,12 @@ class PhotonMapInScene : public testing::Test {
   const ThreadPool pool_{1};
   const Camera camera_{data_.cameras.front(), 16, 16};
   const Scene scene_ = test::lit_scene(std::move(data_));
-  const BsdfGuide guide_{};
+  const Guide guide_{};
 };
 
 TEST_F(PhotonMapInScene, RestoresThePathsThatItKept) {
   const LightPathSetting setting{scene_, camera_, 6, 7, {1, 1, 1, 256, 2}};
-  using Batch = LightBatch<BsdfGuide>;
+  using Batch = LightBatch;
   Batch batch(setting, guide_), restored(setting, guide_);
   std::vector<Rng> rngs;
   for (std::uint64_t i = 0; i < std::uint64_t{Batch::size}; ++i) {

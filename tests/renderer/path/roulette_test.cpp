@@ -32,9 +32,9 @@ TEST(Roulette, KeepsGuidedPathsInTheWindow) {
     const float x = 8 * rng.next();
     batch.start(camera, rng, camera.ray(x, 8 * rng.next()), i);
   }
-  const MixedGuide guide(std::make_unique<SidedDirections>());
+  const Guide guide(std::make_unique<SidedDirections>());
   Counters counters;
-  Walk<MixedGuide> walk(scene, guide, {.max_depth = max_depth, .roulette_depth = 1}, counters);
+  Walk walk(scene, guide, {.max_depth = max_depth, .roulette_depth = 1}, counters);
   int told = 0;
   float least = 1, most = 0;
   walk.trace_paths(

@@ -1,63 +1,59 @@
 #pragma once
 
-#include "renderer/guides/mixed_guide.h"
 #include "renderer/path/eye_batch.h"
 #include "renderer/path/merge.h"
+#include "renderer/path/walk.h"
 #include "tests/renderer/path/whole_path.h"
 
 namespace lacuna::test {
 
-/// A guide that goes where it is told, with the densities of the BSDF or of another guide.
-struct ScriptedGuide {
-  static constexpr bool has_expected = false;
+/// Walks along given directions, with the densities of a guide.
+class ScriptedWalk final : public Walk {
+ public:
   struct Step {
     V3f w;
     bool delta;
   };
-  const Vertex* first = nullptr;          ///< of the walk
-  std::vector<Step> steps = {};           ///< of its vertices 1, 2, ...
-  const MixedGuide* densities = nullptr;  ///< null: of the BSDF
+  struct Script {
+    const Vertex* first = nullptr;  ///< of the walk
+    std::vector<Step> steps = {};   ///< of its vertices 1, 2, ...
+  };
+  ScriptedWalk(const Scene& scene, const Guide& guide, const Script& script,
+               const WalkLimits& limits, Counters& counters)
+      : Walk(scene, guide, limits, counters),
+        guide_(guide),
+        script_(script),
+        transport_(limits.transport) {}
 
-  void on_hit(Vertex& v) const {
-    if (densities != nullptr) densities->on_hit(v);
-  }
-
-  std::optional<BsdfSample> sample(const Vertex& v, Rng&, Transport transport) const {
-    const Step& step = steps[static_cast<std::size_t>(&v - first) - 1];
+ private:
+  std::optional<BsdfSample> sample(const Vertex& v, Rng&) const override {
+    const Step& step = script_.steps[static_cast<std::size_t>(&v - script_.first) - 1];
     BsdfSample s;
     s.wi = step.w;
     s.weight = Rgb(1, 1, 1);
     s.delta = step.delta;
-    s.pdf = pdf(v, v.wp, step.w, transport);
+    s.pdf = guide_.pdf(v, v.wp, step.w, transport_);
     return s;
   }
-  Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport) const {
-    if (densities != nullptr) return densities->pdf(v, wo, wi, transport);
-    return v.bsdf->pdf(wo, wi, transport);
-  }
-  Pdf<SolidAngle> pdf(const Vertex& v, const V3f& wo, const V3f& wi, Transport transport,
-                      Pdf<SolidAngle>) const {
-    return pdf(v, wo, wi, transport);
-  }
-  Pdf<SolidAngle> leaving_pdf(const EmitterPoint& e, const V3f& w) const {
-    return densities != nullptr ? densities->leaving_pdf(e, w) : e.leaving_pdf(w);
-  }
+
+  const Guide& guide_;
+  const Script& script_;
+  Transport transport_;
 };
 
 /// Makes whole paths once more, vertex by vertex, by walks from either end.
 class Remake {
  public:
-  /// `guide`: whose densities the walks have; null: those of the BSDF.
+  /// `guide`: whose densities the walks have.
   Remake(const Scene& scene, const Camera& camera, const WholePath& path, const SampleCounts& n,
-         const MixedGuide* guide = nullptr)
+         const Guide& guide)
       : scene_(scene),
         camera_(camera),
         path_(path),
         counts_(n),
+        guide_(guide),
         eye_(path.edges()),
-        light_(static_cast<std::size_t>(path.edges()) + 1),
-        eye_guide_{.densities = guide},
-        light_guide_{.densities = guide} {}
+        light_(static_cast<std::size_t>(path.edges()) + 1) {}
 
   /// The weight of technique `i` of Oracle::weights(); nothing if the walks do not come to the same
   /// vertices again.
@@ -71,8 +67,7 @@ class Remake {
   std::optional<double> merging(int j) {
     const int depth = path_.edges() - j;
     if (!walk_eye(depth, false) || !walk_light(j + 1)) return std::nullopt;
-    const SurfaceEndpoint<ScriptedGuide> eye{eye_.vertex(0, depth), depth, Transport::radiance,
-                                             eye_guide_};
+    const SurfaceEndpoint eye{eye_.vertex(0, depth), depth, Transport::radiance, guide_};
     return merge_weight(eye, photon(light_[static_cast<std::size_t>(j)], j), counts_);
   }
 
@@ -83,12 +78,12 @@ class Remake {
     if (s == 0) {
       const Vertex& v = eye_.vertex(0, k);
       const auto e = emitter_at(scene_, v);
-      return e ? std::optional(hit_weight(v, k, *e, counts_, light_guide_)) : std::nullopt;
+      return e ? std::optional(hit_weight(v, k, *e, counts_, guide_)) : std::nullopt;
     }
     if (s > 1 && !walk_light(s)) return std::nullopt;
-    if (s == 1) return joined(EmitterEndpoint<ScriptedGuide>{path_.emitter, light_guide_}, s);
-    return joined(SurfaceEndpoint<ScriptedGuide>{light_[static_cast<std::size_t>(s) - 1], s - 1,
-                                                 Transport::importance, light_guide_},
+    if (s == 1) return joined(EmitterEndpoint{path_.emitter, guide_}, s);
+    return joined(SurfaceEndpoint{light_[static_cast<std::size_t>(s) - 1], s - 1,
+                                  Transport::importance, guide_},
                   s);
   }
 
@@ -99,8 +94,7 @@ class Remake {
       const EyeEndpoint eye{camera_};
       return lacuna::weight(eye, light, connect(eye, light), counts_);
     }
-    const SurfaceEndpoint<ScriptedGuide> eye{eye_.vertex(0, depth), depth, Transport::radiance,
-                                             eye_guide_};
+    const SurfaceEndpoint eye{eye_.vertex(0, depth), depth, Transport::radiance, guide_};
     return lacuna::weight(eye, light, connect(eye, light), counts_);
   }
 
@@ -117,14 +111,14 @@ class Remake {
     const int k = path_.edges();
     eye_.states.clear();
     if (depth == 0) return true;
-    eye_guide_.first = &eye_.vertex(0, 0);
-    eye_guide_.steps.clear();
+    eye_script_.first = &eye_.vertex(0, 0);
+    eye_script_.steps.clear();
     for (int j = 1; j < depth; ++j) {
-      eye_guide_.steps.push_back({step(k - j, -1), path_.node(k - j).delta});
+      eye_script_.steps.push_back({step(k - j, -1), path_.node(k - j).delta});
     }
     eye_.start(camera_, rng_, {camera_.position(), step(k, -1)}, 0);
     int reached = 0;
-    trace_paths(eye_.states, eye_guide_, depth, Transport::radiance, eye_side(counts_), reached);
+    trace_paths(eye_.states, eye_script_, depth, Transport::radiance, eye_side(counts_), reached);
     if (reached != depth) return false;
     for (int j = 1; j <= depth - (hit ? 1 : 0); ++j) {
       if (!same(eye_.vertex(0, j), path_.node(k - j))) return false;
@@ -135,10 +129,10 @@ class Remake {
   /// Walks to vertex s - 1 from the light, as LightBatch does.
   bool walk_light(int s) {
     const EmitterPoint& e = path_.emitter;
-    light_guide_.first = light_.data();
-    light_guide_.steps.clear();
+    light_script_.first = light_.data();
+    light_script_.steps.clear();
     for (int j = 1; j < s - 1; ++j) {
-      light_guide_.steps.push_back({step(j, 1), path_.node(j).delta});
+      light_script_.steps.push_back({step(j, 1), path_.node(j).delta});
     }
     const V3f w = step(0, 1);
     V3f from = e.kind == EmitterPoint::Kind::area ? offset_origin(e.x, e.ng, e.offset, w) : e.x;
@@ -146,11 +140,10 @@ class Remake {
     light_[0].kind = e.infinite() ? Vertex::Kind::background : Vertex::Kind::emitter;
     light_[0].surface.x = e.x;
     light_[0].surface.ng = e.ng;
-    PathState walker{
-        .rng = rng_, .ray = {from, w}, .p = leaving_pdf(light_guide_, e, w), .path = light_};
+    PathState walker{.rng = rng_, .ray = {from, w}, .p = guide_.leaving_pdf(e, w), .path = light_};
     if (!e.delta()) walker.mis_partial = counts_.hit / double(e.pdf.value);
     int reached = 0;
-    trace_paths(std::span(&walker, 1), light_guide_, s - 1, Transport::importance,
+    trace_paths(std::span(&walker, 1), light_script_, s - 1, Transport::importance,
                 light_side(counts_), reached);
     if (reached != s - 1) return false;
     for (int j = 1; j < s; ++j) {
@@ -159,16 +152,16 @@ class Remake {
     return true;
   }
 
-  void trace_paths(std::span<PathState> states, const ScriptedGuide& guide, int depth,
+  void trace_paths(std::span<PathState> states, const ScriptedWalk::Script& script, int depth,
                    Transport transport, const TechniqueCounts& side, int& reached) {
     Counters counters;
-    Walk<ScriptedGuide> walk(scene_, guide,
-                             {.max_depth = depth,
-                              .last_scatters = true,
-                              .roulette_depth = depth + 1,
-                              .transport = transport,
-                              .counts = side},
-                             counters);
+    ScriptedWalk walk(scene_, guide_, script,
+                      {.max_depth = depth,
+                       .last_scatters = true,
+                       .roulette_depth = depth + 1,
+                       .transport = transport,
+                       .counts = side},
+                      counters);
     walk.trace_paths(
         states, [](std::size_t, int) {}, [&](std::size_t, int d) { reached = d; });
   }
@@ -185,10 +178,11 @@ class Remake {
   const Camera& camera_;
   const WholePath& path_;
   SampleCounts counts_;
+  const Guide& guide_;
   Rng rng_{1, 0, 0, Rng::Purpose::test};
   EyeBatch eye_;
   std::vector<Vertex> light_;
-  ScriptedGuide eye_guide_, light_guide_;
+  ScriptedWalk::Script eye_script_, light_script_;
 };
 
 }  // namespace lacuna::test

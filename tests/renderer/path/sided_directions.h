@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "renderer/core/frame.h"
-#include "renderer/guides/mixed_guide.h"
+#include "renderer/path/guide.h"
 
 namespace lacuna::test {
 
@@ -15,6 +15,8 @@ class SidedDirections final : public GuidingDistribution {
   explicit SidedDirections(float place = 1) : place_(place) {}
 
   bool needs_space() const override { return false; }
+  std::size_t cells() const override { return 2; }
+  AutoNumber probability() const override { return {1}; }
   GuidingCell cell(const Surface& s, const V3f& w) const override {
     return dot(w, s.ng) < 0 ? GuidingCell{0.7F, 1} : GuidingCell{0.3F, 0};
   }

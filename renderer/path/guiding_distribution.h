@@ -1,15 +1,14 @@
 #pragma once
 
-#include <memory>
-#include <span>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/settings/auto_number.h"
 #include "base/storage/bytes.h"
-#include "renderer/guides/learning_memory.h"
 #include "renderer/path/contexts.h"
-#include "renderer/path/guiding_sample.h"
+#include "renderer/path/training_samples.h"
 #include "renderer/path/vertex.h"
 
 namespace lacuna {
@@ -25,18 +24,10 @@ struct GuidedVertex {
 };
 
 /// A distribution of directions at every point of the scene's surfaces, which approximates where
-/// light comes from. MixedGuide combines it with the BSDF. Several threads sample it during an
-/// iteration; only update() and load() change it.
+/// light comes from. Guide mixes it with the BSDF. Several threads sample it during an iteration;
+/// only update() and load() change it.
 class GuidingDistribution {
  public:
-  /// The samples of one part of an iteration. update() adds the accumulators in the order of the
-  /// parts, so that the state is the same for any number of threads.
-  struct Accumulator {
-    virtual ~Accumulator() = default;
-    /// The memory that its samples take, those of update() included.
-    virtual double bytes() const = 0;
-  };
-
   virtual ~GuidingDistribution() = default;
 
   /// Called by the integrator's functions of these names (see the concept Strategy).
@@ -47,7 +38,8 @@ class GuidingDistribution {
   virtual void load(ByteReader&) {}
   virtual std::vector<std::pair<std::string, double>> statistics() const { return {}; }
 
-  /// The cell of the distribution at surface `s`, on the side of unit `w`.
+  /// The cell of the distribution at surface `s`, on the side of unit `w`. Its probability is 1, or
+  /// less where the distribution covers only a part of the light, or 0 where it has no directions.
   virtual GuidingCell cell(const Surface& s, const V3f& w) const = 0;
   /// Prefetches what cell() of the same arguments reads first.
   virtual void prefetch(const Surface&, const V3f&) const {}
@@ -59,26 +51,18 @@ class GuidingDistribution {
   /// probability of failure. sample() returns a direction of density 0 only by rounding.
   virtual Pdf<SolidAngle> pdf(const GuidedVertex& at, const V3f& w) const = 0;
 
-  /// All cells have probability 0, and will have: nothing of the guide is needed any more. Changes
-  /// only in update() and load().
-  virtual bool idle() const { return false; }
-
-  /// Whether accumulate() and update() need to be called in the coming iteration.
+  /// The number of cells: GuidingCell::index is less, or GuidingCell::none.
+  virtual std::size_t cells() const = 0;
+  /// How Guide finds the probability of sampling the distribution: learned for each cell, or one
+  /// number for all.
+  virtual AutoNumber probability() const = 0;
+  /// Whether update() needs to be called after the coming iteration.
   virtual bool learns() const { return false; }
-  virtual std::unique_ptr<Accumulator> accumulator() const { return nullptr; }
-  virtual void accumulate(const GuidingSample&, Accumulator&) const {}
-  /// An estimate of the variance of one sample of a pixel, of squared luminance, and of what it
-  /// would be if paths followed the BSDF.
-  virtual void record_noise(double /*variance*/, double /*by_bsdf*/, Accumulator&) const {}
-  /// `iterations`: as many as the accumulators hold, below 1 of a pilot.
-  virtual void update(std::span<const std::unique_ptr<Accumulator>>, const ThreadPool&,
-                      double /*iterations*/) {}
-
-  /// The number of the pilot that is due before the coming iteration; none: no pilot is. A pilot
-  /// renders a small part of the picture with random numbers of its own, only to be learned from.
-  virtual std::optional<std::uint64_t> due_pilot() const { return std::nullopt; }
-  /// What is sampled until update() is that pilot.
-  virtual void begin_pilot() {}
+  /// Learns from the samples of an iteration. Returns, for each cell that was added, the cell that
+  /// it was divided from.
+  virtual std::vector<std::uint32_t> update(const TrainingSamples&, const ThreadPool&) {
+    return {};
+  }
 };
 
 }  // namespace lacuna

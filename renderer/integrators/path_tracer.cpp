@@ -1,0 +1,210 @@
+#include "renderer/integrators/path_tracer.h"
+
+#include "renderer/guides/make_guide.h"
+#include "renderer/integrators/integrators.h"
+#include "renderer/path/direct_light.h"
+#include "renderer/path/gathered_light.h"
+#include "renderer/path/next_event_batch.h"
+#include "renderer/path/path_reuse.h"
+#include "renderer/path/shadow_queue.h"
+#include "renderer/path/tiles.h"
+#include "renderer/path/walk.h"
+
+namespace lacuna {
+
+namespace {
+
+/// A contribution of next event estimation, pending its shadow ray.
+struct Direct {
+  Rgb value;
+  std::uint32_t pixel;
+  std::uint16_t path, depth;  // of the vertex
+};
+
+}  // namespace
+
+PathTracer::PathTracer(const PathSettings& settings, Guide guide)
+    : GuidedIntegrator(std::move(guide)), settings_(settings) {}
+
+SceneNeeds PathTracer::needs() const {
+  SceneNeeds needs = GuidedIntegrator::needs();
+  needs.light_tree = settings_.next_event_estimation && settings_.emitters != EmitterChoice::power;
+  return needs;
+}
+
+void PathTracer::prepare(const PrepareContext& context) {
+  GuidedIntegrator::prepare(context);
+  seen_.prepare(context);
+}
+
+struct PathTracer::Batch : EyeBatch {
+  using EyeBatch::EyeBatch;
+  EmittersAhead ahead{};          // the emitters of next event estimation
+  ShadowQueue<Direct> shadows;    // and what they give
+  GatheredLight gathered{*this};  // for a guide that learns
+  bool gathers = false;
+};
+
+/// Renders the paths of a tile. A contribution goes to its pixel, or to PathReuse where pixels
+/// share the light behind vertex 2; and to GatheredLight where a guide learns from it.
+class PathTracer::TilePass {
+ public:
+  TilePass(const PathTracer& tracer, const IterationContext& context, Image& image,
+           Counters& counters)
+      : tracer_(tracer),
+        settings_(tracer.settings_),
+        context_(context),
+        image_(image),
+        counters_(counters),
+        direct_(context.scene, tracer.guide_, settings_.next_event_estimation, settings_.emitters),
+        batch_(settings_.max_depth),
+        reuse_(batch_, tracer.guide_, settings_.max_depth > 2 ? settings_.reuse : 1),
+        walk_(context.scene, tracer.guide_,
+              {.max_depth = settings_.max_depth,
+               .roulette_depth = settings_.roulette_depth,
+               .split_depth = reuse_.active() ? 3 : 1,
+               .packets = true},
+              counters) {}
+
+  void render(const Tile& tile, const LearningPass& pass, TrainingSamples::Part& samples) {
+    for (int b = 0; b < tile.blocks(); ++b) {
+      const Tile block = tile.block(b);
+      if (pass.renders(block.first.x, block.first.y)) render_block(block, samples);
+    }
+    trace_shadows();
+  }
+
+ private:
+  /// One sample of each pixel, with the branches of its path.
+  void render_block(const Tile& block, TrainingSamples::Part& samples) {
+    start_paths(context_, image_, block, batch_);
+    tracer_.seen_.add(context_, block, counters_,
+                      [&](std::size_t pixel, const Rgb& value) { add(pixel, value); });
+    counters_.samples += batch_.states.size();
+    const bool learns = tracer_.guide_.learns() &&
+                        tracer_.guide_.learns_from(block.pixel(0), context_, settings_.max_depth);
+    if (learns && !batch_.gathers) trace_shadows();  // those that wait are of other paths
+    batch_.gathers = learns;
+    reuse_.begin(Rng(context_.seed, 0, batch_.pixels[0], Rng::Purpose::groups));
+    do {
+      if (batch_.gathers) batch_.gathered.clear();
+      trace_paths();
+      for (std::size_t i = 0; i < batch_.states.size(); ++i) {
+        add(batch_.pixels[i], batch_.radiance[i]);
+      }
+      if (batch_.gathers || reuse_.active()) trace_shadows();
+      if (batch_.gathers) {
+        reuse_.restore_throughput();
+        batch_.gathered.record(samples);
+      }
+      batch_.store(walk_.branches());
+    } while (batch_.resume());
+    reuse_.finish(context_.scene.rays(), counters_,
+                  [&](std::uint32_t pixel, const Rgb& value) { add(pixel, value); });
+  }
+
+  /// Traces the paths of the batch; next event estimation waits for trace_shadows().
+  void trace_paths() {
+    walk_.trace_paths(
+        batch_.states, [this](std::size_t i, int depth) { choose_emitter(i, depth); },
+        [this](std::size_t i, int depth) { visit(i, depth); },
+        SelectTogether(direct_.next_event(), direct_.draws(), settings_.max_depth, batch_,
+                       batch_.ahead));
+  }
+
+  void choose_emitter(std::size_t i, int depth) {
+    if (direct_.draws() && depth < settings_.max_depth) {
+      batch_.ahead[i] = direct_.choose_ahead(batch_.states[i].rng);
+    }
+  }
+
+  /// Emission at vertex `depth` of path `i`, and next event estimation there.
+  void visit(std::size_t i, int depth) {
+    const Vertex& v = batch_.vertex(i, depth);
+    const bool apart = depth == 1 && tracer_.seen_.rays(batch_.pixels[i]) > 0;
+    const Rgb emission = apart ? Rgb(0, 0, 0) : direct_.met(v, batch_.vertex(i, depth - 1), depth);
+    const bool shared = depth > 2 && reuse_.shares(i);
+    if (shared) {
+      reuse_.add(i, depth, emission);
+    } else {
+      batch_.radiance[i] += emission;
+    }
+    reuse_.reach(i, depth);
+    if (batch_.gathers) {
+      batch_.gathered.reach(i, depth);
+      batch_.gathered.add(i, depth, shared ? emission * reuse_.own(i) : emission);
+    }
+    const bool goes_on = v.kind == Vertex::Kind::surface && depth < settings_.max_depth;
+    if (!goes_on || !direct_.draws() || !v.bsdf->connectible()) return;
+    direct_.draw(v, depth, batch_.ahead[i], batch_.states[i].rng,
+                 [&](const Ray& ray, const Rgb& value, const V3f& w) {
+                   if (depth == 2) reuse_.look(i, w);
+                   batch_.shadows.add(ray, {value, batch_.pixels[i], static_cast<std::uint16_t>(i),
+                                            static_cast<std::uint16_t>(depth)});
+                 });
+  }
+
+  /// Traces the shadow rays that wait, and adds what they find.
+  void trace_shadows() {
+    batch_.shadows.flush(context_.scene.rays(), counters_, [&](const Direct& d) {
+      const bool shared = d.depth >= 2 && reuse_.shares(d.path);
+      if (shared) {
+        reuse_.add(d.path, d.depth, d.value);
+      } else {
+        add(d.pixel, d.value);
+      }
+      if (batch_.gathers) {
+        batch_.gathered.add(d.path, d.depth, shared ? d.value * reuse_.own(d.path) : d.value);
+      }
+    });
+  }
+
+  void add(std::size_t pixel, const Rgb& value) {
+    accumulate(image_.pixels[pixel], value, counters_);
+  }
+
+  const PathTracer& tracer_;
+  const PathSettings& settings_;
+  const IterationContext& context_;
+  Image& image_;
+  Counters& counters_;
+  DirectLight direct_;
+  Batch batch_;
+  PathReuse reuse_;
+  Walk walk_;
+};
+
+Counters PathTracer::iterate(const IterationContext& context, Image& image) {
+  if (guide_.first_pass().end == LearningPass::parts) return render_passes(context, image);
+  // A stopped iteration leaves no trace.
+  ByteWriter before;
+  guide_.save(before);
+  try {
+    return render_passes(context, image);
+  } catch (...) {
+    ByteReader in(before.bytes());
+    guide_.load(in);
+    throw;
+  }
+}
+
+Counters PathTracer::render_passes(const IterationContext& context, Image& image) {
+  const Tiling tiling(image);
+  Counters sum;
+  for (LearningPass pass = guide_.first_pass(); pass.first < LearningPass::parts;
+       pass = pass.next()) {
+    std::vector<TrainingSamples::Part> samples(static_cast<std::size_t>(tiling.tiles()));
+    sum += for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
+      TilePass(*this, context, image, counters)
+          .render(tiling.tile(i), pass, samples[static_cast<std::size_t>(i)]);
+    });
+    if (guide_.learns()) guide_.update(samples, pass, context, settings_.max_depth);
+  }
+  return sum;
+}
+
+std::unique_ptr<Integrator> make_path(const PathSettings& settings) {
+  return std::make_unique<PathTracer>(settings, make_guide(settings.guide));
+}
+
+}  // namespace lacuna

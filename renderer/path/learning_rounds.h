@@ -1,0 +1,78 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+
+#include "base/storage/bytes.h"
+
+namespace lacuna {
+
+/// The passes of an iteration after which a guide learns. The first iteration is divided: a pass
+/// renders 1/64 of its blocks of pixels, and each of the others as many as all before it, so that
+/// most of its paths follow what earlier ones found. Later iterations are one pass.
+struct LearningPass {
+  static constexpr int parts = 64;
+
+  int first = 0, end = parts;  ///< of the parts that the pass renders
+
+  double share() const { return double(end - first) / parts; }
+  /// Whether the pass renders the block whose first pixel is `x`, `y`. Parts are spread over the
+  /// picture at random.
+  bool renders(int x, int y) const {
+    if (first == 0 && end == parts) return true;
+    std::uint64_t h = static_cast<std::uint64_t>(x / 8) << 32 | static_cast<std::uint32_t>(y / 8);
+    h = (h ^ h >> 31) * 0x9e3779b97f4a7c15U;
+    h = (h ^ h >> 29) * 0xbf58476d1ce4e5b9U;
+    const int part = static_cast<int>(h >> 58);
+    return part >= first && part < end;
+  }
+  /// The next pass of an iteration that is `divided`; its `first` is `parts` after the last one.
+  LearningPass next() const { return {end, end == parts ? parts : 2 * end}; }
+  static LearningPass begin(bool divided) { return {0, divided ? 1 : int{parts}}; }
+};
+
+/// Rounds of learning (Mueller et al. 2017, 5.2): the first is the first pass, each of the others
+/// as long as all before it.
+class LearningRounds {
+ public:
+  /// Counts a pass of this share of an iteration. True: the round has ended.
+  bool add(double share) {
+    if (first_ == 0) first_ = share;
+    done_ += share;
+    if (done_ < length()) return false;
+    ++ended_;
+    done_ = 0;
+    return true;
+  }
+  std::uint64_t ended() const { return ended_; }
+  /// Of this round, in iterations; 0 before the first pass.
+  double length() const { return std::ldexp(first_, std::max(0, static_cast<int>(ended_) - 1)); }
+  /// Of the round that has ended.
+  double last_length() const {
+    return std::ldexp(first_, std::max(0, static_cast<int>(ended_) - 2));
+  }
+
+  void save(ByteWriter& out) const {
+    out.put(first_);
+    out.put(done_);
+    out.put(ended_);
+  }
+  /// Throws std::runtime_error if the data is not valid.
+  void load(ByteReader& in) {
+    first_ = in.get<double>();
+    done_ = in.get<double>();
+    ended_ = in.get<std::uint64_t>();
+    const bool begun = first_ > 0 && done_ >= 0 && ended_ < 63 && done_ < length();
+    if (!begun && !(first_ == 0 && done_ == 0 && ended_ == 0)) {
+      throw std::runtime_error("saved rounds of learning are not valid");
+    }
+  }
+
+ private:
+  double first_ = 0, done_ = 0;  // iterations in the first round, and so far in this one
+  std::uint64_t ended_ = 0;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/storage/bytes.h"
+#include "renderer/path/learning_rounds.h"
+#include "renderer/path/training_samples.h"
+
+namespace lacuna {
+
+/// An estimate of the indirect radiance that a vertex reflects: the luminance that a path gathers
+/// behind the vertex over the luminance of its throughput there. Emission and next event estimation
+/// at the vertex itself are not included. Roulette and splitting of guided paths use it as the
+/// adjoint (Vorba and Krivanek 2016, "Adjoint-driven Russian roulette and splitting").
+///
+/// A grid of 32^3 cells over the scene, each with six sides for the normals, and coarser grids of
+/// 16^3 to 1 cells: a look-up returns the mean of the finest cell with enough samples. It learns in
+/// LearningRounds; each round replaces the one before, because the first paths have the heaviest
+/// tails. The picture's mean does not depend on its values.
+class ReflectedRadiance {
+ public:
+  ReflectedRadiance() = default;
+  /// Over the box of a scene, low corner and size, in scene units.
+  ReflectedRadiance(const V3d& low, const V3d& size);
+
+  /// Mean at the surface `v`; below 0 while nothing is known.
+  float at(const Vertex& v) const {
+    return samples_ == 0 ? -1.0F : means_[index(v.surface.x, v.side())];
+  }
+  bool learns() const { return samples_ < enough_samples || rounds_.ended() < least_rounds; }
+  /// Adds the samples of a pass.
+  void update(const TrainingSamples& samples);
+
+  void save(ByteWriter& out) const;
+  /// Throws std::runtime_error for the state of another scene.
+  void load(ByteReader& in);
+
+ private:
+  static constexpr int side = 32, sides = 6;
+  static constexpr std::size_t levels = 6;  // 32, 16, ..., 1 cells along a side
+  /// Samples below which a look-up uses the coarser cell.
+  static constexpr double least_samples = 128;
+  /// Learning ends after a round of so many.
+  static constexpr double enough_samples = 1 << 18;
+  static constexpr std::uint64_t least_rounds = 3;
+
+  /// The samples of a cell.
+  struct Samples {
+    double sum = 0, samples = 0;
+    void operator+=(const Samples& o) {
+      sum += o.sum;
+      samples += o.samples;
+    }
+    float mean() const { return static_cast<float>(sum / samples); }
+  };
+  struct Saved {
+    Samples samples;
+    std::uint64_t cell;
+  };
+
+  std::array<double, 4> grid() const { return {low_.x, low_.y, low_.z, scale_}; }
+  std::size_t index(const V3f& x, const V3f& n) const;
+  /// The place in the next coarser grid of place `i` in one of `n` cells along a side.
+  static std::size_t above(std::size_t i, std::size_t n);
+  void make_means();
+
+  V3d low_{0.0};
+  double scale_ = 0;
+  LearningRounds rounds_;
+  double samples_ = 0;                     // in known_
+  std::vector<Samples> known_, learning_;  // of the finest grid: the last round's, and this one's
+  std::vector<float> means_;               // of the finest grid, from where enough were sampled
+};
+
+}  // namespace lacuna
