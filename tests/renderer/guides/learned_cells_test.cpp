@@ -110,8 +110,10 @@ TYPED_TEST(LearnedCellsOf, CountAndDivideVertices) {
   EXPECT_EQ(cells.vertices(0), 0);
   EXPECT_FALSE(cells.directions(0).empty());
   EXPECT_FALSE(cells.directions(1).empty());
-  // The second round has two iterations.
+  // The second round is as long as the first, the third as both.
   const TrainingSamples none({}, 2);
+  EXPECT_TRUE(cells.update(none, pool));
+  cells.next_round(pool);
   EXPECT_FALSE(cells.update(none, pool));
   EXPECT_TRUE(cells.update(none, pool));
   cells.next_round(pool);
