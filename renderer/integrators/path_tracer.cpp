@@ -1,7 +1,5 @@
 #include "renderer/integrators/path_tracer.h"
 
-#include "renderer/guides/make_guide.h"
-#include "renderer/integrators/integrators.h"
 #include "renderer/path/direct_light.h"
 #include "renderer/path/gathered_light.h"
 #include "renderer/path/next_event_batch.h"
@@ -201,10 +199,6 @@ Counters PathTracer::render_passes(const IterationContext& context, Image& image
     if (guide_.learns()) guide_.update(samples, pass, context, settings_.max_depth);
   }
   return sum;
-}
-
-std::unique_ptr<Integrator> make_path(const PathSettings& settings) {
-  return std::make_unique<PathTracer>(settings, make_guide(settings.guide));
 }
 
 }  // namespace lacuna

@@ -64,7 +64,7 @@ template <class V>
 void describe(V& v, SkeletonGuideSettings& s) {
   v("strength", s.strength,
     {.doc = "exponent of the power-cosine lobes; 0: uniform over the hemisphere (eq. 163); "
-            "\"auto\": learned for each node while rendering",
+            "\"auto\": a mixture of powers of two, learned for each node while rendering",
      .min = 0,
      .max = 10000});
   v("probability", s.probability,
@@ -184,7 +184,7 @@ struct SdTreeGuideSettings {
   static constexpr std::string_view doc =
       "practical path guiding: incident radiance learned in a tree over positions and directions "
       "(Mueller et al. 2017)";
-  AutoNumber probability{0.5};  // learned, it has 1.4 times the error on corridor
+  AutoNumber probability{0.5};  // as published
   int leaf_vertices = 4000;
   bool operator==(const SdTreeGuideSettings&) const = default;
 };
@@ -216,7 +216,7 @@ template <class V>
 void describe(V& v, LearnedSkeletonGuideSettings& s) {
   v("probability", s.probability,
     {.doc = "probability of sampling a direction from the guide instead of the BSDF; \"auto\": "
-            "learned for each cell while rendering, 0 where the guide does not pay",
+            "learned for each cell while rendering",
      .min = 0,
      .max = most_guided});
   v("leaf_vertices", s.leaf_vertices,

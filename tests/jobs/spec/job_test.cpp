@@ -110,6 +110,10 @@ TEST(Job, KeysOfEarlierVersionsMeanNothing) {
             parse_job(job(R"("auto")")));
   expect_one(job_problems(job(R"({"type": "path", "sampling": "adaptive"})")),
              "/integrator/sampling", {"earlier version", "allowed: \"uniform\""});
+  EXPECT_EQ(parse_job(job(R"({"type": "path", "roulette": "throughput"})")),
+            parse_job(job(R"("path")")));
+  expect_one(job_problems(job(R"({"type": "path", "roulette": "efficiency"})")),
+             "/integrator/roulette", {"earlier version", "allowed: \"throughput\""});
   expect_one(job_problems(job(R"({"type": "auto", "clock": "rays"})")), "/integrator/clock",
              {"earlier version", "allowed: \"cpu_seconds\""});
 }
@@ -127,8 +131,6 @@ TEST(Job, SettingsThatDoNotGoTogetherAreNamed) {
   EXPECT_NO_THROW(parse_job(path("")));
   EXPECT_NO_THROW(parse_job(path(R"(, "roulette_depth": 2)")));
   EXPECT_NO_THROW(parse_job(path(R"(, "guide": "skeleton")")));
-  expect_one(job_problems(path(R"(, "roulette": "efficiency")")), "/integrator",
-             {"by efficiency", "\"throughput\""});
   expect_one(job_problems(path(R"(, "roulette_depth": 1)")), "/integrator",
              {"roulette_depth 2 or more"});
   const std::string race =

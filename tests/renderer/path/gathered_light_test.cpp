@@ -93,5 +93,22 @@ TEST(GatheredLight, SamplesAreThoseOfTheMixture) {
   EXPECT_NEAR(guided.mean(), plain.mean(), 0.25 * plain.mean());
 }
 
+// Of a large picture only a share of the paths gives samples, spread evenly over it.
+TEST(GatheredLight, OfALargePictureIsAShare) {
+  PathSettings settings;
+  settings.max_depth = settings.roulette_depth = 4;
+  std::vector<TrainingSample> kept;
+  test::Session session(
+      test::load({"cornell"}), {.width = 1024, .height = 1024, .threads = 2},
+      std::make_unique<PathTracer>(settings, Guide(std::make_unique<SampleKeeper>(0.2, kept))));
+  session.iterate(0);  // in passes, of which the last is half of it
+  EXPECT_LE(double(kept.size()), 0.6 * Guide::most_samples);
+  for (std::uint64_t i = 1; i < 3; ++i) {
+    session.iterate(i);
+    EXPECT_LE(double(kept.size()), 1.1 * Guide::most_samples);
+    EXPECT_GE(double(kept.size()), 0.4 * Guide::most_samples);
+  }
+}
+
 }  // namespace
 }  // namespace lacuna
