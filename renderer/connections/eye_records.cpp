@@ -27,7 +27,7 @@ void EyeRecords::place(const IterationContext& context, const LightVertices& lig
     context.check_stop();
     batch.states.clear();
     for (std::uint64_t j = first; j < std::min(paths, first + EyeBatch::size); ++j) {
-      Rng rng(context.seed, context.iteration, j, Rng::Purpose::integrator);
+      Rng rng(context.seed, context.iteration, j, Rng::Purpose::eye_records);
       const std::uint64_t pixel = rng.below(pixels);
       const V2i p(static_cast<int>(pixel % static_cast<std::uint64_t>(width)),
                   static_cast<int>(pixel / static_cast<std::uint64_t>(width)));

@@ -34,7 +34,7 @@ class Rng {
   enum class Purpose : std::uint32_t {
     eye_path = 0,
     light_path = 1,
-    integrator = 2,
+    emission_ranges = 2,
     test = 3,
     visibility = 4,
     gather = 5,
@@ -42,7 +42,11 @@ class Rng {
     branch = 7,
     bootstrap = 8,
     chain = 9,
-    groups = 10
+    groups = 10,
+    emission_means = 11,
+    eye_records = 12,
+    arriving_power = 13,
+    cache_points = 14
   };
 
   /// `path` < 2^56; `iteration` < 2^32.

@@ -26,7 +26,7 @@ std::vector<double> arriving(const Scene& scene, const SurfaceLookup& lookup, st
   pool.for_each(parts, [&](int part) {
     const int first = part * rays_of_part, end = std::min(rays, first + rays_of_part);
     for (int i = first; i < end; ++i) {
-      Rng rng(0, 0, static_cast<std::uint64_t>(i), Rng::Purpose::integrator);
+      Rng rng(0, 0, static_cast<std::uint64_t>(i), Rng::Purpose::arriving_power);
       const std::optional<Sent> sent = send(rng);
       Hit hit;
       if (!sent || !scene.rays().intersect(sent->ray, hit)) continue;

@@ -61,7 +61,7 @@ std::vector<Range> seen_ranges(const PrepareContext& context) {
     const std::size_t first = static_cast<std::size_t>(y) * width;
     std::vector<Ray> rays;
     for (int x = 0; x < camera.width(); ++x) {
-      Rng rng(0, 0, first + static_cast<std::size_t>(x), Rng::Purpose::integrator);
+      Rng rng(0, 0, first + static_cast<std::size_t>(x), Rng::Purpose::emission_ranges);
       stratified(2, rng, [&](const V2f& u) { rays.push_back(camera.sample({x, y}, u)); });
     }
     std::vector<Hit> hits(rays.size());
@@ -190,7 +190,7 @@ Rgb SeenEmission::mean(const IterationContext& context, std::size_t pixel, int n
   std::array<std::uint8_t, most_rays> met{};
   const auto count = static_cast<std::size_t>(n);
   for (std::size_t k = 0; k < count; ++k) {
-    Rng rng = context.path_numbers(pixel, k, count, Rng::Purpose::integrator);
+    Rng rng = context.path_numbers(pixel, k, count, Rng::Purpose::emission_means);
     rays[k] = context.camera.sample(at, rng.next2());
   }
   context.scene.rays().intersect(std::span(rays).first(count), hits, met);

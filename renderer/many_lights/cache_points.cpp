@@ -67,7 +67,7 @@ std::vector<std::uint32_t> CachePoints::choose(const LightPass& pass, Counters& 
                                    static_cast<float>(context.scene.bounds().radius()));
   std::vector<std::uint32_t> chosen;
   weights_.clear();
-  Rng rng(context.seed, context.iteration, 0, Rng::Purpose::integrator);
+  Rng rng(context.seed, context.iteration, 0, Rng::Purpose::cache_points);
   for (const auto& group : groups) {
     chosen.push_back(at[group[rng.below(group.size())]]);
     weights_.push_back(static_cast<double>(group.size()) / static_cast<double>(there.size()));
