@@ -43,8 +43,7 @@ struct PathTracer::Batch : EyeBatch {
   bool gathers = false;
 };
 
-/// Renders the paths of a tile. A contribution goes to its pixel, or to PathReuse where pixels
-/// share the light behind vertex 2; and to GatheredLight where a guide learns from it.
+/// Renders the paths of a tile.
 class PathTracer::TilePass {
  public:
   TilePass(const PathTracer& tracer, const IterationContext& context, Image& image,
@@ -87,9 +86,6 @@ class PathTracer::TilePass {
     do {
       if (batch_.gathers) batch_.gathered.clear();
       trace_paths();
-      for (std::size_t i = 0; i < batch_.states.size(); ++i) {
-        add(batch_.pixels[i], batch_.radiance[i]);
-      }
       if (batch_.gathers || reuse_.active()) trace_shadows();
       if (batch_.gathers) {
         reuse_.restore_throughput();
@@ -121,17 +117,9 @@ class PathTracer::TilePass {
     const Vertex& v = batch_.vertex(i, depth);
     const bool apart = depth == 1 && tracer_.seen_.rays(batch_.pixels[i]) > 0;
     const Rgb emission = apart ? Rgb(0, 0, 0) : direct_.met(v, batch_.vertex(i, depth - 1), depth);
-    const bool shared = depth > 2 && reuse_.shares(i);
-    if (shared) {
-      reuse_.add(i, depth, emission);
-    } else {
-      batch_.radiance[i] += emission;
-    }
     reuse_.reach(i, depth);
-    if (batch_.gathers) {
-      batch_.gathered.reach(i, depth);
-      batch_.gathered.add(i, depth, shared ? emission * reuse_.own(i) : emission);
-    }
+    if (batch_.gathers) batch_.gathered.reach(i, depth);
+    if (!is_black(emission)) contribute(batch_.pixels[i], i, depth, 0, emission);
     const bool goes_on = v.kind == Vertex::Kind::surface && depth < settings_.max_depth;
     if (!goes_on || !direct_.draws() || !v.bsdf->connectible()) return;
     direct_.draw(v, depth, batch_.ahead[i], batch_.states[i].rng,
@@ -145,16 +133,21 @@ class PathTracer::TilePass {
   /// Traces the shadow rays that wait, and adds what they find.
   void trace_shadows() {
     batch_.shadows.flush(context_.scene.rays(), counters_, [&](const Direct& d) {
-      const bool shared = d.depth >= 2 && reuse_.shares(d.path);
-      if (shared) {
-        reuse_.add(d.path, d.depth, d.value);
-      } else {
-        add(d.pixel, d.value);
-      }
-      if (batch_.gathers) {
-        batch_.gathered.add(d.path, d.depth, shared ? d.value * reuse_.own(d.path) : d.value);
-      }
+      contribute(d.pixel, d.path, d.depth, 1, d.value);
     });
+  }
+
+  /// The sink of all contributions: `value` of the path `i` of `pixel` by the strategy `s` at its
+  /// vertex `depth`. Light behind vertex 2 goes to the pixels that share it, all other to `pixel`;
+  /// a guide that learns gets both.
+  void contribute(std::size_t pixel, std::size_t i, int depth, int s, const Rgb& value) {
+    const bool shared = depth + s > 2 && reuse_.shares(i);
+    if (shared) {
+      reuse_.add(i, depth, value);
+    } else {
+      add(pixel, value);
+    }
+    if (batch_.gathers) batch_.gathered.add(i, depth, shared ? value * reuse_.own(i) : value);
   }
 
   void add(std::size_t pixel, const Rgb& value) {

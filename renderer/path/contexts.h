@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 
 #include "analysis/space_analysis/space_analysis.h"
@@ -18,21 +17,6 @@ namespace lacuna {
 /// discarded; running the iteration again gives the same result.
 struct IterationStopped : Stopped {};
 
-/// The number of a sample of each pixel in its low-discrepancy sequence.
-struct SampleNumber {
-  std::uint32_t randomisation;  ///< < 2^31; samples of different ones are independent
-  std::uint64_t index;
-
-  /// The randomisation of what a guide learns from before it guides. 0 and 1 are those of a film's
-  /// halves.
-  static constexpr std::uint32_t of_pilots = 4;
-
-  /// The two halves of a film are independent, and each has a sequence without gaps.
-  static SampleNumber of_iteration(std::uint64_t iteration) {
-    return {static_cast<std::uint32_t>(iteration % 2), iteration / 2};
-  }
-};
-
 /// The inputs of one iteration.
 struct IterationContext {
   const Scene& scene;
@@ -46,8 +30,6 @@ struct IterationContext {
   /// One image for each layer that the integrator fills: black at first, of the picture's size.
   std::span<Image> layers = {};
   Sampler sampler = Sampler::independent;
-  /// With `sobol`; none: of_iteration().
-  std::optional<SampleNumber> sample = std::nullopt;
 
   void check_stop() const {
     if (stop()) throw IterationStopped{};
@@ -63,20 +45,20 @@ struct IterationContext {
   Rng path_numbers(std::uint64_t path, std::uint64_t k, std::uint64_t n,
                    Rng::Purpose purpose) const {
     if (sampler == Sampler::independent) return Rng(seed, iteration, path * n + k, purpose);
-    const SampleNumber s = number();
-    return Rng::of_sequence(seed, path, s.randomisation, s.index * n + k, purpose);
+    return Rng::of_sequence(seed, path, half(), sample() * n + k, purpose);
   }
   /// The same of one of `paths` whose contributions go to the whole picture. With `sobol` all of
   /// them are one sequence, over iterations.
   Rng shared_path_numbers(std::uint64_t path, std::uint64_t paths, Rng::Purpose purpose) const {
     if (sampler == Sampler::independent) return Rng(seed, iteration, path, purpose);
     constexpr std::uint64_t shared = (std::uint64_t{1} << 56) - 1;  // no path has this number
-    const SampleNumber n = number();
-    return Rng::of_sequence(seed, shared, n.randomisation, n.index * paths + path, purpose);
+    return Rng::of_sequence(seed, shared, half(), sample() * paths + path, purpose);
   }
 
  private:
-  SampleNumber number() const { return sample.value_or(SampleNumber::of_iteration(iteration)); }
+  // The two halves of a film are independent, and each has a sequence without gaps.
+  std::uint32_t half() const { return static_cast<std::uint32_t>(iteration % 2); }
+  std::uint64_t sample() const { return iteration / 2; }
 };
 
 /// Asks whether to stop at one of 64 calls: asking reads a clock, which a short step must not pay.

@@ -28,7 +28,7 @@ void render(SceneData data) {
   const Camera camera(data.cameras.front(), side, side);
   PathSettings settings;
   settings.max_depth = 4;
-  PathTracer integrator(settings, {});
+  PathTracer integrator(settings, Guide());
   const Scene scene(std::move(data), integrator.needs(), std::nullopt, pool());
   Image image(side, side);
   const std::function<bool()> never = [] { return false; };

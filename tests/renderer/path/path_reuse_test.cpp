@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "renderer/path/bsdf_guide.h"
+#include "renderer/path/guide.h"
 #include "renderer/path/tiles.h"
 #include "tests/renderer/path/scenes.h"
 
@@ -20,7 +20,7 @@ class SharedLight : public testing::Test {
       batch_.start(camera_, Rng(1, 0, i, Rng::Purpose::test), camera_.ray(x + 0.5F, y + 0.5F), i);
     }
     reuse_.begin(Rng(2, 0, 0, Rng::Purpose::test));
-    Walk<BsdfGuide> walk(scene_, guide_, {.max_depth = 2, .last_scatters = true, .split_depth = 3},
+    Walk walk(scene_, guide_, {.max_depth = 2, .last_scatters = true, .split_depth = 3},
                          counters_);
     walk.trace_paths(
         batch_.states, [](std::size_t, int) {},
@@ -46,9 +46,9 @@ class SharedLight : public testing::Test {
   SceneData data_ = test::load({"cornell"});
   const Camera camera_{data_.cameras.front(), 8, 8};
   const Scene scene_ = test::lit_scene(std::move(data_));
-  const BsdfGuide guide_{};
+  const Guide guide_{};
   EyeBatch batch_{2};
-  PathReuse<BsdfGuide> reuse_{batch_, guide_, 16};
+  PathReuse reuse_{batch_, guide_, 16};
   std::vector<std::size_t> sharing_;
   Counters counters_;
 };
