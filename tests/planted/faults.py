@@ -47,7 +47,7 @@ FAULTS = [
           "const __m256i index = reverse(permute(spread(reversed_), own));",
           "const __m256i index = reverse(permute(spread(reversed_), spread(key_[0])));"),
     Fault("both halves of a film are one sequence", "renderer/path/contexts.h",
-          "return {static_cast<std::uint32_t>(iteration % 2), iteration / 2};", "return {0, iteration};"),
+          "return static_cast<std::uint32_t>(iteration % 2);", "return 0;"),
     Fault("two numbers are of two pairs", "renderer/core/rng.h", "rng.pair_ = 1;", "rng.pair_ = 0;"),
     # The light tree.
     Fault("a descent states the weight of the child beside", "renderer/emitters/light_tree.cpp",
