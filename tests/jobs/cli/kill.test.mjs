@@ -185,7 +185,7 @@ for (const [part, content] of Object.entries(hungry)) {
       job(folder, "a.json", { ...content, budget: { iterations: 1 } });
       const { code, err } = await runAfter(`ulimit ${limit} 2000000`, folder, "render", "a.json", "-q", "-t", "2");
       assert.equal(code, 71, err);
-      assert.match(err, new RegExp(`error: out of memory: ${part}.*: [0-9.]+ MiB, of [0-9.]+ MiB that are available; .*goes on`));
+      assert.match(err, new RegExp(`error: out of memory: ${part}.*: [0-9.]+ MiB, of [0-9.]+ MiB that are available; .*the same command continues`));
       assert.equal(stateOf(folder).state, "interrupted");
     });
   }

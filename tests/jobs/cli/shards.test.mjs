@@ -225,7 +225,7 @@ test("shards of another kind of processor are merged with a warning", async (t) 
   const report = read(folder, `${made[1]}/report.json`);
   writeFileSync(file, JSON.stringify({ ...report, machine: { ...report.machine, processor: "Another 9000" } }));
   await done(folder, "merge", "m.job", ...made);
-  const [warning] = read(folder, "m.job/outcome.json").warnings.filter((w) => /processors/.test(w));
+  const [warning] = read(folder, "m.job/outcome.json").warnings.filter((w) => /processor models/.test(w));
   assert.match(warning, /on 2 processor models \(.*Another 9000.*\): their last bits may differ/);
 });
 
