@@ -83,6 +83,7 @@ void ReflectedRadiance::load(ByteReader& in) {
   rounds_.load(in);
   bool good = true;
   for (auto* cells : {&known_, &learning_}) {
+    std::fill(cells->begin(), cells->end(), Samples{});
     for (const Saved& s : in.get_vector<Saved>()) {
       good = good && s.cell < cells->size() && std::isfinite(s.samples.sum) &&
              s.samples.samples > 0 && std::isfinite(s.samples.samples);

@@ -13,7 +13,7 @@ namespace {
 constexpr float uniform_density = 1 / (4 * pi);
 
 /// Light of this weight that arrives at `x` from a point at this distance along `w`.
-TrainingSample found(const V3f& x, const V3f& w, float distance, float weight) {
+TrainingSample arriving(const V3f& x, const V3f& w, float distance, float weight) {
   return {.cell = {1, 0},
           .x = x,
           .n = {0, 0, 1},
@@ -42,7 +42,8 @@ AimedLobes lobes_of(const Light& light, int samples) {
     std::vector<TrainingSample> batch;
     for (int i = 0; i < samples; ++i) {
       const V3f w = direction(rng);
-      if (light(w) > 0) batch.push_back(found({0, 0, 0}, w, HUGE_VALF, light(w) / uniform_density));
+      if (light(w) > 0)
+        batch.push_back(arriving({0, 0, 0}, w, HUGE_VALF, light(w) / uniform_density));
     }
     lobes.learn(batch);
     lobes.next_round();
@@ -58,7 +59,7 @@ AimedLobes aimed(const V3f& target, bool distances, int places) {
     std::vector<TrainingSample> batch;
     for (int i = 0; i < places; ++i) {
       const V3f x = place(rng, 0.5F), d = target - x;
-      batch.push_back(found(x, d.normalized(), distances ? d.length() : HUGE_VALF, 1));
+      batch.push_back(arriving(x, d.normalized(), distances ? d.length() : HUGE_VALF, 1));
     }
     lobes.learn(batch);
     lobes.next_round();
@@ -134,7 +135,7 @@ TEST(AimedLobes, AreTheSameSeenFromElsewhere) {
   const V3f target(0.5F, 1.5F, 1);
   AimedLobes lobes = aimed(target, true, 100);
   std::vector<TrainingSample> elsewhere;
-  for (int i = 0; i < 100; ++i) elsewhere.push_back(found({0.2F, 0.8F, 0.1F}, {0, 0, 1}, 3, 1));
+  for (int i = 0; i < 100; ++i) elsewhere.push_back(arriving({0.2F, 0.8F, 0.1F}, {0, 0, 1}, 3, 1));
   lobes.learn(elsewhere);
   const AimedLobes before = lobes;
   lobes.next_round();
@@ -153,7 +154,7 @@ std::vector<TrainingSample> from_everywhere(const V3f& w, float nearest, float f
   batch.reserve(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) {
     const V3f x = place(rng, 0.5F);
-    batch.push_back(found(x, w, nearest + (farthest - nearest) * rng.next(), 1));
+    batch.push_back(arriving(x, w, nearest + (farthest - nearest) * rng.next(), 1));
   }
   return batch;
 }
@@ -179,7 +180,7 @@ TEST(AimedLobes, TellAPlaceFromADirection) {
     Rng rng(51, static_cast<std::uint64_t>(round), 0, Rng::Purpose::test);
     for (int i = 0; i < 2000; ++i) {
       const V3f x = place(rng, 0.5F), d = target - x;
-      batch.push_back(found(x, d.normalized(), d.length(), 1));
+      batch.push_back(arriving(x, d.normalized(), d.length(), 1));
     }
     lobes.learn(batch);
     lobes.next_round();
@@ -199,7 +200,7 @@ TEST(AimedLobes, AreNotCarriedAwayByOneSample) {
   const auto light = [](const V3f& w) { return w.x > 0.9F ? 1.0F : 0; };
   AimedLobes lobes = lobes_of(light, 4000);
   const float before = lobes.pdf({0, 0, 0}, {1, 0, 0}).value;
-  const std::array<TrainingSample, 1> rare{found({0, 0, 0}, {-1, 0, 0}, 2, 1e12F)};
+  const std::array<TrainingSample, 1> rare{arriving({0, 0, 0}, {-1, 0, 0}, 2, 1e12F)};
   lobes.learn(rare);
   EXPECT_GT(lobes.pdf({0, 0, 0}, {1, 0, 0}).value, 0.6F * before);
   EXPECT_GT(lobes.pdf({0, 0, 0}, {-1, 0, 0}).value, 0);
@@ -207,7 +208,7 @@ TEST(AimedLobes, AreNotCarriedAwayByOneSample) {
 
 TEST(AimedLobes, AreWideWhereOneSampleTells) {
   AimedLobes lobes;
-  lobes.learn(std::vector<TrainingSample>{found({0, 0, 0}, {0, 0, 1}, HUGE_VALF, 1)});
+  lobes.learn(std::vector<TrainingSample>{arriving({0, 0, 0}, {0, 0, 1}, HUGE_VALF, 1)});
   const float angle = pi / 9;
   EXPECT_GT(lobes.pdf({0, 0, 0}, {std::sin(angle), 0, std::cos(angle)}).value, uniform_density);
 }
@@ -219,7 +220,7 @@ TEST(AimedLobes, FindNewLight) {
     std::vector<TrainingSample> batch;
     for (int i = 0; i < 20000; ++i)
       batch.push_back(
-          found({0, 0, 0}, axes[static_cast<std::size_t>(i) % axes.size()], HUGE_VALF, 1));
+          arriving({0, 0, 0}, axes[static_cast<std::size_t>(i) % axes.size()], HUGE_VALF, 1));
     for (int k = 0; k < 4; ++k) lobes.learn(batch);
   };
   std::vector<V3f> old;
@@ -239,7 +240,7 @@ TEST(AimedLobes, AreTheSameAtEachScale) {
     std::vector<TrainingSample> batch;
     for (int i = 0; i < 500; ++i) {
       const V3f x = place(rng, 1) * places;
-      batch.push_back(found(x, direction(rng), places * (1 + rng.next()), weights * rng.next()));
+      batch.push_back(arriving(x, direction(rng), places * (1 + rng.next()), weights * rng.next()));
     }
     lobes.learn(batch);
     lobes.next_round();
@@ -264,7 +265,7 @@ TEST(AimedLobes, GoOnAsTheyWereSaved) {
   AimedLobes loaded;
   ByteReader in(out.bytes());
   loaded.load(in);
-  const std::array<TrainingSample, 1> more{found({0, 1, 0}, {1, 0, 0}, 2, 3)};
+  const std::array<TrainingSample, 1> more{arriving({0, 1, 0}, {1, 0, 0}, 2, 3)};
   for (AimedLobes* l : {&lobes, &loaded}) {
     l->learn(more);
     l->next_round();
