@@ -1,9 +1,9 @@
 #pragma once
 
-#include <memory>
 #include <span>
 #include <vector>
 
+#include "renderer/path/point_tree.h"
 #include "renderer/path/vertex.h"
 
 namespace lacuna {
@@ -20,25 +20,21 @@ inline SurfacePoint surface_point(const Vertex& v) { return {v.surface.x, v.side
 /// A k-d tree of surface points, for the nearest neighbours of a point by distance and normal.
 class RecordTree {
  public:
-  RecordTree();
-  ~RecordTree();
-  RecordTree(RecordTree&&) noexcept;
-  RecordTree& operator=(RecordTree&&) noexcept;
-
-  void build(std::vector<SurfacePoint> points);
+  void build(std::vector<SurfacePoint> points, const ThreadPool& pool);
 
   /// The distance between two points times (2 - n . n'), scene units.
   static float rank(const SurfacePoint& a, const SurfacePoint& b) {
     return std::sqrt((a.x - b.x).length2()) * (2 - dot(a.n, b.n));
   }
 
-  /// Finds the 2 k nearest points by distance, k = found.size(), and writes the indices of the k of
-  /// lowest rank() into `found`. Returns how many were written: k, or the size of a smaller tree.
+  /// Finds the 2 k nearest points by distance, k = found.size() <= 64, and writes the indices of
+  /// the k of lowest rank() into `found`. Returns how many were written: k, or the size of a
+  /// smaller tree.
   std::size_t nearest(const SurfacePoint& at, std::span<std::uint32_t> found) const;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::vector<SurfacePoint> points_;
+  PointTree tree_;
 };
 
 }  // namespace lacuna

@@ -1,35 +1,22 @@
-// The hash grid of photons against the k-d tree of records (nanoflann), as ratios within one run:
-// to build, on one thread each, and to look up all photons within a radius. Points lie on the walls
-// of a box, as photons do; queries are points of the same walls.
+// The hash grid against the k-d tree of points, as ratios within one run: to build, on one thread
+// each, and to look up all points within a radius. Points lie on the walls of a box, as photons do;
+// queries are points of the same walls.
 //
 //   bench_photons [POINTS]
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdlib>
-#include <nanoflann.hpp>
 #include <vector>
 
 #include "renderer/core/clock_seconds.h"
 #include "renderer/path/point_grid.h"
+#include "renderer/path/point_tree.h"
 
 namespace {
 
 using namespace lacuna;
-
-struct Cloud {
-  std::vector<V3f> points;
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return points[i][static_cast<int>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud,
-                                                 3, std::uint32_t>;
 
 std::vector<V3f> on_walls(std::size_t n, std::uint64_t seed) {
   Rng rng(seed, 0, 0, Rng::Purpose::test);
@@ -58,28 +45,25 @@ double seconds_of(Work&& work) {
 
 int main(int argc, char** argv) {
   const std::size_t n = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1'000'000;
-  const Cloud cloud{on_walls(n, 1)};
+  const std::vector<V3f> points = on_walls(n, 1);
   const std::vector<V3f> queries = on_walls(std::min<std::size_t>(n, 200'000), 2);
   const ThreadPool one(1);
   PointGrid grid;
-  grid.build(cloud.points, 0.01, one);  // an integrator keeps its memory, too
+  PointTree tree;
+  grid.build(points, 0.01, one);  // an integrator keeps its memory, too
+  tree.build(points, one);
   // Radii for so many photons on average.
   fmt::print("{:>8} {:>10} {:>12} {:>12} {:>8} {:>12} {:>12} {:>8}\n", "photons", "radius",
              "build tree", "build grid", "ratio", "query tree", "query grid", "ratio");
   for (const double photons : {0.5, 5.0, 50.0}) {
     const double radius = std::sqrt(6 * photons / (3.14159265 * static_cast<double>(n)));
-    std::unique_ptr<Tree> tree;
-    const double tree_build = seconds_of([&] {
-      tree = std::make_unique<Tree>(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(8));
-      tree->buildIndex();
-    });
-    const double grid_build = seconds_of([&] { grid.build(cloud.points, radius, one); });
+    const double tree_build = seconds_of([&] { tree.build(points, one); });
+    const double grid_build = seconds_of([&] { grid.build(points, radius, one); });
     std::uint64_t in_tree = 0, in_grid = 0;
     const auto radius2 = static_cast<float>(radius) * static_cast<float>(radius);
     const double tree_query = seconds_of([&] {
-      std::vector<std::pair<std::uint32_t, float>> found;
-      const nanoflann::SearchParams unsorted(32, 0, false);
-      for (const V3f& q : queries) in_tree += tree->radiusSearch(&q.x, radius2, found, unsorted);
+      std::array<PointTree::Found, 256> found;  // more than lie there
+      for (const V3f& q : queries) in_tree += tree.nearest(q, radius2, found);
     });
     Rng rng(3, 0, 0, Rng::Purpose::test);
     const double grid_query = seconds_of([&] {
