@@ -55,8 +55,13 @@ class PhotonMapping final : public Integrator {
     Counters sum = light_pass(context, paths, image);
     pass.end(seconds_.light);
     const double radius = merge_radius(settings_, context);
-    photons_.arrange(radius, context.pool);
-    caustics_.arrange(radius, context.pool);
+    for (PhotonMap* map : {&photons_, &caustics_}) {
+      if (density_.nearest > 0) {
+        map->arrange_nearest(radius, context.pool);
+      } else {
+        map->arrange(radius, context.pool);
+      }
+    }
     pass.end(seconds_.grid);
     sum += eye_pass(context, static_cast<double>(paths), image);
     pass.end(seconds_.eye);
@@ -100,11 +105,11 @@ class PhotonMapping final : public Integrator {
   };
   struct Part {
     EyeBatch batch;
+    std::vector<PointTree::Found> nearest;  // and the next one
     std::array<Stage, EyeBatch::size> stage = {};
     EmittersAhead ahead = {};  // emitters of next event estimation
     ShadowQueue<Direct> shadows = {};
     std::vector<LookUp> look_ups = {};
-    std::vector<std::pair<float, Rgb>> found = {};  // squared distance, and what a photon gives
     double look_up_seconds = 0;
     SparseStop stop = {};
   };
@@ -146,7 +151,7 @@ class PhotonMapping final : public Integrator {
     const Tiling tiling(image);
     std::vector<double> seconds(static_cast<std::size_t>(tiling.tiles()), 0.0);
     const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
-      Part part{EyeBatch(settings_.max_depth)};
+      Part part{EyeBatch(settings_.max_depth), std::vector<PointTree::Found>(density_.nearest + 1)};
       const Tile tile = tiling.tile(i);
       for (int b = 0; b < tile.blocks(); ++b) {
         start_paths(context, image, tile.block(b), part.batch);
@@ -254,37 +259,22 @@ class PhotonMapping final : public Integrator {
   Rgb estimate(const PhotonMap& map, const Wanted& wanted, const LookUp& at, Part& part) const {
     const Vertex& v = part.batch.vertex(at.path, at.depth);
     const SurfaceEndpoint eye{v, at.depth, Transport::radiance, guide_};
-    part.found.clear();
-    float each = 1;  // so many photons are there for one that is looked at
-    map.for_each_at(v, part.batch.states[at.path].rng,
-                    [&](const Photon& p, float distance2, float count) {
-                      each = count;
-                      if (p.index + at.depth > settings_.max_depth || !wanted.of(p)) return;
-                      part.found.emplace_back(distance2, merged(eye, p) * count);
-                    });
-    double radius2 = map.radius() * map.radius();
-    const std::size_t nearest = nearest_of(each);
-    if (nearest > 0 && part.found.size() > nearest) {
-      // The k nearest lie in the disc up to the next one: k / (pi r_{k+1}^2) has the density's mean
-      // where that is uniform.
-      const auto next = part.found.begin() + static_cast<std::ptrdiff_t>(nearest);
-      std::nth_element(part.found.begin(), next, part.found.end(),
-                       [](const auto& a, const auto& b) { return a.first < b.first; });
-      radius2 = std::max(double(next->first), radius2 * 0x1p-20);  // photons may be at one point
-      part.found.erase(next, part.found.end());
-    }
     V3d sum(0);
-    for (const auto& [distance2, value] : part.found) {
-      sum += V3d(value) * kernel(double(distance2) / radius2);
+    const auto add = [&](const Photon& p, double d2, float count) {
+      if (p.index + at.depth > settings_.max_depth || !wanted.of(p)) return;
+      sum += V3d(merged(eye, p) * count) * kernel(d2);
+    };
+    double radius2 = map.radius() * map.radius();
+    if (density_.nearest > 0) {
+      radius2 =
+          map.for_each_nearest(v, part.nearest, [&](const Photon& p, double d2) { add(p, d2, 1); });
+    } else {
+      map.for_each_at(v, part.batch.states[at.path].rng,
+                      [&](const Photon& p, float distance2, float count) {
+                        add(p, double(distance2) / radius2, count);
+                      });
     }
     return Rgb(sum / (std::numbers::pi * radius2));
-  }
-
-  /// How many of the photons that are looked at lie in the disc of the wanted number, where one is
-  /// looked at of `each` (PointGrid::most_candidates); 0: all count.
-  std::size_t nearest_of(float each) const {
-    if (density_.nearest == 0) return 0;
-    return std::max<std::size_t>(1, density_.nearest / static_cast<std::size_t>(each));
   }
 
   /// At squared distance `d2` in units of the radius; its mean over the disc is 1.

@@ -110,22 +110,31 @@ void PhotonMap::check_room() const {
   if (begun > 0) require_photons(stored / begun * static_cast<double>(parts_.size()), stored);
 }
 
-void PhotonMap::arrange(double radius, const ThreadPool& pool) {
-  radius_ = radius;
+template <class Use>
+void PhotonMap::each_photon(const ThreadPool& pool, Use&& use) const {
   std::vector<std::size_t> first(parts_.size() + 1, 0);
   for (std::size_t p = 0; p < parts_.size(); ++p)
     first[p + 1] = first[p] + parts_[p].photons.size();
-  const std::size_t n = first.back();
-  const auto each_part = [&](auto&& use) {
-    pool.for_each(static_cast<int>(parts_.size()), [&](int p) {
-      const auto& part = parts_[static_cast<std::size_t>(p)].photons;
-      for (std::size_t k = 0; k < part.size(); ++k)
-        use(first[static_cast<std::size_t>(p)] + k, part[k]);
-    });
-  };
+  pool.for_each(static_cast<int>(parts_.size()), [&](int p) {
+    const auto& part = parts_[static_cast<std::size_t>(p)].photons;
+    for (std::size_t k = 0; k < part.size(); ++k)
+      use(first[static_cast<std::size_t>(p)] + k, part[k]);
+  });
+}
+
+void PhotonMap::place(double radius, const ThreadPool& pool) {
+  radius_ = radius;
+  std::size_t n = 0;
+  for (const Part& part : parts_) n += part.photons.size();
   positions_.resize(n);
-  each_part([&](std::size_t i, const Photon& p) { positions_[i] = p.x; });
+  photons_.resize(n);
+  each_photon(pool, [&](std::size_t i, const Photon& p) { positions_[i] = p.x; });
+}
+
+void PhotonMap::arrange(double radius, const ThreadPool& pool) {
+  place(radius, pool);
   grid_.build(positions_, radius, pool);
+  const std::size_t n = positions_.size();
   places_.resize(n);
   constexpr std::size_t block = 1 << 14;
   pool.for_each(static_cast<int>((n + block - 1) / block), [&](int b) {
@@ -134,8 +143,13 @@ void PhotonMap::arrange(double radius, const ThreadPool& pool) {
       places_[grid_.order()[k]] = static_cast<std::uint32_t>(k);
     }
   });
-  photons_.resize(n);
-  each_part([&](std::size_t i, const Photon& p) { photons_[places_[i]] = p; });
+  each_photon(pool, [&](std::size_t i, const Photon& p) { photons_[places_[i]] = p; });
+}
+
+void PhotonMap::arrange_nearest(double radius, const ThreadPool& pool) {
+  place(radius, pool);
+  tree_.build(positions_, pool);
+  each_photon(pool, [&](std::size_t i, const Photon& p) { photons_[i] = p; });
 }
 
 }  // namespace lacuna

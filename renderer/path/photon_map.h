@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <numbers>
 #include <string>
@@ -9,6 +10,7 @@
 #include "renderer/path/light_pass.h"
 #include "renderer/path/merge.h"
 #include "renderer/path/point_grid.h"
+#include "renderer/path/point_tree.h"
 #include "renderer/settings/photon_settings.h"
 
 namespace lacuna {
@@ -54,8 +56,10 @@ class PhotonMap {
     batch.restore(i, std::span(part.photons).subspan(begin, n),
                   std::span(part.hits).subspan(begin, n));
   }
-  /// After the light pass.
+  /// After the light pass, for for_each_at().
   void arrange(double radius, const ThreadPool& pool);
+  /// After the light pass, for for_each_nearest().
+  void arrange_nearest(double radius, const ThreadPool& pool);
 
   std::size_t size() const { return photons_.size(); }
   /// Scene units.
@@ -72,6 +76,27 @@ class PhotonMap {
                           });
   }
 
+  /// Calls `visit(photon, d2)` for the photons nearest to eye vertex `v` that lie on one surface
+  /// with it: of the found.size() - 1 nearest within the radius. They lie in the disc up to the
+  /// next one, whose squared radius is returned: k / (pi r_{k+1}^2) has the density's mean where
+  /// that is uniform. The disc of fewer has the map's radius. `d2`: squared distance, in units of
+  /// the disc's radius.
+  template <class Visit>
+  double for_each_nearest(const Vertex& v, std::span<PointTree::Found> found, Visit&& visit) const {
+    const auto radius = static_cast<float>(radius_);
+    double disc2 = radius_ * radius_;
+    auto inside = found.first(tree_.nearest(v.surface.x, radius * radius, found));
+    if (inside.size() == found.size()) {
+      disc2 = std::max(double(found[0].distance2), disc2 * 0x1p-20);  // photons may be at one point
+      inside = inside.subspan(1);
+    }
+    for (const auto& [distance2, index] : inside) {
+      const Photon& p = photons_[index];
+      if (on_one_surface(v.surface.ng, p)) visit(p, double(distance2) / disc2);
+    }
+    return disc2;
+  }
+
  private:
   /// Of a light pass.
   struct Part {
@@ -81,14 +106,20 @@ class PhotonMap {
   };
 
   void check_room() const;
+  /// Calls `use(i, photon)` for all photons of the light pass, in order.
+  template <class Use>
+  void each_photon(const ThreadPool& pool, Use&& use) const;
+  /// Sets positions_, in the order of the light pass.
+  void place(double radius, const ThreadPool& pool);
 
   std::vector<Part> parts_;
   std::atomic<std::uint64_t> stored_ = 0;
   std::atomic<std::uint64_t> parts_begun_ = 0;
   HugeVector<V3f> positions_;
-  HugeVector<Photon> photons_;  // in the order of the grid
+  HugeVector<Photon> photons_;  // in the order of the grid, or of the light pass
   HugeVector<std::uint32_t> places_;
   PointGrid grid_;
+  PointTree tree_;
   double radius_ = 0;
 };
 

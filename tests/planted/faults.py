@@ -171,8 +171,10 @@ FAULTS = [
           "const std::size_t begin = k > 1 ? part.ends[k - 2] : 0, n = part.ends[k] - begin;"),
     Fault("every photon is a caustic", "renderer/integrators/photon_mapping.cpp",
           "caustic = caustic && v.delta;", "caustic = caustic || v.delta;"),
-    Fault("the nearest photons fill the disc to the last", "renderer/integrators/photon_mapping.cpp",
-          "part.found.erase(next, part.found.end());", "part.found.erase(next + 1, part.found.end());"),
+    Fault("the nearest photons fill the disc to the last", "renderer/path/photon_map.h",
+          "inside = inside.subspan(1);", "inside = inside.subspan(0);"),
+    Fault("the nearest points of a half are not looked for", "renderer/path/point_tree.cpp",
+          "if (to_far < query.radius2) search", "if (to_far < 0.5F * query.radius2) search"),
     # Multiple importance sampling.
     Fault("counts of splats left out", "renderer/path/mis.h",
           "if (t == 1) return splat;", "if (t == 1) return splat > 0 ? 1 : 0;"),

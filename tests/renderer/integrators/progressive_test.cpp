@@ -163,7 +163,7 @@ SceneData round_spot() {
   return std::move(p.data);
 }
 
-// A look-up visits a part of the photons where there are many; the disc is no larger for it.
+// Also where there are more than a look-up of all within the radius visits.
 TEST(Photons, TheNearestOfManyAreNear) {
   PhotonMapSettings photons = test::of_length(PhotonMapSettings{}, 2);
   photons.next_event_estimation = false;
@@ -185,6 +185,34 @@ TEST(Photons, TheNearestOfManyAreNear) {
   }
   EXPECT_GT(all, 0);
   EXPECT_LT(outside, 0.01 * all);
+}
+
+// The estimate k / (pi r_{k+1}^2) of a uniform density has the relative variance 1 / (k - 1), also
+// where there are more photons than a look-up of all within the radius visits.
+TEST(Photons, TheNearestOfManyHaveTheNoiseOfTheirNumber) {
+  PhotonMapSettings photons = test::of_length(PhotonMapSettings{}, 2);
+  photons.next_event_estimation = false;
+  photons.kernel = PhotonKernel::constant;
+  photons.light_paths = 100'000;
+  photons.nearest = 8;
+  constexpr int width = 40;
+  statistics::Moments values;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const std::vector<double> mean =
+        test::render(round_spot(),
+                     {.integrator = test::fixed_radius(photons, 1, RadiusUnit::absolute),
+                      .width = width,
+                      .height = width,
+                      .iterations = 1,
+                      .seed = seed})
+            .film.mean();
+    for (std::size_t k = 0; k < mean.size(); k += 3) {
+      const auto pixel = static_cast<int>(k / 3);
+      const double x = pixel % width + 0.5 - 0.5 * width, y = pixel / width + 0.5 - 0.5 * width;
+      if (std::hypot(x, y) < 0.15 * width) values.add(mean[k]);
+    }
+  }
+  EXPECT_NEAR(values.variance() / (values.mean() * values.mean()), 1 / 7.0, 0.05);
 }
 
 /// The lamp shines upwards, away from all else.

@@ -50,6 +50,34 @@ TEST(PhotonMap, MergesOnOneSideOfOneSurface) {
   EXPECT_NEAR(of_this_side, 0.5 / 3.14159265, 1e-6);
 }
 
+// Also of many more than a look-up within the radius visits.
+TEST(PhotonMap, VisitsTheNearest) {
+  constexpr std::size_t n = 25 * PointGrid::most_candidates, wanted = 10;
+  const V3f up(0, 0, 1);
+  Rng rng(2, 0, 0, Rng::Purpose::test);
+  PhotonMap map;
+  map.begin(1);
+  std::vector<float> distances;
+  for (std::size_t i = 0; i < n; ++i) {
+    const V3f x(rng.next() - 0.5F, rng.next() - 0.5F, 0);
+    map.keep(0, diffuse_vertex(x, up, up), 1);
+    distances.push_back(x.length2());
+  }
+  std::sort(distances.begin(), distances.end());
+  map.arrange_nearest(1, ThreadPool(2));
+  std::vector<PointTree::Found> found(wanted + 1);
+  std::vector<double> visited;
+  const double disc2 =
+      map.for_each_nearest(diffuse_vertex(V3f(0), up, up), found,
+                           [&](const Photon&, double d2) { visited.push_back(d2); });
+  EXPECT_EQ(float(disc2), distances[wanted]);
+  ASSERT_EQ(visited.size(), wanted);
+  std::sort(visited.begin(), visited.end());
+  for (std::size_t k = 0; k < wanted; ++k) {
+    EXPECT_FLOAT_EQ(float(visited[k] * disc2), distances[k]);
+  }
+}
+
 class PhotonMapInScene : public testing::Test {
  protected:
   PhotonMapInScene() : data_(test::load({"coated"})) {}
