@@ -1,5 +1,6 @@
 #include "renderer/integrators/integrators.h"
 
+#include "base/parallel/spares.h"
 #include "renderer/core/pass_seconds.h"
 #include "renderer/many_lights/light_filter.h"
 #include "renderer/many_lights/light_gather.h"
@@ -111,13 +112,17 @@ class ManyLights final : public Integrator {
     Rgb value;
     std::size_t path;
   };
-  /// A few pixels.
+  /// Working memory of a few pixels.
   struct Part {
     EyeBatch batch;
+    LightGather<V> gather;
     EmittersAhead ahead = {};                     // emitters of next event estimation
     std::array<int, EyeBatch::size> shaded = {};  // edges to the shading point; 0: none yet
     std::array<LightSum, EyeBatch::size> sums = {};
     ShadowQueue<Direct> shadows = {};
+    std::vector<ShadingPoint> points = {};
+    std::vector<std::size_t> paths = {};  // of each of `points`
+    std::vector<LightSum> of_points = {};
   };
 
   /// The data that all parts of a picture share.
@@ -136,13 +141,22 @@ class ManyLights final : public Integrator {
   /// Traces eye paths and gathers the lights at their shading points.
   Counters gather(const IterationContext& context, const Gathering& with, Image& image) const {
     const Tiling tiling(image, batch_side);
+    Spares<Part> parts;
+    const auto make = [&] {
+      return std::make_unique<Part>(
+          EyeBatch(settings_.max_depth),
+          LightGather<V>(context, with.terms, visibility_, {with.draw, with.range}));
+    };
     return for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
-      Part part{EyeBatch(settings_.max_depth)};
-      start_paths(context, image, tiling.tile(i), part.batch);
-      if (with.range.is_first()) count.samples += part.batch.states.size();
-      trace(context, with, part, count);
-      shine(context, with, part, count);
-      add(context, with, part, image, count);
+      parts.with(make, [&](Part& part) {
+        part.shaded.fill(0);
+        part.sums.fill({});
+        start_paths(context, image, tiling.tile(i), part.batch);
+        if (with.range.is_first()) count.samples += part.batch.states.size();
+        trace(context, with, part, count);
+        shine(with, part, count);
+        add(context, with, part, image, count);
+      });
     });
   }
 
@@ -258,26 +272,24 @@ class ManyLights final : public Integrator {
   }
 
   /// Gathers the lights at the part's shading points.
-  void shine(const IterationContext& context, const Gathering& with, Part& part,
-             Counters& counters) const {
-    std::vector<ShadingPoint> points;
-    std::vector<std::size_t> paths;
+  void shine(const Gathering& with, Part& part, Counters& counters) const {
+    part.points.clear();
+    part.paths.clear();
     for (std::size_t i = 0; i < part.batch.states.size(); ++i) {
       const int depth = part.shaded[i];
       if (depth == 0 || depth >= settings_.max_depth) continue;
-      points.emplace_back(part.batch.vertex(i, depth), depth, settings_.max_depth - 1 - depth,
-                          part.batch.pixels[i]);
-      paths.push_back(i);
+      part.points.emplace_back(part.batch.vertex(i, depth), depth, settings_.max_depth - 1 - depth,
+                               part.batch.pixels[i]);
+      part.paths.push_back(i);
     }
-    std::vector<LightSum> sums(points.size());
-    LightGather<V>(context, with.terms, visibility_, {with.draw, with.range}, counters)
-        .gather(points, sums);
-    for (std::size_t k = 0; k < sums.size(); ++k) {
+    part.of_points.assign(part.points.size(), {});
+    part.gather.gather(part.points, part.of_points, counters);
+    for (std::size_t k = 0; k < part.points.size(); ++k) {
+      LightSum& sum = part.sums[part.paths[k]] = part.of_points[k];
       if (with.filter != nullptr) {
-        with.filter->add(points[k], sums[k].value);
-        sums[k].value = V3d(0, 0, 0);  // until all pixels are there
+        with.filter->add(part.points[k], sum.value);
+        sum.value = V3d(0, 0, 0);  // until all pixels are there
       }
-      part.sums[paths[k]] = sums[k];
     }
   }
 

@@ -27,26 +27,24 @@ template <class Visibility>
 class LightGather {
  public:
   LightGather(const IterationContext& context, const VplContributions& terms,
-              const Visibility& visibility, const GatheredLights& gathered, Counters& counters)
+              const Visibility& visibility, const GatheredLights& gathered)
       : context_(context),
         terms_(terms),
         visibility_(visibility),
         draw_(gathered.draw),
-        range_(gathered.range),
-        counters_(counters) {}
+        range_(gathered.range) {}
 
   /// Writes the sum of `points[i]` to `sums[i]`, for at most Lanes::size points. Throws
   /// IterationStopped when the context's stop() returns true.
-  void gather(std::span<const ShadingPoint> points, std::span<LightSum> sums) {
-    std::vector<typename Visibility::At> states;
-    states.reserve(points.size());
-    for (const ShadingPoint& p : points) states.push_back(visibility_.at(p, context_));
+  void gather(std::span<const ShadingPoint> points, std::span<LightSum> sums, Counters& counters) {
+    states_.clear();
+    for (const ShadingPoint& p : points) states_.push_back(visibility_.at(p, context_));
     if (draw_ != nullptr) {
-      gather_drawn(points, states, sums);
+      gather_drawn(points, sums, counters);
     } else {
-      gather_all(points, states, sums);
+      gather_all(points, sums, counters);
     }
-    flush(sums);
+    flush(sums, counters);
   }
 
  private:
@@ -62,50 +60,49 @@ class LightGather {
   static constexpr std::size_t most_waiting = 2048;  // rays; they fit the second-level cache
   static constexpr std::size_t blocks_between_stops = 64;
 
-  using States = std::vector<typename Visibility::At>;
-
-  void gather_all(std::span<const ShadingPoint> points, States& states, std::span<LightSum> sums) {
+  void gather_all(std::span<const ShadingPoint> points, std::span<LightSum> sums,
+                  Counters& counters) {
     PointLanes lanes;
-    std::vector<std::size_t> ends;
+    std::array<std::size_t, Lanes::size> ends;  // of the blocks that light each point
     std::size_t blocks = 0;
-    for (const ShadingPoint& p : points) {
-      lanes.add(p);
-      ends.push_back(terms_.lights().blocks(p.edges));
-      blocks = std::max(blocks, ends.back());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      lanes.add(points[i]);
+      ends[i] = terms_.lights().blocks(points[i].edges);
+      blocks = std::max(blocks, ends[i]);
     }
     for (std::size_t b = range_.first; b < std::min(blocks, range_.end); ++b) {
       for_each_bit(terms_.may_light(b, lanes), [&](int bit) {
         const auto i = static_cast<std::size_t>(bit);
-        if (b < ends[i])
-          add(points[i], states[i], {b, i, VplContributions::all_lights, 1}, sums[i]);
+        if (b < ends[i]) add(points[i], {b, i, VplContributions::all_lights, 1}, sums[i], counters);
       });
-      end_block(sums);
+      end_block(sums, counters);
     }
   }
 
-  void gather_drawn(std::span<const ShadingPoint> points, States& states,
-                    std::span<LightSum> sums) {
+  void gather_drawn(std::span<const ShadingPoint> points, std::span<LightSum> sums,
+                    Counters& counters) {
     const std::vector<LightDraw::Drawn> drawn = draw_->draw(points, context_);
     for (std::size_t k = 0; k < drawn.size(); ++k) {
       const LightDraw::Drawn& d = drawn[k];
       if (!range_.contains(d.block)) continue;
-      add(points[d.point], states[d.point], d, sums[d.point]);
-      if (k + 1 == drawn.size() || drawn[k + 1].block != d.block) end_block(sums);
+      add(points[d.point], d, sums[d.point], counters);
+      if (k + 1 == drawn.size() || drawn[k + 1].block != d.block) end_block(sums, counters);
     }
   }
 
-  void end_block(std::span<LightSum> sums) {
+  void end_block(std::span<LightSum> sums, Counters& counters) {
     queue_tests();
-    if (queue_.size() >= most_waiting) flush(sums);
+    if (queue_.size() >= most_waiting) flush(sums, counters);
     if (++blocks_ % blocks_between_stops == 0 && context_.stop()) throw IterationStopped{};
   }
 
-  void add(const ShadingPoint& at, typename Visibility::At& state, const LightDraw::Drawn& drawn,
-           LightSum& sum) {
+  void add(const ShadingPoint& at, const LightDraw::Drawn& drawn, LightSum& sum,
+           Counters& counters) {
     const std::size_t block = drawn.block;
+    typename Visibility::At& state = states_[drawn.point];
     if (visibility_.hides(state, block)) return;
     terms_.evaluate(at, block, term_, drawn.lights, drawn.weight);
-    counters_.rejected += static_cast<std::uint64_t>(__builtin_popcountll(term_.rejected));
+    counters.rejected += static_cast<std::uint64_t>(__builtin_popcountll(term_.rejected));
     if (term_.lit == 0) return;
     visibility_.decide(state, block, term_, decision_);
     sum.value += V3d(double(sum_of_products(term_.r, decision_.untested)),
@@ -128,8 +125,8 @@ class LightGather {
     }
   }
 
-  void flush(std::span<LightSum> sums) {
-    queue_.flush(context_.scene.rays(), counters_,
+  void flush(std::span<LightSum> sums, Counters& counters) {
+    queue_.flush(context_.scene.rays(), counters,
                  [&](const Lit& l) { sums[l.point].value += V3d(l.value); });
   }
 
@@ -138,8 +135,8 @@ class LightGather {
   const Visibility& visibility_;
   LightDraw* draw_;
   BlockRange range_;
-  Counters& counters_;
   std::size_t blocks_ = 0;                            // done
+  std::vector<typename Visibility::At> states_;       // of each point
   std::array<std::vector<Test>, Lanes::size> tests_;  // of each light of the block
   ShadowQueue<Lit> queue_;
   Terms term_;

@@ -77,8 +77,8 @@ TEST(LightSums, AreNothingWhereAllLightsLieBehind) {
     const ShadingPoint turned(outside, 1, 3, 0);
     Counters counters;
     std::vector<LightSum> sums(1);
-    LightGather<ExactVisibility>(lit.context(1), lit.terms(), ExactVisibility{{}}, {}, counters)
-        .gather(std::span(&turned, 1), sums);
+    LightGather<ExactVisibility>(lit.context(1), lit.terms(), ExactVisibility{{}}, {})
+        .gather(std::span(&turned, 1), sums, counters);
     EXPECT_EQ(sums[0].value, V3d(0.0));
     EXPECT_EQ(sums[0].tests, 0U);
     EXPECT_EQ(counters.shadow_rays, 0U);

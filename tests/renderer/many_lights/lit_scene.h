@@ -128,7 +128,7 @@ std::vector<double> gathered(const LitScene& lit, const IterationContext& contex
                              std::uint64_t* tests = nullptr, LightDraw* draw = nullptr) {
   Counters counters;
   std::vector<LightSum> sums(points.size());
-  LightGather<Visibility>(context, lit.terms(), visibility, {draw}, counters).gather(points, sums);
+  LightGather<Visibility>(context, lit.terms(), visibility, {draw}).gather(points, sums, counters);
   std::vector<double> values;
   for (const LightSum& s : sums) {
     values.push_back(s.value.x);

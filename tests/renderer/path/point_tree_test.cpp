@@ -26,8 +26,8 @@ std::vector<V3f> walls_and_a_spot(std::size_t n) {
 }
 
 /// The squared distances of the nearest points, in order.
-std::vector<float> by_brute_force(const std::vector<V3f>& points, const V3f& x, float radius2,
-                                  std::size_t most) {
+std::vector<float> nearest_by_brute_force(const std::vector<V3f>& points, const V3f& x,
+                                          float radius2, std::size_t most) {
   std::vector<float> all;
   for (const V3f& p : points) {
     if (const float d2 = (p - x).length2(); d2 < radius2) all.push_back(d2);
@@ -60,7 +60,7 @@ TEST(PointTree, FindsWhatBruteForceFinds) {
             indices.push_back(index);
           }
           std::sort(distances.begin(), distances.end());
-          ASSERT_EQ(distances, by_brute_force(points, x, radius2, most)) << n << " points";
+          ASSERT_EQ(distances, nearest_by_brute_force(points, x, radius2, most)) << n << " points";
           std::sort(indices.begin(), indices.end());
           ASSERT_EQ(std::unique(indices.begin(), indices.end()), indices.end());
         }
