@@ -38,8 +38,14 @@ TEST(Rng, StreamsDifferInEveryPartOfTheirKey) {
   first.insert(Rng(1, 3, 3).next_u32());
   first.insert(Rng(1, 2, 4).next_u32());
   first.insert(Rng(1, 2, 3 | 1ULL << 32).next_u32());
-  first.insert(Rng(1, 2, 3, P::light_path).next_u32());
-  EXPECT_EQ(first.size(), 7U);
+  constexpr std::uint64_t last_path = (1ULL << 56) - 1;
+  for (const P p : {P::light_path, P::emission_ranges, P::test, P::visibility, P::gather,
+                    P::particles, P::branch, P::bootstrap, P::chain, P::groups, P::emission_means,
+                    P::eye_records, P::arriving_power, P::cache_points}) {
+    first.insert(Rng(1, 2, 3, p).next_u32());
+    first.insert(Rng(1, 2, last_path, p).next_u32());
+  }
+  EXPECT_EQ(first.size(), 6U + 2 * 14);
 }
 
 TEST(Rng, SameKeySameNumbers) {
