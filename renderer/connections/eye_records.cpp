@@ -44,7 +44,7 @@ void EyeRecords::place(const IterationContext& context, const LightVertices& lig
   std::vector<SurfacePoint> points;
   points.reserve(records_.size());
   for (const Record& r : records_) points.push_back(surface_point(r.vertex));
-  tree_.build(std::move(points), context.pool);
+  tree_.build(std::move(points));
 }
 
 RecordContributions contributions_to(const EyeRecords::Record& record,

@@ -104,7 +104,7 @@ Counters CachePoints::build(const LightPass& pass) {
                   });
     }
   });
-  tree_.build(points_, pass.context.pool);
+  tree_.build(points_);
   picture_variance_ = 0;
   for (std::size_t i = 0; i < variances_.size(); ++i) {
     picture_variance_ += weights_[i] * variances_[i] * scales_[i] * scales_[i];

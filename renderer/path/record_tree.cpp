@@ -6,12 +6,12 @@
 
 namespace lacuna {
 
-void RecordTree::build(std::vector<SurfacePoint> points, const ThreadPool& pool) {
+void RecordTree::build(std::vector<SurfacePoint> points) {
   points_ = std::move(points);
   std::vector<V3f> places;
   places.reserve(points_.size());
   for (const SurfacePoint& p : points_) places.push_back(p.x);
-  tree_.build(places, pool);
+  tree_.build(places);
 }
 
 std::size_t RecordTree::nearest(const SurfacePoint& at, std::span<std::uint32_t> found) const {

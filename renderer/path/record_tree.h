@@ -20,7 +20,7 @@ inline SurfacePoint surface_point(const Vertex& v) { return {v.surface.x, v.side
 /// A k-d tree of surface points, for the nearest neighbours of a point by distance and normal.
 class RecordTree {
  public:
-  void build(std::vector<SurfacePoint> points, const ThreadPool& pool);
+  void build(std::vector<SurfacePoint> points);
 
   /// The distance between two points times (2 - n . n'), scene units.
   static float rank(const SurfacePoint& a, const SurfacePoint& b) {

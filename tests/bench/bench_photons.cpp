@@ -51,13 +51,13 @@ int main(int argc, char** argv) {
   PointGrid grid;
   PointTree tree;
   grid.build(points, 0.01, one);  // an integrator keeps its memory, too
-  tree.build(points, one);
+  tree.build(points);
   // Radii for so many photons on average.
   fmt::print("{:>8} {:>10} {:>12} {:>12} {:>8} {:>12} {:>12} {:>8}\n", "photons", "radius",
              "build tree", "build grid", "ratio", "query tree", "query grid", "ratio");
   for (const double photons : {0.5, 5.0, 50.0}) {
     const double radius = std::sqrt(6 * photons / (3.14159265 * static_cast<double>(n)));
-    const double tree_build = seconds_of([&] { tree.build(points, one); });
+    const double tree_build = seconds_of([&] { tree.build(points); });
     const double grid_build = seconds_of([&] { grid.build(points, radius, one); });
     std::uint64_t in_tree = 0, in_grid = 0;
     const auto radius2 = static_cast<float>(radius) * static_cast<float>(radius);

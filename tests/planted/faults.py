@@ -173,8 +173,8 @@ FAULTS = [
           "caustic = caustic && v.delta;", "caustic = caustic || v.delta;"),
     Fault("the nearest photons fill the disc to the last", "renderer/path/photon_map.h",
           "inside = inside.subspan(1);", "inside = inside.subspan(0);"),
-    Fault("the nearest points of a half are not looked for", "renderer/path/point_tree.cpp",
-          "if (to_far < query.radius2) search", "if (to_far < 0.5F * query.radius2) search"),
+    Fault("points beyond the radius are found", "renderer/path/point_tree.cpp",
+          "if (!(distance2 < radius2)) return true;", "if (!(distance2 < 2 * radius2)) return true;"),
     # Multiple importance sampling.
     Fault("counts of splats left out", "renderer/path/mis.h",
           "if (t == 1) return splat;", "if (t == 1) return splat > 0 ? 1 : 0;"),

@@ -166,8 +166,8 @@ class Meeting {
   LightBatch light_;
 };
 
-/// Calls `test(guide, guided, directions)` with the guide that follows the BSDF, and with those that
-/// mix `directions` in: from the eye, from the lights, other ones from both.
+/// Calls `test(guide, guided, directions)` with the guide that follows the BSDF, and with those
+/// that mix `directions` in: from the eye, from the lights, other ones from both.
 template <class Test>
 void for_all_guides(const Test& test) {
   {
@@ -307,8 +307,7 @@ TEST_P(Weights, OfAllStrategiesAddUpToOne) {
     add_up_to_one(guide, guided, directions);
   });
 }
-void Weights::add_up_to_one(const Guide& guide, bool guided,
-                            const DirectionsOf& directions) const {
+void Weights::add_up_to_one(const Guide& guide, bool guided, const DirectionsOf& directions) const {
   std::vector<Counts> counts_and_photons = all_counts;
   counts_and_photons.push_back({"photons", {1, 0, 0, 0, 0.5}});  // which join nothing
   for (const Counts& counts : counts_and_photons) {

@@ -20,8 +20,7 @@ class SharedLight : public testing::Test {
       batch_.start(camera_, Rng(1, 0, i, Rng::Purpose::test), camera_.ray(x + 0.5F, y + 0.5F), i);
     }
     reuse_.begin(Rng(2, 0, 0, Rng::Purpose::test));
-    Walk walk(scene_, guide_, {.max_depth = 2, .last_scatters = true, .split_depth = 3},
-                         counters_);
+    Walk walk(scene_, guide_, {.max_depth = 2, .last_scatters = true, .split_depth = 3}, counters_);
     walk.trace_paths(
         batch_.states, [](std::size_t, int) {},
         [&](std::size_t i, int depth) {

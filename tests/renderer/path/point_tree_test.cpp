@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <vector>
 
@@ -43,7 +42,7 @@ TEST(PointTree, FindsWhatBruteForceFinds) {
   for (const std::size_t n : {0, 1, 8, 9, 100, 5000}) {
     const std::vector<V3f> points = walls_and_a_spot(n);
     PointTree tree;
-    tree.build(points, ThreadPool(2));
+    tree.build(points);
     for (int query = 0; query < 100; ++query) {
       const V3f x = query % 2 == 0 && n > 0 ? points[rng.below(n)]
                                             : V3f(rng.next(), rng.next(), rng.next() - 0.5F);
@@ -67,20 +66,6 @@ TEST(PointTree, FindsWhatBruteForceFinds) {
       }
     }
   }
-}
-
-TEST(PointTree, IsTheSameForAnyNumberOfThreads) {
-  const std::vector<V3f> points = walls_and_a_spot(20000);
-  PointTree one, three;
-  one.build(points, ThreadPool(1));
-  three.build(points, ThreadPool(3));
-  const auto indices = [](const PointTree& tree, const V3f& x) {
-    std::array<PointTree::Found, 50> found;
-    std::vector<std::uint32_t> all;
-    for (const auto& f : std::span(found).first(tree.nearest(x, 1, found))) all.push_back(f.index);
-    return all;
-  };
-  for (const V3f& x : walls_and_a_spot(200)) EXPECT_EQ(indices(one, x), indices(three, x));
 }
 
 }  // namespace

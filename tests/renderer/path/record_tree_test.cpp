@@ -54,7 +54,7 @@ TEST(RecordTree, FindsWhatBruteForceFinds) {
   for (const std::size_t n : {1, 2, 5, 100, 3000}) {
     const std::vector<SurfacePoint> points = random_points(rng, n);
     RecordTree tree;
-    tree.build(points, ThreadPool(2));
+    tree.build(points);
     for (int query = 0; query < 50; ++query) {
       const SurfacePoint at{V3f(rng.next(), rng.next(), rng.next()), random_normal(rng)};
       for (const std::size_t wanted : {1, 3, 8, 64}) {
@@ -83,8 +83,7 @@ TEST(RecordTree, FindsWhatBruteForceFinds) {
 TEST(RecordTree, PrefersWhatFacesTheSameWay) {
   RecordTree tree;
   const V3f up(0, 1, 0);
-  tree.build({{{1, 0, 0}, -up}, {{1.5F, 0, 0}, up}, {{9, 0, 0}, up}, {{9, 0, 1}, up}},
-             ThreadPool(1));
+  tree.build({{{1, 0, 0}, -up}, {{1.5F, 0, 0}, up}, {{9, 0, 0}, up}, {{9, 0, 1}, up}});
   std::array<std::uint32_t, 2> found{};
   ASSERT_EQ(tree.nearest({V3f(0, 0, 0), up}, found), 2U);
   EXPECT_EQ(found[0], 1U);  // 1.5 times 1
@@ -95,9 +94,9 @@ TEST(RecordTree, OfNothingFindsNothing) {
   RecordTree tree;
   std::array<std::uint32_t, 3> found{};
   EXPECT_EQ(tree.nearest({V3f(0, 0, 0), V3f(0, 1, 0)}, found), 0U);
-  tree.build({{V3f(0, 0, 0), V3f(0, 1, 0)}}, ThreadPool(1));
+  tree.build({{V3f(0, 0, 0), V3f(0, 1, 0)}});
   EXPECT_EQ(tree.nearest({V3f(0, 0, 0), V3f(0, 1, 0)}, found), 1U);
-  tree.build({}, ThreadPool(1));
+  tree.build({});
   EXPECT_EQ(tree.nearest({V3f(0, 0, 0), V3f(0, 1, 0)}, found), 0U) << "what was built before stays";
 }
 
