@@ -57,7 +57,7 @@ function choices(sources) {
     ...kinds.map(({ key, label }) => ({ key: errors + key, label, group: "Error against the reference" }))];
 }
 
-/// The picture of a choice for one source, and those from which it was computed, with names.
+/// The image of the selected layer or error, and the named images that it is computed from.
 async function pictureOf({ layers }, key) {
   const kind = key.startsWith(errors) && kindOf(key.slice(errors.length))?.key;
   if (!kind) return { picture: (await layers.read(key))[0], from: [] };

@@ -161,7 +161,7 @@ std::optional<JobFolder::Lock> Queue::try_folder(const JobEntry& entry) const {
 }
 
 /// Waits while another renderer holds the folder; one that an earlier run of this service started
-/// was told to stop and is killed after the grace period. False if a stop was requested.
+/// received a stop request and is killed after the grace period. False if a stop was requested.
 bool Queue::wait_until_free(const JobEntry& entry, const std::stop_token& ends) {
   const auto is_free = [&] {
     const std::lock_guard no_forks(fork_mutex());

@@ -60,7 +60,7 @@ std::int64_t megabytes_of(const JobSpec& spec, const RequestBasis& basis) {
   return static_cast<std::int64_t>(std::ceil(factor * estimated_bytes(spec, basis) / megabyte));
 }
 
-/// Options that Lacuna sets itself, or with which it could not find its jobs.
+/// Options that Lacuna sets itself, or that would keep it from following its jobs.
 constexpr std::string_view own_options[] = {
     "--array",    "--chdir",  "--clusters",  "--error",    "--help",      "--input",
     "--job-name", "--output", "--open-mode", "--parsable", "--test-only", "--usage",

@@ -46,7 +46,8 @@ class Rng {
     emission_means = 11,
     eye_records = 12,
     arriving_power = 13,
-    cache_points = 14
+    cache_points = 14,
+    passes = 15
   };
 
   /// `path` < 2^56; `iteration` < 2^32.

@@ -32,7 +32,7 @@ class FaceDirections final : public GuidingDistribution {
     lookup_.emplace(transform_, *label_);
     lattice_ = RegionLattice(*label_, settings_.mixing);
     faces_.prepare(context, *lookup_);
-    scene_regions_ = context.space.regions().regions.size();
+    regions_ = context.space.regions().regions.size();
   }
   void save(ByteWriter& out) const override { faces_.save(out); }
   void load(ByteReader& in) override { faces_.load(in); }
@@ -98,7 +98,7 @@ class FaceDirections final : public GuidingDistribution {
     return Pdf<SolidAngle>(static_cast<float>(sum / all));
   }
 
-  std::size_t cells() const override { return scene_regions_; }
+  std::size_t cells() const override { return regions_; }
   /// Where the guide samples alone there is no probability to learn.
   AutoNumber probability() const override {
     return settings_.guide_only ? AutoNumber{1} : settings_.probability;
@@ -107,7 +107,7 @@ class FaceDirections final : public GuidingDistribution {
   std::vector<std::uint32_t> update(const TrainingSamples& samples,
                                     const ThreadPool& pool) override {
     if constexpr (Faces::learns) {
-      pool.for_each(static_cast<int>(scene_regions_), [&](int r) {
+      pool.for_each(static_cast<int>(regions_), [&](int r) {
         const auto region = static_cast<std::uint32_t>(r);
         for (const TrainingSample& s : samples.of(region)) add(region, s);
         faces_.update(region);
@@ -142,7 +142,7 @@ class FaceDirections final : public GuidingDistribution {
   }
   RegionGuideSettings settings_;
   Faces faces_;
-  std::size_t scene_regions_ = 0;
+  std::size_t regions_ = 0;
   GridTransform transform_;
   const Grid3<std::uint32_t>* label_ = nullptr;
   std::optional<SurfaceLookup> lookup_;

@@ -22,7 +22,7 @@ class LearnedCells {
   explicit LearnedCells(std::size_t cells) : LearnedCells(std::vector<Directions>(cells)) {}
 
   std::size_t size() const { return cells_.size(); }
-  /// What the last round found; empty where it found nothing.
+  /// What is sampled in this round; empty where nothing is known.
   const Directions& directions(std::size_t cell) const { return cells_[cell].sampling; }
   /// Vertices of paths in this round.
   double vertices(std::size_t cell) const { return cells_[cell].vertices; }

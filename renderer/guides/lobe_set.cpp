@@ -34,12 +34,6 @@ std::optional<V3f> LobeSet::sample(const V3f& x, float s, Rng::FinePoint point) 
   return direction_around(d / length, versine, u.y);
 }
 
-std::vector<float> LobeSet::powers() {
-  std::vector<float> all;
-  for (std::size_t k = 0; k < doublings; ++k) all.push_back(static_cast<float>(1U << k));
-  return all;
-}
-
 std::array<float, LobeSet::doublings> LobeSet::pdf_of_powers(const V3f& x, const V3f& w) const {
   std::array<Float8, doublings> sums;
   for_each_cosine(x, w, [&](Float8 cosine, Float8 share) {

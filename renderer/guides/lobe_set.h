@@ -54,9 +54,9 @@ class LobeSet {
   }
 
   static constexpr std::size_t doublings = 10;
-  /// 1, 2, 4, ... 2^(doublings - 1).
-  static std::vector<float> powers();
-  /// The densities for the strengths powers(): each power is the square of the one before.
+  /// 2^k, k < doublings.
+  static constexpr float power(std::size_t k) { return static_cast<float>(1U << k); }
+  /// The densities for the strengths power(k): each is computed from the square of the one before.
   std::array<float, doublings> pdf_of_powers(const V3f& x, const V3f& w) const;
 
  private:
@@ -66,7 +66,7 @@ class LobeSet {
     std::array<float, 8> x, y, z, share;
   };
 
-  /// How often a number is squared for its power `s`, if it is one of powers(): cheaper than
+  /// How often a number is squared for its power `s`, if it is one of power(k): cheaper than
   /// others.
   static std::optional<int> squares_of(float s) {
     const auto bits = std::bit_cast<std::uint32_t>(s);

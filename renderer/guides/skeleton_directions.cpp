@@ -19,8 +19,9 @@ void SkeletonDirections::prepare(const PrepareContext& context) {
           : arriving_power(context.scene, *lookup_, nodes, rays_, context.pool);
   importance_nodes_ = static_cast<std::size_t>(
       std::count_if(importance.begin(), importance.end(), [](double f) { return f > 0; }));
-  for (const std::vector<Target>& of :
-       skeleton_targets(context, importance, aim_, all_nodes(nodes))) {
+  std::vector<std::uint32_t> all(nodes);
+  std::iota(all.begin(), all.end(), 0U);
+  for (const std::vector<Target>& of : skeleton_targets(context, importance, aim_, all)) {
     lobes_.emplace_back(of);
   }
   if (strength_.is_auto()) {
@@ -30,7 +31,7 @@ void SkeletonDirections::prepare(const PrepareContext& context) {
 }
 
 SkeletonDirections::Strengths SkeletonDirections::weights(const Strengths& found) {
-  // None is lost for ever: each begins with this share.
+  // Each strength keeps this share of all, so that its weight can grow again.
   constexpr double given_share = 0.05;
   const double all = std::accumulate(found.begin(), found.end(), 0.0);
   Strengths weights;
@@ -39,6 +40,12 @@ SkeletonDirections::Strengths SkeletonDirections::weights(const Strengths& found
     weights[k] = (1 - given_share) * share + given_share / double(found.size());
   }
   return weights;
+}
+
+double SkeletonDirections::mixture(const Strengths& weights, const Densities& densities) {
+  double sum = 0;
+  for (std::size_t k = 0; k < weights.size(); ++k) sum += weights[k] * double(densities[k]);
+  return sum;
 }
 
 std::optional<V3f> SkeletonDirections::sample(const GuidedVertex& at, Rng::FinePoint u,
@@ -50,17 +57,14 @@ std::optional<V3f> SkeletonDirections::sample(const GuidedVertex& at, Rng::FineP
   std::size_t k = 0;
   while (k + 1 < weights.size() && left >= weights[k]) left -= weights[k++];
   u.x = static_cast<std::uint64_t>(std::min(left / weights[k], 1 - 0x1p-53) * 0x1p64);
-  return lobes.sample(at.x(), LobeSet::powers()[k], u);
+  return lobes.sample(at.x(), LobeSet::power(k), u);
 }
 
 Pdf<SolidAngle> SkeletonDirections::pdf(const GuidedVertex& at, const V3f& w) const {
   const LobeSet& lobes = lobes_[at.cell.index];
   if (!strength_.is_auto()) return lobes.pdf(at.x(), w, fixed());
   const auto densities = lobes.pdf_of_powers(at.x(), w);
-  const Strengths& weights = weights_[at.cell.index];
-  double sum = 0;
-  for (std::size_t k = 0; k < weights.size(); ++k) sum += weights[k] * double(densities[k]);
-  return Pdf<SolidAngle>(static_cast<float>(sum));
+  return Pdf<SolidAngle>(static_cast<float>(mixture(weights_[at.cell.index], densities)));
 }
 
 std::vector<std::uint32_t> SkeletonDirections::update(const TrainingSamples& samples,
@@ -72,10 +76,7 @@ std::vector<std::uint32_t> SkeletonDirections::update(const TrainingSamples& sam
     for (const TrainingSample& s : samples.of(node)) {
       if (!(s.pdf > 0) || !(s.reflected > 0)) continue;
       const auto densities = lobes_[node].pdf_of_powers(s.x, s.w);
-      double sum = 0;
-      for (std::size_t k = 0; k < found.size(); ++k) {
-        sum += weights_[node][k] * double(densities[k]);
-      }
+      const double sum = mixture(weights_[node], densities);
       if (!(sum > 0)) continue;
       for (std::size_t k = 0; k < found.size(); ++k) {
         found[k] += double(s.reflected) * weights_[node][k] * double(densities[k]) / sum;

@@ -55,10 +55,13 @@ class SkeletonDirections final : public GuidingDistribution {
                                     const ThreadPool& pool) override;
 
  private:
-  /// Of each strength of LobeSet::powers().
+  /// Of each strength LobeSet::power(k).
   using Strengths = std::array<double, LobeSet::doublings>;
+  using Densities = std::array<float, LobeSet::doublings>;
   /// The weights of a node's strengths, which add up to 1.
   static Strengths weights(const Strengths& found);
+  /// The density of a mixture, of those of its strengths.
+  static double mixture(const Strengths& weights, const Densities& densities);
   float fixed() const { return static_cast<float>(*strength_.value); }
 
   AutoNumber strength_, probability_;

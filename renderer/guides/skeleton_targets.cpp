@@ -1,7 +1,6 @@
 #include "renderer/guides/skeleton_targets.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace lacuna {
 
@@ -11,12 +10,6 @@ namespace {
 constexpr std::size_t nodes_of_part = 16;
 
 }  // namespace
-
-std::vector<std::uint32_t> all_nodes(std::size_t count) {
-  std::vector<std::uint32_t> nodes(count);
-  std::iota(nodes.begin(), nodes.end(), 0U);
-  return nodes;
-}
 
 std::vector<std::vector<Target>> skeleton_targets(const PrepareContext& context,
                                                   std::span<const double> importance,

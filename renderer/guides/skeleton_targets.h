@@ -9,11 +9,8 @@
 
 namespace lacuna {
 
-/// 0, 1, ... `count` - 1.
-std::vector<std::uint32_t> all_nodes(std::size_t count);
-
-/// Of each of `nodes` of the skeleton, targets at its importance points (Noel 2015, 9.2, 9.3).
-/// `importance`: f of each node (eq. 164).
+/// For each of `nodes` of the skeleton, the targets of its lobes: its importance points (Noel
+/// 2015, 9.2, 9.3). `importance`: f of each node (eq. 164).
 std::vector<std::vector<Target>> skeleton_targets(const PrepareContext& context,
                                                   std::span<const double> importance,
                                                   ImportanceAim aim,

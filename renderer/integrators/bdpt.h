@@ -125,8 +125,7 @@ class Bdpt : public GuidedIntegrator {
   void start(const TilePass& pass, const Tile& block, EyePaths& batch) const {
     start_paths(pass.context, pass.image, block, batch);
     pass.counters.samples += batch.states.size();
-    batch.gathers =
-        guide_.learns() && guide_.learns_from(block.pixel(0), pass.context, settings_.max_depth);
+    batch.gathers = guide_.learns_from(block.pixel(0), pass.context, settings_.max_depth);
     if (batch.gathers) batch.gathered.clear();
   }
   /// Continues with the branches of the paths; false if there are none left.

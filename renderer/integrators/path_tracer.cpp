@@ -35,14 +35,6 @@ void PathTracer::prepare(const PrepareContext& context) {
   seen_.prepare(context);
 }
 
-struct PathTracer::Batch : EyeBatch {
-  using EyeBatch::EyeBatch;
-  EmittersAhead ahead{};          // the emitters of next event estimation
-  ShadowQueue<Direct> shadows;    // and what they give
-  GatheredLight gathered{*this};  // for a guide that learns
-  bool gathers = false;
-};
-
 /// Renders the paths of a tile.
 class PathTracer::TilePass {
  public:
@@ -78,18 +70,17 @@ class PathTracer::TilePass {
     tracer_.seen_.add(context_, block, counters_,
                       [&](std::size_t pixel, const Rgb& value) { add(pixel, value); });
     counters_.samples += batch_.states.size();
-    const bool learns = tracer_.guide_.learns() &&
-                        tracer_.guide_.learns_from(block.pixel(0), context_, settings_.max_depth);
-    if (learns && !batch_.gathers) trace_shadows();  // those that wait are of other paths
-    batch_.gathers = learns;
+    const bool learns = tracer_.guide_.learns_from(block.pixel(0), context_, settings_.max_depth);
+    if (learns && !gathers_) trace_shadows();  // those that wait are of other paths
+    gathers_ = learns;
     reuse_.begin(Rng(context_.seed, 0, batch_.pixels[0], Rng::Purpose::groups));
     do {
-      if (batch_.gathers) batch_.gathered.clear();
+      if (gathers_) gathered_.clear();
       trace_paths();
-      if (batch_.gathers || reuse_.active()) trace_shadows();
-      if (batch_.gathers) {
+      if (gathers_ || reuse_.active()) trace_shadows();
+      if (gathers_) {
         reuse_.restore_throughput();
-        batch_.gathered.record(samples);
+        gathered_.record(samples);
       }
       batch_.store(walk_.branches());
     } while (batch_.resume());
@@ -102,13 +93,12 @@ class PathTracer::TilePass {
     walk_.trace_paths(
         batch_.states, [this](std::size_t i, int depth) { choose_emitter(i, depth); },
         [this](std::size_t i, int depth) { visit(i, depth); },
-        SelectTogether(direct_.next_event(), direct_.draws(), settings_.max_depth, batch_,
-                       batch_.ahead));
+        SelectTogether(direct_.next_event(), direct_.draws(), settings_.max_depth, batch_, ahead_));
   }
 
   void choose_emitter(std::size_t i, int depth) {
     if (direct_.draws() && depth < settings_.max_depth) {
-      batch_.ahead[i] = direct_.choose_ahead(batch_.states[i].rng);
+      ahead_[i] = direct_.choose_ahead(batch_.states[i].rng);
     }
   }
 
@@ -118,23 +108,22 @@ class PathTracer::TilePass {
     const bool apart = depth == 1 && tracer_.seen_.rays(batch_.pixels[i]) > 0;
     const Rgb emission = apart ? Rgb(0, 0, 0) : direct_.met(v, batch_.vertex(i, depth - 1), depth);
     reuse_.reach(i, depth);
-    if (batch_.gathers) batch_.gathered.reach(i, depth);
+    if (gathers_) gathered_.reach(i, depth);
     if (!is_black(emission)) contribute(batch_.pixels[i], i, depth, 0, emission);
     const bool goes_on = v.kind == Vertex::Kind::surface && depth < settings_.max_depth;
     if (!goes_on || !direct_.draws() || !v.bsdf->connectible()) return;
-    direct_.draw(v, depth, batch_.ahead[i], batch_.states[i].rng,
+    direct_.draw(v, depth, ahead_[i], batch_.states[i].rng,
                  [&](const Ray& ray, const Rgb& value, const V3f& w) {
                    if (depth == 2) reuse_.look(i, w);
-                   batch_.shadows.add(ray, {value, batch_.pixels[i], static_cast<std::uint16_t>(i),
-                                            static_cast<std::uint16_t>(depth)});
+                   shadows_.add(ray, {value, batch_.pixels[i], static_cast<std::uint16_t>(i),
+                                      static_cast<std::uint16_t>(depth)});
                  });
   }
 
   /// Traces the shadow rays that wait, and adds what they find.
   void trace_shadows() {
-    batch_.shadows.flush(context_.scene.rays(), counters_, [&](const Direct& d) {
-      contribute(d.pixel, d.path, d.depth, 1, d.value);
-    });
+    shadows_.flush(context_.scene.rays(), counters_,
+                   [&](const Direct& d) { contribute(d.pixel, d.path, d.depth, 1, d.value); });
   }
 
   /// The sink of all contributions: `value` of the path `i` of `pixel` by the strategy `s` at its
@@ -147,7 +136,7 @@ class PathTracer::TilePass {
     } else {
       add(pixel, value);
     }
-    if (batch_.gathers) batch_.gathered.add(i, depth, shared ? value * reuse_.own(i) : value);
+    if (gathers_) gathered_.add(i, depth, shared ? value * reuse_.own(i) : value);
   }
 
   void add(std::size_t pixel, const Rgb& value) {
@@ -160,7 +149,11 @@ class PathTracer::TilePass {
   Image& image_;
   Counters& counters_;
   DirectLight direct_;
-  Batch batch_;
+  EyeBatch batch_;
+  EmittersAhead ahead_{};           // of next event estimation
+  ShadowQueue<Direct> shadows_;     // its contributions
+  GatheredLight gathered_{batch_};  // for a guide that learns
+  bool gathers_ = false;
   PathReuse reuse_;
   Walk walk_;
 };

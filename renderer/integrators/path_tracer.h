@@ -17,7 +17,6 @@ class PathTracer final : public GuidedIntegrator {
   Counters iterate(const IterationContext& context, Image& image) override;
 
  private:
-  struct Batch;
   class TilePass;
 
   Counters render_passes(const IterationContext& context, Image& image);

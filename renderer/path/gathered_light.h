@@ -84,7 +84,7 @@ class GatheredLight {
 
   const EyeBatch& batch_;
   std::vector<Rgb> light_;
-  std::vector<float> split_;                          // Roulette::split at each vertex
+  std::vector<float> split_;                          // RouletteState::split at each vertex
   std::array<int, EyeBatch::size> first_{}, last_{};  // depths of the vertices recorded
 };
 

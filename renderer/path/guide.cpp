@@ -86,6 +86,7 @@ double Guide::share(const IterationContext& context, int edges) const {
 }
 
 bool Guide::learns_from(const V2i& pixel, const IterationContext& context, int edges) const {
+  if (!learns()) return false;
   const auto group = static_cast<std::uint64_t>(pixel.x / 8 + pixel.y / 8);  // diagonal stripes
   const auto apart = static_cast<std::uint64_t>(share(context, edges));
   return (group + context.iteration) % apart == 0;

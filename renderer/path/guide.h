@@ -46,8 +46,9 @@ class Guide {
   bool learns() const {
     return eye_ && (eye_->learns() || !fixed_probability_ || reflected_.learns());
   }
-  /// Whether the paths of the 8 x 8 pixels around `pixel` give training samples. Of large pictures
-  /// only a share does, so that an iteration keeps about most_samples. `edges`: the most of a path.
+  /// Whether the paths of the block of 8 x 8 pixels of `pixel` give training samples: none where
+  /// the guide does not learn, a share of a large picture's, so that an iteration keeps about
+  /// most_samples. `edges`: the maximum of a path.
   bool learns_from(const V2i& pixel, const IterationContext& context, int edges) const;
   static constexpr double most_samples = 1 << 20;  ///< 72 MiB
   /// The first pass of an iteration. update() needs the samples of each.

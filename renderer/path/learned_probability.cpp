@@ -1,5 +1,6 @@
 #include "renderer/path/learned_probability.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -11,6 +12,11 @@ namespace {
 
 /// Of Adam, as published; the rate is that of Mueller 2019.
 constexpr double rate = 0.01, decay_of_mean = 0.9, decay_of_square = 0.999, tiny = 1e-30;
+
+/// The parameter's range. c >= most_guided / (1 + e^7) = 8e-4: the guide's density is recovered
+/// from the mixture's, whose float is exact to some 1e-6, with an error of 1e-6 / c of the BSDF's.
+/// Mueller bounds the parameter by a penalty, whose weight depends on the unit of light.
+constexpr double bound = 7;
 
 double sigmoid(double t) { return 1 / (1 + std::exp(-t)); }
 
@@ -35,7 +41,7 @@ void LearnedProbability::Cell::step(double gradient) {
   first_mean *= decay_of_mean;
   first_square *= decay_of_square;
   const double m = mean / (1 - first_mean), v = square / (1 - first_square);
-  parameter -= rate * m / (std::sqrt(v) + tiny);
+  parameter = std::clamp(parameter - rate * m / (std::sqrt(v) + tiny), -bound, bound);
 }
 
 void LearnedProbability::learn(Cell& cell, std::span<const TrainingSample> samples) {
@@ -73,7 +79,7 @@ void LearnedProbability::load(ByteReader& in, std::size_t cells) {
   std::vector<Cell> saved = in.get_vector<Cell>();
   bool good = saved.size() == cells;
   for (const Cell& c : saved) {
-    good = good && std::isfinite(c.parameter) && std::isfinite(c.mean) && c.square >= 0 &&
+    good = good && std::abs(c.parameter) <= bound && std::isfinite(c.mean) && c.square >= 0 &&
            c.first_mean <= 1 && c.first_square <= 1 && c.probability >= 0 &&
            c.probability <= most_guided;
   }

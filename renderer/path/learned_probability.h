@@ -26,7 +26,7 @@ class LearnedProbability {
   explicit LearnedProbability(std::size_t cells) : cells_(cells) {}
 
   std::size_t size() const { return cells_.size(); }
-  /// Of a cell, in (0, most_guided).
+  /// Of a cell, within [8e-4, most_guided].
   float operator[](std::size_t cell) const { return static_cast<float>(cells_[cell].probability); }
   double mean() const;
 

@@ -6,12 +6,13 @@
 #include <stdexcept>
 
 #include "base/storage/bytes.h"
+#include "renderer/core/rng.h"
 
 namespace lacuna {
 
-/// The passes of an iteration after which a guide learns. The first iteration is divided: a pass
-/// renders 1/64 of its blocks of pixels, and each of the others as many as all before it, so that
-/// most of its paths follow what earlier ones found. Later iterations are one pass.
+/// A pass of an iteration, after which a guide learns. The first iteration is divided: its first
+/// pass renders 1/64 of the blocks of 8 x 8 pixels, each of the others as many as all before it, so
+/// that most of its paths use what earlier ones learned. Later iterations are one pass.
 struct LearningPass {
   static constexpr int parts = 64;
 
@@ -22,13 +23,11 @@ struct LearningPass {
   /// picture at random.
   bool renders(int x, int y) const {
     if (first == 0 && end == parts) return true;
-    std::uint64_t h = static_cast<std::uint64_t>(x / 8) << 32 | static_cast<std::uint32_t>(y / 8);
-    h = (h ^ h >> 31) * 0x9e3779b97f4a7c15U;
-    h = (h ^ h >> 29) * 0xbf58476d1ce4e5b9U;
-    const int part = static_cast<int>(h >> 58);
+    const auto block = static_cast<std::uint64_t>(x / 8) << 28 | static_cast<std::uint64_t>(y / 8);
+    const auto part = static_cast<int>(Rng(0, 0, block, Rng::Purpose::passes).below(parts));
     return part >= first && part < end;
   }
-  /// The next pass of an iteration that is `divided`; its `first` is `parts` after the last one.
+  /// The next pass of the iteration; after the last one its `first` is `parts`.
   LearningPass next() const { return {end, end == parts ? parts : 2 * end}; }
   static LearningPass begin(bool divided) { return {0, divided ? 1 : int{parts}}; }
 };

@@ -148,7 +148,7 @@ void PhotonMap::arrange(double radius, const ThreadPool& pool) {
 
 void PhotonMap::arrange_nearest(double radius, const ThreadPool& pool) {
   place(radius, pool);
-  tree_.build(positions_);
+  tree_.build({positions_.begin(), positions_.end()});
   each_photon(pool, [&](std::size_t i, const Photon& p) { photons_[i] = p; });
 }
 

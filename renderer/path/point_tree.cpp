@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t most_in_leaf = 8;
 
-/// The interface through which nanoflann reads the points.
+/// The data set that nanoflann reads.
 struct Points {
   std::vector<V3f> list;
   std::size_t kdtree_get_point_count() const { return list.size(); }
@@ -22,7 +22,7 @@ struct Points {
   }
 };
 
-/// The interface through which it returns them: a heap, the farthest first.
+/// The result set that nanoflann fills: a heap, the farthest first.
 struct Nearest {
   float radius2;  // of the farthest point that may still be found
   std::span<PointTree::Found> found;
@@ -47,8 +47,8 @@ struct PointTree::Impl {
   using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Points>,
                                                     Points, 3, std::uint32_t>;
 
-  explicit Impl(std::span<const V3f> list)
-      : points{{list.begin(), list.end()}},
+  explicit Impl(std::vector<V3f> list)
+      : points{std::move(list)},
         index(3, points, nanoflann::KDTreeSingleIndexAdaptorParams(most_in_leaf)) {
     index.buildIndex();
   }
@@ -61,8 +61,8 @@ PointTree::~PointTree() = default;
 PointTree::PointTree(PointTree&&) noexcept = default;
 PointTree& PointTree::operator=(PointTree&&) noexcept = default;
 
-void PointTree::build(std::span<const V3f> points) {
-  impl_ = points.empty() ? nullptr : std::make_unique<Impl>(points);
+void PointTree::build(std::vector<V3f> points) {
+  impl_ = points.empty() ? nullptr : std::make_unique<Impl>(std::move(points));
 }
 
 std::size_t PointTree::nearest(const V3f& x, float radius2, std::span<Found> found) const {

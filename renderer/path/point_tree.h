@@ -18,7 +18,7 @@ class PointTree {
   PointTree& operator=(PointTree&&) noexcept;
 
   /// At most 2^32 - 1 points.
-  void build(std::span<const V3f> points);
+  void build(std::vector<V3f> points);
 
   struct Found {
     float distance2;

@@ -11,7 +11,7 @@ void RecordTree::build(std::vector<SurfacePoint> points) {
   std::vector<V3f> places;
   places.reserve(points_.size());
   for (const SurfacePoint& p : points_) places.push_back(p.x);
-  tree_.build(places);
+  tree_.build(std::move(places));
 }
 
 std::size_t RecordTree::nearest(const SurfacePoint& at, std::span<std::uint32_t> found) const {

@@ -4,27 +4,9 @@
 #include <cmath>
 
 #include "renderer/path/guide.h"
+#include "renderer/path/path_state.h"
 
 namespace lacuna {
-
-/// What Russian roulette and splitting keep of a path.
-struct RouletteState {
-  /// BsdfSample::pdf_ratio of all vertices: throughput times this scale is the throughput that
-  /// sampling the BSDF would have left. A guide lowers throughput where it sends many paths, so
-  /// roulette by throughput alone would end just those.
-  float scale = 1;
-  /// The path's throughput times this is what roulette goes by. Of an eye path: the largest
-  /// component of what PathReuse keeps apart from the throughput; of a light path: 1 / that of the
-  /// first edge.
-  float carried_before = 1;
-  int reference = 0;  ///< depth of the first vertex whose BSDF has a density; 0: none yet
-  /// Luminance that the path was expected to add behind that vertex; below 0 until it is needed.
-  float expected = -1;
-  float least = 0;  ///< luminance of throughput below which the path is not split
-  float split = 1;  ///< number of equal parts it was split into since it started or branched off
-  /// The window has replaced roulette by throughput at the last vertex.
-  bool windowed = false;
-};
 
 /// Decides how often a path goes on. A path that follows the BSDF ends by its throughput, from
 /// `depth` edges on. A guided path is kept within a window: adjoint-driven Russian roulette and
@@ -42,47 +24,47 @@ class Roulette {
   Roulette(const Guide& guide, const Limits& limits)
       : guide_(guide), limits_(limits), windows_(guide.guides(limits.transport)) {}
 
-  /// The number of equal parts that the path goes on in from its last vertex `v`, after `depth`
-  /// edges; 0: it ends. `reference`: the vertex of RouletteState::reference. Changes `throughput`
-  /// where the path survives; that of the parts is the caller's.
-  int parts(RouletteState& state, const Vertex& v, int depth, std::span<const Vertex> path,
-            Rgb& throughput, Rng& rng) const {
+  /// The number of equal parts in which path `w` continues from its last vertex `v`; 0: it ends.
+  /// The throughput of a survivor is divided by its probability of survival; the caller divides it
+  /// among the parts.
+  int parts(PathState& w, const Vertex& v) const {
+    RouletteState& state = w.roulette;
     state.windowed = false;
     if (!windows_ || !v.bsdf->connectible()) return 1;
-    const float carried = state.carried_before * luminance(throughput);
+    const float carried = state.carried_before * luminance(w.throughput);
     if (state.reference == 0) {
-      state.reference = depth;
+      state.reference = w.depth;
       state.least = carried * least_part;
       return 1;
     }
     // What the guide has added to the weight.
     const float guiding_weight = 1 / state.scale;
-    if (guiding_weight <= high && depth < limits_.depth) return 1;
+    if (guiding_weight <= high && w.depth < limits_.depth) return 1;
     if (state.expected < 0) {
-      const Vertex& first = path[static_cast<std::size_t>(state.reference)];
+      const Vertex& first = w.path[static_cast<std::size_t>(state.reference)];
       state.expected = state.least / least_part * expected_behind(first);
     }
     if (!(state.expected > 0)) return 1;
     const float ratio = carried * expected_behind(v) / state.expected;
     state.windowed = true;
-    if (ratio < low && depth >= limits_.depth) {
-      return survive(state, std::max(ratio / low, min_survival), throughput, rng) ? 1 : 0;
+    if (ratio < low && w.depth >= limits_.depth) {
+      return survive(w, std::max(ratio / low, min_survival)) ? 1 : 0;
     }
     // Splitting undoes what the guide has added to the weight, and no more: to split all paths that
     // come into the light costs more time than it saves noise.
     const float excess = std::min({ratio, guiding_weight, float{max_parts}});
-    const bool splits = excess > high && carried > state.least && depth >= limits_.split_depth;
+    const bool splits = excess > high && carried > state.least && w.depth >= limits_.split_depth;
     return splits ? static_cast<int>(std::lround(excess)) : 1;
   }
 
   /// Roulette by throughput, after the next direction is sampled, where the window has not decided.
   /// False: the path ends.
-  bool goes_on(RouletteState& state, int depth, Rgb& throughput, Rng& rng) const {
-    if (depth < limits_.depth || state.windowed) return true;
+  bool goes_on(PathState& w) const {
+    if (w.depth < limits_.depth || w.roulette.windowed) return true;
     const float survival =
-        std::min(1.0F, state.carried_before * max_component(throughput) * state.scale);
-    if (!rng.decide(survival)) return false;
-    throughput /= survival;
+        std::min(1.0F, w.roulette.carried_before * max_component(w.throughput) * w.roulette.scale);
+    if (!w.rng.decide(survival)) return false;
+    w.throughput /= survival;
     return true;
   }
 
@@ -94,10 +76,10 @@ class Roulette {
   // therefore bounds their number, and the time that wrong expectations cost.
   static constexpr float least_part = 1.0F / 64;
 
-  static bool survive(RouletteState& state, float survival, Rgb& throughput, Rng& rng) {
-    if (!rng.decide(survival)) return false;
-    throughput /= survival;
-    state.scale *= survival;
+  static bool survive(PathState& w, float survival) {
+    if (!w.rng.decide(survival)) return false;
+    w.throughput /= survival;
+    w.roulette.scale *= survival;
     return true;
   }
 

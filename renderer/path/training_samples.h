@@ -9,16 +9,17 @@ namespace lacuna {
 
 /// A vertex of a finished eye path and the light that arrived there: what guides learn from.
 struct TrainingSample {
-  GuidingCell cell;     ///< with the probability with which the path followed the distribution
-  V3f x;                ///< scene units
-  V3f n;                ///< unit; the geometric normal on the side of the previous vertex
-  V3f w{0, 0, 0};       ///< unit; the direction in which the path went on
-  float distance = 0;   ///< to the next vertex, scene units; infinite to the background
-  float cosine = 0;     ///< |w . n_s|, with the shading normal
-  float pdf = 0;        ///< of `w`, per steradian; 0: the path ended, or left by a delta lobe
-  float bsdf_pdf = 0;   ///< density of `w` by the BSDF alone
-  float radiance = 0;   ///< luminance from `w`, as estimated by the rest of the path
-  float reflected = 0;  ///< luminance that the vertex scatters on: an estimate of one sample
+  GuidingCell cell;    ///< with the probability with which the path followed the distribution
+  V3f x;               ///< scene units
+  V3f n;               ///< unit; the geometric normal on the side of the previous vertex
+  V3f w{0, 0, 0};      ///< unit; the direction in which the path went on
+  float distance = 0;  ///< to the next vertex, scene units; infinite to the background
+  float cosine = 0;    ///< |w . n_s|, with the shading normal
+  float pdf = 0;       ///< of `w`, per steradian; 0: the path ended, or left by a delta lobe
+  float bsdf_pdf = 0;  ///< density of `w` by the BSDF alone
+  float radiance = 0;  ///< luminance from `w`, as estimated by the rest of the path
+  /// Luminance that the path gathers behind the vertex over that of its throughput there.
+  float reflected = 0;
 };
 
 /// The training samples of an iteration, or a pass of it, by cell. The order within a cell is that
@@ -28,13 +29,12 @@ class TrainingSamples {
  public:
   using Part = std::vector<TrainingSample>;
 
-  /// `share`: of an iteration.
+  /// `share`: the part of an iteration that the samples come from.
   TrainingSamples(std::span<const Part> parts, std::size_t cells, double share = 1);
 
   double share() const { return share_; }
 
   std::size_t size() const { return sorted_.size(); }
-  std::size_t cells() const { return first_.size() - 2; }
   std::span<const TrainingSample> of(std::size_t cell) const {
     return std::span(sorted_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
   }

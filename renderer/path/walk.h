@@ -27,20 +27,6 @@ struct WalkLimits {
   TechniqueCounts counts = {};
 };
 
-/// The state of a random walk between two edges.
-struct PathState {
-  Rng rng;
-  Ray ray;                  ///< the next edge
-  Rgb throughput{1, 1, 1};  ///< along `ray`
-  Pdf<SolidAngle> p;        ///< density with which the direction of `ray` was sampled
-  std::span<Vertex> path;   ///< room for max_depth + 1 vertices; path[0] is set
-  /// mis_partial_sum() of the last vertex over its density. At vertex 0 of a light path whose
-  /// emitter can be hit: TechniqueCounts::none over its density.
-  double mis_partial = 0;
-  int depth = 0;  ///< edges traced: path[depth] is the last vertex
-  RouletteState roulette = {};
-};
-
 /// One part of a path that was split at its last vertex. It continues there on its own.
 struct PathBranch {
   PathState state{.rng = Rng(0, 0, 0), .ray = {}, .p = {}, .path = {}};
@@ -194,7 +180,7 @@ class Walk {
   bool continues(PathState& w, std::size_t walk) {
     const Vertex& v = vertex(w, w.depth);
     if (v.kind == Vertex::Kind::background || w.depth == limits_.max_depth) return false;
-    const int parts = roulette_.parts(w.roulette, v, w.depth, w.path, w.throughput, w.rng);
+    const int parts = roulette_.parts(w, v);
     if (parts > 1) split(w, v, parts, walk);
     return parts > 0;
   }
@@ -225,7 +211,7 @@ class Walk {
     if (!next) return false;
     w.throughput *= next->weight;
     w.roulette.scale *= next->pdf_ratio;
-    if (!roulette_.goes_on(w.roulette, depth, w.throughput, w.rng)) return false;
+    if (!roulette_.goes_on(w)) return false;
     v.delta = next->delta;
     // Deltas cancel in all ratios of densities, if both walks leave them out.
     w.p = next->delta ? Pdf<SolidAngle>(1.0F) : next->pdf;

@@ -41,11 +41,11 @@ TEST(Rng, StreamsDifferInEveryPartOfTheirKey) {
   constexpr std::uint64_t last_path = (1ULL << 56) - 1;
   for (const P p : {P::light_path, P::emission_ranges, P::test, P::visibility, P::gather,
                     P::particles, P::branch, P::bootstrap, P::chain, P::groups, P::emission_means,
-                    P::eye_records, P::arriving_power, P::cache_points}) {
+                    P::eye_records, P::arriving_power, P::cache_points, P::passes}) {
     first.insert(Rng(1, 2, 3, p).next_u32());
     first.insert(Rng(1, 2, last_path, p).next_u32());
   }
-  EXPECT_EQ(first.size(), 6U + 2 * 14);
+  EXPECT_EQ(first.size(), 6U + 2 * 15);
 }
 
 TEST(Rng, SameKeySameNumbers) {

@@ -60,6 +60,22 @@ TEST(LearnedProbability, IsThatOfTheLeastDivergence) {
   EXPECT_GT(learned({0.95}), 0.85);
 }
 
+// However long the guide was useless, c is found again within some thousand samples.
+TEST(LearnedProbability, FollowsAChangeOfTheLight) {
+  const ThreadPool pool(1);
+  LearnedProbability probability(1);
+  const auto learn = [&](const TwoHalves& light, int passes) {
+    for (int i = 0; i < passes; ++i) {
+      const auto part = light.samples(probability, 1000, static_cast<std::uint64_t>(i));
+      probability.update(TrainingSamples(std::span(&part, 1), 1), pool);
+    }
+  };
+  learn({0.1}, 100);
+  EXPECT_LT(probability[0], 0.01);
+  learn({0.95}, 3);
+  EXPECT_GT(probability[0], 0.7);
+}
+
 TEST(LearnedProbability, DoesNotDependOnTheScaleOfLight) {
   const double one = learned({0.7, 1});
   for (const double scale : {1e-15, 1e15}) EXPECT_NEAR(learned({0.7, scale}), one, 1e-3) << scale;

@@ -17,7 +17,6 @@ TEST(TrainingSamples, AreSortedByCellInTheOrderOfTheirParts) {
       {sample(2, 1), sample(0, 2)}, {}, {sample(2, 3), sample(GuidingCell::none, 4), sample(2, 5)}};
   const TrainingSamples samples(parts, 3);
   EXPECT_EQ(samples.size(), 5U);
-  EXPECT_EQ(samples.cells(), 3U);
   EXPECT_TRUE(samples.of(1).empty());
   ASSERT_EQ(samples.of(2).size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(samples.of(2)[i].reflected, float(2 * i + 1));
