@@ -345,7 +345,7 @@ FAULTS = [
     Fault("the probability learns where the guide is wrong", "renderer/path/learned_probability.cpp",
           "return -double(s.reflected)", "return double(s.reflected)"),
     Fault("probabilities follow the scale of light", "renderer/path/learned_probability.cpp",
-          "rate * m / (std::sqrt(v) + tiny)", "rate * m"),
+          "rate * m / (std::sqrt(v) + tiny)", "rate * m / (1 + 0 * v)"),
     Fault("weights of strengths are not learned", "renderer/guides/skeleton_directions.cpp",
           "found[k] += double(s.reflected)", "found[k] += 0 * double(s.reflected)"),
     Fault("a stopped iteration leaves what it learned", "renderer/integrators/path_tracer.cpp",

@@ -63,6 +63,55 @@ void expect_alike(double a, double b, const std::string& what) {
   EXPECT_NEAR(a, b, 1e-3 * std::abs(a) + 1e-6) << what;
 }
 
+// A path of two surfaces and the background, split in two at the second.
+TEST(GatheredLight, OfAVertexIsThatOfAllBehindIt) {
+  const Lobes white{SurfaceParams{.f0 = Rgb(0, 0, 0), .f90 = 0}};
+  const V3f up(0, 0, 1), slanted = V3f(3, 0, 4) / 5;
+  EyeBatch batch(3);
+  std::vector<Vertex> path(4);
+  for (std::size_t k : {1, 2}) {
+    path[k].kind = Vertex::Kind::surface;
+    path[k].surface.ng = path[k].surface.ns = path[k].wp = up;
+    path[k].bsdf.emplace(white, up, up);
+  }
+  path[1].surface.x = {0, 0, 0};
+  path[2].surface.x = slanted * 10.0F;
+  path[2].surface.ng = path[2].surface.ns = path[2].wp = -slanted;
+  path[2].bsdf.emplace(white, -slanted, -slanted);
+  path[2].throughput = Rgb(0.5F);
+  path[2].p_fwd = to_area(Pdf<SolidAngle>(0.3F), path[1], slanted, path[2]);
+  path[3].kind = Vertex::Kind::background;
+  path[3].wp = slanted;
+  path[3].throughput = Rgb(0.25F);
+  path[3].p_fwd = Pdf<Area>(0.2F);
+  batch.states.push_back({.rng = Rng(1, 0, 0), .ray = {}, .p = {}, .path = path});
+  std::copy(path.begin(), path.end(), batch.vertices.begin());
+
+  GatheredLight gathered(batch);
+  gathered.clear();
+  PathState& state = batch.states[0];
+  for (const auto& [depth, light, split] :
+       {std::tuple{1, 10.0F, 1.0F}, {2, 3.0F, 2.0F}, {3, 1.0F, 2.0F}}) {
+    state.roulette.split = split;
+    gathered.reach(0, depth);
+    gathered.add(0, depth, Rgb(light));
+  }
+  std::vector<TrainingSample> samples;
+  gathered.record(samples);
+  ASSERT_EQ(samples.size(), 2U);
+  const TrainingSample &second = samples[0], &first = samples[1];
+  EXPECT_NEAR(second.reflected, 2, 1e-5);  // 2 x 1, for a throughput of 2 x 0.5
+  EXPECT_NEAR(second.radiance, 4, 1e-5);   // of 2 x 0.25
+  EXPECT_NEAR(second.pdf, 0.2, 1e-6);
+  EXPECT_EQ(second.distance, HUGE_VALF);
+  EXPECT_NEAR(first.reflected, 8, 1e-5);  // 2 x 1 + 2 x 3
+  EXPECT_NEAR(first.radiance, 8, 1e-5);
+  EXPECT_NEAR(first.pdf, 0.3, 1e-6);
+  EXPECT_NEAR(first.distance, 10, 1e-5);
+  EXPECT_NEAR(first.cosine, 0.8, 1e-6);
+  EXPECT_NEAR(first.bsdf_pdf, 0.8 * double(inv_pi), 1e-6);
+}
+
 // What pixels share is learned as if each path had kept it: rounding apart.
 TEST(GatheredLight, OfPathsThatShareLightIsThatOfTheirOwn) {
   const std::vector<TrainingSample> own = samples_with(1), shared = samples_with(16);
