@@ -1,4 +1,4 @@
-// What the cells of learned_skeleton learn from which vertices.
+// What guides along the skeleton learn from which vertices.
 
 #include "renderer/guides/learned_skeleton.h"
 
@@ -48,6 +48,38 @@ TEST(LearnedSkeleton, LobesLearnFromAllLitVertices) {
   v.guiding_cell = guide->cell(v.surface, v.wp);
   const GuidedVertex at{v.surface, *v.bsdf, v.wp, v.guiding_cell};
   EXPECT_GT(guide->pdf(at, often).value, guide->pdf(at, seldom).value);
+}
+
+// Light from the axis of a lobe alone: the narrowest strength gains all weight but its given share,
+// which makes the density there a multiple of that of ten equal weights.
+TEST(SkeletonDirections, StrengthFollowsTheLight) {
+  SkeletonGuideSettings settings;
+  settings.strength = {};
+  GuidedScene scene([] { return load_gltf(test::own_scene("ajar.glb")); }, settings, 0, {}, 48);
+  const std::vector<Vertex> found = scene.guided_vertices(1);
+  ASSERT_EQ(found.size(), 1);
+  const Vertex& v = found.front();
+  const auto guide = make_guiding_distribution(settings);
+  guide->prepare(scene.context());
+  const GuidedVertex at{v.surface, *v.bsdf, v.wp, v.guiding_cell};
+  Rng rng(3, 0, 0, Rng::Purpose::test);
+  V3f axis = v.side();
+  for (int i = 0; i < 5000; ++i) {
+    const auto w = guide->sample(at, rng.next_fine_point(), rng);
+    if (w && guide->pdf(at, *w).value > guide->pdf(at, axis).value) axis = *w;
+  }
+  const float before = guide->pdf(at, axis).value;
+  const TrainingSamples::Part part(100, {.cell = v.guiding_cell,
+                                         .x = v.surface.x,
+                                         .n = v.side(),
+                                         .w = axis,
+                                         .pdf = 1,
+                                         .reflected = 1});
+  const ThreadPool pool(1);
+  for (int i = 0; i < 20; ++i) {
+    guide->update(TrainingSamples(std::span(&part, 1), guide->cells()), pool);
+  }
+  EXPECT_GT(guide->pdf(at, axis).value, 3 * before);
 }
 
 }  // namespace
