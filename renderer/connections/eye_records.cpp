@@ -33,13 +33,10 @@ void EyeRecords::place(const IterationContext& context, const LightVertices& lig
                   static_cast<int>(pixel / static_cast<std::uint64_t>(width)));
       batch.start(context.camera, rng, context.camera.sample(p, rng.next2()), pixel);
     }
-    walk.trace_paths(
-        batch.states, [](std::size_t, int) {},
-        [&](std::size_t i, int depth) {
-          const Vertex& v = batch.vertex(i, depth);
-          if (v.kind == Vertex::Kind::surface && v.bsdf->connectible())
-            records_.push_back({v, depth});
-        });
+    walk.trace_paths(batch.states, [&](std::size_t i, int depth) {
+      const Vertex& v = batch.vertex(i, depth);
+      if (v.kind == Vertex::Kind::surface && v.bsdf->connectible()) records_.push_back({v, depth});
+    });
   }
   std::vector<SurfacePoint> points;
   points.reserve(records_.size());

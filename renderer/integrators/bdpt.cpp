@@ -4,8 +4,8 @@
 #include "renderer/core/pass_seconds.h"
 #include "renderer/guides/make_guide.h"
 #include "renderer/integrators/integrators.h"
+#include "renderer/path/emitter_selection.h"
 #include "renderer/path/light_pass.h"
-#include "renderer/path/next_event_batch.h"
 #include "renderer/path/photon_map.h"
 #include "renderer/settings/connections_settings.h"
 #include "renderer/settings/vcm_settings.h"
@@ -95,7 +95,6 @@ class PairedBdpt final : public Bdpt {
     EyePaths eye;
     LightBatch light;
     std::vector<Rng> rngs = {};
-    EmittersAhead ahead = {};  // emitters of s = 1
     std::vector<LookUp> look_ups = {};
     double look_up_seconds = 0;
     SparseStop stop = {};
@@ -133,7 +132,7 @@ class PairedBdpt final : public Bdpt {
         if (merging_.connect) walk_light(context, pairs, counters, splats);
         do {
           walk_eye(pass, walk, pairs);
-          look_up(context, pairs);
+          look_up(pass, pairs);
           Base::finish(pass, pairs.eye, samples[static_cast<std::size_t>(i)],
                        [](const BdptContribution&) {});
         } while (Base::resume(walk, pairs.eye));
@@ -168,45 +167,48 @@ class PairedBdpt final : public Bdpt {
   }
 
   void walk_eye(const Base::TilePass& pass, Walk& walk, Pairs& pairs) const {
-    const IterationContext& context = pass.context;
-    const NextEvent next_event(context.scene, emitters());
-    const SampleCounts& counts = pairs.eye.counts;
-    const auto choose = [&](std::size_t i, int depth) {
-      if (counts.nee > 0 && depth < settings_.max_depth) {
-        pairs.ahead[i] = next_event.choose_ahead(pairs.eye.states[i].rng);
-      }
-    };
-    const auto visit = [&](std::size_t i, int depth) {
-      pairs.stop.check(context);
-      Base::gather_hit(context, pairs.eye, i, depth, next_event);
-      const Vertex& v = pairs.eye.vertex(i, depth);
-      const int longest = Base::longest_light_path(v, depth);
-      if (longest == 0) return;
-      if (counts.merge > 0) pairs.look_ups.push_back({static_cast<std::uint32_t>(i), depth});
-      if (counts.nee == 0) return;
-      const SurfaceEndpoint eye{v, depth, Transport::radiance, guide_};
-      const EmitterPoint e = next_event.sample(v, pairs.ahead[i], pairs.eye.states[i].rng);
-      const BdptContribution known = Base::contribution(pairs.eye, i);
-      Base::join(eye, EmitterEndpoint{e, guide_}, 1, known, pairs.eye);
-      const std::size_t path = pairs.eye.origin[i];
-      pairs.light.for_each_vertex(path, [&](std::size_t j, int index) {
-        if (index >= longest || !pairs.light.connectible(j, index)) return;
-        Base::join(eye, pairs.light.end(j, index), 1, known, pairs.eye);
-      });
-      Base::flush_if_long(pass, pairs.eye, [](const BdptContribution&) {});
-    };
+    const NextEvent next_event(pass.context.scene, emitters());
+    EmitterSelection selection(next_event, pairs.eye.counts.nee > 0, settings_.max_depth,
+                               pairs.eye);
     walk.trace_paths(
-        pairs.eye.states, choose, visit,
-        SelectTogether(next_event, counts.nee > 0, settings_.max_depth, pairs.eye, pairs.ahead));
+        pairs.eye.states,
+        [&](std::size_t i, int depth) {
+          pairs.stop.check(pass.context);
+          Base::add_hit(pass, pairs.eye, i, depth, next_event);
+          connect_vertex(next_event, selection, pairs, i, depth);
+          Base::flush_if_long(pass, pairs.eye, [](const BdptContribution&) {});
+        },
+        selection);
+  }
+
+  /// Connects vertex `depth` of eye path `i` to a new point on an emitter and to its light path,
+  /// and marks it for look_up().
+  void connect_vertex(const NextEvent& next_event, const EmitterSelection& selection, Pairs& pairs,
+                      std::size_t i, int depth) const {
+    const SampleCounts& counts = pairs.eye.counts;
+    const Vertex& v = pairs.eye.vertex(i, depth);
+    const int longest = Base::longest_light_path(v, depth);
+    if (longest == 0) return;
+    if (counts.merge > 0) pairs.look_ups.push_back({static_cast<std::uint32_t>(i), depth});
+    if (counts.nee == 0) return;
+    const SurfaceEndpoint eye{v, depth, Transport::radiance, guide_};
+    const EmitterPoint e = next_event.sample(v, selection.of(i), pairs.eye.states[i].rng);
+    const BdptContribution known{.path = static_cast<std::uint8_t>(i)};
+    Base::queue_connection(eye, EmitterEndpoint{e, guide_}, 1, known, pairs.eye);
+    const std::size_t path = pairs.eye.origin[i];
+    pairs.light.for_each_vertex(path, [&](std::size_t j, int index) {
+      if (index >= longest || !pairs.light.connectible(j, index)) return;
+      Base::queue_connection(eye, pairs.light.end(j, index), 1, known, pairs.eye);
+    });
   }
 
   /// Merges the eye vertices of the batch with the photons around them.
-  void look_up(const IterationContext& context, Pairs& pairs) const {
+  void look_up(const Base::TilePass& pass, Pairs& pairs) const {
     if (pairs.look_ups.empty()) return;
     const SampleCounts& counts = pairs.eye.counts;
     const double begin = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
     for (const LookUp& at : pairs.look_ups) {
-      pairs.stop.check(context);
+      pairs.stop.check(pass.context);
       const Vertex& v = pairs.eye.vertex(at.path, at.depth);
       const SurfaceEndpoint eye{v, at.depth, Transport::radiance, guide_};
       const std::uint32_t pixel = pairs.eye.pixels[at.path];
@@ -218,10 +220,9 @@ class PairedBdpt final : public Bdpt {
             if (is_black(value)) return;
             const auto w = static_cast<float>(merge_weight(eye, p, counts));
             sum += value * w;
-            layers_.merge(context.layers, p.index + 1, at.depth + 1, {pixel, value, w});
+            layers_.merge(pass.context.layers, p.index + 1, at.depth + 1, {pixel, value, w});
           });
-      pairs.eye.radiance[at.path] += sum;
-      if (pairs.eye.gathers) pairs.eye.gathered.add(at.path, at.depth, sum);
+      Base::contribute(pass, pairs.eye, at.path, at.depth, sum);
     }
     pairs.look_ups.clear();
     pairs.look_up_seconds += clock_seconds(CLOCK_THREAD_CPUTIME_ID) - begin;
@@ -328,14 +329,12 @@ class ResampledBdpt final : public Bdpt {
       for (int b = 0; b < tile.blocks(); ++b) {
         Base::start(pass, tile.block(b), part.batch);
         do {
-          walk.trace_paths(
-              part.batch.states, [](std::size_t, int) {},
-              [&](std::size_t k, int depth) {
-                part.stop.check(context);
-                Base::gather_hit(context, part.batch, k, depth, next_event);
-                join_lights(part, k, depth);
-                Base::flush_if_long(pass, part.batch, record);
-              });
+          walk.trace_paths(part.batch.states, [&](std::size_t k, int depth) {
+            part.stop.check(context);
+            Base::add_hit(pass, part.batch, k, depth, next_event);
+            connect_vertex(part, k, depth);
+            Base::flush_if_long(pass, part.batch, record);
+          });
           Base::finish(pass, part.batch, samples[index], record);
         } while (Base::resume(walk, part.batch));
       }
@@ -367,7 +366,7 @@ class ResampledBdpt final : public Bdpt {
     }
   }
 
-  void join_lights(EyePart& part, std::size_t k, int depth) const {
+  void connect_vertex(EyePart& part, std::size_t k, int depth) const {
     const Vertex& v = part.batch.vertex(k, depth);
     const int longest = Base::longest_light_path(v, depth);
     if (longest == 0 || part.lights.paths() == 0) return;
@@ -386,12 +385,12 @@ class ResampledBdpt final : public Bdpt {
                           const double samples = static_cast<double>(part.lights.paths()) *
                                                  double(drawn.probability) * double(drawn.survival);
                           part.lights.with_end(s, drawn.index, guide_, [&](const auto& light) {
-                            BdptContribution known = Base::contribution(part.batch, k);
-                            known.distribution = drawn.distribution;
-                            known.survival = drawn.survival;
-                            known.throughput = throughput;
-                            known.cell = lookup.cell;
-                            Base::join(eye, light, samples, known, part.batch);
+                            const BdptContribution known{.path = static_cast<std::uint8_t>(k),
+                                                         .distribution = drawn.distribution,
+                                                         .survival = drawn.survival,
+                                                         .throughput = throughput,
+                                                         .cell = lookup.cell};
+                            Base::queue_connection(eye, light, samples, known, part.batch);
                           });
                         });
   }

@@ -10,10 +10,9 @@
 
 namespace lacuna {
 
-/// A contribution of a strategy to a pixel of the tile, pending its shadow ray.
+/// A contribution of a strategy to a pixel of the tile.
 struct BdptContribution {
-  std::uint32_t pixel = 0;
-  std::uint8_t path = 0;  ///< of the eye's path, in its batch
+  std::uint8_t path = 0;  ///< of the eye, in its batch
   std::uint8_t distribution = 0;
   float survival = 1;          ///< probability of making the connection; `value` is divided by it
   float throughput = 0;        ///< luminance of the eye vertex' throughput
@@ -38,7 +37,7 @@ class Bdpt : public GuidedIntegrator {
     SampleCounts counts;
     GatheredLight gathered{*this};  // for a guide that learns
     bool gathers = false;
-    ShadowQueue<BdptContribution> queue;
+    ShadowQueue<BdptContribution> queue;  // of connections
   };
   /// What the parts of a tile's work share.
   struct TilePass {
@@ -47,21 +46,33 @@ class Bdpt : public GuidedIntegrator {
     Counters& counters;
   };
 
+  /// The sink of all contributions: `value`, weighted, of vertex `depth` of path `i`.
+  void contribute(const TilePass& pass, EyePaths& batch, std::size_t i, int depth,
+                  const Rgb& value) const {
+    accumulate(pass.image.pixels[batch.pixels[i]], value, pass.counters);
+    if (batch.gathers) batch.gathered.add(i, depth, value);
+  }
+  /// The same of a strategy of the pyramid, which may have a layer.
+  void contribute(const TilePass& pass, EyePaths& batch, const BdptContribution& c) const {
+    contribute(pass, batch, c.path, c.t - 1, c.value * c.weight);
+    layers_.strategy(pass.context.layers, c.s, c.t, {batch.pixels[c.path], c.value, c.weight});
+  }
+
   /// Adds the emission at a vertex of an eye path (s = 0).
-  void gather_hit(const IterationContext& context, EyePaths& batch, std::size_t i, int depth,
-                  const NextEvent& next_event) const {
+  void add_hit(const TilePass& pass, EyePaths& batch, std::size_t i, int depth,
+               const NextEvent& next_event) const {
     if (batch.gathers) batch.gathered.reach(i, depth);
     const Vertex& v = batch.vertex(i, depth);
-    std::optional<EmitterPoint> e = emitter_at(context.scene, v);
+    std::optional<EmitterPoint> e = emitter_at(pass.context.scene, v);
     if (!e) return;
     if (batch.counts.nee > 0) {
       next_event.set_ratio(*e, v, batch.vertex(i, depth - 1), depth);
     }
-    const Rgb value = v.throughput * e->emission;
-    const auto w = static_cast<float>(hit_weight(v, depth, *e, batch.counts, guide_));
-    batch.radiance[i] += value * w;
-    if (batch.gathers) batch.gathered.add(i, depth, value * w);
-    layers_.strategy(context.layers, 0, depth + 1, {batch.pixels[i], value, w});
+    contribute(pass, batch,
+               {.path = static_cast<std::uint8_t>(i),
+                .value = v.throughput * e->emission,
+                .weight = static_cast<float>(hit_weight(v, depth, *e, batch.counts, guide_)),
+                .t = static_cast<std::uint16_t>(depth + 1)});
   }
 
   /// Largest s of connections to an eye vertex `depth` edges from the eye; 0: none.
@@ -71,10 +82,10 @@ class Bdpt : public GuidedIntegrator {
   }
 
   /// Connects `eye` and `light` and queues the contribution, over `samples`: the expected number of
-  /// samples of this light vertex. What the connection does not determine is as in `known`.
+  /// samples of this light vertex. `known` has the members that the connection does not determine.
   template <class Light>
-  static void join(const SurfaceEndpoint& eye, const Light& light, double samples,
-                   BdptContribution known, EyePaths& batch) {
+  static void queue_connection(const SurfaceEndpoint& eye, const Light& light, double samples,
+                               BdptContribution known, EyePaths& batch) {
     const Connection c = connect(eye, light);
     if (!c) return;
     known.value = c.contribution / static_cast<float>(samples);
@@ -83,41 +94,33 @@ class Bdpt : public GuidedIntegrator {
     known.t = static_cast<std::uint16_t>(eye.index + 1);
     batch.queue.add(shadow_ray(eye, light, c), known);
   }
-  /// A contribution with the pixel and index of path `i` of `batch`.
-  static BdptContribution contribution(const EyePaths& batch, std::size_t i) {
-    return {.pixel = batch.pixels[i], .path = static_cast<std::uint8_t>(i)};
-  }
 
-  /// Traces the queued shadow rays of `batch`, adds the unoccluded contributions to the image and
-  /// to the layers, and passes each to `arrived(contribution)`.
+  /// Traces the queued shadow rays of `batch`, adds the unoccluded connections, and passes each to
+  /// `arrived(contribution)`.
   template <class Arrived>
   void flush(const TilePass& pass, EyePaths& batch, Arrived&& arrived) const {
     const IterationContext& context = pass.context;
     batch.queue.flush(
         context.scene.rays(), pass.counters,
         [&](const BdptContribution& c) {
-          accumulate(pass.image.pixels[c.pixel], c.value * c.weight, pass.counters);
+          contribute(pass, batch, c);
           arrived(c);
-          if (batch.gathers) batch.gathered.add(c.path, c.t - 1, c.value * c.weight);
-          layers_.strategy(context.layers, c.s, c.t, {c.pixel, c.value, c.weight});
-          layers_.distribution(context.layers, c.distribution, c.pixel, c.value * c.weight);
+          layers_.distribution(context.layers, c.distribution, batch.pixels[c.path],
+                               c.value * c.weight);
         },
         [&] { context.check_stop(); });
   }
-  /// The same while paths of the batch go on, where so many rays wait that they take much memory:
-  /// two paths of a thousand edges are joined by a million.
+  /// The same while paths of the batch go on, if so many rays are queued that they take much
+  /// memory: two paths of a thousand edges have a million connections.
   template <class Arrived>
   void flush_if_long(const TilePass& pass, EyePaths& batch, Arrived&& arrived) const {
     constexpr std::size_t many = 1 << 17;
     if (batch.queue.size() >= many) flush(pass, batch, arrived);
   }
-  /// Adds what the paths of the batch have found, and records samples for the guide.
+  /// Adds the queued connections of the batch, and records samples for the guide.
   template <class Arrived>
   void finish(const TilePass& pass, EyePaths& batch, TrainingSamples::Part& samples,
               Arrived&& arrived) const {
-    for (std::size_t k = 0; k < batch.states.size(); ++k) {
-      accumulate(pass.image.pixels[batch.pixels[k]], batch.radiance[k], pass.counters);
-    }
     flush(pass, batch, arrived);
     if (batch.gathers) batch.gathered.record(samples);
   }

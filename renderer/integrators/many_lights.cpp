@@ -5,8 +5,8 @@
 #include "renderer/many_lights/light_filter.h"
 #include "renderer/many_lights/light_gather.h"
 #include "renderer/path/direct_light.h"
+#include "renderer/path/emitter_selection.h"
 #include "renderer/path/light_pass.h"
-#include "renderer/path/next_event_batch.h"
 #include "renderer/settings/gather_settings.h"
 #include "renderer/settings/many_lights_settings.h"
 #include "renderer/settings/output_settings.h"
@@ -108,24 +108,7 @@ class ManyLights final : public Integrator {
     return std::numeric_limits<float>::infinity();
   }
 
-  struct Direct {
-    Rgb value;
-    std::size_t path;
-  };
-  /// Working memory of a few pixels.
-  struct Part {
-    EyeBatch batch;
-    LightGather<V> gather;
-    EmittersAhead ahead = {};                     // emitters of next event estimation
-    std::array<int, EyeBatch::size> shaded = {};  // edges to the shading point; 0: none yet
-    std::array<LightSum, EyeBatch::size> sums = {};
-    ShadowQueue<Direct> shadows = {};
-    std::vector<ShadingPoint> points = {};
-    std::vector<std::size_t> paths = {};  // of each of `points`
-    std::vector<LightSum> of_points = {};
-  };
-
-  /// The data that all parts of a picture share.
+  /// The data that all tiles of a picture share.
   struct Gathering {
     const VplContributions& terms;
     LightDraw* draw;      // null: all lights
@@ -138,27 +121,9 @@ class ManyLights final : public Integrator {
     return std::get_if<RandomLightsSettings>(&settings_.gather);
   }
 
-  /// Traces eye paths and gathers the lights at their shading points.
-  Counters gather(const IterationContext& context, const Gathering& with, Image& image) const {
-    const Tiling tiling(image, batch_side);
-    Spares<Part> parts;
-    const auto make = [&] {
-      return std::make_unique<Part>(
-          EyeBatch(settings_.max_depth),
-          LightGather<V>(context, with.terms, visibility_, {with.draw, with.range}));
-    };
-    return for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
-      parts.with(make, [&](Part& part) {
-        part.shaded.fill(0);
-        part.sums.fill({});
-        start_paths(context, image, tiling.tile(i), part.batch);
-        if (with.range.is_first()) count.samples += part.batch.states.size();
-        trace(context, with, part, count);
-        shine(with, part, count);
-        add(context, with, part, image, count);
-      });
-    });
-  }
+  struct Part;
+  class TilePass;
+  Counters gather(const IterationContext& context, const Gathering& with, Image& image) const;
 
   Counters add_filtered(const IterationContext& context, const LightFilter& filter,
                         Image& image) const {
@@ -188,125 +153,8 @@ class ManyLights final : public Integrator {
         [](const Splat&) {});
   }
 
-  /// Traces eye paths: emission, direct light, and the light that virtual lights leave to path
-  /// tracing.
-  void trace(const IterationContext& context, const Gathering& with, Part& part,
-             Counters& counters) const {
-    const DirectLight direct(context.scene, guide_, true, EmitterChoice::power);
-    Walk walk(context.scene, guide_,
-              {.max_depth = settings_.max_depth,
-               .roulette_depth = settings_.roulette_depth,
-               .packets = true},
-              counters);
-    const auto choose = [&](std::size_t i, int depth) {
-      if (direct.draws() && depth < settings_.max_depth) {
-        part.ahead[i] = direct.choose_ahead(part.batch.states[i].rng);
-      }
-    };
-    walk.trace_paths(part.batch.states, choose, [&](std::size_t i, int depth) {
-      return visit({context.scene, with, direct, part}, i, depth);
-    });
-    if (!with.range.is_first()) {
-      part.shadows = {};
-      part.batch.radiance.fill(Rgb(0, 0, 0));
-      return;
-    }
-    part.shadows.flush(context.scene.rays(), counters,
-                       [&](const Direct& d) { part.batch.radiance[d.path] += d.value; });
-  }
-
-  /// What the eye paths of a part are traced with.
-  struct EyePass {
-    const Scene& scene;
-    const Gathering& with;
-    const DirectLight& direct;
-    Part& part;
-  };
-  /// Visits a vertex of eye path `i`; false where the path ends.
-  bool visit(const EyePass& pass, std::size_t i, int depth) const {
-    const Gathering& with = pass.with;
-    const VplContributions& terms = with.terms;
-    const DirectLight& direct = pass.direct;
-    Part& part = pass.part;
-    Vertex& v = part.batch.vertex(i, depth);
-    const bool first = part.shaded[i] == 0;
-    const Vertex& before = part.batch.vertex(i, depth - 1);
-    // Virtual lights also sample this edge, except for the part above the bound.
-    const bool shared = !first && depth == part.shaded[i] + 1 && !before.delta;
-    if (shared && by_lights()) {
-      part.batch.radiance[i] += emitted(pass.scene, v) * missing(terms, before, v);
-    } else {
-      part.batch.radiance[i] += direct.met(v, before, depth);
-    }
-    if (v.kind != Vertex::Kind::surface || depth == settings_.max_depth) return false;
-    const bool lit_by_lights = v.bsdf->is_vpl_receiver(least_alpha_);
-    if (!first && !settings_.compensation) return false;
-    if (first && lit_by_lights) {
-      part.shaded[i] = depth;
-      if (!with.range.is_first()) return false;
-    } else if (shared && lit_by_lights) {
-      const float weight = missing(terms, before, v);
-      if (weight == 0) return false;
-      v.throughput *= weight;
-      part.batch.states[i].throughput *= weight;
-    }
-    if (v.bsdf->connectible() && direct.draws() && !(first && lit_by_lights && by_lights())) {
-      direct.draw(v, depth, part.ahead[i], part.batch.states[i].rng,
-                  [&](const Ray& ray, const Rgb& value, const V3f&) {
-                    part.shadows.add(ray, {value, i});
-                  });
-    }
-    return settings_.compensation || !by_lights() || !lit_by_lights;
-  }
-
   bool by_lights() const { return settings_.direct == DirectLighting::lights; }
 
-  /// The share of the light from `to` that the bound of the geometric term removes.
-  static float missing(const VplContributions& terms, const Vertex& at, const Vertex& to) {
-    if (to.kind == Vertex::Kind::background) return 0;
-    return 1 - terms.share(at, to, to.wp);
-  }
-  static Rgb emitted(const Scene& scene, const Vertex& v) {
-    const std::optional<EmitterPoint> e = emitter_at(scene, v);
-    return e ? v.throughput * e->emission : Rgb(0, 0, 0);
-  }
-
-  /// Gathers the lights at the part's shading points.
-  void shine(const Gathering& with, Part& part, Counters& counters) const {
-    part.points.clear();
-    part.paths.clear();
-    for (std::size_t i = 0; i < part.batch.states.size(); ++i) {
-      const int depth = part.shaded[i];
-      if (depth == 0 || depth >= settings_.max_depth) continue;
-      part.points.emplace_back(part.batch.vertex(i, depth), depth, settings_.max_depth - 1 - depth,
-                               part.batch.pixels[i]);
-      part.paths.push_back(i);
-    }
-    part.of_points.assign(part.points.size(), {});
-    part.gather.gather(part.points, part.of_points, counters);
-    for (std::size_t k = 0; k < part.points.size(); ++k) {
-      LightSum& sum = part.sums[part.paths[k]] = part.of_points[k];
-      if (with.filter != nullptr) {
-        with.filter->add(part.points[k], sum.value);
-        sum.value = V3d(0, 0, 0);  // until all pixels are there
-      }
-    }
-  }
-
-  void add(const IterationContext& context, const Gathering& with, const Part& part, Image& image,
-           Counters& counters) const {
-    const double lights = static_cast<double>(std::max<std::size_t>(1, with.terms.lights().size()));
-    for (std::size_t i = 0; i < part.batch.states.size(); ++i) {
-      const std::uint32_t pixel = part.batch.pixels[i];
-      const V3d value = V3d(part.batch.radiance[i]) + part.sums[i].value;
-      const bool negative = put(image.pixels[pixel], value, counters);
-      if (tests_layer_ >= 0) {
-        const double share = static_cast<double>(part.sums[i].tests) / lights;
-        layer(context, tests_layer_).pixels[pixel] += Rgb(static_cast<float>(share));
-      }
-      count_negative(context, pixel, negative);
-    }
-  }
   /// Writes a black pixel. Returns whether the value is negative.
   bool put(Rgb& pixel, const V3d& exact, Counters& counters) const {
     Rgb value(exact);
@@ -335,6 +183,183 @@ class ManyLights final : public Integrator {
     double light = 0, visibility = 0, eye = 0;
   } seconds_;
 };
+
+/// Working memory of a tile.
+template <Visibility V>
+struct ManyLights<V>::Part {
+  /// A contribution of next event estimation, pending its shadow ray.
+  struct Direct {
+    Rgb value;
+    std::size_t path;
+  };
+
+  EyeBatch batch;
+  LightGather<V> gather;
+  std::array<int, EyeBatch::size> shaded = {};  ///< edges to the shading point; 0: none yet
+  std::array<LightSum, EyeBatch::size> sums = {};
+  ShadowQueue<Direct> shadows = {};
+  std::vector<ShadingPoint> points = {};
+  std::vector<std::size_t> paths = {};  ///< of each of `points`
+  std::vector<LightSum> of_points = {};
+};
+
+/// Renders the eye paths of a tile: emission, direct light, the virtual lights at their shading
+/// points, and the light that these leave to path tracing.
+template <Visibility V>
+class ManyLights<V>::TilePass {
+ public:
+  TilePass(const ManyLights& integrator, const IterationContext& context, const Gathering& with,
+           Part& part, Counters& counters)
+      : integrator_(integrator),
+        settings_(integrator.settings_),
+        context_(context),
+        with_(with),
+        part_(part),
+        batch_(part.batch),
+        counters_(counters),
+        direct_(context.scene, integrator.guide_, true, EmitterChoice::power),
+        selection_(direct_.next_event(), direct_.active(), settings_.max_depth, batch_) {}
+
+  void render(const Tile& tile, Image& image) {
+    part_.shaded.fill(0);
+    part_.sums.fill({});
+    start_paths(context_, image, tile, batch_);
+    if (with_.range.is_first()) counters_.samples += batch_.states.size();
+    trace_paths();
+    gather();
+    add(image);
+  }
+
+ private:
+  /// The sink of emission and direct light for the pixel of path `i`.
+  void contribute(std::size_t i, const Rgb& value) { batch_.radiance[i] += value; }
+
+  void trace_paths() {
+    Walk walk(context_.scene, integrator_.guide_,
+              {.max_depth = settings_.max_depth,
+               .roulette_depth = settings_.roulette_depth,
+               .packets = true},
+              counters_);
+    walk.trace_paths(
+        batch_.states, [this](std::size_t i, int depth) { return visit(i, depth); }, selection_);
+    if (!with_.range.is_first()) {
+      part_.shadows = {};
+      batch_.radiance.fill(Rgb(0, 0, 0));
+      return;
+    }
+    part_.shadows.flush(context_.scene.rays(), counters_,
+                        [&](const typename Part::Direct& d) { contribute(d.path, d.value); });
+  }
+
+  /// Visits a vertex of eye path `i`; false where the path ends.
+  bool visit(std::size_t i, int depth) {
+    Vertex& v = batch_.vertex(i, depth);
+    const bool first = part_.shaded[i] == 0;
+    const Vertex& before = batch_.vertex(i, depth - 1);
+    // Virtual lights also sample this edge, except for the part above the bound.
+    const bool shared = !first && depth == part_.shaded[i] + 1 && !before.delta;
+    if (shared && integrator_.by_lights()) {
+      contribute(i, emitted(v) * missing(before, v));
+    } else {
+      contribute(i, direct_.hit(v, before, depth));
+    }
+    if (v.kind != Vertex::Kind::surface || depth == settings_.max_depth) return false;
+    const bool lit_by_lights = v.bsdf->is_vpl_receiver(integrator_.least_alpha_);
+    if (!first && !settings_.compensation) return false;
+    if (first && lit_by_lights) {
+      part_.shaded[i] = depth;
+      if (!with_.range.is_first()) return false;
+    } else if (shared && lit_by_lights) {
+      const float weight = missing(before, v);
+      if (weight == 0) return false;
+      v.throughput *= weight;
+      batch_.states[i].throughput *= weight;
+    }
+    if (v.bsdf->connectible() && direct_.active() &&
+        !(first && lit_by_lights && integrator_.by_lights())) {
+      direct_.sample(v, depth, selection_.of(i), batch_.states[i].rng,
+                     [&](const Ray& ray, const Rgb& value, const V3f&) {
+                       part_.shadows.add(ray, {value, i});
+                     });
+    }
+    return settings_.compensation || !integrator_.by_lights() || !lit_by_lights;
+  }
+
+  /// The share of the light from `to` that the bound of the geometric term removes.
+  float missing(const Vertex& at, const Vertex& to) const {
+    if (to.kind == Vertex::Kind::background) return 0;
+    return 1 - with_.terms.share(at, to, to.wp);
+  }
+  Rgb emitted(const Vertex& v) const {
+    const std::optional<EmitterPoint> e = emitter_at(context_.scene, v);
+    return e ? v.throughput * e->emission : Rgb(0, 0, 0);
+  }
+
+  /// Gathers the lights at the shading points.
+  void gather() {
+    part_.points.clear();
+    part_.paths.clear();
+    for (std::size_t i = 0; i < batch_.states.size(); ++i) {
+      const int depth = part_.shaded[i];
+      if (depth == 0 || depth >= settings_.max_depth) continue;
+      part_.points.emplace_back(batch_.vertex(i, depth), depth, settings_.max_depth - 1 - depth,
+                                batch_.pixels[i]);
+      part_.paths.push_back(i);
+    }
+    part_.of_points.assign(part_.points.size(), {});
+    part_.gather.gather(part_.points, part_.of_points, counters_);
+    for (std::size_t k = 0; k < part_.points.size(); ++k) {
+      LightSum& sum = part_.sums[part_.paths[k]] = part_.of_points[k];
+      if (with_.filter != nullptr) {
+        with_.filter->add(part_.points[k], sum.value);
+        sum.value = V3d(0, 0, 0);  // until all pixels are there
+      }
+    }
+  }
+
+  void add(Image& image) {
+    const double lights =
+        static_cast<double>(std::max<std::size_t>(1, with_.terms.lights().size()));
+    for (std::size_t i = 0; i < batch_.states.size(); ++i) {
+      const std::uint32_t pixel = batch_.pixels[i];
+      const V3d value = V3d(batch_.radiance[i]) + part_.sums[i].value;
+      const bool negative = integrator_.put(image.pixels[pixel], value, counters_);
+      if (integrator_.tests_layer_ >= 0) {
+        const double share = static_cast<double>(part_.sums[i].tests) / lights;
+        layer(context_, integrator_.tests_layer_).pixels[pixel] += Rgb(static_cast<float>(share));
+      }
+      integrator_.count_negative(context_, pixel, negative);
+    }
+  }
+
+  const ManyLights& integrator_;
+  const ManyLightsSettings& settings_;
+  const IterationContext& context_;
+  const Gathering& with_;
+  Part& part_;
+  EyeBatch& batch_;
+  Counters& counters_;
+  DirectLight direct_;
+  EmitterSelection selection_;
+};
+
+/// Renders all eye paths.
+template <Visibility V>
+Counters ManyLights<V>::gather(const IterationContext& context, const Gathering& with,
+                               Image& image) const {
+  const Tiling tiling(image, batch_side);
+  Spares<Part> parts;
+  const auto make = [&] {
+    return std::make_unique<Part>(
+        EyeBatch(settings_.max_depth),
+        LightGather<V>(context, with.terms, visibility_, {with.draw, with.range}));
+  };
+  return for_each_part(context, tiling.tiles(), [&](int i, Counters& count) {
+    parts.with(make, [&](Part& part) {
+      TilePass(*this, context, with, part, count).render(tiling.tile(i), image);
+    });
+  });
+}
 
 }  // namespace
 

@@ -1,8 +1,8 @@
 #include "renderer/integrators/path_tracer.h"
 
 #include "renderer/path/direct_light.h"
+#include "renderer/path/emitter_selection.h"
 #include "renderer/path/gathered_light.h"
-#include "renderer/path/next_event_batch.h"
 #include "renderer/path/path_reuse.h"
 #include "renderer/path/shadow_queue.h"
 #include "renderer/path/tiles.h"
@@ -47,6 +47,7 @@ class PathTracer::TilePass {
         counters_(counters),
         direct_(context.scene, tracer.guide_, settings_.next_event_estimation, settings_.emitters),
         batch_(settings_.max_depth),
+        selection_(direct_.next_event(), direct_.active(), settings_.max_depth, batch_),
         reuse_(batch_, tracer.guide_, settings_.max_depth > 2 ? settings_.reuse : 1),
         walk_(context.scene, tracer.guide_,
               {.max_depth = settings_.max_depth,
@@ -91,33 +92,25 @@ class PathTracer::TilePass {
   /// Traces the paths of the batch; next event estimation waits for trace_shadows().
   void trace_paths() {
     walk_.trace_paths(
-        batch_.states, [this](std::size_t i, int depth) { choose_emitter(i, depth); },
-        [this](std::size_t i, int depth) { visit(i, depth); },
-        SelectTogether(direct_.next_event(), direct_.draws(), settings_.max_depth, batch_, ahead_));
-  }
-
-  void choose_emitter(std::size_t i, int depth) {
-    if (direct_.draws() && depth < settings_.max_depth) {
-      ahead_[i] = direct_.choose_ahead(batch_.states[i].rng);
-    }
+        batch_.states, [this](std::size_t i, int depth) { visit(i, depth); }, selection_);
   }
 
   /// Emission at vertex `depth` of path `i`, and next event estimation there.
   void visit(std::size_t i, int depth) {
     const Vertex& v = batch_.vertex(i, depth);
     const bool apart = depth == 1 && tracer_.seen_.rays(batch_.pixels[i]) > 0;
-    const Rgb emission = apart ? Rgb(0, 0, 0) : direct_.met(v, batch_.vertex(i, depth - 1), depth);
+    const Rgb emission = apart ? Rgb(0, 0, 0) : direct_.hit(v, batch_.vertex(i, depth - 1), depth);
     reuse_.reach(i, depth);
     if (gathers_) gathered_.reach(i, depth);
     if (!is_black(emission)) contribute(batch_.pixels[i], i, depth, 0, emission);
     const bool goes_on = v.kind == Vertex::Kind::surface && depth < settings_.max_depth;
-    if (!goes_on || !direct_.draws() || !v.bsdf->connectible()) return;
-    direct_.draw(v, depth, ahead_[i], batch_.states[i].rng,
-                 [&](const Ray& ray, const Rgb& value, const V3f& w) {
-                   if (depth == 2) reuse_.look(i, w);
-                   shadows_.add(ray, {value, batch_.pixels[i], static_cast<std::uint16_t>(i),
-                                      static_cast<std::uint16_t>(depth)});
-                 });
+    if (!goes_on || !direct_.active() || !v.bsdf->connectible()) return;
+    direct_.sample(v, depth, selection_.of(i), batch_.states[i].rng,
+                   [&](const Ray& ray, const Rgb& value, const V3f& w) {
+                     if (depth == 2) reuse_.look(i, w);
+                     shadows_.add(ray, {value, batch_.pixels[i], static_cast<std::uint16_t>(i),
+                                        static_cast<std::uint16_t>(depth)});
+                   });
   }
 
   /// Traces the shadow rays that wait, and adds what they find.
@@ -150,7 +143,7 @@ class PathTracer::TilePass {
   Counters& counters_;
   DirectLight direct_;
   EyeBatch batch_;
-  EmittersAhead ahead_{};           // of next event estimation
+  EmitterSelection selection_;      // for next event estimation
   ShadowQueue<Direct> shadows_;     // its contributions
   GatheredLight gathered_{batch_};  // for a guide that learns
   bool gathers_ = false;

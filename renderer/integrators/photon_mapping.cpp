@@ -5,7 +5,7 @@
 #include "renderer/core/pass_seconds.h"
 #include "renderer/guides/make_guide.h"
 #include "renderer/path/direct_light.h"
-#include "renderer/path/next_event_batch.h"
+#include "renderer/path/emitter_selection.h"
 #include "renderer/path/photon_map.h"
 #include "renderer/settings/photon_mapping_settings.h"
 
@@ -94,25 +94,7 @@ class PhotonMapping final : public Integrator {
   Wanted at_first() const {
     return {!settings_.next_event_estimation, density_.caustic_paths == 0, !density_.final_gather};
   }
-  struct LookUp {
-    std::uint32_t path;
-    int depth;
-    bool first;  ///< at the first rough vertex
-  };
-  struct Direct {
-    Rgb value;
-    std::size_t path;
-  };
-  struct Part {
-    EyeBatch batch;
-    std::vector<PointTree::Found> nearest;  // and the next one
-    std::array<Stage, EyeBatch::size> stage = {};
-    EmittersAhead ahead = {};  // emitters of next event estimation
-    ShadowQueue<Direct> shadows = {};
-    std::vector<LookUp> look_ups = {};
-    double look_up_seconds = 0;
-    SparseStop stop = {};
-  };
+  class TilePass;
 
   /// Whether photons are looked up here.
   bool is_rough(const Vertex& v) const { return v.bsdf->is_vpl_receiver(least_alpha_); }
@@ -147,129 +129,159 @@ class PhotonMapping final : public Integrator {
         [](const Splat&) {});
   }
 
-  Counters eye_pass(const IterationContext& context, double paths, Image& image) {
-    const Tiling tiling(image);
-    std::vector<double> seconds(static_cast<std::size_t>(tiling.tiles()), 0.0);
-    const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
-      Part part{EyeBatch(settings_.max_depth), std::vector<PointTree::Found>(density_.nearest + 1)};
-      const Tile tile = tiling.tile(i);
-      for (int b = 0; b < tile.blocks(); ++b) {
-        start_paths(context, image, tile.block(b), part.batch);
-        counters.samples += part.batch.states.size();
-        part.stage.fill(Stage::seeing);
-        trace(context, part, counters);
-        look_up(context, paths, part);
-        for (std::size_t k = 0; k < part.batch.states.size(); ++k) {
-          accumulate(image.pixels[part.batch.pixels[k]], part.batch.radiance[k], counters);
-        }
-      }
-      seconds[static_cast<std::size_t>(i)] = part.look_up_seconds;
-    });
-    for (const double s : seconds) seconds_.look_up += s;
-    return sum;
-  }
+  Counters eye_pass(const IterationContext& context, double paths, Image& image);
 
-  void trace(const IterationContext& context, Part& part, Counters& counters) const {
-    const DirectLight direct(context.scene, guide_, true, EmitterChoice::power);
-    Walk walk(context.scene, guide_,
+  Guide guide_;  ///< of eye paths
+  Guide light_guide_;
+  PhotonTracing settings_;
+  Density density_;
+  float least_alpha_;
+  PhotonMap photons_, caustics_;
+  PhotonSeconds seconds_;
+};
+
+/// Renders the eye paths of a tile.
+class PhotonMapping::TilePass {
+ public:
+  /// `paths`: light paths of photons_.
+  TilePass(const PhotonMapping& mapping, const IterationContext& context, double paths,
+           Image& image, Counters& counters)
+      : mapping_(mapping),
+        settings_(mapping.settings_),
+        context_(context),
+        paths_(static_cast<float>(paths)),
+        image_(image),
+        counters_(counters),
+        direct_(context.scene, mapping.guide_, true, EmitterChoice::power),
+        batch_(settings_.max_depth),
+        selection_(direct_.next_event(), direct_.active(), settings_.max_depth, batch_),
+        nearest_(mapping.density_.nearest + 1),
+        walk_(context.scene, mapping.guide_,
               {.max_depth = settings_.max_depth,
                .roulette_depth = settings_.roulette_depth,
                .packets = true},
-              counters);
-    const auto choose = [&](std::size_t i, int depth) {
-      if (direct.draws() && depth < settings_.max_depth && part.stage[i] <= Stage::at_first) {
-        part.ahead[i] = direct.choose_ahead(part.batch.states[i].rng);
+              counters) {}
+
+  void render(const Tile& tile) {
+    for (int b = 0; b < tile.blocks(); ++b) {
+      start_paths(context_, image_, tile.block(b), batch_);
+      counters_.samples += batch_.states.size();
+      stage_.fill(Stage::seeing);
+      walk_.trace_paths(
+          batch_.states, [this](std::size_t i, int depth) { return visit(i, depth); }, *this);
+      shadows_.flush(context_.scene.rays(), counters_,
+                     [&](const Direct& d) { contribute(d.path, d.value); });
+      look_up();
+      for (std::size_t k = 0; k < batch_.states.size(); ++k) {
+        accumulate(image_.pixels[batch_.pixels[k]], batch_.radiance[k], counters_);
       }
-    };
-    walk.trace_paths(part.batch.states, choose, [&](std::size_t i, int depth) {
-      part.stop.check(context);
-      return visit(direct, part, i, depth);
-    });
-    part.shadows.flush(context.scene.rays(), counters,
-                       [&](const Direct& d) { part.batch.radiance[d.path] += d.value; });
+    }
   }
+  /// CPU seconds of this thread.
+  double look_up_seconds() const { return look_up_seconds_; }
+
+  // The selection of Walk::trace_paths(): no emitter is sampled behind the first rough vertex.
+  void before(std::size_t i, int depth) {
+    if (stage_[i] <= Stage::at_first) selection_.before(i, depth);
+  }
+  bool together() const { return selection_.together(); }
+  void choose(std::span<const std::size_t> paths) { selection_.choose(paths); }
+
+ private:
+  struct Direct {
+    Rgb value;
+    std::size_t path;
+  };
+  struct LookUp {
+    std::uint32_t path;
+    int depth;
+    bool first;  ///< at the first rough vertex
+  };
+
+  /// The sink of all contributions to the pixel of path `i`.
+  void contribute(std::size_t i, const Rgb& value) { batch_.radiance[i] += value; }
 
   /// Takes the edge to the vertex at `depth` into account; false where the path ends before it.
-  bool arrive(const DirectLight& direct, Part& part, std::size_t i, int depth) const {
-    const Vertex& v = part.batch.vertex(i, depth);
-    Stage& stage = part.stage[i];
-    const Vertex& before = part.batch.vertex(i, depth - 1);
-    const bool passed = before.delta;
+  bool arrive(std::size_t i, int depth) {
+    const Vertex& v = batch_.vertex(i, depth);
+    Stage& stage = stage_[i];
+    const Vertex& last = batch_.vertex(i, depth - 1);
+    const bool passed = last.delta;
     if (stage == Stage::at_first && passed) stage = Stage::seeing;
     if (stage == Stage::at_second && passed) stage = Stage::gathering;
     if (stage == Stage::at_second) return false;
     const bool first_edge = stage == Stage::at_first;
-    if (first_edge) stage = density_.final_gather ? Stage::gathering : Stage::last_edge;
+    if (first_edge) stage = mapping_.density_.final_gather ? Stage::gathering : Stage::last_edge;
     const bool hit = first_edge ? settings_.next_event_estimation : stage == Stage::seeing;
-    if (hit) part.batch.radiance[i] += direct.met(v, before, depth);
+    if (hit) contribute(i, direct_.hit(v, last, depth));
     return stage != Stage::last_edge;
   }
 
   /// One vertex of an eye path; false where the path ends.
-  bool visit(const DirectLight& direct, Part& part, std::size_t i, int depth) const {
-    const Vertex& v = part.batch.vertex(i, depth);
-    if (!arrive(direct, part, i, depth)) return false;
+  bool visit(std::size_t i, int depth) {
+    stop_.check(context_);
+    const Vertex& v = batch_.vertex(i, depth);
+    if (!arrive(i, depth)) return false;
     if (v.kind != Vertex::Kind::surface || depth == settings_.max_depth) return false;
-    Stage& stage = part.stage[i];
-    const bool rough = is_rough(v);
+    Stage& stage = stage_[i];
+    const bool rough = mapping_.is_rough(v);
     const bool nee = settings_.next_event_estimation;
     if (stage == Stage::gathering) {
       if (!rough) return true;
-      part.look_ups.push_back({static_cast<std::uint32_t>(i), depth, false});
+      look_ups_.push_back({static_cast<std::uint32_t>(i), depth, false});
       stage = Stage::at_second;
       return true;
     }
-    if (direct.draws() && v.bsdf->connectible() && (nee || !rough)) {
-      direct.draw(v, depth, part.ahead[i], part.batch.states[i].rng,
-                  [&](const Ray& ray, const Rgb& value, const V3f&) {
-                    part.shadows.add(ray, {value, i});
-                  });
+    if (direct_.active() && v.bsdf->connectible() && (nee || !rough)) {
+      direct_.sample(v, depth, selection_.of(i), batch_.states[i].rng,
+                     [&](const Ray& ray, const Rgb& value, const V3f&) {
+                       shadows_.add(ray, {value, i});
+                     });
     }
     if (!rough) return true;
-    part.look_ups.push_back({static_cast<std::uint32_t>(i), depth, true});
+    look_ups_.push_back({static_cast<std::uint32_t>(i), depth, true});
     stage = Stage::at_first;
     return true;
   }
 
-  void look_up(const IterationContext& context, double paths, Part& part) const {
-    const bool apart = density_.caustic_paths > 0;
-    const Wanted first = at_first();
+  void look_up() {
+    const bool apart = mapping_.density_.caustic_paths > 0;
+    const Wanted first = mapping_.at_first();
     const double begin = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
-    for (const LookUp& at : part.look_ups) {
-      part.stop.check(context);
-      Rgb& radiance = part.batch.radiance[at.path];
+    for (const LookUp& at : look_ups_) {
+      stop_.check(context_);
       if (!at.first) {
-        radiance += estimate(photons_, {true, true, true}, at, part) / static_cast<float>(paths);
+        contribute(at.path, estimate(mapping_.photons_, {true, true, true}, at) / paths_);
         continue;
       }
       if (first.any()) {
-        radiance += estimate(photons_, first, at, part) / static_cast<float>(paths);
+        contribute(at.path, estimate(mapping_.photons_, first, at) / paths_);
       }
       if (apart) {
-        radiance += estimate(caustics_, {false, true, false}, at, part) /
-                    static_cast<float>(density_.caustic_paths);
+        contribute(at.path, estimate(mapping_.caustics_, {false, true, false}, at) /
+                                static_cast<float>(mapping_.density_.caustic_paths));
       }
     }
-    part.look_ups.clear();
-    part.look_up_seconds += clock_seconds(CLOCK_THREAD_CPUTIME_ID) - begin;
+    look_ups_.clear();
+    look_up_seconds_ += clock_seconds(CLOCK_THREAD_CPUTIME_ID) - begin;
   }
 
   /// The radiance that the photons of `map` around an eye vertex give, times the number of their
   /// light paths.
-  Rgb estimate(const PhotonMap& map, const Wanted& wanted, const LookUp& at, Part& part) const {
-    const Vertex& v = part.batch.vertex(at.path, at.depth);
-    const SurfaceEndpoint eye{v, at.depth, Transport::radiance, guide_};
+  Rgb estimate(const PhotonMap& map, const Wanted& wanted, const LookUp& at) {
+    const Vertex& v = batch_.vertex(at.path, at.depth);
+    const SurfaceEndpoint eye{v, at.depth, Transport::radiance, mapping_.guide_};
     V3d sum(0);
     const auto add = [&](const Photon& p, double d2, float count) {
       if (p.index + at.depth > settings_.max_depth || !wanted.of(p)) return;
       sum += V3d(merged(eye, p) * count) * kernel(d2);
     };
     double radius2 = map.radius() * map.radius();
-    if (density_.nearest > 0) {
+    if (mapping_.density_.nearest > 0) {
       radius2 =
-          map.for_each_nearest(v, part.nearest, [&](const Photon& p, double d2) { add(p, d2, 1); });
+          map.for_each_nearest(v, nearest_, [&](const Photon& p, double d2) { add(p, d2, 1); });
     } else {
-      map.for_each_at(v, part.batch.states[at.path].rng,
+      map.for_each_at(v, batch_.states[at.path].rng,
                       [&](const Photon& p, float distance2, float count) {
                         add(p, double(distance2) / radius2, count);
                       });
@@ -290,14 +302,35 @@ class PhotonMapping final : public Integrator {
     return 1;
   }
 
-  Guide guide_;  ///< of eye paths
-  Guide light_guide_;
-  PhotonTracing settings_;
-  Density density_;
-  float least_alpha_;
-  PhotonMap photons_, caustics_;
-  PhotonSeconds seconds_;
+  const PhotonMapping& mapping_;
+  const PhotonTracing& settings_;
+  const IterationContext& context_;
+  float paths_;
+  Image& image_;
+  Counters& counters_;
+  DirectLight direct_;
+  EyeBatch batch_;
+  EmitterSelection selection_;
+  ShadowQueue<Direct> shadows_;
+  std::array<Stage, EyeBatch::size> stage_ = {};
+  std::vector<LookUp> look_ups_;
+  std::vector<PointTree::Found> nearest_;  // and the next one
+  double look_up_seconds_ = 0;
+  SparseStop stop_;
+  Walk walk_;
 };
+
+Counters PhotonMapping::eye_pass(const IterationContext& context, double paths, Image& image) {
+  const Tiling tiling(image);
+  std::vector<double> seconds(static_cast<std::size_t>(tiling.tiles()), 0.0);
+  const Counters sum = for_each_part(context, tiling.tiles(), [&](int i, Counters& counters) {
+    TilePass pass(*this, context, paths, image, counters);
+    pass.render(tiling.tile(i));
+    seconds[static_cast<std::size_t>(i)] = pass.look_up_seconds();
+  });
+  for (const double s : seconds) seconds_.look_up += s;
+  return sum;
+}
 
 std::unique_ptr<Integrator> make(const PhotonTracing& settings, const Density& density) {
   return std::make_unique<PhotonMapping>(settings, density, make_light_guide(settings.light_guide));

@@ -28,15 +28,13 @@ class ShadingPoints {
       const CameraSample sample(context_, pixel);
       batch_.start(context_.camera, sample.rng, sample.ray, pixel);
     }
-    walk_.trace_paths(
-        batch_.states, [](std::size_t, int) {},
-        [&](std::size_t i, int depth) {
-          const Vertex& v = batch_.vertex(i, depth);
-          if (v.kind != Vertex::Kind::surface || depth == max_depth_) return false;
-          if (!v.bsdf->is_vpl_receiver(least_alpha_)) return true;
-          use(v, depth, batch_.pixels[i]);
-          return false;
-        });
+    walk_.trace_paths(batch_.states, [&](std::size_t i, int depth) {
+      const Vertex& v = batch_.vertex(i, depth);
+      if (v.kind != Vertex::Kind::surface || depth == max_depth_) return false;
+      if (!v.bsdf->is_vpl_receiver(least_alpha_)) return true;
+      use(v, depth, batch_.pixels[i]);
+      return false;
+    });
   }
 
  private:

@@ -112,14 +112,12 @@ void PathEvaluator::walk_eyes(std::span<const Point> points, Counters& counters)
              .roulette_depth = setting_.roulette_depth,
              .counts = eye_side(counts_)},
             counters);
-  walk.trace_paths(
-      eyes_.states, [](std::size_t, int) {},
-      [&](std::size_t i, int depth) {
-        stop_.check(context_);
-        const Point& point = points[point_of_[i]];
-        gather(point, i, depth);
-        return depth + 1 < point.wanted.most_t;
-      });
+  walk.trace_paths(eyes_.states, [&](std::size_t i, int depth) {
+    stop_.check(context_);
+    const Point& point = points[point_of_[i]];
+    gather(point, i, depth);
+    return depth + 1 < point.wanted.most_t;
+  });
 }
 
 void PathEvaluator::gather(const Point& point, std::size_t i, int depth) {

@@ -19,28 +19,26 @@ class DirectLight {
         counts_{.hit = 1, .nee = next_event && !scene.emitters().empty() ? 1.0 : 0.0} {}
 
   /// Whether points on emitters are sampled.
-  bool draws() const { return counts_.nee > 0; }
+  bool active() const { return counts_.nee > 0; }
 
-  /// NextEvent::choose_ahead(). Requires draws().
-  NextEvent::Ahead choose_ahead(Rng& rng) const { return next_event_.choose_ahead(rng); }
   const NextEvent& next_event() const { return next_event_; }
 
   /// The weighted contribution of the emission at vertex `v`, `depth` edges from the eye; `before`
   /// is the vertex before it.
-  Rgb met(const Vertex& v, const Vertex& before, int depth) const {
+  Rgb hit(const Vertex& v, const Vertex& before, int depth) const {
     std::optional<EmitterPoint> e = emitter_at(scene_, v);
     if (!e) return Rgb(0, 0, 0);
-    if (draws()) next_event_.set_ratio(*e, v, before, depth);
+    if (active()) next_event_.set_ratio(*e, v, before, depth);
     const double w = power_of_two(hit_weight(v, depth, *e, counts_, guide_));
     return v.throughput * e->emission * static_cast<float>(w);
   }
 
-  /// Joins the connectible vertex `v` to a point sampled on an emitter; `ahead` is from
-  /// choose_ahead(). Calls `add(ray, value)` where the contribution is not black; `value`
+  /// Connects the connectible vertex `v` to a point that is sampled on an emitter; `ahead` is from
+  /// EmitterSelection. Calls `add(ray, value)` where the contribution is not black; `value`
   /// counts if the shadow ray `ray` is unoccluded.
   template <class Add>
-  [[gnu::flatten]] void draw(const Vertex& v, int depth, NextEvent::Ahead ahead, Rng& rng,
-                             Add&& add) const {
+  [[gnu::flatten]] void sample(const Vertex& v, int depth, NextEvent::Ahead ahead, Rng& rng,
+                               Add&& add) const {
     const EmitterPoint e = next_event_.sample(v, ahead, rng);
     const SurfaceEndpoint eye{v, depth, Transport::radiance, guide_};
     const EmitterEndpoint light{e, guide_};

@@ -65,15 +65,13 @@ class LightBatch {
                             .transport = Transport::importance,
                             .counts = light_side(setting_.counts)};
     Walk walk(setting_.scene, guide_, limits, counters);
-    walk.trace_paths(
-        states_, [](std::size_t, int) {},
-        [&](std::size_t i, int depth) {
-          const std::size_t path = path_of_[i];
-          if (vertex(path, depth).kind == Vertex::Kind::surface) length_[path] = depth + 1;
-          if (depth == 1) set_ratio(path);
-          hits_[path * places_ + static_cast<std::size_t>(depth)] = walk.hit(i);
-          return goes_on(path, depth + 1);
-        });
+    walk.trace_paths(states_, [&](std::size_t i, int depth) {
+      const std::size_t path = path_of_[i];
+      if (vertex(path, depth).kind == Vertex::Kind::surface) length_[path] = depth + 1;
+      if (depth == 1) set_ratio(path);
+      hits_[path * places_ + static_cast<std::size_t>(depth)] = walk.hit(i);
+      return goes_on(path, depth + 1);
+    });
     trace_branches(walk);
   }
   /// Forgets all branches: call before restore() of all paths.
@@ -226,15 +224,13 @@ class LightBatch {
         path_of_[states_.size()] = add_branch(parent, b.state.depth + 1);
         states_.push_back(b.state);
       }
-      walk.trace_paths(
-          states_, [](std::size_t, int) {},
-          [&](std::size_t k, int depth) {
-            const auto at = static_cast<std::size_t>(depth);
-            if (states_[k].path[at].kind == Vertex::Kind::surface) {
-              branches_[path_of_[k] - size].length = depth + 1;
-            }
-            traced_hits_[k * places_ + at] = walk.hit(k);
-          });
+      walk.trace_paths(states_, [&](std::size_t k, int depth) {
+        const auto at = static_cast<std::size_t>(depth);
+        if (states_[k].path[at].kind == Vertex::Kind::surface) {
+          branches_[path_of_[k] - size].length = depth + 1;
+        }
+        traced_hits_[k * places_ + at] = walk.hit(k);
+      });
       for (std::size_t k = 0; k < states_.size(); ++k) {
         Branch& b = branches_[path_of_[k] - size];
         const auto begin = static_cast<std::ptrdiff_t>(k * places_) + b.first - 1;

@@ -34,10 +34,11 @@ struct PathBranch {
   std::size_t walk = 0;  ///< index of the path that was split
 };
 
-/// What Walk::trace_paths() calls for many vertices at once: here nothing.
-struct NothingTogether {
-  static constexpr bool wanted() { return false; }
-  void operator()(std::span<const std::size_t>) const {}
+/// What Walk::trace_paths() selects for vertices before they are visited: here nothing.
+struct NoSelection {
+  static void before(std::size_t, int) {}
+  static constexpr bool together() { return false; }
+  static void choose(std::span<const std::size_t>) {}
 };
 
 /// Traces a batch of random walks through a scene, one edge of each at a time: the memory that a
@@ -55,16 +56,14 @@ class Walk {
   virtual ~Walk() = default;
 
   /// Stores each vertex in its path and calls `visit(i, depth)`, with i the index of the path and
-  /// depth the number of its edges, before the next direction is sampled. `before(i, depth)` is
-  /// called before the ray to that vertex is traced, for random numbers that are drawn ahead. The
-  /// densities of all vertices are per area. A `visit` that returns false ends its walk. A state
-  /// whose depth is above 0 is a branch: it continues at its last vertex. New branches are appended
-  /// to branches().
-  /// `together`, if it is wanted, is called for all vertices of one length at once, before they are
-  /// visited.
-  template <class Before, class Visit, class Together = NothingTogether>
-  void trace_paths(std::span<PathState> states, Before&& before, Visit&& visit,
-                   Together&& together = {}) {
+  /// depth the number of its edges, before the next direction is sampled. The densities of all
+  /// vertices are per area. A `visit` that returns false ends its walk. A state whose depth is
+  /// above 0 is a branch: it continues at its last vertex. New branches are appended to branches().
+  /// `selection.before(i, depth)` is called before the ray to that vertex is traced. If
+  /// `selection.together()`, `selection.choose(paths)` is called for the vertices of all paths of
+  /// one length at once, before they are visited.
+  template <class Visit, class Selection = NoSelection>
+  void trace_paths(std::span<PathState> states, Visit&& visit, Selection&& selection = {}) {
     active_.resize(states.size());
     hits_.resize(states.size());
     std::iota(active_.begin(), active_.end(), std::size_t{0});
@@ -74,16 +73,16 @@ class Walk {
     while (!active_.empty()) {
       for (const std::size_t i : active_) {
         const int depth = ++states[i].depth;
-        before(i, depth);
+        selection.before(i, depth);
         if (!packets) trace(states[i], hits_[i]);
       }
       if (packets) trace_first(states);
       packets = false;
       for (const std::size_t i : active_) on_hit(states[i], hits_[i]);
-      const bool at_once = together.wanted();
+      const bool at_once = selection.together();
       if (at_once) {
         for (const std::size_t i : active_) scatter(states[i], states[i].depth);
-        together(active_);
+        selection.choose(active_);
       }
       std::erase_if(active_, [&](std::size_t i) {
         const int depth = states[i].depth;

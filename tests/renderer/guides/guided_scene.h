@@ -59,17 +59,15 @@ class GuidedScene {
     Counters counters;
     const Guide guide;
     Walk walk(scene_, guide, {.max_depth = 4, .roulette_depth = 4}, counters);
-    walk.trace_paths(
-        batch.states, [](std::size_t, int) {},
-        [&](std::size_t i, int depth) {
-          Vertex v = batch.vertex(i, depth);
-          if (v.kind != Vertex::Kind::surface || depth == 4 || !v.bsdf->connectible()) return;
-          v.guiding_cell = directions_->cell(v.surface, v.wp);
-          if (!(v.guiding_cell.probability > 0) || found.size() >= wanted) return;
-          const auto away = static_cast<float>(1.5 * space_->voxels().transform.voxel_size);
-          v.surface.x += v.surface.ng * std::copysign(away, dot(v.wp, v.surface.ng));
-          found.push_back(v);
-        });
+    walk.trace_paths(batch.states, [&](std::size_t i, int depth) {
+      Vertex v = batch.vertex(i, depth);
+      if (v.kind != Vertex::Kind::surface || depth == 4 || !v.bsdf->connectible()) return;
+      v.guiding_cell = directions_->cell(v.surface, v.wp);
+      if (!(v.guiding_cell.probability > 0) || found.size() >= wanted) return;
+      const auto away = static_cast<float>(1.5 * space_->voxels().transform.voxel_size);
+      v.surface.x += v.surface.ng * std::copysign(away, dot(v.wp, v.surface.ng));
+      found.push_back(v);
+    });
     return found;
   }
 

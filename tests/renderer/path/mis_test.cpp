@@ -76,12 +76,10 @@ class Meeting {
       Walk walk(scene_, guide_,
                 {.max_depth = longest, .roulette_depth = longest + 1, .counts = eye_side(counts_)},
                 counters);
-      walk.trace_paths(
-          eye_.states, [](std::size_t, int) {},
-          [&](std::size_t i, int depth) {
-            meet_emitter(i, depth, hit);
-            join(i, depth, joined);
-          });
+      walk.trace_paths(eye_.states, [&](std::size_t i, int depth) {
+        meet_emitter(i, depth, hit);
+        join(i, depth, joined);
+      });
     }
   }
 

@@ -21,13 +21,11 @@ class SharedLight : public testing::Test {
     }
     reuse_.begin(Rng(2, 0, 0, Rng::Purpose::test));
     Walk walk(scene_, guide_, {.max_depth = 2, .last_scatters = true, .split_depth = 3}, counters_);
-    walk.trace_paths(
-        batch_.states, [](std::size_t, int) {},
-        [&](std::size_t i, int depth) {
-          reuse_.reach(i, depth);
-          if (depth == 2 && reuse_.shares(i)) sharing_.push_back(i);
-          return true;
-        });
+    walk.trace_paths(batch_.states, [&](std::size_t i, int depth) {
+      reuse_.reach(i, depth);
+      if (depth == 2 && reuse_.shares(i)) sharing_.push_back(i);
+      return true;
+    });
   }
 
   /// Path `i` gathers `value` by next event estimation at its second vertex.

@@ -37,17 +37,15 @@ TEST(Roulette, KeepsGuidedPathsInTheWindow) {
   Walk walk(scene, guide, {.max_depth = max_depth, .roulette_depth = 1}, counters);
   int told = 0;
   float least = 1, most = 0;
-  walk.trace_paths(
-      batch.states, [](std::size_t, int) {},
-      [&](std::size_t i, int depth) {
-        if (depth < 3) return;
-        // One more draw of the guide has followed: its weight is 0.9 over the density's ratio.
-        const PathState& w = batch.states[i];
-        const float ratio = luminance(w.throughput) / luminance(batch.vertex(i, 1).throughput);
-        least = std::min(least, ratio);
-        most = std::max(most, ratio);
-        ++told;
-      });
+  walk.trace_paths(batch.states, [&](std::size_t i, int depth) {
+    if (depth < 3) return;
+    // One more draw of the guide has followed: its weight is 0.9 over the density's ratio.
+    const PathState& w = batch.states[i];
+    const float ratio = luminance(w.throughput) / luminance(batch.vertex(i, 1).throughput);
+    least = std::min(least, ratio);
+    most = std::max(most, ratio);
+    ++told;
+  });
   EXPECT_GT(told, 30);
   EXPECT_LT(least, 0.6F) << "the guide favoured nothing";
   EXPECT_LT(most, 5.0F / 3 * 1.5F * 2) << "none was split";

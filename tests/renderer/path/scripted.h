@@ -162,8 +162,7 @@ class Remake {
                        .transport = transport,
                        .counts = side},
                       counters);
-    walk.trace_paths(
-        states, [](std::size_t, int) {}, [&](std::size_t, int d) { reached = d; });
+    walk.trace_paths(states, [&](std::size_t, int d) { reached = d; });
   }
 
   /// The same triangle, and nearly the same place on it.
