@@ -23,7 +23,7 @@ function section(title, value) {
 }
 
 /// A section for each part of a report, single values first.
-function reportTables({ artefacts, choice, ...report }) {
+function reportTables({ artefacts, choice, threads, ...report }) {
   const parts = Object.entries(report);
   const alone = parts.filter(([, v]) => v === null || typeof v !== "object");
   return h("div.report", section("job", Object.fromEntries(alone)),
@@ -77,10 +77,24 @@ function builtList({ artefacts, scene = {} }) {
     [words(key), list.map(artefactText).join(", ") || "nothing"])));
 }
 
+/// By section: the seconds of all threads in loops, those in which one thread alone worked, and those that threads
+/// waited for the last one of a loop. Sections that kept threads waiting longest come first.
+function threadTable({ threads, machine = {} }) {
+  const count = machine.threads ?? 1;
+  const rows = Object.entries(threads.sections)
+    .map(([name, s]) => ({ name, ...s, idle: s.serial * (count - 1) + s.waiting }))
+    .sort((a, b) => b.idle - a.idle || b.busy - a.busy);
+  return block(`Threads: ${seconds(threads.serial_seconds)} with one thread at work, ` +
+    `${seconds(threads.waiting_seconds)} of waiting for others`,
+    table(["Section", "One thread", "Waiting", "All threads"],
+      rows.map((s) => [s.name, seconds(s.serial), seconds(s.waiting), seconds(s.busy)]), true));
+}
+
 /// CPU seconds measure the same work by another clock, so they are not part of the total.
 const effortView = (report) => h("div.effort",
   stackedBar("Time", report.seconds, seconds, (name) => !name.endsWith("cpu")),
   stackedBar("Rays", report.counts, number, (name) => ["rays", "shadow rays"].includes(name)),
+  report.threads && threadTable(report),
   builtList(report));
 
 /// The error of each candidate against its own time, after each of its turns.

@@ -60,6 +60,7 @@ template <class T>
 const T& SpaceAnalysis::get(Part<T>& part, const ArtefactKey& key,
                             const std::function<T()>& build) {
   pool_.check_stop();
+  const WorkSection section(pool_, fmt::format("analysis: {}", part.type));
   if (!part.value) part.value = store_.get<T>(key, build);
   return *part.value;
 }

@@ -43,6 +43,7 @@ ThreadPool::ThreadPool(int threads, std::function<bool()> stop)
     : threads_(threads > 0 ? threads : tbb::this_task_arena::max_concurrency()),
       stop_(std::move(stop)) {
   impl_ = std::make_unique<Impl>(threads_);
+  log_ = std::make_unique<WorkLog>(threads_);
 }
 
 ThreadPool::~ThreadPool() = default;
@@ -58,12 +59,26 @@ class KeptControl {
   const unsigned control_ = _mm_getcsr();
 };
 
+/// Records a loop, also one that throws.
+class LoggedLoop {
+ public:
+  explicit LoggedLoop(WorkLog& log) : recorded(log.begin_loop()), log_(log) {}
+  ~LoggedLoop() {
+    if (recorded) log_.end_loop();
+  }
+  const bool recorded;
+
+ private:
+  WorkLog& log_;
+};
+
 }  // namespace
 
 void ThreadPool::for_each(int n, const std::function<void(int)>& body) const {
   const KeptControl kept;
   LoopOrder order;
   order.leave();
+  const LoggedLoop loop(*log_);
   impl_->arena.execute([&] {
     tbb::parallel_for(
         0, n,
@@ -73,7 +88,11 @@ void ThreadPool::for_each(int n, const std::function<void(int)>& body) const {
           _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
           order.enter();
           check_stop();
-          body(i);
+          if (loop.recorded) {
+            log_->run(tbb::this_task_arena::current_thread_index(), i, body);
+          } else {
+            body(i);
+          }
           order.leave();
         },
         tbb::simple_partitioner());

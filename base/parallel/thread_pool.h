@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/parallel/stop.h"
+#include "base/parallel/work_log.h"
 
 namespace lacuna {
 
@@ -29,11 +30,30 @@ class ThreadPool {
   /// exception is rethrown. check_stop() is called before each body.
   void for_each(int n, const std::function<void(int)>& body) const;
 
+  /// What the threads spent their time on.
+  WorkLog& log() const { return *log_; }
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
   int threads_;
   std::function<bool()> stop_;
+  std::unique_ptr<WorkLog> log_;
+};
+
+/// While it exists, the work of the thread that made `pool`, and its loops, are in section `name`
+/// of the pool's log.
+class WorkSection {
+ public:
+  WorkSection(const ThreadPool& pool, std::string_view name)
+      : log_(pool.log()), outer_(log_.enter(name)) {}
+  ~WorkSection() { log_.leave(outer_); }
+  WorkSection(const WorkSection&) = delete;
+  WorkSection& operator=(const WorkSection&) = delete;
+
+ private:
+  WorkLog& log_;
+  std::uint32_t outer_;
 };
 
 }  // namespace lacuna

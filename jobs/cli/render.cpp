@@ -132,7 +132,8 @@ int render_folder(const JobFolder& folder, const RenderOptions& options) {
                            interrupt_requested(),
                            terminal,
                            options.shards,
-                           [grace] { return seconds_to_write(grace); }};
+                           [grace] { return seconds_to_write(grace); },
+                           options.trace};
   try {
     const bool was_done = folder.read_state().state == State::done;
     const Outcome outcome = run_job(folder, context);
@@ -173,6 +174,8 @@ void add_render(CLI::App& app, int& code) {
       ->add_option("-t,--threads", o->threads,
                    "number of threads instead of the job's; 0: one per core")
       ->check(CLI::Range(0, 1024));
+  command->add_option("--trace", o->trace,
+                      "also write the work of each thread to this file, in Chrome's trace format");
   command->add_flag("--again", o->again,
                     "discard the results and render again from the present files");
   command->add_flag("-q,--quiet", o->quiet, "show warnings and errors only");

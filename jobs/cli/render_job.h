@@ -9,6 +9,7 @@ namespace lacuna {
 struct RenderOptions {
   int threads = -1;  ///< -1: the job's own number; 0: one per core
   bool quiet = false;
+  std::filesystem::path trace;                 ///< file for the work of all threads; empty: none
   const std::vector<Shard>* shards = nullptr;  ///< the job is merged from these, not rendered
 };
 

@@ -119,6 +119,8 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
   Prepared p;
   p.pool = std::make_unique<ThreadPool>(context.threads >= 0 ? context.threads : spec.threads,
                                         context.interrupted);
+  if (!context.trace.empty()) p.pool->log().keep_spans();
+  const WorkSection section(*p.pool, "load");
   const bool chooses = std::holds_alternative<AutoSettings>(spec.integrator);
   if (!chooses) p.integrator = make_integrator(method_of(spec.integrator));
   SceneData data = load_gltf(resolve(context, "scene", spec.scene, scene_extensions), &p.inputs);
@@ -172,6 +174,7 @@ Prepared prepare(const JobSpec& spec, const RunContext& context) {
 }
 
 void analyse(const Prepared& p, Integrator& integrator) {
+  const WorkSection section(*p.pool, "prepare");
   integrator.prepare({.scene = *p.scene, .pool = *p.pool, .space = *p.space, .camera = *p.camera});
 }
 

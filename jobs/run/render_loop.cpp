@@ -175,7 +175,10 @@ bool RenderLoop::write_last_checkpoint() {
 bool RenderLoop::iterate(const std::function<bool()>& late) {
   const std::function<bool()> stop = [&] { return task_.interrupted() || late(); };
   const std::uint64_t iteration = state_.done.next();
-  std::fill(frame_.pixels.begin(), frame_.pixels.end(), Rgb(0, 0, 0));
+  const WorkSection section(task_.pool, "iteration");
+  task_.pool.for_each(frame_.height, [&](int y) {
+    std::fill_n(&frame_.at(0, y), frame_.width, Rgb(0, 0, 0));
+  });
   const std::span<Image> layers = state_.layers.begin(task_.pool);
   clock_.start();
   try {
@@ -192,7 +195,10 @@ bool RenderLoop::iterate(const std::function<bool()>& late) {
     clock_.stop();
     return false;
   }
-  state_.film.add(iteration, frame_);
+  {
+    const WorkSection film(task_.pool, "film");
+    state_.film.add(iteration, frame_, &task_.pool);
+  }
   clock_.stop();
   state_.done.add_next();
   Spent& spent = state_.spent;
@@ -200,6 +206,7 @@ bool RenderLoop::iterate(const std::function<bool()>& late) {
   spent = {spent.iterations + 1, clock_.seconds(), clock_.cpu_seconds(), longest};
   if (!layers.empty()) {
     const ScopedSeconds timed(task_.phases["layers"]);  // not part of the estimate
+    const WorkSection layer_means(task_.pool, "layers");
     state_.layers.add(task_.pool);
   }
   return true;
@@ -210,6 +217,7 @@ void RenderLoop::add_row() {
   double cost = 0;
   {
     const ScopedSeconds timed(cost);
+    const WorkSection section(task_.pool, "evaluate");
     CurveRow row{state_.spent.iterations,
                  state_.spent.seconds,
                  state_.spent.cpu_seconds,
@@ -256,6 +264,7 @@ bool RenderLoop::write_checkpoint_now() {
   double cost = 0;
   try {
     const ScopedSeconds timed(cost);
+    const WorkSection section(task_.pool, "checkpoint");
     write_checkpoint(task_.folder.file("checkpoint.bin"), identity(), save,
                      [&] { task_.stop_if_late(); });
   } catch (const Stopped&) {
@@ -271,6 +280,7 @@ void RenderLoop::write_preview_now() {
   double cost = 0;
   {
     const ScopedSeconds timed(cost);
+    const WorkSection section(task_.pool, "preview");
     write_preview(task_.folder.file("image.png"), state_.film.width(), state_.film.height(),
                   state_.film.mean());
   }
@@ -282,6 +292,7 @@ void RenderLoop::report_progress(const Spent& spent) {
   double cost = 0;
   {
     const ScopedSeconds timed(cost);
+    const WorkSection section(task_.pool, "progress");
     Progress p;
     p.iteration = static_cast<std::int64_t>(spent.iterations);
     p.seconds = spent.seconds;

@@ -120,6 +120,24 @@ OrderedJson merged_json(const RenderLoop& loop) {
           {"est_rmse", optional(estimated_rmse(merged))}};
 }
 
+/// How parallel this process was, by section.
+OrderedJson threads(const ThreadPool& pool) {
+  double serial = 0, waiting = 0;
+  OrderedJson sections = OrderedJson::object();
+  for (const auto& [name, times] : pool.log().sections()) {
+    if (times.serial + times.loops == 0) continue;
+    const double waited = times.waiting(pool.threads());
+    serial += times.serial;
+    waiting += waited;
+    sections[name] = {{"serial", times.serial},
+                      {"loops", times.loops},
+                      {"busy", times.busy},
+                      {"waiting", waited},
+                      {"bodies", times.bodies}};
+  }
+  return {{"serial_seconds", serial}, {"waiting_seconds", waiting}, {"sections", sections}};
+}
+
 OrderedJson machine(const ThreadPool& pool, const std::optional<Disturbance>& disturbance) {
   OrderedJson j{{"processor", processor_name()},
                 {"cores", sysconf(_SC_NPROCESSORS_ONLN)},
@@ -171,6 +189,7 @@ std::string write_report(const ReportInput& input) {
   j["image_module"] = image_module(input.started);
   j["artefacts"] = artefacts_json(input.artefacts);
   j["warnings"] = input.warnings;
+  j["threads"] = threads(task.pool);
   j["machine"] = machine(task.pool, input.disturbance);
   return document_text(j);
 }

@@ -29,7 +29,7 @@ std::vector<double> first_hit(const RenderTask& task, InspectQuantity quantity) 
   for (std::uint64_t i = 0; i < iterations; ++i) {
     Image frame(film.width(), film.height());
     inspect->iterate({task.scene, task.camera, task.pool, task.spec.seed, i, never}, frame);
-    film.add(i, frame);
+    film.add(i, frame, &task.pool);
   }
   return film.mean();
 }

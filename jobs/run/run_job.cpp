@@ -23,6 +23,7 @@
 #include "jobs/run/report.h"
 #include "jobs/run/results.h"
 #include "jobs/run/shard_folders.h"
+#include "jobs/run/trace.h"
 #include "jobs/spec/byte_size.h"
 #include "renderer/images/image_module.h"
 #include "renderer/integrators/integrator.h"
@@ -294,6 +295,7 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
   running.phase("writing");
   {
     const ScopedSeconds timed(phases["write"]);
+    const WorkSection section(*prepared.pool, "write");
     write_results(task, loop);
   }
   if (loop.counters().rejected > 0) {
@@ -312,6 +314,7 @@ Outcome render(const JobFolder& folder, const RunContext& context, Running& runn
         "reliable up to {:.2f}), so rare bright paths dominate and the picture may be too dark",
         tail->index, tail->limit));
   }
+  if (!context.trace.empty()) write_trace(prepared.pool->log(), context.trace);
   write_file_atomically(
       folder.file("report.json"),
       write_report({task, loop, prepared.camera_name, running.warnings(),

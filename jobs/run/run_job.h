@@ -18,6 +18,7 @@ struct RunContext {
   Observer& observer;
   const std::vector<Shard>* shards = nullptr;  ///< the job is merged from these, not rendered
   std::function<double()> seconds_left = {};   ///< see RenderTask
+  std::filesystem::path trace = {};  ///< file for the work of all threads (WorkLog); empty: none
 };
 
 enum class Outcome { done, interrupted };

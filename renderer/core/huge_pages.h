@@ -3,7 +3,10 @@
 #include <sys/mman.h>
 
 #include <cstddef>
+#include <memory>
 #include <new>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace lacuna {
@@ -34,5 +37,48 @@ struct HugePageAllocator {
 
 template <class T>
 using HugeVector = std::vector<T, HugePageAllocator<T>>;
+
+/// Elements that are all written before they are read, by several threads: resize() touches no
+/// memory, which a vector would clear with one thread.
+template <class T>
+class HugeArray {
+  static_assert(std::is_trivially_destructible_v<T>);
+
+ public:
+  HugeArray() = default;
+  ~HugeArray() { HugePageAllocator<T>().deallocate(data_, capacity_); }
+  HugeArray(HugeArray&& o) noexcept
+      : data_(std::exchange(o.data_, nullptr)),
+        size_(std::exchange(o.size_, 0)),
+        capacity_(std::exchange(o.capacity_, 0)) {}
+  HugeArray& operator=(HugeArray&& o) noexcept {
+    std::swap(data_, o.data_);
+    std::swap(size_, o.size_);
+    std::swap(capacity_, o.capacity_);
+    return *this;
+  }
+
+  /// All elements become undefined: set() begins the life of each.
+  void resize(std::size_t n) {
+    size_ = n;
+    if (n <= capacity_) return;
+    HugePageAllocator<T>().deallocate(std::exchange(data_, nullptr), std::exchange(capacity_, 0));
+    const std::size_t more = n + n / 16;  // iterations differ a little
+    data_ = HugePageAllocator<T>().allocate(more);
+    capacity_ = more;
+  }
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  T* begin() { return data_; }
+  T* end() { return data_ + size_; }
+  const T* begin() const { return data_; }
+  const T* end() const { return data_ + size_; }
+  void set(std::size_t i, const T& value) { std::construct_at(data_ + i, value); }
+  const T& operator[](std::size_t i) const { return data_[i]; }
+
+ private:
+  T* data_ = nullptr;
+  std::size_t size_ = 0, capacity_ = 0;
+};
 
 }  // namespace lacuna

@@ -46,6 +46,29 @@ inline void add_values(const float* values, std::size_t count, const SumPointers
   }
 }
 
+/// Rows that are added together, by one thread: their sums are added in the order of the bands, so
+/// that they have the same bits for any number of threads.
+constexpr int rows_of_band = 32;
+static_assert(rows_of_band % SquaredErrors::side == 0);
+
+/// The sums of a band.
+struct BandSums {
+  SquaredErrors::Sums sums{};
+  Lanes lost{};
+
+  void add_row(const float* values, std::size_t row, int y, const SumPointers& at,
+               const Shares& shares) {
+    Lanes deviations{};
+    std::size_t i = 0;
+    for (; i + lanes <= row; i += lanes) {
+      add_values(values + i, lanes, at + i, shares, deviations, lost);
+    }
+    add_values(values + i, row - i, at + i, shares, deviations, lost);
+    double* of_row = &sums[std::size_t(y % SquaredErrors::side) * SquaredErrors::side];
+    for (std::size_t k = 0; k < lanes; ++k) of_row[k / 3] += deviations[k];
+  }
+};
+
 /// n times the sum of squares less the square of the sum, not below 0. Where all values are equal
 /// both products are exact, and the difference is 0.
 double scaled_deviations(double n, const PairSum& squares, const PairSum& sum) {
@@ -68,30 +91,36 @@ Film::Film(int width, int height)
   for (Half& h : halves_) h.sums = ExactSums(squares_.size());
 }
 
-void Film::add(std::uint64_t iteration, const Image& estimate) {
+void Film::add(std::uint64_t iteration, const Image& estimate, const ThreadPool* pool) {
   Half& h = halves_[iteration % 2];
   const double before = h.n > 0 ? 1.0 / static_cast<double>(h.n) : 0;
   ++h.n;
   const Shares shares{before, 1.0 / static_cast<double>(h.n)};
   const std::size_t row = 3 * std::size_t(width_);
   const float* values = &estimate.pixels.data()->x;  // colours are three floats each
-  SumPointers at{h.sums.high(), h.sums.low(), squares_.high(), squares_.low()};
-  SquaredErrors::Sums sums{};
-  Lanes lost{};
-  for (int y = 0; y < height_; ++y, values += row, at = at + row) {
-    Lanes deviations{};
-    std::size_t i = 0;
-    for (; i + lanes <= row; i += lanes) {
-      add_values(values + i, lanes, at + i, shares, deviations, lost);
+  const SumPointers first{h.sums.high(), h.sums.low(), squares_.high(), squares_.low()};
+  std::vector<BandSums> bands(std::size_t((height_ + rows_of_band - 1) / rows_of_band));
+  const auto add_band = [&](int b) {
+    BandSums band;
+    const int end = std::min(height_, (b + 1) * rows_of_band);
+    for (int y = b * rows_of_band; y < end; ++y) {
+      const std::size_t at = std::size_t(y) * row;
+      band.add_row(values + at, row, y, first + at, shares);
     }
-    add_values(values + i, row - i, at + i, shares, deviations, lost);
-    double* of_row = &sums[std::size_t(y % SquaredErrors::side) * SquaredErrors::side];
-    for (std::size_t k = 0; k < lanes; ++k) of_row[k / 3] += deviations[k];
+    bands[std::size_t(b)] = band;
+  };
+  const int n = static_cast<int>(bands.size());
+  if (pool != nullptr) {
+    pool->for_each(n, add_band);
+  } else {
+    for (int b = 0; b < n; ++b) add_band(b);
   }
-  exact_ = exact_ && std::all_of(lost.begin(), lost.end(), [](double v) { return v == 0; });
-  if (h.n < 2) return;
-  for (double& sum : sums) sum /= 3;  // channels
-  squared_errors_.add(sums, width_, height_);
+  SquaredErrors::Sums sums{};
+  for (const BandSums& band : bands) {
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += band.sums[k] / 3;  // channels
+    exact_ = exact_ && std::ranges::all_of(band.lost, [](double v) { return v == 0; });
+  }
+  if (h.n >= 2) squared_errors_.add(sums, width_, height_);
 }
 
 void Film::merge(const Film& other) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/parallel/thread_pool.h"
 #include "renderer/film/exact_sums.h"
 #include "renderer/film/image.h"
 #include "renderer/film/squared_errors.h"
@@ -27,8 +28,9 @@ class Film {
   int height() const { return height_; }
   std::uint64_t iterations() const { return halves_[0].n + halves_[1].n; }
 
-  /// Adds the estimate of iteration `iteration`; its parity chooses the half.
-  void add(std::uint64_t iteration, const Image& estimate);
+  /// Adds the estimate of iteration `iteration`; its parity chooses the half. The bits are the same
+  /// with and without a pool.
+  void add(std::uint64_t iteration, const Image& estimate, const ThreadPool* pool = nullptr);
   /// Adds the iterations of `other`, none of which this film has. Throws std::invalid_argument on
   /// another size.
   void merge(const Film& other);

@@ -1,7 +1,7 @@
 #include "renderer/integrators/bdpt.h"
 
 #include "renderer/connections/registry.h"
-#include "renderer/core/pass_seconds.h"
+#include "renderer/core/passes.h"
 #include "renderer/guides/make_guide.h"
 #include "renderer/integrators/integrators.h"
 #include "renderer/path/emitter_selection.h"
@@ -67,9 +67,9 @@ class PairedBdpt final : public Bdpt {
       counts.merge = pixels * std::numbers::pi * radius * radius;
       sum = photon_pass(context, counts, radius, image);
     }
-    PassSeconds pass;
+    Passes passes(context.pool);
+    passes.begin("eye paths", seconds_.eye);
     sum += eye_pass(context, counts, image);
-    pass.end(seconds_.eye);
     return sum;
   }
 
@@ -102,7 +102,8 @@ class PairedBdpt final : public Bdpt {
 
   Counters photon_pass(const IterationContext& context, const SampleCounts& counts, double radius,
                        Image& image) {
-    PassSeconds pass;
+    Passes passes(context.pool);
+    passes.begin("light paths", seconds_.light);
     photons_.begin(Base::pixels(image));
     const LightPathSetting setting = light_setting(context, counts);
     const Counters sum = light_pass(
@@ -111,9 +112,8 @@ class PairedBdpt final : public Bdpt {
           photons_.keep_path(path, batch, i);
         },
         Base::splat_layers(context));
-    pass.end(seconds_.light);
+    passes.begin("photon grid", seconds_.grid);
     photons_.arrange(radius, context.pool);
-    pass.end(seconds_.grid);
     return sum;
   }
 
@@ -292,7 +292,8 @@ class ResampledBdpt final : public Bdpt {
         lit ? SampleCounts{1, count_as > 0 ? 1.0 : count, count, static_cast<double>(paths)}
             : SampleCounts{};
 
-    PassSeconds pass;
+    Passes passes(context.pool);
+    passes.begin("light paths", seconds_.light);
     LightVertices lights(lit ? resampled : 0, std::max(1, settings_.max_depth - 1), counts);
     const LightPathSetting setting = Base::light_setting(context, counts);
     Counters counters = light_pass(
@@ -302,11 +303,10 @@ class ResampledBdpt final : public Bdpt {
         },
         Base::splat_layers(context));
     lights.arrange();
-    pass.end(seconds_.light);
+    passes.begin("distributions", seconds_.distributions);
     connections_.begin(context, lights, cell_statistics_, counters);
-    pass.end(seconds_.distributions);
+    passes.begin("eye paths", seconds_.eye);
     counters += eye_pass(context, counts, lights, image);
-    pass.end(seconds_.eye);
     return counters;
   }
 

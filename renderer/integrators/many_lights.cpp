@@ -1,7 +1,7 @@
 #include "renderer/integrators/integrators.h"
 
 #include "base/parallel/spares.h"
-#include "renderer/core/pass_seconds.h"
+#include "renderer/core/passes.h"
 #include "renderer/many_lights/light_filter.h"
 #include "renderer/many_lights/light_gather.h"
 #include "renderer/path/direct_light.h"
@@ -58,20 +58,22 @@ class ManyLights final : public Integrator {
   }
 
   Counters iterate(const IterationContext& context, Image& image) override {
-    PassSeconds pass;
+    Passes passes(context.pool);
+    passes.begin("light paths", seconds_.light);
     VplSet lights(static_cast<std::size_t>(settings_.light_paths),
                   {settings_.max_depth - 1, by_lights(), least_alpha_});
     Counters counters;
     if (settings_.max_depth > (by_lights() ? 1 : 2)) counters = walk_lights(context, lights, image);
     lights.arrange([this](const VplGeometry& p) { return visibility_.group(p); });
     lights_ = static_cast<double>(lights.size());
-    pass.end(seconds_.light);
+    passes.begin("visibility", seconds_.visibility);
     const VplContributions terms(lights, bound_of(settings_, context.scene.bounds().radius()));
     std::optional<LightDraw> draw;
     std::optional<LightFilter> filter;
     if (random()) draw.emplace(terms, *random());
     if (random() && random()->filter_radius > 0) filter.emplace(image, *random());
     for (const BlockRange& range : visibility_.passes(lights)) {
+      passes.begin("visibility", seconds_.visibility);
       if (lights.size() > 0) {
         counters += visibility_.begin(
             {.context = context,
@@ -81,14 +83,12 @@ class ManyLights final : public Integrator {
              .lights = range,
              .sampled = random() ? std::size_t(random()->lights) : ~std::size_t{0}});
       }
-      pass.end(seconds_.visibility);
+      passes.begin("eye paths", seconds_.eye);
       counters += gather(
           context, {terms, draw ? &*draw : nullptr, filter ? &*filter : nullptr, range}, image);
-      pass.end(seconds_.eye);
     }
     if (draw) culled_ = draw->culled();
     if (filter) counters += add_filtered(context, *filter, image);
-    pass.end(seconds_.eye);
     return counters;
   }
 

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "analysis/geometry/morton.h"
-#include "renderer/core/pass_seconds.h"
+#include "renderer/core/passes.h"
 #include "renderer/integrators/integrators.h"
 #include "renderer/integrators/path_tracer.h"
 #include "renderer/integrators/seen_emission.h"
@@ -46,10 +46,10 @@ class Metropolis final : public Integrator {
     if (settings_.max_depth < least_edges() || context.scene.emitters().empty()) return counters;
     const double pixels = double(image.width) * image.height;
     const ChainPlan plan = make_plan(pixels);
-    PassSeconds pass;
+    Passes passes(context.pool);
+    passes.begin("bootstrap", seconds_.bootstrap);
     std::vector<Sample> samples(static_cast<std::size_t>(plan.samples));
     counters += bootstrap(context, samples);
-    pass.end(seconds_.bootstrap);
     std::erase_if(samples, [](const Sample& s) { return !(s.scalar > 0); });
     if (samples.empty()) return counters;
     std::ranges::sort(samples, {}, [](const Sample& s) { return std::pair(s.order, s.number); });
@@ -60,8 +60,8 @@ class Metropolis final : public Integrator {
     const double brightness = sum / static_cast<double>(plan.samples);
     brightness_.add(samples, sum, static_cast<double>(plan.samples));
     const double share = brightness * pixels / double(plan.chains * plan.mutations);
+    passes.begin("chains", seconds_.chains);
     counters += run_chains(context, plan, starts, share, image);
-    pass.end(seconds_.chains);
     return counters;
   }
 
@@ -211,29 +211,32 @@ class Metropolis final : public Integrator {
   Counters run_chains(const IterationContext& context, const ChainPlan& plan,
                       const std::vector<std::size_t>& starts, double share, Image& image) {
     // What is in memory together: chains, and splats between two additions to the picture.
-    constexpr std::size_t batches = 64;
+    constexpr std::size_t together = 1024;
     constexpr std::int64_t round = 512;
+    // A few batches for each thread: results do not depend on how chains are divided into them.
+    const auto of_batch = std::clamp(starts.size() / (4 * std::size_t(context.pool.threads())),
+                                     std::size_t{1}, std::size_t{M::size});
     Counters sum;
-    for (std::size_t first = 0; first < starts.size(); first += batches * M::size) {
-      const std::size_t n = std::min(batches * M::size, starts.size() - first);
-      std::vector<std::unique_ptr<Batch>> running((n + M::size - 1) / M::size);
+    for (std::size_t first = 0; first < starts.size(); first += together) {
+      const std::size_t end = std::min(first + together, starts.size());
+      std::vector<std::unique_ptr<Batch>> running((end - first + of_batch - 1) / of_batch);
       for (std::int64_t done = 0; done < plan.mutations; done += round) {
         const auto work = [&](int i, Counters& counters, Splats& splats) {
           typename M::Workspace workspace(context, settings_);
           std::unique_ptr<Batch>& batch = running[static_cast<std::size_t>(i)];
           if (batch == nullptr) {
-            const std::size_t chain = first + static_cast<std::size_t>(i) * M::size;
+            const std::size_t chain = first + static_cast<std::size_t>(i) * of_batch;
             batch = std::make_unique<Batch>(*this, share);
-            batch->start(std::span(starts).subspan(
-                             chain, std::min(std::size_t{M::size}, starts.size() - chain)),
-                         chain, context, workspace, counters);
+            batch->start(std::span(starts).subspan(chain, std::min(of_batch, end - chain)), chain,
+                         context, workspace, counters);
           }
           const std::int64_t steps = std::min(round, plan.mutations - done);
           for (std::int64_t k = 0; k < steps; ++k) {
             if (k % 16 == 0) context.check_stop();
-            batch->advance(workspace, counters, splats);
+            batch->advance(workspace, counters);
           }
-          if (done + steps == plan.mutations) batch->finish(splats);
+          if (done + steps == plan.mutations) batch->finish();
+          batch->take_splats(splats);
         };
         sum += for_each_splatting_part(context, static_cast<int>(running.size()), image, work,
                                        [](const Splat&) {});
@@ -266,31 +269,39 @@ class Metropolis final : public Integrator {
       for (std::size_t k = 0; k < starts.size(); ++k) m.accept(k);
     }
 
-    void advance(typename M::Workspace& workspace, Counters& counters, Splats& splats) {
+    void advance(typename M::Workspace& workspace, Counters& counters) {
       const std::size_t n = rngs.size();
       for (std::size_t k = 0; k < n; ++k) m.propose(k, rngs[k]);
       m.evaluate(n, workspace, counters);
-      for (std::size_t k = 0; k < n; ++k) decide(k, splats);
+      for (std::size_t k = 0; k < n; ++k) decide(k);
     }
 
     /// Both states count, by the probability that the chain is there next (Veach 1997, 11.3.2.1).
-    void decide(std::size_t k, Splats& splats) {
+    void decide(std::size_t k) {
       const double a = m.proposed(k).scalar > 0 ? std::min(1.0, m.acceptance_ratio(k)) : 0.0;
       stay[k] += 1 - a;
       const std::size_t kind = m.kind(k);
       ++proposed[kind];
       if (rngs[k].decide(static_cast<float>(a))) {
         ++accepted[kind];
-        deposit(m.current(k), stay[k], splats);
+        deposit(m.current(k), stay[k], splats_of[k]);
         m.accept(k);
         stay[k] = a;
       } else if (a > 0) {
-        deposit(m.proposed(k), a, splats);
+        deposit(m.proposed(k), a, splats_of[k]);
       }
     }
 
-    void finish(Splats& splats) {
-      for (std::size_t k = 0; k < rngs.size(); ++k) deposit(m.current(k), stay[k], splats);
+    void finish() {
+      for (std::size_t k = 0; k < rngs.size(); ++k) deposit(m.current(k), stay[k], splats_of[k]);
+    }
+
+    /// Appends the splats since the last call, chain after chain.
+    void take_splats(Splats& splats) {
+      for (Splats& own : splats_of) {
+        splats.insert(splats.end(), own.begin(), own.end());
+        own.clear();
+      }
     }
 
     void deposit(const ChainState& state, double weight, Splats& splats) const {
@@ -307,6 +318,7 @@ class Metropolis final : public Integrator {
     M m;
     double share;
     std::vector<Rng> rngs = {};
+    std::array<Splats, M::size> splats_of = {};
     std::array<double, M::size> stay{};  // weight of the current state that is not deposited yet
     ByKind proposed{}, accepted{};
   };

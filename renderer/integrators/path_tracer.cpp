@@ -166,6 +166,7 @@ Counters PathTracer::iterate(const IterationContext& context, Image& image) {
 }
 
 Counters PathTracer::render_passes(const IterationContext& context, Image& image) {
+  const WorkSection section(context.pool, "eye paths");
   const Tiling tiling(image);
   Counters sum;
   for (LearningPass pass = guide_.first_pass(); pass.first < LearningPass::parts;

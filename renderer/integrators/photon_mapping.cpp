@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "renderer/core/pass_seconds.h"
+#include "renderer/core/passes.h"
 #include "renderer/guides/make_guide.h"
 #include "renderer/path/direct_light.h"
 #include "renderer/path/emitter_selection.h"
@@ -50,10 +50,11 @@ class PhotonMapping final : public Integrator {
   }
 
   Counters iterate(const IterationContext& context, Image& image) override {
-    PassSeconds pass;
+    Passes passes(context.pool);
     const std::int64_t paths = light_paths(settings_.light_paths, image);
+    passes.begin("light paths", seconds_.light);
     Counters sum = light_pass(context, paths, image);
-    pass.end(seconds_.light);
+    passes.begin("photon grid", seconds_.grid);
     const double radius = merge_radius(settings_, context);
     for (PhotonMap* map : {&photons_, &caustics_}) {
       if (density_.nearest > 0) {
@@ -62,9 +63,8 @@ class PhotonMapping final : public Integrator {
         map->arrange(radius, context.pool);
       }
     }
-    pass.end(seconds_.grid);
+    passes.begin("eye paths", seconds_.eye);
     sum += eye_pass(context, static_cast<double>(paths), image);
-    pass.end(seconds_.eye);
     return sum;
   }
 

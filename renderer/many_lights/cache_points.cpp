@@ -91,7 +91,7 @@ Counters CachePoints::build(const LightPass& pass) {
     });
     seen_.assign(pixels.size() * blocks_, {});
   }
-  constexpr std::size_t together = 16;
+  constexpr std::size_t together = 4;
   const int parts = static_cast<int>((pixels.size() + together - 1) / together);
   counters += for_each_part(pass.context, parts, [&](int i, Counters& count) {
     ShadingPoints points(pass.context, pass.max_depth, pass.least_alpha, count);

@@ -94,7 +94,8 @@ bool Guide::learns_from(const V2i& pixel, const IterationContext& context, int e
 
 void Guide::update(std::span<const TrainingSamples::Part> parts, const LearningPass& pass,
                    const IterationContext& context, int edges) {
-  const TrainingSamples samples(parts, eye_->cells(), pass.share());
+  const WorkSection section(context.pool, "guide");
+  const TrainingSamples samples(parts, eye_->cells(), context.pool, pass.share());
   if (pass.end == LearningPass::parts) {
     const double all = double(samples.size()) / pass.share();
     share_ = std::ceil(std::max(1.0, share(context, edges) * all / most_samples));

@@ -128,28 +128,28 @@ void PhotonMap::place(double radius, const ThreadPool& pool) {
   for (const Part& part : parts_) n += part.photons.size();
   positions_.resize(n);
   photons_.resize(n);
-  each_photon(pool, [&](std::size_t i, const Photon& p) { positions_[i] = p.x; });
+  each_photon(pool, [&](std::size_t i, const Photon& p) { positions_.set(i, p.x); });
 }
 
 void PhotonMap::arrange(double radius, const ThreadPool& pool) {
   place(radius, pool);
-  grid_.build(positions_, radius, pool);
+  grid_.build({positions_.begin(), positions_.end()}, radius, pool);
   const std::size_t n = positions_.size();
   places_.resize(n);
   constexpr std::size_t block = 1 << 14;
   pool.for_each(static_cast<int>((n + block - 1) / block), [&](int b) {
     const std::size_t begin = static_cast<std::size_t>(b) * block;
     for (std::size_t k = begin; k < std::min(n, begin + block); ++k) {
-      places_[grid_.order()[k]] = static_cast<std::uint32_t>(k);
+      places_.set(grid_.order()[k], static_cast<std::uint32_t>(k));
     }
   });
-  each_photon(pool, [&](std::size_t i, const Photon& p) { photons_[places_[i]] = p; });
+  each_photon(pool, [&](std::size_t i, const Photon& p) { photons_.set(places_[i], p); });
 }
 
 void PhotonMap::arrange_nearest(double radius, const ThreadPool& pool) {
   place(radius, pool);
   tree_.build({positions_.begin(), positions_.end()});
-  each_photon(pool, [&](std::size_t i, const Photon& p) { photons_[i] = p; });
+  each_photon(pool, [&](std::size_t i, const Photon& p) { photons_.set(i, p); });
 }
 
 }  // namespace lacuna

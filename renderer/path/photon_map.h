@@ -115,9 +115,9 @@ class PhotonMap {
   std::vector<Part> parts_;
   std::atomic<std::uint64_t> stored_ = 0;
   std::atomic<std::uint64_t> parts_begun_ = 0;
-  HugeVector<V3f> positions_;
-  HugeVector<Photon> photons_;  // in the order of the grid, or of the light pass
-  HugeVector<std::uint32_t> places_;
+  HugeArray<V3f> positions_;
+  HugeArray<Photon> photons_;  // in the order of the grid, or of the light pass
+  HugeArray<std::uint32_t> places_;
   PointGrid grid_;
   PointTree tree_;
   double radius_ = 0;

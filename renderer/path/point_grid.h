@@ -8,7 +8,7 @@
 
 #include "analysis/geometry/simd.h"
 #include "base/parallel/thread_pool.h"
-#include "renderer/core/huge_pages.h"
+#include "renderer/core/key_sort.h"
 #include "renderer/core/rng.h"
 #include "renderer/core/vec.h"
 
@@ -34,7 +34,7 @@ class PointGrid {
 
   std::size_t size() const { return order_.size(); }
   /// The index of the point that has place `k` in the sorted order.
-  std::span<const std::uint32_t> order() const { return order_; }
+  std::span<const std::uint32_t> order() const { return {order_.begin(), order_.end()}; }
 
   /// Calls `visit(k, distance2, count)` for the places k of the points within `radius` of `x`,
   /// where `radius` is at most that of build(). `count` is 1, or where candidates are too many the
@@ -73,12 +73,6 @@ class PointGrid {
   };
   /// Four, or more where one goes on at the first bucket.
   using Query = std::array<Row, 8>;
-  /// A point on its way to its bucket.
-  struct Entry {
-    std::uint32_t bucket;
-    std::uint32_t index;
-  };
-
   int cell(float x) const { return static_cast<int>(std::floor(double(x) * per_cell_)); }
   static std::uint64_t hash(int y, int z) {
     std::uint64_t h = static_cast<std::uint32_t>(y) | std::uint64_t{static_cast<std::uint32_t>(z)}
@@ -148,12 +142,10 @@ class PointGrid {
   double per_cell_ = 1;  ///< 1 / width of a cell
   double reach_ = 1;     ///< half a cell
   std::uint32_t mask_ = 0;
-  HugeVector<std::uint32_t> starts_;  ///< of each bucket, its first place
-  HugeVector<float> x_, y_, z_;       ///< in sorted order, padded to whole loads
-  HugeVector<std::uint32_t> order_;
-  // Of build(), kept for the next: to touch new memory costs as much as to sort.
-  HugeVector<std::uint32_t> bucket_of_;
-  HugeVector<Entry> entries_;
+  KeySort<std::uint32_t> sort_;            // of the points' indices by bucket
+  std::span<const std::uint32_t> starts_;  // of each bucket, its first place
+  HugeArray<float> x_, y_, z_;             // in sorted order, padded to whole loads
+  HugeArray<std::uint32_t> order_;
 };
 
 }  // namespace lacuna

@@ -34,9 +34,11 @@ void ReflectedRadiance::update(const TrainingSamples& samples) {
   make_means();
 }
 
-std::size_t ReflectedRadiance::above(std::size_t i, std::size_t n) {
-  const std::size_t z = i % n, y = i / n % n, x = i / (n * n) % n, face = i / (n * n * n);
-  return ((face * (n / 2) + x / 2) * (n / 2) + y / 2) * (n / 2) + z / 2;
+std::size_t ReflectedRadiance::above(std::size_t i, std::size_t level) {
+  const std::size_t bits = levels - 1 - level, mask = (std::size_t{1} << bits) - 1;
+  const std::size_t z = i & mask, y = i >> bits & mask, x = i >> 2 * bits & mask;
+  const std::size_t face = i >> 3 * bits;
+  return ((face << (bits - 1) | x >> 1) << (bits - 1) | y >> 1) << (bits - 1) | z >> 1;
 }
 
 void ReflectedRadiance::make_means() {
@@ -45,8 +47,7 @@ void ReflectedRadiance::make_means() {
   for (std::size_t level = 1; level < levels; ++level) {
     const std::vector<Samples>& below = sums[level - 1];
     sums[level].resize(below.size() / 8);
-    const std::size_t n = std::size_t{side} >> (level - 1);
-    for (std::size_t i = 0; i < below.size(); ++i) sums[level][above(i, n)] += below[i];
+    for (std::size_t i = 0; i < below.size(); ++i) sums[level][above(i, level - 1)] += below[i];
   }
   Samples all;
   for (const Samples& s : sums[levels - 1]) all += s;
@@ -54,11 +55,10 @@ void ReflectedRadiance::make_means() {
   means_.assign(1, all.mean());
   for (std::size_t level = levels; level-- > 0;) {
     const std::vector<Samples>& here = sums[level];
-    const std::size_t n = std::size_t{side} >> level;
     std::vector<float> found(here.size());
     for (std::size_t i = 0; i < here.size(); ++i) {
       const bool enough = here[i].samples >= least_samples;
-      found[i] = enough ? here[i].mean() : means_[n > 1 ? above(i, n) : 0];
+      found[i] = enough ? here[i].mean() : means_[level + 1 < levels ? above(i, level) : 0];
     }
     means_ = std::move(found);
   }

@@ -39,8 +39,8 @@ class ReflectedRadiance {
   void load(ByteReader& in);
 
  private:
-  static constexpr int side = 32, sides = 6;
-  static constexpr std::size_t levels = 6;  // 32, 16, ..., 1 cells along a side
+  static constexpr std::size_t levels = 6;
+  static constexpr int sides = 6, side = 1 << (levels - 1);  // 32, 16, ..., 1 cells along a side
   /// Samples below which a look-up uses the coarser cell.
   static constexpr double least_samples = 128;
   /// Learning ends after a round of so many.
@@ -63,8 +63,8 @@ class ReflectedRadiance {
 
   std::array<double, 4> grid() const { return {low_.x, low_.y, low_.z, scale_}; }
   std::size_t index(const V3f& x, const V3f& n) const;
-  /// The place in the next coarser grid of place `i` in one of `n` cells along a side.
-  static std::size_t above(std::size_t i, std::size_t n);
+  /// The place in grid `level` + 1, which is coarser, of place `i` in grid `level`.
+  static std::size_t above(std::size_t i, std::size_t level);
   void make_means();
 
   V3d low_{0.0};

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "renderer/core/vec.h"
@@ -8,7 +10,7 @@
 namespace lacuna {
 
 /// A contribution of a light path to any pixel. Splats are stored in the order they were made and
-/// added to the picture in the order of the parts that made them, so that sums have the same bits
+/// added to each pixel in the order of the parts that made them, so that sums have the same bits
 /// for any number of threads.
 struct Splat {
   Rgb value;     ///< unweighted
@@ -18,5 +20,28 @@ struct Splat {
 };
 
 using Splats = std::vector<Splat>;
+
+/// The splats of a part, arranged by bands of the picture, so that several threads can add those of
+/// many parts, each thread to a band of its own.
+class BandedSplats {
+ public:
+  static constexpr std::size_t bands = 64;
+
+  /// Where the part puts its splats.
+  Splats& splats() { return splats_; }
+  /// Arranges them for a picture of `pixels` pixels.
+  void arrange(std::size_t pixels);
+  /// Calls `use(splat)` for those in `band`, in the order they were made.
+  template <class Use>
+  void for_each_in(std::size_t band, Use&& use) const {
+    for (std::uint32_t k = first_[band]; k < first_[band + 1]; ++k) use(splats_[order_[k]]);
+  }
+  void clear() { splats_.clear(); }
+
+ private:
+  Splats splats_;
+  std::vector<std::uint32_t> order_;
+  std::array<std::uint32_t, bands + 1> first_{};
+};
 
 }  // namespace lacuna

@@ -98,24 +98,31 @@ inline void start_paths(const IterationContext& context, const Image& image, con
 }
 
 /// for_each_part() whose `work(i, counters, splats)` may also splat to any pixel. The splats are
-/// added to `image`, and handed to `arrived(splat)`, in the order of the parts.
+/// added to `image`, and handed to `arrived(splat)`, in the order of the parts; several threads
+/// call `arrived`, each for pixels of its own.
 template <class Work, class Arrived>
 Counters for_each_splatting_part(const IterationContext& context, int n, Image& image, Work&& work,
                                  Arrived&& arrived) {
   constexpr int round = 128;  // parts whose splats are in memory together
-  std::vector<Splats> splats(static_cast<std::size_t>(std::min(n, round)));
+  std::vector<BandedSplats> parts(static_cast<std::size_t>(std::min(n, round)));
   Counters sum;
   for (int first = 0; first < n; first += round) {
-    sum += for_each_part(context, std::min(round, n - first), [&](int i, Counters& counters) {
-      work(first + i, counters, splats[static_cast<std::size_t>(i)]);
-    });
-    for (Splats& part : splats) {
-      for (const Splat& s : part) {
-        accumulate(image.pixels[s.pixel], s.value * s.weight, sum);
-        arrived(s);
-      }
+    const int some = std::min(round, n - first);
+    sum += for_each_part(context, some, [&](int i, Counters& counters) {
+      BandedSplats& part = parts[static_cast<std::size_t>(i)];
       part.clear();
-    }
+      work(first + i, counters, part.splats());
+      part.arrange(image.pixels.size());
+    });
+    const WorkSection section(context.pool, "splats");
+    sum += for_each_part(context, int{BandedSplats::bands}, [&](int band, Counters& counters) {
+      for (const BandedSplats& part : std::span(parts).first(std::size_t(some))) {
+        part.for_each_in(std::size_t(band), [&](const Splat& s) {
+          accumulate(image.pixels[s.pixel], s.value * s.weight, counters);
+          arrived(s);
+        });
+      }
+    });
   }
   return sum;
 }

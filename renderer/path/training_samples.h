@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "renderer/core/key_sort.h"
 #include "renderer/path/vertex.h"
 
 namespace lacuna {
@@ -30,20 +31,22 @@ class TrainingSamples {
   using Part = std::vector<TrainingSample>;
 
   /// `share`: the part of an iteration that the samples come from.
-  TrainingSamples(std::span<const Part> parts, std::size_t cells, double share = 1);
+  TrainingSamples(std::span<const Part> parts, std::size_t cells, const ThreadPool& pool,
+                  double share = 1);
 
   double share() const { return share_; }
 
   std::size_t size() const { return sorted_.size(); }
   std::span<const TrainingSample> of(std::size_t cell) const {
-    return std::span(sorted_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
+    const std::span<const std::uint32_t> first = sort_.starts();
+    return all().subspan(first[cell], first[cell + 1] - first[cell]);
   }
   /// Those of all cells, and of vertices without one.
-  std::span<const TrainingSample> all() const { return sorted_; }
+  std::span<const TrainingSample> all() const { return {sorted_.begin(), sorted_.end()}; }
 
  private:
-  std::vector<std::size_t> first_;  // of each cell, of those without one, and the end
-  std::vector<TrainingSample> sorted_;
+  KeySort<const TrainingSample*> sort_;  // by cell; those without one have the last key
+  HugeArray<TrainingSample> sorted_;
   double share_;
 };
 

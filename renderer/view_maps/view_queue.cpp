@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "renderer/core/free_memory.h"
-#include "renderer/core/pass_seconds.h"
+#include "renderer/core/passes.h"
 
 namespace lacuna {
 
@@ -57,7 +57,8 @@ class ViewQueue {
 
   /// Calls `use` with the map of each leaf.
   void fuse(const UseMap& use) {
-    PassSeconds seconds;
+    Passes passes(pool_);
+    passes.begin("fusion of view maps", counts_.fusion_seconds);
     const Octree& tree = views_.tree();
     for (std::size_t level = 0; level + 1 < tree.first.size(); ++level) {
       const std::uint32_t first = std::max(tree.first[level], first_);
@@ -66,7 +67,6 @@ class ViewQueue {
       pool_.for_each(static_cast<int>(end - first),
                      [&](int k) { fuse_one(first + static_cast<std::uint32_t>(k), use); });
     }
-    seconds.end(counts_.fusion_seconds);
   }
 
  private:

@@ -1,6 +1,6 @@
 #include "renderer/visibility/view_map_visibility.h"
 
-#include "renderer/core/pass_seconds.h"
+#include "renderer/core/passes.h"
 
 namespace lacuna {
 
@@ -20,9 +20,9 @@ void ViewMapVisibility::prepare(const PrepareContext& context) {
   cell_ = Octree::radius(cube_.side, cube_.levels);
   if (settings_.method != ViewMapMethod::per_view) {
     const std::shared_ptr<const Octree> scene = context.space.octree(settings_.levels);
-    PassSeconds seconds;
+    Passes passes(context.pool);
+    passes.begin("view map scene", scene_seconds_);
     scene_ = std::make_unique<SceneNodes>(*scene, context.pool);
-    seconds.end(scene_seconds_);
   }
   texels_ = map_texels({settings_.map_size});
   maps_ = std::make_unique<ViewMaps>(settings_.map_size, static_cast<float>(2 * cube_.side));
@@ -46,7 +46,8 @@ std::vector<BlockRange> ViewMapVisibility::passes(const VplSet& lights) const {
 }
 
 Counters ViewMapVisibility::begin(const LightPass& pass) {
-  PassSeconds seconds;
+  Passes passes(pass.context.pool);
+  passes.begin("view tree", tree_seconds_);
   lights_ = &pass.terms.lights();
   if (pass.lights.is_first()) leaves_ = 0, passes_ = 0;
   std::vector<View> views;
@@ -66,11 +67,11 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
   views_ = std::make_unique<ViewTree>(
       single ? ViewTree::of_single_views(views)
              : ViewTree(views, cube_.levels, cube_.corner, cube_.side, split));
-  seconds.end(tree_seconds_);
+  passes.begin("view map memory", memory_seconds_);
   leaves_ += views_->leaf_count();
   ++passes_;
   maps_->resize(views_->leaf_count());
-  seconds.end(memory_seconds_);
+  passes.begin("view maps", map_seconds_);
   Counters counters;
   const auto take = [&](std::uint32_t leaf, std::span<const float> depths) {
     if (leaf % maps_between_stops == 0 && pass.context.stop()) throw IterationStopped{};
@@ -95,7 +96,6 @@ Counters ViewMapVisibility::begin(const LightPass& pass) {
     queue_peak_ = std::max(queue_peak_, counts.queue_peak());
     counts_ += counts;
   }
-  seconds.end(map_seconds_);
   return counters;
 }
 

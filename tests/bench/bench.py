@@ -17,6 +17,7 @@ import guides as guide_gains
 import peers
 import regret
 import sampler
+import scaling
 import shape
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -221,6 +222,11 @@ def beside(bench, options):
     peers.run(bench, options)
 
 
+def cores(bench, options):
+    """How each method would scale to many cores, from its traces."""
+    scaling.run(bench, options)
+
+
 def scale(bench, _):
     """100,000 job folders with a stand-in for Slurm, and merging: docs/scaling.md."""
     node(bench, "scale.mjs")
@@ -229,7 +235,7 @@ def scale(bench, _):
 CHECKS = {"service": service, "page": page, "sweeps": sweeps, "rays": rays, "guides": guides, "views": views,
           "cornell": cornell, "overhead": overhead, "corridor": corridor, "analysis": analysis}
 LONG = {"regret": regrets, "guide_gains": gains, "emitters": selection, "sampler": spreading, "scale": scale,
-        "peers": beside}  # only by name
+        "peers": beside, "scaling": cores}  # only by name
 
 
 def main():
@@ -245,6 +251,11 @@ def main():
     parser.add_argument("--peers-seconds", type=float, default=6, help="CPU seconds of all threads for each picture of peers")
     parser.add_argument("--peers-scenes", nargs="+", choices=peers.SCENES, metavar="SCENE",
                         help=f"of {', '.join(peers.SCENES)} (default: all)")
+    parser.add_argument("--scaling-sizes", nargs="+", choices=scaling.SIZES, default=list(scaling.SIZES))
+    parser.add_argument("--scaling-methods", nargs="+", choices=scaling.METHODS, metavar="METHOD",
+                        help=f"of {'; '.join(scaling.METHODS)} (default: all)")
+    parser.add_argument("--scaling-scenes", nargs="+", choices=scaling.SCENES, default=list(scaling.SCENES))
+    parser.add_argument("--scaling-iterations", type=int, default=3, help="of each run")
     parser.add_argument("--guide-seconds", type=float, default=6, help="CPU seconds for each picture of guide_gains")
     parser.add_argument("--guide-seeds", type=int, default=3, help="at least 2")
     parser.add_argument("--guide-scenes", nargs="+", choices=guide_gains.SCENES, metavar="SCENE",

@@ -413,7 +413,7 @@ FAULTS = [
     Fault("lights without area are clamped", "renderer/many_lights/vpl_contributions.cpp",
           "if (c.infinite || light.delta()) return t;", "if (c.infinite) return t;"),
     Fault("what the bound cuts off is lost", "renderer/integrators/many_lights.cpp",
-          "return 1 - terms.share(at, to, to.wp);", "return 0 * terms.share(at, to, to.wp);"),
+          "return 1 - with_.terms.share(at, to, to.wp);", "return 0 * with_.terms.share(at, to, to.wp);"),
     Fault("tests that were made count once", "renderer/visibility/cached_visibility.cpp",
           "d.gain[i] = 1 / x;", "d.gain[i] = 1;"),
     Fault("lights that were tested keep their guess", "renderer/visibility/cached_visibility.cpp",

@@ -41,6 +41,10 @@ export const report = {
   artefacts: { built: [{ name: "skeleton", seconds: 1.5, disk_bytes: 2048 }], loaded: ["octree"] },
   strategies: [{ type: "camera", share: 0.31 }, { type: "emitter", share: 0.69 }],
   warnings: [],
+  threads: { serial_seconds: 0.53, waiting_seconds: 1.02, sections: {
+    "eye paths": { serial: 0.01, loops: 14.1, busy: 28.1, waiting: 0.1, bodies: 4096 },
+    "photon grid": { serial: 0.4, loops: 1, busy: 1.1, waiting: 0.9, bodies: 512 },
+    curve: { serial: 0.12, loops: 0, busy: 0, waiting: 0, bodies: 0 } } },
   machine: { processor: "A processor, 2 GHz", cores: 2, threads: 2, peak_memory_bytes: 183500800 },
 };
 

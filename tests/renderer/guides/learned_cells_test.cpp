@@ -57,7 +57,7 @@ LearnedCells<Directions> learned(int rounds, int samples, std::uint64_t seed,
       const auto [w, p] = from_above(rng);
       part.push_back(found(1, w, p, static_cast<float>(radiance(w))));
     }
-    if (cells.update(TrainingSamples(std::span(&part, 1), 2), pool)) cells.next_round(pool);
+    if (cells.update(TrainingSamples(std::span(&part, 1), 2, pool), pool)) cells.next_round(pool);
   }
   return cells;
 }
@@ -102,7 +102,7 @@ TYPED_TEST(LearnedCellsOf, CountAndDivideVertices) {
   const ThreadPool pool(1);
   Cells cells(1);
   const std::vector<TrainingSamples::Part> parts{{up(1)}, {up(0), up(INFINITY)}};
-  ASSERT_TRUE(cells.update(TrainingSamples(parts, 1), pool));
+  ASSERT_TRUE(cells.update(TrainingSamples(parts, 1, pool), pool));
   EXPECT_EQ(cells.vertices(0), 3);
   cells.divide(0);
   EXPECT_EQ(cells.vertices(1), 1.5);

@@ -42,7 +42,7 @@ TEST(LearnedSkeleton, LobesLearnFromAllLitVertices) {
                       .radiance = 1});
     }
     for (int k = 0; k < 1 << round; ++k) {
-      guide->update(TrainingSamples(std::span(&part, 1), guide->cells()), pool);
+      guide->update(TrainingSamples(std::span(&part, 1), guide->cells(), pool), pool);
     }
   }
   v.guiding_cell = guide->cell(v.surface, v.wp);
@@ -77,7 +77,7 @@ TEST(SkeletonDirections, StrengthFollowsTheLight) {
                                          .reflected = 1});
   const ThreadPool pool(1);
   for (int i = 0; i < 20; ++i) {
-    guide->update(TrainingSamples(std::span(&part, 1), guide->cells()), pool);
+    guide->update(TrainingSamples(std::span(&part, 1), guide->cells(), pool), pool);
   }
   EXPECT_GT(guide->pdf(at, axis).value, 3 * before);
 }

@@ -45,7 +45,7 @@ double learned(const TwoHalves& light) {
   double sum = 0;
   for (std::uint64_t i = 0; i < 60; ++i) {
     const TrainingSamples::Part part = light.samples(probability, 2000, i);
-    probability.update(TrainingSamples(std::span(&part, 1), 1), pool);
+    probability.update(TrainingSamples(std::span(&part, 1), 1, pool), pool);
     if (i >= 20) sum += double(probability[0]) / 40;
   }
   return sum;
@@ -67,7 +67,7 @@ TEST(LearnedProbability, FollowsAChangeOfTheLight) {
   const auto learn = [&](const TwoHalves& light, int passes) {
     for (int i = 0; i < passes; ++i) {
       const auto part = light.samples(probability, 1000, static_cast<std::uint64_t>(i));
-      probability.update(TrainingSamples(std::span(&part, 1), 1), pool);
+      probability.update(TrainingSamples(std::span(&part, 1), 1, pool), pool);
     }
   };
   learn({0.1}, 100);
@@ -97,7 +97,7 @@ TEST(LearnedProbability, LearnsNothingFromOtherSamples) {
         .reflected = 1}}) {
     part.push_back(s);
   }
-  probability.update(TrainingSamples(std::span(&part, 1), 2), pool);
+  probability.update(TrainingSamples(std::span(&part, 1), 2, pool), pool);
   EXPECT_EQ(probability[1], before);
 }
 
@@ -105,7 +105,7 @@ TEST(LearnedProbability, OfADividedCellIsThatOfItsOrigin) {
   const ThreadPool pool(1);
   LearnedProbability probability(1);
   const TrainingSamples::Part part = TwoHalves{0.8}.samples(probability, 500, 1);
-  probability.update(TrainingSamples(std::span(&part, 1), 1), pool);
+  probability.update(TrainingSamples(std::span(&part, 1), 1, pool), pool);
   probability.divide(std::array{0U});
   ASSERT_EQ(probability.size(), 2U);
   EXPECT_EQ(probability[1], probability[0]);

@@ -15,7 +15,7 @@ TEST(TrainingSamples, AreSortedByCellInTheOrderOfTheirParts) {
   };
   const std::vector<TrainingSamples::Part> parts{
       {sample(2, 1), sample(0, 2)}, {}, {sample(2, 3), sample(GuidingCell::none, 4), sample(2, 5)}};
-  const TrainingSamples samples(parts, 3);
+  const TrainingSamples samples(parts, 3, ThreadPool(2));
   EXPECT_EQ(samples.size(), 5U);
   EXPECT_TRUE(samples.of(1).empty());
   ASSERT_EQ(samples.of(2).size(), 3U);

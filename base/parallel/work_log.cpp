@@ -1,0 +1,115 @@
+#include "base/parallel/work_log.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace lacuna {
+
+namespace {
+
+constexpr std::size_t most_spans = std::size_t{1} << 20;
+
+double seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+WorkLog::WorkLog(int threads)
+    : start_(seconds()),
+      threads_(static_cast<std::size_t>(threads)),
+      spans_(static_cast<std::size_t>(threads)) {}
+
+double WorkLog::now() const { return seconds() - start_; }
+
+std::uint64_t WorkLog::lost_spans() const {
+  std::uint64_t lost = 0;
+  for (const Thread& t : threads_) lost += t.lost;
+  return lost;
+}
+
+std::map<std::string, SectionTimes> WorkLog::sections() {
+  if (is_owner() && !in_loop_) mark();
+  std::map<std::string, SectionTimes> all;
+  for (std::size_t i = 0; i < names_.size(); ++i) all[names_[i]] = times_[i];
+  return all;
+}
+
+std::uint32_t WorkLog::enter(std::string_view name) {
+  const std::uint32_t from = section_;
+  if (!is_owner() || in_loop_) return from;
+  mark();
+  const auto found = std::ranges::find(names_, name);
+  section_ = static_cast<std::uint32_t>(found - names_.begin());
+  if (found == names_.end()) {
+    names_.emplace_back(name);
+    times_.emplace_back();
+  }
+  return from;
+}
+
+void WorkLog::leave(std::uint32_t to) {
+  if (!is_owner() || in_loop_) return;
+  mark();
+  section_ = to;
+}
+
+void WorkLog::mark() {
+  const double time = now();
+  times_[section_].serial += time - marked_;
+  keep(0, {marked_, time, section_, loop_, -1});
+  marked_ = time;
+}
+
+void WorkLog::keep(int thread, const Span& span) {
+  if (!keeps_) return;
+  std::vector<Span>& spans = spans_[static_cast<std::size_t>(thread)];
+  if (spans.size() < most_spans) {
+    spans.push_back(span);
+  } else {
+    ++threads_[static_cast<std::size_t>(thread)].lost;
+  }
+}
+
+bool WorkLog::begin_loop() {
+  if (!is_owner() || in_loop_) return false;
+  mark();
+  in_loop_ = true;
+  for (Thread& t : threads_) {
+    t.busy = 0;
+    t.bodies = 0;
+  }
+  return true;
+}
+
+void WorkLog::end_loop() {
+  const double time = now();
+  SectionTimes& times = times_[section_];
+  times.loops += time - marked_;
+  for (const Thread& t : threads_) {
+    times.busy += t.busy;
+    times.bodies += t.bodies;
+  }
+  marked_ = time;
+  ++loop_;
+  in_loop_ = false;
+}
+
+void WorkLog::run(int thread, int i, const std::function<void(int)>& body) {
+  struct Timed {
+    WorkLog& log;
+    int thread, i;
+    double begin = log.now();
+    ~Timed() {
+      const double end = log.now();
+      Thread& own = log.threads_[static_cast<std::size_t>(thread)];
+      own.busy += end - begin;
+      ++own.bodies;
+      log.keep(thread, {begin, end, log.section_, log.loop_, i});
+    }
+  };
+  const Timed timed{*this, thread, i};
+  body(i);
+}
+
+}  // namespace lacuna
