@@ -46,10 +46,11 @@ std::vector<std::string> look_back(const Camera& camera, const SurfaceContact& l
     for (const float x : {0.0F, static_cast<float>(camera.width())}) {
       for (const float y : {0.0F, static_cast<float>(camera.height())}) {
         if (dot(camera.ray(x, y).d, n) * side >= 0) continue;
-        return {fmt::format(
-            "the camera lies exactly in mesh \"{}\" and looks along it: part of the picture shows "
-            "that surface alone, from beside it; move the camera off it",
-            mesh_name(scene, left))};
+        return {
+            fmt::format("the camera lies exactly in mesh \"{}\" and looks along its plane: part of "
+                        "the picture shows "
+                        "that surface alone, from beside it; move the camera off it",
+                        mesh_name(scene, left))};
       }
     }
   }
