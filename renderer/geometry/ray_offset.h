@@ -9,14 +9,14 @@ namespace lacuna {
 // Rays leave a surface from a point beside it, so that they do not hit it again. The smallest safe
 // distance follows from rounding errors only, not from the scene or its size. With u = 2^-24, the
 // largest relative error of rounding to float:
-// //
+//
 // - A point x on the plane is rounded once, and the origin beside it once more. Each rounding moves
 //   it across the plane by at most u sum_i |ng_i x_i|.
 // - Embree's distance between an origin and the plane of a triangle has an error bounded by
 //   TriangleShape::plane_error.
 // - The direction of a segment, end - start, is rounded by u times its length, and Embree's
 //   distance along it by a few u: both move the segment's end in proportion to its length.
-// //
+//
 // Each bound is doubled. The first two are 0 for a horizontal floor at height 0 of any size.
 
 /// The distance from the surface, in scene units, at which rays from `x` start. `ng`: unit normal;
