@@ -132,7 +132,7 @@ FAULTS = [
           "probability(to.edge_count(), added_, deleted_, to_end_) / (deleted_ + 1);",
           "probability(from.edge_count(), deleted_, added_, to_end_) / (deleted_ + 1);"),
     Fault("roulette of shadow rays is not undone", "renderer/mutations/path_space.cpp",
-          "c.ratio = ratio / tested;", "c.ratio = ratio;"),
+          "c.ratio = ratio / test_probability;", "c.ratio = ratio;"),
     Fault("importance meets delta lobes in the wrong measure", "renderer/materials/bsdf.cpp",
           "double(frame_probability(lobe.wi, n)) * lobe.jacobian;",
           "double(frame_probability(lobe.wi, n));"),
