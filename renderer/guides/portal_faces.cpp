@@ -62,7 +62,7 @@ std::uint32_t nearest_portal(const PortalGrid& grid, const NamedRegion& place) {
   const std::vector<Portal>& all = grid.portals.portals;
   if (all.empty()) {
     throw SceneError(
-        "guide: \"through\" names no portal: at this resolution the empty space has none");
+        "guide: \"through\" selects no portal: the empty space has none at this resolution");
   }
   std::uint32_t nearest = 0;
   double least = HUGE_VAL;

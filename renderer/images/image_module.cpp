@@ -226,8 +226,8 @@ const ImageCodec& codec_of(const Loaded& loaded) {
   if (loaded.codec != nullptr) return *loaded.codec;
   if (loaded.lacks_memory) {
     throw MemoryLimitError(std::string(module_name) +
-                           ": the libraries that read and write images do not fit the limit of "
-                           "memory (ulimit -v or -d); they take some 450 MiB of address space");
+                           ": the libraries that read and write images exceed the memory limit "
+                           "(ulimit -v or -d); they need about 450 MiB of address space");
   }
   // Not the job's fault: the same job can continue once the module is there.
   throw std::system_error(ELIBACC, std::generic_category(), loaded.error);

@@ -99,7 +99,7 @@ void check_header(const std::filesystem::path& file, const PictureHeader& header
     fail(file, "is a crop (its data window is not its display window); allowed: whole images");
   }
   if (header.orientation != 1) {
-    fail(file, "is stored turned or mirrored; allowed: top row first, left to right");
+    fail(file, "is stored rotated or mirrored; allowed: top row first, left to right");
   }
 }
 

@@ -69,8 +69,8 @@ std::vector<std::string> close_surfaces(const Scene& scene) {
   }
   if (close == 0) return {};
   return {
-      fmt::format("{} of {} tested triangles lie closer to another mesh than rays "
-                  "resolve: shadows and light between them are lost; the first is of mesh {}",
+      fmt::format("{} of {} tested triangles lie closer to another mesh than rays resolve:  "
+                  "shadows and light between them are lost; the first is of mesh {}",
                   close, looked_at, first)};
 }
 

@@ -80,8 +80,8 @@ NodeMaps trace_node_maps(const Scene& scene, std::span<const V3f> points, int si
   const std::size_t texels = points.size() * maps.texels_of_point() + NodeMaps::margin;
   if (const std::uint64_t bytes = texels * sizeof(maps.texels[0]); bytes > byte_limit) {
     throw MemoryLimitError(
-        fmt::format("distance maps of {} nodes with {} x {} texels a face take {} bytes, of {} "
-                    "that are free: a smaller map_size, or an analysis of lower resolution",
+        fmt::format("distance maps of {} nodes with {} x {} texels per face need {} bytes, "
+                    "available are {}; lower map_size, or the resolution of the analysis",
                     points.size(), size, size, bytes, byte_limit));
   }
   maps.texels.resize(texels);

@@ -34,7 +34,8 @@ class ViewQueue {
     const std::size_t maps = views.tree().nodes.size() - first_;
     const std::size_t floats = maps * rendering.map_floats();
     require_free(double(floats) * sizeof(float), [&] {
-      return fmt::format("view_maps: breadth-first, maps of {} nodes; go depth_first", maps);
+      return fmt::format("view_maps: maps of {} nodes, breadth-first; use traversal depth_first",
+                         maps);
     });
     maps_.assign(floats, std::numeric_limits<float>::infinity());
     counts_.unfused_bytes = floats * sizeof(float);

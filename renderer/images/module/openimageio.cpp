@@ -177,7 +177,7 @@ class OpenImageIoCodec final : public ImageCodec {
     if (!reader->open("memory", spec, reading_hints())) fail(reader->geterror());
     const int bits = static_cast<int>(8 * spec.format.size());
     if (spec.format != OIIO::TypeUInt8 && spec.format != OIIO::TypeUInt16) {
-      fail("its values have another type than 8 or 16 bits");
+      fail("its values have neither 8 nor 16 bits");
     }
     StoredTexels texels{spec.width, spec.height, spec.nchannels, bits, nullptr};
     // Not set to zero: memory is committed only as texels arrive.

@@ -165,7 +165,7 @@ TEST(NamedFaces, PointsThatNameNoneAreRefused) {
     p.eye({0, 0, 0.5}, {0, 0, -1}, 1.5);
     return std::move(p.data);
   };
-  EXPECT_NE(refusal(empty, through_portal({0, 0, 0})).find("names no portal"), std::string::npos);
+  EXPECT_NE(refusal(empty, through_portal({0, 0, 0})).find("selects no portal"), std::string::npos);
   EXPECT_EQ(refusal(empty, border), "");
 }
 

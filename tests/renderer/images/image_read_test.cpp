@@ -316,7 +316,7 @@ TEST(ImageRead, AnExrThatSaysTooMuchIsRefused) {
                   "has channel \"B\" at less than full resolution, as luminance and chroma have");
   expect_contains(
       refusal(1, 1, {.attributes = {{{"Orientation", "int", std::string("\3\0\0\0", 4)}}}}),
-      "is stored turned or mirrored");
+      "is stored rotated or mirrored");
 }
 
 TEST(ImageRead, TheMagicDecidesAndNotTheName) {
@@ -391,7 +391,7 @@ TEST(ImageRead, OtherTiffsAreRefused) {
   expect_contains(refusal({{256, {2000}}}), "is corrupt: 24 bytes cannot hold its 2000 x 1 pixels");
   expect_contains(refusal({{256, {30000}}, {257, {30000}}, {259, {5}}, {278, {30000}}}),
                   "cannot hold");
-  expect_contains(refusal({{274, {3}}}), "is stored turned or mirrored");
+  expect_contains(refusal({{274, {3}}}), "is stored rotated or mirrored");
   const test::Bytes whole = test::make_tiff(2, 1, 3, {1, 2, 3, 4, 5, 6});
   for (std::size_t n = 4; n < whole.size(); ++n) {
     const test::Bytes part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n));
